@@ -1,0 +1,67 @@
+"""The thesis's virtual camera: orthographic, 10 units from the origin, view angle 6 degrees (T3.2.6)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+DISTANCE = 10.0  # camera to origin, in units of the mesh; T3.2.6
+VIEW_ANGLE = 6.0  # degrees, over the rows of the image; T3.2.6
+
+
+@dataclass(frozen=True)
+class Viewpoint:
+    """Where the camera stands: azimuth, elevation and roll in degrees, +z up, looking at the origin.
+
+    Azimuth 0 stands on +x and turns counter-clockwise seen from +z. At elevation +-90 the image's up is the limit of
+    the elevations below, so that the poles have no jump. Roll turns the image counter-clockwise about the view axis.
+    """
+
+    azimuth: float
+    elevation: float
+    roll: float = 0.0
+
+    @property
+    def name(self):
+        """A short name for files and tables, for example `az120_el-45`."""
+        name = f"az{self.azimuth:g}_el{self.elevation:g}"
+        return name if self.roll == 0 else f"{name}_ro{self.roll:g}"
+
+    @property
+    def axes(self):
+        """(3, 3) rows right, up, back: the camera's axes in the world; back points from the origin to the camera."""
+        az, el, roll = np.radians([self.azimuth, self.elevation, self.roll])
+        back = np.array([np.cos(el) * np.cos(az), np.cos(el) * np.sin(az), np.sin(el)])
+        right = np.array([-np.sin(az), np.cos(az), 0.0])
+        up = np.cross(back, right)
+        return np.array([np.cos(roll) * right - np.sin(roll) * up, np.sin(roll) * right + np.cos(roll) * up, back])
+
+
+def pixels_per_unit(rows):
+    """Image rows a unit of the mesh takes: 858.7 at 900 rows (T eq. 3.11)."""
+    return rows / (2 * DISTANCE * np.tan(np.radians(VIEW_ANGLE) / 2))
+
+
+def project(points, viewpoint, size):
+    """World points (k, 3) to image: (rows (k,), columns (k,), depths (k,)), fractional pixels and units.
+
+    Pixel centres lie at whole numbers; depth is the distance from the camera's plane along the view axis.
+    """
+    h, w = size
+    right, up, back = viewpoint.axes @ np.asarray(points, dtype=np.float64).T
+    scale = pixels_per_unit(h)
+    return (h - 1) / 2 - up * scale, (w - 1) / 2 + right * scale, DISTANCE - back
+
+
+def pixel_rays(rows, columns, viewpoint, size):
+    """Rays through pixels: (origins (k, 3), directions (k, 3) of length one), the camera's plane to the object.
+
+    Exact where T eq. 3.12 to 3.16 turn offsets into angles and back: in an orthographic camera every ray runs parallel
+    to the view axis, so the offset itself is the answer.
+    """
+    h, w = size
+    right, up, back = viewpoint.axes
+    scale = pixels_per_unit(h)
+    x = (np.asarray(columns, dtype=np.float64) - (w - 1) / 2) / scale
+    y = ((h - 1) / 2 - np.asarray(rows, dtype=np.float64)) / scale
+    origins = DISTANCE * back + x[..., None] * right + y[..., None] * up
+    return origins, np.broadcast_to(-back, origins.shape)

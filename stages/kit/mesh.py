@@ -1,0 +1,107 @@
+"""The triangle mesh as arrays, and the few facts of it that several stages ask for."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy import sparse
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """A triangle mesh; vertex order is identity, nothing is ever reordered behind the caller's back.
+
+    vertices (n, 3) f8, faces (m, 3) i8 into vertices, counter-clockwise seen from outside, colors (n, 3) u1 or None.
+    """
+
+    vertices: np.ndarray
+    faces: np.ndarray
+    colors: np.ndarray | None = None
+
+    def __post_init__(self):
+        vertices = np.ascontiguousarray(self.vertices, dtype=np.float64)
+        faces = np.ascontiguousarray(self.faces, dtype=np.int64)
+        if vertices.ndim != 2 or vertices.shape[1] != 3:
+            raise ValueError(f"vertices must have shape (n, 3), got {vertices.shape}")
+        if faces.ndim != 2 or faces.shape[1] != 3:
+            raise ValueError(f"faces must have shape (m, 3), got {faces.shape}")
+        if not np.isfinite(vertices).all():
+            raise ValueError("vertices hold NaN or infinite coordinates")
+        if len(faces) and (faces.min() < 0 or faces.max() >= len(vertices)):
+            raise ValueError(f"faces name vertices outside 0..{len(vertices) - 1}")
+        object.__setattr__(self, "vertices", vertices)
+        object.__setattr__(self, "faces", faces)
+        if self.colors is not None:
+            colors = np.ascontiguousarray(self.colors, dtype=np.uint8)
+            if colors.shape != vertices.shape:
+                raise ValueError(f"colors must have shape {vertices.shape}, got {colors.shape}")
+            object.__setattr__(self, "colors", colors)
+
+    @cached_property
+    def face_crosses(self):
+        """(m, 3) cross products of two edges: normal times twice the area."""
+        a, b, c = self.vertices[self.faces].transpose(1, 0, 2)
+        return np.cross(b - a, c - a)
+
+    @cached_property
+    def face_areas(self):
+        """(m,) areas, in square units of the mesh."""
+        return np.linalg.norm(self.face_crosses, axis=1) / 2
+
+    @cached_property
+    def face_normals(self):
+        """(m, 3) unit normals; zero where the face has no area."""
+        return unit(self.face_crosses)
+
+    @cached_property
+    def vertex_normals(self):
+        """(n, 3) unit normals, area-weighted over the faces around; zero at a vertex in no face."""
+        return unit(corner_sum(self, np.repeat(self.face_crosses[:, None], 3, axis=1)))
+
+    @cached_property
+    def adjacency(self):
+        """(n, n) sparse boolean matrix: True where an edge joins two vertices."""
+        tail = self.faces.ravel()
+        head = np.roll(self.faces, -1, axis=1).ravel()
+        n = len(self.vertices)
+        ones = np.ones(2 * len(tail), dtype=bool)
+        return sparse.csr_matrix((ones, (np.r_[tail, head], np.r_[head, tail])), shape=(n, n))
+
+    @cached_property
+    def edge_counts(self):
+        """(edges (e, 2) i8 with the lower id first, counts (e,)): how many faces share each edge."""
+        edges = np.sort(np.stack([self.faces, np.roll(self.faces, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
+        return np.unique(edges, axis=0, return_counts=True)
+
+    @property
+    def watertight(self):
+        """True when every edge is shared by exactly two faces."""
+        return len(self.faces) > 0 and bool((self.edge_counts[1] == 2).all())
+
+    @property
+    def diagonal(self):
+        """Length of the bounding-box diagonal."""
+        return float(np.linalg.norm(np.ptp(self.vertices, axis=0)))
+
+    def rings(self, vertices, count):
+        """(n,) boolean: the given vertices and all within `count` edges of them."""
+        near = np.zeros(len(self.vertices), dtype=bool)
+        near[np.asarray(vertices, dtype=np.int64)] = True
+        for _ in range(count):
+            near |= self.adjacency @ near
+        return near
+
+
+def unit(vectors):
+    """Vectors of length one along the last axis; a zero vector stays zero."""
+    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return np.divide(vectors, length, out=np.zeros_like(vectors, dtype=np.float64), where=length > 0)
+
+
+def corner_sum(mesh, values):
+    """Sums values (m, 3) or (m, 3, d), one a face corner, onto the vertices: (n,) or (n, d)."""
+    n = len(mesh.vertices)
+    ids = mesh.faces.ravel()
+    flat = values.reshape(len(ids), -1)
+    summed = np.stack([np.bincount(ids, weights=column, minlength=n) for column in flat.T], axis=1)
+    return summed[:, 0] if values.ndim == 2 else summed

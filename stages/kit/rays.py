@@ -1,0 +1,63 @@
+"""Ray casting against a triangle mesh, on embree."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from embreex import rtcore_scene
+from embreex.mesh_construction import TriangleMesh
+
+
+@dataclass(frozen=True)
+class Hits:
+    """First hits of k rays: distance (k,) f8, inf where missed; face (k,) i8, -1 where missed."""
+
+    distance: np.ndarray
+    face: np.ndarray
+
+    @property
+    def hit(self):
+        """(k,) boolean: the ray met the mesh."""
+        return self.face >= 0
+
+
+class RayScene:
+    """A mesh made ready for rays; build it once a mesh, never send it to another process (embree cannot pickle).
+
+    Distances are refined in double precision against the hit face's plane (Moeller and Trumbore 1997, T [221]), since
+    embree itself works in single precision.
+    """
+
+    def __init__(self, mesh):
+        self.mesh = mesh
+        self._scene = rtcore_scene.EmbreeScene(robust=True)
+        triangles = mesh.vertices[mesh.faces].astype(np.float32)
+        self._geometry = TriangleMesh(self._scene, triangles) if len(triangles) else None
+
+    def cast(self, origins, directions):
+        """First hits of rays from origins (k, 3) along unit directions (k, 3), both sides of a face counted."""
+        origins = np.ascontiguousarray(origins, dtype=np.float64)
+        directions = np.ascontiguousarray(directions, dtype=np.float64)
+        if self._geometry is None or len(origins) == 0:
+            return Hits(np.full(len(origins), np.inf), np.full(len(origins), -1, dtype=np.int64))
+        face = self._scene.run(origins.astype(np.float32), directions.astype(np.float32)).astype(np.int64)
+        distance = np.full(len(origins), np.inf)
+        hit = np.flatnonzero(face >= 0)
+        normals = self.mesh.face_crosses[face[hit]]
+        corners = self.mesh.vertices[self.mesh.faces[face[hit], 0]]
+        along = np.einsum("ij,ij->i", normals, directions[hit])
+        height = np.einsum("ij,ij->i", normals, corners - origins[hit])
+        # A ray in the plane of its face has no single crossing point: it counts as a miss.
+        grazing = np.abs(along) <= 1e-12 * np.linalg.norm(normals, axis=1)
+        face[hit[grazing]] = -1
+        distance[hit[~grazing]] = height[~grazing] / along[~grazing]
+        return Hits(distance, face)
+
+
+def barycentric(mesh, faces, points):
+    """(k, 3) barycentric coordinates of points (k, 3), each in the plane of its face of faces (k,)."""
+    a, b, c = mesh.vertices[mesh.faces[faces]].transpose(1, 0, 2)
+    normal = mesh.face_crosses[faces]
+    square = np.maximum(np.einsum("ij,ij->i", normal, normal), np.finfo(float).tiny)
+    wb = np.einsum("ij,ij->i", np.cross(points - a, c - a), normal) / square
+    wc = np.einsum("ij,ij->i", np.cross(b - a, points - a), normal) / square
+    return np.stack([1 - wb - wc, wb, wc], axis=1)

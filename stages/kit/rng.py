@@ -1,0 +1,10 @@
+"""Random numbers that depend on the seed and the item's name alone, never on order or workers."""
+
+import zlib
+
+import numpy as np
+
+
+def rng(seed, name):
+    """A generator for one named item."""
+    return np.random.default_rng([seed, zlib.crc32(str(name).encode("utf-8"))])

@@ -1,0 +1,109 @@
+"""The run of one stage: its scratch folder, its measurements, and the move into place at the end."""
+
+import argparse
+import functools
+import hashlib
+import shutil
+from pathlib import Path
+
+import pandas as pd
+
+from .files import read_json, sha256, write_json, write_table
+from .parallel import parallel_map
+from .params import load_params
+
+DATA = Path("data")
+PARTIAL = DATA / ".partial"
+MEASUREMENTS = Path("reports/measurements")
+METRICS = Path("reports/metrics")
+
+
+class StageRun:
+    """Where one run of a stage works, so that `data/STAGE` is whole or absent and a killed run goes on.
+
+    Everything is written to a scratch folder whose name holds a digest of the settings, the code and the inputs.
+    `each` skips the items that an interrupted run with the same digest has finished. When the block ends well, the
+    folder becomes `data/STAGE`, and the rows become `reports/measurements/STAGE.csv`: the seconds in them differ from
+    run to run, so they stay out of `data/`, whose bytes do not.
+
+        with StageRun("lod", inputs=("meshes", "salient_points")) as run:
+            run.each(functools.partial(process, settings=settings), run.objects)
+    """
+
+    def __init__(self, stage, inputs=()):
+        settings = load_params()
+        self.stage = stage
+        self.target = DATA / stage
+        self.dataset = settings.get("meshes", {}).get("source", "none")
+        self.seed = settings.get("seed", 0)
+        chosen = {"seed": self.seed, stage: settings.get(stage)}
+        self.folder = PARTIAL / f"{stage}-{_digest(chosen, [DATA / name for name in inputs])}"
+        self.rows = []
+
+    def __enter__(self):
+        self.folder.mkdir(parents=True, exist_ok=True)
+        return self
+
+    @property
+    def objects(self):
+        """The names of all objects that the meshes stage accepted, in alphabetical order."""
+        return object_names()
+
+    def each(self, process, names):
+        """Runs process(name, folder) -> list of row dicts over the names, side by side; returns all rows in order.
+
+        `process` writes its files below `folder` through kit.files, and is a function of a module (or a partial of
+        one), since it travels to other processes.
+        """
+        done = functools.partial(_process_once, process, self.folder)
+        rows = [row for found in parallel_map(done, list(names), desc=self.stage) for row in found]
+        self.rows += rows
+        return rows
+
+    def metrics(self, values):
+        """Writes the small numbers that the gate and `dvc metrics` look at."""
+        write_json(METRICS / f"{self.stage}.json", values)
+
+    def __exit__(self, error, *_):
+        if error is not None:
+            return
+        if self.rows:
+            frame = pd.DataFrame(self.rows)
+            frame.insert(0, "dataset", self.dataset)
+            frame["seed"] = self.seed
+            write_table(MEASUREMENTS / f"{self.stage}.csv", frame)
+        shutil.rmtree(self.folder / ".rows", ignore_errors=True)
+        shutil.rmtree(self.target, ignore_errors=True)
+        self.folder.rename(self.target)
+        for left in PARTIAL.glob(f"{self.stage}-*"):
+            shutil.rmtree(left, ignore_errors=True)
+
+
+def object_names():
+    """The names of all objects that the meshes stage accepted, in alphabetical order."""
+    return sorted(path.stem for path in (DATA / "meshes").glob("*.npz"))
+
+
+def arguments(doc):
+    """Answers --help with the stage's docstring; a stage has no other argument: its settings live in params.yaml."""
+    doc, _, rest = (doc or "").partition("\n")
+    argparse.ArgumentParser(
+        description=doc, epilog=rest, formatter_class=argparse.RawDescriptionHelpFormatter
+    ).parse_args()
+
+
+def _process_once(process, folder, name):
+    finished = folder / ".rows" / f"{name}.json"
+    if not finished.exists():
+        write_json(finished, process(name, folder))
+    return read_json(finished)
+
+
+def _digest(settings, inputs):
+    """Twelve hex digits of the settings, the code of all stages and the input folders."""
+    digest = hashlib.sha256(repr(settings).encode())
+    code = sorted(Path(__file__).parents[1].rglob("*.py"))
+    data = [path for folder in inputs for path in sorted(folder.rglob("*")) if path.is_file()]
+    for path in [*code, *data]:
+        digest.update(str(path.name).encode() + sha256(path).encode())
+    return digest.hexdigest()[:12]
