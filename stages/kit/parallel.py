@@ -20,12 +20,12 @@ def parallel_map(function, items, desc, backend=None, workers=None):
     settings = load_params().get("parallel", {})
     backend = backend or settings.get("backend", "loky")
     workers = workers or settings.get("workers", -1)
-    results = []
-    with tqdm(total=len(items), desc=desc, disable=not sys.stderr.isatty()) as bar:
-        for result in _results(function, items, backend, workers):
-            results.append(result)
-            bar.update()
-    return results
+    return list(progress(_results(function, items, backend, workers), desc, len(items)))
+
+
+def progress(items, desc, total=None):
+    """The items, with a progress bar on a terminal; silent elsewhere."""
+    return tqdm(items, desc=desc, total=total, disable=not sys.stderr.isatty())
 
 
 def _results(function, items, backend, workers):

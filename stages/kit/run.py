@@ -9,7 +9,7 @@ from pathlib import Path
 import pandas as pd
 
 from .files import read_json, sha256, write_json, write_table
-from .parallel import parallel_map
+from .parallel import parallel_map, progress
 from .params import load_params
 
 DATA = Path("data")
@@ -59,6 +59,10 @@ class StageRun:
         rows = [row for found in parallel_map(done, list(names), desc=self.stage) for row in found]
         self.rows += rows
         return rows
+
+    def progress(self, items):
+        """The items, with a progress bar; silent when stderr is no terminal."""
+        return progress(items, self.stage)
 
     def metrics(self, values):
         """Writes the small numbers that the gate and `dvc metrics` look at."""

@@ -1,0 +1,43 @@
+# Haptic Glance. `make help` lists what can be made; everything runs in a virtual environment made here.
+VENV ?= .venv
+PYTHON ?= $(shell command -v python3.11 || command -v python3)
+BIN := $(CURDIR)/$(VENV)/bin
+SMOKE := build/smoke
+export PATH := $(BIN):$(PATH)
+.DEFAULT_GOAL := help
+.PHONY: help repro test smoke lint bench clean
+
+help: ## this list
+	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 10
+
+repro: $(VENV)/ready ## run the pipeline: every table, figure and the page, on what params.yaml says
+	dvc repro
+	@echo "Open reports/index.html; the tables are in reports/tables."
+
+test: $(VENV)/ready ## unit and property tests, then the whole pipeline at profile=smoke, then the gate
+	pytest
+	$(MAKE) smoke
+
+smoke: $(VENV)/ready ## the whole pipeline on four objects, in a scratch copy, held against its baseline
+	rm -rf $(SMOKE) && mkdir -p $(SMOKE)
+	git ls-files -z -co --exclude-standard | xargs -0 sh -c 'for f; do [ -e "$$f" ] && printf "%s\0" "$$f"; done' sh \
+	  | tar --null -T - -cf - | tar -xf - -C $(SMOKE)
+	cd $(SMOKE) && git init -q && rm -f dvc.lock && rm -rf reports/metrics reports/measurements \
+	  && python -m stages.compose profile=smoke && dvc repro && python -m stages.gate
+
+lint: $(VENV)/ready ## ruff: rules and formatting
+	ruff check .
+	ruff format --check .
+
+bench: $(VENV)/ready ## time and memory of the pipeline and its parts, to reports/bench/pipeline.csv (most of an hour)
+	python -m benchmarks.pipeline
+
+clean: ## remove what was built and computed; fetched files stay in the user's cache
+	rm -rf $(VENV) build .pytest_cache .ruff_cache .dvc/tmp .dvc/cache *.egg-info
+	find data -mindepth 1 -maxdepth 1 ! -name reference ! -name annotations -exec rm -rf {} +
+
+$(VENV)/ready: pyproject.toml constraints.txt
+	$(PYTHON) -c 'import sys; v = sys.version_info[:2]; sys.exit(v not in ((3, 11), (3, 12)) and "Python 3.11 or 3.12 is needed, this is %d.%d" % v)'
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[dev]'
+	touch $@

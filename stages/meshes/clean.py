@@ -1,0 +1,40 @@
+"""Repairs what can be repaired without moving a vertex, and refuses the rest."""
+
+import numpy as np
+
+from stages.kit import Mesh
+
+from .load import MeshError
+
+LEAST_AREA = 1e-12  # of the squared diagonal: below it, single-precision rays see no surface
+
+
+def clean(mesh):
+    """(mesh, notes): faces that repeat a vertex and doubled faces are removed; vertices keep their ids.
+
+    Faces of no area with three distinct vertices stay: they hold their neighbours together, and taking them out would
+    open a closed mesh. Raises MeshError when no face or no area is left.
+    """
+    faces, notes = mesh.faces, []
+    a, b, c = faces.T
+    faces, notes = _keep(faces, (a != b) & (b != c) & (c != a), notes, "degenerate")
+    # Equal up to a cyclic turn: two faces back to back are a thin sheet and both stay.
+    turned = np.take_along_axis(faces, (faces.argmin(axis=1)[:, None] + np.arange(3)) % 3, axis=1)
+    _, first = np.unique(turned, axis=0, return_index=True)
+    single = np.zeros(len(faces), dtype=bool)
+    single[first] = True
+    faces, notes = _keep(faces, single, notes, "doubled")
+    if len(faces) == 0:
+        raise MeshError("no face with three different vertices")
+    cleaned = Mesh(mesh.vertices, faces, mesh.colors)
+    spread = np.ptp(mesh.vertices[np.unique(faces)], axis=0)
+    if not np.isfinite(cleaned.face_areas).all():
+        raise MeshError("coordinates so large that areas overflow")
+    if cleaned.face_areas.sum() <= LEAST_AREA * max(float(spread @ spread), np.finfo(float).tiny):
+        raise MeshError("the surface has no area")
+    return cleaned, notes
+
+
+def _keep(faces, good, notes, what):
+    removed = int((~good).sum())
+    return faces[good], notes + ([f"{removed} {what} faces removed"] if removed else [])

@@ -1,0 +1,110 @@
+"""Reads one mesh file as arrays: STL, OBJ, PLY, OFF and GLB through trimesh."""
+
+import io
+import struct
+from pathlib import Path
+
+import numpy as np
+import trimesh
+
+from stages.kit import Mesh
+
+FORMATS = (".stl", ".obj", ".ply", ".off", ".glb")
+
+
+class MeshError(ValueError):
+    """A mesh that cannot be used; the message is the reason, without the file's name."""
+
+
+def load(path):
+    """Reads a mesh file; returns Mesh(vertices (n, 3) f8, faces (m, 3) i8, colors (n, 3) u1 or None), units as stored.
+
+    Vertices keep the order of the file, since ground truth indexes them; an STL, which repeats every corner, has equal
+    corners merged in the order of first appearance. Polygons are cut into triangles; the parts of a GLB scene are put
+    in place and joined. Raises MeshError with the reason when the file holds no usable mesh.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise MeshError(f"no such file: {path}")
+    return parse(path.read_bytes(), path.suffix.lower())
+
+
+def parse(content, suffix):
+    """As `load`, from the bytes of a file and its suffix (`.stl`, ...)."""
+    if suffix not in FORMATS:
+        raise MeshError(f"format {suffix or 'without suffix'} is not read; known: {', '.join(FORMATS)}")
+    if not content:
+        raise MeshError("the file is empty")
+    _refuse_truncated(content, suffix)
+    try:
+        loaded = trimesh.load(
+            io.BytesIO(content), file_type=suffix[1:], process=False, maintain_order=True, skip_materials=True
+        )
+        if isinstance(loaded, trimesh.Scene):
+            loaded = loaded.to_geometry() if loaded.geometry else None
+    except MemoryError:
+        raise MeshError("its header claims more data than fits in memory") from None
+    except Exception as error:  # the parsers raise whatever they stumble over; all of it means: unreadable
+        raise MeshError(f"unreadable as {suffix[1:].upper()} ({type(error).__name__}: {_brief(error)})") from None
+    return _to_mesh(loaded, merge=suffix == ".stl")
+
+
+def _to_mesh(loaded, merge):
+    if loaded is None:
+        raise MeshError("the file holds no geometry")
+    if isinstance(loaded, trimesh.PointCloud):
+        raise MeshError(f"a point cloud: {len(loaded.vertices)} points, no faces")
+    if not isinstance(loaded, trimesh.Trimesh):
+        raise MeshError(f"no triangle mesh but {type(loaded).__name__}")
+    vertices, faces = np.asarray(loaded.vertices, dtype=np.float64), np.asarray(loaded.faces, dtype=np.int64)
+    if len(faces) == 0:
+        raise MeshError(f"no faces ({len(vertices)} vertices)")
+    bad = int((~np.isfinite(vertices).all(axis=1)).sum())
+    if bad:
+        raise MeshError(f"{bad} of {len(vertices)} vertices have NaN or infinite coordinates")
+    if faces.min() < 0 or faces.max() >= len(vertices):
+        raise MeshError(f"faces name vertices that do not exist (0..{len(vertices) - 1})")
+    colors = loaded.visual.vertex_colors[:, :3] if loaded.visual.kind == "vertex" else None
+    if merge:
+        vertices, faces = _merge_equal(vertices, faces)
+        colors = None
+    return Mesh(vertices, faces, colors)
+
+
+def _merge_equal(vertices, faces):
+    """Vertices with bit-equal coordinates become one, in the order of first appearance."""
+    _, first, inverse = np.unique(vertices, axis=0, return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    rank = np.empty_like(order)
+    rank[order] = np.arange(len(order))
+    return vertices[first[order]], rank[inverse.ravel()][faces]
+
+
+def _refuse_truncated(content, suffix):
+    """Formats that state their own length: a shorter file is named as cut off, where parsers are silent or unclear."""
+    if suffix == ".glb":
+        if content[:4] != b"glTF" or len(content) < 12:
+            raise MeshError("unreadable as GLB (no glTF header)")
+        length = struct.unpack("<I", content[8:12])[0]
+        if length > len(content):
+            raise MeshError(f"cut off: {len(content)} of {length} bytes")
+    elif suffix == ".stl" and content.lstrip()[:5].lower() != b"solid":
+        if len(content) < 84:
+            raise MeshError(f"cut off: {len(content)} bytes are fewer than an STL header")
+        count = struct.unpack("<I", content[80:84])[0]
+        if 84 + 50 * count > len(content):
+            raise MeshError(f"cut off or no STL: the header names {count} faces, {(len(content) - 84) // 50} follow")
+    elif suffix == ".off":
+        lines = [line for line in content.decode("latin-1").splitlines() if line.split("#")[0].strip()]
+        words = " ".join(lines[:2]).split()
+        counts = [int(word) for word in words[1:3] if word.isdigit()]
+        body = len(lines) - (1 if lines and len(lines[0].split()) > 2 else 2)
+        if len(counts) == 2 and body < sum(counts):
+            raise MeshError(f"cut off: the header names {sum(counts)} vertices and faces, {body} lines follow")
+    elif suffix == ".stl" and b"facet" in content and b"endsolid" not in content:
+        raise MeshError("cut off: an ASCII STL without endsolid")
+
+
+def _brief(error):
+    lines = str(error).strip().splitlines()
+    return lines[0][:120] if lines else "no details"

@@ -1,0 +1,37 @@
+"""The frame that every later stage works in: +z up, centred, bounding sphere of radius 0.5."""
+
+import numpy as np
+
+from stages.kit import Mesh
+
+RADIUS = 0.5  # the sphere then fills 859 of the 900 image rows of the thesis's camera
+
+# Rows are the new x, y, z in terms of the old axes; each is a rotation, so no mesh is mirrored.
+TO_Z_UP = {
+    "x": np.array([[0, 1, 0], [0, 0, 1], [1, 0, 0]]),
+    "y": np.array([[0, 0, 1], [1, 0, 0], [0, 1, 0]]),
+    "z": np.eye(3, dtype=int),
+}
+
+
+def normalise(mesh):
+    """The mesh with the centre of its bounding box at 0 and a bounding sphere about it of radius 0.5 (T3.2.9).
+
+    Only vertices that a face uses count, so that a stray vertex cannot shrink the object. Raises ValueError where
+    the mesh has no extent.
+    """
+    used = mesh.vertices[np.unique(mesh.faces)]
+    if len(used) == 0:
+        raise ValueError("the mesh has no faces to normalise by")
+    centre = (used.min(axis=0) + used.max(axis=0)) / 2
+    radius = np.linalg.norm(used - centre, axis=1).max()
+    if radius == 0:
+        raise ValueError("the mesh has no extent: all vertices coincide")
+    return Mesh((mesh.vertices - centre) * (RADIUS / radius), mesh.faces, mesh.colors)
+
+
+def turn_up(mesh, up):
+    """The mesh turned so that its axis `up` (x, y or z) becomes +z."""
+    if up not in TO_Z_UP:
+        raise ValueError(f"up axis {up!r} is not one of {', '.join(TO_Z_UP)}")
+    return Mesh(mesh.vertices @ TO_Z_UP[up].T, mesh.faces, mesh.colors)

@@ -1,0 +1,66 @@
+"""Files are whole or absent, equal content gives equal bytes, and nothing escapes an archive."""
+
+import zipfile
+
+import numpy as np
+import pytest
+
+from stages.kit import Mesh, fetch, files
+
+
+def test_failed_write_leaves_what_was_there(tmp_path):
+    path = tmp_path / "a.txt"
+    files.write_text(path, "old")
+    with pytest.raises(RuntimeError), files.whole_file(path) as part:
+        part.write_text("half")
+        raise RuntimeError
+    assert path.read_text() == "old\n" and list(tmp_path.iterdir()) == [path]
+
+
+def test_equal_arrays_give_equal_bytes(tmp_path):
+    for name in ("a.npz", "b.npz"):
+        files.write_arrays(tmp_path / name, x=np.arange(1000), y=np.zeros(3))
+    assert (tmp_path / "a.npz").read_bytes() == (tmp_path / "b.npz").read_bytes()
+
+
+def test_mesh_survives_the_round_trip(tmp_path):
+    mesh = Mesh(np.random.default_rng(0).normal(size=(3, 3)), np.array([(0, 1, 2)]), np.full((3, 3), 7))
+    files.write_mesh(tmp_path / "m.npz", mesh)
+    back = files.read_mesh(tmp_path / "m.npz")
+    for name in ("vertices", "faces", "colors"):
+        np.testing.assert_array_equal(getattr(back, name), getattr(mesh, name))
+
+
+def test_pickles_are_never_read(tmp_path):
+    np.savez(tmp_path / "p.npz", x=np.array([{}], dtype=object))
+    with pytest.raises(ValueError, match="pickle"):
+        files.read_arrays(tmp_path / "p.npz")
+
+
+def test_archive_members_cannot_escape_and_missing_ones_are_named(tmp_path):
+    archive = tmp_path / "a.zip"
+    with zipfile.ZipFile(archive, "w") as stored:
+        stored.writestr("../evil", "x")
+        stored.writestr("good", "y")
+    assert list(fetch.read_members(archive, ["good"])) == [("good", b"y")]
+    for name, reason in (("../evil", "outside the archive"), ("/etc/passwd", "outside"), ("absent", "no member")):
+        with pytest.raises(fetch.FetchError, match=reason):
+            list(fetch.read_members(archive, [name]))
+
+
+def test_without_a_network_the_message_says_what_to_put_where(tmp_path, monkeypatch):
+    monkeypatch.setenv("HAPTIC_GLANCE_CACHE", str(tmp_path))
+    monkeypatch.setenv("PIP_NO_INDEX", "1")
+    monkeypatch.setenv("PIP_FIND_LINKS", "")
+    with pytest.raises(fetch.FetchError) as error:
+        fetch.fetch_package("nothing-of-this-name==1.0", "nothing-1.0.whl", "0" * 64)
+    assert str(tmp_path / "nothing-1.0.whl") in str(error.value) and "0" * 64 in str(error.value)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_cached_file_of_another_hash_is_not_used(tmp_path, monkeypatch):
+    monkeypatch.setenv("HAPTIC_GLANCE_CACHE", str(tmp_path))
+    monkeypatch.setenv("PIP_NO_INDEX", "1")
+    (tmp_path / "nothing-1.0.whl").write_bytes(b"tampered")
+    with pytest.raises(fetch.FetchError):
+        fetch.fetch_package("nothing-of-this-name==1.0", "nothing-1.0.whl", "0" * 64)

@@ -1,0 +1,137 @@
+"""Every file that a person may hand in gets a right result or a reason; nothing else escapes `load` and `clean`."""
+
+import struct
+
+import numpy as np
+import pytest
+import trimesh
+
+from stages.meshes import MeshError, clean, load
+
+CUBE = trimesh.creation.box()
+RNG = np.random.default_rng(0)
+
+
+def off(vertices, faces):
+    rows = [f"{x} {y} {z}" for x, y, z in vertices] + [f"3 {a} {b} {c}" for a, b, c in faces]
+    return "\n".join(["OFF", f"{len(vertices)} {len(faces)} 0", *rows, ""]).encode()
+
+
+def ply(vertices, faces, count=None):
+    head = ["ply", "format ascii 1.0", f"element vertex {count or len(vertices)}"]
+    head += [f"property float {axis}" for axis in "xyz"]
+    head += [f"element face {len(faces)}", "property list uchar int vertex_indices", "end_header"]
+    rows = [f"{x} {y} {z}" for x, y, z in vertices] + [f"3 {a} {b} {c}" for a, b, c in faces]
+    return "\n".join([*head, *rows, ""]).encode()
+
+
+TRIANGLE = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]
+STL, GLB, PLY = (CUBE.export(file_type=kind) for kind in ("stl", "glb", "ply"))
+REFUSED = {
+    "empty.stl": (b"", "empty"),
+    "empty.obj": (b"# nothing\n", "no geometry|no faces|unreadable"),
+    "truncated.stl": (STL[: len(STL) // 2], "cut off"),
+    "truncated.glb": (GLB[: len(GLB) // 2], "cut off"),
+    "truncated.ply": (PLY[: len(PLY) - 20], "unreadable|faces name|cut off"),
+    "truncated.off": (off(CUBE.vertices, CUBE.faces)[:-40], "unreadable|cut off"),
+    "truncated_ascii.stl": (CUBE.export(file_type="stl_ascii").encode()[:900], "cut off"),
+    "noise.stl": (RNG.bytes(5000), "cut off|unreadable"),
+    "noise.obj": (RNG.bytes(5000), "no geometry|no faces|unreadable"),
+    "noise.ply": (RNG.bytes(5000), "unreadable"),
+    "noise.off": (RNG.bytes(5000), "unreadable"),
+    "noise.glb": (RNG.bytes(5000), "unreadable"),
+    "nan.off": (off([(0, 0, 0), (1, 0, 0), ("nan", 1, 0)], [(0, 1, 2)]), "NaN"),
+    "infinite.off": (off([(0, 0, 0), (1, 0, 0), ("inf", 1, 0)], [(0, 1, 2)]), "NaN or infinite"),
+    "no_area.off": (off([(0, 0, 0), (1, 0, 0), (2, 0, 0)], [(0, 1, 2)]), "no area"),
+    "one_point.off": (off([(1, 1, 1)] * 3, [(0, 1, 2)]), "no area"),
+    "degenerate.off": (off(TRIANGLE, [(0, 1, 1)]), "three different"),
+    "cloud.ply": (ply(TRIANGLE, []), "point cloud|no faces"),
+    "cloud.off": (off(TRIANGLE, []), "no faces|point cloud|no geometry|unreadable"),
+    "missing_vertex.off": (off(TRIANGLE, [(0, 1, 7)]), "do not exist|unreadable"),
+    "negative_vertex.off": (off(TRIANGLE, [(0, 1, -2)]), "do not exist|unreadable"),
+    "claims_too_much.ply": (ply(TRIANGLE, [(0, 1, 2)], count=10**13), "unreadable|fits in memory|no faces"),
+    "huge.off": (off(np.array(TRIANGLE) * 1e300, [(0, 1, 2)]), "overflow|NaN"),
+    "wrong.xyz": (b"0 0 0\n", "format .xyz is not read"),
+    "header_only.stl": (b"\0" * 80 + struct.pack("<I", 0), "no faces|no geometry|unreadable"),
+}
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("name", REFUSED)
+def test_bad_file_is_refused_with_its_reason(tmp_path, name):
+    content, reason = REFUSED[name]
+    path = tmp_path / name
+    path.write_bytes(content)
+    with pytest.raises(MeshError, match=reason) as error:
+        clean(load(path))
+    print(f"{name}: {error.value}")
+
+
+def test_missing_file_is_named(tmp_path):
+    with pytest.raises(MeshError, match="absent.stl"):
+        load(tmp_path / "absent.stl")
+
+
+@pytest.mark.parametrize("kind", ["stl", "stl_ascii", "obj", "ply", "off", "glb"])
+def test_every_format_reads_the_same_cube(tmp_path, kind):
+    path = tmp_path / f"tasse à café 茶.{kind.split('_')[0]}"
+    content = CUBE.export(file_type=kind)
+    path.write_bytes(content.encode() if isinstance(content, str) else content)
+    mesh, notes = clean(load(path))
+    assert len(mesh.faces) == 12 and len(mesh.vertices) == 8 and mesh.watertight and not notes
+    assert mesh.face_areas.sum() == pytest.approx(6)
+
+
+def test_vertex_order_is_the_file_s(tmp_path):
+    sphere = trimesh.creation.icosphere(2)
+    for kind in ("off", "obj", "ply"):
+        content = sphere.export(file_type=kind)
+        path = tmp_path / f"s.{kind}"
+        path.write_bytes(content.encode() if isinstance(content, str) else content)
+        np.testing.assert_allclose(load(path).vertices, sphere.vertices, atol=1e-5)
+
+
+def test_obj_with_texture_seams_keeps_one_vertex_a_line(tmp_path):
+    # A vertex with two texture coordinates must not become two: ground truth counts the `v` lines.
+    path = tmp_path / "seam.obj"
+    path.write_text(
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvt .5 .5\n"
+        "vn 0 0 1\nvn 1 0 0\nf 1/1/1 2/2/1 3/3/1\nf 1/5/2 3/3/2 4/4/2\n"
+    )
+    mesh = load(path)
+    assert len(mesh.vertices) == 4 and len(mesh.faces) == 2
+
+
+def test_polygons_become_triangles(tmp_path):
+    path = tmp_path / "quad.obj"
+    path.write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
+    assert load(path).face_areas.sum() == pytest.approx(1)
+
+
+def test_vertex_colors_are_kept(tmp_path):
+    box = trimesh.creation.box()
+    box.visual.vertex_colors = np.tile([10, 20, 30, 255], (8, 1))
+    path = tmp_path / "colored.ply"
+    path.write_bytes(box.export(file_type="ply"))
+    assert (load(path).colors == [10, 20, 30]).all()
+
+
+def test_non_manifold_mesh_is_taken_as_it_is(tmp_path):
+    path = tmp_path / "fan.off"
+    vertices = [(0, 0, 0), (0, 0, 1), (1, 0, 0), (0, 1, 0), (-1, 0, 0)]
+    path.write_bytes(off(vertices, [(0, 1, 2), (0, 1, 3), (0, 1, 4)]))
+    mesh, notes = clean(load(path))
+    assert len(mesh.faces) == 3 and not mesh.watertight and not notes
+    assert mesh.edge_counts[1].max() == 3
+
+
+def test_doubled_and_degenerate_faces_go_and_are_told():
+    mesh, notes = clean(load_faces([(0, 1, 2), (1, 2, 0), (0, 0, 1), (2, 1, 0)]))
+    assert len(mesh.faces) == 2  # the face seen from the back stays: a thin sheet
+    assert notes == ["1 degenerate faces removed", "1 doubled faces removed"]
+
+
+def load_faces(faces):
+    from stages.kit import Mesh
+
+    return Mesh(np.array(TRIANGLE, dtype=float), np.array(faces))
