@@ -56,6 +56,9 @@ def check_section(section, values):
 def check(values):
     """Checks a whole composed configuration; raises ParamsError at the first fault."""
     _check_keys("", values, dict.fromkeys((*COMMON, *SECTIONS)))
+    for key, kind in COMMON.items():
+        if not isinstance(values.get(key), kind):
+            raise ParamsError(f"{key}: {values.get(key)!r} is no {kind.__name__}")
     for section in SECTIONS:
         check_section(section, values.get(section, {}))
 

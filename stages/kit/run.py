@@ -4,10 +4,13 @@ import argparse
 import functools
 import hashlib
 import shutil
+import sys
+import traceback
 from pathlib import Path
 
 import pandas as pd
 
+from .fetch import FetchError
 from .files import read_json, sha256, write_json, write_table
 from .parallel import parallel_map, progress
 from .params import load_params
@@ -16,6 +19,7 @@ DATA = Path("data")
 PARTIAL = DATA / ".partial"
 MEASUREMENTS = Path("reports/measurements")
 METRICS = Path("reports/metrics")
+FIRST, LAST = ("dataset", "object", "method"), ("metric", "value", "seconds", "seed")  # columns of every table
 
 
 class StageRun:
@@ -73,9 +77,10 @@ class StageRun:
             return
         if self.rows:
             frame = pd.DataFrame(self.rows)
-            frame.insert(0, "dataset", self.dataset)
-            frame["seed"] = self.seed
-            write_table(MEASUREMENTS / f"{self.stage}.csv", frame)
+            frame["dataset"], frame["seed"] = self.dataset, self.seed
+            others = [name for name in frame if name not in (*FIRST, *LAST)]
+            order = [name for name in (*FIRST, *others, *LAST) if name in frame]
+            write_table(MEASUREMENTS / f"{self.stage}.csv", frame[order])
         shutil.rmtree(self.folder / ".rows", ignore_errors=True)
         shutil.rmtree(self.target, ignore_errors=True)
         self.folder.rename(self.target)
@@ -89,11 +94,22 @@ def object_names():
 
 
 def arguments(doc):
-    """Answers --help with the stage's docstring; a stage has no other argument: its settings live in params.yaml."""
-    doc, _, rest = (doc or "").partition("\n")
-    argparse.ArgumentParser(
-        description=doc, epilog=rest, formatter_class=argparse.RawDescriptionHelpFormatter
-    ).parse_args()
+    """Answers --help with the stage's docstring, and lets errors of input and settings end in one line.
+
+    A stage has no other argument: its settings live in params.yaml.
+    """
+    first, _, rest = (doc or "").partition("\n")
+    form = argparse.RawDescriptionHelpFormatter
+    argparse.ArgumentParser(description=first, epilog=rest, formatter_class=form).parse_args()
+    sys.excepthook = _one_line
+
+
+def _one_line(kind, error, trace):
+    """What a person did (ValueError, a missing file, no network) needs no traceback; a fault of ours does."""
+    if not issubclass(kind, ValueError | FetchError | OSError):
+        return sys.__excepthook__(kind, error, trace)
+    place = traceback.extract_tb(trace)[-1]
+    print(f"{Path(sys.argv[0]).parent.name}: {error} [{Path(place.filename).name}:{place.lineno}]", file=sys.stderr)
 
 
 def _process_once(process, folder, name):
@@ -106,7 +122,7 @@ def _process_once(process, folder, name):
 def _digest(settings, inputs):
     """Twelve hex digits of the settings, the code of all stages and the input folders."""
     digest = hashlib.sha256(repr(settings).encode())
-    code = sorted(Path(__file__).parents[1].rglob("*.py"))
+    code = sorted(path for path in Path(__file__).parents[1].rglob("*.*") if path.is_file() and path.suffix != ".pyc")
     data = [path for folder in inputs for path in sorted(folder.rglob("*")) if path.is_file()]
     for path in [*code, *data]:
         digest.update(str(path.name).encode() + sha256(path).encode())

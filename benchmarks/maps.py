@@ -1,0 +1,57 @@
+"""The nine maps of one 1200 x 900 view on one core, beside scikit-image's entropy of the same view: `benchmarks.maps`.
+
+Prints JSON rows; `benchmarks.pipeline` takes them into its table. The peer is the slowest of the nine in a common
+library: what a plain assembly of library calls pays for entropy alone (9 x 9, 256 levels).
+"""
+
+import json
+import os
+import statistics
+import subprocess
+import sys
+
+RUNS = 5
+
+
+def nine_maps_rows():
+    """Rows (what, metric, value, unit, limit) measured in a process of its own that is held to one core."""
+    done = subprocess.run([sys.executable, "-m", "benchmarks.maps"], capture_output=True, text=True, check=True)
+    return json.loads(done.stdout.splitlines()[-1])
+
+
+def measure():
+    """Times maps and peer in turn, several times, and takes medians."""
+    from skimage.filters.rank import entropy
+    from trimesh.creation import icosphere
+
+    from stages.conspicuity import conspicuity
+    from stages.kit import Mesh, Stopwatch, Viewpoint
+    from stages.views import render
+
+    ball = icosphere(5, radius=0.5)  # 20,480 faces
+    bumps = 1 + 0.06 * (ball.vertices * 14).round().sum(axis=1, keepdims=True) % 2 * 0.05
+    ours, peer = [], []
+    for run in range(RUNS):
+        mesh = Mesh(ball.vertices * bumps / bumps.max(), ball.faces)  # new each time: nothing of the mesh is remembered
+        view = render(mesh, Viewpoint(30, 20))
+        conspicuity(mesh, view)  # the work that the twelve views of a mesh share
+        view = render(mesh, Viewpoint(30 + run, 25))
+        with Stopwatch() as watch:
+            conspicuity(mesh, view)
+        ours.append(watch.seconds)
+        with Stopwatch() as watch:
+            entropy(view.rgb[..., 0], [[1] * 9] * 9)
+        peer.append(watch.seconds)
+    seconds, other = statistics.median(ours), statistics.median(peer)
+    what = "nine maps, 1200 x 900, one core"
+    return [
+        {"what": what, "metric": "wall time", "value": seconds, "unit": "s", "limit": 0.7},
+        {"what": what, "metric": "ratio to scikit-image's rank entropy alone", "value": seconds / other, "unit": ""},
+    ]
+
+
+if __name__ == "__main__":
+    os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
+    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
+        os.environ[name] = "1"
+    print(json.dumps(measure()))

@@ -1,0 +1,96 @@
+"""Time and memory of the whole pipeline from a fresh copy, and of its busiest part: `python -m benchmarks.pipeline`
+
+Copies the tracked files to build/bench, runs every stage of dvc.yaml there, one after the other, and writes
+reports/bench/pipeline.csv: a row a measurement (what, metric, value, unit, limit, machine). `limit` is the figure that
+the project holds itself to. Results of the run stay in build/bench, to look at or to take over.
+"""
+
+import os
+import platform
+import shutil
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import pandas as pd
+import psutil
+import yaml
+
+from stages.kit.files import write_table
+
+from .maps import nine_maps_rows
+
+COPY = Path("build/bench")
+OUT = Path("reports/bench/pipeline.csv")
+POLL = 0.1  # seconds between two looks at the memory of all processes of a stage
+
+
+def fresh_copy():
+    """The tracked files as they are in the working tree, without what git ignores."""
+    shutil.rmtree(COPY, ignore_errors=True)
+    files = subprocess.run(["git", "ls-files", "-z"], capture_output=True, text=True, check=True).stdout.split("\0")
+    for name in filter(None, files):
+        if Path(name).exists():
+            (COPY / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(name, COPY / name)
+    subprocess.run(["git", "init", "-q"], cwd=COPY, check=True)
+    (COPY / "dvc.lock").unlink(missing_ok=True)
+
+
+def watch(command, cwd):
+    """(seconds, peak bytes) of a command: wall time, and resident memory summed over all its processes."""
+    start, peak = time.perf_counter(), 0
+    process = psutil.Popen(command, cwd=cwd, env={**os.environ, "PYTHONPATH": ""})
+    finished = threading.Event()
+
+    def look():
+        nonlocal peak
+        while not finished.wait(POLL):
+            try:
+                family = [process, *process.children(recursive=True)]
+                peak = max(peak, sum(member.memory_info().rss for member in family if member.is_running()))
+            except psutil.Error:
+                continue  # a worker ended between the list and the look
+
+    looker = threading.Thread(target=look)
+    looker.start()
+    code = process.wait()
+    finished.set()
+    looker.join()
+    if code:
+        sys.exit(f"bench: {' '.join(command)} failed with {code}")
+    return time.perf_counter() - start, peak
+
+
+def main():
+    """Runs the pipeline stage by stage and writes the table."""
+    fresh_copy()
+    rows, total = nine_maps_rows(), 0.0
+    highest = 0
+    for stage in yaml.safe_load(Path("dvc.yaml").read_text())["stages"]:
+        seconds, peak = watch(["dvc", "repro", "--single-item", stage], COPY)
+        total, highest = total + seconds, max(highest, peak)
+        rows.append({"what": stage, "metric": "wall time", "value": seconds, "unit": "s"})
+        rows.append({"what": stage, "metric": "peak memory", "value": peak / 2**30, "unit": "GiB"})
+    again, _ = watch(["dvc", "repro"], COPY)
+    smoke, _ = watch(["make", "smoke"], ".")
+    size = sum(path.stat().st_size for path in (COPY / "data").rglob("*") if path.is_file())
+    rows += [
+        {"what": "all stages", "metric": "wall time", "value": total, "unit": "s", "limit": 2400},
+        {"what": "all stages", "metric": "peak memory", "value": highest / 2**30, "unit": "GiB", "limit": 6},
+        {"what": "dvc repro, unchanged", "metric": "wall time", "value": again, "unit": "s", "limit": 10},
+        {"what": "make smoke", "metric": "wall time", "value": smoke, "unit": "s", "limit": 300},
+        {"what": "data/", "metric": "size", "value": size / 2**30, "unit": "GiB", "limit": 2},
+    ]
+    frame = pd.DataFrame(rows)
+    frame["machine"] = f"{platform.machine()}, {len(os.sched_getaffinity(0))} cores, Python {platform.python_version()}"
+    write_table(OUT, frame)
+    print(frame.to_string(index=False))
+    over = frame[frame.value > frame.limit]
+    print("bench: all within their limits" if over.empty else f"bench: over the limit: {', '.join(over.what)}")
+
+
+if __name__ == "__main__":
+    main()

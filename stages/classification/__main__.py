@@ -1,0 +1,116 @@
+"""Tells objects apart by single imprints: T tables 4.1 and 4.2.
+
+Reads data/imprints/NAME.npz, writes data/classification/SET.SAMPLING.npz (confusion matrices of the hold-outs),
+reports/measurements/classification.csv (one row a repetition) and reports/metrics/classification.json.
+
+The mean in the metrics comes with a bootstrap interval over the repetitions. It covers the luck of the split and of
+the training. It does not cover the choice of objects and of touches: all repetitions share the same imprints, and
+their hold-outs overlap, so it is narrower than the interval of a fresh experiment.
+"""
+
+import functools
+from collections import defaultdict
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from stages.imprints import read_imprints
+from stages.kit import StageRun, arguments, params
+from stages.kit.files import write_arrays
+from stages.kit.run import DATA
+from stages.kit.stats import bootstrap_interval
+
+from .classifiers import check_name
+from .features import features
+from .protocol import check_counts, evaluate_features
+
+
+def plan(sets, folder):
+    """{"SET.SAMPLING": imprints an object, or why the sampling is left out}.
+
+    All samplings of a set use equally many imprints of every object. Raises ValueError naming the first object that
+    has no imprints.
+    """
+    planned = {}
+    for name, objects in sets.items():
+        counts = {one: _counts(name, one, folder) for one in objects}
+        samplings = sorted({sampling for found in counts.values() for sampling in found})
+        usable = {}
+        for sampling in samplings:
+            by_object = {one: found.get(sampling, 0) for one, found in counts.items()}
+            try:
+                check_counts(by_object)
+                usable[f"{name}.{sampling}"] = min(by_object.values())
+            except ValueError as error:
+                planned[f"{name}.{sampling}"] = f"{name}, {sampling}: {error}"
+        planned |= dict.fromkeys(usable, min(usable.values(), default=0))
+    return planned
+
+
+def _counts(name, one, folder):
+    path = folder / f"{one}.npz"
+    if not path.exists():
+        there = ", ".join(sorted(file.stem for file in folder.glob("*.npz"))) or "nothing"
+        raise ValueError(f"sets.{name}: there are no imprints of {one}; there are those of: {there}")
+    return {sampling: len(imprints.images) for sampling, imprints in read_imprints(path).items()}
+
+
+def process(item, folder, planned, settings, seed):
+    """One sampling of one set through all classifiers; what fails or is left out gives a row with the reason."""
+    name, _, sampling = item.partition(".")
+    if isinstance(planned[item], str):
+        return [{"object": name, "method": sampling, "value": None, "note": planned[item]}]
+    touched = {one: read_imprints(DATA / "imprints" / f"{one}.npz")[sampling] for one in sorted(settings.sets[name])}
+    count = planned[item]
+    samples = np.concatenate([features(imprints.images[:count]) for imprints in touched.values()])
+    places = np.concatenate([imprints.positions[:count] for imprints in touched.values()])
+    labels = np.repeat(list(touched), count)
+    width = max(imprints.width for imprints in touched.values())
+    rows, confusions = [], {}
+    for classifier in settings.classifiers:
+        common = {"object": name, "method": sampling}
+        try:
+            with threadpool_limits(1):  # equal sums on any number of cores
+                found, confusion = evaluate_features(
+                    samples, labels, classifier, settings.repetitions, seed, places, apart=width
+                )
+        except Exception as error:  # whatever one classifier trips over, the others still count
+            found = [{"classifier": classifier, "metric": "accuracy_holdout", "value": None}]
+            found[0]["note"] = f"{classifier} failed: {error}"
+        else:
+            confusions[f"{classifier}.confusion"] = confusion
+        rows += [{**common, "imprints": len(samples), "note": None, **row} for row in found]
+    write_arrays(folder / f"{item}.npz", objects=np.array(list(touched)), **confusions)
+    return rows
+
+
+def summary(rows, seed):
+    """{set: {sampling: {classifier: {metric: {mean, low, high}}}}} over the repetitions."""
+    values = defaultdict(list)
+    for row in rows:
+        if row["value"] is not None:
+            values[row["object"], row["method"], row["classifier"], row["metric"]].append(row["value"])
+    tree = {}
+    for (name, sampling, classifier, metric), found in values.items():
+        interval = zip(("mean", "low", "high"), bootstrap_interval(found, seed), strict=True)
+        branch = tree.setdefault(name, {}).setdefault(sampling, {}).setdefault(classifier, {})
+        branch[metric] = {key: round(value, 6) for key, value in interval if np.isfinite(value)}
+    return tree
+
+
+def main():
+    arguments(__doc__)
+    settings = params("classification")
+    for name in settings.classifiers:
+        check_name(name)
+    planned = plan(settings.sets, DATA / "imprints")
+    with StageRun("classification", inputs=("imprints",)) as run:
+        rows = run.each(functools.partial(process, planned=planned, settings=settings, seed=run.seed), planned)
+        run.metrics(summary(rows, run.seed))
+    for note in sorted({row["note"] for row in rows if row["note"]}):
+        print(f"classification: {note}")
+    print(f"classification: {len(settings.sets)} sets, {len(planned)} samplings, {len(rows)} rows")
+
+
+if __name__ == "__main__":
+    main()

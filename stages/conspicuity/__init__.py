@@ -1,0 +1,5 @@
+"""Nine channels of attention: what stands out in a view, and on the surface that it shows (T3.1.1, T3.2)."""
+
+from .channels import CHANNELS, conspicuity
+
+__all__ = ["CHANNELS", "conspicuity"]

@@ -1,0 +1,94 @@
+"""Curvature of the surface, worked out on the mesh and seen from the view."""
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse.linalg import splu
+
+from stages.kit.mesh import unit
+
+from .memo import once
+from .picture import picture
+from .surface import seen, surface_conspicuity
+
+REACH = 0.01  # of the diagonal: bumps smaller than this are noise or tessellation, a person does not see them either
+CAP = 0.98  # of the area: the sharpest 2 % count alike, or one corner would be the whole map
+
+
+def curvature(mesh, view, filled=True):
+    """The curvature conspicuity map (h / 16, w / 16) f4 in 0..1 (T3.1.1) of a view of a mesh."""
+    image = picture(view, filled)
+    if image.empty:
+        return image.nothing()
+    here = seen(view, mesh)
+    values = np.einsum("ij,ij->i", here.weights, capped_curvature(mesh)[mesh.faces[here.faces]])
+    return surface_conspicuity(values, mesh, view, filled)
+
+
+@once
+def capped_curvature(mesh):
+    """(n,) f8 in 0..1: |mean curvature| over its area-weighted quantile CAP, cut off there; zero on a flat mesh."""
+    values = np.abs(mean_curvature(mesh))
+    areas = np.bincount(mesh.faces.ravel(), weights=np.repeat(mesh.face_areas, 3), minlength=len(values))
+    order = np.argsort(values, kind="stable")
+    passed = np.cumsum(areas[order])
+    top = values[order[np.searchsorted(passed, CAP * passed[-1])]] if len(passed) and passed[-1] > 0 else 0
+    flat = 1e-6 / max(mesh.diagonal, np.finfo(float).tiny)
+    return np.minimum(values / top, 1) if top > flat else np.zeros(len(values))
+
+
+def mean_curvature(mesh, reach=REACH):
+    """(n,) f8 mean curvature at the vertices, in 1 / unit: 1 / r on a sphere, 1 / (2 r) on a cylinder, convex positive.
+
+    Each edge holds half its length times the angle between its two faces (the normal cycle: Cohen-Steiner and Morvan,
+    Restricted Delaunay triangulations and normal cycle, SoCG 2003), and gives half of that to each end. Curvature and
+    area are then spread by one implicit step of heat flow over `reach` of the diagonal and divided: sliver triangles
+    have no area of their own to blow up, and noise of either sign cancels. Boundary edges, edges of more than two
+    faces and edges of two faces that disagree on the winding hold nothing; vertices in one place are one.
+    """
+    places, welded = np.unique(mesh.vertices, axis=0, return_inverse=True)
+    welded = welded.ravel()
+    faces, normals = welded[mesh.faces], mesh.face_normals
+    tail, head, first, second = _hinges(faces, len(places))
+    direction = unit(places[head] - places[tail])
+    sine = np.einsum("ij,ij->i", np.cross(normals[first], normals[second]), direction)
+    cosine = np.einsum("ij,ij->i", normals[first], normals[second])
+    length = np.linalg.norm(places[head] - places[tail], axis=1)
+    bent = length * np.arctan2(sine, cosine) / 4
+    bent[(normals[first] == 0).all(axis=1) | (normals[second] == 0).all(axis=1)] = 0
+    held = np.bincount(tail, bent, len(places)) + np.bincount(head, bent, len(places))
+    area = np.bincount(faces.ravel(), np.repeat(mesh.face_areas / 3, 3), len(places))
+    return _spread(places, faces, held, area, (reach * mesh.diagonal) ** 2)[welded]
+
+
+def _hinges(faces, count):
+    """(tail, head, first, second): edges of exactly two faces; `first` runs from tail to head, `second` back."""
+    tail, head = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
+    key = np.minimum(tail, head) * count + np.maximum(tail, head)
+    order = np.argsort(key, kind="stable")
+    starts = np.flatnonzero(np.diff(key[order], prepend=-1))
+    pairs = starts[np.diff(np.r_[starts, len(order)]) == 2]
+    a, b = order[pairs], order[pairs + 1]
+    opposed = (tail[a] == head[b]) & (tail[a] != head[a])
+    a, b = a[opposed], b[opposed]
+    return tail[a], head[a], a // 3, b // 3
+
+
+def _spread(places, faces, held, area, time):
+    """held / area after both have flowed for `time` (length squared), (n,); zero at a place without area."""
+    n, corners = len(places), places[faces]
+    rows, columns, values = [], [], []
+    for k in range(3):
+        u, v = corners[:, (k + 1) % 3] - corners[:, k], corners[:, (k + 2) % 3] - corners[:, k]
+        sine = np.linalg.norm(np.cross(u, v), axis=1)
+        # Between 0 and 10: a sliver's cotangent must neither push heat uphill nor short-circuit its ends.
+        cotangent = np.divide(np.einsum("ij,ij->i", u, v), sine, out=np.zeros(len(u)), where=sine > 0).clip(0, 10)
+        rows.append(faces[:, (k + 1) % 3])
+        columns.append(faces[:, (k + 2) % 3])
+        values.append(cotangent / 2)
+    rows, columns, values = np.concatenate(rows), np.concatenate(columns), np.concatenate(values)
+    weights = sparse.coo_matrix((np.r_[values, values], (np.r_[rows, columns], np.r_[columns, rows])), shape=(n, n))
+    laplacian = sparse.diags(np.asarray(weights.sum(axis=1)).ravel()) - weights.tocsr()
+    mass = np.maximum(area, 1e-12 * max(area.max(initial=0), 1e-300))
+    system = (sparse.diags(mass) + time * laplacian).tocsc()
+    flow = splu(system, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
+    return np.where(area > 0, flow.solve(held), 0)

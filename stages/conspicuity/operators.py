@@ -1,0 +1,87 @@
+"""The operators of Itti's model that the channels share: pyramids, centre-surround, N(.), across-scale addition.
+
+Sources: T3.1.1; Itti, Koch and Niebur, A model of saliency-based visual attention for rapid scene analysis, IEEE PAMI
+20(11), 1998 (T [41]), section 2. A pyramid is a dict scale -> image; pixel k of scale s lies on pixel k * 2**s of the
+view, since pyrDown keeps the even pixels and pyrUp puts them back there: a map never drifts between scales.
+"""
+
+import cv2
+import numpy as np
+
+SCALES = 9
+CENTRES = (2, 3, 4)
+DELTAS = (3, 4)
+COMMON = 4  # the scale to which across-scale addition reduces its maps
+FLOOR = 1e-3  # a quarter of a grey level of an 8-bit image: below it a map holds rounding, no signal
+PEAK = 0.1  # local maxima under a tenth of the highest don't count, as in Walther and Koch's SaliencyToolbox, 2006
+
+
+def down(image):
+    """Gaussian blur (5 x 5, binomial) and every second pixel: (h, w) to (ceil(h / 2), ceil(w / 2))."""
+    return cv2.pyrDown(image, borderType=cv2.BORDER_REPLICATE)
+
+
+def pyramid(image, first=0, last=SCALES - 1):
+    """The dyadic Gaussian pyramid {first: image, ..., last: ...} of an image given at scale `first`."""
+    levels = {first: image}
+    for scale in range(first, last):
+        levels[scale + 1] = down(levels[scale])
+    return levels
+
+
+def reduce(image, scale, target=COMMON):
+    """The image, given at a scale, at the coarser scale `target`."""
+    for _ in range(scale, target):
+        image = down(image)
+    return image
+
+
+def expand(levels, scale, target):
+    """Level `scale` of a pyramid interpolated to the grid of its finer level `target`."""
+    image = levels[scale]
+    for finer in range(scale - 1, target - 1, -1):
+        h, w = levels[finer].shape
+        image = cv2.pyrUp(image, dstsize=(w, h))
+    return image
+
+
+def centre_surround(levels, cover, floor=FLOOR):
+    """Across-scale sum of N(|I(c) - I(s)|) at scale 4, the inner part of T eq. 3.1.
+
+    levels: pyramid {2..8: (h, w) f4}; cover: pyramid {2..4: (h, w) boolean}, where the object is; floor: see
+    `normalise`. Six terms, c in {2, 3, 4} and s = c + {3, 4}.
+    """
+    total = np.zeros(levels[COMMON].shape, dtype=np.float32)
+    for c in CENTRES:
+        for delta in DELTAS:
+            difference = cv2.absdiff(levels[c], expand(levels, c + delta, c))
+            total += reduce(normalise(difference, cover[c], floor), c)
+    return total
+
+
+def normalise(values, cover, floor=FLOOR):
+    """N(.): scales a map to 0..1 over the object and multiplies it by (M - m)^2 = (1 - m)^2; zero off the object.
+
+    m is the mean of the local maxima but the highest one: T3.1.1 says "all", its source (Itti 1998, section 2.1) "all
+    other", without which a single peak, the very thing to promote, would be wiped out. A map whose range stays within
+    `floor` is flat: all zero. values (h, w) f4, cover (h, w) boolean.
+    """
+    inside = values[cover]
+    if not len(inside) or np.ptp(inside) <= floor:
+        return np.zeros(values.shape, dtype=np.float32)
+    low, high = inside.min(), inside.max()
+    scaled = np.where(cover, (values - low) / (high - low), 0).astype(np.float32)
+    return scaled * (1 - mean_of_other_maxima(scaled)) ** 2
+
+
+def mean_of_other_maxima(scaled):
+    """The mean of the local maxima of a map in 0..1, over a tenth and without the highest; 0 where there is no other.
+
+    A local maximum is at least as high as its eight neighbours; a plateau counts once.
+    """
+    tops = (scaled >= cv2.dilate(scaled, np.ones((3, 3), np.uint8))) & (scaled > PEAK)
+    count, labels = cv2.connectedComponents(tops.astype(np.uint8), connectivity=8)
+    heights = np.zeros(count)
+    heights[labels[tops]] = scaled[tops]
+    others = np.sort(heights[1:])[:-1]
+    return float(others.mean()) if len(others) else 0.0

@@ -1,0 +1,12 @@
+"""The settings of the conspicuity stage."""
+
+from dataclasses import dataclass
+
+
+@dataclass
+class Params:
+    """Section `conspicuity` of params.yaml."""
+
+    channels: list[str]  # which of the nine to work out, in this order
+    size: list[int]  # rows, columns of the stored maps
+    compare_background: bool  # also measure, on one view an object, the maps with the background left as rendered

@@ -1,0 +1,65 @@
+"""Presses the virtual pressure array on every object at the points of every method (T4.3).
+
+Reads data/meshes/NAME.npz and data/salient_points/NAME.npz, writes data/imprints/NAME.npz and
+reports/measurements/imprints.csv: for each object and method the number of imprints, their mean relief in units of the
+object, the share of cells that felt nothing within reach, and the points that could not be touched.
+"""
+
+import functools
+
+import numpy as np
+
+from stages.kit import StageRun, Stopwatch, arguments, params
+from stages.kit.files import read_mesh
+from stages.kit.run import DATA
+from stages.salient_points import read_points
+
+from .distances import check_sensor, distances
+from .files import Imprints, write_imprints
+from .frame import touchable
+from .press import normalise
+
+
+def process(name, folder, settings):
+    """Touches one object at all points of all methods; writes its file and returns its rows."""
+    mesh = read_mesh(DATA / "meshes" / f"{name}.npz")
+    imprints, rows = {}, []
+    for method, points in sorted(read_points(DATA / "salient_points" / f"{name}.npz").items()):
+        can = touchable(mesh, points)
+        with Stopwatch() as watch:
+            raw = distances(mesh, points[can], settings.cells, settings.pitch)
+            images = normalise(raw, settings.pitch)
+        imprints[method] = Imprints(images, points[can], mesh.vertices[points[can]], settings.pitch)
+        values = {"imprints": len(images), **_shape_of(raw, settings), "refused": int((~can).sum())}
+        common = {"object": name, "method": method}
+        rows += [{**common, "metric": key, "value": value, "seconds": watch.seconds} for key, value in values.items()]
+    write_imprints(folder / f"{name}.npz", imprints)
+    return rows
+
+
+def _shape_of(raw, settings):
+    """Mean relief of the imprints in units, and the share of cells without a surface in reach."""
+    if len(raw) == 0:
+        return {"relief": None, "missed": None}
+    _, _, reach = check_sensor(settings.cells, settings.pitch)
+    return {"relief": float(np.ptp(raw, axis=(1, 2)).mean()), "missed": float((raw >= reach).mean())}
+
+
+def main():
+    arguments(__doc__)
+    settings = params("imprints")
+    check_sensor(settings.cells, settings.pitch)
+    with StageRun("imprints", inputs=("meshes", "salient_points")) as run:
+        rows = run.each(functools.partial(process, settings=settings), run.objects)
+        total = {key: sum(row["value"] for row in rows if row["metric"] == key) for key in ("imprints", "refused")}
+        relief = [row["value"] for row in rows if row["metric"] == "relief" and row["value"] is not None]
+        missed = [row["value"] for row in rows if row["metric"] == "missed" and row["value"] is not None]
+        means = {key: round(float(np.mean(v)), 6) for key, v in (("relief", relief), ("missed", missed)) if v}
+        run.metrics({**total, **means})
+        objects = len(run.objects)
+    size = "x".join(map(str, settings.cells))
+    print(f"imprints: {objects} objects, {total['imprints']} imprints of {size}, {total['refused']} points refused")
+
+
+if __name__ == "__main__":
+    main()

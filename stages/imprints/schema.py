@@ -1,0 +1,11 @@
+"""The settings of the imprints stage."""
+
+from dataclasses import dataclass
+
+
+@dataclass
+class Params:
+    """Section `imprints` of params.yaml."""
+
+    cells: list[int]  # rows and columns of the array; T4.3 has 16 x 16 and 32 x 32
+    pitch: float  # distance of neighbouring cells, in units of the object (its bounding sphere has radius 0.5)

@@ -1,0 +1,14 @@
+"""Salient points: fuse the channels, pick points, project them to vertices (T3.1.2, T3.2.5, T3.2.6)."""
+
+from .find import find_points, look, saliency
+from .fuse import COMBINATIONS, fuse
+from .methods import METHODS
+from .project import project_pixels
+from .select import select_by_centroid, select_by_suppression
+from .sight import Sight
+from .storage import read_points, read_saliency, read_sight, read_strong_points
+
+__all__ = [
+    "COMBINATIONS", "METHODS", "Sight", "find_points", "fuse", "look", "project_pixels", "read_points",
+    "read_saliency", "read_sight", "read_strong_points", "saliency", "select_by_centroid", "select_by_suppression",
+]  # fmt: skip

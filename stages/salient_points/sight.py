@@ -1,0 +1,134 @@
+"""One object as its views see it: which pixels and vertices show what. Computed once, used by every method."""
+
+import numpy as np
+from scipy import sparse
+
+from stages.kit import RayScene, camera
+
+from .project import nearest_corners
+from .surface import SMOOTHING, smoother
+
+SAME_DEPTH = 1e-4  # units, a tenth of a pixel at 900 rows: nearer than this two depths are one surface
+FAINT = 1e-9  # of a pixel's weight; below it a vertex has no pixel of the object around it
+
+
+class Sight:
+    """A mesh with its conspicuity maps, ready for every method.
+
+    mesh: normalised; viewpoints: v of kit.camera; maps: dict channel -> (v, h, w), zero off the object; mask
+    (v, h, w) boolean or None: pixels that count. Pixels whose ray misses the object never count, so the edge of a
+    reduced map cannot name a place beside the object. The p pixels that count are kept as one long list:
+
+    maps (dict channel -> (p,) f8), vertices (p,) i8: the vertex that each pixel shows.
+    Raises ValueError for maps of the wrong shape, of negative or NaN values, or when no pixel sees the mesh.
+    """
+
+    def __init__(self, mesh, viewpoints, maps, mask=None):
+        self.mesh, self.viewpoints = mesh, list(viewpoints)
+        shape = _check_maps(maps, len(self.viewpoints))
+        self.size = shape[1:]
+        self.pixels_per_unit = camera.pixels_per_unit(shape[1])
+        self._scene = RayScene(mesh)
+        self._seen = np.zeros(shape, dtype=bool)  # filled view by view
+        self.vertices = np.concatenate([self._look(view, mask) for view in range(len(self.viewpoints))])
+        if len(self.vertices) == 0:
+            raise ValueError("no pixel of any view sees the mesh: is it normalised (stages.meshes.normalise)?")
+        self._ends = np.cumsum(self._seen.sum(axis=(1, 2)))
+        self.maps = {channel: np.asarray(values)[self._seen].astype(np.float64) for channel, values in maps.items()}
+        self._spread, self._looks = self._vertex_sampler()
+        self._smoothers = {}  # length -> function; its equations are factored once for all methods
+
+    def _look(self, view, mask):
+        """Marks the pixels of one view that see the mesh; returns the vertex that each of them shows."""
+        wanted = np.ones(self.size, dtype=bool) if mask is None else np.asarray(mask[view], dtype=bool)
+        rows, columns = np.nonzero(wanted & self._silhouette_box(view))
+        origins, directions = camera.pixel_rays(rows, columns, self.viewpoints[view], self.size)
+        hits = self._scene.cast(origins, directions)
+        hit = np.flatnonzero(hits.hit)
+        self._seen[view, rows[hit], columns[hit]] = True
+        positions = origins[hit] + hits.distance[hit, None] * directions[hit]
+        return nearest_corners(self.mesh, hits.face[hit], positions)
+
+    def _silhouette_box(self, view):
+        """(h, w) boolean: the pixels within the bounding box of the projected mesh; the only ones worth a ray."""
+        rows, columns, _ = camera.project(self.mesh.vertices, self.viewpoints[view], self.size)
+        r, c = np.ogrid[: self.size[0], : self.size[1]]
+        return (r >= rows.min()) & (r <= rows.max()) & (c >= columns.min()) & (c <= columns.max())
+
+    def image(self, values, view):
+        """Values (p,) of one view as an image, cropped to the object: ((h', w') f8, vertex ids (h', w') i8)."""
+        seen = self._seen[view]
+        if not seen.any():
+            return np.zeros((1, 1)), np.zeros((1, 1), dtype=np.int64)
+        rows, columns = np.flatnonzero(seen.any(axis=1)), np.flatnonzero(seen.any(axis=0))
+        box = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+        part = slice(self._ends[view] - seen.sum(), self._ends[view])
+        picture, ids = np.zeros(self.size), np.zeros(self.size, dtype=np.int64)
+        picture[seen], ids[seen] = values[part], self.vertices[part]
+        return picture[box], ids[box]
+
+    def on_vertices(self, values, smoothing=SMOOTHING):
+        """Pixel values (p,) on the vertices: (n,) f8 in 0..1, the largest 1; zeros where all values are zero.
+
+        The average over the views in which a vertex is visible, weighted by how squarely it faces the view: a grazing
+        look spreads a pixel over much surface and tells little about each place. Then made smooth along the surface.
+        """
+        if smoothing not in self._smoothers:
+            trust = np.minimum(self._looks, 1)  # one full look at a vertex suffices
+            self._smoothers[smoothing] = smoother(self.mesh, trust, smoothing)
+        average = np.divide(self._spread @ values, self._looks, out=np.zeros(len(self._looks)), where=self._looks > 0)
+        smooth = self._smoothers[smoothing](average)
+        top = smooth.max()
+        # Rounded, so that the last bits of the solver cannot turn the order of two vertices from machine to machine.
+        return np.clip(smooth / top, 0, 1).round(6) if top > 0 else np.zeros(len(smooth))
+
+    def _vertex_sampler(self):
+        """(sparse (n, p): pixels to vertices, weighted by facing; (n,) the weights' sums)."""
+        index = np.full(self._seen.shape, -1)
+        index[self._seen] = np.arange(len(self.vertices))
+        parts = [self._sample(view, index[view]) for view in range(len(self.viewpoints))]
+        vertices, pixels, weights = (np.concatenate(part) for part in zip(*parts, strict=True))
+        shape = (len(self.mesh.vertices), len(self.vertices))
+        spread = sparse.csr_matrix((weights, (vertices, pixels)), shape=shape)
+        return spread, np.asarray(spread.sum(axis=1)).ravel()
+
+    def _sample(self, view, index):
+        """Bilinear weights of the pixels around each visible vertex of one view: (vertices, pixels, weights)."""
+        ids, facing = self._visible(view)
+        rows, columns, _ = camera.project(self.mesh.vertices[ids], self.viewpoints[view], self.size)
+        corners = np.array([[0, 0], [0, 1], [1, 0], [1, 1]])
+        r = np.floor(rows)[:, None].astype(np.int64) + corners[:, 0]
+        c = np.floor(columns)[:, None].astype(np.int64) + corners[:, 1]
+        inside = (r >= 0) & (r < self.size[0]) & (c >= 0) & (c < self.size[1])
+        pixel = np.where(inside, index[np.where(inside, r, 0), np.where(inside, c, 0)], -1)
+        weight = (1 - np.abs(rows[:, None] - r)) * (1 - np.abs(columns[:, None] - c)) * (pixel >= 0)
+        total = weight.sum(axis=1, keepdims=True)  # less than 1 at the silhouette, where pixels off the object drop out
+        weight = facing[:, None] * np.divide(weight, total, out=np.zeros_like(weight), where=total > FAINT)
+        kept = weight > 0
+        return np.broadcast_to(ids[:, None], kept.shape)[kept], pixel[kept], weight[kept]
+
+    def _visible(self, view):
+        """(ids of the vertices that a view sees, how squarely they face it in 0..1), tested by exact rays."""
+        back = self.viewpoints[view].axes[2]
+        depth = camera.DISTANCE - self.mesh.vertices @ back
+        facing = np.abs(self.mesh.vertex_normals @ back)  # either side counts: open meshes show their inside
+        origins = self.mesh.vertices + depth[:, None] * back
+        hits = self._scene.cast(origins, np.broadcast_to(-back, origins.shape))
+        ids = np.flatnonzero((hits.distance >= depth - SAME_DEPTH) & (facing > 0))
+        return ids, facing[ids]
+
+
+def _check_maps(maps, views):
+    """The maps' common shape (views, h, w)."""
+    if not maps:
+        raise ValueError("no conspicuity maps: give at least one channel")
+    for channel, values in maps.items():
+        values = np.asarray(values)
+        if values.ndim != 3 or len(values) != views or values.size == 0:
+            raise ValueError(f"map {channel!r} must have shape ({views} views, h, w), got {values.shape}")
+        if not np.isfinite(values).all() or values.min() < 0:
+            raise ValueError(f"map {channel!r} must be finite and not negative")
+    shapes = {np.shape(values) for values in maps.values()}
+    if len(shapes) > 1:
+        raise ValueError(f"conspicuity maps must have one shape, got {sorted(shapes)}")
+    return shapes.pop()

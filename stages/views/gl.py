@@ -1,0 +1,111 @@
+"""The renderer on OpenGL: pyrender (scikit-robot-pyrender) through EGL, off screen, with shaders of our own.
+
+pyrender's segmentation pass is the one without multisampling, so silhouettes stay crisp; our two shaders make it draw
+the faces' numbers in one pass and the shaded material in the next. That pass culls faces seen from behind, so each
+face is uploaded twice, the second time turned round.
+"""
+
+import os
+from functools import cache, lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from stages.kit.camera import DISTANCE, pixels_per_unit
+
+from .shading import GREY, corner_groups
+from .view import View, empty_view, pixel_box, round_depth
+
+SHADERS = Path(__file__).parent / "shaders"
+NEAR, FAR = DISTANCE - 1, DISTANCE + 1  # planes around anything that fits the frame: 24 bits of depth are 1.2e-7
+NUMBERS, SHADED = (255, 255, 255), (0, 0, 0)  # the uniform `color` tells the fragment shader what to draw
+
+
+@cache
+def missing():
+    """Why this renderer cannot run here, or an empty string when it can; makes this process's context."""
+    try:
+        _offscreen()
+    except Exception as error:  # PyOpenGL fails in a dozen ways without libEGL or a driver
+        return f"{type(error).__name__}: {error}"
+    return ""
+
+
+def render_pyrender(mesh, viewpoint, size, background):
+    """Renders a View (see stages.views.render) by OpenGL; RuntimeError where no EGL context can be made."""
+    if missing():
+        raise RuntimeError(
+            f"renderer pyrender needs EGL, which is not to be had here ({missing()}): install it (Debian: apt-get "
+            "install libegl1 libgl1-mesa-dri), or take renderer=raycast"
+        )
+    view = empty_view(viewpoint, size, background)
+    if pixel_box(mesh, viewpoint, size) == (0, 0, 0, 0):
+        return view
+    scene, node = _upload(mesh)
+    _place_camera(scene, viewpoint, size)
+    numbers, depth = _draw(scene, node, size, NUMBERS)
+    shaded, _ = _draw(scene, node, size, SHADED)
+    drawn = numbers.astype(np.int32) @ np.array([1, 256, 65536], dtype=np.int32)
+    on = drawn > 0
+    face = np.where(on, (drawn - 1) % max(len(mesh.faces), 1), -1).astype(np.int32)
+    rgb = np.where(on[..., None], shaded, view.rgb)
+    return View(rgb, np.where(on, round_depth(_linear(depth)), view.depth), face, viewpoint)
+
+
+@cache
+def _offscreen():
+    """This process's one renderer; its context is made here, never before a worker process starts."""
+    os.environ.setdefault("PYOPENGL_PLATFORM", "egl")  # read when OpenGL is first imported
+    import pyrender
+    from pyrender.shader_program import ShaderProgramCache
+
+    offscreen = pyrender.OffscreenRenderer(1, 1)
+    offscreen._renderer._program_cache = ShaderProgramCache(shader_dir=str(SHADERS))
+    return offscreen
+
+
+@lru_cache(maxsize=1)  # pyrender frees a mesh that is not in the scene it draws
+def _upload(mesh):
+    """(scene, node) of the mesh: each group of smooth corners a vertex, each face twice, its two windings."""
+    import pyrender
+
+    groups, normals = corner_groups(mesh)
+    vertices = np.zeros(len(normals), dtype=np.int64)
+    vertices[groups] = mesh.faces
+    colors = np.full((len(normals), 3), GREY) if mesh.colors is None else mesh.colors[vertices]
+    primitive = pyrender.Primitive(
+        positions=np.tile(mesh.vertices[vertices], (2, 1)).astype(np.float32),
+        normals=np.r_[normals, -normals].astype(np.float32),
+        color_0=np.tile(np.c_[colors / 255, np.ones(len(colors))], (2, 1)).astype(np.float32),
+        indices=np.r_[groups, groups[:, ::-1] + len(normals)].astype(np.uint32),
+    )
+    scene = pyrender.Scene()
+    return scene, scene.add(pyrender.Mesh([primitive]))
+
+
+def _place_camera(scene, viewpoint, size):
+    import pyrender
+
+    h, w = size
+    scale = 2 * pixels_per_unit(h)
+    pose = np.eye(4)
+    pose[:3, :3] = viewpoint.axes.T
+    pose[:3, 3] = DISTANCE * viewpoint.axes[2]
+    if scene.main_camera_node is not None:
+        scene.remove_node(scene.main_camera_node)
+    scene.add(pyrender.OrthographicCamera(xmag=w / scale, ymag=h / scale, znear=NEAR, zfar=FAR), pose=pose)
+
+
+def _draw(scene, node, size, color):
+    from pyrender import RenderFlags
+
+    offscreen = _offscreen()
+    offscreen.viewport_height, offscreen.viewport_width = size
+    return offscreen.render(scene, flags=RenderFlags.SEG, seg_node_map={node: color})
+
+
+def _linear(depth):
+    """Distances from the camera: pyrender unprojects as if every camera were a perspective one, so that is undone."""
+    depth = np.where(depth > 0, depth, FAR).astype(np.float64)
+    window = (FAR + NEAR - 2 * FAR * NEAR / depth) / (FAR - NEAR)
+    return NEAR + (window + 1) / 2 * (FAR - NEAR)

@@ -1,0 +1,13 @@
+"""The settings of the views stage."""
+
+from dataclasses import dataclass
+
+
+@dataclass
+class Params:
+    """Section `views` of params.yaml."""
+
+    viewpoints: str  # named set: twelve (T figure 3.2) or four (perpendicular, all round)
+    size: list[int]  # rows, columns of an image; the object spans 858.7 of 900 rows
+    renderer: str  # raycast (everywhere the same bytes), pyrender (needs EGL) or auto
+    background: str  # black (as in the thesis), grey or white

@@ -1,0 +1,90 @@
+"""A view as a small file: only the object's bounding box, coded so that deflate finds the smoothness of surfaces."""
+
+import numpy as np
+
+from stages.kit import Viewpoint
+from stages.kit.camera import DISTANCE
+from stages.kit.files import read_arrays, write_arrays
+
+from .view import DEPTH_STEP, View
+
+
+def write_view(path, view):
+    """Writes a view to a compressed .npz; equal views give equal bytes.
+
+    Everything comes back exactly but for depths off the whole steps of DEPTH_STEP (rendered ones lie on them), which
+    are rounded. Raises ValueError when the background has more than one colour.
+    """
+    mask = view.mask
+    off = view.rgb[~mask]
+    background = off[0] if len(off) else np.zeros(3, dtype=np.uint8)
+    if (off != background).any():
+        raise ValueError("the background of a view must have one colour to be stored")
+    top, left, bottom, right = _box(mask)
+    box = slice(top, bottom), slice(left, right)
+    inside, rgb = mask[box], view.rgb[box]
+    if (rgb == rgb[..., :1]).all():
+        rgb = rgb[..., :1]
+    steps = np.rint(np.where(inside, view.depth[box], DISTANCE) / DEPTH_STEP).astype(np.int64)
+    faces = view.face[box][inside].astype(np.int64)
+    starts = np.flatnonzero(np.diff(faces, prepend=-1))
+    write_arrays(
+        path,
+        size=np.array(mask.shape),
+        origin=np.array([top, left]),
+        viewpoint=np.array([view.viewpoint.azimuth, view.viewpoint.elevation, view.viewpoint.roll]),
+        background=background,
+        mask=np.packbits(inside),
+        rgb=_bends(rgb),
+        depth=_bytes(_bends(steps - round(DISTANCE / DEPTH_STEP))),
+        run_face=_bytes(np.diff(faces[starts], prepend=0)),
+        run_length=_bytes(np.diff(starts, append=len(faces))),
+    )
+
+
+def read_view(path):
+    """Reads what write_view wrote."""
+    stored = read_arrays(path)
+    h, w = stored["rgb"].shape[:2]
+    size = tuple(int(side) for side in stored["size"])
+    inside = np.unpackbits(stored["mask"], count=h * w).reshape(h, w).astype(bool)
+    rgb = np.broadcast_to(stored["background"], (*size, 3)).copy()
+    depth = np.full(size, np.inf, dtype=np.float32)
+    face = np.full(size, -1, dtype=np.int32)
+    top, left = stored["origin"]
+    box = slice(top, top + h), slice(left, left + w)
+    rgb[box] = _unbend(stored["rgb"])
+    depth[box][inside] = DISTANCE + _unbend(_numbers(stored["depth"]).reshape(h, w))[inside] * DEPTH_STEP
+    face[box][inside] = np.repeat(np.cumsum(_numbers(stored["run_face"])), _numbers(stored["run_length"]))
+    return View(rgb, depth, face, Viewpoint(*(float(angle) for angle in stored["viewpoint"])))
+
+
+def _box(mask):
+    """(top, left, bottom, right) of the true pixels; zeros where there are none."""
+    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
+    if not len(rows):
+        return 0, 0, 0, 0
+    return rows[0], columns[0], rows[-1] + 1, columns[-1] + 1
+
+
+def _bends(image):
+    """What differs from the plane through the pixels above, to the left and between: near zero on a smooth surface."""
+    zero = image.dtype.type(0)
+    return np.diff(np.diff(image, axis=0, prepend=zero), axis=1, prepend=zero)
+
+
+def _unbend(bends):
+    """Undoes _bends; u1 wraps round as it did there."""
+    return np.cumsum(np.cumsum(bends, axis=1, dtype=bends.dtype), axis=0, dtype=bends.dtype)
+
+
+def _bytes(numbers):
+    """(4, k) u1 of k whole numbers: the sign folded into the lowest bit, low bytes first, so that the rest is zeros."""
+    folded = (np.abs(numbers) * 2 - (numbers < 0)).astype("<u4").ravel()
+    return np.ascontiguousarray(folded.view(np.uint8).reshape(-1, 4).T)
+
+
+def _numbers(planes):
+    """(k,) i8: undoes _bytes."""
+    folded = np.ascontiguousarray(planes.T).view("<u4").ravel().astype(np.int64)
+    return np.where(folded % 2, -(folded + 1) // 2, folded // 2)

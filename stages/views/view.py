@@ -1,0 +1,67 @@
+"""What the camera brings home, and what every renderer checks and rounds alike."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from stages.kit import Viewpoint
+from stages.kit.camera import DISTANCE, project
+
+BACKGROUNDS = {"black": 0, "grey": 128, "white": 255}
+DEPTH_STEP = 2.0**-16  # of a unit: 1.3 % of a pixel at 900 rows; exact in float32, and a stored view comes back exactly
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """One look at a mesh.
+
+    rgb (h, w, 3) u1; depth (h, w) f4, distance from the camera's plane in units of the mesh, inf off the object;
+    face (h, w) i4, the face seen, -1 off the object; viewpoint, a stages.kit.Viewpoint.
+    """
+
+    rgb: np.ndarray
+    depth: np.ndarray
+    face: np.ndarray
+    viewpoint: Viewpoint
+
+    def __post_init__(self):
+        if self.face.ndim != 2 or self.depth.shape != self.face.shape or self.rgb.shape != (*self.face.shape, 3):
+            shapes = f"rgb {self.rgb.shape}, depth {self.depth.shape}, face {self.face.shape}"
+            raise ValueError(f"a view needs rgb (h, w, 3), depth (h, w) and face (h, w), got {shapes}")
+
+    @property
+    def mask(self):
+        """(h, w) boolean: the pixel is on the object."""
+        return self.face >= 0
+
+
+def empty_view(viewpoint, size, background):
+    """A view of nothing, for a renderer to fill in."""
+    rgb = np.full((*size, 3), BACKGROUNDS[background], dtype=np.uint8)
+    return View(rgb, np.full(size, np.inf, dtype=np.float32), np.full(size, -1, dtype=np.int32), viewpoint)
+
+
+def round_depth(depth):
+    """Depths rounded to whole steps of DEPTH_STEP, as f4; inf stays inf."""
+    return (np.rint(np.asarray(depth) / DEPTH_STEP) * DEPTH_STEP).astype(np.float32)
+
+
+def pixel_box(mesh, viewpoint, size):
+    """(top, left, bottom, right) of the pixels that the mesh can cover, the last two exclusive; zeros without faces.
+
+    Raises ValueError when the mesh leaves the frame or reaches behind the camera: an image never crops its object.
+    """
+    if not len(mesh.faces):
+        return 0, 0, 0, 0
+    rows, columns, depths = project(mesh.vertices[np.unique(mesh.faces)], viewpoint, size)
+    low = np.array([rows.min(), columns.min()])
+    high = np.array([rows.max(), columns.max()])
+    if (low < -0.5).any() or (high > np.array(size) - 0.5).any() or depths.min() <= 0 or depths.max() >= 2 * DISTANCE:
+        needs = f"rows {low[0]:.0f}..{high[0]:.0f}, columns {low[1]:.0f}..{high[1]:.0f}"
+        raise ValueError(
+            f"the mesh leaves the frame of {size[0]} x {size[1]} pixels ({needs}): normalise it with "
+            "stages.meshes.normalise (bounding sphere of radius 0.5 at the origin), or take an image as wide as high"
+        )
+    top, left = np.ceil(low).astype(int).clip(0)
+    bottom, right = (np.floor(high).astype(int) + 1).clip(None, size)
+    return int(top), int(left), int(bottom), int(right)

@@ -1,0 +1,47 @@
+"""The weights that need no learning: equal ones, and those of T table 3.1."""
+
+# T table 3.1: channel -> (average SSIM over 43 models, one minus the average normalised Euclidean distance).
+# They stand here and not in a file beside the package, so that they are there wherever the package is installed.
+TABLE = {
+    "color": (0.1096, 0.6417),
+    "contrast": (0.7692, 0.3941),
+    "curvature": (0.7536, 0.7929),
+    "dkl": (0.6389, 0.7098),
+    "edge": (0.7264, 0.5651),
+    "entropy": (0.8914, 0.7879),
+    "intensity": (0.6274, 0.4487),
+    "orientation": (0.4596, 0.6773),
+    "symmetry": (0.7235, 0.4970),
+}
+
+
+def equal():
+    """One for every channel: the plain average (T eq. 3.8)."""
+    return dict.fromkeys(TABLE, 1.0)
+
+
+def thesis_ssim():
+    """Similarity of each channel's map to the ground truth's (T3.2.1.2 and T3.2.1.4)."""
+    return {channel: ssim for channel, (ssim, _) in TABLE.items()}
+
+
+def thesis_ed():
+    """One minus the distance of each channel's brightest pixels from the ground truth (T3.2.1.1).
+
+    The text calls this column a value "for a selected viewpoint from model of skull", the caption an average over 43
+    models. Table 3.1's caption and T3.2.2 agree with each other, so the average is what is meant here.
+    """
+    return {channel: nearness for channel, (_, nearness) in TABLE.items()}
+
+
+METHODS = {"equal": equal, "thesis_ssim": thesis_ssim, "thesis_ed": thesis_ed}
+
+
+def weights(method):
+    """The weight of each channel by one method: dict channel -> weight, all nine channels, not normalised.
+
+    Eq. 3.9 divides by their sum. Raises ValueError for a method that METHODS does not have.
+    """
+    if method not in METHODS:
+        raise ValueError(f"unknown weights {method!r}: choose one of {', '.join(METHODS)}")
+    return METHODS[method]()

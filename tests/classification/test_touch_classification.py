@@ -1,0 +1,83 @@
+"""The classification stage on a small folder of imprints."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from stages.classification import CLASSIFIERS, evaluate
+from stages.classification.__main__ import plan, process, summary
+from stages.classification.schema import Params
+from stages.imprints import Imprints, write_imprints
+from stages.kit.files import read_arrays
+
+NAMES = ("cup", "duck", "hand")
+
+
+@pytest.fixture
+def imprints(tmp_path, monkeypatch, bumps):
+    """data/imprints of three objects: sampling `random` with 16 imprints each, `itti` with 16, of the duck 12."""
+    monkeypatch.chdir(tmp_path)
+    for name, images in bumps(NAMES, 16, jitter=2.0).items():
+        places = np.arange(48.0).reshape(16, 3)
+        touched = {
+            sampling: Imprints(images[:count], np.arange(count), places[:count], 0.01)
+            for sampling, count in (("random", 16), ("itti", 12 if name == "duck" else 16))
+        }
+        write_imprints(f"data/imprints/{name}.npz", touched)
+    return Path("data/imprints")
+
+
+def settings(**changes):
+    return Params(
+        **{"sets": {"three": list(NAMES)}, "classifiers": ["knn", "naive_bayes"], "repetitions": 2, **changes}
+    )
+
+
+def test_all_samplings_of_a_set_use_equally_many_imprints(imprints):
+    sets = {"three": list(NAMES), "two": ["hand", "cup"]}
+    assert plan(sets, imprints) == {"three.itti": 12, "three.random": 12, "two.itti": 16, "two.random": 16}
+
+
+def test_missing_object_is_named_with_those_that_are_there(imprints):
+    with pytest.raises(ValueError, match="three: there are no imprints of cow; there are those of: cup, duck, hand"):
+        plan({"three": ["cow", "cup"]}, imprints)
+
+
+def test_sampling_with_too_few_imprints_is_left_out_with_its_reason(imprints, tmp_path, bumps):
+    few = Imprints(bumps()["cup"][:9], np.arange(9), np.zeros((9, 3)), 0.01)
+    many = Imprints(bumps()["cup"], np.arange(16), np.zeros((16, 3)), 0.01)
+    write_imprints(imprints / "cup.npz", {"itti": few, "random": many})
+    planned = plan(settings().sets, imprints)
+    assert planned["three.random"] == 16 and "itti: cup has 9 imprints" in planned["three.itti"]
+    (row,) = process("three.itti", tmp_path, planned, settings(), 0)
+    assert row["value"] is None and row["note"] == planned["three.itti"]
+
+
+def test_stage_agrees_with_evaluate_and_writes_equal_bytes(imprints, tmp_path, bumps):
+    planned = plan(settings().sets, imprints)
+    rows = process("three.random", tmp_path / "a", planned, settings(), 7)
+    process("three.random", tmp_path / "b", planned, settings(), 7)
+    assert (tmp_path / "a/three.random.npz").read_bytes() == (tmp_path / "b/three.random.npz").read_bytes()
+    images = {name: stack[:12].astype("f4") for name, stack in bumps(NAMES, 16, jitter=2.0).items()}
+    expected = [row["value"] for name in ("knn", "naive_bayes") for row in evaluate(images, name, 2, seed=7)]
+    assert [row["value"] for row in rows if row["metric"] != "accuracy_apart"] == expected
+    stored = read_arrays(tmp_path / "a/three.random.npz")
+    assert stored["objects"].tolist() == list(NAMES) and stored["knn.confusion"].sum() == 2 * 9
+
+
+def test_a_failing_classifier_does_not_lose_the_others(imprints, tmp_path, monkeypatch):
+    monkeypatch.setitem(CLASSIFIERS, "broken", lambda seed: 1 / 0)
+    chosen = settings(classifiers=["broken", "knn"])
+    rows = process("three.itti", tmp_path, plan(chosen.sets, imprints), chosen, 0)
+    assert rows[0]["value"] is None and "broken failed: division by zero" in rows[0]["note"]
+    assert len([row for row in rows if row["classifier"] == "knn" and row["value"] is not None]) >= 4
+    assert list(read_arrays(tmp_path / "three.itti.npz")) == ["objects", "knn.confusion"]
+
+
+def test_summary_holds_mean_and_interval_of_the_repetitions():
+    common = {"object": "three", "method": "itti", "classifier": "knn", "metric": "accuracy_holdout"}
+    tree = summary([{**common, "value": value} for value in (0.5, 0.7, None)], seed=0)
+    assert tree["three"]["itti"]["knn"]["accuracy_holdout"] == {"mean": 0.6, "low": 0.5, "high": 0.7}
+    alone = summary([{**common, "value": 0.5}], seed=0)
+    assert alone["three"]["itti"]["knn"]["accuracy_holdout"] == {"mean": 0.5}

@@ -1,0 +1,140 @@
+"""Hold-out and five folds, and the five classifiers in them."""
+
+import numpy as np
+import pytest
+
+from stages.classification import CLASSIFIERS, classifier, evaluate, evaluate_features, features, protocol
+
+
+def mean(rows, metric):
+    return np.mean([row["value"] for row in rows if row["metric"] == metric])
+
+
+@pytest.mark.parametrize("name", ["knn", "svm", "decision_tree", "naive_bayes", "deep_learning"])
+def test_every_classifier_beats_chance_on_what_is_easy_and_not_on_noise(bumps, name):
+    easy = bumps(count=24)
+    assert mean(evaluate(easy, name, 3), "accuracy_holdout") > 0.8
+    assert mean(evaluate(easy, name, 3), "accuracy_fivefold") > 0.7
+    noise = dict(zip("abc", np.random.default_rng(1).random((3, 40, 16, 16)), strict=True))
+    assert mean(evaluate(noise, name, 4), "accuracy_holdout") < 0.6
+
+
+def test_thesis_settings():
+    assert set(CLASSIFIERS) == {"knn", "svm", "decision_tree", "naive_bayes", "deep_learning"}
+    settings = {name: classifier(name, 5)[-1].get_params() for name in CLASSIFIERS}
+    assert (
+        settings["knn"]["n_neighbors"] == 1 and settings["knn"]["metric"] == "minkowski" and settings["knn"]["p"] == 2
+    )
+    assert (settings["svm"]["kernel"], settings["svm"]["gamma"], settings["svm"]["C"]) == ("rbf", 1.0, 1.5)
+    assert settings["svm"]["tol"] == 0.001 and settings["decision_tree"]["max_depth"] == 10
+    assert settings["deep_learning"] == {"hidden": (50, 50), "epochs": 10, "seed": 5}
+    assert classifier("knn")[-2].n_components == 12
+
+
+def test_rows_are_equal_from_run_to_run_but_for_the_seconds(bumps):
+    def stripped(rows):
+        return [{key: value for key, value in row.items() if key != "seconds"} for row in rows]
+
+    images = bumps(jitter=3.0)
+    backwards = dict(reversed(images.items()))
+    rows = stripped(evaluate(images, "decision_tree", 3, seed=4))
+    assert rows == stripped(evaluate(backwards, "decision_tree", 3, seed=4))
+    assert rows != stripped(evaluate(images, "decision_tree", 3, seed=5))
+    assert [row["repetition"] for row in rows] == [0, 0, 1, 1, 2, 2]
+
+
+def test_every_object_gives_as_many_as_the_poorest(bumps):
+    images = bumps(count=20)
+    images["cup"] = images["cup"][:12]
+    rows = evaluate(images, "knn", 1)
+    cut = evaluate({name: stack[:12] for name, stack in images.items()}, "knn", 1)
+    assert [row["value"] for row in rows] == [row["value"] for row in cut]
+
+
+def test_hold_out_is_a_quarter_and_never_trained_on(bumps, monkeypatch):
+    seen = []
+
+    class Spy:
+        def fit(self, samples, labels):
+            seen.append((samples[:, 0], labels))
+            return self
+
+        def predict(self, samples):
+            seen[-1] += (samples[:, 0],)
+            return np.zeros(len(samples), dtype=int)
+
+    monkeypatch.setattr(protocol, "classifier", lambda name, seed: Spy())
+    samples, labels = np.arange(96.0)[:, None], np.repeat(["a", "b", "c"], 32)
+    evaluate_features(samples, labels, "spy", repetitions=1)
+    (train, train_labels, test), *folds = seen
+    assert np.array_equal(np.sort(np.r_[train, test]), samples[:, 0]) and len(test) == 24
+    assert (np.bincount(train_labels) == 24).all() and len(folds) == 5
+    for fit, _, check in folds:
+        assert not np.isin(fit, check).any() and np.array_equal(np.sort(np.r_[fit, check]), np.sort(train))
+    assert np.array_equal(np.sort(np.concatenate([check for *_, check in folds])), np.sort(train))
+
+
+def test_splits_are_the_same_for_every_classifier_and_sampling(monkeypatch):
+    splits = []
+
+    def answer(name, number, samples, truth, train, test):
+        splits.append(np.r_[train, test])
+        return truth[test], 0.0
+
+    monkeypatch.setattr(protocol, "_answer", answer)
+    labels = np.repeat([0, 1], 20)
+    evaluate_features(np.zeros((40, 2)), labels, "knn", repetitions=2)
+    evaluate_features(np.ones((40, 3)), labels, "svm", repetitions=2)
+    assert len(splits) == 24 and not np.array_equal(splits[0], splits[6])
+    assert all(np.array_equal(one, other) for one, other in zip(splits[:12], splits[12:], strict=True))
+
+
+def test_confusion_counts_the_hold_outs(bumps):
+    images = bumps(count=16)
+    samples = np.concatenate([features(stack) for stack in images.values()])
+    rows, confusion = evaluate_features(samples, np.repeat(list(images), 16), "knn", repetitions=5)
+    assert (confusion.sum(axis=1) == 5 * 4).all()
+    assert confusion.trace() / confusion.sum() == pytest.approx(mean(rows, "accuracy_holdout"))
+
+
+def test_apart_holds_out_a_region_far_from_all_training(monkeypatch):
+    splits = []
+
+    def answer(name, number, samples, truth, train, test):
+        splits.append((train, test))
+        return truth[test], 0.0
+
+    monkeypatch.setattr(protocol, "_answer", answer)
+    places = np.tile(np.arange(16.0)[:, None] * [1, 0, 0], (3, 1))
+    rows, _ = evaluate_features(np.zeros((48, 2)), np.repeat([0, 1, 2], 16), "knn", 4, places=places, apart=2.5)
+    assert [row["value"] for row in rows if row["metric"] == "accuracy_apart"] == [1.0] * 4
+    for train, test in splits[6::7]:
+        assert len(test) == 12 and len(train) >= 3 * 8
+        for first in (0, 16, 32):
+            own = [part[(part >= first) & (part < first + 16)] for part in (train, test)]
+            assert np.ptp(own[1]) == 3 and np.abs(own[0][:, None] - own[1]).min() == 3
+
+
+def test_apart_is_none_where_all_touches_overlap(bumps):
+    samples = np.concatenate([features(stack) for stack in bumps().values()])
+    rows, _ = evaluate_features(samples, np.repeat([0, 1, 2], 16), "knn", 1, places=np.zeros((48, 3)), apart=0.16)
+    assert rows[-1]["metric"] == "accuracy_apart" and rows[-1]["value"] is None
+
+
+@pytest.mark.parametrize(
+    "change, name, words",
+    [
+        ({}, "knm", "did you mean knn"),
+        ({}, "perceptron of old", "there are: knn"),
+        ({"cup": np.zeros((9, 16, 16))}, "knn", "cup has 9 imprints"),
+        ({"cup": np.zeros((20, 4, 4))}, "knn", "at least 8 x 8"),
+    ],
+)
+def test_what_cannot_be_classified_is_named(bumps, change, name, words):
+    with pytest.raises(ValueError, match=words):
+        evaluate({**bumps(), **change}, name)
+
+
+def test_one_object_cannot_be_told_apart(bumps):
+    with pytest.raises(ValueError, match="two objects"):
+        evaluate(bumps(("cup",)), "knn")

@@ -1,0 +1,85 @@
+"""Imprints in 0..1, their files, and the stage on two small solids."""
+
+import numpy as np
+import pytest
+
+from stages.imprints import Imprints, normalise, press, press_many, read_imprints, touchable, write_imprints
+from stages.imprints.__main__ import process
+from stages.imprints.schema import Params
+from stages.kit import Mesh
+from stages.kit.files import write_arrays, write_mesh
+
+
+def test_plane_gives_flat_imprint(shapes):
+    mesh, vertex = shapes.solid(lambda x, y: 0.1 * x + 0.2 * y)
+    assert (press(mesh, vertex) == 0).all()
+
+
+def test_plane_with_rounded_coordinates_is_still_flat(shapes):
+    mesh, vertex = shapes.solid(lambda x, y: 0.1 * x + 0.2 * y)
+    assert (press(Mesh(mesh.vertices.astype(np.float32), mesh.faces), vertex) == 0).all()
+
+
+def test_sphere_is_zero_at_contact_and_one_farthest_away(shapes):
+    mesh, vertex = shapes.solid(shapes.sphere)
+    image = press(mesh, vertex, cells=(15, 15), pitch=0.01)
+    x, y = shapes.cell_places((15, 15), 0.01)
+    depth = 0.3 - shapes.sphere(x, y)
+    assert image.dtype == np.float32 and image[7, 7] == 0 and image[0, 0] == 1
+    assert np.allclose(image, depth / depth.max(), atol=1e-6)
+
+
+def test_pit_is_zero_where_a_rigid_array_would_touch_first(shapes):
+    mesh, vertex = shapes.solid(lambda x, y: 4 * (x * x + y * y))
+    image = press(mesh, vertex, cells=(15, 15))
+    assert image[7, 7] == 1 and image[0, 0] < 1e-12
+
+
+def test_array_larger_than_the_object_gives_a_defined_image(shapes):
+    mesh, vertex = shapes.solid(shapes.sphere)
+    assert (press(mesh, vertex, pitch=10.0) == 0).all()  # every cell misses
+    assert set(np.unique(press(mesh, vertex, cells=(3, 3), pitch=10.0))) == {0.0, 1.0}  # only the middle one touches
+
+
+def test_many_equal_one_by_one_across_batches(shapes):
+    mesh, _ = shapes.solid(shapes.sphere)
+    vertices = np.random.default_rng(0).choice(len(mesh.vertices), 70)
+    many = press_many(mesh, vertices, (32, 32), 0.004)
+    assert many.shape == (70, 32, 32)
+    for vertex, image in zip(vertices[[0, 33, 69]], many[[0, 33, 69]], strict=True):
+        assert np.array_equal(press(mesh, vertex, (32, 32), 0.004), image)
+
+
+def test_normalise_wants_a_stack():
+    with pytest.raises(ValueError, match="shape"):
+        normalise(np.zeros((4, 4)), 0.01)
+
+
+def test_files_keep_methods_images_and_places(tmp_path):
+    one = Imprints(np.ones((2, 4, 4), "f4"), np.array([3, 1]), np.zeros((2, 3), "f4"), 0.02)
+    write_imprints(tmp_path / "a.npz", {"random": one, "Vis.Att": one})
+    write_imprints(tmp_path / "b.npz", {"Vis.Att": one, "random": one})
+    back = read_imprints(tmp_path / "a.npz")
+    assert list(back) == ["Vis.Att", "random"] and back["random"].vertices.tolist() == [3, 1]
+    assert back["random"].width == 0.08
+    assert (tmp_path / "a.npz").read_bytes() == (tmp_path / "b.npz").read_bytes()
+
+
+def test_stage_presses_every_method_and_counts_what_it_refuses(shapes, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    mesh, vertex = shapes.solid(shapes.sphere)
+    mesh = Mesh(np.r_[mesh.vertices, [[1, 1, 1]]], mesh.faces)
+    lone = len(mesh.vertices) - 1
+    write_mesh("data/meshes/ball.npz", mesh)
+    points = {"random": np.array([vertex, lone]), "itti": np.array([vertex]), "enhanced": np.zeros(0, "i8")}
+    arrays = {f"{method}.points": ids for method, ids in points.items()}
+    arrays |= {f"{method}.strong": np.int64(len(ids)) for method, ids in points.items()}
+    write_arrays("data/salient_points/ball.npz", **arrays)
+    rows = process("ball", tmp_path / "out", Params(cells=[15, 15], pitch=0.01))
+    value = {(row["method"], row["metric"]): row["value"] for row in rows}
+    assert value["random", "imprints"] == 1 and value["random", "refused"] == 1 and value["enhanced", "relief"] is None
+    assert value["itti", "relief"] == pytest.approx(0.3 - shapes.sphere(0.07, 0.07)) and value["itti", "missed"] == 0
+    written = read_imprints(tmp_path / "out" / "ball.npz")
+    assert np.array_equal(written["itti"].images[0], press(mesh, vertex, (15, 15), 0.01))
+    assert np.allclose(written["itti"].positions, mesh.vertices[[vertex]])
+    assert not touchable(mesh, [lone])[0]

@@ -1,0 +1,48 @@
+"""A ball with one bright spot, seen from the twelve viewpoints."""
+
+import numpy as np
+import pytest
+import trimesh
+
+from stages.kit import Mesh, RayScene, camera
+from stages.salient_points import Sight
+from stages.views import TWELVE
+from stages.weights import weights
+
+SIZE = (75, 100)
+CHANNELS = tuple(weights("equal"))
+
+
+def spot_maps(mesh, spot, viewpoints=TWELVE, width=0.15, channels=CHANNELS):
+    """dict channel -> (v, h, w): a Gaussian round a place in space, zero off the object."""
+    scene, maps = RayScene(mesh), []
+    rows, columns = np.mgrid[: SIZE[0], : SIZE[1]].reshape(2, -1)
+    for viewpoint in viewpoints:
+        origins, directions = camera.pixel_rays(rows, columns, viewpoint, SIZE)
+        hits = scene.cast(origins, directions)
+        place = origins + np.where(hits.hit, hits.distance, 0)[:, None] * directions
+        values = np.exp(-((place - spot) ** 2).sum(axis=1) / (2 * width**2))
+        maps.append(np.where(hits.hit, values, 0).reshape(SIZE))
+    return dict.fromkeys(channels, np.stack(maps))
+
+
+@pytest.fixture(scope="session")
+def make_maps():
+    """The function spot_maps; its images have 75 x 100 pixels."""
+    return spot_maps
+
+
+@pytest.fixture(scope="session")
+def ball():
+    mesh = trimesh.creation.icosphere(subdivisions=4, radius=0.5)
+    return Mesh(mesh.vertices, mesh.faces)
+
+
+@pytest.fixture(scope="session")
+def spot():
+    return np.array([0.3, 0.3, 0.26458])  # on the ball, on no axis of a view
+
+
+@pytest.fixture(scope="session")
+def sight(ball, spot):
+    return Sight(ball, TWELVE, spot_maps(ball, spot))

@@ -1,0 +1,225 @@
+"""Points of a whole object, by every method."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+import trimesh
+
+from stages.kit import Mesh
+from stages.kit.rng import rng
+from stages.meshes import normalise
+from stages.salient_points import METHODS, Sight, find_points, read_points, read_saliency, read_strong_points, saliency
+from stages.salient_points.chance import random_vertices
+from stages.salient_points.merge import continue_on_surface, merge_views
+from stages.salient_points.methods import find_all
+from stages.salient_points.options import Options
+from stages.salient_points.storage import viewpoint_named, write_found
+from stages.views import FOUR, TWELVE
+from stages.weights import weights
+
+LOOKING = [name for name, method in METHODS.items() if method.channels]
+
+
+def shuffled(mesh, seed=0):
+    """(the same mesh with its vertices in another order, old id of each new vertex)."""
+    old = np.random.default_rng(seed).permutation(len(mesh.vertices))
+    return Mesh(mesh.vertices[old], np.argsort(old)[mesh.faces]), old
+
+
+@pytest.mark.parametrize("method", LOOKING)
+def test_a_peak_on_the_maps_gives_the_vertex_there(method, sight, ball, spot):
+    found = METHODS[method].find(ball, sight, Options())
+    assert np.linalg.norm(ball.vertices[found.points[0]] - spot) < 0.04
+    assert np.linalg.norm(ball.vertices[found.saliency.argmax()] - spot) < 0.04
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("count", [1, 25, 200])
+def test_count_is_honoured_without_duplicates(method, count, sight, ball):
+    points = METHODS[method].find(ball, sight, Options(), count).points
+    assert len(points) == len(set(points)) == count
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_mesh_with_too_few_vertices_gives_all_of_them(method, make_maps):
+    box = trimesh.creation.box(extents=[0.5, 0.5, 0.5])
+    mesh = Mesh(np.r_[box.vertices, [[0, 0, 0]]], box.faces)  # the last vertex is in no face
+    sight = Sight(mesh, FOUR, make_maps(mesh, np.array([0.25, 0.25, 0.25]), FOUR))
+    assert sorted(METHODS[method].find(mesh, sight, Options(), 20).points) == list(range(8))
+
+
+def test_points_keep_apart_while_there_is_room(sight, ball):
+    options = Options(radius=0.1)
+    places = ball.vertices[METHODS["enhanced"].find(ball, sight, options, 60).points]
+    apart = np.linalg.norm(places[:, None] - places[None], axis=2)[np.triu_indices(60, 1)]
+    assert apart.min() > 0.1
+
+
+def test_strong_points_come_first_and_more_points_change_none_of_them(sight, ball):
+    strong = METHODS["enhanced"].find(ball, sight, Options())
+    more = METHODS["enhanced"].find(ball, sight, Options(), 40)
+    assert strong.strong == len(strong.points) == more.strong
+    assert (more.points[: more.strong] == strong.points).all()
+
+
+def test_maps_without_a_signal_have_no_strong_points_but_honour_a_count(ball):
+    blank = Sight(ball, FOUR, dict.fromkeys(weights("equal"), np.zeros((4, 75, 100))))
+    assert len(METHODS["enhanced"].find(ball, blank, Options()).points) == 0
+    found = METHODS["enhanced"].find(ball, blank, Options(), 10)
+    assert (len(found.points), found.strong) == (10, 0)
+    assert not found.saliency.any()
+
+
+def test_weights_decide_between_channels(ball, make_maps):
+    here, there = np.array([0.5, 0, 0]), np.array([0, 0.5, 0])
+    maps = make_maps(ball, here, channels=("edge",)) | make_maps(ball, there, channels=("color",))
+    blank = dict.fromkeys(weights("equal"), np.zeros_like(maps["edge"]))
+    sight = Sight(ball, TWELVE, blank | maps)
+    for winner, place in (("edge", here), ("color", there)):
+        options = Options(weights=dict.fromkeys(weights("equal"), 0.1) | {winner: 1.0})
+        first = METHODS["enhanced"].find(ball, sight, options, 1).points[0]
+        assert np.linalg.norm(ball.vertices[first] - place) < 0.05
+
+
+def test_merged_methods_hold_the_points_of_their_parts(ball, make_maps):
+    here, there = np.array([0.5, 0, 0]), np.array([-0.5, 0, 0])
+    maps = make_maps(ball, here) | make_maps(ball, there, channels=("curvature",))
+    sight = Sight(ball, TWELVE, maps)
+    places = ball.vertices[METHODS["VisAttCurvP"].find(ball, sight, Options()).points]
+    assert min(np.linalg.norm(places - here, axis=1)) < 0.05
+    assert min(np.linalg.norm(places - there, axis=1)) < 0.05
+    pair = [METHODS[method].saliency(sight, Options()) for method in ("VisAttCurvP", "VisAtt")]
+    assert (pair[0] == pair[1]).all()
+
+
+def test_one_feature_seen_in_many_views_is_one_point(ball):
+    near = np.argsort(np.linalg.norm(ball.vertices - [0.5, 0, 0], axis=1))
+    candidates = np.r_[near[:3], near[-1]]
+    points, strong = merge_views(ball, candidates, np.array([0.5, 0.7, 0.6, 0.9]), np.array([1, 1, 1, 0], bool), 0.1)
+    assert points.tolist() == [near[1], near[-1]]  # the brightest of the strong ones, then the weak one
+    assert strong == 1
+
+
+def test_coincident_vertices_do_not_hold_up_a_count():
+    mesh = Mesh(np.tile(np.eye(3), (2, 1)), [[0, 1, 2], [3, 4, 5]])
+    points = continue_on_surface(mesh, np.zeros(0, dtype=np.int64), np.ones(6), 0.1, 6)
+    assert sorted(points) == list(range(6))
+
+
+def test_equally_salient_vertices_do_not_go_by_their_number(ball):
+    other, old = shuffled(ball)
+    none, flat = np.zeros(0, dtype=np.int64), np.ones(len(ball.vertices))
+    points = continue_on_surface(other, none, flat, 0.1, 20)
+    assert (continue_on_surface(ball, none, flat, 0.1, 20) == old[points]).all()
+
+
+@pytest.mark.parametrize("selection", ["suppression", "centroid"])
+def test_points_do_not_depend_on_the_order_of_the_vertices(selection, ball, spot, make_maps):
+    other, old = shuffled(ball)
+    options = Options(selection=selection)
+    found = []
+    for mesh in (ball, other):
+        sight = Sight(mesh, TWELVE, make_maps(mesh, spot))
+        found.append(find_all(mesh, sight, ["enhanced", "random"], options, 60)[0])
+    for method in ("enhanced", "random"):
+        assert (found[0][method].points == old[found[1][method].points]).all()
+    assert np.allclose(found[0]["enhanced"].saliency[old], found[1]["enhanced"].saliency, atol=1e-5)
+
+
+def test_points_and_saliency_from_a_bare_mesh_do_not_depend_on_its_place_and_size(ball):
+    nose = trimesh.creation.icosphere(subdivisions=2, radius=0.12)
+    mesh = Mesh(
+        np.r_[ball.vertices, nose.vertices + [0.45, 0, 0.2]], np.r_[ball.faces, nose.faces + len(ball.vertices)]
+    )
+    moved = Mesh(mesh.vertices * 8 + 0.25, mesh.faces)
+    values = [saliency(m, "VisAttCurv", viewpoints=FOUR[:2]) for m in (mesh, moved)]
+    assert values[0].shape == (len(mesh.vertices),) and values[0].max() == 1 and values[0].min() >= 0
+    assert np.abs(values[0] - values[1]).max() < 0.02
+    first = [find_points(m, "VisAttCurv", 1, viewpoints=FOUR[:2])[0] for m in (mesh, moved)]
+    assert np.linalg.norm(normalise(mesh).vertices[first[0]] - normalise(mesh).vertices[first[1]]) < 0.02
+    assert first[0] >= len(ball.vertices)  # on the nose
+
+
+def test_random_points_are_uniform_over_the_area():
+    # A square whose left half is one large square, its right half 50 x 50 small ones; 3 in 4 of the area on the left.
+    line = np.linspace(0.75, 1, 51)
+    y, x = (grid.ravel() for grid in np.meshgrid(np.linspace(0, 1, 51), line, indexing="ij"))
+    ids = np.arange(51 * 51).reshape(51, 51)
+    a, b, c, d = (part.ravel() for part in (ids[:-1, :-1], ids[:-1, 1:], ids[1:, 1:], ids[1:, :-1]))
+    big = np.array([[0, 0, 0], [0.75, 0, 0], [0.75, 1, 0], [0, 1, 0]])
+    faces = np.r_[[[0, 1, 2], [0, 2, 3]], 4 + np.c_[a, b, c], 4 + np.c_[a, c, d]]
+    mesh = Mesh(np.r_[big, np.c_[x, y, 0 * x]], faces)
+    first = np.array([random_vertices(mesh, 1, rng(0, f"draw {k}"))[0] for k in range(800)])
+    assert abs((first < 4).mean() - 0.75) < 0.05  # standard error 0.015
+    assert np.abs(np.bincount(first[first < 4], minlength=4) / 800 - [0.25, 0.125, 0.25, 0.125]).max() < 0.08
+
+
+def test_random_points_depend_on_seed_and_name_alone(ball):
+    first = find_points(ball, "random", 20, seed=3, name="duck")
+    find_points(ball, "random", 20, seed=3, name="cup")
+    assert (find_points(ball, "random", 20, seed=3, name="duck") == first).all()
+    assert (find_points(ball, "random", 20, seed=3, name="cup") != first).any()
+    assert (find_points(ball, "random", 20, seed=4, name="duck") != first).any()
+
+
+def test_random_gets_as_many_strong_points_as_the_first_method(sight, ball):
+    found, _ = find_all(ball, sight, ["random", "itti"], Options(), 30)
+    assert found["random"].strong == found["itti"].strong < 30
+
+
+def test_file_gives_back_points_strong_points_and_saliency(sight, ball, tmp_path):
+    found, _ = find_all(ball, sight, ["enhanced", "random"], Options(), 30)
+    write_found(tmp_path / "ball.npz", found)
+    points, strong = read_points(tmp_path / "ball.npz"), read_strong_points(tmp_path / "ball.npz")
+    assert list(points) == ["enhanced", "random"]
+    assert (points["enhanced"] == found["enhanced"].points).all()
+    assert len(strong["enhanced"]) == found["enhanced"].strong
+    assert list(read_saliency(tmp_path / "ball.npz")) == ["enhanced"]
+
+
+@pytest.mark.parametrize("viewpoint", TWELVE, ids=lambda viewpoint: viewpoint.name)
+def test_a_viewpoint_comes_back_from_its_name(viewpoint):
+    assert viewpoint_named(viewpoint.name) == viewpoint
+    turned = dataclasses.replace(viewpoint, roll=-22.5)
+    assert viewpoint_named(turned.name) == turned
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda mesh: find_points(mesh, "enhancd"), "unknown method 'enhancd'.*enhanced"),
+        (lambda mesh: find_points(mesh, "random"), "give a count"),
+        (lambda mesh: find_points(mesh, "random", 0), "at least 1"),
+        (lambda mesh: find_points(mesh, "random", 2.5), "whole number"),
+        (lambda mesh: find_points(mesh, "random", 5, selection="brightest"), "unknown selection 'brightest'"),
+        (lambda mesh: find_points(mesh, "random", 5, radius=0), "radius must be positive"),
+        (lambda mesh: find_points(mesh, "enhanced", weights="ssim"), "unknown weights 'ssim'"),
+        (lambda mesh: saliency(mesh, "random"), "has no saliency"),
+        (lambda mesh: find_points(Mesh(np.zeros((3, 3)), [[0, 1, 2]]), "random", 5), "no extent"),
+        (lambda mesh: random_vertices(Mesh(np.zeros((3, 3)), [[0, 1, 2]]), 5, rng(0, "")), "no area"),
+        (lambda mesh: viewpoint_named("front"), "'front' is no viewpoint's name"),
+    ],
+)
+def test_bad_input_is_an_error_with_a_remedy(call, message, ball):
+    with pytest.raises(ValueError, match=message):
+        call(ball)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"edge": 1.0}, "no weight for"),
+        (dict.fromkeys(weights("equal"), 1.0) | {"edge": -1.0}, "not negative"),
+        (dict.fromkeys(weights("equal"), 1.0) | {"shine": 1.0}, "without a map: shine"),
+    ],
+)
+def test_bad_weights_are_errors(given, message, sight, ball):
+    with pytest.raises(ValueError, match=message):
+        METHODS["enhanced"].find(ball, sight, Options(weights=given))
+
+
+def test_a_channel_without_a_map_is_named(ball, make_maps):
+    sight = Sight(ball, FOUR, make_maps(ball, np.zeros(3), FOUR, channels=("color", "intensity")))
+    with pytest.raises(ValueError, match="no map for orientation"):
+        METHODS["itti"].find(ball, sight, Options())

@@ -1,0 +1,72 @@
+"""The stage on one object, in a folder of its own."""
+
+import numpy as np
+import pytest
+
+from stages.kit.files import read_arrays, sha256, write_arrays, write_mesh
+from stages.salient_points import read_points, read_strong_points
+from stages.salient_points.__main__ import process
+from stages.salient_points.measure import rows_of, spread, summary
+from stages.salient_points.options import Found
+from stages.salient_points.schema import Params
+from stages.views import TWELVE
+from stages.weights import weights
+
+METHODS = ["enhanced", "itti", "random"]
+
+
+@pytest.fixture
+def run(ball, spot, make_maps, tmp_path, monkeypatch):
+    """A function that processes the ball and returns its rows."""
+    monkeypatch.chdir(tmp_path)
+    maps = make_maps(ball, spot)
+    write_mesh("data/meshes/ball.npz", ball)
+    stacked = np.stack(list(maps.values()), axis=1).astype(np.float16)
+    names = {"viewpoints": np.array([v.name for v in TWELVE]), "channels": np.array(list(maps))}
+    write_arrays("data/conspicuity/ball.npz", maps=stacked, mask=stacked[:, 0] > 0, **names)
+    settings = Params(METHODS, 30, "suppression", 0.058, 0.02)
+    return lambda folder: process("ball", tmp_path / folder, settings, weights("thesis_ssim"), 0)
+
+
+def test_stage_writes_the_contract(run, tmp_path, ball):
+    run("out")
+    stored = read_arrays(tmp_path / "out/ball.npz")
+    kinds = {f"{method}.{kind}" for method in METHODS for kind in ("points", "strong", "saliency")}
+    assert set(stored) == kinds - {"random.saliency"}
+    assert all(stored[f"{method}.points"].shape == (30,) for method in METHODS)
+    assert all(stored[f"{method}.points"].dtype == np.int64 for method in METHODS)
+    assert stored["enhanced.saliency"].shape == (len(ball.vertices),)
+    assert stored["enhanced.saliency"].dtype == np.float32
+    strong = read_strong_points(tmp_path / "out/ball.npz")
+    assert len(strong["random"]) == len(strong["enhanced"]) == stored["enhanced.strong"]
+    assert (read_points(tmp_path / "out/ball.npz")["itti"][: len(strong["itti"])] == strong["itti"]).all()
+
+
+def test_stage_writes_the_same_bytes_twice(run, tmp_path):
+    run("one"), run("two")
+    assert sha256(tmp_path / "one/ball.npz") == sha256(tmp_path / "two/ball.npz")
+
+
+def test_stage_measures_every_method(run):
+    rows = run("out")
+    assert {(row["method"], row["metric"]) for row in rows} == {
+        (method, metric) for method in METHODS for metric in ("points_strong", "points", "spread", "saliency_at_points")
+    }
+    assert all(row["object"] == "ball" and row["seconds"] > 0 for row in rows)
+    means = summary(rows)
+    assert means["enhanced.points"] == 30
+    assert means["enhanced.saliency_at_points"] > means["random.saliency_at_points"]
+
+
+def test_what_does_not_apply_stays_out_of_the_summary(ball):
+    blind = Found(np.array([0, 5]), 1, None)
+    assert set(summary(rows_of("ball", "random", blind, ball, None, 0.1))) == {
+        "random.points",
+        "random.points_strong",
+        "random.spread",
+    }
+
+
+def test_spread_of_a_unit_grid_is_one():
+    assert spread(np.stack(np.meshgrid(range(3), range(4), [0]), axis=-1).reshape(-1, 3)) == 1
+    assert np.isnan(spread(np.zeros((1, 3))))

@@ -1,0 +1,59 @@
+"""A stored view comes back as it was, from a small file that is always the same."""
+
+import numpy as np
+import pytest
+
+from stages.kit import Mesh, Viewpoint
+from stages.views import TWELVE, View, read_view, render, write_view
+from stages.views.view import DEPTH_STEP
+
+
+def assert_equal(one, other):
+    for name in ("rgb", "depth", "face"):
+        left, right = getattr(one, name), getattr(other, name)
+        assert left.dtype == right.dtype
+        assert np.array_equal(left, right), name
+    assert one.viewpoint == other.viewpoint
+
+
+@pytest.mark.parametrize("name", ["sphere", "torus", "cube", "bowl", "coloured"])
+@pytest.mark.parametrize("background", ["black", "white"])
+def test_round_trip_is_exact(shapes, name, background, tmp_path):
+    view = render(shapes[name], Viewpoint(120, 45, 10), (225, 300), "raycast", background)
+    write_view(tmp_path / "view.npz", view)
+    assert_equal(read_view(tmp_path / "view.npz"), view)
+
+
+def test_view_of_nothing_comes_back(tmp_path):
+    view = render(Mesh(np.zeros((0, 3)), np.zeros((0, 3))), TWELVE[0], (30, 40), "raycast", "grey")
+    write_view(tmp_path / "view.npz", view)
+    assert_equal(read_view(tmp_path / "view.npz"), view)
+
+
+def test_view_without_background_comes_back(tmp_path):
+    rng = np.random.default_rng(0)
+    depth = (10 + rng.integers(-99, 99, (7, 9)) * DEPTH_STEP).astype(np.float32)
+    face = rng.integers(0, 2**31 - 1, (7, 9), dtype=np.int32)
+    view = View(rng.integers(0, 256, (7, 9, 3), dtype=np.uint8), depth, face, TWELVE[5])
+    write_view(tmp_path / "view.npz", view)
+    assert_equal(read_view(tmp_path / "view.npz"), view)
+
+
+def test_equal_views_give_equal_bytes_and_small_ones(shapes, tmp_path):
+    for name in ("a", "b"):
+        write_view(tmp_path / f"{name}.npz", render(shapes["sphere"], TWELVE[5], renderer="raycast"))
+    first, second = ((tmp_path / f"{name}.npz").read_bytes() for name in ("a", "b"))
+    assert first == second
+    assert len(first) < 400_000
+
+
+def test_patterned_background_is_refused(shapes, tmp_path):
+    view = render(shapes["cube"], TWELVE[0], (90, 120), "raycast")
+    view.rgb[0, 0] = 1
+    with pytest.raises(ValueError, match="background"):
+        write_view(tmp_path / "view.npz", view)
+
+
+def test_arrays_of_different_shapes_are_no_view():
+    with pytest.raises(ValueError, match="rgb"):
+        View(np.zeros((4, 5, 3), np.uint8), np.zeros((4, 5), np.float32), np.zeros((5, 4), np.int32), TWELVE[0])
