@@ -109,7 +109,7 @@ def gather(folder):
         return
     new = pd.concat(parts, ignore_index=True)
     OUT.parent.mkdir(parents=True, exist_ok=True)
-    with FileLock(OUT.parent / ".lock"):  # two sweeps may end at once
+    with FileLock("build/sweeps.lock"):  # two sweeps may end at once
         old = read_table(OUT) if OUT.exists() else new.iloc[:0]
         repeated = pd.MultiIndex.from_frame(old[KEYS]).isin(pd.MultiIndex.from_frame(new[KEYS]))
         write_table(OUT, pd.concat([old[~repeated], new], ignore_index=True))

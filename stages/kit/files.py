@@ -13,13 +13,15 @@ import pandas as pd
 
 from .mesh import Mesh
 
+PART = ".part-"  # how the name of a file begins that is not whole yet
+
 
 @contextmanager
 def whole_file(path):
     """A temporary path beside `path`, moved onto it when the block ends well and removed when it fails."""
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
-    handle, temporary = tempfile.mkstemp(prefix=".part-", suffix=path.suffix, dir=path.parent)
+    handle, temporary = tempfile.mkstemp(prefix=PART, suffix=path.suffix, dir=path.parent)
     os.close(handle)
     os.chmod(temporary, 0o644)  # mkstemp makes it private; results are for everybody
     try:

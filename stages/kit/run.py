@@ -11,7 +11,7 @@ from pathlib import Path
 import pandas as pd
 
 from .fetch import FetchError
-from .files import read_json, sha256, write_json, write_table
+from .files import PART, read_json, sha256, write_json, write_table
 from .parallel import parallel_map, progress
 from .params import load_params
 
@@ -46,6 +46,8 @@ class StageRun:
 
     def __enter__(self):
         self.folder.mkdir(parents=True, exist_ok=True)
+        for half in self.folder.rglob(f"{PART}*"):
+            half.unlink()  # a run that was killed while it wrote
         return self
 
     @property

@@ -93,6 +93,7 @@ from stages.kit import StageRun
 from stages.kit.files import write_text
 def item(name, folder):
     write_text(folder / name, name)
+    (folder / ".part-half").write_text("x") if sys.argv[1] == "die" else None
     if name == "b" and sys.argv[1] == "die":
         os.kill(os.getpid(), signal.SIGKILL)
     return [{"object": name, "metric": "m", "value": 1, "seconds": 0}]

@@ -1,0 +1,16 @@
+"""The settings of the lod stage."""
+
+from dataclasses import dataclass
+
+
+@dataclass
+class Params:
+    """Section `lod` of params.yaml."""
+
+    methods: list[str]  # qem (plain), or methods of salient_points whose points are kept: enhanced, itti, random
+    targets: list[str]  # face counts, absolute ("1500") or as a share of the object's own ("25%")
+    rings: int  # edges around a kept point within which every face is frozen; T3.1.3 takes 3
+    backend: str  # who simplifies: pymeshlab
+    samples: int  # points on each surface for the Metro error
+    viewpoints: str  # named set for the SSIM error: twelve (T figure 3.2) or four
+    size: list[int]  # rows, columns of the pictures for the SSIM error

@@ -1,0 +1,98 @@
+"""Pictures of meshes on a white page: lit surface, colour a vertex, wires and points, drawn by rays."""
+
+import matplotlib
+import numpy as np
+
+from stages.kit import RayScene, Viewpoint
+from stages.kit.camera import pixel_rays, pixels_per_unit, project
+from stages.kit.mesh import unit
+from stages.kit.rays import barycentric
+
+from .style import MAP, plt
+
+VIEWPOINT = Viewpoint(305, 22)  # from above and the side: most household objects show their parts
+CLAY = np.array([0.80, 0.80, 0.82])
+WIRE = np.array([0.16, 0.22, 0.32])
+CREASE = 0.8  # cosine of the angle over which an edge is drawn sharp
+LIGHT = unit(np.array([-0.35, 0.55, 0.75]))  # right, up, towards the viewer
+
+
+def picture(mesh, values=None, wires=False, viewpoint=VIEWPOINT, rows=420, smoothing=2):
+    """(rows, rows, 3) f8 in 0..1: the mesh on white. values (n,) in 0..1 colour the vertices; wires draws the edges."""
+    size = (rows * smoothing, rows * smoothing)
+    grid = np.mgrid[: size[0], : size[1]].reshape(2, -1)
+    origins, directions = pixel_rays(*grid, viewpoint, size)
+    hits = RayScene(mesh).cast(origins, directions)
+    seen = np.flatnonzero(hits.hit)
+    face = hits.face[seen]
+    where = origins[seen] + directions[seen] * hits.distance[seen, None]
+    weights = np.clip(barycentric(mesh, face, where), 0, 1)
+    base = CLAY if values is None else colour_map(np.einsum("ij,ij->i", weights, values[mesh.faces[face]]))
+    shaded = base * _light(mesh, face, weights, viewpoint)[:, None]
+    if wires:
+        near = _edge_distance(mesh, face, weights) * pixels_per_unit(size[0])
+        shaded = np.where((near < 0.4 * smoothing)[:, None], WIRE, shaded)
+    image = np.ones((size[0] * size[1], 3))
+    image[seen] = np.clip(shaded, 0, 1)
+    return image.reshape(rows, smoothing, rows, smoothing, 3).mean(axis=(1, 3))
+
+
+def visible(mesh, vertices, viewpoint=VIEWPOINT, rows=420):
+    """(rows (k',), columns (k',)) in the picture of those of the vertices (k,) that the viewer sees."""
+    points = mesh.vertices[vertices]
+    back = viewpoint.axes[2]
+    start = points + 1e-3 * mesh.vertex_normals[vertices]  # off the surface, or each point would hide itself
+    hidden = RayScene(mesh).cast(start, np.broadcast_to(back, points.shape)).hit
+    facing = mesh.vertex_normals[vertices] @ back > 0
+    down, across, _ = project(points[~hidden & facing], viewpoint, (rows, rows))
+    return down, across
+
+
+def squared(image, margin=6):
+    """(image, (top, left)): the smallest square round the object."""
+    filled = (image < 1).any(axis=2)
+    down, across = np.flatnonzero(filled.any(axis=1)), np.flatnonzero(filled.any(axis=0))
+    if not len(down):
+        return image, (0, 0)
+    side = min(max(np.ptp(down), np.ptp(across)) + 2 * margin, len(image))
+    top, left = (int(np.clip((ids[0] + ids[-1] - side) // 2, 0, len(image) - side)) for ids in (down, across))
+    return image[top : top + side, left : left + side], (top, left)
+
+
+def square_grid(rows, columns, side, right=0.0, gap=0.0):
+    """(figure, axes (rows, columns)): square panels of `side` inches, `right` inches free beside, `gap` between."""
+    width, height = columns * side + right, rows * side + (rows - 1) * gap
+    frame = {"left": 0, "right": columns * side / width, "bottom": 0, "top": 1, "wspace": 0, "hspace": gap / side}
+    return plt.subplots(rows, columns, figsize=(width, height), gridspec_kw=frame, squeeze=False)
+
+
+def show(axes, mesh, values=None, wires=False, points=None, viewpoint=VIEWPOINT, rows=420):
+    """Draws a mesh into matplotlib axes, square and without frame; points (k,) vertex ids become red dots."""
+    image, (top, left) = squared(picture(mesh, values, wires, viewpoint, rows))
+    axes.imshow(image)
+    if points is not None:
+        down, across = visible(mesh, points, viewpoint, rows)
+        axes.plot(across - left, down - top, "o", color="#D81B1B", ms=4.2, mec="white", mew=0.8, clip_on=False)
+    axes.set_axis_off()
+
+
+def colour_map(values):
+    """(k, 3) RGB of values (k,) in 0..1."""
+    return matplotlib.colormaps[MAP](np.clip(values, 0, 1))[:, :3]
+
+
+def _light(mesh, face, weights, viewpoint):
+    """Head light and a soft key light; normals are smooth but for sharp edges."""
+    flat = mesh.face_normals[face]
+    smooth = unit(np.einsum("ij,ijk->ik", weights, mesh.vertex_normals[mesh.faces[face]]))
+    normal = np.where((np.einsum("ij,ij->i", flat, smooth) > CREASE)[:, None], smooth, flat) @ viewpoint.axes.T
+    normal *= np.sign(normal[:, 2:3] + 1e-12)  # an inside seen through an opening is lit as well
+    return 0.42 + 0.3 * normal[:, 2] + 0.38 * np.clip(normal @ LIGHT, 0, 1)
+
+
+def _edge_distance(mesh, face, weights):
+    """(k,) distance of a point in its face to the nearest edge, in units."""
+    corners = mesh.vertices[mesh.faces[face]]
+    opposite = np.linalg.norm(np.roll(corners, -1, axis=1) - np.roll(corners, 1, axis=1), axis=2)
+    heights = 2 * mesh.face_areas[face, None] / np.maximum(opposite, 1e-12)
+    return (weights * heights).min(axis=1)

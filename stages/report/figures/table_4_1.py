@@ -1,0 +1,37 @@
+"""T table 4.1 as a picture."""
+
+from stages.report.items import Figure
+from stages.report.style import plt, save
+from stages.report.tables import table_4_1
+
+from ._bars import draw_bars
+
+CLASSIFIERS = ["knn", "svm", "decision_tree", "naive_bayes", "deep_learning"]
+
+
+def build(results):
+    frame = table_4_1.build(results).frame
+    figure, axes = plt.subplots(figsize=(8.4, 4.2))
+    draw_bars(axes, frame, CLASSIFIERS, chance=1 / 6)
+    axes.set_title("Recognising six objects by one touch", pad=26)
+    handles, names = axes.get_legend_handles_labels()
+    order = sorted(range(len(names)), key=lambda k: names[k].startswith("the thesis"))
+    axes.legend(
+        [handles[k] for k in order],
+        [names[k] for k in order],
+        loc="lower left",
+        bbox_to_anchor=(-0.01, 0.99),
+        ncols=4,
+        fontsize=9,
+        columnspacing=1.4,
+        handlelength=1.2,
+    )
+    path = save(figure, results.reports / "figures/table_4_1.png")
+    return Figure(
+        "Table 4.1, drawn",
+        "Bars of hold-out accuracy by classifier and sampling, with the thesis's figures as white diamonds; the "
+        "numbers are in table 4.1.",
+        "Lines on the bars: 95 % intervals over repeated splits of the same imprints. Diamonds: the thesis, with other "
+        "objects.",
+        [path],
+    )

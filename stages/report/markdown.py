@@ -1,0 +1,47 @@
+"""Frames as text: numbers rounded for a reader, and Markdown tables."""
+
+import math
+import numbers
+import re
+
+WORDS = ("not run", "infeasible", "")  # that stand in columns of numbers
+
+
+def number(value, digits=3):
+    """A number to `digits` significant digits without exponent clutter; a dash for NaN; other things as they are."""
+    if value is None or value != value:
+        return "–"
+    if isinstance(value, bool) or not isinstance(value, numbers.Real):
+        return str(value)
+    if float(value).is_integer() and abs(value) < 1e7:
+        return f"{int(value):,}"
+    if 0 < abs(value) < 1e-4:
+        return f"{value:.{digits - 1}e}"
+    places = max(0, digits - 1 - math.floor(math.log10(abs(value))))
+    return f"{value:.{places}f}"
+
+
+def with_interval(mean, low, high, scale=1, places=None):
+    """`mean [low, high]`, or the mean alone where the interval is unknown; "not run" without a mean."""
+    if mean != mean:
+        return "not run"
+    show = (lambda v: f"{v * scale:.{places}f}") if places is not None else (lambda v: number(v * scale))
+    return show(mean) if low != low else f"{show(mean)} [{show(low)}, {show(high)}]"
+
+
+def as_text(frame):
+    """A frame of strings, numbers rounded to three significant digits."""
+    return frame.map(number)
+
+
+def markdown_table(frame):
+    """A GitHub table of a frame of strings; columns of numbers stand to the right."""
+    rows = [[str(cell).replace("|", r"\|") for cell in row] for row in frame.itertuples(index=False)]
+    rules = ["---:" if is_numeric(frame[column]) else "---" for column in frame.columns]
+    lines = [[str(column) for column in frame.columns], rules, *rows]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+def is_numeric(column):
+    """True for a column of strings that hold numbers alone: signs, intervals, a dash or a few words are let through."""
+    return all(cell in WORDS or re.fullmatch(r"[-+–\d.,:e\[\]· ]*", str(cell)) for cell in column)

@@ -1,0 +1,73 @@
+"""Mesh data small enough for a page: neighbours stored one after the other, differences instead of values, deflate."""
+
+import base64
+import zlib
+
+import numpy as np
+
+from stages.kit import Mesh
+
+STEPS = 4095  # either side of 0 over -0.5..0.5: an eighth of a pixel of a canvas 1000 pixels high
+SHADES = 64  # of the colour scale: more cannot be told apart
+CELLS = 1024  # a side of the grid whose Morton order puts neighbours next to each other
+
+
+class Store:
+    """Collects arrays; each `put_...` returns the [offset, count] by which the page's script finds its array again."""
+
+    def __init__(self):
+        self._bytes = bytearray()
+
+    def put_words(self, values):
+        """16-bit values (k,) or (k, d) as differences along the first axis; low bytes first, then high bytes."""
+        values = np.asarray(values).astype(np.int64)
+        return self._planes(np.diff(values, axis=0, prepend=np.zeros_like(values[:1])))
+
+    def put_shades(self, values):
+        """Values (k,) in 0..1 as differences of shades."""
+        steps = ((SHADES - 1) * np.clip(values, 0, 1)).round().astype(np.int64)
+        return self._add(np.diff(steps, prepend=0).astype(np.uint8), len(steps))
+
+    def put_positions(self, vertices):
+        """Vertices (n, 3) within -0.5..0.5, of a mesh from `ordered`."""
+        return self.put_words((2 * STEPS * np.clip(vertices, -0.5, 0.5)).round())
+
+    def put_triangles(self, faces):
+        """Faces (m, 3) of a mesh from `ordered`: how far below the next new vertex each id lies, 0 for the new one."""
+        ids = faces.ravel().astype(np.int64)
+        following = np.maximum.accumulate(np.r_[-1, ids])[:-1] + 1
+        return self._planes(following - ids)
+
+    def text(self):
+        """All of it, deflated, in base64."""
+        return base64.b64encode(zlib.compress(bytes(self._bytes), 9)).decode("ascii")
+
+    def _planes(self, words):
+        words = (words.ravel() % 65536).astype(np.uint16)
+        return self._add(np.r_[words & 255, words >> 8].astype(np.uint8), len(words))
+
+    def _add(self, octets, count):
+        offset = len(self._bytes)
+        self._bytes += octets.tobytes()
+        return [offset, count]
+
+
+def ordered(mesh):
+    """(mesh, ids): faces along a Morton curve, vertices by first use, unused ones left out; ids: their old numbers."""
+    faces = mesh.faces[np.argsort(_morton(mesh.vertices[mesh.faces].mean(axis=1)), kind="stable")]
+    used, first, inverse = np.unique(faces, return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    rank = np.empty(len(order), dtype=np.int64)
+    rank[order] = np.arange(len(order))
+    ids = used[order]
+    return Mesh(mesh.vertices[ids], rank[inverse].reshape(-1, 3)), ids
+
+
+def _morton(points):
+    """Place of points (k, 3) within -0.5..0.5 on the Morton curve."""
+    cells = (np.clip(points + 0.5, 0, 1) * (CELLS - 1)).astype(np.int64)
+    place = np.zeros(len(points), dtype=np.int64)
+    for bit in range(10):
+        for axis in range(3):
+            place |= ((cells[:, axis] >> bit) & 1) << (3 * bit + axis)
+    return place

@@ -1,0 +1,125 @@
+"""Accuracy against cost: one chart for every stage, with the Pareto front drawn."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+from stages.kit.files import write_table
+
+from .items import Figure
+from .style import INK, MARKERS, colours, look, plt, save
+from .style import label as spoken
+
+
+def pareto_front(cost, quality, better="high"):
+    """(k,) boolean: the choices that no other beats, that is, none is as good in both and better in one.
+
+    cost (k,) lower is better; quality (k,) higher is better, or lower with better="low" (errors). A choice with a NaN
+    is never on the front; equal choices stand or fall together.
+    """
+    if better not in ("high", "low"):
+        raise ValueError(f'better is "high" or "low", got {better!r}')
+    cost, loss = np.asarray(cost, dtype=float), np.asarray(quality, dtype=float) * (-1 if better == "high" else 1)
+    if cost.shape != loss.shape or cost.ndim != 1:
+        raise ValueError(f"cost and quality must be lists of one length, got {cost.shape} and {loss.shape}")
+    no_worse = (cost[None] <= cost[:, None]) & (loss[None] <= loss[:, None])
+    one_better = (cost[None] < cost[:, None]) | (loss[None] < loss[:, None])
+    return np.isfinite(cost) & np.isfinite(loss) & ~(no_worse & one_better).any(axis=1)
+
+
+def pareto_chart(
+    frame,
+    cost,
+    quality,
+    label,
+    *,
+    name,
+    title,
+    reference,
+    quality_label,
+    folder,
+    better="high",
+    colour=None,
+    marker=None,
+):
+    """Draws quality against cost and its Pareto front; writes FOLDER/NAME.png and NAME.csv; returns a Figure.
+
+    frame: one row a choice; cost: its column of seconds; quality: its column, with `low` and `high` beside it where
+    there is an interval; label: its column of names. reference: the name whose cost, timed in the same run, is the
+    unit of the logarithmic cost axis. colour, marker: columns that choose colour and shape, shown in a legend.
+    better: "high" for accuracies, "low" for errors. Raises ValueError when the reference is missing.
+    """
+    rows = frame.loc[np.isfinite(frame[cost]) & np.isfinite(frame[quality])].copy()
+    unit = rows.loc[rows[label] == reference, cost]
+    if len(unit) != 1 or not unit.iloc[0] > 0:
+        raise ValueError(
+            f"the reference {reference!r} must name one row with a cost above 0; rows: {list(rows[label])}"
+        )
+    rows["cost_ratio"] = rows[cost] / unit.iloc[0]
+    rows["on_front"] = pareto_front(rows["cost_ratio"], rows[quality], better)
+    folder.mkdir(parents=True, exist_ok=True)
+    write_table(folder / f"{name}.csv", rows)
+    with look():
+        _draw(rows, quality, label, title, reference, quality_label, better, colour, marker, folder / f"{name}.png")
+    front = "; ".join(rows.loc[rows["on_front"]].sort_values("cost_ratio")[label])
+    arrow = "Up" if better == "high" else "Down"
+    return Figure(
+        title=title,
+        alt=f"{quality_label} against cost as a ratio to {reference}; the Pareto front is {front}.",
+        caption=f"{arrow} and left is better. Nothing beats the choices on the line: {front}. "
+        f"Cost 1 is {reference}, {unit.iloc[0]:.3g} s in the median case of this run. Bars: 95 % intervals.",
+        paths=[folder / f"{name}.png", folder / f"{name}.csv"],
+    )
+
+
+def _draw(rows, quality, label, title, reference, quality_label, better, colour, marker, path):
+    figure, axes = plt.subplots(figsize=(7.2, 4.6))
+    axes.set_xscale("log")
+    axes.grid(True)
+    front = rows.loc[rows["on_front"]].sort_values("cost_ratio")
+    axes.step(front["cost_ratio"], front[quality], where="post", color=INK, lw=1, zorder=1, label="Pareto front")
+    paint = colours(list(dict.fromkeys(rows[colour]))) if colour else {}
+    shape = dict(zip(dict.fromkeys(rows[marker]), MARKERS, strict=False)) if marker else {}
+    for _, row in rows.iterrows():
+        tint = paint[row[colour]] if colour else "#0072B2"
+        if "low" in row and np.isfinite([row["low"], row["high"]]).all():
+            axes.plot([row["cost_ratio"]] * 2, [row["low"], row["high"]], color=tint, lw=1.2, alpha=0.55, zorder=2)
+        form = shape[row[marker]] if marker else "o"
+        axes.plot(row["cost_ratio"], row[quality], form, color=tint, ms=7, mec="white", mew=0.8, zorder=3)
+    _name_points(axes, front if colour else rows, quality, label)
+    axes.set_xlabel(f"cost, as a ratio to {reference}")
+    axes.set_ylabel(quality_label)
+    axes.set_title(title, pad=12)
+    axes.margins(x=0.12, y=0.1)
+    if better == "low":
+        axes.set_ylim(bottom=0)
+    for value, tint in paint.items():
+        axes.plot([], [], "o", color=tint, ms=6, label=spoken(value))
+    for value, form in shape.items():
+        axes.plot([], [], form, color="none", mec=INK, ms=6, label=spoken(value))
+    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if _narrow(rows["cost_ratio"]) else (1.0,)))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.xaxis.set_minor_formatter(NullFormatter())
+    if colour:
+        axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=9)
+    save(figure, path)
+
+
+def _narrow(values):
+    """True where powers of ten alone would leave the axis almost without numbers."""
+    return values.max() / values.min() < 100
+
+
+def _name_points(axes, rows, quality, label):
+    """Names beside the points, pushed apart where they would overlap (rows of text 17 pixels high)."""
+    taken = pd.DataFrame(columns=["x", "y"], dtype=float)
+    axes.autoscale_view()
+    for _, row in rows.sort_values(quality).iterrows():
+        x, y = axes.transData.transform((row["cost_ratio"], row[quality]))
+        near = taken[(taken["x"] - x).abs() < 160]
+        lift = max(0.0, float(near["y"].max() + 17 - y)) if len(near) else 0.0
+        taken.loc[len(taken)] = [x, y + lift]
+        right = axes.transAxes.inverted().transform((x, y))[0] > 0.6
+        place = {"xytext": (-8 if right else 8, 4 + lift * 0.72), "ha": "right" if right else "left"}
+        place["textcoords"] = "offset points"
+        axes.annotate(row[label], (row["cost_ratio"], row[quality]), fontsize=8.5, color=INK, zorder=4, **place)

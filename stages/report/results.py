@@ -1,0 +1,142 @@
+"""What a run has measured, beside what the thesis says; a missing measurement is NotRun, never a crash."""
+
+from functools import cached_property
+from pathlib import Path
+
+import pandas as pd
+
+from stages.imprints import read_imprints
+from stages.kit.files import read_arrays, read_mesh, read_table
+from stages.salient_points import read_points, read_saliency, read_strong_points
+
+
+class NotRun(Exception):
+    """A measurement that is absent; the message says what is missing and which stage makes it."""
+
+    def __init__(self, what, stage):
+        super().__init__(f"{what}: run `python -m stages.{stage}`")
+        self.stage = stage
+
+
+class ByMethod(dict):
+    """What a stage found by each method; one that it did not run is NotRun."""
+
+    def __init__(self, stage, found):
+        super().__init__(found)
+        self.stage = stage
+
+    def __missing__(self, method):
+        raise NotRun(f"{method} is not among the methods", self.stage)
+
+    def those_of(self, methods):
+        """The methods that were run, in the order given; NotRun where there is none."""
+        found = [method for method in methods if method in self]
+        return found or [self[method] for method in methods]
+
+
+class Results:
+    """Everything the report reads, below one repository root. settings: the report's section of params.yaml."""
+
+    def __init__(self, settings, root="."):
+        self.settings = settings
+        self.data = Path(root) / "data"
+        self.reports = Path(root) / "reports"
+        self._tables = {}
+
+    def measurements(self, stage, **where):
+        """Rows of reports/measurements/STAGE.csv, filtered: `metric="accuracy"` or a list of accepted values.
+
+        Raises NotRun when the file is absent, lacks the column, or no row is left.
+        """
+        frame = self._read(stage)
+        for column, wanted in where.items():
+            if column not in frame:
+                raise NotRun(f"no column {column} in {stage}.csv", stage)
+            wanted = wanted if isinstance(wanted, list) else [wanted]
+            frame = frame[frame[column].isin(wanted)]
+            if frame.empty:
+                raise NotRun(f"{column} {' or '.join(map(str, wanted))} is not among the {stage} rows", stage)
+        return frame
+
+    def _read(self, stage):
+        path = self.reports / "measurements" / f"{stage}.csv"
+        if stage not in self._tables:
+            if not path.exists():
+                raise NotRun(f"no measurements/{path.name}", stage)
+            self._tables[stage] = read_table(path)
+        return self._tables[stage]
+
+    @property
+    def measured_stages(self):
+        """Names of the stages that have measurements, in alphabetical order."""
+        return sorted(path.stem for path in (self.reports / "measurements").glob("*.csv"))
+
+    def thesis(self, name):
+        """One of the thesis's own tables, data/reference/thesis/NAME.csv."""
+        path = self.data / "reference/thesis" / f"{name}.csv"
+        if not path.exists():
+            raise FileNotFoundError(f"{path} is part of the repository: restore it with `git checkout {path}`")
+        return read_table(path)
+
+    def table(self, stage, name):
+        """A side table of a stage, data/STAGE/NAME."""
+        path = self.data / stage / name
+        if not path.exists():
+            raise NotRun(f"no {stage}/{name}", stage)
+        return pd.read_csv(path)
+
+    @cached_property
+    def objects(self):
+        """Names of all objects with a mesh, in alphabetical order."""
+        names = sorted(path.stem for path in (self.data / "meshes").glob("*.npz"))
+        if not names:
+            raise NotRun("no meshes", "meshes")
+        return names
+
+    def choose(self, preferred, count, stage="salient_points"):
+        """Up to `count` objects that `stage` has data for: the preferred ones first, then by the alphabet."""
+        folder = self.data / stage
+        ready = [name for name in self.objects if (folder / f"{name}.npz").exists() or (folder / name).is_dir()]
+        if not ready:
+            raise NotRun(f"no data/{stage}", stage)
+        first = [name for name in preferred if name in ready]
+        return (first + [name for name in ready if name not in first])[:count]
+
+    def mesh(self, name):
+        """The original mesh of an object."""
+        return read_mesh(self._path("meshes", name))
+
+    def points(self, name):
+        """dict method -> (k,) vertex ids, most salient first."""
+        return ByMethod("salient_points", read_points(self._path("salient_points", name)))
+
+    def strong_points(self, name):
+        """dict method -> (k',) vertex ids, the leading points that the simplification keeps."""
+        return ByMethod("salient_points", read_strong_points(self._path("salient_points", name)))
+
+    def saliency(self, name):
+        """dict method -> (n,) saliency in 0..1 a vertex."""
+        return ByMethod("salient_points", read_saliency(self._path("salient_points", name)))
+
+    def imprints(self, name):
+        """dict method -> (k, rows, cols) imprints in 0..1."""
+        found = read_imprints(self._path("imprints", name))
+        return ByMethod("imprints", {method: touches.images for method, touches in found.items()})
+
+    def conspicuity(self, name):
+        """Arrays of data/conspicuity/NAME.npz: maps, mask, viewpoints, channels."""
+        return read_arrays(self._path("conspicuity", name))
+
+    def lods(self, name, method):
+        """Simplified meshes of one method, most faces first: list of (target, Mesh)."""
+        paths = (self.data / "lod" / name).glob(f"{method}_*.npz")
+        found = [(path.stem.removeprefix(f"{method}_"), read_mesh(path)) for path in paths]
+        if not found:
+            raise NotRun(f"no data/lod/{name}/{method}_*.npz", "lod")
+        return sorted(found, key=lambda item: (-len(item[1].faces), item[0]))
+
+    def _path(self, stage, name):
+        path = self.data / stage / f"{name}.npz"
+        if not path.exists():
+            raise NotRun(f"no {path.name} in data/{stage}", stage)
+        return path

@@ -1,0 +1,80 @@
+"""One look for all pictures: white page, quiet axes, colours that the colour-blind can tell apart."""
+
+import matplotlib
+
+from stages.kit.files import whole_file
+
+matplotlib.use("Agg")  # no screen where pipelines run
+import matplotlib.pyplot as plt  # noqa: E402
+
+MAP = "viridis"  # for saliency: even in lightness, safe for the colour-blind
+INK, GREY, PALE = "#222222", "#767676", "#d9d9d9"
+# Okabe and Ito 2008: eight colours that stay apart under the common colour deficiencies.
+CYCLE = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#7A6A00", "#000000"]
+LABELS = {
+    "random": "blind touch",
+    "itti": "visual attention",
+    "enhanced": "enhanced attention",
+    "qem": "plain QEM",
+    "knn": "kNN",
+    "svm": "SVM",
+    "decision_tree": "decision tree",
+    "naive_bayes": "naive Bayes",
+    "deep_learning": "deep learning",
+    "hks": "heat kernel signature",
+    "salient_points": "salient points",
+    "mesh_saliency": "mesh saliency",
+    "mobilenet_v2": "MobileNetV2",
+    "finetuned": "fine-tuned",
+}
+METHOD_COLOURS = {"random": "#E69F00", "itti": "#56B4E9", "enhanced": "#0072B2", "qem": "#767676"}
+MARKERS = "osD^vPX*"
+SETTINGS = {
+    "figure.facecolor": "white",
+    "savefig.facecolor": "white",
+    "font.family": "DejaVu Sans",  # comes with matplotlib: the same letters on every machine
+    "font.size": 10,
+    "axes.titlesize": 11,
+    "axes.titleweight": "bold",
+    "axes.titlelocation": "left",
+    "axes.edgecolor": GREY,
+    "axes.labelcolor": INK,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.axisbelow": True,
+    "grid.color": "#ececec",
+    "xtick.color": INK,
+    "ytick.color": INK,
+    "legend.frameon": False,
+    "image.interpolation": "antialiased",
+}
+
+
+def label(name):
+    """A method's name as a person says it."""
+    return LABELS.get(name, str(name).replace("_", " "))
+
+
+def start(weights):
+    """What a network starts from, as a person says it."""
+    return "ImageNet" if weights == "imagenet" else f"{weights} weights"
+
+
+def colours(names):
+    """dict name -> colour: fixed for the known methods, the cycle for others."""
+    free = [colour for colour in CYCLE if colour not in [METHOD_COLOURS.get(name) for name in names]]
+    unknown = [name for name in names if name not in METHOD_COLOURS]
+    return {name: METHOD_COLOURS.get(name) or free[unknown.index(name) % len(free)] for name in names}
+
+
+def look():
+    """A context (or decorator) in which matplotlib draws in this look."""
+    return plt.rc_context(SETTINGS)
+
+
+def save(figure, path, dpi=130):
+    """Writes a PNG without dates or versions, so that equal runs give equal bytes; returns the path."""
+    with whole_file(path) as part:
+        figure.savefig(part, dpi=dpi, bbox_inches="tight", pad_inches=0.12, metadata={"Software": None})
+    plt.close(figure)
+    return path

@@ -1,0 +1,68 @@
+"""Claims of the thesis, and the one word that a measurement says to each."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from .intervals import interval
+from .results import NotRun, Results
+
+COLUMNS = ["section", "claim", "verdict", "effect", "low", "high", "unit", "pairs", "over", "tested_on", "key"]
+
+
+@dataclass(frozen=True)
+class Claim:
+    """One testable sentence of the thesis and the measurement that it is tested on.
+
+    differences(results) returns the paired differences (k,), positive on the side that the thesis claims, in `unit`;
+    it raises NotRun where the measurement is absent. over: what the pairs are (objects, repetitions). shared: test
+    over training share where the pairs are repeated splits of the same imprints (see intervals.interval).
+    """
+
+    key: str
+    section: str
+    sentence: str
+    tested_on: str
+    unit: str
+    over: str
+    differences: Callable[[Results], np.ndarray]
+    shared: float = 0.0
+
+
+def verdict(low, high):
+    """The word: supported when the interval lies above 0 (the claimed side), contradicted below, else open."""
+    if low > 0:
+        return "supported"
+    return "contradicted" if high < 0 else "open"
+
+
+def judge(claims, results):
+    """A frame with one row a claim: effect with its interval and the word; unmeasured ones are open and say why."""
+    return pd.DataFrame([_row(claim, results) for claim in claims], columns=COLUMNS)
+
+
+def _row(claim, results):
+    said = {"section": claim.section, "claim": claim.sentence, "unit": claim.unit, "key": claim.key}
+    try:
+        differences = claim.differences(results)
+    except NotRun as missing:
+        return said | {"verdict": "open", "pairs": 0, "over": "", "tested_on": f"not run: {missing}"}
+    mean, low, high = interval(differences, claim.shared)
+    numbers = {"verdict": verdict(low, high), "effect": mean, "low": low, "high": high}
+    return said | numbers | {"pairs": len(differences), "over": claim.over, "tested_on": claim.tested_on}
+
+
+def paired(results, stage, over, first, second, **where):
+    """value of `first` minus value of `second`, matched on the columns `over`: a Series indexed by them.
+
+    first, second: dict column -> value, the rows of each side; where: what both sides have in common. Several rows of
+    one pair are averaged. Raises NotRun where a side was not measured or no pair is left.
+    """
+    sides = [results.measurements(stage, **where, **side).groupby(over)["value"].mean() for side in (first, second)]
+    joined = pd.concat(sides, axis=1, join="inner").dropna()
+    if joined.empty:
+        names = " and ".join(" ".join(map(str, side.values())) for side in (first, second))
+        raise NotRun(f"no pairs of {names}", stage)
+    return joined.iloc[:, 0] - joined.iloc[:, 1]

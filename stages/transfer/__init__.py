@@ -1,0 +1,25 @@
+"""From vision to touch: a network that learned on photographs recognises imprints (T chapter 5)."""
+
+from importlib import import_module
+
+_HOME = {
+    "Touches": "touches",
+    "press_touches": "touches",
+    "stratified_split": "split",
+    "to_images": "images",
+    "normalise": "images",
+    "augmentation": "images",
+    "NETWORKS": "networks",
+    "build": "networks",
+    "settle": "networks",
+    "MODES": "modes",
+    "imagenet_state": "weights",
+}
+__all__ = list(_HOME)
+
+
+def __getattr__(name):
+    # torch takes seconds to import, and whoever reads only the schema does without it.
+    if name in _HOME:
+        return getattr(import_module(f".{_HOME[name]}", __name__), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

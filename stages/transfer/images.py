@@ -1,0 +1,51 @@
+"""Imprints as a photograph-trained network wants them: red channel, size, normalisation, augmentation (T5.3)."""
+
+import torch
+from kornia import augmentation as kornia_augmentation
+from kornia.augmentation import AugmentationSequential
+
+MEAN = (0.485, 0.456, 0.406)  # of ImageNet's red, green, blue, as torchvision's weights were trained
+STD = (0.229, 0.224, 0.225)
+SHIFT = 0.1  # translation, as a share of the side; the thesis gives no range
+SCALE = (0.9, 1.1)  # likewise
+
+
+def to_images(imprints, size):
+    """Images (k, 3, size, size) f4 in 0..1: the imprint in the red channel, green and blue zero (T5.3).
+
+    imprints: (k, r, c), u1 or floats in 0..1; resized bilinearly, with an anti-alias filter where they shrink. Raises
+    ValueError for another shape, values out of range or NaN.
+    """
+    grey = torch.as_tensor(imprints)
+    if grey.ndim != 3 or 0 in grey.shape:
+        raise ValueError(f"imprints must have shape (k, rows, columns) and not be empty, got {tuple(grey.shape)}")
+    grey = grey.float() / 255 if grey.dtype == torch.uint8 else grey.float()
+    if not bool(((grey >= 0) & (grey <= 1)).all()):
+        raise ValueError("imprints must hold values in 0..1, and neither NaN nor infinity")
+    if grey.shape[1:] != (size, size):
+        grey = torch.nn.functional.interpolate(grey[:, None], (size, size), mode="bilinear", antialias=True)[:, 0]
+    images = torch.zeros(len(grey), 3, size, size)
+    images[:, 0] = grey.clamp(0, 1)
+    return images
+
+
+def normalise(images):
+    """Images (k, 3, h, w) in 0..1 to ImageNet's mean and standard deviation a channel."""
+    mean = torch.tensor(MEAN).view(3, 1, 1)
+    std = torch.tensor(STD).view(3, 1, 1)
+    return ((images - mean) / std).contiguous(memory_format=torch.channels_last)
+
+
+def augmentation():
+    """Random reflection, translation and scaling of images in 0..1, for training only (T5.3).
+
+    Draws from torch's own random numbers. What moves in from outside continues the imprint's edge, since black, the
+    usual filling, would mean contact.
+    """
+    return AugmentationSequential(
+        kornia_augmentation.RandomHorizontalFlip(p=0.5),
+        kornia_augmentation.RandomVerticalFlip(p=0.5),
+        kornia_augmentation.RandomAffine(
+            degrees=0, translate=(SHIFT, SHIFT), scale=SCALE, padding_mode="border", p=1.0
+        ),
+    )

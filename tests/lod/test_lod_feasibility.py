@@ -1,0 +1,82 @@
+"""Topology counts and the floor of the face count, on shapes where both are known."""
+
+import pickle
+
+import numpy as np
+import pytest
+import trimesh
+
+from stages.kit import Mesh
+from stages.lod import InfeasibleTarget, frozen_faces, smallest_feasible
+from stages.lod.topology import Topology, faults, split_pinches, topology
+
+SPHERE = trimesh.creation.icosphere(subdivisions=3, radius=0.5)
+TORUS = trimesh.creation.torus(0.35, 0.15, major_sections=24, minor_sections=12)
+
+
+def test_topology_of_known_surfaces():
+    assert topology(SPHERE.faces) == Topology(rim=0, loops=0, pieces=1, closed=1, handles=0)
+    assert topology(TORUS.faces) == Topology(rim=0, loops=0, pieces=1, closed=1, handles=1)
+    assert topology(np.array([[0, 1, 2]])) == Topology(rim=3, loops=1, pieces=1, closed=0, handles=0)
+    tube = trimesh.creation.cylinder(0.2, 0.6, sections=16)
+    side = tube.faces[np.abs(tube.face_normals[:, 2]) < 0.5]
+    assert topology(side) == Topology(rim=32, loops=2, pieces=1, closed=0, handles=0)
+
+
+def test_topology_does_not_depend_on_winding_or_order():
+    faces = np.random.default_rng(0).permutation(TORUS.faces)
+    faces[::3] = faces[::3, ::-1]
+    assert topology(faces) == topology(TORUS.faces)
+
+
+def test_pieces_that_touch_in_a_vertex_count_apart():
+    bow_tie = np.array([[0, 1, 2], [0, 3, 4]])
+    assert topology(bow_tie) == Topology(rim=6, loops=2, pieces=2, closed=0, handles=0)
+    assert len(np.unique(split_pinches(bow_tie))) == 6
+
+
+def test_edge_of_three_faces_becomes_a_rim():
+    book = np.array([[0, 1, 2], [0, 1, 3], [0, 1, 4]])
+    assert topology(book).pieces == 3
+    mesh = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0, -1, 1]], book)
+    assert faults(mesh).crowded == 1
+
+
+def test_faults_count_degenerate_and_folded_faces():
+    flat = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]], [[0, 1, 2], [1, 3, 2]])
+    assert (faults(flat).degenerate, faults(flat).folded) == (0, 0)
+    folded = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0.1, 0.1, 0]], [[0, 1, 2], [1, 3, 2]])
+    assert faults(folded).folded == 1
+    needle = Mesh([[0, 0, 0], [1, 0, 0], [0.5, 1e-9, 0]], [[0, 1, 2]])
+    assert faults(needle).degenerate == 1
+    assert "1 new folded" in faults(folded).added(faults(flat))
+
+
+def test_frozen_faces_lie_wholly_within_the_rings():
+    mesh = Mesh(SPHERE.vertices, SPHERE.faces)
+    touching = (mesh.faces == 100).any(axis=1)
+    assert (frozen_faces(mesh, [100], 0) == touching).all() and (frozen_faces(mesh, [100], 1) == touching).all()
+    within = mesh.rings([100], 3)
+    assert (frozen_faces(mesh, [100], 3) == within[mesh.faces].all(axis=1)).all()
+    assert touching.sum() < frozen_faces(mesh, [100], 2).sum() < frozen_faces(mesh, [100], 3).sum()
+    assert not frozen_faces(mesh).any()
+
+
+def test_smallest_feasible_of_plain_shapes():
+    assert smallest_feasible(Mesh(SPHERE.vertices, SPHERE.faces)) == 4
+    assert smallest_feasible(Mesh(TORUS.vertices, TORUS.faces)) >= 14  # a torus has no triangulation below 14 faces
+
+
+def test_smallest_feasible_grows_with_points_and_rings_up_to_the_mesh():
+    mesh = Mesh(SPHERE.vertices, SPHERE.faces)
+    counts = [smallest_feasible(mesh, keep, rings) for keep, rings in (([9], 1), ([9], 3), ([9, 400], 3))]
+    assert counts == sorted(counts) and len(set(counts)) == 3
+    assert smallest_feasible(mesh, np.arange(len(mesh.vertices))) == len(mesh.faces)
+
+
+def test_infeasible_target_travels_between_processes():
+    error = pickle.loads(pickle.dumps(InfeasibleTarget(100, 250, 80)))
+    assert isinstance(error, ValueError)
+    assert (error.faces, error.smallest, error.frozen) == (100, 250, 80)
+    with pytest.raises(ValueError, match="250"):
+        raise error

@@ -1,0 +1,118 @@
+"""Claims: pairing, intervals, and the one word."""
+
+import numpy as np
+import pytest
+
+from stages.report import CLAIMS, Claim, judge, verdict
+from stages.report.intervals import HOLD_OUT, interval
+from stages.report.results import NotRun, Results
+from stages.report.verdict import paired
+
+
+def judged(results, key):
+    return judge([claim for claim in CLAIMS if claim.key == key], results).iloc[0]
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "word"),
+    [(0.1, 0.3, "supported"), (-0.3, -0.1, "contradicted"), (-0.1, 0.3, "open"), (0, 1, "open"), (-1, 0, "open")],
+)
+def test_word_follows_from_the_interval_alone(low, high, word):
+    assert verdict(low, high) == word
+
+
+def test_no_interval_is_open():
+    assert verdict(np.nan, np.nan) == "open"
+
+
+def test_clear_effect_is_supported(results):
+    row = judged(results, "enhanced_over_itti")
+    assert row["verdict"] == "supported"
+    assert row["effect"] == pytest.approx(30, abs=2)
+    assert row["pairs"] == 6
+
+
+def test_reversed_effect_is_contradicted(root, small):
+    small.write(root, "classification", small.classification(enhanced=0.4, rivals=0.7))
+    assert judged(Results(small.settings(), root), "enhanced_over_itti")["verdict"] == "contradicted"
+
+
+def test_no_effect_is_open(results):
+    assert judged(results, "itti_over_blind")["verdict"] == "open"
+
+
+def test_unmeasured_claim_is_open_and_names_the_stage(results):
+    row = judged(results, "tuned_over_frozen")
+    assert row["verdict"] == "open"
+    assert "stages.transfer" in row["tested_on"]
+
+
+def test_errors_are_compared_in_pairs_and_relative_to_their_size(results):
+    row = judged(results, "keep_metro")
+    assert row["verdict"] == "contradicted"
+    assert row["effect"] == pytest.approx(100 * (1 - 2) / 1.5)
+    assert row["pairs"] == 2
+
+
+def test_more_faces_claim_takes_fewest_minus_most(root, small):
+    frame = Results(small.settings(), root).measurements("lod").copy()
+    frame.loc[frame["target"] == "25%", "faces"] = 50
+    small.write(root, "lod", frame[frame["object"] == "ball"])
+    assert judged(Results(small.settings(), root), "more_faces")["effect"] == pytest.approx(100 * (0.06 - 0.02))
+
+
+def test_beyond_chance_takes_guessing_off(root, small):
+    frame = small.classification()
+    frame = frame.assign(value=frame["object"].map({"six": 1 / 6, "four": 1 / 4}))
+    small.write(root, "classification", frame)
+    results = Results(small.settings(), root)
+    assert judged(results, "four_easier")["effect"] == pytest.approx(100 * (1 / 4 - 1 / 6), rel=1e-3)
+    assert judged(results, "four_easier_beyond_chance")["effect"] == pytest.approx(0, abs=1e-3)
+
+
+def test_pairs_match_by_repetition_not_by_row(results, small):
+    frame = results.measurements("classification").iloc[::-1]
+    small.write(results.data.parent, "classification", frame)
+    again = Results(small.settings(), results.data.parent)
+    sides = {"first": {"method": "enhanced"}, "second": {"method": "itti"}}
+    where = {"object": "six", "classifier": "knn"}
+    before = paired(results, "classification", ["repetition"], **sides, **where)
+    after = paired(again, "classification", ["repetition"], **sides, **where)
+    assert np.allclose(before.sort_index(), after.sort_index())
+
+
+def test_side_that_was_not_measured_is_not_run(results):
+    with pytest.raises(NotRun, match="hks"):
+        paired(results, "classification", ["repetition"], {"method": "hks"}, {"method": "itti"})
+
+
+def test_every_claim_has_its_own_key_and_answers_without_measurements(bare, small):
+    table = judge(CLAIMS, Results(small.settings(), bare))
+    assert table["key"].is_unique
+    assert set(table["verdict"]) == {"open"}
+
+
+def test_interval_covers_as_often_as_it_says():
+    rng = np.random.default_rng(0)
+    for count in (4, 15):
+        found = [interval(rng.normal(size=count)) for _ in range(400)]
+        assert np.mean([low < 0 < high for _, low, high in found]) > 0.91
+
+
+def test_splitting_the_same_data_more_often_does_not_shrink_the_interval_to_nothing():
+    values = np.random.default_rng(0).normal(size=4000)
+    width = {n: np.subtract(*interval(values[:n], HOLD_OUT)[:0:-1]) for n in (100, 4000)}
+    assert width[4000] > 0.8 * width[100]
+    independent = np.subtract(*interval(values)[:0:-1])
+    assert independent < 0.1 * width[4000]
+
+
+def test_one_value_has_no_interval():
+    mean, low, high = interval([0.5])
+    assert mean == 0.5
+    assert np.isnan([low, high]).all()
+
+
+def test_a_new_claim_is_one_entry(results):
+    claim = Claim("new", "T9", "Sentence.", "what", "unit", "objects", lambda _: np.array([1.0, 1.1, 0.9, 1.0, 1.05]))
+    assert judge([claim], results)["verdict"].tolist() == ["supported"]

@@ -1,0 +1,175 @@
+"""The page and the stage as a whole."""
+
+import base64
+import json
+import re
+import zlib
+
+import numpy as np
+import pytest
+
+from stages.kit.files import write_arrays
+from stages.report.__main__ import write_report
+from stages.report.drawing import VIEWPOINT, picture, visible
+from stages.report.packing import SHADES, STEPS, Store, ordered
+from stages.report.results import Results
+from stages.report.viewer import pack_viewer, surface_distance
+
+
+@pytest.fixture
+def page(root, small, monkeypatch):
+    """The text of the page of the small run."""
+    monkeypatch.chdir(root)
+    write_report(Results(small.settings()))
+    return (root / "reports/index.html").read_text()
+
+
+class Reader:
+    """What page/viewer.js does to read an object."""
+
+    def __init__(self, text):
+        self.store = np.frombuffer(zlib.decompress(base64.b64decode(text)), np.uint8).astype(np.int64)
+
+    def words(self, where):
+        at, count = where
+        return self.store[at : at + count] | (self.store[at + count : at + 2 * count] << 8)
+
+    def positions(self, where):
+        steps = self.words(where).reshape(-1, 3).cumsum(axis=0) % 65536
+        return np.where(steps > 32767, steps - 65536, steps) / (2 * STEPS)
+
+    def ids(self, where):
+        return self.words(where).cumsum() % 65536
+
+    def shades(self, where):
+        return self.store[where[0] : sum(where)].cumsum() % 256 / (SHADES - 1)
+
+    def triangles(self, where):
+        following, ids = 0, []
+        for below in self.words(where):
+            ids.append(following - below)
+            following += below == 0
+        return np.array(ids).reshape(-1, 3)
+
+
+def test_packed_mesh_reads_back(small):
+    mesh = ordered(small.ball())[0]
+    store = Store()
+    values = np.random.default_rng(0).random(len(mesh.vertices))
+    places = [store.put_positions(mesh.vertices), store.put_triangles(mesh.faces), store.put_shades(values)]
+    numbers = np.array([5, 60000, 0, 65535])
+    reader, ids = None, store.put_words(numbers)
+    reader = Reader(store.text())
+    assert np.abs(reader.positions(places[0]) - mesh.vertices).max() <= 0.5 / (2 * STEPS) + 1e-12
+    assert (reader.triangles(places[1]) == mesh.faces).all()
+    assert np.abs(reader.shades(places[2]) - values).max() <= 0.5 / (SHADES - 1) + 1e-12
+    assert (reader.ids(ids) == numbers).all()
+
+
+def test_ordering_keeps_the_surface(small):
+    mesh = small.ball()
+    found, ids = ordered(mesh)
+    assert np.array_equal(found.vertices, mesh.vertices[ids])
+    corners = lambda m: sorted(map(tuple, np.sort(m.vertices[m.faces].round(9), axis=1).reshape(-1, 9)))  # noqa: E731
+    assert corners(found) == corners(mesh)
+    assert found.face_areas.sum() == pytest.approx(mesh.face_areas.sum())
+
+
+def test_ordering_leaves_unused_vertices_out(small):
+    mesh = small.ball()
+    extra = type(mesh)(np.vstack([[[0, 0, 0]], mesh.vertices]), mesh.faces + 1)
+    assert 0 not in ordered(extra)[1]
+
+
+def test_surface_is_at_no_distance_from_itself(small):
+    assert surface_distance(small.ball(), small.ball()).max() < 1e-6
+
+
+def test_objects_that_do_not_fit_are_named(results, small):
+    size = len(pack_viewer(results)["objects"][0]["store"]) / 1000
+    tight = Results(small.settings(viewer_kilobytes=int(1.5 * size)), results.data.parent)
+    packed = pack_viewer(tight)
+    assert [one["name"] for one in packed["objects"]] == ["ball"]
+    assert packed["left_out"] == ["cube"]
+
+
+def test_page_asks_nothing_of_the_network(page):
+    assert not re.findall(r'(?:src|href)="(?!data:|#|tables/|figures/|tradeoff/|claims\.)[^"]*"', page)
+    assert "@import" not in page and "url(" not in page
+
+
+def test_page_is_accessible(page):
+    assert '<html lang="en">' in page
+    assert all(re.search(r'alt="[^"]{20,}"', image) for image in re.findall(r"<img[^>]*>", page))
+    ids = re.findall(r' id="([^"]+)"', page)
+    assert len(ids) == len(set(ids))
+    levels = [int(level) for level in re.findall(r"<h(\d)", page)]
+    assert levels[0] == 1 and levels.count(1) == 1
+
+
+def test_links_lead_to_files(page, root):
+    for link in re.findall(r'href="([^#"][^"]*)"', page):
+        assert (root / "reports" / link).exists(), link
+
+
+def test_page_carries_the_meshes(page):
+    data = json.loads(re.search(r'id="mesh-data">(.*?)</script>', page, re.DOTALL)[1].replace("<\\/", "</"))
+    assert [one["name"] for one in data["objects"]] == ["ball", "cube"]
+    assert list(data["objects"][0]["ladders"]) == ["qem"]
+
+
+def test_equal_runs_give_equal_bytes(page, root, small):
+    files = sorted(path for path in (root / "reports").rglob("*") if path.is_file())
+    before = [path.read_bytes() for path in files]
+    write_report(Results(small.settings()))
+    assert [path.read_bytes() for path in files] == before
+
+
+def test_old_results_go_and_those_of_others_stay(page, root, small):
+    mine, other = root / "reports/tables/gone.csv", root / "reports/bench/pipeline.csv"
+    for path in (mine, other):
+        path.parent.mkdir(exist_ok=True)
+        path.write_text("old")
+    write_report(Results(small.settings()))
+    assert not mine.exists()
+    assert other.exists()
+
+
+def test_nothing_measured_is_listed_and_no_error(bare, small, monkeypatch, capsys):
+    monkeypatch.chdir(bare)
+    write_report(Results(small.settings()))
+    said = capsys.readouterr().out
+    assert "tables/table_4_1 not run" in said and "python -m stages.classification" in said
+    assert "not run: no meshes" in (bare / "reports/index.html").read_text()
+
+
+def test_names_from_data_are_escaped(root, small, monkeypatch):
+    monkeypatch.chdir(root)
+    frame = Results(small.settings()).measurements("lod").assign(method="<b>&qem</b>")
+    small.write(root, "lod", frame)
+    write_report(Results(small.settings()))
+    assert "<b>&qem</b>" not in (root / "reports/index.html").read_text()
+
+
+def test_picture_is_white_off_the_object_only(small):
+    image = picture(small.ball(), rows=60)
+    off = np.hypot(*(np.mgrid[:60, :60] - 29.5)) > 30
+    assert (image[off] == 1).all()
+    assert (image[30, 30] < 1).all()
+
+
+def test_points_behind_the_object_are_hidden(small):
+    mesh = small.ball()
+    towards = mesh.vertices @ VIEWPOINT.axes[2]
+    down, across = visible(mesh, np.array([towards.argmax(), towards.argmin()]), rows=60)
+    assert len(down) == len(across) == 1
+    assert abs(down[0] - 29.5) < 6
+
+
+def test_method_that_was_not_run_is_no_crash(root, small, monkeypatch):
+    monkeypatch.chdir(root)
+    for path in (root / "data/salient_points").glob("*.npz"):
+        arrays = {key.replace("enhanced", "itti"): value for key, value in np.load(path).items()}
+        write_arrays(path, **arrays)
+    write_report(Results(small.settings()))
+    assert '"itti"' in (root / "reports/index.html").read_text()

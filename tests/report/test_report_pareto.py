@@ -1,0 +1,79 @@
+"""The chart of accuracy against cost."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from stages.report import pareto_chart, pareto_front
+
+
+def test_front_of_a_known_set():
+    cost = [1, 2, 3, 4, 2]
+    accuracy = [0.5, 0.7, 0.6, 0.9, 0.4]
+    assert pareto_front(cost, accuracy).tolist() == [True, True, False, True, False]
+
+
+def test_front_of_errors_takes_the_low_ones():
+    assert pareto_front([1, 2, 3], [0.3, 0.1, 0.2], better="low").tolist() == [True, True, False]
+
+
+def test_equal_choices_stand_together():
+    assert pareto_front([1, 1, 2], [0.5, 0.5, 0.5]).tolist() == [True, True, False]
+
+
+def test_unmeasured_choice_is_never_on_the_front():
+    assert pareto_front([1, np.nan, 2], [0.1, 0.9, np.nan]).tolist() == [True, False, False]
+
+
+def test_front_does_not_depend_on_order_or_unit():
+    rng = np.random.default_rng(0)
+    cost, accuracy, order = rng.random(40), rng.random(40), rng.permutation(40)
+    front = pareto_front(cost, accuracy)
+    assert (pareto_front(60 * cost[order], accuracy[order]) == front[order]).all()
+
+
+def test_no_choice_on_the_front_is_beaten_and_every_other_is():
+    rng = np.random.default_rng(1)
+    cost, accuracy = rng.integers(0, 6, 60), rng.integers(0, 6, 60)
+    front = pareto_front(cost, accuracy)
+    for k in range(60):
+        as_good = (cost <= cost[k]) & (accuracy >= accuracy[k])
+        beaten = (as_good & ((cost < cost[k]) | (accuracy > accuracy[k]))).any()
+        assert front[k] != beaten
+
+
+@pytest.mark.parametrize("arguments", [([1, 2], [1.0]), ([[1]], [[1.0]]), ([1], [1.0], "best")])
+def test_bad_input_is_refused(arguments):
+    with pytest.raises(ValueError, match="must be|is"):
+        pareto_front(*arguments)
+
+
+def frame():
+    rows = {"name": ["slow", "fast", "poor"], "seconds": [4.0, 2.0, 8.0], "mean": [0.9, 0.5, 0.4]}
+    return pd.DataFrame(rows | {"low": [0.8, 0.4, np.nan], "high": [1.0, 0.6, np.nan]})
+
+
+def chart(folder, reference="fast"):
+    return pareto_chart(
+        frame(), "seconds", "mean", "name", name="chart", title="Title", reference=reference,
+        quality_label="accuracy", folder=folder,
+    )  # fmt: skip
+
+
+def test_cost_is_a_ratio_to_the_named_reference(tmp_path):
+    figure = chart(tmp_path)
+    table = pd.read_csv(tmp_path / "chart.csv").set_index("name")
+    assert table["cost_ratio"].to_dict() == {"slow": 2.0, "fast": 1.0, "poor": 4.0}
+    assert table["on_front"].to_dict() == {"slow": True, "fast": True, "poor": False}
+    assert "fast" in figure.alt and "poor" not in figure.alt
+
+
+def test_equal_charts_have_equal_bytes(tmp_path):
+    chart(tmp_path / "a")
+    chart(tmp_path / "b")
+    assert (tmp_path / "a/chart.png").read_bytes() == (tmp_path / "b/chart.png").read_bytes()
+
+
+def test_unknown_reference_is_refused_by_name(tmp_path):
+    with pytest.raises(ValueError, match="nobody"):
+        chart(tmp_path, reference="nobody")

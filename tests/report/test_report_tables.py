@@ -1,0 +1,120 @@
+"""Tables: twins of the thesis's, and how they are written."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from stages.report import tables
+from stages.report.items import Table, build_all
+from stages.report.lod_cells import paired_cells
+from stages.report.markdown import as_text, is_numeric, markdown_table, number, with_interval
+from stages.report.results import NotRun, Results
+from stages.report.tables import table_3_2, table_4_1, table_5_4
+
+
+def test_twin_holds_every_cell_of_the_thesis(results):
+    frame = table_4_1.build(results).frame
+    thesis = results.thesis("table_4_1_six_virtual_objects").set_index("sampling")
+    assert len(frame) == thesis.size
+    for row in frame.itertuples():
+        assert row.thesis == thesis.loc[row.sampling, row.classifier]
+
+
+def test_twin_maps_the_methods_and_says_what_was_not_run(results):
+    table = table_4_1.build(results)
+    cell = table.frame.set_index(["sampling", "classifier"])
+    assert cell.loc[("enhanced_visual_attention", "knn"), "accuracy"] == pytest.approx(0.8, abs=0.02)
+    assert cell.loc[("visual_attention", "knn"), "accuracy"] == pytest.approx(0.5, abs=0.02)
+    assert np.isnan(cell.loc[("hks", "knn"), "accuracy"])
+    shown = table.shown.set_index("sampling")
+    assert shown.loc["hks"].str.startswith("not run").all()
+    assert shown.loc["hks"].str.endswith("59").any()
+
+
+def test_table_3_2_has_plain_qem_on_the_same_objects(root, results, small):
+    frame = results.measurements("lod").copy()
+    frame.loc[(frame["object"] == "cube") & (frame["metric"] == "metro_mean"), "value"] *= 10
+    small.write(root, "lod", frame)
+    row = table_3_2.build(Results(small.settings(), root)).frame.set_index(["target", "method", "metric"]).loc
+    assert row["25%", "qem", "metro_mean"]["objects"] == 2
+    assert row["25%", "enhanced", "metro_mean"]["objects"] == 1
+    assert row["25%", "enhanced", "metro_mean"]["plain"] == pytest.approx(0.03)
+    assert row["50%", "enhanced", "metro_mean"]["plain"] == pytest.approx((0.01 + 0.1) / 2)
+
+
+def test_target_out_of_reach_is_infeasible_not_left_out(root, results, small):
+    frame = results.measurements("lod").copy()
+    frame.loc[(frame["method"] == "enhanced") & (frame["target"] == "25%"), "value"] = np.nan
+    small.write(root, "lod", frame)
+    shown = table_3_2.build(Results(small.settings(), root)).shown.set_index(["target", "kept points"])
+    assert shown.loc[("25%", "enhanced attention"), "Metro mean"] == "infeasible"
+
+
+def test_paired_cells_are_those_that_every_method_reaches(results):
+    found = paired_cells(results, ["metro_mean"])
+    assert set(found.loc[found["target"] == "25%", "object"]) == {"ball"}
+    assert set(found.loc[found["target"] == "50%", "object"]) == {"ball", "cube"}
+
+
+def test_lod_seconds_are_those_of_the_simplification(root, results, small):
+    frame = results.measurements("lod").copy()
+    frame.loc[frame["metric"] != "faces", "seconds"] = 99.0
+    small.write(root, "lod", frame)
+    assert (paired_cells(Results(small.settings(), root), ["metro_mean"])["seconds"] == 0.1).all()
+
+
+def test_networks_of_the_thesis_that_were_not_run_say_so(root, results, small):
+    rows = [
+        {"object": "six", "method": "mobilenet_v2", "weights": "imagenet", "mode": "frozen", "repetition": k}
+        | {"metric": metric, "value": value, "seconds": 1.0}
+        for k in range(3)
+        for metric, value in (("accuracy", 0.5), ("chance", 1 / 6))
+    ]
+    small.write(root, "transfer", pd.DataFrame(rows))
+    shown = table_5_4.build(results).shown.set_index(["network", "filters"])
+    assert shown.loc[("MobileNetV2", "frozen"), "ours, %"].startswith("50.0")
+    assert shown.loc[("MobileNetV2", "frozen"), "thesis, %"] == "43.8"
+    assert shown.loc[("ResNet50", "frozen"), "ours, %"] == "not run"
+
+
+def test_without_measurements_every_table_is_not_run_or_made(bare, small):
+    built = build_all(tables, Results(small.settings(), bare))
+    assert "table_4_1" in built.not_run
+    assert "stages.classification" in built.not_run["table_4_1"]
+
+
+def test_missing_column_is_not_run(results):
+    with pytest.raises(NotRun, match="no column speed"):
+        results.measurements("lod", speed=1)
+
+
+def test_table_is_written_as_numbers_and_as_text(tmp_path):
+    table = Table("Title", pd.DataFrame({"a|b": [0.123456, np.nan]}), ["a note"], name="t")
+    table.write(tmp_path)
+    text = (tmp_path / "t.md").read_text()
+    assert "0.123" in text and "–" in text and "- a note" in text
+    assert pd.read_csv(tmp_path / "t.csv")["a|b"][0] == 0.123456
+
+
+def test_markdown_keeps_a_bar_in_a_cell():
+    assert r"x\|y" in markdown_table(pd.DataFrame({"a": ["x|y"]}))
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(0.00123456, "0.00123"), (1234.5, "1234"), (12000, "12,000"), (2.0, "2"), (0, "0"), (np.nan, "–"),
+     (0.0000123, "1.23e-05"), (True, "True"), ("word", "word"), (None, "–"), (-0.5, "-0.500")],
+)  # fmt: skip
+def test_numbers_read_well(value, text):
+    assert number(value) == text
+
+
+def test_interval_reads_well():
+    assert with_interval(0.512, 0.41, 0.61, 100, 0) == "51 [41, 61]"
+    assert with_interval(0.5, np.nan, np.nan, 100, 0) == "50"
+    assert with_interval(np.nan, np.nan, np.nan) == "not run"
+
+
+def test_column_of_words_is_not_numeric():
+    assert is_numeric(as_text(pd.DataFrame({"a": [1.5, np.nan]}))["a"])
+    assert not is_numeric(pd.Series(["1.5 % of it"]))

@@ -1,0 +1,66 @@
+"""The split of touches, and their choice."""
+
+import numpy as np
+import pytest
+
+from stages.kit.mesh import Mesh
+from stages.transfer.split import stratified_split
+from stages.transfer.touches import choose_vertices
+
+LABELS = np.repeat([0, 1, 2], [40, 20, 8])
+
+
+def rng():
+    return np.random.default_rng(3)
+
+
+def test_parts_are_disjoint_and_hold_all():
+    first, second = stratified_split(LABELS, 0.75, rng())
+    assert not set(first) & set(second)
+    assert sorted([*first, *second]) == list(range(len(LABELS)))
+
+
+def test_every_class_is_split_by_the_share():
+    first, second = stratified_split(LABELS, 0.75, rng())
+    assert np.bincount(LABELS[first]).tolist() == [30, 15, 6]
+    assert np.bincount(LABELS[second]).tolist() == [10, 5, 2]
+
+
+def test_random_numbers_decide_which_touches():
+    first, again = stratified_split(LABELS, 0.5, rng())[0], stratified_split(LABELS, 0.5, rng())[0]
+    other = stratified_split(LABELS, 0.5, np.random.default_rng(4))[0]
+    assert np.array_equal(first, again)
+    assert not np.array_equal(first, other)
+
+
+def test_small_classes_lie_on_both_sides():
+    first, second = stratified_split(np.array([0, 0, 1, 1]), 0.99, rng())
+    assert len(first) == len(second) == 2
+
+
+@pytest.mark.parametrize(
+    ("labels", "share", "reason"),
+    [([0, 0, 1], 0.5, "one touch alone"), ([0, 0], 1.0, "between 0 and 1"), ([0.5, 0.5], 0.5, "integers")],
+)
+def test_what_cannot_be_split_is_refused(labels, share, reason):
+    with pytest.raises(ValueError, match=reason):
+        stratified_split(labels, share, rng())
+
+
+def grid(n=6):
+    """A flat n x n grid of vertices."""
+    x, y = np.meshgrid(np.arange(n) / n, np.arange(n) / n, indexing="ij")
+    corner = (np.arange(n - 1)[:, None] * n + np.arange(n - 1)).ravel()
+    faces = np.r_[np.c_[corner, corner + n, corner + n + 1], np.c_[corner, corner + n + 1, corner + 1]]
+    return Mesh(np.c_[x.ravel(), y.ravel(), np.zeros(n * n)], faces)
+
+
+def test_salient_points_come_first_and_blind_ones_fill_up():
+    chosen = choose_vertices(grid(), np.array([7, 3]), 20, rng())
+    assert chosen[:2].tolist() == [7, 3]
+    assert len(set(chosen.tolist())) == 20
+
+
+def test_more_touches_than_vertices_are_refused():
+    with pytest.raises(ValueError, match="only 36 vertices"):
+        choose_vertices(grid(), np.array([7, 3]), 37, rng())
