@@ -8,7 +8,6 @@ params.yaml.
 """
 
 import functools
-import sys
 
 from stages.kit import StageRun, arguments, params
 from stages.kit.files import read_mesh
@@ -32,8 +31,8 @@ def process(name, folder, settings, seed):
     return [row for method in settings.methods for row in measure_cells(subject, method, folder, settings, seed)]
 
 
-def run_lod():
-    """Runs the stage as params.yaml says."""
+def main():
+    arguments(__doc__)
     settings = params("lod")
     check_backend(settings.backend)
     for target in settings.targets:
@@ -46,14 +45,6 @@ def run_lod():
         f"lod: {len(run.objects)} objects, {summary['meshes']} meshes, "
         f"{summary['paired_cells']} cells that all methods reach, {summary['share_infeasible']:.1%} infeasible"
     )
-
-
-def main():
-    arguments(__doc__)
-    try:
-        run_lod()
-    except (ValueError, OSError) as error:
-        sys.exit(f"lod: {error}")
 
 
 if __name__ == "__main__":

@@ -5,8 +5,6 @@ reports/tradeoff, reports/claims.md and .csv, reports/index.html and reports/met
 measurement is listed as not run, with the stage to run.
 """
 
-import sys
-
 from stages.kit import arguments, params
 from stages.kit.files import write_json, write_table, write_text
 
@@ -29,10 +27,7 @@ for their number."""
 
 def main():
     arguments(__doc__)
-    try:
-        write_report(Results(params("report")))
-    except (FileNotFoundError, ValueError) as error:
-        sys.exit(f"report: {error}")
+    write_report(Results(params("report")))
 
 
 def write_report(results):

@@ -5,7 +5,6 @@ reports/measurements/views.csv. Settings: section `views` of params.yaml.
 """
 
 import functools
-import sys
 
 import numpy as np
 import pandas as pd
@@ -34,8 +33,8 @@ def process(name, folder, settings, renderer):
     return rows
 
 
-def run_views():
-    """Runs the stage as params.yaml says."""
+def main():
+    arguments(__doc__)
     settings = params("views")
     viewpoints = viewpoint_set(settings.viewpoints)
     renderer = choose(settings.renderer)
@@ -49,14 +48,6 @@ def run_views():
     print(
         f"views: {len(run.objects)} objects, {len(rows)} views by {renderer}, {coverage:.1%} of the pixels on objects"
     )
-
-
-def main():
-    arguments(__doc__)
-    try:
-        run_views()
-    except (ValueError, RuntimeError) as error:
-        sys.exit(f"views: {error}")
 
 
 if __name__ == "__main__":

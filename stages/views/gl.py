@@ -32,9 +32,9 @@ def missing():
 
 
 def render_pyrender(mesh, viewpoint, size, background):
-    """Renders a View (see stages.views.render) by OpenGL; RuntimeError where no EGL context can be made."""
+    """Renders a View (see stages.views.render) by OpenGL; OSError where no EGL context can be made."""
     if missing():
-        raise RuntimeError(
+        raise OSError(
             f"renderer pyrender needs EGL, which is not to be had here ({missing()}): install it (Debian: apt-get "
             "install libegl1 libgl1-mesa-dri), or take renderer=raycast"
         )

@@ -20,7 +20,7 @@ def render(mesh, viewpoint, size=(900, 1200), renderer="auto", background="black
     `pyrender` (needs EGL) or `auto` (pyrender where EGL is, else raycast, which is said once). background: `black` as
     in the thesis, `grey` or `white`. A mesh without faces gives a view of nothing.
 
-    Raises ValueError for a mesh that leaves the frame and for unknown names or sizes, RuntimeError for `pyrender`
+    Raises ValueError for a mesh that leaves the frame and for unknown names or sizes, OSError for `pyrender`
     where no EGL context can be made.
     """
     if background not in BACKGROUNDS:

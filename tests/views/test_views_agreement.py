@@ -40,5 +40,5 @@ def test_auto_without_egl_takes_the_rays_and_says_so_once(shapes, monkeypatch, c
 
 def test_pyrender_without_egl_says_what_to_install(shapes, monkeypatch):
     monkeypatch.setattr(gl, "missing", lambda: "no libEGL")
-    with pytest.raises(RuntimeError, match="libegl1"):
+    with pytest.raises(OSError, match="libegl1"):
         render(shapes["cube"], Viewpoint(0, 0), (90, 120), "pyrender")
