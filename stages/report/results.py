@@ -11,10 +11,10 @@ from stages.salient_points import read_points, read_saliency, read_strong_points
 
 
 class NotRun(Exception):
-    """A measurement that is absent; the message says what is missing and which stage makes it."""
+    """A measurement that is absent; the message says what is missing and, where a run would help, of which stage."""
 
-    def __init__(self, what, stage):
-        super().__init__(f"{what}: run `python -m stages.{stage}`")
+    def __init__(self, what, stage, runnable=True):
+        super().__init__(f"{what}: run `dvc repro {stage}`" if runnable else what)
         self.stage = stage
 
 
@@ -26,7 +26,7 @@ class ByMethod(dict):
         self.stage = stage
 
     def __missing__(self, method):
-        raise NotRun(f"{method} is not among the methods", self.stage)
+        raise NotRun(f"{method} is not among the methods of {self.stage}", self.stage, runnable=False)
 
     def those_of(self, methods):
         """The methods that were run, in the order given; NotRun where there is none."""
@@ -55,7 +55,8 @@ class Results:
             wanted = wanted if isinstance(wanted, list) else [wanted]
             frame = frame[frame[column].isin(wanted)]
             if frame.empty:
-                raise NotRun(f"{column} {' or '.join(map(str, wanted))} is not among the {stage} rows", stage)
+                what = f"{column} {' or '.join(map(str, wanted))} is not among those that {stage} measured"
+                raise NotRun(what, stage, runnable=False)
         return frame
 
     def _read(self, stage):

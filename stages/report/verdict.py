@@ -64,5 +64,5 @@ def paired(results, stage, over, first, second, **where):
     joined = pd.concat(sides, axis=1, join="inner").dropna()
     if joined.empty:
         names = " and ".join(" ".join(map(str, side.values())) for side in (first, second))
-        raise NotRun(f"no pairs of {names}", stage)
+        raise NotRun(f"no pairs of {names}", stage, runnable=False)
     return joined.iloc[:, 0] - joined.iloc[:, 1]

@@ -44,7 +44,7 @@ def test_no_effect_is_open(results):
 def test_unmeasured_claim_is_open_and_names_the_stage(results):
     row = judged(results, "tuned_over_frozen")
     assert row["verdict"] == "open"
-    assert "stages.transfer" in row["tested_on"]
+    assert "dvc repro transfer" in row["tested_on"]
 
 
 def test_errors_are_compared_in_pairs_and_relative_to_their_size(results):

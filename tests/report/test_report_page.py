@@ -139,7 +139,7 @@ def test_nothing_measured_is_listed_and_no_error(bare, small, monkeypatch, capsy
     monkeypatch.chdir(bare)
     write_report(Results(small.settings()))
     said = capsys.readouterr().out
-    assert "tables/table_4_1 not run" in said and "python -m stages.classification" in said
+    assert "tables/table_4_1 not run" in said and "dvc repro classification" in said
     assert "not run: no meshes" in (bare / "reports/index.html").read_text()
 
 

@@ -80,7 +80,7 @@ def test_networks_of_the_thesis_that_were_not_run_say_so(root, results, small):
 def test_without_measurements_every_table_is_not_run_or_made(bare, small):
     built = build_all(tables, Results(small.settings(), bare))
     assert "table_4_1" in built.not_run
-    assert "stages.classification" in built.not_run["table_4_1"]
+    assert "dvc repro classification" in built.not_run["table_4_1"]
 
 
 def test_missing_column_is_not_run(results):

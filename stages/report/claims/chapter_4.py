@@ -28,7 +28,7 @@ def best_classifier(results):
     means = results.measurements("classification", **where).groupby("classifier")["value"].mean()
     others = means.drop("knn", errors="ignore")
     if others.empty:
-        raise NotRun("only one classifier measured", "classification")
+        raise NotRun("only one classifier measured", "classification", runnable=False)
     sides = {"first": {"classifier": "knn"}, "second": {"classifier": others.idxmax()}}
     return 100 * paired(results, "classification", ["repetition"], **sides, **where).to_numpy()
 
