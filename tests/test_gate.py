@@ -48,3 +48,11 @@ def test_the_command_ends_with_1_when_something_moved(tmp_path, monkeypatch, cap
         with pytest.raises(SystemExit) as stop:
             gate.main()
         assert "m.accuracy moved by -0.4" in str(stop.value)
+
+
+def test_counts_that_follow_from_measured_values_have_a_band_and_verdicts_are_free(tmp_path):
+    from stages.kit.files import write_json
+
+    assert gate.compare({"lod.meshes": 95}, gate.baseline({"lod.meshes": 100})) == []
+    write_json(tmp_path / "report.json", {"claims": {"open": 3}, "tables": 2})
+    assert gate.measured(tmp_path) == {"report.tables": 2}

@@ -22,7 +22,7 @@ def summarise(rows):
         wide = table[table["metric"] == metric].pivot(index=["object", "target"], columns="method", values="value")
         paired = wide.reindex(columns=methods).dropna()
         summary["paired_cells"] = len(paired)
-        summary |= {f"{metric}_{m}": round(float(paired[m].mean()), 6) if len(paired) else None for m in methods}
+        summary |= {f"{metric}_{m}": round(float(paired[m].mean()), 9) if len(paired) else None for m in methods}
     for method in methods:
         summary[f"infeasible_{method}"] = round(float(cells.loc[cells["method"] == method, "infeasible"].mean()), 6)
     return summary
