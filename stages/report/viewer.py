@@ -12,6 +12,7 @@ from .results import NotRun
 from .style import label
 
 INDEX_LIMIT = 65535  # 16-bit vertex ids
+FINEST = 0.6  # of the object's faces: a finer level looks like the object itself and costs the page most
 
 
 def pack_viewer(results):
@@ -53,7 +54,7 @@ def pack_object(results, name):
             found = [ordered(mesh)[0] for _, mesh in results.lods(name, method)]
         except NotRun:
             continue
-        levels = [_level(mesh, full, place, store) for mesh in found if len(mesh.faces) < len(full.faces)]
+        levels = [_level(mesh, full, place, store) for mesh in found if len(mesh.faces) <= FINEST * len(full.faces)]
         packed["ladders"][method] = {"label": label(method), "levels": levels}
     return packed | {"store": store.text()}
 
