@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 import hydra
+from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.errors import HydraException
 from omegaconf import OmegaConf
 from omegaconf.errors import OmegaConfBaseException
@@ -17,6 +18,7 @@ from omegaconf.errors import OmegaConfBaseException
 from stages.kit.files import write_text
 from stages.kit.params import FILE, ParamsError, check
 
+OPEN = ("classification.sets",)  # sections whose keys a person may add to
 CONF = Path(__file__).parents[1] / "conf"
 
 
@@ -25,7 +27,8 @@ def compose(overrides=()):
 
     overrides: Hydra's `group=option` and `section.key=value`. Raises ParamsError that names the nearest right name.
     """
-    overrides = list(overrides)
+    overrides = [_quoted(override) for override in overrides]
+    _check_options(overrides)
     try:
         with hydra.initialize_config_dir(str(CONF), version_base=None):
             config = hydra.compose("config", overrides)
@@ -36,19 +39,44 @@ def compose(overrides=()):
     return config
 
 
+def groups():
+    """{group: its options} of conf/."""
+    folders = sorted(path for path in CONF.iterdir() if path.is_dir())
+    return {folder.name: sorted(path.stem for path in folder.glob("*.yaml")) for folder in folders}
+
+
+def _quoted(override):
+    """The override, its value in quotes where Hydra's grammar would stumble over it: paths, blanks, accents."""
+    try:
+        OverridesParser.create().parse_override(override)
+    except HydraException:
+        key, _, value = override.partition("=")
+        escaped = value.replace('"', '\\"')
+        return f'{key}="{escaped}"'
+    return override
+
+
+def _check_options(overrides):
+    """Raises ParamsError for an option that a group does not have; Hydra passes over an optional group's in silence."""
+    known = groups()
+    for override in overrides:
+        name, _, value = override.partition("=")
+        if name in known and value not in (*known[name], "null"):
+            if "," in value:
+                raise ParamsError(f"{override}: one option at a time; `python -m stages.sweep -m` takes a list")
+            raise ParamsError(f"unknown option {override}: {_near(value, known[name])}")
+
+
 def _explain(overrides, error):
     """The first override that names nothing known, and the nearest name; else what Hydra said."""
-    known = {"": sorted(path.name for path in CONF.iterdir() if path.is_dir())}
-    known |= {group: sorted(path.stem for path in (CONF / group).glob("*.yaml")) for group in known[""]}
-    keys = _dotted(OmegaConf.to_container(OmegaConf.load(CONF / "config.yaml")))
+    keys = [*groups(), *_dotted(OmegaConf.to_container(compose()))] if overrides else []
     for override in overrides:
-        name, _, value = override.lstrip("+~").partition("=")
-        if name in known[""]:
-            options = known[name]
-            if value not in options:
-                return f"unknown option {override}: {_near(value, options)}"
-        elif name not in keys:
-            return f"unknown setting {name}: {_near(name, [*known[''], *keys])}"
+        name = override.partition("=")[0]
+        if name[0] not in "+~" and name not in keys:
+            parent = name.rpartition(".")[0]
+            if parent in OPEN:
+                return f"{parent} has no {name.rpartition('.')[2]} yet: to add it, write +{override}"
+            return f"unknown setting {name}: {_near(name, keys)}"
     return str(error).splitlines()[0]
 
 
@@ -60,8 +88,6 @@ def _near(name, known):
 def _dotted(values, prefix=""):
     names = []
     for key, value in values.items():
-        if key == "defaults":
-            continue
         names.append(f"{prefix}{key}")
         if isinstance(value, dict):
             names += _dotted(value, f"{prefix}{key}.")

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from stages.kit.files import read_json, write_json
 from stages.kit.params import load_params
-from stages.kit.run import METRICS
+from stages.kit.run import METRICS, errors_in_one_line
 
 BASELINES = Path("reports/baselines")
 BAND = 0.15  # of a measured value: what another processor's rounding moves in simplification and training
@@ -70,7 +70,10 @@ def main():
     )
     parser.add_argument("--update", action="store_true", help="write the baseline from the metrics at hand")
     update = parser.parse_args().update
+    errors_in_one_line("gate")
     path, metrics = BASELINES / f"{load_params().get('profile', 'laptop')}.json", measured()
+    if update and not metrics:
+        sys.exit(f"gate: no metrics in {METRICS}: run `dvc repro` first")
     if update:
         write_json(path, baseline(metrics))
         print(f"gate: {path} written from {len(metrics)} metrics")

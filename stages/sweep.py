@@ -25,8 +25,8 @@ from stages.kit.files import read_mesh, read_table, write_table
 from stages.kit.params import ParamsError, check, check_section
 from stages.kit.run import DATA
 from stages.kit.stats import bootstrap_interval
-from stages.salient_points import METHODS, read_sight
-from stages.salient_points.methods import find_all
+from stages.salient_points import read_sight
+from stages.salient_points.methods import find_all, method_named
 from stages.salient_points.options import Options
 from stages.weights import weights
 
@@ -61,7 +61,7 @@ def _touch(name, config, chosen):
         if not (DATA / folder / f"{name}.npz").exists():
             sys.exit(f"sweep: no data/{folder}/{name}.npz: run `dvc repro {folder}` first")
     mesh = read_mesh(DATA / "meshes" / f"{name}.npz")
-    looking = any(METHODS[method].channels for method in settings.methods)
+    looking = any(method_named(method).channels for method in settings.methods)
     sight = read_sight(DATA / "conspicuity" / f"{name}.npz", mesh) if looking else None
     options = Options(
         weights(config["weights"]["method"]), settings.selection, settings.radius, settings.smoothing,

@@ -40,6 +40,10 @@ def test_every_option_composes_and_fits_the_schemas(group, option):
         ("profile=smok", "did you mean smoke"),
         ("profiel=smoke", "did you mean profile"),
         ("seed=many", "seed"),
+        ("seed=-1", "negative"),
+        ("experiment=table_4_9", "did you mean table_4_1"),
+        ("classifier=knn,svm", "stages.sweep -m"),
+        ("classification.sets.mine=[a,b]", "+classification.sets.mine"),
         ("views.size=big", "views.size"),
     ],
 )
@@ -47,6 +51,28 @@ def test_a_mistyped_setting_names_the_nearest_right_one(override, hint):
     with pytest.raises(ParamsError) as error:
         compose([override])
     assert hint in str(error.value)
+
+
+@pytest.mark.parametrize("folder", ["~/scans", "/data/my scäns", 'a "b" c', "x=y,z"])
+def test_any_path_can_be_given_as_it_is(folder):
+    assert compose(["data=folder", f"meshes.folder={folder}"]).meshes.folder == folder
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("views: 3\n", "no section of settings"),
+        ("- a\n", "must hold sections"),
+        ("views: [unclosed\n", "no YAML"),
+        ("seed: 0\n", "no section views"),
+        ("paralel: {}\nviews: {}\n", "did you mean parallel"),
+    ],
+)
+def test_a_broken_params_yaml_is_named(tmp_path, text, reason):
+    path = tmp_path / "params.yaml"
+    path.write_text(text)
+    with pytest.raises(ParamsError, match=reason):
+        params("views", path)
 
 
 def test_a_mistyped_key_in_params_yaml_names_the_nearest(tmp_path):

@@ -28,12 +28,18 @@ from .protocol import check_counts, evaluate_features
 def plan(sets, folder):
     """{"SET.SAMPLING": imprints an object, or why the sampling is left out}.
 
-    All samplings of a set use equally many imprints of every object. Raises ValueError naming the first object that
-    has no imprints.
+    All samplings of a set use equally many imprints of every object. A set with an object that has no imprints is left
+    out as a whole, under the name "SET.".
     """
     planned = {}
     for name, objects in sets.items():
-        counts = {one: _counts(name, one, folder) for one in objects}
+        missing = [one for one in objects if not (folder / f"{one}.npz").exists()]
+        if missing:
+            there = ", ".join(sorted(file.stem for file in folder.glob("*.npz"))) or "nothing"
+            remedy = f"name some of these in +classification.sets.NAME=[...]: {there}"
+            planned[f"{name}."] = f"set {name} left out: no imprints of {', '.join(missing)}; {remedy}"
+            continue
+        counts = {one: _counts(one, folder) for one in objects}
         samplings = sorted({sampling for found in counts.values() for sampling in found})
         usable = {}
         for sampling in samplings:
@@ -47,19 +53,16 @@ def plan(sets, folder):
     return planned
 
 
-def _counts(name, one, folder):
-    path = folder / f"{one}.npz"
-    if not path.exists():
-        there = ", ".join(sorted(file.stem for file in folder.glob("*.npz"))) or "nothing"
-        raise ValueError(f"sets.{name}: there are no imprints of {one}; there are those of: {there}")
-    return {sampling: len(imprints.images) for sampling, imprints in read_imprints(path).items()}
+def _counts(one, folder):
+    imprints = read_imprints(folder / f"{one}.npz")
+    return {sampling: len(found.images) for sampling, found in imprints.items()}
 
 
 def process(item, folder, planned, settings, seed):
     """One sampling of one set through all classifiers; what fails or is left out gives a row with the reason."""
-    name, _, sampling = item.partition(".")
+    name, _, sampling = item.rpartition(".")
     if isinstance(planned[item], str):
-        return [{"object": name, "method": sampling, "value": None, "note": planned[item]}]
+        return [{"object": name, "method": sampling or None, "value": None, "note": planned[item]}]
     touched = {one: read_imprints(DATA / "imprints" / f"{one}.npz")[sampling] for one in sorted(settings.sets[name])}
     count = planned[item]
     samples = np.concatenate([features(imprints.images[:count]) for imprints in touched.values()])

@@ -19,6 +19,10 @@ class Mesh:
     colors: np.ndarray | None = None
 
     def __post_init__(self):
+        for name in ("faces", "colors"):
+            values = getattr(self, name)
+            if values is not None and np.size(values) and np.asarray(values).dtype.kind not in "iu":
+                raise ValueError(f"{name} must be whole numbers, got {np.asarray(values).dtype}")
         vertices = np.ascontiguousarray(self.vertices, dtype=np.float64)
         faces = np.ascontiguousarray(self.faces, dtype=np.int64)
         if vertices.ndim != 2 or vertices.shape[1] != 3:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from omegaconf import OmegaConf
 from omegaconf.errors import OmegaConfBaseException
+from yaml import YAMLError
 
 FILE = Path("params.yaml")
 SECTIONS = (
@@ -23,7 +24,15 @@ class ParamsError(ValueError):
 def load_params(path=FILE):
     """The whole params.yaml as plain dicts; {} where there is none."""
     path = Path(path)
-    return OmegaConf.to_container(OmegaConf.load(path)) if path.exists() else {}
+    if not path.exists():
+        return {}
+    try:
+        values = OmegaConf.to_container(OmegaConf.load(path))
+    except (YAMLError, OmegaConfBaseException) as error:
+        raise ParamsError(f"{path} is no YAML: {' '.join(str(error).split())}") from None
+    if not isinstance(values, dict):
+        raise ParamsError(f"{path} must hold sections, not a {type(values).__name__}")
+    return values
 
 
 def schema(section):
@@ -39,11 +48,17 @@ def params(section, path=FILE):
     """
     if not Path(path).exists():
         raise ParamsError(f"no {path} here: run this in the repository root, or make it by `python -m stages.compose`")
-    return check_section(section, load_params(path).get(section, {}))
+    values = load_params(path)
+    check_common(values)
+    if section not in values:
+        raise ParamsError(f"{path} has no section {section}: make it anew by `python -m stages.compose`")
+    return check_section(section, values[section])
 
 
 def check_section(section, values):
     """Checks a section's values against its schema and returns them as an instance of it."""
+    if not isinstance(values, dict):
+        raise ParamsError(f"{section}: {values!r} is no section of settings")
     typed = OmegaConf.structured(schema(section))
     _check_keys(section, values, OmegaConf.to_container(typed, throw_on_missing=False))
     try:
@@ -55,12 +70,19 @@ def check_section(section, values):
 
 def check(values):
     """Checks a whole composed configuration; raises ParamsError at the first fault."""
-    _check_keys("", values, dict.fromkeys((*COMMON, *SECTIONS)))
-    for key, kind in COMMON.items():
-        if not isinstance(values.get(key), kind):
-            raise ParamsError(f"{key}: {values.get(key)!r} is no {kind.__name__}")
+    check_common(values)
     for section in SECTIONS:
         check_section(section, values.get(section, {}))
+
+
+def check_common(values):
+    """Checks the names of the sections and the settings that all stages share."""
+    _check_keys("", values, dict.fromkeys((*COMMON, *SECTIONS)))
+    for key, kind in COMMON.items():
+        if key in values and not isinstance(values[key], kind):
+            raise ParamsError(f"{key}: {values[key]!r} is no {kind.__name__}")
+    if values.get("seed", 0) < 0:
+        raise ParamsError(f"seed: {values['seed']} is negative")
 
 
 def _check_keys(where, values, known):

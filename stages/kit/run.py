@@ -3,6 +3,7 @@
 import argparse
 import functools
 import hashlib
+import os
 import shutil
 import sys
 import traceback
@@ -41,14 +42,22 @@ class StageRun:
         self.dataset = settings.get("meshes", {}).get("source", "none")
         self.seed = settings.get("seed", 0)
         chosen = {"seed": self.seed, stage: settings.get(stage)}
-        self.folder = PARTIAL / f"{stage}-{_digest(chosen, [DATA / name for name in inputs])}"
+        self.inputs = [DATA / name for name in inputs]
+        self.folder = PARTIAL / f"{stage}-{_digest(chosen, self.inputs)}"
         self.rows = []
 
     def __enter__(self):
+        for folder in self.inputs:
+            if not folder.is_dir() or not any(folder.iterdir()):
+                raise ValueError(f"{folder} is not there: run `dvc repro {folder.name}` first")
         self.folder.mkdir(parents=True, exist_ok=True)
-        for half in self.folder.rglob(f"{PART}*"):
-            half.unlink()  # a run that was killed while it wrote
+        self._sweep()
         return self
+
+    def _sweep(self):
+        """Removes the files that a killed run, or a worker that outlived it, was about to write."""
+        for half in self.folder.rglob(f"{PART}*"):
+            half.unlink(missing_ok=True)
 
     @property
     def objects(self):
@@ -84,6 +93,7 @@ class StageRun:
             order = [name for name in (*FIRST, *others, *LAST) if name in frame]
             write_table(MEASUREMENTS / f"{self.stage}.csv", frame[order])
         shutil.rmtree(self.folder / ".rows", ignore_errors=True)
+        self._sweep()
         shutil.rmtree(self.target, ignore_errors=True)
         self.folder.rename(self.target)
         for left in PARTIAL.glob(f"{self.stage}-*"):
@@ -102,22 +112,35 @@ def arguments(doc):
     """
     first, _, rest = (doc or "").partition("\n")
     form = argparse.RawDescriptionHelpFormatter
-    argparse.ArgumentParser(description=first, epilog=rest, formatter_class=form).parse_args()
-    sys.excepthook = _one_line
+    stage = Path(sys.argv[0]).parent.name
+    program = f"python -m stages.{stage}"
+    argparse.ArgumentParser(prog=program, description=first, epilog=rest, formatter_class=form).parse_args()
+    errors_in_one_line(stage)
 
 
-def _one_line(kind, error, trace):
-    """What a person did (ValueError, a missing file, no network) needs no traceback; a fault of ours does."""
-    if not issubclass(kind, ValueError | FetchError | OSError):
-        return sys.__excepthook__(kind, error, trace)
-    place = traceback.extract_tb(trace)[-1]
-    print(f"{Path(sys.argv[0]).parent.name}: {error} [{Path(place.filename).name}:{place.lineno}]", file=sys.stderr)
+def errors_in_one_line(name):
+    """From now on what a person did (ValueError, a missing file, no network) ends in one line, not in a traceback.
+
+    A fault of ours keeps its traceback.
+    """
+
+    def show(kind, error, trace):
+        if not issubclass(kind, ValueError | FetchError | OSError):
+            return sys.__excepthook__(kind, error, trace)
+        ours = [place for place in traceback.extract_tb(trace) if f"{os.sep}stages{os.sep}" in place.filename]
+        where = f" [{Path(ours[-1].filename).name}:{ours[-1].lineno}]" if ours else ""
+        print(f"{name}: {error}{where}", file=sys.stderr)
+
+    sys.excepthook = show
 
 
 def _process_once(process, folder, name):
     finished = folder / ".rows" / f"{name}.json"
     if not finished.exists():
-        write_json(finished, process(name, folder))
+        try:
+            write_json(finished, process(name, folder))
+        except ValueError as error:
+            raise ValueError(f"{name}: {error}") from error
     return read_json(finished)
 
 

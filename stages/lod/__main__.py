@@ -12,10 +12,10 @@ import functools
 from stages.kit import StageRun, arguments, params
 from stages.kit.files import read_mesh
 from stages.kit.run import DATA
-from stages.salient_points import read_strong_points
+from stages.salient_points import METHODS, read_strong_points
 from stages.views import viewpoint_set
 
-from .cell import Subject, measure_cells
+from .cell import PLAIN, Subject, measure_cells
 from .perceptual import take_pictures
 from .simplify import check_backend
 from .summary import summarise
@@ -37,6 +37,9 @@ def main():
     check_backend(settings.backend)
     for target in settings.targets:
         face_count(target, 1)
+    unknown = [method for method in settings.methods if method not in (PLAIN, *METHODS)]
+    if unknown or not settings.methods or not settings.targets:
+        raise ValueError(f"lod.methods or lod.targets: {unknown or 'empty'}; methods are {PLAIN}, {', '.join(METHODS)}")
     with StageRun("lod", inputs=("meshes", "salient_points")) as run:
         rows = run.each(functools.partial(process, settings=settings, seed=run.seed), run.objects)
         summary = summarise(rows)

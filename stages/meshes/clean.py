@@ -5,12 +5,14 @@ import numpy as np
 from stages.kit import Mesh
 
 from .load import MeshError
+from .orient import orient
 
 LEAST_AREA = 1e-12  # of the squared diagonal: below it, single-precision rays see no surface
+LEAST_SEEN = 1e-4  # of the squared extent: some five pixels of the stored maps (225 rows)
 
 
 def clean(mesh):
-    """(mesh, notes): faces that repeat a vertex and doubled faces are removed; vertices keep their ids.
+    """(mesh, notes): faces that repeat a vertex and doubled ones go, the others face outwards; vertices keep ids.
 
     Faces of no area with three distinct vertices stay: they hold their neighbours together, and taking them out would
     open a closed mesh. Raises MeshError when no face or no area is left.
@@ -28,11 +30,16 @@ def clean(mesh):
         raise MeshError("no face with three different vertices")
     cleaned = Mesh(mesh.vertices, faces, mesh.colors)
     spread = np.ptp(mesh.vertices[np.unique(faces)], axis=0)
-    if not np.isfinite(cleaned.face_areas).all():
+    with np.errstate(over="ignore", invalid="ignore"):
+        area, square = cleaned.face_areas.sum(), float(spread @ spread)
+    if not np.isfinite([area, square]).all():
         raise MeshError("coordinates so large that areas overflow")
-    if cleaned.face_areas.sum() <= LEAST_AREA * max(float(spread @ spread), np.finfo(float).tiny):
+    if area <= LEAST_AREA * max(square, np.finfo(float).tiny):
         raise MeshError("the surface has no area")
-    return cleaned, notes
+    if area <= LEAST_SEEN * square:
+        raise MeshError("too small to be seen beside its extent: are stray parts far from the object?")
+    cleaned, turned = orient(cleaned)
+    return cleaned, notes + turned
 
 
 def _keep(faces, good, notes, what):

@@ -53,7 +53,7 @@ def _to_mesh(loaded, merge):
     if loaded is None:
         raise MeshError("the file holds no geometry")
     if isinstance(loaded, trimesh.PointCloud):
-        raise MeshError(f"a point cloud: {len(loaded.vertices)} points, no faces")
+        raise MeshError(f"a point cloud, or cut off before its faces: {len(loaded.vertices)} points, no faces")
     if not isinstance(loaded, trimesh.Trimesh):
         raise MeshError(f"no triangle mesh but {type(loaded).__name__}")
     vertices, faces = np.asarray(loaded.vertices, dtype=np.float64), np.asarray(loaded.faces, dtype=np.int64)
@@ -88,7 +88,7 @@ def _refuse_truncated(content, suffix):
         length = struct.unpack("<I", content[8:12])[0]
         if length > len(content):
             raise MeshError(f"cut off: {len(content)} of {length} bytes")
-    elif suffix == ".stl" and content.lstrip()[:5].lower() != b"solid":
+    elif suffix == ".stl" and (content.lstrip()[:5].lower() != b"solid" or b"facet" not in content):
         if len(content) < 84:
             raise MeshError(f"cut off: {len(content)} bytes are fewer than an STL header")
         count = struct.unpack("<I", content[80:84])[0]

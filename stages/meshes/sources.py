@@ -1,5 +1,6 @@
 """Where meshes come from: one function a collection, each says its up axis, unit and licence."""
 
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -50,15 +51,24 @@ def _household_item(wheel, name):
 def folder(settings):
     """A person's own meshes: every STL, OBJ, PLY, OFF and GLB file below a folder."""
     root = Path(settings.folder).expanduser()
-    if not root.is_dir():
-        raise MeshError(f"meshes.folder={settings.folder!r} is no folder")
-    files = sorted(path for path in root.rglob("*") if path.is_file() and path.suffix.lower() in FORMATS)
+    if not settings.folder or not root.is_dir():
+        raise MeshError(f"meshes.folder={settings.folder!r} is no folder: set it to where your meshes lie")
+    everything = sorted(path for path in root.rglob("*") if not path.is_dir())
+    files = [path for path in everything if path.suffix.lower() in FORMATS]
     if not files:
         raise MeshError(f"meshes.folder={settings.folder!r} holds no mesh ({', '.join(FORMATS)})")
+    if len(files) < len(everything):
+        others = sorted({path.suffix or path.name for path in everything} - {path.suffix for path in files})
+        left = len(everything) - len(files)
+        print(f"meshes: {left} files of other formats left alone ({', '.join(others)})", file=sys.stderr)
     named = {}
     for path in files:
         name = str(path.relative_to(root).with_suffix("")).replace("/", "__").replace("\\", "__")
-        named[name if name not in named else f"{name}_{path.suffix[1:].lower()}"] = path
+        if name in named:
+            name = f"{name}_{path.suffix[1:].lower()}"
+        while name in named:
+            name += "_"
+        named[name] = path
     return [_folder_item(root, name, named[name], settings) for name in _chosen(tuple(named), settings.objects)]
 
 

@@ -19,10 +19,10 @@ from .viewer import pack_viewer
 
 CLAIMS_NOTE = """Each effect is a paired difference, positive on the side that the thesis claims, with its 95 %
 interval. *supported*: the interval lies wholly on the claimed side; *contradicted*: wholly on the other; *open*: it
-covers zero, or nothing was measured. Over objects it is a bootstrap over the objects, and carries to other objects
-of this kind. Over repetitions it is a bootstrap over repeated splits of the same imprints, widened for what they
-share (Nadeau and Bengio 2003): it is about these few objects alone. Claims are judged one by one, without correction
-for their number."""
+covers zero, is unknown (equal differences show no spread), or nothing was measured. Over objects it is a bootstrap
+over the objects, and carries to other objects of this kind. Over repetitions it is a bootstrap over repeated splits
+of the same imprints, widened for what they share (Nadeau and Bengio 2003): it is about these few objects alone.
+Claims are judged one by one, without correction for their number."""
 
 
 def main():

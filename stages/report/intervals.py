@@ -6,6 +6,7 @@ from scipy import stats
 from stages.kit.stats import bootstrap_interval
 
 HOLD_OUT = 0.25 / 0.75  # test over training share of the hold-out repetitions, T4.2.4
+ROUNDED = 1e-3  # of the largest value: differences of measurements with six digits are no more equal than this
 
 
 def interval(values, shared=0.0, level=0.95):
@@ -15,7 +16,8 @@ def interval(values, shared=0.0, level=0.95):
     What teachers should know about the bootstrap, The American Statistician 2015, section 3.3). Then by
     sqrt(1 + n * shared) where the values are repeated splits of the same data: without it an interval shrinks to
     nothing by splitting more often (Nadeau and Bengio, Inference for the generalization error, 2003). shared: test over
-    training share of a split; 0 for values of independent items. Fewer than two values: no interval (NaN).
+    training share of a split; 0 for values of independent items. Fewer than two values, or values without spread: no
+    interval (NaN), since a resample of equal values says nothing of how others would differ.
     """
     values = np.asarray(values, dtype=np.float64)
     values = values[np.isfinite(values)]
@@ -23,6 +25,8 @@ def interval(values, shared=0.0, level=0.95):
     n = len(values)
     if n < 2:
         return mean, low, high
+    if np.ptp(values) <= ROUNDED * np.abs(values).max():
+        return mean, np.nan, np.nan
     tail = (1 + level) / 2
     few = stats.t.ppf(tail, n - 1) / stats.norm.ppf(tail) * np.sqrt(n / (n - 1))
     widen = few * np.sqrt(1 + n * shared)

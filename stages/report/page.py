@@ -108,11 +108,12 @@ def claims_shown(claims):
 
 
 def effect(row):
-    """`+3.1 [1.0, 5.2] points`, or a dash."""
+    """`+3.1 [1.0, 5.2] points`, or a dash; no brackets where the interval is unknown."""
     if row.effect != row.effect:
         return "–"
     sign = "+" if row.effect > 0 else ""
-    return f"{sign}{number(row.effect)} [{number(row.low)}, {number(row.high)}] {row.unit}"
+    span = f" [{number(row.low)}, {number(row.high)}]" if row.low == row.low else ""
+    return f"{sign}{number(row.effect)}{span} {row.unit}"
 
 
 def counts_html(claims):

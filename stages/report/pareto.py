@@ -1,12 +1,14 @@
 """Accuracy against cost: one chart for every stage, with the Pareto front drawn."""
 
+from itertools import pairwise
+
 import numpy as np
-import pandas as pd
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from stages.kit.files import write_table
 
 from .items import Figure
+from .names import place_names
 from .style import INK, MARKERS, colours, look, plt, save
 from .style import label as spoken
 
@@ -86,7 +88,6 @@ def _draw(rows, quality, label, title, reference, quality_label, better, colour,
             axes.plot([row["cost_ratio"]] * 2, [row["low"], row["high"]], color=tint, lw=1.2, alpha=0.55, zorder=2)
         form = shape[row[marker]] if marker else "o"
         axes.plot(row["cost_ratio"], row[quality], form, color=tint, ms=7, mec="white", mew=0.8, zorder=3)
-    _name_points(axes, front if colour else rows, quality, label)
     axes.set_xlabel(f"cost, as a ratio to {reference}")
     axes.set_ylabel(quality_label)
     axes.set_title(title, pad=12)
@@ -102,6 +103,7 @@ def _draw(rows, quality, label, title, reference, quality_label, better, colour,
     axes.xaxis.set_minor_formatter(NullFormatter())
     if colour:
         axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=9)
+    place_names(axes, *_with_names(rows, front if colour else rows, front, quality, label))
     save(figure, path)
 
 
@@ -110,16 +112,14 @@ def _narrow(values):
     return values.max() / values.min() < 100
 
 
-def _name_points(axes, rows, quality, label):
-    """Names beside the points, pushed apart where they would overlap (rows of text 17 pixels high)."""
-    taken = pd.DataFrame(columns=["x", "y"], dtype=float)
-    axes.autoscale_view()
-    for _, row in rows.sort_values(quality).iterrows():
-        x, y = axes.transData.transform((row["cost_ratio"], row[quality]))
-        near = taken[(taken["x"] - x).abs() < 160]
-        lift = max(0.0, float(near["y"].max() + 17 - y)) if len(near) else 0.0
-        taken.loc[len(taken)] = [x, y + lift]
-        right = axes.transAxes.inverted().transform((x, y))[0] > 0.6
-        place = {"xytext": (-8 if right else 8, 4 + lift * 0.72), "ha": "right" if right else "left"}
-        place["textcoords"] = "offset points"
-        axes.annotate(row[label], (row["cost_ratio"], row[quality]), fontsize=8.5, color=INK, zorder=4, **place)
+def _with_names(rows, named, front, quality, label):
+    """What place_names wants: names with their points, all points, and the lines, in the data's units."""
+    names = [(row[label], (row["cost_ratio"], row[quality])) for _, row in named.sort_values(quality).iterrows()]
+    lines = []
+    if "low" in rows:
+        known = rows.dropna(subset=["low", "high"])
+        lines += [((row.cost_ratio, row.low), (row.cost_ratio, row.high)) for row in known.itertuples()]
+    corners = list(zip(front["cost_ratio"], front[quality], strict=True))
+    for (left, before), (right, after) in pairwise(corners):
+        lines += [((left, before), (right, before)), ((right, before), (right, after))]
+    return names, rows[["cost_ratio", quality]].to_numpy(), lines

@@ -9,6 +9,9 @@ from stages.imprints import read_imprints
 from stages.kit.files import read_arrays, read_mesh, read_table
 from stages.salient_points import read_points, read_saliency, read_strong_points
 
+NUMBERS = {"four": 4, "six": 6}  # names of sets that tell how many objects they hold
+OF_SETS = ("classification", "transfer")  # stages whose rows are about sets of objects
+
 
 class NotRun(Exception):
     """A measurement that is absent; the message says what is missing and, where a run would help, of which stage."""
@@ -46,18 +49,53 @@ class Results:
     def measurements(self, stage, **where):
         """Rows of reports/measurements/STAGE.csv, filtered: `metric="accuracy"` or a list of accepted values.
 
-        Raises NotRun when the file is absent, lacks the column, or no row is left.
+        Raises NotRun when the file is absent, lacks the column, or no row is left; with the stage's own note on why it
+        left them out, where there is one.
         """
-        frame = self._read(stage)
+        frame, notes = self._read(stage), self.notes(stage, **where)
         for column, wanted in where.items():
-            if column not in frame:
+            if column in frame:
+                frame = frame[frame[column].isin(_listed(wanted))]
+            elif not notes:
                 raise NotRun(f"no column {column} in {stage}.csv", stage)
-            wanted = wanted if isinstance(wanted, list) else [wanted]
-            frame = frame[frame[column].isin(wanted)]
+            if notes and (column not in frame or frame.empty):
+                raise NotRun("; ".join(notes[:2]), stage, runnable=False)
             if frame.empty:
-                what = f"{column} {' or '.join(map(str, wanted))} is not among those that {stage} measured"
+                kind = "set" if column == "object" and stage in OF_SETS else column
+                what = f"{kind} {' or '.join(map(str, _listed(wanted)))} is not among those that {stage} measured"
                 raise NotRun(what, stage, runnable=False)
         return frame
+
+    def measured(self, stage, **where):
+        """As `measurements`, only the rows that have a value; NotRun where there is none."""
+        frame = self.measurements(stage, **where).dropna(subset=["value"])
+        if frame.empty:
+            notes = self.notes(stage, **where) or [f"{stage} has rows of this, but no value"]
+            raise NotRun("; ".join(notes[:2]), stage, runnable=False)
+        return frame
+
+    def notes(self, stage, **where):
+        """Why rows of a stage have no value, each reason once; an empty cell of a row stands for whatever is wanted."""
+        frame = self._read(stage)
+        if "note" not in frame or "value" not in frame:
+            return []
+        frame = frame[frame["value"].isna() & frame["note"].notna()]
+        for column, wanted in where.items():
+            if column in frame:
+                frame = frame[frame[column].isin(_listed(wanted)) | frame[column].isna()]
+        return list(dict.fromkeys(frame["note"]))
+
+    def classes(self, name):
+        """How many objects a set of the classification held."""
+        paths = sorted((self.data / "classification").glob(f"{name}.*.npz"))
+        if not paths:
+            raise NotRun(f"no {name}.*.npz in data/classification", "classification")
+        return len(read_arrays(paths[0])["objects"])
+
+    def set_text(self, name):
+        """A set in words: "six objects", or "4 objects (set six)" where the name does not tell the number."""
+        count = self.classes(name)
+        return f"{name} objects" if count == NUMBERS.get(name) else f"{count} objects (set {name})"
 
     def _read(self, stage):
         path = self.reports / "measurements" / f"{stage}.csv"
@@ -141,3 +179,7 @@ class Results:
         if not path.exists():
             raise NotRun(f"no {path.name} in data/{stage}", stage)
         return path
+
+
+def _listed(wanted):
+    return wanted if isinstance(wanted, list) else [wanted]

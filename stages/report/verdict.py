@@ -1,5 +1,6 @@
 """Claims of the thesis, and the one word that a measurement says to each."""
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -16,6 +17,7 @@ COLUMNS = ["section", "claim", "verdict", "effect", "low", "high", "unit", "pair
 class Claim:
     """One testable sentence of the thesis and the measurement that it is tested on.
 
+    tested_on: {six} stands for the set six in words, with the number of objects that it held in this run.
     differences(results) returns the paired differences (k,), positive on the side that the thesis claims, in `unit`;
     it raises NotRun where the measurement is absent. over: what the pairs are (objects, repetitions). shared: test
     over training share where the pairs are repeated splits of the same imprints (see intervals.interval).
@@ -47,11 +49,25 @@ def _row(claim, results):
     said = {"section": claim.section, "claim": claim.sentence, "unit": claim.unit, "key": claim.key}
     try:
         differences = claim.differences(results)
+        tested_on = _tested_on(claim, results)
     except NotRun as missing:
         return said | {"verdict": "open", "pairs": 0, "over": "", "tested_on": f"not run: {missing}"}
     mean, low, high = interval(differences, claim.shared)
     numbers = {"verdict": verdict(low, high), "effect": mean, "low": low, "high": high}
-    return said | numbers | {"pairs": len(differences), "over": claim.over, "tested_on": claim.tested_on}
+    numbers |= {"pairs": len(differences), "over": claim.over}
+    return said | numbers | {"tested_on": tested_on + _unknown(low, len(differences))}
+
+
+def _tested_on(claim, results):
+    """What a claim is tested on, its sets of objects in words."""
+    return re.sub(r"\{(\w+)\}", lambda found: results.set_text(found[1]), claim.tested_on)
+
+
+def _unknown(low, pairs):
+    """Why there is no interval, where there is none."""
+    if low == low:
+        return ""
+    return "; no interval: " + (f"all {pairs} differences are equal" if pairs > 1 else "fewer than two differences")
 
 
 def paired(results, stage, over, first, second, **where):
@@ -60,7 +76,7 @@ def paired(results, stage, over, first, second, **where):
     first, second: dict column -> value, the rows of each side; where: what both sides have in common. Several rows of
     one pair are averaged. Raises NotRun where a side was not measured or no pair is left.
     """
-    sides = [results.measurements(stage, **where, **side).groupby(over)["value"].mean() for side in (first, second)]
+    sides = [results.measured(stage, **where, **side).groupby(over)["value"].mean() for side in (first, second)]
     joined = pd.concat(sides, axis=1, join="inner").dropna()
     if joined.empty:
         names = " and ".join(" ".join(map(str, side.values())) for side in (first, second))

@@ -42,12 +42,15 @@ def main():
     settings = params("salient_points")
     for method in settings.methods:
         method_named(method)
-    weights = chosen_weights(DATA / "weights" / "weights.csv")
+    if settings.count < 1 or not settings.methods:
+        raise ValueError("salient_points: count must be 1 or more, and methods name at least one")
     with StageRun("salient_points", inputs=("meshes", "conspicuity", "weights")) as run:
+        weights = chosen_weights(DATA / "weights" / "weights.csv")
         work = functools.partial(process, settings=settings, weights=weights, seed=run.seed)
         rows = run.each(work, run.objects)
         run.metrics(summary(rows))
-    print(f"salient_points: {len(run.objects)} objects, {len(settings.methods)} methods, {settings.count} points each")
+    found = sum(row["value"] for row in rows if row["metric"] == "points")
+    print(f"salient_points: {len(run.objects)} objects, {len(settings.methods)} methods, {found:.0f} points")
 
 
 if __name__ == "__main__":

@@ -13,18 +13,29 @@ from stages.kit import StageRun, arguments, params
 from stages.kit.files import write_table
 
 from . import touches, trial
+from .touches import touchable_vertices
 from .weights import imagenet_state
 
 
-def present(wanted, objects):
-    """The classes whose meshes are there; the others are named. Raises ValueError where less than two are left."""
-    missing = sorted(set(wanted) - set(objects))
-    found = [name for name in wanted if name in objects]
-    if missing:
-        print(f"transfer: left out, no mesh of {', '.join(missing)}", file=sys.stderr)
-    if len(found) < 2:
-        raise ValueError(f"two classes or more are needed: set transfer.classes to some of {', '.join(objects)}")
+def present(wanted, vertices, touches):
+    """The classes that have vertices enough for the touches; the others are named. vertices: {object: count}."""
+    found = []
+    for name in dict.fromkeys(wanted):
+        if name not in vertices:
+            print(f"transfer: left out, no mesh of {name}", file=sys.stderr)
+        elif vertices[name] < touches:
+            print(f"transfer: left out, {name} has {vertices[name]} vertices, fewer than {touches}", file=sys.stderr)
+        else:
+            found.append(name)
     return found
+
+
+def none_to_tell_apart(settings, objects):
+    """The row of a run with less than two classes: no value, and what would help."""
+    note = f"two classes or more are needed: set transfer.classes to some of {', '.join(objects)}"
+    print(f"transfer: {note}", file=sys.stderr)
+    row = {"object": settings.class_set, "method": settings.network, "weights": None, "mode": None}
+    return row | {"repetition": None, "metric": "accuracy", "value": None, "seconds": None, "note": note}
 
 
 def main():
@@ -33,10 +44,15 @@ def main():
     # Torch's caches make a worker grow; joblib then renews it between two items, loses none, and warns.
     warnings.filterwarnings("ignore", message="A worker stopped while some jobs")
     names = trial.trials(settings)
-    if "imagenet" in settings.weights:
-        imagenet_state(settings.network, settings.source)  # before the work starts, not in each worker
     with StageRun("transfer", inputs=("meshes", "salient_points")) as run:
-        classes = present(settings.classes, run.objects)
+        there = [name for name in settings.classes if name in run.objects]
+        classes = present(settings.classes, {name: touchable_vertices(name) for name in there}, settings.touches)
+        if len(classes) < 2:
+            run.rows.append(none_to_tell_apart(settings, run.objects))
+            run.metrics({})
+            return
+        if "imagenet" in settings.weights:
+            imagenet_state(settings.network, settings.source)  # before the work starts, not in each worker
         run.each(functools.partial(touches.process, settings=settings, seed=run.seed), classes)
         train = functools.partial(trial.process, settings=settings, classes=classes, seed=run.seed)
         rows = run.each(train, names)

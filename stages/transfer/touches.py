@@ -37,6 +37,12 @@ def choose_vertices(mesh, salient, count, generator):
     return np.concatenate([salient, blind])
 
 
+def touchable_vertices(name):
+    """How many vertices of an object's mesh lie on a surface."""
+    mesh = read_mesh(f"data/meshes/{name}.npz")
+    return len(np.unique(mesh.faces[mesh.face_areas > 0]))
+
+
 def press_touches(mesh, vertices, cells, pitch):
     """(k, cells, cells) u1: the imprints at k vertices in 256 grey values, as an image file has."""
     pressed = np.asarray(press_many(mesh, vertices, cells=(cells, cells), pitch=pitch))

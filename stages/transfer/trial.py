@@ -24,6 +24,8 @@ def trials(settings):
         strange = sorted(set(getattr(settings, key)) - set(known))
         if strange:
             raise ValueError(f"transfer.{key}: {', '.join(strange)} not known, choose of {', '.join(known)}")
+    if settings.repetitions < 1 or not settings.weights or not settings.modes:
+        raise ValueError("transfer: repetitions must be 1 or more, and weights and modes name at least one each")
     return [
         f"{w}-{m}-{r}" for w, m, r in itertools.product(settings.weights, settings.modes, range(settings.repetitions))
     ]

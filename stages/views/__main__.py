@@ -22,11 +22,8 @@ def process(name, folder, settings, renderer):
     mesh = read_mesh(DATA / "meshes" / f"{name}.npz")
     rows = []
     for viewpoint in viewpoint_set(settings.viewpoints):
-        try:
-            with Stopwatch() as watch:
-                view = render(mesh, viewpoint, tuple(settings.size), renderer, settings.background)
-        except ValueError as error:
-            raise ValueError(f"{name}: {error}") from None
+        with Stopwatch() as watch:
+            view = render(mesh, viewpoint, tuple(settings.size), renderer, settings.background)
         write_view(folder / name / f"{viewpoint.name}.npz", view)
         row = {"object": name, "method": renderer, "viewpoint": viewpoint.name, "metric": "coverage"}
         rows.append(row | {"value": float(view.mask.mean()), "seconds": watch.seconds})

@@ -44,9 +44,10 @@ def test_vertex_in_no_face_has_a_zero_normal():
 @pytest.mark.parametrize(
     ("vertices", "faces", "reason"),
     [
-        (np.zeros((3, 2)), np.zeros((1, 3)), "vertices must have shape"),
-        (np.zeros((3, 3)), np.zeros((1, 4)), "faces must have shape"),
-        (np.full((3, 3), np.nan), np.zeros((1, 3)), "NaN"),
+        (np.zeros((3, 2)), np.zeros((1, 3), int), "vertices must have shape"),
+        (np.zeros((3, 3)), np.zeros((1, 4), int), "faces must have shape"),
+        (np.zeros((3, 3)), np.full((1, 3), 0.5), "whole numbers"),
+        (np.full((3, 3), np.nan), np.zeros((1, 3), int), "NaN"),
         (np.zeros((3, 3)), np.full((1, 3), 3), "outside 0..2"),
         (np.zeros((3, 3)), np.full((1, 3), -1), "outside 0..2"),
     ],

@@ -87,6 +87,21 @@ def test_changed_settings_or_input_start_afresh(workspace):
     assert len({first, second, StageRun("demo", inputs=("up",)).folder}) == 3
 
 
+def refuse(name, folder):
+    raise ValueError("too small")
+
+
+def test_an_error_names_the_object(workspace):
+    with pytest.raises(ValueError, match="b c: too small"), StageRun("demo") as run:
+        run.each(refuse, ["b c"])
+
+
+def test_missing_input_names_the_stage_to_run(workspace):
+    with pytest.raises(ValueError, match="data/up is not there: run `dvc repro up` first"), StageRun("demo", ("up",)):
+        pass
+    assert not Path("data/.partial").exists()
+
+
 KILLED = """
 import os, signal, sys
 from stages.kit import StageRun

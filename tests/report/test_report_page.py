@@ -11,6 +11,7 @@ import pytest
 from stages.kit.files import write_arrays
 from stages.report.__main__ import write_report
 from stages.report.drawing import VIEWPOINT, picture, visible
+from stages.report.figures import table_4_1
 from stages.report.packing import SHADES, STEPS, Store, ordered
 from stages.report.results import Results
 from stages.report.viewer import pack_viewer, surface_distance
@@ -156,6 +157,18 @@ def test_picture_is_white_off_the_object_only(small):
     off = np.hypot(*(np.mgrid[:60, :60] - 29.5)) > 30
     assert (image[off] == 1).all()
     assert (image[30, 30] < 1).all()
+
+
+def test_line_of_chance_follows_the_objects_that_the_set_held(root, results, small, monkeypatch):
+    drawn = {}
+    monkeypatch.setattr(table_4_1, "draw_bars", lambda axes, *_, chance: drawn.update(chance=chance, axes=axes))
+    small.write_set(root, "six", 4)
+    table_4_1.build(results)
+    assert drawn["chance"] == 1 / 4
+    assert (
+        drawn["axes"].get_title(loc="left") + drawn["axes"].get_title()
+        == "Recognising 4 objects (set six) by one touch"
+    )
 
 
 def test_points_behind_the_object_are_hidden(small):

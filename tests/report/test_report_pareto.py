@@ -1,10 +1,15 @@
 """The chart of accuracy against cost."""
 
+from itertools import combinations
+
 import numpy as np
 import pandas as pd
 import pytest
+from matplotlib.text import Text
 
 from stages.report import pareto_chart, pareto_front
+from stages.report.names import place_names
+from stages.report.style import plt
 
 
 def test_front_of_a_known_set():
@@ -72,6 +77,36 @@ def test_equal_charts_have_equal_bytes(tmp_path):
     chart(tmp_path / "a")
     chart(tmp_path / "b")
     assert (tmp_path / "a/chart.png").read_bytes() == (tmp_path / "b/chart.png").read_bytes()
+
+
+def crowded():
+    """An axis with points in each other's way, and lines through them."""
+    points = np.array([[1, 0.5], [1.02, 0.52], [1.5, 0.52], [9, 0.5], [9.1, 0.53], [9, 0.9]])
+    figure, axes = plt.subplots(figsize=(7, 4))
+    axes.set(xscale="log", xlim=(0.8, 12), ylim=(0, 1))
+    names = [(f"a name that takes room, {k}", tuple(point)) for k, point in enumerate(points)]
+    return figure, axes, names, points
+
+
+def test_names_cover_neither_each_other_nor_a_point_nor_the_edge():
+    figure, axes, names, points = crowded()
+    written = place_names(axes, names, points, [((1, 0.2), (1, 0.8))])
+    assert len(written) >= len(names) - 1
+    figure.draw_without_rendering()
+    renderer = figure.canvas.get_renderer()
+    boxes = [Text.get_window_extent(text, renderer) for text in written]
+    for one, other in combinations(boxes, 2):
+        assert not one.overlaps(other)
+    for box in boxes:
+        assert not any(box.contains(*spot) for spot in axes.transData.transform(points))
+        assert axes.get_window_extent().count_contains(box.corners()) == 4
+    plt.close(figure)
+
+
+def test_name_without_room_is_left_out():
+    figure, axes, names, points = crowded()
+    assert place_names(axes, [("word " * 60, (1, 0.5))], points, []) == []
+    plt.close(figure)
 
 
 def test_unknown_reference_is_refused_by_name(tmp_path):

@@ -31,6 +31,22 @@ def test_twin_maps_the_methods_and_says_what_was_not_run(results):
     assert shown.loc["hks"].str.endswith("59").any()
 
 
+def test_title_tells_the_objects_that_the_set_held(root, results, small):
+    assert table_4_1.build(results).title.startswith("Table 4.1: recognising six objects by")
+    small.write_set(root, "six", 4)
+    assert table_4_1.build(results).title.startswith("Table 4.1: recognising 4 objects (set six) by")
+
+
+def test_left_out_sampling_is_a_note_of_its_table(root, small):
+    frame = small.left_out(small.classification(), "too few touches", object="six", method="itti")
+    small.write(root, "classification", small.left_out(frame, "no cup", object="four"))
+    built = build_all(tables, Results(small.settings(), root))
+    table = next(table for table in built.items if table.name == "table_4_1")
+    assert "Not run: too few touches." in table.notes
+    assert np.isnan(table.frame.set_index(["sampling", "classifier"]).loc[("visual_attention", "knn"), "accuracy"])
+    assert built.not_run["table_4_2"] == "no cup"
+
+
 def test_table_3_2_has_plain_qem_on_the_same_objects(root, results, small):
     frame = results.measurements("lod").copy()
     frame.loc[(frame["object"] == "cube") & (frame["metric"] == "metro_mean"), "value"] *= 10

@@ -6,7 +6,7 @@ import torch
 
 from stages.kit.files import sha256, write_arrays
 from stages.transfer import trial
-from stages.transfer.__main__ import present
+from stages.transfer.__main__ import none_to_tell_apart, present
 from stages.transfer.images import normalise, to_images
 from stages.transfer.modes import MODES
 from stages.transfer.networks import TouchNet, build, parameters, settle
@@ -196,11 +196,12 @@ def test_summary_has_an_interval_over_repetitions_and_none_for_a_single_one():
     assert trial.summary(rows[:2], 0) == {"chance": 0.5, "frozen_random": {"accuracy": {"value": 0.6}}}
 
 
-def test_missing_classes_are_named_and_less_than_two_end_the_stage(capsys):
-    assert present(["cup", "cow", "hand"], ["cup", "hand", "teapot"]) == ["cup", "hand"]
-    assert "no mesh of cow" in capsys.readouterr().err
-    with pytest.raises(ValueError, match="transfer.classes to some of teapot, train"):
-        present(["cup"], ["teapot", "train"])
+def test_classes_that_cannot_serve_are_named_and_less_than_two_give_a_row_that_says_so(capsys, settings):
+    assert present(["cup", "cow", "hand", "cube", "cup"], {"cup": 50, "hand": 20, "cube": 8}, 20) == ["cup", "hand"]
+    said = capsys.readouterr().err
+    assert "no mesh of cow" in said and "cube has 8 vertices, fewer than 20" in said
+    row = none_to_tell_apart(settings, ["teapot", "train"])
+    assert row["value"] is None and "transfer.classes to some of teapot, train" in row["note"]
 
 
 def test_trials_name_what_is_not_known(settings):

@@ -8,7 +8,6 @@ from stages.report.verdict import Claim, paired
 
 METRIC = "accuracy_holdout"
 POINTS = "points of accuracy"
-CLASSES = {"six": 6, "four": 4}
 
 
 def sampling(first, second, objects="six", classifier="knn", metric=METRIC):
@@ -23,9 +22,9 @@ def sampling(first, second, objects="six", classifier="knn", metric=METRIC):
 
 
 def best_classifier(results):
-    """kNN minus the best of the other classifiers (by mean accuracy), enhanced points, six objects."""
+    """kNN minus the best of the other classifiers (by mean accuracy), enhanced points, the set six."""
     where = {"object": "six", "method": "enhanced", "metric": METRIC}
-    means = results.measurements("classification", **where).groupby("classifier")["value"].mean()
+    means = results.measured("classification", **where).groupby("classifier")["value"].mean()
     others = means.drop("knn", errors="ignore")
     if others.empty:
         raise NotRun("only one classifier measured", "classification", runnable=False)
@@ -34,21 +33,22 @@ def best_classifier(results):
 
 
 def knn_over_network(results):
-    """kNN minus the small network, enhanced points, six objects."""
+    """kNN minus the small network, enhanced points, the set six."""
     sides = {"first": {"classifier": "knn"}, "second": {"classifier": "deep_learning"}}
     where = {"object": "six", "method": "enhanced", "metric": METRIC}
     return 100 * paired(results, "classification", ["repetition"], **sides, **where).to_numpy()
 
 
 def fewer_objects(beyond_chance):
-    """differences(results): four objects minus six, kNN and enhanced; beyond_chance scales guessing to 0, all to 1."""
+    """differences(results): set four minus set six, kNN and enhanced; beyond_chance scales guessing to 0, all to 1."""
 
     def differences(results):
         scores = {}
-        for name, classes in CLASSES.items():
+        for name in ("six", "four"):
             where = {"object": name, "method": "enhanced", "classifier": "knn", "metric": METRIC}
-            scores[name] = results.measurements("classification", **where).groupby("repetition")["value"].mean()
+            scores[name] = results.measured("classification", **where).groupby("repetition")["value"].mean()
             if beyond_chance:
+                classes = results.classes(name)
                 scores[name] = (scores[name] - 1 / classes) / (1 - 1 / classes)
         return 100 * np.asarray((scores["four"] - scores["six"]).dropna())
 
@@ -56,41 +56,41 @@ def fewer_objects(beyond_chance):
 
 
 def touch_claim(key, section, sentence, tested_on, differences):
-    """A claim on hold-out accuracy; its pairs are repeated splits of the same imprints."""
+    """A claim on hold-out accuracy; its pairs are repeated splits of the same imprints. {six}: see Claim."""
     return Claim(key, section, sentence, tested_on, POINTS, "repetitions", differences, HOLD_OUT)
 
 
 CLAIMS = [
     touch_claim(
         "enhanced_over_itti", "T4.2.4", "Touch guided by the enhanced model is better than by the classical one.",
-        "kNN, six objects, enhanced minus itti", sampling("enhanced", "itti"),
+        "kNN, {six}, enhanced minus itti", sampling("enhanced", "itti"),
     ),
     touch_claim(
         "itti_over_blind", "T4.2.4", "Touch guided by the classical model is better than blind touch.",
-        "kNN, six objects, itti minus blind touch", sampling("itti", "random"),
+        "kNN, {six}, itti minus blind touch", sampling("itti", "random"),
     ),
     touch_claim(
         "enhanced_over_blind", "T4.2.4", "Touch guided by the enhanced model is better than blind touch.",
-        "kNN, six objects, enhanced minus blind touch", sampling("enhanced", "random"),
+        "kNN, {six}, enhanced minus blind touch", sampling("enhanced", "random"),
     ),
     touch_claim(
         "enhanced_over_blind_four", "T4.2.4", "Enhanced beats blind touch with four objects too.",
-        "kNN, four objects, enhanced minus blind touch", sampling("enhanced", "random", objects="four"),
+        "kNN, {four}, enhanced minus blind touch", sampling("enhanced", "random", objects="four"),
     ),
     touch_claim(
         "enhanced_over_blind_all", "T4.2.4", "Enhanced beats blind touch over all classifiers.",
-        "mean of all classifiers, six objects, enhanced minus blind touch",
+        "mean of all classifiers, {six}, enhanced minus blind touch",
         sampling("enhanced", "random", classifier=None),
     ),
     touch_claim(
         "enhanced_over_blind_apart", "T4.2.4", "Enhanced beats blind touch where no training touch overlaps.",
-        "kNN, six objects, enhanced minus blind touch, test touches a sensor's width from all training touches",
+        "kNN, {six}, enhanced minus blind touch, test touches a sensor's width from all training touches",
         sampling("enhanced", "random", metric="accuracy_apart"),
     ),
     *(
         touch_claim(
             f"enhanced_over_{rival}", "T4.2.4", f"Touch guided by the enhanced model is better than by {label}.",
-            f"kNN, six objects, enhanced minus {rival}", sampling("enhanced", rival),
+            f"kNN, {{six}}, enhanced minus {rival}", sampling("enhanced", rival),
         )
         for rival, label in (
             ("hks", "heat kernel signatures"), ("salient_points", "salient points"), ("mesh_saliency", "mesh saliency")
@@ -98,20 +98,20 @@ CLAIMS = [
     ),
     touch_claim(
         "knn_best", "T4.2.4", "kNN is the best classifier.",
-        "six objects, enhanced, kNN minus the best of the others", best_classifier,
+        "{six}, enhanced, kNN minus the best of the others", best_classifier,
     ),
     touch_claim(
         "network_poor", "T4.2.4", "The small network does poorly with few imprints.",
-        "six objects, enhanced, kNN minus deep learning", knn_over_network,
+        "{six}, enhanced, kNN minus deep learning", knn_over_network,
     ),
     touch_claim(
         "four_easier", "T4.2.4", "Four objects are easier than six.",
-        "kNN, enhanced, four minus six", fewer_objects(beyond_chance=False),
+        "kNN, enhanced, {four} minus {six}", fewer_objects(beyond_chance=False),
     ),
     touch_claim(
         "four_easier_beyond_chance", "T4.2.4",
         "Similar objects degrade the performance: four are easier even beyond chance.",
-        "kNN, enhanced, four minus six, guessing scaled to 0 and certainty to 100",
+        "kNN, enhanced, {four} minus {six}, guessing scaled to 0 and certainty to 100",
         fewer_objects(beyond_chance=True),
     ),
 ]  # fmt: skip

@@ -12,8 +12,8 @@ CLASSIFIERS = ["knn", "svm", "decision_tree", "naive_bayes", "deep_learning"]
 def build(results):
     frame = table_4_1.build(results).frame
     figure, axes = plt.subplots(figsize=(8.4, 4.2))
-    draw_bars(axes, frame, CLASSIFIERS, chance=1 / 6)
-    axes.set_title("Recognising six objects by one touch", pad=26)
+    draw_bars(axes, frame, CLASSIFIERS, chance=1 / results.classes("six"))
+    axes.set_title(f"Recognising {results.set_text('six')} by one touch", pad=26)
     handles, names = axes.get_legend_handles_labels()
     order = sorted(range(len(names)), key=lambda k: names[k].startswith("the thesis"))
     axes.legend(

@@ -32,8 +32,12 @@ NOTES = [
 
 
 def twin(results, objects, thesis_table, title):
-    """The Table of one set of objects beside the thesis's, then the samplings that only this run has."""
-    rows = results.measurements("classification", object=objects)
+    """The Table of one set of objects beside the thesis's, then the samplings that only this run has.
+
+    title: with {} where the objects are named; the set may hold others, and another number, than its name says.
+    """
+    rows = results.measured("classification", object=objects)
+    left_out = [f"Not run: {note}." for note in results.notes("classification", object=objects)]
     thesis = results.thesis(thesis_table).set_index("sampling")
     extra = [method for method in dict.fromkeys(rows["method"]) if method not in OURS.values()]
     thesis = thesis.reindex([*thesis.index, *extra])
@@ -43,7 +47,7 @@ def twin(results, objects, thesis_table, title):
         for classifier in thesis.columns
     ]
     frame = pd.DataFrame(cells)
-    return Table(title, frame, NOTES, _wide(frame, thesis))
+    return Table(title.format(results.set_text(objects)), frame, NOTES + left_out, _wide(frame, thesis))
 
 
 def _cell(rows, sampling, classifier, printed):

@@ -4,5 +4,5 @@ from ._touch import twin
 
 
 def build(results):
-    title = "Table 4.2: recognising four objects by one touch, beside the thesis"
+    title = "Table 4.2: recognising {} by one touch, beside the thesis"
     return twin(results, "four", "table_4_2_four_virtual_objects", title)

@@ -27,8 +27,8 @@ NOTES = [
 
 
 def build(results):
-    rows = results.measurements("transfer", metric="accuracy")
-    chance = results.measurements("transfer", metric="chance")["value"].mean()
+    rows = results.measured("transfer", metric="accuracy")
+    chance = results.measured("transfer", metric="chance")["value"].mean()
     thesis = results.thesis("table_5_4_simulated_fsr_128x128").set_index("network")
     settings = [(name, weights, mode) for name in thesis.index for weights in STARTS for mode in MODES]
     lines = [_line(rows, *setting) for setting in settings]

@@ -11,7 +11,8 @@ REFERENCE = ("mobilenet_v2", "imagenet", "frozen")
 
 
 def build(results):
-    rows = results.measurements("transfer", metric="accuracy")
+    results.measured("transfer", metric="accuracy", **dict(zip(("method", "weights", "mode"), REFERENCE, strict=True)))
+    rows = results.measured("transfer", metric="accuracy")
     frame = pd.DataFrame(summary(rows, ["method", "weights", "mode"], HOLD_OUT, top=1.0)).dropna(subset=["seconds"])
     frame["name"] = [_name(row.method, row.weights, row.mode) for row in frame.itertuples()]
     reference = _name(*REFERENCE)

@@ -13,13 +13,15 @@ REFERENCE = "itti"
 
 def build(results):
     where = {"object": "six", "classifier": "knn", "metric": "accuracy_holdout"}
-    frame = pd.DataFrame(summary(results.measurements("classification", **where), ["method"], HOLD_OUT, top=1.0))
+    results.measured("classification", **where, method=REFERENCE)
+    frame = pd.DataFrame(summary(results.measured("classification", **where), ["method"], HOLD_OUT, top=1.0))
     frame["seconds"] = frame["method"].map(looking_seconds(results))
     frame = frame.dropna(subset=["seconds"])
     if REFERENCE not in set(frame["method"]):
         raise NotRun(f"no seconds of {REFERENCE}", "salient_points")
     frame["name"] = frame["method"].map(label)
     return pareto_chart(
-        frame, "seconds", "mean", "name", name="saliency", title="Looking before touching: six objects, kNN",
-        reference=label(REFERENCE), quality_label="hold-out accuracy", folder=results.reports / "tradeoff",
+        frame, "seconds", "mean", "name", name="saliency",
+        title=f"Looking before touching: {results.set_text('six')}, kNN", reference=label(REFERENCE),
+        quality_label="hold-out accuracy", folder=results.reports / "tradeoff",
     )  # fmt: skip

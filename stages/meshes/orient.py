@@ -1,0 +1,87 @@
+"""Turns faces so that they agree with their neighbours and a closed surface faces outwards."""
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse.csgraph import connected_components
+
+from stages.kit import Mesh
+
+
+def orient(mesh):
+    """(mesh, notes): neighbours wound alike, closed parts outwards; only the order within a face ever changes.
+
+    The virtual sensor tells inside from outside by the faces' normals, so an inverted mesh would feel empty. In a part
+    (faces joined by edges of two faces) the fewer faces turn; a part that cannot be wound alike (a Moebius strip)
+    stays. A closed part of negative volume turns with all that lies in its bounding box, but one within the box of
+    another stays: it may be the wall of a cavity.
+    """
+    first, second, alike, closed_edges = _neighbours(mesh)
+    flips = _against_the_majority(len(mesh.faces), first, second, alike)
+    turned = flips.sum()
+    mesh = _flipped(mesh, flips)
+    inverted = _inverted(mesh, first, second, closed_edges)
+    notes = [f"{turned} faces turned to agree with their neighbours"] if turned else []
+    notes += [f"{inverted.sum()} faces turned outwards"] if inverted.any() else []
+    return _flipped(mesh, inverted), notes
+
+
+def _neighbours(mesh):
+    """Face pairs that share an edge of two faces: (first (e,), second (e,), wound alike (e,)), and (m,) boolean:
+    all three edges of the face are such edges."""
+    tails, heads = mesh.faces.ravel(), np.roll(mesh.faces, -1, axis=1).ravel()
+    forward = tails < heads
+    edge = np.minimum(tails, heads) * len(mesh.vertices) + np.maximum(tails, heads)
+    order = np.argsort(edge, kind="stable")
+    starts = np.flatnonzero(np.r_[True, np.diff(edge[order]) > 0])
+    pairs = starts[np.diff(np.r_[starts, len(order)]) == 2]
+    one, other = order[pairs], order[pairs + 1]
+    closed = np.zeros(len(tails), dtype=bool)
+    closed[one] = closed[other] = True
+    return one // 3, other // 3, forward[one] != forward[other], closed.reshape(-1, 3).all(axis=1)
+
+
+def _against_the_majority(count, first, second, alike):
+    """(m,) boolean: the faces to turn, found on the double cover of the face graph.
+
+    Each face stands there twice, as it is and turned; neighbours wound alike join equal copies, others unequal ones.
+    """
+    if alike.all():
+        return np.zeros(count, dtype=bool)
+    crossed = np.where(alike, 0, count)
+    rows = np.r_[first, first + count]
+    columns = np.r_[second + crossed, (second + count + crossed) % (2 * count)]
+    graph = sparse.coo_matrix((np.ones(len(rows)), (rows, columns)), shape=(2 * count, 2 * count))
+    label = connected_components(graph, directed=False)[1]
+    kept = np.bincount(label[:count], minlength=label.max() + 1)  # faces as they are in each copy of a part
+    as_is, turned = label[:count], label[count:]
+    return (kept[as_is] < kept[turned]) | ((kept[as_is] == kept[turned]) & (as_is > turned))
+
+
+def _inverted(mesh, first, second, closed_edges):
+    """(m,) boolean: the faces of closed parts that face inwards."""
+    count = len(mesh.faces)
+    graph = sparse.coo_matrix((np.ones(len(first)), (first, second)), shape=(count, count))
+    parts, part = connected_components(graph, directed=False)
+    closed = np.bincount(part, weights=closed_edges, minlength=parts) == np.bincount(part, minlength=parts)
+    corners = mesh.vertices[mesh.faces] - mesh.vertices.mean(axis=0)
+    volume = np.bincount(part, weights=np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])))
+    low, high = np.full((parts, 3), np.inf), np.full((parts, 3), -np.inf)
+    np.minimum.at(low, part, corners.min(axis=1))
+    np.maximum.at(high, part, corners.max(axis=1))
+    shells = np.flatnonzero(closed)
+    turn = np.zeros(parts, dtype=bool)
+    for shell in shells[volume[shells] < 0]:
+        within = closed & (low > low[shell]).all(axis=1) & (high < high[shell]).all(axis=1)
+        around = closed & (low < low[shell]).all(axis=1) & (high > high[shell]).all(axis=1)
+        if not around.any():
+            turn |= within
+            turn[shell] = True
+    return turn[part]
+
+
+def _flipped(mesh, flips):
+    if not flips.any():
+        return mesh
+    faces = mesh.faces.copy()
+    faces[flips] = faces[flips][:, ::-1]
+    return Mesh(mesh.vertices, faces, mesh.colors)

@@ -1,0 +1,84 @@
+"""Names beside the points of a chart, where they cover neither each other nor a point."""
+
+import numpy as np
+from matplotlib.transforms import Bbox
+
+from .style import GREY, INK
+
+SIDES = [(1, 1), (-1, 1), (1, -1), (-1, -1), (1, 0), (-1, 0), (0, 1), (0, -1)]  # of the point, the best first
+GAPS = [5, 14, 26, 40]  # from the point to its name, in typographic points
+FAR = 14  # a name from this gap on gets a thin line to its point
+CROSSING = 15  # a crossed line is as bad as so much more of a gap
+SIZE, RADIUS = 8.5, 5.5  # of the letters and of a point with its rim, in typographic points
+
+
+def place_names(axes, names, points, lines):
+    """Writes each name at the nearest free place around its point; returns the texts.
+
+    names: list of (text, (x, y)); points (k, 2): all that no name may cover; lines: list of two ends each, which names
+    avoid where they can. All in the data's units. To be called last, when nothing moves the limits of the
+    axes any more. A name that finds no free place is left out.
+    """
+    axes.figure.draw_without_rendering()  # limits are settled only by drawing
+    scale = axes.figure.dpi / 72
+    to_pixels = axes.transData.transform
+    taken = [_around(spot[None], RADIUS * scale) for spot in to_pixels(points)]
+    strokes = [_around(to_pixels(ends), scale) for ends in lines]
+    written, spoken = [], []
+    for text, point in names:
+        spot = to_pixels(point)
+        found = _nearest(axes, _extent(axes, text), spot, (taken, spoken, strokes), scale)
+        if found is None:
+            continue
+        gap, box = found
+        spoken.append(box)
+        if gap >= FAR:
+            taken += _leader(spot, box, scale)
+        place = {"xytext": ((box.x0 - spot[0]) / scale, (box.y0 - spot[1]) / scale), "textcoords": "offset points"}
+        if gap >= FAR:
+            place["arrowprops"] = {"arrowstyle": "-", "color": GREY, "lw": 0.6, "shrinkA": 0, "shrinkB": 4}
+        written.append(axes.annotate(text, point, ha="left", va="bottom", fontsize=SIZE, color=INK, zorder=4, **place))
+    return written
+
+
+def _nearest(axes, extent, spot, others, scale):
+    """(gap, box) of the best free place, or None. others: boxes that no name may cover, of names, of lines."""
+    window, free, (taken, spoken, strokes) = axes.get_window_extent(), [], others
+    for gap in GAPS:
+        for side in SIDES:
+            box = _beside(spot, extent, side, gap * scale)
+            inside = window.x0 <= box.x0 and box.x1 <= window.x1 and window.y0 <= box.y0 and box.y1 <= window.y1
+            led = _leader(spot, box, scale) if gap >= FAR else []
+            crossed = any(part.count_overlaps(taken + spoken) for part in led)  # its line would belong to others
+            if inside and not crossed and not box.count_overlaps(taken + spoken):
+                free.append((gap + CROSSING * box.count_overlaps(strokes), len(free), gap, box))
+    return min(free)[2:] if free else None
+
+
+def _leader(spot, box, scale):
+    """Small boxes along the thin line to a name, from a little way off its point."""
+    middle = np.array([(box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2])
+    near = min(1.0, 2 * RADIUS * scale / np.linalg.norm(middle - spot))
+    return [_around((spot + share * (middle - spot))[None], scale) for share in np.linspace(near, 1, 30)]
+
+
+def _beside(spot, extent, side, gap):
+    """The box of a text of this extent at one side of a spot, in pixels."""
+    (x, y), (width, height), (across, up) = spot, extent, side
+    step = gap if across == 0 or up == 0 else 0.7 * gap  # at a corner both ways count
+    x0 = x - width / 2 + across * (width / 2 + step)
+    y0 = y - height / 2 + up * (height / 2 + step)
+    return Bbox.from_extents(x0, y0, x0 + width, y0 + height)
+
+
+def _extent(axes, text):
+    """(width, height) of a text in pixels."""
+    probe = axes.text(0, 0, text, fontsize=SIZE)
+    box = probe.get_window_extent(axes.figure.canvas.get_renderer())
+    probe.remove()
+    return box.width, box.height
+
+
+def _around(spots, margin):
+    """The box around spots (k, 2) with a margin: around one point, or the ends of an upright or level line."""
+    return Bbox([spots.min(axis=0) - margin, spots.max(axis=0) + margin])

@@ -1,0 +1,88 @@
+"""Faces agree with their neighbours and closed surfaces face outwards, whatever came in."""
+
+import numpy as np
+import pytest
+import trimesh
+
+from stages.kit import Mesh
+from stages.meshes import MeshError, clean
+from stages.meshes.orient import orient
+
+BALL = trimesh.creation.icosphere(2)
+
+
+def volume(mesh):
+    a, b, c = mesh.vertices[mesh.faces].transpose(1, 0, 2)
+    return np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6
+
+
+def joined(*shapes):
+    offsets = np.cumsum([0, *(len(vertices) for vertices, _ in shapes)])
+    faces = [faces + offset for (_, faces), offset in zip(shapes, offsets, strict=False)]
+    return Mesh(np.vstack([vertices for vertices, _ in shapes]), np.vstack(faces))
+
+
+def test_a_sound_mesh_stays_as_it_is():
+    mesh, notes = orient(Mesh(BALL.vertices, BALL.faces))
+    np.testing.assert_array_equal(mesh.faces, BALL.faces)
+    assert notes == []
+
+
+def test_an_inverted_mesh_is_turned_outwards():
+    mesh, notes = orient(Mesh(BALL.vertices, BALL.faces[:, ::-1]))
+    assert volume(mesh) == pytest.approx(volume(Mesh(BALL.vertices, BALL.faces)))
+    assert notes == ["320 faces turned outwards"]
+
+
+@pytest.mark.parametrize("share", [0.1, 0.5, 0.8])
+def test_mixed_winding_is_made_one(share):
+    faces = BALL.faces.copy()
+    turned = np.random.default_rng(0).random(len(faces)) < share
+    faces[turned] = faces[turned][:, ::-1]
+    mesh, notes = orient(Mesh(BALL.vertices, faces))
+    assert volume(mesh) == pytest.approx(volume(Mesh(BALL.vertices, BALL.faces))) and notes
+
+
+def test_an_open_sheet_follows_its_majority():
+    sheet = Mesh(BALL.vertices, BALL.faces[BALL.triangles_center[:, 2] > 0.3])
+    faces = sheet.faces.copy()
+    faces[:3] = faces[:3, ::-1]
+    mesh, notes = orient(Mesh(sheet.vertices, faces))
+    np.testing.assert_array_equal(np.sort(mesh.face_normals, axis=0), np.sort(sheet.face_normals, axis=0))
+    assert notes == ["3 faces turned to agree with their neighbours"]
+
+
+def test_a_cavity_keeps_facing_inwards():
+    hollow = joined((BALL.vertices, BALL.faces), (BALL.vertices / 2, BALL.faces[:, ::-1]))
+    mesh, notes = orient(hollow)
+    assert notes == [] and volume(mesh) == pytest.approx(volume(hollow))
+    inverted, _ = orient(Mesh(hollow.vertices, hollow.faces[:, ::-1]))
+    assert volume(inverted) == pytest.approx(volume(hollow))
+
+
+def test_an_inverted_part_beside_a_sound_one_is_turned_alone():
+    pair = joined((BALL.vertices, BALL.faces), (BALL.vertices + 5, BALL.faces[:, ::-1]))
+    mesh, notes = orient(pair)
+    assert notes == ["320 faces turned outwards"]
+    assert volume(mesh) == pytest.approx(2 * volume(Mesh(BALL.vertices, BALL.faces)))
+
+
+def test_a_moebius_strip_stays_and_is_no_crash():
+    steps = np.linspace(0, 2 * np.pi, 20, endpoint=False)
+    middle = np.c_[np.cos(steps), np.sin(steps), 0 * steps]
+    side = 0.2 * np.c_[np.cos(steps / 2) * np.cos(steps), np.cos(steps / 2) * np.sin(steps), np.sin(steps / 2)]
+    vertices = np.vstack([middle + side, middle - side])
+    faces = []
+    for i in range(20):
+        j = (i + 1) % 20
+        a, b, c, d = i, j, i + 20, j + 20
+        if j == 0:
+            b, d = d, b
+        faces += [(a, c, b), (b, c, d)]
+    mesh, _ = orient(Mesh(vertices, np.array(faces)))
+    assert len(mesh.faces) == 40
+
+
+def test_parts_too_far_apart_to_be_seen_are_refused():
+    with pytest.raises(MeshError, match="too small to be seen"):
+        clean(joined((BALL.vertices, BALL.faces), (BALL.vertices + 1000, BALL.faces)))
