@@ -19,13 +19,13 @@ from hydra.experimental.callback import Callback
 from omegaconf import OmegaConf
 
 from stages.classification import evaluate
+from stages.conspicuity import read_sight
 from stages.imprints import press_many, touchable
 from stages.kit import Stopwatch
 from stages.kit.files import read_mesh, read_table, write_table
 from stages.kit.params import ParamsError, check, check_section
 from stages.kit.run import DATA
 from stages.kit.stats import bootstrap_interval
-from stages.salient_points import read_sight
 from stages.salient_points.methods import find_all, method_named
 from stages.salient_points.options import Options
 from stages.weights import weights

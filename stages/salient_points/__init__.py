@@ -3,12 +3,10 @@
 from .find import find_points, look, saliency
 from .fuse import COMBINATIONS, fuse
 from .methods import METHODS
-from .project import project_pixels
 from .select import select_by_centroid, select_by_suppression
-from .sight import Sight
-from .storage import read_points, read_saliency, read_sight, read_strong_points
+from .storage import read_points, read_saliency, read_strong_points
 
 __all__ = [
-    "COMBINATIONS", "METHODS", "Sight", "find_points", "fuse", "look", "project_pixels", "read_points",
-    "read_saliency", "read_sight", "read_strong_points", "saliency", "select_by_centroid", "select_by_suppression",
+    "COMBINATIONS", "METHODS", "find_points", "fuse", "look", "read_points", "read_saliency", "read_strong_points",
+    "saliency", "select_by_centroid", "select_by_suppression",
 ]  # fmt: skip

@@ -9,6 +9,7 @@ that the methods share.
 
 import functools
 
+from stages.conspicuity import read_sight
 from stages.kit import StageRun, Stopwatch, arguments, params
 from stages.kit.files import read_mesh
 from stages.kit.run import DATA
@@ -17,7 +18,7 @@ from stages.weights import chosen_weights
 from .measure import rows_of, summary
 from .methods import find_all, method_named
 from .options import Options
-from .storage import read_sight, write_found
+from .storage import write_found
 
 
 def process(name, folder, settings, weights, seed):

@@ -2,10 +2,10 @@
 
 import numpy as np
 
+from stages.conspicuity.project import nearest_corners
 from stages.kit.rng import rng
 
 from .options import Found
-from .project import nearest_corners
 
 ROUNDS = 100  # of drawing anew; only a mesh with hardly more vertices than points wanted needs more than one
 

@@ -2,16 +2,15 @@
 
 import numpy as np
 
-from stages.conspicuity import conspicuity
+from stages.conspicuity import Sight, conspicuity
 from stages.conspicuity.channels import coverage
+from stages.conspicuity.surface_values import SMOOTHING
 from stages.meshes import normalise
 from stages.views import TWELVE, render
 from stages.weights import weights as weights_of
 
 from .methods import method_named
 from .options import RADIUS, WEIGHTS, Options
-from .sight import Sight
-from .surface import SMOOTHING
 
 IMAGE = (900, 1200)  # rows, columns of the views; T3.2.6
 MAP = (225, 300)  # rows, columns of the maps: every quarter, so that the channels' scales stay the thesis's

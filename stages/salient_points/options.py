@@ -4,10 +4,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from stages.conspicuity.surface_values import SMOOTHING
 from stages.weights import weights as weights_of
 
 from .select import select_by_centroid, select_by_suppression
-from .surface import SMOOTHING
 
 RADIUS = 0.058  # units, 50 pixels at 900 rows: the width of the kernel that keeps points apart in T3.2.1.3
 WEIGHTS = "thesis_ssim"  # better than thesis_ed in T3.2.9

@@ -1,13 +1,8 @@
-"""The file of one object's points, and the conspicuity maps that it is made of."""
-
-import re
+"""The file of one object's points."""
 
 import numpy as np
 
-from stages.kit import Viewpoint
 from stages.kit.files import read_arrays, write_arrays
-
-from .sight import Sight
 
 
 def write_found(path, found):
@@ -40,20 +35,3 @@ def read_saliency(path):
 def _read(path, kind):
     stored = read_arrays(path)
     return {key.rpartition(".")[0]: stored[key] for key in stored if key.endswith(f".{kind}")}
-
-
-def read_sight(path, mesh):
-    """The Sight of one object from its file of data/conspicuity."""
-    stored = read_arrays(path)
-    viewpoints = [viewpoint_named(name) for name in stored["viewpoints"]]
-    maps = {str(channel): stored["maps"][:, k] for k, channel in enumerate(stored["channels"])}
-    return Sight(mesh, viewpoints, maps, stored["mask"])
-
-
-def viewpoint_named(name):
-    """The Viewpoint that has this name, for example `az120_el-45`."""
-    number = r"(-?[\d.]+(?:e-?\d+)?)"
-    match = re.fullmatch(rf"az{number}_el{number}(?:_ro{number})?", str(name))
-    if match is None:
-        raise ValueError(f"{str(name)!r} is no viewpoint's name: expected one like az120_el-45")
-    return Viewpoint(*(float(angle) for angle in match.groups(default="0")))

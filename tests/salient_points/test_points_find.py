@@ -6,15 +6,17 @@ import numpy as np
 import pytest
 import trimesh
 
+from stages.conspicuity import Sight
+from stages.conspicuity.storage import viewpoint_named
 from stages.kit import Mesh
 from stages.kit.rng import rng
 from stages.meshes import normalise
-from stages.salient_points import METHODS, Sight, find_points, read_points, read_saliency, read_strong_points, saliency
+from stages.salient_points import METHODS, find_points, read_points, read_saliency, read_strong_points, saliency
 from stages.salient_points.chance import random_vertices
 from stages.salient_points.merge import continue_on_surface, merge_views
 from stages.salient_points.methods import find_all
 from stages.salient_points.options import Options
-from stages.salient_points.storage import viewpoint_named, write_found
+from stages.salient_points.storage import write_found
 from stages.views import FOUR, TWELVE
 from stages.weights import weights
 

@@ -2,10 +2,10 @@
 
 import numpy as np
 
+from stages.conspicuity.storage import viewpoint_named
 from stages.report.drawing import VIEWPOINT, picture
 from stages.report.items import Figure
 from stages.report.style import MAP, plt, save
-from stages.salient_points.storage import viewpoint_named
 
 FAINT = 0.02  # conspicuity below which a map shows nothing
 

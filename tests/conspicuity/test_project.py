@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import trimesh
 
+from stages.conspicuity.project import project_pixels
 from stages.kit import Mesh, RayScene, Viewpoint, camera
-from stages.salient_points import project_pixels
 
 SIZE = (225, 300)
 

@@ -6,7 +6,7 @@ from scipy import sparse
 from stages.kit import RayScene, camera
 
 from .project import nearest_corners
-from .surface import SMOOTHING, smoother
+from .surface_values import SMOOTHING, smoother
 
 SAME_DEPTH = 1e-4  # units, a tenth of a pixel at 900 rows: nearer than this two depths are one surface
 FAINT = 1e-9  # of a pixel's weight; below it a vertex has no pixel of the object around it

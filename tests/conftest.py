@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import trimesh
 
+from stages.conspicuity import Sight
 from stages.kit import Mesh, RayScene, camera
-from stages.salient_points import Sight
 from stages.views import TWELVE
 from stages.weights import weights
 
