@@ -63,6 +63,11 @@ class Mesh:
         return unit(corner_sum(self, np.repeat(self.face_crosses[:, None], 3, axis=1)))
 
     @cached_property
+    def vertex_areas(self):
+        """(n,) a third of the area of the faces around each vertex; zero at a vertex in no face."""
+        return corner_sum(self, np.repeat(self.face_areas[:, None] / 3, 3, axis=1))
+
+    @cached_property
     def adjacency(self):
         """(n, n) sparse boolean matrix: True where an edge joins two vertices."""
         tail = self.faces.ravel()
@@ -106,6 +111,6 @@ def corner_sum(mesh, values):
     """Sums values (m, 3) or (m, 3, d), one a face corner, onto the vertices: (n,) or (n, d)."""
     n = len(mesh.vertices)
     ids = mesh.faces.ravel()
-    flat = values.reshape(len(ids), -1)
+    flat = values.reshape(len(ids), int(np.prod(values.shape[2:])))
     summed = np.stack([np.bincount(ids, weights=column, minlength=n) for column in flat.T], axis=1)
     return summed[:, 0] if values.ndim == 2 else summed
