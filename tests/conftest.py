@@ -5,12 +5,13 @@ import pytest
 import trimesh
 
 from stages.conspicuity import Sight
+from stages.conspicuity.channels import CHANNELS as NINE
+from stages.conspicuity.channels import OTHERS
 from stages.kit import Mesh, RayScene, camera
 from stages.views import TWELVE
-from stages.weights import weights
 
 SIZE = (75, 100)
-CHANNELS = tuple(weights("equal"))
+CHANNELS = (*NINE, *OTHERS)
 
 
 def spot_maps(mesh, spot, viewpoints=TWELVE, width=0.15, channels=CHANNELS):

@@ -9,10 +9,12 @@ from .curvature import curvature
 from .dkl import dkl
 from .edge import edge
 from .entropy import entropy
+from .fine_grained import fine_grained
 from .intensity import intensity
 from .operators import COMMON
 from .orientation import orientation
-from .symmetry import symmetry
+from .spectral_residual import spectral_residual
+from .symmetry import symmetry, symmetry_lateral, symmetry_radial
 
 CHANNELS = {
     "color": color,
@@ -25,33 +27,43 @@ CHANNELS = {
     "orientation": orientation,
     "symmetry": symmetry,
 }
+# Beside the nine of T table 3.1: symmetry of either kind alone (T3.1.5), and two rivals out of OpenCV.
+OTHERS = {
+    "symmetry_lateral": symmetry_lateral,
+    "symmetry_radial": symmetry_radial,
+    "spectral_residual": spectral_residual,
+    "fine_grained": fine_grained,
+}
 SHARE = 4  # the default size of a map: a quarter of the view's
 
 
 def conspicuity(mesh, view, channels=None, size=None, filled=True):
     """The conspicuity maps of a view: {channel: (h', w') f4 in 0..1}, zero off the object.
 
-    mesh: stages.kit.Mesh; view: stages.views.View of it; channels: names out of CHANNELS, None for all nine; size:
-    (rows, columns) of the maps, by default a quarter of the view's; filled: True keeps the background out of the
-    filters (stages.conspicuity.background), False shows what it would do there.
+    mesh: stages.kit.Mesh; view: stages.views.View of it; channels: names out of CHANNELS and OTHERS, None for
+    the nine of CHANNELS; size: (rows, columns) of the maps, by default a quarter of the view's; filled: True keeps the
+    background out of the filters (stages.conspicuity.background), False shows what it would do there. The two rivals
+    out of OpenCV see the image as rendered in either case.
 
-    Every map has gone through N(.) once more as a whole, the way Itti 1998 brings channels to one scale before their
-    sum: its highest value says how much it stands out. Raises ValueError for an unknown channel, a size without
-    pixels, or a view that is not of this mesh.
+    Every map of a channel has gone through N(.) once more as a whole, the way Itti 1998 brings channels to one scale
+    before their sum: its highest value says how much it stands out. Raises ValueError for an unknown channel, a size
+    without pixels, or a view that is not of this mesh.
     """
     names = list(CHANNELS) if channels is None else known_channels(channels)
     size = tuple(max(side // SHARE, 1) for side in view.mask.shape) if size is None else tuple(size)
     if len(size) != 2 or min(size) < 1:
         raise ValueError(f"the size of the maps must be (rows, columns), each at least 1, got {size}")
     inside = coverage(view.mask, size)
-    return {name: fit(CHANNELS[name](mesh, view, filled), view.mask.shape, size) * inside for name in names}
+    maps = CHANNELS | OTHERS
+    return {name: fit(maps[name](mesh, view, filled), view.mask.shape, size) * inside for name in names}
 
 
 def known_channels(names):
-    """The names as a list; ValueError when one is no channel."""
-    unknown = [name for name in names if name not in CHANNELS]
+    """The names as a list; ValueError when one is neither in CHANNELS nor in OTHERS."""
+    known = [*CHANNELS, *OTHERS]
+    unknown = [name for name in names if name not in known]
     if unknown:
-        raise ValueError(f"unknown channel {', '.join(map(str, unknown))}: choose from {', '.join(CHANNELS)}")
+        raise ValueError(f"unknown channel {', '.join(map(str, unknown))}: choose from {', '.join(known)}")
     return list(names)
 
 
@@ -65,8 +77,8 @@ def fit(values, shape, size):
 
     Pixel k of the map lies on pixel k * 2**scale of the view, pixel j of the result covers an even share of the view.
     """
-    scale = round(np.log2(shape[0] / values.shape[0])) if values.shape[0] > 1 else COMMON
-    sides = [tuple(-(-side // 2**s) for side in shape) for s in range(scale + 1)]
+    sides = [tuple(-(-side // 2**s) for side in shape) for s in range(COMMON + 1)]
+    scale = max(s for s in range(COMMON + 1) if sides[s] == values.shape)
     for finer in range(scale - 1, 1, -1):
         values = cv2.pyrUp(values, dstsize=sides[finer][::-1])
     step = 2 ** min(scale, 2)

@@ -45,16 +45,18 @@ def expand(levels, scale, target):
     return image
 
 
-def centre_surround(levels, cover, floor=FLOOR):
+def centre_surround(levels, cover, floor=FLOOR, on_centre=False):
     """Across-scale sum of N(|I(c) - I(s)|) at scale 4, the inner part of T eq. 3.1.
 
     levels: pyramid {2..8: (h, w) f4}; cover: pyramid {2..4: (h, w) boolean}, where the object is; floor: see
-    `normalise`. Six terms, c in {2, 3, 4} and s = c + {3, 4}.
+    `normalise`. Six terms, c in {2, 3, 4} and s = c + {3, 4}. on_centre: a centre below its surround is nothing,
+    as in a cell that its surround inhibits (T3.1.1), instead of as much as one above it.
     """
     total = np.zeros(levels[COMMON].shape, dtype=np.float32)
     for c in CENTRES:
         for delta in DELTAS:
-            difference = cv2.absdiff(levels[c], expand(levels, c + delta, c))
+            surround = expand(levels, c + delta, c)
+            difference = np.maximum(levels[c] - surround, 0) if on_centre else cv2.absdiff(levels[c], surround)
             total += reduce(normalise(difference, cover[c], floor), c)
     return total
 

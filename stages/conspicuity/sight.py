@@ -5,10 +5,10 @@ from scipy import sparse
 
 from stages.kit import RayScene, camera
 
+from .facing import facing
 from .project import nearest_corners
 from .surface_values import SMOOTHING, smoother
 
-SAME_DEPTH = 1e-4  # units, a tenth of a pixel at 900 rows: nearer than this two depths are one surface
 FAINT = 1e-9  # of a pixel's weight; below it a vertex has no pixel of the object around it
 
 
@@ -20,6 +20,7 @@ class Sight:
     reduced map cannot name a place beside the object. The p pixels that count are kept as one long list:
 
     maps (dict channel -> (p,) f8), vertices (p,) i8: the vertex that each pixel shows.
+    facing (v, n) f8: how squarely each view sees each vertex, the cosine to its normal; 0 where it is hidden.
     Raises ValueError for maps of the wrong shape, of negative or NaN values, or when no pixel sees the mesh.
     """
 
@@ -35,6 +36,7 @@ class Sight:
             raise ValueError("no pixel of any view sees the mesh: is it normalised (stages.meshes.normalise)?")
         self._ends = np.cumsum(self._seen.sum(axis=(1, 2)))
         self.maps = {channel: np.asarray(values)[self._seen].astype(np.float64) for channel, values in maps.items()}
+        self.facing = facing(mesh, self.viewpoints, self._scene)
         self._spread, self._looks = self._vertex_sampler()
         self._smoothers = {}  # length -> function; its equations are factored once for all methods
 
@@ -62,13 +64,24 @@ class Sight:
             return np.zeros((1, 1)), np.zeros((1, 1), dtype=np.int64)
         rows, columns = np.flatnonzero(seen.any(axis=1)), np.flatnonzero(seen.any(axis=0))
         box = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
-        part = slice(self._ends[view] - seen.sum(), self._ends[view])
+        part = self.pixels_of(view)
         picture, ids = np.zeros(self.size), np.zeros(self.size, dtype=np.int64)
         picture[seen], ids[seen] = values[part], self.vertices[part]
         return picture[box], ids[box]
 
+    def pixels_of(self, view):
+        """The slice of the long list of pixels that belongs to a view."""
+        return slice(self._ends[view] - self._seen[view].sum(), self._ends[view])
+
     def on_vertices(self, values, smoothing=SMOOTHING):
-        """Pixel values (p,) on the vertices: (n,) f8 in 0..1, the largest 1; zeros where all values are zero.
+        """Pixel values (p,) on the vertices: (n,) f8 in 0..1, the largest 1; zeros where all values are zero."""
+        smooth = self.averaged(values, smoothing)
+        top = smooth.max()
+        # Rounded, so that the last bits of the solver cannot turn the order of two vertices from machine to machine.
+        return np.clip(smooth / top, 0, 1).round(6) if top > 0 else np.zeros(len(smooth))
+
+    def averaged(self, values, smoothing=SMOOTHING):
+        """Pixel values (p,) on the vertices, (n,) f8 in the values' own unit.
 
         The average over the views in which a vertex is visible, weighted by how squarely it faces the view: a grazing
         look spreads a pixel over much surface and tells little about each place. Then made smooth along the surface.
@@ -77,10 +90,7 @@ class Sight:
             trust = np.minimum(self._looks, 1)  # one full look at a vertex suffices
             self._smoothers[smoothing] = smoother(self.mesh, trust, smoothing)
         average = np.divide(self._spread @ values, self._looks, out=np.zeros(len(self._looks)), where=self._looks > 0)
-        smooth = self._smoothers[smoothing](average)
-        top = smooth.max()
-        # Rounded, so that the last bits of the solver cannot turn the order of two vertices from machine to machine.
-        return np.clip(smooth / top, 0, 1).round(6) if top > 0 else np.zeros(len(smooth))
+        return self._smoothers[smoothing](average)
 
     def _vertex_sampler(self):
         """(sparse (n, p): pixels to vertices, weighted by facing; (n,) the weights' sums)."""
@@ -94,7 +104,7 @@ class Sight:
 
     def _sample(self, view, index):
         """Bilinear weights of the pixels around each visible vertex of one view: (vertices, pixels, weights)."""
-        ids, facing = self._visible(view)
+        ids = np.flatnonzero(self.facing[view])
         rows, columns, _ = camera.project(self.mesh.vertices[ids], self.viewpoints[view], self.size)
         corners = np.array([[0, 0], [0, 1], [1, 0], [1, 1]])
         r = np.floor(rows)[:, None].astype(np.int64) + corners[:, 0]
@@ -103,19 +113,9 @@ class Sight:
         pixel = np.where(inside, index[np.where(inside, r, 0), np.where(inside, c, 0)], -1)
         weight = (1 - np.abs(rows[:, None] - r)) * (1 - np.abs(columns[:, None] - c)) * (pixel >= 0)
         total = weight.sum(axis=1, keepdims=True)  # less than 1 at the silhouette, where pixels off the object drop out
-        weight = facing[:, None] * np.divide(weight, total, out=np.zeros_like(weight), where=total > FAINT)
+        weight = self.facing[view, ids, None] * np.divide(weight, total, out=np.zeros_like(weight), where=total > FAINT)
         kept = weight > 0
         return np.broadcast_to(ids[:, None], kept.shape)[kept], pixel[kept], weight[kept]
-
-    def _visible(self, view):
-        """(ids of the vertices that a view sees, how squarely they face it in 0..1), tested by exact rays."""
-        back = self.viewpoints[view].axes[2]
-        depth = camera.DISTANCE - self.mesh.vertices @ back
-        facing = np.abs(self.mesh.vertex_normals @ back)  # either side counts: open meshes show their inside
-        origins = self.mesh.vertices + depth[:, None] * back
-        hits = self._scene.cast(origins, np.broadcast_to(-back, origins.shape))
-        ids = np.flatnonzero((hits.distance >= depth - SAME_DEPTH) & (facing > 0))
-        return ids, facing[ids]
 
 
 def _check_maps(maps, views):

@@ -8,12 +8,17 @@ from stages.kit.files import read_arrays
 from .sight import Sight
 
 
-def read_sight(path, mesh):
-    """The Sight of one object from its file of data/conspicuity."""
+def read_maps(path):
+    """(maps (v, channels, h, w) f4, mask (v, h, w) boolean, viewpoints, channels) of a file of data/conspicuity."""
     stored = read_arrays(path)
     viewpoints = [viewpoint_named(name) for name in stored["viewpoints"]]
-    maps = {str(channel): stored["maps"][:, k] for k, channel in enumerate(stored["channels"])}
-    return Sight(mesh, viewpoints, maps, stored["mask"])
+    return stored["maps"].astype("f4"), stored["mask"], viewpoints, [str(channel) for channel in stored["channels"]]
+
+
+def read_sight(path, mesh):
+    """The Sight of one object from its file of data/conspicuity."""
+    maps, mask, viewpoints, channels = read_maps(path)
+    return Sight(mesh, viewpoints, {channel: maps[:, k] for k, channel in enumerate(channels)}, mask)
 
 
 def viewpoint_named(name):

@@ -20,9 +20,7 @@ def smoother(mesh, confidence, length=SMOOTHING):
     with distance; a piece of surface that nobody sees gets zero. Negative cotangents count as zero, which keeps the
     result between zero and the largest value.
     """
-    n = len(mesh.vertices)
-    area = np.bincount(mesh.faces.ravel(), np.repeat(mesh.face_areas / 3, 3), minlength=n)
-    area = np.maximum(area, LEAST_AREA)
+    area = np.maximum(mesh.vertex_areas, LEAST_AREA)
     hidden = np.where(confidence > 0, 0, max(length / REACH, LEAST_PULL) ** 2)
     system = sparse.diags((confidence + hidden) * area) + length**2 * laplacian(mesh)
     solver = splu(system.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0, options={"SymmetricMode": True})

@@ -1,4 +1,4 @@
-"""Symmetry of the surface, found in 3D and seen from the view."""
+"""Symmetry of the surface, found in 3D and seen from the view: of both kinds, and of each alone."""
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from .planes import shape_symmetries
 from .surface import seen, surface_conspicuity
 
 BAND = 0.015  # of the diagonal: how far from a plane of symmetry its points' immediate neighbours reach (one sigma)
+KINDS = ("lateral", "radial")  # planes of bilateral symmetry, axes of radial symmetry
 
 
 def symmetry(mesh, view, filled=True):
@@ -19,27 +20,43 @@ def symmetry(mesh, view, filled=True):
     the squared sine of its angle to the image, an axis with the squared cosine to the line of sight: seen flat on, a
     plane of symmetry mirrors nothing in the image, and its points lie along the silhouette.
     """
+    return _conspicuity(mesh, view, filled, KINDS)
+
+
+def symmetry_lateral(mesh, view, filled=True):
+    """The map as in `symmetry` of bilateral symmetry alone: planes, T3.1.5's SymLat.
+
+    A body of revolution has a plane through its axis for every view, so it is white there along the middle.
+    """
+    return _conspicuity(mesh, view, filled, ("lateral",))
+
+
+def symmetry_radial(mesh, view, filled=True):
+    """The map as in `symmetry` of radial symmetry alone: where axes pierce the surface, T3.1.5's SymRad."""
+    return _conspicuity(mesh, view, filled, ("radial",))
+
+
+def _conspicuity(mesh, view, filled, kinds):
     image = picture(view, filled)
     if image.empty:
         return image.nothing()
     here = seen(view, mesh)
-    return surface_conspicuity(symmetric_points(mesh, here.points, here.back), mesh, view, filled)
+    return surface_conspicuity(symmetric_points(mesh, here.points, here.back, kinds), mesh, view, filled)
 
 
-def symmetric_points(mesh, points, back=None):
+def symmetric_points(mesh, points, back=None, kinds=KINDS):
     """(k,) f8 in 0..1: how near points (k, 3) of the surface are to a plane or an axis of symmetry.
 
     back (3,): the unit direction to the camera, from which planes and axes are judged; None weighs all alike.
+    kinds: which of KINDS count.
     """
     found = found_symmetries(mesh)
     reach = 2 * (BAND * mesh.diagonal) ** 2
     white = np.zeros(len(points))
-    for normal, offset, score in _planes_seen(found, back):
-        weight = score if back is None else score * (1 - (normal @ back) ** 2)
+    for normal, offset, weight in weighted_planes(found, back) if "lateral" in kinds else ():
         np.maximum(white, weight * np.exp(-((points @ normal - offset) ** 2) / reach), out=white)
-    for axis, score, _ in found.axes:
-        weight = score if back is None else score * (axis @ back) ** 2
-        away = points - found.centre
+    away = points - found.centre
+    for axis, weight in weighted_axes(found, back) if "radial" in kinds else ():
         distance = (away**2).sum(axis=1) - (away @ axis) ** 2
         np.maximum(white, weight * np.exp(-distance / (4 * reach)), out=white)
     return white
@@ -51,8 +68,11 @@ def found_symmetries(mesh):
     return shape_symmetries(mesh)
 
 
-def _planes_seen(found, back):
-    """The planes (normal, offset, score), and of the family round a body of revolution the one seen edge-on."""
+def weighted_planes(found, back):
+    """[(normal (3,), offset, weight)]: the planes, and of the family round a body of revolution the one seen edge-on.
+
+    found: Symmetries; back as in `symmetric_points`.
+    """
     planes = list(found.planes)
     for axis, score, revolves in found.axes:
         if revolves and back is not None:
@@ -61,4 +81,9 @@ def _planes_seen(found, back):
                 normal = unit(normal)
                 # It lies edge-on by construction: how well it shows depends on how much of the axis the image shows.
                 planes.append((normal, normal @ found.centre, score * (1 - (axis @ back) ** 2)))
-    return planes
+    return [(n, offset, score if back is None else score * (1 - (n @ back) ** 2)) for n, offset, score in planes]
+
+
+def weighted_axes(found, back):
+    """[(axis (3,), weight)] of Symmetries; back as in `symmetric_points`."""
+    return [(axis, score if back is None else score * (axis @ back) ** 2) for axis, score, _ in found.axes]
