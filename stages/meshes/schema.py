@@ -7,9 +7,9 @@ from dataclasses import dataclass
 class Params:
     """Section `meshes` of params.yaml."""
 
-    source: str  # which collection: household or folder
-    folder: str  # where a person's own meshes lie; read by source folder only
-    up: str  # the axis that points up in the folder's files: x, y or z
+    source: str  # which collection: household, folder, gaze, princeton or interest_points
+    folder: str  # where the files lie: a person's own folder, or a collection's folder or zip; household needs none
+    up: str  # the axis that points up in the files of folder and interest_points: x, y or z
     unit: str  # the unit of the folder's files, for the manifest
     objects: list[str]  # the objects to take, all of the source when empty
     strict: bool  # stop at the first refused mesh instead of going on without it

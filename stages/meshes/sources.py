@@ -1,11 +1,17 @@
 """Where meshes come from: one function a collection, each says its up axis, unit and licence."""
 
+import io
+import re
 import sys
+import zipfile
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
-from stages.kit.fetch import fetch_package, read_members
+from scipy.io import loadmat
+
+from stages.kit.fetch import FetchError, fetch_package, read_members
 
 from .load import FORMATS, MeshError
 
@@ -79,7 +85,101 @@ def _folder_item(root, name, path, settings):
     return Item(name, file, path.suffix.lower(), path.read_bytes, up, unit, "unknown")
 
 
-SOURCES = {"household": household, "folder": folder}
+# What to put where meshes.folder says: (source, what it holds, where it is published). None of them is fetched by this
+# program, since their pages name no hash and some no licence.
+GAZE = ("gaze", "Models_3D/*.obj and dataset_*/*.txt", "https://github.com/FandosA/3D_Mesh_Saliency_Prediction_PyTorch")
+PRINCETON = ("princeton", "LabeledDB_new/CLASS/ID.off", "https://segeval.cs.princeton.edu")
+INTEREST_POINTS = (
+    "interest_points",
+    "MODEL_DATASET/*.mat and OUTPUT_DATA/GROUND_TRUTH_B/*.mat",
+    "https://www.itl.nist.gov/iad/vug/sharp/benchmark/3DInterestPoint",
+)
+
+
+def gaze(settings):
+    """Nineteen meshes with the gaze of 32 people in virtual reality; all stand with +y up. Most are T [236]'s."""
+    found = named(stored_files(settings.folder, *GAZE), r"Models_3D/([^/]+)\.obj")
+    return _items(found, settings, "y")
+
+
+def princeton(settings):
+    """The Princeton segmentation benchmark (Chen 2009): 19 classes of closed meshes, named CLASS_ID.
+
+    Most have +y up; the poses of ants, bearings, some airplanes, chairs, tables and people differ within their class.
+    """
+    found = named(stored_files(settings.folder, *PRINCETON), r"LabeledDB_new/([^/]+/[^/]+)\.off")
+    return _items(found, settings, "y")
+
+
+def interest_points(settings):
+    """The 43 models of the 3D interest point benchmark (Dutagaci 2012, T [7]), MATLAB files with V and F."""
+    found = named(stored_files(settings.folder, *INTEREST_POINTS), r"MODEL_DATASET/([^/]+)\.mat")
+    read = {name: (path, partial(_off, content)) for name, (path, content) in found.items()}
+    return _items(read, settings, settings.up, ".off")
+
+
+def _items(found, settings, up, suffix=None):
+    return [
+        Item(name, found[name][0], suffix or Path(found[name][0]).suffix, found[name][1], up, "unknown", "not stated")
+        for name in _chosen(tuple(found), settings.objects)
+    ]
+
+
+def stored_files(folder, source, what, url):
+    """dict path -> function that reads the bytes, for all files of a collection in a folder or zip archive.
+
+    Raises FetchError, one line that says what to get, from where and where to put it, when it is not there.
+    """
+    place = Path(folder).expanduser()
+    if folder and place.is_dir():
+        return {path.relative_to(place).as_posix(): path.read_bytes for path in sorted(place.rglob("*.*"))}
+    if folder and zipfile.is_zipfile(place):
+        with zipfile.ZipFile(place) as archive:
+            return {name: partial(_member, place, name) for name in sorted(archive.namelist())}
+    raise FetchError(
+        f"meshes.folder={str(folder)!r} holds no {source} data: get {what} from {url}, put it there as a folder or"
+        " a zip archive with these names inside, or set meshes.folder to where it lies"
+    )
+
+
+def _member(archive, name):
+    return next(read_members(archive, [name]))[1]
+
+
+def named(files, pattern):
+    """dict name -> (path, reader) of the files whose path ends with the pattern; its group, / as _, is the name."""
+    matches = [(re.search(rf"(?:^|/){pattern}$", path), path) for path in files if "/." not in path]  # no hidden file
+    found = {match[1].replace("/", "_"): (path, files[path]) for match, path in matches if match}
+    if not found:
+        raise FetchError(f"no file of the {len(files)} there is called {pattern}: is it the published archive?")
+    return found
+
+
+def read_mat(content, names):
+    """The variables `names` of a MATLAB file's bytes; MeshError when it is none or lacks one."""
+    try:
+        stored = loadmat(io.BytesIO(content))
+    except Exception as error:  # scipy raises whatever it stumbles over, and refuses version 7.3
+        raise MeshError(f"unreadable as a MATLAB file before version 7.3 ({type(error).__name__})") from None
+    missing = [name for name in names if name not in stored]
+    if missing:
+        raise MeshError(f"the MATLAB file holds no {', '.join(missing)}")
+    return [stored[name] for name in names]
+
+
+def _off(content):
+    """A model of the interest point benchmark as the bytes of an OFF file, every coordinate exact."""
+    vertices, faces = read_mat(content(), ("V", "F"))
+    if any(values.dtype.kind not in "iuf" or values.ndim != 2 or values.shape[1] != 3 for values in (vertices, faces)):
+        raise MeshError(f"V and F must be numbers in three columns, got {vertices.shape} and {faces.shape}")
+    rows = [" ".join(map(repr, row)) for row in vertices.tolist()]
+    rows += [f"3 {a} {b} {c}" for a, b, c in (faces.astype(int) - 1).tolist()]
+    return "\n".join(["OFF", f"{len(vertices)} {len(faces)} 0", *rows, ""]).encode()
+
+
+SOURCES = {
+    "household": household, "folder": folder, "gaze": gaze, "princeton": princeton, "interest_points": interest_points,
+}  # fmt: skip
 
 
 def _chosen(known, wanted):

@@ -1,0 +1,123 @@
+"""The published collections as sources of meshes: names, up axis, vertices as stored, a remedy where one is absent."""
+
+import io
+import os
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import trimesh
+from scipy.io import savemat
+
+from stages.kit.fetch import FetchError
+from stages.meshes import MeshError
+from stages.meshes.load import parse
+from stages.meshes.sources import SOURCES
+
+ROOT = Path(__file__).parents[2]
+SHARED = ROOT / "../shared/data"
+BALL = trimesh.creation.icosphere(1)
+
+
+def items(source, folder, objects=()):
+    return SOURCES[source](SimpleNamespace(folder=str(folder), objects=list(objects), up="x"))
+
+
+def off(mesh):
+    return mesh.export(file_type="off")
+
+
+@pytest.fixture
+def archives(tmp_path):
+    with zipfile.ZipFile(tmp_path / "gaze.zip", "w") as archive:
+        archive.writestr("Models_3D/", "")
+        archive.writestr("Models_3D/bunny.obj", BALL.export(file_type="obj"))
+        archive.writestr("dataset_train/bunny.txt", "")
+    with zipfile.ZipFile(tmp_path / "princeton.zip", "w") as archive:
+        archive.writestr("LabeledDB_new/Airplane/61.off", off(BALL))
+        archive.writestr("LabeledDB_new/Ant/81.off", off(BALL))
+        archive.writestr("__MACOSX/LabeledDB_new/Ant/._81.off", "")
+    stream = io.BytesIO()
+    savemat(stream, {"V": BALL.vertices / 3, "F": BALL.faces + 1.0})
+    with zipfile.ZipFile(tmp_path / "interest_points.zip", "w") as archive:
+        archive.writestr("3DInterestPoint/MODEL_DATASET/ant.mat", stream.getvalue())
+        archive.writestr("3DInterestPoint/IP_BENCHMARK/OUTPUT_DATA/GROUND_TRUTH_B/ant.mat", b"")
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("source", "names", "up"),
+    [("gaze", ["bunny"], "y"), ("princeton", ["Airplane_61", "Ant_81"], "y"), ("interest_points", ["ant"], "x")],
+)
+def test_a_zip_and_its_folder_give_the_same_readable_items(archives, source, names, up):
+    with zipfile.ZipFile(archives / f"{source}.zip") as archive:
+        archive.extractall(archives / source)
+    for place in (archives / f"{source}.zip", archives / source):
+        found = items(source, place)
+        assert [item.name for item in found] == names and {item.up for item in found} == {up}
+        mesh = parse(found[0].content(), found[0].suffix)
+        assert (mesh.faces == BALL.faces).all()
+        np.testing.assert_allclose(mesh.vertices * (3 if source == "interest_points" else 1), BALL.vertices, atol=1e-7)
+
+
+def test_matlab_models_keep_every_digit_and_doubled_vertex(tmp_path):
+    vertices = np.random.default_rng(0).normal(size=(6, 3)) * 1e-3
+    vertices[5] = vertices[0]
+    (tmp_path / "MODEL_DATASET").mkdir()
+    savemat(tmp_path / "MODEL_DATASET/x.mat", {"V": vertices, "F": [[1, 2, 3], [4, 5, 6]]})
+    (item,) = items("interest_points", tmp_path)
+    mesh = parse(item.content(), item.suffix)
+    np.testing.assert_array_equal(mesh.vertices, vertices)
+    assert mesh.faces.tolist() == [[0, 1, 2], [3, 4, 5]]
+
+
+def test_a_file_that_is_no_model_is_refused_with_its_reason(tmp_path):
+    (tmp_path / "MODEL_DATASET").mkdir()
+    (tmp_path / "MODEL_DATASET/x.mat").write_bytes(b"nothing")
+    savemat(tmp_path / "MODEL_DATASET/y.mat", {"V": np.eye(3)})
+    savemat(tmp_path / "MODEL_DATASET/z.mat", {"V": np.eye(3), "F": "none"})
+    first, second, third = items("interest_points", tmp_path)
+    with pytest.raises(MeshError, match="unreadable as a MATLAB file"):
+        first.content()
+    with pytest.raises(MeshError, match="holds no F"):
+        second.content()
+    with pytest.raises(MeshError, match="V and F must be numbers"):
+        third.content()
+
+
+def test_an_object_that_is_not_there_is_named_with_the_known_ones(archives):
+    assert [item.name for item in items("princeton", archives / "princeton.zip", ["Ant_81"])] == ["Ant_81"]
+    with pytest.raises(MeshError, match="Ant_99.*Airplane_61, Ant_81"):
+        items("princeton", archives / "princeton.zip", ["Ant_99"])
+
+
+@pytest.mark.parametrize("source", ["gaze", "princeton", "interest_points"])
+def test_an_absent_or_foreign_archive_is_named_with_the_remedy(archives, source):
+    for folder in ("", archives / "gone.zip"):
+        with pytest.raises(FetchError, match=f"holds no {source} data: get .* from https://.*set meshes.folder"):
+            items(source, folder)
+    (archives / "other").mkdir()
+    (archives / "other/readme.txt").write_text("")
+    with pytest.raises(FetchError, match="no file of the 1 there .* the published archive"):
+        items(source, archives / "other")
+
+
+def test_the_stage_says_so_in_one_line(tmp_path):
+    settings = "meshes: {source: gaze, folder: nowhere.zip, up: z, unit: m, objects: [], strict: false}\n"
+    (tmp_path / "params.yaml").write_text(f"profile: smoke\nseed: 0\n{settings}")
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    command = [sys.executable, "-m", "stages.meshes"]
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)
+    assert done.returncode == 1 and "Traceback" not in done.stderr
+    assert "meshes.folder='nowhere.zip' holds no gaze data: get Models_3D" in done.stderr
+
+
+@pytest.mark.skipif(not (SHARED / "psb.zip").exists(), reason="../shared/data is not there")
+def test_the_published_archives_hold_what_the_sources_promise():
+    meshes = items("princeton", SHARED / "psb.zip")
+    assert len(meshes) == 114 and len({item.name for item in meshes}) == 114
+    assert len(items("gaze", SHARED / "gaze.zip")) == 19
