@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 @dataclass
 class Params:
-    """Which weights are written, and which of them the saliency map uses."""
+    """Which weights the method `enhanced` takes."""
 
-    methods: list[str]  # all that are written, for comparison: equal, thesis_ssim, thesis_ed
-    method: str  # the one that the method `enhanced` of salient_points uses
+    method: str  # gaze (learned from human gaze, comes with the package) or fixations (learned from this data set)

@@ -1,38 +1,26 @@
-"""The table of weights: one row a method and channel; the method that the settings choose is marked."""
+"""The table of weights: a row a method, a channel (or feature), and an object that was left out of the learning."""
 
 import pandas as pd
 
-from stages.kit.files import read_table
+from .learn import ALL, learned_rows
+from .published import ENHANCED, METHODS, weights
 
-from .published import weights
 
+def weight_table(lessons, chosen):
+    """Frame with columns method, channel, weight, left_out; the rows of `enhanced` repeat those of the chosen method.
 
-def weight_table(methods, chosen):
-    """Frame with columns method, channel, weight, chosen (boolean), one row a method and channel.
-
-    The mark travels with the data, so that later stages follow the choice without reading another stage's settings.
-    Raises ValueError for an unknown method, or when the chosen one is not among the methods.
+    lessons: dict name -> lesson, may be empty. So the choice travels with the data, and later stages follow it without
+    reading another stage's settings. Raises ValueError for a choice that is neither published nor learned here.
     """
-    if chosen not in methods:
-        raise ValueError(f"weights.method {chosen!r} is not in weights.methods: {', '.join(methods)}; add it there")
     rows = [
-        {"method": method, "channel": channel, "weight": weight, "chosen": method == chosen}
-        for method in methods
+        {"method": method, "channel": channel, "weight": weight, "left_out": ALL}
+        for method in METHODS
         for channel, weight in weights(method).items()
     ]
-    return pd.DataFrame(rows)
-
-
-def read_weights(path, method):
-    """The weights of one method from a table's file: dict channel -> weight."""
-    table = read_table(path)
-    found = table[table.method == method]
-    if found.empty:
-        raise ValueError(f"{path} has no weights {method!r}, only {', '.join(table.method.unique())}")
-    return dict(zip(found.channel, found.weight.astype(float), strict=True))
-
-
-def chosen_weights(path):
-    """The weights of the chosen method from a table's file: dict channel -> weight."""
-    table = read_table(path)
-    return read_weights(path, table.method[table.chosen].iloc[0])
+    rows += learned_rows(lessons) if lessons else []
+    repeated = [row | {"method": ENHANCED} for row in rows if row["method"] == chosen]
+    if not repeated:
+        known = ", ".join(dict.fromkeys(row["method"] for row in rows))
+        learn = "" if lessons else "; no object has ground truth to learn from"
+        raise ValueError(f"weights.method {chosen!r} is not there: choose one of {known}{learn}")
+    return pd.DataFrame(rows + repeated)

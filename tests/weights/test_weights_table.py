@@ -1,14 +1,45 @@
-"""The weights that need no learning, and their file."""
+"""The weights that come with the package, and the table that later stages read."""
 
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 import pytest
 
+from stages.conspicuity import CHANNELS
 from stages.kit.files import write_table
-from stages.weights import METHODS, chosen_weights, read_weights, weight_table, weights
+from stages.weights import METHODS, Learned, learned_for, weights
+from stages.weights.features import POSITION, SEEN
+from stages.weights.learn import learned_rows
+from stages.weights.table import weight_table
 
+GAZE = Path(__file__).parents[2] / "reports/attention/weights.csv"
 THESIS = Path(__file__).parents[2] / "data/reference/thesis/table_3_1_channel_weights.csv"
+
+
+def lesson(best, seed):
+    """One object in whose views the channel `best` stands on the points, and whose looks follow its first feature."""
+    random = np.random.default_rng(seed)
+    features = random.normal(size=(400, 3))
+    return {
+        "channels": np.array(["edge", "color"]),
+        "names": np.array(["edge", "color", "height"]),
+        "distances": np.array([[1.0, 9.0], [np.nan, np.nan]] if best == "edge" else [[9.0, 1.0], [8.0, 2.0]]),
+        "similarities": np.array([[0.9, 0.2], [np.nan, np.nan]] if best == "edge" else [[0.2, 0.9], [0.1, 0.8]]),
+        "on_object": np.array([[0.5, -0.2], [np.nan, np.nan]] if best == "edge" else [[-0.2, 0.5], [0.0, 0.4]]),
+        "features": features,
+        "amounts": np.exp(2 * features[:, 0]),
+        "areas": np.ones(400),
+    }
+
+
+LESSONS = {"cup": lesson("edge", 0), "duck": lesson("edge", 1), "hand": lesson("color", 2)}
+
+
+@pytest.fixture
+def table(tmp_path):
+    write_table(tmp_path / "weights.csv", weight_table(LESSONS, "fixations"))
+    return tmp_path
 
 
 @pytest.mark.parametrize(("method", "column"), [("thesis_ssim", "ssim"), ("thesis_ed", "one_minus_ed")])
@@ -23,8 +54,15 @@ def test_equal_weights_are_equal():
 
 @pytest.mark.parametrize("method", METHODS)
 def test_every_method_weighs_every_channel_in_their_order(method):
-    conspicuity = pytest.importorskip("stages.conspicuity")
-    assert list(weights(method)) == list(conspicuity.CHANNELS)
+    expected = [*SEEN, *POSITION] if method == "gaze" else list(CHANNELS)
+    assert list(weights(method)) == expected
+
+
+def test_the_published_gaze_weights_are_those_that_the_gaze_taught():
+    table = pd.read_csv(GAZE)
+    table = table[(table.method == "fixations") & table.left_out.isna()]
+    learned = dict(zip(table.channel, table.weight.round(3), strict=True))
+    assert weights("gaze") == learned
 
 
 def test_a_changed_copy_leaves_the_weights_alone():
@@ -37,18 +75,33 @@ def test_unknown_method_is_named_with_the_known_ones():
         weights("ssim")
 
 
-def test_table_round_trip_keeps_weights_and_choice(tmp_path):
-    write_table(tmp_path / "weights.csv", weight_table(list(METHODS), "thesis_ed"))
-    assert read_weights(tmp_path / "weights.csv", "thesis_ssim") == weights("thesis_ssim")
-    assert chosen_weights(tmp_path / "weights.csv") == weights("thesis_ed")
+def test_without_ground_truth_only_what_is_published_is_there(tmp_path):
+    write_table(tmp_path / "weights.csv", weight_table({}, "gaze"))
+    found = learned_for(tmp_path, "cup", None)
+    assert set(found.weights) == {*METHODS, "enhanced", "enhanced_seen"} and found.svms == {}
+    assert found.weights["enhanced"] == pytest.approx(weights("gaze"))
+    assert Learned().weights["thesis_ed"] == found.weights["thesis_ed"]
 
 
-def test_reading_an_absent_method_is_an_error(tmp_path):
-    write_table(tmp_path / "weights.csv", weight_table(["equal"], "equal"))
-    with pytest.raises(ValueError, match="no weights 'svm', only equal"):
-        read_weights(tmp_path / "weights.csv", "svm")
+def test_an_object_with_ground_truth_takes_weights_that_have_not_seen_it(table):
+    own, seen = (learned_for(table, "hand", None).weights[name] for name in ("guided_ssim", "guided_ssim_seen"))
+    assert own == pytest.approx({"edge": 0.9, "color": 0.2})  # of the cup and the duck
+    assert seen["color"] > 0.3  # the hand itself says 0.85
+    assert learned_for(table, "elephant", None).weights["guided_ssim"] == seen
 
 
-def test_choosing_an_unlisted_method_is_an_error():
-    with pytest.raises(ValueError, match="thesis_ed.*not in weights.methods"):
-        weight_table(["equal"], "thesis_ed")
+def test_the_nearer_channel_and_the_likelier_feature_win(table):
+    found = learned_for(table, "hand", None).weights
+    assert found["guided_ed"] == pytest.approx({"edge": 1, "color": 0})
+    assert found["guided_ssim_object"] == pytest.approx({"edge": 0.5, "color": 0})  # what is unlike gets no say
+    assert found["fixations"]["edge"] == pytest.approx(2, abs=0.4) and abs(found["fixations"]["height"]) < 0.2
+    assert found["enhanced"] == found["fixations"]
+
+
+def test_one_object_alone_teaches_others_but_not_itself():
+    assert {row["left_out"] for row in learned_rows({"cup": LESSONS["cup"]})} == {""}
+
+
+def test_a_choice_that_is_not_there_is_an_error_that_lists_those_that_are():
+    with pytest.raises(ValueError, match="'fixations' is not there.*gaze.*no object has ground truth"):
+        weight_table({}, "fixations")

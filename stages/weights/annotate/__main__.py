@@ -1,0 +1,62 @@
+"""Opens a web page on this machine on which a person marks the points of a mesh that matter to them.
+
+The points go to FOLDER/NAME.csv: annotator, time (UTC), vertex, x, y, z on the normalised mesh (bounding-box centre 0,
+bounding sphere of radius 0.5). Several people may mark one mesh; saving replaces the rows of one of them.
+"""
+
+import argparse
+import os
+import sys
+import webbrowser
+from pathlib import Path
+
+from stages.kit.files import read_mesh
+from stages.kit.run import DATA, errors_in_one_line, object_names
+from stages.meshes import MeshError, load, normalise
+
+from .server import HOST, open_server
+
+PORT = 8062
+
+
+def find_mesh(text):
+    """(name, normalised mesh) of a mesh file or of an object in data/meshes; ValueError names the objects there are."""
+    known, path = object_names(), Path(text)
+    if text in known:
+        return text, read_mesh(DATA / "meshes" / f"{text}.npz")
+    if not path.is_file():
+        there = ", ".join(known) or f"none; `dvc repro meshes` fills {DATA / 'meshes'}"
+        raise ValueError(f"{text!r} is neither a mesh file nor an object; objects: {there}")
+    try:
+        return path.stem, normalise(load(path))
+    except MeshError as error:
+        raise ValueError(f"{path}: {error}") from None
+
+
+def main():
+    first, _, rest = __doc__.partition("\n")
+    form = argparse.RawDescriptionHelpFormatter
+    parser = argparse.ArgumentParser(
+        "python -m stages.weights.annotate", description=first, epilog=rest, formatter_class=form
+    )
+    parser.add_argument("mesh", metavar="MESH", help="a mesh file, or the name of an object in data/meshes")
+    parser.add_argument("--annotator", metavar="NAME", default="", help="who marks (default: the page asks)")
+    parser.add_argument("--port", type=int, default=PORT, help=f"default {PORT}; 0 takes any free one")
+    parser.add_argument("--folder", default=DATA / "annotations", help="where the points go (default: %(default)s)")
+    chosen = parser.parse_args()
+    errors_in_one_line("annotate")
+    name, mesh = find_mesh(chosen.mesh)
+    server = open_server(name, mesh, chosen.folder, chosen.annotator, chosen.port)
+    address = f"http://{HOST}:{server.server_port}/"
+    try:
+        print(f"{name}: mark points at {address} ; Ctrl+C here ends it", flush=True)
+        # Without a screen the standard library would open a text browser in this terminal.
+        if sys.platform in ("darwin", "win32") or {"DISPLAY", "WAYLAND_DISPLAY", "BROWSER"} & set(os.environ):
+            webbrowser.open(address)
+        server.serve_forever()
+    except KeyboardInterrupt:
+        print("ended")
+
+
+if __name__ == "__main__":
+    main()

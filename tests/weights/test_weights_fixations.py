@@ -1,0 +1,125 @@
+"""The fixation model: a log-linear density of looks."""
+
+import numpy as np
+import pytest
+import trimesh
+
+from stages.conspicuity import facing
+from stages.kit import Mesh
+from stages.meshes import normalise
+from stages.views import TWELVE
+from stages.weights import fit_fixations, fixation_density, vertex_features
+from stages.weights.features import POSITION, standardise
+
+TRUE = np.array([1.2, -0.7, 0.0])
+
+
+def looks(count, seed, areas=None):
+    """(features, amounts, areas) of one object whose looks follow TRUE."""
+    random = np.random.default_rng(seed)
+    features = random.normal(size=(2000, 3))
+    areas = random.uniform(0.5, 1.5, 2000) if areas is None else areas
+    share = areas * np.exp(features @ TRUE)
+    return features, random.multinomial(count, share / share.sum()).astype(float), areas
+
+
+def test_the_model_finds_the_weights_that_made_the_looks():
+    objects = [looks(20000, seed) for seed in range(3)]
+    assert fit_fixations(*zip(*objects, strict=True), ridge=0) == pytest.approx(TRUE, abs=0.03)
+
+
+def test_a_ridge_pulls_the_weights_towards_zero():
+    objects = list(zip(looks(2000, 0), strict=True))
+    free, held = (np.linalg.norm(fit_fixations(*objects, ridge=ridge)) for ridge in (0, 0.5))
+    assert held < 0.8 * free
+
+
+def test_an_object_counts_once_however_long_people_looked():
+    features, amounts, areas = looks(20000, 0)
+    other = looks(200, 1)
+    once, longer = (
+        fit_fixations((features, other[0]), (scale * amounts, other[1]), (areas, other[2])) for scale in (1, 50)
+    )
+    assert once == pytest.approx(longer, abs=1e-5)
+
+
+def test_looks_spread_by_area_alone_teach_nothing():
+    features, _, areas = looks(1, 0)
+    assert np.abs(fit_fixations([features], [areas], [areas])).max() < 0.05
+
+
+def test_a_vertex_without_area_takes_no_part():
+    features, amounts, areas = looks(5000, 0)
+    stray = np.r_[features, [[50.0, 50, 50]]], np.r_[amounts, 0], np.r_[areas, 0]
+    plain = fit_fixations([features], [amounts], [areas])
+    assert fit_fixations(*([part] for part in stray)) == pytest.approx(plain, abs=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("objects", "message"),
+    [(([], [], []), "no object"), (([np.ones((2, 1))], [np.zeros(2)], [np.ones(2)]), "without fixations")],
+)
+def test_nothing_to_learn_from_is_an_error(objects, message):
+    with pytest.raises(ValueError, match=message):
+        fit_fixations(*objects)
+
+
+def test_the_density_is_at_most_one_and_grows_with_a_feature():
+    density = fixation_density({"height": np.array([0.0, 1.0, 2.0])}, {"height": 0.5})
+    assert density == pytest.approx(np.exp([-1.0, -0.5, 0.0]))
+
+
+@pytest.mark.parametrize("given", [{"shine": 1.0}, {}])
+def test_weights_without_a_feature_are_an_error(given):
+    with pytest.raises(ValueError, match="no feature"):
+        fixation_density({"height": np.zeros(3)}, given)
+
+
+def features_of(mesh):
+    return vertex_features(mesh, TWELVE, facing(mesh, TWELVE), {})
+
+
+@pytest.fixture(scope="module")
+def cone():
+    """A smooth upright drop: pointed above, round below."""
+    profile = np.array([[0.3 * np.sin(t) * np.sin(t / 2), np.cos(t)] for t in np.linspace(0, np.pi, 40)])
+    shape = trimesh.creation.revolve(profile[::-1], sections=48)
+    return normalise(Mesh(shape.vertices, shape.faces))
+
+
+def test_features_say_what_they_are_named_for(cone):
+    found = features_of(cone)
+    assert list(found) == list(POSITION)
+    top = cone.vertices[:, 2].argmax()
+    assert found["height"][top] == found["height"].max()
+    assert found["convexity"][top] > found["convexity"].max() - 0.5  # the point bends most
+    around = np.abs(cone.vertex_normals[:, 2]) < 0.2
+    for name, sign in (("sideways", 1), ("upright", -1)):
+        assert sign * (found[name][around].mean() - found[name][~around].mean()) > 0.5
+
+
+def test_features_have_mean_zero_and_deviation_one_at_most_over_the_area(cone):
+    areas = cone.vertex_areas / cone.vertex_areas.sum()
+    for name, values in features_of(cone).items():
+        assert areas @ values == pytest.approx(0, abs=1e-9), name
+        assert areas @ values**2 <= 1 + 1e-9, name
+    assert areas @ features_of(cone)["height"] ** 2 == pytest.approx(1)
+
+
+def test_noise_on_a_sphere_does_not_become_its_features():
+    ball = trimesh.creation.icosphere(subdivisions=4, radius=0.5)
+    noise = 1 + np.random.default_rng(0).normal(scale=1e-4, size=(len(ball.vertices), 1))
+    found = features_of(normalise(Mesh(ball.vertices * noise, ball.faces)))
+    assert found["convexity"].std() < 0.3 and found["height"].std() > 0.9
+
+
+def test_features_do_not_depend_on_the_order_of_the_vertices(cone):
+    old = np.random.default_rng(0).permutation(len(cone.vertices))
+    other = features_of(Mesh(cone.vertices[old], np.argsort(old)[cone.faces]))
+    for name, values in features_of(cone).items():
+        assert other[name] == pytest.approx(values[old], abs=1e-4), name
+
+
+def test_a_constant_says_nothing():
+    assert not standardise(np.full(5, 7.3), np.ones(5)).any()
+    assert not standardise(np.arange(5.0), np.zeros(5)).any()
