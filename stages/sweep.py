@@ -26,9 +26,9 @@ from stages.kit.files import read_mesh, read_table, write_table
 from stages.kit.params import ParamsError, check, check_section
 from stages.kit.run import DATA
 from stages.kit.stats import bootstrap_interval
-from stages.salient_points.methods import find_all, method_named
+from stages.salient_points.methods import find_all, method_named, teachable
 from stages.salient_points.options import Options
-from stages.weights import weights
+from stages.weights import learned_for
 
 OUT = Path("reports/sweeps/recognition.csv")
 ROWS = "rows.csv"  # what each job leaves in its own folder
@@ -46,7 +46,7 @@ def recognise(config):
             if name not in touched:
                 touched[name] = _touch(name, config, chosen)
     for set_name, objects in chosen["classification"].sets.items():
-        for method in chosen["salient_points"].methods:
+        for method in chosen["imprints"].methods:
             images = {name: touched[name][method] for name in objects}
             for classifier in chosen["classification"].classifiers:
                 found = evaluate(images, classifier, chosen["classification"].repetitions, config["seed"])
@@ -57,21 +57,21 @@ def recognise(config):
 def _touch(name, config, chosen):
     """{method: imprints (k, rows, columns)} of one object."""
     settings = chosen["salient_points"]
-    for folder in ("meshes", "conspicuity"):
-        if not (DATA / folder / f"{name}.npz").exists():
-            sys.exit(f"sweep: no data/{folder}/{name}.npz: run `dvc repro {folder}` first")
+    for folder, file in (("meshes", f"{name}.npz"), ("conspicuity", f"{name}.npz"), ("weights", "weights.csv")):
+        if not (DATA / folder / file).exists():
+            sys.exit(f"sweep: no data/{folder}/{file}: run `dvc repro {folder}` first")
     mesh = read_mesh(DATA / "meshes" / f"{name}.npz")
     looking = any(method_named(method).channels for method in settings.methods)
     sight = read_sight(DATA / "conspicuity" / f"{name}.npz", mesh) if looking else None
-    options = Options(
-        weights(config["weights"]["method"]), settings.selection, settings.radius, settings.smoothing,
-        config["seed"], name,
-    )  # fmt: skip
-    found, _ = find_all(mesh, sight, settings.methods, options, settings.count)
+    learned = learned_for(DATA / "weights", name, mesh)
+    methods, _ = teachable(settings.methods, learned)
+    options = Options(learned, settings.selection, settings.radius, settings.smoothing, config["seed"], name)
+    found, _ = find_all(mesh, sight, methods, options, settings.count)
     sensor = chosen["imprints"]
     return {
         method: press_many(mesh, result.points[touchable(mesh, result.points)], sensor.cells, sensor.pitch)
         for method, result in found.items()
+        if method in sensor.methods
     }
 
 

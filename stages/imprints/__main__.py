@@ -1,4 +1,4 @@
-"""Presses the virtual pressure array on every object at the points of every method (T4.3).
+"""Presses the virtual pressure array on every object at the points of its methods (T4.3).
 
 Reads data/meshes/NAME.npz and data/salient_points/NAME.npz, writes data/imprints/NAME.npz and
 reports/measurements/imprints.csv: for each object and method the number of imprints, their mean relief in units of the
@@ -24,7 +24,11 @@ def process(name, folder, settings):
     """Touches one object at all points of all methods; writes its file and returns its rows."""
     mesh = read_mesh(DATA / "meshes" / f"{name}.npz")
     imprints, rows = {}, []
-    for method, points in sorted(read_points(DATA / "salient_points" / f"{name}.npz").items()):
+    found = read_points(DATA / "salient_points" / f"{name}.npz")
+    for method in sorted(settings.methods):
+        if method not in found:
+            raise ValueError(f"imprints.methods: {method} is not among salient_points.methods: {', '.join(found)}")
+        points = found[method]
         can = touchable(mesh, points)
         with Stopwatch() as watch:
             raw = distances(mesh, points[can], settings.cells, settings.pitch)

@@ -5,8 +5,9 @@ from .fuse import COMBINATIONS, fuse
 from .methods import METHODS
 from .select import select_by_centroid, select_by_suppression
 from .storage import read_points, read_saliency, read_strong_points
+from .viewpoints import best_viewpoints
 
 __all__ = [
-    "COMBINATIONS", "METHODS", "find_points", "fuse", "look", "read_points", "read_saliency", "read_strong_points",
-    "saliency", "select_by_centroid", "select_by_suppression",
+    "COMBINATIONS", "METHODS", "best_viewpoints", "find_points", "fuse", "look", "read_points", "read_saliency",
+    "read_strong_points", "saliency", "select_by_centroid", "select_by_suppression",
 ]  # fmt: skip

@@ -14,6 +14,7 @@ class BlindTouch:
     """Vertices nearest to points drawn uniformly over the area, so that finely meshed places get no more of them."""
 
     channels = ()  # it does not look
+    learned = None
 
     def find(self, mesh, _sight, options, count=None):
         """Found distinct vertices in the order drawn."""

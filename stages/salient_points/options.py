@@ -5,12 +5,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from stages.conspicuity.surface_values import SMOOTHING
-from stages.weights import weights as weights_of
+from stages.weights import Learned
 
 from .select import select_by_centroid, select_by_suppression
 
 RADIUS = 0.058  # units, 50 pixels at 900 rows: the width of the kernel that keeps points apart in T3.2.1.3
-WEIGHTS = "thesis_ssim"  # better than thesis_ed in T3.2.9
 
 # How points are taken from one map (h, w), given a radius in pixels and a count.
 SELECTIONS = {
@@ -21,9 +20,9 @@ SELECTIONS = {
 
 @dataclass(frozen=True)
 class Options:
-    """weights: dict channel -> weight; radius, smoothing in units; seed and name for the draws of `random`."""
+    """learned: the weights of each method; radius, smoothing in units; seed and name for the draws of `random`."""
 
-    weights: dict = field(default_factory=lambda: weights_of(WEIGHTS))
+    learned: Learned = field(default_factory=Learned)
     selection: str = "suppression"
     radius: float = RADIUS
     smoothing: float = SMOOTHING

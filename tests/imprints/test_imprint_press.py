@@ -75,7 +75,7 @@ def test_stage_presses_every_method_and_counts_what_it_refuses(shapes, tmp_path,
     arrays = {f"{method}.points": ids for method, ids in points.items()}
     arrays |= {f"{method}.strong": np.int64(len(ids)) for method, ids in points.items()}
     write_arrays("data/salient_points/ball.npz", **arrays)
-    rows = process("ball", tmp_path / "out", Params(cells=[15, 15], pitch=0.01))
+    rows = process("ball", tmp_path / "out", Params(methods=["itti", "random", "enhanced"], cells=[15, 15], pitch=0.01))
     value = {(row["method"], row["metric"]): row["value"] for row in rows}
     assert value["random", "imprints"] == 1 and value["random", "refused"] == 1 and value["enhanced", "relief"] is None
     assert value["itti", "relief"] == pytest.approx(0.3 - shapes.sphere(0.07, 0.07)) and value["itti", "missed"] == 0

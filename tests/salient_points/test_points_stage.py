@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from stages.kit.files import read_arrays, sha256, write_arrays, write_mesh
+from stages.kit.files import read_arrays, sha256, write_arrays, write_mesh, write_table
 from stages.salient_points import read_points, read_strong_points
 from stages.salient_points.__main__ import process
 from stages.salient_points.measure import rows_of, spread, summary
 from stages.salient_points.options import Found
 from stages.salient_points.schema import Params
 from stages.views import TWELVE
-from stages.weights import weights
+from stages.weights.table import weight_table
 
 METHODS = ["enhanced", "itti", "random"]
 
@@ -24,8 +24,9 @@ def run(ball, spot, make_maps, tmp_path, monkeypatch):
     stacked = np.stack(list(maps.values()), axis=1).astype(np.float16)
     names = {"viewpoints": np.array([v.name for v in TWELVE]), "channels": np.array(list(maps))}
     write_arrays("data/conspicuity/ball.npz", maps=stacked, mask=stacked[:, 0] > 0, **names)
+    write_table("data/weights/weights.csv", weight_table({}, "gaze"))
     settings = Params(METHODS, 30, "suppression", 0.058, 0.02)
-    return lambda folder: process("ball", tmp_path / folder, settings, weights("thesis_ssim"), 0)
+    return lambda folder: process("ball", tmp_path / folder, settings, 0)
 
 
 def test_stage_writes_the_contract(run, tmp_path, ball):

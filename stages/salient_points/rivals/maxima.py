@@ -1,0 +1,46 @@
+"""The peaks of a function on the vertices of a mesh, as most detectors of salient points pick them."""
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+NEAREST = 8  # vertices asked first: they rule out nearly all, so that few wide queries remain
+DIGITS = 9  # of the largest value: what differs less is equal, rounding must not decide
+
+
+def local_maxima(mesh, values, radius):
+    """(k,) i8 vertex ids where values (n,) is largest within `radius`, largest value first.
+
+    The radius is Euclidean, in units of the mesh. Only values above zero count, and only where some vertex within the
+    radius is lower: a plateau has no peak. Of equal values the one that comes last by x, then y, then z is the peak, so
+    that the order of the vertices does not matter. Raises ValueError when values do not fit the mesh or radius <= 0.
+    """
+    values = np.asarray(values, dtype=np.float64)
+    if values.shape != (len(mesh.vertices),) or not np.isfinite(values).all():
+        raise ValueError(f"values must be {len(mesh.vertices)} finite numbers, one a vertex, got {values.shape}")
+    if not radius > 0:
+        raise ValueError(f"radius must be above 0, in units of the mesh, got {radius}")
+    top = values.max(initial=0)
+    if top <= 0:
+        return np.zeros(0, dtype=np.int64)
+    levels = np.round(values / top, DIGITS)
+    order = np.lexsort((*-mesh.vertices.T[::-1], -levels))
+    ranks = np.argsort(order)
+    tree = cKDTree(mesh.vertices)
+    candidates = _above_nearest(tree, levels, ranks, radius)
+    near = tree.query_ball_point(mesh.vertices[candidates], radius)
+    peaks = [v for v, ids in zip(candidates, near, strict=True) if _peak(v, np.array(ids), levels, ranks)]
+    return np.array(sorted(peaks, key=ranks.__getitem__), dtype=np.int64)
+
+
+def _above_nearest(tree, levels, ranks, radius):
+    """Vertex ids above zero that no one of the nearest vertices within the radius outranks."""
+    found = np.flatnonzero(levels > 0)
+    count = min(NEAREST, tree.n)
+    ids = tree.query(tree.data[found], k=np.arange(1, count + 1), distance_upper_bound=radius)[1]
+    best = np.append(ranks, tree.n)[ids].min(axis=1)  # a place left empty holds the id n
+    return found[ranks[found] <= best]
+
+
+def _peak(vertex, near, levels, ranks):
+    """True when no vertex in `near` outranks the given one and some lie lower."""
+    return ranks[near].min() == ranks[vertex] and levels[near].min() < levels[vertex]
