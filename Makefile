@@ -3,9 +3,11 @@ VENV ?= .venv
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
 BIN := $(CURDIR)/$(VENV)/bin
 SMOKE := build/smoke
+GAZE := build/gaze
+gaze ?= ../shared/data/gaze.zip
 export PATH := $(BIN):$(PATH)
 .DEFAULT_GOAL := help
-.PHONY: help repro test smoke lint bench clean
+.PHONY: help repro test smoke lint bench gaze clean
 
 help: ## this list
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 10
@@ -18,12 +20,14 @@ test: $(VENV)/ready ## unit and property tests, then the whole pipeline at profi
 	pytest
 	$(MAKE) smoke
 
+# A scratch copy of the working tree with nothing computed yet, in the folder $(1).
+fresh = rm -rf $(1) && mkdir -p $(1) \
+	&& git ls-files -z -co --exclude-standard | xargs -0 sh -c 'for f; do [ -e "$$f" ] && printf "%s\0" "$$f"; done' sh \
+	  | tar --null -T - -cf - | tar -xf - -C $(1) \
+	&& cd $(1) && git init -q && rm -f dvc.lock && rm -rf reports/metrics reports/measurements
+
 smoke: $(VENV)/ready ## the whole pipeline on four objects, in a scratch copy, held against its baseline
-	rm -rf $(SMOKE) && mkdir -p $(SMOKE)
-	git ls-files -z -co --exclude-standard | xargs -0 sh -c 'for f; do [ -e "$$f" ] && printf "%s\0" "$$f"; done' sh \
-	  | tar --null -T - -cf - | tar -xf - -C $(SMOKE)
-	cd $(SMOKE) && git init -q && rm -f dvc.lock && rm -rf reports/metrics reports/measurements \
-	  && python -m stages.compose profile=smoke && dvc repro && python -m stages.gate
+	$(call fresh,$(SMOKE)) && python -m stages.compose profile=smoke && dvc repro && python -m stages.gate
 
 lint: $(VENV)/ready ## ruff: rules and formatting
 	ruff check .
@@ -31,6 +35,15 @@ lint: $(VENV)/ready ## ruff: rules and formatting
 
 bench: $(VENV)/ready ## time and memory of the pipeline and its parts, to reports/bench/pipeline.csv (most of an hour)
 	python -m benchmarks.pipeline
+
+gaze: $(VENV)/ready ## judge every saliency by human gaze (gaze=PATH of gaze.zip), to reports/attention (half an hour)
+	$(call fresh,$(GAZE)) && python -m stages.compose data=gaze channels=judged "meshes.folder=$(abspath $(gaze))" \
+	  && dvc repro salient_points
+	cp $(GAZE)/reports/measurements/salient_points.csv reports/attention/gaze.csv
+	cp $(GAZE)/reports/measurements/weights.csv reports/attention/svm.csv
+	cp $(GAZE)/data/weights/weights.csv reports/attention/weights.csv
+	python -m benchmarks.annotations $(GAZE)
+	python -m benchmarks.attention $(GAZE)
 
 clean: ## remove what was built and computed; fetched files stay in the user's cache
 	rm -rf $(VENV) build .pytest_cache .ruff_cache .dvc/tmp .dvc/cache *.egg-info
