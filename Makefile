@@ -41,6 +41,7 @@ gaze: $(VENV)/ready ## judge every saliency by human gaze (gaze=PATH of gaze.zip
 	  && dvc repro salient_points
 	cp $(GAZE)/reports/measurements/salient_points.csv reports/attention/gaze.csv
 	cp $(GAZE)/reports/measurements/weights.csv reports/attention/svm.csv
+	cp $(GAZE)/reports/measurements/conspicuity.csv $(GAZE)/reports/measurements/views.csv reports/attention/
 	cp $(GAZE)/data/weights/weights.csv reports/attention/weights.csv
 	python -m benchmarks.annotations $(GAZE)
 	python -m benchmarks.attention $(GAZE)

@@ -16,6 +16,8 @@ BASELINES = Path("reports/baselines")
 BAND = 0.15  # of a measured value: what another processor's rounding moves in simplification and training
 
 MEASURED = ("lod.meshes", "lod.paired_cells")  # counts that follow from measured values: held like these
+# Rates that may lie near zero, where a share of the value is no band: at least so much either way.
+LEAST = {"stability.": 0.1, "salient_points.": 0.02}
 FREE = ("report.claims.",)  # a verdict flips where its interval just touches zero; the effects behind it are held
 
 
@@ -38,11 +40,12 @@ def measured(folder=METRICS):
 
 
 def baseline(metrics):
-    """Bounds about the metrics: counts exact, measured values within BAND."""
+    """Bounds about the metrics: counts exact, measured values within BAND or, near zero, LEAST."""
     bounds = {}
     for name, value in metrics.items():
         exact = isinstance(value, int) and name not in MEASURED
-        reach = 0 if exact else BAND * abs(value)
+        least = next((band for prefix, band in LEAST.items() if name.startswith(prefix)), 0)
+        reach = 0 if exact else max(BAND * abs(value), least)
         bounds[name] = {"value": value, "low": value - reach, "high": value + reach}
     return bounds
 

@@ -24,6 +24,12 @@ def test_small_errors_have_narrow_bands():
     assert gate.compare({"error": 0.0008}, bounds)
 
 
+def test_a_rate_near_zero_has_room_and_a_count_beside_it_none():
+    bounds = gate.baseline({"stability.noise": 0.01, "stability.objects": 4})
+    assert gate.compare({"stability.noise": 0.09, "stability.objects": 4}, bounds) == []
+    assert len(gate.compare({"stability.noise": 0.2, "stability.objects": 5}, bounds)) == 2
+
+
 def test_not_a_number_never_passes():
     assert gate.compare({"x": float("nan")}, gate.baseline({"x": 1.0}))
 

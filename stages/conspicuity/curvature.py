@@ -15,13 +15,20 @@ CAP = 0.98  # of the area: the sharpest 2 % count alike, or one corner would be 
 
 
 def curvature(mesh, view, filled=True):
-    """The curvature conspicuity map (h / 16, w / 16) f4 in 0..1 (T3.1.1) of a view of a mesh."""
+    """The curvature conspicuity map (h / 16, w / 16) f4 in 0..1 (T3.1.1) of a view of a mesh.
+
+    The thesis filters the image of the curvature "to simulate the center-surround mechanism" and gives no formula. Ours
+    is the on-centre cell that its text describes, which the surround inhibits: with |c - s|, as for intensity, a flat
+    place beside a sharp one is as conspicuous as the sharp one. Both were tried on the meshes with human gaze: Curv has
+    an NSS of 0.40 this way and of 0.11 the other, VisAttAll of 0.38 and 0.30. Symmetry, whose map is a thin line on
+    black, keeps |c - s|: 0.12 against 0.05.
+    """
     image = picture(view, filled)
     if image.empty:
         return image.nothing()
     here = seen(view, mesh)
     values = np.einsum("ij,ij->i", here.weights, capped_curvature(mesh)[mesh.faces[here.faces]])
-    return surface_conspicuity(values, mesh, view, filled)
+    return surface_conspicuity(values, mesh, view, filled, on_centre=True)
 
 
 @once

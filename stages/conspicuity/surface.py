@@ -49,18 +49,15 @@ def seen(view, mesh):
     return Seen(known, face[known], weights, points, view.viewpoint.axes[2])
 
 
-def surface_conspicuity(values, mesh, view, filled=True):
+def surface_conspicuity(values, mesh, view, filled=True, on_centre=False):
     """Centre-surround and N of values (k,) at the points of seen(view, mesh): the map (h / 16, w / 16) f4 (T3.1.1).
 
-    The thesis names no formula for the two maps of the surface: theirs is the on-centre cell that its text describes,
-    which the surround inhibits. With |c - s|, as for intensity, a dull place beside a sharp one would be conspicuous
-    too: on nine meshes with human gaze the curvature map then has half the NSS (0.21 instead of 0.42).
-
+    on_centre: see stages.conspicuity.operators.centre_surround.
     The background takes the values of the surface beside it, unless filled=False, where it is zero.
     """
     image, known = picture(view), seen(view, mesh).known
     drawn = np.zeros(known.shape, dtype=np.float32)
     drawn[known] = values
     drawn = fill(drawn, known) if filled else drawn
-    summed = centre_surround(pyramid(drawn, SCALE), image.cover, FLOOR, on_centre=True)
+    summed = centre_surround(pyramid(drawn, SCALE), image.cover, FLOOR, on_centre)
     return image.whole(normalise(summed, image.cover[COMMON]), COMMON)

@@ -12,7 +12,7 @@ from yaml import YAMLError
 FILE = Path("params.yaml")
 SECTIONS = (
     "meshes", "views", "conspicuity", "weights", "salient_points", "lod", "imprints", "classification", "transfer",
-    "report",
+    "stability", "report",
 )  # fmt: skip
 COMMON = {"profile": str, "seed": int, "parallel": dict}
 

@@ -4,6 +4,6 @@ from stages.kit import Mesh
 
 from .clean import clean
 from .load import MeshError, load
-from .normalise import normalise
+from .normalise import normalise, turn_up
 
-__all__ = ["Mesh", "MeshError", "clean", "load", "normalise"]
+__all__ = ["Mesh", "MeshError", "clean", "load", "normalise", "turn_up"]

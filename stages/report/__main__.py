@@ -22,7 +22,8 @@ interval. *supported*: the interval lies wholly on the claimed side; *contradict
 covers zero, is unknown (equal differences show no spread), or nothing was measured. Over objects it is a bootstrap
 over the objects, and carries to other objects of this kind. Over repetitions it is a bootstrap over repeated splits
 of the same imprints, widened for what they share (Nadeau and Bengio 2003): it is about these few objects alone.
-Claims are judged one by one, without correction for their number."""
+Claims are judged one by one, without correction for their number. Section *ours*: what this project says of its own
+model, and not the thesis."""
 
 
 def main():

@@ -6,12 +6,22 @@ from .results import NotRun
 
 
 def looking_seconds(results):
-    """dict method -> seconds of the median object: all its views, the maps of the method's channels, the points."""
-    points = results.measurements("salient_points").dropna(subset=["seconds"])
-    points = points.drop_duplicates(["object", "method", "seconds"]).groupby("method")["seconds"].median()
-    channel = results.measurements("conspicuity").dropna(subset=["seconds"])
+    """dict method -> seconds of this run's median object: all views, the maps of the method's channels, the points."""
+    return _seconds(*(results.measurements(stage) for stage in ("salient_points", "conspicuity", "views")))
+
+
+def gaze_seconds(results):
+    """As looking_seconds, of the meshes with human gaze."""
+    return _seconds(*(results.attention(name) for name in ("gaze", "conspicuity", "views")))
+
+
+def _seconds(points, channel, views):
+    points = points.dropna(subset=["seconds"]).drop_duplicates(["object", "method", "seconds"])
+    points = points.groupby("method")["seconds"].median()
+    channel = channel.dropna(subset=["seconds"])
     channel = channel.groupby(["object", "method"])["seconds"].sum().groupby("method").median()
-    views = results.measurements("views").dropna(subset=["seconds"]).groupby("object")["seconds"].sum().median()
+    views = views[views["metric"] == "coverage"].dropna(subset=["seconds"])
+    views = views.groupby("object")["seconds"].sum().median()
     return {method: seconds + _sight(method, views, channel) for method, seconds in points.items()}
 
 

@@ -13,6 +13,7 @@ from .style import MAP, plt
 VIEWPOINT = Viewpoint(305, 22)  # from above and the side: most household objects show their parts
 CLAY = np.array([0.80, 0.80, 0.82])
 WIRE = np.array([0.16, 0.22, 0.32])
+BRIGHT = 0.98  # of the vertices are coloured by their value, those above as the brightest
 CREASE = 0.8  # cosine of the angle over which an edge is drawn sharp
 LIGHT = unit(np.array([-0.35, 0.55, 0.75]))  # right, up, towards the viewer
 
@@ -35,6 +36,12 @@ def picture(mesh, values=None, wires=False, viewpoint=VIEWPOINT, rows=420, smoot
     image = np.ones((size[0] * size[1], 3))
     image[seen] = np.clip(shaded, 0, 1)
     return image.reshape(rows, smoothing, rows, smoothing, 3).mean(axis=(1, 3))
+
+
+def vivid(values):
+    """Values (n,) over their 98 % quantile, at most 1: a map with a few high peaks would be dark everywhere else."""
+    top = np.quantile(values, BRIGHT) or values.max() or 1.0
+    return np.clip(values / top, 0, 1)
 
 
 def visible(mesh, vertices, viewpoint=VIEWPOINT, rows=420):

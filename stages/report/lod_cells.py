@@ -18,9 +18,10 @@ def cells(results, metrics):
     return rows.merge(plain, on=[*CELL, "metric"], how="left").astype({"target": str})
 
 
-def paired_cells(results, metrics):
-    """As `cells`, only where every method reaches the target of the object."""
+def paired_cells(results, metrics, methods):
+    """As `cells`, of those of the methods that were run, only where all of them reach the target of the object."""
     rows = cells(results, metrics)
+    rows = rows[rows["method"].isin(methods)]
     reached = rows.groupby(CELL)["method"].nunique()
     everywhere = reached.index[reached == rows["method"].nunique()]
     return rows[pd.MultiIndex.from_frame(rows[CELL]).isin(everywhere)]

@@ -44,4 +44,4 @@ def markdown_table(frame):
 
 def is_numeric(column):
     """True for a column of strings that hold numbers alone: signs, intervals, a dash or a few words are let through."""
-    return all(cell in WORDS or re.fullmatch(r"[-+–\d.,:e\[\]· ]*", str(cell)) for cell in column)
+    return all(cell in WORDS or re.fullmatch(r"[-+–±\d.,:e\[\]· ]*", str(cell)) for cell in column)

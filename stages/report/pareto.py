@@ -12,6 +12,8 @@ from .names import place_names
 from .style import INK, MARKERS, colours, look, plt, save
 from .style import label as spoken
 
+LISTED = 8  # names of the front that a caption lists at most
+
 
 def pareto_front(cost, quality, better="high"):
     """(k,) boolean: the choices that no other beats, that is, none is as good in both and better in one.
@@ -63,7 +65,7 @@ def pareto_chart(
     write_table(folder / f"{name}.csv", rows)
     with look():
         _draw(rows, quality, label, title, reference, quality_label, better, colour, marker, folder / f"{name}.png")
-    front = "; ".join(rows.loc[rows["on_front"]].sort_values("cost_ratio")[label])
+    front = _listed(list(rows.loc[rows["on_front"]].sort_values("cost_ratio")[label]))
     arrow = "Up" if better == "high" else "Down"
     return Figure(
         title=title,
@@ -72,6 +74,11 @@ def pareto_chart(
         f"Cost 1 is {reference}, {unit.iloc[0]:.3g} s in the median case of this run. Bars: 95 % intervals.",
         paths=[folder / f"{name}.png", folder / f"{name}.csv"],
     )
+
+
+def _listed(names):
+    """The names of the front from the cheapest to the best; of a long front its ends."""
+    return "; ".join(names) if len(names) <= LISTED else f"{len(names)} choices, from {names[0]} to {names[-1]}"
 
 
 def _draw(rows, quality, label, title, reference, quality_label, better, colour, marker, path):
@@ -103,7 +110,7 @@ def _draw(rows, quality, label, title, reference, quality_label, better, colour,
     axes.xaxis.set_minor_formatter(NullFormatter())
     if colour:
         axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=9)
-    place_names(axes, *_with_names(rows, front if colour else rows, front, quality, label))
+    place_names(axes, *_with_names(rows, front if colour else rows, front, quality, label, better))
     save(figure, path)
 
 
@@ -112,9 +119,12 @@ def _narrow(values):
     return values.max() / values.min() < 100
 
 
-def _with_names(rows, named, front, quality, label):
+def _with_names(rows, named, front, quality, label, better):
     """What place_names wants: names with their points, all points, and the lines, in the data's units."""
-    names = [(row[label], (row["cost_ratio"], row[quality])) for _, row in named.sort_values(quality).iterrows()]
+    # The front, the reference and the best come first: who comes late may find no room.
+    first = named["on_front"] | (named["cost_ratio"] == 1)
+    order = named.assign(first=first).sort_values(["first", quality], ascending=[False, better == "low"])
+    names = [(row[label], (row["cost_ratio"], row[quality])) for _, row in order.iterrows()]
     lines = []
     if "low" in rows:
         known = rows.dropna(subset=["low", "high"])

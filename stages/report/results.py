@@ -5,9 +5,11 @@ from pathlib import Path
 
 import pandas as pd
 
+from stages.conspicuity.storage import read_maps
 from stages.imprints import read_imprints
 from stages.kit.files import read_arrays, read_mesh, read_table
 from stages.salient_points import read_points, read_saliency, read_strong_points
+from stages.weights import learned_for
 
 NUMBERS = {"four": 4, "six": 6}  # names of sets that tell how many objects they hold
 OF_SETS = ("classification", "transfer")  # stages whose rows are about sets of objects
@@ -84,6 +86,14 @@ class Results:
             if column in frame:
                 frame = frame[frame[column].isin(_listed(wanted)) | frame[column].isna()]
         return list(dict.fromkeys(frame["note"]))
+
+    def attention(self, name):
+        """Rows of reports/attention/NAME.csv: measured once, on the meshes with human gaze."""
+        path = self.reports / "attention" / f"{name}.csv"
+        if not path.exists():
+            why = f"no attention/{path.name}: `make gaze` measures it where the meshes with gaze are"
+            raise NotRun(why, "gaze", runnable=False)
+        return read_table(path)
 
     def classes(self, name):
         """How many objects a set of the classification held."""
@@ -162,9 +172,42 @@ class Results:
         found = read_imprints(self._path("imprints", name))
         return ByMethod("imprints", {method: touches.images for method, touches in found.items()})
 
-    def conspicuity(self, name):
-        """Arrays of data/conspicuity/NAME.npz: maps, mask, viewpoints, channels."""
-        return read_arrays(self._path("conspicuity", name))
+    def maps(self, name, wanted=None):
+        """(maps (v, channels, h, w) f4, mask (v, h, w) boolean, viewpoints, channels) of an object.
+
+        wanted: the channels, in this order; NotRun where one was not computed. None: those that were.
+        """
+        maps, mask, viewpoints, stored = read_maps(self._path("conspicuity", name))
+        if wanted is None:
+            return maps, mask, viewpoints, stored
+        missing = [channel for channel in wanted if channel not in stored]
+        if missing:
+            raise NotRun(f"no maps of {', '.join(missing)}", "conspicuity", runnable=False)
+        return maps[:, [stored.index(channel) for channel in wanted]], mask, viewpoints, list(wanted)
+
+    def lesson(self, name):
+        """Arrays of data/weights/lessons/NAME.npz: density, points and more (stages.weights.lessons)."""
+        path = self.data / "weights/lessons" / f"{name}.npz"
+        if not path.exists():
+            raise NotRun(f"no weights/lessons/{name}.npz: no ground truth of {name}, or not run", "weights")
+        return read_arrays(path)
+
+    def learned(self, name, mesh):
+        """What the weights stage learned, as it may be applied to this object: a stages.weights.Learned."""
+        if not (self.data / "weights/weights.csv").exists():
+            raise NotRun("no weights/weights.csv", "weights")
+        return learned_for(self.data / "weights", name, mesh)
+
+    def taught(self, preferred, count):
+        """Up to `count` objects that have ground truth and salient points: the preferred ones first."""
+        lessons = sorted(path.stem for path in (self.data / "weights/lessons").glob("*.npz"))
+        if not lessons:
+            raise NotRun("no object has ground truth", "weights")
+        ready = set(lessons)
+        found = [name for name in self.choose(preferred, len(self.objects)) if name in ready]
+        if not found:
+            raise NotRun("no object with ground truth has salient points", "salient_points")
+        return found[:count]
 
     def lods(self, name, method):
         """Simplified meshes of one method, most faces first: list of (target, Mesh)."""

@@ -6,11 +6,14 @@ import numpy as np
 import point_cloud_utils
 from scipy.spatial import cKDTree
 
-from .drawing import colour_map
+from .drawing import colour_map, vivid
 from .packing import SHADES, Store, ordered
 from .results import NotRun
 from .style import label
 
+METHODS = [  # those that the page offers, as far as they were run: each costs an object up to 5 kB
+    "enhanced", "itti", "thesis_ssim", "mesh_saliency", "salient_points", "heat_kernel", "random",
+]  # fmt: skip
 INDEX_LIMIT = 65535  # 16-bit vertex ids
 FINEST = 0.6  # of the object's faces: a finer level looks like the object itself and costs the page most
 
@@ -40,13 +43,17 @@ def pack_object(results, name):
     original, store = results.mesh(name), Store()
     full, nearest = shown_mesh(original, results.settings.viewer_faces)
     place = cKDTree(full.vertices)
+    found = results.points(name)
+    shown = [method for method in METHODS if method in found] or list(found)
     saliency = {
-        method: {"label": label(method), "values": store.put_shades(values[nearest])}
+        method: {"label": label(method), "values": store.put_shades(vivid(values)[nearest])}
         for method, values in results.saliency(name).items()
+        if method in shown
     }
     points = {
         method: {"label": label(method), "ids": store.put_words(place.query(original.vertices[found])[1])}
         for method, found in results.strong_points(name).items()
+        if method in shown
     }
     packed = {"name": name, "full": _mesh(full, store), "saliency": saliency, "points": points, "ladders": {}}
     for method in results.settings.viewer_lod_methods:

@@ -5,7 +5,8 @@ import numpy as np
 from stages.conspicuity import Sight, conspicuity
 from stages.conspicuity.channels import coverage
 from stages.conspicuity.surface_values import SMOOTHING
-from stages.meshes import normalise
+from stages.meshes import normalise, turn_up
+from stages.meshes.orient import orient
 from stages.views import TWELVE, render
 from stages.weights import Learned
 from stages.weights import weights as published
@@ -17,10 +18,11 @@ IMAGE = (900, 1200)  # rows, columns of the views; T3.2.6
 MAP = (225, 300)  # rows, columns of the maps: every quarter, so that the channels' scales stay the thesis's
 
 
-def saliency(mesh, method="enhanced", weights=None, viewpoints=None, smoothing=SMOOTHING):
+def saliency(mesh, method="enhanced", weights=None, viewpoints=None, smoothing=SMOOTHING, up="z"):
     """How much each vertex draws the eye: (n,) f8 in 0..1, the most salient place 1, for any position and size.
 
-    mesh: +z up, since people look at the upper part of things and walk around them. method: a name of METHODS that has
+    up: the axis of the mesh that points up, x, y or z (a GLB's is y), since people look at the upper part of things and
+    walk around them; `enhanced` and `height` ask for the right one. method: a name of METHODS that has
     a saliency (all but `random` and `farthest`). `enhanced`, the default, is the density of looks that a log-linear
     model learned from human gaze expects, per unit of area; `thesis_ssim` is the thesis's own weighted average (eq.
     3.9), `itti` the classical model. weights: for a method with weights, a name that stages.weights knows or a dict
@@ -30,14 +32,14 @@ def saliency(mesh, method="enhanced", weights=None, viewpoints=None, smoothing=S
     detector = method_named(method)
     if not hasattr(detector, "saliency"):
         raise ValueError(f"method {method!r} has no saliency: it does not look")
-    mesh = normalise(mesh)
+    mesh = normalise(turn_up(orient(mesh)[0], up))
     options = Options(_learned(method, weights), smoothing=smoothing)
     return detector.saliency(mesh, look(mesh, detector.channels, viewpoints), options)
 
 
 def find_points(
     mesh, method="enhanced", count=None, *, weights=None, viewpoints=None, selection="suppression", radius=RADIUS,
-    seed=0, name="",
+    seed=0, name="", up="z",
 ):  # fmt: skip
     """Vertex ids of the places that draw the eye: (k,) i8, most salient first.
 
@@ -51,7 +53,7 @@ def find_points(
     if count is not None and (count != int(count) or count < 1):
         raise ValueError(f"count must be a whole number of at least 1, got {count}")
     options = Options(_learned(method, weights), selection, radius, SMOOTHING, seed, name)
-    mesh = normalise(mesh)
+    mesh = normalise(turn_up(orient(mesh)[0], up))
     return detector.find(mesh, look(mesh, detector.channels, viewpoints), options, count).points
 
 

@@ -4,6 +4,8 @@ import numpy as np
 import pandas as pd
 from scipy.spatial import cKDTree
 
+HELD = ("points", "points_strong", "spread", "saliency_at_points", "nss", "auc")
+
 
 def spread(positions):
     """Mean distance of each point (k, 3) to its nearest neighbour, in units; NaN for fewer than two points."""
@@ -25,7 +27,7 @@ def rows_of(name, method, found, mesh, judge, seconds):
 
 
 def summary(rows):
-    """Means over the objects, for the gate: dict "METHOD.METRIC" -> value, six digits."""
+    """Means over the objects of the HELD metrics, for the gate: dict "METHOD.METRIC" -> value, six digits."""
     table = pd.DataFrame(rows, columns=["method", "metric", "value"])
-    means = table.dropna().groupby(["method", "metric"])["value"].mean()
+    means = table[table.metric.isin(HELD)].dropna().groupby(["method", "metric"])["value"].mean()
     return {f"{method}.{metric}": round(float(value), 6) for (method, metric), value in means.items()}

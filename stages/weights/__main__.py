@@ -8,6 +8,7 @@ weights are written. Settings: section `weights` of params.yaml.
 """
 
 import functools
+import sys
 
 import numpy as np
 import pandas as pd
@@ -26,9 +27,12 @@ from .truth import truth_of
 
 
 def process(name, folder, source, place, seed):
-    """Takes the lesson of one object that has ground truth; a row of how many points it has."""
+    """Takes the lesson of one object that has ground truth; a row of how many points it has, or why it is left out."""
     mesh = read_mesh(DATA / "meshes" / f"{name}.npz")
-    amounts = truth_of(name, source, mesh, place)
+    try:
+        amounts = truth_of(name, source, mesh, place)
+    except ValueError as error:  # marks of another mesh of this name: the others still teach
+        return [{"object": name, "metric": "points", "value": None, "note": str(error)}]
     if amounts is None or not amounts.any():
         return []
     path = DATA / "conspicuity" / f"{name}.npz"
@@ -42,7 +46,11 @@ def main():
     chosen, meshes = params("weights").method, params("meshes")
     with StageRun("weights", inputs=("meshes", "conspicuity")) as run:
         take = functools.partial(process, source=meshes.source, place=meshes.folder, seed=run.seed)
-        taken = run.each(take, run.objects)
+        rows = run.each(take, run.objects)
+        taken = [row for row in rows if "note" not in row]
+        for row in rows:
+            if "note" in row:
+                print(f"weights: {row['object']} is left out: {row['note']}", file=sys.stderr)
         lessons = {row["object"]: read_arrays(run.folder / "lessons" / f"{row['object']}.npz") for row in taken}
         table = weight_table(lessons, chosen)
         write_table(run.folder / "weights.csv", table)

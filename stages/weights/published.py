@@ -42,12 +42,12 @@ GAZE = {
     "orientation": 0.122,
     "symmetry": 0.225,
     "height": 0.340,
-    "height_squared": -0.396,
+    "height_squared": -0.395,
     "upright": -0.247,
     "sideways": 0.403,
     "visible": 0.227,
     "convexity": 0.504,
-    "detail": 0.303,
+    "detail": 0.304,
 }
 
 

@@ -84,8 +84,8 @@ def test_pairs_match_by_repetition_not_by_row(results, small):
 
 
 def test_side_that_was_not_measured_is_not_run(results):
-    with pytest.raises(NotRun, match="hks"):
-        paired(results, "classification", ["repetition"], {"method": "hks"}, {"method": "itti"})
+    with pytest.raises(NotRun, match="heat_kernel"):
+        paired(results, "classification", ["repetition"], {"method": "heat_kernel"}, {"method": "itti"})
 
 
 def test_every_claim_has_its_own_key_and_answers_without_measurements(bare, small):
@@ -153,7 +153,7 @@ def test_set_that_was_left_out_hands_on_its_note(root, small):
 
 
 def test_sampling_or_classifier_that_was_left_out_hands_on_its_note(root, small):
-    frame = small.left_out(small.classification(), "too few touches", object="six", method="enhanced")
+    frame = small.left_out(small.classification(), "too few touches", object="six", method="thesis_ssim")
     failed = {"object": "six", "method": "random", "classifier": "knn", "metric": "accuracy_holdout"}
     small.write(root, "classification", small.left_out(frame, "knn failed: why", **failed))
     results = Results(small.settings(), root)

@@ -150,6 +150,19 @@ def test_points_and_saliency_from_a_bare_mesh_do_not_depend_on_its_place_and_siz
     assert first[0] >= len(ball.vertices)  # on the nose
 
 
+@pytest.mark.parametrize("method", ["enhanced", "height"])
+def test_the_axis_that_points_up_may_be_named(method):
+    profile = [[0, -0.4], [0.3, -0.3], [0.1, 0.4], [0, 0.45]]
+    shape = trimesh.creation.revolve(profile, sections=24)
+    upright = Mesh(shape.vertices, shape.faces)
+    lying = Mesh(shape.vertices[:, [1, 2, 0]], shape.faces)  # its y points up
+    found = [saliency(*given, viewpoints=FOUR[:2]) for given in ((upright, method), (lying, method))]
+    turned = saliency(lying, method, viewpoints=FOUR[:2], up="y")
+    assert np.abs(turned - found[0]).max() < 0.1 < np.abs(found[1] - found[0]).max()
+    with pytest.raises(ValueError, match="up axis 'w'"):
+        saliency(lying, method, up="w")
+
+
 def test_random_points_are_uniform_over_the_area():
     # A square whose left half is one large square, its right half 50 x 50 small ones; 3 in 4 of the area on the left.
     line = np.linspace(0.75, 1, 51)

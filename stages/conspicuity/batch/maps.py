@@ -65,7 +65,7 @@ def _surrounded(stack, levels):
     counts = [each[CENTRES[0]].shape[1] for each in levels.values()]
     stacked = {scale: torch.cat([each[scale] for each in levels.values()], 1) for scale in range(CENTRES[0], SCALES)}
     floors = np.repeat([SURFACE_FLOOR if name in SURFACE else FLOOR for name in levels], counts)
-    on_centre = torch.tensor(np.repeat([name in SURFACE for name in levels], counts), device=stack.device)
+    on_centre = torch.tensor(np.repeat([name == "curvature" for name in levels], counts), device=stack.device)
     summed = centre_surround(stack.grid, stacked, stack.cover, _floors(stack, floors), on_centre)
     parts = dict(zip(levels, summed.split(counts, 1), strict=True))
     if "orientation" in parts:  # T eq. 3.2: every angle goes through N(.) before they add up

@@ -1,12 +1,12 @@
 """The whole pipeline on one object, for the README."""
 
-from stages.report.drawing import show
+from stages.report.drawing import show, vivid
 from stages.report.items import Figure
 from stages.report.results import NotRun
 from stages.report.style import GREY, INK, PALE, label, plt, save
 from stages.report.tables import table_4_1, table_4_2
 
-from ._bars import SAMPLINGS, draw_bars
+from ._bars import draw_bars
 
 STEPS = [
     "1  See it",
@@ -15,6 +15,7 @@ STEPS = [
     "4  Touch it there",
     "5  Know what it is",
 ]
+NEEDED = ["random", "itti", "enhanced"]  # bars
 LEFT = [0.0, 0.2, 0.41, 0.63, 0.84]  # of the panels, as parts of the figure's width
 WIDTH, SIDE = 0.17, 3  # of a panel; imprints a side
 SIZE = (16, 3.9)  # inches
@@ -31,15 +32,12 @@ def build(results):
     for left, step in zip(LEFT, STEPS, strict=True):
         figure.text(left, 0.92, step, fontsize=13, fontweight="bold", color=INK)
     show(panels[0], mesh, rows=800)
-    show(panels[1], mesh, results.saliency(name)["enhanced"], points=points, rows=800)
+    show(panels[1], mesh, vivid(results.saliency(name)["enhanced"]), points=points, rows=800)
     show(panels[2], coarse, wires=True, rows=800)
     _imprints(panels[3], results.imprints(name)["enhanced"])
-    draw_bars(panels[4], accuracy, ["knn"], chance=1 / classes)
-    panels[4].set_xticks(
-        [(place - 1) * 0.8 / 3 for place in range(3)],
-        [label(name).replace(" ", "\n") for name in SAMPLINGS],
-        fontsize=9,
-    )
+    places = draw_bars(panels[4], accuracy, ["knn"], chance=1 / classes)
+    names = [label(name).partition(" (")[0].replace(" ", "\n") for name in places]
+    panels[4].set_xticks(list(places.values()), names, fontsize=9)
     panels[4].set_title(f"kNN, one touch, {classes} objects", fontsize=9.5, fontweight="normal", color=GREY, pad=4)
     words = [
         name,
@@ -76,6 +74,6 @@ def _accuracy(results):
         name, frame = "six", table_4_1.build(results).frame
     except NotRun:
         name, frame = "four", table_4_2.build(results).frame
-    for method in SAMPLINGS:  # a picture of only some of them would mislead
+    for method in NEEDED:  # a picture of only some of them would mislead
         results.measured("classification", object=name, classifier="knn", metric="accuracy_holdout", method=method)
     return frame, results.classes(name)

@@ -3,7 +3,7 @@
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 
-from stages.report.drawing import show, square_grid
+from stages.report.drawing import show, square_grid, vivid
 from stages.report.items import Figure
 from stages.report.style import GREY, MAP, label, save
 
@@ -18,13 +18,14 @@ def build(results):
     for down, method in enumerate(methods):
         for across, name in enumerate(names):
             axes = grid[down, across]
-            show(axes, results.mesh(name), results.saliency(name)[method], points=results.strong_points(name)[method])
+            values, points = vivid(results.saliency(name)[method]), results.strong_points(name)[method]
+            show(axes, results.mesh(name), values, points=points)
             if down == 0:
                 axes.set_title(name, fontsize=10, fontweight="normal", loc="center")
         grid[down, 0].text(-0.04, 0.5, label(method), rotation=90, va="center", ha="right",
                            transform=grid[down, 0].transAxes)  # fmt: skip
     bar = figure.colorbar(ScalarMappable(Normalize(0, 1), MAP), cax=figure.add_axes([0.945, 0.15, 0.012, 0.7]))
-    bar.set_label("saliency, scaled to 0..1 an object")
+    bar.set_label("saliency over its 98 % quantile")
     bar.outline.set_edgecolor(GREY)
     path = save(figure, results.reports / "figures/saliency.png")
     return Figure(

@@ -13,7 +13,7 @@ def build(results):
     frame = table_4_1.build(results).frame
     figure, axes = plt.subplots(figsize=(8.4, 4.2))
     draw_bars(axes, frame, CLASSIFIERS, chance=1 / results.classes("six"))
-    axes.set_title(f"Recognising {results.set_text('six')} by one touch", pad=26)
+    axes.set_title(f"Recognising {results.set_text('six')} by one touch", pad=42)
     handles, names = axes.get_legend_handles_labels()
     order = sorted(range(len(names)), key=lambda k: names[k].startswith("the thesis"))
     axes.legend(
@@ -21,7 +21,7 @@ def build(results):
         [names[k] for k in order],
         loc="lower left",
         bbox_to_anchor=(-0.01, 0.99),
-        ncols=4,
+        ncols=3,
         fontsize=9,
         columnspacing=1.4,
         handlelength=1.2,

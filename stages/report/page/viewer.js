@@ -162,7 +162,7 @@
     status.textContent = `${object().name}, ${mesh.faces.toLocaleString("en")} faces` + (error ? `, ${worst}` : "");
     ask("bar").parentElement.style.visibility = chosen ? "visible" : "hidden";
     ask("bar-low").textContent = "0";
-    ask("bar-high").textContent = error ? `${mesh.error_max || 0} %` : "1";
+    ask("bar-high").textContent = error ? `${mesh.error_max || 0} %` : "top 2 %";
     ask("level").setAttribute("aria-valuetext", `${mesh.faces} faces`);
     canvas.setAttribute("aria-label", `Turnable mesh: ${status.textContent}`);
   }

@@ -10,16 +10,17 @@ from stages.report.style import label
 
 OURS = {
     "blind_touch": "random",
-    "hks": "hks",
+    "hks": "heat_kernel",
     "salient_points": "salient_points",
     "mesh_saliency": "mesh_saliency",
     "visual_attention": "itti",
-    "enhanced_visual_attention": "enhanced",
+    "enhanced_visual_attention": "thesis_ssim",
 }
 NOTES = [
     "Each cell: our hold-out accuracy in per cent [95 % interval], then the thesis's figure. A sampling whose "
     'detector this run did not have says "not run".',
-    "Samplings below the thesis's own are combinations of channels (see section 3.1.5) that it did not touch with.",
+    "Enhanced visual attention is the thesis's weighted average, with its SSIM weights (table 3.1). Samplings below "
+    "the thesis's own are of this project alone: our model of gaze, and combinations of channels (section 3.1.5).",
     "Data: the thesis scanned toys (cow, dromedary, glasses, hand, plane, cup); these are everyday "
     "meshes of the like, touched by a simulated pressure array. Compare the order of rows and columns, not the digits.",
     "Protocol as in T4.2.4: z-transform, 12 principal components, 25 % held out, five-fold cross-validation on the "
@@ -71,7 +72,8 @@ def _wide(frame, thesis):
     wide = frame.assign(text=text).pivot(index="sampling", columns="classifier", values="text")
     wide = wide.loc[thesis.index, thesis.columns]
     wide = wide.rename(columns=lambda name: f"{label(name)}: ours · thesis, %").reset_index()
-    return wide.assign(sampling=[name.replace("_", " ") for name in wide["sampling"]])
+    names = [name.replace("_", " ") if name in OURS else label(name) for name in wide["sampling"]]
+    return wide.assign(sampling=names)
 
 
 def _percent(share):

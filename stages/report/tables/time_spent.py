@@ -11,6 +11,7 @@ NOTES = [
     "A row of measurements that repeats the seconds of one piece of work under several metrics counts once.",
 ]
 KEYS = ["value", "metric", "note"]
+SEEN = "seen_share"  # rows of the views that stand for one piece of work, the views in a row
 
 
 def build(results):
@@ -19,6 +20,7 @@ def build(results):
         rows = results.measurements(stage)
         if "seconds" not in rows:
             continue
+        rows = rows[~((rows["metric"] == SEEN) & (rows.get("views") != 1))]
         rows = rows.dropna(subset=["seconds"]).drop(columns=[key for key in KEYS if key in rows]).drop_duplicates()
         rows = rows.assign(method=rows["method"].fillna("") if "method" in rows else "")
         for method, group in rows.groupby("method"):

@@ -1,0 +1,82 @@
+"""Disturbs a few objects in many ways and measures what each method finds again, and where it breaks.
+
+Reads data/meshes and data/weights. Writes data/stability/NAME.npz (each method's worst case at a middle severity, for
+the picture) and reports/measurements/stability.csv: a row an object, method, perturbation, severity and metric.
+`repeatability`: share of the points found again within 2 % of the diagonal; `chance`: the same of random points;
+`drift`: one minus the correlation of the saliency; `points`: how many of the points pass the method's own threshold.
+Perturbation `none` is the object as it is. Seconds include an even share of the one look that all methods share.
+Settings: section `stability` of params.yaml.
+"""
+
+import functools
+
+from stages.kit import StageRun, arguments, params
+from stages.kit.files import read_mesh, write_arrays
+from stages.kit.run import DATA
+from stages.salient_points.methods import method_named, teachable
+from stages.salient_points.options import Options
+from stages.weights import learned_for
+
+from .perturbations import PERTURBATIONS
+from .subject import Subject, worst_arrays
+from .summary import middle, summarise
+
+
+def process(name, folder, settings, seed):
+    """Disturbs one object in every way; returns the rows."""
+    mesh = read_mesh(DATA / "meshes" / f"{name}.npz")
+    learned = learned_for(DATA / "weights", name, mesh)
+    methods, _ = teachable(settings.methods, learned)
+    subject = Subject(mesh, methods, Options(learned, seed=seed, name=name), settings.count, settings.size)
+    rows, cases = subject.plain_rows(), []
+    for perturbation in settings.perturbations:
+        for severity in settings.severities[perturbation]:
+            try:
+                case = subject.disturbed(perturbation, severity)
+            except ValueError as error:
+                rows += subject.failed_rows(perturbation, severity, str(error))
+                continue
+            rows += subject.rows(perturbation, severity, case)
+            if severity == middle(settings.severities[perturbation]):
+                cases.append((perturbation, severity, case))
+    write_arrays(folder / f"{name}.npz", **worst_arrays(subject, cases))
+    return rows
+
+
+def check(settings):
+    """ValueError that names a method, perturbation or severity that is not there."""
+    for method in settings.methods:
+        method_named(method)
+    unknown = [name for name in (*settings.perturbations, *settings.severities) if name not in PERTURBATIONS]
+    if unknown or not settings.perturbations or not settings.methods:
+        raise ValueError(f"stability.perturbations: {unknown or 'empty'}; choose from {', '.join(PERTURBATIONS)}")
+    bare = [name for name in settings.perturbations if not settings.severities.get(name)]
+    if bare:
+        raise ValueError(f"stability.severities has none for {', '.join(bare)}: give at least one")
+    if min(settings.count, settings.most) < 1:
+        raise ValueError("stability: count and most must be 1 or more")
+
+
+def chosen(settings, names):
+    """The objects to disturb: those of the settings that are there, or else the first of all."""
+    wanted = [name for name in settings.objects if name in names] or names
+    return wanted[: settings.most]
+
+
+def main():
+    arguments(__doc__)
+    settings = params("stability")
+    check(settings)
+    with StageRun("stability", inputs=("meshes", "weights")) as run:
+        objects = chosen(settings, run.objects)
+        rows = run.each(functools.partial(process, settings=settings, seed=run.seed), objects)
+        run.metrics(summarise(rows))
+    broken = sum(value is not None for value in summarise(rows)["breaking_point"].values())
+    print(
+        f"stability: {len(objects)} objects, {len(settings.perturbations)} perturbations, "
+        f"{broken} breaking points within range"
+    )
+
+
+if __name__ == "__main__":
+    main()

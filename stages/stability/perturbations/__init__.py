@@ -1,0 +1,38 @@
+"""The registry of perturbations: what can happen to an object, and to the look at it, that should change nothing.
+
+To add one, add a file and an entry. The severity that changes nothing is `unharmed`, in the perturbation's unit.
+"""
+
+from .background import background, background_left_in
+from .decimation import decimation
+from .image_size import image_size
+from .light import light
+from .missing_faces import missing_faces
+from .noise import noise
+from .paint import paint, pattern
+from .perturbed import Conditions, Perturbation, Perturbed
+from .remeshing import remeshing
+from .rotation import tilt, turn
+from .scale import scale
+from .vertex_order import vertex_order
+from .winding import winding
+
+PERTURBATIONS = {
+    "noise": Perturbation("sigma, share of the diagonal", 0.0, noise),
+    "decimation": Perturbation("share of the faces kept", 1.0, decimation),
+    "remeshing": Perturbation("edge length, share of the diagonal", 0.0, remeshing),
+    "missing_faces": Perturbation("share of the faces missing", 0.0, missing_faces),
+    "vertex_order": Perturbation("share of the vertices shuffled", 0.0, vertex_order),
+    "winding": Perturbation("share of the faces turned inwards", 0.0, winding),
+    "turn": Perturbation("degrees about the vertical", 0.0, turn),
+    "tilt": Perturbation("degrees about a level axis", 0.0, tilt),
+    "scale": Perturbation("times the size", 1.0, scale),
+    "light": Perturbation("degrees off the camera", 0.0, light),
+    "background": Perturbation("brightness, 0 black to 1 white", 0.0, background),
+    "background_left_in": Perturbation("brightness, 0 black to 1 white", 0.0, background_left_in),
+    "paint": Perturbation("saturation of the colour", 0.0, paint),
+    "pattern": Perturbation("saturation of two colours", 0.0, pattern),
+    "image_size": Perturbation("share of the image's rows", 1.0, image_size),
+}
+
+__all__ = ["PERTURBATIONS", "Conditions", "Perturbation", "Perturbed"]

@@ -1,0 +1,12 @@
+"""Fewer faces, by quadric edge collapse."""
+
+from stages.lod import simplify
+
+from .perturbed import Perturbed, in_range
+
+
+def decimation(mesh, severity, _generator):
+    """The mesh with the share `severity` of its faces (Garland and Heckbert 1997)."""
+    faces = int(in_range(severity, 1e-6, 1, "the share of faces kept") * len(mesh.faces))
+    simplified = simplify(mesh, max(faces, 1))
+    return Perturbed(simplified, simplified.vertices)

@@ -1,0 +1,43 @@
+"""Colour that the thesis's grey objects do not have: one coat of paint, or a pattern of two."""
+
+import colorsys
+
+import numpy as np
+
+from stages.kit import Mesh
+from stages.views.shading import GREY
+
+from .perturbed import Perturbed, in_range
+
+WAVES = 12  # sine waves whose sum decides between the two colours
+LENGTH = 0.3  # of the diagonal: a wave's length, so that patches are the size of an object's parts
+
+
+def paint(mesh, severity, generator):
+    """The whole object in one colour of this saturation; the hue is drawn at random."""
+    colour = _colour(generator.random(), in_range(severity, 0, 1, "saturation"))
+    return _painted(mesh, np.tile(colour, (len(mesh.vertices), 1)))
+
+
+def pattern(mesh, severity, generator):
+    """Patches of two opposite colours of this saturation, smooth random shapes cut out of space."""
+    hue, saturation = generator.random(), in_range(severity, 0, 1, "saturation")
+    waves = 2 * np.pi / (LENGTH * max(mesh.diagonal, 1e-30)) * _directions(generator)
+    height = np.cos(mesh.vertices @ waves.T + generator.uniform(0, 2 * np.pi, WAVES)).sum(axis=1)
+    two = np.stack([_colour(hue, saturation), _colour(hue + 0.5, saturation)])
+    return _painted(mesh, two[(height > 0).astype(int)])
+
+
+def _directions(generator):
+    drawn = generator.standard_normal((WAVES, 3))
+    return drawn / np.linalg.norm(drawn, axis=1, keepdims=True)
+
+
+def _colour(hue, saturation):
+    """(3,) f8: the paint as a share of the brightness underneath, in each of red, green and blue."""
+    return np.array(colorsys.hsv_to_rgb(hue % 1, saturation, 1.0))
+
+
+def _painted(mesh, coat):
+    under = np.full((len(mesh.vertices), 3), GREY) if mesh.colors is None else mesh.colors
+    return Perturbed(Mesh(mesh.vertices, mesh.faces, np.rint(under * coat).astype(np.uint8)), mesh.vertices)

@@ -1,0 +1,17 @@
+"""The same surface, its vertices numbered otherwise."""
+
+import numpy as np
+
+from stages.kit import Mesh
+
+from .perturbed import Perturbed, in_range
+
+
+def vertex_order(mesh, severity, generator):
+    """The share `severity` of the vertices swap numbers; the surface stays."""
+    n = len(mesh.vertices)
+    old = np.arange(n)
+    moved = generator.choice(n, int(round(in_range(severity, 0, 1, "the share of vertices") * n)), replace=False)
+    old[np.sort(moved)] = moved
+    colors = None if mesh.colors is None else mesh.colors[old]
+    return Perturbed(Mesh(mesh.vertices[old], np.argsort(old)[mesh.faces], colors), mesh.vertices[old])

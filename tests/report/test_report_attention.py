@@ -1,0 +1,300 @@
+"""What the report says of where people look: tables, figures, charts and claims, on rows with a known truth."""
+
+import importlib
+import re
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from stages.kit.files import read_arrays, write_arrays, write_table
+from stages.report import CLAIMS, figures, judge, tables, tradeoff
+from stages.report.costs import gaze_seconds
+from stages.report.drawing import vivid
+from stages.report.figures import figure_3_3, figure_3_4, figure_3_10, figure_3_12, figure_3_13, pipeline, views_seen
+from stages.report.figures import table_4_1 as drawn
+from stages.report.items import build_all
+from stages.report.judged import agreement, best_rival, difference, signed
+from stages.report.pareto import pareto_chart
+from stages.report.results import NotRun, Results
+from stages.report.style import colours
+from stages.report.tables import (
+    annotations,
+    attention_gaze,
+    attention_marks,
+    section_3_2_3,
+    table_3_1,
+    table_3_1_5_combinations,
+    time_spent,
+)
+from stages.report.viewer import pack_viewer
+from stages.weights.agreement import mean_interval
+
+FIGURES = ["figure_3_3", "figure_3_6", "figure_3_10", "figure_3_12", "figure_3_13", "views_seen"]
+
+
+@pytest.fixture
+def seen(root, small):
+    """The results of the small run with everything about attention."""
+    small.write_attention(root)
+    return Results(small.settings(), root)
+
+
+def again(results, small, name, frame):
+    """The results with another table of what was measured on gaze."""
+    write_table(results.reports / "attention" / f"{name}.csv", frame)
+    return Results(small.settings(), results.data.parent)
+
+
+def judged_claim(results, key):
+    return judge([claim for claim in CLAIMS if claim.key == key], results).iloc[0]
+
+
+def test_rows_stand_in_the_order_of_nss_below_the_ceiling(seen):
+    frame = attention_gaze.build(seen).frame
+    order = frame[frame["metric"] == "nss"]
+    assert order["method"].iloc[0] == "human"
+    assert order["mean"].iloc[1:].is_monotonic_decreasing
+    assert "VisAtt" not in set(frame["method"])  # itti under another name
+
+
+def test_gain_is_paired_so_that_hard_meshes_do_not_widen_it(seen):
+    frame = agreement(seen.attention("gaze"), ["nss"]).set_index("method")
+    row = frame.loc["itti"]
+    assert row["gain"] == pytest.approx(1.3, abs=0.02)
+    assert row["gain_high"] - row["gain_low"] < 0.1 < row["high"] - row["low"]
+
+
+def test_methods_that_have_seen_the_object_are_starred_and_are_no_rivals(seen):
+    table = attention_gaze.build(seen)
+    assert "SVM of the object *" in set(table.shown["method"])
+    assert best_rival(seen.attention("gaze")) == "facing_viewer"
+    assert any("facing viewer: ours − it NSS +0.8" in note for note in table.notes)
+
+
+def test_sentences_follow_from_the_numbers(seen, small):
+    assert any("higher than 7 of the 7 others" in note for note in attention_gaze.build(seen).notes)
+    worse = again(seen, small, "gaze", small.judged({"enhanced": 0.25}))
+    notes = " ".join(attention_gaze.build(worse).notes)
+    assert "In NSS ours is higher than 3 of the 7 others" in notes
+    assert "not than facing viewer" in notes
+    for pair, word in (
+        ("guided by ED − equal weights", "higher"), ("guided by SSIM − equal weights", "lower"),
+        ("VisAttAll − visual attention", "not told apart"),
+    ):  # fmt: skip
+        assert re.search(rf"{pair}: NSS [-+.\d]+ \[[-., \d]+\] \({word}\)", notes)
+
+
+def test_table_of_gaze_stands_without_our_method_or_the_ceiling(seen, small):
+    rows = small.judged()
+    table = attention_gaze.build(again(seen, small, "gaze", rows[~rows["method"].isin(["enhanced", "human"])]))
+    assert table.frame["method"].iloc[0] == "svm_object"
+    assert (table.shown["ours − it, NSS"] == "–").all()
+
+
+def test_marks_are_said_to_be_no_human_gaze(seen, root, small):
+    assert any("No human subjects" in note for note in attention_marks.build(seen).notes)
+    small.write(root, "salient_points", small.judged().assign(dataset="princeton"))
+    notes = attention_marks.build(Results(small.settings(), root)).notes
+    assert not any("vision model" in note for note in notes)
+    assert any("data set princeton" in note for note in notes)
+
+
+def test_run_without_ground_truth_has_no_table_of_marks(seen, root, small):
+    rows = small.judged()
+    small.write(root, "salient_points", rows[rows["metric"] == "points_strong"])
+    with pytest.raises(NotRun, match="ground truth"):
+        attention_marks.build(Results(small.settings(), root))
+
+
+def test_intervals_of_learned_weights_are_those_of_the_objects(seen, small):
+    _, own = small.learned_weights()
+    frame = table_3_1.build(seen).frame.set_index(["source", "method", "channel"])
+    thesis = seen.thesis("table_3_1_channel_weights").set_index("channel")
+    row = frame.loc[("gaze", "guided_ssim", "color")]
+    assert row[["mean", "low", "high"]].tolist() == pytest.approx(mean_interval(own[:, 0]), abs=1e-5)
+    assert row["thesis"] == thesis.loc["color", "ssim"]
+    assert frame.loc[("run", "guided_ed", "edge"), "thesis"] == thesis.loc["edge", "one_minus_ed"]
+    assert np.isnan(frame.loc[("gaze", "guided_ssim_object", "color"), "thesis"])
+
+
+def test_learned_weights_of_one_source_alone_make_the_table(seen, root):
+    (root / "data/weights/weights.csv").unlink()
+    assert set(table_3_1.build(seen).frame["source"]) == {"gaze"}
+
+
+def test_accuracy_of_the_thesis_stands_beside_its_own_way_only(seen):
+    frame = section_3_2_3.build(seen).frame
+    beside = frame.dropna(subset=["thesis_accuracy"])
+    assert set(beside["area"]) == {"image"} and set(beside["validation"]) == {"pixels"}
+    assert dict(zip(beside["training"], beside["thesis_accuracy"], strict=True)) == {
+        "one_for_all": 0.8608, "one_per_object": 0.9318,
+    }  # fmt: skip
+    assert any("86.0 %; the background alone gives 85.0 %" in note for note in section_3_2_3.build(seen).notes)
+
+
+def test_marks_are_compared_with_chance_and_the_least_agreed_object_is_named(seen):
+    table = annotations.build(seen)
+    row = table.frame.set_index(["metric", "method"]).loc[("found", "passes")]
+    assert row["gain"] == pytest.approx(0.7)
+    assert "least on cup (80 %)" in table.notes[0] and "on 1 of 3 objects" in table.notes[0]
+
+
+@pytest.mark.parametrize("name", FIGURES)
+def test_figure_is_drawn_and_says_what_it_shows(seen, name):
+    figure = importlib.import_module(f"stages.report.figures.{name}").build(seen)
+    assert figure.paths[0].name == f"{name}.png" and figure.paths[0].exists()
+    assert len(figure.alt) > 20 and len(figure.caption) > 20
+
+
+@pytest.mark.parametrize("package", [tables, figures, tradeoff])
+def test_without_attention_its_pieces_are_not_run(bare, small, package):
+    built = build_all(package, Results(small.settings(), bare))
+    names = {tables: ["attention_gaze", "attention_marks", "table_3_1", "section_3_2_3", "annotations"],
+             figures: [*FIGURES, "figure_3_4"], tradeoff: ["attention", "attention_settings"]}  # fmt: skip
+    assert set(names[package]) <= set(built.not_run)
+
+
+def test_object_without_ground_truth_is_passed_over(seen, root):
+    (root / "data/weights/lessons/ball.npz").unlink()
+    assert seen.taught(["ball"], 2) == ["cube"]
+    (root / "data/weights/lessons/cube.npz").unlink()
+    with pytest.raises(NotRun, match="ground truth"):
+        figure_3_12.build(seen)
+
+
+def test_maps_without_a_channel_are_not_run_but_no_crash(seen, root):
+    for path in (root / "data/conspicuity").glob("*.npz"):
+        stored = read_arrays(path)
+        write_arrays(path, **stored | {"channels": stored["channels"][:3], "maps": stored["maps"][:, :3]})
+    for figure in (figure_3_3, figure_3_13):
+        with pytest.raises(NotRun, match="dkl"):
+            figure.build(seen)
+    assert "color, contrast, curvature" in figure_3_10.build(seen).alt
+
+
+def test_errors_of_combinations_are_over_what_all_of_them_reach(seen, root, small):
+    rows = small.lod()
+    itti, reaches_less = (rows[rows["method"] == "enhanced"].assign(method=name) for name in ("itti", "VisAttAll"))
+    reaches_less.loc[reaches_less["target"] == "50%", "value"] = np.nan
+    small.write(root, "lod", pd.concat([rows, itti, reaches_less]))
+    found = table_3_1_5_combinations.combined_cells(Results(small.settings(), root))
+    assert set(zip(found["object"], found["target"], strict=True)) == {("ball", "25%")}
+    with pytest.raises(NotRun, match="3 objects"):
+        figure_3_4.build(Results(small.settings(), root))
+
+
+def test_figure_of_combinations_is_drawn(seen, root, small):
+    rows = pd.concat([small.lod().replace({"ball": f"ball{k}", "cube": f"cube{k}"}) for k in range(2)])
+    others = [rows[rows["method"] == "enhanced"].assign(method=name) for name in ("itti", "VisAttCon")]
+    small.write(root, "lod", pd.concat([rows, *others]))
+    figure = figure_3_4.build(Results(small.settings(), root))
+    assert "50%: 4 objects" in figure.caption and "25%" not in figure.caption  # two objects reach it
+
+
+def test_views_count_once_in_the_time_spent(seen):
+    frame = time_spent.build(seen).frame.set_index(["stage", "method"])
+    assert frame.loc[("views", "greedy"), "seconds"].sum() == 14  # seven for each of two objects
+
+
+def test_views_figure_tells_the_fewest(seen):
+    assert "3 for the median object" in views_seen.build(seen).caption
+
+
+def test_cost_counts_views_channels_and_points(seen):
+    cost = gaze_seconds(seen)
+    assert cost["itti"] == pytest.approx(2 + 3 + 0.5)
+    assert cost["facing_viewer"] == pytest.approx(0.5)
+
+
+def test_chart_of_attention_leaves_out_those_that_have_seen_the_mesh(seen):
+    chart = build_all(tradeoff, seen)
+    assert "attention" in [item.name for item in chart.items]
+    rows = pd.read_csv(seen.reports / "tradeoff/attention.csv").set_index("method")
+    assert not {"svm_object", "human"} & set(rows.index)
+    assert rows.loc["itti", "cost_ratio"] == 1
+    assert rows.loc["enhanced", "on_front"] and not rows.loc["itti", "on_front"]
+
+
+def test_smallest_setting_that_loses_nothing_is_named(seen):
+    chart = tradeoff.attention_settings.build(seen)
+    assert "four, 450 rows, symmetry (10.0 times as fast" in chart.caption
+    assert "one, 450 rows, none (" not in chart.caption
+    rows = pd.read_csv(seen.reports / "tradeoff/attention_settings.csv").set_index("name")
+    assert rows["loses_nothing"].to_dict() == {
+        "twelve, 900 rows, nine": True, "four, 450 rows, symmetry": True, "one, 450 rows, none": False,
+    }  # fmt: skip
+
+
+def test_settings_without_the_full_one_are_not_run(seen, small):
+    rows = seen.attention("settings")
+    less = again(seen, small, "settings", rows[rows["views"] != "twelve"])
+    with pytest.raises(NotRun, match="twelve, 900 rows, nine"):
+        tradeoff.attention_settings.build(less)
+
+
+@pytest.mark.parametrize(
+    ("key", "word"),
+    [("ours_over_best_gaze", "supported"), ("guided_ed_gaze", "supported"), ("guided_ssim_gaze", "contradicted"),
+     ("equal_over_itti_gaze", "open"), ("svm_per_object", "supported")],
+)  # fmt: skip
+def test_claims_on_gaze_follow_from_the_rows(seen, key, word):
+    assert judged_claim(seen, key)["verdict"] == word
+
+
+def test_claim_on_svms_takes_the_thesis_way(seen):
+    assert judged_claim(seen, "svm_per_object")["effect"] == pytest.approx(4)
+    assert judged_claim(seen, "svm_per_object_unseen")["tested_on"].startswith("not run")  # no whole object left out
+
+
+def test_method_that_was_not_judged_is_named(seen):
+    with pytest.raises(NotRun, match="sift"):
+        difference(seen.attention("gaze"), "nss", "enhanced", "sift")
+
+
+def test_zero_has_no_minus():
+    assert signed(-0.001, -0.004, 0.002) == "+0.00 [0.00, 0.00]"
+    assert signed(0.126, np.nan, np.nan) == "+0.13"
+
+
+def test_colours_keep_the_order_and_are_not_spoilt_by_one_peak():
+    values = np.r_[np.linspace(0, 0.1, 999), 1.0]
+    shown = vivid(values)
+    assert (np.diff(shown) >= 0).all() and shown.max() == 1
+    assert np.median(shown) > 0.4
+    assert vivid(np.zeros(5)).tolist() == [0] * 5
+    assert vivid(np.r_[np.zeros(999), 0.5])[-1] == 1
+
+
+def test_page_offers_few_methods_and_any_where_none_of_those_ran(seen, root):
+    assert list(pack_viewer(seen)["objects"][0]["saliency"]) == ["enhanced", "itti"]
+    for path in (root / "data/salient_points").glob("*.npz"):
+        write_arrays(path, **{key: values for key, values in read_arrays(path).items() if key.startswith("height")})
+    assert list(pack_viewer(seen)["objects"][0]["saliency"]) == ["height"]
+
+
+def test_each_method_of_the_chart_of_simplification_has_its_own_colour():
+    tints = colours(tradeoff.simplification.METHODS)
+    assert len(set(tints.values())) == len(tints) == 8
+
+
+def test_long_front_is_told_by_its_ends(tmp_path):
+    frame = pd.DataFrame({"name": [f"n{k}" for k in range(12)], "seconds": range(1, 13), "mean": range(12)})
+    figure = pareto_chart(
+        frame, "seconds", "mean", "name", name="chart", title="T", reference="n3", quality_label="q", folder=tmp_path
+    )
+    assert "12 choices, from n0 to n11" in figure.caption and "n5" not in figure.caption
+
+
+def test_bars_are_those_of_the_samplings_that_ran(root, small):
+    rows = small.classification()
+    small.write(root, "classification", rows[rows["method"] != "thesis_ssim"])
+    results = Results(small.settings(), root)
+    places = {}
+    with pytest.MonkeyPatch.context() as patch:
+        draw = drawn.draw_bars
+        patch.setattr(drawn, "draw_bars", lambda *args, **kw: places.update(draw(*args, **kw)))
+        drawn.build(results)
+    assert list(places) == ["random", "itti", "enhanced"]
+    assert sum(places.values()) == pytest.approx(0)
+    assert set(pipeline.NEEDED) <= set(places)

@@ -1,0 +1,86 @@
+"""Odd meshes, through every method: a finite saliency and points on the surface; what cannot be seen is refused."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+import trimesh
+
+from stages.kit import Mesh
+from stages.meshes import normalise
+from stages.salient_points.methods import METHODS
+from stages.salient_points.options import Options
+from stages.stability import Conditions, look
+from stages.weights import Learned
+
+SIZE = (180, 240)
+COUNT = 5
+BALL = trimesh.creation.icosphere(subdivisions=2, radius=0.4)
+GRID = trimesh.creation.box((0.6, 0.6, 0.2)).subdivide().subdivide()
+
+
+def black(vertices, faces):
+    """A mesh painted black: under any light each of its pixels has the grey value zero."""
+    return Mesh(vertices, faces, np.zeros((len(vertices), 3), dtype=np.uint8))
+
+
+def twice(shape, apart):
+    """A shape and its copy so many units away."""
+    return Mesh(
+        np.r_[shape.vertices, shape.vertices + [apart, 0, 0]], np.r_[shape.faces, shape.faces + len(shape.vertices)]
+    )
+
+
+ODD = {
+    "one triangle": Mesh([[0, -0.4, -0.3], [0, 0.4, -0.3], [0, 0, 0.4]], [[0, 1, 2]]),
+    "two pieces far apart": twice(BALL, 5),
+    "flat": Mesh(GRID.vertices * [1, 1, 0], GRID.faces[GRID.face_normals[:, 2] > 0.9]),
+    "inward normals": Mesh(BALL.vertices, BALL.faces[:, ::-1]),
+    "a vertex in no face": Mesh(np.r_[BALL.vertices, [[3.0, 0.2, 0.3]]], BALL.faces),
+    "all one colour": Mesh(GRID.vertices, GRID.faces, np.full((len(GRID.vertices), 3), [200, 30, 30])),
+    "an image of one grey value": black(GRID.vertices, GRID.faces),
+    "coincident vertices": Mesh(
+        GRID.vertices[GRID.faces].reshape(-1, 3), np.arange(3 * len(GRID.faces)).reshape(-1, 3)
+    ),
+}
+CHANNELS = tuple(dict.fromkeys(name for method in METHODS.values() for name in method.channels))
+RUNNING = [name for name, method in METHODS.items() if method.learned in {None, *Learned().weights}]
+
+
+@cache
+def seen(name):
+    mesh = normalise(ODD[name])
+    return mesh, look(mesh, CHANNELS, Conditions(), SIZE)
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("method", RUNNING)
+@pytest.mark.parametrize("name", ODD)
+def test_an_odd_mesh_has_a_defined_answer(name, method):
+    mesh, sight = seen(name)
+    found = METHODS[method].find(mesh, sight, Options(name=name), COUNT)
+    used = np.unique(mesh.faces)
+    assert found.points.dtype == np.int64 and len(set(found.points)) == len(found.points) <= COUNT
+    assert len(found.points) == min(COUNT, len(used)) and np.isin(found.points, used).all()
+    if found.saliency is not None:
+        assert found.saliency.shape == (len(mesh.vertices),) and np.isfinite(found.saliency).all()
+        assert found.saliency.min() >= 0 and found.saliency.max() <= 1
+
+
+@pytest.mark.parametrize("channel", ["color", "contrast", "dkl", "edge", "entropy", "intensity", "orientation"])
+def test_an_image_of_one_grey_value_has_maps_of_zeros(channel):
+    _, sight = seen("an image of one grey value")
+    assert not sight.maps[channel].any()
+
+
+def test_specks_too_small_for_a_pixel_are_refused_with_a_remedy():
+    with pytest.raises(ValueError, match="no pixel of any view sees the mesh"):
+        look(normalise(twice(BALL, 5000)), ("intensity",), Conditions(), SIZE)
+
+
+def test_a_mesh_without_area_or_faces_is_refused():
+    needle = Mesh([[0, 0, 0], [1, 0, 0], [2, 0, 0]], [[0, 1, 2]])
+    with pytest.raises(ValueError, match="no pixel of any view sees the mesh"):
+        look(normalise(needle), ("intensity",), Conditions(), SIZE)
+    with pytest.raises(ValueError, match="no faces"):
+        normalise(Mesh([[0, 0, 0]], np.zeros((0, 3), dtype=int)))

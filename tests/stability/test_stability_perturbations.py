@@ -1,0 +1,204 @@
+"""Every perturbation does what it says, takes its places along, and changes nothing where it should not."""
+
+import numpy as np
+import pytest
+import trimesh
+
+from stages.conspicuity import CHANNELS, conspicuity
+from stages.kit import Mesh, RayScene, Viewpoint
+from stages.kit.rng import rng
+from stages.meshes import normalise
+from stages.stability import PERTURBATIONS, Conditions, look
+from stages.stability.sights import corner_normals, relit
+from stages.views import render
+
+SIZE = (120, 160)
+MILD = {
+    "noise": 0.002, "decimation": 0.5, "remeshing": 0.05, "missing_faces": 0.1, "vertex_order": 1.0, "winding": 0.3,
+    "turn": 20.0, "tilt": 20.0, "scale": 100.0, "light": 30.0, "background": 1.0, "background_left_in": 1.0,
+    "paint": 0.5, "pattern": 0.5, "image_size": 0.5,
+}  # fmt: skip
+INVALID = {
+    "noise": -0.1, "decimation": 1.5, "remeshing": 0.0, "missing_faces": 1.0, "vertex_order": 2.0, "winding": -0.5,
+    "scale": 0.0, "light": 200.0, "background": 2.0, "background_left_in": -1.0, "paint": 1.5, "pattern": 2.0,
+    "image_size": 0.0,
+}  # fmt: skip
+WHERE_NOT_EVEN = ("decimation", "remeshing")  # the surface itself moves a little
+
+
+def apply(name, mesh, severity, seed=0):
+    return PERTURBATIONS[name].apply(mesh, severity, rng(seed, "test"))
+
+
+@pytest.fixture(scope="module")
+def pear():
+    """Without symmetry about a level plane: 642 vertices."""
+    shape = trimesh.creation.icosphere(subdivisions=3)
+    vertices = shape.vertices * (1 + 0.35 * shape.vertices[:, 2:] + 0.2 * shape.vertices[:, :1] ** 2)
+    return normalise(Mesh(vertices, shape.faces))
+
+
+def test_every_perturbation_is_tried_here():
+    assert set(MILD) == set(PERTURBATIONS)
+
+
+@pytest.mark.parametrize("name", PERTURBATIONS)
+def test_the_same_generator_gives_the_same_and_the_original_stays(name, pear):
+    before = pear.vertices.copy(), pear.faces.copy()
+    one, other = apply(name, pear, MILD[name]), apply(name, pear, MILD[name])
+    assert np.array_equal(one.mesh.vertices, other.mesh.vertices) and np.array_equal(one.mesh.faces, other.mesh.faces)
+    assert np.array_equal(pear.vertices, before[0]) and np.array_equal(pear.faces, before[1])
+
+
+@pytest.mark.parametrize("name", PERTURBATIONS)
+def test_places_lie_on_the_original_surface(name, pear):
+    """Along a ray from the centre, since the pear is star-shaped."""
+    places = apply(name, pear, MILD[name]).places
+    length = np.linalg.norm(places, axis=1)
+    hits = RayScene(pear).cast(np.zeros_like(places), places / length[:, None])
+    tolerance = 0.015 if name in WHERE_NOT_EVEN else 1e-6
+    assert np.abs(hits.distance - length).max() < tolerance
+
+
+@pytest.mark.parametrize("name", sorted(set(PERTURBATIONS) - {"remeshing", "background_left_in"}))
+def test_the_unharmed_severity_changes_nothing(name, pear):
+    found = apply(name, pear, PERTURBATIONS[name].unharmed)
+    assert np.allclose(found.mesh.vertices, pear.vertices) and np.array_equal(found.mesh.faces, pear.faces)
+    assert found.conditions == Conditions()
+    assert found.mesh.colors is None or (found.mesh.colors == 204).all()
+
+
+@pytest.mark.parametrize("name", PERTURBATIONS)
+def test_harsher_of_the_same_kind_goes_farther(name, pear):
+    """What severity counts grows with it, and the mild change is part of the harsh one."""
+    mild, harsh = (apply(name, pear, s) for s in {"scale": (10, 100), "remeshing": (0.04, 0.08)}.get(name, (0.2, 0.6)))
+    if name in ("decimation", "image_size"):
+        mild, harsh = harsh, mild
+    measure = {
+        "noise": lambda p: np.linalg.norm(p.mesh.vertices - p.places, axis=1).mean(),
+        "decimation": lambda p: -len(p.mesh.faces),
+        "remeshing": lambda p: -len(p.mesh.faces),
+        "missing_faces": lambda p: -len(p.mesh.faces),
+        "vertex_order": lambda p: (p.mesh.vertices != pear.vertices).any(axis=1).sum(),
+        "winding": lambda p: (p.mesh.faces != pear.faces).any(axis=1).sum(),
+        "turn": lambda p: np.linalg.norm(p.mesh.vertices - p.places, axis=1).mean(),
+        "tilt": lambda p: np.linalg.norm(p.mesh.vertices - p.places, axis=1).mean(),
+        "scale": lambda p: p.mesh.diagonal,
+        "light": lambda p: p.conditions.light,
+        "background": lambda p: p.conditions.background,
+        "background_left_in": lambda p: p.conditions.background,
+        "paint": lambda p: np.ptp(p.mesh.colors, axis=1).max(),
+        "pattern": lambda p: np.ptp(p.mesh.colors, axis=1).max(),
+        "image_size": lambda p: -p.conditions.rows,
+    }[name]
+    assert measure(harsh) > measure(mild)
+
+
+def test_noise_has_the_deviation_asked_for_and_tears_no_seam(pear):
+    found = apply("noise", pear, 0.01)
+    assert (found.mesh.vertices - pear.vertices).std() == pytest.approx(0.01 * pear.diagonal, rel=0.05)
+    soup = Mesh(pear.vertices[pear.faces].reshape(-1, 3), np.arange(3 * len(pear.faces)).reshape(-1, 3))
+    moved = apply("noise", soup, 0.01).mesh.vertices
+    assert len(np.unique(moved, axis=0)) == len(pear.vertices)
+
+
+def test_turn_keeps_heights_and_tilt_the_axis(pear):
+    turned = apply("turn", pear, 90).mesh.vertices
+    assert np.allclose(turned, pear.vertices[:, [1, 0, 2]] * [-1, 1, 1])
+    upside_down = apply("tilt", pear, 180).mesh.vertices
+    assert np.allclose(upside_down[:, 2], -pear.vertices[:, 2])
+    for name in ("turn", "tilt"):
+        assert np.linalg.det(np.linalg.lstsq(pear.vertices, apply(name, pear, 33).mesh.vertices)[0]) == pytest.approx(1)
+
+
+def test_scale_is_undone_by_normalise(pear):
+    for factor in (1e-3, 1e3):
+        again = normalise(apply("scale", pear, factor).mesh)
+        assert np.allclose(again.vertices, pear.vertices, atol=1e-12)
+
+
+def test_missing_faces_are_missing_in_few_patches(pear):
+    found = apply("missing_faces", pear, 0.2)
+    assert len(found.mesh.faces) == len(pear.faces) - int(0.2 * len(pear.faces))
+    counts = found.mesh.edge_counts[1]
+    assert 0 < (counts == 1).sum() < 0.1 * len(counts)  # lone faces would leave three open edges each
+    assert len(np.unique(found.mesh.faces)) == len(found.mesh.vertices)
+
+
+def test_vertex_order_leaves_the_surface(pear):
+    found = apply("vertex_order", pear, 1.0).mesh
+    assert not np.array_equal(found.faces, pear.faces)
+    assert np.array_equal(found.vertices[found.faces], pear.vertices[pear.faces])
+
+
+def test_winding_at_one_is_inside_out(pear):
+    found = apply("winding", pear, 1.0).mesh
+    assert np.allclose(found.vertex_normals, -pear.vertex_normals)
+
+
+def test_remeshing_makes_edges_of_the_length_asked_for(pear):
+    found = apply("remeshing", pear, 0.08).mesh
+    corners = found.vertices[found.faces]
+    lengths = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
+    assert np.median(lengths) == pytest.approx(0.08 * pear.diagonal, rel=0.2)
+    assert lengths.std() / lengths.mean() < 0.3
+
+
+def test_a_pattern_has_two_colours_in_patches(pear):
+    colors = apply("pattern", pear, 1.0).mesh.colors
+    assert len(np.unique(colors, axis=0)) == 2
+    ends = colors[np.stack(pear.adjacency.nonzero(), axis=1)]
+    assert (ends[:, 0] == ends[:, 1]).all(axis=1).mean() > 0.7
+
+
+def test_paint_covers_what_was_there(pear):
+    two = np.where(pear.vertices[:, 2:] > 0, 200, 100) * np.ones(3)
+    found = apply("paint", Mesh(pear.vertices, pear.faces, two.astype(np.uint8)), 1.0).mesh
+    assert len(np.unique(found.colors, axis=0)) == 2
+    assert found.colors[pear.vertices[:, 2] > 0].max() == 200
+
+
+@pytest.mark.parametrize("name", INVALID)
+def test_a_severity_out_of_range_is_named(name, pear):
+    with pytest.raises(ValueError, match="must lie in|leave no surface"):
+        apply(name, pear, INVALID[name])
+
+
+def test_light_at_no_angle_is_the_renderers_own(pear):
+    for viewpoint in (Viewpoint(0, 0), Viewpoint(120, 45)):
+        view = render(pear, viewpoint, SIZE, "raycast")
+        again = relit(pear, view, 0.0, corner_normals(pear)).rgb
+        assert np.abs(again.astype(int) - view.rgb).max() <= 1
+
+
+def test_light_brightens_the_side_it_comes_from(pear):
+    view = render(pear, Viewpoint(0, 0), SIZE, "raycast")
+    rgb = relit(pear, view, 60.0, corner_normals(pear)).rgb[..., 0]
+    rows, columns = np.nonzero(view.mask)
+    assert rows[rgb[rows, columns].argmax()] < rows.mean() and columns[rgb[rows, columns].argmax()] < columns.mean()
+    assert (rgb[~view.mask] == view.rgb[~view.mask, 0]).all()
+
+
+def test_a_background_that_is_kept_out_changes_no_map(pear):
+    plain, white = (look(pear, tuple(CHANNELS), Conditions(background=b), SIZE).maps for b in (0.0, 1.0))
+    assert all(np.array_equal(plain[name], white[name]) for name in CHANNELS)
+
+
+def test_a_background_left_in_changes_the_maps(pear):
+    black, white = (
+        look(pear, ("intensity", "edge"), Conditions(background=b, filled=False), SIZE).maps for b in (0.0, 1.0)
+    )
+    assert all(np.abs(black[name] - white[name]).max() > 0.05 for name in black)
+
+
+def test_a_look_without_conditions_is_the_plain_one(pear):
+    sight = look(pear, ("edge",), Conditions(), SIZE)
+    view = render(pear, sight.viewpoints[3], SIZE, "raycast")
+    expected = conspicuity(pear, view, ["edge"], (30, 40))["edge"]
+    image, _ = sight.image(sight.maps["edge"], 3)
+    assert image.max() == pytest.approx(expected.max(), abs=1e-6)
+
+
+def test_smaller_images_give_smaller_maps(pear):
+    assert look(pear, ("edge",), Conditions(rows=0.5), SIZE).size == (15, 20)
+    assert look(pear, (), Conditions(), SIZE) is None
