@@ -36,8 +36,8 @@ VIEWS = {
 }
 CHOICES = {
     "none": (),
-    "symmetry": ("symmetry",),
-    "orientation, symmetry": SEEN,
+    "symmetry": SEEN,
+    "orientation, symmetry": ("orientation", "symmetry"),
     "edge, orientation, symmetry": ("edge", "orientation", "symmetry"),
     "curvature, symmetry": ("curvature", "symmetry"),
     "itti": COMBINATIONS["VisAtt"],
@@ -48,7 +48,7 @@ CHOICES = {
 
 
 FULL = ("twelve", 900)  # where every choice of channels is judged; elsewhere FEW
-FEW = ("none", "orientation, symmetry", "nine")
+FEW = ("none", "symmetry", "orientation, symmetry", "nine")
 
 
 def seen(mesh, viewpoints, rows):

@@ -1,12 +1,13 @@
-"""What the fixation model knows of each vertex: two channels, where the place is, who sees it, how it bends."""
+"""What the fixation model knows of each vertex: its symmetry, where the place is, who sees it, how it bends."""
 
 import numpy as np
 
 from stages.conspicuity.curvature import mean_curvature
 
 REACHES = (0.01, 0.02)  # of the diagonal: the finest bend a person sees from afar, and the next coarser one
-# The channels that lose nothing measurable against all nine (reports/tradeoff/attention_settings.png).
-SEEN = ("orientation", "symmetry")
+# The fewest channels that lose nothing measurable (reports/tradeoff/attention_settings.png). The meshes with gaze have
+# no texture or colour: where yours have, the channels of the image may tell more.
+SEEN = ("symmetry",)
 POSITION = ("height", "height_squared", "upright", "sideways", "visible", "convexity", "detail")
 # The deviation that a feature has on a common object, the median of 19 meshes with human gaze. Where a feature varies
 # less than half of this it says little and is not blown up: the noise on a sphere must not become its features.

@@ -226,10 +226,19 @@ def test_smallest_setting_that_loses_nothing_is_named(seen):
     }  # fmt: skip
 
 
-def test_settings_without_the_full_one_are_not_run(seen, small):
+def test_a_setting_that_loses_in_auc_alone_is_not_named(seen, small):
     rows = seen.attention("settings")
-    less = again(seen, small, "settings", rows[rows["views"] != "twelve"])
-    with pytest.raises(NotRun, match="twelve, 900 rows, nine"):
+    worse = rows.assign(auc=rows["auc"] - 0.05 * (rows["views"] == "four"))
+    assert (
+        "four, 450 rows"
+        not in tradeoff.attention_settings.build(again(seen, small, "settings", worse)).caption.split("Smallest")[1]
+    )
+
+
+def test_one_setting_alone_is_not_run(seen, small):
+    rows = seen.attention("settings")
+    less = again(seen, small, "settings", rows[rows["views"] == "four"])
+    with pytest.raises(NotRun, match="fewer than two settings"):
         tradeoff.attention_settings.build(less)
 
 
