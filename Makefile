@@ -36,7 +36,7 @@ lint: $(VENV)/ready ## ruff: rules and formatting
 bench: $(VENV)/ready ## time and memory of the pipeline and its parts, to reports/bench/pipeline.csv (most of an hour)
 	python -m benchmarks.pipeline
 
-gaze: $(VENV)/ready ## judge every saliency by human gaze (gaze=PATH of gaze.zip), to reports/attention (half an hour)
+gaze: $(VENV)/ready ## judge every saliency by human gaze (gaze=PATH of gaze.zip), to reports/attention (15 min.)
 	$(call fresh,$(GAZE)) && python -m stages.compose data=gaze channels=judged "meshes.folder=$(abspath $(gaze))" \
 	  && dvc repro salient_points
 	cp $(GAZE)/reports/measurements/salient_points.csv reports/attention/gaze.csv

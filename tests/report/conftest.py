@@ -146,7 +146,7 @@ def settings_of_sight():
     """Rows of three settings: the full one, a small one that is as good, and a smaller one that is worse."""
     random, rows = np.random.default_rng(2), []
     for views, size, channels, loss, seconds in (
-        ("twelve", 900, "nine", 0.0, 10.0), ("four", 450, "symmetry", 0.003, 1.0), ("one", 450, "none", 0.3, 0.5),
+        ("twelve", 900, "nine", 0.0, 10.0), ("four", 450, "symmetry", 0.001, 1.0), ("one", 450, "none", 0.3, 0.5),
     ):  # fmt: skip
         for name in "abcdef":
             nss = 1.5 - loss + 0.002 * random.normal()
