@@ -87,10 +87,11 @@ class Mesh:
         """True when every edge is shared by exactly two faces."""
         return len(self.faces) > 0 and bool((self.edge_counts[1] == 2).all())
 
-    @property
+    @cached_property
     def diagonal(self):
-        """Length of the bounding-box diagonal."""
-        return float(np.linalg.norm(np.ptp(self.vertices, axis=0)))
+        """Length of the bounding-box diagonal; vertices in no face do not count, but on a mesh without faces."""
+        used = self.vertices[np.unique(self.faces)] if len(self.faces) else self.vertices
+        return float(np.linalg.norm(np.ptp(used, axis=0)))
 
     def rings(self, vertices, count):
         """(n,) boolean: the given vertices and all within `count` edges of them."""

@@ -1,6 +1,6 @@
 """Simplifies each mesh with its salient neighbourhoods kept, beside plain QEM, and measures the error (T3.1.3, T3.1.4).
 
-Reads data/meshes/NAME.npz and data/salient_points/NAME.npz (the points past the 90 % threshold). Writes
+Reads data/meshes/NAME.npz and data/salient_points/NAME.npz (the points past the method's own threshold). Writes
 data/lod/NAME/METHOD_TARGET.npz and reports/measurements/lod.csv: a row a metric. Seconds are those of the
 simplification on rows `faces`, those of the one Metro call on the three metro rows, and those of the simplified mesh's
 pictures and their comparison on ssim_error (the object's own pictures are made once). Settings: section `lod` of

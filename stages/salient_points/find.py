@@ -11,7 +11,7 @@ from stages.views import TWELVE, render
 from stages.weights import Learned
 from stages.weights import weights as published
 
-from .methods import method_named
+from .methods import MACHINES, method_named
 from .options import RADIUS, Options
 
 IMAGE = (900, 1200)  # rows, columns of the views; T3.2.6
@@ -47,7 +47,7 @@ def find_points(
     gives fewer than asked. selection: of methods that pick in each view, `suppression` (T3.2.5) or `centroid`
     (T3.1.2). radius: the least distance between points, in units of the normalised mesh; it shrinks only where count
     points do not fit. seed and name: for `random` alone, whose draw depends on these two and not on the calls before.
-    The rest as in saliency. ValueError for unknown names, a bad count, or `random` without a count.
+    The rest as in saliency. ValueError for unknown names, a bad count, or `random` or `farthest` without a count.
     """
     detector = method_named(method)
     if count is not None and (count != int(count) or count < 1):
@@ -62,6 +62,8 @@ def look(mesh, channels, viewpoints=None):
     if not channels:
         return None
     viewpoints = TWELVE if viewpoints is None else tuple(viewpoints)
+    if not viewpoints:
+        raise ValueError("no viewpoints: give at least one, or None for the twelve of T figure 3.2")
     found, masks = [], []
     for viewpoint in viewpoints:
         view = render(mesh, viewpoint, IMAGE)
@@ -74,6 +76,8 @@ def look(mesh, channels, viewpoints=None):
 def _learned(method, weights):
     """The published weights, those of the method replaced by what the caller gave."""
     needed, learned = method_named(method).learned, Learned()
+    if needed in MACHINES:
+        raise ValueError(f"method {method!r} needs an SVM that the stage `weights` trains: run the pipeline for it")
     if weights is None:
         if needed not in {None, *learned.weights}:
             raise ValueError(

@@ -22,7 +22,7 @@ def read_points(path):
 
 
 def read_strong_points(path):
-    """dict method -> (k',) i8: the leading ones that pass the thesis's 90 % threshold (T3.2.5)."""
+    """dict method -> (k',) i8: the leading ones that pass the method's own threshold (T3.2.5)."""
     strong = _read(path, "strong")
     return {method: points[: strong[method]] for method, points in read_points(path).items()}
 

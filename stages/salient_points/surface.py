@@ -44,7 +44,7 @@ class Fixations(OnSurface):
         channels = {name: sight.averaged(sight.maps[name], options.smoothing) for name in self.channels}
         weights = options.learned.weights[self.learned]
         features = vertex_features(mesh, sight.viewpoints, sight.facing, channels)
-        return fixation_density(features, weights).round(6)
+        return scaled(np.where(mesh.vertex_areas > 0, fixation_density(features, weights), 0))
 
 
 def scaled(values):

@@ -29,22 +29,23 @@ from .truth import truth_of
 def process(name, folder, source, place, seed):
     """Takes the lesson of one object that has ground truth; a row of how many points it has, or why it is left out."""
     mesh = read_mesh(DATA / "meshes" / f"{name}.npz")
+    path = DATA / "conspicuity" / f"{name}.npz"
     try:
         amounts = truth_of(name, source, mesh, place)
-    except ValueError as error:  # marks of another mesh of this name: the others still teach
+        if amounts is None or not amounts.any():
+            return []
+        found = lesson(name, mesh, read_sight(path, mesh), path, amounts, seed)
+        row = {"object": name, "metric": "points", "value": len(found["points"]), "convexity": convexity(mesh)}
+    except ValueError as error:  # marks of another mesh of this name, for example: the others still teach
         return [{"object": name, "metric": "points", "value": None, "note": str(error)}]
-    if amounts is None or not amounts.any():
-        return []
-    path = DATA / "conspicuity" / f"{name}.npz"
-    found = lesson(name, mesh, read_sight(path, mesh), path, amounts, seed)
     write_arrays(folder / "lessons" / f"{name}.npz", **found)
-    return [{"object": name, "metric": "points", "value": len(found["points"]), "convexity": convexity(mesh)}]
+    return [row]
 
 
 def main():
     arguments(__doc__)
     chosen, meshes = params("weights").method, params("meshes")
-    with StageRun("weights", inputs=("meshes", "conspicuity")) as run:
+    with StageRun("weights", inputs=("meshes", "conspicuity", "annotations")) as run:
         take = functools.partial(process, source=meshes.source, place=meshes.folder, seed=run.seed)
         rows = run.each(take, run.objects)
         taken = [row for row in rows if "note" not in row]

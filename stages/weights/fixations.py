@@ -47,5 +47,7 @@ def fixation_density(features, weights):
         raise ValueError(
             f"no feature {', '.join(missing) or 'at all'}: the weights need {', '.join(weights) or 'names'}"
         )
+    if not np.isfinite(list(weights.values())).all():
+        raise ValueError(f"weights must be finite, got {weights}")
     score = sum(weight * features[name] for name, weight in weights.items())
     return np.exp(score - score.max())

@@ -30,14 +30,21 @@ def learned_for(folder, name, mesh):
     """The Learned of an object out of data/weights.
 
     Weights that were learned leave the object out where it has ground truth; the same with SEEN in their name do not.
+    Where it is the only one with ground truth, nothing was learned without it, and those weights are not there.
     SVMs: `svm`, one for all other objects; `svm_nearest`, that of the other object nearest in convexity; `svm_object`
     and `svm_viewpoint`, of the object itself and of each of its views (T3.2.3), for an object with ground truth alone.
     """
     table = read_table(Path(folder) / "weights.csv").fillna({"left_out": ALL})
     from_all = table[table.left_out == ALL]
     own = table[table.left_out == name]
-    found = _by_method(from_all) | _by_method(own)
-    seen = {f"{method}{SEEN}": values for method, values in _by_method(from_all).items() if method not in METHODS}
+    every = _by_method(from_all)
+    found = every | _by_method(own)
+    if own.empty and (Path(folder) / "lessons" / f"{name}.npz").exists():
+        alone = every[ENHANCED] == every["fixations"]
+        found = {
+            method: values for method, values in every.items() if method in (*METHODS, *([] if alone else [ENHANCED]))
+        }
+    seen = {f"{method}{SEEN}": values for method, values in every.items() if method not in METHODS}
     return Learned(found | seen, _svms(Path(folder), name, mesh))
 
 
@@ -52,7 +59,7 @@ def _svms(folder, name, mesh):
     convexities = read_table(folder / "convexity.csv").set_index("object").convexity.to_dict()
     own = folder / "svm" / f"{name}.npz"
     others = {other: value for other, value in convexities.items() if other != name}
-    found = {"svm": read_models(own, "without") or read_models(folder / "svm.npz", "all")}
+    found = {"svm": read_models(own, "without") if own.exists() else read_models(folder / "svm.npz", "all")}
     found["svm_seen"] = read_models(folder / "svm.npz", "all")
     if others:
         found["svm_nearest"] = read_models(folder / "svm" / f"{nearest(convexity(mesh), others)}.npz", "object")

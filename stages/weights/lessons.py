@@ -46,6 +46,8 @@ def lesson(name, mesh, sight, path, amounts, seed):
         for k, viewpoint in enumerate(viewpoints)
     ]
     tables, image, own = (list(part) for part in zip(*found, strict=True))
+    if not any(view["distances"] for view in tables):
+        raise ValueError("no view sees a place of its ground truth")
     return {
         "amounts": amounts,
         "density": density,

@@ -11,7 +11,15 @@ from stages.conspicuity.storage import viewpoint_named
 from stages.kit import Mesh
 from stages.kit.rng import rng
 from stages.meshes import normalise
-from stages.salient_points import METHODS, find_points, read_points, read_saliency, read_strong_points, saliency
+from stages.salient_points import (
+    METHODS,
+    best_viewpoints,
+    find_points,
+    read_points,
+    read_saliency,
+    read_strong_points,
+    saliency,
+)
 from stages.salient_points.chance import random_vertices
 from stages.salient_points.fused import Fused
 from stages.salient_points.merge import continue_on_surface, merge_views
@@ -177,6 +185,20 @@ def test_random_points_are_uniform_over_the_area():
     assert np.abs(np.bincount(first[first < 4], minlength=4) / 800 - [0.25, 0.125, 0.25, 0.125]).max() < 0.08
 
 
+def test_more_random_points_than_vertices_are_all_vertices(ball):
+    assert sorted(find_points(ball, "random", 10**7)) == list(range(len(ball.vertices)))
+
+
+@pytest.mark.parametrize("method", ["enhanced", "mesh_saliency", "salient_points", "harris"])
+def test_a_vertex_in_no_face_changes_nothing(method, ball):
+    nose = trimesh.creation.icosphere(subdivisions=2, radius=0.12)
+    vertices = np.r_[ball.vertices, nose.vertices + [0.45, 0, 0.2]]
+    mesh = Mesh(vertices, np.r_[ball.faces, nose.faces + len(ball.vertices)])
+    stray = Mesh(np.r_[vertices, [[3, 3, 3]]], mesh.faces)
+    clean, odd = (saliency(each, method, viewpoints=FOUR[:2]) for each in (mesh, stray))
+    assert np.abs(clean - odd[:-1]).max() < 1e-6 and odd[-1] == 0
+
+
 def test_random_points_depend_on_seed_and_name_alone(ball):
     first = find_points(ball, "random", 20, seed=3, name="duck")
     find_points(ball, "random", 20, seed=3, name="cup")
@@ -220,6 +242,9 @@ def test_a_viewpoint_comes_back_from_its_name(viewpoint):
         (lambda mesh: find_points(mesh, "itti", weights="equal"), "'itti' has no weights"),
         (lambda mesh: saliency(mesh, "guided_ssim"), "needs weights learned by the stage `weights`"),
         (lambda mesh: saliency(mesh, "enhanced", weights={"shine": 1.0}), "no feature shine"),
+        (lambda mesh: saliency(mesh, "svm", weights="equal"), "run the pipeline for it"),
+        (lambda mesh: saliency(mesh, "itti", viewpoints=[]), "no viewpoints"),
+        (lambda mesh: best_viewpoints(mesh, "gaze"), "unknown channel"),
         (lambda mesh: saliency(mesh, "random"), "has no saliency"),
         (lambda mesh: find_points(Mesh(np.zeros((3, 3)), [[0, 1, 2]]), "random", 5), "no extent"),
         (lambda mesh: random_vertices(Mesh(np.zeros((3, 3)), [[0, 1, 2]]), 5, rng(0, "")), "no area"),

@@ -2,36 +2,28 @@
 
 import numpy as np
 import pytest
-import trimesh
 
 from stages.kit import Mesh
 from stages.salient_points.rivals import corners
 
 
-def bumps(tops, widths, heights, subdivisions=4):
-    ball = trimesh.creation.icosphere(subdivisions=subdivisions)
-    squared = 2 - 2 * ball.vertices @ np.array(tops, dtype=float).T
-    height = np.exp(-squared / (2 * np.array(widths) ** 2)) @ heights
-    return Mesh(ball.vertices * (1 + height[:, None]), ball.faces), ball.vertices
-
-
-def test_the_value_on_a_sphere_is_the_largest_scale_over_the_radius():
-    ball = trimesh.creation.icosphere(subdivisions=4, radius=3)
-    values = corners.saliency(Mesh(ball.vertices, ball.faces))
+def test_the_value_on_a_sphere_is_the_largest_scale_over_the_radius(sphere):
+    ball = sphere(4, 3)
+    values = corners.saliency(ball)
     assert values.mean() == pytest.approx(corners.SCALES[-1] * np.sqrt(4 * np.pi), rel=0.02)
     assert values.std() < 0.02 * values.mean()
-    assert len(corners.points(Mesh(ball.vertices, ball.faces))) == 0
+    assert len(corners.points(ball)) == 0
 
 
-def test_the_points_of_a_cube_are_its_corners():
-    box = trimesh.creation.box().subdivide().subdivide().subdivide().subdivide().subdivide()
-    points = corners.points(Mesh(box.vertices, box.faces))
+def test_the_points_of_a_cube_are_its_corners(cube):
+    box = cube(5)
+    points = corners.points(box)
     assert len(points) == 8 and np.allclose(np.abs(box.vertices[points]), 0.5, atol=0.02)
 
 
-def test_edges_and_faces_are_far_below_corners():
-    box = trimesh.creation.box().subdivide().subdivide().subdivide().subdivide().subdivide()
-    values = corners.saliency(Mesh(box.vertices, box.faces))
+def test_edges_and_faces_are_far_below_corners(cube):
+    box = cube(5)
+    values = corners.saliency(box)
     reach = np.sort(np.abs(box.vertices), axis=1)
     corner, edge, face = reach[:, 0] > 0.49, (reach[:, 1] > 0.49) & (reach[:, 0] < 0.1), reach[:, 1] < 0.1
     assert corner.sum() == 8 and edge.any() and face.any()
@@ -41,14 +33,14 @@ def test_edges_and_faces_are_far_below_corners():
 TOPS = [[0, 0, 1], [0, 1, 0]]
 
 
-def test_bumps_of_two_sizes_are_both_found_at_the_top():
-    mesh, directions = bumps(TOPS, [0.1, 0.2], [0.3, 0.6])
+def test_bumps_of_two_sizes_are_both_found_at_the_top(raised, sphere):
+    mesh, directions = raised(TOPS, [0.1, 0.2], [0.3, 0.6], subdivisions=4), sphere(4).vertices
     points = corners.points(mesh)
     assert ((directions[points[:2]] @ np.transpose(TOPS)).max(axis=0) > np.cos(0.05)).all()
 
 
-def test_the_small_bump_stands_out_at_the_fine_scale_and_the_large_one_at_the_coarse(monkeypatch):
-    mesh, directions = bumps(TOPS, [0.1, 0.2], [0.3, 0.6])
+def test_the_small_bump_stands_out_at_the_fine_scale_and_the_large_one_at_the_coarse(raised, sphere, monkeypatch):
+    mesh, directions = raised(TOPS, [0.1, 0.2], [0.3, 0.6], subdivisions=4), sphere(4).vertices
     tops = (directions @ np.transpose(TOPS)).argmax(axis=0)
     both = corners.saliency(mesh)[tops]
     single = []
@@ -59,12 +51,11 @@ def test_the_small_bump_stands_out_at_the_fine_scale_and_the_large_one_at_the_co
     assert (both > single[0]).all()
 
 
-def test_smoothing_spreads_a_spike_to_the_variance_asked_for():
-    grid = np.stack([*np.mgrid[:81, :81].reshape(2, -1) / 80 - 0.5, np.zeros(6561)], axis=1)
-    first = np.flatnonzero((grid[:, 0] < 0.5) & (grid[:, 1] < 0.5))
-    faces = np.stack([first, first + 81, first + 82, first, first + 82, first + 1], axis=1).reshape(-1, 3)
+def test_smoothing_spreads_a_spike_to_the_variance_asked_for(grid):
+    vertices, faces = grid(81, 81)
+    plane = vertices / 80 - [0.5, 0.5, 0]
     spike = np.zeros((6561, 1))
-    spike[np.abs(grid).sum(axis=1).argmin()] = 1
-    smooth = corners._smoother(Mesh(grid, faces), 0.05**2)(spike)[:, 0]
+    spike[np.abs(plane).sum(axis=1).argmin()] = 1
+    smooth = corners._smoother(Mesh(plane, faces), 0.05**2)(spike)[:, 0]
     assert smooth.sum() == pytest.approx(1, rel=1e-6)
-    assert smooth @ grid[:, 0] ** 2 == pytest.approx(0.05**2, rel=0.01)
+    assert smooth @ plane[:, 0] ** 2 == pytest.approx(0.05**2, rel=0.01)

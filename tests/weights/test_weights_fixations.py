@@ -69,6 +69,11 @@ def test_the_density_is_at_most_one_and_grows_with_a_feature():
     assert density == pytest.approx(np.exp([-1.0, -0.5, 0.0]))
 
 
+def test_weights_that_are_no_numbers_are_an_error():
+    with pytest.raises(ValueError, match="finite"):
+        fixation_density({"height": np.zeros(3)}, {"height": np.nan})
+
+
 @pytest.mark.parametrize("given", [{"shine": 1.0}, {}])
 def test_weights_without_a_feature_are_an_error(given):
     with pytest.raises(ValueError, match="no feature"):

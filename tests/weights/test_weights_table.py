@@ -102,6 +102,21 @@ def test_one_object_alone_teaches_others_but_not_itself():
     assert {row["left_out"] for row in learned_rows({"cup": LESSONS["cup"]})} == {""}
 
 
+def test_the_only_object_with_ground_truth_takes_nothing_that_was_learned_from_it(tmp_path):
+    write_table(tmp_path / "weights.csv", weight_table({"cup": LESSONS["cup"]}, "fixations"))
+    (tmp_path / "lessons").mkdir()
+    (tmp_path / "lessons/cup.npz").touch()
+    found = learned_for(tmp_path, "cup", None).weights
+    assert not {"enhanced", "fixations", "guided_ed"} & set(found) and {"guided_ed_seen", "equal"} <= set(found)
+    assert "enhanced" in learned_for(tmp_path, "duck", None).weights
+
+
+@pytest.mark.parametrize("choice", ["equal", "guided_ssim"])
+def test_weights_of_channels_are_no_choice_for_the_model_of_features(choice):
+    with pytest.raises(ValueError, match="choose gaze, fixations"):
+        weight_table(LESSONS, choice)
+
+
 def test_a_choice_that_is_not_there_is_an_error_that_lists_those_that_are():
     with pytest.raises(ValueError, match="'fixations' is not there.*gaze.*no object has ground truth"):
         weight_table({}, "fixations")

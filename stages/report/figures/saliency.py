@@ -32,6 +32,6 @@ def build(results):
         "Saliency and the points worth touching",
         f"Meshes of {', '.join(names)}, coloured by saliency from dark (low) to yellow (high), with the strongest "
         "points marked; " + " above ".join(map(label, methods)) + ".",
-        "Red: the strongest points, those that pass the thesis's threshold, on the side that is seen.",
+        "Red: the strongest points, those that pass the method's own threshold, on the side that is seen.",
         [path],
     )

@@ -60,7 +60,7 @@ def ours_and_rivals(rows):
         return []
     sentences = [f"{label(OURS)}: NSS {with_interval(*mean_interval(table[OURS].dropna()), places=2)}"]
     if HUMAN in table:
-        sentences[0] += f"; the ceiling, {label(HUMAN)}, has {table[HUMAN].mean():.2f}"
+        sentences[0] += f"; {label(HUMAN)}, spread as smoothly, has {table[HUMAN].mean():.2f}"
     with suppress(NotRun):
         best = best_rival(rows)
         gains = [f"{name} {signed(*mean_interval(difference(rows, key, OURS, best)))}" for key, name in ALONE.items()]

@@ -53,10 +53,11 @@ def _displacements(mesh):
     steps = sorted({scale * 2**octave for scale in SCALES for octave in range(OCTAVES)})
     sigmas = [step * EPSILON * mesh.diagonal for step in steps if step >= SMALLEST]
     means = {s: gaussian_average(mesh, surface, s) for s in sorted({k * s for s in sigmas for k in (1, 2)})}
+    used = mesh.vertex_normals.any(axis=1)  # a vertex in no face moves nowhere, and must not set the least
     scales = {}
     for sigma in sigmas:
         moved = np.abs(np.einsum("ij,ij->i", mesh.vertex_normals, np.nan_to_num(means[sigma] - means[2 * sigma])))
-        least, most = moved.min(), moved.max()
+        least, most = moved[used].min(), moved.max()
         if (most - least) / sigma**2 * mesh.diagonal > FLOOR:
-            scales[sigma] = (moved - least) / (most - least)
+            scales[sigma] = np.where(used, (moved - least) / (most - least), 0)
     return scales

@@ -62,6 +62,8 @@ def points(mesh, values=None):
     values: what saliency(mesh) returned, if it is at hand.
     """
     values = saliency(mesh) if values is None else np.asarray(values)
+    if values.shape != (len(mesh.vertices),):
+        raise ValueError(f"values must be {len(mesh.vertices)} numbers, one a vertex, got {values.shape}")
     found = np.unique(_nearest(mesh, _keypoints(mesh)))
     return found[np.lexsort((*-mesh.vertices[found].T[::-1], -values[found]))]
 
