@@ -125,6 +125,7 @@ def learned_weights(count=6):
             mean = np.delete(own, fold, axis=0).mean(axis=0) if fold >= 0 else own.mean(axis=0)
             left_out = "abcdef"[fold] if fold >= 0 else ""
             rows += [(method, channel, value, left_out) for channel, value in zip(CHANNELS, mean, strict=True)]
+    rows += [(method, "height", 0.3, fold) for method in ("fixations", "enhanced") for fold in ("", *"abcdef"[:count])]
     return pd.DataFrame(rows, columns=["method", "channel", "weight", "left_out"]), own
 
 
