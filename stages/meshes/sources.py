@@ -87,7 +87,7 @@ def _folder_item(root, name, path, settings):
 
 # What to put where meshes.folder says: (source, what it holds, where it is published). None of them is fetched by this
 # program, since their pages name no hash and some no licence.
-GAZE = ("gaze", "Models_3D/*.obj and dataset_*/*.txt", "https://github.com/FandosA/3D_Mesh_Saliency_Prediction_PyTorch")
+GAZE = ("gaze", "Models_3D/*.obj and dataset_*/*.txt", "GitHub: FandosA/3D_Mesh_Saliency_Prediction_PyTorch")
 PRINCETON = ("princeton", "LabeledDB_new/CLASS/ID.off", "https://segeval.cs.princeton.edu")
 INTEREST_POINTS = (
     "interest_points",

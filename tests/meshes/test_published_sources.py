@@ -95,10 +95,17 @@ def test_an_object_that_is_not_there_is_named_with_the_known_ones(archives):
         items("princeton", archives / "princeton.zip", ["Ant_99"])
 
 
-@pytest.mark.parametrize("source", ["gaze", "princeton", "interest_points"])
-def test_an_absent_or_foreign_archive_is_named_with_the_remedy(archives, source):
+@pytest.mark.parametrize(
+    ("source", "place"),
+    [
+        ("gaze", "GitHub: FandosA/3D_Mesh_Saliency"),
+        ("princeton", "https://segeval"),
+        ("interest_points", "https://www.itl.nist"),
+    ],
+)
+def test_an_absent_or_foreign_archive_is_named_with_the_remedy(archives, source, place):
     for folder in ("", archives / "gone.zip"):
-        with pytest.raises(FetchError, match=f"holds no {source} data: get .* from https://.*set meshes.folder"):
+        with pytest.raises(FetchError, match=f"holds no {source} data: get .* from {place}.*set meshes.folder"):
             items(source, folder)
     (archives / "other").mkdir()
     (archives / "other/readme.txt").write_text("")

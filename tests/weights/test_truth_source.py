@@ -96,9 +96,7 @@ def test_interest_points_weigh_as_many_users_as_marked_them(tmp_path):
 
 
 def test_an_absent_archive_ends_in_one_line_with_the_remedy(tmp_path):
-    for source in ("gaze", "interest_points"):
-        with pytest.raises(
-            FetchError, match=rf"holds no {source} data: get .* from https?://.*meshes\.folder"
-        ) as error:
+    for source, place in (("gaze", "GitHub: FandosA/"), ("interest_points", "https://www.itl.nist")):
+        with pytest.raises(FetchError, match=rf"holds no {source} data: get .* from {place}.*meshes\.folder") as error:
             truth_of("ball", source, MESH, tmp_path / "gone.zip")
         assert "\n" not in str(error.value)
