@@ -5,9 +5,10 @@ BIN := $(CURDIR)/$(VENV)/bin
 SMOKE := build/smoke
 GAZE := build/gaze
 gaze ?= ../shared/data/gaze.zip
+psb ?= ../shared/data/psb.zip
 export PATH := $(BIN):$(PATH)
 .DEFAULT_GOAL := help
-.PHONY: help repro test smoke lint bench gaze clean
+.PHONY: help repro test smoke lint bench gaze detectors clean
 
 help: ## this list
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 10
@@ -45,6 +46,14 @@ gaze: $(VENV)/ready ## judge every saliency by human gaze (gaze=PATH of gaze.zip
 	cp $(GAZE)/data/weights/weights.csv reports/attention/weights.csv
 	python -m benchmarks.annotations $(GAZE)
 	python -m benchmarks.attention $(GAZE)
+
+# The lod stage on data set $(1), found at $(2), in a scratch copy; its errors to reports/simplification/$(1).csv.
+detectors = $(call fresh,build/detectors_$(1)) && python -m stages.compose data=$(1) experiment=detectors_$(1) \
+	  "meshes.folder=$(abspath $(2))" && dvc repro lod && cd $(CURDIR) && python -m benchmarks.detectors build/detectors_$(1) $(1)
+
+detectors: $(VENV)/ready ## errors of every detector on psb and gaze (psb=, gaze=PATH of the zips), to reports/simplification (half an hour)
+	$(call detectors,princeton,$(psb))
+	$(call detectors,gaze,$(gaze))
 
 clean: ## remove what was built and computed; fetched files stay in the user's cache
 	rm -rf $(VENV) build .pytest_cache .ruff_cache .dvc/tmp .dvc/cache *.egg-info

@@ -6,17 +6,21 @@ from functools import cached_property
 import numpy as np
 from scipy import sparse
 
+from .texture import Texture
+
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
     """A triangle mesh; vertex order is identity, nothing is ever reordered behind the caller's back.
 
-    vertices (n, 3) f8, faces (m, 3) i8 into vertices, counter-clockwise seen from outside, colors (n, 3) u1 or None.
+    vertices (n, 3) f8, faces (m, 3) i8 into vertices, counter-clockwise seen from outside, colors (n, 3) u1 or None,
+    texture: a Texture of the m faces or None (the stages of the pipeline store and use none).
     """
 
     vertices: np.ndarray
     faces: np.ndarray
     colors: np.ndarray | None = None
+    texture: Texture | None = None
 
     def __post_init__(self):
         for name in ("faces", "colors"):
@@ -40,6 +44,8 @@ class Mesh:
             if colors.shape != vertices.shape:
                 raise ValueError(f"colors must have shape {vertices.shape}, got {colors.shape}")
             object.__setattr__(self, "colors", colors)
+        if self.texture is not None and len(self.texture.image) != len(faces):
+            raise ValueError(f"the texture must be of {len(faces)} faces, got {len(self.texture.image)}")
 
     @cached_property
     def face_crosses(self):

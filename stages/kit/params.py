@@ -11,8 +11,8 @@ from yaml import YAMLError
 
 FILE = Path("params.yaml")
 SECTIONS = (
-    "meshes", "views", "conspicuity", "weights", "salient_points", "lod", "imprints", "classification", "transfer",
-    "stability", "report",
+    "meshes", "views", "conspicuity", "weights", "salient_points", "lod", "scene", "imprints", "classification",
+    "transfer", "stability", "report",
 )  # fmt: skip
 COMMON = {"profile": str, "seed": int, "parallel": dict}
 

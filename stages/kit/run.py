@@ -147,7 +147,9 @@ def _process_once(process, folder, name):
 def _digest(settings, inputs):
     """Twelve hex digits of the settings, the code of all stages and the input folders."""
     digest = hashlib.sha256(repr(settings).encode())
-    code = sorted(path for path in Path(__file__).parents[1].rglob("*.*") if path.is_file() and path.suffix != ".pyc")
+    code = sorted(
+        path for path in Path(__file__).parents[1].rglob("*.*") if path.is_file() and "__pycache__" not in path.parts
+    )
     data = [path for folder in inputs for path in sorted(folder.rglob("*")) if path.is_file()]
     for path in [*code, *data]:
         digest.update(str(path.name).encode() + sha256(path).encode())

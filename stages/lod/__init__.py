@@ -1,11 +1,17 @@
 """LOD: fewer faces where nobody looks, and how much that shows (T3.1.3, T3.1.4, T3.2.8)."""
 
-from .feasibility import InfeasibleTarget, frozen_faces, smallest_feasible
-from .metro import metro
+from .attributes import carry
+from .export import write_any
+from .feasibility import InfeasibleTarget, SimplifyError, frozen_faces, smallest_feasible
+from .metro import metro, surface_errors, vertex_errors
+from .neighbourhood import neighbourhoods
 from .perceptual import perceptual, picture_errors, take_pictures
-from .simplify import BACKENDS, SimplifyError, simplify
+from .salient_error import salient_error
+from .shrink import shrunk_rings
+from .simplify import BACKENDS, quadric_weights, simplify
 
 __all__ = [
-    "BACKENDS", "InfeasibleTarget", "SimplifyError", "frozen_faces", "metro", "perceptual", "picture_errors",
-    "simplify", "smallest_feasible", "take_pictures",
+    "BACKENDS", "InfeasibleTarget", "SimplifyError", "carry", "frozen_faces", "metro", "neighbourhoods", "perceptual",
+    "picture_errors", "quadric_weights", "salient_error", "shrunk_rings", "simplify", "smallest_feasible",
+    "surface_errors", "take_pictures", "vertex_errors", "write_any",
 ]  # fmt: skip

@@ -35,28 +35,58 @@ class InfeasibleTarget(ValueError):
         return type(self), (self.faces, self.smallest, self.frozen)
 
 
+class SimplifyError(ValueError):
+    """Every attempt left faces folded, degenerate or non-manifold that were not so before."""
+
+
 def frozen_faces(mesh, keep=None, rings=3):
     """(m,) boolean: the faces whose corners all lie within `rings` edges of a kept vertex (T3.2.8).
 
-    With 0 rings the faces that touch a kept vertex, which could not stay without them.
-    Raises ValueError for ids outside the mesh or a negative number of rings.
+    rings: one number for all or (k,), one a kept vertex. With 0 rings the faces that touch the vertex, which could not
+    stay without them; with -1, in an array, the vertex is not kept.
+    Raises ValueError for ids outside the mesh, or rings that are no whole numbers, too few or too many.
     """
-    if keep is None or len(keep) == 0:
+    keep = check_keep(mesh, keep)
+    rings = check_rings(keep, rings)
+    keep, rings = keep[rings >= 0], rings[rings >= 0]
+    if len(keep) == 0:
         return np.zeros(len(mesh.faces), dtype=bool)
-    keep = np.asarray(keep)
+    near = np.zeros(len(mesh.vertices), dtype=bool)
+    for left in range(rings.max(), 0, -1):  # the widest neighbourhoods set out first, so that all end together
+        near[keep[rings == left]] = True
+        near |= mesh.adjacency @ near
+    touched = mesh.rings(keep, 0)
+    return near[mesh.faces].all(axis=1) | touched[mesh.faces].any(axis=1)
+
+
+def check_keep(mesh, keep):
+    """(k,) i8 vertex ids; raises ValueError for what is none."""
+    keep = np.zeros(0, dtype=np.int64) if keep is None or len(keep) == 0 else np.asarray(keep)
     if keep.ndim != 1 or not np.issubdtype(keep.dtype, np.integer):
         raise ValueError(f"keep must be a list of vertex ids, got shape {keep.shape} of {keep.dtype}")
-    if keep.min() < 0 or keep.max() >= len(mesh.vertices):
+    if len(keep) and (keep.min() < 0 or keep.max() >= len(mesh.vertices)):
         raise ValueError(f"keep names vertices outside 0..{len(mesh.vertices) - 1}")
-    if rings < 0:
+    return keep.astype(np.int64)
+
+
+def check_rings(keep, rings):
+    """(k,) i8 rings, one a kept vertex; raises ValueError for what is none."""
+    found = np.asarray(rings)
+    if not np.issubdtype(found.dtype, np.integer) and found.size:
+        raise ValueError(f"rings must be whole numbers, got {found.dtype}")
+    if found.ndim == 0 and found < 0:
         raise ValueError(f"rings must be 0 or more, got {rings}")
-    return mesh.rings(keep, rings)[mesh.faces].all(axis=1) | mesh.rings(keep, 0)[mesh.faces].any(axis=1)
+    if found.ndim and found.shape != keep.shape:
+        raise ValueError(f"rings must be one number or one a kept vertex, {keep.shape}, got {found.shape}")
+    if found.size and found.min() < -1:
+        raise ValueError(f"rings must be -1 (not kept), 0 or more, got {found.min()}")
+    return np.broadcast_to(found, keep.shape).astype(np.int64)
 
 
 def smallest_feasible(mesh, keep=None, rings=3):
     """The least number of faces that keeps the frozen faces, the boundary, the topology and a sound surface between.
 
-    keep: vertex ids or None. The count of the mesh itself where it has nothing to spare.
+    keep and rings as in `frozen_faces`. The count of the mesh itself where it has nothing to spare.
     """
     return smallest_with(mesh, frozen_faces(mesh, keep, rings))
 

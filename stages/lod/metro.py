@@ -1,9 +1,10 @@
-"""How far two surfaces lie apart (T3.1.4, T3.2.9.1)."""
+"""How far two surfaces lie apart (T3.1.4, T3.2.9.1), and how far where people look."""
 
 import numpy as np
-import point_cloud_utils as pcu
 
 from stages.kit.rng import rng
+
+from .nearest import surface
 
 
 def metro(reference, mesh, samples=10_000, seed=0):
@@ -17,21 +18,42 @@ def metro(reference, mesh, samples=10_000, seed=0):
 
     Raises ValueError for a mesh without area or fewer than one sample.
     """
+    return surface_errors(reference, mesh, None, samples, seed)
+
+
+def surface_errors(reference, mesh, saliency=None, samples=10_000, seed=0):
+    """All surface errors from one sampling and one search: dict(mean, rms, max), see `metro`.
+
+    With saliency (n,), 0 or more at each vertex of the reference, also `salient`, see `salient_error`.
+    """
     if samples < 1:
         raise ValueError(f"samples must be 1 or more, got {samples}")
-    there = _distances(sample_surface(reference, samples, rng(seed, "reference")), reference, mesh)
-    back = _distances(sample_surface(mesh, samples, rng(seed, "mesh")), mesh, reference)
+    saliency = None if saliency is None else _checked(saliency, reference)
+    ours, theirs = surface(reference), surface(mesh)
+    there, back = ours.sample(samples, rng(seed, "reference")), theirs.sample(samples, rng(seed, "mesh"))
+    to_mesh, _ = theirs.nearest(there[0])
+    to_reference, faces = ours.nearest(back[0])
+    largest = theirs.farthest(ours, to_mesh.max())
+    largest = ours.farthest(theirs, max(largest, to_reference.max()))
     errors = {
-        "mean": max(inside.mean() for inside, _ in (there, back)),
-        "rms": max(np.sqrt((inside**2).mean()) for inside, _ in (there, back)),
-        "max": max(max(inside.max(), corners.max()) for inside, corners in (there, back)),
+        "mean": max(to_mesh.mean(), to_reference.mean()),
+        "rms": np.sqrt(max((to_mesh**2).mean(), (to_reference**2).mean())),
+        "max": largest,
     }
-    return {name: float(error / reference.diagonal) for name, error in errors.items()}
+    if saliency is not None:
+        seen_from = (there[1], there[2]), (faces, ours.weights(back[0], faces))
+        looks = [np.einsum("ij,ij->i", weights, saliency[reference.faces[face]]) for face, weights in seen_from]
+        errors["salient"] = _weighted(looks, (to_mesh, to_reference))
+    return {name: float(error / ours.diagonal) for name, error in errors.items()}
 
 
-def distances(points, mesh):
-    """(k,) distances from points (k, 3) to the nearest point of the mesh's surface."""
-    return pcu.closest_points_on_mesh(np.ascontiguousarray(points, dtype=np.float64), mesh.vertices, mesh.faces)[0]
+def vertex_errors(reference, mesh):
+    """(n,) distance of each vertex of `mesh` to the surface of `reference`, in units of the mesh: a field to colour by.
+
+    Swap the arguments for the field on the reference's own vertices, as CloudCompare shows it (T3.1.4, T [226]).
+    Vertices in no face are measured as well. Raises ValueError for a reference without faces.
+    """
+    return surface(reference).nearest(mesh.vertices)[0]
 
 
 def sample_surface(mesh, count, generator):
@@ -39,16 +61,23 @@ def sample_surface(mesh, count, generator):
 
     Slices follow the order of the faces, so that each face gets its share to within one point.
     """
-    total = np.cumsum(mesh.face_areas)
-    if len(total) == 0 or total[-1] <= 0:
-        raise ValueError("cannot sample a mesh without area")
-    at = (np.arange(count) + generator.random(count)) / count * total[-1]
-    face = np.minimum(np.searchsorted(total, at, side="right"), len(total) - 1)
-    root, along = np.sqrt(generator.random(count))[:, None], generator.random(count)[:, None]
-    a, b, c = mesh.vertices[mesh.faces[face]].transpose(1, 0, 2)
-    return (1 - root) * a + root * (1 - along) * b + root * along * c
+    return surface(mesh).sample(count, generator)[0]
 
 
-def _distances(points, own, other):
-    """Distances to `other` from points of the surface `own`, and from its vertices."""
-    return distances(points, other), distances(own.vertices[np.unique(own.faces)], other)
+def _checked(saliency, reference):
+    saliency = np.asarray(saliency, dtype=np.float64)
+    if saliency.shape != (len(reference.vertices),):
+        raise ValueError(f"saliency must have one value a vertex, {len(reference.vertices)}, got {saliency.shape}")
+    if not np.isfinite(saliency).all() or saliency.min(initial=0) < 0:
+        raise ValueError("saliency must be finite and 0 or more: cut or fill what is not")
+    if not saliency[reference.faces].any():
+        raise ValueError("saliency is zero on the whole surface: nobody looks, so there is nothing to weight by")
+    return saliency
+
+
+def _weighted(looks, distances):
+    """The larger of both directions' means by weight; a direction in which no sample was looked at says nothing."""
+    totals = [look.sum() for look in looks]
+    if totals[0] == 0:
+        raise ValueError("no sample of the reference fell where its saliency is above zero: take more samples")
+    return max((look @ found) / total for look, found, total in zip(looks, distances, totals, strict=True) if total > 0)

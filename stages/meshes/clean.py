@@ -17,18 +17,20 @@ def clean(mesh):
     Faces of no area with three distinct vertices stay: they hold their neighbours together, and taking them out would
     open a closed mesh. Raises MeshError when no face or no area is left.
     """
-    faces, notes = mesh.faces, []
-    a, b, c = faces.T
-    faces, notes = _keep(faces, (a != b) & (b != c) & (c != a), notes, "degenerate")
+    ids, notes = np.arange(len(mesh.faces)), []
+    a, b, c = mesh.faces.T
+    ids, notes = _keep(ids, (a != b) & (b != c) & (c != a), notes, "degenerate")
+    faces = mesh.faces[ids]
     # Equal up to a cyclic turn: two faces back to back are a thin sheet and both stay.
     turned = np.take_along_axis(faces, (faces.argmin(axis=1)[:, None] + np.arange(3)) % 3, axis=1)
     _, first = np.unique(turned, axis=0, return_index=True)
     single = np.zeros(len(faces), dtype=bool)
     single[first] = True
-    faces, notes = _keep(faces, single, notes, "doubled")
-    if len(faces) == 0:
+    ids, notes = _keep(ids, single, notes, "doubled")
+    if len(ids) == 0:
         raise MeshError("no face with three different vertices")
-    cleaned = Mesh(mesh.vertices, faces, mesh.colors)
+    faces = mesh.faces[ids]
+    cleaned = Mesh(mesh.vertices, faces, mesh.colors, mesh.texture and mesh.texture.of(ids))
     spread = np.ptp(mesh.vertices[np.unique(faces)], axis=0)
     with np.errstate(over="ignore", invalid="ignore"):
         area, square = cleaned.face_areas.sum(), float(spread @ spread)
@@ -42,6 +44,6 @@ def clean(mesh):
     return cleaned, notes + turned
 
 
-def _keep(faces, good, notes, what):
+def _keep(ids, good, notes, what):
     removed = int((~good).sum())
-    return faces[good], notes + ([f"{removed} {what} faces removed"] if removed else [])
+    return ids[good], notes + ([f"{removed} {what} faces removed"] if removed else [])

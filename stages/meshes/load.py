@@ -9,6 +9,8 @@ import trimesh
 
 from stages.kit import Mesh
 
+from .painted import joined, merged, vertices_of
+
 FORMATS = (".stl", ".obj", ".ply", ".off", ".glb")
 
 
@@ -19,34 +21,40 @@ class MeshError(ValueError):
 def load(path):
     """Reads a mesh file; returns Mesh(vertices (n, 3) f8, faces (m, 3) i8, colors (n, 3) u1 or None), units as stored.
 
-    Vertices keep the order of the file, since ground truth indexes them; an STL, which repeats every corner, has equal
-    corners merged in the order of first appearance. Polygons are cut into triangles; the parts of a GLB scene are put
-    in place and joined. Raises MeshError with the reason when the file holds no usable mesh.
+    Vertices keep the order of the file, since ground truth indexes them; an STL or GLB, which repeats corners, has
+    equal ones merged in the order of first appearance. Polygons are cut into triangles; the parts of a GLB scene are
+    put in place and joined. The materials of a GLB, and those of an OBJ that lie beside it, become the mesh's texture.
+    Raises MeshError with the reason when the file holds no usable mesh.
     """
     path = Path(path)
     if not path.is_file():
         raise MeshError(f"no such file: {path}")
-    return parse(path.read_bytes(), path.suffix.lower())
+    return parse(path.read_bytes(), path.suffix.lower(), trimesh.resolvers.FilePathResolver(path))
 
 
-def parse(content, suffix):
-    """As `load`, from the bytes of a file and its suffix (`.stl`, ...)."""
+def parse(content, suffix, resolver=None):
+    """As `load`, from the bytes of a file and its suffix (`.stl`, ...); without a resolver, no file beside is read."""
     if suffix not in FORMATS:
         raise MeshError(f"format {suffix or 'without suffix'} is not read; known: {', '.join(FORMATS)}")
     if not content:
         raise MeshError("the file is empty")
     _refuse_truncated(content, suffix)
     try:
-        loaded = trimesh.load(
-            io.BytesIO(content), file_type=suffix[1:], process=False, maintain_order=True, skip_materials=True
-        )
-        if isinstance(loaded, trimesh.Scene):
-            loaded = loaded.to_geometry() if loaded.geometry else None
+        if suffix == ".glb" or (suffix == ".obj" and b"usemtl" in content):
+            loaded = joined(_open(content, suffix, resolver), vertices_of(content) if suffix == ".obj" else None)
+        else:
+            loaded = _open(content, suffix, resolver, maintain_order=True, skip_materials=True)
+            if isinstance(loaded, trimesh.Scene):
+                loaded = loaded.to_geometry() if loaded.geometry else None
     except MemoryError:
         raise MeshError("its header claims more data than fits in memory") from None
     except Exception as error:  # the parsers raise whatever they stumble over; all of it means: unreadable
         raise MeshError(f"unreadable as {suffix[1:].upper()} ({type(error).__name__}: {_brief(error)})") from None
-    return _to_mesh(loaded, merge=suffix == ".stl")
+    return loaded if isinstance(loaded, Mesh) else _to_mesh(loaded, merge=suffix == ".stl")
+
+
+def _open(content, suffix, resolver, **options):
+    return trimesh.load(io.BytesIO(content), file_type=suffix[1:], resolver=resolver, process=False, **options)
 
 
 def _to_mesh(loaded, merge):
@@ -66,18 +74,9 @@ def _to_mesh(loaded, merge):
         raise MeshError(f"faces name vertices that do not exist (0..{len(vertices) - 1})")
     colors = loaded.visual.vertex_colors[:, :3] if loaded.visual.kind == "vertex" else None
     if merge:
-        vertices, faces = _merge_equal(vertices, faces)
-        colors = None
+        first, ids = merged(vertices)
+        vertices, faces, colors = vertices[first], ids[faces], None
     return Mesh(vertices, faces, colors)
-
-
-def _merge_equal(vertices, faces):
-    """Vertices with bit-equal coordinates become one, in the order of first appearance."""
-    _, first, inverse = np.unique(vertices, axis=0, return_index=True, return_inverse=True)
-    order = np.argsort(first)
-    rank = np.empty_like(order)
-    rank[order] = np.arange(len(order))
-    return vertices[first[order]], rank[inverse.ravel()][faces]
 
 
 def _refuse_truncated(content, suffix):

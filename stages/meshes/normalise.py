@@ -20,6 +20,12 @@ def normalise(mesh):
     Only vertices that a face uses count, so that a stray vertex cannot shrink the object. Raises ValueError where
     the mesh has no extent.
     """
+    centre, radius = frame(mesh)
+    return Mesh((mesh.vertices - centre) * (RADIUS / radius), mesh.faces, mesh.colors, mesh.texture)
+
+
+def frame(mesh):
+    """(centre (3,) of the bounding box, radius of the bounding sphere about it), in the units of the mesh."""
     used = mesh.vertices[np.unique(mesh.faces)]
     if len(used) == 0:
         raise ValueError("the mesh has no faces to normalise by")
@@ -27,11 +33,11 @@ def normalise(mesh):
     radius = np.linalg.norm(used - centre, axis=1).max()
     if radius == 0:
         raise ValueError("the mesh has no extent: all vertices coincide")
-    return Mesh((mesh.vertices - centre) * (RADIUS / radius), mesh.faces, mesh.colors)
+    return centre, radius
 
 
 def turn_up(mesh, up):
     """The mesh turned so that its axis `up` (x, y or z) becomes +z."""
     if up not in TO_Z_UP:
         raise ValueError(f"up axis {up!r} is not one of {', '.join(TO_Z_UP)}")
-    return Mesh(mesh.vertices @ TO_Z_UP[up].T, mesh.faces, mesh.colors)
+    return Mesh(mesh.vertices @ TO_Z_UP[up].T, mesh.faces, mesh.colors, mesh.texture)

@@ -84,4 +84,4 @@ def _flipped(mesh, flips):
         return mesh
     faces = mesh.faces.copy()
     faces[flips] = faces[flips][:, ::-1]
-    return Mesh(mesh.vertices, faces, mesh.colors)
+    return Mesh(mesh.vertices, faces, mesh.colors, mesh.texture and mesh.texture.turned(flips))

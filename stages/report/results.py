@@ -89,11 +89,25 @@ class Results:
 
     def attention(self, name):
         """Rows of reports/attention/NAME.csv: measured once, on the meshes with human gaze."""
-        path = self.reports / "attention" / f"{name}.csv"
-        if not path.exists():
-            why = f"no attention/{path.name}: `make gaze` measures it where the meshes with gaze are"
-            raise NotRun(why, "gaze", runnable=False)
-        return read_table(path)
+        why = f"no attention/{name}.csv: `make gaze` measures it where the meshes with gaze are"
+        return self._once(self.reports / "attention" / f"{name}.csv", why, "gaze")
+
+    def simplification(self, data):
+        """Rows of reports/simplification/DATA.csv: the lod stage's, measured once on another data set."""
+        why = f"no simplification/{data}.csv: `make lod` measures it where the meshes of {data} are"
+        return self._once(self.reports / "simplification" / f"{data}.csv", why, "lod")
+
+    def bench(self, name):
+        """Rows of reports/bench/NAME.csv: ratios to a named peer, timed in one run of `make bench`."""
+        return self._once(self.reports / "bench" / f"{name}.csv", f"no bench/{name}.csv: `make bench` writes it", "lod")
+
+    def _once(self, path, why, stage):
+        """A table that no stage of this run writes; NotRun with `why` where it is absent."""
+        if path not in self._tables:
+            if not path.exists():
+                raise NotRun(why, stage, runnable=False)
+            self._tables[path] = read_table(path)
+        return self._tables[path]
 
     def classes(self, name):
         """How many objects a set of the classification held."""
@@ -212,7 +226,7 @@ class Results:
     def lods(self, name, method):
         """Simplified meshes of one method, most faces first: list of (target, Mesh)."""
         paths = (self.data / "lod" / name).glob(f"{method}_*.npz")
-        found = [(path.stem.removeprefix(f"{method}_"), read_mesh(path)) for path in paths]
+        found = [(path.stem.removeprefix(f"{method}_").replace("pct", "%"), read_mesh(path)) for path in paths]
         if not found:
             raise NotRun(f"no data/lod/{name}/{method}_*.npz", "lod")
         return sorted(found, key=lambda item: (-len(item[1].faces), item[0]))

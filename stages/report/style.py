@@ -46,7 +46,10 @@ LABELS = {
     "mesh_saliency": "mesh saliency",
     "mobilenet_v2": "MobileNetV2",
     "finetuned": "fine-tuned",
+    "fast": "fast (ours)",
+    "fast_simplification": "fast-simplification",
 }
+WAYS = ("adaptive", "area", "soft")  # of keeping a neighbourhood; behind a method's name
 METHOD_COLOURS = {
     "random": "#E69F00",
     "itti": "#56B4E9",
@@ -77,8 +80,9 @@ SETTINGS = {
 
 
 def label(name):
-    """A method's name as a person says it."""
-    return LABELS.get(name, str(name).replace("_", " "))
+    """A method's name as a person says it, with its way of keeping neighbourhoods where there is one."""
+    base, _, way = str(name).rpartition("-")
+    return f"{label(base)}, {way}" if way in WAYS else LABELS.get(name, str(name).replace("_", " "))
 
 
 def start(weights):

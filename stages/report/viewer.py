@@ -1,10 +1,11 @@
-"""The turnable meshes of the page."""
+"""The turnable meshes of the page: each object beside its simplified levels, coloured by saliency or by error."""
 
 import base64
 
 import numpy as np
-import point_cloud_utils
 from scipy.spatial import cKDTree
+
+from stages.lod.metro import vertex_errors
 
 from .drawing import colour_map, vivid
 from .packing import SHADES, Store, ordered
@@ -16,6 +17,9 @@ METHODS = [  # those that the page offers, as far as they were run: each costs a
 ]  # fmt: skip
 INDEX_LIMIT = 65535  # 16-bit vertex ids
 FINEST = 0.6  # of the object's faces: a finer level looks like the object itself and costs the page most
+TOP = 0.99  # of the coarsest level's vertices have an error below the top of the scale; the others show as the top
+# Blue is equal, green small, yellow, red large: the scale of CloudCompare.
+ERROR_COLOURS = ((38, 70, 200), (34, 160, 74), (245, 215, 50), (214, 30, 30))
 
 
 def pack_viewer(results):
@@ -34,12 +38,19 @@ def pack_viewer(results):
         objects.append(packed)
     if not objects:
         raise NotRun(f"no mesh fits into report.viewer_kilobytes={settings.viewer_kilobytes}; raise it", "report")
-    shades = (255 * colour_map(np.linspace(0, 1, SHADES))).round().astype(np.uint8)
+    place = np.linspace(0, 1, SHADES)
+    stops = np.linspace(0, 1, len(ERROR_COLOURS))
+    errors = np.stack([np.interp(place, stops, channel) for channel in np.transpose(ERROR_COLOURS)], axis=1)
+    shades = np.concatenate([255 * colour_map(place), errors]).round().astype(np.uint8)
     return {"objects": objects, "left_out": left_out, "colours": base64.b64encode(shades.tobytes()).decode("ascii")}
 
 
 def pack_object(results, name):
-    """One object: the full mesh, saliency and points by method, and ladders of simplified meshes by method."""
+    """One object: the full mesh, saliency and points by method, and ladders of simplified meshes by method.
+
+    A level has `error`, the distance of each vertex of the full mesh to it. All levels of all ladders share one scale,
+    `error_top` in % of the diagonal, so that the error is seen to grow along the slider; shades are its square root.
+    """
     original, store = results.mesh(name), Store()
     full, nearest = shown_mesh(original, results.settings.viewer_faces)
     place = cKDTree(full.vertices)
@@ -55,14 +66,20 @@ def pack_object(results, name):
         for method, found in results.strong_points(name).items()
         if method in shown
     }
-    packed = {"name": name, "full": _mesh(full, store), "saliency": saliency, "points": points, "ladders": {}}
+    ladders = {}
     for method in results.settings.viewer_lod_methods:
         try:
             found = [ordered(mesh)[0] for _, mesh in results.lods(name, method)]
         except NotRun:
             continue
-        levels = [_level(mesh, full, place, store) for mesh in found if len(mesh.faces) <= FINEST * len(full.faces)]
-        packed["ladders"][method] = {"label": label(method), "levels": levels}
+        levels = [mesh for mesh in found if len(mesh.faces) <= FINEST * len(full.faces)]
+        ladders[method] = [(mesh, 100 * vertex_errors(mesh, full) / full.diagonal) for mesh in levels]
+    top = max((float(np.quantile(error, TOP)) for levels in ladders.values() for _, error in levels), default=0.0)
+    packed = {"name": name, "full": _mesh(full, store), "saliency": saliency, "points": points, "error_top": top}
+    packed["ladders"] = {
+        method: {"label": label(method), "levels": [_level(mesh, error, top, store) for mesh, error in levels]}
+        for method, levels in ladders.items()
+    }
     return packed | {"store": store.text()}
 
 
@@ -77,28 +94,15 @@ def shown_mesh(mesh, faces):
     return small, cKDTree(mesh.vertices).query(small.vertices)[1]
 
 
-def surface_distance(mesh, other):
-    """(n,) distance of each vertex of `mesh` to the surface of `other`, in units."""
-    faces = np.ascontiguousarray(other.faces, dtype=np.int64)
-    vertices = np.ascontiguousarray(mesh.vertices)
-    return point_cloud_utils.closest_points_on_mesh(vertices, np.ascontiguousarray(other.vertices), faces)[0]
-
-
 def _mesh(mesh, store):
     positions, triangles = store.put_positions(mesh.vertices), store.put_triangles(mesh.faces)
     return {"faces": len(mesh.faces), "positions": positions, "triangles": triangles}
 
 
-def _level(mesh, full, place, store):
-    """A simplified mesh: each vertex names its nearest full one, whose saliency it takes, and carries an error.
-
-    The error is the distance of the full mesh to this one, the largest over the full vertices nearest to the vertex.
-    """
-    error = np.zeros(len(mesh.vertices))
-    np.maximum.at(error, cKDTree(mesh.vertices).query(full.vertices)[1], surface_distance(full, mesh))
-    worst = float(error.max())
+def _level(mesh, error, top, store):
+    """A simplified mesh, with the error (n,) of the full mesh's vertices in % of the diagonal."""
     return _mesh(mesh, store) | {
-        "nearest": store.put_words(place.query(mesh.vertices)[1]),
-        "error": store.put_shades(error / worst if worst else error),
-        "error_max": round(100 * worst / full.diagonal, 3),
+        "error": store.put_shades(np.sqrt(error / (top or 1.0))),
+        "error_max": round(float(error.max()), 3),
+        "error_mean": round(float(error.mean()), 4),
     }

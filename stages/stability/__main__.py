@@ -5,10 +5,16 @@ the picture) and reports/measurements/stability.csv: a row an object, method, pe
 `repeatability`: share of the points found again within 2 % of the diagonal; `chance`: the same of random points;
 `drift`: one minus the correlation of the saliency; `points`: how many of the points pass the method's own threshold.
 Perturbation `none` is the object as it is. Seconds include an even share of the one look that all methods share.
+
+The objects `broken` are broken in the ways of stages.stability.BROKEN, too, and every backend of stages.lod simplifies
+them: a row `faces` a case (method: the backend; perturbation: the damage; severity: the faces asked for; budget, kept,
+soft: what was asked; outcome: valid, refused, ruined or crash, with the reason in `note`) and, where a mesh came back,
+a row `error`, its Metro mean, beside the `limit` of ruin.
 Settings: section `stability` of params.yaml.
 """
 
 import functools
+from collections import Counter
 
 from stages.kit import StageRun, arguments, params
 from stages.kit.files import read_mesh, write_arrays
@@ -18,12 +24,13 @@ from stages.salient_points.options import Options
 from stages.weights import learned_for
 
 from .perturbations import PERTURBATIONS
+from .simplification import OUTCOMES, simplification_rows
 from .subject import Subject, worst_arrays
-from .summary import middle, summarise
+from .summary import middle, summarise, summarise_simplification
 
 
 def process(name, folder, settings, seed):
-    """Disturbs one object in every way; returns the rows."""
+    """Disturbs one object in every way, breaks and simplifies it if that is asked for; returns the rows."""
     mesh = read_mesh(DATA / "meshes" / f"{name}.npz")
     learned = learned_for(DATA / "weights", name, mesh)
     methods, _ = teachable(settings.methods, learned)
@@ -40,7 +47,7 @@ def process(name, folder, settings, seed):
             if severity == middle(settings.severities[perturbation]):
                 cases.append((perturbation, severity, case))
     write_arrays(folder / f"{name}.npz", **worst_arrays(subject, cases))
-    return rows
+    return rows + simplification_rows(mesh, name, seed) if name in settings.broken else rows
 
 
 def check(settings):
@@ -70,11 +77,13 @@ def main():
     with StageRun("stability", inputs=("meshes", "weights")) as run:
         objects = chosen(settings, run.objects)
         rows = run.each(functools.partial(process, settings=settings, seed=run.seed), objects)
-        run.metrics(summarise(rows))
+        run.metrics(summarise(rows) | {"simplified": summarise_simplification(rows)})
     broken = sum(value is not None for value in summarise(rows)["breaking_point"].values())
+    outcomes = Counter(row["outcome"] for row in rows if row["metric"] == "faces")
     print(
         f"stability: {len(objects)} objects, {len(settings.perturbations)} perturbations, "
-        f"{broken} breaking points within range"
+        f"{broken} breaking points within range; broken meshes simplified: "
+        + ", ".join(f"{outcomes[outcome]} {outcome}" for outcome in OUTCOMES)
     )
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 class Params:
     """Section `stability` of params.yaml."""
 
+    broken: list[str]  # objects whose broken copies are simplified, of those below
     objects: list[str]  # objects to disturb; the first `most` of all where none of these is there
     most: int  # how many objects at most
     methods: list[str]  # names of METHODS in stages/salient_points/methods.py

@@ -1,10 +1,11 @@
-"""The few numbers of a run that the gate looks at: repeatability at the middle severity, breaking points."""
+"""The few numbers of a run that the gate looks at: repeatability, breaking points, what became of broken meshes."""
 
 import numpy as np
 import pandas as pd
 
 from .measures import breaking_point
 from .perturbations import PERTURBATIONS
+from .simplification import OUTCOMES, SMALLEST
 
 
 def middle(severities):
@@ -40,6 +41,21 @@ def summarise(rows):
         mids[f"{perturbation}.{method}"] = float(group.loc[group["severity"] == at, "value"].iloc[0])
     breaks = {f"{perturbation}.{method}": value for (perturbation, method), value in breaking_points(rows).items()}
     return {"repeatability": _known(mids), "breaking_point": _known(breaks)}
+
+
+def summarise_simplification(rows):
+    """Numbers for the gate, of each backend: shares of its cases by outcome, and of the smallest counts that were had.
+
+    Crashes are a count: none is allowed, on any machine.
+    """
+    rows, found = [row for row in rows if row["metric"] == "faces"], {}
+    for backend in dict.fromkeys(row["method"] for row in rows):
+        cases = pd.DataFrame([row for row in rows if row["method"] == backend])
+        shares = {outcome: round(float((cases["outcome"] == outcome).mean()), 6) for outcome in OUTCOMES[:-1]}
+        least = cases.loc[cases["budget"] == SMALLEST, "outcome"] == "valid"
+        found[backend] = shares | {"smallest_had": round(float(least.mean()), 6) if len(least) else None}
+        found[backend]["crashes"] = int((cases["outcome"] == OUTCOMES[-1]).sum())
+    return found
 
 
 def _known(values):

@@ -7,7 +7,9 @@ from skimage.metrics import structural_similarity
 
 from stages.kit import Mesh
 from stages.lod import perceptual, picture_errors, simplify, take_pictures
-from stages.lod.perceptual import ssim_error
+from stages.lod.laplacian import laplacian_distance
+from stages.lod.normalised_laplacian import normalised_laplacian_distance
+from stages.lod.similarity import ssim_error
 from stages.views import FOUR
 
 KNOT = trimesh.creation.torus(0.33, 0.14, major_sections=48, minor_sections=24)
@@ -16,12 +18,28 @@ SMALL = (60, 80)
 
 
 def test_equal_meshes_have_no_error():
-    assert perceptual(RING, RING, FOUR, SMALL) == {"ssim": 0.0}
+    assert perceptual(RING, RING, FOUR, SMALL) == {"ssim": 0.0, "dlap": 0.0, "dnor": 0.0}
 
 
-def test_error_grows_as_faces_go():
-    errors = [perceptual(RING, simplify(RING, faces), FOUR[:2], SMALL)["ssim"] for faces in (1500, 400, 100)]
-    assert 0 < errors[0] < errors[1] < errors[2] < 1
+def test_errors_grow_as_faces_go():
+    found = [perceptual(RING, simplify(RING, faces), FOUR[:2], SMALL) for faces in (1500, 400, 100)]
+    for name in ("ssim", "dlap", "dnor"):
+        errors = [each[name] for each in found]
+        assert 0 < errors[0] < errors[1] < errors[2], name
+
+
+def test_errors_are_means_over_the_views():
+    coarse = simplify(RING, 300)
+    both = [perceptual(RING, coarse, (viewpoint,), SMALL) for viewpoint in FOUR[:2]]
+    found = perceptual(RING, coarse, FOUR[:2], SMALL)
+    assert found == pytest.approx({name: (both[0][name] + both[1][name]) / 2 for name in found}, rel=1e-12)
+
+
+def test_errors_of_one_view_are_the_three_measures():
+    reference, other = (take_pictures(mesh, FOUR[:1], SMALL) for mesh in (RING, simplify(RING, 200)))
+    measures = {"ssim": ssim_error, "dlap": laplacian_distance, "dnor": normalised_laplacian_distance}
+    expected = {name: measure(reference[0], other[0]) for name, measure in measures.items()}
+    assert picture_errors(reference, other) == pytest.approx(expected, rel=1e-12)
 
 
 def test_pictures_made_once_give_the_same_error():

@@ -1,13 +1,21 @@
 """Simplification keeps what it must, on shapes whose topology is known."""
 
-import importlib
-
 import numpy as np
 import pytest
 import trimesh
 
 from stages.kit import Mesh
-from stages.lod import InfeasibleTarget, SimplifyError, frozen_faces, metro, simplify, smallest_feasible
+from stages.lod import (
+    InfeasibleTarget,
+    SimplifyError,
+    frozen_faces,
+    metro,
+    qem,
+    quadric_weights,
+    shrunk_rings,
+    simplify,
+    smallest_feasible,
+)
 from stages.lod.topology import Topology, faults, topology
 
 
@@ -163,11 +171,86 @@ def test_infeasible_target_names_the_smallest_count_and_that_count_works():
 def test_a_result_with_new_faults_is_never_returned(monkeypatch):
     mesh = sphere(3)
     folded = Mesh(mesh.vertices, np.r_[mesh.faces[:300], mesh.faces[:1, ::-1]])
-    # The package hands on a function of the module's own name, so the module is asked for by import.
-    module = importlib.import_module("stages.lod.simplify")
-    monkeypatch.setattr(module, "BACKENDS", {"bad": lambda *_: folded})
+    monkeypatch.setattr(qem, "_decimated", lambda *_: folded)
     with pytest.raises(SimplifyError, match="new"):
-        simplify(mesh, 400, backend="bad")
+        simplify(mesh, 400, backend="pymeshlab")
+
+
+def test_an_attempt_that_ruins_the_surface_is_no_way_out_of_a_fault(monkeypatch):
+    mesh, small = sphere(3), sphere(2)
+    folded = Mesh(small.vertices, np.r_[small.faces, small.faces[:1, ::-1]])
+    for scale, sound in ((0.5, False), (1.0, True)):
+        results = iter([folded] + [Mesh(small.vertices * scale, small.faces)] * 9)
+        monkeypatch.setattr(qem, "_decimated", lambda *_, results=results: next(results))
+        if sound:
+            assert len(qem.collapse(mesh, 400, np.zeros(1280, dtype=bool)).faces) == 320
+        else:
+            with pytest.raises(SimplifyError, match="far from"):
+                qem.collapse(mesh, 400, np.zeros(1280, dtype=bool))
+
+
+def test_rings_may_differ_and_a_vertex_may_be_left_out():
+    mesh, keep = sphere(), [11, 900, 1500]
+    simple = simplify(mesh, 1200, keep, np.array([3, 1, -1]))
+    held = as_triangles(simple)
+    assert as_triangles(mesh, frozen_faces(mesh, [11], 3) | frozen_faces(mesh, [900], 1)) <= held
+    for vertex, rings in ((900, 2), (1500, 0)):
+        assert not as_triangles(mesh, frozen_faces(mesh, [vertex], rings)) <= held
+
+
+def test_shrinking_reaches_what_was_infeasible_and_keeps_the_rings_it_says():
+    mesh, keep = sphere(), [11, 900, 1500, 2200]
+    simple = simplify(mesh, 250, keep, shrink=True)
+    assert len(simple.faces) <= 250
+    rings = shrunk_rings(mesh, 250, keep)
+    assert as_triangles(mesh, frozen_faces(mesh, keep, rings)) <= as_triangles(simple)
+    assert simplify(mesh, 250, keep, rings).vertices.tobytes() == simple.vertices.tobytes()
+
+
+def test_shrinking_changes_nothing_where_the_target_is_feasible():
+    mesh, keep = sphere(), [11, 900]
+    assert np.array_equal(simplify(mesh, 900, keep, shrink=True).vertices, simplify(mesh, 900, keep).vertices)
+
+
+def test_nothing_is_left_to_shrink_below_the_floor_of_the_mesh():
+    with pytest.raises(InfeasibleTarget) as caught:
+        simplify(torus(), 12, [5], shrink=True)
+    assert caught.value.smallest == smallest_feasible(torus())
+
+
+def test_equal_weights_are_plain_qem():
+    mesh = sphere(3)
+    plain = simplify(mesh, 300)
+    for weight in (0.0, 0.4, 1.0):
+        soft = simplify(mesh, 300, weights=np.full(len(mesh.vertices), weight))
+        assert soft.vertices.tobytes() == plain.vertices.tobytes() and np.array_equal(soft.faces, plain.faces)
+
+
+def test_where_the_weight_is_high_more_faces_stay_and_the_surface_is_closer():
+    mesh = sphere()
+    soft = simplify(mesh, 300, weights=(mesh.vertices[:, 2] > 0).astype(float))
+    upper = (soft.vertices[soft.faces].mean(axis=1)[:, 2] > 0).mean()
+    assert upper > 0.6  # half of them on plain QEM
+    assert topology(soft.faces) == topology(mesh.faces)
+    assert np.isin(np.arange(len(soft.vertices)), soft.faces).all()
+
+
+def test_weights_are_not_stretched_to_their_own_range():
+    mesh = sphere()
+    faint = simplify(mesh, 300, weights=np.where(mesh.vertices[:, 2] > 0, 1e-9, 0.0))
+    assert (faint.vertices[faint.faces].mean(axis=1)[:, 2] > 0).mean() == pytest.approx(0.5, abs=0.05)
+
+
+def test_weights_and_kept_neighbourhoods_go_together():
+    mesh = sphere()
+    simple = simplify(mesh, 900, [11], weights=np.linspace(0, 1, len(mesh.vertices)))
+    assert as_triangles(mesh, frozen_faces(mesh, [11])) <= as_triangles(simple)
+
+
+def test_quadric_weights_grow_with_saliency_from_one_within_what_every_backend_takes():
+    weights = quadric_weights(np.array([0.0, 0.5, 1.0]))
+    assert weights[0] == 1 and (np.diff(weights) > 0).all() and weights[2] <= qem.QUALITY_FACTOR
+    assert quadric_weights(np.full(3, 0.7)) is None
 
 
 @pytest.mark.parametrize(
@@ -178,6 +261,12 @@ def test_a_result_with_new_faults_is_never_returned(monkeypatch):
         ({"faces": 100, "keep": [-1]}, "outside"),
         ({"faces": 100, "keep": [0.5]}, "vertex ids"),
         ({"faces": 100, "keep": [1], "rings": -1}, "rings"),
+        ({"faces": 100, "keep": [1, 2], "rings": [3]}, "one a kept vertex"),
+        ({"faces": 100, "keep": [1, 2], "rings": [3, -2]}, "-1"),
+        ({"faces": 100, "keep": [1, 2], "rings": [3.0, 1.0]}, "whole numbers"),
+        ({"faces": 100, "weights": [0.5]}, "one a vertex"),
+        ({"faces": 100, "weights": np.full(162, 1.5)}, "0..1"),
+        ({"faces": 100, "weights": np.r_[np.nan, np.zeros(161)]}, "NaN"),
         ({"faces": 100, "backend": "nobody"}, "pymeshlab"),
     ],
 )

@@ -7,26 +7,37 @@ import pytest
 import trimesh
 
 from stages.kit import Mesh
-from stages.kit.files import read_mesh
-from stages.lod import take_pictures
+from stages.kit.files import read_mesh, read_table, write_mesh
+from stages.lod import __main__ as stage
+from stages.lod import shrunk_rings, simplify, take_pictures
 from stages.lod.cell import Subject, measure_cells
 from stages.lod.schema import Params
 from stages.lod.summary import summarise
 from stages.lod.targets import face_count, file_name
+from stages.lod.variant import Variant, variant
+from stages.salient_points.options import Found
+from stages.salient_points.storage import write_found
 from stages.views import viewpoint_set
 
 SETTINGS = Params(
-    methods=["qem", "enhanced", "itti"], targets=["50%", "10%", "4000"], rings=3, backend="pymeshlab", samples=500,
-    viewpoints="four", size=[48, 64],
+    methods=["qem", "enhanced", "enhanced-soft", "itti", "random-area"], targets=["50%", "10%", "4000"], rings=3,
+    backend="pymeshlab", samples=500, viewpoints="four", size=[48, 64], shrink=False,
 )  # fmt: skip
+SHRINKING = dataclasses.replace(SETTINGS, shrink=True)
+
+
+def new_subject():
+    ball = trimesh.creation.icosphere(subdivisions=3, radius=0.5)
+    mesh = Mesh(ball.vertices, ball.faces)
+    pictures = take_pictures(mesh, viewpoint_set("four"), (48, 64))
+    points = {"enhanced": np.array([0, 300]), "random": np.array([5])}
+    saliency = {"enhanced": ((mesh.vertices[:, 2] + 0.5).clip(0, 1)).astype(np.float32)}
+    return Subject("ball", mesh, points, saliency, pictures)
 
 
 @pytest.fixture(scope="module")
 def subject():
-    ball = trimesh.creation.icosphere(subdivisions=3, radius=0.5)
-    mesh = Mesh(ball.vertices, ball.faces)
-    pictures = take_pictures(mesh, viewpoint_set("four"), (48, 64))
-    return Subject("ball", mesh, {"enhanced": np.array([0, 300])}, pictures)
+    return new_subject()
 
 
 @pytest.fixture(scope="module")
@@ -42,10 +53,60 @@ def cell(rows, method, target):
 def test_a_feasible_cell_has_its_mesh_and_all_metrics(rows):
     folder, rows = rows
     found = cell(rows, "enhanced", "50%")
-    assert set(found) == {"faces", "metro_mean", "metro_rms", "metro_max", "ssim_error"}
+    assert set(found) >= {"faces", "metro_mean", "metro_rms", "metro_max", "ssim_error", "salient_error"}
     mesh = read_mesh(folder / "ball" / "enhanced_50pct.npz")
     assert len(mesh.faces) == found["faces"]["value"] == found["ssim_error"]["faces"] <= 640
     assert all(row["value"] > 0 and row["seconds"] > 0 and row["points"] == 2 for row in found.values())
+    assert all((row["kept"], row["rings"], row["shrunk"]) == (2, 3.0, False) for row in found.values())
+
+
+def test_shrinking_makes_it_feasible_and_says_what_is_kept(subject, tmp_path):
+    found = cell(measure_cells(subject, "enhanced", tmp_path, SHRINKING, 0), "enhanced", "10%")["faces"]
+    assert found["value"] <= 128 < found["smallest_feasible"] and not found["infeasible"] and found["note"] == ""
+    assert found["shrunk"] and found["points"] == 2
+    rings = shrunk_rings(subject.mesh, 128, subject.points["enhanced"])
+    assert (found["kept"], found["rings"]) == ((rings >= 0).sum(), rings[rings >= 0].mean())
+
+
+def test_the_soft_variant_keeps_no_point_and_needs_no_room(rows):
+    found = cell(rows[1], "enhanced-soft", "10%")
+    assert (found["faces"]["points"], found["faces"]["kept"], found["faces"]["rings"]) == (0, 0, None)
+    assert found["faces"]["value"] == 128
+    assert found["salient_error"]["value"] < cell(rows[1], "qem", "10%")["salient_error"]["value"]
+
+
+def test_equal_kept_sets_are_simplified_once(tmp_path, monkeypatch):
+    subject, calls = new_subject(), []
+    monkeypatch.setattr("stages.lod.cell.simplify", lambda *a, **k: calls.append(a) or simplify(*a, **k))
+    twins = dataclasses.replace(SETTINGS, targets=["50%", "640"])
+    subject.points["itti"] = subject.points["enhanced"][::-1]
+    rows = [row for method in ("enhanced", "itti") for row in measure_cells(subject, method, tmp_path, twins, 0)]
+    assert len(calls) == 1
+    assert len({row["value"] for row in rows if row["metric"] == "metro_mean"}) == 1
+    assert len(list((tmp_path / "ball").glob("*.npz"))) == 4
+
+
+def test_without_saliency_there_is_no_salient_error(tmp_path):
+    subject = dataclasses.replace(new_subject(), saliency={})
+    found = cell(measure_cells(subject, "qem", tmp_path, SETTINGS, 0), "qem", "50%")
+    assert "metro_mean" in found and "salient_error" not in found
+
+
+def test_curve_has_the_rows_without_what_differs_from_run_to_run(tmp_path, monkeypatch):
+    subject = new_subject()
+    for kind in ("meshes", "salient_points"):
+        (tmp_path / kind).mkdir()
+    write_mesh(tmp_path / "meshes" / "ball.npz", subject.mesh)
+    found = {name: Found(points, len(points), subject.saliency.get(name)) for name, points in subject.points.items()}
+    write_found(tmp_path / "salient_points" / "ball.npz", found)
+    monkeypatch.setattr(stage, "DATA", tmp_path)
+    rows = [stage.process("ball", tmp_path / turn, SHRINKING, 0) for turn in ("one", "two")][0]
+    curves = [(tmp_path / turn / "ball" / "curve.csv").read_bytes() for turn in ("one", "two")]
+    assert curves[0] == curves[1]
+    table = read_table(tmp_path / "one" / "ball" / "curve.csv")
+    assert list(table) == [name for name in rows[0] if name not in ("seconds", "note")] and len(table) == len(rows)
+    meshes = [sorted((tmp_path / turn / "ball").glob("*.npz")) for turn in ("one", "two")]
+    assert [path.read_bytes() for path in meshes[0]] == [path.read_bytes() for path in meshes[1]]
 
 
 def test_an_infeasible_cell_says_so_and_names_the_smallest_count(rows):
@@ -59,7 +120,8 @@ def test_an_infeasible_cell_says_so_and_names_the_smallest_count(rows):
 def test_a_target_above_the_mesh_and_a_missing_method_leave_a_note(rows):
     rows = rows[1]
     assert cell(rows, "qem", "4000")["faces"]["note"] == "the object has only 1280 faces"
-    assert "salient_points" in cell(rows, "itti", "50%")["faces"]["note"]
+    assert cell(rows, "itti", "50%")["faces"]["note"] == "salient_points has no itti"
+    assert "saliency of random" in cell(rows, "random-area", "50%")["faces"]["note"]
 
 
 def test_every_cell_has_a_row(rows):
@@ -67,21 +129,21 @@ def test_every_cell_has_a_row(rows):
     assert cells == {(method, target) for method in SETTINGS.methods for target in SETTINGS.targets}
 
 
-def test_a_failing_backend_becomes_a_note(subject, tmp_path, monkeypatch):
-    def broken(*_):
+def test_a_failing_backend_becomes_a_note(tmp_path, monkeypatch):
+    def broken(*_, **__):
         raise RuntimeError("no\nluck")
 
     monkeypatch.setattr("stages.lod.cell.simplify", broken)
-    rows = measure_cells(subject, "qem", tmp_path, dataclasses.replace(SETTINGS, targets=["50%"]), 0)
+    rows = measure_cells(new_subject(), "qem", tmp_path, dataclasses.replace(SETTINGS, targets=["50%"]), 0)
     assert [row["note"] for row in rows] == ["no luck"]
 
 
 def test_summary_compares_only_cells_that_all_methods_reach():
     def row(method, target, metric, value, infeasible=False):
         return {"object": "a", "method": method, "target": target, "metric": metric, "value": value,
-                "infeasible": infeasible}  # fmt: skip
+                "infeasible": infeasible, "shrunk": method == "itti"}  # fmt: skip
 
-    rows = []
+    rows = [row("svm", "50%", "faces", None)]
     for method, values in (("qem", (1.0, 9.0)), ("itti", (2.0, None))):
         for target, value in zip(("50%", "10%"), values, strict=True):
             rows.append(row(method, target, "faces", value and 100, value is None))
@@ -89,7 +151,33 @@ def test_summary_compares_only_cells_that_all_methods_reach():
                 rows += [row(method, target, "metro_mean", value), row(method, target, "ssim_error", value / 10)]
     found = summarise(rows)
     assert (found["metro_mean_qem"], found["metro_mean_itti"], found["paired_cells"]) == (1.0, 2.0, 1)
+    assert found["metro_mean_svm"] is None  # no mesh at all: it leaves the others their pairs
     assert (found["share_infeasible"], found["infeasible_itti"], found["meshes"]) == (0.25, 0.5, 3)
+    assert (found["share_shrunk"], found["shrunk_itti"], found["shrunk_qem"]) == (0.5, 1.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("name", "method", "way"),
+    [
+        ("qem", None, None), ("enhanced", "enhanced", "fixed"), ("guided_ssim-adaptive", "guided_ssim", "adaptive"),
+        ("enhanced-area", "enhanced", "area"), ("2Sym-soft", "2Sym", "soft"),
+    ],
+)  # fmt: skip
+def test_names_of_methods_mean_points_and_a_way(name, method, way):
+    assert variant(name) == Variant(name, method, way)
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("", "unknown method ''"), ("enhancd", "unknown method 'enhancd'"), ("enhanced-", "endings are"),
+        ("enhanced-fixed", "endings are -adaptive, -area, -soft"), ("enhanced-soft-area", "ends on 'soft-area'"),
+        ("qem-soft", "unknown method 'qem'"), ("-area", "unknown method ''"),
+    ],
+)  # fmt: skip
+def test_bad_names_of_methods_are_named(name, message):
+    with pytest.raises(ValueError, match=message):
+        variant(name)
 
 
 @pytest.mark.parametrize(("target", "count"), [("50%", 500), ("12.5%", 125), ("1500", 1500), ("0.01%", 1)])

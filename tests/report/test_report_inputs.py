@@ -27,7 +27,7 @@ def test_dvc_knows_every_file_that_the_report_opens(root, small, monkeypatch):
     write_report(Results(small.settings()))
     WATCHED.pop()
     listed = yaml.safe_load((Path(__file__).parents[2] / "dvc.yaml").read_text())["stages"]["report"]["deps"]
-    read = [("data",), ("reports", "measurements"), ("reports", "attention")]
+    read = [("data",), ("reports", "measurements"), ("reports", "attention"), ("reports", "simplification")]
     inputs = {path for path in opened if path.parts[:1] in read or path.parts[:2] in read}
     assert {path.parts[1] for path in inputs} >= {"meshes", "classification", "lod", "weights", "attention"}
     unknown = {str(path) for path in inputs if not any(path.is_relative_to(dep) for dep in listed)}

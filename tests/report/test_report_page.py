@@ -14,7 +14,7 @@ from stages.report.drawing import VIEWPOINT, picture, visible
 from stages.report.figures import table_4_1
 from stages.report.packing import SHADES, STEPS, Store, ordered
 from stages.report.results import Results
-from stages.report.viewer import pack_viewer, surface_distance
+from stages.report.viewer import pack_viewer
 
 
 @pytest.fixture
@@ -80,10 +80,6 @@ def test_ordering_leaves_unused_vertices_out(small):
     mesh = small.ball()
     extra = type(mesh)(np.vstack([[[0, 0, 0]], mesh.vertices]), mesh.faces + 1)
     assert 0 not in ordered(extra)[1]
-
-
-def test_surface_is_at_no_distance_from_itself(small):
-    assert surface_distance(small.ball(), small.ball()).max() < 1e-6
 
 
 def test_objects_that_do_not_fit_are_named(results, small):

@@ -9,7 +9,7 @@ from stages.report.items import Table, build_all
 from stages.report.lod_cells import paired_cells
 from stages.report.markdown import as_text, is_numeric, markdown_table, number, with_interval
 from stages.report.results import NotRun, Results
-from stages.report.tables import table_3_2, table_4_1, table_5_4
+from stages.report.tables import table_4_1, table_5_4
 
 
 def test_twin_holds_every_cell_of_the_thesis(results):
@@ -48,25 +48,6 @@ def test_left_out_sampling_is_a_note_of_its_table(root, small):
     assert "Not run: too few touches." in table.notes
     assert np.isnan(table.frame.set_index(["sampling", "classifier"]).loc[("visual_attention", "knn"), "accuracy"])
     assert built.not_run["table_4_2"] == "no cup"
-
-
-def test_table_3_2_has_plain_qem_on_the_same_objects(root, results, small):
-    frame = results.measurements("lod").copy()
-    frame.loc[(frame["object"] == "cube") & (frame["metric"] == "metro_mean"), "value"] *= 10
-    small.write(root, "lod", frame)
-    row = table_3_2.build(Results(small.settings(), root)).frame.set_index(["target", "method", "metric"]).loc
-    assert row["25%", "qem", "metro_mean"]["objects"] == 2
-    assert row["25%", "enhanced", "metro_mean"]["objects"] == 1
-    assert row["25%", "enhanced", "metro_mean"]["plain"] == pytest.approx(0.03)
-    assert row["50%", "enhanced", "metro_mean"]["plain"] == pytest.approx((0.01 + 0.1) / 2)
-
-
-def test_target_out_of_reach_is_infeasible_not_left_out(root, results, small):
-    frame = results.measurements("lod").copy()
-    frame.loc[(frame["method"] == "enhanced") & (frame["target"] == "25%"), "value"] = np.nan
-    small.write(root, "lod", frame)
-    shown = table_3_2.build(Results(small.settings(), root)).shown.set_index(["target", "kept points"])
-    assert shown.loc[("25%", "ours (gaze model)"), "Metro mean"] == "infeasible"
 
 
 def test_paired_cells_are_those_that_every_method_reaches(results):

@@ -24,6 +24,7 @@ from stages.weights.table import weight_table
 METHODS = ["itti", "harris", "random"]
 SEVERITIES = {"vertex_order": [1.0], "noise": [0.001, 0.02], "light": [60.0], "missing_faces": [0.9, 1.0]}
 SETTINGS = Params(
+    broken=[],
     objects=["pear"], most=1, methods=METHODS, count=8, size=[120, 160], perturbations=list(SEVERITIES),
     severities=SEVERITIES,
 )  # fmt: skip

@@ -1,7 +1,8 @@
 """The registry of the thesis's claims: one entry a claim, in the order of the thesis."""
 
-from . import chapter_3, chapter_4, chapter_5
+from . import chapter_3_1_meshes, chapter_3_2_meshes, chapter_3_attention, chapter_4, chapter_5
 
-CLAIMS = [*chapter_3.CLAIMS, *chapter_4.CLAIMS, *chapter_5.CLAIMS]
+MESHES = [*chapter_3_1_meshes.CLAIMS, *chapter_3_2_meshes.CLAIMS]
+CLAIMS = [*chapter_3_attention.CLAIMS, *MESHES, *chapter_4.CLAIMS, *chapter_5.CLAIMS]
 
-__all__ = ["CLAIMS"]
+__all__ = ["CLAIMS", "MESHES"]

@@ -4,10 +4,9 @@
   const canvas = document.getElementById("canvas");
   if (!data || !canvas) return;
   const ask = (id) => document.getElementById(id);
-  const status = ask("viewer-status");
   const gl = canvas.getContext("webgl2", { antialias: true, preserveDrawingBuffer: true });
   if (!gl || !window.DecompressionStream) {
-    status.textContent = "This browser is too old to turn the meshes: it needs WebGL 2 and DecompressionStream.";
+    ask("viewer-left").textContent = "This browser is too old to turn the meshes: it needs WebGL 2 and DecompressionStream.";
     return;
   }
 
@@ -44,7 +43,7 @@
   const fragmentShader = `#version 300 es
     precision highp float;
     in vec3 place; in float shade;
-    uniform sampler2D table; uniform int mode; uniform vec3 plain;
+    uniform sampler2D table; uniform int mode; uniform float scale; uniform vec3 plain;
     out vec4 colour;
     void main() {
       if (mode == 1) { colour = vec4(0.1, 0.15, 0.22, 1.0); return; }
@@ -56,7 +55,7 @@
       vec3 normal = normalize(cross(dFdx(place), dFdy(place)));
       if (normal.z < 0.0) normal = -normal;
       float light = 0.45 + 0.3 * normal.z + 0.35 * max(dot(normal, normalize(vec3(-0.35, 0.55, 0.75))), 0.0);
-      vec3 base = shade < 0.0 ? plain : texture(table, vec2(shade * 63.0 / 64.0 + 0.5 / 64.0, 0.5)).rgb;
+      vec3 base = shade < -0.5 ? plain : texture(table, vec2(shade * 63.0 / 64.0 + 0.5 / 64.0, scale)).rgb;
       colour = vec4(base * light, 1.0);
     }`;
 
@@ -72,21 +71,23 @@
   gl.linkProgram(program);
   gl.useProgram(program);
   const at = Object.fromEntries(
-    ["turn", "zoom", "aspect", "lift", "size", "mode", "plain"].map((name) => [name, gl.getUniformLocation(program, name)]));
+    ["turn", "zoom", "aspect", "lift", "size", "mode", "scale", "plain"].map((name) => [name, gl.getUniformLocation(program, name)]));
   gl.enable(gl.DEPTH_TEST);
   gl.clearColor(1, 1, 1, 1);
   gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
   gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
-  gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGB, colours.length / 3, 1, 0, gl.RGB, gl.UNSIGNED_BYTE, colours);
+  gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGB, 64, 2, 0, gl.RGB, gl.UNSIGNED_BYTE, colours);
   for (const [key, value] of [[gl.TEXTURE_MIN_FILTER, gl.LINEAR], [gl.TEXTURE_MAG_FILTER, gl.LINEAR],
     [gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE], [gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE]]) {
     gl.texParameteri(gl.TEXTURE_2D, key, value);
   }
-  const buffers = { positions: gl.createBuffer(), values: gl.createBuffer(), faces: gl.createBuffer(), edges: gl.createBuffer(), points: gl.createBuffer() };
+  const panes = [0, 1].map(() => ({
+    positions: gl.createBuffer(), values: gl.createBuffer(), faces: gl.createBuffer(), edges: gl.createBuffer(), count: 0 }));
+  const marks = { buffer: gl.createBuffer(), count: 0 };
   const view = { azimuth: 305, elevation: 22, zoom: 1.75 };
-  let drawn = { faces: 0, edges: 0, points: 0 };
 
   const object = () => data.objects[ask("object").value];
+  // The simplified mesh that the slider is at; the original itself at its left end.
   const level = () => {
     const ladder = object().ladders[ask("ladder").value];
     const step = Number(ask("level").value);
@@ -94,7 +95,7 @@
   };
 
   function fill(select, entries) {
-    const wanted = select.options.length ? select.value : "enhanced";
+    const wanted = select.options.length ? select.value : select.dataset.first;
     select.replaceChildren(...entries.map(([value, text]) => new Option(text, value)));
     if (entries.some(([value]) => String(value) === wanted)) select.value = wanted;
   }
@@ -103,7 +104,8 @@
     const one = object();
     store = await unpack(one);
     const saliency = Object.entries(one.saliency).map(([key, item]) => [key, "saliency: " + item.label]);
-    fill(ask("colour"), [...saliency, ["error", "error of this level"], ["", "none"]]);
+    const errors = Object.keys(one.ladders).length ? [["error", "error (distance)"]] : [];
+    fill(ask("colour"), [...errors, ...saliency, ["", "none"]]);
     fill(ask("points"), [...Object.entries(one.points).map(([key, item]) => [key, item.label]), ["", "none"]]);
     const ladders = Object.entries(one.ladders).map(([key, item]) => [key, item.label]);
     fill(ask("ladder"), ladders.length ? ladders : [["", "not run"]]);
@@ -112,27 +114,48 @@
 
   function chooseLadder() {
     const ladder = object().ladders[ask("ladder").value];
-    ask("level").max = ladder ? ladder.levels.length : 0;
-    ask("level").disabled = !ladder || !ladder.levels.length;
+    const steps = ladder ? ladder.levels.length : 0;
+    const wanted = ask("level").dataset.touched ? ask("level").value : Math.ceil(steps / 2);
+    ask("level").max = steps;
+    ask("level").value = Math.min(wanted, steps);
+    ask("level").disabled = !steps;
     upload();
   }
 
-  function values(mesh, count) {
-    const out = new Float32Array(count).fill(-1);
-    const chosen = ask("colour").value;
-    if (chosen === "error") {
-      const error = mesh.error ? octets(mesh.error) : new Uint8Array(count);
-      return out.map((_, k) => error[k] / 63);
+  // For each vertex of one mesh the nearest of the other, both ways.
+  function pairs(full, small) {
+    const [n, m] = [full.length / 3, small.length / 3];
+    const toSmall = new Uint16Array(n), toFull = new Uint16Array(m), least = new Float32Array(m).fill(Infinity);
+    for (let i = 0; i < n; i++) {
+      const [x, y, z] = [full[3 * i], full[3 * i + 1], full[3 * i + 2]];
+      let best = Infinity;
+      for (let k = 0; k < m; k++) {
+        const [dx, dy, dz] = [small[3 * k] - x, small[3 * k + 1] - y, small[3 * k + 2] - z];
+        const away = dx * dx + dy * dy + dz * dz;
+        if (away < best) { best = away; toSmall[i] = k; }
+        if (away < least[k]) { least[k] = away; toFull[k] = i; }
+      }
     }
-    if (!chosen) return out;
-    const saliency = octets(object().saliency[chosen].values);
-    const nearest = mesh.nearest ? ids(mesh.nearest) : null;
-    return out.map((_, k) => saliency[nearest ? nearest[k] : k] / 63);
+    return { toSmall, toFull };
   }
 
-  function upload() {
-    const mesh = level();
-    const place = positions(mesh.positions);
+  // Shades of the original's vertices and of the simplified ones; an error is known at the original's vertices, and a
+  // simplified vertex takes the mean of those that are nearest to it.
+  function shades(mesh, full, small) {
+    const chosen = ask("colour").value;
+    if (!chosen) return [new Float32Array(full.length / 3).fill(-1), new Float32Array(small.length / 3).fill(-1)];
+    const where = chosen === "error" ? mesh.error : object().saliency[chosen].values;
+    const left = where ? Float32Array.from(octets(where), (v) => v / 63) : new Float32Array(full.length / 3);
+    if (mesh === object().full) return [left, left];
+    mesh.pairs ??= pairs(full, small);
+    const right = Float32Array.from(mesh.pairs.toFull, (k) => left[k]);
+    if (chosen !== "error") return [left, right];
+    const sum = new Float32Array(right.length), count = new Uint16Array(right.length);
+    mesh.pairs.toSmall.forEach((k, i) => { sum[k] += left[i]; count[k] += 1; });
+    return [left, right.map((value, k) => (count[k] ? sum[k] / count[k] : value))];
+  }
+
+  function send(pane, mesh, place, values) {
     const faces = triangles(mesh.triangles);
     const edges = new Uint16Array(faces.length * 2);
     for (let k = 0; k < faces.length; k += 3) {
@@ -141,30 +164,56 @@
         edges[2 * (k + c) + 1] = faces[k + ((c + 1) % 3)];
       }
     }
-    const chosen = ask("points").value;
-    const marked = chosen ? ids(object().points[chosen].ids) : [];
-    const full = positions(object().full.positions);
-    const points = Float32Array.from({ length: marked.length * 3 }, (_, k) => full[3 * marked[Math.floor(k / 3)] + (k % 3)]);
-    for (const [name, kind, content] of [["positions", gl.ARRAY_BUFFER, place], ["values", gl.ARRAY_BUFFER, values(mesh, place.length / 3)],
-      ["points", gl.ARRAY_BUFFER, points], ["faces", gl.ELEMENT_ARRAY_BUFFER, faces], ["edges", gl.ELEMENT_ARRAY_BUFFER, edges]]) {
-      gl.bindBuffer(kind, buffers[name]);
+    for (const [buffer, kind, content] of [[pane.positions, gl.ARRAY_BUFFER, place], [pane.values, gl.ARRAY_BUFFER, values],
+      [pane.faces, gl.ELEMENT_ARRAY_BUFFER, faces], [pane.edges, gl.ELEMENT_ARRAY_BUFFER, edges]]) {
+      gl.bindBuffer(kind, buffer);
       gl.bufferData(kind, content, gl.STATIC_DRAW);
     }
-    drawn = { faces: faces.length, edges: edges.length, points: marked.length };
+    pane.count = faces.length;
+  }
+
+  function upload() {
+    const mesh = level();
+    const full = positions(object().full.positions);
+    const small = mesh === object().full ? full : positions(mesh.positions);
+    const [left, right] = shades(mesh, full, small);
+    send(panes[0], object().full, full, left);
+    send(panes[1], mesh, small, right);
+    const chosen = ask("points").value;
+    const marked = chosen ? ids(object().points[chosen].ids) : [];
+    gl.bindBuffer(gl.ARRAY_BUFFER, marks.buffer);
+    gl.bufferData(gl.ARRAY_BUFFER, Float32Array.from({ length: marked.length * 3 }, (_, k) => full[3 * marked[Math.floor(k / 3)] + (k % 3)]), gl.STATIC_DRAW);
+    marks.count = marked.length;
     describe(mesh);
     draw();
   }
 
   function describe(mesh) {
+    const one = object();
+    const faces = (item) => `${item.faces.toLocaleString("en")} faces`;
+    const original = mesh === one.full;
+    const share = `${(100 * mesh.faces / one.full.faces).toFixed(mesh.faces < one.full.faces / 20 ? 1 : 0)} %`;
+    ask("viewer-left").textContent = `${one.name}, original: ${faces(one.full)}`;
+    ask("viewer-right").textContent = original ? "the original itself: move the slider" :
+      `simplified: ${faces(mesh)} (${share}); distance mean ${mesh.error_mean} %, largest ${mesh.error_max} % of the diagonal`;
+    ask("level-name").textContent = original ? "the original" : faces(mesh);
+    ask("level").setAttribute("aria-valuetext", faces(mesh));
+    canvas.setAttribute("aria-label", `Turnable meshes: ${ask("viewer-left").textContent}; ${ask("viewer-right").textContent}`);
     const chosen = ask("colour").value;
     const error = chosen === "error";
-    const worst = mesh.error_max === undefined ? "the original itself" : `largest error ${mesh.error_max} % of the diagonal`;
-    status.textContent = `${object().name}, ${mesh.faces.toLocaleString("en")} faces` + (error ? `, ${worst}` : "");
-    ask("bar").parentElement.style.visibility = chosen ? "visible" : "hidden";
-    ask("bar-low").textContent = "0";
-    ask("bar-high").textContent = error ? `${mesh.error_max || 0} %` : "top 2 %";
-    ask("level").setAttribute("aria-valuetext", `${mesh.faces} faces`);
-    canvas.setAttribute("aria-label", `Turnable mesh: ${status.textContent}`);
+    ask("legend").style.visibility = chosen ? "visible" : "hidden";
+    const top = one.error_top;
+    const tick = (value) => value.toPrecision(2) + " %";
+    ask("bar-low").textContent = error ? "0" : "low";
+    ask("bar-middle").textContent = error ? tick(top / 4) : "";
+    ask("bar-high").textContent = error ? "≥ " + tick(top) : "top 2 %";
+    ask("bar-name").textContent = error ? "of the diagonal, the same at all levels" : "saliency";
+    const bar = ask("bar").getContext("2d");
+    for (let k = 0; k < 64; k++) {
+      const at = 3 * (k + (error ? 64 : 0));
+      bar.fillStyle = `rgb(${colours[at]}, ${colours[at + 1]}, ${colours[at + 2]})`;
+      bar.fillRect(k, 0, 1, 1);
+    }
   }
 
   function turn() {
@@ -184,29 +233,44 @@
     const ratio = Math.min(window.devicePixelRatio || 1, 2);
     const [w, h] = [canvas.clientWidth * ratio, canvas.clientHeight * ratio].map(Math.round);
     if (canvas.width !== w || canvas.height !== h) { canvas.width = w; canvas.height = h; }
-    gl.viewport(0, 0, w, h);
+    const stacked = h > 1.1 * w;
+    const head = Math.round(40 * ratio);  // two lines of caption above each mesh
+    ask("stage").classList.toggle("stacked", stacked);
+    gl.disable(gl.SCISSOR_TEST);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    gl.enable(gl.SCISSOR_TEST);
+    const [pw, ph] = stacked ? [w, Math.floor(h / 2)] : [Math.floor(w / 2), h];
+    panes.forEach((pane, k) => {
+      const corner = stacked ? [0, k ? 0 : h - ph] : [k ? w - pw : 0, 0];
+      gl.viewport(...corner, pw, ph - head);
+      gl.scissor(...corner, pw, ph - head);
+      drawPane(pane, pw, ph - head, ratio);
+    });
+  }
+
+  function drawPane(pane, w, h, ratio) {
     gl.uniformMatrix3fv(at.turn, false, turn());
     gl.uniform1f(at.zoom, view.zoom);
     gl.uniform2f(at.aspect, Math.min(1, h / w), Math.min(1, w / h));
     gl.uniform3f(at.plain, 0.8, 0.8, 0.82);
-    attribute(0, buffers.positions, 3);
-    attribute(1, buffers.values, 1);
-    const passes = [[0, gl.TRIANGLES, buffers.faces, drawn.faces, 0]];
-    if (ask("edges").checked) passes.push([1, gl.LINES, buffers.edges, drawn.edges, 0.001]);
+    gl.uniform1f(at.scale, ask("colour").value === "error" ? 0.75 : 0.25);
+    attribute(0, pane.positions, 3);
+    attribute(1, pane.values, 1);
+    const passes = [[0, gl.TRIANGLES, pane.faces, pane.count, 0]];
+    if (ask("edges").checked) passes.push([1, gl.LINES, pane.edges, 2 * pane.count, 0.001]);
     for (const [mode, kind, buffer, count, lift] of passes) {
       gl.uniform1i(at.mode, mode);
       gl.uniform1f(at.lift, lift);
       gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, buffer);
       gl.drawElements(kind, count, gl.UNSIGNED_SHORT, 0);
     }
-    if (drawn.points) {
-      attribute(0, buffers.points, 3);
+    if (marks.count) {
+      attribute(0, marks.buffer, 3);
       gl.disableVertexAttribArray(1);
       gl.uniform1i(at.mode, 2);
       gl.uniform1f(at.lift, 0.004);
-      gl.uniform1f(at.size, 10 * ratio);
-      gl.drawArrays(gl.POINTS, 0, drawn.points);
+      gl.uniform1f(at.size, 8 * ratio);
+      gl.drawArrays(gl.POINTS, 0, marks.count);
     }
   }
 
@@ -254,15 +318,11 @@
     event.preventDefault();
   });
 
-  const bar = ask("bar").getContext("2d");
-  for (let k = 0; k < 64; k++) {
-    bar.fillStyle = `rgb(${colours[3 * k]}, ${colours[3 * k + 1]}, ${colours[3 * k + 2]})`;
-    bar.fillRect(k, 0, 1, 1);
-  }
   if (data.left_out.length) ask("left-out").textContent = `Left out, to keep the page small: ${data.left_out.join(", ")}.`;
   fill(ask("object"), data.objects.map((one, k) => [k, one.name]));
-  ask("object").addEventListener("change", () => { ask("level").value = 0; chooseObject(); });
+  ask("object").addEventListener("change", chooseObject);
   ask("ladder").addEventListener("change", chooseLadder);
+  ask("level").addEventListener("input", () => { ask("level").dataset.touched = "yes"; });
   for (const id of ["colour", "points", "level"]) ask(id).addEventListener("input", upload);
   ask("edges").addEventListener("input", draw);
   ask("reset").addEventListener("click", reset);

@@ -1,0 +1,134 @@
+"""The simplifiers on real broken meshes, those that CGAL tries its repairs on: `python -m benchmarks.broken_meshes`
+
+Fetches Debian's package libcgal-demo once (by `apt-get download`, hash checked; never installed), takes the meshes out
+of it, and asks every backend for 4 faces and more, with and without kept vertices, each mesh in a process of its own
+with a limit of time and memory. Writes reports/bench/broken_meshes.csv: a row a case, with what the surface is
+(faces, pieces, rim edges, flat faces, folds, crowded edges, pinches) and what came of it: valid, refused, ruined or
+crash (stages.stability.simplification), with the reason and the seconds. A file that the loader refuses has one row.
+"""
+
+import io
+import json
+import multiprocessing
+import os
+import resource
+import subprocess
+import tarfile
+import tempfile
+from pathlib import Path
+
+import pandas as pd
+
+from stages.kit.fetch import FetchError, cache_folder
+from stages.kit.files import sha256, write_table
+from stages.kit.parallel import progress
+from stages.lod import BACKENDS
+from stages.meshes import load
+from stages.meshes.load import FORMATS
+from stages.stability.plain_curve import PlainCurve
+from stages.stability.simplification import answers
+from stages.stability.specimen import Case, Specimen
+
+OUT = Path("reports/bench/broken_meshes.csv")
+PACKAGE = "libcgal-demo_5.5.1-2_all.deb"
+DIGEST = "78b09b23d4d6d1bf15552a1060b419ab3fc09918486462faed197e5fc6ac3735"
+INNER = "usr/share/doc/libcgal-dev/data.tar.gz"
+CASES = [Case(budget, kept) for budget in ("4", "64", "256", "50%", "90%") for kept in ("none", "5")]
+CASES += [Case("50%", "60"), Case("50%", "half")]
+SECONDS, MEMORY = 120, 6 * 2**30  # of one mesh and backend, all cases
+LARGEST = 20_000  # faces; above it the cases take minutes each with pymeshlab
+
+
+def fetched():
+    """The package's file, downloaded once by the machine's own apt."""
+    path = cache_folder() / PACKAGE
+    if not path.exists() or sha256(path) != DIGEST:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        subprocess.run(["apt-get", "download", "libcgal-demo"], cwd=path.parent, capture_output=True, check=False)
+    if not path.exists() or sha256(path) != DIGEST:
+        raise FetchError(f"get {PACKAGE} (SHA-256 {DIGEST}) by `apt-get download libcgal-demo` and put it at {path}")
+    return path
+
+
+def unpacked():
+    """The mesh files, taken out of the package into the cache: sorted paths."""
+    folder = cache_folder() / "cgal-5.5.1"
+    if not folder.exists():
+        part = folder.with_suffix(".part")
+        with tarfile.open(fileobj=io.BytesIO(_members(fetched())["data.tar.xz"])) as outer:
+            inner = next(member for member in outer.getmembers() if member.name.endswith(INNER))
+            with tarfile.open(fileobj=outer.extractfile(inner)) as stored:
+                for member in stored:
+                    if member.isfile() and Path(member.name).suffix in FORMATS:
+                        part.mkdir(parents=True, exist_ok=True)
+                        (part / Path(member.name).name).write_bytes(stored.extractfile(member).read())
+        part.rename(folder)
+    return sorted(folder.iterdir())
+
+
+def _members(path):
+    """dict name -> bytes of an ar archive: a header of 60 characters a member, an even number of bytes each."""
+    content, at, found = path.read_bytes(), 8, {}
+    while at < len(content):
+        name, size = content[at : at + 16].decode().strip(" /"), int(content[at + 48 : at + 58])
+        found[name], at = content[at + 60 : at + 60 + size], at + 60 + size + size % 2
+    return found
+
+
+def measure(path, backend, out):
+    """Writes the rows of one file and backend to the file `out`, one JSON object a line, as they come."""
+    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+    with open(out, "a", encoding="utf-8") as stream:
+        for row in _rows(path, backend):
+            print(json.dumps(row), file=stream, flush=True)
+
+
+def _rows(path, backend):
+    try:
+        mesh = load(path)
+    except ValueError as error:
+        yield {"outcome": "not read", "note": str(error)}
+        return
+    if len(mesh.faces) > LARGEST:
+        yield {"has": len(mesh.faces), "outcome": "not tried", "note": f"more than {LARGEST} faces"}
+        return
+    specimen = Specimen(mesh, PlainCurve(mesh), "sound", path.stem, 0)
+    look = specimen.surface
+    what = {"has": len(mesh.faces), "pieces": look.pieces, "rim": len(look.border), "flat": look.flat_faces}
+    what |= {"folds": int(look.folds.max()), "crowded": look.crowded, "pinches": look.pinches}
+    for case, answer in answers(specimen, backend, CASES):
+        row = {"budget": case.budget, "kept": case.kept, "asked": answer.asked, "outcome": answer.outcome}
+        row |= {"faces": 0 if answer.mesh is None else len(answer.mesh.faces), "error": answer.error}
+        yield what | row | {"note": answer.note, "seconds": answer.seconds}
+
+
+def rows_of(path, backend):
+    """The rows of one file and backend, measured in a process of its own; its death is a row, too."""
+    with tempfile.NamedTemporaryFile("r", encoding="utf-8") as out:
+        work = multiprocessing.get_context("fork").Process(target=measure, args=(path, backend, out.name))
+        work.start()
+        work.join(SECONDS)
+        end = f"not done in {SECONDS} s" if work.is_alive() else work.exitcode and f"ended with {work.exitcode}"
+        if work.exitcode == 1:
+            raise RuntimeError(f"{path.stem}, {backend}: the measurement itself failed, see above")
+        work.kill()
+        work.join()
+        rows = [json.loads(line) for line in out]
+    if end:
+        rows.append({"outcome": "crash", "note": end})
+    return [{"mesh": path.stem, "backend": backend} | row for row in rows]
+
+
+def main():
+    """Tries every mesh with every backend and writes the table."""
+    cells = [(path, backend) for path in unpacked() for backend in BACKENDS]
+    frame = pd.DataFrame([row for cell in progress(cells, "broken meshes") for row in rows_of(*cell)])
+    write_table(OUT, frame)
+    print(frame.groupby(["backend", "outcome"]).agg(cases=("outcome", "size"), seconds=("seconds", "sum")))
+    bad = frame[frame["outcome"].isin(["ruined", "crash"])]
+    print(bad[["mesh", "backend", "budget", "kept", "outcome", "note"]].to_string(index=False))
+
+
+if __name__ == "__main__":
+    os.environ.setdefault("OMP_NUM_THREADS", "1")
+    main()

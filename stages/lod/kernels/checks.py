@@ -1,0 +1,167 @@
+"""What a collapse must not do: turn a face over, make a needle, or change what is joined to what."""
+
+from .corners import after, before
+from .jit import kernel
+
+FOLD = -0.9  # cosine between the normals of two neighbours below which they fold onto each other, with some room
+STEADY = 0.98  # cosine between a face's normal before and after above which its neighbours are not looked at
+
+
+@kernel
+def may_collapse(corner, twin, start, locked, p, mark, last, h, x, y, z, turn, shape):
+    """Whether the edge of half-edge h may become one vertex at x, y, z: nothing folds, and the link condition holds.
+
+    The link condition: the ends share no neighbour but the two across the edge, and no tetrahedron closes. mark (n,)
+    scratch, last (1,) the number of the last marking; turn, shape: see `faces_stay_sound`.
+    """
+    t = twin[h]
+    i, j, k, m = corner[h], corner[t], corner[before(h)], corner[before(t)]
+    if k == m or _shut(corner, twin, h, m) or _shut(corner, twin, t, k):
+        return False
+    last[0] += 1
+    now = last[0]
+    mark_neighbours(corner, twin, start, mark, now, i)
+    if count_marked(corner, twin, start, mark, now, j) != 2:
+        return False
+    if not (locked[i] or faces_stay_sound(corner, twin, start, p, i, j, x, y, z, turn, shape)):
+        return False
+    if not (locked[j] or faces_stay_sound(corner, twin, start, p, j, i, x, y, z, turn, shape)):
+        return False
+    return _seam_holds(corner, twin, p, i, j, h, x, y, z) and _seam_holds(corner, twin, p, i, j, t, x, y, z)
+
+
+@kernel
+def mark_neighbours(corner, twin, start, mark, now, v):
+    """Marks all vertices that an edge joins to v."""
+    h = first = start[v]
+    while True:
+        mark[corner[after(h)]] = now
+        back = before(h)
+        h = twin[back]
+        if h < 0:
+            mark[corner[back]] = now
+            return
+        if h == first:
+            return
+
+
+@kernel
+def count_marked(corner, twin, start, mark, now, v):
+    """How many of the vertices that an edge joins to v are marked."""
+    count = 0
+    h = first = start[v]
+    while True:
+        count += mark[corner[after(h)]] == now
+        back = before(h)
+        h = twin[back]
+        if h < 0:
+            return count + (mark[corner[back]] == now)
+        if h == first:
+            return count
+
+
+@kernel
+def _seam_holds(corner, twin, p, i, j, h, x, y, z):
+    """The two faces that become neighbours when the face of h goes do not fold onto each other."""
+    one, two = twin[after(h)], twin[before(h)]
+    if one < 0 or two < 0:
+        return True
+    ax, ay, az = _normal(corner, p, one, i, j, x, y, z)
+    bx, by, bz = _normal(corner, p, two, i, j, x, y, z)
+    return not _folds(ax * bx + ay * by + az * bz, (ax * ax + ay * ay + az * az) * (bx * bx + by * by + bz * bz))
+
+
+@kernel
+def _normal(corner, p, h, i, j, x, y, z):
+    """Normal, times twice the area, of the face of h once vertices i and j are at x, y, z."""
+    ax, ay, az = _place(p, corner[h], i, j, x, y, z)
+    bx, by, bz = _place(p, corner[after(h)], i, j, x, y, z)
+    cx, cy, cz = _place(p, corner[before(h)], i, j, x, y, z)
+    ux, uy, uz, vx, vy, vz = bx - ax, by - ay, bz - az, cx - ax, cy - ay, cz - az
+    return uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+
+
+@kernel
+def _place(p, v, i, j, x, y, z):
+    if v in (i, j):
+        return x, y, z
+    return p[v, 0], p[v, 1], p[v, 2]
+
+
+@kernel
+def faces_stay_sound(corner, twin, start, p, v, other, x, y, z, turn, shape):
+    """No face around v, but those it shares with `other`, goes bad when v moves to x, y, z.
+
+    Bad is: turned too far, folded onto its outer neighbour or the one before it, or a needle. p (n, 3). turn: least
+    cosine, above 0, between a face's normal before and after; shape: least quality of a face after (1 for an
+    equilateral triangle, 0 for a needle), unless it was below it before and does not get worse.
+    """
+    vx, vy, vz = p[v, 0], p[v, 1], p[v, 2]
+    lx = ly = lz = last = fx = fy = fz = opening = 0.0  # the normals of the face before and of the first one
+    some_bent = False
+    h = first = start[v]
+    while True:
+        a, b = corner[after(h)], corner[before(h)]
+        if a == other or b == other:
+            last = 0.0
+        else:
+            ex, ey, ez = p[b, 0] - p[a, 0], p[b, 1] - p[a, 1], p[b, 2] - p[a, 2]
+            nx, ny, nz = p[a, 0] - x, p[a, 1] - y, p[a, 2] - z
+            ox, oy, oz = p[a, 0] - vx, p[a, 1] - vy, p[a, 2] - vz
+            base = ex * ex + ey * ey + ez * ez
+            now, was = base + _sides(nx, ny, nz, ex, ey, ez), base + _sides(ox, oy, oz, ex, ey, ez)
+            nx, ny, nz = ny * ez - nz * ey, nz * ex - nx * ez, nx * ey - ny * ex
+            ox, oy, oz = oy * ez - oz * ey, oz * ex - ox * ez, ox * ey - oy * ex
+            new, old = nx * nx + ny * ny + nz * nz, ox * ox + oy * oy + oz * oz
+            along = nx * ox + ny * oy + nz * oz
+            if old > 0.0 and (along <= 0.0 or along * along < turn * turn * new * old):
+                return False
+            if 12 * new < shape * shape * now * now and new * was * was <= old * now * now:
+                return False
+            if _folds(nx * lx + ny * ly + nz * lz, new * last):
+                return False
+            lx, ly, lz, last = nx, ny, nz, new
+            if h == first:
+                fx, fy, fz, opening = nx, ny, nz, new
+            if along * along < STEADY * STEADY * new * old:
+                some_bent = True
+                if _folds_outside(corner, twin, p, after(h), nx, ny, nz, new):
+                    return False
+        h = twin[before(h)]
+        if h < 0:
+            return True
+        if h == first:
+            return not (some_bent and _folds(fx * lx + fy * ly + fz * lz, opening * last))
+
+
+@kernel
+def _folds_outside(corner, twin, p, h, x, y, z, square):
+    """Whether a face of normal x, y, z, of that squared length, folds onto the one on the other side of half-edge h."""
+    g = twin[h]
+    if g < 0:
+        return False
+    a, b, c = corner[g], corner[after(g)], corner[before(g)]
+    ux, uy, uz = p[b, 0] - p[a, 0], p[b, 1] - p[a, 1], p[b, 2] - p[a, 2]
+    vx, vy, vz = p[c, 0] - p[a, 0], p[c, 1] - p[a, 1], p[c, 2] - p[a, 2]
+    ox, oy, oz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+    return _folds(x * ox + y * oy + z * oz, square * (ox * ox + oy * oy + oz * oz))
+
+
+@kernel
+def _folds(along, square):
+    """Whether the cosine along / sqrt(square) lies below FOLD."""
+    return along < 0.0 and along * along > FOLD * FOLD * square
+
+
+@kernel
+def _sides(ax, ay, az, ex, ey, ez):
+    """The squared lengths of two sides of a triangle, a and a + e."""
+    bx, by, bz = ax + ex, ay + ey, az + ez
+    return ax * ax + ay * ay + az * az + bx * bx + by * by + bz * bz
+
+
+@kernel
+def _shut(corner, twin, h, opposite):
+    """True where the corner across h has but three faces, and the outer one ends at the edge's other corner."""
+    one, two = twin[after(h)], twin[before(h)]
+    return one >= 0 and two >= 0 and corner[before(one)] == opposite and corner[before(two)] == opposite

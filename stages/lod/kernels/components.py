@@ -1,0 +1,35 @@
+"""Connected components by union and find."""
+
+import numpy as np
+
+from .jit import kernel
+
+
+@kernel
+def components(tails, heads, count):
+    """(labels (count,) i4, how many) of a graph with edges tails (e,) to heads (e,); labels from 0 as ids come."""
+    parent = np.arange(count)
+    for edge in range(len(tails)):
+        a, b = _root(parent, tails[edge]), _root(parent, heads[edge])
+        if a < b:
+            parent[b] = a
+        else:
+            parent[a] = b
+    label = np.empty(count, dtype=np.int32)
+    found = 0
+    for v in range(count):
+        root = _root(parent, v)
+        if root == v:
+            label[v] = found
+            found += 1
+        else:
+            label[v] = label[root]
+    return label, found
+
+
+@kernel
+def _root(parent, v):
+    while parent[v] != v:
+        parent[v] = parent[parent[v]]
+        v = parent[v]
+    return v

@@ -1,0 +1,77 @@
+"""Quadric error: the sum of squared distances to planes, area-weighted (Garland and Heckbert 1997, T [222])."""
+
+import numpy as np
+
+from .jit import kernel
+
+PULL = 1e-6  # weight of the distance to the point itself beside that to the plane: on a flat place it decides alone
+REACH = 2.0  # how far the optimum may lie from the edge's middle, in lengths of the edge
+
+
+@kernel
+def vertex_quadrics(position, corner, weight):
+    """(n, 10) quadrics: x.A.x + 2 b.x + c as A (xx, xy, xz, yy, yz, zz), b, c; weight (n,) multiplies the planes."""
+    found = np.zeros((len(position), 10))
+    for f in range(len(corner) // 3):
+        i, j, k = corner[3 * f], corner[3 * f + 1], corner[3 * f + 2]
+        ax, ay, az = position[i, 0], position[i, 1], position[i, 2]
+        ux, uy, uz = position[j, 0] - ax, position[j, 1] - ay, position[j, 2] - az
+        vx, vy, vz = position[k, 0] - ax, position[k, 1] - ay, position[k, 2] - az
+        nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+        double = np.sqrt(nx * nx + ny * ny + nz * nz)
+        if double == 0.0:
+            continue
+        nx, ny, nz = nx / double, ny / double, nz / double
+        d = -(nx * ax + ny * ay + nz * az)
+        for v in (i, j, k):
+            _add(found, v, double / 6 * weight[v], nx, ny, nz, d, position[v, 0], position[v, 1], position[v, 2])
+    return found
+
+
+@kernel
+def _add(q, v, s, x, y, z, d, px, py, pz):
+    """Adds s times the squared distance to the plane x, y, z, d and, `PULL` times weaker, to the point px, py, pz."""
+    w = s * PULL
+    q[v, 0] += s * x * x + w
+    q[v, 1] += s * x * y
+    q[v, 2] += s * x * z
+    q[v, 3] += s * y * y + w
+    q[v, 4] += s * y * z
+    q[v, 5] += s * z * z + w
+    q[v, 6] += s * x * d - w * px
+    q[v, 7] += s * y * d - w * py
+    q[v, 8] += s * z * d - w * pz
+    q[v, 9] += s * d * d + w * (px * px + py * py + pz * pz)
+
+
+# Below, arrays and ids are handed on rather than rows and tuples of arrays: a row is an object that numba counts
+# references to, and the count took six times as long as the arithmetic.
+
+
+@kernel
+def error_at(q, i, j, x, y, z):
+    """The error at a point of the sum of the quadrics of two vertices."""
+    gx = (q[i, 0] + q[j, 0]) * x + 2 * ((q[i, 1] + q[j, 1]) * y + (q[i, 2] + q[j, 2]) * z + q[i, 6] + q[j, 6])
+    gy = (q[i, 3] + q[j, 3]) * y + 2 * ((q[i, 4] + q[j, 4]) * z + q[i, 7] + q[j, 7])
+    gz = (q[i, 5] + q[j, 5]) * z + 2 * (q[i, 8] + q[j, 8])
+    return max(x * gx + y * gy + z * gz + q[i, 9] + q[j, 9], 0.0)
+
+
+@kernel
+def best_place(q, p, i, j):
+    """(error, x, y, z): where the sum of the quadrics of two vertices at p (n, 3) is least, near the edge's middle."""
+    x, y, z = (p[i, 0] + p[j, 0]) / 2, (p[i, 1] + p[j, 1]) / 2, (p[i, 2] + p[j, 2]) / 2
+    a, b, c = q[i, 0] + q[j, 0], q[i, 3] + q[j, 3], q[i, 5] + q[j, 5]
+    d, e, f = q[i, 1] + q[j, 1], q[i, 2] + q[j, 2], q[i, 4] + q[j, 4]
+    lx, ly, lz = q[i, 6] + q[j, 6], q[i, 7] + q[j, 7], q[i, 8] + q[j, 8]
+    gx, gy, gz = a * x + d * y + e * z + lx, d * x + b * y + f * z + ly, e * x + f * y + c * z + lz
+    error = x * (gx + lx) + y * (gy + ly) + z * (gz + lz) + q[i, 9] + q[j, 9]
+    xx, xy, xz = b * c - f * f, e * f - d * c, d * f - b * e
+    yy, yz, zz = a * c - e * e, d * e - a * f, a * b - d * d
+    inverse = -1 / (a * xx + d * xy + e * xz)
+    dx, dy, dz = xx * gx + xy * gy + xz * gz, xy * gx + yy * gy + yz * gz, xz * gx + yz * gy + zz * gz
+    dx, dy, dz = dx * inverse, dy * inverse, dz * inverse
+    ux, uy, uz = p[i, 0] - p[j, 0], p[i, 1] - p[j, 1], p[i, 2] - p[j, 2]
+    if dx * dx + dy * dy + dz * dz <= REACH * REACH * (ux * ux + uy * uy + uz * uz):  # False for NaN, where A is flat
+        error, x, y, z = error + gx * dx + gy * dy + gz * dz, x + dx, y + dy, z + dz
+    return max(error, 0.0), x, y, z

@@ -1,0 +1,53 @@
+"""A queue of half-edges by cost: buckets a few per cent wide, each a linked list, so that all it does takes one step.
+
+head (buckets,) first half-edge of each, -1 empty; following (3 m,) the next one of the same bucket; waiting (3 m,)
+boolean; lowest (1,) no bucket below it holds any.
+"""
+
+import numpy as np
+
+from .jit import kernel
+
+BITS = 1  # of the mantissa: two buckets for each doubling of the cost
+LEAST = 127 - 100  # biased exponent of the cost below which all are alike
+BUCKETS = (255 - LEAST) << BITS
+
+
+@kernel
+def empty_queue(size):
+    """(head, following, waiting, lowest) for half-edges below `size`."""
+    return (
+        np.full(BUCKETS, -1, dtype=np.int32),
+        np.full(size, -1, dtype=np.int32),
+        np.zeros(size, dtype=np.bool_),
+        np.full(1, BUCKETS, dtype=np.int64),
+    )
+
+
+@kernel
+def bucket_of(cost):
+    """The bucket of a cost of 0 or more: the leading bits of the number itself, which grow as it does."""
+    return max((np.float32(cost).view(np.int32) >> (23 - BITS)) - (LEAST << BITS), 0)
+
+
+@kernel
+def push(head, following, waiting, lowest, h, bucket):
+    """Puts a half-edge that does not wait yet into a bucket."""
+    following[h] = head[bucket]
+    head[bucket] = h
+    waiting[h] = True
+    lowest[0] = min(lowest[0], bucket)
+
+
+@kernel
+def pop(head, following, waiting, lowest):
+    """(half-edge, its bucket) of least cost; (-1, -1) when none waits."""
+    for at in range(lowest[0], BUCKETS):
+        h = np.int64(head[at])
+        if h >= 0:
+            head[at] = following[h]
+            waiting[h] = False
+            lowest[0] = at
+            return h, at
+    lowest[0] = BUCKETS
+    return -1, -1

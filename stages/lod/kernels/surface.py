@@ -1,0 +1,73 @@
+"""The surface while it is simplified, and one edge collapse on it."""
+
+from collections import namedtuple
+
+import numpy as np
+
+from .corners import after, before
+from .jit import kernel
+
+# corner (3 m,) vertex at the tail of each half-edge; twin (3 m,); start (n,) first half-edge that leaves a vertex;
+# rim, locked (n,) boolean; position (n, 3); quadric (n, 10); parent (n,) the vertex that each went into; alive (m,).
+Surface = namedtuple("Surface", "corner twin start rim locked position quadric parent alive")
+
+
+@kernel
+def collapse_edge(corner, twin, start, rim, locked, position, quadric, parent, alive, h, x, y, z):
+    """Merges the ends of the edge of half-edge h at x, y, z, or at the locked one's place, which stays.
+
+    Returns a half-edge of each of the two edges that two edges have become.
+    """
+    t = np.int64(twin[h])
+    i, j = corner[h], corner[t]
+    stays, goes = (i, j) if locked[i] else (j, i)
+    g = first = start[goes]
+    while True:
+        corner[g] = stays
+        g = twin[before(g)]
+        if g < 0 or g == first:
+            break
+    up, down = twin[before(h)], twin[before(t)]  # what leaves i and j beside the two faces that go
+    if start[stays] // 3 == h // 3 or start[stays] // 3 == t // 3:
+        start[stays] = down if rim[stays] and stays == i else up
+    left, right = twin[after(h)], twin[after(t)]
+    left, right = (left if left >= 0 else up), (right if right >= 0 else down)
+    for g in (h, t):
+        one, two, across = twin[after(g)], twin[before(g)], corner[before(g)]
+        if start[across] == before(g):
+            start[across] = one
+        if one >= 0:
+            twin[one] = two
+        if two >= 0:
+            twin[two] = one
+        alive[g // 3] = False
+    position[stays, 0], position[stays, 1], position[stays, 2] = x, y, z
+    for n in range(10):
+        quadric[stays, n] += quadric[goes, n]
+    parent[goes] = stays
+    return left, right
+
+
+@kernel
+def compact(surface, source, count):
+    """What is left: faces (k, 3) i8 and (n',) the vertex of the surface that each of their vertices is.
+
+    source (n,): ids below `count`; locked vertices of one source become one vertex again.
+    """
+    corner, locked, alive = surface.corner, surface.locked, surface.alive
+    name = np.full(count + len(source), -1, dtype=np.int64)
+    faces = np.empty((alive.sum(), 3), dtype=np.int64)
+    used = np.empty(len(source), dtype=np.int64)
+    row = ids = 0
+    for f in range(len(alive)):
+        if not alive[f]:
+            continue
+        for k in range(3):
+            v = corner[3 * f + k]
+            key = source[v] if locked[v] else count + v
+            if name[key] < 0:
+                name[key], used[ids] = ids, v
+                ids += 1
+            faces[row, k] = name[key]
+        row += 1
+    return faces, used[:ids].copy()

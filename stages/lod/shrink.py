@@ -1,0 +1,46 @@
+"""Smaller neighbourhoods where the target is too low for all of them, the least salient first."""
+
+from bisect import bisect_left
+
+import numpy as np
+
+from .feasibility import InfeasibleTarget, check_keep, check_rings, frozen_faces, smallest_with
+
+
+def shrunk_rings(mesh, faces, keep, rings=3):
+    """(k,) i8 rings, none larger than given, with which `faces` faces are feasible; -1 where a vertex is not kept.
+
+    keep: vertex ids, most salient first. rings: one number, or (k,) one a kept vertex. From the least salient vertex to
+    the most salient each gives up one ring, again and again until none has a ring left; then, from the least salient
+    on, they are not kept. The walk ends at the first step from which the target is feasible: of two points with equal
+    neighbourhoods the more salient one never has the smaller, and one step less would be infeasible. The thesis has no
+    such rule; its meshes are distorted at such targets (T3.1.5).
+
+    Raises InfeasibleTarget when the target is too low even with nothing kept.
+    """
+    keep = check_keep(mesh, keep)
+    rings = check_rings(keep, rings)
+    order = _order(rings)
+
+    def after(steps):
+        return rings - np.bincount(order[:steps], minlength=len(rings))
+
+    def feasible(steps):
+        frozen = frozen_faces(mesh, keep, after(steps))
+        return bool(frozen.sum() <= faces and smallest_with(mesh, frozen) <= faces)  # the first is cheap
+
+    if feasible(0):
+        return rings
+    steps = bisect_left(range(len(order) + 1), True, lo=1, key=feasible)
+    if steps > len(order):
+        raise InfeasibleTarget(faces, smallest_with(mesh, np.zeros(len(mesh.faces), dtype=bool)))
+    return after(steps)
+
+
+def _order(rings):
+    """(s,) which kept vertex each step of the walk takes one from: rings by rounds, then the vertices themselves."""
+    vertex = np.repeat(np.arange(len(rings)), rings + 1)
+    taken = np.arange(len(vertex)) - np.repeat(np.cumsum(rings + 1) - (rings + 1), rings + 1)
+    final = rings.max(initial=0)
+    rounds = np.where(taken == rings[vertex], final, taken)
+    return vertex[np.lexsort((-vertex, rounds))]

@@ -1,0 +1,121 @@
+"""Claims of T3.2.8 and T3.2.9 on simplified meshes: kept points against plain QEM, learned weights, neighbourhoods.
+
+Each is judged on this run's data set; tables/lod_claims has them on every set.
+"""
+
+from stages.report.judged import OURS
+from stages.report.lod_cells import PLAIN
+from stages.report.style import label
+
+from ._errors import HIGH, LOW, higher_than_each, more_at_few_faces, ranks_agree
+from ._meshes import (
+    ADAPTIVE,
+    ALL_COUNTS,
+    DIAGONAL,
+    ENHANCED,
+    HKS,
+    PROPOSED,
+    RANKS,
+    RIVALS,
+    claim,
+    lod_claim,
+)
+
+KEPT = [
+    lod_claim(f"{start}_{short}", section, f"{who} gives a better simplified model than plain QEM ({how}).",
+              PLAIN, method, metric)
+    for start, section, who, method in (
+        ("keep", "T3.1, T3.2.8", "Keeping what draws the eye", ENHANCED),
+        ("ours_keep", "ours", "Keeping what our model finds", OURS),
+        ("ours_soft", "ours", "Weighing by what our model finds, keeping nothing whole,", f"{OURS}-soft"),
+    )
+    for short, metric, how in (
+        ("metro", "metro_mean", "distance"), ("ssim", "ssim_error", "as seen"), ("dlap", "dlap", "Laplacian distance"),
+        ("dnor", "dnor", "normalised Laplacian distance"), ("salient", "salient_error", "where people look"),
+    )
+]  # fmt: skip
+
+BLIND = [
+    lod_claim(
+        "blind_metro", "T3.1.5", "Attention places the kept points better than chance does (distance).",
+        "random", ENHANCED, "metro_mean",
+    ),
+    lod_claim(
+        "blind_ssim", "T3.1.5", "Attention places the kept points better than chance does (as seen).",
+        "random", ENHANCED, "ssim_error",
+    ),
+    lod_claim(
+        "ours_blind_ssim", "ours", "Our model of gaze places the kept points better than chance does (as seen).",
+        "random", OURS, "ssim_error",
+    ),
+]  # fmt: skip
+
+WEIGHTS = [  # T3.2.9
+    lod_claim(
+        "rivals_metro", "T3.2.9.1", "Attention distorts less than the detectors of the literature do.",
+        RIVALS, ENHANCED, "metro_mean",
+    ),
+    lod_claim(
+        "proposed_rivals", "T3.2.9.1", "ED, SSIM and SVM have a lower Metro error than the detectors.",
+        RIVALS, PROPOSED, "metro_mean",
+    ),
+    claim(
+        "rivals_low", "T3.2.9.1", "More so at low resolution.",
+        "the detectors' Metro mean error minus that of ED, SSIM and SVM, at 1,500 faces minus at 3,000",
+        more_at_few_faces(RIVALS, PROPOSED), DIAGONAL,
+    ),
+    *(
+        lod_claim(
+            f"adaptive_{name}_{short}", section, f"Adaptive neighbourhoods lower the error of {label(name)} ({how}).",
+            name, f"{name}-adaptive", metric,
+        )
+        for section, metric, short, how in (
+            ("T3.2.9.1", "metro_mean", "metro", "a little, distance"), ("T3.2.9.2", "ssim_error", "ssim", "as seen"),
+        )
+        for name in PROPOSED
+    ),
+    lod_claim(
+        "ssim_over_ed", "T3.2.9.1", "Weights by similarity are slightly better than by Euclidean distance (distance).",
+        "guided_ed", "guided_ssim", "metro_mean",
+    ),
+    lod_claim(
+        "ssim_over_ed_seen", "T3.2.9.2", "Weights by similarity are better than by Euclidean distance (as seen).",
+        "guided_ed", "guided_ssim", "ssim_error",
+    ),
+    claim(
+        "svm_promising", "T3.2.9.1", "The SVM gives the most promising results.",
+        f"Metro mean error, the better of ED and SSIM minus SVM, {ALL_COUNTS}",
+        lambda *source: -higher_than_each("svm", PROPOSED[:2], worst=False)(*source),
+    ),
+    lod_claim(
+        "hks_low", "T3.2.9.1", "Adaptive ED, SSIM and SVM have a slightly lower error than HKS at 1,500 faces.",
+        HKS, ADAPTIVE, "metro_mean", [LOW],
+    ),
+    claim(
+        "hks_high", "T3.2.9.1", "All methods based on attention beat HKS at 3,000 faces.",
+        "Metro mean error, HKS minus the worst of ED, SSIM, SVM and their adaptive forms, at 3,000 faces",
+        higher_than_each(HKS, [*PROPOSED, *ADAPTIVE], targets=[HIGH]),
+    ),
+    claim(
+        "seen_confirms", "T3.2.9.2", "The error as seen confirms the Metro error.",
+        f"rank correlation of SSIM error and Metro mean error over the methods, {ALL_COUNTS}",
+        ranks_agree("metro_mean", "ssim_error"), RANKS,
+    ),
+    lod_claim(
+        "hks_seen", "T3.2.9.2", "HKS is better as seen than attention.", PROPOSED, HKS, "ssim_error",
+    ),
+    lod_claim(
+        "ssim_over_all", "T3.2.9.2", "Weights by similarity beat equal weights (VisAttAll) as seen.",
+        "VisAttAll", "guided_ssim", "ssim_error",
+    ),
+    lod_claim(
+        "ed_over_all", "T3.2.9.2", "Weights by Euclidean distance beat equal weights (VisAttAll) as seen.",
+        "VisAttAll", "guided_ed", "ssim_error",
+    ),
+    lod_claim(
+        "learned_weights", "T3.2.9.2", "Weights learned from ground truth beat equal weights.",
+        "VisAttAll", ENHANCED, "ssim_error",
+    ),
+]  # fmt: skip
+
+CLAIMS = [*KEPT, *BLIND, *WEIGHTS]

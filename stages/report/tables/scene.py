@@ -1,0 +1,71 @@
+"""A scene along a camera path: faces and errors of every way to choose the levels of its objects."""
+
+import pandas as pd
+
+from stages.report.items import Table
+from stages.report.markdown import number, with_interval
+from stages.report.scenes import NAMES, OURS, amount, of_scene, scene_rows
+
+MATCHED = {"": "", "error": "mean frame error", "displacement": "mean displacement", "held": "every frame holds",
+           "asked": "nothing: as it answers"}  # fmt: skip
+COLUMNS = {
+    "faces": "faces a frame", "error": "frame error, mean", "error_worst": "worst frame", "held": "frames within, %",
+    "displacement_mean": "displacement, mean px", "displacement_99.9": "99.9 %, px",
+    "salient_displacement": "where one looks, px", "ssim_error": "1 − SSIM of the frames", "step_worst": "worst jump",
+}  # fmt: skip
+UNRENDERED = "unrendered_"
+MEASURES = {"rms": "root mean square", "q95": "95 % quantile", "q99": "99 % quantile", "max": "maximum"}
+NOTES = [
+    "Frame error: the largest over the objects of the 99 % quantile of the displacement on the screen, over the pixels "
+    "in which the object is seen in the rendered full frame or in the rendered simplified one. Displacement: distance "
+    "to the other surface in pixels at that depth.",
+    "The others have one factor, tuned until the column `equal to ours in` is at least ours in the rendered frames: "
+    "the faces are then theirs at no smaller an error. `Every frame holds`: tuned until none breaks the tolerance.",
+    "Uniform levels are 50, 25, 12, 6 and 3 % of each object's own faces, halved with each doubling of the distance. "
+    "The network learned from objects that are not in the scene.",
+    "Planned by the levels' own surfaces: the same search without rendering, from one measure of each level's distance "
+    "to the full mesh. A measure will do where all frames hold.",
+    "Intervals: bootstrap over the objects of this one scene.",
+]
+
+
+def build(results):
+    rows = scene_rows(results, frame="all")
+    scene, tolerance, unit = of_scene(rows)
+    rows = rows[(rows["factor"] == 1) & rows["object"].isna()]
+    wide = rows.pivot_table(index=["method", "matched"], columns="metric", values="value", sort=False)
+    wide["seconds"] = rows.groupby(["method", "matched"])["seconds"].max()
+    saved = {(row.metric.removeprefix("saved_"), row.matched): (row.value, row.low, row.high)
+             for row in rows[rows["metric"].str.startswith("saved_")].itertuples()}  # fmt: skip
+    wide = wide[wide["faces"].notna()].reset_index()
+    title = f"Scene {scene}: the faces it takes to stay within {amount(tolerance, unit)}"
+    why = [f"{NAMES.get(row.method, row.method)}: {row.note}." for row in
+           rows[rows["note"].notna()].drop_duplicates(["method", "note"]).itertuples()]  # fmt: skip
+    return Table(title, wide, [*_said(saved), *NOTES, *why], _shown(wide, saved))
+
+
+def _shown(wide, saved):
+    lines = []
+    for _, row in wide.iterrows():
+        key = row["method"], row["matched"]
+        line = {"levels chosen by": _spoken(row["method"]), "equal to ours in": MATCHED[row["matched"]]}
+        for metric, head in COLUMNS.items():
+            value = row.get(metric, float("nan"))
+            line[head] = f"{100 * value:.0f}" if metric == "held" else number(value)
+        line["faces that ours saves, %"] = with_interval(*saved[key], scale=100, places=0) if key in saved else "–"
+        lines.append(line | {"seconds": number(row["seconds"])})
+    return pd.DataFrame(lines).replace({"0.000": "0"})
+
+
+def _spoken(method):
+    if method.startswith(UNRENDERED):
+        return f"the levels' own surfaces, {MEASURES[method.removeprefix(UNRENDERED)]}"
+    return NAMES.get(method, method)
+
+
+def _said(saved):
+    """What ours saves, in a sentence."""
+    wanted = [("uniform", "error"), ("uniform_size", "error"), ("uniform", "displacement"), ("uniform", "held")]
+    found = [f"{with_interval(*saved[key], scale=100, places=0)} % against {NAMES[key[0]]} ({MATCHED[key[1]]})"
+             for key in wanted if key in saved]  # fmt: skip
+    return [f"{NAMES[OURS].capitalize()} saves {'; '.join(found)}."] if found else []

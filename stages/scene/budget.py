@@ -1,0 +1,179 @@
+"""The smallest face counts of a scene that meet a tolerance, planned by the levels' errors and held by rendering."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from .frames import Frames
+from .ladder import Level, build_ladder
+from .plan import cheapest, share
+
+# A level's error, measured on its whole surface, is that of what a frame shows only within a factor. The search starts
+# from less than all of it, so that nothing cheaper is passed over, and every level that it chooses is then rendered.
+HOPE = {"pixels": 0.6, "ssim": 0.02}  # of the error on the screen that the 99 % quantile of a level foretells
+SAFE = 1.001  # beyond the tolerance: what a frame says against a level that looked right with all else at full detail
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """A level for each object in each frame. levels (f, o) i8 into ladders, a tuple of Levels for each object; frames
+    and the scene say what it is for.
+    """
+
+    levels: np.ndarray
+    ladders: tuple[tuple[Level, ...], ...]
+    frames: Frames
+
+    @cached_property
+    def faces(self):
+        """(f, o) faces of each object in each frame; 0 out of view."""
+        counts = [[ladder[k].faces for k, ladder in zip(row, self.ladders, strict=True)] for row in self.levels]
+        return np.array(counts) * self.frames.in_view
+
+    @cached_property
+    def checks(self):
+        """A FrameError for each rendered frame."""
+        return [self.frames.check(frame, self.shown(frame)) for frame in range(len(self.levels))]
+
+    @property
+    def errors(self):
+        """(f,) the error of each rendered frame, held against the tolerance."""
+        return np.array([check.error for check in self.checks])
+
+    def shown(self, frame):
+        """The Level of each object in a frame."""
+        return [ladder[k] for ladder, k in zip(self.ladders, self.levels[frame], strict=True)]
+
+    @cached_property
+    def steps(self):
+        """[(frame, object, step)]: how far the picture of an object jumps where its level switches."""
+        where = np.argwhere(np.diff(self.levels, axis=0) != 0)
+        return [(int(f) + 1, int(o), self._step(f + 1, o)) for f, o in where]
+
+    def _step(self, frame, item):
+        before, after = (self.ladders[item][self.levels[k, item]] for k in (frame - 1, frame))
+        return self.frames.between(frame, item, before, after)
+
+
+def budget(meshes, scene, options=None, ladders=None, frames=None):
+    """A Plan: the fewest faces of each object in each frame with which every frame holds the scene's tolerance.
+
+    meshes: dict name -> Mesh; scene: Scene; options: dict name -> options of stages.lod.simplify, for the salient
+    places: dict(weights=saliency), or dict(keep=vertices, rings=3). ladders: dict name -> Levels made before
+    (build_ladder), in place of options; frames: Frames of this scene, to share what was rendered.
+
+    The levels' own errors foretell what a frame shows; what they choose is rendered, the rendered error takes the place
+    of the foretold one, and the plan is made anew until it stands on rendered errors alone and every frame, with all
+    objects at their levels, holds. Where a level switches, the jump of the picture is held below the tolerance as well,
+    and a level stays for `scene.hold` frames. A face limit takes faces where that adds the least error on the screen a
+    face; frames then hold what they can.
+
+    Raises ValueError for a scene that does not fit the meshes, and for a limit below the smallest total, which it
+    names.
+    """
+    if ladders is None:
+        scene.poses(meshes)  # says what does not fit before the work begins
+        names = sorted({placed.name for placed in scene.objects})
+        ladders = {name: build_ladder(meshes[name], **(options or {}).get(name, {})) for name in names}
+    frames = frames or Frames(scene, meshes, full_levels(scene, ladders))
+    search = _Search(scene, frames, tuple(ladders[placed.name] for placed in scene.objects))
+    return search.run()
+
+
+def full_levels(scene, ladders):
+    """The finest Level of each object: the mesh as it is."""
+    return [ladders[placed.name][0] for placed in scene.objects]
+
+
+class _Search:
+    def __init__(self, scene, frames, ladders):
+        self.scene, self.frames, self.ladders = scene, frames, ladders
+        self.faces = [np.array([level.faces for level in ladder]) for ladder in ladders]
+        self._check_limit()
+        self.errors = [self._foretold(item) for item in range(len(ladders))]
+        # The jump between two levels is at least about the coarser one's error, and at most the sum of both.
+        self.jumps = [np.maximum(error[:, :, None], error[:, None, :]) for error in self.errors]
+        self.known = set()
+
+    def _check_limit(self):
+        smallest = int((self.frames.in_view * [counts[-1] for counts in self.faces]).sum(axis=1).max())
+        if 0 < self.scene.limit < smallest:
+            raise ValueError(
+                f"a limit of {self.scene.limit} faces cannot be held: the coarsest levels of what one frame shows have "
+                f"{smallest} together; that is the smallest feasible limit"
+            )
+
+    def _foretold(self, item):
+        quantile = np.array([level.error["q99"] for level in self.ladders[item]])
+        return HOPE[self.scene.kind] * quantile * self.frames.scale[:, item, None] * self.frames.in_view[:, item, None]
+
+    def run(self):
+        while True:
+            levels = self._plan()
+            fresh = [state for state in self._used(levels) if state not in self.known]
+            if fresh:
+                self._render(fresh)
+            elif not self._frames_hold_back(levels):
+                return Plan(levels, self.ladders, self.frames)
+
+    def _plan(self):
+        levels = np.stack([self._one(item) for item in range(len(self.ladders))], axis=1)
+        if not self.scene.limit:
+            return levels
+        over = np.flatnonzero(self._total(levels) > self.scene.limit)
+        if not len(over):
+            return levels
+        least = np.zeros_like(levels)
+        for frame in over:
+            counts = [own * seen for own, seen in zip(self.faces, self.frames.in_view[frame], strict=True)]
+            errors = [error[frame] for error in self.errors]
+            least[frame] = share(levels[frame], counts, errors, self.scene.limit)
+        return np.stack([self._one(item, least[:, item]) for item in range(len(self.ladders))], axis=1)
+
+    def _total(self, levels):
+        counts = np.stack([faces[k] for faces, k in zip(self.faces, levels.T, strict=True)], axis=1)
+        return (counts * self.frames.in_view).sum(axis=1)
+
+    def _one(self, item, least=None):
+        cost = self.faces[item] * self.frames.in_view[:, item, None]
+        errors = self.errors[item]
+        if least is not None:
+            errors = np.where(np.arange(len(self.ladders[item])) < least[:, None], np.inf, errors)
+        # Out of view all levels cost nothing: a trace of the count keeps the choice defined.
+        return cheapest(cost + 1e-3 * self.faces[item], errors, self.jumps[item], self.scene.tolerance, self.scene.hold)
+
+    def _used(self, levels):
+        """What a plan rests on: (frame, object, level, level) of errors against the full mesh, and of switches.
+
+        The next coarser level counts as well, or one that was foretold too badly would never be tried.
+        """
+        for item, column in enumerate(levels.T):
+            for frame, level in enumerate(column):
+                if self.frames.in_view[frame, item]:
+                    for tried in range(level, min(level + 2, len(self.ladders[item]))):
+                        yield frame, item, 0, int(tried)
+                    if frame and column[frame - 1] != level:
+                        yield frame, item, int(column[frame - 1]), int(level)
+
+    def _render(self, fresh):
+        wanted = [(frame, item, *(self.ladders[item][k] for k in pair)) for frame, item, *pair in fresh]
+        if self.scene.kind == "pixels":
+            self.frames.measure(wanted)
+        for (frame, item, one, other), pair in zip(fresh, wanted, strict=True):
+            self.known.add((frame, item, one, other))
+            found = self.frames.between(*pair)
+            self.jumps[item][frame, one, other] = self.jumps[item][frame, other, one] = found
+            if one == 0:
+                self.errors[item][frame, other] = found
+
+    def _frames_hold_back(self, levels):
+        """Renders the whole frames; True where one breaks a tolerance that its objects, one by one, held."""
+        plan, broken = Plan(levels, self.ladders, self.frames), False
+        for frame, check in enumerate(plan.checks):
+            for item in np.flatnonzero(check.objects > self.scene.tolerance):
+                errors, level = self.errors[item][frame], levels[frame, item]
+                if errors[level] <= self.scene.tolerance:
+                    errors[level] = max(check.objects[item], SAFE * self.scene.tolerance)
+                    broken = True
+        return broken

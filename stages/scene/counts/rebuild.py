@@ -1,0 +1,37 @@
+"""The counts put to the test: the mesh is built with as many faces, and its error measured."""
+
+import numpy as np
+import pandas as pd
+
+from stages.kit import Stopwatch
+from stages.kit.rng import rng
+from stages.lod import metro, simplify
+
+BUILT = 4  # objects of a fold, one case each: all folds and models together cost half a minute on one core
+
+
+def build_some(fold, cases, found):
+    """Frame like that of `scored`, but measured on meshes, of a case each of BUILT objects, with `seconds` of each.
+
+    The same cases for equal folds, whatever the model. Neighbourhoods shrink where the count needs it, as in the lod
+    stage. A case whose mesh cannot be had soundly has no row.
+    """
+    names = np.array([case.curve.object for case in cases])
+    draw = rng(fold.seed, "cases to build")
+    places = [draw.choice(np.flatnonzero(names == name)) for name in draw.permutation(np.unique(names))[:BUILT]]
+    rows = [_built(cases[place], int(found[place]), fold) for place in places]
+    columns = ["object", "ratio", "error", "within", "seconds"]
+    return pd.DataFrame([row for row in rows if row is not None], columns=columns).astype({"within": bool})
+
+
+def _built(case, count, fold):
+    name, method = case.curve.object, case.curve.method
+    mesh, keep = fold.meshes[name], fold.points[name][method]
+    with Stopwatch() as watch:
+        try:
+            found = simplify(mesh, count, keep, shrink=True)
+        except ValueError:
+            return None
+        error = metro(mesh, found, seed=fold.seed)["mean"] / case.error
+    ratio = len(found.faces) / case.needed
+    return {"object": name, "ratio": ratio, "error": error, "within": error <= 1, "seconds": watch.seconds}

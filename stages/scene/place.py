@@ -1,0 +1,108 @@
+"""What stands where: a mesh placed in the world, and the scene of all of them before a camera path."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from stages.kit import Mesh
+
+from .camera import Camera
+
+KINDS = ("pixels", "ssim")
+
+
+@dataclass(frozen=True)
+class Placed:
+    """An object in the world: name of its mesh; position (3,) in metres of the middle of its foot; turn in degrees
+    about +z, counter-clockwise seen from above; size in metres of the longest side of its bounding box.
+    """
+
+    name: str
+    position: tuple[float, float, float]
+    turn: float
+    size: float
+
+    def pose(self, mesh):
+        """A Pose of this object's mesh. Raises ValueError for a size that is not above 0 or a mesh without faces."""
+        if not len(mesh.faces):
+            raise ValueError(f"{self.name} has no faces to show")
+        if not self.size > 0:
+            raise ValueError(f"{self.name} is {self.size} m large: give its longest side, above 0")
+        corners = mesh.vertices[np.unique(mesh.faces)]
+        low, high = corners.min(axis=0), corners.max(axis=0)
+        foot = np.array([*((low + high) / 2)[:2], low[2]])
+        cos, sin = np.cos(np.radians(self.turn)), np.sin(np.radians(self.turn))
+        turn = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
+        return Pose(turn, self.size / (high - low).max(), foot, np.array(self.position, dtype=np.float64), (low, high))
+
+
+@dataclass(frozen=True)
+class Pose:
+    """turn (3, 3), scale in metres a unit of the mesh, foot (3,) in the mesh, position (3,) in the world, its box."""
+
+    turn: np.ndarray
+    scale: float
+    foot: np.ndarray
+    position: np.ndarray
+    box: tuple[np.ndarray, np.ndarray]
+
+    def to_world(self, points):
+        """Points (k, 3) of the mesh in metres."""
+        return (points - self.foot) @ self.turn.T * self.scale + self.position
+
+    def to_mesh(self, points):
+        """World points (k, 3) in the mesh's own coordinates."""
+        return (points - self.position) @ self.turn / self.scale + self.foot
+
+    @property
+    def corners(self):
+        """(8, 3) corners of the bounding box in the world."""
+        picks = np.array(np.meshgrid([0, 1], [0, 1], [0, 1])).reshape(3, 8).T
+        return self.to_world(np.where(picks == 0, *self.box))
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Objects before a camera path, and what the eye tolerates.
+
+    objects: Placed, one or more. cameras: one a frame. tolerance: above 0, in pixels of the screen (kind `pixels`), or
+    a share of the structure lost, 1 - SSIM (kind `ssim`). limit: faces that all objects of a frame may have together,
+    0 for no limit. hold: frames that a level stays at least.
+    Raises ValueError for anything else.
+    """
+
+    objects: tuple[Placed, ...]
+    cameras: tuple[Camera, ...]
+    tolerance: float
+    kind: str = "pixels"
+    limit: int = 0
+    hold: int = 3
+
+    def __post_init__(self):
+        if not self.objects or not self.cameras:
+            raise ValueError("a scene needs one object and one camera or more")
+        if not (np.isfinite(self.tolerance) and self.tolerance > 0):
+            raise ValueError(f"the tolerance is {self.tolerance}: it must be above 0, as only the full mesh has none")
+        if self.kind not in KINDS:
+            raise ValueError(f"unknown kind of tolerance {self.kind!r}: choose one of {', '.join(KINDS)}")
+        if self.limit < 0 or self.hold < 1:
+            raise ValueError(f"limit ({self.limit}) must be 0 or more and hold ({self.hold}) 1 or more")
+
+    def poses(self, meshes):
+        """A Pose an object; ValueError for a name that meshes (dict name -> Mesh) has not, or an eye in an object."""
+        missing = sorted({placed.name for placed in self.objects} - set(meshes))
+        if missing:
+            raise ValueError(f"no mesh of {', '.join(missing)}: known are {', '.join(sorted(meshes))}")
+        poses = [placed.pose(meshes[placed.name]) for placed in self.objects]
+        for placed, pose in zip(self.objects, poses, strict=True):
+            eyes = pose.to_mesh(np.array([camera.eye for camera in self.cameras]))
+            inside = np.flatnonzero(((eyes >= pose.box[0]) & (eyes <= pose.box[1])).all(axis=1))
+            if len(inside):
+                place = f"{placed.name} at {tuple(placed.position)}"
+                raise ValueError(f"the camera of frame {inside[0]} is inside {place}: move one of them")
+        return poses
+
+
+def world_mesh(mesh, pose):
+    """The mesh in metres, where it stands."""
+    return Mesh(pose.to_world(mesh.vertices), mesh.faces, mesh.colors)

@@ -1,0 +1,120 @@
+"""Plans as rows of measurements, and the few numbers of a run that the gate looks at."""
+
+import numpy as np
+
+from stages.kit.rng import rng
+
+from .pictures import picture_error
+
+RESAMPLES = 2000
+SAVED_AGAINST = ("uniform", "uniform_size", "network")
+PRECISION = 1e-9  # of a tolerance: rounding of an error that was found equal to it
+
+
+def plan_rows(own, found, saliency, pictures=True):
+    """Rows of one Found over all frames: faces, errors, how far switches jump, and the cost.
+
+    saliency: dict name -> (n,) or None, for the displacement at salient places. pictures: also 1 - SSIM.
+    """
+    plan, checks = found.plan, found.plan.checks
+    spread = np.concatenate([check.displacements for check in checks])
+    jumps = [step for _, _, step in plan.steps]
+    values = {
+        "faces": float(plan.faces.sum(axis=1).mean()), "faces_most": int(plan.faces.sum(axis=1).max()),
+        "error": float(plan.errors.mean()), "error_worst": float(plan.errors.max()),
+        "worst_frame": int(plan.errors.argmax()), "held": held(plan),
+        "displacement_mean": _or_zero(np.mean, spread), "displacement_95": _or_zero(np.quantile, spread, 0.95),
+        "displacement_99.9": _or_zero(np.quantile, spread, 0.999), "displacement_max": _or_zero(np.max, spread),
+        "salient_displacement": salient_displacement(own, plan, saliency),
+        "switches": len(jumps), "step_worst": max(jumps, default=0.0),
+    }  # fmt: skip
+    if pictures:
+        frames = range(len(plan.levels))
+        values["ssim_error"] = float(np.mean([picture_error(own.frames, frame, plan.shown(frame)) for frame in frames]))
+    return [_row(own, found, "all", metric, value) for metric, value in values.items()]
+
+
+def frame_rows(own, found):
+    """Rows of each frame: faces and error."""
+    faces, errors = found.plan.faces.sum(axis=1), found.plan.errors
+    return [
+        _row(own, found, frame, metric, value) | {"seconds": None}  # those of the plan are on its own rows
+        for frame in range(len(errors))
+        for metric, value in (("faces", int(faces[frame])), ("error", float(errors[frame])))
+    ]
+
+
+def object_rows(own, found):
+    """Rows of each object: its faces, mean over the frames that show it."""
+    rows = []
+    for item, placed in enumerate(own.scene.objects):
+        seen = own.frames.in_view[:, item]
+        if seen.any():
+            value = float(found.plan.faces[seen, item].mean())
+            rows.append(
+                _row(own, found, "all", "object_faces", value) | {"object": placed.name, "item": item, "seconds": None}
+            )
+    return rows
+
+
+def saved_rows(own, ours, others, seed):
+    """Rows of the share of the faces that ours saves against others, with a 95 % interval over the objects."""
+    rows = []
+    for other in others:
+        if other.method in SAVED_AGAINST and other.matched not in ("", "asked"):
+            value, low, high = saved(ours.plan.faces.sum(axis=0), other.plan.faces.sum(axis=0), seed)
+            row = _row(own, ours, "all", f"saved_{other.method}", value) | {"low": low, "high": high}
+            rows.append(row | {"matched": other.matched, "seconds": None})
+    return rows
+
+
+def saved(ours, others, seed=0):
+    """(share, low, high): 1 - the sum of ours (o,) over that of the others, bootstrap over the objects."""
+    draws = rng(seed, "saved").integers(len(ours), size=(RESAMPLES, len(ours)))
+    total = np.maximum(others[draws].sum(axis=1), 1)
+    low, high = np.quantile(1 - ours[draws].sum(axis=1) / total, [0.025, 0.975])
+    return float(1 - ours.sum() / max(others.sum(), 1)), float(low), float(high)
+
+
+def held(plan):
+    """Share of the frames within the tolerance."""
+    return float((plan.errors <= plan.frames.scene.tolerance * (1 + PRECISION)).mean())
+
+
+def salient_displacement(own, plan, saliency):
+    """Mean displacement in pixels of what the full frames show, weighted by the saliency there; None without any."""
+    total, weight = 0.0, 0.0
+    for frame in range(len(plan.levels)):
+        for item, level in enumerate(plan.shown(frame)):
+            values = saliency.get(own.scene.objects[item].name)
+            if values is not None:
+                shown, weights = own.frames.weighted(frame, item, level, values)
+                total, weight = total + shown, weight + weights
+    return total / weight if weight > 0 else None
+
+
+def summary(rows):
+    """dict for the gate: what the main methods cost and hold at the scene's own tolerance."""
+    rows = [row for row in rows if row.get("factor") == 1.0 and row["frame"] == "all"]
+    found = {}
+    for row in rows:
+        method, matched, metric = row["method"], row["matched"], row["metric"]
+        if metric in ("faces", "error", "held") and matched in ("", "error") and "unrendered" not in method:
+            found[f"{metric}_{method}"] = row["value"]
+        if metric.startswith("saved_"):
+            found[f"{metric}_{matched}"] = row["value"]
+        if method == "ours" and metric in ("error_worst", "step_worst", "salient_displacement", "ssim_error"):
+            found[metric] = row["value"]
+    return {name: round(float(value), 6) for name, value in found.items() if value is not None}
+
+
+def _row(own, found, frame, metric, value):
+    return {
+        "object": None, "item": None, "method": found.method, "scene": None, "kind": own.scene.kind,
+        "tolerance": own.scene.tolerance, "matched": found.matched, "frame": frame, "metric": metric, "value": value,
+        "low": None, "high": None, "seconds": found.seconds, "note": found.note,
+    }  # fmt: skip
+
+
+def _or_zero(function, values, *more):
+    return float(function(values, *more)) if len(values) else 0.0

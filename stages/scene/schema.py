@@ -1,0 +1,40 @@
+"""Settings of the scene stage."""
+
+from dataclasses import dataclass
+
+
+@dataclass
+class Item:
+    """One object of a scene."""
+
+    name: str  # of an object in data/meshes; one that is not there is left out, and said so
+    position: list[float]  # x, y, z in metres of the middle of its foot; +z is up
+    turn: float  # degrees about +z, counter-clockwise seen from above
+    size: float  # metres, the longest side of its bounding box
+
+
+@dataclass
+class Keyframe:
+    """A place on the path of the camera."""
+
+    eye: list[float]  # x, y, z in metres
+    target: list[float]  # x, y, z in metres of what it looks at
+
+
+@dataclass
+class Params:
+    """Section `scene` of params.yaml."""
+
+    name: str  # of the scene, for the tables
+    objects: list[Item]  # what stands where
+    camera: list[Keyframe]  # where the camera goes, at equal times
+    frames: int  # frames along the path
+    screen: list[int]  # rows, columns of the screen in pixels
+    angle: float  # vertical view angle in degrees
+    tolerance: float  # of the error on the screen: pixels, or with kind ssim a share of the structure lost
+    kind: str  # what the tolerance is of: pixels or ssim
+    limit: int  # faces that all objects in view may have together; 0 for no limit
+    hold: int  # frames that a level stays at least, so that nothing flickers
+    method: str  # how the levels mind the salient places: a name of lod.methods, say enhanced-soft
+    factors: list[float]  # times the tolerance: what the chart of faces against error is measured at
+    msft_lod: bool  # also write one GLB an object that holds all its levels (MSFT_lod)

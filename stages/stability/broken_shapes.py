@@ -1,0 +1,42 @@
+"""Surfaces that are odd from the start: a sheet, a Moebius strip, a triangle; the mesh that is given has no say."""
+
+import numpy as np
+
+from stages.kit import Mesh
+
+
+def flat_sheet(_mesh, _generator):
+    """A square of 40 x 40 cells in one plane."""
+    return grid(40, 40, lambda u, v: np.c_[u - 0.5, v - 0.5, 0 * u])
+
+
+def moebius(_mesh, _generator):
+    """A Moebius strip: one side, one rim, no winding that fits."""
+
+    def place(u, v):
+        around, across = 2 * np.pi * u, 0.3 * (v - 0.5)
+        wide = 0.4 + across * np.cos(around / 2)
+        return np.c_[wide * np.cos(around), wide * np.sin(around), across * np.sin(around / 2)]
+
+    return grid(120, 10, place, twisted=True)
+
+
+def one_triangle(_mesh, _generator):
+    """The least there is."""
+    return Mesh([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+
+
+def grid(columns, rows, place, twisted=False):
+    """A Mesh of columns x rows cells, two faces each. place(u, v) -> (k, 3), u and v in 0..1.
+
+    twisted: the last column is the first one upside down.
+    """
+    at = np.arange((columns + 1) * (rows + 1)).reshape(columns + 1, rows + 1)
+    u, v = (
+        values.ravel() for values in np.meshgrid(*(np.linspace(0, 1, k + 1) for k in (columns, rows)), indexing="ij")
+    )
+    if twisted:
+        at[-1] = at[0, ::-1]
+    a, b, c, d = at[:-1, :-1].ravel(), at[1:, :-1].ravel(), at[1:, 1:].ravel(), at[:-1, 1:].ravel()
+    faces = np.r_[np.c_[a, b, c], np.c_[a, c, d]]
+    return Mesh(place(u, v)[: int(faces.max()) + 1], faces)

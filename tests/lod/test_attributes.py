@@ -1,0 +1,182 @@
+"""Colours, texture coordinates and materials through simplification."""
+
+import numpy as np
+import pytest
+import trimesh
+
+from stages.kit import Mesh
+from stages.kit.texture import Texture
+from stages.lod import simplify
+from stages.lod.attributes import carry, charts
+from stages.lod.borders import close_borders, cut_borders
+
+GREY = np.full((1, 1, 4), 128, np.uint8)
+
+
+def grid(n=24):
+    """A gently curved square of 2 n^2 faces over 0..1."""
+    x, y = np.meshgrid(np.linspace(0, 1, n + 1), np.linspace(0, 1, n + 1), indexing="ij")
+    vertices = np.stack([x, y, 0.1 * np.sin(3 * x) * np.cos(2 * y)], axis=-1).reshape(-1, 3)
+    at = np.arange((n + 1) ** 2).reshape(n + 1, n + 1)
+    a, b, c, d = at[:-1, :-1].ravel(), at[1:, :-1].ravel(), at[1:, 1:].ravel(), at[:-1, 1:].ravel()
+    return Mesh(vertices, np.concatenate([np.stack([a, b, c], 1), np.stack([a, c, d], 1)]))
+
+
+def sheet():
+    """The square with its plan as texture coordinates, and colours that grow with x and y."""
+    mesh = grid()
+    plan = mesh.vertices[:, :2]
+    colors = np.column_stack([200 * plan, np.full(len(plan), 50)]).round().astype(np.uint8)
+    return Mesh(mesh.vertices, mesh.faces, colors, Texture(plan[mesh.faces], np.zeros(len(mesh.faces)), (GREY,)))
+
+
+def tube(around=48, along=24):
+    """A cylinder whose picture is wrapped round it once: one chart, a seam where its two ends meet, no end faces."""
+    angle, height = np.meshgrid(np.arange(around), np.linspace(0, 1, along + 1), indexing="ij")
+    turn = 2 * np.pi * angle / around
+    vertices = np.stack([0.3 * np.cos(turn), 0.3 * np.sin(turn), height], axis=-1).reshape(-1, 3)
+    at = np.arange(len(vertices)).reshape(around, along + 1)
+    a, b = at[:, :-1].ravel(), np.roll(at, -1, axis=0)[:, :-1].ravel()
+    faces = np.concatenate([np.stack([a, b, b + 1], 1), np.stack([a, b + 1, a + 1], 1)])
+    u = (faces // (along + 1)) / around
+    u[(u.max(axis=1) - u.min(axis=1) > 0.5)[:, None] & (u == 0)] = 1
+    uv = np.stack([u, vertices[faces][:, :, 2]], axis=-1)
+    return Mesh(vertices, faces, None, Texture(uv, np.zeros(len(faces)), (GREY,)))
+
+
+def bare(mesh):
+    return Mesh(mesh.vertices, mesh.faces)
+
+
+def test_without_attributes_the_mesh_comes_back_itself():
+    mesh = grid()
+    assert carry(bare(mesh), mesh) is mesh
+
+
+@pytest.mark.parametrize("make", [sheet, tube])
+def test_onto_itself_nothing_changes(make):
+    mesh = make()
+    found = carry(mesh, bare(mesh))
+    assert np.abs(found.texture.uv - mesh.texture.uv).max() < 1e-6
+    assert (found.texture.image == mesh.texture.image).all()
+    assert mesh.colors is None or (found.colors == mesh.colors).all()
+
+
+def test_texture_follows_the_surface():
+    mesh = sheet()
+    found = carry(mesh, simplify(bare(mesh), 300))
+    plan = found.vertices[found.faces][:, :, :2]
+    assert np.abs(found.texture.uv - plan).max() < 0.02
+
+
+def test_colours_are_interpolated_where_a_vertex_has_moved():
+    mesh = sheet()
+    shifted = bare(mesh).vertices[mesh.faces].mean(axis=1)
+    corners = Mesh(shifted, np.arange(len(shifted) // 3 * 3).reshape(-1, 3))
+    found = carry(mesh, corners)
+    assert np.abs(found.colors[:, :2] - 200 * shifted[:, :2]).max() < 1.5
+
+
+def test_vertices_that_stayed_have_their_very_colours():
+    mesh = sheet()
+    random = np.random.default_rng(0).integers(0, 256, mesh.colors.shape)
+    mesh = Mesh(mesh.vertices, mesh.faces, random)
+    keep = np.array([130, 300])
+    found = carry(mesh, simplify(bare(mesh), 400, keep))
+    for vertex in keep:
+        here = np.flatnonzero((found.vertices == mesh.vertices[vertex]).all(axis=1))
+        assert len(here) == 1
+        assert (found.colors[here[0]] == mesh.colors[vertex]).all()
+
+
+def test_no_face_shows_the_picture_between_the_two_sides_of_a_seam():
+    mesh = tube()
+    found = carry(mesh, simplify(bare(mesh), 400))
+    centre = found.vertices[found.faces].mean(axis=1)
+    angle = np.arctan2(centre[:, 1], centre[:, 0]) / (2 * np.pi) % 1
+    off = np.abs((found.texture.uv.mean(axis=1)[:, 0] - angle + 0.5) % 1 - 0.5)
+    assert np.ptp(found.texture.uv[..., 0], axis=1).max() < 0.5
+    assert off.max() < 0.03
+
+
+def test_face_takes_the_chart_under_its_centre_and_no_other():
+    # Two halves of a sheet, whose pictures lie far apart.
+    mesh = grid()
+    right = mesh.vertices[mesh.faces][:, :, 0].mean(axis=1) > 0.5
+    uv = mesh.vertices[mesh.faces][:, :, :2] + np.where(right, 10, 0)[:, None, None]
+    mesh = Mesh(mesh.vertices, mesh.faces, None, Texture(uv, np.zeros(len(uv)), (GREY,)))
+    found = carry(mesh, simplify(bare(mesh), 260))
+    shifted = found.texture.uv.mean(axis=1)[:, 0] > 5
+    assert (shifted == (found.vertices[found.faces].mean(axis=1)[:, 0] > 0.5)).all()
+    assert (np.ptp(found.texture.uv, axis=1) < 1).all()
+
+
+def test_charts_end_at_seams_and_at_other_materials():
+    mesh = sheet()
+    assert len(charts(mesh)[1]) == 1
+    image = (mesh.vertices[mesh.faces][:, :, 0].mean(axis=1) > 0.5).astype(int)
+    two = Mesh(mesh.vertices, mesh.faces, None, Texture(mesh.texture.uv, image, (GREY, GREY)))
+    chart, jump = charts(two)
+    assert len(np.unique(chart)) == 2 and (chart == chart[0]).sum() == (image == image[0]).sum()
+    assert np.isinf(jump).all()
+    assert charts(tube())[1] == pytest.approx([1])
+
+
+def test_bad_surfaces_give_finite_coordinates():
+    mesh = sheet()
+    flat = np.array([[0, 1, 1], [5, 5, 5], *mesh.faces])  # faces of no area beside the good ones
+    uv = np.concatenate([np.zeros((2, 3, 2)), mesh.texture.uv])
+    poor = Mesh(mesh.vertices, flat, mesh.colors, Texture(uv, np.zeros(len(uv)), (GREY,)))
+    far = Mesh(100 + 0 * mesh.vertices[:3], [[0, 1, 2]])
+    assert np.isfinite(carry(poor, far).texture.uv).all()
+    with pytest.raises(ValueError, match="no faces"):
+        carry(Mesh(mesh.vertices, np.zeros((0, 3), int), mesh.colors), mesh)
+
+
+def test_scale_changes_nothing():
+    mesh = sheet()
+    small = simplify(bare(mesh), 300)
+    found = carry(mesh, small).texture.uv
+    large = carry(Mesh(1000 * mesh.vertices, mesh.faces, None, mesh.texture), Mesh(1000 * small.vertices, small.faces))
+    assert np.abs(large.texture.uv - found).max() < 1e-6
+
+
+def striped():
+    mesh = grid()
+    middle = mesh.vertices[mesh.faces][:, :, 0].mean(axis=1)
+    image = ((middle > 0.25) & (middle < 0.75)).astype(int)
+    return Mesh(mesh.vertices, mesh.faces, None, Texture(np.zeros((len(image), 3, 2)), image, (GREY, GREY)))
+
+
+def test_cut_border_closed_again_is_the_mesh_itself():
+    mesh = striped()
+    cut, ids = cut_borders(mesh)
+    assert len(cut.vertices) == len(mesh.vertices) + 2 * 25
+    assert np.array_equal(cut.vertices, mesh.vertices[ids])
+    assert np.array_equal(cut.vertices[cut.faces], mesh.vertices[mesh.faces])
+    closed = close_borders(cut, cut, ids)
+    assert len(closed.vertices) == len(mesh.vertices)
+    assert np.array_equal(closed.vertices[closed.faces], mesh.vertices[mesh.faces])
+    assert len(closed.edge_counts[1]) == len(mesh.edge_counts[1])
+
+
+def test_border_between_materials_stays_in_its_place():
+    mesh = striped()
+    cut, ids = cut_borders(mesh)
+    found = carry(mesh, close_borders(simplify(bare(cut), 500), cut, ids))
+    areas = [np.bincount(one.texture.image, weights=one.face_areas) for one in (mesh, found)]
+    assert areas[1] == pytest.approx(areas[0], rel=0.01)
+    middle = found.vertices[found.faces][:, :, 0]
+    inside = (middle > 0.25 - 1e-9).all(axis=1) & (middle < 0.75 + 1e-9).all(axis=1)
+    assert (inside == (found.texture.image == 1)).all()
+    assert (found.edge_counts[1] == 1).sum() == (mesh.edge_counts[1] == 1).sum()
+
+
+def test_texture_says_what_is_wrong_with_it():
+    with pytest.raises(ValueError, match="uv must be"):
+        Texture(np.zeros((4, 2)), np.zeros(4), (GREY,))
+    with pytest.raises(ValueError, match="outside 0..0"):
+        Texture(np.zeros((4, 3, 2)), np.ones(4), (GREY,))
+    with pytest.raises(ValueError, match="of 12 faces"):
+        box = trimesh.creation.box()
+        Mesh(box.vertices, box.faces, None, Texture(np.zeros((4, 3, 2)), np.zeros(4), (GREY,)))

@@ -1,0 +1,244 @@
+"""`python -m stages.lod MESH`: a person's own mesh, from file to file."""
+
+import numpy as np
+import pytest
+import trimesh
+from PIL import Image
+
+from stages.kit import Mesh
+from stages.kit.texture import Texture
+from stages.lod import metro
+from stages.lod.command import parser, run, share
+from stages.lod.export import FORMATS, to_trimesh, write_any
+from stages.lod.feasibility import SimplifyError
+from stages.lod.fewest import fewest_faces
+from stages.meshes import load
+
+PLACE, SIZE = np.array([120.0, -40.0, 7.0]), 25.0
+CHECKS = np.kron(np.indices((8, 8)).sum(axis=0) % 2, np.ones((8, 8), int))  # of 64 pixels
+
+
+def bumpy():
+    """A closed ball with bumps, of 1,280 faces, far from the origin and some fifty units wide."""
+    ball = trimesh.creation.icosphere(subdivisions=3)
+    x, y, z = ball.vertices.T
+    radius = 1 + 0.08 * np.sin(5 * x) * np.cos(4 * y) + 0.15 * np.exp(-8 * ((z - 1) ** 2 + x**2))
+    return Mesh(PLACE + SIZE * radius[:, None] * ball.vertices, ball.faces)
+
+
+@pytest.fixture
+def file(tmp_path):
+    write_any(tmp_path / "ball.obj", bumpy())
+    return tmp_path / "ball.obj"
+
+
+@pytest.fixture
+def simplified(file, tmp_path, capsys):
+    """Function: runs the command with options and returns (Mesh that it wrote, what it said, what it reported)."""
+
+    def work(*options, source=file, out="out.obj"):
+        run([str(source), "--method", "height", "--out", str(tmp_path / out), *map(str, options)])
+        said = capsys.readouterr()
+        return load(tmp_path / out), said.out, said.err
+
+    return work
+
+
+def rows(table):
+    """dict first words -> last words of the lines of a table."""
+    return {line[:32].strip(): line[32:].split() for line in table.splitlines()}
+
+
+def test_result_has_the_faces_and_stands_where_the_mesh_stood(simplified):
+    found, said, _ = simplified("--faces", 500, "--keep", 3)
+    assert len(found.faces) == 500
+    assert found.watertight
+    assert metro(bumpy(), found)["mean"] < 0.005
+    assert rows(said)["faces"] == ["1,280", "500", "500"]
+    assert rows(said)["points kept"] == ["3", "3", "-"]
+    assert all(value != "-" for value in rows(said)["1 - SSIM of the pictures"][1:])
+
+
+def test_kept_neighbourhoods_come_through(simplified):
+    mesh = bumpy()
+    found, _, _ = simplified("--faces", "40%", "--keep", 1, "--rings", 2)
+    top = mesh.rings([mesh.vertices[:, 2].argmax()], 2)
+    away = np.linalg.norm(found.vertices[:, None] - mesh.vertices[top], axis=2).min(axis=0)
+    assert away.max() < 1e-7 * SIZE
+
+
+def test_tolerance_gives_a_small_mesh_within_it(simplified):
+    found, _, said = simplified("--tolerance", "0.5%", "--keep", 0)
+    assert metro(bumpy(), found)["mean"] <= 0.005
+    assert len(found.faces) < 500
+    assert "faces: " in said
+
+
+def test_colours_go_along(simplified, tmp_path):
+    mesh = bumpy()
+    height = (mesh.vertices[:, 2] - PLACE[2]) / SIZE
+    colors = np.column_stack([100 + 60 * height, 90 - 40 * height, 30 + 0 * height]).round().astype(np.uint8)
+    write_any(tmp_path / "painted.ply", Mesh(mesh.vertices, mesh.faces, colors))
+    found, _, _ = simplified("--faces", 400, source=tmp_path / "painted.ply", out="out.ply")
+    want = 100 + 60 * (found.vertices[:, 2] - PLACE[2]) / SIZE
+    assert np.abs(found.colors[:, 0] - want).max() < 4
+
+
+def textured():
+    """The ball wrapped in a picture by its directions, as an OBJ with material and picture would hold it."""
+    mesh = bumpy()
+    away = mesh.vertices[mesh.faces] - PLACE
+    uv = np.stack([0.5 + away[..., 0] / 100, 0.5 + away[..., 1] / 100], axis=-1)
+    picture = np.dstack([255 * CHECKS, 0 * CHECKS, 255 - 255 * CHECKS, 0 * CHECKS + 255]).astype(np.uint8)
+    return Mesh(mesh.vertices, mesh.faces, None, Texture(uv, np.zeros(len(mesh.faces)), (picture,)))
+
+
+@pytest.mark.parametrize("out", ["out.glb", "out.obj"])
+def test_pictures_go_along(simplified, tmp_path, out):
+    mesh = textured()
+    write_any(tmp_path / "wrapped.obj", mesh)
+    found, _, _ = simplified("--faces", 500, "--keep", 2, source=tmp_path / "wrapped.obj", out=out)
+    assert len(found.faces) == 500 and found.watertight
+    assert (found.texture.images[0] == mesh.texture.images[0]).all()
+    want = 0.5 + (found.vertices[found.faces][..., :2] - PLACE[:2]) / 100
+    assert np.abs(found.texture.uv - want).max() < 0.02
+
+
+def test_format_without_colours_says_so(simplified, tmp_path):
+    write_any(tmp_path / "wrapped.obj", textured())
+    _, _, said = simplified("--faces", 500, source=tmp_path / "wrapped.obj", out="out.stl")
+    assert ".stl holds no colours" in said
+
+
+def test_picture_shows_before_and_after(simplified, tmp_path):
+    simplified("--faces", 300, "--keep", 1, "--picture", tmp_path / "seen.png")
+    image = np.asarray(Image.open(tmp_path / "seen.png").convert("RGB")).astype(int)
+    thirds = np.array_split(image, 3, axis=1)
+    ink = [(third < 200).any(axis=2).mean() for third in thirds]
+    assert min(ink) > 0.1
+    coloured = [np.abs(third[..., 0] - third[..., 2]).mean() for third in thirds]
+    assert coloured[0] > 2 * max(coloured[1:])
+
+
+def test_equal_commands_give_equal_bytes(simplified, tmp_path):
+    for out in ("a.glb", "b.glb"):
+        simplified("--faces", 300, out=out)
+    assert (tmp_path / "a.glb").read_bytes() == (tmp_path / "b.glb").read_bytes()
+
+
+def test_soft_and_plain_keep_nothing_but_run(simplified):
+    _, said, _ = simplified("--faces", 300, "--neighbourhood", "soft")
+    assert "points kept" not in said
+    _, said, _ = simplified("--faces", 300, "--method", "qem")
+    assert "plain QEM" not in said
+
+
+@pytest.mark.parametrize(
+    ("options", "reason"),
+    [
+        (["--faces", "300", "--out", "x.dae"], r"written as \.glb"),
+        (["--faces", "9000", "--out", "x.glb"], "has only 1280 faces"),
+        (["--faces", "many", "--out", "x.glb"], "no face count"),
+        (["--faces", "300", "--out", "missing/x.glb"], "no such folder"),
+        (["--faces", "300", "--out", "x.glb", "--picture", "x.txt"], "pictures are written as"),
+        (["--faces", "300", "--out", "x.glb", "--keep", "-1"], "0 or more points"),
+        (["--faces", "300", "--out", "x.glb", "--method", "guess"], "unknown method 'guess'"),
+        (["--faces", "90", "--out", "x.glb", "--keep", "9"], r"ask for \d+ or more, or --shrink"),
+    ],
+)
+def test_what_cannot_be_done_is_said_before_anything_is_written(file, tmp_path, monkeypatch, options, reason):
+    monkeypatch.chdir(tmp_path)
+    before = sorted(tmp_path.iterdir())
+    with pytest.raises(ValueError, match=reason):
+        run([str(file), "--method", "height", *options])
+    assert sorted(tmp_path.iterdir()) == before
+
+
+def test_smaller_neighbourhoods_make_the_target_feasible(simplified):
+    found, said, _ = simplified("--faces", 90, "--keep", 9, "--shrink")
+    assert len(found.faces) <= 90
+    assert int(rows(said)["smallest feasible"][1].replace(",", "")) > 90
+
+
+def test_unreadable_mesh_is_named(tmp_path):
+    (tmp_path / "bad.stl").write_bytes(b"not a mesh")
+    with pytest.raises(ValueError, match="bad.stl"):
+        run([str(tmp_path / "bad.stl"), "--faces", "100", "--out", str(tmp_path / "x.glb")])
+
+
+@pytest.mark.parametrize(("text", "value"), [("0.2%", 0.002), ("0.002", 0.002), ("1e-4", 1e-4), (".5%", 0.005)])
+def test_tolerance_is_a_share_of_the_diagonal(text, value):
+    assert share(text) == pytest.approx(value)
+
+
+@pytest.mark.parametrize("text", ["-1", "150%", "much", "nan", ""])
+def test_tolerance_that_is_no_share_is_refused(text, capsys):
+    with pytest.raises(SystemExit):
+        parser().parse_args(["x.stl", "--out", "x.glb", f"--tolerance={text}"])
+    assert "no share of the diagonal" in capsys.readouterr().err
+
+
+def test_help_shows_how(capsys):
+    with pytest.raises(SystemExit):
+        parser().parse_args(["--help"])
+    said = capsys.readouterr().out
+    assert "python -m stages.lod bunny.stl --faces 1500 --out small.glb" in said
+
+
+def test_fewest_faces_are_found_to_two_per_cent():
+    mesh, errors = bumpy(), {}
+
+    def moved(faces):  # a stand-in for simplification, whose error is one over the count
+        found = Mesh(mesh.vertices + mesh.vertex_normals * mesh.diagonal / faces, mesh.faces)
+        errors[faces] = metro(mesh, found)["mean"]
+        return found
+
+    fewest_faces(mesh, moved, 4, 0.01)
+    passed, failed = ([n for n, e in errors.items() if (e <= 0.01) == wanted] for wanted in (True, False))
+    assert max(failed) < min(passed) <= 1.02 * max(failed) + 1
+    assert len(errors) < 20
+
+
+def test_lowest_count_is_taken_at_once_where_it_is_good_enough():
+    mesh = bumpy()
+    asked = []
+    fewest_faces(mesh, lambda faces: asked.append(faces) or mesh, 40, 0.01)
+    assert asked == [40]
+
+
+def test_nothing_sound_means_the_mesh_itself():
+    mesh = bumpy()
+
+    def fails(faces):
+        raise SimplifyError("folded")
+
+    assert fewest_faces(mesh, fails, 4, 0.01) is mesh
+    with pytest.raises(ValueError, match="tolerance"):
+        fewest_faces(mesh, fails, 4, np.nan)
+
+
+@pytest.mark.parametrize("suffix", FORMATS)
+def test_every_format_that_is_written_reads_back(tmp_path, suffix):
+    mesh = textured()
+    write_any(tmp_path / f"my ball{suffix}", mesh)
+    found = load(tmp_path / f"my ball{suffix}")
+    assert len(found.faces) == len(mesh.faces) and found.watertight
+    assert metro(mesh, found)["max"] < 1e-6
+    assert (found.texture is not None) == (suffix in (".glb", ".obj"))
+
+
+def test_small_units_keep_their_digits(tmp_path):
+    mesh = bumpy()
+    tiny = Mesh(1e-6 * (mesh.vertices - PLACE), mesh.faces)
+    write_any(tmp_path / "tiny.obj", tiny)
+    assert np.abs(load(tmp_path / "tiny.obj").vertices - tiny.vertices).max() < 1e-8 * tiny.diagonal
+
+
+def test_seams_double_vertices_and_only_they():
+    mesh = textured()
+    half = mesh.texture.uv.copy()
+    half[mesh.vertices[mesh.faces][:, :, 2].mean(axis=1) > PLACE[2]] += 3
+    split = Mesh(mesh.vertices, mesh.faces, None, Texture(half, mesh.texture.image, mesh.texture.images))
+    whole, cut = (next(iter(to_trimesh(one).geometry.values())) for one in (mesh, split))
+    assert len(whole.vertices) == len(mesh.vertices)
+    assert len(mesh.vertices) < len(cut.vertices) < 1.2 * len(mesh.vertices)

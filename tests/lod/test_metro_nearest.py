@@ -1,0 +1,128 @@
+"""The nearest point of a surface: against a library, on awkward meshes, near and far."""
+
+import numpy as np
+import point_cloud_utils
+import pytest
+import trimesh
+
+from stages.kit import Mesh
+from stages.lod.metro import metro, vertex_errors
+from stages.lod.nearest import Surface
+
+BALL = trimesh.creation.icosphere(subdivisions=3, radius=0.5)
+SPHERE = Mesh(BALL.vertices, BALL.faces)
+
+
+def waves(side):
+    """A wavy sheet of 2 side * side faces whose cells are long and thin."""
+    x, y = np.meshgrid(np.linspace(-0.5, 0.5, side + 1), np.linspace(-0.05, 0.05, side + 1), indexing="ij")
+    vertices = np.stack([x, y, 0.1 * np.sin(9 * x)], axis=-1).reshape(-1, 3)
+    corner = (np.arange(side)[:, None] * (side + 1) + np.arange(side)).ravel()
+    faces = [[corner, corner + 1, corner + side + 2], [corner, corner + side + 2, corner + side + 1]]
+    return Mesh(vertices, np.concatenate([np.stack(each, axis=1) for each in faces]))
+
+
+def soup(seed=0):
+    """Triangles of all sizes thrown about, some of them needles, two far apart from the rest."""
+    generator = np.random.default_rng(seed)
+    corners = generator.normal(size=(300, 1, 3)) + generator.exponential(0.2, (300, 1, 1)) * generator.normal(
+        size=(300, 3, 3)
+    )
+    corners[:20, 2] = corners[:20, 1] + 1e-9 * corners[:20, 0]
+    corners[-2:] += 50
+    return Mesh(corners.reshape(-1, 3), np.arange(900).reshape(-1, 3))
+
+
+MESHES = {"sphere": SPHERE, "waves": waves(24), "soup": soup(), "one triangle": Mesh(np.eye(3), [[0, 1, 2]])}
+
+
+@pytest.mark.parametrize("name", MESHES)
+@pytest.mark.parametrize("spread", [1.0, 1.05, 0.0, 3.0, 100.0])
+def test_distances_agree_with_point_cloud_utils(name, spread):
+    mesh = MESHES[name]
+    noise = np.random.default_rng(1).normal(size=(400, 3))
+    points = spread * mesh.vertices[np.arange(400) % len(mesh.vertices)] + 0.02 * noise
+    expected, _, _ = point_cloud_utils.closest_points_on_mesh(points, mesh.vertices, mesh.faces)
+    found, faces = Surface(mesh).nearest(points)
+    assert found == pytest.approx(expected, rel=1e-9, abs=1e-12)
+    alone = [
+        Surface(Mesh(mesh.vertices, mesh.faces[[face]])).nearest(points[[k]])[0][0] for k, face in enumerate(faces)
+    ]
+    assert np.array(alone) == pytest.approx(found, rel=1e-9, abs=1e-12)
+
+
+def test_order_of_the_questions_does_not_matter():
+    surface, points = Surface(SPHERE), np.random.default_rng(2).normal(scale=0.3, size=(500, 3))
+    order = np.random.default_rng(3).permutation(500)
+    assert surface.nearest(points[order])[0] == pytest.approx(surface.nearest(points)[0][order], rel=1e-12)
+
+
+def test_weights_name_the_nearest_place():
+    points = np.random.default_rng(4).normal(scale=0.5, size=(300, 3))
+    for mesh in MESHES.values():
+        surface = Surface(mesh)
+        found, faces = surface.nearest(points)
+        weights = surface.weights(points, faces)
+        assert weights.min() >= 0 and weights.sum(axis=1) == pytest.approx(np.ones(300))
+        place = np.einsum("ij,ijk->ik", weights, mesh.vertices[mesh.faces[faces]])
+        assert np.linalg.norm(points - place, axis=1) == pytest.approx(found, rel=1e-6, abs=1e-9)
+
+
+def test_faces_without_area_are_segments_and_points():
+    mesh = Mesh([[0, 0, 0], [1, 0, 0], [2, 0, 0], [5, 5, 5]], [[0, 1, 2], [2, 0, 1], [3, 3, 3], [0, 2, 2]])
+    points = np.array([[0.5, 1, 0], [3, 0, 0], [-1, 0, 0], [5, 5, 6], [1, 0, 0]])
+    assert Surface(mesh).nearest(points)[0] == pytest.approx([1, 1, 1, 1, 0])
+
+
+def test_flat_meshes_and_meshes_far_from_the_origin_are_measured():
+    flat = Mesh(SPHERE.vertices * [1, 1, 0], SPHERE.faces)
+    moved = Mesh(flat.vertices + [1e4, 0, 0], flat.faces)
+    assert Surface(flat).nearest([[0, 0, 0.2], [2, 0, 0]])[0] == pytest.approx([0.2, 1.5], rel=1e-6)
+    assert Surface(moved).nearest([[1e4, 0, 0.2]])[0] == pytest.approx([0.2], rel=1e-6)
+
+
+def test_vertex_errors_are_distances_at_the_vertices():
+    grown = Mesh(1.1 * SPHERE.vertices, SPHERE.faces)
+    found = vertex_errors(SPHERE, grown)
+    assert found.shape == (len(grown.vertices),)
+    assert found == pytest.approx(np.full(len(found), 0.05), rel=0.01)
+    assert vertex_errors(grown, SPHERE).max() <= 0.05
+    assert vertex_errors(SPHERE, SPHERE).max() < 1e-15
+
+
+def test_max_is_over_the_vertices_too():
+    # A needle that three samples would not meet.
+    vertices = np.r_[SPHERE.vertices, [[0, 0, 5]]]
+    spiked = Mesh(vertices, np.r_[SPHERE.faces, [[0, 0, len(SPHERE.vertices)]]])
+    nearest = np.linalg.norm([0, 0, 5]) - 0.5
+    for pair in ((SPHERE, spiked), (spiked, SPHERE)):
+        assert metro(*pair, 3)["max"] * Surface(pair[0]).diagonal == pytest.approx(nearest, rel=0.01)
+
+
+def test_concentric_boxes_have_the_known_errors():
+    # From the inner box every point is 0.1 from the outer; an outer point over an edge or corner is farther.
+    box = trimesh.creation.box((1, 1, 1))
+    inner, outer = Mesh(box.vertices, box.faces), Mesh(1.2 * box.vertices, box.faces)
+    found = metro(inner, outer, 20_000)
+    over = np.clip(np.abs((np.arange(1000) + 0.5) / 1000 * 1.2 - 0.6) - 0.5, 0, None)
+    mean = np.sqrt(0.01 + over[:, None] ** 2 + over**2).mean()
+    assert found["mean"] == pytest.approx(mean / np.sqrt(3), rel=2e-3)
+    assert found["max"] == pytest.approx(0.1, rel=1e-9)
+
+
+def test_a_mesh_without_faces_is_named():
+    with pytest.raises(ValueError, match="without faces"):
+        metro(SPHERE, Mesh(np.zeros((3, 3)), np.zeros((0, 3), dtype=int)))
+
+
+def test_meshes_and_points_out_of_range_are_named():
+    with pytest.raises(ValueError, match="out of range"):
+        Surface(Mesh(1e120 * SPHERE.vertices, SPHERE.faces))
+    for bad in (np.nan, np.inf, 1e200):
+        with pytest.raises(ValueError, match="points"):
+            Surface(SPHERE).nearest([[bad, 0, 0]])
+
+
+def test_points_far_away_and_points_as_surfaces_are_measured():
+    assert Surface(SPHERE).nearest([[1e30, 0, 0]])[0] == pytest.approx([1e30])
+    assert Surface(Mesh(np.ones((3, 3)), [[0, 1, 2]])).nearest([[1, 1, 3], [1, 1, 1]])[0] == pytest.approx([2, 0])

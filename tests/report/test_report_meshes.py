@@ -1,0 +1,359 @@
+"""The pieces on simplified meshes: paired cells, table 3.2, all detectors, claims, figures, and the backends."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from stages.kit.files import write_arrays, write_mesh, write_table
+from stages.report import figures, judge, tables, tradeoff
+from stages.report.claims import MESHES
+from stages.report.claims._errors import (
+    falls_with_faces,
+    higher,
+    higher_than_each,
+    more_at_few_faces,
+    ranks_agree,
+    room_within,
+    wider_at_few_faces,
+)
+from stages.report.figures import figure_3_4, figure_3_5, figure_3_7, figure_3_8, figure_3_21, figure_3_22, figure_3_23
+from stages.report.intervals import interval
+from stages.report.items import build_all
+from stages.report.lod_cells import OWN, Source, data_sets, face_counts, paired_cells
+from stages.report.results import NotRun, Results
+from stages.report.style import label
+from stages.report.tables import backends, lod_claims, lod_detectors, table_3_1_5_combinations, table_3_2
+from stages.report.tradeoff import backends as chart
+
+OBJECTS = ["a", "b", "c", "d"]
+POINTS = {"heat_kernel": 3, "SymRad": 4, "itti": 15, "guided_ssim": 16, "guided_ed": 17, "svm": 18, "harris": 50,
+          "corners": 60, "VisAttAll": 20, "VisAttCurvSymCon": 14, "VisAttCon": 13, "enhanced": 12}  # fmt: skip
+WAYS = ["guided_ssim-adaptive", "guided_ed-adaptive", "svm-adaptive"]
+TARGETS = {"25%": 2000, "3000": 3000, "1500": 1500}
+
+
+def measured(dataset="test", seed=0, objects=OBJECTS):
+    """Rows whose error is (1 + points / 100) / faces a method, times the object's own level and a little noise.
+
+    Adaptive ways have 5 % less; errors beyond plain QEM's grow fourfold where faces halve.
+    """
+    random, rows = np.random.default_rng(seed), []
+    for name, level in zip(objects, np.geomspace(0.5, 2, len(objects)), strict=True):
+        for method in ("qem", *POINTS, *WAYS):
+            base, _, way = method.partition("-")
+            points = POINTS.get(base, 0)
+            for target, faces in TARGETS.items():
+                error = level * (3 / faces) * (1 + points / 100 * 3000 / faces) * (0.95 if way else 1)
+                error *= 1 + 0.001 * random.normal()
+                cell = {"dataset": dataset, "object": name, "method": method, "target": target, "asked": faces}
+                cell |= {"faces": faces, "points": points, "kept": points, "rings": 3.0}
+                cell |= {"shrunk": points == 60 and target == "1500", "infeasible": False}
+                values = {"faces": faces, "metro_mean": error, "metro_rms": 2 * error, "metro_max": 9 * error}
+                values |= {"ssim_error": 10 * error, "dlap": 100 * error, "dnor": 30 * error, "salient_error": error}
+                rows += [cell | {"metric": key, "value": value, "seconds": 0.1} for key, value in values.items()]
+    return pd.DataFrame(rows)
+
+
+@pytest.fixture
+def run(bare, small):
+    """A function that writes rows (and those of committed sets) and returns the results."""
+
+    def written(rows, **elsewhere):
+        small.write(bare, "lod", rows)
+        for name, frame in elsewhere.items():
+            write_table(bare / "reports/simplification" / f"{name}.csv", frame.drop(columns="seconds"))
+        return Results(small.settings(), bare)
+
+    return written
+
+
+def without(rows, value=np.nan, **where):
+    """The rows with another value in the cells of `where`."""
+    chosen = np.logical_and.reduce([rows[column] == wanted for column, wanted in where.items()])
+    return rows.assign(value=rows["value"].mask(chosen, value))
+
+
+def test_only_cells_where_nothing_shrank_when_asked_for_the_whole(run):
+    results = run(measured())
+    every = paired_cells(results, ["metro_mean"], ["itti", "corners"])
+    whole = paired_cells(results, ["metro_mean"], ["itti", "corners"], Source(whole=True))
+    assert set(every["target"]) == set(TARGETS)
+    assert set(whole["target"]) == {"25%", "3000"}
+    assert set(paired_cells(results, ["metro_mean"], ["itti"], Source(whole=True))["target"]) == set(TARGETS)
+
+
+def test_committed_sets_stand_beside_the_run_and_have_no_seconds(run):
+    results = run(measured(), princeton=measured("princeton", 1), gaze=measured("gaze", 2))
+    assert data_sets(results) == {"test": OWN, "psb": Source("princeton"), "gaze meshes": Source("gaze")}
+    rows = paired_cells(results, ["metro_mean"], ["qem", "itti"], Source("princeton"))
+    assert rows["seconds"].isna().all() and len(rows) == 2 * len(OBJECTS) * len(TARGETS)
+
+
+def test_a_run_on_psb_is_not_shown_twice(run):
+    results = run(measured("princeton"), princeton=measured("princeton", 1))
+    assert data_sets(results) == {"psb": OWN}
+
+
+def test_committed_set_alone_is_enough(bare, small):
+    write_table(bare / "reports/simplification/gaze.csv", measured("gaze").drop(columns="seconds"))
+    assert data_sets(Results(small.settings(), bare)) == {"gaze meshes": Source("gaze")}
+    with pytest.raises(NotRun, match="make lod"):
+        Results(small.settings(), bare).simplification("princeton")
+
+
+def test_face_counts_come_before_shares_and_need_objects(run):
+    rows = measured()
+    assert face_counts(rows) == ["3000", "1500"]
+    assert face_counts(rows[rows["target"] == "25%"]) == ["25%"]
+    assert face_counts(rows[rows["object"].isin(["a", "b"])]) == []
+
+
+def test_table_3_2_compares_all_methods_on_the_same_objects(run):
+    rows = without(measured(), object="d", target="1500", method="guided_ed", metric="ssim_error")
+    frame = table_3_2.build(run(rows)).frame
+    counts = frame.groupby(["target", "metric"])["objects"].unique().map(list).to_dict()
+    assert counts["1500", "ssim_error"] == [3] and counts["1500", "metro_mean"] == [4]
+    same = frame[(frame["target"] == "3000") & (frame["metric"] == "metro_mean")].set_index("method")
+    assert same.loc["svm", "over_plain_low"] > 0
+    assert same.loc["svm-adaptive", "mean"] == pytest.approx(0.95 * same.loc["svm", "mean"], rel=0.01)
+
+
+def test_table_3_2_shows_the_thesis_and_every_data_set(run):
+    shown = table_3_2.build(run(measured(), gaze=measured("gaze", 2))).shown.set_index(["target", "kept points"])
+    row = shown.loc[("3,000 faces", "guided by SSIM")]
+    assert row["Metro mean, %, thesis"] == "0.180"
+    assert row["Metro mean, %, test"].endswith("+") and "[" in row["Metro mean, %, gaze meshes"]
+    assert not shown.loc[("3,000 faces", "plain QEM"), "Metro mean, %, test"].endswith(("+", "–"))
+
+
+def test_table_3_2_repeats_what_nothing_shrank_only_where_it_differs(run):
+    rows = measured()
+    assert not table_3_2.build(run(rows)).frame["nothing_shrunk"].any()
+    rows.loc[(rows["method"] == "svm") & (rows["object"] == "a"), "shrunk"] = True
+    found = table_3_2.build(run(rows)).frame.groupby("nothing_shrunk")["objects"].max()
+    assert found.to_dict() == {False: 4, True: 3}
+
+
+def test_every_detector_has_all_errors_in_the_thesis_order(run):
+    frame = lod_detectors.build(run(measured())).frame
+    assert frame["method"].iloc[0] == "harris" and frame["method"].iloc[-1] == "qem"
+    assert set(frame["metric"]) >= {"metro_rms", "dlap", "dnor", "salient_error", "points", "kept"}
+    means = frame[frame["metric"] == "metro_mean"].set_index("method")["mean"]
+    assert means["corners"] > means["harris"] > means["itti"] > means["heat_kernel"] > means["qem"]
+    points = frame[frame["metric"] == "points"].set_index("method")["mean"]
+    assert points["corners"] == 60 and points["qem"] == 0
+
+
+def test_a_way_is_said_behind_the_method():
+    assert label("guided_ssim-adaptive") == "guided by SSIM, adaptive"
+    assert label("enhanced-soft") == "ours (gaze model), soft"
+    assert lod_detectors.short("heat_kernel-area") == "HKS, area"
+
+
+def test_combinations_without_errors_are_not_run(run):
+    shown = table_3_1_5_combinations.build(run(measured())).shown.set_index("combination")
+    assert shown.loc["VisAttEnt", "Metro mean, %"] == "not run"
+    assert float(shown.loc["VisAtt", "Metro mean, %"]) > 0
+
+
+def test_difference_is_relative_and_reverses_with_its_sides(run):
+    results = run(measured())
+    there = higher("corners", "itti", targets=["3000"])(results)
+    back = higher("itti", "corners", targets=["3000"])(results)
+    assert there.to_numpy() == pytest.approx(-back.to_numpy())
+    assert there.mean() == pytest.approx(100 * (1.6 - 1.15) / 1.375, rel=0.02)
+
+
+def test_group_is_the_mean_of_those_that_were_run(run):
+    results = run(measured())
+    group = higher(["corners", "sift"], "itti")(results)
+    assert group.to_numpy() == pytest.approx(higher("corners", "itti")(results).to_numpy())
+    with pytest.raises(NotRun, match="sift"):
+        higher(["sift"], "itti")(results)
+
+
+def test_against_each_takes_the_worst_or_the_best_of_the_others(run):
+    results = run(measured())
+    worst = higher_than_each("corners", ["itti", "harris"])(results)
+    best = higher_than_each("corners", ["itti", "harris"], worst=False)(results)
+    assert worst.to_numpy() == pytest.approx(higher("corners", "harris")(results).to_numpy())
+    assert best.to_numpy() == pytest.approx(higher("corners", "itti")(results).to_numpy())
+
+
+def test_gap_and_spread_grow_at_few_faces(run):
+    results = run(measured())
+    assert (more_at_few_faces("corners", "itti")(results) > 0).all()
+    assert (more_at_few_faces("itti", "corners")(results) < 0).all()
+    assert (wider_at_few_faces(list(POINTS))(results) > 0).all()
+    rows = measured()
+    with pytest.raises(NotRun, match="3000 and 1500"):
+        more_at_few_faces("corners", "itti")(run(rows[rows["target"] != "3000"]))
+
+
+def test_error_falls_with_faces(run):
+    assert (falls_with_faces("itti")(run(measured())) > 0).all()
+
+
+def test_equivalence_holds_within_the_margin_and_fails_beyond_it(run):
+    results = run(measured())
+    gap = 100 * higher("guided_ed", "guided_ssim", targets=["3000", "1500"])(results).abs().mean()
+    assert gap > 0  # they differ, beyond doubt, but little
+    _, low, _ = interval(room_within(1e-3, ["guided_ed"], "guided_ssim")(results))
+    assert low > 0
+    _, _, high = interval(room_within(1e-6, ["guided_ed"], "guided_ssim")(results))
+    assert high < 0
+    _, _, high = interval(room_within(1e-4, ["guided_ed", "corners"], "guided_ssim")(results))
+    assert high < 0  # the farthest of them decides
+
+
+def test_equivalence_does_not_depend_on_which_side_is_higher(run):
+    results = run(measured())
+    there, back = (room_within(1e-4, [a], b)(results) for a, b in (("itti", "svm"), ("svm", "itti")))
+    assert there.to_numpy() == pytest.approx(back.to_numpy())
+
+
+def test_ranks_agree_where_the_error_grows_with_the_points(run):
+    assert ranks_agree("points", "metro_mean")(run(measured())).min() > 0.98
+    reversed_ = measured()
+    reversed_["points"] = 100 - reversed_["points"]
+    assert ranks_agree("points", "metro_mean")(run(reversed_)).max() < -0.98
+
+
+def test_every_claim_on_meshes_is_judged_on_every_set(run):
+    results = run(measured(), princeton=measured("princeton", 1))
+    table = lod_claims.build(results)
+    assert len(table.shown) == len(MESHES)
+    words = table.frame.set_index(["key", "data"])["verdict"]
+    for data in ("test", "psb"):
+        assert words["many_points_distort", data] == "supported"
+        assert words["adaptive_svm_metro", data] == "supported"
+        assert words["hks_high", data] == "contradicted"
+    own = judge(MESHES, results).set_index("key")["verdict"]
+    assert (own == words.xs("test", level="data").reindex(own.index)).all()
+
+
+def test_not_run_claims_say_so(run):
+    rows = measured()
+    table = lod_claims.build(run(rows[rows["method"].isin(["qem", "itti"])]))
+    assert (table.frame["verdict"] == "open").all() and (table.frame["objects"] == 0).all()
+
+
+@pytest.fixture
+def meshes(run, small):
+    """A run with points, and simplified meshes of two objects on the disk."""
+    results = run(measured())
+    root, mesh = results.data.parent, small.ball()
+    methods = ["qem", *POINTS, *WAYS]
+    for name in ("a", "b"):
+        write_mesh(root / f"data/meshes/{name}.npz", mesh)
+        arrays = {f"{method}.points": np.array([3, 50, 100]) for method in POINTS}
+        arrays |= {f"{method}.strong": np.int64(2) for method in POINTS}
+        write_arrays(root / f"data/salient_points/{name}.npz", **arrays)
+        for method in methods:
+            write_mesh(root / f"data/lod/{name}/{method}_3000.npz", small.ball(9))
+            write_mesh(root / f"data/lod/{name}/{method}_1500.npz", small.ball(6))
+    return results
+
+
+@pytest.mark.parametrize("module", [figure_3_4, figure_3_5, figure_3_23])
+def test_charts_of_errors_are_drawn(run, module):
+    figure = module.build(run(measured(), princeton=measured("princeton", 1)))
+    assert figure.paths[0].stat().st_size > 5000
+    assert "4 " in figure.caption or "objects" in figure.caption
+
+
+@pytest.mark.parametrize("module", [figure_3_7, figure_3_8, figure_3_21, figure_3_22])
+def test_pictures_of_meshes_are_drawn(meshes, module, monkeypatch):
+    monkeypatch.setattr(module, "ROWS", 60, raising=False)
+    figure = module.build(meshes)
+    assert figure.paths[0].stat().st_size > 5000
+
+
+def test_pictures_take_the_same_target_of_all_methods(meshes):
+    for path in (meshes.data / "lod/a").glob("corners_1500.npz"):
+        path.unlink()
+    assert "a at 3,000 faces" in figure_3_7.build(meshes).caption
+
+
+def test_colours_of_the_error_are_those_of_the_distance(small):
+    inner = small.ball()
+    inner = type(inner)(0.9 * inner.vertices, inner.faces)
+    found = figure_3_8._error(small.ball(24), inner)
+    assert found.mean() == pytest.approx(0.05 / np.sqrt(3), rel=0.1)
+
+
+def benched(power=1.0, kept=True):
+    """Rows of three backends: `fast` takes a twentieth of the time at nine tenths of the error."""
+    rows = []
+    for k, full in enumerate([2000, 20_000, 50_000, 100_000, 400_000, 1_000_000]):
+        base = 1e-6 * (full * np.log(full)) ** power
+        for backend, time, error in (("pymeshlab", 1, 1), ("fast", 0.05, 0.9), ("poor", 0.5, 1.5)):
+            for points in (0, 100):
+                row = {"mesh": f"m{k}", "source": "psb", "full": full, "target": 0.25, "faces": full // 4}
+                row |= {
+                    "backend": backend,
+                    "kept_points": points,
+                    "metro_mean": 1e-3 * error,
+                    "ssim_error": 0.01 * error,
+                }
+                row |= {"seconds": base * time, "ratio": time, "error_ratio": error, "kept": kept, "valid": True}
+                rows.append(row)
+    return pd.DataFrame(rows)
+
+
+@pytest.fixture
+def bench(bare, small):
+    def written(rows):
+        write_table(bare / "reports/bench/simplification.csv", rows)
+        return Results(small.settings(), bare)
+
+    return written
+
+
+def test_backends_are_compared_as_ratios(bench):
+    frame = backends.build(bench(benched())).frame.set_index(["backend", "with_points"])
+    row = frame.loc["fast", True]
+    assert (row["time_ratio"], row["error_ratio"], row["seen_ratio"]) == pytest.approx((0.05, 0.9, 0.9))
+    assert row["kept"] == 1 and row["valid"] == 1 and np.isnan(frame.loc[("fast", False), "kept"])
+
+
+def test_lost_points_lower_the_share_that_is_kept(bench):
+    rows = benched()
+    rows.loc[(rows["backend"] == "poor") & (rows["mesh"] == "m0"), "kept"] = False
+    frame = backends.build(bench(rows)).frame.set_index(["backend", "with_points"])
+    assert frame.loc[("poor", True), "kept"] == pytest.approx(5 / 6)
+
+
+@pytest.mark.parametrize("power", [0.8, 1.0, 1.4])
+def test_growth_finds_the_power_of_the_time(power):
+    rows = benched(power)
+    fit = backends.growth(rows[rows["backend"] == "fast"])
+    assert fit.power == pytest.approx(power, abs=1e-9)
+    assert fit(50_000) == pytest.approx(0.05e-6 * (50_000 * np.log(50_000)) ** power)
+
+
+def test_growth_needs_large_meshes():
+    rows = benched()
+    assert backends.growth(rows[rows["full"] <= 20_000]) is None
+
+
+def test_chart_of_backends_has_the_front(bench):
+    figure = chart.build(bench(benched()))
+    table = pd.read_csv(figure.paths[1]).set_index(["backend", "with_points"])
+    assert table.loc[("fast", True), "error_front"] and not table.loc[("pymeshlab", True), "error_front"]
+    assert figure.paths[0].stat().st_size > 5000 and "1.00 [1.00, 1.00]" in figure.caption
+
+
+def test_chart_without_the_reference_is_not_run(bench):
+    rows = benched()
+    with pytest.raises(NotRun, match="pymeshlab"):
+        chart.build(bench(rows[rows["backend"] == "fast"]))
+
+
+def test_all_of_it_is_not_run_without_measurements(bare, small):
+    results = Results(small.settings(), bare)
+    missing = {}
+    for kind in (tables, figures, tradeoff):
+        missing |= build_all(kind, results).not_run
+    names = ["table_3_2", "lod_detectors", "lod_claims", "backends", "figure_3_4", "figure_3_5", "figure_3_7"]
+    assert set(names + ["figure_3_8", "figure_3_21", "figure_3_22", "figure_3_23", "simplification"]) <= set(missing)

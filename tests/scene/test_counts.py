@@ -1,0 +1,217 @@
+"""How many faces: curves with a known law, so that each model's right answer is known."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from stages.kit import Mesh
+from stages.scene.counts import (
+    Curve,
+    fit_counts,
+    fit_power_law,
+    focal_length,
+    judge,
+    judge_counts,
+    read_curves,
+    rebuild,
+    tolerated_error,
+)
+
+COMBINATIONS = ("itti", "VisAttCon")
+SHARES = np.array([0.05, 0.1, 0.2, 0.4, 0.7])
+
+
+def law(name, initial, points, method="itti", exponent=2.0, scale=1e-4):
+    """A curve whose error is scale * (faces / initial) ** -exponent: straight in logarithms."""
+    faces = np.round(SHARES * initial).astype(int)
+    return Curve(name, method, points, initial, faces, scale * (faces / initial) ** -exponent)
+
+
+def curves(objects=10):
+    """Two combinations a name: one law for all, whatever the size and the points."""
+    sizes = np.linspace(2000, 9000, objects).astype(int)
+    return [law(f"o{k}", size, 3 + k % 4, method) for k, size in enumerate(sizes) for method in COMBINATIONS]
+
+
+def right(error, initial, exponent=2.0, scale=1e-4):
+    """The count that the law asks for."""
+    return initial * (scale / error) ** (1 / exponent)
+
+
+def ball():
+    """A closed mesh of 1,280 faces."""
+    import trimesh
+
+    shape = trimesh.creation.icosphere(3, 0.5)
+    return Mesh(shape.vertices, shape.faces)
+
+
+def test_lookup_returns_the_measured_counts():
+    curve = law("a", 4000, 5)
+    assert curve.faces_needed(curve.errors).tolist() == curve.faces.tolist()
+    assert curve.error_at(curve.faces) == pytest.approx(curve.errors)
+
+
+def test_lookup_is_exact_between_points_of_a_power_law():
+    error = np.geomspace(3e-4, 3e-2, 20)
+    assert law("a", 10**6, 5).faces_needed(error) == pytest.approx(right(error, 10**6), rel=1e-4)
+
+
+def test_lookup_never_asks_for_more_faces_at_a_larger_error():
+    curve = Curve("a", "itti", 3, 5000, [400, 800, 1500, 3000], [1e-3, 1.2e-3, 2e-4, 3e-5])
+    found = curve.faces_needed(np.geomspace(1e-9, 1, 500))
+    assert (np.diff(found) <= 0).all() and found[0] == 5000 and found[-1] == 400
+
+
+def test_noise_never_promises_what_a_finer_mesh_did_not_keep():
+    curve = Curve("a", "itti", 3, 5000, [400, 800, 1500], [1e-4, 3e-4, 1e-4])
+    assert curve.faces_needed(2e-4) > 800
+
+
+def test_lookup_asks_for_all_faces_where_no_error_is_allowed():
+    assert law("a", 4000, 5).faces_needed(0) == 4000
+
+
+def test_error_read_off_at_the_needed_count_keeps_to_it():
+    curve = law("a", 4000, 5)
+    wanted = np.geomspace(1e-6, curve.errors[0], 50)
+    assert (curve.error_at(curve.faces_needed(wanted)) <= wanted * (1 + 1e-9)).all()
+
+
+@pytest.mark.parametrize("faces, errors", [([], []), ([0, 5], [1, 1]), ([50], [0.1]), ([5], [np.nan]), ([5], [-1])])
+def test_bad_curves_are_refused(faces, errors):
+    with pytest.raises(ValueError, match="a:"):
+        Curve("a", "itti", 3, 40, faces, errors)
+
+
+def test_curves_are_read_one_an_object_and_method():
+    rows = [("a", "itti", 3, 50, "metro_mean", 0.2), ("a", "itti", 3, 80, "metro_mean", 0.1),
+            ("a", "qem", 0, 50, "metro_mean", 0.1), ("a", "qem", 0, 50, "metro_max", 9.0),
+            ("a", "itti", 3, None, "faces", None)]  # fmt: skip
+    frame = pd.DataFrame(rows, columns=["object", "method", "points", "faces", "metric", "value"])
+    found = read_curves(frame, {"a": 100})
+    assert [(c.method, c.points, c.faces.tolist()) for c in found] == [("itti", 3, [50, 80]), ("qem", 0, [50])]
+    with pytest.raises(ValueError, match="for a"):
+        read_curves(frame, {})
+    with pytest.raises(ValueError, match="points"):
+        read_curves(frame.drop(columns="points"), {"a": 100})
+
+
+def test_twice_as_far_tolerates_twice_the_error():
+    assert tolerated_error(1, 8) == pytest.approx(2 * tolerated_error(1, 4))
+    assert focal_length(1000, 90) == pytest.approx(500)
+    assert tolerated_error(2, 5, focal=1000) == pytest.approx(0.01)  # a unit at distance 5 covers 200 pixels
+
+
+@pytest.mark.parametrize("call", [lambda: focal_length(0), lambda: focal_length(100, 180),
+                                  lambda: tolerated_error(0, 1), lambda: tolerated_error(1, np.nan)])  # fmt: skip
+def test_impossible_screens_and_tolerances_are_refused(call):
+    with pytest.raises(ValueError):
+        call()
+
+
+@pytest.mark.parametrize("kind, off", [("linear", 0.01), ("network", 0.12)])
+def test_a_common_law_is_learned(kind, off):
+    model = fit_counts(curves(), COMBINATIONS, kind)
+    error, distance = np.array([5e-4, 2e-3, 1e-2]), np.array([1.5, 6.0, 20.0])
+    found = model.faces_needed(error * focal_length() / distance, distance, 5000, 4)
+    assert np.log(found / right(error, 5000)) == pytest.approx(0, abs=off)
+
+
+@pytest.mark.parametrize("kind", ["linear", "network"])
+def test_counts_stay_between_a_tetrahedron_and_the_object(kind):
+    model = fit_counts(curves(), COMBINATIONS, kind)
+    assert 4 <= model.faces_needed(1e6, 30, 5000, 4) <= 5000
+    assert model.faces_needed(1e-6, 1, 5000, 4) <= 5000
+    assert isinstance(model.faces_needed(1, 2, 5000, 4), int)
+
+
+def test_the_count_is_the_average_over_the_combinations():
+    coarse = [law(f"o{k}", 2000 + 500 * k, k, "VisAttCon", scale=1e-5) for k in range(8)]
+    fine = [law(f"o{k}", 2000 + 500 * k, k, "itti") for k in range(8)]
+    ask = (1.0, 2.0, 4000, {"itti": 3, "VisAttCon": 5})
+    alone = [fit_counts(fine + coarse, [name], "linear").faces_needed(*ask) for name in ("itti", "VisAttCon")]
+    both = fit_counts(fine + coarse, ["itti", "VisAttCon"], "linear").faces_needed(*ask)
+    assert alone[0] > 2 * alone[1] and both == pytest.approx(np.mean(alone), abs=1)
+
+
+def test_equal_seeds_give_equal_networks_in_any_order_of_calls():
+    first = fit_counts(curves(), COMBINATIONS, "network", seed=3)
+    fit_counts(curves(6), COMBINATIONS, "network", seed=1)
+    again = fit_counts(curves(), COMBINATIONS, "network", seed=3)
+    ask = (np.geomspace(0.1, 5, 9), 4, 5000, 4)
+    assert first.faces_needed(*ask).tolist() == again.faces_needed(*ask).tolist()
+
+
+def test_models_say_what_is_wrong():
+    with pytest.raises(ValueError, match="kind"):
+        fit_counts(curves(), COMBINATIONS, "forest")
+    with pytest.raises(ValueError, match="no measured curve"):
+        fit_counts(curves(), ["qem"])
+    model = fit_counts(curves(), COMBINATIONS, "linear")
+    with pytest.raises(ValueError, match="VisAttCon"):
+        model.faces_needed(1, 1, 100, {"itti": 3})
+    for bad in ((0, 1, 100, 3), (1, np.nan, 100, 3), (1, 1, 0, 3), (1, 1, 100, -1)):
+        with pytest.raises(ValueError, match="must be finite"):
+            model.faces_needed(*bad)
+
+
+def test_one_mesh_is_exact_where_all_objects_share_a_power():
+    exponent = fit_power_law(curves())
+    assert exponent.exponent == pytest.approx(0.5, rel=1e-3)
+    other = law("new", 10**6, 3, scale=7e-4)  # another complexity, the same power
+    found = exponent.faces_needed(other.errors, other.faces[2], other.errors[2], 10**6)
+    assert found == pytest.approx(other.faces, rel=1e-2)
+    with pytest.raises(ValueError, match="two points"):
+        fit_power_law([Curve("a", "itti", 3, 100, [50], [0.1])])
+
+
+def ball_curves():
+    """A ball under eight names, measured by a law, with the meshes and points to build from."""
+    mesh = ball()
+    names = [f"o{k}" for k in range(8)]
+    made = [law(name, len(mesh.faces), 2 + k % 3, scale=2e-3, exponent=1) for k, name in enumerate(names)]
+    return made, dict.fromkeys(names, mesh), {name: {"itti": np.array([0, 500])} for name in names}
+
+
+@pytest.fixture(scope="module")
+def judged():
+    """The rows of a small judgement, by (method, condition, metric)."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(judge, "parallel_map", lambda function, items, desc: list(map(function, items)))
+        patch.setattr(rebuild, "BUILT", 1)
+        frame = pd.DataFrame(judge_counts(*ball_curves()))
+    return frame.set_index(["method", "condition", "metric"]).sort_index()
+
+
+def test_all_models_are_right_where_one_law_holds(judged):
+    for method in ("network", "linear", "one_mesh", "lookup"):
+        assert judged.loc[(method, "left_out", "factor_90"), "value"].item() < 1.3
+    for method in ("linear", "one_mesh", "lookup"):
+        assert judged.loc[(method, "left_out", "factor_90"), "value"].item() < 1.1
+
+
+def test_a_safety_factor_raises_the_rate_and_the_waste(judged):
+    for method in ("network", "linear"):
+        rows = judged.loc[method]
+        for metric in ("within", "waste"):
+            raw, safe = (rows.loc[(condition, metric), "value"].item() for condition in ("left_out", "equal_rate"))
+            assert safe >= raw
+
+
+def test_built_meshes_are_measured(judged):
+    rows = judged.loc[("lookup", "built")]
+    assert rows.loc["excess", "objects"].item() == 5
+    assert 0 <= rows.loc["within", "value"].item() <= 1
+
+
+def test_costs_are_ratios_to_the_lookup(judged):
+    assert judged.loc[("lookup", "cost", "fit"), "value"].item() == 1
+    assert (judged.loc[(slice(None), "cost"), "seconds"] > 0).all()
+
+
+def test_too_few_objects_are_a_note():
+    made, meshes, points = ball_curves()
+    (row,) = judge_counts(made[:3], meshes, points)
+    assert row["value"] is None and "3 objects" in row["note"]
+    assert judge_counts([], {}, {})[0]["note"].startswith("0 objects")

@@ -1,0 +1,175 @@
+"""The budget holds what it promises in the rendered frames; the rivals and the limit."""
+
+import numpy as np
+import pytest
+
+from stages.kit import Mesh
+from stages.scene import Frames, Level, Placed, budget, build_ladder, rivals
+from stages.scene.ladder import ERRORS, finest
+from stages.scene.pictures import picture_error
+from stages.scene.rows import saved
+
+
+@pytest.fixture(scope="module")
+def scene(make_scene):
+    return make_scene()
+
+
+@pytest.fixture(scope="module")
+def plan(meshes, ladders, scene):
+    return budget(meshes, scene, ladders=ladders)
+
+
+def test_every_rendered_frame_holds_the_tolerance(plan, scene):
+    assert plan.errors.max() <= scene.tolerance
+    assert plan.errors.max() > 0.3 * scene.tolerance  # and uses it
+
+
+def test_far_frames_need_fewer_faces_than_near_ones(plan):
+    total = plan.faces.sum(axis=1)
+    assert total[0] < total[-1] < 0.5 * sum(ladder[0].faces for ladder in plan.ladders)
+
+
+def test_one_level_coarser_breaks_the_tolerance_somewhere(plan, scene):
+    coarser = rivals.by_counts(plan.frames, plan.ladders, np.maximum(plan.faces // 2, 1))
+    assert coarser.errors.max() > scene.tolerance
+
+
+def test_no_switch_jumps_further_than_the_tolerance(plan, scene):
+    assert plan.steps and max(step for _, _, step in plan.steps) <= scene.tolerance
+
+
+def test_a_wider_tolerance_needs_no_more_faces(meshes, ladders, make_scene, plan):
+    wide = budget(meshes, make_scene(tolerance=2.0), ladders=ladders)
+    assert wide.faces.sum() < plan.faces.sum() and wide.errors.max() <= 2.0
+
+
+def test_equal_runs_give_equal_plans(meshes, ladders, make_scene, plan):
+    assert np.array_equal(budget(meshes, make_scene(), ladders=ladders).levels, plan.levels)
+
+
+def test_the_perceptual_tolerance_holds_too(meshes, ladders, make_scene):
+    scene = make_scene(frames=3, tolerance=0.1, kind="ssim")
+    found = budget(meshes, scene, ladders=ladders)
+    assert 0 < found.errors.max() <= 0.1
+    assert found.faces.sum() < rivals.full(found.frames).faces.sum() / 2
+
+
+def test_salient_places_can_be_minded_by_options_alone(meshes, make_scene):
+    weights = (meshes["two"].vertices[:, 2] > 0.3).astype(float)
+    scene = make_scene(objects=(Placed("two", (0, 0, 0), 0.0, 0.2),), frames=2)
+    found = budget({"two": meshes["two"]}, scene, options={"two": {"weights": weights}})
+    assert found.errors.max() <= 1.0
+
+
+def test_a_limit_holds_and_costs_error(meshes, ladders, make_scene, plan):
+    limit = int(plan.faces.sum(axis=1).max() * 0.7)
+    found = budget(meshes, make_scene(limit=limit), ladders=ladders)
+    assert found.faces.sum(axis=1).max() <= limit
+    assert found.errors.max() > plan.errors.max()
+
+
+def test_a_limit_below_the_smallest_total_names_it(meshes, ladders, make_scene):
+    smallest = 2 * ladders["one"][-1].faces + ladders["two"][-1].faces
+    with pytest.raises(ValueError, match=f"{smallest} together"):
+        budget(meshes, make_scene(limit=smallest - 1), ladders=ladders)
+    assert budget(meshes, make_scene(limit=smallest), ladders=ladders).faces.sum(axis=1).max() == smallest
+
+
+def test_what_is_out_of_view_costs_nothing(meshes, ladders, make_scene):
+    objects = (Placed("one", (0, 0, 0), 0.0, 0.25), Placed("one", (0, -9.0, 0), 0.0, 0.25))
+    found = budget(meshes, make_scene(objects=objects), ladders=ladders)
+    assert (found.faces[:, 0] > 0).all() and (found.faces[:, 1] == 0).all()
+
+
+def test_what_leaves_the_view_close_to_the_eye_does_not_need_all_its_faces(meshes, ladders, make_scene):
+    """Its box reaches behind the camera, so that its distance says nothing of what is seen of it."""
+    scene = make_scene(objects=(Placed("one", (0.42, -1.1, 0.2), 0.0, 0.4),))
+    found = budget(meshes, scene, ladders=ladders)
+    behind = [camera.project(found.frames.poses[0].corners)[2].min() < 0.1 for camera in scene.cameras]
+    assert behind[-1] and found.frames.in_view[-1, 0]
+    assert found.errors.max() <= 1 and found.faces[-1, 0] < 0.5 * len(meshes["one"].faces)
+
+
+def test_what_is_hidden_takes_the_coarsest_level(meshes, ladders, make_scene):
+    objects = (Placed("one", (0, 0, 0), 0.0, 0.6), Placed("two", (0, 0.8, 0.1), 0.0, 0.1))
+    found = budget(meshes, make_scene(objects=objects), ladders=ladders)
+    assert (found.levels[:, 1] == len(ladders["two"]) - 1).all()
+
+
+def shifted(mesh, by):
+    return Level(Mesh(mesh.vertices + by, mesh.faces), dict.fromkeys(ERRORS, 0.0))
+
+
+def test_a_plate_moved_towards_the_eye_is_off_by_its_shift_in_pixels(make_scene):
+    corners = np.array([[-0.5, 0, -0.5], [0.5, 0, -0.5], [0.5, 0, 0.5], [-0.5, 0, 0.5]])
+    plate = Mesh(corners, [[0, 1, 2], [0, 2, 3]])
+    scene = make_scene(objects=(Placed("plate", (0, 0, 0), 0.0, 0.4),), frames=1)
+    frames = Frames(scene, {"plate": plate}, [finest(plate)])
+    found = frames.check(0, [shifted(plate, [0.0, -0.02, 0.0])])
+    depth = 4.0  # of the middle
+    expected = 0.02 * 0.4 * scene.cameras[0].focal / depth
+    assert found.error == pytest.approx(expected, rel=0.05)
+    assert found.displacements.mean() == pytest.approx(expected, rel=0.05)
+
+
+def test_the_full_scene_has_no_error(frames_of, make_scene):
+    frames = frames_of(make_scene(frames=2))
+    assert rivals.full(frames).errors.tolist() == [0, 0]
+    assert picture_error(frames, 1, frames.full) == 0
+    assert frames.check(1, frames.full).displacements.max() == 0
+
+
+def test_joined_frames_show_what_one_ray_cast_of_the_whole_scene_shows(meshes, frames_of, make_scene):
+    from stages.kit import RayScene
+    from stages.scene.place import world_mesh
+
+    scene = make_scene(frames=2)
+    frames = frames_of(scene)
+    parts = [world_mesh(meshes[placed.name], pose) for placed, pose in zip(scene.objects, frames.poses, strict=True)]
+    first = np.cumsum([0, *(len(part.vertices) for part in parts)])
+    whole = Mesh(np.concatenate([part.vertices for part in parts]),
+                 np.concatenate([part.faces + k for part, k in zip(parts, first, strict=False)]))  # fmt: skip
+    camera = scene.cameras[1]
+    rows, columns = (grid.ravel() for grid in np.mgrid[: camera.size[0], : camera.size[1]])
+    along = camera.directions(rows, columns)
+    hits = RayScene(whole).cast(np.broadcast_to(camera.eye, along.shape), along)
+    ends = np.cumsum([len(part.faces) for part in parts])
+    expected = np.where(hits.hit, np.searchsorted(ends, hits.face, side="right"), -1)
+    assert (frames.owners(1, frames.full) == expected).mean() > 0.999
+
+
+def test_uniform_levels_go_by_distance_alone(frames_of, make_scene, meshes):
+    scene = make_scene()
+    frames = frames_of(scene)
+    shares = {name: build_ladder(mesh, counts=[int(s * len(mesh.faces)) for s in rivals.SHARES[:3]])
+              for name, mesh in meshes.items()}  # fmt: skip
+    ladders = tuple((full, *shares[placed.name][1:]) for full, placed in zip(frames.full, scene.objects, strict=True))
+    found = rivals.uniform(frames, ladders, 1.0)
+    expected = np.clip(np.floor(np.log2(frames.distance)) + 1, 0, 3)
+    assert np.array_equal(found.levels, expected)
+    assert (rivals.uniform(frames, ladders, 1e3).levels == 0).all()
+    assert (rivals.uniform(frames, ladders, 1e-3).levels == 3).all()
+
+
+def test_tuning_meets_the_wanted_error_from_above(frames_of, make_scene, ladders):
+    scene = make_scene()
+    frames = frames_of(scene)
+    own = tuple((full, *ladders[placed.name][1:]) for full, placed in zip(frames.full, scene.objects, strict=True))
+    plan_of = lambda factor: rivals.uniform(frames, own, 1 / factor)  # noqa: E731
+    wanted = 0.6 * plan_of(1e3).errors.mean()  # the coarsest has more
+    found = rivals.tune(plan_of, lambda plan: plan.errors.mean(), wanted)
+    assert wanted <= found.errors.mean() < 1.6 * wanted
+    assert rivals.tune_below(plan_of, lambda plan: plan.errors.max(), wanted).errors.max() <= wanted
+
+
+def test_saved_faces_are_of_the_totals():
+    share, low, high = saved(np.array([10, 30]), np.array([20, 60]))
+    assert (share, low, high) == (0.5, 0.5, 0.5)
+
+
+def test_a_ladder_gets_coarser_and_worse(ladders):
+    faces = [level.faces for level in ladders["one"]]
+    errors = [level.error["q99"] for level in ladders["one"]]
+    assert len(faces) > 8 and faces == sorted(faces, reverse=True) and errors[0] == 0
+    assert errors[1] < errors[len(errors) // 2] < errors[-1]

@@ -1,0 +1,77 @@
+"""The cheapest sequence of levels, checked against all sequences, and the shared limit."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+from stages.scene.plan import BROKEN, cheapest, share
+
+FACES = np.array([100.0, 40.0, 10.0])
+
+
+def runs(levels):
+    return [(level, len(list(group))) for level, group in itertools.groupby(levels)]
+
+
+def by_trial(faces, errors, steps, tolerance, hold):
+    """The least cost of all sequences that hold their levels long enough."""
+    best = np.inf
+    for levels in itertools.product(range(errors.shape[1]), repeat=len(errors)):
+        if any(length < hold for _, length in runs(levels)[1:-1]):
+            continue
+        best = min(best, cost(levels, faces, errors, steps, tolerance))
+    return best
+
+
+def cost(levels, faces, errors, steps, tolerance):
+    total = sum(faces[t, k] + BROKEN * max(errors[t, k] / tolerance - 1, 0) for t, k in enumerate(levels))
+    switches = [(t, levels[t - 1], levels[t]) for t in range(1, len(levels)) if levels[t - 1] != levels[t]]
+    return total + sum(BROKEN * max(steps[t, a, b] / tolerance - 1, 0) for t, a, b in switches)
+
+
+@pytest.mark.parametrize("hold", [1, 2, 3])
+@pytest.mark.parametrize("seed", range(4))
+def test_no_sequence_is_cheaper(seed, hold):
+    draw = np.random.default_rng(seed)
+    errors = np.sort(draw.random((6, 3)) * 1.6, axis=1)
+    errors[:, 0] = 0
+    steps = draw.random((6, 3, 3)) * 1.4
+    faces = np.tile(FACES, (6, 1)) * (1 + 0.1 * draw.random((6, 3)))
+    found = cheapest(faces, errors, steps, 1.0, hold)
+    assert all(length >= hold for _, length in runs(found)[1:-1])
+    assert cost(found, faces, errors, steps, 1.0) == pytest.approx(by_trial(faces, errors, steps, 1.0, hold))
+
+
+def test_without_steps_each_frame_has_the_coarsest_level_within_the_tolerance():
+    errors = np.array([[0, 0.4, 0.9], [0, 0.9, 1.1], [0, 1.2, 3.0]])
+    found = cheapest(np.tile(FACES, (3, 1)), errors, np.zeros((3, 3, 3)), 1.0)
+    assert found.tolist() == [2, 1, 0]
+
+
+def test_a_jump_above_the_tolerance_is_not_made():
+    errors, steps = np.array([[0, 0.4, 0.9], [0, 0.9, 1.1], [0, 0.9, 1.1]]), np.zeros((3, 3, 3))
+    steps[1, 2, 1] = 1.5
+    assert cheapest(np.tile(FACES, (3, 1)), errors, steps, 1.0).tolist() == [1, 1, 1]
+
+
+def test_an_object_near_a_threshold_does_not_flicker():
+    errors = np.array([[0, 0.5, 0.99 + 0.02 * (frame % 2)] for frame in range(9)])
+    faces, steps = np.tile(FACES, (9, 1)), np.zeros((9, 3, 3))
+    assert len(runs(cheapest(faces, errors, steps, 1.0, hold=1))) == 9
+    assert len(runs(cheapest(faces, errors, steps, 1.0, hold=3))) <= 3
+
+
+def test_an_infinite_error_is_never_chosen_when_there_is_another():
+    errors = np.array([[np.inf, np.inf, 5.0]] * 4)
+    assert cheapest(np.tile(FACES, (4, 1)), errors, np.zeros((4, 3, 3)), 1.0, 2).tolist() == [2] * 4
+
+
+def test_a_limit_is_shared_where_it_hurts_least():
+    faces = [np.array([100, 50, 20]), np.array([100, 50, 20])]
+    errors = [np.array([0, 0.1, 0.2]), np.array([0, 1.0, 4.0])]
+    assert share([0, 0], faces, errors, 200).tolist() == [0, 0]
+    assert share([0, 0], faces, errors, 150).tolist() == [1, 0]
+    assert share([0, 0], faces, errors, 120).tolist() == [2, 0]
+    assert share([0, 0], faces, errors, 70).tolist() == [2, 1]
+    assert share([0, 0], faces, errors, 1).tolist() == [2, 2]

@@ -1,0 +1,236 @@
+"""The checks that a simplified mesh must pass find every kind of ruin; outcomes, rows, and what the report shows."""
+
+import numpy as np
+import pandas as pd
+import pytest
+import trimesh
+
+from stages.kit import Mesh
+from stages.kit.files import write_table
+from stages.kit.rng import rng
+from stages.lod import InfeasibleTarget
+from stages.report.figures import stability_simplification as chart
+from stages.report.results import NotRun, Results
+from stages.report.style import look as drawn
+from stages.report.tables import stability_simplification as table
+from stages.stability import simplification
+from stages.stability.broken import BROKEN
+from stages.stability.checks import complaints, surface_error
+from stages.stability.plain_curve import PlainCurve
+from stages.stability.simplification import answers, ask, simplification_rows
+from stages.stability.specimen import KEPT, Case, Specimen
+from stages.stability.summary import summarise_simplification
+from stages.stability.surface import Surface
+
+BALL = trimesh.creation.icosphere(subdivisions=3)
+SOUND = Mesh(BALL.vertices * [0.3, 0.4, 0.5], BALL.faces)
+COARSE = trimesh.creation.icosphere(subdivisions=2)
+FEWER = Mesh(
+    COARSE.vertices * [0.3, 0.4, 0.5], COARSE.faces
+)  # the icosphere's coarse vertices are vertices of the fine
+NONE = np.zeros(0, dtype=int), np.zeros((0, 3), dtype=int)
+
+
+def said(found, before=SOUND, faces=320, kept=NONE):
+    return "; ".join(complaints(Surface(before), found, faces, *kept))
+
+
+def changed(vertex=None, place=None, faces=None):
+    """FEWER with one vertex elsewhere, or with other faces."""
+    vertices = FEWER.vertices.copy()
+    if vertex is not None:
+        vertices[vertex] = place
+    return Mesh(vertices, FEWER.faces if faces is None else faces)
+
+
+def test_a_sound_result_has_no_complaint():
+    assert said(FEWER) == "" and said(SOUND, faces=1280) == ""
+    kept = BALL.faces[0][:1], BALL.faces[:5]
+    assert said(SOUND, faces=1280, kept=kept) == ""
+
+
+def folded():
+    """FEWER with a corner of its first face laid upon the face on the other side of an edge."""
+    tip, a, b = FEWER.faces[0]
+    other = next(face for face in FEWER.faces[1:] if {a, b} <= set(face))
+    across = FEWER.vertices[next(corner for corner in other if corner not in (a, b))]
+    return changed(tip, 0.8 * across + 0.1 * (FEWER.vertices[a] + FEWER.vertices[b]))
+
+
+TWO = np.r_[FEWER.faces, FEWER.faces + len(FEWER.vertices)]
+RUINS = {
+    "320 faces, 100 asked": (FEWER, {"faces": 100}),
+    "no face left": (Mesh(FEWER.vertices, np.zeros((0, 3), dtype=int)), {}),
+    "kept faces lost": (FEWER, {"kept": (NONE[0], SOUND.faces[:7])}),
+    "kept vertices lost": (FEWER, {"kept": (np.arange(len(SOUND.vertices)), NONE[1])}),
+    "boundary changed in 3 edges": (changed(faces=FEWER.faces[1:]), {}),
+    "no more closed": (changed(faces=FEWER.faces[1:]), {}),
+    "inside out": (changed(faces=FEWER.faces[:, ::-1]), {}),
+    "2 pieces, were 1": (Mesh(np.r_[FEWER.vertices, 3 + FEWER.vertices], TWO), {"faces": 640}),
+    "new folds": (folded(), {}),
+    "new faces without area": (changed(FEWER.faces[0, 0], FEWER.vertices[FEWER.faces[0, 1]]), {}),
+    "new crowded edges": (changed(faces=np.r_[FEWER.faces, FEWER.faces[:1], FEWER.faces[:1, ::-1]]), {"faces": 322}),
+}
+
+
+@pytest.mark.parametrize("name", RUINS)
+def test_every_kind_of_ruin_is_named(name):
+    found, more = RUINS[name]
+    assert name in said(found, **more)
+
+
+def test_a_new_pinch_is_named_where_two_corners_become_one():
+    faces = FEWER.faces.copy()
+    far = int(np.argmin(FEWER.vertices @ FEWER.vertices[0]))
+    faces[faces == far] = 0
+    assert "1 new pinches" in said(changed(faces=faces))
+
+
+def test_faults_that_were_there_before_are_no_complaint_nor_is_throwing_copies_out():
+    before = Mesh(SOUND.vertices, np.r_[SOUND.faces, SOUND.faces[:9], SOUND.faces[:4, [0, 1, 1]]])
+    assert said(before, before, 2000) == "" and said(SOUND, before, 2000) == ""
+
+
+def test_a_fold_that_a_zero_edge_hid_is_no_new_one_and_a_face_laid_upon_a_face_is():
+    hidden = BROKEN["zero_area"].make(folded(), rng(0, "hidden"))
+    assert said(folded(), hidden, 2000) == ""
+    pillow = Mesh(np.r_[FEWER.vertices, 2 + np.eye(3)], np.r_[FEWER.faces, [[162, 163, 164], [162, 164, 163]]])
+    assert "1 new copies of faces" in said(pillow, faces=400)
+
+
+def test_moving_a_rim_is_a_change_of_the_boundary():
+    half = Mesh(SOUND.vertices, SOUND.faces[SOUND.vertices[SOUND.faces][:, :, 2].mean(axis=1) > 0])
+    rim = np.flatnonzero([row.tobytes() in b"".join(Surface(half).border) for row in half.vertices])
+    moved = half.vertices.copy()
+    moved[rim[0]] *= 1.01
+    assert said(half, half, 2000) == "" and "boundary changed" in said(Mesh(moved, half.faces), half, 2000)
+
+
+@pytest.mark.parametrize("scale", [1e-12, 1.0, 1e12])
+@pytest.mark.parametrize("offset", [0.0, 1e3])
+def test_the_verdict_does_not_depend_on_unit_or_origin(scale, offset):
+    def moved(mesh):
+        return Mesh(scale * (mesh.vertices + offset), mesh.faces)
+
+    assert said(moved(FEWER), moved(SOUND)) == ""
+    assert "new folds" in said(moved(folded()), moved(SOUND))
+    assert surface_error(moved(SOUND), moved(FEWER)) == pytest.approx(surface_error(SOUND, FEWER), rel=1e-3)
+
+
+def test_error_is_zero_of_itself_and_known_of_parallel_squares():
+    square = Mesh([[0, 0, 0], [3, 0, 0], [3, 4, 0], [0, 4, 0]], [[0, 1, 2], [0, 2, 3]])
+    assert surface_error(square, square) == pytest.approx(0, abs=1e-9)
+    assert surface_error(square, Mesh(square.vertices + [0, 0, 1], square.faces)) == pytest.approx(0.2)
+    flat = Mesh([[0, 0, 0], [1, 0, 0], [2, 0, 0]], [[0, 1, 2]])
+    assert surface_error(flat, flat) == 0
+
+
+def specimen(damage="sound"):
+    return Specimen(SOUND, PlainCurve(SOUND), damage, "ball", 0)
+
+
+def test_plain_error_falls_with_the_faces_and_says_nothing_of_the_fewest():
+    curve = PlainCurve(SOUND)
+    errors = [curve.error(count) for count in (4, 16, 64, 256, 640)]
+    assert errors[0] == np.inf and errors == sorted(errors, reverse=True)
+
+
+@pytest.mark.parametrize("kept", KEPT)
+def test_kept_sets_are_nested_and_as_large_as_they_say(kept):
+    ball = specimen("unreferenced")
+    ids = ball.kept(Case("50%", kept))
+    used = len(SOUND.vertices)
+    assert len(ids) == {"none": 0, "1": 1, "5": 5, "60": 60, "half": used // 2, "all": used}[kept]
+    assert np.isin(ids, ball.mesh.faces).all() and np.array_equal(ids, ball.kept(Case("50%", "all"))[: len(ids)])
+
+
+def test_kept_faces_are_those_three_rings_around():
+    ball = specimen()
+    near = np.flatnonzero(SOUND.rings([5], 3))
+    assert len(ball.kept_faces(np.array([5]))) == np.isin(SOUND.faces, near).all(axis=1).sum()
+    assert len(ball.kept_faces(np.zeros(0, dtype=int))) == 0
+
+
+@pytest.mark.parametrize(
+    ("work", "outcome", "note"),
+    [
+        (lambda *_, **__: FEWER, "valid", ""),
+        (lambda *_, **__: changed(faces=FEWER.faces[1:]), "ruined", "boundary"),
+        (lambda *_, **__: changed(0, [9.0, 9.0, 9.0]), "ruined", "is a ruin"),
+        (lambda *_, **__: [][0], "crash", "IndexError"),
+        (lambda *_, **__: np.zeros(3).reshape(2, 2), "crash", "ValueError"),
+    ],
+)
+def test_outcomes(monkeypatch, work, outcome, note):
+    monkeypatch.setattr(simplification, "simplify", work)
+    answer = ask(specimen(), Case("320"), "pymeshlab")
+    assert answer.outcome == outcome and note in answer.note
+
+
+def test_another_mesh_on_the_second_run_is_a_ruin(monkeypatch):
+    found = iter([FEWER, Mesh(FEWER.vertices, FEWER.faces[::-1])])
+    monkeypatch.setattr(simplification, "simplify", lambda *_, **__: next(found))
+    assert "second run" in ask(specimen(), Case("50%"), "pymeshlab").note
+
+
+def test_the_smallest_count_that_a_refusal_names_is_asked_for_once():
+    found = list(answers(specimen("wide_holes"), "pymeshlab", [Case("4"), Case("8")]))
+    assert [case.budget for case, _ in found] == ["4", "smallest", "8"]
+    assert found[0][1].outcome == "refused" and found[1][1].asked == found[0][1].smallest > 8
+
+
+@pytest.fixture(scope="module")
+def root(tmp_path_factory):
+    """A root with the measurements of three kinds of damage, and the rows."""
+    folder = tmp_path_factory.mktemp("broken")
+    rows = simplification_rows(SOUND, "ball", 0, ("sound", "pin_holes", "soup"), ("pymeshlab",))
+    write_table(folder / "reports/measurements/stability.csv", pd.DataFrame(rows).assign(dataset="test", seed=0))
+    return folder, rows
+
+
+def test_rows_say_what_was_asked_and_what_came(root):
+    frame = pd.DataFrame(root[1])
+    cases = frame[frame["metric"] == "faces"]
+    assert not cases["value"].isna().any() and (cases["outcome"] != "crash").all()
+    assert set(frame.loc[frame["metric"] == "error", "outcome"]) <= {"valid", "ruined"}
+    refused = cases[cases["outcome"] == "refused"]
+    assert len(refused) and (refused["note"] != "").all() and (refused["value"] == 0).all()
+    sound = cases[(cases["perturbation"] == "sound") & (cases["kept"] == "none") & (cases["soft"] == "")]
+    assert (sound.loc[sound["severity"] >= 64, "outcome"] == "valid").all()
+
+
+def test_the_gate_gets_shares_that_sum_to_one(root):
+    found = summarise_simplification(root[1])["pymeshlab"]
+    assert found["valid"] + found["refused"] + found["ruined"] == pytest.approx(1, abs=1e-5) and found["crashes"] == 0
+    assert found["smallest_had"] > 0.5
+    assert summarise_simplification([{"metric": "repeatability"}]) == {}
+
+
+def test_report_shows_the_table_and_the_picture(root):
+    results = Results(None, root[0])
+    built = table.build(results)
+    shown = built.shown.set_index("damage")
+    assert (
+        shown.loc["soup", "least, pymeshlab"] != shown.loc["soup", "least, pymeshlab"]
+    )  # never had but by its own count
+    assert shown.loc["sound", "least, pymeshlab"] <= 64 and list(shown.index)[-1] == "all"
+    with drawn():
+        figure = chart.build(results)
+    assert figure.paths[0].stat().st_size > 5000 and "ball" in figure.caption
+
+
+def test_the_least_count_is_the_one_above_which_all_is_valid():
+    rows = [("4", 4, "valid"), ("64", 64, "ruined"), ("50%", 500, "valid"), ("90%", 900, "valid")]
+    cases = pd.DataFrame(rows, columns=["budget", "severity", "outcome"]).assign(kept="none", soft=None)
+    assert table.least_valid(cases) == 500
+
+
+def test_report_says_which_stage_to_run(tmp_path):
+    for module in (table, chart):
+        with pytest.raises(NotRun, match="dvc repro stability"):
+            module.build(Results(None, tmp_path))
+
+
+def test_a_refusal_is_told_from_an_error_in_a_library():
+    assert ask(specimen("soup"), Case("4"), "pymeshlab").outcome == "refused"
+    assert isinstance(InfeasibleTarget(4, 9), ValueError)
