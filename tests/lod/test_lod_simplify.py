@@ -171,7 +171,7 @@ def test_infeasible_target_names_the_smallest_count_and_that_count_works():
 def test_a_result_with_new_faults_is_never_returned(monkeypatch):
     mesh = sphere(3)
     folded = Mesh(mesh.vertices, np.r_[mesh.faces[:300], mesh.faces[:1, ::-1]])
-    monkeypatch.setattr(qem, "_decimated", lambda *_: folded)
+    monkeypatch.setattr(qem, "decimated", lambda *_: folded)
     with pytest.raises(SimplifyError, match="new"):
         simplify(mesh, 400, backend="pymeshlab")
 
@@ -181,7 +181,7 @@ def test_an_attempt_that_ruins_the_surface_is_no_way_out_of_a_fault(monkeypatch)
     folded = Mesh(small.vertices, np.r_[small.faces, small.faces[:1, ::-1]])
     for scale, sound in ((0.5, False), (1.0, True)):
         results = iter([folded] + [Mesh(small.vertices * scale, small.faces)] * 9)
-        monkeypatch.setattr(qem, "_decimated", lambda *_, results=results: next(results))
+        monkeypatch.setattr(qem, "decimated", lambda *_, results=results: next(results))
         if sound:
             assert len(qem.collapse(mesh, 400, np.zeros(1280, dtype=bool)).faces) == 320
         else:

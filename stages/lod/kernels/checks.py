@@ -62,13 +62,18 @@ def count_marked(corner, twin, start, mark, now, v):
 
 @kernel
 def _seam_holds(corner, twin, p, i, j, h, x, y, z):
-    """The two faces that become neighbours when the face of h goes do not fold onto each other."""
+    """The two faces that become neighbours when the face of h goes do not fold onto each other, or one was folded."""
     one, two = twin[after(h)], twin[before(h)]
     if one < 0 or two < 0:
         return True
     ax, ay, az = _normal(corner, p, one, i, j, x, y, z)
     bx, by, bz = _normal(corner, p, two, i, j, x, y, z)
-    return not _folds(ax * bx + ay * by + az * bz, (ax * ax + ay * ay + az * az) * (bx * bx + by * by + bz * bz))
+    if not _folds(ax, ay, az, bx, by, bz):
+        return True
+    ax, ay, az = _normal(corner, p, one, -1, -1, x, y, z)
+    bx, by, bz = _normal(corner, p, two, -1, -1, x, y, z)
+    cx, cy, cz = _normal(corner, p, h, -1, -1, x, y, z)
+    return _folds(ax, ay, az, cx, cy, cz) or _folds(bx, by, bz, cx, cy, cz)
 
 
 @kernel
@@ -92,18 +97,18 @@ def _place(p, v, i, j, x, y, z):
 def faces_stay_sound(corner, twin, start, p, v, other, x, y, z, turn, shape):
     """No face around v, but those it shares with `other`, goes bad when v moves to x, y, z.
 
-    Bad is: turned too far, folded onto its outer neighbour or the one before it, or a needle. p (n, 3). turn: least
+    Bad is: turned too far, folded onto a neighbour as it was not before, or a needle. p (n, 3). turn: least
     cosine, above 0, between a face's normal before and after; shape: least quality of a face after (1 for an
     equilateral triangle, 0 for a needle), unless it was below it before and does not get worse.
     """
     vx, vy, vz = p[v, 0], p[v, 1], p[v, 2]
-    lx = ly = lz = last = fx = fy = fz = opening = 0.0  # the normals of the face before and of the first one
-    some_bent = False
+    # Normals, after and before, of the face before this one and of the first.
+    lx = ly = lz = mx = my = mz = fx = fy = fz = gx = gy = gz = 0.0
     h = first = start[v]
     while True:
         a, b = corner[after(h)], corner[before(h)]
         if a == other or b == other:
-            last = 0.0
+            lx = ly = lz = 0.0
         else:
             ex, ey, ez = p[b, 0] - p[a, 0], p[b, 1] - p[a, 1], p[b, 2] - p[a, 2]
             nx, ny, nz = p[a, 0] - x, p[a, 1] - y, p[a, 2] - z
@@ -118,39 +123,30 @@ def faces_stay_sound(corner, twin, start, p, v, other, x, y, z, turn, shape):
                 return False
             if 12 * new < shape * shape * now * now and new * was * was <= old * now * now:
                 return False
-            if _folds(nx * lx + ny * ly + nz * lz, new * last):
+            if _folds(nx, ny, nz, lx, ly, lz) and not _folds(ox, oy, oz, mx, my, mz):
                 return False
-            lx, ly, lz, last = nx, ny, nz, new
+            lx, ly, lz, mx, my, mz = nx, ny, nz, ox, oy, oz
             if h == first:
-                fx, fy, fz, opening = nx, ny, nz, new
-            if along * along < STEADY * STEADY * new * old:
-                some_bent = True
-                if _folds_outside(corner, twin, p, after(h), nx, ny, nz, new):
+                fx, fy, fz, gx, gy, gz = nx, ny, nz, ox, oy, oz
+            g = twin[after(h)]
+            if g >= 0 and along * along < STEADY * STEADY * new * old:
+                cx, cy, cz = _normal(corner, p, g, -1, -1, x, y, z)
+                if _folds(nx, ny, nz, cx, cy, cz) and not _folds(ox, oy, oz, cx, cy, cz):
                     return False
         h = twin[before(h)]
         if h < 0:
             return True
         if h == first:
-            return not (some_bent and _folds(fx * lx + fy * ly + fz * lz, opening * last))
+            return not _folds(fx, fy, fz, lx, ly, lz) or _folds(gx, gy, gz, mx, my, mz)
 
 
 @kernel
-def _folds_outside(corner, twin, p, h, x, y, z, square):
-    """Whether a face of normal x, y, z, of that squared length, folds onto the one on the other side of half-edge h."""
-    g = twin[h]
-    if g < 0:
+def _folds(ax, ay, az, bx, by, bz):
+    """Whether the cosine between two vectors lies below FOLD."""
+    along = ax * bx + ay * by + az * bz
+    if along >= 0.0:
         return False
-    a, b, c = corner[g], corner[after(g)], corner[before(g)]
-    ux, uy, uz = p[b, 0] - p[a, 0], p[b, 1] - p[a, 1], p[b, 2] - p[a, 2]
-    vx, vy, vz = p[c, 0] - p[a, 0], p[c, 1] - p[a, 1], p[c, 2] - p[a, 2]
-    ox, oy, oz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
-    return _folds(x * ox + y * oy + z * oz, square * (ox * ox + oy * oy + oz * oz))
-
-
-@kernel
-def _folds(along, square):
-    """Whether the cosine along / sqrt(square) lies below FOLD."""
-    return along < 0.0 and along * along > FOLD * FOLD * square
+    return along * along > FOLD * FOLD * (ax * ax + ay * ay + az * az) * (bx * bx + by * by + bz * bz)
 
 
 @kernel
