@@ -24,7 +24,11 @@ def measured(one, meshes, seed=0):
     for mesh in meshes:
         errors = surface_errors(one.mesh, mesh, one.saliency, seed=seed)
         errors = {name: 100 * value for name, value in errors.items()}
-        found.append(errors | picture_errors(pictures, take_pictures(one.seen(mesh), TWELVE, SIZE)))
+        try:
+            errors |= picture_errors(pictures, take_pictures(one.seen(mesh), TWELVE, SIZE))
+        except ValueError:  # so coarse that it leaves the frame
+            errors |= dict.fromkeys(("ssim", "dlap", "dnor"))
+        found.append(errors)
     return found
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .feasibility import SimplifyError
+from .feasibility import InfeasibleTarget, SimplifyError
 from .metro import metro
 
 CLOSE = 1.02  # the answer is at most this much larger than a count that was measured to be too low
@@ -38,6 +38,6 @@ def fewest_faces(reference, simplified, lowest, tolerance, seed=0, say=lambda te
 def _measured(reference, simplified, faces, seed):
     try:
         found = simplified(faces)
-    except SimplifyError:
+    except (SimplifyError, InfeasibleTarget):
         return None, np.inf
     return found, metro(reference, found, seed=seed)["mean"]

@@ -59,7 +59,7 @@ def _inverted(mesh, other):
     volume = np.bincount(piece, weights=np.einsum("ij,ij->i", a, np.cross(b, c)), minlength=pieces)
     closed = np.ones(pieces, dtype=bool)
     closed[piece[np.flatnonzero(other < 0) // 3]] = False
-    return int((closed & (volume < 0)).sum())
+    return int((closed & (volume < -THIN * mesh.diagonal**3)).sum())
 
 
 def topology(faces):

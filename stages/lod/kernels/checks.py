@@ -3,16 +3,15 @@
 from .corners import after, before
 from .jit import kernel
 
-FOLD = -0.9  # cosine between the normals of two neighbours below which they fold onto each other, with some room
 STEADY = 0.98  # cosine between a face's normal before and after above which its neighbours are not looked at
 
 
 @kernel
-def may_collapse(corner, twin, start, locked, p, mark, last, h, x, y, z, turn, shape):
+def may_collapse(corner, twin, start, locked, p, mark, last, h, x, y, z, turn, shape, fold):
     """Whether the edge of half-edge h may become one vertex at x, y, z: nothing folds, and the link condition holds.
 
     The link condition: the ends share no neighbour but the two across the edge, and no tetrahedron closes. mark (n,)
-    scratch, last (1,) the number of the last marking; turn, shape: see `faces_stay_sound`.
+    scratch, last (1,) the number of the last marking; turn, shape, fold: see `faces_stay_sound`.
     """
     t = twin[h]
     i, j, k, m = corner[h], corner[t], corner[before(h)], corner[before(t)]
@@ -23,11 +22,11 @@ def may_collapse(corner, twin, start, locked, p, mark, last, h, x, y, z, turn, s
     mark_neighbours(corner, twin, start, mark, now, i)
     if count_marked(corner, twin, start, mark, now, j) != 2:
         return False
-    if not (locked[i] or faces_stay_sound(corner, twin, start, p, i, j, x, y, z, turn, shape)):
+    if not (locked[i] or faces_stay_sound(corner, twin, start, p, i, j, x, y, z, turn, shape, fold)):
         return False
-    if not (locked[j] or faces_stay_sound(corner, twin, start, p, j, i, x, y, z, turn, shape)):
+    if not (locked[j] or faces_stay_sound(corner, twin, start, p, j, i, x, y, z, turn, shape, fold)):
         return False
-    return _seam_holds(corner, twin, p, i, j, h, x, y, z) and _seam_holds(corner, twin, p, i, j, t, x, y, z)
+    return _seam_holds(corner, twin, p, i, j, h, x, y, z, fold) and _seam_holds(corner, twin, p, i, j, t, x, y, z, fold)
 
 
 @kernel
@@ -61,19 +60,19 @@ def count_marked(corner, twin, start, mark, now, v):
 
 
 @kernel
-def _seam_holds(corner, twin, p, i, j, h, x, y, z):
+def _seam_holds(corner, twin, p, i, j, h, x, y, z, fold):
     """The two faces that become neighbours when the face of h goes do not fold onto each other, or one was folded."""
     one, two = twin[after(h)], twin[before(h)]
     if one < 0 or two < 0:
         return True
     ax, ay, az = _normal(corner, p, one, i, j, x, y, z)
     bx, by, bz = _normal(corner, p, two, i, j, x, y, z)
-    if not _folds(ax, ay, az, bx, by, bz):
+    if not _folds(ax, ay, az, bx, by, bz, fold):
         return True
     ax, ay, az = _normal(corner, p, one, -1, -1, x, y, z)
     bx, by, bz = _normal(corner, p, two, -1, -1, x, y, z)
     cx, cy, cz = _normal(corner, p, h, -1, -1, x, y, z)
-    return _folds(ax, ay, az, cx, cy, cz) or _folds(bx, by, bz, cx, cy, cz)
+    return _folds(ax, ay, az, cx, cy, cz, fold) or _folds(bx, by, bz, cx, cy, cz, fold)
 
 
 @kernel
@@ -94,12 +93,13 @@ def _place(p, v, i, j, x, y, z):
 
 
 @kernel
-def faces_stay_sound(corner, twin, start, p, v, other, x, y, z, turn, shape):
+def faces_stay_sound(corner, twin, start, p, v, other, x, y, z, turn, shape, fold):
     """No face around v, but those it shares with `other`, goes bad when v moves to x, y, z.
 
     Bad is: turned too far, folded onto a neighbour as it was not before, or a needle. p (n, 3). turn: least
     cosine, above 0, between a face's normal before and after; shape: least quality of a face after (1 for an
-    equilateral triangle, 0 for a needle), unless it was below it before and does not get worse.
+    equilateral triangle, 0 for a needle), unless it was below it before and does not get worse; fold: least cosine,
+    below 0, between the normals of two neighbours.
     """
     vx, vy, vz = p[v, 0], p[v, 1], p[v, 2]
     # Normals, after and before, of the face before this one and of the first.
@@ -123,7 +123,7 @@ def faces_stay_sound(corner, twin, start, p, v, other, x, y, z, turn, shape):
                 return False
             if 12 * new < shape * shape * now * now and new * was * was <= old * now * now:
                 return False
-            if _folds(nx, ny, nz, lx, ly, lz) and not _folds(ox, oy, oz, mx, my, mz):
+            if _folds(nx, ny, nz, lx, ly, lz, fold) and not _folds(ox, oy, oz, mx, my, mz, fold):
                 return False
             lx, ly, lz, mx, my, mz = nx, ny, nz, ox, oy, oz
             if h == first:
@@ -131,22 +131,22 @@ def faces_stay_sound(corner, twin, start, p, v, other, x, y, z, turn, shape):
             g = twin[after(h)]
             if g >= 0 and along * along < STEADY * STEADY * new * old:
                 cx, cy, cz = _normal(corner, p, g, -1, -1, x, y, z)
-                if _folds(nx, ny, nz, cx, cy, cz) and not _folds(ox, oy, oz, cx, cy, cz):
+                if _folds(nx, ny, nz, cx, cy, cz, fold) and not _folds(ox, oy, oz, cx, cy, cz, fold):
                     return False
         h = twin[before(h)]
         if h < 0:
             return True
         if h == first:
-            return not _folds(fx, fy, fz, lx, ly, lz) or _folds(gx, gy, gz, mx, my, mz)
+            return not _folds(fx, fy, fz, lx, ly, lz, fold) or _folds(gx, gy, gz, mx, my, mz, fold)
 
 
 @kernel
-def _folds(ax, ay, az, bx, by, bz):
-    """Whether the cosine between two vectors lies below FOLD."""
+def _folds(ax, ay, az, bx, by, bz, fold):
+    """Whether the cosine between two vectors lies below `fold`, which is negative."""
     along = ax * bx + ay * by + az * bz
     if along >= 0.0:
         return False
-    return along * along > FOLD * FOLD * (ax * ax + ay * ay + az * az) * (bx * bx + by * by + bz * bz)
+    return along * along > fold * fold * (ax * ax + ay * ay + az * az) * (bx * bx + by * by + bz * bz)
 
 
 @kernel

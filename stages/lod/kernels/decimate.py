@@ -13,12 +13,12 @@ LATER = 8  # buckets that a refused collapse waits, until the cost at hand has g
 
 
 @kernel
-def decimate(surface, faces, turn, shape):
+def decimate(surface, faces, turn, shape, fold):
     """Collapses edges of the surface until `faces` are left, or no collapse is allowed any more; returns the count.
 
-    turn, shape: the limits of `faces_stay_sound`. The cost in the queue is a lower bound, since quadrics only grow: an
-    edge whose cost rose meanwhile is put back when its turn comes. So is one that was refused, further back, and then
-    needles a tenth as wide are allowed: rather those on a flat place than a corner cut off.
+    turn, shape, fold: the limits of `faces_stay_sound`. The cost in the queue is a lower bound, since quadrics only
+    grow: an edge whose cost rose meanwhile is put back when its turn comes. So is one that was refused, further back,
+    and then needles a tenth as wide are allowed: rather those on a flat place than a corner cut off.
     """
     corner, twin, start, rim, locked, position, quadric, parent, alive = surface
     mark, last = np.zeros(len(position), dtype=np.int32), np.zeros(1, dtype=np.int32)
@@ -39,7 +39,7 @@ def decimate(surface, faces, turn, shape):
             push(head, following, waiting, lowest, h, now)
             continue
         least = shape if bucket == now else shape * 0.1 ** ((bucket - now) / LATER)
-        if may_collapse(corner, twin, start, locked, position, mark, last, h, x, y, z, turn, least):
+        if may_collapse(corner, twin, start, locked, position, mark, last, h, x, y, z, turn, least, fold):
             one, two = collapse_edge(corner, twin, start, rim, locked, position, quadric, parent, alive, h, x, y, z)
             for g in (one, two):
                 if g >= 0 and not (waiting[g] or (twin[g] >= 0 and waiting[twin[g]])):

@@ -17,11 +17,11 @@ SHAPE = 0.1  # least quality of a face, as in `faces_stay_sound`
 
 
 @kernel
-def refit(surface, points, faces, weight, samples):
+def refit(surface, points, faces, weight, samples, fold):
     """Moves the unlocked vertices of the surface, in place.
 
     points (n, 3), faces (3 m,): the surface as it was, of whose vertices and face centres about `samples` are looked
-    at. weight (n,): the area around each vertex, times what it counts beside others.
+    at. weight (n,): the area around each vertex, times what it counts beside others. fold: as in `faces_stay_sound`.
     """
     corner, twin, start, rim, locked, position, quadric, parent, alive = surface
     count = len(points) + len(faces) // 3
@@ -35,7 +35,7 @@ def refit(surface, points, faces, weight, samples):
             x = position[v, 0] + by * pull[v, 0]
             y = position[v, 1] + by * pull[v, 1]
             z = position[v, 2] + by * pull[v, 2]
-            if faces_stay_sound(corner, twin, start, position, v, -1, x, y, z, TURN, SHAPE):
+            if faces_stay_sound(corner, twin, start, position, v, -1, x, y, z, TURN, SHAPE, fold):
                 position[v, 0], position[v, 1], position[v, 2] = x, y, z
 
 

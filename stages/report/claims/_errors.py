@@ -4,9 +4,9 @@ Each function here returns differences(results, source=OWN): a Series over objec
 source: which data set (stages.report.lod_cells).
 """
 
-import numpy as np
 import pandas as pd
 
+from stages.kit.stats import bootstrap_interval
 from stages.report.lod_cells import CELL, ERRORS, OWN, PLAIN, cells, paired_cells
 from stages.report.results import NotRun
 from stages.report.style import WAYS
@@ -103,7 +103,7 @@ def falls_with_faces(method, metric="metro_mean"):
 
 
 def room_within(margin, methods, base, metrics=("metro_mean",), targets=(LOW, HIGH)):
-    """Margin minus the difference from `base` of the method and metric that lies farthest from it on the mean.
+    """Margin minus the difference from `base` of the method and metric whose interval leaves the least room.
 
     An equivalence test by the interval: above zero where the whole interval of the difference lies within the margin
     (Schuirmann 1987, with the 95 % interval instead of 90 %: stricter). In the unit of the metric; margins and errors
@@ -117,8 +117,8 @@ def room_within(margin, methods, base, metrics=("metro_mean",), targets=(LOW, HI
             if base not in table or table.shape[1] < 2:
                 raise NotRun(f"lod did not run {base} beside another", "lod", runnable=False)
             gaps += [(table[name] - table[base]).groupby("object").mean() for name in table if name != base]
-        farthest = max(gaps, key=lambda gap: abs(gap.mean()))
-        return margin - np.sign(farthest.mean()) * farthest
+        sides = [margin - side * gap for gap in gaps for side in (1, -1)]
+        return min(sides, key=lambda room: bootstrap_interval(room)[1])
 
     return differences
 
