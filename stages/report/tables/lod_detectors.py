@@ -19,8 +19,8 @@ NOTES = [
     "objects [95 % interval over the objects]; so every row is over the same meshes ({counts}). A mean over the "
     "counts of this run: other counts, other figures. Metro and the salient error in % of the diagonal.",
     "+ and – behind a figure: higher or lower than plain QEM beyond chance (95 % interval of the paired difference). "
-    "Salient error: the distance weighted by the saliency of our gaze model, which also chose the points and weights of "
-    "`ours`: no independent judge of those.",
+    "Salient error: the distance weighted by the saliency of our gaze model, which also chose the points and weights "
+    "of `ours`: no independent judge of those.",
     "Points: those that pass the method's own threshold; kept: those whose neighbourhood was still kept at all when "
     "the target left too few faces for all, mean over the same meshes.",
     "Errors by single face count: figures 3.4, 3.5 and 3.23, and table 3.2; all intervals, also of the other data "
