@@ -34,8 +34,14 @@ lint: $(VENV)/ready ## ruff: rules and formatting
 	ruff check .
 	ruff format --check .
 
-bench: $(VENV)/ready ## time and memory of the pipeline and its parts, to reports/bench/pipeline.csv (most of an hour)
+# Each is one process on one core, but the pipeline; errors and scenes read what `make repro` made. The last fetches its
+# meshes by `apt-get download`.
+bench: $(VENV)/ready ## every benchmark, to reports/bench: errors, backends, scenes, pipeline, broken meshes (an hour)
+	OMP_NUM_THREADS=1 python -m benchmarks.errors
+	OMP_NUM_THREADS=1 python -m benchmarks.simplification $(psb)
+	python -m benchmarks.scenes
 	python -m benchmarks.pipeline
+	OMP_NUM_THREADS=1 python -m benchmarks.broken_meshes
 
 gaze: $(VENV)/ready ## judge every saliency by human gaze (gaze=PATH of gaze.zip), to reports/attention (15 min.)
 	$(call fresh,$(GAZE)) && python -m stages.compose data=gaze channels=judged "meshes.folder=$(abspath $(gaze))" \

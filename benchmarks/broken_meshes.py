@@ -5,6 +5,7 @@ of it, and asks every backend for 4 faces and more, with and without kept vertic
 with a limit of time and memory. Writes reports/bench/broken_meshes.csv: a row a case, with what the surface is
 (faces, pieces, rim edges, flat faces, folds, crowded edges, pinches) and what came of it: valid, refused, ruined or
 crash (stages.stability.simplification), with the reason and the seconds. A file that the loader refuses has one row.
+Both backends are warmed up before the processes fork, or each would first load compiled code.
 """
 
 import io
@@ -23,6 +24,7 @@ from stages.kit.fetch import FetchError, cache_folder
 from stages.kit.files import sha256, write_table
 from stages.kit.parallel import progress
 from stages.lod import BACKENDS
+from stages.lod.warm_up import warm_up
 from stages.meshes import load
 from stages.meshes.load import FORMATS
 from stages.stability.plain_curve import PlainCurve
@@ -121,6 +123,8 @@ def rows_of(path, backend):
 
 def main():
     """Tries every mesh with every backend and writes the table."""
+    for backend in BACKENDS:
+        warm_up(backend)
     cells = [(path, backend) for path in unpacked() for backend in BACKENDS]
     frame = pd.DataFrame([row for cell in progress(cells, "broken meshes") for row in rows_of(*cell)])
     write_table(OUT, frame)

@@ -1,16 +1,23 @@
-"""The backends of simplify against each other, from 2,000 to a million faces: `python -m benchmarks.simplification`
+"""The backends of simplify against each other, to a million faces: `python -m benchmarks.simplification [PSB.zip]`
 
 Meshes: the Princeton segmentation benchmark (psb.zip in ../shared/data, or the path given). One of each of its classes
-as it is, some cut down to 2,000 faces, some subdivided (Loop) to some 200,000 and 900,000; each to three shares of its
-faces, the largest to one, with nothing kept and with the three rings around twelve points far from each other. Writes
-reports/bench/simplification.csv: a row a mesh, target, kept set and backend. `seconds` is the best of a few runs of the
-whole backend, its own check of the result included (pymeshlab_bare: one run of pymeshlab's filter, without check or
-second try; fast_simplification keeps nothing). `ratio` and `error_ratio` are those to `pymeshlab` in the same cell;
+as it is, some cut down to 2,000 faces, some subdivided (Loop) to 200,000 to 800,000; each to three shares of its
+faces, those above 100,000 to one; once with nothing kept and once with points far from each other, as many and with as
+wide rings as the target leaves room for (KEPT), so that there is a kept set at every size. Writes
+reports/bench/simplification.csv: a row a mesh, share, kept set and backend.
+
+`seconds` is the time of the process (all its threads, not that of other programs) in the backend alone, its own check
+of the result included; `whole_seconds` that of all of `simplify`, with the kept faces found and the target tested;
+`colours_seconds` the same where every vertex has a colour to be carried over. Each is the least of some rounds, in
+which the backends take turns, all warmed up before (pymeshlab_bare: one run of pymeshlab's filter, without check or
+second try; fast_simplification keeps nothing). The ratios are those to `pymeshlab` in the same cell. `outcome`:
+reached; refused, by the backend, the reason in `note`; infeasible: the target was refused before any backend began.
 `kept`: every kept vertex survives bit for bit; `valid`: as many pieces, handles and rim edges as before, and no new
 degenerate, folded or non-manifold face. Errors against the input: Metro mean, and 1 - SSIM over the twelve views, of
 meshes up to 250,000 faces.
 """
 
+import functools
 import sys
 import time
 from pathlib import Path
@@ -23,12 +30,13 @@ import trimesh
 from stages.kit import Mesh
 from stages.kit.files import write_table
 from stages.kit.parallel import progress
-from stages.lod import InfeasibleTarget, SimplifyError, frozen_faces, metro, perceptual
+from stages.lod import InfeasibleTarget, SimplifyError, frozen_faces, metro, perceptual, simplify
 from stages.lod.fast import collapse as fast
 from stages.lod.feasibility import smallest_with
 from stages.lod.qem import ATTEMPTS, decimated
 from stages.lod.qem import collapse as pymeshlab
 from stages.lod.topology import faults, topology
+from stages.lod.warm_up import warm_up
 from stages.meshes import normalise
 from stages.meshes.load import parse
 from stages.meshes.sources import PRINCETON, stored_files
@@ -38,10 +46,12 @@ OUT = Path("reports/bench/simplification.csv")
 PSB = "../shared/data/psb.zip"
 SHARES = (0.5, 0.1, 0.02)
 SMALL, SMALL_OF = 2000, 5  # faces of the small meshes, and how many there are
-SUBDIVIDED = {200_000: 2, 900_000: 1}  # faces, and of how many meshes
-POINTS = 12
-RUNS, LARGE = 2, 100_000  # the best of RUNS runs; of one above LARGE faces
+SUBDIVIDED = {200_000: 3, 900_000: 1}  # faces, roughly, and of how many meshes
+KEPT = ((12, 3), (12, 2), (12, 1), (6, 1), (3, 1), (3, 0), (1, 0))  # (points, rings), the first that is feasible
+ROUNDS, LARGE = 5, 100_000  # a cell is timed this often; above LARGE faces twice
 SEEN = 250_000  # faces above which no pictures are taken
+RATIOS = {"ratio": "seconds", "whole_ratio": "whole_seconds", "colours_ratio": "colours_seconds"}
+RATIOS |= {"error_ratio": "metro_mean"}
 
 
 def bare(mesh, faces, frozen):
@@ -49,15 +59,14 @@ def bare(mesh, faces, frozen):
     return decimated(mesh, faces, frozen, None, *ATTEMPTS[0])
 
 
-def unlocked(mesh, faces, frozen):
+def unlocked(mesh, faces, _):
     """fast_simplification, which cannot keep anything."""
-    if frozen.any():
-        raise InfeasibleTarget(faces, len(mesh.faces), int(frozen.sum()))
     vertices, left = fast_simplification.simplify(mesh.vertices, mesh.faces.astype(np.int32), target_count=faces)
     return Mesh(vertices, left)
 
 
 BACKENDS = {"pymeshlab": pymeshlab, "pymeshlab_bare": bare, "fast": fast, "fast_simplification": unlocked}
+WHOLE = ("pymeshlab", "fast")  # those that simplify takes
 
 
 def meshes(archive):
@@ -84,45 +93,70 @@ def subdivided(mesh, faces):
     return Mesh(vertices, found)
 
 
-def cell(mesh, faces, keep):
+def kept_set(mesh, far, faces):
+    """(vertex ids, rings): the largest of KEPT with which the target is feasible, else the smallest."""
+    for points, rings in KEPT:
+        if smallest_with(mesh, frozen_faces(mesh, far[:points], rings)) <= faces:
+            break
+    return far[:points], rings
+
+
+def cell(mesh, faces, keep, rings):
     """Rows of one cell: every backend on one mesh, target and kept set."""
-    frozen = frozen_faces(mesh, keep)
-    row = {"full": len(mesh.faces), "target": faces, "kept_points": len(keep)}
+    frozen = frozen_faces(mesh, keep, rings)
+    row = {"full": len(mesh.faces), "target": faces, "kept_points": len(keep), "rings": rings if len(keep) else None}
+    able = [name for name in BACKENDS if name != "fast_simplification" or not len(keep)]
     if faces < smallest_with(mesh, frozen):
-        return [row | {"backend": name, "note": "infeasible"} for name in BACKENDS]
-    rows = [row | {"backend": name} | measured(mesh, faces, frozen, keep, work) for name, work in BACKENDS.items()]
-    reference = rows[0]
+        return [row | {"backend": name, "outcome": "infeasible"} for name in able]
+    works = {name: lambda work=BACKENDS[name]: work(mesh, faces, frozen) for name in able}
+    tints = np.rint(255 * np.clip(mesh.vertices + 0.5, 0, 1)).astype(np.uint8)
+    for column, subject in (("whole", mesh), ("colours", Mesh(mesh.vertices, mesh.faces, tints))):
+        for name in WHOLE:
+            works[f"{column} {name}"] = functools.partial(simplify, subject, faces, keep, rings, name)
+    timed = in_turns(works, 2 if len(mesh.faces) > LARGE else ROUNDS)
+    rows = [row | {"backend": name} | measured(mesh, keep, timed, name) for name in able]
     for found in rows:
-        for name, of in (("ratio", "seconds"), ("error_ratio", "metro_mean")):
-            if found.get(of) is not None and reference.get(of):
-                found[name] = found[of] / reference[of]
+        for name, of in RATIOS.items():
+            if found.get(of) is not None and rows[0].get(of):
+                found[name] = found[of] / rows[0][of]
     return rows
 
 
-def measured(mesh, faces, frozen, keep, work):
+def in_turns(works, rounds):
+    """dict name -> (least seconds of the process, what came back or the refusal); one after the other, again and again.
+
+    What refused once is not asked again.
+    """
+    best = {}
+    for _ in range(rounds):
+        for name, work in works.items():
+            before, known = best.get(name, (np.inf, None))
+            if not isinstance(known, ValueError):
+                start = time.process_time()
+                try:
+                    found = work()
+                except (InfeasibleTarget, SimplifyError) as error:
+                    found = error
+                best[name] = min(before, time.process_time() - start), found
+    return best
+
+
+def measured(mesh, keep, timed, name):
     """Time, errors and checks of one backend."""
-    try:
-        seconds, found = timed(lambda: work(mesh, faces, frozen), 1 if len(mesh.faces) > LARGE else RUNS)
-    except (InfeasibleTarget, SimplifyError) as error:
-        return {"note": str(error)}
-    row = {"seconds": seconds, "faces": len(found.faces), "metro_mean": metro(mesh, found)["mean"]}
-    row |= {"kept": survives(mesh.vertices[keep], found.vertices), "valid": valid(mesh, found), "note": ""}
+    seconds, found = timed[name]
+    if isinstance(found, ValueError):
+        return {"outcome": "refused", "note": str(found)}
+    row = {"outcome": "reached", "seconds": seconds, "faces": len(found.faces)}
+    row |= {"metro_mean": metro(mesh, found)["mean"], "kept": survives(mesh.vertices[keep], found.vertices)}
+    row |= {"valid": valid(mesh, found), "note": ""}
+    if name in WHOLE:
+        row |= {f"{column}_seconds": timed[f"{column} {name}"][0] for column in ("whole", "colours")}
     if len(mesh.faces) <= SEEN:
         try:
             row["ssim_error"] = perceptual(mesh, found)["ssim"]
         except ValueError as error:  # it leaves the frame
             row["note"] = str(error)
     return row
-
-
-def timed(work, runs):
-    """(least seconds of some runs, the result)."""
-    best = np.inf
-    for _ in range(runs):
-        start = time.perf_counter()
-        found = work()
-        best = min(best, time.perf_counter() - start)
-    return best, found
 
 
 def survives(places, vertices):
@@ -139,19 +173,23 @@ def valid(mesh, found):
 def main():
     """Measures everything and writes the table."""
     archive = sys.argv[1] if len(sys.argv) > 1 else PSB
+    for backend in WHOLE:
+        warm_up(backend)
     rows = []
     for source, name, mesh in progress(list(meshes(archive)), "simplification"):
-        far = select_far_points(mesh.vertices, POINTS)
+        far = select_far_points(mesh.vertices, KEPT[0][0])
         for share in SHARES if len(mesh.faces) <= LARGE else SHARES[1:2]:
-            for keep in (far[:0], far):
-                found = cell(mesh, int(share * len(mesh.faces)), keep)
-                rows += [{"mesh": name, "source": source} | row for row in found]
+            faces = int(share * len(mesh.faces))
+            for keep, rings in ((far[:0], 0), kept_set(mesh, far, faces)):
+                found = cell(mesh, faces, keep, rings)
+                rows += [{"mesh": name, "source": source, "share": share} | row for row in found]
         write_table(OUT, pd.DataFrame(rows))
     table = pd.DataFrame(rows)
-    for label, part in table.groupby(["kept_points", "backend"]):
-        times = np.exp(np.log(1 / part["ratio"].astype(float)).mean())
-        errors = np.exp(np.log(part["error_ratio"].astype(float)).mean())
-        print(*label, f"{times:.1f} times faster, {errors:.3f} times the error", f"{part['valid'].mean():.0%} valid")
+    print(pd.crosstab(table["backend"], table["outcome"]))
+    table = table[table["outcome"] == "reached"].assign(with_points=table["kept_points"] > 0)
+    for label, part in table.groupby(["with_points", "backend"]):
+        ratios = [f"{name} {np.exp(np.log(part[name].astype(float)).mean()):.3f}" for name in RATIOS]
+        print(*label, *ratios, f"{part['valid'].mean():.0%} valid")
 
 
 if __name__ == "__main__":

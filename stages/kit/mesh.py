@@ -96,8 +96,9 @@ class Mesh:
     @cached_property
     def diagonal(self):
         """Length of the bounding-box diagonal; vertices in no face do not count, but on a mesh without faces."""
-        used = self.vertices[np.unique(self.faces)] if len(self.faces) else self.vertices
-        return float(np.linalg.norm(np.ptp(used, axis=0)))
+        used = np.full(len(self.vertices), len(self.faces) == 0)
+        used[self.faces.ravel()] = True
+        return float(np.linalg.norm(np.ptp(self.vertices[used], axis=0)))
 
     def rings(self, vertices, count):
         """(n,) boolean: the given vertices and all within `count` edges of them."""

@@ -20,8 +20,9 @@ from .variant import SOFT, variant
 class Subject:
     """What all cells of one object share.
 
-    Its mesh; the points and the saliency (n,) by method; its own pictures (views, rows, columns), taken once; and what
-    was made of it already, since many methods keep the same faces, above all where nothing can be kept.
+    Its mesh; the points and the saliency (n,) by method; its own pictures (views, rows, columns), taken once; human
+    gaze spread over the surface (n,), where there is some; and what was made of it already, since many methods keep the
+    same faces, above all where nothing can be kept.
     """
 
     name: str
@@ -29,6 +30,7 @@ class Subject:
     points: dict[str, np.ndarray]
     saliency: dict[str, np.ndarray]
     pictures: np.ndarray
+    gaze: np.ndarray | None = None
     made: dict = field(default_factory=dict, repr=False)
 
 

@@ -7,7 +7,7 @@ from stages.views import viewpoint_set
 from .metro import surface_errors
 from .perceptual import picture_errors, take_pictures
 
-JUDGE = next(iter(METHODS))  # whose saliency weighs the salient error of all methods: `enhanced`, learned from gaze
+JUDGE = next(iter(METHODS))  # of our models, whose saliency weighs the salient error of all methods: `enhanced`
 
 
 def errors_of(subject, found, settings, seed):
@@ -22,11 +22,10 @@ def errors_of(subject, found, settings, seed):
 
 
 def _surface(subject, found, settings, seed):
-    saliency = subject.saliency.get(JUDGE)
-    if saliency is not None and not saliency.any():
-        saliency = None  # nothing is salient: there is nothing to weigh by
-    errors = surface_errors(subject.mesh, found, saliency, settings.samples, seed)
-    return {"salient_error" if name == "salient" else f"metro_{name}": value for name, value in errors.items()}, ""
+    judges = {"salient_error": subject.saliency.get(JUDGE), "gaze_error": subject.gaze}
+    judges = {name: looks for name, looks in judges.items() if looks is not None and looks.any()}
+    errors = surface_errors(subject.mesh, found, judges, settings.samples, seed)
+    return {name if name in judges else f"metro_{name}": value for name, value in errors.items()}, ""
 
 
 def _pictures(subject, found, settings, _):

@@ -22,7 +22,7 @@ def measured(one, meshes, seed=0):
     pictures = take_pictures(one.seen(one.mesh), TWELVE, SIZE)
     found = []
     for mesh in meshes:
-        errors = surface_errors(one.mesh, mesh, one.saliency, seed=seed)
+        errors = surface_errors(one.mesh, mesh, {"salient": one.saliency}, seed=seed)
         errors = {name: 100 * value for name, value in errors.items()}
         try:
             errors |= picture_errors(pictures, take_pictures(one.seen(mesh), TWELVE, SIZE))

@@ -5,7 +5,7 @@ import numpy as np
 from stages.kit import Mesh
 
 from .feasibility import InfeasibleTarget, SimplifyError
-from .kernels import Surface, compact, decimate, fans, partners, refit, vertex_quadrics
+from .kernels import Surface, compact, decimate, fans, partners, refit, unit_box, vertex_quadrics
 from .topology import NONE, faults
 
 # (least cosine by which a collapse may turn a face, least quality of a face after it), tried in this order until the
@@ -31,7 +31,6 @@ def collapse(mesh, faces, frozen, weights=None):
     waiting = [(*limits, FOLD) for limits in ATTEMPTS]
     while waiting:
         found, left = _attempt(mesh, faces, frozen, weights, *waiting.pop(0))
-        least = min(least, left)
         after = faults(found)
         if left <= faces and after == NONE:
             return found
@@ -40,10 +39,12 @@ def collapse(mesh, faces, frozen, weights=None):
             if before.folded:
                 waiting = [(*limits, NO_FOLD) for limits in ATTEMPTS] + [(*ATTEMPTS[0], FOLD), *waiting]
                 continue
-        if left <= faces and not after.added(before):
+        added = after.added(before)
+        if left <= faces and not added:
             return found
-        said = said or (after.added(before) if left <= faces else "")
-    if least > faces:
+        said = said or added
+        least = least if added else min(least, left)  # a count is promised only where it was had soundly
+    if least < len(mesh.faces) or not said:
         raise InfeasibleTarget(faces, least, int(frozen.sum()))
     raise SimplifyError(f"{faces} faces leave {said}: ask for more faces")
 
@@ -74,11 +75,7 @@ def _surface(mesh, frozen, weights):
     corner, start, source, rim = fans(ids, twin)
     locked = rim.copy()
     locked[corner.reshape(-1, 3)[frozen]] = True
-    vertices = mesh.vertices[source]
-    low, high = vertices.min(axis=0), vertices.max(axis=0)
-    middle, size = (low + high) / 2, float((high - low).max()) or 1.0
-    position = (vertices - middle) / size
+    position, middle, size = unit_box(mesh.vertices, source)
     quadric = vertex_quadrics(position, corner, np.ones(len(source)) if weights is None else weights[source])
-    parent, alive = np.arange(len(source), dtype=np.int32), np.ones(len(mesh.faces), dtype=np.bool_)
-    surface = Surface(corner, twin, start, rim, locked, position, quadric, parent, alive)
+    surface = Surface(corner, twin, start, rim, locked, position, quadric, np.arange(len(source), dtype=np.int32))
     return surface, source, (middle, size)

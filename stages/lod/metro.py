@@ -18,17 +18,18 @@ def metro(reference, mesh, samples=10_000, seed=0):
 
     Raises ValueError for a mesh without area or fewer than one sample.
     """
-    return surface_errors(reference, mesh, None, samples, seed)
+    return surface_errors(reference, mesh, samples=samples, seed=seed)
 
 
-def surface_errors(reference, mesh, saliency=None, samples=10_000, seed=0):
+def surface_errors(reference, mesh, looks=None, samples=10_000, seed=0):
     """All surface errors from one sampling and one search: dict(mean, rms, max), see `metro`.
 
-    With saliency (n,), 0 or more at each vertex of the reference, also `salient`, see `salient_error`.
+    looks: dict name -> (n,), 0 or more at each vertex of the reference, for errors weighted by where one looks: each
+    adds its name, see `salient_error`.
     """
     if samples < 1:
         raise ValueError(f"samples must be 1 or more, got {samples}")
-    saliency = None if saliency is None else _checked(saliency, reference)
+    looks = {name: _checked(values, reference) for name, values in (looks or {}).items()}
     ours, theirs = surface(reference), surface(mesh)
     there, back = ours.sample(samples, rng(seed, "reference")), theirs.sample(samples, rng(seed, "mesh"))
     to_mesh, _ = theirs.nearest(there[0])
@@ -40,10 +41,11 @@ def surface_errors(reference, mesh, saliency=None, samples=10_000, seed=0):
         "rms": np.sqrt(max((to_mesh**2).mean(), (to_reference**2).mean())),
         "max": largest,
     }
-    if saliency is not None:
+    if looks:
         seen_from = (there[1], there[2]), (faces, ours.weights(back[0], faces))
-        looks = [np.einsum("ij,ij->i", weights, saliency[reference.faces[face]]) for face, weights in seen_from]
-        errors["salient"] = _weighted(looks, (to_mesh, to_reference))
+    for name, values in looks.items():
+        seen = [np.einsum("ij,ij->i", weights, values[reference.faces[face]]) for face, weights in seen_from]
+        errors[name] = _weighted(seen, (to_mesh, to_reference))
     return {name: float(error / ours.diagonal) for name, error in errors.items()}
 
 
@@ -54,14 +56,6 @@ def vertex_errors(reference, mesh):
     Vertices in no face are measured as well. Raises ValueError for a reference without faces.
     """
     return surface(reference).nearest(mesh.vertices)[0]
-
-
-def sample_surface(mesh, count, generator):
-    """(count, 3) points spread evenly by area: one in each of `count` equal slices of the surface's area.
-
-    Slices follow the order of the faces, so that each face gets its share to within one point.
-    """
-    return surface(mesh).sample(count, generator)[0]
 
 
 def _checked(saliency, reference):

@@ -1,9 +1,9 @@
 """A surface made ready to be measured: samples of it, and its nearest point to any other, exact.
 
 point_cloud_utils and trimesh build a tree at every call, which takes longer than the 10,000 questions that follow, and
-pymeshlab a grid; `benchmarks.errors` holds this against the latter. Here a surface is made ready once, and questions
-come from places next to each other and close to it: the face that answered the last one bounds the next, and a cell or
-two are left to look at. (point_cloud_utils 0.34 also misreads an array of a single point.)
+pymeshlab a grid; `benchmarks.errors` holds this against the latter. Here a surface is made ready once, and most
+questions come from places close to it: the faces of one cell are bounded without a branch, one of them is measured, and
+seldom another cell is left to look at. (point_cloud_utils 0.34 also misreads an array of a single point.)
 """
 
 from functools import cached_property, lru_cache
@@ -13,16 +13,16 @@ import numpy as np
 from .kernels.face_frame import NUMBERS, corner_weights
 from .kernels.grid import bounding_box, farthest, fill_cells, sample, search
 
-CELLS_PER_FACE = 8  # a cell is then about as wide as an edge is long; twice as many cost more to fill than they save
+CELLS_PER_FACE = 4  # a cell is then a little wider than an edge is long; more cells cost more memory than they save
 THIN = 1e-3  # of the longest side: boxes flatter than this are cut as if they were this thick
 FAR = 4.0  # cells: farther off, the search goes on in a grid of wider cells
 WIDER = 4  # times
 LARGEST = 1e100  # coordinate, and one over it the smallest extent: beyond, squares overflow
-ROOM = 1e-9  # cells that the grid reaches over the box, so that rounding pushes nothing out
+ROOM = 1e-9  # of the longest side: so far the grid reaches over the box, so that rounding pushes nothing out
 
 
 class Surface:
-    """The faces of a mesh as frames (m, 17) in a grid, and the diagonal of the box around them.
+    """The faces of a mesh as planes (m, 16) in a grid, and the diagonal of the box around them.
 
     Raises ValueError for a mesh without faces.
     """
@@ -31,12 +31,13 @@ class Surface:
         if len(mesh.faces) == 0:
             raise ValueError("a mesh without faces has no surface to measure")
         self.mesh = mesh
-        self.low, high = bounding_box(mesh.vertices, mesh.faces)
-        self.extent = high - self.low
+        low, high = bounding_box(mesh.vertices, mesh.faces)
+        self.extent = high - low
         self.diagonal = float(np.linalg.norm(self.extent))
         if self.diagonal > LARGEST or 0 < self.extent.max() < 1 / LARGEST:
             raise ValueError(f"a mesh of diagonal {self.diagonal:.3g} is out of range: scale it, see stages.meshes")
-        self.frames = np.empty((len(mesh.faces), NUMBERS))
+        self.low = low - ROOM * self.extent.max()
+        self.planes, self.areas = np.empty((len(mesh.faces), NUMBERS)), np.empty(len(mesh.faces))
         self.grid = self._filled(CELLS_PER_FACE)
 
     @cached_property
@@ -47,10 +48,13 @@ class Surface:
     def _filled(self, cells_per_face):
         """(starts, entries, lower corner, width of a cell, cells along each axis): see fill_cells."""
         thick = np.maximum(self.extent, THIN * (self.extent.max() or 1.0))
-        cell = (thick ** (1 / 3)).prod() / (cells_per_face * len(self.frames)) ** (1 / 3)
-        shape = np.ceil(self.extent / cell + 2 * ROOM).astype(np.int64).clip(1)
-        low = self.low - ROOM * cell
-        return *fill_cells(self.mesh.vertices, self.mesh.faces, low, cell, shape, self.frames), low, cell, shape
+        cell = (thick ** (1 / 3)).prod() / (cells_per_face * len(self.planes)) ** (1 / 3)
+        shape = np.ceil((self.extent + 2 * ROOM * self.extent.max()) / cell).astype(np.int64).clip(1)
+        cells = fill_cells(self.mesh.vertices, self.mesh.faces, self.low, cell, shape, self.planes, self.areas)
+        return *cells, self.low, cell, shape
+
+    def _known(self, grid):
+        return self.mesh.vertices, self.mesh.faces, grid, self.planes
 
     def sample(self, count, generator):
         """(points (count, 3), faces (count,), corner weights (count, 3)) spread evenly by area.
@@ -58,7 +62,7 @@ class Surface:
         One in each of `count` equal slices of the area, in the order of the faces: each face gets its share to within
         one point. Raises ValueError for a mesh without area.
         """
-        total = np.cumsum(self.frames[:, 12] * self.frames[:, 14])
+        total = np.cumsum(self.areas)
         if not total[-1] > 0:
             raise ValueError("cannot sample a mesh without area")
         draws = generator.random((3, count))
@@ -69,10 +73,10 @@ class Surface:
         points = np.ascontiguousarray(points, dtype=np.float64)
         if not (np.abs(points) < LARGEST).all():
             raise ValueError("points to measure hold NaN, infinite or huge coordinates")
-        squares, faces = search(points, self.grid, self.frames, FAR)
+        squares, faces = search(points, *self._known(self.grid), FAR)
         far = np.flatnonzero(faces < 0)
         if len(far):
-            squares[far], faces[far] = search(points[far], self.coarse, self.frames, np.inf)
+            squares[far], faces[far] = search(points[far], *self._known(self.coarse), np.inf)
         return np.sqrt(squares), faces
 
     def farthest(self, other, least):
@@ -80,12 +84,12 @@ class Surface:
 
         Vertices nearer than the largest so far are not measured to the end.
         """
-        square, far = farthest(other.mesh.vertices, other.mesh.faces, self.grid, self.frames, least**2, FAR)
+        square, far = farthest(other.mesh.vertices, other.mesh.faces, *self._known(self.grid), least**2, FAR)
         return max(np.sqrt(square), self.nearest(other.mesh.vertices[far])[0].max(initial=0))
 
     def weights(self, points, faces):
         """(k, 3) weights of the corners of faces (k,) at their places nearest to points (k, 3)."""
-        return corner_weights(points, faces, self.frames)
+        return corner_weights(points, faces, self.mesh.vertices, self.mesh.faces)
 
 
 @lru_cache(maxsize=2)  # a reference and, one after the other, the meshes measured against it

@@ -6,8 +6,9 @@ from functools import cached_property
 import numpy as np
 
 from stages.kit import Mesh
-from stages.meshes import normalise, turn_up
+from stages.meshes import clean, normalise, turn_up
 from stages.meshes.normalise import RADIUS, frame
+from stages.meshes.painted import merged
 
 from .attributes import carry
 from .borders import close_borders, cut_borders
@@ -15,6 +16,7 @@ from .export import painted
 from .feasibility import InfeasibleTarget, smallest_feasible
 from .shrink import shrunk_rings
 from .simplify import simplify
+from .topology import half_edges
 
 
 @dataclass(frozen=True)
@@ -49,6 +51,31 @@ class OneMesh:
     def smallest(self):
         """The least number of faces that can be had with the points kept."""
         return smallest_feasible(self.mesh, self.points, self.rings)
+
+    @cached_property
+    def smallest_with_borders(self):
+        """The same with the borders between materials held too."""
+        cut, ids = self.cut
+        return smallest_feasible(cut, *self._on_cut(ids))
+
+    @cached_property
+    def border(self):
+        """(e, 2) vertex ids of the edges that stay: open ones, those of three or more faces, between two materials."""
+        cut, ids = self.cut
+        return _rims(ids[cut.faces], half_edges(cut.faces)[1])
+
+    @cached_property
+    def open_border(self):
+        """(e, 2) the same without those between two materials, which are given up where the faces are too few."""
+        return _rims(self.mesh.faces, half_edges(self.mesh.faces)[1])
+
+    def held(self, mesh):
+        """How many edges of `border` are edges of a simplified mesh, bit for bit."""
+        n = len(self.mesh.vertices)
+        place = np.unique(np.concatenate([self.mesh.vertices, mesh.vertices]), axis=0, return_inverse=True)[1].ravel()
+        ends = np.stack([mesh.faces.ravel(), np.roll(mesh.faces, -1, axis=1).ravel()], axis=1)
+        there, wanted = (np.sort(rows, axis=1) @ [len(place), 1] for rows in (place[n + ends], place[self.border]))
+        return int(np.isin(wanted, there).sum())
 
     @property
     def least(self):
@@ -111,3 +138,26 @@ class OneMesh:
         copies = np.repeat(np.arange(len(self.points)), last - first)
         offset = np.arange(len(copies)) - np.repeat(np.cumsum(last - first) - (last - first), last - first)
         return order[first[copies] + offset], self.rings[copies]
+
+
+def _rims(faces, partner):
+    alone = partner < 0
+    ends = np.stack([faces.ravel()[alone], np.roll(faces, -1, axis=1).ravel()[alone]], axis=1)
+    return np.unique(np.sort(ends, axis=1), axis=0)
+
+
+def repaired(mesh):
+    """(Mesh, notes): what `stages.meshes.clean` makes of a mesh, where that closes open edges with its vertices joined.
+
+    Files that store corners (a soup of triangles, a patch for each texture) have a border around each of them, and
+    borders stay as they are: so vertices at the very same place become one. Raises MeshError as `clean` does.
+    """
+    found, notes = clean(mesh)
+    if (half_edges(found.faces)[1] >= 0).all():
+        return found, notes
+    first, ids = merged(mesh.vertices)
+    colors = None if mesh.colors is None else mesh.colors[first]
+    joined, others = clean(Mesh(mesh.vertices[first], ids[mesh.faces], colors, mesh.texture))
+    if (half_edges(joined.faces)[1] < 0).sum() >= (half_edges(found.faces)[1] < 0).sum():
+        return found, notes
+    return joined, [f"{len(ids) - len(first):,} vertices at the place of another joined to it", *others]

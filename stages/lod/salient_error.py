@@ -15,4 +15,4 @@ def salient_error(reference, mesh, saliency, samples=10_000, seed=0):
     Raises ValueError for saliency of another length, negative, not finite or zero on the whole surface, for too few
     samples to meet it, and as `metro` does.
     """
-    return surface_errors(reference, mesh, saliency, samples, seed)["salient"]
+    return surface_errors(reference, mesh, {"salient": saliency}, samples, seed)["salient"]

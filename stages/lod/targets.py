@@ -3,20 +3,20 @@
 import re
 
 
-def face_count(target, total):
+def face_count(target, total, name="lod.targets"):
     """The face count that `target` ("25%", "1500") means for a mesh of `total` faces.
 
-    Raises ValueError for anything else, for shares outside 0 to 100 % and for counts below 1.
+    Raises ValueError, by the name of the setting, for anything else, for shares outside 0 to 100 % and counts below 1.
     """
     match = re.fullmatch(r"(\d+(?:\.\d+)?)(%?)", str(target).strip())
     if match is None:
-        raise ValueError(f"lod.targets={target!r} is no face count: write one like 1500 or 25%")
+        raise ValueError(f"{name}={target!r} is no face count: write one like 1500 or 25%")
     number = float(match[1])
     if match[2] and not 0 < number < 100:
-        raise ValueError(f"lod.targets={target!r} must lie between 0% and 100%")
+        raise ValueError(f"{name}={target!r} must lie between 0% and 100%")
     count = int(total * number / 100) if match[2] else int(number)
     if count < 1 and not match[2]:
-        raise ValueError(f"lod.targets={target!r} must be 1 or more")
+        raise ValueError(f"{name}={target!r} must be 1 or more")
     return max(count, 1)
 
 

@@ -4,7 +4,7 @@ from dataclasses import astuple, dataclass
 
 import numpy as np
 
-from .kernels import components, count_faults, partners
+from .kernels import components, count_faults, partners, pieces, signed_volumes, split_fans
 
 FOLD = -0.99  # cosine between neighbouring normals: folded back within 8 degrees of flat
 THIN = 1e-7  # height of a face over the bounding-box diagonal, below which it counts as degenerate
@@ -45,21 +45,10 @@ def faults(mesh):
     """The Faults of a mesh."""
     if len(mesh.faces) == 0:
         return NONE
-    other, shared = half_edges(mesh.faces)
-    counts = count_faults(mesh.vertices, mesh.faces.ravel(), other, shared, THIN * mesh.diagonal, FOLD)
-    return Faults(*counts, _inverted(mesh, other))
-
-
-def _inverted(mesh, other):
-    """How many closed pieces have a negative volume: cavities, and what was turned inside out."""
-    faces, n = mesh.faces, int(mesh.faces.max()) + 1
-    label, pieces = components(faces.ravel(), np.roll(faces, -1, axis=1).ravel(), n)
-    piece = label[faces[:, 0]]
-    a, b, c = (mesh.vertices[faces] - mesh.vertices[faces[0, 0]]).transpose(1, 0, 2)
-    volume = np.bincount(piece, weights=np.einsum("ij,ij->i", a, np.cross(b, c)), minlength=pieces)
-    closed = np.ones(pieces, dtype=bool)
-    closed[piece[np.flatnonzero(other < 0) // 3]] = False
-    return int((closed & (volume < -THIN * mesh.diagonal**3)).sum())
+    ids, other, crowded = half_edges(mesh.faces)
+    degenerate, folded = count_faults(mesh.vertices, ids, other, THIN * mesh.diagonal, FOLD)
+    inverted = int((signed_volumes(mesh.vertices, ids, other) < -THIN * mesh.diagonal**3).sum())
+    return Faults(degenerate, folded, crowded, inverted)
 
 
 def topology(faces):
@@ -67,26 +56,26 @@ def topology(faces):
 
     Pieces that touch in one vertex, or in an edge of three or more faces, count apart.
     """
-    faces = split_pinches(faces)
-    partner = half_edges(faces)[0]
-    tails, heads = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
-    n = int(faces.max()) + 1
-    rim = partner < 0
-    label, pieces = components(tails, heads, n)
-    at_rim = np.zeros(n, dtype=bool)
-    at_rim[tails[rim]] = at_rim[heads[rim]] = True
-    loops = components(tails[rim], heads[rim], n)[1] - int((~at_rim).sum())
-    euler = n - (len(tails) + int(rim.sum())) // 2 + len(faces)
-    handles = max((2 * pieces - loops - euler) // 2, 0)
-    return Topology(int(rim.sum()), loops, pieces, pieces - len(np.unique(label[at_rim])), handles)
+    ids, other, _ = half_edges(faces)
+    fan, n = split_fans(ids, other)
+    piece, count = pieces(other)
+    rim = np.flatnonzero(other < 0)
+    open_pieces = len(np.unique(piece[rim // 3]))
+    tails, heads = fan[rim], fan[np.where(rim % 3 == 2, rim - 2, rim + 1)]
+    at_rim = len(np.unique(np.r_[tails, heads]))
+    loops = components(tails, heads, n)[1] - (n - at_rim)
+    euler = n - (len(ids) + len(rim)) // 2 + len(faces)
+    handles = max((2 * count - loops - euler) // 2, 0)
+    return Topology(len(rim), loops, count, count - open_pieces, handles)
 
 
 def half_edges(faces):
-    """The half-edge on the other side of each (3 m,), -1 unless exactly two share it, and how many do share it (3 m,).
+    """Faces (3 m,) i4, the half-edge on the other side of each, and how many edges three or more faces share.
 
-    Half-edge 3 f + k runs from corner k of face f to the next.
+    Half-edge 3 f + k runs from corner k of face f to the next. Its other side is -1 unless exactly two share the edge.
     """
-    return partners(faces.astype(np.int32).ravel(), int(faces.max()) + 1, False)
+    ids = faces.astype(np.int32).ravel()
+    return ids, *partners(ids, int(faces.max()) + 1, False)
 
 
 def split_pinches(faces):
@@ -94,11 +83,5 @@ def split_pinches(faces):
 
     After it each vertex has one fan, and edges with three or more faces have become rims.
     """
-    partner = half_edges(faces)[0]
-    corner = np.arange(faces.size)
-    after = corner - corner % 3 + (corner + 1) % 3
-    here = np.flatnonzero(partner >= 0)
-    there = partner[here]
-    same = faces.ravel()[here] == faces.ravel()[there]  # neighbours that disagree on which side is out
-    start, end = np.where(same, there, after[there]), np.where(same, after[there], there)
-    return components(np.r_[here, after[here]], np.r_[start, end], faces.size)[0].reshape(-1, 3).astype(np.int64)
+    ids, other, _ = half_edges(faces)
+    return split_fans(ids, other)[0].reshape(-1, 3).astype(np.int64)

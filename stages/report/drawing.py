@@ -15,6 +15,7 @@ CLAY = np.array([0.80, 0.80, 0.82])
 WIRE = np.array([0.16, 0.22, 0.32])
 BRIGHT = 0.98  # of the vertices are coloured by their value, those above as the brightest
 CREASE = 0.8  # cosine of the angle over which an edge is drawn sharp
+THIN = 0.25  # of its square: an object that fills less is no good for wires
 LIGHT = unit(np.array([-0.35, 0.55, 0.75]))  # right, up, towards the viewer
 
 
@@ -55,10 +56,15 @@ def visible(mesh, vertices, viewpoint=VIEWPOINT, rows=420):
     return down, across
 
 
+def filled(mesh):
+    """The share of its square that an object fills: of a thin one the wires cannot be told apart."""
+    return float((squared(picture(mesh, rows=60, smoothing=1), margin=0)[0] < 1).any(axis=2).mean())
+
+
 def squared(image, margin=6):
     """(image, (top, left)): the smallest square round the object."""
-    filled = (image < 1).any(axis=2)
-    down, across = np.flatnonzero(filled.any(axis=1)), np.flatnonzero(filled.any(axis=0))
+    there = (image < 1).any(axis=2)
+    down, across = np.flatnonzero(there.any(axis=1)), np.flatnonzero(there.any(axis=0))
     if not len(down):
         return image, (0, 0)
     side = min(max(np.ptp(down), np.ptp(across)) + 2 * margin, len(image))

@@ -13,7 +13,7 @@ SETS = {"princeton": "psb", "gaze": "gaze meshes"}  # names as a person says the
 ERRORS = {  # metric -> (name, factor to the unit in which it is shown)
     "metro_mean": ("Metro mean, %", 100), "metro_rms": ("Metro rms, %", 100), "metro_max": ("Metro max, %", 100),
     "ssim_error": ("1 − SSIM, %", 100), "dlap": ("DLap", 1), "dnor": ("Dnor", 1),
-    "salient_error": ("salient error, %", 100),
+    "salient_error": ("error where our model looks, %", 100), "gaze_error": ("error where people look, %", 100),
 }  # fmt: skip
 FEWEST = 3  # objects that a mean over objects needs to be shown
 
@@ -42,6 +42,11 @@ def data_sets(results):
     if not found:
         raise why
     return found
+
+
+def by_gaze(results):
+    """The Source of the meshes with human gaze, this run's or the committed ones."""
+    return data_sets(results).get(SETS["gaze"], Source("gaze"))
 
 
 def cells(results, metrics, source=OWN, methods=None):

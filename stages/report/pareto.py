@@ -45,13 +45,16 @@ def pareto_chart(
     better="high",
     colour=None,
     marker=None,
+    tints=None,
 ):
     """Draws quality against cost and its Pareto front; writes FOLDER/NAME.png and NAME.csv; returns a Figure.
 
     frame: one row a choice; cost: its column of seconds; quality: its column, with `low` and `high` beside it where
     there is an interval; label: its column of names. reference: the name whose cost, timed in the same run, is the
     unit of the logarithmic cost axis. colour, marker: columns that choose colour and shape, shown in a legend.
-    better: "high" for accuracies, "low" for errors. Raises ValueError when the reference is missing.
+    tints: dict value -> colour of the column `colour`, where the charts beside it have such; the front then goes
+    without names, which the legend gives. better: "high" for accuracies, "low" for errors. Raises ValueError when the
+    reference is missing.
     """
     rows = frame.loc[np.isfinite(frame[cost]) & np.isfinite(frame[quality])].copy()
     unit = rows.loc[rows[label] == reference, cost]
@@ -64,7 +67,8 @@ def pareto_chart(
     folder.mkdir(parents=True, exist_ok=True)
     write_table(folder / f"{name}.csv", rows)
     with look():
-        _draw(rows, quality, label, title, reference, quality_label, better, colour, marker, folder / f"{name}.png")
+        _draw(rows, quality, label, title, reference, quality_label, better, colour, marker, tints,
+              folder / f"{name}.png")  # fmt: skip
     front = _listed(list(rows.loc[rows["on_front"]].sort_values("cost_ratio")[label]))
     arrow = "Up" if better == "high" else "Down"
     return Figure(
@@ -81,13 +85,13 @@ def _listed(names):
     return "; ".join(names) if len(names) <= LISTED else f"{len(names)} choices, from {names[0]} to {names[-1]}"
 
 
-def _draw(rows, quality, label, title, reference, quality_label, better, colour, marker, path):
+def _draw(rows, quality, label, title, reference, quality_label, better, colour, marker, tints, path):
     figure, axes = plt.subplots(figsize=(7.2, 4.6))
     axes.set_xscale("log")
     axes.grid(True)
     front = rows.loc[rows["on_front"]].sort_values("cost_ratio")
     axes.step(front["cost_ratio"], front[quality], where="post", color=INK, lw=1, zorder=1, label="Pareto front")
-    paint = colours(list(dict.fromkeys(rows[colour]))) if colour else {}
+    paint = tints or (colours(list(dict.fromkeys(rows[colour]))) if colour else {})
     shape = dict(zip(dict.fromkeys(rows[marker]), MARKERS, strict=False)) if marker else {}
     for _, row in rows.iterrows():
         tint = paint[row[colour]] if colour else "#0072B2"
@@ -110,7 +114,8 @@ def _draw(rows, quality, label, title, reference, quality_label, better, colour,
     axes.xaxis.set_minor_formatter(NullFormatter())
     if colour:
         axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=9)
-    place_names(axes, *_with_names(rows, front if colour else rows, front, quality, label, better))
+    if not tints:
+        place_names(axes, *_with_names(rows, front if colour else rows, front, quality, label, better))
     save(figure, path)
 
 

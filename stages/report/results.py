@@ -94,11 +94,11 @@ class Results:
 
     def simplification(self, data):
         """Rows of reports/simplification/DATA.csv: the lod stage's, measured once on another data set."""
-        why = f"no simplification/{data}.csv: `make lod` measures it where the meshes of {data} are"
+        why = f"no simplification/{data}.csv: `make detectors` measures it where the meshes of {data} are"
         return self._once(self.reports / "simplification" / f"{data}.csv", why, "lod")
 
     def bench(self, name):
-        """Rows of reports/bench/NAME.csv: ratios to a named peer, timed in one run of `make bench`."""
+        """Rows of reports/bench/NAME.csv: what `make bench` measured; times are ratios to a named peer."""
         return self._once(self.reports / "bench" / f"{name}.csv", f"no bench/{name}.csv: `make bench` writes it", "lod")
 
     def _once(self, path, why, stage):

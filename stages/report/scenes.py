@@ -9,6 +9,7 @@ NAMES = {
     "network": "the thesis's network",
     "ours_plain": "ours, salience left out",
     "ours": "ours",
+    "equal": "ours, the limit shared equally",
 }
 COLOURS = {
     "full": "#222222", "uniform": "#E69F00", "uniform_size": "#D55E00", "network": "#CC79A7", "ours_plain": "#56B4E9",

@@ -17,6 +17,7 @@ METHODS = [  # those that the page offers, as far as they were run: each costs a
 ]  # fmt: skip
 INDEX_LIMIT = 65535  # 16-bit vertex ids
 FINEST = 0.6  # of the object's faces: a finer level looks like the object itself and costs the page most
+STEP = 0.75  # of the faces of the finer level before it: a closer one looks the same
 TOP = 0.99  # of the coarsest level's vertices have an error below the top of the scale; the others show as the top
 # Blue is equal, green small, yellow, red large: the scale of CloudCompare.
 ERROR_COLOURS = ((38, 70, 200), (34, 160, 74), (245, 215, 50), (214, 30, 30))
@@ -72,7 +73,7 @@ def pack_object(results, name):
             found = [ordered(mesh)[0] for _, mesh in results.lods(name, method)]
         except NotRun:
             continue
-        levels = [mesh for mesh in found if len(mesh.faces) <= FINEST * len(full.faces)]
+        levels = apart([mesh for mesh in found if len(mesh.faces) <= FINEST * len(full.faces)])
         ladders[method] = [(mesh, 100 * vertex_errors(mesh, full) / full.diagonal) for mesh in levels]
     top = max((float(np.quantile(error, TOP)) for levels in ladders.values() for _, error in levels), default=0.0)
     packed = {"name": name, "full": _mesh(full, store), "saliency": saliency, "points": points, "error_top": top}
@@ -81,6 +82,15 @@ def pack_object(results, name):
         for method, levels in ladders.items()
     }
     return packed | {"store": store.text()}
+
+
+def apart(levels):
+    """Those of the meshes, most faces first, that have STEP of the faces of the one kept before, or fewer."""
+    kept = []
+    for mesh in levels:
+        if not kept or len(mesh.faces) <= STEP * len(kept[-1].faces):
+            kept.append(mesh)
+    return kept
 
 
 def shown_mesh(mesh, faces):

@@ -12,13 +12,12 @@ import functools
 from stages.kit import StageRun, Stopwatch, arguments, params
 from stages.lod.variant import variant
 
-from .compare import OURS, PLAIN, SHARES
+from .compare import OURS, PLAIN
 from .export import export
 from .ladder import build_ladder
 from .measure import measure
 from .network import judged
 from .read import read_object, say_missing, scene_of
-from .rivals import SHARES as SHARE_COUNTS
 from .rows import summary
 from .storage import write_ladder
 
@@ -26,9 +25,8 @@ from .storage import write_ladder
 def levels_of(name, folder, settings, seed):
     """Builds the ladders of one object; returns a row each, with the seconds."""
     mesh, options, _ = read_object(name, settings.method)
-    counts = [max(int(share * len(mesh.faces)), 1) for share in SHARE_COUNTS]
     rows = []
-    for kind, chosen in ((OURS, options), (PLAIN, {}), (SHARES, {"counts": counts})):
+    for kind, chosen in ((OURS, options), (PLAIN, {})):
         with Stopwatch() as watch:
             levels = build_ladder(mesh, seed=seed, **chosen)
         write_ladder(folder / "levels" / name, kind, levels)

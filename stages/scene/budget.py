@@ -66,8 +66,8 @@ def budget(meshes, scene, options=None, ladders=None, frames=None):
     The levels' own errors foretell what a frame shows; what they choose is rendered, the rendered error takes the place
     of the foretold one, and the plan is made anew until it stands on rendered errors alone and every frame, with all
     objects at their levels, holds. Where a level switches, the jump of the picture is held below the tolerance as well,
-    and a level stays for `scene.hold` frames. A face limit takes faces where that adds the least error on the screen a
-    face; frames then hold what they can.
+    and a level stays for `scene.hold` frames. Where a frame has more than the face limit, the objects are coarsened
+    whose error stays the smallest; frames then hold what they can.
 
     Raises ValueError for a scene that does not fit the meshes, and for a limit below the smallest total, which it
     names.
@@ -118,28 +118,24 @@ class _Search:
                 return Plan(levels, self.ladders, self.frames)
 
     def _plan(self):
-        levels = np.stack([self._one(item) for item in range(len(self.ladders))], axis=1)
-        if not self.scene.limit:
-            return levels
-        over = np.flatnonzero(self._total(levels) > self.scene.limit)
-        if not len(over):
-            return levels
-        least = np.zeros_like(levels)
-        for frame in over:
-            counts = [own * seen for own, seen in zip(self.faces, self.frames.in_view[frame], strict=True)]
-            errors = [error[frame] for error in self.errors]
-            least[frame] = share(levels[frame], counts, errors, self.scene.limit)
-        return np.stack([self._one(item, least[:, item]) for item in range(len(self.ladders))], axis=1)
+        least = np.zeros(self.frames.shape, dtype=np.int64)
+        while True:
+            levels = np.stack([self._one(item, least[:, item]) for item in range(len(self.ladders))], axis=1)
+            over = np.flatnonzero(self._total(levels) > self.scene.limit) if self.scene.limit else ()
+            if not len(over):
+                return levels
+            for frame in over:  # never one that was shared before: no level is finer than its `least`
+                counts = [own * seen for own, seen in zip(self.faces, self.frames.in_view[frame], strict=True)]
+                errors = [error[frame] for error in self.errors]
+                least[frame] = share(levels[frame], counts, errors, self.scene.limit)
 
     def _total(self, levels):
         counts = np.stack([faces[k] for faces, k in zip(self.faces, levels.T, strict=True)], axis=1)
         return (counts * self.frames.in_view).sum(axis=1)
 
-    def _one(self, item, least=None):
+    def _one(self, item, least):
         cost = self.faces[item] * self.frames.in_view[:, item, None]
-        errors = self.errors[item]
-        if least is not None:
-            errors = np.where(np.arange(len(self.ladders[item])) < least[:, None], np.inf, errors)
+        errors = np.where(np.arange(len(self.ladders[item])) < least[:, None], np.inf, self.errors[item])
         # Out of view all levels cost nothing: a trace of the count keeps the choice defined.
         return cheapest(cost + 1e-3 * self.faces[item], errors, self.jumps[item], self.scene.tolerance, self.scene.hold)
 
@@ -172,8 +168,27 @@ class _Search:
         plan, broken = Plan(levels, self.ladders, self.frames), False
         for frame, check in enumerate(plan.checks):
             for item in np.flatnonzero(check.objects > self.scene.tolerance):
-                errors, level = self.errors[item][frame], levels[frame, item]
+                if self.errors[item][frame, levels[frame, item]] > self.scene.tolerance:
+                    continue  # it is not to be had better
+                blamed = self._blamed(plan, frame, item)
+                errors, level = self.errors[blamed][frame], levels[frame, blamed]
                 if errors[level] <= self.scene.tolerance:
-                    errors[level] = max(check.objects[item], SAFE * self.scene.tolerance)
+                    errors[level] = max(check.objects[blamed], SAFE * self.scene.tolerance)
                     broken = True
         return broken
+
+    def _blamed(self, plan, frame, item):
+        """The object whose level breaks the tolerance of `item`: its own, or that of one that stands before it.
+
+        A displacement is between meshes of the same object; structure is lost as well to a neighbour's changed outline.
+        """
+
+        def left(refined):
+            levels = plan.shown(frame)
+            levels[refined] = self.frames.full[refined]
+            return self.frames.check(frame, levels).objects[item]
+
+        if self.scene.kind == "pixels" or left(item) <= self.scene.tolerance:
+            return item
+        others = [k for k, level in enumerate(plan.levels[frame]) if level > 0 and k != item]
+        return min(others, key=left)

@@ -14,14 +14,14 @@ from .ladder import ERRORS
 from .plan import cheapest
 from .storage import full_of, read_ladders
 
-# Kinds of ladder: with the salient places minded, without, and at the shares of the usual practice.
-OURS, PLAIN, SHARES = "ours", "plain", "shares"
+OURS, PLAIN = "ours", "plain"  # kinds of ladder: with the salient places minded, and without
 
 
 @dataclass(frozen=True, eq=False)
 class Found:
     """A plan by a method. matched: what was made equal to ours, `error` (mean over the frames of the frame error),
-    `displacement` (mean over the pixels), `held` (every frame within the tolerance), or nothing.
+    `displacement` (mean over the pixels), `held` (every frame within the tolerance), or nothing; `limit`: half of the
+    faces of our fullest frame are all that a frame may have.
     """
 
     method: str
@@ -48,7 +48,7 @@ class Contest:
 def contest(scene, meshes, folder):
     """A Contest from the ladders in a folder."""
     full = full_of({name: meshes[name] for name in sorted({placed.name for placed in scene.objects})})
-    ladders = {kind: read_ladders(folder, kind, full) for kind in (OURS, PLAIN, SHARES)}
+    ladders = {kind: read_ladders(folder, kind, full) for kind in (OURS, PLAIN)}
     frames = Frames(scene, meshes, [full[placed.name] for placed in scene.objects])
     return Contest(scene, meshes, frames, ladders)
 
@@ -68,23 +68,23 @@ def worst_error(plan):
     return float(plan.errors.max())
 
 
-def compare(own, counts_of=None, all_matches=True):
+def compare(own, counts=None, all_matches=True):
     """list[Found]: ours first.
 
-    counts_of: function tolerance -> wanted faces (frames, objects), what the thesis's network answers, or None.
-    all_matches: also plans that are equal to ours in other ways, the full meshes, and plans by the levels' own errors,
-    never rendered.
+    counts: (frames, objects) faces that the thesis's network answers, or None; tuned by one factor on all of them.
+    all_matches: also plans that are equal to ours in other ways, the full meshes, plans by the levels' own errors,
+    never rendered, and plans under a limit of faces.
     """
     found = [_timed(OURS, "", lambda: _budget(own, OURS)), _timed("ours_plain", "", lambda: _budget(own, PLAIN))]
     ours = found[0].plan
     for method, by_size in (("uniform", False), ("uniform_size", True)):
         found += _tuned(own, method, _uniform(own, by_size), ours, all_matches)
-    if counts_of is not None:
-        found += _tuned(own, "network", _network(own, counts_of), ours, all_matches)
+    if counts is not None:
+        found += _tuned(own, "network", _network(own, counts), ours, all_matches)
     if all_matches:
-        found += [_timed("full", "", lambda: rivals.full(own.frames)), *_unrendered(own)]
-        if counts_of is not None:
-            found.append(_timed("network", "asked", lambda: _network(own, counts_of)(1.0)))
+        found += [_timed("full", "", lambda: rivals.full(own.frames)), *_unrendered(own), *_limited(own, ours)]
+        if counts is not None:
+            found.append(_timed("network", "asked", lambda: _network(own, counts)(1.0)))
     return found
 
 
@@ -93,11 +93,24 @@ def _budget(own, kind):
 
 
 def _uniform(own, by_size):
-    return lambda coarseness: rivals.uniform(own.frames, own.of(SHARES), 1 / coarseness, by_size)
+    return lambda coarseness: rivals.uniform(own.frames, own.of(OURS), 1 / coarseness, by_size)
 
 
-def _network(own, counts_of):
-    return lambda coarseness: rivals.by_counts(own.frames, own.of(OURS), counts_of(own.scene.tolerance * coarseness))
+def _network(own, counts):
+    return lambda coarseness: rivals.by_counts(own.frames, own.of(OURS), counts / coarseness)
+
+
+def _limited(own, ours):
+    """Half of the faces of our fullest frame, shared where it hurts least, and equally."""
+    coarsest = [ladder[-1].faces for ladder in ours.ladders]
+    smallest = int((own.frames.in_view * coarsest).sum(axis=1).max())
+    limit = max(int(ours.faces.sum(axis=1).max()) // 2, smallest, 1)
+    scene = replace(own.scene, limit=limit)
+    plans = {
+        OURS: lambda: budget(own.meshes, scene, ladders=own.ladders[OURS], frames=own.frames),
+        "equal": lambda: rivals.equal(ours, limit),
+    }
+    return [replace(_timed(name, "limit", make), note=f"limit of {limit:,} faces") for name, make in plans.items()]
 
 
 def _tuned(own, method, plan_of, ours, all_matches):

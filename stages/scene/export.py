@@ -2,10 +2,9 @@
 
 glTF has +y up and metres, so meshes are turned and scaled; colours go along as vertex colours. MSFT_lod is a vendor
 extension of the Khronos registry: one node a level, the finest first, and as a hint the least share of the screen at
-which each is to be shown, here of its height. manifest.json says the same, and the errors, without an extension.
+which each is to be shown, here of its height. manifest.json says the same, and the errors, without an extension. Every
+file is loaded back once it is written.
 """
-
-import json
 
 import numpy as np
 import trimesh
@@ -16,19 +15,23 @@ from stages.kit.run import DATA
 
 from .compare import OURS
 from .ladder import finest
+from .loaded_back import EXTENSION, check_glb, read_lod
 from .place import world_mesh
 from .read import scene_of
 from .storage import read_ladder
 
 FOLDER, MANIFEST = "export", "manifest.json"
-EXTENSION = "MSFT_lod"
 Y_UP = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])
 
 
 def export(folder, settings, objects):
-    """Writes the GLB files and the manifest of the plan in folder/plan.csv."""
+    """Writes the GLB files of what the plan in folder/plan.csv shows, and the manifest.
+
+    Raises ValueError that names the file where one cannot be loaded back as it was meant.
+    """
     scene, _ = scene_of(settings, objects)
     plan, rows = read_table(folder / "plan.csv"), []
+    plan = plan[plan["in_view"]]
     meshes = {name: read_mesh(DATA / "meshes" / f"{name}.npz") for name in sorted(set(plan["object"]))}
     ladders = {name: read_ladder(folder / "levels" / name, OURS, finest(mesh)) for name, mesh in meshes.items()}
     sizes = {placed.name: placed.size for placed in reversed(scene.objects)}  # of the first of several copies
@@ -42,7 +45,8 @@ def export(folder, settings, objects):
             write_lod(folder / FOLDER / f"{name}.glb", levels, found, scene.cameras[0].size[0])
         rows += found
     nearest = _frame_with_most(plan)
-    write_scene(folder / FOLDER / "scene.glb", scene, meshes, ladders, plan[plan["frame"] == nearest])
+    if len(plan):
+        write_scene(folder / FOLDER / "scene.glb", scene, meshes, ladders, plan[plan["frame"] == nearest])
     manifest = {"scene": settings.name, "tolerance": scene.tolerance, "kind": scene.kind}
     manifest |= {"screen_rows": scene.cameras[0].size[0], "scene_of_frame": nearest, "levels": rows}
     write_json(folder / FOLDER / MANIFEST, manifest)
@@ -76,13 +80,17 @@ def to_gltf(mesh, metres=1.0):
 
 
 def write_glb(path, meshes, names, edit=None):
-    """Writes Meshes, as they are, to one GLB, a node each. edit: function of the glTF's JSON tree, or None."""
+    """Writes Meshes, as they are, to one GLB, a node each, and loads it back.
+
+    edit: function of the glTF's JSON tree, or None. Raises ValueError where other meshes come back.
+    """
     scene = trimesh.Scene()
     for mesh, name in zip(meshes, names, strict=True):
         scene.add_geometry(_trimesh(mesh), node_name=name, geom_name=name)
     content = trimesh.exchange.gltf.export_glb(scene, include_normals=True, tree_postprocessor=edit)
     with whole_file(path) as part:
         part.write_bytes(content)
+    check_glb(path, meshes, names)
 
 
 def write_lod(path, levels, rows, screen_rows):
@@ -104,12 +112,14 @@ def write_lod(path, levels, rows, screen_rows):
                 }
 
     write_glb(path, meshes, names, join)
+    if len(names) > 1 and read_lod(path) != names:
+        raise ValueError(f"{path}: {EXTENSION} came back as {', '.join(read_lod(path))}")
 
 
 def write_scene(path, scene, meshes, ladders, plan):
-    """Writes what a frame shows as one GLB: every object in view at its level, where it stands."""
+    """Writes a frame's rows of the plan as one GLB: every object that it shows at its level, where it stands."""
     shown, names = [], []
-    for row in plan[plan["in_view"]].itertuples():
+    for row in plan.itertuples():
         placed = scene.objects[row.item]
         mesh = world_mesh(ladders[placed.name][row.level].mesh, placed.pose(meshes[placed.name]))
         shown.append(to_gltf(mesh))
@@ -122,16 +132,5 @@ def _trimesh(mesh):
 
 
 def _frame_with_most(plan):
-    shown = plan[plan["in_view"]].groupby("frame")["faces"].sum()
+    shown = plan.groupby("frame")["faces"].sum()
     return int(shown.idxmax()) if len(shown) else 0
-
-
-def read_lod(path):
-    """Names of the levels, finest first, of a GLB with MSFT_lod. Raises ValueError where it has none."""
-    content = path.read_bytes()
-    length = int.from_bytes(content[12:16], "little")
-    tree = json.loads(content[20 : 20 + length])
-    for k, node in enumerate(tree["nodes"]):
-        if EXTENSION in node.get("extensions", {}):
-            return [tree["nodes"][j]["name"] for j in (k, *node["extensions"][EXTENSION]["ids"])]
-    raise ValueError(f"{path} has no {EXTENSION}")

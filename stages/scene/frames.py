@@ -10,7 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
-from .look import look, pixel_box, rays_of
+from .look import look, pixel_box, rays_of, shade
 from .pictures import structure_lost, structures_lost
 
 QUANTILE = 0.99  # of an object's pixels lie within the error: one in a hundred may be a sliver on an edge
@@ -40,13 +40,13 @@ class Frames:
         self.boxes = [[pixel_box(camera, pose) for pose in self.poses] for camera in scene.cameras]
         self.in_view = np.array([[b > t and r > left for t, b, left, r in row] for row in self.boxes])
         self.shape = self.in_view.shape
-        self._looks, self._reach = {}, {}
+        self._looks, self._reach, self._colors = {}, {}, {}
 
     @cached_property
     def distance(self):
         """(frames, objects) metres from the eye to the middle of each object."""
         eyes = np.array([camera.eye for camera in self.scene.cameras])
-        middles = np.array([pose.corners.mean(axis=0) for pose in self.poses])
+        middles = np.array([pose.corners().mean(axis=0) for pose in self.poses])
         return np.linalg.norm(eyes[:, None] - middles[None], axis=2)
 
     @cached_property
@@ -63,8 +63,19 @@ class Frames:
         """The Look of an object at a level, in one frame."""
         key = frame, item, level
         if key not in self._looks:
-            self._looks[key] = look(level, self.scene.cameras[frame], self.poses[item], self.boxes[frame][item])
+            self._looks[key] = look(level, self.scene.cameras[frame], self.poses[item])
         return self._looks[key]
+
+    def colors(self, frame, item, level):
+        """(k, 3) f4 rgb, 0 to 255, of a Look; those of the full meshes are kept, as every comparison needs them."""
+        key = frame, item
+        if level is self.full[item] and key in self._colors:
+            return self._colors[key]
+        seen = self.look(frame, item, level)
+        found = shade(level, seen, self.scene.cameras[frame], self.poses[item]).astype(np.float32)
+        if level is self.full[item]:
+            self._colors[key] = found
+        return found
 
     @cached_property
     def _others(self):
@@ -83,7 +94,7 @@ class Frames:
             owner[seen.pixels[nearer]] = item
         return first, second, owner
 
-    def _visible(self, frame, item, level):
+    def visible(self, frame, item, level):
         """(k,) boolean: the pixels of a Look that no other object, at full detail, hides."""
         first, second, owner = self._others[frame]
         seen = self.look(frame, item, level)
@@ -121,7 +132,7 @@ class Frames:
         if self.scene.kind == "ssim":
             return structure_lost(self, frame, item, one, other)
         self.measure([(frame, item, one, other)])
-        sides = [self._reach[frame, item, a, b][self._visible(frame, item, a)] for a, b in ((one, other), (other, one))]
+        sides = [self._reach[frame, item, a, b][self.visible(frame, item, a)] for a, b in ((one, other), (other, one))]
         return _quantile(np.concatenate(sides))
 
     def check(self, frame, levels):
@@ -146,7 +157,7 @@ class Frames:
         """
         full = self.full[item]
         self.measure([(frame, item, full, level)])
-        seen, shown = self.look(frame, item, full), self._visible(frame, item, full)
+        seen, shown = self.look(frame, item, full), self.visible(frame, item, full)
         weights = values[full.mesh.faces[seen.faces[shown]]].mean(axis=1)
         return float(self._reach[frame, item, full, level][shown] @ weights), float(weights.sum())
 

@@ -9,6 +9,9 @@ from stages.kit import Mesh, RayScene
 from stages.kit.rng import rng
 from stages.lod import InfeasibleTarget, SimplifyError, simplify
 from stages.lod.nearest import Surface
+from stages.views.shading import corner_groups
+
+from .place import bounds
 
 STEP = 2**-0.5  # faces of a level over those of the one before: two levels a halving
 COARSEST = 12  # faces: below, no household object can be told from another
@@ -29,9 +32,19 @@ class Level:
         return len(self.mesh.faces)
 
     @cached_property
+    def box(self):
+        """(low (3,), high (3,)): a coarse level may stick out of the box of the finest."""
+        return bounds(self.mesh)
+
+    @cached_property
     def rays(self):
         """The mesh made ready for rays."""
         return RayScene(self.mesh)
+
+    @cached_property
+    def corners(self):
+        """(groups, normals) of the corners of its faces, for shading."""
+        return corner_groups(self.mesh)
 
     @cached_property
     def surface(self):
@@ -39,15 +52,14 @@ class Level:
         return Surface(self.mesh)
 
 
-def build_ladder(mesh, counts=None, seed=0, **options):
-    """tuple of Levels of a mesh, most faces first; the first is the mesh itself.
+def build_ladder(mesh, seed=0, **options):
+    """tuple of Levels of a mesh, most faces first, two a halving down to COARSEST; the first is the mesh itself.
 
-    counts: the face counts to make, or None for two levels a halving down to COARSEST. options: those of
-    stages.lod.simplify, say the salient vertices to keep; their neighbourhoods shrink from the least salient on where
-    there are too few faces for them. A count that cannot be had soundly is left out.
+    options: those of stages.lod.simplify, say the salient vertices to keep; their neighbourhoods shrink from the least
+    salient on where there are too few faces for them. A count that cannot be had soundly is left out.
     """
     levels = [finest(mesh)]
-    for count in steps(len(mesh.faces)) if counts is None else counts:
+    for count in steps(len(mesh.faces)):
         try:
             found = simplify(mesh, count, shrink=True, **options)
         except InfeasibleTarget:

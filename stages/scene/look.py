@@ -6,7 +6,6 @@ import numpy as np
 
 from stages.kit.mesh import unit
 from stages.kit.rays import barycentric
-from stages.views.shading import corner_groups
 
 LIT = 230  # brightness of a face that looks into the camera
 DARK = 0.25  # of it is left on faces seen edge on, or silhouettes would drown in the black around them
@@ -25,12 +24,12 @@ class Look:
     faces: np.ndarray
 
 
-def pixel_box(camera, pose):
-    """(top, bottom, left, right) of the pixels that the object's bounding box covers, the ends exclusive; empty ones
-    have bottom <= top. The whole screen where the box reaches behind the camera.
+def pixel_box(camera, pose, box=None):
+    """(top, bottom, left, right) of the pixels that a box in the mesh's own coordinates covers, the object's own if
+    None; the ends exclusive, empty ones have bottom <= top. The whole screen where the box reaches behind the camera.
     """
     h, w = camera.size
-    rows, columns, depth = camera.project(pose.corners)
+    rows, columns, depth = camera.project(pose.corners(box))
     if depth.max() <= 0:
         return 0, 0, 0, 0
     if depth.min() <= 0:
@@ -42,9 +41,9 @@ def pixel_box(camera, pose):
     )  # fmt: skip
 
 
-def look(level, camera, pose, box):
-    """The Look of a level's mesh through the pixels of a box."""
-    top, bottom, left, right = box
+def look(level, camera, pose):
+    """The Look of a level's mesh."""
+    top, bottom, left, right = pixel_box(camera, pose, level.box)
     rows, columns = (grid.ravel() for grid in np.mgrid[top:bottom, left:right])
     world = camera.directions(rows, columns)
     along = world @ pose.turn
@@ -66,7 +65,7 @@ def rays_of(found, camera, pose):
 def shade(level, found, camera, pose):
     """rgb (k, 3) f8, 0 to 255, of a Look: Lambert under a light at the camera, smooth across edges below a crease."""
     mesh, (points, along) = level.mesh, rays_of(found, camera, pose)
-    groups, normals = corner_groups(mesh)
+    groups, normals = level.corners
     weights = np.clip(barycentric(mesh, found.faces, points), 0, 1)
     normal = unit(np.einsum("ij,ijk->ik", weights, normals[groups[found.faces]]))
     facing = np.sign(np.einsum("ij,ij->i", mesh.face_normals[found.faces], along))  # both sides are lit

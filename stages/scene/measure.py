@@ -26,8 +26,8 @@ def measure(job, folder, settings, factors, objects, seed):
     known = {name: read_object(name, settings.method) for name in {placed.name for placed in scene.objects}}
     own = contest(scene, {name: mesh for name, (mesh, *_) in known.items()}, folder / "levels")
     saliency = {name: values for name, (*_, values) in known.items()}
-    counts_of, note = _network(own, objects, seed)
-    found = compare(own, counts_of, all_matches=factor == 1)
+    counts, note = _network(own, objects, seed)
+    found = compare(own, counts, all_matches=factor == 1)
     shown = [factor == 1 and each.matched in ("", "error") for each in found]
     rows = [
         row for each, pictured in zip(found, shown, strict=True) for row in plan_rows(own, each, saliency, pictured)
@@ -45,7 +45,7 @@ def measure(job, folder, settings, factors, objects, seed):
 
 
 def _network(own, objects, seed):
-    """(function tolerance -> wanted counts, or None; why there is none)."""
+    """((frames, objects) faces that the thesis's network answers, or None; why there is none)."""
     scene, names = own.scene, {placed.name for placed in own.scene.objects}
     if scene.kind != "pixels":
         return None, "the thesis's network knows no perceptual tolerance"
@@ -60,7 +60,7 @@ def _network(own, objects, seed):
         points.append({name: len(strong[name]) for name in model.regressors})
     diagonals = [own.meshes[placed.name].diagonal * pose.scale
                  for placed, pose in zip(scene.objects, own.frames.poses, strict=True)]  # fmt: skip
-    return lambda tolerance: counts_wanted(model, own.frames, points, np.array(diagonals), tolerance), ""
+    return counts_wanted(model, own.frames, points, np.array(diagonals), scene.tolerance), ""
 
 
 def plan_table(own, plan):

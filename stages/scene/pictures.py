@@ -5,7 +5,7 @@ from skimage.metrics import structural_similarity
 
 from stages.lod.similarity import SIGMA, WINDOW, ssim_error
 
-from .look import LUMA, shade
+from .look import LUMA
 
 
 def shaded(frames, frame, levels, only=None):
@@ -21,8 +21,7 @@ def shaded(frames, frame, levels, only=None):
         seen = frames.look(frame, item, level)
         nearer = seen.depth < depth[seen.pixels]
         at = seen.pixels[nearer]
-        colors = shade(level, seen, frames.scene.cameras[frame], frames.poses[item])
-        depth[at], image[at] = seen.depth[nearer], colors[nearer]
+        depth[at], image[at] = seen.depth[nearer], frames.colors(frame, item, level)[nearer]
     return image.reshape(h, w, 3)
 
 
@@ -38,18 +37,20 @@ def picture_error(frames, frame, levels):
 
 def structure_lost(frames, frame, item, one, other):
     """1 - SSIM between an object at two levels, the others at full detail: see `structures_lost`."""
-    levels, shown = list(frames.full), []
+    levels, shown, seen = list(frames.full), [], []
     for level in (one, other):
         levels[item] = level
         shown.append(picture(frames, frame, levels, only=item))
-    return _lost(frames, frame, item, *shown, (one, other))
+        seen.append(frames.look(frame, item, level).pixels[frames.visible(frame, item, level)])
+    return _lost(frames, frame, item, *shown, np.union1d(*seen))
 
 
 def structures_lost(frames, frame, levels):
     """(o,) mean of 1 - SSIM against the full frame, over the pixels in which each object is seen in either picture."""
     before, after = picture(frames, frame, frames.full), picture(frames, frame, levels)
-    pairs = zip(frames.full, levels, strict=True)
-    return np.array([_lost(frames, frame, item, before, after, pair) for item, pair in enumerate(pairs)])
+    owners = [frames.owners(frame, shown) for shown in (frames.full, levels)]
+    seen = [np.flatnonzero((owners[0] == item) | (owners[1] == item)) for item in range(len(levels))]
+    return np.array([_lost(frames, frame, item, before, after, pixels) for item, pixels in enumerate(seen)])
 
 
 def displacement_picture(frames, frame, levels):
@@ -63,8 +64,8 @@ def displacement_picture(frames, frame, levels):
     return image.reshape(frames.scene.cameras[frame].size)
 
 
-def _lost(frames, frame, item, before, after, pair):
-    pixels = np.unique(np.concatenate([frames.look(frame, item, level).pixels for level in pair]))
+def _lost(frames, frame, item, before, after, pixels):
+    """Mean of 1 - SSIM of two pictures over pixels of an object, in and around whose box they are right."""
     if not len(pixels):
         return 0.0
     box = _padded(frames, frame, item)

@@ -28,8 +28,7 @@ class Placed:
             raise ValueError(f"{self.name} has no faces to show")
         if not self.size > 0:
             raise ValueError(f"{self.name} is {self.size} m large: give its longest side, above 0")
-        corners = mesh.vertices[np.unique(mesh.faces)]
-        low, high = corners.min(axis=0), corners.max(axis=0)
+        low, high = bounds(mesh)
         foot = np.array([*((low + high) / 2)[:2], low[2]])
         cos, sin = np.cos(np.radians(self.turn)), np.sin(np.radians(self.turn))
         turn = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
@@ -54,11 +53,10 @@ class Pose:
         """World points (k, 3) in the mesh's own coordinates."""
         return (points - self.position) @ self.turn / self.scale + self.foot
 
-    @property
-    def corners(self):
-        """(8, 3) corners of the bounding box in the world."""
+    def corners(self, box=None):
+        """(8, 3) corners in the world of a box (low, high) in the mesh's own coordinates, or of the mesh's own."""
         picks = np.array(np.meshgrid([0, 1], [0, 1], [0, 1])).reshape(3, 8).T
-        return self.to_world(np.where(picks == 0, *self.box))
+        return self.to_world(np.where(picks == 0, *(box or self.box)))
 
 
 @dataclass(frozen=True)
@@ -101,6 +99,12 @@ class Scene:
                 place = f"{placed.name} at {tuple(placed.position)}"
                 raise ValueError(f"the camera of frame {inside[0]} is inside {place}: move one of them")
         return poses
+
+
+def bounds(mesh):
+    """(low (3,), high (3,)): the box around the faces of a mesh."""
+    corners = mesh.vertices[np.unique(mesh.faces)]
+    return corners.min(axis=0), corners.max(axis=0)
 
 
 def world_mesh(mesh, pose):

@@ -60,15 +60,16 @@ def _trace(best, came, aged, hold):
 def share(levels, faces, errors, limit):
     """(o,) levels that cost no more than `limit` faces together: coarsened where it hurts least.
 
-    levels (o,): what each object would have; faces, errors: a list of (l_o,) an object, finest first. Greedy: again and
-    again the object whose next coarser level adds the least error on the screen for each face that it saves.
+    levels (o,): what each object would have; faces, errors: a list of (l_o,) an object, finest first. Again and again
+    the object takes its next coarser level whose error is then the least, so that the worst error is the least that the
+    limit allows where errors grow from level to level; of equal ones, that which saves the most faces.
     """
     levels = np.array(levels)
     total = sum(counts[level] for counts, level in zip(faces, levels, strict=True))
     while total > limit:
         prices = [_price(counts, error, level) for counts, error, level in zip(faces, errors, levels, strict=True)]
-        chosen = int(np.argmin(prices))
-        if not np.isfinite(prices[chosen]):
+        chosen = prices.index(min(prices))
+        if not np.isfinite(prices[chosen][0]):
             break
         total += faces[chosen][levels[chosen] + 1] - faces[chosen][levels[chosen]]
         levels[chosen] += 1
@@ -76,6 +77,7 @@ def share(levels, faces, errors, limit):
 
 
 def _price(faces, errors, level):
+    """(error, minus the faces saved) of the next coarser level; infinite where there is none."""
     if level + 1 >= len(faces):
-        return np.inf
-    return max(errors[level + 1] - errors[level], 0.0) / max(faces[level] - faces[level + 1], 1)
+        return np.inf, 0
+    return errors[level + 1], faces[level + 1] - faces[level]

@@ -4,7 +4,6 @@ import numpy as np
 
 from .budget import Plan
 
-SHARES = (0.5, 0.25, 0.12, 0.06, 0.03)  # of the object's own faces: the levels of the usual practice
 HALVINGS = 14  # of the span of the one factor that is tuned: the tuned value is then within one in a thousand
 SPAN = (1e-3, 1e3)
 
@@ -17,17 +16,15 @@ def full(frames):
 def uniform(frames, ladders, reach, by_size=False):
     """The usual practice: every object cut to the same share, chosen by its distance alone, whatever its shape.
 
-    ladders: the levels of SHARES for each object, the full mesh before them. All faces up to the distance `reach`, in
-    metres, half of them up to twice that, a quarter up to four times, and so on: an error on the surface grows about as
-    faces fall, and shrinks on the screen as the distance grows. by_size: distances in lengths of the object, so that it
-    goes by the size on the screen, as game engines do.
+    ladders: the levels of each object, the very ones that a budget chooses from. All faces up to the distance `reach`,
+    in metres, half of them at twice that, a quarter at four times, and so on, by the nearest level: an error on the
+    surface grows about as faces fall, and shrinks on the screen as the distance grows. by_size: distances in lengths of
+    the object, so that it goes by the size on the screen, as game engines do.
     """
     distance = frames.distance
     if by_size:
         distance = distance / [placed.size for placed in frames.scene.objects]
-    level = np.floor(np.log2(np.maximum(distance / reach, 1e-9))).astype(int) + 1
-    last = np.array([len(ladder) - 1 for ladder in ladders])
-    return Plan(np.clip(level, 0, last), ladders, frames)
+    return by_counts(frames, ladders, np.minimum(reach / distance, 1) * [ladder[0].faces for ladder in ladders])
 
 
 def by_counts(frames, ladders, counts):
@@ -36,6 +33,23 @@ def by_counts(frames, ladders, counts):
     nearest = [np.abs(np.log(column)[:, None] - own).argmin(axis=1)
                for own, column in zip(faces, counts.T, strict=True)]  # fmt: skip
     return Plan(np.stack(nearest, axis=1), ladders, frames)
+
+
+def equal(plan, limit):
+    """The Plan with `limit` faces shared equally in each frame that has more: the same count for all objects in view.
+
+    Each takes its finest level of no more than that count, the largest with which the frame holds the limit.
+    """
+    levels = plan.levels.copy()
+    for frame in np.flatnonzero(plan.faces.sum(axis=1) > limit):
+        seen = np.flatnonzero(plan.frames.in_view[frame])
+        ladders = [[level.faces for level in plan.ladders[item]] for item in seen]
+        for count in sorted({count for counts in ladders for count in counts}, reverse=True):
+            chosen = [next((k for k, n in enumerate(counts) if n <= count), len(counts) - 1) for counts in ladders]
+            if sum(counts[k] for counts, k in zip(ladders, chosen, strict=True)) <= limit:
+                levels[frame, seen] = chosen
+                break
+    return Plan(levels, plan.ladders, plan.frames)
 
 
 def tune(plan_of, measure, wanted):

@@ -13,6 +13,7 @@ import numpy as np
 from stages.kit import Mesh, Stopwatch
 from stages.lod import BACKENDS, simplify
 from stages.lod.targets import face_count
+from stages.lod.warm_up import warm_up
 
 from .broken import BROKEN
 from .checks import complaints, surface_error
@@ -92,6 +93,8 @@ def answers(specimen, backend, cases):
 def simplification_rows(mesh, name, seed, damages=tuple(BROKEN), backends=tuple(BACKENDS)):
     """Rows of one object: `faces` of every case (0 where nothing came back) and, where a mesh did, its `error`."""
     curve, rows = PlainCurve(mesh), []
+    for backend in backends:
+        warm_up(backend)
     for damage in damages:
         specimen = Specimen(mesh, curve, damage, name, seed)
         for backend in backends:

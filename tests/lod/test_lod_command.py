@@ -7,11 +7,14 @@ from PIL import Image
 
 from stages.kit import Mesh
 from stages.kit.texture import Texture
-from stages.lod import metro
-from stages.lod.command import parser, run, share
+from stages.lod import command, metro, simplify
+from stages.lod.command import run
 from stages.lod.export import FORMATS, to_trimesh, write_any
 from stages.lod.feasibility import SimplifyError
 from stages.lod.fewest import fewest_faces
+from stages.lod.one_mesh import repaired
+from stages.lod.options import parser, share
+from stages.lod.picture import write_picture
 from stages.meshes import load
 
 PLACE, SIZE = np.array([120.0, -40.0, 7.0]), 25.0
@@ -50,7 +53,7 @@ def rows(table):
 
 
 def test_result_has_the_faces_and_stands_where_the_mesh_stood(simplified):
-    found, said, _ = simplified("--faces", 500, "--keep", 3)
+    found, said, _ = simplified("--faces", 500, "--neighbourhood", "fixed", "--keep", 3)
     assert len(found.faces) == 500
     assert found.watertight
     assert metro(bumpy(), found)["mean"] < 0.005
@@ -61,14 +64,14 @@ def test_result_has_the_faces_and_stands_where_the_mesh_stood(simplified):
 
 def test_kept_neighbourhoods_come_through(simplified):
     mesh = bumpy()
-    found, _, _ = simplified("--faces", "40%", "--keep", 1, "--rings", 2)
+    found, _, _ = simplified("--faces", "40%", "--neighbourhood", "fixed", "--keep", 1, "--rings", 2)
     top = mesh.rings([mesh.vertices[:, 2].argmax()], 2)
     away = np.linalg.norm(found.vertices[:, None] - mesh.vertices[top], axis=2).min(axis=0)
     assert away.max() < 1e-7 * SIZE
 
 
 def test_tolerance_gives_a_small_mesh_within_it(simplified):
-    found, _, said = simplified("--tolerance", "0.5%", "--keep", 0)
+    found, _, said = simplified("--tolerance", "0.5%")
     assert metro(bumpy(), found)["mean"] <= 0.005
     assert len(found.faces) < 500
     assert "faces: " in said
@@ -97,7 +100,7 @@ def textured():
 def test_pictures_go_along(simplified, tmp_path, out):
     mesh = textured()
     write_any(tmp_path / "wrapped.obj", mesh)
-    found, _, _ = simplified("--faces", 500, "--keep", 2, source=tmp_path / "wrapped.obj", out=out)
+    found, _, _ = simplified("--faces", 500, source=tmp_path / "wrapped.obj", out=out)
     assert len(found.faces) == 500 and found.watertight
     assert (found.texture.images[0] == mesh.texture.images[0]).all()
     want = 0.5 + (found.vertices[found.faces][..., :2] - PLACE[:2]) / 100
@@ -111,7 +114,7 @@ def test_format_without_colours_says_so(simplified, tmp_path):
 
 
 def test_picture_shows_before_and_after(simplified, tmp_path):
-    simplified("--faces", 300, "--keep", 1, "--picture", tmp_path / "seen.png")
+    simplified("--faces", 300, "--picture", tmp_path / "seen.png")
     image = np.asarray(Image.open(tmp_path / "seen.png").convert("RGB")).astype(int)
     thirds = np.array_split(image, 3, axis=1)
     ink = [(third < 200).any(axis=2).mean() for third in thirds]
@@ -126,28 +129,164 @@ def test_equal_commands_give_equal_bytes(simplified, tmp_path):
     assert (tmp_path / "a.glb").read_bytes() == (tmp_path / "b.glb").read_bytes()
 
 
-def test_soft_and_plain_keep_nothing_but_run(simplified):
-    _, said, _ = simplified("--faces", 300, "--neighbourhood", "soft")
-    assert "points kept" not in said
+def test_without_options_the_saliency_weighs_and_nothing_is_frozen(simplified, monkeypatch):
+    weights = []
+
+    def watched(*arguments, weights=None, real=simplify, seen=weights):
+        seen.append(weights)
+        return real(*arguments, weights=weights)
+
+    monkeypatch.setattr("stages.lod.one_mesh.simplify", watched)
+    _, said, _ = simplified("--faces", 300)
+    ours, plain = weights
+    assert plain is None and np.ptp(ours) > 0.5 and len(ours) == len(bumpy().vertices)
+    assert "height-soft" in said and "points kept" not in said
+
+
+def test_plain_has_no_plain_beside_it(simplified):
     _, said, _ = simplified("--faces", 300, "--method", "qem")
     assert "plain QEM" not in said
+
+
+def bowl():
+    """The ball open at its lower third, and the number of its open edges."""
+    mesh = bumpy()
+    mesh = Mesh(mesh.vertices, mesh.faces[(mesh.vertices[mesh.faces][..., 2] > PLACE[2] - SIZE / 3).all(axis=1)])
+    return mesh, int((mesh.edge_counts[1] == 1).sum())
+
+
+def test_open_borders_that_stay_are_counted_with_what_they_allow(simplified, tmp_path):
+    mesh, edges = bowl()
+    write_any(tmp_path / "bowl.ply", mesh)
+    _, said, _ = simplified("--faces", 400, source=tmp_path / "bowl.ply")
+    assert rows(said)["border edges kept"] == [str(edges), str(edges), "-"]
+    least = int(rows(said)["fewest faces that keep them"][1])
+    simplified("--faces", least, source=tmp_path / "bowl.ply")
+    with pytest.raises(ValueError, match=f"since {edges} edges of open borders stay .*: ask for --faces {least} or"):
+        simplified("--faces", least - 1, source=tmp_path / "bowl.ply")
+
+
+def test_the_axis_that_was_taken_as_up_is_told(simplified):
+    assert "z up (else say --up)" in simplified("--faces", 300)[2]
+    assert "x up\n" in simplified("--faces", 300, "--up", "x")[2]
+
+
+def test_a_first_run_that_compiles_says_so(simplified, tmp_path, monkeypatch):
+    simplify(bumpy(), 300)
+    assert "compiles" not in simplified("--faces", 300)[2]
+    monkeypatch.setattr("numba.config.CACHE_DIR", str(tmp_path / "empty"))
+    assert "compiles" in simplified("--faces", 300)[2].splitlines()[0]
+
+
+def test_closed_mesh_says_nothing_of_borders(simplified):
+    assert "border" not in simplified("--faces", 300)[1]
+
+
+def test_borders_between_materials_that_are_given_up_are_counted(simplified, tmp_path):
+    mesh = textured()
+    plain = np.full((1, 1, 4), 255, dtype=np.uint8)
+    upper = (mesh.vertices[mesh.faces].mean(axis=1)[:, 2] > PLACE[2]).astype(int)
+    both = Texture(mesh.texture.uv, upper, (*mesh.texture.images, plain))
+    write_any(tmp_path / "two.glb", Mesh(mesh.vertices, mesh.faces, None, both))
+    _, said, _ = simplified("--faces", 500, source=tmp_path / "two.glb")
+    edges = rows(said)["border edges kept"]
+    assert int(edges[0]) > 20 and edges[0] == edges[1]
+    few = int(rows(said)["fewest faces that keep them"][1]) // 2
+    _, said, _ = simplified("--faces", few, source=tmp_path / "two.glb")
+    assert int(rows(said)["border edges kept"][1]) < int(edges[1])
+
+
+def soup(mesh):
+    """Each face twice, and each with corners of its own."""
+    corners = np.repeat(mesh.vertices[mesh.faces], 2, axis=0).reshape(-1, 3)
+    return Mesh(corners, np.arange(len(corners)).reshape(-1, 3))
+
+
+def test_a_soup_of_doubled_faces_is_joined_and_simplified(simplified, tmp_path):
+    mesh = bumpy()
+    write_any(tmp_path / "soup.ply", soup(mesh))
+    found, said, told = simplified("--faces", 300, source=tmp_path / "soup.ply")
+    assert len(found.faces) == 300 and found.watertight
+    assert rows(said)["faces"][0] == "1,280"
+    assert "1280 doubled faces removed" in told
+    assert f"{6 * 1280 - len(mesh.vertices):,} vertices at the place of another joined" in told
+
+
+def test_vertices_are_joined_only_where_that_closes_edges():
+    mesh = bumpy()
+    assert repaired(mesh)[1] == []
+    far = Mesh(np.r_[mesh.vertices, mesh.vertices], np.r_[mesh.faces, mesh.faces[:, ::-1] + len(mesh.vertices)])
+    assert len(repaired(far)[0].vertices) == len(far.vertices)  # two closed surfaces in one place
+    assert len(repaired(bowl()[0])[0].vertices) == len(mesh.vertices)
+
+
+def test_pieces_that_share_nothing_are_refused_with_what_to_do(simplified, tmp_path):
+    generator = np.random.default_rng(0)
+    corners = (generator.random((200, 1, 3)) + 0.1 * generator.random((200, 3, 3))).reshape(-1, 3)
+    write_any(tmp_path / "shards.ply", Mesh(corners, np.arange(600).reshape(-1, 3)))
+    with pytest.raises(ValueError, match="shards.ply: 50 faces cannot be had, since 600 edges .*: join its pieces"):
+        simplified("--faces", 50, source=tmp_path / "shards.ply")
+
+
+def test_picture_of_a_mesh_that_reaches_beyond_its_original(tmp_path):
+    mesh = Mesh(0.5 * (bumpy().vertices - PLACE) / SIZE / 1.4, bumpy().faces)
+    write_picture(tmp_path / "x.png", mesh, Mesh(1.5 * mesh.vertices, mesh.faces), mesh.vertices[:, 2] + 0.5, [3])
+    image = np.asarray(Image.open(tmp_path / "x.png").convert("RGB"))[150:-20]
+    first, _, last = ((third < 200).any(axis=2).sum() for third in np.array_split(image, 3, axis=1))
+    assert last > 1.5 * first  # both smaller by the same
+
+
+@pytest.mark.parametrize("share", ["0", "1e-9"])
+def test_a_tolerance_that_nothing_meets_gives_the_mesh_itself_and_says_so(simplified, share):
+    found, said, told = simplified("--tolerance", share)
+    assert len(found.faces) == 1280 and rows(said)["faces"][1] == "1,280"
+    assert "no fewer faces stay within the tolerance" in told
+
+
+@pytest.mark.parametrize("link", ["same", "relative", "symlink", "of a symlink"])
+def test_the_mesh_itself_is_never_written_over(file, tmp_path, monkeypatch, link):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(command, "read", lambda path: pytest.fail("it was read before it was refused"))
+    (tmp_path / "link.obj").symlink_to(file)
+    mesh, out = {
+        "same": (file, file), "relative": (file, "../" + tmp_path.name + "/ball.obj"), "symlink": (file, "link.obj"),
+        "of a symlink": ("link.obj", file),
+    }[link]  # fmt: skip
+    content = file.read_bytes()
+    with pytest.raises(ValueError, match="is the mesh itself"):
+        run([str(mesh), "--faces", "300", "--out", str(out)])
+    assert file.read_bytes() == content
+
+
+HARD = ("--neighbourhood", "fixed")
 
 
 @pytest.mark.parametrize(
     ("options", "reason"),
     [
         (["--faces", "300", "--out", "x.dae"], r"written as \.glb"),
-        (["--faces", "9000", "--out", "x.glb"], "has only 1280 faces"),
-        (["--faces", "many", "--out", "x.glb"], "no face count"),
+        (["--faces", "9000", "--out", "x.glb"], "ball.obj: --faces 9000: the object has only 1,280 faces"),
+        (["--faces", "many", "--out", "x.glb"], "^--faces='many' is no face count"),
+        (["--faces", "0", "--out", "x.glb"], "^--faces='0' must be 1 or more"),
+        (["--faces", "100%", "--out", "x.glb"], "^--faces='100%' must lie between"),
         (["--faces", "300", "--out", "missing/x.glb"], "no such folder"),
+        (["--faces", "300", "--out", "folder.glb"], "is a folder"),
         (["--faces", "300", "--out", "x.glb", "--picture", "x.txt"], "pictures are written as"),
-        (["--faces", "300", "--out", "x.glb", "--keep", "-1"], "0 or more points"),
         (["--faces", "300", "--out", "x.glb", "--method", "guess"], "unknown method 'guess'"),
-        (["--faces", "90", "--out", "x.glb", "--keep", "9"], r"ask for \d+ or more, or --shrink"),
+        (["--faces", "300", "--out", "x.glb", "--keep", "3"], "--keep does nothing where no faces are frozen"),
+        (["--faces", "300", "--out", "x.glb", "--rings", "-1"], "--rings does nothing where no faces are frozen"),
+        (["--faces", "300", "--out", "x.glb", "--shrink"], "add --neighbourhood fixed or adaptive or area"),
+        (["--faces", "300", "--out", "x.glb", "--method", "qem", "--shrink"], "--shrink does nothing with"),
+        (["--faces", "300", "--out", "x.glb", "--method", "qem", *HARD], "--neighbourhood does nothing with --method"),
+        (["--faces", "300", "--out", "x.glb", "--neighbourhood", "area", "--rings", "2"], "it is for fixed"),
+        (["--faces", "300", "--out", "x.glb", *HARD, "--rings", "-1"], "--rings -1: give 0"),
+        (["--faces", "300", "--out", "x.glb", *HARD, "--keep", "0"], "--keep 0: give 1 or more points"),
+        (["--faces", "90", "--out", "x.glb", *HARD, "--keep", "9"], r"ask for --faces \d+ or more.* let them --shrink"),
     ],
 )
 def test_what_cannot_be_done_is_said_before_anything_is_written(file, tmp_path, monkeypatch, options, reason):
     monkeypatch.chdir(tmp_path)
+    (tmp_path / "folder.glb").mkdir()
     before = sorted(tmp_path.iterdir())
     with pytest.raises(ValueError, match=reason):
         run([str(file), "--method", "height", *options])
@@ -155,15 +294,18 @@ def test_what_cannot_be_done_is_said_before_anything_is_written(file, tmp_path, 
 
 
 def test_smaller_neighbourhoods_make_the_target_feasible(simplified):
-    found, said, _ = simplified("--faces", 90, "--keep", 9, "--shrink")
+    found, said, _ = simplified("--faces", 90, *HARD, "--keep", 9, "--shrink")
     assert len(found.faces) <= 90
-    assert int(rows(said)["smallest feasible"][1].replace(",", "")) > 90
+    assert int(rows(said)["fewest faces that keep them"][1].replace(",", "")) > 90
 
 
-def test_unreadable_mesh_is_named(tmp_path):
-    (tmp_path / "bad.stl").write_bytes(b"not a mesh")
-    with pytest.raises(ValueError, match="bad.stl"):
+@pytest.mark.parametrize(("content", "reason"), [(b"not a mesh", "cut off"), (b"", "empty"), (None, "no such file")])
+def test_unreadable_mesh_is_named(tmp_path, content, reason):
+    if content is not None:
+        (tmp_path / "bad.stl").write_bytes(content)
+    with pytest.raises(ValueError, match=f"bad.stl: .*{reason}"):
         run([str(tmp_path / "bad.stl"), "--faces", "100", "--out", str(tmp_path / "x.glb")])
+    assert not (tmp_path / "x.glb").exists()
 
 
 @pytest.mark.parametrize(("text", "value"), [("0.2%", 0.002), ("0.002", 0.002), ("1e-4", 1e-4), (".5%", 0.005)])
@@ -174,13 +316,13 @@ def test_tolerance_is_a_share_of_the_diagonal(text, value):
 @pytest.mark.parametrize("text", ["-1", "150%", "much", "nan", ""])
 def test_tolerance_that_is_no_share_is_refused(text, capsys):
     with pytest.raises(SystemExit):
-        parser().parse_args(["x.stl", "--out", "x.glb", f"--tolerance={text}"])
+        parser("").parse_args(["x.stl", "--out", "x.glb", f"--tolerance={text}"])
     assert "no share of the diagonal" in capsys.readouterr().err
 
 
 def test_help_shows_how(capsys):
     with pytest.raises(SystemExit):
-        parser().parse_args(["--help"])
+        run(["--help"])
     said = capsys.readouterr().out
     assert "python -m stages.lod bunny.stl --faces 1500 --out small.glb" in said
 

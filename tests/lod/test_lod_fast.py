@@ -1,11 +1,15 @@
 """The compiled backend: what once went wrong in it."""
 
 import numpy as np
+import pytest
 import trimesh
 
 from stages.kit import Mesh
-from stages.lod import frozen_faces, metro
+from stages.lod import InfeasibleTarget, SimplifyError, fast, frozen_faces, metro
 from stages.lod.fast import collapse
+from stages.lod.kernels import decimate, refit
+from stages.lod.kernels.corners import before
+from stages.lod.kernels.quadrics import best_place
 from stages.lod.topology import faults, topology
 
 
@@ -56,12 +60,117 @@ def test_a_plate_folded_onto_itself_can_be_simplified():
     assert faults(found).folded <= faults(flat).folded
 
 
-def test_the_fit_brings_the_surface_nearer():
+def ball(subdivisions=4):
+    made = trimesh.creation.icosphere(subdivisions=subdivisions, radius=0.5)
+    return Mesh(made.vertices, made.faces)
+
+
+def test_the_fit_brings_the_surface_nearer(monkeypatch):
+    mesh = ball()
+    fitted = collapse(mesh, 200, nothing(mesh))
+    monkeypatch.setattr(fast, "FIT_BELOW", 0)
+    left = collapse(mesh, 200, nothing(mesh))
+    assert metro(mesh, fitted)["mean"] < 0.8 * metro(mesh, left)["mean"]
+
+
+def test_the_fit_moves_free_vertices_and_leaves_locked_ones():
     mesh = bumpy()
-    smooth = Mesh(mesh.vertices / np.linalg.norm(mesh.vertices, axis=1)[:, None], mesh.faces)
-    found = collapse(smooth, 200, nothing(smooth))
-    inscribed = trimesh.creation.icosphere(subdivisions=2)  # 320 faces, all corners on the sphere
-    assert metro(smooth, found)["mean"] < metro(smooth, Mesh(inscribed.vertices, inscribed.faces))["mean"]
+    surface = fast._surface(mesh, frozen_faces(mesh, [7, 900], 2), None)[0]
+    points, corner = surface.position.copy(), surface.corner.copy()
+    decimate(surface, 900, *fast.ATTEMPTS[0], fast.FOLD)
+    before_fit = surface.position.copy()
+    refit(surface, points, corner, np.ones(len(points)), 4000, fast.FOLD)
+    moved = (surface.position != before_fit).any(axis=1)
+    assert not moved[surface.locked].any()
+    assert moved[~surface.locked].sum() > 100
+
+
+def wavy_sheet(side=30):
+    """An open sheet, wavy across, with a hole: two loops of rim."""
+    x, y = np.meshgrid(np.linspace(0, 1, side), np.linspace(0, 1, side), indexing="ij")
+    a = np.arange(side * side).reshape(side, side)[:-1, :-1].ravel()
+    faces = np.r_[np.c_[a, a + side, a + 1], np.c_[a + 1, a + side, a + side + 1]]
+    vertices = np.c_[x.ravel(), y.ravel(), 0.1 * np.sin(9 * x * y).ravel()]
+    away = np.linalg.norm(vertices[faces].mean(axis=1)[:, :2] - [0.4, 0.6], axis=1) > 0.15
+    return Mesh(vertices, faces[away])
+
+
+def fan(surface, vertex):
+    """The half-edges that leave a vertex, found from the one that is named as its first."""
+    found = [int(surface.start[vertex])]
+    while (h := int(surface.twin[before(found[-1])])) >= 0 and h != found[0]:
+        found.append(h)
+    return found
+
+
+@pytest.mark.parametrize("make", [wavy_sheet, bumpy])
+def test_the_whole_fan_of_a_vertex_is_found_after_any_collapses(make):
+    # At a rim it is found from its first half-edge alone, on which all checks rest: one lost face is one not checked.
+    for faces in (1200, 700, 300):
+        surface = fast._surface(make(), nothing(make()), None)[0]
+        decimate(surface, faces, *fast.ATTEMPTS[0], fast.FOLD)
+        alive = np.flatnonzero(surface.corner >= 0)
+        for vertex in np.unique(surface.corner[alive]):
+            assert sorted(fan(surface, vertex)) == alive[surface.corner[alive] == vertex].tolist()
+
+
+def test_a_tetrahedron_never_becomes_two_faces_back_to_back():
+    tetrahedron = Mesh(
+        [[0, 0, 0], [1, 0, 0], [0.5, 0.9, 0], [0.5, 0.3, 0.8]], [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]
+    )
+    surface = fast._surface(tetrahedron, nothing(tetrahedron), None)[0]
+    assert decimate(surface, 2, *fast.LAST, fast.NO_FOLD) == 4  # where folds count, they hold it up as well
+
+
+def plane(*normal, d):
+    """The quadric of a plane, as a row of `vertex_quadrics`."""
+    x, y, z = normal
+    return np.array([x * x, x * y, x * z, y * y, y * z, z * z, x * d, y * d, z * d, d * d])
+
+
+@pytest.mark.parametrize(("meet", "taken"), [(1.2, True), (12.0, False), (1e6, False)])
+def test_a_vertex_never_goes_further_than_the_reach_of_its_edge(meet, taken):
+    # The planes meet `meet` lengths from the middle of the edge; almost parallel ones do so anywhere.
+    ends = np.array([[-0.5, 0, 0], [0.5, 0, 0]])
+    quadrics = np.stack([plane(1, 0, 0, d=-meet) + plane(0, 1, 0, d=0), plane(0, 0, 1, d=0)])
+    place = best_place(quadrics, ends, 0, 1)[1:]
+    assert place == pytest.approx((meet if taken else 0, 0, 0), abs=1e-9)
+
+
+def attempts(monkeypatch, *results):
+    """Has the backend's attempts give these, the last one again and again; returns the list of the calls."""
+    calls = []
+
+    def attempt(*arguments):
+        calls.append(arguments)
+        found = results[min(len(calls), len(results)) - 1]
+        return found, len(found.faces)
+
+    monkeypatch.setattr(fast, "_attempt", attempt)
+    return calls
+
+
+def folded(mesh):
+    return Mesh(mesh.vertices, np.r_[mesh.faces, mesh.faces[:1, ::-1]])
+
+
+def test_a_faulty_attempt_is_followed_by_others(monkeypatch):
+    calls = attempts(monkeypatch, folded(ball(2)), folded(ball(2)), ball(2))
+    assert faults(collapse(ball(3), 400, nothing(ball(3)))) == faults(ball(2))
+    assert len(calls) == 3
+
+
+def test_faults_of_all_attempts_are_named_and_nothing_is_returned(monkeypatch):
+    attempts(monkeypatch, folded(ball(2)))
+    with pytest.raises(SimplifyError, match="400 faces leave .* new .*: ask for more faces"):
+        collapse(ball(3), 400, nothing(ball(3)))
+
+
+def test_a_count_that_was_had_with_faults_alone_is_not_promised(monkeypatch):
+    attempts(monkeypatch, folded(ball(1)), folded(ball(2)), ball(2), ball(3))
+    with pytest.raises(InfeasibleTarget) as caught:
+        collapse(ball(3), 60, nothing(ball(3)))
+    assert caught.value.smallest == 320
 
 
 def test_equal_meshes_give_equal_bytes():

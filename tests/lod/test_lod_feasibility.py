@@ -1,13 +1,14 @@
 """Topology counts and the floor of the face count, on shapes where both are known."""
 
 import pickle
+from itertools import product
 
 import numpy as np
 import pytest
 import trimesh
 
 from stages.kit import Mesh
-from stages.lod import InfeasibleTarget, frozen_faces, smallest_feasible
+from stages.lod import InfeasibleTarget, frozen_faces, simplify, smallest_feasible
 from stages.lod.topology import Topology, faults, split_pinches, topology
 
 SPHERE = trimesh.creation.icosphere(subdivisions=3, radius=0.5)
@@ -72,6 +73,39 @@ def test_smallest_feasible_grows_with_points_and_rings_up_to_the_mesh():
     counts = [smallest_feasible(mesh, keep, rings) for keep, rings in (([9], 1), ([9], 3), ([9, 400], 3))]
     assert counts == sorted(counts) and len(set(counts)) == 3
     assert smallest_feasible(mesh, np.arange(len(mesh.vertices))) == len(mesh.faces)
+
+
+def flower():
+    away = np.hypot(*SPHERE.vertices.T[:2])
+    petals = 1 + 1.4 * np.cos(9 * np.arctan2(*SPHERE.vertices.T[:2])) * away
+    return Mesh(SPHERE.vertices * petals[:, None], SPHERE.faces)
+
+
+def cup():
+    x, y, z = SPHERE.vertices.T
+    inside = np.where(z > 0, 0.9, 1.0)
+    return Mesh(np.c_[inside * x, inside * y, -inside * np.abs(z)], SPHERE.faces)
+
+
+def blade():
+    return Mesh(SPHERE.vertices * [1, 0.1, 0.02], SPHERE.faces)
+
+
+def test_the_count_that_an_infeasible_target_names_can_be_had():
+    # The floor is no promise: most of these end above it, and the error carries the count that was reached.
+    refused = 0
+    for mesh, keep in product((flower(), cup(), blade()), ([], [5])):
+        asked = smallest_feasible(mesh, keep, 1)
+        try:
+            found = simplify(mesh, asked, keep, 1)
+        except InfeasibleTarget as error:
+            refused += 1
+            assert error.smallest > asked
+            found = simplify(mesh, (asked := error.smallest), keep, 1)
+        assert len(found.faces) <= asked
+        assert topology(found.faces) == topology(mesh.faces)
+        assert not faults(found).added(faults(mesh))
+    assert refused >= 2
 
 
 def test_infeasible_target_travels_between_processes():

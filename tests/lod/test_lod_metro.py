@@ -7,7 +7,7 @@ import trimesh
 
 from stages.kit import Mesh
 from stages.lod import metro, simplify
-from stages.lod.metro import sample_surface
+from stages.lod.nearest import Surface
 
 BALL = trimesh.creation.icosphere(subdivisions=4, radius=0.5)
 SPHERE = Mesh(BALL.vertices, BALL.faces)
@@ -94,7 +94,7 @@ def test_agrees_with_pymeshlab_within_sampling_error():
 
 def test_samples_are_even_by_area():
     mesh = Mesh(np.r_[square().vertices, square(1, 3).vertices], np.r_[square().faces, square().faces + 4])
-    points = sample_surface(mesh, 1000, np.random.default_rng(0))
+    points = Surface(mesh).sample(1000, np.random.default_rng(0))[0]
     assert (points[:, 2] == 0).sum() == pytest.approx(100, abs=1)
     upper = points[points[:, 2] == 1]
     assert (upper[:, :2].mean(axis=0) == pytest.approx(1.5, abs=0.1)) and upper.max() <= 3

@@ -7,10 +7,11 @@ import pytest
 import trimesh
 
 from stages.kit import Mesh
-from stages.kit.files import read_mesh, read_table, write_mesh
+from stages.kit.files import read_mesh, read_table, write_arrays, write_mesh
 from stages.lod import __main__ as stage
 from stages.lod import shrunk_rings, simplify, take_pictures
 from stages.lod.cell import Subject, measure_cells
+from stages.lod.errors import errors_of
 from stages.lod.schema import Params
 from stages.lod.summary import summarise
 from stages.lod.targets import face_count, file_name
@@ -18,6 +19,7 @@ from stages.lod.variant import Variant, variant
 from stages.salient_points.options import Found
 from stages.salient_points.storage import write_found
 from stages.views import viewpoint_set
+from stages.weights.truth import spread_on_surface
 
 SETTINGS = Params(
     methods=["qem", "enhanced", "enhanced-soft", "itti", "random-area"], targets=["50%", "10%", "4000"], rings=3,
@@ -92,6 +94,32 @@ def test_without_saliency_there_is_no_salient_error(tmp_path):
     assert "metro_mean" in found and "salient_error" not in found
 
 
+def test_gaze_counts_the_errors_of_the_side_that_people_looked_at():
+    subject = new_subject()
+    looked = spread_on_surface(subject.mesh, (subject.mesh.vertices[:, 0] > 0.4).astype(float), 0.025)
+    subject = dataclasses.replace(subject, gaze=looked)
+
+    def errors(side):
+        """Of the ball, flattened on one side of the x axis."""
+        vertices = subject.mesh.vertices.copy()
+        flat = side * vertices[:, 0] > 0.4
+        vertices[flat, 0] = side * 0.4
+        parts = errors_of(subject, Mesh(vertices, subject.mesh.faces), SETTINGS, 0)
+        return {part["metric"]: part["value"] for part in parts}
+
+    front, back = errors(1), errors(-1)
+    assert back["gaze_error"] < 1e-3 * front["gaze_error"] and front["gaze_error"] > 2 * front["metro_mean"]
+    assert front["salient_error"] == pytest.approx(back["salient_error"], rel=0.2)  # the model looks up, at neither
+
+
+def test_only_recorded_gaze_is_human_gaze(tmp_path, monkeypatch):
+    monkeypatch.setattr(stage, "DATA", tmp_path)
+    write_arrays(tmp_path / "weights" / "lessons" / "ball.npz", density=np.arange(3.0))
+    assert stage.human_gaze("ball", "gaze").tolist() == [0, 1, 2]
+    assert stage.human_gaze("ball", "household") is None  # a lesson of marks
+    assert stage.human_gaze("cube", "gaze") is None
+
+
 def test_curve_has_the_rows_without_what_differs_from_run_to_run(tmp_path, monkeypatch):
     subject = new_subject()
     for kind in ("meshes", "salient_points"):
@@ -100,10 +128,11 @@ def test_curve_has_the_rows_without_what_differs_from_run_to_run(tmp_path, monke
     found = {name: Found(points, len(points), subject.saliency.get(name)) for name, points in subject.points.items()}
     write_found(tmp_path / "salient_points" / "ball.npz", found)
     monkeypatch.setattr(stage, "DATA", tmp_path)
-    rows = [stage.process("ball", tmp_path / turn, SHRINKING, 0) for turn in ("one", "two")][0]
+    rows = [stage.process("ball", tmp_path / turn, SHRINKING, 0, "gaze") for turn in ("one", "two")][0]
     curves = [(tmp_path / turn / "ball" / "curve.csv").read_bytes() for turn in ("one", "two")]
     assert curves[0] == curves[1]
     table = read_table(tmp_path / "one" / "ball" / "curve.csv")
+    assert "salient_error" in set(table["metric"]) and "gaze_error" not in set(table["metric"])  # no lesson, no gaze
     assert list(table) == [name for name in rows[0] if name not in ("seconds", "note")] and len(table) == len(rows)
     meshes = [sorted((tmp_path / turn / "ball").glob("*.npz")) for turn in ("one", "two")]
     assert [path.read_bytes() for path in meshes[0]] == [path.read_bytes() for path in meshes[1]]

@@ -74,6 +74,27 @@ def test_faces_without_area_are_segments_and_points():
     assert Surface(mesh).nearest(points)[0] == pytest.approx([1, 1, 1, 1, 0])
 
 
+@pytest.mark.parametrize("height", [1e-2, 1e-5, 1e-8, 1e-11, 1e-13, 1e-15, 0.0])
+@pytest.mark.parametrize("foot", [0.3, 0.0, 1.0, 1.5, -0.5])
+def test_needles_are_as_far_as_their_sides_at_most_their_height_less(height, foot):
+    turn = np.linalg.qr(np.random.default_rng(5).normal(size=(3, 3)))[0]
+    corners = np.array([[0, 0, 0], [1, 0, 0], [foot, height, 0]]) @ turn + 0.1
+    along, up = np.meshgrid([-2, -1e-3, 0, 0.2, 0.5, 0.999, 1, 1 + 1e-6, 2], [0, 1e-9, 1e-3, 1])
+    places = np.stack([along.ravel(), np.zeros(36), up.ravel()], axis=1)
+    low, high = min(foot, 0), max(foot, 1)
+    expected = np.hypot(places[:, 0] - places[:, 0].clip(low, high), places[:, 2])
+    found, _ = Surface(Mesh(corners, [[0, 1, 2]])).nearest(places @ turn + 0.1)
+    assert np.abs(found - expected).max() <= height + 1e-12
+
+
+def test_near_questions_are_answered_alike_after_far_ones():
+    for mesh in MESHES.values():
+        surface, points = Surface(mesh), mesh.vertices[:100] * 1.01
+        before = surface.nearest(points)[0]
+        surface.nearest([[1e3, 0, 0]])
+        assert (surface.nearest(points)[0] == before).all()
+
+
 def test_flat_meshes_and_meshes_far_from_the_origin_are_measured():
     flat = Mesh(SPHERE.vertices * [1, 1, 0], SPHERE.faces)
     moved = Mesh(flat.vertices + [1e4, 0, 0], flat.faces)

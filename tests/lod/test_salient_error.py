@@ -64,7 +64,7 @@ def test_scale_of_the_saliency_and_of_the_meshes_does_not_matter():
 
 def test_all_errors_come_from_one_sampling():
     damaged = dented(1)
-    found = surface_errors(SPHERE, damaged, UPPER, 1000, seed=3)
+    found = surface_errors(SPHERE, damaged, {"salient": UPPER}, 1000, seed=3)
     assert {name: found[name] for name in ("mean", "rms", "max")} == metro(SPHERE, damaged, 1000, seed=3)
     assert found["salient"] == salient_error(SPHERE, damaged, UPPER, 1000, seed=3)
 

@@ -22,8 +22,8 @@ from stages.report.items import build_all
 from stages.report.lod_cells import OWN, Source, data_sets, face_counts, paired_cells
 from stages.report.results import NotRun, Results
 from stages.report.style import label
-from stages.report.tables import backends, lod_claims, lod_detectors, table_3_1_5_combinations, table_3_2
-from stages.report.tradeoff import backends as chart
+from stages.report.tables import lod_claims, lod_detectors, table_3_1_5_combinations, table_3_2
+from stages.report.tradeoff import simplification
 
 OBJECTS = ["a", "b", "c", "d"]
 POINTS = {"heat_kernel": 3, "SymRad": 4, "itti": 15, "guided_ssim": 16, "guided_ed": 17, "svm": 18, "harris": 50,
@@ -97,7 +97,7 @@ def test_a_run_on_psb_is_not_shown_twice(run):
 def test_committed_set_alone_is_enough(bare, small):
     write_table(bare / "reports/simplification/gaze.csv", measured("gaze").drop(columns="seconds"))
     assert data_sets(Results(small.settings(), bare)) == {"gaze meshes": Source("gaze")}
-    with pytest.raises(NotRun, match="make lod"):
+    with pytest.raises(NotRun, match="make detectors"):
         Results(small.settings(), bare).simplification("princeton")
 
 
@@ -191,7 +191,12 @@ def test_gap_and_spread_grow_at_few_faces(run):
 
 
 def test_error_falls_with_faces(run):
-    assert (falls_with_faces("itti")(run(measured())) > 0).all()
+    rows = measured()
+    assert (falls_with_faces("itti")(run(rows)) > 0).all()
+    once = (rows["object"] == "a") & (rows["target"] != "1500")
+    assert list(falls_with_faces("itti")(run(rows[~once])).index) == ["b", "c", "d"]  # with one count nothing can fall
+    with pytest.raises(NotRun, match="two face counts"):
+        falls_with_faces("itti")(run(rows[rows["target"] == "1500"]))
 
 
 def test_equivalence_holds_within_the_margin_and_fails_beyond_it(run):
@@ -230,6 +235,35 @@ def test_every_claim_on_meshes_is_judged_on_every_set(run):
         assert words["hks_high", data] == "contradicted"
     own = judge(MESHES, results).set_index("key")["verdict"]
     assert (own == words.xs("test", level="data").reindex(own.index)).all()
+
+
+def with_people():
+    """Rows of the meshes with gaze, on which people judge ours, unlike our model, better than plain QEM."""
+    rows = measured("gaze", 2)
+    people = rows[rows["metric"] == "salient_error"].assign(metric="gaze_error")
+    ours = people["method"] == "enhanced"
+    people.loc[ours, "value"] *= np.linspace(0.1, 0.2, ours.sum())
+    return pd.concat([rows, people])
+
+
+@pytest.mark.parametrize("own", [True, False])
+def test_where_people_look_is_judged_on_the_meshes_with_gaze(run, own):
+    results = run(with_people()) if own else run(measured(), gaze=with_people())
+    found = judge(MESHES, results).set_index("key")
+    assert found.loc["ours_keep_gaze", "verdict"] == "supported"
+    assert found.loc["ours_keep_gaze", "tested_on"].startswith("meshes with human gaze, error weighted by human gaze")
+    assert found.loc["ours_keep_salient", "verdict"] == "contradicted"  # the model and people differ
+    table = lod_claims.build(results).frame.set_index(["key", "data"])["verdict"]
+    assert table["ours_keep_gaze", "gaze meshes"] == "supported"
+    assert own or table["ours_keep_gaze", "test"] == "open"
+
+
+@pytest.mark.parametrize("own", [True, False])
+def test_tables_show_the_error_by_gaze_where_it_was_measured(run, own):
+    results = run(with_people()) if own else run(measured(), gaze=with_people())
+    shown = lod_detectors.build(results).shown
+    assert ("error where people look, %" + ("" if own else ", gaze meshes")) in shown
+    assert ("error where people look, %" in table_3_1_5_combinations.build(results).shown) == own
 
 
 def test_not_run_claims_say_so(run):
@@ -275,79 +309,40 @@ def test_pictures_take_the_same_target_of_all_methods(meshes):
     assert "a at 3,000 faces" in figure_3_7.build(meshes).caption
 
 
+def test_picture_of_many_and_few_points_takes_the_object_where_they_differ(meshes):
+    path = meshes.data / "salient_points/b.npz"
+    arrays = {f"{method}.points": np.arange(60) for method in POINTS}
+    counts = {"corners": 60, "VisAttCurvSymCon": 14}
+    write_arrays(path, **arrays | {f"{method}.strong": np.int64(counts.get(method, 3)) for method in POINTS})
+    assert figure_3_7.build(meshes).caption.startswith("b at ")
+
+
+def test_boxes_hold_the_objects_without_error(run, monkeypatch):
+    rows, drawn = measured(), []
+    exact = (rows["object"] == "a") & (rows["metric"] == "metro_mean")
+    rows.loc[exact, "value"] = 0.0
+    monkeypatch.setattr(figure_3_23.np, "quantile", lambda values, _: drawn.append(values) or [1e-9, 1, 2, 3, 4])
+    figure_3_23.build(run(rows))
+    assert {len(values) for values in drawn} == {4} and min(values.min() for values in drawn) > 0
+
+
+def test_chart_of_costs_has_a_front_for_each_share(run, monkeypatch):
+    rows = measured()
+    more = rows[rows["target"] == "25%"].assign(target="50%", value=lambda half: half["value"] / 2)
+    monkeypatch.setattr(simplification, "looking_seconds", lambda _: dict.fromkeys(POINTS, 0.9))
+    figure = simplification.build(run(pd.concat([rows, more])))
+    found = pd.read_csv(figure.paths[1]).set_index(["metric", "target", "method"])
+    plain = found.xs("qem", level="method")
+    assert plain["on_front"].all() and (plain["cost_ratio"] == 1).all() and len(plain) == 6
+    assert found.loc[("metro_mean", "25%", "itti"), "cost_ratio"] == pytest.approx(10)
+    assert not found.drop(index="qem", level="method")["on_front"].any()
+
+
 def test_colours_of_the_error_are_those_of_the_distance(small):
     inner = small.ball()
     inner = type(inner)(0.9 * inner.vertices, inner.faces)
     found = figure_3_8._error(small.ball(24), inner)
     assert found.mean() == pytest.approx(0.05 / np.sqrt(3), rel=0.1)
-
-
-def benched(power=1.0, kept=True):
-    """Rows of three backends: `fast` takes a twentieth of the time at nine tenths of the error."""
-    rows = []
-    for k, full in enumerate([2000, 20_000, 50_000, 100_000, 400_000, 1_000_000]):
-        base = 1e-6 * (full * np.log(full)) ** power
-        for backend, time, error in (("pymeshlab", 1, 1), ("fast", 0.05, 0.9), ("poor", 0.5, 1.5)):
-            for points in (0, 100):
-                row = {"mesh": f"m{k}", "source": "psb", "full": full, "target": 0.25, "faces": full // 4}
-                row |= {
-                    "backend": backend,
-                    "kept_points": points,
-                    "metro_mean": 1e-3 * error,
-                    "ssim_error": 0.01 * error,
-                }
-                row |= {"seconds": base * time, "ratio": time, "error_ratio": error, "kept": kept, "valid": True}
-                rows.append(row)
-    return pd.DataFrame(rows)
-
-
-@pytest.fixture
-def bench(bare, small):
-    def written(rows):
-        write_table(bare / "reports/bench/simplification.csv", rows)
-        return Results(small.settings(), bare)
-
-    return written
-
-
-def test_backends_are_compared_as_ratios(bench):
-    frame = backends.build(bench(benched())).frame.set_index(["backend", "with_points"])
-    row = frame.loc["fast", True]
-    assert (row["time_ratio"], row["error_ratio"], row["seen_ratio"]) == pytest.approx((0.05, 0.9, 0.9))
-    assert row["kept"] == 1 and row["valid"] == 1 and np.isnan(frame.loc[("fast", False), "kept"])
-
-
-def test_lost_points_lower_the_share_that_is_kept(bench):
-    rows = benched()
-    rows.loc[(rows["backend"] == "poor") & (rows["mesh"] == "m0"), "kept"] = False
-    frame = backends.build(bench(rows)).frame.set_index(["backend", "with_points"])
-    assert frame.loc[("poor", True), "kept"] == pytest.approx(5 / 6)
-
-
-@pytest.mark.parametrize("power", [0.8, 1.0, 1.4])
-def test_growth_finds_the_power_of_the_time(power):
-    rows = benched(power)
-    fit = backends.growth(rows[rows["backend"] == "fast"])
-    assert fit.power == pytest.approx(power, abs=1e-9)
-    assert fit(50_000) == pytest.approx(0.05e-6 * (50_000 * np.log(50_000)) ** power)
-
-
-def test_growth_needs_large_meshes():
-    rows = benched()
-    assert backends.growth(rows[rows["full"] <= 20_000]) is None
-
-
-def test_chart_of_backends_has_the_front(bench):
-    figure = chart.build(bench(benched()))
-    table = pd.read_csv(figure.paths[1]).set_index(["backend", "with_points"])
-    assert table.loc[("fast", True), "error_front"] and not table.loc[("pymeshlab", True), "error_front"]
-    assert figure.paths[0].stat().st_size > 5000 and "1.00 [1.00, 1.00]" in figure.caption
-
-
-def test_chart_without_the_reference_is_not_run(bench):
-    rows = benched()
-    with pytest.raises(NotRun, match="pymeshlab"):
-        chart.build(bench(rows[rows["backend"] == "fast"]))
 
 
 def test_all_of_it_is_not_run_without_measurements(bare, small):

@@ -14,7 +14,7 @@ from stages.kit import Mesh
 from stages.kit.files import write_mesh
 from stages.report.packing import SHADES, ordered
 from stages.report.page import part, script_json
-from stages.report.viewer import FINEST, pack_object, pack_viewer
+from stages.report.viewer import FINEST, apart, pack_object, pack_viewer
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "microsoft-edge")
 SOFTWARE_GL = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")  # WebGL without a card
@@ -68,6 +68,13 @@ def test_levels_nearly_as_fine_as_the_original_are_left_out(results, small):
     write_mesh(results.data / "lod/ball/qem_90pct.npz", small.ball(11))
     faces = len(small.ball().faces)
     assert all(one["faces"] <= FINEST * faces for one in pack_object(results, "ball")["ladders"]["qem"]["levels"])
+
+
+def test_levels_that_look_the_same_are_shown_once(small):
+    levels = [small.ball(rings) for rings in (20, 19, 16, 15, 8)]
+    shown = apart(levels)
+    assert [len(mesh.faces) for mesh in shown] == [len(levels[k].faces) for k in (0, 2, 4)]
+    assert apart([]) == []
 
 
 class Page:

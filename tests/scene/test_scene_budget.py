@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from stages.kit import Mesh
-from stages.scene import Frames, Level, Placed, budget, build_ladder, rivals
+from stages.scene import Frames, Level, Placed, budget, rivals
 from stages.scene.ladder import ERRORS, finest
 from stages.scene.pictures import picture_error
 from stages.scene.rows import saved
@@ -55,6 +55,16 @@ def test_the_perceptual_tolerance_holds_too(meshes, ladders, make_scene):
     assert found.faces.sum() < rivals.full(found.frames).faces.sum() / 2
 
 
+@pytest.mark.parametrize("aside", [0.28, 0.34])
+def test_the_perceptual_tolerance_holds_for_what_another_partly_hides(meshes, ladders, make_scene, aside):
+    """The outline of the one in front is what breaks the other's picture: finer levels of the latter do not help."""
+    objects = (Placed("one", (0, 0, 0), 0.0, 0.5), Placed("two", (aside, 0.6, 0.1), 0.0, 0.2))
+    scene = make_scene(objects=objects, frames=3, tolerance=0.05, kind="ssim")
+    found = budget(meshes, scene, ladders=ladders)
+    assert 0 < found.errors.max() <= 0.05
+    assert found.faces[:, 1].max() < len(meshes["two"].faces) / 2
+
+
 def test_salient_places_can_be_minded_by_options_alone(meshes, make_scene):
     weights = (meshes["two"].vertices[:, 2] > 0.3).astype(float)
     scene = make_scene(objects=(Placed("two", (0, 0, 0), 0.0, 0.2),), frames=2)
@@ -86,7 +96,7 @@ def test_what_leaves_the_view_close_to_the_eye_does_not_need_all_its_faces(meshe
     """Its box reaches behind the camera, so that its distance says nothing of what is seen of it."""
     scene = make_scene(objects=(Placed("one", (0.42, -1.1, 0.2), 0.0, 0.4),))
     found = budget(meshes, scene, ladders=ladders)
-    behind = [camera.project(found.frames.poses[0].corners)[2].min() < 0.1 for camera in scene.cameras]
+    behind = [camera.project(found.frames.poses[0].corners())[2].min() < 0.1 for camera in scene.cameras]
     assert behind[-1] and found.frames.in_view[-1, 0]
     assert found.errors.max() <= 1 and found.faces[-1, 0] < 0.5 * len(meshes["one"].faces)
 
@@ -139,17 +149,61 @@ def test_joined_frames_show_what_one_ray_cast_of_the_whole_scene_shows(meshes, f
     assert (frames.owners(1, frames.full) == expected).mean() > 0.999
 
 
-def test_uniform_levels_go_by_distance_alone(frames_of, make_scene, meshes):
+def test_uniform_levels_go_by_distance_alone(frames_of, make_scene, meshes, ladders):
+    """Half of the faces at twice the reach: two levels of the ladder that ours is chosen from."""
     scene = make_scene()
     frames = frames_of(scene)
-    shares = {name: build_ladder(mesh, counts=[int(s * len(mesh.faces)) for s in rivals.SHARES[:3]])
-              for name, mesh in meshes.items()}  # fmt: skip
-    ladders = tuple((full, *shares[placed.name][1:]) for full, placed in zip(frames.full, scene.objects, strict=True))
-    found = rivals.uniform(frames, ladders, 1.0)
-    expected = np.clip(np.floor(np.log2(frames.distance)) + 1, 0, 3)
-    assert np.array_equal(found.levels, expected)
-    assert (rivals.uniform(frames, ladders, 1e3).levels == 0).all()
-    assert (rivals.uniform(frames, ladders, 1e-3).levels == 3).all()
+    own = tuple((full, *ladders[placed.name][1:]) for full, placed in zip(frames.full, scene.objects, strict=True))
+    found = rivals.uniform(frames, own, 1.0)
+    expected = np.maximum(np.rint(2 * np.log2(frames.distance)), 0)
+    assert np.array_equal(found.levels, expected) and len(np.unique(expected)) > 2
+    assert (rivals.uniform(frames, own, 1e3).levels == 0).all()
+    assert (rivals.uniform(frames, own, 1e-3).levels == [len(ladder) - 1 for ladder in own]).all()
+
+
+def test_uniform_levels_by_size_show_a_larger_copy_finer(frames_of, make_scene, ladders):
+    objects = (Placed("one", (-0.3, 0, 0), 0.0, 0.2), Placed("one", (0.3, 0, 0), 0.0, 0.4))
+    frames = frames_of(make_scene(objects=objects))
+    own = tuple((full, *ladders["one"][1:]) for full in frames.full)
+    found = rivals.uniform(frames, own, 2.0, by_size=True)
+    assert (found.levels[:, 1] < found.levels[:, 0]).all()
+
+
+def test_a_limit_shared_equally_gives_all_the_same_count(plan):
+    limit = int(plan.faces.sum(axis=1).max() * 0.6)
+    found = rivals.equal(plan, limit)
+    over = plan.faces.sum(axis=1) > limit
+    assert over.any() and (found.faces.sum(axis=1) <= limit).all()
+    assert np.array_equal(found.levels[~over], plan.levels[~over])
+    counts = [[level.faces for level in ladder] for ladder in plan.ladders]
+    for levels in found.levels[over]:
+        common = max(own[k] for own, k in zip(counts, levels, strict=True))
+        expected = [next(k for k, n in enumerate(own) if n <= common) for own in counts]
+        assert levels.tolist() == expected
+
+
+def test_a_limit_shared_where_it_hurts_least_hurts_less(meshes, ladders, make_scene, plan):
+    limit = int(plan.faces.sum(axis=1).max() * 0.6)
+    found = budget(meshes, make_scene(limit=limit), ladders=ladders)
+    assert found.errors.max() < rivals.equal(plan, limit).errors.max()
+
+
+def test_a_level_that_sticks_out_of_the_box_is_seen_to_its_end(meshes, ladders, make_scene, frames_of):
+    frames = frames_of(make_scene(frames=1))
+    full = ladders["one"][0]
+    wide = Level(Mesh(full.mesh.vertices * [1.5, 1, 1], full.mesh.faces), dict.fromkeys(ERRORS, 0.0))
+    columns = [np.ptp(frames.look(0, 0, level).pixels % 80) for level in (full, wide)]
+    assert columns[1] > columns[0] + 1
+
+
+def test_what_hides_an_object_counts_nothing_for_its_structure(meshes, ladders, make_scene):
+    """The hidden one is at full detail: the picture changes where the other stands, and that is the other's alone."""
+    objects = (Placed("one", (0, 0, 0), 0.0, 0.6), Placed("two", (0, 0.8, 0.1), 0.0, 0.1))
+    scene = make_scene(objects=objects, frames=1, kind="ssim", tolerance=0.1)
+    frames = Frames(scene, meshes, [ladders["one"][0], ladders["two"][0]])
+    found = frames.check(0, [ladders["one"][-1], ladders["two"][0]]).objects
+    assert found[0] > 0.05 and found[1] == 0
+    assert frames.between(0, 1, ladders["two"][0], ladders["two"][-1]) == 0
 
 
 def test_tuning_meets_the_wanted_error_from_above(frames_of, make_scene, ladders):
@@ -164,8 +218,20 @@ def test_tuning_meets_the_wanted_error_from_above(frames_of, make_scene, ladders
 
 
 def test_saved_faces_are_of_the_totals():
-    share, low, high = saved(np.array([10, 30]), np.array([20, 60]))
+    share, low, high = saved(np.array([10, 30]), np.array([20, 60]), ["cup", "mug"])
     assert (share, low, high) == (0.5, 0.5, 0.5)
+
+
+def test_copies_of_an_object_are_one_object_to_the_interval():
+    ours, others, names = np.array([10, 40, 30]), np.array([20, 50, 90]), ["cup", "mug", "pan"]
+    once = saved(ours, others, names)
+    often = saved(np.repeat(ours, 9), np.repeat(others, 9), np.repeat(names, 9))
+    assert once == pytest.approx(often) and once[1] < once[0] < once[2]
+
+
+def test_one_object_alone_has_no_interval():
+    share, low, high = saved(np.array([10, 20, 30]), np.array([40, 20, 60]), ["cup"] * 3)
+    assert share == 0.5 and np.isnan([low, high]).all()
 
 
 def test_a_ladder_gets_coarser_and_worse(ladders):

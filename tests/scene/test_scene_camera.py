@@ -71,7 +71,7 @@ def test_a_look_sees_the_surface_where_it_is(meshes, ladders):
     camera = Camera((0.0, -2.0, 0.3), (0.0, 0.0, 0.1), 30.0, (60, 80))
     pose = Placed("one", (0.05, 0.0, 0.0), 40.0, 0.3).pose(meshes["one"])
     level = ladders["one"][0]
-    seen = look(level, camera, pose, pixel_box(camera, pose))
+    seen = look(level, camera, pose)
     points, _ = rays_of(seen, camera, pose)
     rows, columns, depth = camera.project(pose.to_world(points))
     assert len(seen.pixels) > 200

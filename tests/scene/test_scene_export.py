@@ -11,7 +11,9 @@ import pandas as pd
 import pytest
 import trimesh
 
-from stages.scene.export import describe, read_lod, size_in_metres, to_gltf, write_glb, write_lod, write_scene
+from stages.kit import Mesh
+from stages.scene.export import describe, size_in_metres, to_gltf, write_glb, write_lod, write_scene
+from stages.scene.loaded_back import check_glb, read_lod
 
 VALIDATE = """
 const validator = require('gltf-validator'), fs = require('fs');
@@ -84,6 +86,30 @@ def test_the_manifest_tells_up_to_which_size_a_level_is_enough(ladders, make_sce
     assert row["size"] == pytest.approx(0.2) and row["faces"] == level.faces
     assert row["error"] * row["enough_up_to"] / row["size"] == pytest.approx(2.0, rel=1e-4)
     assert describe("two", ladders["two"][0], 1.0, scene)["enough_up_to"] is None
+
+
+def test_a_file_that_comes_back_otherwise_is_named(painted, tmp_path):
+    mesh, path = to_gltf(painted[0].mesh, 0.2), tmp_path / "a.glb"
+    write_glb(path, [mesh], ["a"])
+    others = {
+        "faces": Mesh(mesh.vertices, mesh.faces[::-1], mesh.colors),
+        "places": Mesh(mesh.vertices * 1.001, mesh.faces, mesh.colors),
+        "colours": Mesh(mesh.vertices, mesh.faces, mesh.colors // 2),
+    }
+    for what, other in others.items():
+        with pytest.raises(ValueError, match=rf"a\.glb: a came back with other {what}"):
+            check_glb(path, [other], ["a"])
+    with pytest.raises(ValueError, match=r"a\.glb came back with a in place of b"):
+        check_glb(path, [mesh], ["b"])
+    path.write_bytes(path.read_bytes()[:100])
+    with pytest.raises(ValueError, match=r"a\.glb cannot be loaded back"):
+        check_glb(path, [mesh], ["a"])
+
+
+def test_a_join_that_goes_wrong_is_named(painted, make_scene, tmp_path, monkeypatch):
+    monkeypatch.setattr("stages.scene.export.read_lod", lambda path: ["two_1"])
+    with pytest.raises(ValueError, match=r"lod\.glb: MSFT_lod came back as two_1"):
+        write_lod(tmp_path / "lod.glb", painted, rows_of(painted, make_scene()), 60)
 
 
 def test_equal_meshes_give_equal_bytes(ladders, tmp_path):

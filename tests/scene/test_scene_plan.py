@@ -75,3 +75,16 @@ def test_a_limit_is_shared_where_it_hurts_least():
     assert share([0, 0], faces, errors, 120).tolist() == [2, 0]
     assert share([0, 0], faces, errors, 70).tolist() == [2, 1]
     assert share([0, 0], faces, errors, 1).tolist() == [2, 2]
+
+
+def test_no_sharing_has_a_smaller_worst_error():
+    draw = np.random.default_rng(3)
+    faces = [np.array([90, 60, 40, 25, 10]) + draw.integers(5) for _ in range(3)]
+    errors = [np.cumsum(draw.random(5)) for _ in range(3)]
+    all_levels = list(itertools.product(range(5), repeat=3))
+    total = {levels: sum(own[k] for own, k in zip(faces, levels, strict=True)) for levels in all_levels}
+    worst = {levels: max(own[k] for own, k in zip(errors, levels, strict=True)) for levels in all_levels}
+    for limit in (60, 100, 150, 200, 250):
+        found = tuple(share([0, 0, 0], faces, errors, limit).tolist())
+        assert total[found] <= limit
+        assert worst[found] == min(worst[levels] for levels in all_levels if total[levels] <= limit)

@@ -11,52 +11,43 @@ def may_collapse(corner, twin, start, locked, p, mark, last, h, x, y, z, turn, s
     """Whether the edge of half-edge h may become one vertex at x, y, z: nothing folds, and the link condition holds.
 
     The link condition: the ends share no neighbour but the two across the edge, and no tetrahedron closes. mark (n,)
-    scratch, last (1,) the number of the last marking; turn, shape, fold: see `faces_stay_sound`.
+    scratch, last (1,) the number of the last marking; turn, shape, fold: see `look_around`.
     """
     t = twin[h]
     i, j, k, m = corner[h], corner[t], corner[before(h)], corner[before(t)]
     if k == m or _shut(corner, twin, h, m) or _shut(corner, twin, t, k):
         return False
     last[0] += 1
-    now = last[0]
-    mark_neighbours(corner, twin, start, mark, now, i)
-    if count_marked(corner, twin, start, mark, now, j) != 2:
+    if locked[i]:
+        mark_neighbours(corner, twin, start, mark, last[0], i)
+    elif look_around(corner, twin, start, p, mark, last[0], i, j, x, y, z, turn, shape, fold) < 0:
         return False
-    if not (locked[i] or faces_stay_sound(corner, twin, start, p, i, j, x, y, z, turn, shape, fold)):
-        return False
-    if not (locked[j] or faces_stay_sound(corner, twin, start, p, j, i, x, y, z, turn, shape, fold)):
+    if locked[j]:
+        shared = mark_neighbours(corner, twin, start, mark, last[0], j)
+    else:
+        shared = look_around(corner, twin, start, p, mark, last[0], j, i, x, y, z, turn, shape, fold)
+    if shared != 2:
         return False
     return _seam_holds(corner, twin, p, i, j, h, x, y, z, fold) and _seam_holds(corner, twin, p, i, j, t, x, y, z, fold)
 
 
 @kernel
-def mark_neighbours(corner, twin, start, mark, now, v):
-    """Marks all vertices that an edge joins to v."""
+def mark_neighbours(corner, twin, start, mark, tag, v):
+    """Marks all vertices that an edge joins to v by `tag`; returns how many had that mark already."""
+    found = 0
     h = first = start[v]
     while True:
-        mark[corner[after(h)]] = now
+        a = corner[after(h)]
+        found += mark[a] == tag
+        mark[a] = tag
         back = before(h)
         h = twin[back]
         if h < 0:
-            mark[corner[back]] = now
-            return
+            found += mark[corner[back]] == tag
+            mark[corner[back]] = tag
+            return found
         if h == first:
-            return
-
-
-@kernel
-def count_marked(corner, twin, start, mark, now, v):
-    """How many of the vertices that an edge joins to v are marked."""
-    count = 0
-    h = first = start[v]
-    while True:
-        count += mark[corner[after(h)]] == now
-        back = before(h)
-        h = twin[back]
-        if h < 0:
-            return count + (mark[corner[back]] == now)
-        if h == first:
-            return count
+            return found
 
 
 @kernel
@@ -93,51 +84,60 @@ def _place(p, v, i, j, x, y, z):
 
 
 @kernel
-def faces_stay_sound(corner, twin, start, p, v, other, x, y, z, turn, shape, fold):
-    """No face around v, but those it shares with `other`, goes bad when v moves to x, y, z.
+def look_around(corner, twin, start, p, mark, tag, v, other, x, y, z, turn, shape, fold):
+    """-1 where a face around v, but those it shares with `other`, goes bad when v moves to x, y, z.
 
-    Bad is: turned too far, folded onto a neighbour as it was not before, or a needle. p (n, 3). turn: least
-    cosine, above 0, between a face's normal before and after; shape: least quality of a face after (1 for an
-    equilateral triangle, 0 for a needle), unless it was below it before and does not get worse; fold: least cosine,
-    below 0, between the normals of two neighbours.
+    Bad is: turned too far, folded onto a neighbour as it was not before, or a needle. Else it marks the neighbours of v
+    as `mark_neighbours` does, on the same way round. v: not at a rim. p (n, 3). turn: least cosine, above 0, between a
+    face's normal before and after; shape: least quality of a face after (1 for an equilateral triangle, 0 for a
+    needle), unless it was below it before and does not get worse; fold: least cosine, below 0, between the normals of
+    two neighbours.
     """
     vx, vy, vz = p[v, 0], p[v, 1], p[v, 2]
     # Normals, after and before, of the face before this one and of the first.
     lx = ly = lz = mx = my = mz = fx = fy = fz = gx = gy = gz = 0.0
+    found = 0
     h = first = start[v]
+    a = corner[after(h)]
+    ax, ay, az = p[a, 0], p[a, 1], p[a, 2]
     while True:
-        a, b = corner[after(h)], corner[before(h)]
+        found += mark[a] == tag
+        mark[a] = tag
+        back = before(h)
+        b = corner[back]
+        bx, by, bz = p[b, 0], p[b, 1], p[b, 2]
         if a == other or b == other:
             lx = ly = lz = 0.0
         else:
-            ex, ey, ez = p[b, 0] - p[a, 0], p[b, 1] - p[a, 1], p[b, 2] - p[a, 2]
-            nx, ny, nz = p[a, 0] - x, p[a, 1] - y, p[a, 2] - z
-            ox, oy, oz = p[a, 0] - vx, p[a, 1] - vy, p[a, 2] - vz
-            base = ex * ex + ey * ey + ez * ez
-            now, was = base + _sides(nx, ny, nz, ex, ey, ez), base + _sides(ox, oy, oz, ex, ey, ez)
-            nx, ny, nz = ny * ez - nz * ey, nz * ex - nx * ez, nx * ey - ny * ex
-            ox, oy, oz = oy * ez - oz * ey, oz * ex - ox * ez, ox * ey - oy * ex
+            ex, ey, ez = bx - ax, by - ay, bz - az
+            sx, sy, sz, tx, ty, tz = ax - x, ay - y, az - z, ax - vx, ay - vy, az - vz
+            nx, ny, nz = sy * ez - sz * ey, sz * ex - sx * ez, sx * ey - sy * ex
+            ox, oy, oz = ty * ez - tz * ey, tz * ex - tx * ez, tx * ey - ty * ex
             new, old = nx * nx + ny * ny + nz * nz, ox * ox + oy * oy + oz * oz
             along = nx * ox + ny * oy + nz * oz
             if old > 0.0 and (along <= 0.0 or along * along < turn * turn * new * old):
-                return False
-            if 12 * new < shape * shape * now * now and new * was * was <= old * now * now:
-                return False
+                return -1
+            now = _sides(sx, sy, sz, ex, ey, ez)
+            if 12 * new < shape * shape * now * now:
+                was = _sides(tx, ty, tz, ex, ey, ez)
+                if new * was * was <= old * now * now:
+                    return -1
             if _folds(nx, ny, nz, lx, ly, lz, fold) and not _folds(ox, oy, oz, mx, my, mz, fold):
-                return False
+                return -1
             lx, ly, lz, mx, my, mz = nx, ny, nz, ox, oy, oz
             if h == first:
                 fx, fy, fz, gx, gy, gz = nx, ny, nz, ox, oy, oz
-            g = twin[after(h)]
-            if g >= 0 and along * along < STEADY * STEADY * new * old:
-                cx, cy, cz = _normal(corner, p, g, -1, -1, x, y, z)
-                if _folds(nx, ny, nz, cx, cy, cz, fold) and not _folds(ox, oy, oz, cx, cy, cz, fold):
-                    return False
-        h = twin[before(h)]
-        if h < 0:
-            return True
+            if along * along < STEADY * STEADY * new * old:
+                g = twin[after(h)]
+                if g >= 0:
+                    cx, cy, cz = _normal(corner, p, g, -1, -1, x, y, z)
+                    if _folds(nx, ny, nz, cx, cy, cz, fold) and not _folds(ox, oy, oz, cx, cy, cz, fold):
+                        return -1
+        a, ax, ay, az = b, bx, by, bz
+        h = twin[back]
         if h == first:
-            return not _folds(fx, fy, fz, lx, ly, lz, fold) or _folds(gx, gy, gz, mx, my, mz, fold)
+            bad = _folds(fx, fy, fz, lx, ly, lz, fold) and not _folds(gx, gy, gz, mx, my, mz, fold)
+            return -1 if bad else found
 
 
 @kernel
@@ -151,9 +151,9 @@ def _folds(ax, ay, az, bx, by, bz, fold):
 
 @kernel
 def _sides(ax, ay, az, ex, ey, ez):
-    """The squared lengths of two sides of a triangle, a and a + e."""
+    """The squared lengths of the sides a, e and a + e of a triangle, summed."""
     bx, by, bz = ax + ex, ay + ey, az + ez
-    return ax * ax + ay * ay + az * az + bx * bx + by * by + bz * bz
+    return ax * ax + ay * ay + az * az + bx * bx + by * by + bz * bz + ex * ex + ey * ey + ez * ez
 
 
 @kernel

@@ -7,6 +7,8 @@ import numpy as np
 
 from .jit import kernel
 
+CROWD = 64  # edges at a vertex, to vertices of higher ids, above which looking through them takes too long
+
 
 @kernel
 def after(h):
@@ -22,32 +24,97 @@ def before(h):
 
 @kernel
 def partners(faces, count, oriented):
-    """The half-edge on the other side of each, (3 m,) i4; and how many faces share its edge, (3 m,) i4.
+    """The half-edge on the other side of each, (3 m,) i4, and how many edges three or more faces share.
 
     faces (3 m,) vertex ids below `count`. The other side is -1 at a rim: where one, three or more faces share the edge
-    and, if `oriented`, where its two faces disagree on which side is out. How many is told on the first half-edge of
-    each edge, and is 0 on the others.
+    and, if `oriented`, where its two faces disagree on which side is out.
     """
-    first, order = _by_lower_end(faces, count)
     other = np.full(len(faces), -1, dtype=np.int32)
-    shared = np.zeros(len(faces), dtype=np.int32)
+    if _closed(faces, count, other):
+        return other, 0
+    other[:] = -1
+    first, order = _by_lower_end(faces, count)
     seen = np.full(count, -1, dtype=np.int32)
     slot = np.zeros(count, dtype=np.int32)
+    shared = np.zeros(count, dtype=np.int32)
+    crowded = 0
     for low in range(count):
         for at in range(first[low], first[low + 1]):
             h = order[at]
             tail, head = faces[h], faces[after(h)]
             high = max(tail, head)
             if seen[high] != low:
-                seen[high], slot[high] = low, h
+                seen[high], slot[high], shared[high] = low, h, 0
             mate = slot[high]  # the first half-edge of the edge counts for all
-            shared[mate] += 1
-            if shared[mate] == 2 and not (oriented and faces[mate] == tail):
+            shared[high] += 1
+            if shared[high] == 2 and not (oriented and faces[mate] == tail):
                 other[h], other[mate] = mate, h
-            elif shared[mate] == 3 and other[mate] >= 0:
-                other[other[mate]] = -1
-                other[mate] = -1
-    return other, shared
+            elif shared[high] == 3:
+                crowded += 1
+                if other[mate] >= 0:
+                    other[other[mate]] = -1
+                    other[mate] = -1
+    return other, crowded
+
+
+@kernel
+def _closed(faces, count, other):
+    """Fills `other` where each edge has one half-edge up, to the higher id, and one down; False where one has not.
+
+    Most meshes are such, and are done in a third of the time.
+    """
+    first = np.zeros(count + 1, dtype=np.int32)
+    for f in range(0, len(faces), 3):
+        a, b, c = faces[f], faces[f + 1], faces[f + 2]
+        first[min(a, b)] += a < b
+        first[min(b, c)] += b < c
+        first[min(c, a)] += c < a
+    total = 0
+    for low in range(count):
+        if first[low] > CROWD:
+            return False
+        total += first[low]
+        first[low] = total
+    first[count] = total
+    if 2 * total != len(faces):
+        return False
+    up, high = np.empty(total, dtype=np.int32), np.empty(total, dtype=np.int32)
+    for f in range(0, len(faces), 3):
+        a, b, c = faces[f], faces[f + 1], faces[f + 2]
+        if a < b:
+            _note(first, up, high, a, b, f)
+        if b < c:
+            _note(first, up, high, b, c, f + 1)
+        if c < a:
+            _note(first, up, high, c, a, f + 2)
+    good = True
+    for f in range(0, len(faces), 3):
+        a, b, c = faces[f], faces[f + 1], faces[f + 2]
+        if a >= b:
+            good &= _match(first, up, high, other, a, b, f)
+        if b >= c:
+            good &= _match(first, up, high, other, b, c, f + 1)
+        if c >= a:
+            good &= _match(first, up, high, other, c, a, f + 2)
+    return good
+
+
+@kernel
+def _note(first, up, high, tail, head, h):
+    first[tail] -= 1
+    up[first[tail]], high[first[tail]] = h, head
+
+
+@kernel
+def _match(first, up, high, other, tail, head, h):
+    """Pairs half-edge h with the first that goes up from its head to its tail; False where that is not free."""
+    for at in range(first[head], first[head + 1]):
+        if high[at] == tail:
+            g = up[at]
+            free = other[g] < 0
+            other[h], other[g] = g, h
+            return free
+    return False
 
 
 @kernel

@@ -6,7 +6,7 @@ from .checks import may_collapse
 from .corners import after
 from .jit import kernel
 from .quadrics import best_place, error_at
-from .queue import BUCKETS, bucket_of, empty_queue, pop, push
+from .queue import BUCKETS, bucket_of, empty_queue, pop, push, waits
 from .surface import collapse_edge
 
 LATER = 8  # buckets that a refused collapse waits, until the cost at hand has grown sixteenfold
@@ -16,45 +16,47 @@ LATER = 8  # buckets that a refused collapse waits, until the cost at hand has g
 def decimate(surface, faces, turn, shape, fold):
     """Collapses edges of the surface until `faces` are left, or no collapse is allowed any more; returns the count.
 
-    turn, shape, fold: the limits of `faces_stay_sound`. The cost in the queue is a lower bound, since quadrics only
+    turn, shape, fold: the limits of `look_around`. The cost in the queue is a lower bound, since quadrics only
     grow: an edge whose cost rose meanwhile is put back when its turn comes. So is one that was refused, further back,
     and then needles a tenth as wide are allowed: rather those on a flat place than a corner cut off.
     """
-    corner, twin, start, rim, locked, position, quadric, parent, alive = surface
+    corner, twin, start, rim, locked, position, quadric, parent = surface
     mark, last = np.zeros(len(position), dtype=np.int32), np.zeros(1, dtype=np.int32)
-    left = int(alive.sum())
-    head, following, waiting, lowest = empty_queue(len(corner))
+    head, following, lowest = empty_queue(len(corner))
+    left = 0
     for h in range(len(corner)):
-        if twin[h] > h and alive[h // 3]:
-            _offer(corner, twin, locked, position, quadric, head, following, waiting, lowest, h)
+        left += corner[h] >= 0
+        if twin[h] > h and corner[h] >= 0:
+            _offer(corner, twin, locked, position, quadric, head, following, lowest, h)
+    left //= 3
     while left > faces:
-        h, bucket = pop(head, following, waiting, lowest)
+        h, bucket = pop(head, following, lowest)
         if h < 0:
             break
-        if not alive[h // 3] or (locked[corner[h]] and locked[corner[after(h)]]):
+        if corner[h] < 0 or (locked[corner[h]] and locked[corner[after(h)]]):
             continue
         cost, x, y, z = _cost(corner, locked, position, quadric, h)
         now = bucket_of(cost)
         if now > bucket:
-            push(head, following, waiting, lowest, h, now)
+            push(head, following, lowest, h, now)
             continue
         least = shape if bucket == now else shape * 0.1 ** ((bucket - now) / LATER)
         if may_collapse(corner, twin, start, locked, position, mark, last, h, x, y, z, turn, least, fold):
-            one, two = collapse_edge(corner, twin, start, rim, locked, position, quadric, parent, alive, h, x, y, z)
+            one, two = collapse_edge(corner, twin, start, rim, locked, position, quadric, parent, h, x, y, z)
             for g in (one, two):
-                if g >= 0 and not (waiting[g] or (twin[g] >= 0 and waiting[twin[g]])):
-                    _offer(corner, twin, locked, position, quadric, head, following, waiting, lowest, g)
+                if g >= 0 and not (waits(following, g) or (twin[g] >= 0 and waits(following, twin[g]))):
+                    _offer(corner, twin, locked, position, quadric, head, following, lowest, g)
             left -= 2
         elif bucket + LATER < BUCKETS:
-            push(head, following, waiting, lowest, h, bucket + LATER)
+            push(head, following, lowest, h, bucket + LATER)
     return left
 
 
 @kernel
-def _offer(corner, twin, locked, position, quadric, head, following, waiting, lowest, h):
+def _offer(corner, twin, locked, position, quadric, head, following, lowest, h):
     if twin[h] >= 0 and not (locked[corner[h]] and locked[corner[after(h)]]):
         cost = _cost(corner, locked, position, quadric, h)[0]
-        push(head, following, waiting, lowest, h, bucket_of(cost))
+        push(head, following, lowest, h, bucket_of(cost))
 
 
 @kernel

@@ -1,8 +1,8 @@
-"""One face and one point: the face as a frame of its own, and the distance to it, compiled by numba.
+"""One face and one point: the planes of the face, and the distance to it, compiled by numba.
 
-A frame is 17 numbers: origin, normal, two axes in the plane, the corners (0, 0), (length, 0), (cx, cy) in them, and one
-over the lengths of the second and third side. Most faces are then passed over after three or nine products. Faces
-without area are segments or points, and are measured as such.
+Planes are 16 numbers: those of the face itself and of its three sides, upright on it and outward; four x, four y and
+four z of their normals, four offsets. They bound the distance from below by 24 products and sums without a branch; as a
+rule the bound is the distance. Faces without area are segments or points, and are measured as such.
 """
 
 import math
@@ -11,24 +11,29 @@ import numpy as np
 
 from .jit import inlined, kernel
 
-NUMBERS = 17  # of a frame
+NUMBERS = 16  # of the planes
+SLIM = 1e-3  # height of a face over its foot's place along it: below, the axes are squared up
+NEEDLE = 1e-12  # height of a face over its length: a flatter one has no inside
 
 
-@kernel
-def set_frame(vertices, a, b, c, frames, f):
-    """Writes a face as origin, normal, two axes, and its corners (0, 0), (length, 0), (cx, cy) in them."""
+@inlined
+def frame_of(vertices, a, b, c):
+    """Two axes in the plane of a face, then length, cx, cy: its corners in them are (0, 0), (length, 0), (cx, cy)."""
     ax, ay, az = vertices[a, 0], vertices[a, 1], vertices[a, 2]
     ux, uy, uz = vertices[b, 0] - ax, vertices[b, 1] - ay, vertices[b, 2] - az
     vx, vy, vz = vertices[c, 0] - ax, vertices[c, 1] - ay, vertices[c, 2] - az
     length = math.sqrt(ux * ux + uy * uy + uz * uz)
     if length > 0:
-        ux, uy, uz = ux / length, uy / length, uz / length
+        over = 1 / length
+        ux, uy, uz = ux * over, uy * over, uz * over
     else:
         ux, uy, uz = 1.0, 0.0, 0.0
     cx = vx * ux + vy * uy + vz * uz
     wx, wy, wz = vx - cx * ux, vy - cx * uy, vz - cx * uz
-    for _ in range(2):  # what is left of a needle's third corner is rounding: made to stand upright once more
-        size = math.sqrt(wx * wx + wy * wy + wz * wz)
+    size = math.sqrt(wx * wx + wy * wy + wz * wz)
+    turns = 0 if size > SLIM * abs(cx) else 2
+    while turns > 0:  # what is left of a needle's third corner is rounding: made to stand upright once more
+        turns -= 1
         if size > 0:
             wx, wy, wz = wx / size, wy / size, wz / size
         elif abs(ux) < 0.9:  # no area: any axis across will do
@@ -37,67 +42,89 @@ def set_frame(vertices, a, b, c, frames, f):
             wx, wy, wz = -uz, 0.0, ux
         slant = wx * ux + wy * uy + wz * uz
         wx, wy, wz = wx - slant * ux, wy - slant * uy, wz - slant * uz
-    size = math.sqrt(wx * wx + wy * wy + wz * wz)
-    wx, wy, wz = wx / size, wy / size, wz / size
-    cy = max(vx * wx + vy * wy + vz * wz, 0.0)
-    side, back = math.sqrt((cx - length) ** 2 + cy * cy), math.sqrt(cx * cx + cy * cy)
-    frames[f, 0], frames[f, 1], frames[f, 2] = ax, ay, az
-    frames[f, 3], frames[f, 4], frames[f, 5] = uy * wz - uz * wy, uz * wx - ux * wz, ux * wy - uy * wx
-    frames[f, 6], frames[f, 7], frames[f, 8] = ux, uy, uz
-    frames[f, 9], frames[f, 10], frames[f, 11] = wx, wy, wz
-    frames[f, 12], frames[f, 13], frames[f, 14] = length, cx, cy
-    frames[f, 15], frames[f, 16] = 1 / side if side > 0 else 0.0, 1 / back if back > 0 else 0.0
+        size = math.sqrt(wx * wx + wy * wy + wz * wz)
+    over = 1 / size
+    wx, wy, wz = wx * over, wy * over, wz * over
+    return (ux, uy, uz), (wx, wy, wz), length, cx, max(vx * wx + vy * wy + vz * wz, 0.0)
 
 
 @inlined
-def square_to(frames, f, x, y, z, best):
-    """Squared distance of a point to a face; `best` where it is no less than that."""
-    x, y, z = x - frames[f, 0], y - frames[f, 1], z - frames[f, 2]
-    w = x * frames[f, 3] + y * frames[f, 4] + z * frames[f, 5]
-    u = x * frames[f, 6] + y * frames[f, 7] + z * frames[f, 8]
-    v = x * frames[f, 9] + y * frames[f, 10] + z * frames[f, 11]
-    length, cx, cy = frames[f, 12], frames[f, 13], frames[f, 14]
-    # How far the point lies beyond the line of each side, in the plane of the face.
-    one = -v
-    two = (cy * (u - length) - (cx - length) * v) * frames[f, 15]
-    three = (cx * v - cy * u) * frames[f, 16]
-    beyond = one if one > 0.0 else 0.0  # numba's max of several numbers takes twice as long
-    beyond = two if two > beyond else beyond
+def set_planes(vertices, a, b, c, low, planes, f):
+    """Writes the planes of a face, offsets counted from `low`; returns twice its area."""
+    (ux, uy, uz), (wx, wy, wz), length, cx, cy = frame_of(vertices, a, b, c)
+    side, back = math.sqrt((cx - length) ** 2 + cy * cy), math.sqrt(cx * cx + cy * cy)
+    side, back = 1 / side if side > 0 else 0.0, 1 / back if back > 0 else 0.0
+    row = planes[f]
+    row[0], row[4], row[8] = uy * wz - uz * wy, uz * wx - ux * wz, ux * wy - uy * wx
+    down = -1.0 if cy > NEEDLE * length else 0.0  # zero: no point is beyond or inside
+    row[1], row[5], row[9] = down * wx, down * wy, down * wz
+    p, q = cy * side, (length - cx) * side
+    row[2], row[6], row[10] = p * ux + q * wx, p * uy + q * wy, p * uz + q * wz
+    p, q = -cy * back, cx * back
+    row[3], row[7], row[11] = p * ux + q * wx, p * uy + q * wy, p * uz + q * wz
+    for k in range(4):
+        corner = b if k == 2 else (c if k == 3 else a)
+        x, y, z = vertices[corner, 0] - low[0], vertices[corner, 1] - low[1], vertices[corner, 2] - low[2]
+        row[12 + k] = -(row[k] * x + row[4 + k] * y + row[8 + k] * z)
+    return length * cy
+
+
+@inlined
+def bound_to(planes, f, x, y, z):
+    """Lower bound of the squared distance of a point, counted from `low`, to a face: that to its planes."""
+    w = planes[f, 0] * x + planes[f, 4] * y + planes[f, 8] * z + planes[f, 12]
+    one = planes[f, 1] * x + planes[f, 5] * y + planes[f, 9] * z + planes[f, 13]
+    two = planes[f, 2] * x + planes[f, 6] * y + planes[f, 10] * z + planes[f, 14]
+    three = planes[f, 3] * x + planes[f, 7] * y + planes[f, 11] * z + planes[f, 15]
+    beyond = one if one > two else two  # numba's max of several numbers takes twice as long
     beyond = three if three > beyond else beyond
-    if w * w + beyond * beyond >= best:
-        return best
+    beyond = beyond if beyond > 0.0 else 0.0
+    return w * w + beyond * beyond
+
+
+@inlined
+def square_to_side(x, y, z, dx, dy, dz):
+    """Squared distance of a point to the segment from the origin to d."""
+    size = dx * dx + dy * dy + dz * dz
+    t = (x * dx + y * dy + z * dz) / size if size > 0.0 else 0.0
+    t = t if t > 0.0 else 0.0
+    t = t if t < 1.0 else 1.0
+    x, y, z = x - t * dx, y - t * dy, z - t * dz
+    return x * x + y * y + z * z
+
+
+@inlined
+def square_to(vertices, faces, planes, f, x, y, z):
+    """Squared distance of a point to a face, counted from the face's own corners, so that no offset rounds it."""
+    a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
+    ax, ay, az = x - vertices[a, 0], y - vertices[a, 1], z - vertices[a, 2]
+    bx, by, bz = x - vertices[b, 0], y - vertices[b, 1], z - vertices[b, 2]
+    cx, cy, cz = x - vertices[c, 0], y - vertices[c, 1], z - vertices[c, 2]
+    w = planes[f, 0] * ax + planes[f, 4] * ay + planes[f, 8] * az
+    one = planes[f, 1] * ax + planes[f, 5] * ay + planes[f, 9] * az
+    two = planes[f, 2] * bx + planes[f, 6] * by + planes[f, 10] * bz
+    three = planes[f, 3] * cx + planes[f, 7] * cy + planes[f, 11] * cz
     if one < 0.0 and two < 0.0 and three < 0.0:
         return w * w
-    flat = np.inf
-    if one >= 0:
-        t = min(max(u, 0.0), length)
-        flat = (u - t) ** 2 + v * v
-    if two >= 0:
-        ex, ey = (cx - length) * frames[f, 15], cy * frames[f, 15]
-        t = min(max((u - length) * ex + v * ey, 0.0), ex * (cx - length) + ey * cy)
-        flat = min(flat, (u - length - t * ex) ** 2 + (v - t * ey) ** 2)
-    if three >= 0:
-        ex, ey = cx * frames[f, 16], cy * frames[f, 16]
-        t = min(max(u * ex + v * ey, 0.0), ex * cx + ey * cy)
-        flat = min(flat, (u - t * ex) ** 2 + (v - t * ey) ** 2)
-    return min(w * w + flat, best)
+    best = square_to_side(ax, ay, az, ax - bx, ay - by, az - bz)
+    best = min(best, square_to_side(bx, by, bz, bx - cx, by - cy, bz - cz))
+    return min(best, square_to_side(cx, cy, cz, cx - ax, cy - ay, cz - az))
 
 
 @kernel
-def corner_weights(points, faces, frames):
-    """(k, 3) barycentric weights, 0 to 1, of the place in faces (k,) nearest to points (k, 3)."""
+def corner_weights(points, owners, vertices, faces):
+    """(k, 3) barycentric weights, 0 to 1, of the place in faces[owners] (k,) nearest to points (k, 3)."""
     weights = np.empty((len(points), 3))
     for i in range(len(points)):
-        f = faces[i]
-        x, y, z = points[i, 0] - frames[f, 0], points[i, 1] - frames[f, 1], points[i, 2] - frames[f, 2]
-        u = x * frames[f, 6] + y * frames[f, 7] + z * frames[f, 8]
-        v = x * frames[f, 9] + y * frames[f, 10] + z * frames[f, 11]
-        length, cx, cy = frames[f, 12], frames[f, 13], frames[f, 14]
+        a, b, c = faces[owners[i], 0], faces[owners[i], 1], faces[owners[i], 2]
+        (ux, uy, uz), (wx, wy, wz), length, cx, cy = frame_of(vertices, a, b, c)
+        x, y, z = points[i, 0] - vertices[a, 0], points[i, 1] - vertices[a, 1], points[i, 2] - vertices[a, 2]
+        u, v = x * ux + y * uy + z * uz, x * wx + y * wy + z * wz
         if length > 0 and cy > 0:
-            c = v / cy
-            b = (u - cx * c) / length
-            if b >= 0 and c >= 0 and b + c <= 1:
-                weights[i, 0], weights[i, 1], weights[i, 2] = 1 - b - c, b, c
+            third = v / cy
+            second = (u - cx * third) / length
+            if second >= 0 and third >= 0 and second + third <= 1:
+                weights[i, 0], weights[i, 1], weights[i, 2] = 1 - second - third, second, third
                 continue
         px, py = np.array([0.0, length, cx]), np.array([0.0, 0.0, cy])
         best = np.inf

@@ -6,14 +6,14 @@ from .jit import kernel
 
 
 @kernel
-def count_faults(vertices, faces, other, shared, thin, fold):
-    """(degenerate faces, pairs of neighbours folded onto each other, edges of three or more faces).
+def count_faults(vertices, faces, other, thin, fold):
+    """(degenerate faces, pairs of neighbours folded onto each other).
 
-    faces, other, shared (3 m,) as `partners` has them. thin: height of a degenerate face; fold: cosine of the normals.
+    faces, other (3 m,) as `partners` has them. thin: height of a degenerate face; fold: cosine of the normals.
     """
     count = len(faces) // 3
     normal = np.zeros((count, 3))
-    degenerate = folded = crowded = 0
+    degenerate = folded = 0
     for f in range(count):
         i, j, k = faces[3 * f], faces[3 * f + 1], faces[3 * f + 2]
         ux, uy, uz = vertices[j, 0] - vertices[i, 0], vertices[j, 1] - vertices[i, 1], vertices[j, 2] - vertices[i, 2]
@@ -26,9 +26,8 @@ def count_faults(vertices, faces, other, shared, thin, fold):
         if double > 0.0:
             normal[f, 0], normal[f, 1], normal[f, 2] = x / double, y / double, z / double
     for h in range(len(faces)):
-        crowded += shared[h] > 2
         if other[h] > h:
             f, g = h // 3, other[h] // 3
             along = normal[f, 0] * normal[g, 0] + normal[f, 1] * normal[g, 1] + normal[f, 2] * normal[g, 2]
             folded += along < fold
-    return degenerate, folded, crowded
+    return degenerate, folded

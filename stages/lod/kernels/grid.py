@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 
-from .face_frame import set_frame, square_to
+from .face_frame import bound_to, set_planes, square_to
 from .jit import inlined, kernel
 
-NEAR = 0.5  # cells: an answer that near is made sure of at once
+ALIKE = 1 + 1e-9  # what differs by less is rounding
 
 
 @kernel
@@ -23,18 +23,18 @@ def bounding_box(vertices, faces):
 
 
 @kernel
-def fill_cells(vertices, faces, low, cell, shape, frames):
-    """Fills the frames; returns where each cell's faces begin, and the faces, cell by cell."""
-    m, sx, sy = len(faces), shape[0], shape[1]
+def fill_cells(vertices, faces, low, cell, shape, planes, areas):
+    """Fills the planes and twice the areas; returns where each cell's faces begin, and the faces, cell by cell."""
+    m, sx, sy, per_unit = len(faces), shape[0], shape[1], 1 / cell
     box = np.empty((m, 6), dtype=np.int32)
     starts = np.zeros(sx * sy * shape[2] + 2, dtype=np.int32)
     for f in range(m):
         a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
-        set_frame(vertices, a, b, c, frames, f)
+        areas[f] = set_planes(vertices, a, b, c, low, planes, f)
         for axis in range(3):
             p, q, r = vertices[a, axis], vertices[b, axis], vertices[c, axis]
-            box[f, axis] = int((min(p, q, r) - low[axis]) / cell)
-            box[f, axis + 3] = min(int((max(p, q, r) - low[axis]) / cell), shape[axis] - 1)
+            box[f, axis] = int((min(p, q, r) - low[axis]) * per_unit)
+            box[f, axis + 3] = min(int((max(p, q, r) - low[axis]) * per_unit), shape[axis] - 1)
         for z in range(box[f, 2], box[f, 5] + 1):
             for y in range(box[f, 1], box[f, 4] + 1):
                 row = (z * sy + y) * sx + 2
@@ -60,70 +60,106 @@ def clipped(place, cells):
 
 
 @inlined
-def search_one(points, i, face, seen, mark, starts, entries, low, per_unit, shape, frames, enough, far):
-    """(squared distance, face, True where it is the nearest) of one point; begins at `face`, the last one's answer."""
+def nearest_in_cell(x, y, z, first, last, low, vertices, faces, entries, planes, enough):
+    """(squared distance, face) of the nearest of the entries of one cell; the face -1 where it has none.
+
+    The bounds of all are taken without a branch, and the face of the least is measured: guesses of the processor that
+    go wrong took longer than all arithmetic. A face that is near `enough` ends it at once.
+    """
+    px, py, pz = x - low[0], y - low[1], z - low[2]
+    least, second, face = np.inf, np.inf, -1
+    for e in range(first, last):
+        bound = bound_to(planes, entries[e], px, py, pz)
+        if bound <= enough:
+            square = square_to(vertices, faces, planes, entries[e], x, y, z)
+            if square <= enough:
+                return square, entries[e]
+        face = entries[e] if bound < least else face
+        larger = bound if bound > least else least
+        second = larger if larger < second else second
+        least = bound if bound < least else least
+    best = np.inf
+    if face >= 0:
+        best = square_to(vertices, faces, planes, face, x, y, z)
+        if best > second * ALIKE:  # the nearest place is a corner: another face may be nearer than this one
+            for e in range(first, last):
+                if bound_to(planes, entries[e], px, py, pz) < best:
+                    square = square_to(vertices, faces, planes, entries[e], x, y, z)
+                    if square < best:
+                        best, face = square, entries[e]
+    return best, face
+
+
+@inlined
+def search_one(points, i, vertices, faces, starts, entries, low, cell, shape, planes, enough, far):
+    """(squared distance, face, True where it is the nearest) of one point: in its cell, then in wider boxes of cells.
+
+    A face in several cells is bounded again: what is known by then passes it over, which is cheaper than a memory.
+    """
     x, y, z = points[i, 0], points[i, 1], points[i, 2]
-    gx, gy, gz = (x - low[0]) * per_unit, (y - low[1]) * per_unit, (z - low[2]) * per_unit
-    best = square_to(frames, face, x, y, z, np.inf)
-    reach = math.sqrt(best) * per_unit
-    reach = reach if reach < NEAR else 0.0
-    sure = best <= enough
-    seen[face] = mark
+    px, py, pz, per_unit = x - low[0], y - low[1], z - low[2], 1 / cell
+    gx, gy, gz = px * per_unit, py * per_unit, pz * per_unit
+    x0, y0, z0 = clipped(gx, shape[0]), clipped(gy, shape[1]), clipped(gz, shape[2])
+    own = (z0 * shape[1] + y0) * shape[0] + x0
+    best, face = nearest_in_cell(x, y, z, starts[own], starts[own + 1], low, vertices, faces, entries, planes, enough)
+    wanted = math.sqrt(best) * per_unit
+    sure = gx - wanted >= x0 and gx + wanted < x0 + 1 and gy - wanted >= y0 and gy + wanted < y0 + 1
+    sure = (sure and gz - wanted >= z0 and gz + wanted < z0 + 1) or best <= enough
+    reach = 1.0
     while not sure and reach <= far:
-        wanted = math.sqrt(best) * per_unit
         radius = min(wanted, reach)
         x0, x1 = clipped(gx - radius, shape[0]), clipped(gx + radius, shape[0])
         y0, y1 = clipped(gy - radius, shape[1]), clipped(gy + radius, shape[1])
         z0, z1 = clipped(gz - radius, shape[2]), clipped(gz + radius, shape[2])
         for layer in range(z0, z1 + 1):
-            for row in range(layer * shape[1] + y0, layer * shape[1] + y1 + 1):
+            up = max(layer - gz, gz - layer - 1, 0.0)
+            for column in range(y0, y1 + 1):
+                aside = max(column - gy, gy - column - 1, 0.0)
+                if (up * up + aside * aside) * cell * cell > best:
+                    continue
+                row = layer * shape[1] + column
                 for e in range(starts[row * shape[0] + x0], starts[row * shape[0] + x1 + 1]):
-                    f = entries[e]
-                    if seen[f] != mark:
-                        seen[f] = mark
-                        square = square_to(frames, f, x, y, z, best)
+                    if bound_to(planes, entries[e], px, py, pz) < best:
+                        square = square_to(vertices, faces, planes, entries[e], x, y, z)
                         if square < best:
-                            best, face = square, f
+                            best, face = square, entries[e]
                             if best <= enough:
                                 return best, face, True
         sure = wanted <= reach or best * per_unit**2 <= radius**2
-        reach = max(2 * reach, 1.0)  # first the point's own cell, then wider, until nothing nearer can be outside
+        wanted = math.sqrt(best) * per_unit
+        reach *= 2
     return best, face, sure
 
 
 @kernel
-def search(points, grid, frames, far):
+def search(points, vertices, faces, grid, planes, far):
     """(squared distances (k,), faces (k,)) of the nearest faces; face -1 where all are more than `far` cells away.
 
     grid: starts and entries (see fill_cells), lower corner, width and counts of the cells.
     """
     starts, entries, low, cell, shape = grid
     squares, found = np.empty(len(points)), np.empty(len(points), dtype=np.int64)
-    seen = np.full(len(frames), -1, dtype=np.int64)  # the last point that looked at each face
-    face = 0
     for i in range(len(points)):
-        best, face, sure = search_one(
-            points, i, face, seen, i, starts, entries, low, 1 / cell, shape, frames, -1.0, far
-        )
+        best, face, sure = search_one(points, i, vertices, faces, starts, entries, low, cell, shape, planes, -1.0, far)
         squares[i], found[i] = best, face if sure else -1
     return squares, found
 
 
 @kernel
-def farthest(vertices, faces, grid, frames, square, far):
-    """(largest squared distance of a vertex, at least `square`, vertices more than `far` cells away)."""
+def farthest(points, corners, vertices, faces, grid, planes, square, far):
+    """(largest squared distance of a point that is a corner, at least `square`; those more than `far` cells away)."""
     starts, entries, low, cell, shape = grid
-    done, seen = np.zeros(len(vertices), dtype=np.bool_), np.full(len(frames), -1, dtype=np.int64)
-    away = np.empty(len(vertices), dtype=np.int64)
-    face, count = 0, 0
-    for f in range(len(faces)):
+    done = np.zeros(len(points), dtype=np.bool_)
+    away = np.empty(len(points), dtype=np.int64)
+    count = 0
+    for f in range(len(corners)):
         for corner in range(3):
-            v = faces[f, corner]
+            v = corners[f, corner]
             if done[v]:
                 continue
             done[v] = True
-            best, face, sure = search_one(
-                vertices, v, face, seen, v, starts, entries, low, 1 / cell, shape, frames, square, far
+            best, _, sure = search_one(
+                points, v, vertices, faces, starts, entries, low, cell, shape, planes, square, far
             )
             if not sure:
                 away[count] = v

@@ -7,13 +7,13 @@ went into it (least squares, as in Hoppe et al. 1993, "Mesh optimization", secti
 
 import numpy as np
 
-from .checks import faces_stay_sound
+from .checks import look_around
 from .corners import after, before
 from .jit import kernel
 
 STEP = 1.4  # of the step that is sure not to overshoot: more converges faster
 TURN = 0.8  # least cosine by which the fit may turn a face
-SHAPE = 0.1  # least quality of a face, as in `faces_stay_sound`
+SHAPE = 0.1  # least quality of a face, as in `look_around`
 
 
 @kernel
@@ -21,11 +21,12 @@ def refit(surface, points, faces, weight, samples, fold):
     """Moves the unlocked vertices of the surface, in place.
 
     points (n, 3), faces (3 m,): the surface as it was, of whose vertices and face centres about `samples` are looked
-    at. weight (n,): the area around each vertex, times what it counts beside others. fold: as in `faces_stay_sound`.
+    at. weight (n,): the area around each vertex, times what it counts beside others. fold: as in `look_around`.
     """
-    corner, twin, start, rim, locked, position, quadric, parent, alive = surface
+    corner, twin, start, rim, locked, position, quadric, parent = surface
     count = len(points) + len(faces) // 3
     pull = np.zeros((len(position), 4))
+    mark = np.empty(len(position), dtype=np.int32)  # look_around wants it
     for at in range(0, count, max(count // max(samples, 1), 1)):
         owner, x, y, z, share = _target(points, faces, weight, at)
         _pull(corner, twin, start, position, _root(parent, owner), x, y, z, share, pull)
@@ -35,7 +36,7 @@ def refit(surface, points, faces, weight, samples, fold):
             x = position[v, 0] + by * pull[v, 0]
             y = position[v, 1] + by * pull[v, 1]
             z = position[v, 2] + by * pull[v, 2]
-            if faces_stay_sound(corner, twin, start, position, v, -1, x, y, z, TURN, SHAPE, fold):
+            if look_around(corner, twin, start, position, mark, v, v, -1, x, y, z, TURN, SHAPE, fold) >= 0:
                 position[v, 0], position[v, 1], position[v, 2] = x, y, z
 
 

@@ -8,12 +8,30 @@ from .corners import after, before
 from .jit import kernel
 
 # corner (3 m,) vertex at the tail of each half-edge; twin (3 m,); start (n,) first half-edge that leaves a vertex;
-# rim, locked (n,) boolean; position (n, 3); quadric (n, 10); parent (n,) the vertex that each went into; alive (m,).
-Surface = namedtuple("Surface", "corner twin start rim locked position quadric parent alive")
+# rim, locked (n,) boolean; position (n, 3); quadric (n, 10); parent (n,) the vertex that each went into.
+# The corners of a face that went are -1.
+Surface = namedtuple("Surface", "corner twin start rim locked position quadric parent")
 
 
 @kernel
-def collapse_edge(corner, twin, start, rim, locked, position, quadric, parent, alive, h, x, y, z):
+def unit_box(vertices, source):
+    """(vertices[source] in a box of size 1 around 0, its middle (3,) and size before)."""
+    low, high = np.full(3, np.inf), np.full(3, -np.inf)
+    for v in source:
+        for axis in range(3):
+            low[axis] = min(low[axis], vertices[v, axis])
+            high[axis] = max(high[axis], vertices[v, axis])
+    middle, size = (low + high) / 2, (high - low).max()
+    size = size if size > 0.0 else 1.0
+    position = np.empty((len(source), 3))
+    for v in range(len(source)):
+        for axis in range(3):
+            position[v, axis] = (vertices[source[v], axis] - middle[axis]) / size
+    return position, middle, size
+
+
+@kernel
+def collapse_edge(corner, twin, start, rim, locked, position, quadric, parent, h, x, y, z):
     """Merges the ends of the edge of half-edge h at x, y, z, or at the locked one's place, which stays.
 
     Returns a half-edge of each of the two edges that two edges have become.
@@ -40,7 +58,8 @@ def collapse_edge(corner, twin, start, rim, locked, position, quadric, parent, a
             twin[one] = two
         if two >= 0:
             twin[two] = one
-        alive[g // 3] = False
+        f = g - g % 3
+        corner[f] = corner[f + 1] = corner[f + 2] = -1
     position[stays, 0], position[stays, 1], position[stays, 2] = x, y, z
     for n in range(10):
         quadric[stays, n] += quadric[goes, n]
@@ -54,13 +73,13 @@ def compact(surface, source, count):
 
     source (n,): ids below `count`; locked vertices of one source become one vertex again.
     """
-    corner, locked, alive = surface.corner, surface.locked, surface.alive
+    corner, locked = surface.corner, surface.locked
     name = np.full(count + len(source), -1, dtype=np.int64)
-    faces = np.empty((alive.sum(), 3), dtype=np.int64)
+    faces = np.empty((len(corner) // 3, 3), dtype=np.int64)
     used = np.empty(len(source), dtype=np.int64)
     row = ids = 0
-    for f in range(len(alive)):
-        if not alive[f]:
+    for f in range(len(corner) // 3):
+        if corner[3 * f] < 0:
             continue
         for k in range(3):
             v = corner[3 * f + k]
@@ -70,4 +89,4 @@ def compact(surface, source, count):
                 ids += 1
             faces[row, k] = name[key]
         row += 1
-    return faces, used[:ids].copy()
+    return faces[:row].copy(), used[:ids].copy()

@@ -92,11 +92,13 @@ def wider_at_few_faces(methods, metric="metro_mean"):
 
 
 def falls_with_faces(method, metric="metro_mean"):
-    """Error at the fewest faces minus error at the most, in the error's shown unit."""
+    """Error at the fewest faces minus error at the most, in the error's shown unit; of objects with several counts."""
 
     def differences(results, source=OWN):
-        rows = cells(results, [metric], source, [method])
-        rows = rows.sort_values("faces").groupby("object")["value"]
+        rows = cells(results, [metric], source, [method]).sort_values("faces")
+        rows = rows[rows.groupby("object")["faces"].transform("nunique") > 1].groupby("object")["value"]
+        if not len(rows):
+            raise NotRun(f"no object that {method} takes to two face counts", "lod", runnable=False)
         return ERRORS[metric][1] * (rows.first() - rows.last())
 
     return differences
@@ -131,6 +133,7 @@ def ranks_agree(first, second):
 
     def differences(results, source=OWN):
         tables = [_by_method(results, source, column) for column in (first, second)]
+        tables = [table[table.nunique(axis=1) > 1] for table in tables]  # equal values have no ranks
         if tables[0].empty or tables[0].shape[1] < MANY:
             raise NotRun(f"fewer than {MANY} methods to rank", "lod", runnable=False)
         return tables[0].corrwith(tables[1], axis=1, method="spearman").dropna()

@@ -1,6 +1,7 @@
 """Claims of T3.2.8 and T3.2.9 on simplified meshes: kept points against plain QEM, learned weights, neighbourhoods.
 
-Each is judged on this run's data set; tables/lod_claims has them on every set.
+Each is judged on this run's data set, those on the error weighted by human gaze on the meshes that have it;
+tables/lod_claims has them on every set.
 """
 
 from stages.report.judged import OURS
@@ -18,20 +19,29 @@ from ._meshes import (
     RANKS,
     RIVALS,
     claim,
+    gaze_claim,
     lod_claim,
 )
 
+WAYS = (
+    ("keep", "T3.1, T3.2.8", "Keeping what draws the eye", ENHANCED),
+    ("ours_keep", "ours", "Keeping what our model finds", OURS),
+    ("ours_soft", "ours", "Weighing by what our model finds, keeping nothing whole,", f"{OURS}-soft"),
+)
+BETTER = "{} gives a better simplified model than plain QEM ({})."
 KEPT = [
-    lod_claim(f"{start}_{short}", section, f"{who} gives a better simplified model than plain QEM ({how}).",
-              PLAIN, method, metric)
-    for start, section, who, method in (
-        ("keep", "T3.1, T3.2.8", "Keeping what draws the eye", ENHANCED),
-        ("ours_keep", "ours", "Keeping what our model finds", OURS),
-        ("ours_soft", "ours", "Weighing by what our model finds, keeping nothing whole,", f"{OURS}-soft"),
-    )
-    for short, metric, how in (
-        ("metro", "metro_mean", "distance"), ("ssim", "ssim_error", "as seen"), ("dlap", "dlap", "Laplacian distance"),
-        ("dnor", "dnor", "normalised Laplacian distance"), ("salient", "salient_error", "where people look"),
+    found
+    for start, section, who, method in WAYS
+    for found in (
+        *(
+            lod_claim(f"{start}_{short}", section, BETTER.format(who, how), PLAIN, method, metric)
+            for short, metric, how in (
+                ("metro", "metro_mean", "distance"), ("ssim", "ssim_error", "as seen"),
+                ("dlap", "dlap", "Laplacian distance"), ("dnor", "dnor", "normalised Laplacian distance"),
+                ("salient", "salient_error", "where our own model looks"),
+            )
+        ),
+        gaze_claim(f"{start}_gaze", section, BETTER.format(who, "where people look"), PLAIN, method),
     )
 ]  # fmt: skip
 

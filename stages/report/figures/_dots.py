@@ -6,17 +6,18 @@ from stages.report.style import GREY, INK, METHOD_COLOURS, PALE
 HELD = {"enhanced": METHOD_COLOURS["enhanced"], "qem": GREY}  # colours of names
 
 
-def draw_dots(axes, table, methods, tint, base=None, name=None):
+def draw_dots(axes, table, methods, tint, base=None, name=None, down=0.0):
     """Draws the means of a frame objects x methods as dots, the first method on top.
 
     base: the method that the others are compared with: a line about each dot is the 95 % interval of the paired
-    difference from it, and a dashed line its own mean; None: the line is the interval of the mean itself.
+    difference from it, and a dashed line its own mean; None: the line is the interval of the mean itself. down: how
+    far below the middle of its row a dot is drawn, where a panel has several a row.
     """
     zero, middle = (table[base], table[base].mean()) if base else (0.0, 0.0)
     for y, method in enumerate(methods):
         mean, low, high = interval(table[method] - zero)
-        axes.plot([middle + low, middle + high], [y, y], color=tint, lw=1.6, alpha=0.5)
-        axes.plot(middle + mean, y, "o", color=tint, ms=4.2, mec="white", mew=0.5)
+        axes.plot([middle + low, middle + high], [y + down] * 2, color=tint, lw=1.6, alpha=0.5)
+        axes.plot(middle + mean, y + down, "o", color=tint, ms=4.2, mec="white", mew=0.5)
     if base:
         axes.axvline(middle, color=tint, lw=0.9, ls="--", zorder=0)
     if name:

@@ -1,7 +1,7 @@
 """How many faces: what each model of the count wastes, where it fails, and what it costs."""
 
 import numpy as np
-from matplotlib.ticker import FuncFormatter, NullLocator
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
 
 from stages.report.items import Figure
 from stages.report.style import CYCLE, GREY, INK, MARKERS, plt, save
@@ -106,7 +106,9 @@ def _costs(axes, rows):
             axes.plot(cost["value"], error["value"], MARKERS[k], color=COLOURS[method], ms=7)
     axes.axvline(1, color=GREY, lw=0.6)
     axes.set_xscale("log")
+    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.xaxis.set_minor_formatter(NullFormatter())
     axes.set_xlabel("cost before the first question / the lookup's")
     axes.set_ylabel("off by (90 % of the counts)")
     axes.set_ylim(1, max(axes.get_ylim()[1], 1.1))

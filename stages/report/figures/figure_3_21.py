@@ -2,7 +2,7 @@
 
 from contextlib import suppress
 
-from stages.report.drawing import picture, show, square_grid, squared
+from stages.report.drawing import THIN, filled, show, square_grid
 from stages.report.items import Figure
 from stages.report.lod_cells import PLAIN, size
 from stages.report.results import NotRun
@@ -10,7 +10,6 @@ from stages.report.style import GREY, label, save
 
 METHODS = (PLAIN, "enhanced")
 LEVELS = 3  # the thesis shows 3,000, 1,500 and 500 faces
-THIN = 0.25  # share of its square that an object fills at least, or its wires cannot be told apart
 ROWS = 300
 
 
@@ -46,12 +45,11 @@ def _most_levels(results):
     scores = {}
     for name in results.choose(wanted, len(wanted), stage="lod"):
         with suppress(NotRun):
-            filled = (squared(picture(results.mesh(name), rows=60, smoothing=1), margin=0)[0] < 1).any(axis=2).mean()
             kept = [target for target, _ in results.lods(name, METHODS[1])]
             targets = [target for target, _ in results.lods(name, METHODS[0])]
             counts = sorted((target for target in targets if target.isdigit()), key=size)
             shown = (counts if len(counts) > 1 else sorted(targets, key=size))[:LEVELS]
-            scores[name] = (filled > THIN, len(set(shown) & set(kept))), shown
+            scores[name] = (filled(results.mesh(name)) > THIN, len(set(shown) & set(kept))), shown
     if not scores:
         raise NotRun(f"no simplified mesh with the points of {METHODS[1]} kept", "lod")
     name = max(scores, key=lambda name: scores[name][0])

@@ -23,7 +23,7 @@ def build(results):
         row[0].text(-0.02, 0.5, f"{name}\n{said(target)}", rotation=90, va="center", ha="right", fontsize=9,
                     transform=row[0].transAxes)  # fmt: skip
     for axes, method in zip(grid[0], METHODS, strict=True):
-        axes.set_title(label(method), fontsize=9.5, fontweight="normal", loc="center")
+        axes.set_title(label(method).replace(", ", ",\n"), fontsize=9.5, fontweight="normal", loc="center")
     path = save(figure, results.reports / "figures/figure_3_22.png", dpi=85)
     names = " and ".join(name for name, *_ in shown)
     return Figure(

@@ -2,7 +2,7 @@
 
 from contextlib import suppress
 
-from stages.report.drawing import show, square_grid
+from stages.report.drawing import THIN, filled, show, square_grid
 from stages.report.items import Figure
 from stages.report.lod_cells import said, size
 from stages.report.results import NotRun
@@ -11,6 +11,8 @@ from stages.report.tables.lod_detectors import short
 
 METHODS = ("corners", "VisAttCurvSymCon", "heat_kernel")  # the thesis's: many, intermediate, few points
 FACES = 1500  # the thesis's lower count; the nearest target that all three reach
+NEAR = 1.3  # times FACES, either way
+ENOUGH = 2.0  # times as many points, from step to step: then the first object of the settings is taken
 ROWS = 330
 
 
@@ -33,12 +35,23 @@ def build(results):
 
 
 def _shown(results):
-    """(object, target): the first figure object that all three methods simplified to one target."""
-    wanted = [results.settings.hero_object, *results.settings.figure_objects]
-    for name in results.choose(list(dict.fromkeys(wanted)), len(results.objects), stage="lod"):
+    """(object, target): one with area for wires, on which the three differ most in points; of equals the first."""
+    settings, scores = results.settings, {}
+    wanted = list(dict.fromkeys([settings.hero_object, *settings.figure_objects, *settings.viewer_objects]))
+    for name in results.choose(wanted, len(results.objects), stage="lod"):
         with suppress(NotRun):
             levels = [dict(results.lods(name, method)) for method in METHODS]
             common = sorted(set(levels[0]).intersection(*levels[1:]), key=size)
             if common:
-                return name, min(common, key=lambda target: abs(len(levels[0][target].faces) - FACES))
-    raise NotRun(f"no object simplified with the points of {', '.join(METHODS)}", "lod", runnable=False)
+                target = min(common, key=lambda target: abs(len(levels[0][target].faces) - FACES))
+                near = 1 / NEAR < len(levels[0][target].faces) / FACES < NEAR
+                scores[name, target] = near and filled(results.mesh(name)) > THIN, _apart(results.strong_points(name))
+    if not scores:
+        raise NotRun(f"no object simplified with the points of {', '.join(METHODS)}", "lod", runnable=False)
+    return max(scores, key=scores.get)
+
+
+def _apart(points):
+    """The smaller of many over intermediate and intermediate over few points, up to ENOUGH."""
+    many, middle, few = (len(points[method]) for method in METHODS)
+    return min(many / max(middle, 1), middle / max(few, 1), ENOUGH)

@@ -4,6 +4,7 @@ import numpy as np
 
 from stages.kit.files import read_arrays
 from stages.report.items import Figure
+from stages.report.markdown import number
 from stages.report.results import NotRun
 from stages.report.scenes import COLOURS, NAMES, OURS, at_tolerance, of_scene, scene_rows
 from stages.report.style import INK, plt, save
@@ -49,7 +50,7 @@ def _frame(line, stored, k, methods, rows, tolerance, unit):
     said = rows.pivot_table(index="method", columns="metric", values="value")
     for axes, picture, method in zip(line, stored["rgb"][k], methods, strict=False):
         axes.imshow(picture[box])
-        measured = f"{said.loc[method, 'faces']:,.0f} faces, error {said.loc[method, 'error']:.2f}"
+        measured = f"{said.loc[method, 'faces']:,.0f} faces, error {number(said.loc[method, 'error'])}"
         axes.set_title(f"{NAMES[method]}\n{measured}", fontsize=9, fontweight="normal", loc="center")
     for axes, values, method in zip(line[len(methods) :], stored["displacement"][k, 1:], methods[1:], strict=True):
         axes.set_facecolor("#dddddd")

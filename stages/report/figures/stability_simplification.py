@@ -44,9 +44,9 @@ def build(results):
         f"Grids of {len(damages)} kinds of damage against the faces asked for, coloured by outcome, and a chart of the "
         f"error against the faces, for {', '.join(map(label, backends))}.",
         f"The worst outcome over {objects}. Valid: the surface that came back passes every check; refused: an error "
-        "says why there is none; ruined: it came back unsound. `smallest` is the face count that a refusal names. "
-        "Chart: mean error of what came back, nothing kept, mean over the objects; crosses are ruined, and a line ends "
-        "where every object is refused.",
+        "says why there is none; ruined: it came back unsound. `smallest`: the face count that a refusal names; white: "
+        "none was named. Chart: mean error of what came back, nothing kept, mean over the objects; crosses are ruined, "
+        "and a line ends where every object is refused.",
         [path],
     )
 
@@ -62,7 +62,8 @@ def _squares(axes, cases, column, lines, budgets):
             name = OUTCOMES[int(value)]
             paint = "white" if name == "crash" else INK
             axes.text(across, down, LETTERS[name], ha="center", va="center", fontsize=9, color=paint)
-    axes.set_xticks(range(len(budgets)), budgets, fontsize=8, rotation=30)
+    words = [f"{int(budget):,}" if budget.isdigit() else budget for budget in budgets]
+    axes.set_xticks(range(len(budgets)), words, fontsize=8, rotation=30)
     axes.set_yticks(range(len(lines)), [label(line) for line in lines], fontsize=8)
     axes.set_xticks(np.arange(len(budgets) - 1) + 0.5, minor=True)
     axes.set_yticks(np.arange(len(lines) - 1) + 0.5, minor=True)

@@ -1,84 +1,86 @@
 """Who simplifies: time and error of each backend as ratios to pymeshlab's QEM, timed in one run of `make bench`."""
 
-from dataclasses import dataclass
-
 import numpy as np
 import pandas as pd
-from scipy import stats
 
+from stages.report.growth import FITTED, POWERS, growth
 from stages.report.intervals import interval
 from stages.report.items import Table
 from stages.report.markdown import with_interval
+from stages.report.results import NotRun
 from stages.report.style import label
 
 REFERENCE = "pymeshlab"
-FITTED = 10_000  # faces from which the growth is fitted: below, the fixed cost of a call counts
+CELL = ["mesh", "full", "target", "with_points"]
+RATIOS = {  # part of a column's name -> (column of the bench, title)
+    "time": ("ratio", "time ratio"), "whole": ("whole_ratio", "all of simplify"),
+    "colours": ("colours_ratio", "with colours"),
+    "error": ("error_ratio", "Metro ratio"), "seen": ("seen_ratio", "1 − SSIM ratio"),
+}  # fmt: skip
 NOTES = [
-    "Time, Metro and SSIM: geometric means over the meshes of the ratio to pymeshlab's QEM of the same mesh, target "
-    "and kept points, in the same run on one core [95 % interval over the meshes]; below 1 is faster, or closer. "
-    "Slowest: the largest time ratio of all cells.",
-    "Kept: share of the cells in which all kept vertices survived bit for bit; valid: share without new folded, "
-    "degenerate or non-manifold faces. Growth: p of the fit seconds = c (n log n)^p over the faces n of the mesh [95 % "
-    "interval of the regression]; 1 or less grows no faster than n log n.",
+    "Ratios: geometric means over the meshes of the ratio to pymeshlab's QEM of the same mesh, target and kept points, "
+    "timed in turns in one process [95 % interval over the meshes]; below 1 is faster, or closer. Only the cells that "
+    "all backends of the task reached. Time: the backend alone, with its check of the result; all of simplify: with "
+    "the kept faces found and the target tested; with colours: the same, colours of the vertices carried over. "
+    "Slowest: the largest time ratio of these cells.",
+    "Refused: cells, of those tried, in which the backend said why it made no mesh. Kept: share of the meshes made in "
+    "which all kept vertices survived bit for bit; valid: share without new folded, degenerate or non-manifold face, "
+    "with the pieces and handles that were there.",
+    f"Growth: p of the fit seconds = c n^p, and of c (n log n)^p, from {FITTED:,} faces n on, over the same cells, "
+    "with a level c of its own for each share of the faces and for kept points [95 % interval, bootstrap over the "
+    "meshes]; the second at 1 or less grows no faster than n log n.",
 ]
 
 
-@dataclass(frozen=True)
-class Growth:
-    """seconds = factor (n log n)^power, with the 95 % interval of the power, over `span` faces."""
-
-    factor: float
-    power: float
-    low: float
-    high: float
-    span: tuple[float, float]
-
-    def __call__(self, n):
-        return self.factor * (n * np.log(n)) ** self.power
-
-
 def build(results):
-    rows = results.bench("simplification")
+    rows = tried(results)
     frame = summarised(rows)
-    fits = {backend: growth(group) for backend, group in rows.groupby("backend", sort=False)}
-    for name in ("power", "low", "high"):
-        frame[f"growth_{name}"] = [getattr(fits[backend], name, np.nan) for backend in frame["backend"]]
+    for shape in POWERS:
+        fits = growths(rows, shape)
+        for name in ("power", "low", "high"):
+            frame[f"{shape}_{name}"] = [getattr(fits[backend], name, np.nan) for backend in frame["backend"]]
     return Table("Simplification: backends", frame, [_meshes(rows), *NOTES], _wide(frame))
 
 
-def summarised(rows):
-    """A row a backend, without and with points to keep: ratios of time, Metro and SSIM error, kept, valid.
-
-    rows: of benchmarks' simplification.csv.
-    """
+def tried(results):
+    """The rows of bench/simplification.csv, with the columns with_points and seen_ratio; NotRun without outcomes."""
+    rows = results.bench("simplification")
+    if "outcome" not in rows:
+        raise NotRun("bench/simplification.csv has no outcomes: `make bench` writes it anew", "lod", runnable=False)
     rows = rows.assign(with_points=rows["kept_points"] > 0)
-    cell = ["mesh", "target", "kept_points"]
-    base = rows[rows["backend"] == REFERENCE].drop_duplicates(cell).set_index(cell)["ssim_error"]
-    rows = rows.join(base.rename("base"), on=cell)
-    rows["seen_ratio"] = rows["ssim_error"] / rows["base"].where(rows["base"] > 0)
-    found = []
+    base = rows[rows["backend"] == REFERENCE].set_index(CELL)["ssim_error"]
+    rows = rows.join(base.rename("base"), on=CELL)
+    return rows.assign(seen_ratio=rows["ssim_error"] / rows["base"].where(rows["base"] > 0))
+
+
+def common(rows):
+    """The rows of the cells that all backends of their task (with points, or without) reached."""
+    reached = rows[rows["outcome"] == "reached"]
+    wanted = rows.groupby("with_points")["backend"].nunique()
+    found = reached.groupby(CELL)["backend"].transform("nunique")
+    return reached[found == reached["with_points"].map(wanted)]
+
+
+def growths(rows, shape="loglinear"):
+    """dict backend -> its Growth, over the cells that all backends reached; None where the meshes are too small."""
+    paired = common(rows)
+    return {name: growth(paired[paired["backend"] == name], shape) for name in dict.fromkeys(rows["backend"])}
+
+
+def summarised(rows):
+    """A row a backend, without and with points to keep: refusals, ratios of time and errors, kept, valid."""
+    paired, found = common(rows), []
     for (backend, with_points), group in rows.groupby(["backend", "with_points"], sort=False):
-        line = {"backend": backend, "with_points": bool(with_points), "meshes": group["mesh"].nunique()}
-        for name, column in (("time", "ratio"), ("error", "error_ratio"), ("seen", "seen_ratio")):
-            line |= dict(zip((f"{name}_ratio", f"{name}_low", f"{name}_high"), _ratio(group, column), strict=True))
-        line |= {"slowest": group["ratio"].max(), "seconds": group["seconds"].median()}
-        kept = _share(group["kept"]) if with_points else np.nan
-        found.append(line | {"kept": kept, "valid": _share(group["valid"])})
+        own = paired[(paired["backend"] == backend) & (paired["with_points"] == with_points)]
+        asked, made = group[group["outcome"] != "infeasible"], group[group["outcome"] == "reached"]
+        line = {"backend": backend, "with_points": bool(with_points), "meshes": own["mesh"].nunique()}
+        line |= {"cells": len(own), "tried": len(asked), "refused": int((asked["outcome"] == "refused").sum())}
+        for name, (column, _) in RATIOS.items():
+            line |= dict(zip((f"{name}_ratio", f"{name}_low", f"{name}_high"), _ratio(own, column), strict=True))
+        line |= {"slowest": own["ratio"].max(), "seconds": own["seconds"].median()}
+        kept = _share(made["kept"]) if with_points else np.nan
+        found.append(line | {"kept": kept, "valid": _share(made["valid"])})
     return pd.DataFrame(found).sort_values(["with_points", "time_ratio"], ascending=[True, False], ignore_index=True)
-
-
-def growth(rows):
-    """The Growth of a backend's seconds, or None for fewer than three sizes of mesh with FITTED faces or more.
-
-    A least-squares line through the logarithms.
-    """
-    rows = rows[(rows["full"] >= FITTED) & (rows["seconds"] > 0)]
-    if rows["full"].nunique() < 3:
-        return None
-    n = rows["full"].to_numpy(dtype=float)
-    fit = stats.linregress(np.log(n * np.log(n)), np.log(rows["seconds"]))
-    reach = stats.t.ppf(0.975, len(n) - 2) * fit.stderr
-    return Growth(np.exp(fit.intercept), fit.slope, fit.slope - reach, fit.slope + reach, (n.min(), n.max()))
 
 
 def _ratio(group, column):
@@ -95,18 +97,33 @@ def _share(column):
 
 def _meshes(rows):
     counts = ", ".join(f"{n} {source}" for source, n in rows.groupby("source", sort=False)["mesh"].nunique().items())
-    return f"Meshes: {counts}; {rows['full'].min():,} to {rows['full'].max():,} faces."
+    cells = rows.drop_duplicates(CELL)
+    floor = (cells["outcome"] == "infeasible").sum()
+    kept = cells.loc[cells["with_points"], "kept_points"]
+    said = (
+        f" with {kept.min()} to {kept.max()} points kept, as many as the target leaves room for;" if len(kept) else ""
+    )
+    return (
+        f"Meshes: {counts}; {rows['full'].min():,} to {rows['full'].max():,} faces. {len(cells)} cells (mesh, target, "
+        f"kept or not), {len(kept)} of them{said} {floor} targets are infeasible and were put to no backend."
+    )
 
 
 def _wide(frame):
     shown = pd.DataFrame({"backend": frame["backend"].map(label)})
     shown["points kept"] = ["yes" if kept else "no" for kept in frame["with_points"]]
-    for name, title in (("time", "time ratio"), ("error", "Metro ratio"), ("seen", "1 − SSIM ratio")):
-        columns = frame[[f"{name}_ratio", f"{name}_low", f"{name}_high"]]
-        shown[title] = [with_interval(*row) for row in columns.itertuples(index=False)]
+    shown["refused"] = [f"{row.refused} of {row.tried}" for row in frame.itertuples()]
+    shown["cells compared"] = frame["cells"]
+    for name, (_, title) in RATIOS.items():
+        shown[title] = _texts(frame[[f"{name}_ratio", f"{name}_low", f"{name}_high"]], "–")
     shown["slowest"] = frame["slowest"]
     for name in ("kept", "valid"):
         shown[name] = [f"{100 * share:.0f} %" if share == share else "–" for share in frame[name]]
-    power = frame[["growth_power", "growth_low", "growth_high"]]
-    shown["growth p"] = [with_interval(*row, places=2) for row in power.itertuples(index=False)]
+    for shape, (title, _) in POWERS.items():
+        shown[f"growth: p of {title}"] = _texts(frame[[f"{shape}_power", f"{shape}_low", f"{shape}_high"]], "–", 2)
     return shown.assign(meshes=frame["meshes"])
+
+
+def _texts(columns, absent, places=None):
+    rows = columns.itertuples(index=False)
+    return [absent if row[0] != row[0] else with_interval(*row, places=places) for row in rows]

@@ -13,14 +13,15 @@ from stages.report.style import WAYS, label
 LAST = ("svm", "enhanced", "random")
 NAMES = {name: SHORT[name] for name in SHORT if name not in LAST}
 NAMES |= {"thesis_ed": "ED, table 3.1", **{name: SHORT[name] for name in LAST}}
-MAIN = ["metro_mean", "ssim_error"]  # shown for the data sets after the first
+MAIN = ["metro_mean", "ssim_error", "gaze_error"]  # shown for the data sets after the first
 NOTES = [
     "Errors: each object's mean over the face counts that all methods of the table reach on it, then the mean over the "
     "objects [95 % interval over the objects]; so every row is over the same meshes ({counts}). A mean over the "
-    "counts of this run: other counts, other figures. Metro and the salient error in % of the diagonal.",
+    "counts of this run: other counts, other figures. Metro and the errors where one looks in % of the diagonal.",
     "+ and – behind a figure: higher or lower than plain QEM beyond chance (95 % interval of the paired difference). "
-    "Salient error: the distance weighted by the saliency of our gaze model, which also chose the points and weights "
-    "of `ours`: no independent judge of those.",
+    "Where our model looks: the distance weighted by the saliency of our gaze model, which also chose the points and "
+    "weights of `ours`: no independent judge of those. Where people look: the same weighted by recorded human gaze, on "
+    "the meshes that have it, which the model has not seen when it chose there.",
     "Points: those that pass the method's own threshold; kept: those whose neighbourhood was still kept at all when "
     "the target left too few faces for all, mean over the same meshes.",
     "Errors by single face count: figures 3.4, 3.5 and 3.23, and table 3.2; all intervals, also of the other data "

@@ -7,7 +7,7 @@ from stages.report.markdown import number, with_interval
 from stages.report.scenes import NAMES, OURS, amount, of_scene, scene_rows
 
 MATCHED = {"": "", "error": "mean frame error", "displacement": "mean displacement", "held": "every frame holds",
-           "asked": "nothing: as it answers"}  # fmt: skip
+           "asked": "nothing: as it answers", "limit": "limit of half our faces"}  # fmt: skip
 COLUMNS = {
     "faces": "faces a frame", "error": "frame error, mean", "error_worst": "worst frame", "held": "frames within, %",
     "displacement_mean": "displacement, mean px", "displacement_99.9": "99.9 %, px",
@@ -21,11 +21,14 @@ NOTES = [
     "to the other surface in pixels at that depth.",
     "The others have one factor, tuned until the column `equal to ours in` is at least ours in the rendered frames: "
     "the faces are then theirs at no smaller an error. `Every frame holds`: tuned until none breaks the tolerance.",
-    "Uniform levels are 50, 25, 12, 6 and 3 % of each object's own faces, halved with each doubling of the distance. "
-    "The network learned from objects that are not in the scene.",
+    "All choose from the same levels, two a halving of the faces. Uniform levels: the share of an object's own faces "
+    "is halved with each doubling of the distance. The network learned from objects that are not in the scene; its "
+    "counts are tuned by one factor.",
+    "Limit: half of the faces of our fullest frame. Frames above it are coarsened where the error stays the smallest, "
+    "or all objects of such a frame get the same count.",
     "Planned by the levels' own surfaces: the same search without rendering, from one measure of each level's distance "
     "to the full mesh. A measure will do where all frames hold.",
-    "Intervals: bootstrap over the objects of this one scene.",
+    "Intervals: bootstrap over the different objects of this one scene.",
 ]
 
 
@@ -51,6 +54,7 @@ def _shown(wide, saved):
         line = {"levels chosen by": _spoken(row["method"]), "equal to ours in": MATCHED[row["matched"]]}
         for metric, head in COLUMNS.items():
             value = row.get(metric, float("nan"))
+            value = round(value) if metric == "faces" else value
             line[head] = f"{100 * value:.0f}" if metric == "held" else number(value)
         line["faces that ours saves, %"] = with_interval(*saved[key], scale=100, places=0) if key in saved else "–"
         lines.append(line | {"seconds": number(row["seconds"])})

@@ -88,7 +88,7 @@ def _counted(frame):
     counts = frame.drop_duplicates(["data", "target", "nothing_shrunk"]).set_index(["target", "nothing_shrunk"])
     parts = [
         f"{said(key[0])}{', nothing shrunk' if key[1] else ''}: "
-        + ", ".join(f"{row.objects} {row.data}" for row in counts.loc[[key]].itertuples())
+        + ", ".join(f"{row.objects:.0f} {row.data}" for row in counts.loc[[key]].itertuples())
         for key in _keys(frame)
     ]
     return f"Objects: {'; '.join(parts)}."

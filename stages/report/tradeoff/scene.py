@@ -2,7 +2,8 @@
 
 from stages.report.pareto import pareto_chart
 from stages.report.results import NotRun
-from stages.report.scenes import NAMES, amount, of_scene, scene_rows
+from stages.report.scenes import COLOURS, NAMES, amount, of_scene, scene_rows
+from stages.report.style import GREY
 
 REFERENCE = "full"
 
@@ -22,6 +23,7 @@ def build(results):
         wide, "faces", "error", "name", name="scene", title=f"Scene {scene}: faces against what shows",
         reference=NAMES[REFERENCE], quality_label=f"error of the rendered frames, mean, {unit}", better="low",
         folder=results.reports / "tradeoff", colour="way", marker="tolerance",
+        tints={name: COLOURS.get(method, GREY) for method, name in NAMES.items() if method in set(wide["method"])},
     )  # fmt: skip
     full = wide.loc[wide["method"] == REFERENCE, "faces"].iloc[0]
     chart.caption = (

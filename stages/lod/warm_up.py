@@ -1,0 +1,22 @@
+"""What a process does once before it measures seconds: the first call loads compiled code, which is no work."""
+
+import functools
+
+import numpy as np
+import trimesh
+
+from stages.kit import Mesh
+
+from .metro import metro
+from .simplify import BACKEND, simplify
+
+FACES = 200  # of 1,280: few enough for every step of the backends to run
+
+
+@functools.cache
+def warm_up(backend=BACKEND):
+    """Simplifies a small ball and measures it, once a process and backend."""
+    ball = trimesh.creation.icosphere(subdivisions=3, radius=0.5)
+    mesh = Mesh(ball.vertices, ball.faces)
+    metro(mesh, simplify(mesh, FACES, [0], 1, backend, shrink=True), samples=100)
+    simplify(mesh, FACES, backend=backend, weights=np.linspace(0, 1, len(mesh.vertices)))

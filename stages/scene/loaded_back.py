@@ -1,0 +1,45 @@
+"""GLB files read again after they were written: what a viewer gets is what was meant."""
+
+import json
+
+import numpy as np
+import trimesh
+
+EXTENSION = "MSFT_lod"
+SINGLE = 1e-6  # of the largest coordinate: glTF stores 4 bytes a number
+
+
+def check_glb(path, meshes, names):
+    """Raises ValueError that names the file unless it holds these Meshes under these names, in their order."""
+    try:
+        found = trimesh.load(path, file_type="glb", process=False).geometry
+    except Exception as error:  # whatever the reader stumbles over: the file is at fault
+        raise ValueError(f"{path} cannot be loaded back: {error}") from error
+    if list(found) != list(names):
+        raise ValueError(f"{path} came back with {', '.join(found) or 'nothing'} in place of {', '.join(names)}")
+    for name, mesh in zip(names, meshes, strict=True):
+        fault = _fault(found[name], mesh)
+        if fault:
+            raise ValueError(f"{path}: {name} came back with other {fault} than were written")
+
+
+def _fault(found, mesh):
+    """What of a loaded mesh is not that of the Mesh: "faces", "places" or "colours"; or nothing."""
+    if not np.array_equal(found.faces, mesh.faces):
+        return "faces"
+    room = SINGLE * np.abs(mesh.vertices).max(initial=0)
+    if found.vertices.shape != mesh.vertices.shape or np.abs(found.vertices - mesh.vertices).max(initial=0) > room:
+        return "places"
+    painted = mesh.colors is None or np.array_equal(found.visual.vertex_colors[:, :3], mesh.colors)
+    return "" if painted else "colours"
+
+
+def read_lod(path):
+    """Names of the levels, finest first, of a GLB with MSFT_lod. Raises ValueError where it has none."""
+    content = path.read_bytes()
+    length = int.from_bytes(content[12:16], "little")
+    tree = json.loads(content[20 : 20 + length])
+    for k, node in enumerate(tree["nodes"]):
+        if EXTENSION in node.get("extensions", {}):
+            return [tree["nodes"][j]["name"] for j in (k, *node["extensions"][EXTENSION]["ids"])]
+    raise ValueError(f"{path} has no {EXTENSION}")

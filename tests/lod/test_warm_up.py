@@ -1,0 +1,38 @@
+"""Warming up: once a process and backend, and before the stage measures."""
+
+import pytest
+
+from stages.lod import __main__ as stage
+from stages.lod import warm_up as module
+from stages.lod.simplify import simplify
+
+
+def test_it_works_once_for_each_backend(monkeypatch):
+    asked = []
+
+    def counted(mesh, faces, *rest, **options):
+        asked.append((faces, options.get("backend")))
+        return simplify(mesh, faces, *rest, **options)
+
+    monkeypatch.setattr(module, "simplify", counted)
+    module.warm_up.cache_clear()
+    module.warm_up("fast")
+    assert len(asked) == 2
+    module.warm_up("fast")
+    assert len(asked) == 2
+    module.warm_up("pymeshlab")
+    assert len(asked) == 4
+
+
+def test_the_stage_warms_its_backend_up_before_it_reads_the_object(monkeypatch, tmp_path):
+    order = []
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(stage, "warm_up", order.append)
+    monkeypatch.setattr(stage, "read_mesh", lambda path: order.append("read") or (_ for _ in ()).throw(OSError))
+
+    class Settings:
+        backend = "fast"
+
+    with pytest.raises(OSError):
+        stage.process("ball", tmp_path, Settings, 0, "household")
+    assert order == ["fast", "read"]

@@ -1,0 +1,127 @@
+"""The backends of simplify beside each other: paired cells, refusals, growth and the chart."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from stages.kit.files import write_table
+from stages.report.growth import growth
+from stages.report.results import NotRun, Results
+from stages.report.tables import backends
+from stages.report.tradeoff import backends as chart
+
+SIZES = [2000, 20_000, 50_000, 100_000, 400_000, 1_000_000]
+LEVELS = {0.5: 1.0, 0.1: 2.0}  # seconds of a share, beside the other's
+
+
+def benched(power=1.0, noise=0.0):
+    """Rows of three backends: `fast` takes a twentieth of the time at nine tenths of the error; large: one share."""
+    rows, random = [], np.random.default_rng(0)
+    for k, full in enumerate(SIZES):
+        for share in (0.5, 0.1) if full <= 100_000 else (0.1,):
+            base = LEVELS[share] * 1e-6 * (full * np.log(full)) ** power
+            for backend, time, error in (("pymeshlab", 1, 1), ("fast", 0.05, 0.9), ("poor", 0.5, 1.5)):
+                for points in (0, 12):
+                    cell = {"mesh": f"m{k}", "source": "psb", "share": share, "full": full, "rings": 3}
+                    cell |= {"target": int(share * full), "kept_points": points, "backend": backend}
+                    cell |= {"outcome": "reached", "seconds": base * time * np.exp(noise * random.normal())}
+                    cell |= {"metro_mean": 1e-3 * error, "ssim_error": 0.01 * error, "ratio": time}
+                    cell |= {"whole_ratio": 2 * time, "colours_ratio": 3 * time, "error_ratio": error}
+                    rows.append(cell | {"kept": True, "valid": True, "note": ""})
+    return pd.DataFrame(rows)
+
+
+@pytest.fixture
+def bench(bare, small):
+    def written(rows):
+        write_table(bare / "reports/bench/simplification.csv", rows)
+        return Results(small.settings(), bare)
+
+    return written
+
+
+def by_backend(results):
+    return backends.build(results).frame.set_index(["backend", "with_points"])
+
+
+def test_backends_are_compared_as_ratios(bench):
+    frame = by_backend(bench(benched()))
+    row = frame.loc["fast", True]
+    assert (row["time_ratio"], row["error_ratio"], row["seen_ratio"]) == pytest.approx((0.05, 0.9, 0.9))
+    assert (row["whole_ratio"], row["colours_ratio"]) == pytest.approx((0.1, 0.15))
+    assert row["kept"] == 1 and row["valid"] == 1 and np.isnan(frame.loc[("fast", False), "kept"])
+
+
+def test_lost_points_lower_the_share_that_is_kept(bench):
+    rows = benched()
+    rows.loc[(rows["backend"] == "poor") & (rows["mesh"] == "m4"), "kept"] = False
+    assert by_backend(bench(rows)).loc[("poor", True), "kept"] == pytest.approx(9 / 10)
+
+
+def test_a_refusal_is_counted_and_takes_its_cell_from_all(bench):
+    rows = benched()
+    cell = (rows["mesh"] == "m1") & (rows["kept_points"] == 12) & (rows["share"] == 0.1)
+    rows.loc[cell, "ratio"] *= 100  # a cell that would change every mean
+    gone = cell & (rows["backend"] == "poor")
+    rows.loc[gone, ["seconds", "ratio", "error_ratio", "metro_mean", "ssim_error"]] = np.nan
+    rows.loc[gone, "outcome"] = "refused"
+    frame = by_backend(bench(rows))
+    assert list(frame.loc[("poor", True), ["tried", "refused", "cells"]]) == [10, 1, 9]
+    assert list(frame.loc[("fast", True), ["tried", "refused", "cells"]]) == [10, 0, 9]
+    assert frame.loc[("fast", True), "time_ratio"] == pytest.approx(0.05)
+    assert frame.loc[("fast", False), "cells"] == 10
+
+
+def test_infeasible_targets_are_no_refusals(bench):
+    rows = benched()
+    rows.loc[rows["mesh"] == "m0", "outcome"] = "infeasible"
+    table = backends.build(bench(rows))
+    assert (table.frame["refused"] == 0).all() and (table.frame["tried"] == 8).all()
+    assert "4 targets are infeasible" in table.notes[0]
+
+
+def test_a_backend_that_keeps_nothing_takes_no_cell_from_the_others(bench):
+    rows = benched()
+    rows = rows[(rows["backend"] != "poor") | (rows["kept_points"] == 0)]
+    frame = by_backend(bench(rows))
+    assert frame.loc[("fast", True), "cells"] == 10 and ("poor", True) not in frame.index
+
+
+@pytest.mark.parametrize("power", [0.8, 1.0, 1.4])
+def test_growth_finds_the_power_though_large_meshes_have_one_share(power):
+    rows = benched(power).assign(with_points=False)
+    fit = growth(rows[rows["backend"] == "fast"])
+    assert fit.power == pytest.approx(power, abs=1e-9) and fit.low <= fit.power <= fit.high
+    line = growth(rows[(rows["backend"] == "fast") & (rows["share"] == 0.1)])
+    assert line(50_000) == pytest.approx(0.1e-6 * (50_000 * np.log(50_000)) ** power)
+    plain = growth(rows[rows["backend"] == "fast"], "linear")
+    assert plain.power == pytest.approx(power * (1 + 1 / np.log(100_000)), rel=0.02)  # n log n, seen as a power of n
+
+
+def test_noise_widens_the_interval_of_the_growth():
+    few, much = (growth(benched(1.0, noise).assign(with_points=False)) for noise in (0.01, 0.3))
+    assert 0 < few.high - few.low < 0.2 * (much.high - much.low)
+    assert few.low < 1 < few.high or few.power == pytest.approx(1, abs=0.05)
+
+
+def test_growth_needs_large_meshes():
+    rows = benched().assign(with_points=False)
+    assert growth(rows[rows["full"] <= 20_000]) is None
+
+
+def test_chart_of_backends_has_the_front(bench):
+    figure = chart.build(bench(benched()))
+    table = pd.read_csv(figure.paths[1]).set_index(["backend", "with_points"])
+    assert table.loc[("fast", True), "error_front"] and not table.loc[("pymeshlab", True), "error_front"]
+    assert figure.paths[0].stat().st_size > 5000 and "1.00 [1.00, 1.00]" in figure.caption
+
+
+def test_chart_without_the_reference_is_not_run(bench):
+    rows = benched()
+    with pytest.raises(NotRun, match="pymeshlab"):
+        chart.build(bench(rows[rows["backend"] == "fast"]))
+
+
+def test_a_table_without_outcomes_is_to_be_measured_anew(bench):
+    with pytest.raises(NotRun, match="make bench"):
+        backends.build(bench(benched().drop(columns="outcome")))
