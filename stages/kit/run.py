@@ -86,12 +86,11 @@ class StageRun:
     def __exit__(self, error, *_):
         if error is not None:
             return
-        if self.rows:
-            frame = pd.DataFrame(self.rows)
-            frame["dataset"], frame["seed"] = self.dataset, self.seed
-            others = [name for name in frame if name not in (*FIRST, *LAST)]
-            order = [name for name in (*FIRST, *others, *LAST) if name in frame]
-            write_table(MEASUREMENTS / f"{self.stage}.csv", frame[order])
+        frame = pd.DataFrame(self.rows) if self.rows else pd.DataFrame(columns=[*FIRST, *LAST])
+        frame["dataset"], frame["seed"] = self.dataset, self.seed
+        others = [name for name in frame if name not in (*FIRST, *LAST)]
+        order = [name for name in (*FIRST, *others, *LAST) if name in frame]
+        write_table(MEASUREMENTS / f"{self.stage}.csv", frame[order])
         shutil.rmtree(self.folder / ".rows", ignore_errors=True)
         self._sweep()
         shutil.rmtree(self.target, ignore_errors=True)

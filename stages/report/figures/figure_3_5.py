@@ -61,8 +61,9 @@ def _draw(panels, rows, methods, counts):
     panels[0].set_xscale("log")
     panels[0].xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     for axes in panels[:2]:
-        axes.legend(loc="lower center", bbox_to_anchor=(0.5, 0.99), ncols=3, fontsize=8, handletextpad=0,
-                    columnspacing=0.6, borderpad=0.2)  # fmt: skip
+        if axes.get_legend_handles_labels()[0]:
+            axes.legend(loc="lower center", bbox_to_anchor=(0.5, 0.99), ncols=3, fontsize=8, handletextpad=0,
+                        columnspacing=0.6, borderpad=0.2)  # fmt: skip
 
 
 def _table(rows, metric):
