@@ -8,7 +8,6 @@ reports/attention/annotations.csv, a row an object and metric:
   nss, auc  of the marks spread over the surface against the gaze, beside the same of one pass (`one`) and of `height`
 """
 
-import argparse
 from itertools import permutations
 from pathlib import Path
 
@@ -16,6 +15,7 @@ import numpy as np
 import pandas as pd
 from scipy.spatial import cKDTree
 
+from benchmarks import arguments
 from stages.kit.files import read_arrays, read_mesh, write_table
 from stages.kit.rng import rng
 from stages.salient_points.chance import random_vertices
@@ -70,9 +70,7 @@ def _spread(mesh, marked):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folder", type=Path)
-    folder = parser.parse_args().folder / "data"
+    folder = Path(arguments(__doc__, "folder").folder) / "data"
     rows = []
     for path in sorted(Path("data/annotations").rglob("*.csv")):
         gaze = path.parent.name == "gaze"

@@ -6,7 +6,6 @@ reports/attention/settings.csv: object, views, rows, channels, method (fixations
 one core for that object from mesh to saliency, seconds of the reference (itti, twelve views, 900 rows) in the same run.
 """
 
-import argparse
 import os
 from pathlib import Path
 
@@ -14,6 +13,7 @@ import cv2
 import numpy as np
 import pandas as pd
 
+from benchmarks import arguments
 from stages.conspicuity import CHANNELS, Sight, conspicuity, facing
 from stages.conspicuity.channels import coverage
 from stages.kit import Stopwatch
@@ -133,9 +133,7 @@ def judge(setting, meshes, truths):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folder", type=Path)
-    folder = parser.parse_args().folder / "data"
+    folder = Path(arguments(__doc__, "folder").folder) / "data"
     os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
     cv2.setNumThreads(1)
     names = sorted(path.stem for path in (folder / "weights/lessons").glob("*.npz"))

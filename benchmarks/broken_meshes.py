@@ -20,6 +20,7 @@ from pathlib import Path
 
 import pandas as pd
 
+from benchmarks import arguments
 from stages.kit.fetch import FetchError, cache_folder
 from stages.kit.files import sha256, write_table
 from stages.kit.parallel import progress
@@ -123,6 +124,7 @@ def rows_of(path, backend):
 
 def main():
     """Tries every mesh with every backend and writes the table."""
+    arguments(__doc__)
     for backend in BACKENDS:
         warm_up(backend)
     cells = [(path, backend) for path in unpacked() for backend in BACKENDS]

@@ -5,9 +5,9 @@ gaze. Writes reports/simplification/NAME.csv: the rows of reports/measurements/l
 what never changes, values to four digits.
 """
 
-import sys
 from pathlib import Path
 
+from benchmarks import arguments
 from stages.kit.files import read_table, whole_file
 
 OUT = Path("reports/simplification")
@@ -16,15 +16,13 @@ COLUMNS = ["object", "method", "target", "faces", "points", "kept", "rings", "sh
 
 def main():
     """Writes the table."""
-    if len(sys.argv) != 3:
-        sys.exit(f"usage: {__doc__.splitlines()[0].split('`')[1]}")
-    folder, name = sys.argv[1:]
-    rows = read_table(Path(folder) / "reports/measurements/lod.csv")[COLUMNS]
+    given = arguments(__doc__, "folder", "name")
+    rows = read_table(Path(given.folder) / "reports/measurements/lod.csv")[COLUMNS]
     for column in ("faces", "points", "kept"):
         rows[column] = rows[column].astype("Int64")
-    with whole_file(OUT / f"{name}.csv") as part:
+    with whole_file(OUT / f"{given.name}.csv") as part:
         rows.to_csv(part, index=False, float_format="%.4g")
-    print(f"{OUT / name}.csv: {len(rows):,} rows of {rows['object'].nunique()} objects")
+    print(f"{OUT / given.name}.csv: {len(rows):,} rows of {rows['object'].nunique()} objects")
 
 
 if __name__ == "__main__":

@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from benchmarks import arguments
 from stages.kit.files import read_mesh, write_table
 from stages.kit.rng import rng
 
@@ -188,6 +189,7 @@ def _mean(values, picked, mesh, small, metric):
 
 def main():
     """Measures and writes the table."""
+    arguments(__doc__)
     import cv2
 
     cv2.setNumThreads(1)

@@ -11,6 +11,8 @@ import statistics
 import subprocess
 import sys
 
+from benchmarks import arguments
+
 RUNS = 5
 
 
@@ -83,6 +85,7 @@ def saliency_rows():
 
 
 if __name__ == "__main__":
+    arguments(__doc__)
     os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
     for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
         os.environ[name] = "1"

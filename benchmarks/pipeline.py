@@ -19,6 +19,7 @@ import pandas as pd
 import psutil
 import yaml
 
+from benchmarks import arguments
 from stages.kit.files import write_table
 
 from .maps import nine_maps_rows
@@ -68,6 +69,7 @@ def watch(command, cwd):
 
 def main():
     """Runs the pipeline stage by stage and writes the table."""
+    arguments(__doc__)
     fresh_copy()
     compiling = "from stages.lod.warm_up import warm_up; warm_up()"
     subprocess.run([sys.executable, "-c", compiling], cwd=COPY, check=True, env={**os.environ, "PYTHONPATH": ""})

@@ -13,6 +13,7 @@ from pathlib import Path
 import pandas as pd
 from omegaconf import OmegaConf
 
+from benchmarks import arguments
 from stages.compose import compose
 from stages.kit.files import write_table
 from stages.kit.parallel import progress
@@ -49,6 +50,7 @@ def measured(case, names, seed):
 
 def main():
     """Measures every case and writes the table, anew after each."""
+    arguments(__doc__)
     params, names, rows = load_params(), object_names(), []
     for case in progress(list(CASES), "scenes"):
         start = time.perf_counter()

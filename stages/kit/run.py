@@ -118,12 +118,15 @@ def arguments(doc):
 
 
 def errors_in_one_line(name):
-    """From now on what a person did (ValueError, a missing file, no network) ends in one line, not in a traceback.
+    """From now on what a person did (ValueError, a missing file, no network, Ctrl-C) ends in one line, no traceback.
 
-    A fault of ours keeps its traceback.
+    A fault of ours keeps its traceback. After Ctrl-C Python ends by the signal itself, which shells report as 130, and
+    which stops a loop of theirs as well.
     """
 
     def show(kind, error, trace):
+        if issubclass(kind, KeyboardInterrupt):
+            return print(f"{name}: stopped", file=sys.stderr)
         if not issubclass(kind, ValueError | FetchError | OSError):
             return sys.__excepthook__(kind, error, trace)
         ours = [place for place in traceback.extract_tb(trace) if f"{os.sep}stages{os.sep}" in place.filename]

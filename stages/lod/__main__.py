@@ -21,7 +21,7 @@ import pandas as pd
 
 from stages.kit import StageRun, arguments, params
 from stages.kit.files import read_arrays, read_mesh, write_table
-from stages.kit.run import DATA
+from stages.kit.run import DATA, errors_in_one_line
 from stages.salient_points import read_saliency, read_strong_points
 from stages.views import viewpoint_set
 
@@ -53,7 +53,8 @@ def human_gaze(name, source):
 
 
 def main():
-    if any(not word.startswith("-") for word in sys.argv[1:]):
+    if set(sys.argv[1:]) - {"-h", "--help"}:
+        errors_in_one_line("lod")  # before an import that takes a second, in which a person may press Ctrl-C
         from .command import run  # the pipeline needs neither its writers nor its pictures
 
         run(sys.argv[1:])

@@ -19,26 +19,26 @@ import numba
 import numpy as np
 
 from stages.kit import Stopwatch
-from stages.kit.run import errors_in_one_line
 from stages.meshes import load
 from stages.salient_points import find_points, saliency
 
 from .errors_table import NAMES, measured, table
 from .export import COLORLESS, painted, write_any
-from .feasibility import InfeasibleTarget, SimplifyError
+from .feasibility import InfeasibleTarget, SimplifyError, smallest_feasible
 from .fewest import fewest_faces
 from .neighbourhood import RINGS, neighbourhoods
 from .one_mesh import OneMesh, repaired
 from .options import check_places, check_way, parser
-from .picture import write_picture
 from .targets import face_count
+from .topology import topology
 from .variant import PLAIN, SOFT
+
+LEAST_EXTENT = 1e-60  # units: areas, and products of two, fall below the least number near 1e-80
 
 
 def run(argv):
     """Does what the command line `argv`, without the program's name, asks for."""
     chosen = parser(__doc__).parse_args(argv)
-    errors_in_one_line("lod")
     check_places(chosen)
     check_way(chosen)
     if not any(Path(numba.config.CACHE_DIR).rglob("*.nbc")):
@@ -51,6 +51,8 @@ def run(argv):
     write_any(chosen.out, one.restored(found))
     print(summary(one, found, chosen))
     if chosen.picture:
+        from .picture import write_picture  # brings matplotlib, which nothing else here needs
+
         points = one.points[one.survivors(found)]
         write_picture(chosen.picture, one.seen(one.mesh), one.seen(found), one.saliency, points)
     print("written: " + ", ".join(str(path) for path in (chosen.out, chosen.picture) if path))
@@ -63,8 +65,12 @@ def read(path):
     if not path.is_file():
         raise ValueError("is a folder, not a mesh" if path.is_dir() else "no such file")
     say(f"reading {path.name}")
-    mesh, notes = repaired(load(path))
-    say(f"{len(mesh.faces):,} faces" + "".join(f"; {note}" for note in notes))
+    mesh = load(path)
+    extent = np.ptp(mesh.vertices, axis=0).max()
+    if extent < LEAST_EXTENT:
+        raise ValueError(f"its extent is {extent:g}: write it in smaller units, or with more digits")
+    mesh, notes = repaired(mesh)
+    say(number(len(mesh.faces), "face") + "".join(f"; {note}" for note in notes))
     return mesh
 
 
@@ -73,7 +79,7 @@ def prepare(mesh, chosen):
     up = chosen.up or ("y" if chosen.mesh.suffix.lower() == ".glb" else "z")
     asked, target = chosen.faces, len(mesh.faces)
     if asked and face_count(asked, target, "--faces") >= target:
-        raise ValueError(f"--faces {asked}: the object has only {target:,} faces, there is nothing to take away")
+        raise ValueError(f"--faces {asked}: the object has only {number(target, 'face')}, nothing to take away")
     looked = painted(mesh)
     say(f"looking at it from twelve sides, {up} up" + ("" if chosen.up else " (else say --up)"))
     method = "enhanced" if chosen.method == PLAIN else chosen.method
@@ -83,7 +89,7 @@ def prepare(mesh, chosen):
     points = np.zeros(0, dtype=np.int64)
     if chosen.neighbourhood != SOFT:
         points = find_points(looked, method, chosen.keep, up=up, seed=chosen.seed, name=chosen.mesh.stem)
-        say(f"{len(points)} points whose neighbourhoods stay as they are")
+        say(f"around {number(len(points), 'point')} the faces stay as they are")
     way = "fixed" if chosen.neighbourhood == SOFT else chosen.neighbourhood
     rings = neighbourhoods(mesh, points, way, seen, RINGS if chosen.rings is None else chosen.rings)
     soft = chosen.neighbourhood == SOFT and chosen.method != PLAIN
@@ -98,23 +104,35 @@ def reduced(one, chosen):
             return one.simplified(face_count(chosen.faces, len(one.mesh.faces), "--faces"))
         found = fewest_faces(one.mesh, one.simplified, one.least, chosen.tolerance, chosen.seed, say)
     except InfeasibleTarget as error:
-        raise ValueError(infeasible(one, error)) from None
+        raise ValueError(infeasible(one, error, chosen)) from None
     if found is one.mesh:
         say("no fewer faces stay within the tolerance: the mesh is written with all of them")
     return found
 
 
-def infeasible(one, error):
+def infeasible(one, error, chosen):
     """What to tell a person whose target is too low: what is in the way, and what can be had."""
-    all_of_them = error.smallest >= len(one.mesh.faces)
-    ways = ["join its pieces first" if all_of_them else f"ask for --faces {error.smallest} or more"]
-    said = [f"{error.frozen:,} faces around {len(one.points)} points"] if error.frozen else []
-    if error.frozen:
-        ways += ["--keep fewer points", *(() if one.shrink else ("let them --shrink",)), "leave --neighbourhood out"]
+    said = [f"{number(error.frozen, 'face')} around {number(len(one.points), 'point')}"] if error.frozen else []
     if len(one.open_border):
-        said.append(f"{len(one.open_border):,} edges of open borders")
+        said.append(f"{number(len(one.open_border), 'edge')} of open borders")
     why = f", since {' and '.join(said)} stay as they are" if said else ""
-    return f"{error.faces} faces cannot be had{why}: {', or '.join(ways)}"
+    ways = remedies(one, error, chosen) or ["nothing can be taken away"]
+    return f"{number(error.faces, 'face')} cannot be had{why}: {', or '.join(ways)}"
+
+
+def remedies(one, error, chosen):
+    """What a person may do about it, none where nothing would help."""
+    total = len(one.mesh.faces)
+    if smallest_feasible(one.mesh) >= total:  # not even with nothing frozen
+        return ["join its pieces first"] if len(one.open_border) and topology(one.mesh.faces).pieces > 1 else []
+    ways = [f"ask for --faces {error.smallest} or more"] if error.smallest < total else []
+    if error.frozen and len(one.points) > 1:
+        ways += ["--keep fewer points"]
+    if error.frozen and chosen.neighbourhood == "fixed" and one.rings.any():
+        ways += ["take fewer --rings"]
+    if error.frozen:
+        ways += [*(() if one.shrink else ("let them --shrink",)), "leave --neighbourhood out"]
+    return ways
 
 
 def summary(one, found, chosen):
@@ -122,7 +140,7 @@ def summary(one, found, chosen):
     rivals = [] if chosen.method == PLAIN else [plain(one, len(found.faces))]
     meshes = [found, *(rival for rival in rivals if rival is not None)]
     say("measuring the errors")
-    errors = measured(one, meshes, chosen.seed)
+    errors = measured(one, meshes, chosen.seed, say)
     rest = [None] * (len(meshes) - 1)
     rows = [("faces", len(one.mesh.faces), *(len(mesh.faces) for mesh in meshes))]
     if len(one.points):
@@ -147,6 +165,11 @@ def plain(one, faces):
     except (InfeasibleTarget, SimplifyError) as error:
         say(f"no plain QEM beside it: {error}")
         return None
+
+
+def number(count, word):
+    """`1 face`, `1,280 faces`."""
+    return f"{count:,} {word}{'' if count == 1 else 's'}"
 
 
 def say(text):

@@ -4,6 +4,7 @@ from stages.views import TWELVE
 
 from .metro import surface_errors
 from .perceptual import picture_errors, take_pictures
+from .within_frame import within_frame
 
 SIZE = (225, 300)  # rows, columns of the pictures, as in the pipeline
 NAMES = {
@@ -17,16 +18,24 @@ NAMES = {
 }
 
 
-def measured(one, meshes, seed=0):
-    """[dict name -> error] of Meshes in the frame of `one` (OneMesh), by the names of NAMES."""
-    pictures = take_pictures(one.seen(one.mesh), TWELVE, SIZE)
+def measured(one, meshes, seed=0, say=lambda text: None):
+    """[dict name -> error] of Meshes in the frame of `one` (OneMesh), by the names of NAMES.
+
+    Where a coarse mesh reaches beyond the picture all are drawn smaller by the same, so that the columns of one table
+    compare; say(text) hears of it, since the errors are then smaller too. Pictures that fail leave None and say why.
+    """
+    (before, *shown), scale = within_frame([one.seen(mesh) for mesh in (one.mesh, *meshes)])
+    if scale < 1:
+        say(f"the pictures show all meshes at {100 * scale:.3g} % of their size, for the coarsest to fit in")
+    pictures = take_pictures(before, TWELVE, SIZE)
     found = []
-    for mesh in meshes:
+    for mesh, picture in zip(meshes, shown, strict=True):
         errors = surface_errors(one.mesh, mesh, {"salient": one.saliency}, seed=seed)
         errors = {name: 100 * value for name, value in errors.items()}
         try:
-            errors |= picture_errors(pictures, take_pictures(one.seen(mesh), TWELVE, SIZE))
-        except ValueError:  # so coarse that it leaves the frame
+            errors |= picture_errors(pictures, take_pictures(picture, TWELVE, SIZE))
+        except ValueError as error:
+            say(f"no errors of the pictures with {len(mesh.faces):,} faces: {error}")
             errors |= dict.fromkeys(("ssim", "dlap", "dnor"))
         found.append(errors)
     return found

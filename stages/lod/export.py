@@ -1,6 +1,7 @@
 """Meshes for other programs, with their colours and pictures, in their own coordinates."""
 
 import io
+from contextlib import ExitStack
 from pathlib import Path
 
 import numpy as np
@@ -35,8 +36,9 @@ def write_any(path, mesh):
         content, beside = loaded.export(file_type="obj", **options)
     else:
         content, beside = loaded.export(file_type=suffix[1:], **({"digits": digits} if suffix == ".off" else {})), {}
-    for name, extra in {**beside, path.name: content}.items():
-        with whole_file(path.parent / name) as part:
+    with ExitStack() as parts:  # all are written before the first is moved into place, the mesh itself last
+        for name, extra in {path.name: content, **beside}.items():
+            part = parts.enter_context(whole_file(path.parent / name))
             part.write_bytes(extra.encode() if isinstance(extra, str) else extra)
 
 

@@ -10,10 +10,12 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
-from .kernels.face_frame import NUMBERS, corner_weights
-from .kernels.grid import bounding_box, farthest, fill_cells, sample, search
+from .kernels.cells import bounding_box, cell_boxes, fill_cells, planes_of
+from .kernels.face_frame import corner_weights
+from .kernels.grid import farthest, sample, search
 
 CELLS_PER_FACE = 4  # a cell is then a little wider than an edge is long; more cells cost more memory than they save
+MOST = 64  # cells that a face may lie in on average: long slanted faces lie in so many that memory runs out
 THIN = 1e-3  # of the longest side: boxes flatter than this are cut as if they were this thick
 FAR = 4.0  # cells: farther off, the search goes on in a grid of wider cells
 WIDER = 4  # times
@@ -37,7 +39,7 @@ class Surface:
         if self.diagonal > LARGEST or 0 < self.extent.max() < 1 / LARGEST:
             raise ValueError(f"a mesh of diagonal {self.diagonal:.3g} is out of range: scale it, see stages.meshes")
         self.low = low - ROOM * self.extent.max()
-        self.planes, self.areas = np.empty((len(mesh.faces), NUMBERS)), np.empty(len(mesh.faces))
+        self.planes, self.areas = planes_of(mesh.vertices, mesh.faces, self.low)
         self.grid = self._filled(CELLS_PER_FACE)
 
     @cached_property
@@ -49,9 +51,12 @@ class Surface:
         """(starts, entries, lower corner, width of a cell, cells along each axis): see fill_cells."""
         thick = np.maximum(self.extent, THIN * (self.extent.max() or 1.0))
         cell = (thick ** (1 / 3)).prod() / (cells_per_face * len(self.planes)) ** (1 / 3)
-        shape = np.ceil((self.extent + 2 * ROOM * self.extent.max()) / cell).astype(np.int64).clip(1)
-        cells = fill_cells(self.mesh.vertices, self.mesh.faces, self.low, cell, shape, self.planes, self.areas)
-        return *cells, self.low, cell, shape
+        while True:
+            shape = np.ceil((self.extent + 2 * ROOM * self.extent.max()) / cell).astype(np.int64).clip(1)
+            boxes, total = cell_boxes(self.mesh.vertices, self.mesh.faces, self.low, cell, shape)
+            if total <= MOST * len(boxes):
+                return *fill_cells(boxes, total, shape), self.low, cell, shape
+            cell *= 2
 
     def _known(self, grid):
         return self.mesh.vertices, self.mesh.faces, grid, self.planes

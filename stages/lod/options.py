@@ -8,10 +8,12 @@ from pathlib import Path
 import numpy as np
 
 from stages.meshes.normalise import TO_Z_UP
+from stages.salient_points import METHODS
+from stages.salient_points.methods import teachable
+from stages.weights import Learned
 
 from .export import FORMATS
 from .neighbourhood import RINGS, WAYS
-from .picture import check_picture
 from .simplify import BACKEND, BACKENDS
 from .targets import face_count
 from .variant import PLAIN, SOFT
@@ -48,6 +50,9 @@ def share(text):
     """A share of the diagonal from `0.2%` or `0.002`."""
     match = re.fullmatch(r"(\d*\.?\d+(?:e-?\d+)?)(%?)", text.strip(), re.IGNORECASE)
     value = float(match[1]) / (100 if match[2] else 1) if match else np.inf
+    if value == 0:
+        reason = "rounding alone is more than 0: allow a little, such as 0.001%"
+        raise argparse.ArgumentTypeError(f"{text!r}: {reason}")
     if not value < 1:
         raise argparse.ArgumentTypeError(f"{text!r} is no share of the diagonal: write one like 0.2% or 0.002")
     return value
@@ -67,13 +72,18 @@ def check_places(chosen):
         if path.exists() and chosen.mesh.exists() and path.samefile(chosen.mesh):
             raise ValueError(f"{path} is the mesh itself, which would be lost: write to another file")
     if chosen.picture:
+        from .picture import check_picture  # brings matplotlib, which nothing else here needs
+
         check_picture(chosen.picture)
 
 
 def check_way(chosen):
-    """Raises ValueError for options that would change nothing together, and for counts that are none."""
+    """Raises ValueError for options that would change nothing together, unknown methods, and counts that are none."""
     if chosen.faces:
         face_count(chosen.faces, 1, "--faces")
+    if chosen.seed < 0:
+        raise ValueError(f"--seed {chosen.seed}: give 0 or more")
+    check_method(chosen.method)
     hard = {"--keep": chosen.keep, "--rings": chosen.rings, "--shrink": chosen.shrink or None}
     given = next((name for name, value in hard.items() if value is not None), None)
     if chosen.method == PLAIN and (given or chosen.neighbourhood != SOFT):
@@ -87,3 +97,15 @@ def check_way(chosen):
         raise ValueError(f"--keep {chosen.keep}: give 1 or more points; --method {PLAIN} keeps none")
     if chosen.rings is not None and chosen.rings < 0:
         raise ValueError(f"--rings {chosen.rings}: give 0 (the faces that touch a point) or more")
+
+
+def check_method(method):
+    """Raises ValueError for a method that cannot say where people look at a mesh that the pipeline has not seen."""
+    runs, others = teachable(METHODS, Learned())
+    usable = [PLAIN, *(name for name in runs if hasattr(METHODS[name], "saliency"))]
+    if method in usable:
+        return
+    reason = "there is no such method"
+    if method in METHODS:
+        reason = "it learns from the pipeline's objects" if method in others else "it looks at nothing"
+    raise ValueError(f"--method {method}: {reason}; choose one of {', '.join(usable)}")

@@ -7,8 +7,9 @@ from matplotlib.figure import Figure
 from stages.kit import Mesh, Viewpoint
 from stages.kit.camera import project
 from stages.kit.files import whole_file
-from stages.meshes.normalise import RADIUS
 from stages.views import render
+
+from .within_frame import within_frame
 
 VIEWPOINT = Viewpoint(305, 22)  # from above and the side, as in the report
 ROWS, FINER = 600, 2  # rows of a panel; drawn twice as fine and averaged
@@ -21,17 +22,18 @@ def write_picture(path, before, after, saliency, points):
     """Writes a picture of three panels: saliency (n,) in 0..1 with the points (k,), and the wires before and after.
 
     before, after: Meshes in the frame of stages.meshes.normalise, +z up; where a coarse one reaches beyond it, both are
-    drawn smaller. The format follows the suffix of the path;
-    ValueError for one of which there is none (`check_picture`).
+    drawn smaller. The format follows the suffix of the path; ValueError for one of which there is none
+    (`check_picture`).
     """
     check_picture(path)
-    before, after = _within_frame(before, after)
+    (before, after), _ = within_frame([before, after])
     figure = Figure(figsize=(12, 4.4), layout="constrained")
     axes = figure.subplots(1, 3)
     axes[0].imshow(shown(_by_value(before, saliency)))
     rows, columns = in_sight(before, points)
     axes[0].plot(columns, rows, "o", color="#D81B1B", ms=5, mec="white", mew=0.8)
-    axes[0].set_title("where people look" + (f", {len(points)} points kept" if len(points) else ""))
+    kept = f", {len(points)} point{'' if len(points) == 1 else 's'} kept" if len(points) else ""
+    axes[0].set_title(f"where people look{kept}")
     for where, mesh, word in ((axes[1], before, "before"), (axes[2], after, "after")):
         where.imshow(shown(Mesh(mesh.vertices, mesh.faces), wires=True))
         where.set_title(f"{word}: {len(mesh.faces):,} faces")
@@ -69,12 +71,6 @@ def in_sight(mesh, vertices):
     r, c = (np.clip(np.rint(place).astype(int), 0, ROWS - 1) for place in (rows, columns))
     near = depths <= depth[r, c] + 0.02  # units: a point on the limb may miss its own surface by a pixel
     return rows[near], columns[near]
-
-
-def _within_frame(*meshes):
-    reach = max(np.linalg.norm(mesh.vertices[mesh.faces], axis=2).max() for mesh in meshes)
-    scale = min(1.0, RADIUS / reach)
-    return [Mesh(mesh.vertices * scale, mesh.faces, mesh.colors) for mesh in meshes]
 
 
 def _by_value(mesh, values):

@@ -6,6 +6,8 @@ import numpy as np
 
 from .feasibility import InfeasibleTarget, check_keep, check_rings, frozen_faces, smallest_with
 
+LOWER = 0.8  # of the target, at each further try
+
 
 def shrunk_rings(mesh, faces, keep, rings=3):
     """(k,) i8 rings, none larger than given, with which `faces` faces are feasible; -1 where a vertex is not kept.
@@ -35,6 +37,23 @@ def shrunk_rings(mesh, faces, keep, rings=3):
     if steps > len(order):
         raise InfeasibleTarget(faces, smallest_with(mesh, np.zeros(len(mesh.faces), dtype=bool)))
     return after(steps)
+
+
+def ever_smaller(mesh, faces, keep, rings=3):
+    """Yields `shrunk_rings` for the target, then for ever lower ones, at last none kept at all.
+
+    For a backend that finds no sound mesh where the count alone would allow one.
+    """
+    rings, target = check_rings(check_keep(mesh, keep), rings), faces
+    while True:
+        try:
+            found = shrunk_rings(mesh, target, keep, rings)
+        except InfeasibleTarget:
+            found = np.full_like(rings, -1)
+        yield found
+        if (found < 0).all():
+            return
+        target = int(LOWER * target)
 
 
 def _order(rings):

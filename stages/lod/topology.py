@@ -23,8 +23,8 @@ class Topology:
 
 @dataclass(frozen=True)
 class Faults:
-    """Counts of degenerate faces, pairs of neighbours folded onto each other, edges of three or more faces, and
-    closed pieces whose inside is out."""
+    """Counts of degenerate faces, pairs of neighbours folded onto each other, half-edges on edges of three or more
+    faces, and closed pieces whose inside is out."""
 
     degenerate: int
     folded: int
@@ -33,7 +33,7 @@ class Faults:
 
     def added(self, before):
         """The faults that `before` has not, in words; empty when there are none."""
-        names = ("degenerate faces", "folded pairs of faces", "non-manifold edges", "pieces inside out")
+        names = ("degenerate faces", "folded pairs of faces", "half-edges on non-manifold edges", "pieces inside out")
         ours, theirs = astuple(self), astuple(before)
         return ", ".join(f"{a - b} new {name}" for name, a, b in zip(names, ours, theirs, strict=True) if a > b)
 
@@ -70,7 +70,7 @@ def topology(faces):
 
 
 def half_edges(faces):
-    """Faces (3 m,) i4, the half-edge on the other side of each, and how many edges three or more faces share.
+    """Faces (3 m,) i4, the half-edge on the other side of each, and how many lie on edges of three or more faces.
 
     Half-edge 3 f + k runs from corner k of face f to the next. Its other side is -1 unless exactly two share the edge.
     """

@@ -8,9 +8,10 @@ from stages.kit import Stopwatch
 from stages.kit.mesh import Mesh
 
 from . import rivals
-from .budget import Plan, budget
+from .budget import budget
 from .frames import Frames
 from .ladder import ERRORS
+from .levels import Plan
 from .plan import cheapest
 from .storage import full_of, read_ladders
 

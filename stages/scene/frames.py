@@ -10,7 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
-from .look import look, pixel_box, rays_of, shade
+from .look import look, nearest, nearest_two, pixel_box, rays_of, shade
 from .pictures import structure_lost, structures_lost
 
 QUANTILE = 0.99  # of an object's pixels lie within the error: one in a hundred may be a sliver on an edge
@@ -79,20 +79,13 @@ class Frames:
 
     @cached_property
     def _others(self):
-        """[frame][object] -> (h * w,) depth of the nearest other object at full detail, inf where there is none."""
-        return [self._nearest_two(frame) for frame in range(self.shape[0])]
+        """[frame] -> depths of the nearest two objects at full detail, and which is the nearest."""
+        return [nearest_two(*self._looks_of(frame, self.full)) for frame in range(self.shape[0])]
 
-    def _nearest_two(self, frame):
-        size = np.prod(self.scene.cameras[frame].size)
-        first, second, owner = np.full(size, np.inf), np.full(size, np.inf), np.full(size, -1)
-        for item, level in enumerate(self.full):
-            seen = self.look(frame, item, level)
-            before = first[seen.pixels]
-            nearer = seen.depth < before
-            second[seen.pixels] = np.where(nearer, before, np.minimum(second[seen.pixels], seen.depth))
-            first[seen.pixels] = np.where(nearer, seen.depth, before)
-            owner[seen.pixels[nearer]] = item
-        return first, second, owner
+    def _looks_of(self, frame, levels):
+        """(Looks of a frame with a level an object, pixels of the frame)."""
+        looks = [self.look(frame, item, level) for item, level in enumerate(levels)]
+        return looks, int(np.prod(self.scene.cameras[frame].size))
 
     def visible(self, frame, item, level):
         """(k,) boolean: the pixels of a Look that no other object, at full detail, hides."""
@@ -168,13 +161,7 @@ class Frames:
 
     def owners(self, frame, levels):
         """(h * w,) which object each pixel shows, -1 for none."""
-        size = np.prod(self.scene.cameras[frame].size)
-        depth, owner = np.full(size, np.inf), np.full(size, -1)
-        for item, level in enumerate(levels):
-            seen = self.look(frame, item, level)
-            nearer = seen.depth < depth[seen.pixels]
-            depth[seen.pixels[nearer]], owner[seen.pixels[nearer]] = seen.depth[nearer], item
-        return owner
+        return nearest(*self._looks_of(frame, levels))
 
 
 def _quantile(values):

@@ -74,3 +74,26 @@ def shade(level, found, camera, pose):
     if mesh.colors is None:
         return LIT * np.repeat(light, 3, axis=1)
     return np.einsum("ij,ijk->ik", weights, mesh.colors[mesh.faces[found.faces]].astype(np.float64)) * light
+
+
+def nearest(looks, pixels):
+    """(pixels,) which Look is the nearest, -1 where there is none."""
+    depth, owner = np.full(pixels, np.inf), np.full(pixels, -1)
+    for item, seen in enumerate(looks):
+        nearer = seen.depth < depth[seen.pixels]
+        depth[seen.pixels[nearer]], owner[seen.pixels[nearer]] = seen.depth[nearer], item
+    return owner
+
+
+def nearest_two(looks, pixels):
+    """(first, second, owner), each (pixels,): depth of the nearest Look and of the next, inf where there is none, and
+    which Look is the nearest, -1 for none.
+    """
+    first, second, owner = np.full(pixels, np.inf), np.full(pixels, np.inf), np.full(pixels, -1)
+    for item, seen in enumerate(looks):
+        before = first[seen.pixels]
+        nearer = seen.depth < before
+        second[seen.pixels] = np.where(nearer, before, np.minimum(second[seen.pixels], seen.depth))
+        first[seen.pixels] = np.where(nearer, seen.depth, before)
+        owner[seen.pixels[nearer]] = item
+    return first, second, owner

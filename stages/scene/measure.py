@@ -39,8 +39,8 @@ def measure(job, folder, settings, factors, objects, seed):
         write_table(folder / TABLE, pd.DataFrame(plan_table(own, found[0].plan)))
         write_arrays(folder / "pictures.npz", **pictures(own, first))
     if note:
-        missing = {"method": "network", "matched": "error", "frame": "all", "metric": "faces", "value": None}
-        rows.append(missing | {"note": note})
+        missing = {"method": "network", "kind": scene.kind, "tolerance": scene.tolerance, "matched": "error"}
+        rows.append(missing | {"frame": "all", "metric": "faces", "value": None, "note": note})
     return [row | {"scene": settings.name, "factor": factor} for row in rows]
 
 

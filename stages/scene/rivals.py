@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .budget import Plan
+from .levels import Plan
 
 HALVINGS = 14  # of the span of the one factor that is tuned: the tuned value is then within one in a thousand
 SPAN = (1e-3, 1e3)

@@ -10,7 +10,6 @@ nothing, and weighs by chance.
 from dataclasses import dataclass, fields
 
 import numpy as np
-from sklearn.svm import SVC
 
 from stages.kit.rng import rng
 
@@ -82,6 +81,8 @@ def fit_svm(features, labels, seed, most=MOST):
 
 def fit_rows(features, labels):
     """A Model of just these rows, as fit_svm describes it."""
+    from sklearn.svm import SVC  # takes half a second to import, which those who only read a Model need not wait for
+
     gains = np.array([information_gain(column, labels) for column in features.T])
     spread = features.std(axis=0)
     scale = np.divide(gains, spread, out=np.zeros_like(gains), where=spread > 0)

@@ -77,6 +77,13 @@ def test_failed_run_keeps_the_old_folder_and_goes_on_where_it_stopped(workspace)
     assert not list(Path("data/.partial").iterdir())
 
 
+def test_a_run_without_rows_leaves_a_table_of_headings(workspace):
+    with StageRun("demo") as run:
+        run.metrics({})
+    table = read_table(Path("reports/measurements/demo.csv"))
+    assert table.empty and {"object", "metric", "value"} <= set(table)
+
+
 def test_changed_settings_or_input_start_afresh(workspace):
     Path("data/up").mkdir(parents=True)
     Path("data/up/x").write_text("1")
@@ -100,6 +107,20 @@ def test_missing_input_names_the_stage_to_run(workspace):
     with pytest.raises(ValueError, match="data/up is not there: run `dvc repro up` first"), StageRun("demo", ("up",)):
         pass
     assert not Path("data/.partial").exists()
+
+
+@pytest.mark.parametrize(
+    ("raised", "lines", "code"),
+    [
+        ("KeyboardInterrupt", ["demo: stopped"], -signal.SIGINT),
+        ("ValueError('too small')", ["demo: too small"], 1),
+    ],
+)
+def test_what_a_person_did_ends_in_one_line(raised, lines, code):
+    program = f"from stages.kit.run import errors_in_one_line\nerrors_in_one_line('demo')\nraise {raised}"
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
+    done = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, text=True)
+    assert (done.stderr.splitlines(), done.returncode) == (lines, code)
 
 
 KILLED = """

@@ -1,5 +1,11 @@
 """`python -m stages.lod MESH`: a person's own mesh, from file to file."""
 
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
 import trimesh
@@ -7,7 +13,7 @@ from PIL import Image
 
 from stages.kit import Mesh
 from stages.kit.texture import Texture
-from stages.lod import command, metro, simplify
+from stages.lod import __main__, command, errors_table, metro, simplify
 from stages.lod.command import run
 from stages.lod.export import FORMATS, to_trimesh, write_any
 from stages.lod.feasibility import SimplifyError
@@ -15,7 +21,9 @@ from stages.lod.fewest import fewest_faces
 from stages.lod.one_mesh import repaired
 from stages.lod.options import parser, share
 from stages.lod.picture import write_picture
+from stages.lod.within_frame import within_frame
 from stages.meshes import load
+from stages.views import TWELVE, render
 
 PLACE, SIZE = np.array([120.0, -40.0, 7.0]), 25.0
 CHECKS = np.kron(np.indices((8, 8)).sum(axis=0) % 2, np.ones((8, 8), int))  # of 64 pixels
@@ -236,9 +244,8 @@ def test_picture_of_a_mesh_that_reaches_beyond_its_original(tmp_path):
     assert last > 1.5 * first  # both smaller by the same
 
 
-@pytest.mark.parametrize("share", ["0", "1e-9"])
-def test_a_tolerance_that_nothing_meets_gives_the_mesh_itself_and_says_so(simplified, share):
-    found, said, told = simplified("--tolerance", share)
+def test_a_tolerance_that_nothing_meets_gives_the_mesh_itself_and_says_so(simplified):
+    found, said, told = simplified("--tolerance", "1e-9")
     assert len(found.faces) == 1280 and rows(said)["faces"][1] == "1,280"
     assert "no fewer faces stay within the tolerance" in told
 
@@ -272,7 +279,10 @@ HARD = ("--neighbourhood", "fixed")
         (["--faces", "300", "--out", "missing/x.glb"], "no such folder"),
         (["--faces", "300", "--out", "folder.glb"], "is a folder"),
         (["--faces", "300", "--out", "x.glb", "--picture", "x.txt"], "pictures are written as"),
-        (["--faces", "300", "--out", "x.glb", "--method", "guess"], "unknown method 'guess'"),
+        (
+            ["--faces", "300", "--out", "x.glb", "--method", "guess"],
+            "there is no such method; choose one of qem, enhanced",
+        ),
         (["--faces", "300", "--out", "x.glb", "--keep", "3"], "--keep does nothing where no faces are frozen"),
         (["--faces", "300", "--out", "x.glb", "--rings", "-1"], "--rings does nothing where no faces are frozen"),
         (["--faces", "300", "--out", "x.glb", "--shrink"], "add --neighbourhood fixed or adaptive or area"),
@@ -291,6 +301,145 @@ def test_what_cannot_be_done_is_said_before_anything_is_written(file, tmp_path, 
     with pytest.raises(ValueError, match=reason):
         run([str(file), "--method", "height", *options])
     assert sorted(tmp_path.iterdir()) == before
+
+
+@pytest.mark.parametrize(
+    ("options", "reason"),
+    [
+        (["--method", "nosuch"], "--method nosuch: there is no such method"),
+        (["--method", "random"], "--method random: it looks at nothing"),
+        (["--method", "svm"], "--method svm: it learns from the pipeline's objects"),
+        (["--seed", "-1"], "--seed -1: give 0 or more"),
+    ],
+)
+def test_options_are_refused_before_the_mesh_is_read(file, tmp_path, monkeypatch, options, reason):
+    monkeypatch.setattr(command, "read", lambda path: pytest.fail("it was read before they were refused"))
+    with pytest.raises(ValueError, match=reason):
+        run([str(file), "--faces", "300", "--out", str(tmp_path / "x.glb"), *options])
+
+
+def test_frozen_faces_that_leave_nothing_are_blamed_and_not_the_pieces(simplified):
+    with pytest.raises(ValueError, match="1,280 faces around 642 points stay") as refused:
+        simplified("--faces", 100, *HARD, "--keep", 100000, "--rings", 50)
+    remedies = str(refused.value).split(": ", 2)[-1]
+    assert remedies.startswith("--keep fewer points, or take fewer --rings, or let them --shrink")
+    assert "join" not in remedies and "ask for" not in remedies
+
+
+def test_what_no_option_can_change_is_not_blamed_on_the_frozen_faces(simplified, tmp_path):
+    corners = np.eye(3)[None] + 5 * np.arange(9)[:, None, None]
+    write_any(tmp_path / "shards.ply", Mesh(corners.reshape(-1, 3), np.arange(27).reshape(-1, 3)))
+    with pytest.raises(ValueError, match="open borders stay as they are: join its pieces first$"):
+        simplified("--faces", 4, *HARD, "--keep", 2, source=tmp_path / "shards.ply")
+    write_any(
+        tmp_path / "least.ply", Mesh(np.r_[np.eye(3), -np.ones((1, 3))], [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]])
+    )
+    with pytest.raises(ValueError, match="3 faces cannot be had: nothing can be taken away$"):
+        simplified("--faces", 3, source=tmp_path / "least.ply")
+
+
+def test_one_face_is_one_face(tmp_path, capsys):
+    write_any(tmp_path / "one.ply", Mesh(np.eye(3), [[0, 1, 2]]))
+    with pytest.raises(ValueError, match="has only 1 face, nothing"):
+        run([str(tmp_path / "one.ply"), "--faces", "9", "--out", str(tmp_path / "x.glb")])
+    assert "lod: 1 face\n" in capsys.readouterr().err
+
+
+def test_a_mesh_too_small_for_its_digits_is_told_so(tmp_path):
+    ball = bumpy()
+    lines = [f"v {x * 1e-30:.8f} {y * 1e-30:.8f} {z * 1e-30:.8f}" for x, y, z in ball.vertices]
+    lines += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in ball.faces]
+    (tmp_path / "tiny.obj").write_text("\n".join(lines))
+    with pytest.raises(ValueError, match="tiny.obj: its extent is 0: write it in smaller units, or with more digits"):
+        run([str(tmp_path / "tiny.obj"), "--faces", "9", "--out", str(tmp_path / "x.glb")])
+
+
+def test_a_small_ball_with_all_its_digits_is_simplified(simplified, tmp_path):
+    write_any(tmp_path / "tiny.ply", Mesh(1e-30 * (bumpy().vertices - PLACE), bumpy().faces))
+    assert len(simplified("--faces", 300, source=tmp_path / "tiny.ply", out="out.ply")[0].faces) == 300
+
+
+def smooth():
+    ball = trimesh.creation.icosphere(subdivisions=3)
+    return Mesh(SIZE * ball.vertices, ball.faces)
+
+
+def test_pictures_of_a_mesh_beyond_the_frame_are_compared_smaller_and_that_is_said(simplified, tmp_path):
+    write_any(tmp_path / "smooth.ply", smooth())
+    _, said, told = simplified("--faces", 60, source=tmp_path / "smooth.ply")
+    assert "the pictures show all meshes at 9" in told
+    for name in ("1 - SSIM of the pictures", "Laplacian pyramid (DLap)", "normalised Laplacian pyramid (DNor)"):
+        assert all(0 < float(value) < 1 for value in rows(said)[name][1:])
+    assert "the pictures show" not in simplified("--faces", 600, source=tmp_path / "smooth.ply")[2]
+
+
+def test_meshes_within_the_frame_are_left_and_others_shrink_by_the_same():
+    ball = Mesh(0.5 * smooth().vertices / SIZE, smooth().faces)
+    fits = Mesh(1.04 * ball.vertices, ball.faces)
+    same, scale = within_frame([ball, fits])
+    assert scale == 1 and same[0] is ball and same[1] is fits
+    (small, smaller), scale = within_frame([Mesh(3 * ball.vertices, ball.faces), ball])
+    assert np.allclose(small.vertices, 3 * scale * ball.vertices) and np.allclose(
+        smaller.vertices, scale * ball.vertices
+    )
+    for viewpoint in TWELVE:
+        assert render(small, viewpoint, (225, 300)).mask.any()  # render refuses what the picture would crop
+
+
+def test_pictures_that_fail_leave_dashes_and_the_reason(simplified, monkeypatch):
+    def fails(reference, pictures):
+        raise ValueError("no light")
+
+    monkeypatch.setattr(errors_table, "picture_errors", fails)
+    _, said, told = simplified("--faces", 300)
+    assert rows(said)["1 - SSIM of the pictures"] == ["-", "-", "-"]
+    assert told.count("no errors of the pictures with 300 faces: no light") == 2
+
+
+@pytest.mark.parametrize("words", [["--faces=100", "--out=x.glb"], ["--seed=1"], ["x.stl", "--help"]])
+def test_any_option_means_the_command_for_one_mesh(monkeypatch, capsys, words):
+    monkeypatch.setattr(sys, "argv", ["lod", *words])
+    monkeypatch.setattr(sys, "excepthook", sys.excepthook)  # put back afterwards
+    with pytest.raises(SystemExit):
+        __main__.main()
+    said = capsys.readouterr()
+    assert "MESH" in (said.out if "--help" in words else said.err.splitlines()[-1])
+
+
+def test_help_alone_is_that_of_the_stage(monkeypatch, capsys):
+    monkeypatch.setattr(sys, "argv", ["stages/lod/__main__.py", "--help"])
+    with pytest.raises(SystemExit):
+        __main__.main()
+    assert "Settings: section `lod`" in " ".join(capsys.readouterr().out.split())
+
+
+def test_interrupted_it_says_one_line_and_leaves_nothing(file, tmp_path):
+    before = sorted(tmp_path.iterdir())
+    words = [str(file), "--faces", "300", "--out", "x.glb", "--picture", "x.png"]
+    ours = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
+    command_line = [sys.executable, "-m", "stages.lod", *words]
+    work = subprocess.Popen(command_line, cwd=tmp_path, env=ours, stderr=subprocess.PIPE, text=True)
+    while "looking" not in (line := work.stderr.readline()):
+        assert line, "it ended before it could be interrupted"
+    work.send_signal(signal.SIGINT)
+    assert work.stderr.read().splitlines()[-1] == "lod: stopped"
+    assert work.wait() == -signal.SIGINT  # which a shell reports as 130
+    assert sorted(tmp_path.iterdir()) == before
+
+
+def test_interrupted_writing_leaves_no_part_of_the_files(tmp_path, monkeypatch):
+    written = []
+
+    def interrupted(path, content, real=Path.write_bytes):
+        written.append(path)
+        if len(written) == 2:
+            raise KeyboardInterrupt
+        return real(path, content)
+
+    monkeypatch.setattr(Path, "write_bytes", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        write_any(tmp_path / "wrapped.obj", textured())
+    assert len(written) == 2 and not list(tmp_path.iterdir())
 
 
 def test_smaller_neighbourhoods_make_the_target_feasible(simplified):
@@ -313,7 +462,14 @@ def test_tolerance_is_a_share_of_the_diagonal(text, value):
     assert share(text) == pytest.approx(value)
 
 
-@pytest.mark.parametrize("text", ["-1", "150%", "much", "nan", ""])
+@pytest.mark.parametrize("text", ["0", "0%", "0.00"])
+def test_tolerance_of_nothing_is_refused_with_the_reason(text, capsys):
+    with pytest.raises(SystemExit):
+        parser("").parse_args(["x.stl", "--out", "x.glb", "--tolerance", text])
+    assert "rounding alone is more than 0" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("text", ["-1", "-0", "150%", "much", "nan", ""])
 def test_tolerance_that_is_no_share_is_refused(text, capsys):
     with pytest.raises(SystemExit):
         parser("").parse_args(["x.stl", "--out", "x.glb", f"--tolerance={text}"])

@@ -1,14 +1,13 @@
 """Topology counts and the floor of the face count, on shapes where both are known."""
 
 import pickle
-from itertools import product
 
 import numpy as np
 import pytest
 import trimesh
 
 from stages.kit import Mesh
-from stages.lod import InfeasibleTarget, frozen_faces, simplify, smallest_feasible
+from stages.lod import BACKENDS, InfeasibleTarget, frozen_faces, simplify, smallest_feasible
 from stages.lod.topology import Topology, faults, split_pinches, topology
 
 SPHERE = trimesh.creation.icosphere(subdivisions=3, radius=0.5)
@@ -40,7 +39,7 @@ def test_edge_of_three_faces_becomes_a_rim():
     book = np.array([[0, 1, 2], [0, 1, 3], [0, 1, 4]])
     assert topology(book).pieces == 3
     mesh = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0, -1, 1]], book)
-    assert faults(mesh).crowded == 1
+    assert faults(mesh).crowded == 3
 
 
 def test_faults_count_degenerate_and_folded_faces():
@@ -91,21 +90,47 @@ def blade():
     return Mesh(SPHERE.vertices * [1, 0.1, 0.02], SPHERE.faces)
 
 
-def test_the_count_that_an_infeasible_target_names_can_be_had():
-    # The floor is no promise: most of these end above it, and the error carries the count that was reached.
-    refused = 0
-    for mesh, keep in product((flower(), cup(), blade()), ([], [5])):
-        asked = smallest_feasible(mesh, keep, 1)
-        try:
-            found = simplify(mesh, asked, keep, 1)
-        except InfeasibleTarget as error:
-            refused += 1
-            assert error.smallest > asked
-            found = simplify(mesh, (asked := error.smallest), keep, 1)
-        assert len(found.faces) <= asked
+@pytest.mark.parametrize("make", [flower, cup, blade])
+@pytest.mark.parametrize("shrink", [False, True])
+def test_the_count_that_an_infeasible_target_names_can_be_had(make, shrink):
+    # The floor of `smallest_feasible` is no promise: most of these end above it.
+    mesh = make()
+    for keep in ([], [5], [5, 300, 600]):
+        with pytest.raises(InfeasibleTarget) as caught:
+            simplify(mesh, 2, keep, 2, shrink=shrink)
+        found = simplify(mesh, caught.value.smallest, keep, 2, shrink=shrink)
+        assert len(found.faces) <= caught.value.smallest
         assert topology(found.faces) == topology(mesh.faces)
         assert not faults(found).added(faults(mesh))
-    assert refused >= 2
+
+
+def test_neighbourhoods_shrink_until_the_backend_gives_in(monkeypatch):
+    mesh, keep, asked = Mesh(SPHERE.vertices, SPHERE.faces), np.arange(0, 640, 80), []
+
+    def stubborn(mesh, faces, frozen, weights):
+        asked.append(int(frozen.sum()))
+        if frozen.sum() > 40:
+            raise InfeasibleTarget(faces, faces + 50, int(frozen.sum()))
+        return mesh
+
+    monkeypatch.setitem(BACKENDS, "fast", stubborn)
+    assert simplify(mesh, 900, keep, 2, shrink=True) is mesh
+    assert (
+        asked == sorted(asked, reverse=True) and asked[0] == frozen_faces(mesh, keep, 2).sum() and 0 < asked[-1] <= 40
+    )
+
+
+def test_an_edge_of_many_faces_that_takes_one_more_is_a_new_fault():
+    vertices = np.array([[0, 0, 0], [0, 0, 1], *([np.cos(at), np.sin(at), 0] for at in range(5))])
+    pages = np.array([[0, 1, page] for page in range(2, 7)])
+    before, after = (faults(Mesh(vertices, pages[:count])) for count in (4, 5))
+    assert "1 new half-edges" in after.added(before)
+
+
+def test_meshes_out_of_range_are_named():
+    for size in (1e70, 1e-70):
+        with pytest.raises(ValueError, match="out of range: scale it"):
+            simplify(Mesh(SPHERE.vertices * size, SPHERE.faces), 100)
 
 
 def test_infeasible_target_travels_between_processes():

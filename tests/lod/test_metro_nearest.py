@@ -102,6 +102,18 @@ def test_flat_meshes_and_meshes_far_from_the_origin_are_measured():
     assert Surface(moved).nearest([[1e4, 0, 0.2]])[0] == pytest.approx([0.2], rel=1e-6)
 
 
+def test_long_slanted_faces_do_not_fill_the_grid():
+    # Each side of a thin slanted column lies in the boxes of thousands of cells, were the cells as small as elsewhere.
+    column = trimesh.creation.cylinder(0.5, 20.0, sections=3000)
+    column.apply_transform(trimesh.transformations.rotation_matrix(0.7, [1, 1, 0]))
+    surface = Surface(Mesh(column.vertices, column.faces))
+    assert len(surface.grid[1]) <= 64 * len(column.faces)
+    middles = column.triangles_center
+    assert surface.nearest(middles + 0.1 * column.face_normals)[0] == pytest.approx(
+        np.full(len(middles), 0.1), rel=1e-3
+    )
+
+
 def test_vertex_errors_are_distances_at_the_vertices():
     grown = Mesh(1.1 * SPHERE.vertices, SPHERE.faces)
     found = vertex_errors(SPHERE, grown)

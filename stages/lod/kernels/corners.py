@@ -24,7 +24,7 @@ def before(h):
 
 @kernel
 def partners(faces, count, oriented):
-    """The half-edge on the other side of each, (3 m,) i4, and how many edges three or more faces share.
+    """The half-edge on the other side of each, (3 m,) i4, and how many lie on edges that three or more faces share.
 
     faces (3 m,) vertex ids below `count`. The other side is -1 at a rim: where one, three or more faces share the edge
     and, if `oriented`, where its two faces disagree on which side is out.
@@ -49,8 +49,10 @@ def partners(faces, count, oriented):
             shared[high] += 1
             if shared[high] == 2 and not (oriented and faces[mate] == tail):
                 other[h], other[mate] = mate, h
-            elif shared[high] == 3:
+            elif shared[high] > 3:
                 crowded += 1
+            elif shared[high] == 3:
+                crowded += 3
                 if other[mate] >= 0:
                     other[other[mate]] = -1
                     other[mate] = -1

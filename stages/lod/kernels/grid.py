@@ -1,56 +1,13 @@
-"""The faces of a mesh in a grid of cells, and the search in it, compiled by numba."""
+"""The search for the nearest face in a grid of cells, compiled by numba."""
 
 import math
 
 import numpy as np
 
-from .face_frame import bound_to, set_planes, square_to
+from .face_frame import bound_to, square_to
 from .jit import inlined, kernel
 
 ALIKE = 1 + 1e-9  # what differs by less is rounding
-
-
-@kernel
-def bounding_box(vertices, faces):
-    """Lower and upper corner of the box around all faces."""
-    low, high = np.full(3, np.inf), np.full(3, -np.inf)
-    for f in range(len(faces)):
-        for corner in range(3):
-            for axis in range(3):
-                value = vertices[faces[f, corner], axis]
-                low[axis], high[axis] = min(low[axis], value), max(high[axis], value)
-    return low, high
-
-
-@kernel
-def fill_cells(vertices, faces, low, cell, shape, planes, areas):
-    """Fills the planes and twice the areas; returns where each cell's faces begin, and the faces, cell by cell."""
-    m, sx, sy, per_unit = len(faces), shape[0], shape[1], 1 / cell
-    box = np.empty((m, 6), dtype=np.int32)
-    starts = np.zeros(sx * sy * shape[2] + 2, dtype=np.int32)
-    for f in range(m):
-        a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
-        areas[f] = set_planes(vertices, a, b, c, low, planes, f)
-        for axis in range(3):
-            p, q, r = vertices[a, axis], vertices[b, axis], vertices[c, axis]
-            box[f, axis] = int((min(p, q, r) - low[axis]) * per_unit)
-            box[f, axis + 3] = min(int((max(p, q, r) - low[axis]) * per_unit), shape[axis] - 1)
-        for z in range(box[f, 2], box[f, 5] + 1):
-            for y in range(box[f, 1], box[f, 4] + 1):
-                row = (z * sy + y) * sx + 2
-                for x in range(row + box[f, 0], row + box[f, 3] + 1):
-                    starts[x] += 1
-    for k in range(1, len(starts)):
-        starts[k] += starts[k - 1]
-    entries = np.empty(starts[-1], dtype=np.int32)
-    for f in range(m):
-        for z in range(box[f, 2], box[f, 5] + 1):
-            for y in range(box[f, 1], box[f, 4] + 1):
-                row = (z * sy + y) * sx + 1
-                for x in range(row + box[f, 0], row + box[f, 3] + 1):
-                    entries[starts[x]] = f
-                    starts[x] += 1
-    return starts[:-1], entries
 
 
 @inlined

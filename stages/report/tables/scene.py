@@ -4,7 +4,7 @@ import pandas as pd
 
 from stages.report.items import Table
 from stages.report.markdown import number, with_interval
-from stages.report.scenes import NAMES, OURS, amount, of_scene, scene_rows
+from stages.report.scenes import NAMES, OURS, amount, limits_of, of_scene, scene_rows
 
 MATCHED = {"": "", "error": "mean frame error", "displacement": "mean displacement", "held": "every frame holds",
            "asked": "nothing: as it answers", "limit": "limit of half our faces"}  # fmt: skip
@@ -42,9 +42,15 @@ def build(results):
              for row in rows[rows["metric"].str.startswith("saved_")].itertuples()}  # fmt: skip
     wide = wide[wide["faces"].notna()].reset_index()
     title = f"Scene {scene}: the faces it takes to stay within {amount(tolerance, unit)}"
-    why = [f"{NAMES.get(row.method, row.method)}: {row.note}." for row in
-           rows[rows["note"].notna()].drop_duplicates(["method", "note"]).itertuples()]  # fmt: skip
-    return Table(title, wide, [*_said(saved), *NOTES, *why], _shown(wide, saved))
+    limits = limits_of({key: [value] for key, (value, *_) in saved.items()})
+    return Table(title, wide, [*_said(saved), *limits, *NOTES, *_why(results)], _shown(wide, saved))
+
+
+def _why(results):
+    """What the rows say beside their values, or instead of them."""
+    rows = results.measurements("scene", frame="all", factor=1)
+    rows = rows[rows["note"].notna()].drop_duplicates(["method", "note"])
+    return [f"{NAMES.get(row.method, row.method)}: {row.note}." for row in rows.itertuples()]
 
 
 def _shown(wide, saved):
@@ -69,7 +75,8 @@ def _spoken(method):
 
 def _said(saved):
     """What ours saves, in a sentence."""
-    wanted = [("uniform", "error"), ("uniform_size", "error"), ("uniform", "displacement"), ("uniform", "held")]
+    wanted = [("uniform", "error"), ("uniform_size", "error"), ("uniform", "displacement"),
+              ("uniform_size", "displacement"), ("uniform", "held")]  # fmt: skip
     found = [f"{with_interval(*saved[key], scale=100, places=0)} % against {NAMES[key[0]]} ({MATCHED[key[1]]})"
              for key in wanted if key in saved]  # fmt: skip
     return [f"{NAMES[OURS].capitalize()} saves {'; '.join(found)}."] if found else []

@@ -4,12 +4,12 @@ import pandas as pd
 
 from stages.report.items import Table
 from stages.report.markdown import number, with_interval
-from stages.report.scenes import NAMES, OURS, UNITS, amount
+from stages.report.reach import reach
+from stages.report.scenes import NAMES, OURS, UNIFORM, UNITS, amount, limits_of
 
 WAYS = [("full", ""), ("uniform", "error"), ("uniform_size", "error"), ("network", "error"), (OURS, ""),
         (OURS, "limit"), ("equal", "limit")]  # fmt: skip
 VALUES = ["faces", "error", "error_worst", "held", "step_worst"]
-RIVALS = ("uniform", "uniform_size")
 REACH = 0.30  # of the faces of uniform levels are to be saved at an equal error
 WANTED = f"{100 * REACH:.0f} %, with every frame within the tolerance"
 NOTES = [
@@ -26,15 +26,23 @@ NOTES = [
 
 def build(results):
     rows = results.bench("scenes")
-    rows = rows.assign(matched=rows["matched"].fillna("")).dropna(subset=["value"])
+    rows = rows.assign(matched=rows["matched"].fillna(""))
     lines, notes = [], []
     for (scene, kind, tolerance), group in rows.groupby(["scene", "kind", "tolerance"], sort=False):
-        cells = group.set_index(["method", "matched", "metric"])
+        cells = group.dropna(subset=["value"]).set_index(["method", "matched", "metric"])
         first = {"scene": scene, "kind": kind, "tolerance": tolerance}
         lines += [first | _line(cells, *way) for way in WAYS if (*way, "faces") in cells.index]
-        notes.append(_said(first, cells))
+        notes.append(_said(first, cells) + _noted(group))
     frame = pd.DataFrame(lines)
-    return Table("Scenes: the faces it takes to stay within the tolerance", frame, [*notes, *NOTES], _shown(frame))
+    notes += [*limits_of(_shares(rows)), *NOTES]
+    return Table("Scenes: the faces it takes to stay within the tolerance", frame, notes, _shown(frame))
+
+
+def _shares(rows):
+    """dict (rival, matched) -> shares of the faces that ours saves, one a scene and tolerance."""
+    saved = rows[rows["metric"].str.startswith("saved_") & rows["kind"].notna()].dropna(subset=["value"])
+    groups = saved.groupby(["metric", "matched"])["value"]
+    return {(metric.removeprefix("saved_"), matched): list(shares) for (metric, matched), shares in groups}
 
 
 def _line(cells, method, matched):
@@ -52,14 +60,21 @@ def _said(first, cells):
     text = f"Scene {first['scene']}, tolerance {amount(first['tolerance'], UNITS[first['kind']])}: "
     text += f"{there['objects']:.0f} objects ({there['shapes']:.0f} different), {there['frames']:.0f} frames."
     held = cells["value"].get((OURS, "", "held")) == 1
-    for rival in RIVALS:
+    for rival in UNIFORM:
         saved, spread = (_saved(cells, rival, matched) for matched in ("error", "displacement"))
         if saved is not None:
-            reached = "reached" if saved["value"] >= REACH and held else "missed"
-            text += f" Against {NAMES[rival]} ours saves {_percent(saved)}; {WANTED}, is {reached}."
+            word = reach(*saved, least=REACH, show=lambda share: f"{number(100 * share)} %") if held else "missed"
+            text += f" Against {NAMES[rival]} ours saves {_percent(saved)}; {WANTED}, is {word}."
         if spread is not None:
             text += f" At an equal mean displacement of all pixels it saves {_percent(spread)}."
     return text
+
+
+def _noted(group):
+    """What the rows say beside their values, such as why there are none; the limits are said by the table's lines."""
+    noted = group[group["note"].notna() & (group["matched"] != "limit")] if "note" in group else group[:0]
+    return "".join(f" {NAMES[row.method].capitalize()}: {row.note}."
+                   for row in noted.drop_duplicates(["method", "note"]).itertuples())  # fmt: skip
 
 
 def _saved(cells, rival, matched):

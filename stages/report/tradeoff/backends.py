@@ -11,12 +11,11 @@ from stages.report.pareto import pareto_front
 from stages.report.results import NotRun
 from stages.report.style import GREY, INK, colours, plt, save
 from stages.report.style import label as spoken
-from stages.report.tables.backends import REFERENCE, common, growths, summarised, tried
+from stages.report.tables.backends import REFERENCE, WANTED, common, growths, summarised, tried
 
 ERRORS = {"error": "Metro mean", "seen": "1 − SSIM"}
 TITLES = {"error": "time and distance", "seen": "time and error as seen"}
 KEPT = {False: ("o", "nothing kept"), True: ("D", "points kept")}
-WANTED = 20  # times faster than the reference: a dashed line
 ROOM = 60  # free above the seconds for the legend, as a factor
 
 
@@ -46,7 +45,8 @@ def build(results):
         "in one process, with 95 % intervals over the meshes; down and left is better; hollow: all of `simplify`, with "
         "kept faces found and the target tested; lines: the Pareto fronts without (dotted) and with points to keep; "
         f"dashed: equal error, and {WANTED} times faster. Right: each dot a mesh, target and kept set; lines: "
-        f"c (n log n)^p fitted from {FITTED:,} faces on; bands: the 95 % interval of p; dashed: n log n. {_said(fits)}",
+        f"c (n log n)^p fitted to both kinds of cells, from {FITTED:,} faces on; bands: the 95 % interval of p; "
+        f"dashed: n log n. {_said(fits)}",
         [path, folder / "backends.csv"],
     )
 
