@@ -14,7 +14,6 @@ from .attributes import carry
 from .borders import close_borders, cut_borders
 from .export import painted
 from .feasibility import InfeasibleTarget, smallest_feasible
-from .shrink import shrunk_rings
 from .simplify import simplify
 from .topology import half_edges
 
@@ -124,11 +123,9 @@ class OneMesh:
 
     def _reduced(self, mesh, ids, faces):
         keep, rings = self._on_cut(ids)
-        if self.shrink and faces < len(mesh.faces):
-            rings = shrunk_rings(mesh, faces, keep, rings)
         weights = None if self.weights is None else self.weights[ids]
         bare = Mesh(mesh.vertices, mesh.faces)  # colours and pictures are handed on at the end, once
-        found = simplify(bare, faces, keep, rings, self.backend, weights=weights)
+        found = simplify(bare, faces, keep, rings, self.backend, self.shrink, weights=weights)
         return self.mesh if found is bare else carry(self.mesh, close_borders(found, mesh, ids))
 
     def _on_cut(self, ids):

@@ -4,11 +4,12 @@ import numpy as np
 
 from stages.views import TWELVE, render
 
-from .laplacian import band_distance, laplacian_pyramid
-from .normalised_laplacian import normalise
+from .laplacian import laplacian_distance
+from .normalised_laplacian import normalised_laplacian_distance
 from .similarity import WINDOW, ssim_error
 
 LUMA = (0.299, 0.587, 0.114)  # ITU-R BT.601
+MEASURES = {"ssim": ssim_error, "dlap": laplacian_distance, "dnor": normalised_laplacian_distance}
 
 
 def perceptual(reference, mesh, viewpoints=TWELVE, size=(225, 300), renderer="raycast"):
@@ -40,11 +41,5 @@ def picture_errors(reference, pictures):
     """dict(ssim, dlap, dnor) of pictures (views, rows, columns) against the reference's, averaged over the views."""
     if reference.shape != pictures.shape:
         raise ValueError(f"pictures of {pictures.shape} cannot be compared with the reference's {reference.shape}")
-    rows = [_one_view(*pair) for pair in zip(reference, pictures, strict=True)]
-    return dict(zip(("ssim", "dlap", "dnor"), np.mean(rows, axis=0).tolist(), strict=True))
-
-
-def _one_view(reference, picture):
-    """(ssim, dlap, dnor) of one view; both distances want the same pyramids."""
-    bands = laplacian_pyramid(reference), laplacian_pyramid(picture)
-    return ssim_error(reference, picture), band_distance(*bands), band_distance(*map(normalise, bands))
+    pairs = list(zip(reference, pictures, strict=True))
+    return {name: float(np.mean([measure(*pair) for pair in pairs])) for name, measure in MEASURES.items()}

@@ -72,12 +72,63 @@ def test_a_refusal_is_counted_and_takes_its_cell_from_all(bench):
     assert frame.loc[("fast", False), "cells"] == 10
 
 
+def test_a_miss_is_counted_and_takes_its_cell_from_all(bench):
+    rows = benched()
+    cell = (rows["mesh"] == "m1") & (rows["kept_points"] == 0) & (rows["share"] == 0.1)
+    rows.loc[cell, "ratio"] *= 100  # a cell that would change every mean
+    rows.loc[cell & (rows["backend"] == "poor"), "outcome"] = "missed"
+    table = backends.build(bench(rows))
+    frame = table.frame.set_index(["backend", "with_points"])
+    assert list(frame.loc[("poor", False), ["tried", "refused", "missed", "cells"]]) == [10, 0, 1, 9]
+    assert frame["missed"].sum() == 1 and frame.loc[("fast", False), "time_ratio"] == pytest.approx(0.05)
+    assert sorted(table.shown["missed"].unique()) == ["0 of 10", "1 of 10"]
+
+
+def test_what_is_to_be_reached_is_said_without_and_with_points(bench):
+    rows = benched(1.2)
+    spread = rows["mesh"].map({f"m{k}": 2.0 ** (k - 2.5) for k in range(len(SIZES))})
+    poor = (rows["backend"] == "fast") & (rows["kept_points"] == 12)
+    rows["ratio"] *= 0.8
+    rows.loc[poor, "ratio"] *= 0.8 * spread[poor]
+    rows.loc[poor, "error_ratio"] = 1.2
+    without, with_points = backends.build(bench(rows)).notes[:2]
+    assert without.startswith("fast (ours), nothing kept: 25.0 times faster than pymeshlab; 20 times is reached on av")
+    assert "1 or less is reached on average (no interval)" in without and "n log n is missed" in without
+    assert "points kept" in with_points and "1 or less is missed" in with_points
+    assert "20 times is reached on average (interval from" in with_points
+
+
+def test_what_is_surely_reached_is_said_to_be(bench):
+    rows = benched(0.9, noise=0.01)
+    random = np.random.default_rng(0)
+    rows["ratio"] *= 0.5 * np.exp(0.1 * random.normal(size=len(rows)))
+    rows["error_ratio"] *= 0.9 * np.exp(0.01 * random.normal(size=len(rows)))
+    for said in backends.build(bench(rows)).notes[:2]:
+        assert said.count("is reached.") == 3 and "20 times is reached. Its" in said
+
+
+def test_growth_is_fitted_without_and_with_points_apart(bench):
+    rows = benched()
+    kept = rows["kept_points"] > 0
+    rows.loc[kept, "seconds"] *= rows.loc[kept, "full"] * np.log(rows.loc[kept, "full"])
+    frame = by_backend(bench(rows))
+    assert frame.loc[("fast", False), "loglinear_power"] == pytest.approx(1)
+    assert frame.loc[("fast", True), "loglinear_power"] == pytest.approx(2)
+
+
+@pytest.mark.parametrize(("faces", "said"), [(1_000_000, "1,000,000 faces."), (400_000, "400,000 faces; 1,000,000")])
+def test_the_largest_mesh_is_named(bench, faces, said):
+    rows = benched()
+    notes = backends.build(bench(rows[rows["full"] <= faces])).notes
+    assert f"The largest mesh has {said}" in notes[2]
+
+
 def test_infeasible_targets_are_no_refusals(bench):
     rows = benched()
     rows.loc[rows["mesh"] == "m0", "outcome"] = "infeasible"
     table = backends.build(bench(rows))
     assert (table.frame["refused"] == 0).all() and (table.frame["tried"] == 8).all()
-    assert "4 targets are infeasible" in table.notes[0]
+    assert "4 targets are infeasible" in table.notes[2]
 
 
 def test_a_backend_that_keeps_nothing_takes_no_cell_from_the_others(bench):

@@ -121,8 +121,9 @@ def test_rivals_have_no_smaller_error_than_ours_or_say_so(run):
 
 
 def test_without_curves_the_network_is_a_row_with_the_reason(run):
-    notes = [row["note"] for row in run[1] if row["method"] == "network"]
-    assert notes and all("curve.csv" in note for note in notes)
+    rows = [row for row in run[1] if row["method"] == "network"]
+    assert [(row["kind"], row["tolerance"]) for row in rows] == [("pixels", 1.0), ("pixels", 2.0)]
+    assert all("curve.csv" in row["note"] for row in rows)
 
 
 def test_frames_of_the_table_add_up(run):
