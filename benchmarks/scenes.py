@@ -38,7 +38,7 @@ def measured(case, names, seed):
     """(rows of a case, its Scene)."""
     settings = check_section("scene", OmegaConf.to_container(compose(CASES[case]))["scene"])
     scene, missing = scene_of(settings, names)
-    say_missing(settings, missing)
+    say_missing(settings, scene, missing)
     shapes = sorted({placed.name for placed in scene.objects})
     for name in shapes:
         levels_of(name, FOLDER / case, settings, seed)

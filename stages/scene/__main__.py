@@ -41,7 +41,7 @@ def main():
     variant(settings.method)
     with StageRun("scene", inputs=("meshes", "salient_points", "lod")) as run:
         scene, missing = scene_of(settings, run.objects)
-        say_missing(settings, missing)
+        say_missing(settings, scene, missing)
         names = sorted({placed.name for placed in scene.objects})
         run.each(functools.partial(levels_of, settings=settings, seed=run.seed), names)
         factors = {f"tolerance_{factor:g}": factor for factor in dict.fromkeys([1.0, *settings.factors])}

@@ -15,14 +15,15 @@ from .place import Placed, Scene
 def scene_of(settings, known, factor=1.0):
     """(Scene, names left out since they are not among `known`), the tolerance times `factor`.
 
-    Raises ValueError where no object is left, and for what Scene and fly refuse.
+    Where none of its objects is known, as with meshes of one's own, those that are known stand in their places, in
+    their order, once each. Raises ValueError where the scene has no place, and for what Scene and fly refuse.
     """
     missing = list(dict.fromkeys(item.name for item in settings.objects if item.name not in known))
-    placed = tuple(Placed(item.name, _place(item), item.turn, item.size)
-                   for item in settings.objects if item.name in known)  # fmt: skip
-    if not placed:
-        named = ", ".join(missing) or "it names none"
-        raise ValueError(f"none of the objects of scene {settings.name} ({named}) is in data/meshes: take another")
+    there = [(item.name, item) for item in settings.objects if item.name in known]
+    there = there or list(zip(known, settings.objects, strict=False))
+    if not there:
+        raise ValueError(f"scene {settings.name} names no object, or data/meshes is empty: take another")
+    placed = tuple(Placed(name, _place(item), item.turn, item.size) for name, item in there)
     if len(settings.screen) != 2:
         raise ValueError(f"scene.screen is {settings.screen}: give rows and columns")
     eyes, targets = ([getattr(key, end) for key in settings.camera] for end in ("eye", "target"))
@@ -37,10 +38,13 @@ def _place(item):
     return tuple(item.position)
 
 
-def say_missing(settings, missing):
-    """Tells a person which objects the scene goes on without."""
+def say_missing(settings, scene, missing):
+    """Tells a person which objects the scene goes on without, and which stand in where it has none of its own."""
     if missing:
-        print(f"scene: {settings.name} goes on without {', '.join(missing)}: not in data/meshes", file=sys.stderr)
+        named = {item.name for item in settings.objects}
+        others = ", ".join(dict.fromkeys(item.name for item in scene.objects if item.name not in named))
+        on = f"with {others} in their places" if others else "on without them"
+        print(f"scene: {settings.name} goes {on}; not in data/meshes: {', '.join(missing)}", file=sys.stderr)
 
 
 def read_object(name, method):

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 class Item:
     """One object of a scene."""
 
-    name: str  # of an object in data/meshes; one that is not there is left out, and said so
+    name: str  # of an object in data/meshes; what is not there is left out, or stood in for if none is, and said
     position: list[float]  # x, y, z in metres of the middle of its foot; +z is up
     turn: float  # degrees about +z, counter-clockwise seen from above
     size: float  # metres, the longest side of its bounding box

@@ -47,6 +47,8 @@ def test_faults_count_degenerate_and_folded_faces():
     assert (faults(flat).degenerate, faults(flat).folded) == (0, 0)
     folded = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0.1, 0.1, 0]], [[0, 1, 2], [1, 3, 2]])
     assert faults(folded).folded == 1
+    assert faults(Mesh(flat.vertices, [[0, 1, 2], [1, 2, 3]])).folded == 0  # inside out is no fold
+    assert faults(Mesh(folded.vertices, [[0, 1, 2], [1, 2, 3]])).folded == 1
     needle = Mesh([[0, 0, 0], [1, 0, 0], [0.5, 1e-9, 0]], [[0, 1, 2]])
     assert faults(needle).degenerate == 1
     assert "1 new folded" in faults(folded).added(faults(flat))

@@ -70,14 +70,22 @@ def test_every_scene_is_sound(path):
 
 def test_a_scene_goes_on_without_what_is_not_there_and_says_so(settings, capsys):
     scene, missing = scene_of(settings, ["one", "two"])
-    say_missing(settings, missing)
+    say_missing(settings, scene, missing)
     assert [placed.name for placed in scene.objects] == ["one", "two"]
-    assert "without nothing" in capsys.readouterr().err
+    assert "on without them; not in data/meshes: nothing" in capsys.readouterr().err
+
+
+def test_other_meshes_stand_in_where_the_data_has_none_of_the_scene(settings, capsys):
+    scene, missing = scene_of(settings, ["cube", "urn"])
+    say_missing(settings, scene, missing)
+    assert [placed.name for placed in scene.objects] == ["cube", "urn"]
+    assert [placed.size for placed in scene.objects] == [item.size for item in settings.objects[:2]]
+    assert "with cube, urn in their places" in capsys.readouterr().err
 
 
 def test_a_scene_of_nothing_is_refused(settings):
-    with pytest.raises(ValueError, match="none of the objects of scene small"):
-        scene_of(settings, ["cube"])
+    with pytest.raises(ValueError, match="scene small names no object"):
+        scene_of(settings, [])
 
 
 @pytest.mark.parametrize(

@@ -29,5 +29,5 @@ def count_faults(vertices, faces, other, thin, fold):
         if other[h] > h:
             f, g = h // 3, other[h] // 3
             along = normal[f, 0] * normal[g, 0] + normal[f, 1] * normal[g, 1] + normal[f, 2] * normal[g, 2]
-            folded += along < fold
+            folded += (-along if faces[h] == faces[other[h]] else along) < fold  # whichever side is out
     return degenerate, folded

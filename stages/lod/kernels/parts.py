@@ -19,14 +19,15 @@ def split_fans(faces, other):
             continue
         fan[seed] = count
         for side in range(2):  # to one rim, then to the other; once round where there is none
-            edge = seed if side == 0 else before(seed)
+            edge, tail = (seed, True) if side == 0 else (before(seed), False)  # tail: the corner is that of the edge
             while other[edge] >= 0:
-                edge = other[edge]
-                here = edge if faces[edge] == faces[seed] else after(edge)
+                across = other[edge]
+                tail = tail == (faces[across] == faces[edge])
+                here = across if tail else after(across)
                 if fan[here] >= 0:
                     break
                 fan[here] = count
-                edge = before(edge) if here == edge else here
+                edge, tail = (before(across), False) if tail else (here, True)
         count += 1
     return fan, count
 
