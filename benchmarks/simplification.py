@@ -1,7 +1,7 @@
-"""The backends of simplify against each other, to 800,000 faces: `python -m benchmarks.simplification [PSB.zip]`
+"""The backends of simplify against each other, to a million faces: `python -m benchmarks.simplification [PSB.zip]`
 
 Meshes: the Princeton segmentation benchmark (psb.zip in ../shared/data, or the path given). One of each of its classes
-as it is, some cut down to 2,000 faces, some subdivided (Loop) to 200,000 to 800,000; each to three shares of its
+as it is, some cut down to 2,000 faces, some subdivided (Loop) to 200,000 and to a million; each to three shares of its
 faces, those above 100,000 to one; once with nothing kept and once with points far from each other, as many and with as
 wide rings as the target leaves room for (KEPT), so that there is a kept set at every size. Writes
 reports/bench/simplification.csv: a row a mesh, share, kept set and backend.
@@ -46,7 +46,7 @@ OUT = Path("reports/bench/simplification.csv")
 PSB = "../shared/data/psb.zip"
 SHARES = (0.5, 0.1, 0.02)
 SMALL, SMALL_OF = 2000, 5  # faces of the small meshes, and how many there are
-SUBDIVIDED = {200_000: 3, 900_000: 1}  # faces, roughly, and of how many meshes
+SUBDIVIDED = {200_000: 3, 1_000_000: 1}  # least faces, and of how many meshes
 KEPT = ((12, 3), (12, 2), (12, 1), (6, 1), (3, 1), (3, 0), (1, 0))  # (points, rings), the first that is feasible
 ROUNDS, LARGE = 5, 100_000  # a cell is timed this often; above LARGE faces twice
 SEEN = 250_000  # faces above which no pictures are taken
@@ -81,14 +81,19 @@ def meshes(archive):
     for name in by_size:
         yield "psb", name, found[name]
     for faces, count in SUBDIVIDED.items():
-        for name in by_size[-count:]:
+        for name in sorted(found, key=lambda name: 4 ** cuts(found[name], faces) * len(found[name].faces))[:count]:
             yield "subdivided", name, subdivided(found[name], faces)
 
 
+def cuts(mesh, faces):
+    """How often each face must be cut in four for the mesh to have `faces` or more."""
+    return max(int(np.ceil(np.log(faces / len(mesh.faces)) / np.log(4))), 0)
+
+
 def subdivided(mesh, faces):
-    """The mesh with each face cut in four, smoothly (Loop), until it has about `faces` or more."""
+    """The mesh with each face cut in four, smoothly (Loop), until it has `faces` or more."""
     vertices, found = mesh.vertices, mesh.faces
-    while len(found) < 0.7 * faces:
+    for _ in range(cuts(mesh, faces)):
         vertices, found = trimesh.remesh.subdivide_loop(vertices, found, iterations=1)
     return Mesh(vertices, found)
 

@@ -4,15 +4,18 @@ from .markdown import number
 
 
 def reach(value, low, high, least=None, most=None, show=number):
-    """The word: reached, reached on average (interval from x), or missed; `value` against `least`, or against `most`.
+    """The word: reached, reached on average (interval from x), missed on average (interval to x), or missed.
 
-    low, high: the interval; reached is what the whole of it says. show: how its end is written. A value without an
-    interval (NaN) can be reached on average only.
+    `value` against `least`, or against `most`. low, high: the interval; reached and missed are what the whole of it
+    says. show: how its end is written. A value without an interval (NaN) is one or the other on average only.
     """
     if value != value:
         return "not measured"
-    side, end = ("from", low) if most is None else ("to", high)
-    good, sure = (value >= least, low >= least) if most is None else (value <= most, high <= most)
-    if sure or not good:
-        return "reached" if sure else "missed"
-    return f"reached on average (interval {side} {show(end)})" if end == end else "reached on average (no interval)"
+    ends = {"from": low, "to": high}
+    good, sides = (value >= least, ("from", "to")) if most is None else (value <= most, ("to", "from"))
+    side = sides[0] if good else sides[1]  # the end that decides: the one nearer to the other word
+    end = ends[side]
+    if end == end and (end >= least if most is None else end <= most) == good:
+        return "reached" if good else "missed"
+    rest = f"interval {side} {show(end)}" if end == end else "no interval"
+    return f"{'reached' if good else 'missed'} on average ({rest})"

@@ -64,7 +64,9 @@ def test_the_word_goes_by_the_end_of_the_interval():
     assert reach(0.4, 0.3, 0.5, least=0.3) == reach(0.9, 0.8, 1.0, most=1) == "reached"
     assert reach(0.4, 0.299, 0.5, least=0.3) == "reached on average (interval from 0.299)"
     assert reach(0.9, 0.8, 1.1, most=1) == "reached on average (interval to 1.10)"
-    assert reach(0.29, 0.2, 0.5, least=0.3) == reach(1.01, 0.8, 1.1, most=1) == "missed"
+    assert reach(0.2, 0.1, 0.29, least=0.3) == reach(1.2, 1.01, 1.3, most=1) == "missed"
+    assert reach(0.29, 0.2, 0.5, least=0.3) == "missed on average (interval to 0.500)"
+    assert reach(1.01, 0.8, 1.1, most=1) == "missed on average (interval from 0.800)"
     assert reach(25, np.nan, np.nan, least=20) == "reached on average (no interval)"
     assert reach(np.nan, np.nan, np.nan, most=1) == "not measured"
 
