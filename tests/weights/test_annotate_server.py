@@ -1,5 +1,6 @@
 """The annotation server: who may reach it, what it stores, and what it says when it cannot."""
 
+import functools
 import json
 import os
 import signal
@@ -189,6 +190,8 @@ def test_the_command_serves_until_it_is_interrupted(tmp_path):
     command = [sys.executable, "-m", "stages.weights.annotate", str(tmp_path / "brick.off"), "--folder", str(tmp_path)]
     bare = {key: value for key, value in os.environ.items() if key not in ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")}
     options = {"cwd": ROOT, "env": bare, "text": True, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+    heard = functools.partial(signal.signal, signal.SIGINT, signal.SIG_DFL)  # what runs in the background ignores it
+    options["preexec_fn"] = heard
     running = subprocess.Popen([*command, "--port", "0"], **options)
     try:
         line = running.stdout.readline()
