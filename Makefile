@@ -6,9 +6,11 @@ SMOKE := build/smoke
 GAZE := build/gaze
 gaze ?= ../shared/data/gaze.zip
 psb ?= ../shared/data/psb.zip
+pressure ?= ../shared/data/pressure_images.zip
+grasps ?= ../shared/data/biotac_grasps.zip
 export PATH := $(BIN):$(PATH)
 .DEFAULT_GOAL := help
-.PHONY: help repro test smoke lint bench gaze detectors clean
+.PHONY: help repro test smoke lint bench gaze detectors touch clean
 
 help: ## this list
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 10
@@ -36,10 +38,11 @@ lint: $(VENV)/ready ## ruff: rules and formatting
 
 # Each is one process on one core, but the pipeline; errors and scenes read what `make repro` made. The last fetches its
 # meshes by `apt-get download`.
-bench: $(VENV)/ready ## every benchmark, to reports/bench: errors, backends, scenes, pipeline, broken meshes (an hour)
+bench: $(VENV)/ready ## every benchmark, to reports/bench: errors, backends, scenes, imprints (tacto=PYTHON), ... (an hour)
 	OMP_NUM_THREADS=1 python -m benchmarks.errors
 	OMP_NUM_THREADS=1 python -m benchmarks.simplification $(psb)
 	python -m benchmarks.scenes
+	OMP_NUM_THREADS=1 python -m benchmarks.imprints $(psb) $(if $(tacto),--tacto $(tacto))
 	python -m benchmarks.pipeline
 	OMP_NUM_THREADS=1 python -m benchmarks.broken_meshes
 
@@ -60,6 +63,16 @@ detectors = $(call fresh,build/detectors_$(1)) && python -m stages.compose data=
 detectors: $(VENV)/ready ## errors of every detector on psb and gaze (psb=, gaze=PATH of the zips), to reports/simplification (half an hour)
 	$(call detectors,princeton,$(psb))
 	$(call detectors,gaze,$(gaze))
+
+# Resumable: a second start goes on where a killed one stopped, since the scratch copy is made only where there is none.
+touch: $(VENV)/ready ## recorded touches (pressure=, grasps=) and classes of psb (psb=) at the thesis's size, to reports/touch (hours)
+	OMP_NUM_THREADS=1 python -m benchmarks.real_touches $(pressure) $(grasps)
+	[ -d build/touch ] || { $(call fresh,build/touch); }
+	cd build/touch && python -m stages.compose experiment=table_4_9 "classes.folder=$(abspath $(psb))" \
+	  && dvc repro sensor_size sequences
+	cp build/touch/reports/measurements/sensor_size.csv reports/touch/sensor_size_princeton.csv
+	cp build/touch/reports/measurements/sequences.csv reports/touch/sequences_princeton.csv
+	cp build/touch/reports/measurements/contours.csv reports/touch/contours_princeton.csv
 
 clean: ## remove what was built and computed; fetched files stay in the user's cache
 	rm -rf $(VENV) build .pytest_cache .ruff_cache .dvc/tmp .dvc/cache *.egg-info

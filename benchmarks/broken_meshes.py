@@ -8,12 +8,10 @@ crash (stages.stability.simplification), with the reason and the seconds. A file
 Both backends are warmed up before the processes fork, or each would first load compiled code.
 """
 
-import io
 import json
 import multiprocessing
 import os
 import resource
-import subprocess
 import tarfile
 import tempfile
 from pathlib import Path
@@ -21,8 +19,8 @@ from pathlib import Path
 import pandas as pd
 
 from benchmarks import arguments
-from stages.kit.fetch import FetchError, cache_folder
-from stages.kit.files import sha256, write_table
+from stages.kit.fetch import cache_folder, debian_files, fetch_debian
+from stages.kit.files import write_table
 from stages.kit.parallel import progress
 from stages.lod import BACKENDS
 from stages.lod.warm_up import warm_up
@@ -42,40 +40,20 @@ SECONDS, MEMORY = 120, 6 * 2**30  # of one mesh and backend, all cases
 LARGEST = 20_000  # faces; above it the cases take minutes each with pymeshlab
 
 
-def fetched():
-    """The package's file, downloaded once by the machine's own apt."""
-    path = cache_folder() / PACKAGE
-    if not path.exists() or sha256(path) != DIGEST:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        subprocess.run(["apt-get", "download", "libcgal-demo"], cwd=path.parent, capture_output=True, check=False)
-    if not path.exists() or sha256(path) != DIGEST:
-        raise FetchError(f"get {PACKAGE} (SHA-256 {DIGEST}) by `apt-get download libcgal-demo` and put it at {path}")
-    return path
-
-
 def unpacked():
     """The mesh files, taken out of the package into the cache: sorted paths."""
     folder = cache_folder() / "cgal-5.5.1"
     if not folder.exists():
         part = folder.with_suffix(".part")
-        with tarfile.open(fileobj=io.BytesIO(_members(fetched())["data.tar.xz"])) as outer:
-            inner = next(member for member in outer.getmembers() if member.name.endswith(INNER))
-            with tarfile.open(fileobj=outer.extractfile(inner)) as stored:
-                for member in stored:
-                    if member.isfile() and Path(member.name).suffix in FORMATS:
-                        part.mkdir(parents=True, exist_ok=True)
-                        (part / Path(member.name).name).write_bytes(stored.extractfile(member).read())
+        part.mkdir(parents=True, exist_ok=True)
+        files = debian_files(fetch_debian(PACKAGE, DIGEST))
+        inner = next(stream for name, stream in files if name == INNER)
+        with tarfile.open(fileobj=inner, mode="r|gz") as stored:
+            for member in stored:
+                if member.isfile() and Path(member.name).suffix in FORMATS:
+                    (part / Path(member.name).name).write_bytes(stored.extractfile(member).read())
         part.rename(folder)
     return sorted(folder.iterdir())
-
-
-def _members(path):
-    """dict name -> bytes of an ar archive: a header of 60 characters a member, an even number of bytes each."""
-    content, at, found = path.read_bytes(), 8, {}
-    while at < len(content):
-        name, size = content[at : at + 16].decode().strip(" /"), int(content[at + 48 : at + 58])
-        found[name], at = content[at + 60 : at + 60 + size], at + 60 + size + size % 2
-    return found
 
 
 def measure(path, backend, out):

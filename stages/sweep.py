@@ -69,7 +69,9 @@ def _touch(name, config, chosen):
     found, _ = find_all(mesh, sight, methods, options, settings.count)
     sensor = chosen["imprints"]
     return {
-        method: press_many(mesh, result.points[touchable(mesh, result.points)], sensor.cells, sensor.pitch)
+        method: press_many(
+            mesh, result.points[touchable(mesh, result.points)], sensor.cells, sensor.pitch, contact=sensor.contact
+        )
         for method, result in found.items()
         if method in sensor.methods
     }

@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 import trimesh
 
-from benchmarks import simplification
+from benchmarks import imprints, simplification
 from stages.kit import Mesh
 from stages.kit.files import read_table, write_table
 from stages.lod import SimplifyError
@@ -78,3 +78,17 @@ def test_more_faces_than_asked_for_are_a_miss_without_ratios(monkeypatch):
 def test_nothing_is_compared_with_a_reference_that_did_not_reach_the_target(monkeypatch, reference):
     rows = of_backends(monkeypatch, 200, pymeshlab=reference, other=part(200))
     assert rows["other"]["outcome"] == "reached" and not [name for name in rows["other"] if "ratio" in name]
+
+
+def test_a_talkative_peer_is_heard_and_a_failing_one_gives_its_reason(tmp_path):
+    peer = tmp_path / "peer"
+    peer.write_text(
+        "#!/bin/sh\nhead -c 300000 /dev/zero >&2\nread job\necho '{\"seconds\": 1}'\nread job\necho no GL >&2\n"
+    )
+    peer.chmod(0o755)
+    cameras = imprints.Cameras(str(peer))
+    assert cameras.ask("tacto_32x32", 16, "job") == {"seconds": 1}
+    for _ in range(2):
+        with pytest.raises(ValueError, match="not run: .*no GL"):
+            cameras.ask("tacto_32x32", 16, "job")
+    cameras.close()

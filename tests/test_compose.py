@@ -43,7 +43,7 @@ def test_every_option_composes_and_fits_the_schemas(group, option):
         ("profiel=smoke", "did you mean profile"),
         ("seed=many", "seed"),
         ("seed=-1", "negative"),
-        ("experiment=table_4_9", "did you mean table_4_1"),
+        ("experiment=table_4_8", "did you mean table_4_9"),
         ("classifier=knn,svm", "stages.sweep -m"),
         ("classification.sets.mine=[a,b]", "+classification.sets.mine"),
         ("views.size=big", "views.size"),

@@ -1,7 +1,8 @@
-"""Tells objects apart by single imprints: T tables 4.1 and 4.2.
+"""Tells objects apart by one touch or a few: T tables 4.1, 4.2, 4.3, 4.5 and 4.6.
 
 Reads data/imprints/NAME.npz, writes data/classification/SET.SAMPLING.npz (confusion matrices of the hold-outs),
-reports/measurements/classification.csv (one row a repetition) and reports/metrics/classification.json.
+reports/measurements/classification.csv (one row a repetition; column variant: plain, or a name in trials.py) and
+reports/metrics/classification.json.
 
 The mean in the metrics comes with a bootstrap interval over the repetitions. It covers the luck of the split and of
 the training. It does not cover the choice of objects and of touches: all repetitions share the same imprints, and
@@ -21,8 +22,10 @@ from stages.kit.run import DATA
 from stages.kit.stats import bootstrap_interval
 
 from .classifiers import check_name
-from .features import features
+from .gathered import alike, costs, gather
 from .protocol import check_counts, evaluate_features
+from .several import Several
+from .variants import evaluate_variants
 
 
 def plan(sets, folder):
@@ -62,41 +65,57 @@ def process(item, folder, planned, settings, seed):
     """One sampling of one set through all classifiers; what fails or is left out gives a row with the reason."""
     name, _, sampling = item.rpartition(".")
     if isinstance(planned[item], str):
-        return [{"object": name, "method": sampling or None, "value": None, "note": planned[item]}]
-    touched = {one: read_imprints(DATA / "imprints" / f"{one}.npz")[sampling] for one in sorted(settings.sets[name])}
-    count = planned[item]
-    samples = np.concatenate([features(imprints.images[:count]) for imprints in touched.values()])
-    places = np.concatenate([imprints.positions[:count] for imprints in touched.values()])
-    labels = np.repeat(list(touched), count)
-    width = max(imprints.width for imprints in touched.values())
+        return [{"object": name, "method": sampling or None, "variant": None, "value": None, "note": planned[item]}]
+    common = {"object": name, "method": sampling}
+    touched, labels = gather(DATA / "imprints", settings.sets[name], sampling, planned[item])
     rows, confusions = [], {}
     for classifier in settings.classifiers:
-        common = {"object": name, "method": sampling}
         try:
             with threadpool_limits(1):  # equal sums on any number of cores
                 found, confusion = evaluate_features(
-                    samples, labels, classifier, settings.repetitions, seed, places, apart=width
+                    touched.samples, labels, classifier, settings.repetitions, seed, touched.places, touched.width
                 )
         except Exception as error:  # whatever one classifier trips over, the others still count
             found = [{"classifier": classifier, "metric": "accuracy_holdout", "value": None}]
             found[0]["note"] = f"{classifier} failed: {error}"
         else:
             confusions[f"{classifier}.confusion"] = confusion
-        rows += [{**common, "imprints": len(samples), "note": None, **row} for row in found]
-    write_arrays(folder / f"{item}.npz", objects=np.array(list(touched)), **confusions)
+        rows += [{**common, "variant": "plain", "imprints": len(labels), "note": None, **row} for row in found]
+    able = [key.removesuffix(".confusion") for key in confusions]
+    with threadpool_limits(1):
+        rows += [{**common, **row} for row in further(name, sampling, touched, able, settings, seed)]
+    rows += [{**common, **row} for row in [*alike(touched, sorted(settings.sets[name])), *costs(touched)]]
+    write_arrays(folder / f"{item}.npz", objects=np.unique(labels), **confusions)
     return rows
 
 
-def summary(rows, seed):
-    """{set: {sampling: {classifier: {metric: {mean, low, high}}}}} over the repetitions."""
+def further(name, sampling, touched, classifiers, settings, seed):
+    """Rows of the variants, as far as the settings ask for them."""
+    several = None
+    if sampling in settings.closer and name == next(iter(settings.sets)):
+        every = sampling == settings.closer[0]
+        several = Several(tuple(settings.touches), settings.combinations, every)
+    closer = sampling in settings.closer
+    return evaluate_variants(touched, classifiers, settings.repetitions, seed, several, closer)
+
+
+def summary(rows, seed, closest=None):
+    """{set: {sampling: {classifier: {metric: {mean, low, high}}}}} over the repetitions.
+
+    closest: (sampling, classifier) of which the variants are told too, under {"variants": {set: {variant: ...}}}.
+    """
     values = defaultdict(list)
     for row in rows:
-        if row["value"] is not None:
+        if row["value"] is None or not row.get("classifier"):
+            continue
+        if row.get("variant", "plain") == "plain":
             values[row["object"], row["method"], row["classifier"], row["metric"]].append(row["value"])
+        elif (row["method"], row["classifier"]) == closest:
+            values["variants", row["object"], row["variant"], row["metric"]].append(row["value"])
     tree = {}
-    for (name, sampling, classifier, metric), found in values.items():
+    for (first, second, third, metric), found in values.items():
         interval = zip(("mean", "low", "high"), bootstrap_interval(found, seed), strict=True)
-        branch = tree.setdefault(name, {}).setdefault(sampling, {}).setdefault(classifier, {})
+        branch = tree.setdefault(first, {}).setdefault(second, {}).setdefault(third, {})
         branch[metric] = {key: round(value, 6) for key, value in interval if np.isfinite(value)}
     return tree
 
@@ -109,7 +128,7 @@ def main():
     planned = plan(settings.sets, DATA / "imprints")
     with StageRun("classification", inputs=("imprints",)) as run:
         rows = run.each(functools.partial(process, planned=planned, settings=settings, seed=run.seed), planned)
-        run.metrics(summary(rows, run.seed))
+        run.metrics(summary(rows, run.seed, (settings.closer[0], settings.classifiers[0]) if settings.closer else None))
     for note in sorted({row["note"] for row in rows if row["note"]}):
         print(f"classification: {note}")
     print(f"classification: {len(settings.sets)} sets, {len(planned)} samplings, {len(rows)} rows")

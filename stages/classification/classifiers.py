@@ -3,6 +3,7 @@
 import difflib
 
 COMPONENTS = 12  # T4.2.3.4
+KINDS = ("features", "located", "reduced")  # what a sample may be
 
 
 def knn(seed=0):
@@ -55,19 +56,32 @@ CLASSIFIERS = {
 }
 
 
-def classifier(name, seed=0):
+def classifier(name, seed=0, kind="features"):
     """The whole scikit-learn pipeline of one classifier: z-transform, 12 principal components, the classifier.
 
+    kind: what the samples are. "features": those of `features`, at least 12 samples. "located": the same with the
+    position of the touch in three more columns, the last ones; they are standardised too, and join the components
+    behind the PCA, which else would spread them over all components. "reduced": numbers that need no further
+    reduction, such as the two of a TouchMap; only standardised.
     The thesis standardises the entire data beforehand (T4.2.4); here the z-transform and the components are learned
-    from the samples that `fit` is given (at least 12), so that nothing of the hold-out leaks into training.
-    Raises ValueError for a name that is not in CLASSIFIERS.
+    from the samples that `fit` is given, so that nothing of the hold-out leaks into training.
+    Raises ValueError for a name that is not in CLASSIFIERS, or another kind.
     """
+    from sklearn.compose import make_column_transformer
     from sklearn.decomposition import PCA
     from sklearn.pipeline import make_pipeline
     from sklearn.preprocessing import StandardScaler
 
     check_name(name)
-    return make_pipeline(StandardScaler(), PCA(COMPONENTS, svd_solver="full"), CLASSIFIERS[name](seed))
+    if kind not in KINDS:
+        raise ValueError(f"kind is one of {', '.join(KINDS)}, got {kind!r}")
+    components = [StandardScaler(), PCA(COMPONENTS, svd_solver="full")]
+    if kind == "reduced":
+        components = components[:1]
+    if kind == "located":
+        touch, place = (make_pipeline(*components), slice(0, -3)), (StandardScaler(), slice(-3, None))
+        components = [make_column_transformer(touch, place)]
+    return make_pipeline(*components, CLASSIFIERS[name](seed))
 
 
 def check_name(name):

@@ -6,6 +6,7 @@ import pywt
 WAVELET = "db2"  # T4.2.3.4 names none; db2 is what the thesis takes in T4.4.9
 LEVELS = 3
 SMALLEST = 2**LEVELS  # rows and columns that can be halved three times
+IMAGE = 5  # features of the imprint itself, the last ones
 _STATISTICS = ("norm", "mean", "std", "entropy")
 FEATURES = (
     *(f"{band}{level}_{name}" for level in range(1, LEVELS + 1) for band in "hvd" for name in _STATISTICS),
@@ -33,14 +34,24 @@ def features(images):
         raise ValueError(f"images must have shape (k, rows, cols), at least {SMALLEST} x {SMALLEST}: {images.shape}")
     if not np.isfinite(images).all():
         raise ValueError("images hold NaN or infinite values")
+    return np.hstack([wavelet_features(images), image_features(images)])
+
+
+def wavelet_features(images):
+    """The first 36 of `features`."""
     columns, approximation = [], images
     for _ in range(LEVELS):
         approximation, details = pywt.dwt2(approximation, WAVELET, mode="symmetric", axes=(1, 2))
         for band in details:
             flat = band.reshape(len(images), np.prod(band.shape[1:]))
             columns += [np.linalg.norm(flat, axis=1), flat.mean(axis=1), flat.std(axis=1), _entropy(flat)]
-    columns += [images.max(axis=(1, 2)), images.mean(axis=(1, 2)), images.std(axis=(1, 2)), *_centre(images)]
     return np.stack(columns, axis=1)
+
+
+def image_features(images):
+    """The last five of `features`."""
+    statistics = [images.max(axis=(1, 2)), images.mean(axis=(1, 2)), images.std(axis=(1, 2))]
+    return np.stack([*statistics, *_centre(images)], axis=1)
 
 
 def _entropy(coefficients):

@@ -35,17 +35,17 @@ def evaluate_features(samples, labels, name, repetitions=20, seed=0, places=None
     """The protocol on features (k, d) with labels (k,): (rows as `evaluate` gives them, confusion (n, n) i8).
 
     The confusion matrix sums the hold-outs of all repetitions, true classes in rows, both in alphabetical order.
-    places: (k, 3) where each imprint was taken. With it a third metric tells what the random hold-out flatters, since
-    two arrays that overlap feel nearly the same: accuracy_apart holds out one region of each object, a quarter of its
-    touches, and trains on those touches alone that are farther than `apart` from all of the region. It trains on fewer
-    samples than accuracy_holdout does. None where an object has no touch that far.
+    places: (k, 3) where each imprint was taken. With it two more metrics tell what the random hold-out flatters, since
+    two arrays that overlap feel nearly the same. accuracy_apart holds out one region of each object, see `regions`.
+    It trains on fewer samples, so accuracy_fewer holds out a random quarter and trains on as many of the rest as
+    accuracy_apart did: the difference of these two is the overlap alone. None where an object has no touch far enough.
     """
     classes, truth = np.unique(labels, return_inverse=True)
     confusion = np.zeros((len(classes), len(classes)), dtype=np.int64)
     rows = []
     for repetition in range(repetitions):
-        number = int(rng(seed, f"repetition {repetition}").integers(2**31))
-        train, test = _holdout(truth, number)
+        number = draw_number(seed, repetition)
+        train, test = holdout(truth, number)
         answers, seconds = _answer(name, number, samples, truth, train, test)
         np.add.at(confusion, (truth[test], answers), 1)
         found = {
@@ -53,10 +53,17 @@ def evaluate_features(samples, labels, name, repetitions=20, seed=0, places=None
             "accuracy_fivefold": _fivefold(name, number, samples, truth, train),
         }
         if places is not None:
-            found["accuracy_apart"] = _apart(name, number, samples, truth, np.asarray(places), apart)
+            split = regions(truth, places, apart, number)
+            found["accuracy_apart"] = _rate(name, number, samples, truth, split)
+            found["accuracy_fewer"] = _rate(name, number, samples, truth, split and _as_few(truth, split, number))
         common = {"classifier": name, "repetition": repetition}
         rows += [_row(common, metric, *measured) for metric, measured in found.items()]
     return rows, confusion
+
+
+def draw_number(seed, repetition):
+    """The seed of one repetition: equal for all classifiers and samplings, so that they can be compared in pairs."""
+    return int(rng(seed, f"repetition {repetition}").integers(2**31))
 
 
 def check_counts(counts):
@@ -72,8 +79,8 @@ def _row(common, metric, value, seconds):
     return {**common, "metric": metric, "value": None if value is None else float(value), "seconds": seconds}
 
 
-def _holdout(truth, number):
-    """(train, test) indices, a quarter of each class held out."""
+def holdout(truth, number):
+    """(train, test) indices, a random quarter of each class held out."""
     from sklearn.model_selection import train_test_split
 
     return train_test_split(np.arange(len(truth)), test_size=HOLDOUT, stratify=truth, random_state=number)
@@ -98,20 +105,43 @@ def _answer(name, number, samples, truth, train, test):
     return answers, watch.seconds
 
 
-def _apart(name, number, samples, truth, places, apart):
-    """(accuracy on one held-out region an object, seconds); (None, None) where too little is left to train on."""
-    train, test = [], []
+def regions(truth, places, apart, number, side=False):
+    """(train, test) indices that share no touched surface, or None where too little is left to train on.
+
+    Held out is one region of each object: the quarter of its touches nearest to one of them, drawn by `number`; or with
+    `side` the quarter that lies farthest to one side, the same for all objects. Where the position itself is a feature
+    only the latter is fair: else other objects were touched where this one was not, and its region looks like theirs.
+    Training keeps those touches alone that are farther than `apart`, the array's width, from all of the region. (Four
+    clusters without such a gap flatter nearly as much as a random split: arrays overlap across their borders.)
+    """
+    places, train, test = np.asarray(places), [], []
     random = np.random.default_rng(number)
+    direction = random.normal(size=3) if side else None
     for one in np.unique(truth):
         own = np.flatnonzero(truth == one)
         gaps = np.linalg.norm(places[own][:, None] - places[own][None], axis=2)
-        order = np.argsort(gaps[random.integers(len(own))], kind="stable")
+        order = np.argsort(-places[own] @ direction if side else gaps[random.integers(len(own))], kind="stable")
         region, rest = np.split(order, [round(HOLDOUT * len(own))])
         test.append(own[region])
         train.append(own[rest[(gaps[rest][:, region] > apart).all(axis=1)]])
     left = [len(part) for part in train]
     if min(left) == 0 or sum(left) < COMPONENTS:
+        return None
+    return np.concatenate(train), np.concatenate(test)
+
+
+def _as_few(truth, split, number):
+    """(train, test) with a random quarter held out, and as many of each class to train on as in another split."""
+    counts = np.bincount(truth[split[0]])
+    train, test = holdout(truth, number)
+    random = np.random.default_rng(number)
+    kept = [random.permutation(train[truth[train] == one])[:count] for one, count in enumerate(counts)]
+    return np.concatenate(kept), test
+
+
+def _rate(name, number, samples, truth, split):
+    """(rate of right answers on the test part, seconds); (None, None) without a split."""
+    if split is None:
         return None, None
-    train, test = np.concatenate(train), np.concatenate(test)
-    answers, seconds = _answer(name, number, samples, truth, train, test)
-    return (answers == truth[test]).mean(), seconds
+    answers, seconds = _answer(name, number, samples, truth, *split)
+    return (answers == truth[split[1]]).mean(), seconds

@@ -10,3 +10,6 @@ class Params:
     sets: dict[str, list[str]]  # name of the set: its objects, each with imprints in data/imprints
     classifiers: list[str]  # names of stages.classification.CLASSIFIERS
     repetitions: int  # random hold-outs and foldings, the same for every sampling and classifier
+    closer: list[str]  # samplings studied closer: selection, and several touches of the first set; the first in full
+    touches: list[int]  # how many touches make one sample
+    combinations: int  # samples of several touches that start with the same imprint

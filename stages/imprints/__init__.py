@@ -1,22 +1,51 @@
 """The virtual pressure array: what a flat tactile sensor feels at a point of an object (T4.3).
 
-Public names: press, press_many, distances, normalise, sensor_axes, touchable, read_imprints, write_imprints, Imprints.
+Public names: adaptive_pitch, contour, contour_imprints, distances, distances_at, follow, follow_many, indent,
+normalise, place, press, press_at, press_many, quasi_tangent, read_imprints, section, sensor_axes, sensor_normals,
+touchable, warm_up, write_imprints, CONTACTS, Imprints, Loop, Sequence, Skin, Surface.
 """
 
-from .distances import distances
+from .adaptive import adaptive_pitch
+from .contact import CONTACTS
+from .distances import distances, distances_at
 from .files import Imprints, read_imprints, write_imprints
+from .follow import contour, follow, follow_many
 from .frame import sensor_axes, sensor_normals, touchable
-from .press import normalise, press, press_many
+from .place import place
+from .press import normalise, press, press_at, press_many
+from .quasi_tangent import contour_imprints, quasi_tangent
+from .section import Loop, section
+from .sequence import Sequence
+from .skin import Skin, indent
+from .surface import Surface
+from .warm_up import warm_up
 
 __all__ = [
+    "CONTACTS",
     "Imprints",
+    "Loop",
+    "Sequence",
+    "Skin",
+    "Surface",
+    "adaptive_pitch",
+    "contour",
+    "contour_imprints",
     "distances",
+    "distances_at",
+    "follow",
+    "follow_many",
+    "indent",
     "normalise",
+    "place",
     "press",
+    "press_at",
     "press_many",
+    "quasi_tangent",
     "read_imprints",
+    "section",
     "sensor_axes",
     "sensor_normals",
     "touchable",
+    "warm_up",
     "write_imprints",
 ]

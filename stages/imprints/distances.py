@@ -2,17 +2,12 @@
 
 import numpy as np
 
-from stages.kit import Mesh, RayScene
-
+from .contact import tangent_or_rigid
 from .frame import check_vertices, sensor_axes, sensor_normals
-
-LIFT = (
-    1e-6  # of the mesh's diagonal: a surface in the array's plane is met from just off it; 16 steps of single precision
-)
-BATCH = 1 << 16  # rays cast at once: their arrays then stay in the processor's cache
+from .surface import ready
 
 
-def distances(mesh, vertices, cells=(16, 16), pitch=0.01, reach=None, axes=None):
+def distances(mesh, vertices, cells=(16, 16), pitch=0.01, reach=None, axes=None, contact="tangent"):
     """(k, rows, cols) f8: distance of each cell to the surface along the normal, in units of the mesh.
 
     The array is a plane grid of rows x cols cells, `pitch` units apart, centred on the vertex, its normal the average
@@ -22,78 +17,76 @@ def distances(mesh, vertices, cells=(16, 16), pitch=0.01, reach=None, axes=None)
     A distance is positive where the surface lies below the array (away from it, into the object), zero at contact and
     negative where the cell is inside the object: then it is the way out along +normal (T4.3.1). A cell is inside when
     the first face below and the first face above are both seen from their back; where only the one below is (an open
-    mesh, mixed orientation), it is the surface below that counts. Where both counts of cells are odd the middle cell
+    mesh, mixed orientation), it is the surface below that counts. Of two faces at one height, where parts of the object
+    stand on each other, the one seen from its back counts. Where both counts of cells are odd the middle cell
     is the vertex itself, 0. A cell that finds no surface within `reach` reports the reach: the depth that the sensor
     can feel, both ways; by default the longer side of the array.
 
     The thesis takes the centre of the face that the ray meets for the surface point (T figure 4.7); here it is the
     exact crossing, so that the imprint does not change with the triangulation.
 
-    vertices: (k,) vertex ids; axes: (k, 3, 3) rows right, up, normal, to turn the array by hand.
+    mesh: a Mesh, or a Surface where it is touched more than once; vertices: (k,) vertex ids; axes: (k, 3, 3) rows
+    right, up, normal, to turn the array by hand; contact: "tangent" (the plane stands at the vertex) or "rigid" (it
+    rests on what it meets first), see `stages.imprints.contact`.
     Raises ValueError for cells or a pitch that make no array, and naming the vertex that cannot be touched.
     """
-    vertices = check_vertices(mesh, vertices)
+    surface = ready(mesh)
+    vertices = check_vertices(surface.mesh, vertices)
     (rows, columns), pitch, reach = check_sensor(cells, pitch, reach)
-    axes = sensor_axes(sensor_normals(mesh, vertices)) if axes is None else _check_axes(axes, len(vertices))
-    if len(vertices) == 0:
-        return np.zeros((0, rows, columns))
-    # Centred, so that embree's single precision is spent on the object and not on its place in the world.
-    middle = (mesh.vertices.min(axis=0) + mesh.vertices.max(axis=0)) / 2
-    local = Mesh(mesh.vertices - middle, mesh.faces)
-    scene, lift = RayScene(local), LIFT * mesh.diagonal
-    step = max(1, BATCH // (rows * columns))
-    found = np.concatenate(
-        [
-            _measure(scene, local.vertices[vertices[i : i + step]], axes[i : i + step], (rows, columns), pitch, lift)
-            for i in range(0, len(vertices), step)
-        ]
-    )
-    if rows % 2 and columns % 2:
+    axes = sensor_axes(sensor_normals(surface.mesh, vertices)) if axes is None else axes
+    found = distances_at(surface, surface.mesh.vertices[vertices], axes, (rows, columns), pitch, reach, contact)
+    if contact == "tangent" and rows % 2 and columns % 2:
         found[:, rows // 2, columns // 2] = 0.0
-    return np.clip(found, -reach, reach, out=found)
+    return found
 
 
-def _measure(scene, centres, axes, cells, pitch, lift):
-    """(k, rows, cols) signed distances, inf where missed, of arrays centred at (k, 3) with axes (k, 3, 3)."""
-    rows, columns = cells
-    right, up, normal = axes.transpose(1, 0, 2)[:, :, None, None]
-    down_rows = (((rows - 1) / 2 - np.arange(rows)) * pitch)[:, None, None]
-    along_columns = ((np.arange(columns) - (columns - 1) / 2) * pitch)[None, :, None]
-    points = (centres[:, None, None] + down_rows * up + along_columns * right).reshape(-1, 3)
-    normals = np.broadcast_to(normal, (len(centres), rows, columns, 3)).reshape(-1, 3)
+def distances_at(surface, centres, axes, cells=(16, 16), pitch=0.01, reach=None, contact="tangent"):
+    """(k, rows, cols) f8: `distances` of arrays anywhere: centres (k, 3) and axes (k, 3, 3) rows right, up, normal.
 
-    below, from_back = _cast(scene, points + lift * normals, -normals)
-    distance = below - lift
-    maybe = np.flatnonzero(from_back)
-    above, out_of_object = _cast(scene, points[maybe] - lift * normals[maybe], normals[maybe])
-    distance[maybe[out_of_object]] = lift - above[out_of_object]
-    return distance.reshape(len(centres), rows, columns)
-
-
-def _cast(scene, origins, directions):
-    """(distance (k,), inf where missed; from_back (k,): the face that was met is seen from its back)."""
-    hits = scene.cast(origins, directions)
-    facing = np.einsum("ij,ij->i", scene.mesh.face_crosses[hits.face], directions)  # face -1 is masked by `hit`
-    return hits.distance, hits.hit & (facing > 0)
+    pitch: a number, or (k,) one an array; reach: the same, by default the longer side of each array. `place` finds
+    places on the surface.
+    """
+    surface = ready(surface)
+    centres = np.asarray(centres, dtype=np.float64)
+    if centres.ndim != 2 or centres.shape[1] != 3 or not np.isfinite(centres).all():
+        raise ValueError(f"centres must be finite and of shape (k, 3), got shape {centres.shape}")
+    axes = _check_axes(axes, len(centres))
+    cells, pitches, reaches = check_sensors(cells, pitch, reach, len(centres))
+    return tangent_or_rigid(surface, centres, axes, cells, pitches, reaches, contact)
 
 
 def check_sensor(cells, pitch, reach=None):
     """((rows, columns), pitch, reach) as numbers; ValueError where they make no array."""
+    cells, pitches, reaches = check_sensors(cells, pitch, reach, 1)
+    return cells, float(pitches[0]), float(reaches[0])
+
+
+def check_sensors(cells, pitch, reach, count):
+    """((rows, columns), pitches (count,), reaches (count,)); ValueError where they make no array."""
     cells = tuple(cells) if np.ndim(cells) == 1 else (cells,)
-    if len(cells) != 2 or any(int(count) != count or count < 1 for count in cells):
+    if len(cells) != 2 or any(not number >= 1 or number % 1 for number in cells):
         raise ValueError(f"cells must be two whole numbers from 1 (rows, columns), got {cells}")
-    rows, columns = (int(count) for count in cells)
-    reach = max(rows, columns) * pitch if reach is None else reach
-    for name, value in (("pitch", pitch), ("reach", reach)):
-        if not (np.isfinite(value) and value > 0):
-            raise ValueError(f"{name} must be a positive number of units, got {value}")
-    return (rows, columns), float(pitch), float(reach)
+    rows, columns = (int(number) for number in cells)
+    pitches = _lengths("pitch", pitch, count)
+    reaches = max(rows, columns) * pitches if reach is None else _lengths("reach", reach, count)
+    return (rows, columns), pitches, reaches
+
+
+def _lengths(name, values, count):
+    values = np.asarray(values, dtype=np.float64)
+    if values.shape not in ((), (count,)):
+        raise ValueError(f"{name} must be a number or have shape ({count},), one an array, got {values.shape}")
+    wrong = values[~(np.isfinite(values) & (values > 0))]
+    if wrong.size:
+        raise ValueError(f"{name} must be a positive number of units, got {wrong.flat[0]}")
+    return np.broadcast_to(values, (count,))
 
 
 def _check_axes(axes, count):
     axes = np.asarray(axes, dtype=np.float64)
     if axes.shape != (count, 3, 3):
-        raise ValueError(f"axes must have shape ({count}, 3, 3), one frame a vertex, got {axes.shape}")
-    if not np.allclose(axes @ axes.transpose(0, 2, 1), np.eye(3), atol=1e-6):
-        raise ValueError("axes must be three perpendicular unit vectors a vertex: right, up, normal")
+        raise ValueError(f"axes must have shape ({count}, 3, 3), one frame an array, got {axes.shape}")
+    # Right-handed, or front and back of every face would change places.
+    if not np.allclose(axes @ axes.transpose(0, 2, 1), np.eye(3), atol=1e-6) or (np.linalg.det(axes) < 0).any():
+        raise ValueError("axes must be three perpendicular unit vectors an array: right, up, normal = right x up")
     return axes

@@ -1,5 +1,7 @@
 """How the array stands on the object: its normal and the directions of its rows and columns."""
 
+from functools import lru_cache
+
 import numpy as np
 
 from stages.kit.mesh import corner_sum, unit
@@ -16,7 +18,7 @@ def sensor_normals(mesh, vertices):
     Raises ValueError naming the first vertex that is not in the mesh, is in no face, or whose faces cancel out.
     """
     vertices = check_vertices(mesh, vertices)
-    average = _averages(mesh)[vertices]
+    average = vertex_averages(mesh)[vertices]
     bad = np.flatnonzero(np.linalg.norm(average, axis=1) <= CANCELLED)
     if len(bad):
         raise ValueError(
@@ -28,7 +30,7 @@ def sensor_normals(mesh, vertices):
 
 def touchable(mesh, vertices):
     """(k,) boolean: the vertices (k,) at which the array has a normal and so can be pressed on the object."""
-    return np.linalg.norm(_averages(mesh)[check_vertices(mesh, vertices)], axis=1) > CANCELLED
+    return np.linalg.norm(vertex_averages(mesh)[check_vertices(mesh, vertices)], axis=1) > CANCELLED
 
 
 def sensor_axes(normals):
@@ -61,7 +63,8 @@ def check_vertices(mesh, vertices):
     return vertices
 
 
-def _averages(mesh):
+@lru_cache(maxsize=4)  # asked for at every touch
+def vertex_averages(mesh):
     """(n, 3) means of the unit normals of the faces around each vertex; zero at a vertex in no face."""
     solid = mesh.face_areas > 0
     total = corner_sum(mesh, np.repeat(mesh.face_normals[:, None], 3, axis=1))

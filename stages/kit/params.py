@@ -12,7 +12,8 @@ from yaml import YAMLError
 FILE = Path("params.yaml")
 SECTIONS = (
     "meshes", "views", "conspicuity", "weights", "salient_points", "lod", "scene", "imprints", "classification",
-    "transfer", "stability", "report",
+    "exploration", "touch_stability", "classes", "sensor_size", "contours", "sequences", "transfer", "stability",
+    "report",
 )  # fmt: skip
 COMMON = {"profile": str, "seed": int, "parallel": dict}
 

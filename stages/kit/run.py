@@ -41,7 +41,7 @@ class StageRun:
         self.target = DATA / stage
         self.dataset = settings.get("meshes", {}).get("source", "none")
         self.seed = settings.get("seed", 0)
-        chosen = {"seed": self.seed, stage: settings.get(stage)}
+        chosen = {key: value for key, value in settings.items() if key != "parallel"}  # it may read others' sections
         self.inputs = [DATA / name for name in inputs]
         self.folder = PARTIAL / f"{stage}-{_digest(chosen, self.inputs)}"
         self.rows = []

@@ -13,9 +13,7 @@ examples:
 """
 
 import sys
-from pathlib import Path
 
-import numba
 import numpy as np
 
 from stages.kit import Stopwatch
@@ -26,6 +24,7 @@ from .errors_table import NAMES, measured, table
 from .export import COLORLESS, painted, write_any
 from .feasibility import InfeasibleTarget, SimplifyError, smallest_feasible
 from .fewest import fewest_faces
+from .kernels.jit import FOLDER
 from .neighbourhood import RINGS, neighbourhoods
 from .one_mesh import OneMesh, repaired
 from .options import check_places, check_way, parser
@@ -41,7 +40,7 @@ def run(argv):
     chosen = parser(__doc__).parse_args(argv)
     check_places(chosen)
     check_way(chosen)
-    if not any(Path(numba.config.CACHE_DIR).rglob("*.nbc")):
+    if not any(FOLDER.rglob("*.nbc")):
         say("the first run on a machine compiles the simplifier, which takes a minute")
     try:
         one = prepare(read(chosen.mesh), chosen)

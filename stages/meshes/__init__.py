@@ -5,5 +5,6 @@ from stages.kit import Mesh
 from .clean import clean
 from .load import MeshError, load
 from .normalise import normalise, turn_up
+from .plane import remove_plane
 
-__all__ = ["Mesh", "MeshError", "clean", "load", "normalise", "turn_up"]
+__all__ = ["Mesh", "MeshError", "clean", "load", "normalise", "remove_plane", "turn_up"]

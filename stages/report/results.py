@@ -12,7 +12,8 @@ from stages.salient_points import read_points, read_saliency, read_strong_points
 from stages.weights import learned_for
 
 NUMBERS = {"four": 4, "six": 6}  # names of sets that tell how many objects they hold
-OF_SETS = ("classification", "transfer")  # stages whose rows are about sets of objects
+# Stages whose rows are about sets of objects.
+OF_SETS = ("classification", "exploration", "touch_stability", "transfer")
 
 
 class NotRun(Exception):
@@ -100,6 +101,11 @@ class Results:
     def bench(self, name):
         """Rows of reports/bench/NAME.csv: what `make bench` measured; times are ratios to a named peer."""
         return self._once(self.reports / "bench" / f"{name}.csv", f"no bench/{name}.csv: `make bench` writes it", "lod")
+
+    def touch(self, name):
+        """Rows of reports/touch/NAME.csv: measured once, on recorded touches or on another data set."""
+        why = f"no touch/{name}.csv: `make touch` measures it where those data are"
+        return self._once(self.reports / "touch" / f"{name}.csv", why, "classification")
 
     def _once(self, path, why, stage):
         """A table that no stage of this run writes; NotRun with `why` where it is absent."""

@@ -57,8 +57,11 @@ def find_points(
     return detector.find(mesh, look(mesh, detector.channels, viewpoints), options, count).points
 
 
-def look(mesh, channels, viewpoints=None):
-    """Renders a normalised mesh, computes the channels' maps, and returns the Sight; None without channels."""
+def look(mesh, channels, viewpoints=None, renderer="auto"):
+    """Renders a normalised mesh, computes the channels' maps, and returns the Sight; None without channels.
+
+    renderer: of stages.views.render; `raycast` gives the same bytes on every machine.
+    """
     if not channels:
         return None
     viewpoints = TWELVE if viewpoints is None else tuple(viewpoints)
@@ -66,7 +69,7 @@ def look(mesh, channels, viewpoints=None):
         raise ValueError("no viewpoints: give at least one, or None for the twelve of T figure 3.2")
     found, masks = [], []
     for viewpoint in viewpoints:
-        view = render(mesh, viewpoint, IMAGE)
+        view = render(mesh, viewpoint, IMAGE, renderer)
         found.append(conspicuity(mesh, view, channels, MAP))
         masks.append(coverage(view.mask, MAP))
     maps = {channel: np.stack([maps[channel] for maps in found]) for channel in channels}

@@ -7,6 +7,7 @@ import pandas as pd
 
 from stages.kit import Stopwatch
 from stages.kit.files import read_arrays, write_arrays
+from stages.kit.repeatable import repeatable
 from stages.kit.rng import rng
 from stages.kit.stats import bootstrap_interval
 
@@ -15,7 +16,7 @@ from .modes import MODES
 from .networks import START, build, parameters, settle
 from .split import stratified_split
 from .touches import read_touches
-from .training import accuracy, learn, repeatable, scores, search
+from .training import accuracy, learn, scores, search
 
 
 def trials(settings):

@@ -30,7 +30,15 @@ def imprints(tmp_path, monkeypatch, bumps):
 
 def settings(**changes):
     return Params(
-        **{"sets": {"three": list(NAMES)}, "classifiers": ["knn", "naive_bayes"], "repetitions": 2, **changes}
+        **{
+            "sets": {"three": list(NAMES)},
+            "classifiers": ["knn", "naive_bayes"],
+            "repetitions": 2,
+            "closer": [],
+            "touches": [1, 2],
+            "combinations": 2,
+            **changes,
+        }  # fmt: skip
     )
 
 
@@ -62,7 +70,8 @@ def test_stage_agrees_with_evaluate_and_writes_equal_bytes(imprints, tmp_path, b
     assert (tmp_path / "a/three.random.npz").read_bytes() == (tmp_path / "b/three.random.npz").read_bytes()
     images = {name: stack[:12].astype("f4") for name, stack in bumps(NAMES, 16, jitter=2.0).items()}
     expected = [row["value"] for name in ("knn", "naive_bayes") for row in evaluate(images, name, 2, seed=7)]
-    assert [row["value"] for row in rows if row["metric"] != "accuracy_apart"] == expected
+    plain = [row for row in rows if row["variant"] == "plain"]
+    assert [row["value"] for row in plain if row["metric"] in ("accuracy_holdout", "accuracy_fivefold")] == expected
     stored = read_arrays(tmp_path / "a/three.random.npz")
     assert stored["objects"].tolist() == list(NAMES) and stored["knn.confusion"].sum() == 2 * 9
 
@@ -80,5 +89,29 @@ def test_summary_holds_mean_and_interval_of_the_repetitions():
     common = {"object": "three", "method": "itti", "classifier": "knn", "metric": "accuracy_holdout"}
     tree = summary([{**common, "value": value} for value in (0.5, 0.7, None)], seed=0)
     assert tree["three"]["itti"]["knn"]["accuracy_holdout"] == {"mean": 0.6, "low": 0.5, "high": 0.7}
+    variants = [{**common, "value": 0.9, "variant": name} for name in ("locations", "touches_2")]
+    further = summary(variants, seed=0, closest=("itti", "knn"))
+    assert further == {"variants": {"three": {v["variant"]: {"accuracy_holdout": {"mean": 0.9}} for v in variants}}}
+    assert summary(variants, seed=0, closest=("random", "knn")) == {}
     alone = summary([{**common, "value": 0.5}], seed=0)
     assert alone["three"]["itti"]["knn"]["accuracy_holdout"] == {"mean": 0.5}
+
+
+def test_several_touches_are_of_the_first_set_and_the_closer_samplings_alone(imprints, tmp_path):
+    chosen = settings(sets={"three": list(NAMES), "two": ["hand", "cup"]}, closer=["random"], repetitions=1)
+    planned = plan(chosen.sets, imprints)
+    variants = {
+        item: {row["variant"] for row in process(item, tmp_path, planned, chosen, 0)} for item in sorted(planned)
+    }
+    assert "touches_2_mixed" in variants["three.random"] and "selected" in variants["three.random"]
+    assert "selected" in variants["two.random"] and "touches_2" not in variants["two.random"]
+    one_touch = {"pixels", "wavelet_features", "image_features", "locations", "locations_turned"}
+    assert variants["three.itti"] == {"plain", "first_15", "first_15_locations", *one_touch}
+
+
+def test_shares_are_told_of_all_objects_and_of_each(imprints, tmp_path):
+    planned = plan(settings().sets, imprints)
+    rows = process("three.random", tmp_path, planned, settings(), 0)
+    shares = [row for row in rows if row["metric"] == "similar_share" and row["variant"] == "plain"]
+    assert [row["of"] for row in shares] == ["all", *NAMES]
+    assert shares[0]["value"] == pytest.approx(np.mean([row["value"] for row in shares[1:]]))

@@ -108,17 +108,43 @@ def test_apart_holds_out_a_region_far_from_all_training(monkeypatch):
     places = np.tile(np.arange(16.0)[:, None] * [1, 0, 0], (3, 1))
     rows, _ = evaluate_features(np.zeros((48, 2)), np.repeat([0, 1, 2], 16), "knn", 4, places=places, apart=2.5)
     assert [row["value"] for row in rows if row["metric"] == "accuracy_apart"] == [1.0] * 4
-    for train, test in splits[6::7]:
+    for train, test in splits[6::8]:
         assert len(test) == 12 and len(train) >= 3 * 8
         for first in (0, 16, 32):
             own = [part[(part >= first) & (part < first + 16)] for part in (train, test)]
             assert np.ptp(own[1]) == 3 and np.abs(own[0][:, None] - own[1]).min() == 3
+    for (far, _), (few, test) in zip(splits[6::8], splits[7::8], strict=True):
+        assert np.array_equal(np.bincount(far // 16), np.bincount(few // 16)) and not np.isin(few, test).any()
 
 
 def test_apart_is_none_where_all_touches_overlap(bumps):
     samples = np.concatenate([features(stack) for stack in bumps().values()])
     rows, _ = evaluate_features(samples, np.repeat([0, 1, 2], 16), "knn", 1, places=np.zeros((48, 3)), apart=0.16)
-    assert rows[-1]["metric"] == "accuracy_apart" and rows[-1]["value"] is None
+    assert [row["metric"] for row in rows[-2:]] == ["accuracy_apart", "accuracy_fewer"]
+    assert rows[-2]["value"] is None and rows[-1]["value"] is None
+
+
+def test_overlap_is_what_apart_and_as_few_samples_at_random_differ_by():
+    random = np.random.default_rng(0)
+    places = random.random((400, 3))
+    labels = np.repeat([0, 1], 200)
+    felt = np.hstack([places, places**2, np.sin(9 * places), np.cos(9 * places)])  # tells the place, not the object
+    noise = felt + 1e-3 * random.normal(size=felt.shape)
+    twins = places + np.where(labels, 0.5, 0)[:, None] * (places[:, :1] > 0.5)  # objects differ on one side alone
+    rows, _ = evaluate_features(np.hstack([noise, twins]), labels, "knn", 6, places=places, apart=0.3)
+    assert mean(rows, "accuracy_fewer") > mean(rows, "accuracy_apart") + 0.05
+
+
+def test_located_samples_keep_the_place_behind_the_components():
+    random = np.random.default_rng(0)
+    samples, labels = random.normal(size=(120, 41)), np.repeat([0, 1], 60)
+    places = random.normal(size=(120, 3)) * 1e-3
+    places[:, 2] += 1e-2 * labels
+    located = classifier("decision_tree", 0, "located").fit(np.hstack([samples, places])[::2], labels[::2])
+    assert located[0].transform(np.hstack([samples, places])).shape == (120, 15)
+    assert located.score(np.hstack([samples, places])[1::2], labels[1::2]) > 0.9
+    with pytest.raises(ValueError, match="kind is one of features, located, reduced"):
+        classifier("knn", 0, "places")
 
 
 @pytest.mark.parametrize(
@@ -138,3 +164,15 @@ def test_what_cannot_be_classified_is_named(bumps, change, name, words):
 def test_one_object_cannot_be_told_apart(bumps):
     with pytest.raises(ValueError, match="two objects"):
         evaluate(bumps(("cup",)), "knn")
+
+
+def test_side_is_held_out_of_all_objects_alike():
+    places = np.random.default_rng(0).uniform(-1, 1, size=(120, 3))
+    truth = np.repeat([0, 1], 60)
+    train, test = protocol.regions(truth, places, 0.1, 5, side=True)
+    centre = places[test].mean(axis=0)
+    for own in (test[truth[test] == 0], test[truth[test] == 1]):
+        assert len(own) == 15 and places[own].mean(axis=0) @ centre > 0.5 * np.linalg.norm(centre) ** 2
+    for one in (0, 1):
+        gaps = places[train[truth[train] == one]][:, None] - places[test[truth[test] == one]]
+        assert np.linalg.norm(gaps, axis=2).min() > 0.1

@@ -8,6 +8,7 @@ from stages.imprints import distances, sensor_axes, sensor_normals
 from stages.kit import Mesh
 
 SURFACES = {
+    "plane": lambda x, y: 0 * x,
     "sphere": lambda x, y: np.sqrt(0.3**2 - x**2 - y**2),
     "cylinder": lambda x, y: np.sqrt(0.3**2 - y**2),
     "saddle": lambda x, y: 2 * x * x - 3 * y * y,
@@ -24,7 +25,7 @@ def test_distances_are_exact_and_negative_inside(shapes, name, cells):
     mesh, vertex = shapes.solid(SURFACES[name])
     x, y = shapes.cell_places(cells, 0.01)
     expected = SURFACES[name](0.0, 0.0) - SURFACES[name](x, y)
-    assert np.allclose(distances(mesh, [vertex], cells, 0.01, reach=1.0)[0], expected, atol=1e-9)
+    assert np.allclose(distances(mesh, [vertex], cells, 0.01, reach=1.0)[0], expected, atol=1e-14, rtol=0)
 
 
 def test_cells_off_the_object_report_the_reach(shapes):
@@ -132,6 +133,9 @@ def test_open_mesh_touched_on_its_inside_feels_nothing_below():
         ({"vertices": [5]}, "vertex 5 has no normal"),
         ({"axes": np.zeros((1, 3, 3))}, "perpendicular"),
         ({"axes": np.eye(3)}, "shape"),
+        ({"axes": np.diag([-1.0, 1, 1])[None]}, "right x up"),
+        ({"cells": (np.nan, 4)}, "cells must be"),
+        ({"cells": (4, np.inf)}, "cells must be"),
     ],
 )
 def test_what_makes_no_touch_is_named(change, words):

@@ -1,9 +1,11 @@
 """Imprints in 0..1, their files, and the stage on two small solids."""
 
+from importlib import import_module
+
 import numpy as np
 import pytest
 
-from stages.imprints import Imprints, normalise, press, press_many, read_imprints, touchable, write_imprints
+from stages.imprints import Imprints, indent, normalise, press, press_many, read_imprints, touchable, write_imprints
 from stages.imprints.__main__ import process
 from stages.imprints.schema import Params
 from stages.kit import Mesh
@@ -55,6 +57,29 @@ def test_normalise_wants_a_stack():
         normalise(np.zeros((4, 4)), 0.01)
 
 
+@pytest.mark.parametrize("wrong", [np.nan, np.inf, -np.inf])
+def test_distances_that_are_no_numbers_make_no_imprint(wrong):
+    raw = np.zeros((3, 2, 2))
+    raw[1, 0, 1] = wrong
+    with pytest.raises(ValueError, match="distances must be finite"):
+        normalise(raw, 0.01)
+    with pytest.raises(ValueError, match="distances must be finite"):
+        indent(raw, 0.01)
+
+
+def test_blocks_change_no_imprint(monkeypatch):
+    raw = np.random.default_rng(0).normal(size=(9, 4, 4))
+    whole = normalise(raw, 0.01)
+    monkeypatch.setattr(import_module("stages.imprints.press"), "BLOCK", 30)
+    assert np.array_equal(normalise(raw, 0.01), whole)
+
+
+def test_press_takes_one_vertex(shapes):
+    mesh, vertex = shapes.solid(shapes.sphere)
+    with pytest.raises(ValueError, match="vertices must have shape"):
+        press(mesh, [vertex, vertex + 1])
+
+
 def test_files_keep_methods_images_and_places(tmp_path):
     one = Imprints(np.ones((2, 4, 4), "f4"), np.array([3, 1]), np.zeros((2, 3), "f4"), 0.02)
     write_imprints(tmp_path / "a.npz", {"random": one, "Vis.Att": one})
@@ -75,7 +100,8 @@ def test_stage_presses_every_method_and_counts_what_it_refuses(shapes, tmp_path,
     arrays = {f"{method}.points": ids for method, ids in points.items()}
     arrays |= {f"{method}.strong": np.int64(len(ids)) for method, ids in points.items()}
     write_arrays("data/salient_points/ball.npz", **arrays)
-    rows = process("ball", tmp_path / "out", Params(methods=["itti", "random", "enhanced"], cells=[15, 15], pitch=0.01))
+    settings = Params(methods=["itti", "random", "enhanced"], cells=[15, 15], pitch=0.01, contact="tangent")
+    rows = process("ball", tmp_path / "out", settings)
     value = {(row["method"], row["metric"]): row["value"] for row in rows}
     assert value["random", "imprints"] == 1 and value["random", "refused"] == 1 and value["enhanced", "relief"] is None
     assert value["itti", "relief"] == pytest.approx(0.3 - shapes.sphere(0.07, 0.07)) and value["itti", "missed"] == 0

@@ -183,7 +183,7 @@ def test_the_axis_that_was_taken_as_up_is_told(simplified):
 def test_a_first_run_that_compiles_says_so(simplified, tmp_path, monkeypatch):
     simplify(bumpy(), 300)
     assert "compiles" not in simplified("--faces", 300)[2]
-    monkeypatch.setattr("numba.config.CACHE_DIR", str(tmp_path / "empty"))
+    monkeypatch.setattr("stages.lod.command.FOLDER", tmp_path / "empty")
     assert "compiles" in simplified("--faces", 300)[2].splitlines()[0]
 
 

@@ -59,8 +59,9 @@ def classification(enhanced=0.8, rivals=0.5):
             for classifier, seconds in (("knn", 0.01), ("deep_learning", 1.0)):
                 for repetition in range(6):
                     value = accuracy + 0.01 * rng.normal()
-                    row = {"dataset": "test", "object": objects, "method": method, "classifier": classifier}
-                    row |= {"repetition": repetition, "metric": "accuracy_holdout", "value": value}
+                    row = {"dataset": "test", "object": objects, "method": method, "variant": "plain"}
+                    row |= {"classifier": classifier, "repetition": repetition, "metric": "accuracy_holdout"}
+                    row |= {"value": value}
                     rows.append(row | {"seconds": seconds, "seed": 0})
     return pd.DataFrame(rows)
 

@@ -157,7 +157,7 @@ def test_picture_is_white_off_the_object_only(small):
 
 def test_line_of_chance_follows_the_objects_that_the_set_held(root, results, small, monkeypatch):
     drawn = {}
-    monkeypatch.setattr(table_4_1, "draw_bars", lambda axes, *_, chance: drawn.update(chance=chance, axes=axes))
+    monkeypatch.setattr(table_4_1, "draw_bars", lambda axes, *_, chance: drawn.update(chance=chance, axes=axes) or {})
     small.write_set(root, "six", 4)
     table_4_1.build(results)
     assert drawn["chance"] == 1 / 4

@@ -5,13 +5,14 @@ import pytest
 import torch
 
 from stages.kit.files import sha256, write_arrays
+from stages.kit.repeatable import repeatable
 from stages.transfer import trial
 from stages.transfer.__main__ import none_to_tell_apart, present
 from stages.transfer.images import normalise, to_images
 from stages.transfer.modes import MODES
 from stages.transfer.networks import TouchNet, build, parameters, settle
 from stages.transfer.schema import Params
-from stages.transfer.training import accuracy, learn, repeatable, scores, search
+from stages.transfer.training import accuracy, learn, scores, search
 
 SIZE = 32
 LABELS = np.arange(32) % 2

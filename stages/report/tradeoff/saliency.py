@@ -12,7 +12,7 @@ REFERENCE = "itti"
 
 
 def build(results):
-    where = {"object": "six", "classifier": "knn", "metric": "accuracy_holdout"}
+    where = {"object": "six", "classifier": "knn", "metric": "accuracy_holdout", "variant": "plain"}
     results.measured("classification", **where, method=REFERENCE)
     frame = pd.DataFrame(summary(results.measured("classification", **where), ["method"], HOLD_OUT, top=1.0))
     frame["seconds"] = frame["method"].map(looking_seconds(results))

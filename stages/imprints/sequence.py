@@ -1,0 +1,24 @@
+"""What the sensor feels along one contour (T4.4.5)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Sequence:
+    """The frames of one contour, in the order of the walk.
+
+    images (frames, rows, cols) f4 in 0..1 (the cutaneous cues), normals (frames, 3) unit vectors of the array and
+    positions (frames, 3) in units of the mesh (the kinesthetic cues), pitches (frames,) units between neighbouring
+    cells. Of the cut: loops, the number of its pieces; length of the piece that was followed, in units, and share of
+    it in the length of all pieces.
+    """
+
+    images: np.ndarray
+    normals: np.ndarray
+    positions: np.ndarray
+    pitches: np.ndarray
+    loops: int
+    length: float
+    share: float

@@ -1,0 +1,39 @@
+"""Compiled kernels: numba, kept on disk between runs."""
+
+import hashlib
+from pathlib import Path
+
+import numba
+
+from .fetch import cache_folder
+
+inlined = numba.njit(inline="always", error_model="numpy")  # where a call costs as much as what it does
+
+
+def kept_in(file):
+    """The folder in which the kernels of the folder of a file (`__file__`) are kept.
+
+    numba renews a kept kernel when its own file changes, not when a kernel of another file that it calls does: so all
+    kernels of a folder are kept under one digest of all its files.
+    """
+    sources = sorted(Path(file).parent.glob("*.py"))
+    digest = hashlib.sha256(b"".join(path.read_bytes() for path in sources)).hexdigest()[:12]
+    return cache_folder() / "kernels" / digest
+
+
+def kernel_of(file, **options):
+    """The decorator for all kernels of the folder that a file (`__file__`) lies in; options are numba's.
+
+    error_model: divides as numpy does, with no branch on zero. Where kernels are kept is numba's setting for the whole
+    process, read when a function is decorated: it is put back.
+    """
+    folder = str(kept_in(file))
+
+    def kernel(function):
+        before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, folder
+        try:
+            return numba.njit(cache=True, nogil=True, error_model="numpy", **options)(function)
+        finally:
+            numba.config.CACHE_DIR = before
+
+    return kernel

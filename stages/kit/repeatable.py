@@ -1,0 +1,24 @@
+"""What makes a training in torch repeatable."""
+
+from contextlib import contextmanager
+
+import torch
+
+
+@contextmanager
+def repeatable(seed):
+    """One thread, deterministic algorithms and a fixed seed, all put back at the end.
+
+    Sums in another order round differently and training blows the difference up, so that a result would depend on
+    the number of threads; trainings run side by side as processes instead.
+    """
+    threads, strict = torch.get_num_threads(), torch.are_deterministic_algorithms_enabled()
+    torch.set_num_threads(1)
+    torch.use_deterministic_algorithms(True)
+    try:
+        with torch.random.fork_rng(devices=[]):
+            torch.manual_seed(seed)
+            yield
+    finally:
+        torch.set_num_threads(threads)
+        torch.use_deterministic_algorithms(strict)

@@ -1,0 +1,19 @@
+"""The sensor is no ideal one: each perturbation is one property of stages.imprints.Skin."""
+
+from functools import partial
+
+from stages.imprints import Skin
+
+from .perturbation import Felt
+
+
+def _felt(touches, severity, draw, what):
+    return Felt(Skin(**{what: severity}, seed=draw)(touches.images, touches.name))
+
+
+noise = partial(_felt, what="noise")
+dead_cells = partial(_felt, what="dead")
+gain = partial(_felt, what="gain")
+saturation = partial(_felt, what="saturation")
+blur = partial(_felt, what="blur")
+hysteresis = partial(_felt, what="hysteresis")

@@ -1,0 +1,308 @@
+"""`python -m stages.imprints MESH`: a person's own mesh, from file to picture."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+import trimesh
+from PIL import Image
+
+from stages.imprints import __main__, own_mesh, pictures, press_many
+from stages.imprints.command import run
+from stages.imprints.options import POINT, parse, skin
+from stages.imprints.own_mesh import OwnMesh
+from stages.imprints.pictures import CANDIDATES, _apart, _columns, best_views, visible, write_picture
+from stages.imprints.skin import Skin
+from stages.kit import Mesh
+from stages.meshes import load, normalise, turn_up
+
+PLACE, SIZE = np.array([120.0, -40.0, 7.0]), 25.0
+
+
+def bumpy():
+    """A closed ball with bumps, of 1,280 faces, far from the origin and some fifty units wide."""
+    ball = trimesh.creation.icosphere(subdivisions=3)
+    x, y, z = ball.vertices.T
+    radius = 1 + 0.08 * np.sin(5 * x) * np.cos(4 * y) + 0.15 * np.exp(-8 * ((z - 1) ** 2 + x**2))
+    return trimesh.Trimesh(PLACE + SIZE * radius[:, None] * ball.vertices, ball.faces, process=False)
+
+
+@pytest.fixture(autouse=True)
+def small_views(monkeypatch):
+    monkeypatch.setattr(pictures, "ROWS", 150)
+
+
+@pytest.fixture
+def file(tmp_path):
+    bumpy().export(tmp_path / "ball.ply")
+    return tmp_path / "ball.ply"
+
+
+@pytest.fixture
+def touched(file, tmp_path, capsys):
+    """Function: runs the command with options and returns (arrays, table, what it said, what it reported)."""
+
+    def work(*options, source=file):
+        run([str(source), *map(str, options), "--out", str(tmp_path / "out")])
+        said = capsys.readouterr()
+        with np.load(tmp_path / "out/imprints.npz") as stored:
+            arrays = dict(stored)
+        return arrays, pd.read_csv(tmp_path / "out/places.csv"), said.out, said.err
+
+    return work
+
+
+def test_vertices_feel_what_press_feels(touched, file):
+    arrays, table, _, _ = touched("--at", 3, 200, "--cells", 8, 10, "--pitch", 0.02)
+    mesh = normalise(load(file))
+    assert np.array_equal(arrays["images"], press_many(mesh, [3, 200], (8, 10), 0.02))
+    assert table["vertex"].tolist() == arrays["vertices"].tolist() == [3, 200]
+    assert np.allclose(table[["x", "y", "z"]], load(file).vertices[[3, 200]], atol=1e-4)
+
+
+def test_places_far_from_the_origin_are_told_apart(tmp_path, touched):
+    shape = trimesh.creation.icosphere(subdivisions=2)
+    trimesh.Trimesh(shape.vertices + 1e6, shape.faces, process=False).export(tmp_path / "far.obj", digits=12)
+    _, table, printed, _ = touched("--at", 3, 100, source=tmp_path / "far.obj")
+    assert np.allclose(table[["x", "y", "z"]], 1e6 + shape.vertices[[3, 100]], rtol=0, atol=1e-4)
+    assert len({line.split()[2] for line in printed.splitlines() if line[:5].strip().isdigit()}) == 2
+    with pytest.raises(ValueError, match="the nearest place is --at") as told:
+        run([str(tmp_path / "far.obj"), "--at", "1000000,1000000,1000002", "--out", str(tmp_path / "off")])
+    touched("--at", str(told.value).rpartition("--at ")[2], source=tmp_path / "far.obj")
+
+
+def test_relief_is_in_units_and_in_the_files(touched, file):
+    arrays, table, said, _ = touched("--at", 0)
+    relief = np.ptp(arrays["distances"][0])
+    assert table["relief"][0] == pytest.approx(relief, rel=1e-5)
+    assert table["relief_in_file"][0] == pytest.approx(relief * arrays["unit"], rel=1e-5)
+    x = load(file).vertices
+    middle = (x.min(axis=0) + x.max(axis=0)) / 2
+    assert arrays["unit"] == pytest.approx(2 * np.linalg.norm(x - middle, axis=1).max())
+    assert f"1 unit is {arrays['unit']:.4g}" in said
+
+
+def test_position_of_a_vertex_feels_as_the_vertex(touched, file):
+    vertex = load(file).vertices[77]
+    at_point, table, _, _ = touched("--at", ",".join(f"{value:.9g}" for value in vertex))
+    at_vertex, _, _, _ = touched("--at", 77)
+    assert np.allclose(at_point["images"], at_vertex["images"], atol=1e-4)
+    assert table["vertex"].isna().all() and np.allclose(table[["x", "y", "z"]], vertex, atol=1e-4)
+
+
+def test_positions_may_be_negative_and_stand_beside_vertices(touched, file):
+    z_low = load(file).vertices[load(file).vertices[:, 1].argmin()]
+    _, table, _, _ = touched("--at", 5, ",".join(f"{value:.9g}" for value in z_low))
+    assert table["vertex"].fillna(-1).tolist() == [5, -1] and table["y"][1] < 0
+    assert POINT.fullmatch("-.5,1,-2e-3") and not POINT.fullmatch("-5") and not POINT.fullmatch("--at")
+
+
+def test_normals_and_axes_are_those_of_the_file(touched, file):
+    arrays, table, _, _ = touched("--at", 10, 300, "--up", "y")
+    away = load(file).vertices[[10, 300]] - PLACE
+    assert (np.sum(away * table[["nx", "ny", "nz"]].to_numpy(), axis=1) > 0.9 * np.linalg.norm(away, axis=1)).all()
+    assert np.allclose(arrays["axes"][:, 2], arrays["normals"]) and (arrays["axes"][:, 1, 1] > 0).all()
+
+
+@pytest.mark.parametrize("up", ["x", "y", "z"])
+def test_coordinates_come_back_from_the_meshs_frame(up):
+    given = Mesh(bumpy().vertices, bumpy().faces)
+    own = OwnMesh(given, up, "ball")
+    points = np.random.default_rng(0).random((5, 3))
+    assert np.allclose(own.from_file(own.to_file(points)), points)
+    assert np.allclose(own.to_file(own.mesh.vertices), given.vertices)
+    assert np.allclose(own.mesh.vertices, normalise(turn_up(given, up)).vertices)
+
+
+def test_random_places_depend_on_the_seed_alone(touched):
+    first, table, _, _ = touched("--at", "random", "--count", 5)
+    again, _, _, _ = touched("--at", "random", "--count", 5)
+    other, _, _, _ = touched("--at", "random", "--count", 5, "--seed", 1)
+    assert len(table) == 5 and np.array_equal(first["images"], again["images"])
+    assert not np.array_equal(first["vertices"], other["vertices"])
+
+
+def test_salient_places_are_those_of_the_method(touched, file):
+    arrays, _, _, said = touched("--at", "salient", "--count", 3, "--method", "height")
+    assert len(arrays["images"]) == 3 and load(file).vertices[arrays["vertices"], 2].max() > PLACE[2] + 0.9 * SIZE
+    assert "twelve sides" in said
+
+
+def test_fewer_places_than_wanted_are_said(tmp_path, touched):
+    trimesh.creation.box().export(tmp_path / "box.stl")
+    _, table, _, said = touched("--at", "random", "--count", 50, source=tmp_path / "box.stl")
+    assert len(table) == 8 and "8 of 50 places: the mesh has no more" in said
+
+
+def test_places_without_a_normal_are_left_out(tmp_path, touched):
+    half = trimesh.creation.box()
+    both = trimesh.util.concatenate([half, trimesh.Trimesh([[2, 0, 0], [3, 0, 0], [2, 1, 0]], [[0, 1, 2], [0, 2, 1]])])
+    both.export(tmp_path / "leaf.ply")
+    _, table, _, said = touched("--at", "random", "--count", 11, source=tmp_path / "leaf.ply")
+    assert len(table) == 8 and "8 of 11 places: the others have no normal" in said
+
+
+def test_skin_and_depth_change_the_images_and_not_the_distances(touched):
+    plain, _, _, _ = touched("--at", 0, 50)
+    worn, _, _, _ = touched("--at", 0, 50, "--depth", 0.01, "--skin", "blur=1,noise=0.05,dead=0.1")
+    assert np.array_equal(plain["distances"], worn["distances"])
+    assert not np.allclose(plain["images"], worn["images"])
+    dead = (worn["images"] == 1).all(axis=0)
+    assert dead.sum() >= 26
+
+
+def test_skin_is_read_by_name():
+    assert skin("blur=0.8, noise=0.02", 3) == Skin(blur=0.8, noise=0.02, seed=3)
+    assert skin(None, 3) is None
+
+
+@pytest.mark.parametrize("suffix", [".stl", ".obj", ".ply", ".off", ".glb"])
+def test_every_format_is_touched(suffix, tmp_path, touched):
+    bumpy().export(tmp_path / f"ball{suffix}")
+    arrays, _, _, said = touched("--at", 4, source=tmp_path / f"ball{suffix}")
+    assert arrays["images"].shape == (1, 16, 16) and ("y up" if suffix == ".glb" else "z up") in said
+
+
+@pytest.mark.parametrize("count", [1, 2, 7, 24, 30])
+def test_picture_is_drawn_for_any_number(count, tmp_path):
+    mesh = normalise(Mesh(bumpy().vertices, bumpy().faces))
+    vertices = np.random.default_rng(count).choice(len(mesh.vertices), count, replace=False)
+    axes = np.stack([own_mesh.sensor_normals(mesh, vertices)] * 3, axis=1)
+    images = press_many(mesh, vertices, (6, 6), 0.02)
+    write_picture(tmp_path / "a.png", mesh, mesh.vertices[vertices], axes, images, np.ones(count), 0.02)
+    write_picture(tmp_path / "b.png", mesh, mesh.vertices[vertices], axes, images, np.ones(count), 0.02)
+    assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
+    assert min(Image.open(tmp_path / "a.png").size) > 500
+
+
+def test_views_show_places_of_both_sides_and_the_fewest_that_do():
+    mesh = normalise(Mesh(bumpy().vertices, bumpy().faces))
+    ids = np.array([mesh.vertices[:, 0].argmax(), mesh.vertices[:, 0].argmin()])
+    places, normals = mesh.vertices[ids], np.array([[1.0, 0, 0], [-1, 0, 0]])
+    views = best_views(mesh, places, normals)
+    assert len(views) == 2 and np.any([visible(mesh, places, normals, view) for view in views], axis=0).all()
+    assert len(best_views(mesh, places[:1], normals[:1])) == 1
+    assert all(view.elevation == CANDIDATES[0].elevation for view in views)
+
+
+def test_place_behind_another_part_is_out_of_sight():
+    box = trimesh.creation.box(extents=(0.2, 0.2, 0.2))
+    wall = trimesh.creation.box(extents=(0.02, 0.8, 0.8))
+    wall.apply_translation([0.3, 0, 0])
+    both = trimesh.util.concatenate([box, wall])
+    mesh = Mesh(both.vertices, both.faces)
+    place = np.array([[0.1, 0, 0]])
+    assert not visible(mesh, place, np.array([[1.0, 0, 0]]), CANDIDATES[2]).any()
+
+
+def test_numbers_keep_apart():
+    at = _apart(np.zeros(8), np.linspace(0, 20, 8), 30.0)
+    gaps = np.linalg.norm(at[:, None] - at[None], axis=2) + 100 * np.eye(8)
+    assert gaps.min() > 25 and _apart(np.zeros(0), np.zeros(0), 30.0).shape == (0, 2)
+
+
+def test_wide_imprints_stand_one_below_the_other_and_high_ones_side_by_side():
+    assert _columns(3, 8.0) == 1 and _columns(3, 1 / 8) == 3
+
+
+def test_grid_is_as_large_as_it_can_be():
+    assert [_columns(count) for count in (1, 2, 6, 24)] == [1, 2, 3, 6]
+
+
+@pytest.mark.parametrize(
+    "options, words",
+    [
+        (["--at", "9999"], "ball.ply: --at 9999: it has no such vertex, its 642 are 0 to 641"),
+        (["--at", "-1"], "no such vertex"),
+        (["--at", "1.5"], "id of a vertex"),
+        (["--at", "other.stl"], "id of a vertex"),
+        (["--at", "1,2"], "three numbers"),
+        (["--at", "1,2,x"], "three numbers"),
+        (["--at", "120,-40,100"], "off the mesh, by .* in the file's units .* the nearest place is --at 1"),
+        (["--at", "salient", "3"], "stand alone"),
+        (["--at", "0", "--count", "3"], "--count goes with"),
+        (["--at", "random", "--count", "0"], "give 1 or more"),
+        (["--at", "random", "--method", "itti"], "--method goes with"),
+        (["--at", "salient", "--method", "itty"], "no such method; choose one of enhanced"),
+        (["--at", "salient", "--method", "random"], "that is --at random"),
+        (["--at", "salient", "--method", "svm"], "learns from the pipeline's objects"),
+        (["--at", "0", "--cells", "0", "4"], "cells must be"),
+        (["--at", "0", "--pitch", "-1"], "pitch must be"),
+        (["--at", "0", "--pitch", "3"], "--pitch 3 is larger than the object"),
+        (["--at", "0", "--depth", "0"], "--depth 0"),
+        (["--at", "0", "--seed", "-2"], "--seed -2"),
+        (["--at", "0", "--cells", "90000", "90000", "--pitch", "1e-5"], "cells in all; take fewer"),
+        (["--at", "0", "--skin", "blurr=1"], "there is no 'blurr'; write NAME=VALUE with one of blur"),
+        (["--at", "0", "--skin", "blur"], "is no number"),
+        (["--at", "0", "--skin", "dead=2"], "dead must be"),
+    ],
+)
+def test_what_a_person_gets_wrong_is_named_with_its_remedy(options, words, file, tmp_path):
+    with pytest.raises(ValueError, match=words):
+        run([str(file), *options, "--out", str(tmp_path / "out")])
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    "name, content, words",
+    [
+        ("gone.stl", None, "gone.stl: no such file"),
+        ("text.ply", b"hello", "text.ply: unreadable as PLY"),
+        ("empty.off", b"", "empty.off: the file is empty"),
+        ("model.step", b"x", "format .step is not read; known: .stl"),
+    ],
+)
+def test_files_without_a_mesh_are_named(name, content, words, tmp_path):
+    if content is not None:
+        (tmp_path / name).write_bytes(content)
+    with pytest.raises(ValueError, match=words):
+        run([str(tmp_path / name), "--at", "0", "--out", str(tmp_path / "out")])
+
+
+def test_folders_are_no_meshes_and_files_no_folders(file, tmp_path):
+    with pytest.raises(ValueError, match="is a folder, not a mesh"):
+        run([str(tmp_path), "--at", "0", "--out", str(tmp_path / "out")])
+    with pytest.raises(ValueError, match="is a file: name a folder"):
+        run([str(file), "--at", "0", "--out", str(file)])
+    with pytest.raises(ValueError, match="nothing can be written"):
+        run([str(file), "--at", "0", "--out", str(file / "below")])
+
+
+def test_window_without_a_display_is_refused_before_any_work(file, tmp_path, monkeypatch):
+    monkeypatch.setattr("matplotlib.pyplot.get_backend", lambda: "agg")
+    with pytest.raises(ValueError, match="--show: there is no display here"):
+        run([str(file), "--at", "0", "--show", "--out", str(tmp_path / "out")])
+    assert not (tmp_path / "out").exists()
+
+
+def test_array_larger_than_the_object_and_flat_imprints_are_said(touched):
+    _, _, _, said = touched("--at", 0, "--cells", 40, 4, "--pitch", 0.1)
+    assert "most cells will miss it" in said
+    _, _, _, said = touched("--at", 0, "--cells", 1, 1, "--pitch", 2)
+    assert "every imprint is flat" in said
+
+
+def test_folder_is_named_after_the_mesh(file):
+    assert parse("about", [str(file), "--at", "0"]).out == Path("ball_imprints")
+
+
+def test_command_runs_and_says_errors_in_one_line(file, tmp_path):
+    root = Path(__file__).parents[2]
+    command = [sys.executable, "-m", "stages.imprints", str(file), "--at", "99999"]
+    done = subprocess.run(command, cwd=tmp_path, env=os.environ | {"PYTHONPATH": str(root)}, capture_output=True)
+    lines = done.stderr.decode().splitlines()
+    assert done.returncode == 1 and "Traceback" not in done.stderr.decode()
+    assert lines[-1].startswith("imprints: ") and "no such vertex" in lines[-1]
+
+
+def test_help_tells_of_units_and_has_examples(capsys, monkeypatch):
+    monkeypatch.setattr(sys, "argv", ["imprints", "ball.ply", "--help"])
+    monkeypatch.setattr(sys, "excepthook", sys.excepthook)
+    with pytest.raises(SystemExit) as done:
+        __main__.main()
+    said = capsys.readouterr().out
+    assert done.value.code == 0 and "--at salient" in said and "bounding sphere 1 unit across" in said

@@ -1,0 +1,191 @@
+"""The cut of a mesh by a plane against shapes whose cuts are known, and against trimesh on real meshes."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+
+from stages.imprints import section
+from stages.kit import Mesh
+from stages.kit.files import read_mesh
+
+MESHES = Path("data/meshes")
+ORIGIN, X, Z = np.zeros(3), np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
+
+
+def mesh_of(shape):
+    return Mesh(shape.vertices, shape.faces)
+
+
+BALL = mesh_of(trimesh.creation.icosphere(subdivisions=4, radius=0.5))
+RING = mesh_of(trimesh.creation.torus(0.35, 0.15, major_sections=80, minor_sections=40))
+BOX = mesh_of(trimesh.creation.box((2.0, 4.0, 6.0)))
+SQUARE = Mesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]])
+
+
+def in_order(piece):
+    """Whether each segment lies in the face that it names."""
+    return piece.faces.shape == piece.steps.shape
+
+
+def on_edges(mesh, piece):
+    a, b = mesh.vertices[piece.edges].transpose(1, 0, 2)
+    return np.allclose((1 - piece.weights[:, None]) * a + piece.weights[:, None] * b, piece.points, atol=1e-12)
+
+
+@pytest.mark.parametrize("height", [0.0, 0.2, -0.4])
+def test_a_sphere_is_cut_in_a_circle_of_the_right_length(height):
+    (circle,) = section(BALL, (0, 0, height), (0.3, -0.2, 1.0))
+    away = abs(height) * 1.0 / np.linalg.norm([0.3, -0.2, 1.0])
+    assert circle.closed and circle.length == pytest.approx(2 * np.pi * np.sqrt(0.25 - away**2), rel=3e-3)
+
+
+def test_points_lie_on_the_plane_and_on_their_edges():
+    point, normal = np.array([0.05, 0.02, 0.01]), np.array([0.4, 0.5, -0.7])
+    for piece in section(RING, point, normal):
+        assert np.abs((piece.points - point) @ normal).max() < 1e-12
+        assert on_edges(RING, piece) and in_order(piece)
+
+
+def test_points_follow_each_other_within_the_face_named():
+    (circle,) = section(BALL, (0.01, 0.02, 0.03), (1, 2, 3))
+    after = np.roll(circle.edges, -1, axis=0)
+    for face, here, there in zip(BALL.faces[circle.faces], circle.edges, after, strict=True):
+        assert set(here) | set(there) == set(face)
+
+
+def test_a_torus_is_cut_in_two_loops():
+    across = section(RING, ORIGIN, X)
+    assert [piece.closed for piece in across] == [True, True]
+    assert [piece.length for piece in across] == pytest.approx([2 * np.pi * 0.15] * 2, rel=5e-3)
+    outer, inner = section(RING, ORIGIN, Z)
+    assert (outer.length, inner.length) == pytest.approx((2 * np.pi * 0.5, 2 * np.pi * 0.2), rel=5e-3)
+
+
+def test_a_box_is_cut_in_its_outline():
+    (outline,) = section(BOX, ORIGIN, Z)
+    assert outline.length == pytest.approx(12.0) and outline.closed
+    (slanted,) = section(BOX, ORIGIN, (0, 1, 1))
+    assert slanted.length == pytest.approx(4 + 2 * np.hypot(4, 4))
+
+
+def test_a_plane_through_vertices_and_edges_gives_whole_loops():
+    (diagonal,) = section(BOX, ORIGIN, (2, -1, 0))  # through four vertices and two edges of the box
+    assert diagonal.closed and diagonal.length == pytest.approx(2 * (6 + np.hypot(2, 4)))
+    (equator,) = section(BALL, ORIGIN, Z)  # an icosphere has vertices there
+    assert equator.closed and np.isfinite(equator.points).all()
+
+
+def test_a_plane_in_a_face_is_moved_by_less_than_any_number_against_its_normal():
+    (top,) = section(BOX, (0, 0, 3), Z)
+    assert top.closed and top.length == pytest.approx(12.0)
+    assert section(BOX, (0, 0, 3), -Z) == []
+
+
+def test_a_plane_that_misses_gives_nothing():
+    assert section(BALL, (0, 0, 0.7), Z) == []
+    assert section(Mesh(np.zeros((0, 3)), np.zeros((0, 3), dtype=int)), ORIGIN, Z) == []
+
+
+def test_an_open_mesh_gives_a_line_from_rim_to_rim():
+    (line,) = section(SQUARE, (0.5, 0.3, 0), (0, 1, 0))
+    assert not line.closed and line.length == pytest.approx(1.0)
+    assert sorted(line.points[[0, -1], 0]) == [0.0, 1.0] and in_order(line)
+    half = Mesh(BALL.vertices, BALL.faces[BALL.vertices[BALL.faces].mean(axis=1)[:, 2] > 0])
+    (arc,) = section(half, ORIGIN, X)
+    assert not arc.closed and arc.length == pytest.approx(np.pi * 0.5, rel=0.05)
+
+
+def test_several_pieces_come_longest_first():
+    small = Mesh(BALL.vertices * 0.2 + [2, 0, 0], BALL.faces)
+    both = Mesh(np.r_[small.vertices, BALL.vertices], np.r_[small.faces, BALL.faces + len(small.vertices)])
+    long, short = section(both, ORIGIN, Z)
+    assert long.length == pytest.approx(5 * short.length, rel=1e-6)
+
+
+def test_an_edge_of_three_faces_ends_a_line_and_one_of_four_does_not():
+    spokes = [(1, 0), (0, 1), (-1, 0), (0, -1)]
+    corners = [[0, 0, 0], [0, 0, 1], *[[x, y, 0.5] for x, y in spokes]]
+    for count, pieces in ((2, 1), (3, 2), (4, 2)):
+        fan = Mesh(corners, [[0, 1, 2 + i] for i in range(count)])
+        found = section(fan, (0, 0, 0.4), Z)
+        assert len(found) == pieces
+        assert sum(piece.length for piece in found) == pytest.approx(0.8 * count)
+
+
+def test_pieces_do_not_depend_on_the_turn_of_faces_nor_on_inward_ones():
+    turned = BALL.faces.copy()
+    turned[::3] = turned[::3, ::-1]
+    (plain,), (mixed,) = section(BALL, ORIGIN, (1, 2, 3)), section(Mesh(BALL.vertices, turned), ORIGIN, (1, 2, 3))
+    assert mixed.closed and mixed.length == pytest.approx(plain.length)
+
+
+def test_a_seam_of_doubled_vertices_does_not_end_a_loop():
+    soup = Mesh(BALL.vertices[BALL.faces].reshape(-1, 3), np.arange(3 * len(BALL.faces)).reshape(-1, 3))
+    (plain,), (torn,) = section(BALL, ORIGIN, (1, 2, 3)), section(soup, ORIGIN, (1, 2, 3))
+    assert torn.closed and torn.length == pytest.approx(plain.length) and on_edges(soup, torn)
+
+
+def test_faces_without_area_do_not_break_a_loop():
+    sliver = np.r_[BOX.vertices, [[0, 0, 3]]]
+    collapsed = Mesh(np.r_[sliver, [[0, 0, 3]]], np.r_[BOX.faces, [[8, 9, 0]]])
+    assert [piece.closed for piece in section(collapsed, ORIGIN, Z)] == [True]
+
+
+def test_every_crossed_face_of_a_soup_is_walked_once_and_in_its_place():
+    rng = np.random.default_rng(0)
+    for _ in range(100):
+        corners = rng.integers(0, 3, size=(8, 3)).astype(float)  # many at one place, on the plane, in one line
+        faces = rng.integers(0, 8, size=(15, 3))
+        soup = Mesh(corners, faces[(np.sort(faces)[:, 1:] != np.sort(faces)[:, :-1]).all(axis=1)])
+        normal = rng.integers(-1, 2, size=3) + [0, 0, 2]
+        found = section(soup, (1, 1, 1), normal)
+        sides = ((corners - 1) @ normal >= 0)[soup.faces].sum(axis=1)
+        walked = np.concatenate([piece.faces for piece in found]) if found else np.zeros(0, dtype=int)
+        assert len(set(walked.tolist())) == len(walked) and np.isin(sides[walked], [1, 2]).all()
+        left = np.setdiff1d(np.flatnonzero(np.isin(sides, [1, 2])), walked)
+        assert (soup.face_areas[left] == 0).all()
+        for piece in found:
+            assert on_edges(soup, piece) and in_order(piece) and np.isfinite(piece.points).all()
+
+
+def test_backwards_names_the_same_faces_and_starts_at_the_same_point():
+    (circle,) = section(BALL, ORIGIN, (1, 2, 3))
+    back = circle.backwards()
+    assert np.array_equal(back.points[0], circle.points[0]) and np.array_equal(back.points[1], circle.points[-1])
+    assert np.array_equal(back.faces, circle.faces[::-1]) and np.allclose(back.steps, circle.steps[::-1])
+    (line,) = section(SQUARE, (0.5, 0.3, 0), (0, 1, 0))
+    assert np.array_equal(line.backwards().points, line.points[::-1])
+
+
+@pytest.mark.parametrize("normal", [(0, 0, 0), (np.nan, 0, 1), (1, 0)])
+def test_a_plane_that_is_none_is_refused(normal):
+    with pytest.raises(ValueError, match="plane"):
+        section(BALL, ORIGIN, normal)
+
+
+@pytest.mark.parametrize("name", ["airplane", "bowl", "camera", "eyeglasses", "teapot"])
+def test_agrees_with_trimesh_on_real_meshes(name):
+    if not (MESHES / f"{name}.npz").exists():
+        pytest.skip("data/meshes is not there: run `dvc repro meshes`")
+    mesh = read_mesh(MESHES / f"{name}.npz")
+    peer = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False)
+    for normal in np.random.default_rng(0).normal(size=(5, 3)):
+        found = section(mesh, ORIGIN, normal)
+        lines = trimesh.intersections.mesh_plane(peer, normal, ORIGIN)
+        expected = np.linalg.norm(lines[:, 1] - lines[:, 0], axis=1).sum()
+        assert sum(piece.length for piece in found) == pytest.approx(expected, rel=1e-5)
+        if mesh.watertight:
+            assert len(found) == len(peer.section(normal, ORIGIN).discrete)
+
+
+@pytest.mark.parametrize(("gap", "closed"), [(1e-4, True), (1e-2, False)])
+def test_a_crack_that_no_finger_feels_does_not_end_a_loop(gap, closed):
+    ball = trimesh.creation.icosphere(subdivisions=3, radius=0.5)
+    right = ball.triangles_center[:, 0] > 0
+    vertices = np.concatenate([ball.vertices, ball.vertices + [gap, 0, 0]])
+    faces = ball.faces + len(ball.vertices) * right[:, None]
+    pieces = section(Mesh(vertices, faces), [0, 0, 0.01], [0, 0, 1])
+    assert (len(pieces) == 1 and pieces[0].closed) == closed
+    assert sum(piece.length for piece in pieces) == pytest.approx(np.pi, rel=0.02)

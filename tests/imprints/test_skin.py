@@ -1,0 +1,177 @@
+"""The sensor model: each step does what it says and no more."""
+
+import numpy as np
+import pytest
+
+from stages.imprints.distances import distances
+from stages.imprints.press import normalise, press_many
+from stages.imprints.skin import Skin, dead_cells, indent
+
+IMAGES = np.random.default_rng(0).random((6, 12, 10)).astype(np.float32)
+FULL = Skin(blur=0.7, gain=1.2, saturation=0.9, hysteresis=0.05, noise=0.1, dead=0.1, seed=3)
+
+
+def load(skin, images=IMAGES, **where):
+    """What the sensels read: the imprints upside down."""
+    return 1 - skin(images, **where).astype(np.float64)
+
+
+def test_defaults_change_nothing():
+    assert np.array_equal(Skin()(IMAGES), IMAGES) and Skin()(IMAGES).dtype == np.float32
+    assert np.array_equal(Skin(seed=5)(IMAGES[None])[0], IMAGES)
+
+
+@pytest.mark.parametrize("blur", [0.3, 1.0, 6.0, 40.0])
+def test_blur_keeps_the_sum_and_flattens(blur):
+    felt = load(Skin(blur=blur))
+    assert np.allclose(felt.sum(axis=(1, 2)), (1 - IMAGES).sum(axis=(1, 2)), rtol=1e-6)
+    assert (felt.std(axis=(1, 2)) < (1 - IMAGES).std(axis=(1, 2))).all()
+
+
+def test_blur_spreads_a_point_by_its_width_alike_both_ways():
+    point = np.ones((1, 41, 41))
+    point[0, 20, 20] = 0
+    felt = load(Skin(blur=2.0), point)[0]
+    around = np.arange(41) - 20.0
+    assert (felt.sum(axis=0) * around**2).sum() == pytest.approx(4, rel=0.01)
+    assert np.allclose(felt, felt.T) and np.allclose(felt, felt[::-1])
+
+
+def test_blur_stays_within_the_imprint_and_its_frame():
+    images = np.ones((2, 3, 5, 5))
+    images[0, 1] = 0
+    felt = load(Skin(blur=1.0), images)
+    assert np.allclose(felt[0, 1], 1) and np.allclose(np.delete(felt[0], 1, axis=0), 0) and np.allclose(felt[1], 0)
+
+
+def test_gain_is_a_factor_and_saturation_a_ceiling():
+    assert np.allclose(load(Skin(gain=0.5)), 0.5 * (1 - IMAGES), atol=1e-7)
+    assert np.allclose(load(Skin(gain=3, saturation=0.7)), np.minimum(3 * (1 - IMAGES.astype(float)), 0.7), atol=1e-7)
+
+
+def test_saturation_is_monotone():
+    ramp = np.linspace(0, 1, 100).reshape(1, 10, 10)
+    felt = Skin(gain=2, saturation=0.8)(ramp).ravel()
+    assert (np.diff(felt) >= 0).all() and felt[0] == pytest.approx(0.2) and felt[-1] == 1
+
+
+def test_hysteresis_of_an_increasing_load_lags_by_its_width():
+    rising = np.linspace(0, 1, 21)
+    felt = load(Skin(hysteresis=0.1), 1 - rising.reshape(1, -1, 1, 1)).ravel()
+    assert np.allclose(felt, np.maximum(rising - 0.1, 0), atol=1e-6)
+
+
+def test_hysteresis_of_a_falling_load_lags_the_other_way_and_holds_in_between():
+    path = np.array([0, 1, 0.9, 0.8, 0.5, 0.6, 0.0])
+    felt = load(Skin(hysteresis=0.1), 1 - path.reshape(1, -1, 1, 1)).ravel()
+    assert np.allclose(felt, [0, 0.9, 0.9, 0.9, 0.6, 0.6, 0.1], atol=1e-6)
+
+
+def test_hysteresis_is_each_sensels_own_and_each_sequences():
+    path = np.array([[0.5, 1.0, 0.2], [0.5, 0.1, 0.2]])
+    frames = 1 - path.T.reshape(1, 3, 1, 2)
+    felt = load(Skin(hysteresis=0.1), np.concatenate([frames, frames[..., ::-1]]))
+    assert np.allclose(felt[0, 2, 0], [0.3, 0.2], atol=1e-6) and np.allclose(felt[1], felt[0][..., ::-1])
+
+
+def test_separate_touches_have_no_history():
+    skin = Skin(hysteresis=0.2)
+    assert np.array_equal(skin(IMAGES[::-1]), skin(IMAGES)[::-1])
+    assert not np.allclose(skin(IMAGES[None])[0, 1:], skin(IMAGES)[1:])
+
+
+def test_frame_of_ones_lifts_the_array_and_leaves_a_ghost():
+    lifted = np.stack([np.zeros((3, 3)), np.ones((3, 3)), np.ones((3, 3))])[None]
+    felt = load(Skin(hysteresis=0.15), lifted)[0]
+    assert np.allclose(felt[0], 0.85) and np.allclose(felt[1:], 0.15)
+
+
+def test_noise_has_its_size_and_no_bias():
+    felt = load(Skin(noise=0.05), np.full((200, 16, 16), 0.5))
+    assert felt.mean() == pytest.approx(0.5, abs=1e-3) and felt.std() == pytest.approx(0.05, rel=0.02)
+
+
+def test_noise_differs_between_imprints_names_and_seeds():
+    same = np.full((2, 8, 8), 0.5)
+    skin = Skin(noise=0.05)
+    assert not np.allclose(skin(same)[0], skin(same)[1])
+    assert not np.allclose(skin(same, "cup"), skin(same, "duck"))
+    assert not np.allclose(skin(same), Skin(noise=0.05, seed=1)(same))
+    assert np.array_equal(skin(same, "cup"), skin(same, "cup"))
+
+
+def test_dead_cells_are_the_same_in_every_imprint_and_frame():
+    skin = Skin(dead=0.25, noise=0.1)
+    felt = load(skin, np.zeros((5, 3, 8, 8)))
+    gone = dead_cells((8, 8), 0.25)
+    assert gone.sum() == 16 and (felt[..., gone] == 0).all() and (felt[..., ~gone] > 0).all()
+
+
+def test_more_dead_cells_hold_the_fewer_and_other_sensors_have_others():
+    few, many = dead_cells((16, 16), 0.1), dead_cells((16, 16), 0.3)
+    assert (many | ~few).all() and not np.array_equal(few, dead_cells((16, 16), 0.1, seed=1))
+    assert dead_cells((4, 4), 1.0).all() and not dead_cells((4, 4), 0.0).any()
+
+
+def test_results_do_not_depend_on_the_batch():
+    whole = FULL(IMAGES, "cup")
+    parts = [FULL(IMAGES[:1], "cup"), FULL(IMAGES[1:4], "cup", first=1), FULL(IMAGES[4:], "cup", first=4)]
+    assert np.array_equal(whole, np.concatenate(parts))
+    assert whole.min() >= 0 and whole.max() <= 1
+
+
+def test_no_imprints_stay_none():
+    assert FULL(np.zeros((0, 4, 5))).shape == (0, 4, 5)
+    assert FULL(np.zeros((2, 0, 4, 5))).shape == (2, 0, 4, 5)
+
+
+@pytest.mark.parametrize(
+    "change, words",
+    [
+        ({"blur": -1}, "blur must be 0 or more"),
+        ({"blur": 1e9}, "blur must be 0 or more and at most 1000"),
+        ({"gain": 0}, "gain must be above 0"),
+        ({"saturation": 1.2}, "saturation must be above 0 and at most 1"),
+        ({"hysteresis": np.nan}, "hysteresis"),
+        ({"noise": np.inf}, "noise"),
+        ({"dead": 1.5}, "dead must be 0 or more and at most 1"),
+        ({"dead": "many"}, "dead"),
+        ({"seed": -1}, "seed"),
+        ({"seed": 0.5}, "seed"),
+    ],
+)
+def test_values_out_of_range_are_named(change, words):
+    with pytest.raises(ValueError, match=words):
+        Skin(**change)
+
+
+@pytest.mark.parametrize("images", [np.zeros((4, 4)), np.full((1, 2, 2), 1.5), np.full((1, 2, 2), np.nan)])
+def test_what_is_no_imprint_is_refused(images):
+    with pytest.raises(ValueError, match="imprints must"):
+        Skin()(images)
+
+
+def test_indent_to_the_relief_is_the_normalised_imprint(shapes):
+    mesh, vertex = shapes.solid(shapes.sphere)
+    raw = distances(mesh, [vertex], (15, 15), 0.01)
+    assert np.allclose(indent(raw, np.ptp(raw)), press_many(mesh, [vertex], (15, 15), 0.01), atol=1e-6)
+
+
+def test_indent_feels_a_sphere_where_it_is_higher_than_the_depth(shapes):
+    mesh, vertex = shapes.solid(shapes.sphere)
+    x, y = shapes.cell_places((15, 15), 0.01)
+    depth = 0.005
+    felt = 1 - indent(distances(mesh, [vertex], (15, 15), 0.01), depth)[0]
+    assert np.allclose(felt, np.maximum(0, 1 - (0.3 - shapes.sphere(x, y)) / depth), atol=1e-5)
+    assert 0 < (felt > 0).sum() < 225
+
+
+def test_indent_tells_shallow_from_deep_where_normalise_does_not():
+    raw = np.array([[[0.0, 0.01]], [[0.0, 0.02]]])
+    assert np.array_equal(*normalise(raw, 0.01)) and np.allclose(indent(raw, 0.02)[:, 0, 1], [0.5, 1])
+
+
+@pytest.mark.parametrize("depth", [0, -1, np.nan, np.inf])
+def test_indent_wants_a_depth(depth):
+    with pytest.raises(ValueError, match="depth must be"):
+        indent(np.zeros((1, 2, 2)), depth)

@@ -1,0 +1,169 @@
+"""Scans simulated on a table: the table goes, the object stays; a scan without a table stays whole."""
+
+import numpy as np
+import pytest
+import trimesh
+from scipy.spatial.transform import Rotation
+
+from stages.kit import Mesh
+from stages.kit.texture import Texture
+from stages.meshes import remove_plane
+from stages.meshes.collect import prepare
+from stages.meshes.sources import Item
+
+CELLS = 50  # of the table's grid, a side
+
+
+def shapes():
+    blob = trimesh.creation.icosphere(4)
+    blob.vertices *= 1 + 0.3 * np.sin(3 * blob.vertices[:, :1]) * np.cos(2 * blob.vertices[:, 1:2])
+    box = trimesh.creation.box((1.2, 1.2, 0.8))
+    for _ in range(4):
+        box = box.subdivide()
+    lying = trimesh.creation.cylinder(0.2, 2.0, sections=60)
+    for _ in range(2):
+        lying = lying.subdivide()
+    lying.apply_transform(trimesh.transformations.rotation_matrix(np.pi / 2, (1, 0, 0)))
+    return {"blob": blob, "box": box, "lying": lying, "goblet": _goblet()}
+
+
+def _goblet():
+    """A cup on a thin foot, which a careless test takes for a table."""
+    profile = [(0, 0), (0.5, 0), (0.5, 0.02), (0.1, 0.04), (0.1, 0.5), (0.5, 0.7), (0.5, 1.2), (0.45, 1.2), (0, 0.7)]
+    goblet = trimesh.creation.revolve(np.array(profile), sections=60)
+    for _ in range(2):
+        goblet = goblet.subdivide()
+    return goblet
+
+
+SHAPES = shapes()
+
+
+def scan(shape, noise=0.0, holes=0, bottom=True, table=2.0, seed=0):
+    """(Mesh, (m,) boolean: the object's own faces): on a table `table` times as wide, turned and shifted at random.
+
+    noise: standard deviation, a share of the diagonal of it all.
+    """
+    draw = np.random.default_rng(seed)
+    vertices = SHAPES[shape].vertices - [0, 0, SHAPES[shape].vertices[:, 2].min()]
+    faces = SHAPES[shape].faces
+    if not bottom:
+        flat = (vertices[faces][:, :, 2].max(axis=1) < 0.05) & (SHAPES[shape].face_normals[:, 2] < -0.5)
+        faces = faces[~flat]
+    own = np.ones(len(faces), dtype=bool)
+    if table:
+        half = table * np.abs(vertices[:, :2]).max()
+        x, y = np.meshgrid(np.linspace(-half, half, CELLS), np.linspace(-half, half, CELLS))
+        ids = np.arange(CELLS**2).reshape(CELLS, CELLS)
+        a, b, c, d = (part.ravel() for part in (ids[:-1, :-1], ids[:-1, 1:], ids[1:, :-1], ids[1:, 1:]))
+        squares = np.concatenate([np.stack([a, b, c], axis=1), np.stack([b, d, c], axis=1)])
+        faces = np.concatenate([faces, squares + len(vertices)])
+        vertices = np.concatenate([vertices, np.stack([x.ravel(), y.ravel(), np.zeros(CELLS**2)], axis=1)])
+        own = np.r_[own, np.zeros(len(squares), dtype=bool)]
+    diagonal = np.linalg.norm(np.ptp(vertices, axis=0))
+    for _ in range(holes):
+        middle = vertices[faces].mean(axis=1)
+        whole = np.linalg.norm(middle - middle[draw.integers(len(faces))], axis=1) > 0.04 * diagonal
+        faces, own = faces[whole], own[whole]
+    vertices = vertices + draw.normal(size=vertices.shape) * noise * diagonal
+    turn = Rotation.random(random_state=seed).as_matrix()
+    return Mesh(vertices @ turn.T * 30 + draw.normal(size=3) * 100, faces), own
+
+
+def shares(mesh, own, left):
+    """(share of the object's area that is left, share of the table's)."""
+    kept = {corners.tobytes() for corners in left.vertices[left.faces]}
+    still = np.array([corners.tobytes() in kept for corners in mesh.vertices[mesh.faces]])
+    areas = mesh.face_areas
+    return areas[still & own].sum() / areas[own].sum(), areas[still & ~own].sum() / areas[~own].sum()
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize("bottom", [True, False])
+def test_a_smooth_scan_loses_its_table_and_nothing_else(shape, bottom):
+    mesh, own = scan(shape, bottom=bottom)
+    kept, table = shares(mesh, own, remove_plane(mesh))
+    assert kept > 0.995 and table == 0
+
+
+@pytest.mark.parametrize("shape", ["blob", "box", "lying"])
+@pytest.mark.parametrize(("noise", "least"), [(0.002, 0.95), (0.005, 0.9)])
+def test_a_rough_scan_with_holes_and_no_bottom_keeps_nine_tenths_and_more(shape, noise, least):
+    for seed in range(3):
+        mesh, own = scan(shape, noise, holes=6, bottom=False, seed=seed)
+        kept, table = shares(mesh, own, remove_plane(mesh))
+        assert kept > least and table < 0.01
+
+
+def test_a_foot_thinner_than_the_noise_goes_with_the_table_and_the_rest_stays():
+    mesh, own = scan("goblet", 0.005, holes=6, bottom=False)
+    kept, table = shares(mesh, own, remove_plane(mesh))
+    assert 0.75 < kept < 0.9 and table < 0.01
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize("noise", [0, 0.003])
+@pytest.mark.parametrize("bottom", [True, False])
+def test_a_scan_without_a_table_comes_back_as_it_is(shape, noise, bottom):
+    mesh, _ = scan(shape, noise, holes=3, bottom=bottom, table=None)
+    assert remove_plane(mesh) is mesh
+
+
+def test_the_object_is_not_taken_a_second_time():
+    mesh, _ = scan("box")
+    alone = remove_plane(mesh)
+    assert remove_plane(alone) is alone
+
+
+def test_a_bare_table_comes_back_as_it_is():
+    mesh, own = scan("box")
+    table = Mesh(mesh.vertices, mesh.faces[~own])
+    assert remove_plane(table) is table
+
+
+def test_a_table_hardly_larger_than_the_object_is_taken_for_its_base():
+    mesh, own = scan("box", bottom=False, table=1.05)
+    assert remove_plane(mesh) is mesh
+
+
+def test_what_is_left_keeps_its_order_colours_and_texture():
+    mesh, own = scan("blob")
+    colors = np.arange(3 * len(mesh.vertices)).reshape(-1, 3) % 256
+    uv = np.random.default_rng(0).random((len(mesh.faces), 3, 2))
+    texture = Texture(uv, np.zeros(len(mesh.faces)), (np.zeros((1, 1, 4)),))
+    left = remove_plane(Mesh(mesh.vertices, mesh.faces, colors, texture))
+    assert len(left.faces) == own.sum()
+    np.testing.assert_array_equal(left.vertices[left.faces], mesh.vertices[mesh.faces[own]])
+    np.testing.assert_array_equal(left.colors[left.faces], (colors[mesh.faces[own]] % 256).astype(np.uint8))
+    np.testing.assert_array_equal(left.texture.uv, uv[own])
+    assert len(np.unique(left.faces)) == len(left.vertices)
+
+
+def test_the_same_scan_gives_the_same_mesh_whatever_was_asked_before():
+    mesh, _ = scan("blob", 0.005)
+    first = remove_plane(mesh)
+    remove_plane(scan("box")[0], seed=3)
+    np.testing.assert_array_equal(remove_plane(mesh).vertices, first.vertices)
+
+
+@pytest.mark.parametrize("distance", [0, -1, 0.5, np.nan])
+def test_a_distance_that_is_no_share_is_named(distance):
+    with pytest.raises(ValueError, match="distance must be a share of the diagonal"):
+        remove_plane(scan("box")[0], distance)
+
+
+def test_a_mesh_without_surface_is_named_and_a_single_face_comes_back():
+    for faces in (np.zeros((0, 3), dtype=int), np.array([[0, 0, 1]])):
+        with pytest.raises(ValueError, match="no surface"):
+            remove_plane(Mesh(np.eye(3), faces))
+    one = Mesh(np.eye(3), np.array([[0, 1, 2]]))
+    assert remove_plane(one) is one
+
+
+def test_the_stage_takes_the_table_out_on_request_and_says_so():
+    mesh, own = scan("box", bottom=False)
+    content = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False).export(file_type="ply")
+    item = Item("box", "box.ply", ".ply", lambda: content, "z", "m", "unknown")
+    assert prepare(item)[1]["faces"] == len(mesh.faces)
+    _, row = prepare(item, without_table=True)
+    assert row["faces"] == own.sum() and f"plane removed with {(~own).sum()} faces" in row["repairs"]

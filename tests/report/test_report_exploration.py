@@ -1,0 +1,143 @@
+"""Tables, charts and claims of exploring by touch and of its stability, on rows with a known truth."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from stages.kit.files import write_arrays
+from stages.report.claims import chapter_4_exploration as claims
+from stages.report.figures import exploration_calibration, touch_stability_imprints
+from stages.report.figures import touch_stability as degradation
+from stages.report.results import NotRun
+from stages.report.tables import _exploration, exploration, touch_stability
+from stages.report.tables._touch_stability import breaking, curve, harmless
+from stages.report.tradeoff import exploration as chart
+from stages.report.verdict import judge
+
+CURVE = {1: 0.6, 2: 0.8, 3: 0.9, 4: 0.95, 5: 0.98}
+SAVED = {"gain": 2.0, "saliency": 3.5, "random": 3.0}  # touches until 95 %, at an accuracy of 97 %
+
+
+def explored():
+    """Rows of three ways: all have one curve of fixed numbers, and stop after different numbers of touches."""
+    generator, rows = np.random.default_rng(0), []
+    cells = [("anywhere", "imprint"), ("anywhere", "imprint_place"), ("anywhere", "imprint_product"),
+             ("apart", "imprint"), ("apart", "imprint_product")]  # fmt: skip
+    for split, likelihood in cells:
+        for way in ("random",) if likelihood == "imprint_product" else ("gain", "saliency", "random"):
+            for repetition in range(8):
+                noise = 0.002 * generator.normal()
+                common = {"object": "six", "method": "thesis_ssim", "split": split, "likelihood": likelihood}
+                common |= {"way": way, "repetition": repetition, "seconds": 1e-5, "seed": 0}
+                sure = 0.2 if likelihood == "imprint_product" and split == "apart" else 0.0
+                for touches, accuracy in CURVE.items():
+                    noise = 0.002 * generator.normal()
+                    row = {"stop": "fixed", "level": touches, "metric": "accuracy", "value": accuracy + noise}
+                    rows.append(common | row | {"touches": touches, "belief": min(accuracy + sure, 0.999)})
+                for metric in ("accuracy", "accuracy_decided"):
+                    row = {"stop": "confidence", "level": 0.95, "metric": metric, "value": 0.97 + noise}
+                    rows.append(common | row | {"touches": SAVED[way] + noise, "belief": 0.97, "decided": 1.0})
+    return pd.DataFrame(rows)
+
+
+@pytest.fixture
+def explorer(root, results, small):
+    small.write(root, "exploration", explored())
+    return results
+
+
+def test_table_tells_how_many_touches_a_fixed_number_takes(explorer):
+    frame = exploration.build(explorer).frame
+    row = frame[(frame["way"] == "gain") & (frame["likelihood"] == "imprint")].iloc[0]
+    assert row["touches"] == pytest.approx(2, abs=0.01)
+    assert row["fixed"] == pytest.approx(4.67, abs=0.05)
+
+
+def test_accuracy_beyond_the_curve_is_never_reached():
+    rows = explored().query("split == 'anywhere' and likelihood == 'imprint' and way == 'gain'")
+    assert np.isnan(_exploration.needed(rows, 0.999))
+    assert _exploration.needed(rows, 0.1) == 1
+
+
+@pytest.mark.parametrize("module", [chart, exploration_calibration])
+def test_charts_are_drawn(explorer, module):
+    assert all(path.exists() for path in module.build(explorer).paths)
+
+
+def test_claims_know_the_truth_of_the_rows(explorer):
+    judged = judge(claims.CLAIMS, explorer).set_index("key")
+    words = judged["verdict"]
+    assert words["five_touches_over_one"] == words["adaptive_over_fixed"] == "supported"
+    assert words["gain_over_random"] == words["gain_over_saliency"] == "supported"
+    assert words["saliency_over_random"] == words["five_touches_perfect_by_imprints"] == "contradicted"
+    assert words["product_too_sure"] == words["sure_is_right"] == "supported"
+    assert judged.loc["gain_over_saliency", "effect"] == pytest.approx(1.5, abs=0.01)
+    assert judged.loc["adaptive_over_fixed", "effect"] == pytest.approx(7, abs=0.5)
+
+
+def test_claims_have_names_of_their_own():
+    keys = [claim.key for claim in claims.CLAIMS]
+    assert len(set(keys)) == len(keys)
+
+
+def test_nothing_explored_is_said_and_not_crashed_on(results):
+    assert set(judge(claims.CLAIMS, results)["verdict"]) == {"open"}
+    for module in (exploration, chart, exploration_calibration, touch_stability, degradation, touch_stability_imprints):
+        with pytest.raises(NotRun):
+            module.build(results)
+
+
+def disturbed():
+    """Rows in which noise halves the lead of kNN at 0.2, and coarse models do no harm down to 400 faces."""
+    lost = {("noise", 0.1): 0.1, ("noise", 0.2): 0.3, ("noise", 0.4): 0.5, ("coarse_model", 400.0): 0.01,
+            ("coarse_model", 100.0): 0.2, ("none", 0.0): 0.0}  # fmt: skip
+    generator, rows = np.random.default_rng(0), []
+    for repetition in range(8):
+        for (perturbation, severity), loss in lost.items():
+            row = {"object": "six", "method": "enhanced", "split": "anywhere", "features": "imprint"}
+            row |= {"classifier": "knn", "repetition": repetition, "perturbation": perturbation, "severity": severity}
+            value = 0.8 - loss + 0.002 * generator.normal()
+            rows.append(row | {"chance": 0.2, "metric": "accuracy", "value": value, "seconds": 1e-3, "note": None})
+    return pd.DataFrame(rows)
+
+
+def test_half_of_the_lead_is_lost_where_the_rows_say_so():
+    points = curve(disturbed(), "noise", ("anywhere", "imprint", "knn"))
+    at, low, high = breaking(points, "noise")
+    assert at == pytest.approx(0.2, abs=0.01) and low < at < high
+    assert np.isnan(harmless(points, "noise"))
+
+
+def test_severities_that_fall_go_from_mild_to_harsh():
+    points = curve(disturbed(), "coarse_model", ("anywhere", "imprint", "knn"))
+    assert points["severity"].tolist() == [400, 100] and harmless(points, "coarse_model") == 400
+
+
+def test_the_table_of_breaking_points_says_what_is_beyond_the_harshest(root, results, small):
+    small.write(root, "touch_stability", disturbed())
+    table = touch_stability.build(results)
+    shown = table.shown.set_index("perturbation")
+    assert shown.loc["coarse model", "kNN breaks at"].startswith("< 100")
+    assert shown.loc["noise", "kNN breaks at"].startswith("0.2") and shown.loc["noise", "SVM breaks at"] == "–"
+    assert any(note.startswith("Undisturbed: kNN 80 %") for note in table.notes)
+
+
+def test_what_is_no_better_than_guessing_has_no_breaking_point(root, results, small):
+    lost = disturbed()
+    small.write(root, "touch_stability", lost.assign(value=lost["value"] - 0.7))
+    assert touch_stability.build(results).frame.empty
+
+
+def test_the_picture_of_degradation_is_drawn(root, results, small):
+    small.write(root, "touch_stability", disturbed())
+    assert degradation.build(results).paths[0].exists()
+
+
+def test_the_picture_of_disturbed_imprints_goes_from_mild_to_harsh(root, results):
+    images = np.zeros((1, 8, 8))
+    keys = ("clean", "gain.0.5", "gain.0.9", "noise.0.1", "coarse_model.100")
+    write_arrays(root / "data/touch_stability/ball.npz", **{f"shown.{key}": images for key in keys})
+    figure = touch_stability_imprints.build(results)
+    assert figure.paths[0].exists() and "coarse" not in figure.alt
+    stored = {f"shown.{key}": images for key in keys}
+    assert touch_stability_imprints._severities(stored, "gain") == ["0.9", "0.5"]

@@ -1,0 +1,194 @@
+"""Table 4.9, figure 4.19, the layers, the chart and the claims of whole contours."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from stages.report.claims import chapter_4_sequences
+from stages.report.figures import figure_4_19
+from stages.report.results import NotRun, Results
+from stages.report.tables import _sequences, table_4_7, table_4_9
+from stages.report.tradeoff import sequences as chart
+from stages.report.verdict import judge
+
+CLASSES = ("car", "chair", "vase")
+MEANS = {
+    "cnn": 0.9,
+    "cnn_images": 0.8,
+    "cnn_normals": 0.4,
+    "knn": 0.6,
+    "svm": 0.7,
+    "knn_no_som": 0.65,
+    "svm_no_som": 0.75,
+}
+SECONDS = {"cnn": 60.0, "cnn_images": 58.0, "cnn_normals": 2.0}
+
+
+def rows(guided=0.08, unseen=-0.2, folds=3, splits=("sequences", "objects"), source="furniture"):
+    """Rows whose truth is known: guided is better by a margin, unseen objects are harder, smaller films are worse."""
+    random, found = np.random.default_rng(0), []
+    films = [(25, 32, 0.0), (13, 32, -0.05), (25, 16, -0.01)]
+    for method, gain in (("random", 0.0), ("thesis_ssim", guided), ("enhanced", guided)):
+        for frames, cells, loss in films if method == "thesis_ssim" else films[:1]:
+            for split in splits if loss == 0 else splits[-1:]:
+                for name, mean in MEANS.items():
+                    common = {"object": source, "method": method, "split": split, "classifier": name}
+                    common |= {"frames": frames, "cells": cells, "classes": len(CLASSES), "sequences": 900}
+                    level = mean + gain + loss + (unseen if split == "objects" else 0.0)
+                    for number in range(folds):
+                        each = level + 0.005 * random.normal(size=len(CLASSES))
+                        seconds = SECONDS.get(name, 5.0) * frames / 25
+                        one = common | {
+                            "repetition": number,
+                            "metric": "accuracy",
+                            "value": each.mean(),
+                            "seconds": seconds,
+                        }
+                        found.append(one | {"class": None, "note": None})
+                        if split == "objects":
+                            found += [
+                                common
+                                | {"repetition": number, "metric": "accuracy_object", "class": label, "value": value}
+                                for label, value in zip(CLASSES, each, strict=True)
+                            ]
+    return pd.DataFrame(found).assign(dataset="household", seed=0)
+
+
+@pytest.fixture
+def run(bare, small):
+    """Results of a run that has measured the sequences."""
+    small.write(bare, "sequences", rows())
+    return Results(small.settings(), bare)
+
+
+def cell(frame, **where):
+    """The one row of a frame."""
+    for column, value in where.items():
+        frame = frame[frame[column] == value]
+    assert len(frame) == 1
+    return frame.iloc[0]
+
+
+def test_twin_stands_beside_the_thesis_s_figures(run):
+    table = table_4_9.build(run)
+    row = cell(table.frame, split="sequences", classifier="cnn", strategy="thesis_ssim")
+    assert row["accuracy"] == pytest.approx(0.98, abs=0.01) and row["thesis"] == 0.9897
+    assert cell(table.frame, split="sequences", classifier="svm", strategy="random")["thesis"] == 0.7721
+    assert np.isnan(cell(table.frame, split="objects", classifier="cnn", strategy="thesis_ssim")["thesis"])
+    assert np.isnan(cell(table.frame, split="sequences", classifier="cnn", strategy="enhanced")["thesis"])
+    line = cell(table.shown, split="sequences drawn at random", classifier="CNNs")
+    assert line["enhanced attention (SSIM), %"].endswith("· 99.0") and line["chance"] == "33.3"
+
+
+def test_interval_of_unseen_objects_is_over_the_objects(run):
+    frame = table_4_9.build(run).frame
+    assert cell(frame, split="objects", classifier="cnn", strategy="random")["values"] == 9
+    assert cell(frame, split="sequences", classifier="cnn", strategy="random")["values"] == 3
+
+
+def test_smaller_films_are_not_in_the_table(run):
+    assert len(table_4_9.build(run).frame) == 2 * 3 * len(MEANS)
+
+
+def test_larger_run_stands_below_where_there_is_one(bare, small):
+    small.write(bare, "sequences", rows())
+    folder = bare / "reports/touch"
+    folder.mkdir(parents=True)
+    rows(source="princeton").to_csv(folder / "sequences_princeton.csv", index=False)
+    frame = table_4_9.build(Results(small.settings(), bare)).frame
+    assert list(dict.fromkeys(frame["objects"])) == ["furniture", "princeton, as in the thesis"]
+
+
+def test_what_was_left_out_is_a_note(bare, small):
+    note = {"object": "furniture", "metric": "accuracy", "value": None, "note": "class far: no sequences of away"}
+    small.write(bare, "sequences", pd.concat([rows(), pd.DataFrame([note])], ignore_index=True))
+    assert "Not run: class far: no sequences of away." in table_4_9.build(Results(small.settings(), bare)).notes
+
+
+def test_without_objects_left_out_the_table_has_one_half(bare, small):
+    small.write(bare, "sequences", rows(splits=("sequences",)))
+    frame = table_4_9.build(Results(small.settings(), bare)).frame
+    assert set(frame["split"]) == {"sequences"}
+
+
+@pytest.mark.parametrize("piece", [table_4_9, table_4_7, figure_4_19, chart])
+def test_unmeasured_is_not_run(bare, small, piece):
+    with pytest.raises(NotRun):
+        piece.build(Results(small.settings(), bare))
+
+
+def test_chart_charges_each_choice_its_seconds(run):
+    figure = chart.build(run)
+    frame = pd.read_csv(figure.paths[1]).set_index("name")
+    assert len(frame) == 3 * len(chart.SHOWN) - 1  # the normals do not change with the cells
+    assert frame.loc["kNN, 25 x 32 x 32", "cost_ratio"] == 1
+    assert frame.loc["CNNs, 25 x 32 x 32", "cost_ratio"] == pytest.approx(12)
+    assert frame.loc["CNNs, 25 x 32 x 32", "mean"] == pytest.approx(0.78, abs=0.01)
+
+
+def test_confusions_are_drawn_for_every_strategy_of_the_thesis(run, bare):
+    found = [
+        {
+            "method": method,
+            "split": split,
+            "classifier": name,
+            "true": one,
+            "predicted": other,
+            "count": 9 * (one == other) + 1,
+        }
+        for method in ("random", "thesis_ssim", "enhanced")
+        for split in _sequences.SPLITS
+        for name in MEANS
+        for one in CLASSES
+        for other in CLASSES
+    ]
+    (bare / "data/sequences").mkdir()
+    pd.DataFrame(found).to_csv(bare / "data/sequences/confusion.csv", index=False)
+    figure = figure_4_19.build(run)
+    assert figure.paths[0].exists() and "car, chair, vase" in figure.alt
+
+
+def test_layers_stand_beside_the_printed_ones(run, bare):
+    layers = [
+        {"network": network, "layer": layer, "kind": "Conv3d", "output": "8x5", "parameters": 7}
+        for network, layer in table_4_7.SAID
+    ]
+    (bare / "data/sequences").mkdir()
+    pd.DataFrame(layers).to_csv(bare / "data/sequences/layers.csv", index=False)
+    table = table_4_7.build(run)
+    assert (table.frame["thesis"] != "").all() and "3D 42; 1D 42" in table.notes[-1]
+
+
+def verdicts(bare, small, frame):
+    """dict key -> verdict, and the frame of all, of the claims on these rows."""
+    small.write(bare, "sequences", frame)
+    found = judge(chapter_4_sequences.CLAIMS, Results(small.settings(), bare)).set_index("key")
+    return found["verdict"].to_dict(), found
+
+
+def test_claims_that_hold_are_supported(bare, small):
+    words, found = verdicts(bare, small, rows())
+    assert words.pop("contours_map_helps_random") == "contradicted"
+    assert words.pop("contours_map_helps_unseen") == "contradicted"
+    assert set(words.values()) == {"supported"}
+    assert found.loc["contours_guided_unseen", "pairs"] == 9
+    assert found.loc["contours_cnn_best_unseen", "effect"] == pytest.approx(20, abs=1)  # over the SVM, the better
+    assert found.loc["contours_random_flatters", "effect"] == pytest.approx(20, abs=1)
+
+
+def test_claims_that_do_not_hold_are_contradicted(bare, small):
+    words, _ = verdicts(bare, small, rows(guided=-0.05, unseen=0.05))
+    for key in ("contours_guided_random", "contours_guided_unseen", "contours_random_flatters"):
+        assert words[key] == "contradicted"
+
+
+def test_claims_without_their_strategy_are_open_and_say_so(bare, small):
+    frame = rows()
+    words, found = verdicts(bare, small, frame[frame["method"] != "enhanced"])
+    assert words["contours_ours_unseen"] == "open" and "enhanced" in found.loc["contours_ours_unseen", "tested_on"]
+    assert words["contours_guided_unseen"] == "supported"
+
+
+def test_keys_of_claims_differ():
+    keys = [claim.key for claim in chapter_4_sequences.CLAIMS]
+    assert len(keys) == len(set(keys))

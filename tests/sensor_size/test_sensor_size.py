@@ -1,0 +1,131 @@
+"""The smallest pressure array: known winners, folds by object, and clear errors."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from stages.sensor_size import CLASSIFIERS, chosen_again, classifier, evaluate, smallest_enough
+from stages.sensor_size import __main__ as stage
+from stages.sensor_size.__main__ import chosen_classes, summary
+
+
+def touches(level, seed, count=12, noise=0.05):
+    """Imprints whose left half has one level: a class that anybody can tell."""
+    images = np.random.default_rng(seed).normal(0.5, noise, (count, 8, 8))
+    images[:, :, :4] += level
+    return images
+
+
+def unseen(imprints, name):
+    """The rows of objects that were never touched in training."""
+    return [row for row in evaluate(imprints, [name]) if row["metric"] == "accuracy"]
+
+
+@pytest.fixture(scope="module")
+def plain():
+    return {one: [touches(level, 10 * i + seed) for seed in range(3)]
+            for i, (one, level) in enumerate((("low", -1.0), ("even", 0.0), ("high", 1.0)))}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", CLASSIFIERS)
+def test_every_classifier_tells_plain_classes_of_unseen_objects(plain, name):
+    rows = unseen(plain, name)
+    assert len(rows) == 9 and np.mean([row["value"] for row in rows]) > 0.95
+
+
+@pytest.mark.parametrize("name", CLASSIFIERS)
+def test_noise_alone_is_told_by_chance(name):
+    noise = {one: [np.random.default_rng([i, j]).normal(size=(40, 8, 8)) for j in range(3)]
+             for i, one in enumerate("abc")}  # fmt: skip
+    assert abs(np.mean([row["value"] for row in unseen(noise, name)]) - 1 / 3) < 0.12
+
+
+def test_the_tested_object_is_never_trained_on():
+    """Each object has its own level: who learned it would name it, who did not takes the nearest other class."""
+    levels = {"a": (0.0, 10.0), "b": (1.0, 11.0)}
+    own = {one: [touches(level, i, noise=0.01) for i, level in enumerate(pair)] for one, pair in levels.items()}
+    found = {(row["class"], row["fold"]): row["value"] for row in unseen(own, "knn")}
+    assert found == {("a", 0): 1.0, ("b", 0): 0.0, ("a", 1): 0.0, ("b", 1): 1.0} or set(found.values()) <= {0.0, 1.0}
+    assert np.mean(list(found.values())) == 0.5
+
+
+def test_a_random_quarter_of_the_touches_is_told_where_the_object_is_known():
+    levels = {"a": (0.0, 10.0), "b": (1.0, 11.0)}
+    own = {one: [touches(level, i, noise=0.01) for i, level in enumerate(pair)] for one, pair in levels.items()}
+    rows = [row for row in evaluate(own, ["knn"]) if row["metric"] == "accuracy_holdout"]
+    assert [(row["class"], row["tested"], row["value"]) for row in rows] == [
+        ("a", 0, 1.0), ("a", 1, 1.0), ("b", 0, 1.0), ("b", 1, 1.0)
+    ]  # fmt: skip
+
+
+def test_a_class_with_fewer_objects_sits_out_the_later_folds(plain):
+    uneven = plain | {"low": plain["low"][:2]}
+    rows = unseen(uneven, "knn")
+    assert sorted((row["class"], row["fold"]) for row in rows if row["class"] == "low") == [("low", 0), ("low", 1)]
+    assert len(rows) == 8
+
+
+def test_the_answer_does_not_depend_on_the_order_of_the_classes(plain):
+    turned = dict(reversed(plain.items()))
+    for name in ("knn", "svm"):
+        one, other = ({(r["class"], r["fold"]): r["value"] for r in unseen(x, name)} for x in (plain, turned))
+        assert one == other
+
+
+def test_the_smallest_array_has_the_fewest_sensels_then_the_least_width():
+    accuracy = {(16, 0.01): 0.80, (16, 0.002): 0.79, (32, 0.01): 0.81, (8, 0.01): 0.6}
+    assert smallest_enough(accuracy, 0.02) == (16, 0.002)
+    assert smallest_enough(accuracy, 0.01) == (16, 0.01)
+    assert smallest_enough(accuracy, 0.0) == (32, 0.01)
+    with pytest.raises(ValueError, match="slack"):
+        smallest_enough(accuracy, -0.1)
+    with pytest.raises(ValueError, match="at least one"):
+        smallest_enough({}, 0.1)
+
+
+def test_bad_input_is_named(plain):
+    with pytest.raises(ValueError, match="two classes"):
+        evaluate({"low": plain["low"]}, ["knn"])
+    with pytest.raises(ValueError, match="class low has 1 object"):
+        evaluate(plain | {"low": plain["low"][:1]}, ["knn"])
+    with pytest.raises(ValueError, match="class low has an object without"):
+        evaluate(plain | {"low": [plain["low"][0], plain["low"][1][:0]]}, ["knn"])
+    with pytest.raises(ValueError, match="touch more often"):
+        evaluate({one: [images[:1] for images in objects] for one, objects in plain.items()}, ["knn"])
+    with pytest.raises(ValueError, match="called bayes"):
+        classifier("bayes")
+
+
+def test_classes_are_chosen_by_name_and_lonely_objects_left_out():
+    found = {"a": ["a1", "a2"], "b": ["b1"], "c": ["c1", "c2", "c3"]}
+    assert list(chosen_classes(found, [])) == ["a", "c"] and list(chosen_classes(found, ["c"])) == ["c"]
+    with pytest.raises(ValueError, match="no d in data/classes"):
+        chosen_classes(found, ["d"])
+
+
+def test_the_metrics_name_the_smallest_array():
+    rows = [
+        {"metric": "accuracy", "classifier": "knn", "cells": cells, "pitch": 0.01, "value": value + wobble}
+        for cells, value in ((8, 0.5), (16, 0.9), (32, 0.91)) for wobble in (-0.05, 0.05)
+    ]  # fmt: skip
+    found = summary(rows, 0.02, 0)["knn"]
+    assert found["smallest"] == {"cells": 16, "pitch": 0.01, "accuracy": 0.9, "again": 1.0}
+    assert found["arrays"]["8-0.01"]["low"] == 0.45
+
+
+def test_the_choice_is_trusted_where_one_array_leads_and_not_where_all_are_alike():
+    noise = np.random.default_rng(0)
+    clear = {(8, 0.01): noise.normal(0.2, 0.05, 24), (16, 0.01): noise.normal(0.9, 0.05, 24)}
+    assert chosen_again(clear, 0.02) == 1
+    alike = {(cells, 0.01): noise.normal(0.3, 0.15, 24) for cells in (8, 16, 32, 64)}
+    assert chosen_again(alike, 0.02) < 0.8
+
+
+def test_loading_code_is_no_part_of_a_touchs_seconds(monkeypatch):
+    done = []
+    monkeypatch.setattr(stage, "warm_up", lambda: done.append("loaded"))
+    monkeypatch.setattr(stage, "touch", lambda *_: done.append("touched") or np.random.default_rng(0).random((9, 8, 8)))
+    settings = SimpleNamespace(method="enhanced", touches=9, classifiers=["knn"])
+    stage.process("8-0.01", None, {"a": ["a1", "a2"], "b": ["b1", "b2"]}, "household", settings, 0)
+    assert done[0] == "loaded" and done.count("touched") == 4
