@@ -113,7 +113,7 @@ CLAIMS = [
         "{six}, enhanced, kNN minus the best of the others", best_classifier,
     ),
     touch_claim(
-        "network_poor", "T4.2.4", "The small network does poorly with few imprints.",
+        "network_poor", "T4.2.4", "The small network does worse than kNN, having few imprints to learn from.",
         "{six}, enhanced, kNN minus deep learning", knn_over_network,
     ),
     touch_claim(

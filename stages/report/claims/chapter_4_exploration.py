@@ -95,19 +95,20 @@ def claim(key, section, sentence, tested_on, unit, differences, shared=HOLD_OUT)
     return Claim(key, section, sentence, tested_on, unit, "repetitions", differences, shared)
 
 
-WHERE = "{six}, enhanced points"
+WHERE = "{six}, enhanced points, test touches anywhere"
 CLAIMS = [
     claim(
-        "five_touches_over_one", "ours", "Several touches recognise objects better than one.",
+        "five_touches_over_one", "ours", "Adding up beliefs over touches is better than one touch.",
         f"{WHERE}, belief by imprints, five touches in random order minus one", POINTS, after(5, "imprint", None),
     ),
     claim(
-        "five_touches_perfect", "ours", "With five touches and their locations recognition comes up to 100 %.",
+        "five_touches_perfect", "ours", "Beliefs added up over five touches and their places come up to 99 %.",
         f"{WHERE}, belief by imprints and places, five touches in random order, minus 99 %", POINTS,
         after(5, "imprint_place", PERFECT),
     ),
     claim(
-        "five_touches_perfect_by_imprints", "ours", "Five touches come up to 100 % by imprints alone.",
+        "five_touches_perfect_by_imprints", "ours",
+        "Beliefs added up over five touches come up to 99 % by imprints alone.",
         f"{WHERE}, five touches in random order, minus 99 %", POINTS, after(5, "imprint", PERFECT),
     ),
     claim(
@@ -143,7 +144,7 @@ CLAIMS = [
     ),
     claim(
         "product_too_sure", "ours", "Multiplying the likelihoods of touches makes a robot too sure.",
-        f"{WHERE}, places of one unseen region, stated belief minus accuracy after the most touches", POINTS,
-        too_sure("apart"), REGION_OUT,
+        "{six}, enhanced points, touches of one unseen region, stated belief minus accuracy after the most touches",
+        POINTS, too_sure("apart"), REGION_OUT,
     ),
 ]  # fmt: skip

@@ -126,19 +126,19 @@ CLAIMS = [
         variants("locations_turned", "plain"),
     ),
     touch_claim(
-        "more_touches", "T4.2.4", "Five touches are better than one.",
+        "more_touches", "T4.2.4", "Five touches joined into one sample are better than one.",
         "kNN, {six}, enhanced, five touches minus one", variants("touches_5", "touches_1"),
     ),
     touch_claim(
-        "more_touches_all", "T4.2.4", "Five touches are better than one over all classifiers.",
+        "more_touches_all", "T4.2.4", "Five joined touches are better than one over all classifiers.",
         "mean of all classifiers, {six}, enhanced, five touches minus one", variants("touches_5", "touches_1", None),
     ),
     touch_claim(
-        "more_touches_bayes", "T4.2.4", "Five touches are better than one for naive Bayes.",
+        "more_touches_bayes", "T4.2.4", "Five joined touches are better than one for naive Bayes.",
         "naive Bayes, {six}, enhanced, five touches minus one", variants("touches_5", "touches_1", "naive_bayes"),
     ),
     touch_claim(
-        "more_touches_many", "T4.2.4", "Five touches are better than one with many combinations to train on.",
+        "more_touches_many", "T4.2.4", "Five joined touches are better than one with many combinations to train on.",
         "kNN, {six}, enhanced, five touches minus one, five times as many combinations",
         variants("touches_5_many", "touches_1_many"),
     ),

@@ -109,7 +109,7 @@ CLAIMS = [
     *(
         _claim(
             f"simulation_helps_{touches}", "ours", "Simulated imprints help to recognise real touches.",
-            f"kNN, ten classes, {touches} real touches of each, resting imprints with skin added minus without",
+            f"kNN, ten classes, {touches} real of each class, resting imprints with skin added minus without",
             simulation_helps(touches),
         )
         for touches in (1, 5, 20)

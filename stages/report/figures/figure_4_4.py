@@ -43,8 +43,9 @@ def build(results):
     path = save(figure, results.reports / "figures/figure_4_4.png")
     return Figure(
         "Figure 4.4: how alike the imprints of two objects are",
-        "One pair of boxes for each two objects, the least alike at the bottom: correlations of all imprints of one "
-        f"with all of the other, for blind touch and enhanced attention; a dashed line at {ALIKE}.",
+        "One pair of boxes for each two objects, ordered by the median under enhanced attention: "
+        "correlations of all imprints of one with all of the other, for blind touch and enhanced attention; a dashed "
+        f"line at {ALIKE}.",
         f"Boxes: quartiles of all pairs of imprints, whiskers: 5 to 95 %. Right of {ALIKE} an imprint counts as one "
         "that the other object has too; the share of the first object's imprints for which that is so stands on the "
         f"right. The thesis shows cow and dromedary; {THESIS_PAIR[0]} and {THESIS_PAIR[1]} stand for them here.",

@@ -18,18 +18,21 @@ OURS = {
     "enhanced_visual_attention": "thesis_ssim",
 }
 FIRST = "first_15"  # variants of the classification stage on as many imprints as the thesis had
+APART = (
+    "Apart: one region of each object is held out, and only touches at least an array's width from it are trained on. "
+    "The difference is mostly what a random hold-out flatters, since arrays that overlap feel nearly the same; in the "
+    "CSV, accuracy_fewer is a random hold-out with as few touches to train on as apart has."
+)
 NOTES = [
     "Each cell: our hold-out accuracy in per cent [95 % interval], then our accuracy on regions that no training touch "
     'overlaps ("apart"), then the thesis\'s figure. A sampling whose detector this run did not have says "not run".',
-    "Enhanced visual attention is the thesis's weighted average, with its SSIM weights (table 3.1). Samplings below "
-    "the thesis's own are of this project alone: our model of gaze, and combinations of channels (section 3.1.5).",
+    "Enhanced visual attention is the thesis's weighted average, with its SSIM weights (table 3.1). The sampling "
+    "below the thesis's own, our model of gaze, is of this project alone.",
     "Data: the thesis scanned toys (cow, dromedary, glasses, hand, plane, cup); these are everyday "
     "meshes of the like, touched by a simulated pressure array. Compare the order of rows and columns, not the digits.",
     "Protocol as in T4.2.4: z-transform, 12 principal components, 25 % held out, five-fold cross-validation on the "
     "rest, both repeated over seeds.",
-    "Apart: one region of each object is held out, and only touches at least an array's width from it are trained on. "
-    "The difference is mostly what a random hold-out flatters, since arrays that overlap feel nearly the same; in the "
-    "CSV, accuracy_fewer is a random hold-out with as few touches to train on as apart has.",
+    APART,
     "The interval runs over repeated splits of the same imprints, widened for what they share (Nadeau and Bengio "
     "2003). It says what another draw of touches of these objects may give; it does not carry over to other objects.",
 ]

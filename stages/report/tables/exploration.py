@@ -23,8 +23,8 @@ NOTES = [
     "there is no known touch near the places, so that the split would be measured.",
     "The next place: in random order, the most salient first, or where the belief is expected to gain most "
     "(Lindley 1956), given the places that the robot sees and what each object feels like near them.",
-    "The belief is calibrated on training touches, held out alike; `as if independent` multiplies the likelihoods of "
-    "touches instead.",
+    "The belief is calibrated on hold-outs of the training touches; compare `stated` with the rates of right answers: "
+    "on unseen regions it is not calibrated. `As if independent` multiplies the likelihoods of touches instead.",
     "The 95 % intervals run over repeated splits of the same imprints, widened for what they share (Nadeau and Bengio "
     "2003); they do not carry over to other objects.",
 ]

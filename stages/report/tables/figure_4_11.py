@@ -18,9 +18,10 @@ NOTES = [
     "of its own; known: a random quarter of the touches, the others of the same objects being trained on.",
     "Every object of a class is left out once; the thesis tests one of three. Ten principal components of the imprint, "
     "learned from the training touches; kNN with one neighbour, quadratic SVM, fifty bagged trees, a small network.",
-    "The smallest array that is enough: fewest sensels, then least width, among those that lack at most the slack of "
-    "the best mean. It is chosen on the same objects that it is judged by; in brackets how often the same array is "
-    "chosen when the objects are drawn anew (bootstrap): where that is seldom, the choice is luck.",
+    "The smallest array that is enough: fewest sensels, then least width, among those that lack at most the slack "
+    "(sensor_size.slack, in accuracy) of the best mean. It is chosen on the same objects that it is judged by; in "
+    "brackets how often the same array is chosen when the objects are drawn anew (bootstrap): where that "
+    "is seldom, the choice is luck.",
 ]
 SMALLEST = "the smallest array that is enough"
 
@@ -77,7 +78,7 @@ def _shown(frame):
     width = [f"{cells * pitch:.2f}" for cells, pitch in zip(wide["cells"], wide["pitch"], strict=True)]
     wide.insert(4, "width, units", width)
     wide = wide.assign(cells=[f"{count} x {count}" for count in wide["cells"]], split=wide["split"].map(SPLITS))
-    return wide.rename(columns={"split": "objects"})
+    return wide.rename(columns={"split": "objects", "pitch": "pitch, units"})
 
 
 def _smallest(results):

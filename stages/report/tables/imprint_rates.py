@@ -91,7 +91,7 @@ def _wide(frame):
         shown[title] = ["–" if triple[0] != triple[0] else _whole(*triple) for triple in triples]
         shown[f"lowest {name}"] = [round(value) if value >= MANY else value for value in frame[f"{name}_least"]]
     shown["error, thousandths of a cell"] = [_error(value) for value in 1000 * frame["error"] / frame["pitch"]]
-    return shown.assign(by=frame["note"])
+    return shown.assign(**{"version and renderer": frame["note"]})
 
 
 def _whole(*triple):
