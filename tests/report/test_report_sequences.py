@@ -160,8 +160,10 @@ def test_layers_stand_beside_the_printed_ones(run, bare):
 
 
 def verdicts(bare, small, frame):
-    """dict key -> verdict, and the frame of all, of the claims on these rows."""
+    """dict key -> verdict, and the frame of all, of the claims on these rows, in this run and on the other data set."""
     small.write(bare, "sequences", frame)
+    (bare / "reports/touch").mkdir(parents=True)
+    frame.assign(object="princeton").to_csv(bare / "reports/touch/sequences_princeton.csv", index=False)
     found = judge(chapter_4_sequences.CLAIMS, Results(small.settings(), bare)).set_index("key")
     return found["verdict"].to_dict(), found
 
@@ -178,7 +180,8 @@ def test_claims_that_hold_are_supported(bare, small):
 
 def test_claims_that_do_not_hold_are_contradicted(bare, small):
     words, _ = verdicts(bare, small, rows(guided=-0.05, unseen=0.05))
-    for key in ("contours_guided_random", "contours_guided_unseen", "contours_random_flatters"):
+    guided = [f"contours_guided{where}_{split}" for where in ("", "_princeton") for split in ("random", "unseen")]
+    for key in (*guided, "contours_random_flatters"):
         assert words[key] == "contradicted"
 
 

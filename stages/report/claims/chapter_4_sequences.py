@@ -1,17 +1,16 @@
 """Claims of T4.4: what a whole contour tells, guided or blind, to networks and to conventional classifiers."""
 
 from stages.report.results import NotRun
-from stages.report.tables._sequences import BLIND, GUIDED, PRINTED, RANDOM_SPLIT, measured
+from stages.report.tables._sequences import BLIND, GUIDED, PRINTED, RANDOM_SPLIT, measured, on_princeton
 from stages.report.verdict import Claim
 
 POINTS = "points of accuracy"
 OVER = {"objects": (["class", "repetition"], "accuracy_object"), "sequences": (["repetition"], "accuracy")}
 
 
-def scores(results, split, classifiers, method):
+def scores(rows, split, classifiers, method):
     """Series of accuracies in per cent, an object left out or a random split; of several classifiers the mean."""
     over, metric = OVER[split]
-    rows = measured(results)
     for column, wanted in (("split", [split]), ("metric", [metric]), ("method", [method]), ("classifier", classifiers)):
         rows = rows[rows[column].isin(wanted)]
         if not set(wanted) <= set(rows[column]):
@@ -21,47 +20,53 @@ def scores(results, split, classifiers, method):
     return 100 * rows.groupby(over)["value"].mean()
 
 
-def between(split, first, second):
+def between(split, read, first, second):
     """differences(results): accuracy of `first` minus of `second`, each (classifiers, strategy)."""
 
     def differences(results):
-        one, other = scores(results, split, *first), scores(results, split, *second)
+        one, other = (scores(read(results), split, *side) for side in (first, second))
         return (one - other).dropna().to_numpy()
 
     return differences
 
 
-def best_rival(split):
+def best_rival(split, read):
     """differences(results): the networks minus the better of kNN and SVM (by mean accuracy), guided."""
 
     def differences(results):
-        rivals = [scores(results, split, [name], GUIDED) for name in PRINTED[1:]]
+        networks, *rivals = (scores(read(results), split, [name], GUIDED) for name in PRINTED)
         best = max(rivals, key=lambda rival: rival.mean())
-        return (scores(results, split, ["cnn"], GUIDED) - best).dropna().to_numpy()
+        return (networks - best).dropna().to_numpy()
 
     return differences
 
 
 def flattered(results):
     """Mean accuracy at random splits minus that on each object left out, networks, guided."""
-    known = scores(results, "sequences", ["cnn"], GUIDED).mean()
-    return (known - scores(results, "objects", ["cnn"], GUIDED)).to_numpy()
+    rows = measured(results)
+    return (scores(rows, "sequences", ["cnn"], GUIDED).mean() - scores(rows, "objects", ["cnn"], GUIDED)).to_numpy()
 
 
-def both(key, section, sentence, tested_on, differences):
-    """The claim with sequences drawn at random, as in the thesis, and with unseen objects."""
+def both(key, section, sentence, tested_on, differences, read=measured):
+    """The claim with sequences drawn at random, as in the thesis, and with unseen objects. read: rows of Results."""
     unseen = f"{sentence[:-1]}, on objects never touched too."
     return [
         Claim(f"{key}_random", section, sentence, f"{tested_on}, sequences drawn at random", POINTS, "repetitions",
-              differences("sequences"), RANDOM_SPLIT),
+              differences("sequences", read), RANDOM_SPLIT),
         Claim(f"{key}_unseen", section, unseen, f"{tested_on}, unseen objects", POINTS, "objects",
-              differences("objects")),
+              differences("objects", read)),
     ]  # fmt: skip
 
 
 def compared(first, second):
-    """split -> differences(results) of two (classifiers, strategy)."""
-    return lambda split: between(split, first, second)
+    """(split, read) -> differences(results) of two (classifiers, strategy)."""
+    return lambda split, read: between(split, read, first, second)
+
+
+def at_full_size(key, sentence, tested_on, differences):
+    """The claim on the thesis's own data set and number of sequences."""
+    sentence = f"{sentence[:-1]}, with 22,800 sequences."
+    return both(f"{key}_princeton", "T4.4.10", sentence, f"psb, {tested_on}", differences, on_princeton)
 
 
 CLAIMS = [
@@ -93,6 +98,18 @@ CLAIMS = [
         "contours_map_helps", "T4.4.9", "Reducing the features by a self-organising map helps.",
         "enhanced, mean of kNN and SVM with the map minus without",
         compared((["knn", "svm"], GUIDED), (["knn_no_som", "svm_no_som"], GUIDED)),
+    ),
+    *at_full_size(
+        "contours_guided", "Contours through visually interesting points are better than blind ones.",
+        "CNNs, enhanced minus blind", compared((["cnn"], GUIDED), (["cnn"], BLIND)),
+    ),
+    *at_full_size(
+        "contours_guided_all", "Guided contours are better, averaged over the classifiers.",
+        "mean of CNNs, kNN and SVM, enhanced minus blind", compared((list(PRINTED), GUIDED), (list(PRINTED), BLIND)),
+    ),
+    *at_full_size(
+        "contours_cnn_best", "Networks lead on sequences.",
+        "enhanced, CNNs minus the better of kNN and SVM", best_rival,
     ),
     Claim(
         "contours_random_flatters", "ours", "Drawing test sequences at random flatters: the same objects are known.",

@@ -28,6 +28,11 @@ def measured(results):
     return whole(results.measured("sequences", metric=["accuracy", "accuracy_object"]))
 
 
+def on_princeton(results):
+    """The rows on the thesis's own data set with whole sequences; NotRun where they were not measured."""
+    return whole(results.touch("sequences_princeton").dropna(subset=["value"]))
+
+
 def everywhere(results):
     """{where the objects come from: rows with whole sequences}: this run's, and Princeton's where it was measured."""
     found = {}
@@ -37,8 +42,7 @@ def everywhere(results):
     except NotRun as missing:
         absent = missing
     try:
-        rows = results.touch("sequences_princeton").dropna(subset=["value"])
-        found |= {f"{name}, as in the thesis": whole(own) for name, own in rows.groupby("object")}
+        found |= {f"{name}, as in the thesis": own for name, own in on_princeton(results).groupby("object")}
     except NotRun:
         if not found:
             raise absent from None
