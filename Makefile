@@ -64,10 +64,13 @@ detectors: $(VENV)/ready ## errors of every detector on psb and gaze (psb=, gaze
 	$(call detectors,princeton,$(psb))
 	$(call detectors,gaze,$(gaze))
 
-# Resumable: a second start goes on where a killed one stopped, since the scratch copy is made only where there is none.
+# Resumable: what a killed start has finished stays in build/touch, the code there is that of now, and a stage whose code
+# has changed begins anew. The lock and the measurements there are its own, since they are of another data set.
 touch: $(VENV)/ready ## recorded touches (pressure=, grasps=) and classes of psb (psb=) at the thesis's size, to reports/touch (hours)
 	OMP_NUM_THREADS=1 python -m benchmarks.real_touches $(pressure) $(grasps)
 	[ -d build/touch ] || { $(call fresh,build/touch); }
+	rm -rf build/touch/stages build/touch/conf
+	git ls-files -z -co --exclude-standard stages conf dvc.yaml pyproject.toml | tar --null -T - -cf - | tar -xf - -C build/touch
 	cd build/touch && python -m stages.compose experiment=table_4_9 "classes.folder=$(abspath $(psb))" \
 	  && dvc repro sensor_size sequences
 	cp build/touch/reports/measurements/sensor_size.csv reports/touch/sensor_size_princeton.csv
