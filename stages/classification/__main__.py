@@ -19,7 +19,7 @@ from stages.imprints import read_imprints
 from stages.kit import StageRun, arguments, params
 from stages.kit.files import write_arrays
 from stages.kit.run import DATA
-from stages.kit.stats import bootstrap_interval
+from stages.kit.stats import interval_metrics
 
 from .classifiers import check_name
 from .gathered import alike, costs, gather
@@ -114,9 +114,8 @@ def summary(rows, seed, closest=None):
             values["variants", row["object"], row["variant"], row["metric"]].append(row["value"])
     tree = {}
     for (first, second, third, metric), found in values.items():
-        interval = zip(("mean", "low", "high"), bootstrap_interval(found, seed), strict=True)
         branch = tree.setdefault(first, {}).setdefault(second, {}).setdefault(third, {})
-        branch[metric] = {key: round(value, 6) for key, value in interval if np.isfinite(value)}
+        branch[metric] = interval_metrics(found, seed)
     return tree
 
 

@@ -16,7 +16,7 @@ from stages.imprints import Surface
 from stages.kit import StageRun, Stopwatch, arguments, params
 from stages.kit.rng import rng
 from stages.kit.run import DATA
-from stages.kit.stats import bootstrap_interval
+from stages.kit.stats import interval_metrics
 
 from .files import write_sequences
 from .gather import gather
@@ -59,8 +59,7 @@ def summary(rows, seed):
         if metric in ("sequences", "refused"):
             tree.setdefault(strategy, {})[metric] = sum(found)
         elif metric in ("share", "shrunk"):
-            interval = zip(("mean", "low", "high"), bootstrap_interval(found, seed), strict=True)
-            tree[strategy][metric] = {key: round(value, 6) for key, value in interval if np.isfinite(value)}
+            tree[strategy][metric] = interval_metrics(found, seed)
     return tree
 
 

@@ -25,7 +25,7 @@ from stages.kit import StageRun, Stopwatch, arguments, params
 from stages.kit.files import write_arrays
 from stages.kit.rng import rng
 from stages.kit.run import DATA
-from stages.kit.stats import bootstrap_interval
+from stages.kit.stats import interval_metrics
 
 from .choose import WAYS
 from .explore import explore, stop
@@ -136,9 +136,8 @@ def summary(rows, seed):
             for key in ("value", "touches", "belief"):
                 values[row["object"], row["method"], row["way"], key].append(row[key])
     for (name, method, way, key), found in values.items():
-        interval = zip(("mean", "low", "high"), bootstrap_interval(found, seed), strict=True)
         branch = tree.setdefault(name, {}).setdefault(method, {}).setdefault(way, {})
-        branch["accuracy" if key == "value" else key] = {k: round(v, 6) for k, v in interval if np.isfinite(v)}
+        branch["accuracy" if key == "value" else key] = interval_metrics(found, seed)
     return tree
 
 

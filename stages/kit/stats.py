@@ -20,3 +20,9 @@ def bootstrap_interval(values, seed=0, level=0.95):
     tail = (1 - level) / 2
     low, high = np.quantile(values[picks].mean(axis=1), [tail, 1 - tail])
     return float(values.mean()), float(low), float(high)
+
+
+def interval_metrics(values, seed=0):
+    """{mean, low, high} of bootstrap_interval, rounded for a metric file; what is not finite is left out."""
+    interval = zip(("mean", "low", "high"), bootstrap_interval(values, seed), strict=True)
+    return {key: round(value, 6) for key, value in interval if np.isfinite(value)}

@@ -9,7 +9,6 @@ reports/measurements/sensor_size.csv (one row an object left out) and reports/me
 import functools
 from collections import defaultdict
 
-import numpy as np
 import pandas as pd
 from threadpoolctl import threadpool_limits
 
@@ -18,7 +17,7 @@ from stages.imprints import press_many, touchable, warm_up
 from stages.kit import StageRun, Stopwatch, arguments, params
 from stages.kit.files import write_table
 from stages.kit.run import DATA
-from stages.kit.stats import bootstrap_interval
+from stages.kit.stats import interval_metrics
 
 from .protocol import evaluate
 from .smallest import chosen_again, smallest_enough
@@ -72,8 +71,7 @@ def summary(rows, slack, seed):
     for name, scores in sorted(values.items()):
         arrays = {}
         for array, found in sorted(scores.items()):
-            interval = zip(("mean", "low", "high"), bootstrap_interval(found, seed), strict=True)
-            arrays["{}-{}".format(*array)] = {key: round(value, 6) for key, value in interval if np.isfinite(value)}
+            arrays["{}-{}".format(*array)] = interval_metrics(found, seed)
         means = {parts(item): value["mean"] for item, value in arrays.items()}
         cells, pitch = smallest_enough(means, slack)
         again = round(chosen_again(scores, slack, seed), 6)
@@ -86,6 +84,7 @@ def main():
     arguments(__doc__)
     settings, source = params("sensor_size"), params("classes").source
     with StageRun("sensor_size", inputs=("classes",)) as run:
+        run.dataset = source
         classes = chosen_classes(read_classes(DATA / "classes"), settings.classes)
         items = [f"{cells}-{pitch}" for cells in settings.cells for pitch in settings.pitches]
         work = functools.partial(process, classes=classes, source=source, settings=settings, seed=run.seed)

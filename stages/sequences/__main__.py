@@ -19,7 +19,7 @@ from stages.classes import read_classes
 from stages.kit import StageRun, arguments, params
 from stages.kit.files import read_arrays, write_table
 from stages.kit.run import DATA
-from stages.kit.stats import bootstrap_interval
+from stages.kit.stats import interval_metrics
 
 from .networks import ImageNet, NormalNet, layers
 from .plan import plan
@@ -66,9 +66,8 @@ def summary(rows, seed):
             values[row["method"], row["split"], row["classifier"]].append(row["value"])
             tree["chance"] = round(1 / row["classes"], 6)
     for (method, split, classifier), found in values.items():
-        interval = zip(("mean", "low", "high"), bootstrap_interval(found, seed), strict=True)
         branch = tree.setdefault(method, {}).setdefault(split, {})
-        branch[classifier] = {key: round(value, 6) for key, value in interval if np.isfinite(value)}
+        branch[classifier] = interval_metrics(found, seed)
     return tree
 
 
@@ -78,6 +77,7 @@ def main():
     # Torch's caches make a worker grow; joblib then renews it between two items, loses none, and warns.
     warnings.filterwarnings("ignore", message="A worker stopped while some jobs")
     with StageRun("sequences", inputs=("classes", "contours")) as run:
+        run.dataset = source
         planned = plan(read_classes(DATA / "classes"), DATA / "contours", settings)
         train = functools.partial(process, members=planned.members, settings=settings, seed=run.seed)
         rows = run.each(train, [trial.name for trial in planned.trials])
