@@ -42,9 +42,13 @@ def test_kit_imports_no_stage():
     assert imported("kit") == set()
 
 
+def test_networks_import_the_kit_alone():
+    assert imported("networks") == {"kit"}
+
+
 @pytest.mark.parametrize("stage", ORDER)
 def test_a_stage_imports_only_to_its_left(stage):
-    assert imported(stage) - {"kit"} <= set(ORDER[: ORDER.index(stage)])
+    assert imported(stage) - {"kit", "networks"} <= set(ORDER[: ORDER.index(stage)])
 
 
 @pytest.mark.parametrize("stage", ORDER)

@@ -6,14 +6,6 @@ _HOME = {
     "Touches": "touches",
     "press_touches": "touches",
     "stratified_split": "split",
-    "to_images": "images",
-    "normalise": "images",
-    "augmentation": "images",
-    "NETWORKS": "networks",
-    "build": "networks",
-    "settle": "networks",
-    "MODES": "modes",
-    "imagenet_state": "weights",
 }
 __all__ = list(_HOME)
 

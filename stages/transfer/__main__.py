@@ -11,10 +11,10 @@ import warnings
 
 from stages.kit import StageRun, arguments, params
 from stages.kit.files import write_table
+from stages.networks.weights import imagenet_state
 
 from . import touches, trial
 from .touches import touchable_vertices
-from .weights import imagenet_state
 
 
 def present(wanted, vertices, touches):

@@ -10,13 +10,13 @@ from stages.kit.files import read_arrays, write_arrays
 from stages.kit.repeatable import repeatable
 from stages.kit.rng import rng
 from stages.kit.stats import bootstrap_interval
+from stages.networks.images import normalise, to_images
+from stages.networks.modes import MODES
+from stages.networks.network import START, build, parameters, settle
+from stages.networks.training import accuracy, learn, scores, search
 
-from .images import normalise, to_images
-from .modes import MODES
-from .networks import START, build, parameters, settle
 from .split import stratified_split
 from .touches import read_touches
-from .training import accuracy, learn, scores, search
 
 
 def trials(settings):

@@ -6,13 +6,13 @@ import torch
 
 from stages.kit.files import sha256, write_arrays
 from stages.kit.repeatable import repeatable
+from stages.networks.images import normalise, to_images
+from stages.networks.modes import MODES
+from stages.networks.network import Network, build, parameters, settle
+from stages.networks.training import accuracy, learn, scores, search
 from stages.transfer import trial
 from stages.transfer.__main__ import none_to_tell_apart, present
-from stages.transfer.images import normalise, to_images
-from stages.transfer.modes import MODES
-from stages.transfer.networks import TouchNet, build, parameters, settle
 from stages.transfer.schema import Params
-from stages.transfer.training import accuracy, learn, scores, search
 
 SIZE = 32
 LABELS = np.arange(32) % 2
@@ -73,7 +73,7 @@ def small():
     """A network so small that it learns the toy problem in a second."""
     layers = [torch.nn.Conv2d(3, 8, 5, stride=2), torch.nn.BatchNorm2d(8), torch.nn.ReLU()]
     layers += [torch.nn.Conv2d(8, 16, 3, stride=2), torch.nn.BatchNorm2d(16), torch.nn.ReLU()]
-    return TouchNet(torch.nn.Sequential(*layers), 16, 2, dropout=0.0)
+    return Network(torch.nn.Sequential(*layers), 16, 2, dropout=0.0)
 
 
 @pytest.mark.parametrize("mode", list(MODES))

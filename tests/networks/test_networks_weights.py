@@ -8,8 +8,8 @@ import pytest
 import torch
 
 from stages.kit.fetch import FetchError, cache_folder
-from stages.transfer import weights
-from stages.transfer.networks import build
+from stages.networks import weights
+from stages.networks.network import build
 
 PACKAGE = weights.PACKAGES["mobilenet_v2"]
 
@@ -80,7 +80,7 @@ def test_unknown_names_are_refused_with_the_known_ones(network, source):
 
 
 def test_weights_of_another_network_are_refused(monkeypatch):
-    monkeypatch.setattr("stages.transfer.networks.imagenet_state", lambda *_: {"conv1.weight": torch.ones(2)})
+    monkeypatch.setattr("stages.networks.network.imagenet_state", lambda *_: {"conv1.weight": torch.ones(2)})
     with pytest.raises(ValueError, match="no weights of mobilenet_v2"):
         build("mobilenet_v2", 2, "imagenet", 0)
 

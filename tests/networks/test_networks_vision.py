@@ -6,12 +6,12 @@ import sys
 import pytest
 import torch
 
-from stages.transfer import vision
+from stages.networks import vision
 
 
 def test_models_build_and_run_in_a_fresh_process():
     code = (
-        "from stages.transfer.vision import torchvision, declared\n"
+        "from stages.networks.vision import torchvision, declared\n"
         "import torch\n"
         "net = torchvision.models.mobilenet_v2(num_classes=3).eval()\n"
         "print(tuple(net(torch.zeros(1, 3, 32, 32)).shape), len(torchvision.models.list_models()) > 50)\n"

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import torch
 
 from .images import augmentation, normalise, to_images
-from .networks import settle
+from .network import settle
 
 
 @dataclass(frozen=True)

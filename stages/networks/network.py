@@ -8,7 +8,7 @@ from .weights import imagenet_state
 START = ("imagenet", "random")
 
 
-class TouchNet(torch.nn.Module):
+class Network(torch.nn.Module):
     """Convolutions made for photographs and a new head for k classes of imprints.
 
     Images (b, 3, h, w) f4, ImageNet-normalised, to scores (b, k) before the softmax. `features` gives what the head
@@ -36,14 +36,14 @@ def mobilenet_v2(classes, state=None):
     whole = torchvision.models.mobilenet_v2()
     if state is not None:
         _load(whole, state, "mobilenet_v2")
-    return TouchNet(whole.features, whole.last_channel, classes, dropout=0.2)
+    return Network(whole.features, whole.last_channel, classes, dropout=0.2)
 
 
 NETWORKS = {"mobilenet_v2": mobilenet_v2}
 
 
 def build(name, classes, weights, seed, source="package"):
-    """A TouchNet for `classes` classes, in evaluation mode.
+    """A Network for `classes` classes, in evaluation mode.
 
     weights: `imagenet`, or `random` for the control. The seed fixes the head and, for `random`, the convolutions; the
     caller's own random numbers are left as they were. Raises ValueError for an unknown name.
