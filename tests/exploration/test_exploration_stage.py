@@ -6,6 +6,7 @@ import pytest
 from omegaconf import OmegaConf
 
 from stages.exploration import __main__ as stage
+from stages.exploration.one_sampling import EXPERIMENTS
 from stages.exploration.schema import Params
 from stages.imprints import Imprints, write_imprints
 
@@ -36,7 +37,7 @@ def run(tmp_path, monkeypatch):
 
 def test_a_run_writes_every_experiment(run):
     rows = run()
-    assert set(zip(rows["split"], rows["likelihood"], strict=True)) == set(stage.EXPERIMENTS)
+    assert set(zip(rows["split"], rows["likelihood"], strict=True)) == set(EXPERIMENTS)
     assert set(rows["stop"]) == {"fixed", "confidence"} and set(rows["repetition"]) == {0, 1}
     fixed = rows[rows["stop"] == "fixed"]
     assert set(fixed["level"]) == {1, 2, 3} and (fixed["touches"] == fixed["level"]).all()
