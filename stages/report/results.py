@@ -13,7 +13,7 @@ from stages.weights import learned_for
 
 NUMBERS = {"four": 4, "six": 6}  # names of sets that tell how many objects they hold
 # Stages whose rows are about sets of objects.
-OF_SETS = ("classification", "exploration", "touch_stability", "transfer")
+OF_SETS = ("classification", "exploration", "touch_stability")
 
 
 class NotRun(Exception):
@@ -106,6 +106,16 @@ class Results:
         """Rows of reports/touch/NAME.csv: measured once, on recorded touches or on another data set."""
         why = f"no touch/{name}.csv: `make touch` measures it where those data are"
         return self._once(self.reports / "touch" / f"{name}.csv", why, "classification")
+
+    def transfer(self, name):
+        """Rows of reports/transfer/NAME.csv: networks, measured once on recorded touches or on another data set."""
+        why = f"no transfer/{name}.csv: `make transfer` measures it where those data are"
+        return self._once(self.reports / "transfer" / f"{name}.csv", why, "transfer")
+
+    def fixation(self, name):
+        """Rows of reports/fixation/NAME.csv: where networks look, measured once on the meshes with human gaze."""
+        why = f"no fixation/{name}.csv: `make fixation` measures it where the meshes with gaze are"
+        return self._once(self.reports / "fixation" / f"{name}.csv", why, "fixation")
 
     def _once(self, path, why, stage):
         """A table that no stage of this run writes; NotRun with `why` where it is absent."""

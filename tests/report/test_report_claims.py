@@ -45,7 +45,7 @@ def test_no_effect_is_open(results):
 
 
 def test_unmeasured_claim_is_open_and_names_the_stage(results):
-    row = judged(results, "tuned_over_frozen")
+    row = judged(results, "tuned_over_frozen_random")
     assert row["verdict"] == "open"
     assert "dvc repro transfer" in row["tested_on"]
 
@@ -170,8 +170,8 @@ def test_absent_set_is_called_a_set(root, small):
 def test_transfer_that_was_left_out_hands_on_its_note(root, small):
     small.write(root, "transfer", pd.DataFrame([{"dataset": "test", "object": "six", "value": None, "note": "no cup"}]))
     results = Results(small.settings(), root)
-    assert judged(results, "tuned_over_frozen")["tested_on"] == "not run: no cup"
-    assert judged(results, "frozen_over_chance")["tested_on"] == "not run: no cup"
+    assert judged(results, "tuned_over_frozen_random")["tested_on"] == "not run: no cup"
+    assert judged(results, "frozen_over_chance_random")["tested_on"] == "not run: no cup"
     assert build_all(tables, results).not_run["table_5_4"] == "no cup"
     assert build_all(tradeoff, results).not_run["networks"] == "no cup"
 

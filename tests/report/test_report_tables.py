@@ -9,7 +9,7 @@ from stages.report.items import Table, build_all
 from stages.report.lod_cells import paired_cells
 from stages.report.markdown import as_text, is_numeric, markdown_table, number, with_interval
 from stages.report.results import NotRun, Results
-from stages.report.tables import table_4_1, table_5_4
+from stages.report.tables import table_4_1
 
 
 def test_twin_holds_every_cell_of_the_thesis(results):
@@ -61,20 +61,6 @@ def test_lod_seconds_are_those_of_the_simplification(root, results, small):
     frame.loc[frame["metric"] != "faces", "seconds"] = 99.0
     small.write(root, "lod", frame)
     assert (paired_cells(Results(small.settings(), root), ["metro_mean"], ["qem", "enhanced"])["seconds"] == 0.1).all()
-
-
-def test_networks_of_the_thesis_that_were_not_run_say_so(root, results, small):
-    rows = [
-        {"object": "six", "method": "mobilenet_v2", "weights": "imagenet", "mode": "frozen", "repetition": k}
-        | {"metric": metric, "value": value, "seconds": 1.0}
-        for k in range(3)
-        for metric, value in (("accuracy", 0.5), ("chance", 1 / 6))
-    ]
-    small.write(root, "transfer", pd.DataFrame(rows))
-    shown = table_5_4.build(results).shown.set_index(["network", "filters"])
-    assert shown.loc[("MobileNetV2", "frozen"), "ours, %"].startswith("50.0")
-    assert shown.loc[("MobileNetV2", "frozen"), "thesis, %"] == "43.8"
-    assert shown.loc[("ResNet50", "frozen"), "ours, %"] == "not run"
 
 
 def test_without_measurements_every_table_is_not_run_or_made(bare, small):

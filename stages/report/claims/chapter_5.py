@@ -1,58 +1,90 @@
-"""Claims of chapter 5: what a network learned by sight is worth for touch."""
+"""Claims of T5.4: what a network learned by sight is worth for touch."""
 
+import numpy as np
+import pandas as pd
+from scipy.stats import spearmanr
+
+from stages.report.figures.figure_5_4 import layer_changes
 from stages.report.intervals import HOLD_OUT
+from stages.report.results import NotRun
+from stages.report.tables._transfer import COARSE, FINE, SPLITS
 from stages.report.verdict import Claim, paired
 
-OVER = ["object", "method", "repetition"]
 NETWORK = "mobilenet_v2"
+POINTS = "points of accuracy"
+UNITS = {"random": ("repetitions", HOLD_OUT), "objects": ("objects", 0.0)}  # what the pairs are
 
 
-def between(first, second):
-    """differences(results): accuracy with the setting `first` minus with `second`, a repetition."""
+def between(split, first, second):
+    """differences(results): accuracy with the setting `first` minus with `second`, matched by repetition."""
 
     def differences(results):
         sides = {"first": {"metric": "accuracy"} | first, "second": {"metric": "accuracy"} | second}
-        return 100 * paired(results, "transfer", OVER, **sides, method=NETWORK).to_numpy()
+        return 100 * paired(results, "transfer", ["repetition"], **sides, method=NETWORK, split=split).to_numpy()
 
     return differences
 
 
-def over_chance(setting):
+def over_chance(split, setting):
     """differences(results): accuracy minus chance."""
 
     def differences(results):
         sides = {"first": {"metric": "accuracy"}, "second": {"metric": "chance"}}
-        return 100 * paired(results, "transfer", OVER, **sides, **setting, method=NETWORK).to_numpy()
+        where = {"method": NETWORK, "split": split} | setting
+        return 100 * paired(results, "transfer", ["repetition"], **sides, **where).to_numpy()
 
     return differences
 
 
-def seen(mode, weights="imagenet"):
+def seen(mode, weights="imagenet", data=FINE):
     """One setting of the network."""
-    return {"weights": weights, "mode": mode}
+    return {"weights": weights, "mode": mode, "data": data}
 
 
-def transfer_claim(key, section, sentence, tested_on, differences):
-    """A claim on test accuracy; its pairs are repetitions over the same imprints."""
-    return Claim(key, section, sentence, tested_on, "points of accuracy", "repetitions", differences, HOLD_OUT)
+def both(key, section, sentence, tested_on, differences):
+    """The claim with touches drawn at random, as in the thesis, and on objects left out."""
+    for split, (over, shared) in UNITS.items():
+        said = sentence if split == "random" else f"{sentence[:-1]}, on objects never touched too."
+        where = f"MobileNetV2, {tested_on}, {SPLITS[split]}"
+        yield Claim(f"{key}_{split}", section, said, where, POINTS, over, differences(split), shared)
+
+
+def compared(first, second):
+    """split -> differences(results)."""
+    return lambda split: between(split, first, second)
+
+
+def earlier_change_more(results):
+    """(k,): minus the rank correlation of a convolution's depth with its change, a training."""
+    changes = layer_changes(results)
+    wanted = {"network": NETWORK, "mode": "finetuned", "weights": "imagenet", "data": FINE, "split": "random"}
+    mine = changes[(changes[list(wanted)] == pd.Series(wanted)).all(axis=1)]
+    if mine.empty:
+        raise NotRun("MobileNetV2 was not fine-tuned", "transfer")
+    return np.array([-spearmanr(np.arange(len(one)), one["value"])[0] for _, one in mine.groupby("trial", sort=False)])
 
 
 CLAIMS = [
-    transfer_claim(
-        "tuned_over_frozen", "T5.4", "Fine-tuning on touch beats frozen filters.",
-        "MobileNetV2, ImageNet weights, fine-tuned minus frozen", between(seen("finetuned"), seen("frozen")),
-    ),
-    transfer_claim(
-        "frozen_over_chance", "T5.4", "Frozen visual filters tell simulated imprints apart better than guessing.",
-        "MobileNetV2, ImageNet weights, frozen minus chance", over_chance(seen("frozen")),
-    ),
-    transfer_claim(
-        "seen_over_random_frozen", "T5.4", "Vision and touch share features: frozen filters learned by sight help.",
-        "MobileNetV2 frozen, ImageNet minus random weights", between(seen("frozen"), seen("frozen", "random")),
-    ),
-    transfer_claim(
-        "seen_over_random_tuned", "T5.4", "Vision and touch share features: sight is a better start for touch.",
-        "MobileNetV2 fine-tuned, ImageNet minus random weights",
-        between(seen("finetuned"), seen("finetuned", "random")),
+    *both("tuned_over_frozen", "T5.4", "Fine-tuning on touch beats frozen filters.",
+          "ImageNet's weights, fine-tuned minus frozen", compared(seen("finetuned"), seen("frozen"))),
+    *both("frozen_over_chance", "T5.4", "Frozen visual filters tell simulated imprints apart better than guessing.",
+          "ImageNet's weights, frozen minus chance", lambda split: over_chance(split, seen("frozen"))),
+    *both("frozen_coarse_over_chance", "T5.4", "With 16 x 16 sensels frozen filters do no worse than guess.",
+          "16 x 16, ImageNet's weights, frozen minus chance",
+          lambda split: over_chance(split, seen("frozen", data=COARSE))),
+    *both("fine_over_coarse_frozen", "T5.4", "A finer array makes touch more like sight: frozen filters gain by it.",
+          "frozen, 128 x 128 minus 16 x 16", compared(seen("frozen"), seen("frozen", data=COARSE))),
+    *both("fine_over_coarse_tuned", "T5.6", "A finer array makes touch easier to recognise.",
+          "fine-tuned, 128 x 128 minus 16 x 16", compared(seen("finetuned"), seen("finetuned", data=COARSE))),
+    *both("seen_over_random_frozen", "T5.4", "Vision and touch share features: frozen filters learned by sight help.",
+          "frozen, ImageNet's minus random weights", compared(seen("frozen"), seen("frozen", "random"))),
+    *both("seen_over_random_tuned", "T5.4", "Vision and touch share features: sight is a better start for touch.",
+          "fine-tuned, ImageNet's minus random weights", compared(seen("finetuned"), seen("finetuned", "random"))),
+    *both("early_and_late", "T5.5", "Layers 18 to 139 may stay as sight left them.",
+          "layers 18 to 139 frozen minus all frozen", compared(seen("18:139"), seen("frozen"))),
+    Claim(
+        "earlier_change_more", "T5.4", "Earlier convolutions are altered more for touch than later ones.",
+        "MobileNetV2, fine-tuned, minus the rank correlation of depth and change", "rank correlation", "repetitions",
+        earlier_change_more, HOLD_OUT,
     ),
 ]  # fmt: skip

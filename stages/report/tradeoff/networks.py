@@ -6,21 +6,22 @@ from stages.report.intervals import HOLD_OUT, summary
 from stages.report.pareto import pareto_chart
 from stages.report.results import NotRun
 from stages.report.style import label, start
+from stages.report.tables._transfer import FINE, measured
 
 REFERENCE = ("mobilenet_v2", "imagenet", "frozen")
 
 
 def build(results):
-    results.measured("transfer", metric="accuracy", **dict(zip(("method", "weights", "mode"), REFERENCE, strict=True)))
-    rows = results.measured("transfer", metric="accuracy")
+    rows = measured(results)
+    rows = rows[(rows["data"] == FINE) & (rows["split"] == "random")]
     frame = pd.DataFrame(summary(rows, ["method", "weights", "mode"], HOLD_OUT, top=1.0)).dropna(subset=["seconds"])
     frame["name"] = [_name(row.method, row.weights, row.mode) for row in frame.itertuples()]
     reference = _name(*REFERENCE)
     if reference not in set(frame["name"]):
         raise NotRun(f"the reference {reference} is not measured", "transfer")
     return pareto_chart(
-        frame, "seconds", "mean", "name", name="networks", title="From sight to touch",
-        reference=reference, quality_label="test accuracy", folder=results.reports / "tradeoff",
+        frame, "seconds", "mean", "name", name="networks", title="From sight to touch: what training costs",
+        reference=reference, quality_label="test accuracy, touches at random", folder=results.reports / "tradeoff",
     )  # fmt: skip
 
 

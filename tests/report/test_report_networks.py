@@ -1,0 +1,151 @@
+"""The tables, figures, chart and claims of chapter 5, on trainings whose truth is known."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from stages.kit.files import write_table
+from stages.report.claims import chapter_5
+from stages.report.figures import figure_5_3, figure_5_4
+from stages.report.results import NotRun, Results
+from stages.report.tables import _transfer, table_5_3, table_5_4, table_5_6
+from stages.report.tradeoff import networks as chart
+from stages.report.verdict import judge
+
+MEANS = {  # (data, weights, mode) -> accuracy
+    ("imprints128", "imagenet", "finetuned"): 0.9,
+    ("imprints128", "imagenet", "frozen"): 0.6,
+    ("imprints128", "imagenet", "18:139"): 0.85,
+    ("imprints128", "random", "finetuned"): 0.5,
+    ("imprints128", "random", "frozen"): 0.3,
+    ("imprints16", "imagenet", "finetuned"): 0.7,
+    ("imprints16", "imagenet", "frozen"): 0.4,
+}
+LAYERS = {"conv1": "Conv1", "b2": "block_2", "b9": "block_9", "b15": "block_15", "last": "Conv_1"}
+
+
+def rows(source="furniture", unseen=-0.2, repetitions=4):
+    """Trainings: unseen objects are harder by a margin, fine-tuning and ImageNet help by margins."""
+    random, found = np.random.default_rng(0), []
+    for (data, weights, mode), mean in MEANS.items():
+        for split, loss in (("random", 0.0), ("objects", unseen)):
+            for number in range(repetitions):
+                common = {"object": source, "data": data, "method": "mobilenet_v2", "weights": weights, "mode": mode}
+                common |= {"had": "complete" if weights == "imagenet" else None, "split": split, "repetition": number}
+                values = {"accuracy": mean + loss + 0.005 * random.normal(), "chance": 0.125}
+                seconds = 10.0 if mode == "frozen" else 60.0
+                found += [common | {"metric": key, "value": v, "seconds": seconds} for key, v in values.items()]
+    return pd.DataFrame(found).assign(dataset=source, seed=0, note=None)
+
+
+def changes():
+    """Changes that fall with depth, of two trainings."""
+    found = []
+    for number in range(2):
+        trial = f"imprints128.mobilenet_v2.imagenet.finetuned.random.{number}"
+        for depth, (layer, part) in enumerate(LAYERS.items()):
+            found.append({"trial": trial, "layer": layer, "part": part, "value": 0.1 ** (depth + 0.1 * number)})
+    return pd.DataFrame(found)
+
+
+@pytest.fixture
+def run(bare, small):
+    """Results of a run that has trained MobileNetV2."""
+    small.write(bare, "transfer", rows())
+    write_table(bare / "data/transfer/weight_change.csv", changes())
+    return Results(small.settings(), bare)
+
+
+def only(frame, **where):
+    """The one row of a frame."""
+    for column, value in where.items():
+        frame = frame[frame[column] == value]
+    assert len(frame) == 1
+    return frame.iloc[0]
+
+
+def test_twin_of_table_5_4_stands_beside_the_thesis_s_figures(run):
+    table = table_5_4.build(run)
+    found = only(table.frame, network="mobilenet_v2", weights="imagenet", mode="frozen", split="random")
+    assert found["accuracy"] == pytest.approx(0.6, abs=0.01) and found["thesis"] == 0.4381
+    assert found["above_chance"] == pytest.approx(found["accuracy"] - 0.125)
+    line = only(table.shown, network="MobileNetV2", filters="frozen", **{"starts from": "ImageNet"})
+    assert line["furniture, touches at random (chance 12.5), %"].startswith("59.7 [") and line["thesis, %"] == "43.8"
+
+
+def test_the_coarse_table_holds_the_coarse_array_alone(run):
+    frame = table_5_3.build(run).frame
+    found = only(frame, network="mobilenet_v2", weights="imagenet", mode="frozen", split="random")
+    assert found["accuracy"] == pytest.approx(0.4, abs=0.01) and found["thesis"] == 0.2048
+
+
+def test_networks_of_the_thesis_that_were_not_run_say_so(run):
+    shown = table_5_4.build(run).shown
+    line = only(shown, network="ResNet50", filters="frozen")
+    assert line["furniture, unseen objects (chance 12.5), %"] == "not run" and line["thesis, %"] == "52.4"
+
+
+def test_frozen_layers_go_by_the_thesis_s_numbers(run):
+    frame = table_5_6.build(run).frame
+    assert only(frame, frozen_layers="18:139", split="random")["accuracy"] == pytest.approx(0.85, abs=0.01)
+    assert only(frame, frozen_layers="none", split="random")["accuracy"] == pytest.approx(0.9, abs=0.01)
+    assert np.isnan(only(frame, frozen_layers="1:150", split="random")["accuracy"])
+
+
+def test_rows_on_the_thesis_s_classes_stand_beside_the_run_s(bare, run, small):
+    write_table(bare / "reports/transfer/princeton.csv", rows("princeton"))
+    shown = table_5_4.build(Results(small.settings(), bare)).shown
+    assert "princeton, the thesis's classes, touches at random (chance 12.5), %" in shown
+
+
+@pytest.mark.parametrize("figure", [figure_5_3, figure_5_4])
+def test_figures_are_drawn(run, figure):
+    made = figure.build(run)
+    assert made.paths[0].stat().st_size > 10_000
+
+
+def test_gain_of_fine_tuning_is_paired(run):
+    measured = _transfer.everywhere(run)["furniture"]
+    mean, low, high = figure_5_3._gains(measured)["mobilenet_v2", "random", "imprints128"]
+    assert mean == pytest.approx(30, abs=1) and low < mean < high
+
+
+def test_chart_costs_are_seconds_of_training(run):
+    chart.build(run)
+    frame = pd.read_csv(run.reports / "tradeoff/networks.csv").set_index("name")
+    assert frame.loc["MobileNetV2, ImageNet, fine-tuned", "cost_ratio"] == pytest.approx(6)
+
+
+VERDICTS = {
+    "tuned_over_frozen_random": "supported",
+    "tuned_over_frozen_objects": "supported",
+    "frozen_over_chance_random": "supported",
+    "seen_over_random_tuned_random": "supported",
+    "fine_over_coarse_frozen_random": "supported",
+    "early_and_late_random": "supported",
+}
+
+
+@pytest.mark.parametrize(("key", "word"), VERDICTS.items())
+def test_claims_say_what_the_rows_hold(run, key, word):
+    judged = judge(chapter_5.CLAIMS, run).set_index("key")
+    assert judged.loc[key, "verdict"] == word
+
+
+def test_a_claim_turns_with_the_rows(bare, small):
+    frame = rows()
+    frame["mode"] = frame["mode"].map({"frozen": "finetuned", "finetuned": "frozen"}).fillna(frame["mode"])
+    small.write(bare, "transfer", frame)
+    judged = judge(chapter_5.CLAIMS, Results(small.settings(), bare)).set_index("key")
+    assert judged.loc["tuned_over_frozen_random", "verdict"] == "contradicted"
+
+
+def test_depth_is_compared_with_change(run):
+    assert chapter_5.earlier_change_more(run) == pytest.approx([1, 1])
+
+
+def test_without_trainings_nothing_is_made_up(bare, small):
+    empty = Results(small.settings(), bare)
+    for module in (table_5_3, table_5_4, table_5_6, figure_5_3, figure_5_4, chart):
+        with pytest.raises(NotRun, match="transfer"):
+            module.build(empty)
