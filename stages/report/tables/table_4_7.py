@@ -25,6 +25,7 @@ NOTES = [
     "eight classes, and the sum of both networks would follow the weaker one.",
     "Where they cannot be: 3 x 3 kernels on the one row that 3 x 5 kernels leave of 3 x 25 normals (here 3 frames "
     "wide), and pooling by 0.2 (here by 2).",
+    "The 32x19 of the second 1D convolution are pooled to 32x9 before the first fully connected layer.",
     "Trained by plain gradient descent from a rate of 0.05, mdCNN's own default, that halves when the training loss "
     "has not fallen for three passes (mdCNN watches the test data).",
 ]
