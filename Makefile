@@ -4,13 +4,14 @@ PYTHON ?= $(shell command -v python3.11 || command -v python3)
 BIN := $(CURDIR)/$(VENV)/bin
 SMOKE := build/smoke
 GAZE := build/gaze
+NETWORKS := vgg16-frozen,resnet50-frozen,mobilenet_v2-frozen,mobilenet_v2-finetuned,vgg16-random,resnet50-random,mobilenet_v2-random
 gaze ?= ../shared/data/gaze.zip
 psb ?= ../shared/data/psb.zip
 pressure ?= ../shared/data/pressure_images.zip
 grasps ?= ../shared/data/biotac_grasps.zip
 export PATH := $(BIN):$(PATH)
 .DEFAULT_GOAL := help
-.PHONY: help repro test smoke lint bench gaze detectors touch clean
+.PHONY: help repro test smoke lint bench gaze fixation detectors touch transfer clean
 
 help: ## this list
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 10
@@ -56,6 +57,15 @@ gaze: $(VENV)/ready ## judge every saliency by human gaze (gaze=PATH of gaze.zip
 	python -m benchmarks.annotations $(GAZE)
 	python -m benchmarks.attention $(GAZE)
 
+# Resumable: what a killed start has finished stays in build/fixation, as long as neither the code nor the settings change.
+fixation: $(VENV)/ready ## attention of networks at the thesis's size by human gaze (gaze=PATH of gaze.zip), to reports/fixation (hours)
+	[ -d build/fixation ] || { $(call fresh,build/fixation); }
+	rm -rf build/fixation/stages build/fixation/conf
+	git ls-files -z -co --exclude-standard stages conf dvc.yaml pyproject.toml | tar --null -T - -cf - | tar -xf - -C build/fixation
+	cd build/fixation && python -m stages.compose data=gaze "meshes.folder=$(abspath $(gaze))" fixation.parallels=9 \
+	  fixation.azimuths=24 "fixation.methods=[$(NETWORKS)]" && dvc repro fixation
+	python -m benchmarks.fixation build/fixation
+
 # The lod stage on data set $(1), found at $(2), in a scratch copy; its errors to reports/simplification/$(1).csv.
 detectors = $(call fresh,build/detectors_$(1)) && python -m stages.compose data=$(1) experiment=detectors_$(1) \
 	  "meshes.folder=$(abspath $(2))" && dvc repro lod && cd $(CURDIR) && python -m benchmarks.detectors build/detectors_$(1) $(1)
@@ -76,6 +86,10 @@ touch: $(VENV)/ready ## recorded touches (pressure=, grasps=) and classes of psb
 	cp build/touch/reports/measurements/sensor_size.csv reports/touch/sensor_size_princeton.csv
 	cp build/touch/reports/measurements/sequences.csv reports/touch/sequences_princeton.csv
 	cp build/touch/reports/measurements/contours.csv reports/touch/contours_princeton.csv
+
+# Resumable: what a killed start has finished stays in build/transfer/trials, each training under its own name.
+transfer: $(VENV)/ready ## networks for photographs on recorded touches (pressure=, grasps=; networks=, device=), to reports/transfer (an hour)
+	python -m benchmarks.transfer $(pressure) $(grasps) $(if $(networks),--networks $(networks)) $(if $(device),--device $(device))
 
 clean: ## remove what was built and computed; fetched files stay in the user's cache
 	rm -rf $(VENV) build .pytest_cache .ruff_cache .dvc/tmp .dvc/cache *.egg-info

@@ -17,7 +17,10 @@ BAND = 0.15  # of a measured value: what another processor's rounding moves in s
 
 MEASURED = ("lod.meshes", "lod.paired_cells")  # counts that follow from measured values: held like these
 # Rates that may lie near zero, where a share of the value is no band: at least so much either way.
-LEAST = {"stability.": 0.1, "salient_points.": 0.02, "touch_stability.": 0.1, "sequences.": 0.1, "sensor_size.": 0.05}
+LEAST = {
+    "stability.": 0.1, "salient_points.": 0.02, "touch_stability.": 0.1, "sequences.": 0.1, "sensor_size.": 0.05,
+    "fixation.": 0.1, "transfer.": 0.1,
+}  # fmt: skip
 FREE = ("report.claims.",)  # a verdict flips where its interval just touches zero; the effects behind it are held
 LISTED = 8  # new metrics that are named
 

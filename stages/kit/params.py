@@ -11,9 +11,9 @@ from yaml import YAMLError
 
 FILE = Path("params.yaml")
 SECTIONS = (
-    "meshes", "views", "conspicuity", "weights", "salient_points", "lod", "scene", "imprints", "classification",
-    "exploration", "touch_stability", "classes", "sensor_size", "contours", "sequences", "transfer", "stability",
-    "report",
+    "meshes", "views", "conspicuity", "weights", "salient_points", "lod", "scene", "fixation", "imprints",
+    "classification", "exploration", "touch_stability", "classes", "sensor_size", "contours", "sequences", "transfer",
+    "stability", "report",
 )  # fmt: skip
 COMMON = {"profile": str, "seed": int, "parallel": dict}
 

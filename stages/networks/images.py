@@ -31,8 +31,8 @@ def to_images(imprints, size):
 
 def normalise(images):
     """Images (k, 3, h, w) in 0..1 to ImageNet's mean and standard deviation a channel."""
-    mean = torch.tensor(MEAN).view(3, 1, 1)
-    std = torch.tensor(STD).view(3, 1, 1)
+    mean = torch.tensor(MEAN, device=images.device).view(3, 1, 1)
+    std = torch.tensor(STD, device=images.device).view(3, 1, 1)
     return ((images - mean) / std).contiguous(memory_format=torch.channels_last)
 
 

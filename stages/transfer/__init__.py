@@ -3,6 +3,7 @@
 from importlib import import_module
 
 _HOME = {
+    "HybridNet": "hybrid",
     "Touches": "touches",
     "press_touches": "touches",
     "stratified_split": "split",

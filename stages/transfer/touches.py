@@ -1,23 +1,38 @@
-"""The data: high resolution imprints of each class's object (T5.1.3)."""
+"""The data: imprints of every object of every class, as many of each, by a fine array and by a coarse one (T5.1.3)."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
+from stages.classes import read_object
 from stages.imprints import press_many
-from stages.kit.files import read_arrays, read_mesh, write_arrays
+from stages.kit.files import read_arrays, write_arrays
 from stages.kit.rng import rng
-from stages.salient_points import read_points
+from stages.kit.run import DATA
 
 
 @dataclass(frozen=True, eq=False)
 class Touches:
-    """Imprints with their class: images (k, r, c) u1, labels (k,) i8 into classes, vertices (k,) i8."""
+    """Imprints of classes of objects: images (k, r, c) u1, labels (k,) i8 into classes, vertices (k,) i8.
+
+    ranks (k,) i8: which object of its class a touch is of, 0 the first.
+    """
 
     images: np.ndarray
     labels: np.ndarray
+    ranks: np.ndarray
     vertices: np.ndarray
     classes: list[str]
+
+    @property
+    def objects(self):
+        """(k,) i8: which object of all a touch is of."""
+        return self.labels * (self.ranks.max() + 1) + self.ranks
+
+
+def arrays(settings):
+    """{data: sensels a side} of all arrays that press; the first is the one of the thesis's table 5.4."""
+    return {f"imprints{cells}": cells for cells in (settings.cells, *settings.coarse_cells)}
 
 
 def choose_vertices(mesh, salient, count, generator):
@@ -39,7 +54,7 @@ def choose_vertices(mesh, salient, count, generator):
 
 def touchable_vertices(name):
     """How many vertices of an object's mesh lie on a surface."""
-    mesh = read_mesh(f"data/meshes/{name}.npz")
+    mesh, _ = read_object(DATA / "classes" / f"{name}.npz")
     return len(np.unique(mesh.faces[mesh.face_areas > 0]))
 
 
@@ -50,27 +65,29 @@ def press_touches(mesh, vertices, cells, pitch):
 
 
 def process(name, folder, settings, seed):
-    """Presses the touches of one object and writes them to imprints/NAME.npz.
+    """Presses the touches of one object with every array and writes them to imprints/NAME.npz.
 
     Returns no rows: what pressing costs is the imprints stage's to say.
     """
-    mesh = read_mesh(f"data/meshes/{name}.npz")
-    salient = read_points(f"data/salient_points/{name}.npz")
+    mesh, salient = read_object(DATA / "classes" / f"{name}.npz")
     if settings.detector not in salient:
-        raise ValueError(f"transfer.detector={settings.detector}: not among the methods found: {', '.join(salient)}")
+        raise ValueError(f"transfer.detector={settings.detector}: not among classes.methods: {', '.join(salient)}")
     vertices = choose_vertices(mesh, salient[settings.detector], settings.touches, rng(seed, f"touches {name}"))
-    images = press_touches(mesh, vertices, settings.cells, settings.pitch)
-    write_arrays(folder / "imprints" / f"{name}.npz", images=images, vertices=vertices)
+    width = settings.cells * settings.pitch
+    images = {data: press_touches(mesh, vertices, cells, width / cells) for data, cells in arrays(settings).items()}
+    write_arrays(folder / "imprints" / f"{name}.npz", vertices=vertices, **images)
     return []
 
 
-def read_touches(folder, classes):
-    """The touches of all classes, in the order of the classes."""
-    stored = [read_arrays(folder / "imprints" / f"{name}.npz") for name in classes]
-    counts = [len(part["images"]) for part in stored]
-    return Touches(
-        images=np.concatenate([part["images"] for part in stored]),
-        labels=np.repeat(np.arange(len(classes)), counts),
-        vertices=np.concatenate([part["vertices"] for part in stored]),
-        classes=list(classes),
-    )
+def read_touches(folder, members, data):
+    """The touches of members {class: its objects} by the array `data`, in their order. folder: data/transfer."""
+    images, labels, ranks, vertices = [], [], [], []
+    for label, objects in enumerate(members.values()):
+        for rank, name in enumerate(objects):
+            stored = read_arrays(folder / "imprints" / f"{name}.npz")
+            images.append(stored[data])
+            vertices.append(stored["vertices"])
+            labels += [label] * len(stored["vertices"])
+            ranks += [rank] * len(stored["vertices"])
+    parts = np.concatenate(images), np.array(labels), np.array(ranks), np.concatenate(vertices)
+    return Touches(*parts, list(members))

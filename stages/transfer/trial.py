@@ -1,108 +1,138 @@
-"""One training: start weights, mode, repetition. It is the unit that an interrupted run does not repeat."""
-
-import itertools
+"""One training: data, network, start weights, mode, split, repetition; a run that was killed repeats none of them."""
 
 import numpy as np
-import pandas as pd
 
 from stages.kit import Stopwatch
-from stages.kit.files import read_arrays, write_arrays
+from stages.kit.files import read_json, write_arrays, write_json
 from stages.kit.repeatable import repeatable
 from stages.kit.rng import rng
-from stages.kit.stats import bootstrap_interval
+from stages.networks.device import choose
 from stages.networks.images import normalise, to_images
-from stages.networks.modes import MODES
-from stages.networks.network import START, build, parameters, settle
-from stages.networks.training import accuracy, learn, scores, search
+from stages.networks.modes import MODES, mode_named
+from stages.networks.network import build, parameters, settle
+from stages.networks.training import accuracy, answers, learn, scores, search
 
-from .split import stratified_split
+from .change import parts, weight_changes
+from .disturbed import FEW, PERTURBATIONS, disturb
+from .plan import Trial, main_data
+from .split import by_objects, by_touches, stratified_split
 from .touches import read_touches
 
-
-def trials(settings):
-    """Names of all trainings, WEIGHTS-MODE-REPETITION; raises ValueError for weights or modes that are not known."""
-    for key, known in (("weights", START), ("modes", tuple(MODES))):
-        strange = sorted(set(getattr(settings, key)) - set(known))
-        if strange:
-            raise ValueError(f"transfer.{key}: {', '.join(strange)} not known, choose of {', '.join(known)}")
-    if settings.repetitions < 1 or not settings.weights or not settings.modes:
-        raise ValueError("transfer: repetitions must be 1 or more, and weights and modes name at least one each")
-    return [
-        f"{w}-{m}-{r}" for w, m, r in itertools.product(settings.weights, settings.modes, range(settings.repetitions))
-    ]
+UNFINISHED = ".unfinished"  # folder of what a killed training goes on from
 
 
-def process(name, folder, settings, classes, seed):
-    """Trains one network and tests it; writes networks/NAME.npz and predictions/NAME.npz, returns the rows.
+def process(name, folder, members, settings, seed):
+    """Trains one network and tests it; writes predictions/NAME.npz, of the first repetition networks/NAME.npz too.
 
-    The split, the head's first weights and the random numbers of the training depend on the repetition alone, so that
-    weights and modes are compared on the same touches. `seconds` is the whole of it: features or training, search and
-    final training, on one thread, without the test.
+    members: {split: {class: its objects}}. The split, the head's first weights and the random numbers of the training
+    depend on split and repetition alone, so that weights, modes and arrays are compared on the same touches. Returns
+    rows: those with a `perturbation` are of disturbed test touches, those with a `layer` of one convolution's change.
+    `seconds` is the whole of it: features or training, search and final training, without the test.
     """
-    weights, mode, repetition = name.split("-")
-    touches = read_touches(folder, classes)
-    labels, generator = touches.labels, rng(seed, f"transfer {repetition}")
-    train, test = stratified_split(labels, settings.train_share, generator)
-    validation, part = stratified_split(labels[train], settings.validation_share, generator)
-    training = {"batch": settings.batch, "momentum": settings.momentum}
-    with repeatable(int(generator.integers(2**31))), Stopwatch() as watch:
-        start = int(generator.integers(2**31))
-        network = build(settings.network, len(classes), weights, start, settings.source)
-        size, rates = plan(settings, mode)
-        if weights == "random":
-            images = to_images(touches.images, size)
-            settle(network, lambda ids: normalise(images[ids]), train)
-        task = MODES[mode](network, touches.images, size, settings.copies)
-        rate, validated = search(
-            task, labels, train[part], train[validation], rates, epochs=settings.search_epochs, **training
-        )
-        model = learn(task, labels, train, rate, epochs=settings.epochs, **training)
-    with repeatable(0):
-        found = scores(model, task, test)
-    state = {key: np.ascontiguousarray(value.numpy()) for key, value in model.state_dict().items()}
-    write_arrays(folder / "networks" / f"{name}.npz", **state)
-    write_arrays(folder / "predictions" / f"{name}.npz", test=test, true=labels[test], scores=found.numpy())
+    trial = Trial.parse(name)
+    touches = read_touches(folder, members[trial.split], trial.data)
+    random = rng(seed, f"transfer {trial.split} {trial.repetition}")
+    split = parts_of(touches, trial, settings, random)
+    first_weights, training_seed = (int(number) for number in random.integers(2**31, size=2))
+    sought, checkpoint = (folder / UNFINISHED / f"{name}{end}" for end in (".json", ".pt"))
+    with repeatable(training_seed):
+        with Stopwatch() as watch:
+            network, task = prepare(trial, touches, split.train, settings, first_weights)
+            rate, validated = searched(task, touches.labels, split, trial, settings, training_seed, sought)
+            training = _settings(settings, settings.epochs, training_seed)
+            model = learn(task, touches.labels, split.train, rate, **training, checkpoint=checkpoint)
+        found = scores(model, task, split.test)
+        rows = [*changed(network, model)] if task.model is network else []
+        if is_disturbed(trial, settings):
+            rows += disturbed(trial, task, model, touches, split, settings, seed)
+            rows += fewer(task, touches, split, rate, settings, training_seed)
+    store(name, folder, model, touches.labels, split.test, found, weights=trial.repetition == 0)
     values = {
-        "accuracy": accuracy(found, labels[test]),
-        "chance": 1 / len(classes),
+        "accuracy": accuracy(found, touches.labels[split.test]),
+        "chance": 1 / len(touches.classes),
         "validation_accuracy": validated,
         "learning_rate": rate,
         "parameters": parameters(network),
         "trained_parameters": parameters(model, trained=True),
+        "weight_change": float(np.mean([row["value"] for row in rows if "layer" in row] or [0.0])),
     }
-    known = {"object": settings.class_set, "method": settings.network, "weights": weights, "mode": mode}
-    known["repetition"] = int(repetition)
     seconds = {"accuracy": watch.seconds}
-    return [known | {"metric": key, "value": value, "seconds": seconds.get(key)} for key, value in values.items()]
+    rows += [{"metric": key, "value": value, "seconds": seconds.get(key)} for key, value in values.items()]
+    sought.unlink(missing_ok=True)
+    return [{"trial": name} | row for row in rows]
 
 
-def plan(settings, mode):
-    """(image size, learning rates to try) of a mode."""
-    if mode == "frozen":
-        return settings.frozen_size, settings.frozen_rates
-    return settings.finetuned_size, settings.finetuned_rates
+def store(name, folder, model, labels, test, found, weights):
+    """Writes predictions/NAME.npz, and networks/NAME.npz where the weights are wanted."""
+    write_arrays(folder / "predictions" / f"{name}.npz", test=test, true=labels[test], scores=found.numpy())
+    if weights:
+        state = {key: np.ascontiguousarray(value.cpu().numpy()) for key, value in model.state_dict().items()}
+        write_arrays(folder / "networks" / f"{name}.npz", **state)
 
 
-def confusion(folder, names, classes):
-    """Tidy frame of the confusion matrices: trial, true class, predicted class, count of test touches."""
-    rows = []
-    for name in names:
-        stored = read_arrays(folder / "predictions" / f"{name}.npz")
-        counts = np.zeros((len(classes), len(classes)), dtype=int)
-        np.add.at(counts, (stored["true"], stored["scores"].argmax(axis=1)), 1)
-        rows += [
-            {"trial": name, "true": classes[i], "predicted": classes[j], "count": counts[i, j]}
-            for i, j in np.ndindex(counts.shape)
-        ]
-    return pd.DataFrame(rows)
+def prepare(trial, touches, train, settings, seed):
+    """(network, task): the network as it is before the training, and what its mode makes of it."""
+    network = build(trial.network, len(touches.classes), trial.weights, seed, settings.source)
+    network = network.to(choose(settings.device))
+    if trial.weights == "random":
+        images = to_images(touches.images, settings.size).to(choose(settings.device))
+        settle(network, lambda ids: normalise(images[ids]), train)
+    return network, mode_named(trial.mode)(network, touches.images, settings.size, settings.copies)
 
 
-def summary(rows, seed):
-    """Accuracy a kind of start weights and a mode, with its interval over the repetitions, and chance."""
-    frame = pd.DataFrame(rows)
-    found = {"chance": round(float(frame.loc[frame["metric"] == "chance", "value"].iloc[0]), 6)}
-    for (weights, mode), part in frame[frame["metric"] == "accuracy"].groupby(["weights", "mode"]):
-        mean, low, high = np.round(bootstrap_interval(part["value"], seed), 6).tolist()
-        interval = {"low": low, "high": high} if np.isfinite(low) else {}
-        found[f"{mode}_{weights}"] = {"accuracy": {"value": mean} | interval}
-    return found
+def parts_of(touches, trial, settings, random):
+    """The Split of the trial's touches."""
+    if trial.split == "objects":
+        return by_objects(touches.labels, touches.ranks, trial.repetition, settings.validation_share, random)
+    return by_touches(touches.objects, settings.train_share, settings.validation_share, random)
+
+
+def searched(task, labels, split, trial, settings, seed, sought):
+    """(rate, accuracy on the check): the best learning rate; what a killed training has found is not sought again."""
+    if not sought.exists():
+        rates = settings.frozen_rates if trial.mode == "frozen" else settings.finetuned_rates
+        training = _settings(settings, settings.search_epochs, seed)
+        write_json(sought, search(task, labels, split.fit, split.check, rates, **training))
+    return read_json(sought)
+
+
+def is_disturbed(trial, settings):
+    """Whether the test touches of a trial are disturbed: of the fine array, drawn at random, and no range of layers."""
+    return trial.data == main_data(settings) and trial.split == "random" and trial.mode in MODES
+
+
+def disturbed(trial, task, model, touches, split, settings, seed):
+    """Rows of the accuracy on disturbed test touches.
+
+    The disturbance of a touch depends on repetition and severity alone, not on the network.
+    """
+    truth = touches.labels[split.test]
+    for name, severities in settings.severities.items():
+        for severity in severities if name in PERTURBATIONS else ():
+            random = rng(seed, f"{name} {severity} {trial.repetition}")
+            images = to_images(disturb(touches.images[split.test], name, severity, random), settings.size)
+            found = answers(model, lambda ids, images=images: task.encode(images[ids]), range(len(truth)))
+            yield _row(name, severity, accuracy(found, truth))
+
+
+def fewer(task, touches, split, rate, settings, seed):
+    """Rows of the accuracy after training on fewer touches of every object, at the same learning rate."""
+    for share in settings.severities.get(FEW, ()):
+        part, _ = stratified_split(touches.objects[split.train], share, rng(seed, f"{FEW} {share}"))
+        model = learn(task, touches.labels, split.train[part], rate, **_settings(settings, settings.epochs, seed))
+        yield _row(FEW, share, accuracy(scores(model, task, split.test), touches.labels[split.test]))
+
+
+def changed(network, model):
+    """Rows of the change of each convolution."""
+    belongs = parts(network)
+    for layer, value in weight_changes(network, model).items():
+        yield {"layer": layer, "part": belongs[layer], "metric": "weight_change", "value": value}
+
+
+def _settings(settings, epochs, seed):
+    return {"epochs": epochs, "batch": settings.batch, "momentum": settings.momentum, "seed": seed}
+
+
+def _row(perturbation, severity, value):
+    return {"perturbation": perturbation, "severity": severity, "metric": "accuracy", "value": value}

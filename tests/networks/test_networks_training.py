@@ -1,18 +1,18 @@
 """What learns in each mode, and that it learns."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import torch
 
-from stages.kit.files import sha256, write_arrays
 from stages.kit.repeatable import repeatable
+from stages.networks.device import choose
 from stages.networks.images import normalise, to_images
-from stages.networks.modes import MODES
+from stages.networks.layers import frozen_modules
+from stages.networks.modes import MODES, mode_named
 from stages.networks.network import Network, build, parameters, settle
 from stages.networks.training import accuracy, learn, scores, search
-from stages.transfer import trial
-from stages.transfer.__main__ import none_to_tell_apart, present
-from stages.transfer.schema import Params
 
 SIZE = 32
 LABELS = np.arange(32) % 2
@@ -157,56 +157,45 @@ def test_unknown_networks_are_refused(change):
         build(**({"name": "mobilenet_v2", "weights": "random", "classes": 2, "seed": 0} | change))
 
 
-@pytest.fixture
-def settings():
-    return Params(
-        class_set="two", classes=["a", "b"], touches=16, detector="enhanced", cells=SIZE, pitch=0.01,
-        network="mobilenet_v2", weights=["random"], source="package", modes=["frozen"], frozen_size=SIZE,
-        finetuned_size=SIZE, copies=1, train_share=0.75, validation_share=0.25, frozen_rates=[0.003, 0.01],
-        finetuned_rates=[0.01], search_epochs=2, epochs=4, batch=8, momentum=0.9, repetitions=1,
-    )  # fmt: skip
+@pytest.mark.parametrize("layer_range", ["18:139", "1:134"])
+def test_a_range_of_layers_keeps_its_weights_and_statistics_and_all_others_learn(imprints, layer_range):
+    with repeatable(0):
+        network = build("mobilenet_v2", 2, "random", 0)
+        settle(network, as_inputs(imprints), np.arange(24))
+        task = mode_named(layer_range)(network, imprints, SIZE, 0)
+        model = learn(task, LABELS, np.arange(24), 0.01, 1, batch=8, momentum=0.9)
+    before, after = network.state_dict(), model.state_dict()
+    same = {key for key in before if torch.equal(before[key], after[key])}
+    kept = {key for key in before if key.rpartition(".")[0] in frozen_modules(layer_range, network)}
+    assert same - {key for key in before if key.endswith("num_batches_tracked")} == {
+        key for key in kept if not key.endswith("num_batches_tracked")
+    }
+    assert parameters(model, trained=True) == parameters(network) - sum(
+        before[key].numel() for key in kept if key.endswith(("weight", "bias"))
+    )
 
 
-def run_trial(folder, imprints, settings):
-    for label, name in enumerate(settings.classes):
-        images = np.round(imprints[label == LABELS] * 255).astype(np.uint8)
-        write_arrays(folder / "imprints" / f"{name}.npz", images=images, vertices=np.arange(len(images)))
-    return trial.process("random-frozen-0", folder, settings, settings.classes, seed=0)
+def test_an_unknown_mode_names_the_known_ones():
+    with pytest.raises(ValueError, match="frozen, finetuned, and ranges of layers such as 18:139"):
+        mode_named("boiled")
 
 
-def test_a_trial_gives_equal_files_each_time_and_tidy_rows(tmp_path, imprints, settings):
-    rows = run_trial(tmp_path / "one", imprints, settings)
-    run_trial(tmp_path / "two", imprints, settings)
-    for part in ("networks", "predictions"):
-        file = f"{part}/random-frozen-0.npz"
-        assert sha256(tmp_path / "one" / file) == sha256(tmp_path / "two" / file)
-    values = {row["metric"]: row["value"] for row in rows}
-    assert values["chance"] == 0.5
-    assert values["trained_parameters"] == 2562
-    assert values["learning_rate"] in settings.frozen_rates
-    table = trial.confusion(tmp_path / "one", ["random-frozen-0"], settings.classes)
-    assert table["count"].sum() == 8
-    assert table.query("true == predicted")["count"].sum() == round(values["accuracy"] * 8)
+def test_too_little_memory_names_the_setting(imprints):
+    network, task = untrained(imprints, "finetuned")
+
+    def too_much(ids):
+        raise torch.OutOfMemoryError("CUDA out of memory")
+
+    with pytest.raises(ValueError, match="transfer.batch"):
+        learn(replace(task, training_inputs=too_much), LABELS, np.arange(24), 0.01, 1, batch=8, momentum=0.9)
+    with pytest.raises(ValueError, match="transfer.batch"):
+        scores(network, replace(task, inputs=too_much), np.arange(8))
 
 
-def test_summary_has_an_interval_over_repetitions_and_none_for_a_single_one():
-    known = {"weights": "random", "mode": "frozen"}
-    rows = [known | {"metric": "chance", "value": 0.5}]
-    rows += [known | {"metric": "accuracy", "value": value} for value in (0.6, 0.8)]
-    assert trial.summary(rows, 0)["frozen_random"]["accuracy"] == {"value": 0.7, "low": 0.6, "high": 0.8}
-    assert trial.summary(rows[:2], 0) == {"chance": 0.5, "frozen_random": {"accuracy": {"value": 0.6}}}
-
-
-def test_classes_that_cannot_serve_are_named_and_less_than_two_give_a_row_that_says_so(capsys, settings):
-    assert present(["cup", "cow", "hand", "cube", "cup"], {"cup": 50, "hand": 20, "cube": 8}, 20) == ["cup", "hand"]
-    said = capsys.readouterr().err
-    assert "no mesh of cow" in said and "cube has 8 vertices, fewer than 20" in said
-    row = none_to_tell_apart(settings, ["teapot", "train"])
-    assert row["value"] is None and "transfer.classes to some of teapot, train" in row["note"]
-
-
-def test_trials_name_what_is_not_known(settings):
-    assert trial.trials(settings) == ["random-frozen-0"]
-    settings.modes = ["frozen", "boiled"]
-    with pytest.raises(ValueError, match="transfer.modes: boiled not known"):
-        trial.trials(settings)
+def test_a_device_that_is_not_there_is_named(monkeypatch):
+    monkeypatch.setattr(torch.cuda, "is_available", lambda: False)
+    assert choose("auto").type == choose("cpu").type == "cpu"
+    with pytest.raises(ValueError, match="take auto or cpu"):
+        choose("cuda")
+    with pytest.raises(ValueError, match="unknown device 'abacus'"):
+        choose("abacus")

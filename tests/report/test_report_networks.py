@@ -8,7 +8,7 @@ from stages.kit.files import write_table
 from stages.report.claims import chapter_5
 from stages.report.figures import figure_5_3, figure_5_4
 from stages.report.results import NotRun, Results
-from stages.report.tables import _transfer, table_5_3, table_5_4, table_5_6
+from stages.report.tables import _transfer, real_networks, table_5_1, table_5_3, table_5_4, table_5_5, table_5_6
 from stages.report.tradeoff import networks as chart
 from stages.report.verdict import judge
 
@@ -149,3 +149,32 @@ def test_without_trainings_nothing_is_made_up(bare, small):
     for module in (table_5_3, table_5_4, table_5_6, figure_5_3, figure_5_4, chart):
         with pytest.raises(NotRun, match="transfer"):
             module.build(empty)
+
+
+def recorded():
+    """Recorded touches: a frozen network over its untrained self, and a data set that is not at hand."""
+    found = []
+    for weights, level in (("imagenet", 0.9), ("random", 0.4)):
+        one = {"data": "pressure", "method": "mobilenet_v2", "weights": weights, "mode": "frozen", "split": "random"}
+        one |= {"had": "complete" if weights == "imagenet" else "none"}
+        found += [one | {"repetition": k, "metric": "accuracy", "value": level + 0.01 * k} for k in range(3)]
+    found.append({"data": "pressure", "method": "features_knn", "split": "random", "metric": "accuracy", "value": 0.6})
+    missing = {"data": "vt60", "method": "alexnet", "weights": "imagenet", "mode": "frozen", "metric": "accuracy"}
+    return pd.DataFrame([*found, missing | {"note": "not run: data set not at hand"}])
+
+
+def test_recorded_touches_stand_in_one_table(bare, small):
+    write_table(bare / "reports/transfer/recorded.csv", recorded())
+    shown = real_networks.build(Results(small.settings(), bare)).shown
+    assert only(shown, **{"network": "MobileNetV2", "starts from": "ImageNet"})["accuracy, %"].startswith("91.0 [")
+    assert only(shown, network="features and kNN")["accuracy, %"] == "60.0"
+    assert "VT-60 (BathTip)" not in set(shown["data"])
+
+
+@pytest.mark.parametrize(("table", "figure"), [(table_5_1, "83.0"), (table_5_5, "85.2")])
+def test_a_data_set_that_is_not_at_hand_is_named(bare, small, table, figure):
+    write_table(bare / "reports/transfer/recorded.csv", recorded())
+    made = table.build(Results(small.settings(), bare))
+    line = only(made.shown, network="AlexNet")
+    assert line["fine-tuned: ours, %"] == "not run" and line["fine-tuned: thesis, %"] == figure
+    assert "Not run" in made.notes[0]

@@ -54,6 +54,11 @@ def compared(first, second):
     return lambda split: between(split, first, second)
 
 
+def within_a_point(split):
+    """differences(results): layers 18 to 139 frozen minus all tuned, and the one point that may be lost."""
+    return lambda results: between(split, seen("18:139"), seen("finetuned"))(results) + 1
+
+
 def earlier_change_more(results):
     """(k,): minus the rank correlation of a convolution's depth with its change, a training."""
     changes = layer_changes(results)
@@ -82,6 +87,8 @@ CLAIMS = [
           "fine-tuned, ImageNet's minus random weights", compared(seen("finetuned"), seen("finetuned", "random"))),
     *both("early_and_late", "T5.5", "Layers 18 to 139 may stay as sight left them.",
           "layers 18 to 139 frozen minus all frozen", compared(seen("18:139"), seen("frozen"))),
+    *both("middle_frozen", "T5.5", "With layers 18 to 139 frozen touch is recognised as well as with all layers tuned.",
+          "layers 18 to 139 frozen minus all tuned, and one point more", within_a_point),
     Claim(
         "earlier_change_more", "T5.4", "Earlier convolutions are altered more for touch than later ones.",
         "MobileNetV2, fine-tuned, minus the rank correlation of depth and change", "rank correlation", "repetitions",

@@ -1,12 +1,10 @@
 """T figure 4.19: which classes are taken for which, blindly and guided."""
 
-import numpy as np
-
 from stages.report.items import Figure
 from stages.report.style import label, plt, save
 from stages.report.tables._sequences import BLIND, CLASSIFIERS, GUIDED, PRINTED, SPLITS
 
-DARK = 55  # per cent from which a number is written in white
+from ._confusion import draw_matrix
 
 
 def build(results):
@@ -22,7 +20,7 @@ def build(results):
     for down, (split, method) in enumerate(lines):
         for along, name in enumerate(names):
             rows = frame[(frame["split"] == split) & (frame["method"] == method) & (frame["classifier"] == name)]
-            _matrix(grid[down, along], rows, classes)
+            draw_matrix(grid[down, along], rows, classes)
         grid[down, 0].set_yticks(range(len(classes)), [f"{one} {k + 1}" for k, one in enumerate(classes)], fontsize=7.5)
         grid[down, 0].set_ylabel(f"{label(method)}\n{SPLITS[split]}", fontsize=9)
     for axes, name in zip(grid[0], names, strict=True):
@@ -42,19 +40,3 @@ def build(results):
         "together. Numbers below 1 are left out.",
         [path],
     )
-
-
-def _matrix(axes, rows, classes):
-    """One matrix in per cent of its rows."""
-    counts = rows.pivot_table(index="true", columns="predicted", values="count", aggfunc="sum", fill_value=0)
-    counts = counts.reindex(index=classes, columns=classes, fill_value=0).to_numpy(dtype=float)
-    shares = 100 * counts / np.maximum(counts.sum(axis=1, keepdims=True), 1)
-    axes.imshow(shares, cmap="Blues", vmin=0, vmax=100)
-    for i, j in np.argwhere(shares >= 1):
-        tint = "white" if shares[i, j] >= DARK else "black"
-        axes.text(j, i, f"{shares[i, j]:.0f}", ha="center", va="center", fontsize=6.5, color=tint)
-    axes.set_xticks([])
-    axes.set_yticks([])
-    axes.tick_params(length=0)
-    for spine in axes.spines.values():
-        spine.set(visible=True, linewidth=0.6)

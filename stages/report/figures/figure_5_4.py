@@ -12,6 +12,7 @@ LINES = {
     (COARSE, "imagenet"): ("16 x 16, from ImageNet", "#D55E00"),
     (FINE, "random"): ("128 x 128, from random weights", "#767676"),
 }
+SHORT = {"Conv1": "c1", "expanded_conv": "b0", "Conv_1": "c2"}  # of the first and the last parts
 SHARED = ("block_2", "block_15")  # the middle that the hybrid network shares
 
 
@@ -34,7 +35,7 @@ def build(results):
     axes.set_ylabel("mean squared change of weights,\neach layer's scaled to 0..1")
     axes.set_xlabel("convolutions of MobileNetV2, from the image to the classes")
     axes.grid(axis="y")
-    axes.legend(fontsize=8.5, loc="upper right")
+    axes.legend(fontsize=8.5, loc="lower left", bbox_to_anchor=(0, 1), ncols=3)
     means = "; ".join(_means(changes))
     return Figure(
         "Figure 5.4: which filters change for touch",
@@ -65,7 +66,7 @@ def _means(changes):
 def _blocks(axes, parts):
     """Names the blocks below the axis, and marks the ends of the shared middle."""
     starts = [k for k, part in enumerate(parts) if k == 0 or part != parts[k - 1]]
-    names = [parts[k].replace("block_", "b").replace("expanded_conv", "b0") for k in starts]
+    names = [SHORT.get(parts[k], parts[k].replace("block_", "b")) for k in starts]
     axes.set_xticks(starts, names, fontsize=7.5)
     if set(SHARED) <= set(parts):
         first, last = parts.index(SHARED[0]), len(parts) - 1 - parts[::-1].index(SHARED[1])

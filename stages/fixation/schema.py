@@ -1,0 +1,21 @@
+"""Settings of the fixation stage."""
+
+from dataclasses import dataclass
+
+
+@dataclass
+class Params:
+    """From where the networks look at the objects, which networks, and how they learn."""
+
+    parallels: int  # circles of viewpoints between the poles, an odd number (T3.3.2: 9)
+    azimuths: int  # viewpoints on each circle, a multiple of three (T3.3.2: 24)
+    size: int  # pixels a side of the pictures
+    methods: list[str]  # NETWORK-MODE; frozen: a new head alone learns; finetuned: every layer; random: the control
+    source: str  # where ImageNet's weights come from: package (by hash) or download (torchvision's API)
+    device: str  # what the networks run on: cpu, cuda, or auto (a CUDA card where there is one)
+    penalties: list[float]  # inverse strengths of regularisation tried for the heads on the validation views
+    folds: int  # parts into which whole objects are held out
+    rate: float  # learning rate of mode finetuned
+    epochs: int  # passes of mode finetuned
+    batch: int  # images a step of mode finetuned (T3.3.2: 32)
+    momentum: float  # of the stochastic gradient descent of mode finetuned

@@ -1,0 +1,93 @@
+"""The six tasks: which class each object has in each of them (T3.3.2.1, T3.3.2.2)."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+from sklearn.cluster import KMeans
+from threadpoolctl import threadpool_limits
+
+from stages.kit.files import read_table
+
+SHAPE = {  # task -> the measures of an object that its classes are clusters of
+    "convexity": ["convexity"],
+    "curvature": ["positive", "negative", "zero"],
+    "eccentricity": ["eccentricity"],
+}
+LEVELS = ("level_1", "level_2", "level_3")  # living or not, category, the object itself
+TASKS = (*SHAPE, *LEVELS)
+FUSED = ("curvature", "eccentricity", "level_1", "level_2")  # T eq. 3.24; the other two agree least with gaze
+CLUSTERS = range(2, 11)  # numbers of clusters tried (T3.3.2.1)
+SEMANTICS = Path("data/reference/semantics.csv")
+
+
+def clustered(values, seed=0):
+    """(labels (k,), dict clusters -> SSD): k-means with the number of clusters at the elbow (T3.3.2.1).
+
+    values (k, d). The rule for the elbow, which the thesis draws by eye: of the curve of the sums of squared distances
+    over 2..10 clusters, both axes scaled to 0..1, the point farthest below the line from its first to its last
+    (Satopaa, Albrecht, Irwin and Raghavan 2011, Finding a kneedle in a haystack). Fewer numbers are tried where there
+    are fewer distinct values. Labels count from the cluster of the smallest first value on; all 0, and no curve, where
+    the values cannot be parted.
+    """
+    values = np.asarray(values, dtype=np.float64)
+    distinct = len(np.unique(values.round(9), axis=0))
+    numbers = [k for k in CLUSTERS if k < distinct]
+    if not numbers:
+        return np.zeros(len(values), dtype=np.int64), {}
+    with threadpool_limits(1):
+        fits = {k: KMeans(k, n_init=10, random_state=seed).fit(values) for k in numbers}
+    curve = {k: float(fit.inertia_) for k, fit in fits.items()}
+    chosen = fits[elbow(curve)]
+    rank = np.argsort(np.lexsort(chosen.cluster_centers_.T[::-1]))
+    return rank[chosen.labels_].astype(np.int64), curve
+
+
+def elbow(curve):
+    """The number of clusters at the elbow of dict clusters -> SSD; the first where the curve has no bend."""
+    k, ssd = np.array(list(curve), dtype=np.float64), np.array(list(curve.values()))
+    if len(k) < 3 or ssd[0] <= ssd[-1]:
+        return int(k[0])
+    along, down = (k - k[0]) / (k[-1] - k[0]), (ssd[0] - ssd) / (ssd[0] - ssd[-1])
+    return int(k[(down - along).argmax()])
+
+
+def semantics(dataset, objects, path=SEMANTICS):
+    """dict level -> list of names, one an object, None where the table does not know the object.
+
+    path: CSV of dataset, object, living (yes or no), category. Level 3 needs no table. Raises ValueError for a table
+    with other columns or an object twice.
+    """
+    table = read_table(path)
+    if list(table) != ["dataset", "object", "living", "category"]:
+        raise ValueError(f"{path} must have the columns dataset, object, living, category, got {', '.join(table)}")
+    own = table[table["dataset"] == dataset].set_index("object")
+    if own.index.has_duplicates:
+        raise ValueError(f"{path}: {own.index[own.index.duplicated()][0]} stands twice in {dataset}")
+    columns = {"level_1": own["living"].to_dict(), "level_2": own["category"].to_dict()}
+    known = {level: [names.get(name) for name in objects] for level, names in columns.items()}
+    return known | {"level_3": list(objects)}
+
+
+def all_tasks(measures, dataset, seed):
+    """(dict task -> {object: class name}, dict task -> (curve, chosen)): tasks with two classes or more.
+
+    measures: dict object -> dict of the measures that SHAPE names. Objects of which a level knows nothing, and tasks
+    with one class alone, are left out with a word.
+    """
+    objects, found, curves = list(measures), {}, {}
+    for task, names in SHAPE.items():
+        labels, curve = clustered([[measures[name][key] for key in names] for name in objects], seed)
+        found[task] = {name: f"{label}" for name, label in zip(objects, labels, strict=True)}
+        if curve:
+            curves[task] = (curve, labels.max() + 1)
+    for level, names in semantics(dataset, objects).items():
+        found[level] = {name: label for name, label in zip(objects, names, strict=True) if label is not None}
+        if len(found[level]) < len(objects):
+            missing = [name for name in objects if name not in found[level]]
+            print(f"fixation: {level} without {len(missing)} objects that {SEMANTICS} does not know: "
+                  f"{', '.join(missing[:5])}{', ...' if len(missing) > 5 else ''}", file=sys.stderr)  # fmt: skip
+    for task in [task for task, classes in found.items() if len(set(classes.values())) < 2]:
+        print(f"fixation: task {task} is left out, it has fewer than two classes", file=sys.stderr)
+        del found[task]
+    return found, curves

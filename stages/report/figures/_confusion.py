@@ -1,0 +1,21 @@
+"""Confusion matrices, in per cent of the true class."""
+
+import numpy as np
+
+DARK = 55  # per cent from which a number is written in white
+
+
+def draw_matrix(axes, rows, classes):
+    """Draws one matrix in per cent of its rows. rows: a frame of true and predicted classes with their counts."""
+    counts = rows.pivot_table(index="true", columns="predicted", values="count", aggfunc="sum", fill_value=0)
+    counts = counts.reindex(index=classes, columns=classes, fill_value=0).to_numpy(dtype=float)
+    shares = 100 * counts / np.maximum(counts.sum(axis=1, keepdims=True), 1)
+    axes.imshow(shares, cmap="Blues", vmin=0, vmax=100)
+    for i, j in np.argwhere(shares >= 1):
+        tint = "white" if shares[i, j] >= DARK else "black"
+        axes.text(j, i, f"{shares[i, j]:.0f}", ha="center", va="center", fontsize=6.5, color=tint)
+    axes.set_xticks([])
+    axes.set_yticks([])
+    axes.tick_params(length=0)
+    for spine in axes.spines.values():
+        spine.set(visible=True, linewidth=0.6)

@@ -1,0 +1,52 @@
+"""Training the two networks that become one: early and late layers learn, the middle stays ImageNet's (T5.5)."""
+
+from stages.networks.images import normalise
+from stages.networks.layers import frozen_modules
+from stages.networks.modes import Task
+from stages.networks.network import build, settle
+
+
+def middle_of(layers):
+    """(start, stop) of the parts of torchvision's `features` that a range of Matlab's layers such as `18:139` covers.
+
+    Raises ValueError for a range that cuts a part in two or leaves no part before it or behind it: streams cannot be
+    stitched there.
+    """
+    network = build("mobilenet_v2", 2, "random", 0)
+    wanted = set(frozen_modules(layers, network))
+    parts = sorted({int(name.split(".")[1]) for name in wanted})
+    start, stop = (parts[0], parts[-1] + 1) if parts else (0, 0)
+    whole = {
+        name
+        for name, module in network.named_modules()
+        if name.startswith("convolutions.") and start <= int(name.split(".")[1]) < stop
+        if any(True for _ in module.parameters(recurse=False))
+    }
+    if wanted != whole or not 0 < start < stop < len(network.convolutions):
+        raise ValueError(
+            f"layers {layers} are not whole blocks of mobilenet_v2 with layers on both sides, as 18:139 are"
+        )
+    return start, stop
+
+
+def held(network, images, moved, layers):
+    """The Task to train all of a MobileNetV2 but a range of layers on images (k, 3, h, w) in 0..1.
+
+    moved: the augmentation of images in training. The layers keep their weights and their statistics.
+    """
+    fixed = tuple(frozen_modules(layers, network))
+    network.requires_grad_(True)
+    for name in fixed:
+        network.get_submodule(name).requires_grad_(False)
+
+    def inputs(ids):
+        return normalise(images[ids])
+
+    return Task(
+        model=network,
+        training_inputs=lambda ids: normalise(moved(images[ids])),
+        inputs=inputs,
+        finish=lambda model, ids: settle(model, inputs, ids, fixed=fixed),
+        encode=lambda others: normalise(others.to(images.device)),
+        fixed=fixed,
+    )

@@ -1,0 +1,67 @@
+"""Sight of the objects that are touched: pictures of their meshes from all round (T5.5)."""
+
+import numpy as np
+import torch
+from kornia import augmentation as kornia_augmentation
+from kornia.augmentation import AugmentationSequential
+
+from stages.kit import Mesh, Viewpoint
+from stages.networks.images import SCALE, SHIFT
+from stages.views import render
+
+ELEVATIONS = (-10.0, 60.0)  # degrees: an object on a table, seen by somebody who sits or stands; none from below
+SAMPLES = 3  # rays a pixel and side; their mean is the pixel, so that thin legs are grey instead of dotted
+
+
+def viewpoints(count, generator):
+    """`count` Viewpoints all round an upright object: azimuths evenly spaced from a random start, elevations drawn.
+
+    Elevations are uniform in their sine, so that equal areas of the sphere get equally many views.
+    """
+    if count < 1:
+        raise ValueError(f"one picture or more, got {count}")
+    azimuths = (360 * np.arange(count) / count + 360 * generator.random()) % 360
+    low, high = np.sin(np.radians(ELEVATIONS))
+    elevations = np.degrees(np.arcsin(generator.uniform(low, high, count)))
+    return [Viewpoint(float(a), float(e)) for a, e in zip(azimuths, elevations, strict=True)]
+
+
+def take_pictures(mesh, views, size, colour=False):
+    """(k, size, size, 3) u1: the normalised mesh from k Viewpoints, on white, as a photograph of a catalogue.
+
+    Grey clay unless `colour`: colours would tell two objects apart that have one shape. The ray caster draws, so that
+    a picture is the same on every machine.
+    """
+    shown = mesh if colour else Mesh(mesh.vertices, mesh.faces)
+    fine = (size * SAMPLES, size * SAMPLES)
+    taken = [render(shown, view, fine, renderer="raycast", background="white").rgb for view in views]
+    blocks = np.stack(taken).reshape(-1, size, SAMPLES, size, SAMPLES, 3)
+    return np.rint(blocks.mean(axis=(2, 4))).astype(np.uint8)
+
+
+def picture_images(pictures, size):
+    """Images (k, 3, size, size) f4 in 0..1 of pictures (k, h, w, 3), u1 or floats in 0..1; resized where they must be.
+
+    Bilinearly, with an anti-alias filter where they shrink. Raises ValueError for another shape, values out of range or
+    NaN.
+    """
+    images = torch.as_tensor(pictures)
+    if images.ndim != 4 or images.shape[3] != 3 or 0 in images.shape:
+        raise ValueError(f"pictures must have shape (k, h, w, 3) and not be empty, got {tuple(images.shape)}")
+    images = images.float() / 255 if images.dtype == torch.uint8 else images.float()
+    if not bool(((images >= 0) & (images <= 1)).all()):
+        raise ValueError("pictures must hold values in 0..1, and neither NaN nor infinity")
+    images = images.permute(0, 3, 1, 2).contiguous()
+    if images.shape[2:] != (size, size):
+        images = torch.nn.functional.interpolate(images, (size, size), mode="bilinear", antialias=True).clamp(0, 1)
+    return images
+
+
+def picture_augmentation():
+    """Random reflection (left and right alone: things stand upright), translation and scaling of pictures in 0..1."""
+    return AugmentationSequential(
+        kornia_augmentation.RandomHorizontalFlip(p=0.5),
+        kornia_augmentation.RandomAffine(
+            degrees=0, translate=(SHIFT, SHIFT), scale=SCALE, padding_mode="border", p=1.0
+        ),
+    )

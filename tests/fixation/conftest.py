@@ -1,0 +1,32 @@
+"""Shapes whose kind is known."""
+
+import numpy as np
+import pytest
+import trimesh
+
+from stages.kit import Mesh
+
+
+def as_mesh(shape):
+    return Mesh(shape.vertices, shape.faces)
+
+
+@pytest.fixture(scope="session")
+def shapes():
+    """dict name -> Mesh of a ball, a long ellipsoid, a torus, a fine cylinder wall and a flat grid."""
+    ball = trimesh.creation.icosphere(4, 0.5)
+    u, v = np.meshgrid(np.linspace(0, 2 * np.pi, 60, endpoint=False), np.linspace(-0.4, 0.4, 30), indexing="ij")
+    tube = np.stack([0.3 * np.cos(u), 0.3 * np.sin(u), v], axis=2).reshape(-1, 3)
+    flat = np.stack([u / (2 * np.pi), v, 0 * v], axis=2).reshape(-1, 3)
+    i, j = np.meshgrid(np.arange(60), np.arange(29), indexing="ij")
+    here, along, around = (i * 30 + j).ravel(), (i * 30 + j + 1).ravel(), ((i + 1) % 60 * 30 + j).ravel()
+    both = ((i + 1) % 60 * 30 + j + 1).ravel()
+    faces = np.concatenate([np.stack([here, around, both], 1), np.stack([here, both, along], 1)])
+    inside = faces[(faces // 30).max(axis=1) - (faces // 30).min(axis=1) <= 1]
+    return {
+        "ball": as_mesh(ball),
+        "egg": Mesh(ball.vertices * [1, 0.3, 0.3], ball.faces),
+        "torus": as_mesh(trimesh.creation.torus(0.35, 0.12, major_sections=96, minor_sections=48)),
+        "tube": Mesh(tube, faces),
+        "flat": Mesh(flat, inside),
+    }

@@ -1,0 +1,73 @@
+"""Curvature, eccentricity and viewpoints of shapes for which they are known."""
+
+import numpy as np
+import pytest
+
+from stages.fixation import curvature_shares, eccentricity, gaussian_curvature, sphere
+from stages.fixation.viewpoints import evaluated
+from stages.kit import Mesh
+
+
+def test_curvature_of_a_ball_is_one_over_its_radius_squared(shapes):
+    assert np.allclose(gaussian_curvature(shapes["ball"]), 4, rtol=0.1)  # 7 % off where five faces meet, not six
+    assert curvature_shares(shapes["ball"]) == (1, 0, 0)
+
+
+@pytest.mark.parametrize("name", ["tube", "flat"])
+def test_what_unrolls_has_no_curvature(shapes, name):
+    assert np.abs(gaussian_curvature(shapes[name])).max() < 1e-6
+    assert curvature_shares(shapes[name]) == (0, 0, 1)
+
+
+def test_total_curvature_is_that_of_gauss_and_bonnet(shapes):
+    for name, turns in (("ball", 2), ("egg", 2), ("torus", 0)):
+        total = gaussian_curvature(shapes[name]) @ shapes[name].vertex_areas
+        assert total == pytest.approx(2 * np.pi * turns, abs=1e-6)
+
+
+def test_a_torus_is_half_saddle(shapes):
+    positive, negative, zero = curvature_shares(shapes["torus"])
+    assert positive == pytest.approx(0.5, abs=0.05) and negative == pytest.approx(0.5, abs=0.05) and zero < 0.1
+
+
+def test_measures_ignore_size_turn_order_and_seams(shapes):
+    egg = shapes["egg"]
+    turn = np.linalg.qr(np.random.default_rng(0).normal(size=(3, 3)))[0]
+    order = np.random.default_rng(1).permutation(len(egg.vertices))
+    moved = Mesh((7 * egg.vertices @ turn + 3)[np.argsort(order)], order[egg.faces])
+    assert eccentricity(moved) == pytest.approx(eccentricity(egg))
+    assert curvature_shares(moved) == pytest.approx(curvature_shares(egg))
+    apart = Mesh(egg.vertices[egg.faces].reshape(-1, 3), np.arange(3 * len(egg.faces)).reshape(-1, 3))
+    assert np.allclose(gaussian_curvature(apart), gaussian_curvature(egg)[egg.faces.ravel()])
+
+
+def test_eccentricity_of_a_ball_is_zero_and_of_an_egg_that_of_its_axes(shapes):
+    assert eccentricity(shapes["ball"]) == pytest.approx(0, abs=0.01)
+    axes = np.sqrt(1 - 0.3**2)
+    assert axes - 0.03 < eccentricity(shapes["egg"]) < axes
+
+
+@pytest.mark.parametrize("measure", [curvature_shares, eccentricity])
+def test_a_mesh_without_area_is_refused(measure):
+    with pytest.raises(ValueError, match="no face with an area"):
+        measure(Mesh(np.zeros((3, 3)), np.array([[0, 1, 2]])))
+
+
+def test_a_vertex_in_no_face_counts_for_nothing(shapes):
+    ball = shapes["ball"]
+    loose = Mesh(np.r_[ball.vertices, [[9, 9, 9]]], ball.faces)
+    assert eccentricity(loose) == pytest.approx(eccentricity(ball)) and curvature_shares(loose) == (1, 0, 0)
+    assert np.isfinite(gaussian_curvature(loose)).all()
+
+
+def test_the_thesis_has_218_viewpoints():
+    views = sphere(9, 24)
+    assert len(views) == len(set(views)) == 218
+    three = [views[k] for k in evaluated(9, 24)]
+    assert [(v.azimuth, v.elevation) for v in three] == [(0, 0), (120, 0), (240, 0)]
+
+
+@pytest.mark.parametrize(("parallels", "azimuths"), [(2, 9), (0, 9), (3, 8), (3, 0)])
+def test_viewpoints_without_the_three_that_are_judged_are_refused(parallels, azimuths):
+    with pytest.raises(ValueError, match="fixation"):
+        sphere(parallels, azimuths)

@@ -1,0 +1,366 @@
+"""What the report says of where networks look (T3.3), on rows and maps whose truth is known."""
+
+from itertools import combinations
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
+import pytest
+
+from stages.fixation import tasks as stage_tasks
+from stages.fixation.judge import WHOLE
+from stages.fixation.viewpoints import evaluated, sphere
+from stages.kit.files import read_arrays, write_arrays, write_table
+from stages.report.claims import CLAIMS, chapter_3_fixation
+from stages.report.claims._places import anywhere, middle, same_place
+from stages.report.figures import (
+    figure_3_28,
+    figure_3_30,
+    figure_3_30_gaze,
+    figure_3_31,
+    figure_3_32,
+    figure_3_34,
+    figure_3_34_gaze,
+    figure_3_35,
+    figure_3_36,
+)
+from stages.report.figures._kept import keep
+from stages.report.intervals import interval
+from stages.report.items import Figure
+from stages.report.results import NotRun, Results
+from stages.report.tables import _fixation
+from stages.report.tables import fixation as table
+from stages.report.tradeoff import fixation as chart
+from stages.report.verdict import judge
+
+NETWORKS = ["mobilenet_v2-frozen", "mobilenet_v2-finetuned", "vgg16-frozen", "resnet50-frozen", "mobilenet_v2-random",
+            "vgg16-random", "resnet50-random"]  # fmt: skip
+TASKS = {"level_1": 0.35, "level_2": 0.35, "level_3": 0.1, "convexity": 0.15, "curvature": 0.35, "eccentricity": 0.35,
+         "ewigc": 0.4, "ewigc_l4": 0.3}  # fmt: skip
+OTHERS = {("rival", "mesh_saliency"): 0.15, ("rival", "enhanced"): 0.6, ("control", "centre_prior"): 0.2,
+          ("control", "random"): 0.0}  # fmt: skip
+DISTANCES = {"ewigc": 0.1, "ewigc_l4": 0.15, "mesh_saliency": 0.2, "enhanced": 0.08, "centre_prior": 0.2,
+             "random": 0.05}  # fmt: skip
+ALIKE = {"vgg16-frozen": 0.5, "resnet50-frozen": 0.7}  # mean correlation of two tasks' maps; 0.4 for others
+FIGURES = [figure_3_28, figure_3_31, figure_3_32, figure_3_35, figure_3_36]
+VIEWED = [figure_3_30, figure_3_34]
+
+
+def rows(dataset="gaze", count=6, **means):
+    """Rows of objects that differ far more than methods do: each adds its own level to all of them."""
+    random, found = np.random.default_rng(0), []
+    known = {(method, task): mean - 0.3 * method.endswith("-random") for method in NETWORKS
+             for task, mean in TASKS.items()} | OTHERS  # fmt: skip
+    known |= {(method, task): mean for method in NETWORKS for task, mean in means.items()}
+    for level, name in zip(np.linspace(-0.2, 0.2, count), "abcdefgh", strict=False):
+        for (method, task), mean in known.items():
+            row = {"object": name, "method": method, "task": task, "seconds": 2.0 if "-" in method else None}
+            value = mean + level + 0.002 * random.normal()
+            for view in range(3):
+                found.append(row | {"view": view, "metric": "pcc", "value": value + 0.1 * (view - 1)})
+                found.append(row | {"view": view, "metric": "pcc_masked", "value": value + 0.2})
+                if task in DISTANCES:
+                    far = DISTANCES[task] + 0.1 * (level + 0.2) + 0.0002 * random.normal()
+                    found.append(row | {"view": view, "metric": "distance", "value": far})
+                    found.append(row | {"view": view, "metric": "distance_mean", "value": 2 * far})
+            for metric, whole in {"pcc": 0.9, "nss": 2 * value, "auc": 0.5 + value / 4}.items():
+                found.append(row | {"view": WHOLE, "metric": metric, "value": whole})
+        found += [one for method in NETWORKS for one in of_network(name, method, level)]
+    found += [one for method in NETWORKS for one in taught(method)]
+    return pd.DataFrame(found).assign(dataset=dataset, seed=0)
+
+
+def of_network(name, method, level):
+    """Rows of what an object cost, and how alike its maps are."""
+    row = {"object": name, "method": method, "view": WHOLE}
+    yield row | {"view": None, "metric": "views", "value": 29, "seconds": 1.0}
+    for k, (one, other) in enumerate(combinations(["level_1", "level_2", "convexity"], 2)):
+        value = ALIKE.get(method, 0.4) + 0.1 * level + 0.1 * (k - 1)
+        yield row | {"task": f"{one}~{other}", "metric": "pcc_tasks", "value": value}
+
+
+def taught(method):
+    """Rows of heads, or of a network for each task, that learned."""
+    seconds = 100.0 if method.endswith("-finetuned") else 1.0
+    for task in ("level_1", "level_2"):
+        row = {"method": method, "task": task, "split": "views"}
+        yield row | {"metric": "accuracy", "value": 0.9, "seconds": seconds}
+        yield row | {"metric": "chance", "value": 0.5}
+
+
+def elbow():
+    """A curve for each kind of shape, its elbow at four clusters."""
+    ssd = {2: 10.0, 3: 6.0, 4: 2.0, 5: 1.8, 6: 1.6}
+    return pd.DataFrame(
+        {"task": task, "clusters": k, "ssd": value, "chosen": k == 4}
+        for task in _fixation.SHAPE
+        for k, value in ssd.items()
+    )
+
+
+def measured_once(root, frame):
+    """Puts rows where `make fixation` does, without the columns that it leaves out."""
+    write_table(root / "reports/fixation/gaze.csv", frame.drop(columns=["dataset", "seed"]))
+
+
+@pytest.fixture
+def gaze(bare, small):
+    """Results with rows of the meshes with human gaze, and of a run on marked objects."""
+    measured_once(bare, rows())
+    small.write(bare, "fixation", rows("household", 4))
+    write_table(bare / "data/fixation/elbow.csv", elbow())
+    return Results(small.settings(), bare)
+
+
+def again(results, small, frame):
+    """The results with other rows on gaze."""
+    measured_once(results.data.parent, frame)
+    return Results(small.settings(), results.data.parent)
+
+
+def one(results, key):
+    """The judged row of one claim."""
+    return judge([claim for claim in chapter_3_fixation.CLAIMS if claim.key == key], results).iloc[0]
+
+
+def line(frame, **where):
+    """The one row of a frame."""
+    for column, value in where.items():
+        frame = frame[frame[column] == value]
+    assert len(frame) == 1
+    return frame.iloc[0]
+
+
+def test_names_are_those_of_the_stage():
+    assert stage_tasks.FUSED == _fixation.CHOSEN
+    assert set(stage_tasks.TASKS) == set(_fixation.TASKS)
+    assert WHOLE == _fixation.ALL_VIEWS
+    assert [sphere(9, 24)[view] for view in evaluated(9, 24)] == list(figure_3_30.VIEWS)
+
+
+def test_score_of_an_object_is_the_mean_of_its_three_views_or_of_all_in_one(gaze):
+    frame = gaze.fixation("gaze")
+    found = _fixation.scores(frame, "pcc")["vgg16-frozen", "ewigc"]
+    assert found["a"] == pytest.approx(0.4 - 0.2, abs=0.01)  # 0.9, of all views in one, is not among them
+    assert _fixation.scores(frame, "nss")["vgg16-frozen", "ewigc"]["a"] == pytest.approx(0.4, abs=0.02)
+
+
+def test_views_are_told_apart_whether_they_are_read_as_words_or_as_numbers():
+    frame = rows()
+    read = frame.assign(view=frame["view"].map(lambda view: view if view == WHOLE or view is None else f"{view:.0f}"))
+    pd.testing.assert_frame_equal(_fixation.scores(frame, "pcc"), _fixation.scores(read, "pcc"))
+
+
+def test_truths_are_named_and_gaze_comes_first(gaze):
+    assert list(_fixation.sources(gaze)) == ["human gaze, 6 meshes", "marks, 4 objects"]
+    assert _fixation.best_source(gaze)[0] == "human gaze, 6 meshes"
+    assert list(_fixation.sources(gaze, "pcc_tasks")) == ["human gaze, 6 meshes", "household, 4 objects"]
+
+
+def test_a_run_without_anyones_attention_still_says_how_alike_tasks_are(bare, small):
+    frame = rows("furniture")
+    small.write(bare, "fixation", frame[frame["metric"] != "pcc"])
+    results = Results(small.settings(), bare)
+    assert figure_3_31.build(results).paths[0].exists()
+    with pytest.raises(NotRun, match="ground truth"):
+        table.build(results)
+
+
+def test_gain_over_a_control_is_paired_so_that_hard_objects_do_not_widen_it(gaze):
+    frame = table.build(gaze).frame
+    row = line(frame, truth="human gaze, 6 meshes", method="vgg16-frozen", task="ewigc", metric="pcc")
+    assert row["mean"] == pytest.approx(0.4, abs=0.01)
+    assert row["over_weights"] == pytest.approx(0.3, abs=0.01) and row["over_prior"] == pytest.approx(0.2, abs=0.01)
+    assert row["over_lee"] == pytest.approx(0.25, abs=0.01)
+    assert row["over_lee_high"] - row["over_lee_low"] < 0.05 < row["high"] - row["low"]
+
+
+def test_distances_are_told_in_per_cent_of_the_diameter(gaze):
+    frame = table.build(gaze).frame
+    row = line(frame, truth="human gaze, 6 meshes", method="vgg16-frozen", task="ewigc", metric="distance")
+    assert row["mean"] == pytest.approx(12, abs=0.2) and row["over_lee"] == pytest.approx(-10, abs=0.2)
+
+
+def test_detectors_stand_in_the_order_of_their_correlation(gaze):
+    made = table.build(gaze)
+    for _, group in made.frame[made.frame["metric"] == "pcc"].groupby("truth"):
+        assert group["mean"].is_monotonic_decreasing
+    assert made.shown["detector"].iloc[0] == "ours (gaze model)"
+    assert line(made.shown, truth="marks, 4 objects", detector="noise")["it − random weights, PCC"] == "–"
+
+
+def test_marks_are_said_to_be_no_human_gaze_only_where_they_are_the_truth(gaze):
+    root = gaze.reports
+    assert any("no human subjects" in note for note in table.build(gaze).notes)
+    assert "no human subjects" in figure_3_35.build(gaze).caption
+    (root / "measurements/fixation.csv").unlink()
+    alone = Results(gaze.settings, root.parent)
+    assert not any("no human subjects" in note for note in table.build(alone).notes)
+
+
+def test_networks_that_could_not_be_had_are_named_once(gaze, small):
+    frame = rows("household", 4)
+    missing = {"dataset": "household", "method": "googlenet-frozen", "metric": "accuracy", "note": "no weights"}
+    alone = {"dataset": "household", "method": "vgg16-frozen", "task": "level_3", "metric": "accuracy", "note": "alone"}
+    small.write(gaze.data.parent, "fixation", pd.concat([frame, pd.DataFrame([missing, alone])]))
+    notes = [note for note in table.build(Results(small.settings(), gaze.data.parent)).notes if "Not run" in note]
+    assert notes == ["Not run here: GoogLeNet, frozen: no weights."]
+
+
+VERDICTS = {
+    "ewigc_over_lee_vgg16": ("supported", 0.25),
+    "ewigc_over_lee_resnet50": ("supported", 0.25),
+    "ewigc_nearer_than_lee": ("supported", 10),
+    "ewigc_nearer_than_noise": ("contradicted", -5),
+    "ewigc_over_random_weights_resnet50": ("supported", 0.3),
+    "ewigc_over_centre_vgg16": ("supported", 0.2),
+    "level_3_least": ("supported", 0.25),
+    "convexity_least": ("supported", 0.2),
+    "resnet_more_alike": ("supported", 0.2),
+    "fused_over_narrowed": ("supported", 0.1),
+    "fused_nearer_than_narrowed": ("supported", 5),
+    "ours_over_ewigc": ("supported", 0.2),
+}
+
+
+@pytest.mark.parametrize("key", [key for key in VERDICTS if key != "resnet_more_alike"])
+def test_claims_say_what_the_rows_hold(gaze, key):
+    word, effect = VERDICTS[key]
+    found = one(gaze, key)
+    assert found["verdict"] == word and found["effect"] == pytest.approx(effect, rel=0.05) and found["pairs"] == 6
+
+
+def test_resnets_tasks_are_compared_with_vggs_an_object(gaze):
+    assert chapter_3_fixation.more_alike(gaze).to_numpy() == pytest.approx(np.full(6, 0.2))
+
+
+def test_a_claim_turns_with_the_rows(gaze, small):
+    assert one(again(gaze, small, rows(ewigc=0.05)), "ewigc_over_lee_vgg16")["verdict"] == "contradicted"
+
+
+def test_entropy_is_compared_with_plain_averages_where_they_were_measured(gaze, small):
+    assert one(gaze, "entropy_over_average")["tested_on"].startswith("not run: average, MobileNetV2, frozen")
+    assert one(again(gaze, small, rows(average=0.38)), "entropy_over_average")["verdict"] == "supported"
+
+
+def test_a_network_that_was_not_run_leaves_its_claim_open_and_is_named(gaze, small):
+    frame = rows()
+    found = one(again(gaze, small, frame[~frame["method"].str.startswith("vgg16")]), "ewigc_over_lee_vgg16")
+    assert found["verdict"] == "open" and "VGG16" in found["tested_on"]
+    assert one(gaze, "fused_over_narrowed")["effect"] == pytest.approx(0.1, abs=0.01)
+
+
+def test_claims_of_t_3_3_stand_between_those_of_attention_and_of_meshes():
+    sections = [claim.key for claim in CLAIMS]
+    first, last = (sections.index(chapter_3_fixation.CLAIMS[end].key) for end in (0, -1))
+    assert sections[first - 1] == "ours_over_enhanced_gaze"
+    assert last - first == len(chapter_3_fixation.CLAIMS) - 1
+    assert len(set(sections)) == len(sections)
+
+
+@pytest.mark.parametrize("figure", FIGURES)
+def test_figures_are_drawn_of_both_truths(gaze, figure):
+    assert figure.build(gaze).paths[0].stat().st_size > 10_000
+
+
+def test_no_interval_of_a_correlation_leaves_its_range():
+    wild = np.array([1.0, 1.0, 1.0, -0.5])
+    assert interval(wild)[2] > 1 >= figure_3_31.span(wild)[2]
+
+
+def test_number_of_classes_is_told(gaze):
+    assert "convexity 4, curvature 4, eccentricity 4" in figure_3_28.build(gaze).caption
+
+
+def test_cost_is_teaching_once_and_looking_at_every_object(gaze):
+    made = chart.build(gaze)
+    frame = pd.read_csv(gaze.reports / "tradeoff/fixation.csv").set_index("name")
+    assert frame.loc["MobileNetV2, frozen", "seconds"] == pytest.approx(2 * 1 + 6 * 2)
+    assert frame.loc["MobileNetV2, fine-tuned", "cost_ratio"] == pytest.approx((2 * 100 + 6 * 2) / 14, rel=1e-5)
+    assert "MobileNetV2, fine-tuned minus frozen: PCC +0.0" in made.caption or "PCC -0.0" in made.caption
+
+
+@pytest.fixture
+def looked(root, small):
+    """Results of a run with two balls at which two networks have looked."""
+    small.write_attention(root)
+    small.write(root, "fixation", rows("household", 4))
+    for name in ("ball", "cube"):
+        write_look(root, name, small.ball(), np.array([0.0, 0, 1]))
+    return Results(small.settings(), root)
+
+
+def write_look(root, name, mesh, peak):
+    """Leaves the attention on a mesh: highest towards `peak` in all views, or at each picture's middle for None."""
+    axes = np.array([view.axes[2] for view in figure_3_30.VIEWS])
+    visible = mesh.vertices @ axes.T > -0.05
+    arrays = {"visible": visible.T, "seen": visible.any(axis=1)}
+    for method in ("mobilenet_v2-frozen", "mobilenet_v2-random"):
+        arrays[f"{method}.maps"] = np.random.default_rng(0).random((3, len(TASKS) - 2, 7, 7)).astype(np.float16)
+        for task in TASKS:
+            views = np.stack([mesh.vertices @ (axis if peak is None else peak) + 0.5 for axis in axes])
+            arrays |= {f"{method}.{task}": views.mean(axis=0).astype(np.float16), f"{method}.{task}.views": views}
+    write_arrays(root / f"data/fixation/{name}.npz", **arrays)
+    names = [task for task in TASKS if not task.startswith("ewigc")]
+    write_table(root / "data/fixation/tasks.csv", pd.DataFrame([{"object": name} | {f"{t}_class": "1" for t in names}]))
+
+
+@pytest.mark.parametrize("figure", VIEWED)
+def test_maps_are_drawn_on_the_object(looked, figure):
+    made = figure.build(looked)
+    assert made.paths[0].stat().st_size > 10_000
+    assert "MobileNetV2" in made.alt and "random weights" in made.alt
+
+
+def test_a_map_is_drawn_where_it_is_high():
+    cam = np.zeros((7, 7), dtype=np.float16)
+    cam[1, 5] = 3
+    found = figure_3_30.large(cam)
+    assert np.unravel_index(found.argmax(), found.shape) == pytest.approx((90, 330), abs=5) and found.max() == 1
+    assert not figure_3_30.large(np.zeros((7, 7))).any()
+
+
+def test_fused_attention_stands_beside_models_where_nobody_marked_anything(looked):
+    for path in (looked.data / "weights/lessons").glob("*.npz"):
+        path.unlink()
+    made = figure_3_34.build(looked)
+    assert "marks" not in made.alt.lower() and "mesh saliency" not in made.alt and "ours" in made.alt
+
+
+def test_one_place_seen_from_all_sides_is_told_from_chance_and_from_the_middle(looked):
+    for control in (anywhere, middle):
+        found = same_place(control)(looked)
+        assert len(found) == 2 and (found > 40).all()  # all views look at the pole
+
+
+def test_looking_at_the_middle_of_each_picture_is_no_place_of_the_object(looked, small):
+    for name in ("ball", "cube"):
+        write_look(looked.data.parent, name, small.ball(), None)
+    assert (same_place(anywhere)(looked) < -5).all()
+    assert same_place(middle)(looked) == pytest.approx([0, 0], abs=1)
+
+
+def test_a_view_that_sees_nothing_has_no_place(looked, root):
+    path = root / "data/fixation/ball.npz"
+    arrays = read_arrays(path)
+    arrays["visible"][1:] = False
+    write_arrays(path, **arrays)
+    assert len(same_place(anywhere)(looked)) == 1  # one view of the ball is left, nothing to compare it with
+
+
+def test_a_kept_picture_comes_back_with_its_words(bare, small, tmp_path):
+    path = tmp_path / "drawn.png"
+    plt.imsave(path, np.zeros((4, 4)))
+    keep(Figure("Figure 3.34: fused", "an alt", "a caption", [path]), "figure_3_34", bare / "reports/fixation")
+    made = figure_3_34_gaze.build(Results(small.settings(), bare))
+    assert made.title == "Figure 3.34: fused, on meshes with human gaze" and made.caption == "a caption"
+    assert made.paths[0].read_bytes() == path.read_bytes() and made.paths[0].parent.name == "figures"
+
+
+def test_without_any_attention_nothing_is_made_up(bare, small):
+    empty = Results(small.settings(), bare)
+    for module in (*FIGURES, table, chart, figure_3_30_gaze, figure_3_34_gaze):
+        with pytest.raises(NotRun, match="fixation"):
+            module.build(empty)
+    judged = judge(chapter_3_fixation.CLAIMS, empty)
+    assert (judged["verdict"] == "open").all() and judged["tested_on"].str.startswith("not run").all()

@@ -1,0 +1,25 @@
+"""Small settings of the transfer stage."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from stages.transfer.schema import Params
+
+SETTINGS = {
+    "touches": 8, "detector": "thesis_ssim", "cells": 32, "pitch": 0.005, "coarse_cells": [8],
+    "networks": ["mobilenet_v2"], "weights": ["random"], "source": "package", "modes": ["frozen"],
+    "splits": ["random", "objects"], "size": 32, "copies": 1, "train_share": 0.75, "validation_share": 0.25,
+    "frozen_rates": [0.003, 0.01], "finetuned_rates": [0.003], "search_epochs": 2, "epochs": 4, "batch": 8,
+    "momentum": 0.9, "repetitions": 1, "coarse_repetitions": 1, "device": "cpu",
+    "severities": {"noise": [0.01, 0.5], "few_touches": [0.5]}, "hybrid_middles": ["18:139"], "hybrid_repetitions": 0,
+    "hybrid_pictures": 4, "hybrid_colour": False, "hybrid_rate": 0.003, "hybrid_onnx": False,
+    "hybrid_severities": {"picture_noise": [0.1]},
+}  # fmt: skip
+
+
+@pytest.fixture
+def small():
+    """small.settings(key=value, ...): Params of a stage that takes seconds."""
+    other = {field: SETTINGS.get(field, 1) for field in Params.__dataclass_fields__}
+    return SimpleNamespace(settings=lambda **changes: Params(**(other | changes)))

@@ -1,0 +1,119 @@
+"""One hybrid network from files to rows, on toy objects and an untrained network, and the settings that it refuses."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from stages.kit.files import read_arrays, write_arrays
+from stages.networks.network import build
+from stages.transfer import hybrid_trial
+from stages.transfer.hybrid_file import load
+from stages.transfer.hybrid_training import middle_of
+
+MEMBERS = {"cup": ["mug", "glass"], "dog": ["poodle", "pug"]}
+SETTINGS = {
+    "size": 32, "cells": 32, "coarse_cells": [], "splits": ["random", "objects"], "train_share": 0.75,
+    "validation_share": 0.25, "epochs": 1, "batch": 4, "momentum": 0.9, "device": "cpu", "source": "package",
+    "hybrid_rate": 0.003, "hybrid_middles": ["18:139", "18:147"], "hybrid_repetitions": 2, "hybrid_onnx": False,
+    "hybrid_severities": {"picture_noise": [0.1], "imprint_dead_cells": [0.1]},
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    """(folder, rows) of the first repetition with whole objects left out."""
+    folder, random = tmp_path_factory.mktemp("transfer"), np.random.default_rng(0)
+    for objects in MEMBERS.values():
+        for name in objects:
+            pictures = random.integers(0, 256, (8, 32, 32, 3)).astype(np.uint8)
+            imprints = random.integers(0, 256, (8, 32, 32)).astype(np.uint8)
+            write_arrays(folder / "hybrid" / "pictures" / f"{name}.npz", images=pictures, viewpoints=np.zeros((8, 2)))
+            write_arrays(folder / "imprints" / f"{name}.npz", vertices=np.arange(8), imprints32=imprints)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(hybrid_trial, "build", lambda name, classes, *_: build(name, classes, "random", 0))
+        rows = hybrid_trial.process("hybrid.18-139.objects.0", folder, members(), SimpleNamespace(**SETTINGS), 0)
+    return folder, rows
+
+
+def members():
+    return dict.fromkeys(("random", "objects"), MEMBERS)
+
+
+def values(rows, **about):
+    return [row["value"] for row in rows if about.items() <= row.items()]
+
+
+def test_the_hybrid_answers_as_the_two_networks_it_was_made_of(run):
+    _, rows = run
+    assert max(values(rows, metric="max_difference", method="hybrid")) < 1e-5
+    for sense in ("vision", "touch"):
+        known = {"metric": "accuracy", "sense": sense}
+        assert values(rows, method="hybrid", **known) == values(rows, method=sense, **known)
+
+
+def test_smaller_kinds_take_less_room(run):
+    _, rows = run
+    whole, half, eighth = (
+        values(rows, method=name, metric="size_ratio")[0] for name in ("hybrid", "hybrid_float16", "hybrid_int8")
+    )
+    assert 1.4 < whole < half / 1.8 < eighth / 2.5
+
+
+def test_every_condition_has_every_answer(run):
+    _, rows = run
+    found = {(row["perturbation"], row["method"]) for row in rows if "perturbation" in row}
+    conditions = {"none", "picture_noise", "imprint_dead_cells", "picture_missing", "imprint_missing"}
+    assert found == {(one, method) for one in conditions for _, method in found}
+    assert values(rows, perturbation="picture_missing", method="vision") == [0.0]
+    alone = values(rows, perturbation="none", method="touch")
+    for method in ("fusion_entropy", "fusion_product", "sum_touch"):
+        assert values(rows, perturbation="picture_missing", method=method) == alone
+
+
+def test_rows_say_what_they_are_of(run):
+    _, rows = run
+    about = {"data": "hybrid", "weights": "imagenet", "mode": "18:139", "split": "objects", "repetition": 0}
+    assert all(about.items() <= row.items() and np.isfinite(row["value"]) for row in rows)
+
+
+def test_files_hold_the_network_and_its_answers(run):
+    folder, _ = run
+    network, classes = load(folder / "hybrid" / "networks" / "hybrid.18-139.objects.0.npz")
+    assert classes == list(MEMBERS) and (network.temperature > 0).all()
+    assert [path.name for path in (folder / "hybrid" / "networks").iterdir()] == ["hybrid.18-139.objects.0.npz"]
+    stored = read_arrays(folder / "hybrid" / "predictions" / "hybrid.18-139.objects.0.npz")
+    assert stored["vision_scores"].shape == (16, 2) and stored["touch_true"].tolist() == [0] * 8 + [1] * 8
+
+
+def test_confusion_counts_every_test_item_once(run):
+    frame = hybrid_trial.confusion(run[0], ["hybrid.18-139.objects.0"], members())
+    assert frame.groupby(["sense", "true"])["count"].sum().tolist() == [8] * 4
+
+
+def test_summary_holds_what_the_gate_watches(run):
+    found = hybrid_trial.summary(run[1], SimpleNamespace(**SETTINGS), 0)["objects"]
+    assert set(found) == {"accuracy_vision", "accuracy_touch", "max_difference", "size_ratio"}
+    assert found["size_ratio"]["mean"] == pytest.approx(1.43, abs=0.01)
+
+
+def test_trials_repeat_the_first_middle_alone():
+    names = hybrid_trial.trials(SimpleNamespace(**SETTINGS), members())
+    assert names == [
+        "hybrid.18-139.random.0", "hybrid.18-139.random.1", "hybrid.18-139.objects.0", "hybrid.18-139.objects.1",
+        "hybrid.18-147.random.0", "hybrid.18-147.objects.0",
+    ]  # fmt: skip
+    assert [hybrid_trial.Trial.parse(name).name for name in names] == names
+
+
+def test_no_repetitions_and_no_classes_are_no_trials():
+    assert hybrid_trial.trials(SimpleNamespace(**SETTINGS | {"hybrid_repetitions": 0}), members()) == []
+    alone = {"random": MEMBERS, "objects": {"cup": ["mug", "glass"]}}
+    assert not any("objects" in name for name in hybrid_trial.trials(SimpleNamespace(**SETTINGS), alone))
+
+
+def test_ranges_are_whole_blocks():
+    assert middle_of("18:139") == (3, 17) and middle_of("18:147") == (3, 18)
+    for layers in ("16:138", "1:150", "18:150"):
+        with pytest.raises(ValueError, match="whole blocks"):
+            middle_of(layers)

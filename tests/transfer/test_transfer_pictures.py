@@ -1,0 +1,104 @@
+"""The pictures show the object from all round, alike on every machine, and grey; touches find a look of their own."""
+
+import numpy as np
+import pytest
+import trimesh
+
+from stages.kit import Mesh
+from stages.transfer.hybrid_damage import PICTURES, check, damage, damage_pictures
+from stages.transfer.hybrid_data import imprint_images, pair
+from stages.transfer.pictures import ELEVATIONS, picture_images, take_pictures, viewpoints
+from stages.transfer.switch import present
+
+
+def random(seed=0):
+    return np.random.default_rng(seed)
+
+
+@pytest.fixture(scope="module")
+def pole():
+    """A thin upright pole, red on one side."""
+    box = trimesh.creation.box(extents=(0.1, 0.1, 0.9))
+    colors = np.where(box.vertices[:, :1] > 0, [[200, 0, 0]], [[0, 0, 200]])
+    return Mesh(box.vertices, box.faces, colors=colors.astype(np.uint8))
+
+
+def test_viewpoints_go_all_round_and_not_below_the_table():
+    views = viewpoints(36, random())
+    azimuths = np.sort([view.azimuth for view in views])
+    assert np.allclose(np.diff(azimuths), 10)
+    assert all(ELEVATIONS[0] <= view.elevation <= ELEVATIONS[1] for view in views)
+    assert np.ptp([view.elevation for view in views]) > 30
+    with pytest.raises(ValueError, match="one picture or more"):
+        viewpoints(0, random())
+
+
+def test_pictures_show_the_object_upright_on_white(pole):
+    images = take_pictures(pole, viewpoints(4, random()), 40)
+    assert images.shape == (4, 40, 40, 3) and images.dtype == np.uint8
+    assert (images[:, 0, 0] == 255).all()
+    dark = images[..., 0] < 250
+    assert (dark.any(axis=2).sum(axis=1) > 2 * dark.any(axis=1).sum(axis=1)).all()  # higher than wide
+
+
+def test_clay_is_grey_and_colour_is_not(pole):
+    views = viewpoints(3, random())
+    clay, coloured = take_pictures(pole, views, 30), take_pictures(pole, views, 30, colour=True)
+    assert (clay == clay[..., :1]).all()
+    assert not (coloured == coloured[..., :1]).all()
+
+
+def test_same_seed_same_pictures(pole):
+    first, again = (take_pictures(pole, viewpoints(3, random(1)), 24) for _ in range(2))
+    assert np.array_equal(first, again)
+    assert not np.array_equal(first, take_pictures(pole, viewpoints(3, random(2)), 24))
+
+
+def test_picture_images_are_in_0_to_1_with_channels_first():
+    pictures = random().integers(0, 256, (2, 8, 8, 3)).astype(np.uint8)
+    images = picture_images(pictures, 8)
+    assert np.allclose(images[1, 2].numpy() * 255, pictures[1, :, :, 2])
+    assert picture_images(pictures, 5).shape == (2, 3, 5, 5)
+    for bad in (pictures[0], pictures[..., :2], np.full((1, 4, 4, 3), np.nan), np.full((1, 4, 4, 3), 7.0)):
+        with pytest.raises(ValueError, match="pictures must"):
+            picture_images(bad, 8)
+
+
+def test_a_flat_contact_is_a_touch_and_feeling_nothing_is_none():
+    imprints = np.stack([np.zeros((8, 8)), np.ones((8, 8)), np.eye(8)])
+    images = imprint_images(imprints, 8)
+    assert present(images).tolist() == [True, False, True]
+    assert float(images[0].max()) == pytest.approx(1 / 255)
+
+
+def test_every_touch_is_paired_with_its_own_object():
+    seen, felt = np.repeat([0, 1, 2], 3), np.array([2, 0, 0, 0, 0, 1])
+    found = pair(seen, felt, random())
+    assert np.array_equal(seen[found], felt)
+    assert set(found[1:5]) == {0, 1, 2}  # all looks are used before one is used twice
+    with pytest.raises(ValueError, match="object 7 was touched"):
+        pair(seen, np.array([7]), random())
+
+
+@pytest.mark.parametrize(("name", "mild", "harsh"), [(n, *s) for n, s in zip(
+    PICTURES, [(0.05, 0.3), (0.02, 0.1), (0.3, 0.9), (0.05, 0.5)], strict=True)])  # fmt: skip
+def test_more_severe_is_further_from_the_picture(pole, name, mild, harsh):
+    pictures = take_pictures(pole, viewpoints(4, random()), 40)
+    off = [np.abs(damage_pictures(pictures, name, one, random()) - pictures / 255).mean() for one in (mild, harsh)]
+    found = damage_pictures(pictures, name, harsh, random())
+    assert 0 < off[0] < off[1]
+    assert found.dtype == np.float32 and found.min() >= 0 and found.max() <= 1
+
+
+def test_no_light_at_all_is_an_absent_picture(pole):
+    pictures = take_pictures(pole, viewpoints(2, random()), 20)
+    assert not present(picture_images(damage_pictures(pictures, "darkness", 1.0, random()), 20)).any()
+
+
+def test_a_missing_sense_is_none_and_imprints_are_damaged_as_elsewhere():
+    imprints = np.full((2, 16, 16), 128, dtype=np.uint8)
+    assert damage(imprints, "imprint_missing", 1.0, random()) is None
+    found = damage(imprints, "imprint_dead_cells", 0.5, random())
+    assert found.shape == imprints.shape and found.std() > 0
+    with pytest.raises(ValueError, match="picture_fog not known"):
+        check({"picture_fog": [1.0]})

@@ -1,0 +1,93 @@
+"""What is trained, and what has to be left out."""
+
+import pytest
+
+from stages.kit.fetch import FetchError
+from stages.transfer import plan as planning
+from stages.transfer.plan import Trial, check, plan
+
+CLASSES = {"animal": ["dog", "horse", "cow"], "chair": ["stool", "bench"], "vase": ["urn"]}
+ENOUGH = dict.fromkeys([name for objects in CLASSES.values() for name in objects], 100)
+
+
+@pytest.fixture
+def weights(monkeypatch):
+    """Nothing is fetched; had() knows all networks but GoogLeNet."""
+
+    def had(network, source):
+        if network == "googlenet":
+            raise FetchError("no registry has it")
+        return "complete"
+
+    monkeypatch.setattr(planning, "had", had)
+    monkeypatch.setattr(planning, "imagenet_state", had)
+
+
+def test_a_trials_name_is_its_file_and_gives_it_back():
+    trial = Trial("imprints128", "mobilenet_v2", "imagenet", "18:139", "objects", 2)
+    assert trial.name == "imprints128.mobilenet_v2.imagenet.18-139.objects.2"
+    assert Trial.parse(trial.name) == trial
+
+
+def test_controls_and_ranges_are_trained_on_the_fine_array_alone(small, weights):
+    modes, networks = ["frozen", "finetuned", "18:139"], ["mobilenet_v2", "alexnet"]
+    both = small.settings(weights=["imagenet", "random"], modes=modes, networks=networks, splits=["random"])
+    trials = plan(CLASSES, ENOUGH, both).trials
+    kinds = {trial[:4] for trial in trials}
+    assert len(kinds) == len(trials) == 2 * 4 + 1 + 2 * 2
+    assert {kind for kind in kinds if kind[3] == "18:139"} == {("imprints32", "mobilenet_v2", "imagenet", "18:139")}
+    assert {kind[2] for kind in kinds if kind[0] == "imprints8"} == {"imagenet"}
+
+
+def test_a_class_with_one_object_is_trained_but_not_left_out(small):
+    planned = plan(CLASSES, ENOUGH, small.settings())
+    assert list(planned.members["random"]) == ["animal", "chair", "vase"]
+    assert list(planned.members["objects"]) == ["animal", "chair"]
+    assert ({"split": "objects"}, "class vase has one object alone: it cannot be left out") in planned.notes
+    assert {trial.split for trial in planned.trials} == {"random", "objects"}
+
+
+def test_without_a_class_to_spare_an_object_touches_are_still_drawn(small):
+    planned = plan({"chair": ["stool"], "vase": ["urn"]}, ENOUGH, small.settings())
+    assert {trial.split for trial in planned.trials} == {"random"}
+    assert "less than two classes can spare an object" in planned.notes[-1][1]
+
+
+def test_objects_with_too_few_vertices_and_empty_classes_are_named(small):
+    planned = plan(CLASSES | {"cup": []}, ENOUGH | {"cow": 7, "urn": 3}, small.settings())
+    said = [note for _, note in planned.notes]
+    assert planned.members["random"] == {"animal": ["dog", "horse"], "chair": ["stool", "bench"]}
+    assert "class animal: cow left out, 7 vertices can be touched, not 8" in said
+    assert {"class vase left out: no object of it is left", "class cup left out: no object of it is left"} <= set(said)
+
+
+def test_one_class_alone_gives_a_note_and_no_training(small):
+    planned = plan({"animal": CLASSES["animal"]}, ENOUGH, small.settings())
+    assert planned.trials == []
+    assert planned.notes == [({}, "two classes or more are needed, got animal: add some to classes.names")]
+
+
+def test_a_network_without_weights_is_a_note_and_the_others_run(small, weights):
+    planned = plan(CLASSES, ENOUGH, small.settings(weights=["imagenet"], networks=["googlenet", "mobilenet_v2"]))
+    about = {"method": "googlenet"}, "googlenet left out, no weights: no registry has it"
+    assert about in planned.notes and planned.had == {"mobilenet_v2": "complete"}
+    assert {trial.network for trial in planned.trials} == {"mobilenet_v2"}
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        ({"modes": ["frozen", "boiled"]}, "transfer.modes: boiled not known"),
+        ({"modes": ["18:200"]}, "layers are 1 to 154"),
+        ({"weights": []}, "transfer.weights: none not known"),
+        ({"networks": ["lenet"]}, "transfer.networks: lenet not known"),
+        ({"splits": ["half"]}, "transfer.splits: half not known"),
+        ({"repetitions": 0}, "must be 1 or more"),
+        ({"device": "abacus"}, "unknown device"),
+        ({"severities": {"rain": [1.0]}}, "transfer.severities: rain not known"),
+    ],
+)
+def test_settings_that_cannot_be_run_are_named(small, change, reason):
+    with pytest.raises(ValueError, match=reason):
+        check(small.settings(**change))
+    check(small.settings())

@@ -1,0 +1,104 @@
+"""One training from imprints on disk to rows."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from stages.kit.files import read_arrays, sha256, write_arrays
+from stages.transfer import trial
+from stages.transfer.plan import Trial
+from stages.transfer.tables import confusion, sorted_out, summary
+from stages.transfer.touches import read_touches
+
+SIZE = 32
+CLASSES = {"ramp": ["low", "steep"], "stripes": ["narrow", "wide"]}
+MEMBERS = {"random": CLASSES, "objects": CLASSES}
+FROZEN = Trial("imprints32", "mobilenet_v2", "random", "frozen", "random", 0)
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """Two classes of two objects that anybody can tell apart, whatever the reflection."""
+    generator = np.random.default_rng(0)
+    lines = np.arange(SIZE)
+    plain = {"low": lines / 96, "steep": lines / 64, "narrow": lines // 2 % 2, "wide": lines // 4 % 2}
+    for name, line in plain.items():
+        images = np.clip(np.tile(line, (8, SIZE, 1)) + generator.normal(0, 0.05, (8, SIZE, SIZE)), 0, 1)
+        images = np.round(images * 255).astype(np.uint8)
+        write_arrays(tmp_path / "imprints" / f"{name}.npz", imprints32=images, vertices=np.arange(8))
+    return tmp_path
+
+
+def run(folder, settings, one=FROZEN):
+    return trial.process(one.name, folder, MEMBERS, settings, seed=0)
+
+
+def plain(rows):
+    return {row["metric"]: row["value"] for row in rows if "perturbation" not in row and "layer" not in row}
+
+
+def test_touches_know_their_class_and_object(folder):
+    touches = read_touches(folder, CLASSES, "imprints32")
+    assert touches.labels.tolist() == [0] * 16 + [1] * 16
+    assert touches.ranks.tolist() == ([0] * 8 + [1] * 8) * 2
+    assert np.bincount(touches.objects).tolist() == [8, 8, 8, 8]
+
+
+def test_a_trial_gives_equal_files_each_time_and_tidy_rows(folder, small):
+    settings, file = small.settings(), f"{FROZEN.name}.npz"
+    rows = run(folder, settings)
+    first = [sha256(folder / part / file) for part in ("networks", "predictions")]
+    assert run(folder, settings)[-1]["value"] == rows[-1]["value"]
+    assert first == [sha256(folder / part / file) for part in ("networks", "predictions")]
+    values = plain(rows)
+    assert values["chance"] == 0.5 and values["trained_parameters"] == 2562 and values["weight_change"] == 0
+    assert values["learning_rate"] in settings.frozen_rates and 0 <= values["accuracy"] <= 1
+    assert not list((folder / trial.UNFINISHED).iterdir())
+    table = confusion(folder, [FROZEN], MEMBERS)
+    assert table["count"].sum() == 8
+    assert table.query("true == predicted")["count"].sum() == round(values["accuracy"] * 8)
+
+
+def test_disturbed_touches_are_rows_of_their_own(folder, small):
+    found, disturbed, layers = sorted_out(run(folder, small.settings()), {"mobilenet_v2": None})
+    asked = [("noise", 0.01), ("noise", 0.5), ("few_touches", 0.5)]
+    assert list(zip(disturbed["perturbation"], disturbed["severity"], strict=True)) == asked
+    assert set(disturbed["metric"]) == {"accuracy"} and disturbed["value"].between(0, 1).all()
+    assert layers.empty and not any("perturbation" in row or "trial" in row for row in found)
+    assert {row["split"] for row in found} == {"random"} and {row["had"] for row in found} == {None}
+
+
+def test_a_left_out_object_is_tested_and_a_range_changes_its_other_layers(folder, small):
+    one = FROZEN._replace(mode="18:139", split="objects")
+    rows = run(folder, small.settings(epochs=1, search_epochs=1), one)
+    assert read_arrays(folder / "predictions" / f"{one.name}.npz")["test"].tolist() == [*range(8), *range(16, 24)]
+    changes = pd.DataFrame([row for row in rows if "layer" in row]).groupby("part")["value"].mean()
+    assert changes["Conv1"] > 0 and changes["block_16"] > 0 and changes["block_2"] == changes["block_15"] == 0
+    assert plain(rows)["weight_change"] == pytest.approx(np.mean([row["value"] for row in rows if "layer" in row]))
+
+
+def test_a_trial_killed_in_its_last_training_seeks_no_rate_again(folder, small, monkeypatch):
+    settings = small.settings(severities={})
+    expected = plain(run(folder, settings))
+    learned = trial.learn
+
+    def killed(*_, **__):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(trial, "learn", killed)
+    with pytest.raises(KeyboardInterrupt):
+        run(folder, settings)
+    monkeypatch.setattr(trial, "learn", learned)
+    monkeypatch.setattr(trial, "search", killed)
+    assert plain(run(folder, settings)) == expected
+
+
+def test_summary_has_an_interval_over_repetitions_and_none_for_a_single_one():
+    known = {"data": "imprints128", "method": "alexnet", "weights": "random", "mode": "frozen", "split": "objects"}
+    rows = [known | {"metric": "chance", "value": 0.5}]
+    rows += [known | {"metric": "accuracy", "value": value} for value in (0.6, 0.8)]
+    found = summary(rows, 0)
+    assert found["chance"] == {"objects": 0.5}
+    assert found["imprints128"]["objects"]["alexnet"] == {"frozen_random": {"mean": 0.7, "low": 0.6, "high": 0.8}}
+    assert summary(rows[:2], 0)["imprints128"]["objects"]["alexnet"] == {"frozen_random": {"mean": 0.6}}
+    assert summary([], 0) == {}
