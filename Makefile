@@ -44,6 +44,7 @@ bench: $(VENV)/ready ## every benchmark, to reports/bench: errors, backends, sce
 	OMP_NUM_THREADS=1 python -m benchmarks.simplification $(psb)
 	python -m benchmarks.scenes
 	OMP_NUM_THREADS=1 python -m benchmarks.imprints $(psb) $(if $(tacto),--tacto $(tacto))
+	python -m benchmarks.networks
 	python -m benchmarks.pipeline
 	OMP_NUM_THREADS=1 python -m benchmarks.broken_meshes
 
@@ -87,9 +88,15 @@ touch: $(VENV)/ready ## recorded touches (pressure=, grasps=) and classes of psb
 	cp build/touch/reports/measurements/sequences.csv reports/touch/sequences_princeton.csv
 	cp build/touch/reports/measurements/contours.csv reports/touch/contours_princeton.csv
 
-# Resumable: what a killed start has finished stays in build/transfer/trials, each training under its own name.
-transfer: $(VENV)/ready ## networks for photographs on recorded touches (pressure=, grasps=; networks=, device=), to reports/transfer (an hour)
+# Resumable: what a killed start has finished stays in build/transfer and build/table_5_4.
+transfer: $(VENV)/ready ## networks for photographs on recorded touches (pressure=, grasps=; networks=, device=) and on the thesis's classes (psb=), to reports/transfer (hours)
 	python -m benchmarks.transfer $(pressure) $(grasps) $(if $(networks),--networks $(networks)) $(if $(device),--device $(device))
+	python -m benchmarks.coarse_imprints
+	[ -d build/table_5_4 ] || { $(call fresh,build/table_5_4); }
+	rm -rf build/table_5_4/stages build/table_5_4/conf
+	git ls-files -z -co --exclude-standard stages conf dvc.yaml pyproject.toml | tar --null -T - -cf - | tar -xf - -C build/table_5_4
+	cd build/table_5_4 && python -m stages.compose experiment=table_5_4 "classes.folder=$(abspath $(psb))" && dvc repro transfer
+	cp build/table_5_4/reports/measurements/transfer.csv reports/transfer/princeton.csv
 
 clean: ## remove what was built and computed; fetched files stay in the user's cache
 	rm -rf $(VENV) build .pytest_cache .ruff_cache .dvc/tmp .dvc/cache *.egg-info

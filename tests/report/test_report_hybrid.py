@@ -103,7 +103,7 @@ VERDICTS = {
     "sight_over_touch": "supported",
     "both_over_better": "supported",
     "apart_over_sum": "supported",
-    "trust_in_the_dark": "supported",
+    "touch_in_the_dark": "supported",
 }
 
 

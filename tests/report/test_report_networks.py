@@ -8,7 +8,17 @@ from stages.kit.files import write_table
 from stages.report.claims import chapter_5
 from stages.report.figures import figure_5_3, figure_5_4
 from stages.report.results import NotRun, Results
-from stages.report.tables import _transfer, real_networks, table_5_1, table_5_3, table_5_4, table_5_5, table_5_6
+from stages.report.tables import (
+    _transfer,
+    coarse_imprints,
+    real_networks,
+    table_5_1,
+    table_5_3,
+    table_5_4,
+    table_5_5,
+    table_5_6,
+)
+from stages.report.tradeoff import network_sizes
 from stages.report.tradeoff import networks as chart
 from stages.report.verdict import judge
 
@@ -123,6 +133,7 @@ VERDICTS = {
     "seen_over_random_tuned_random": "supported",
     "fine_over_coarse_frozen_random": "supported",
     "early_and_late_random": "supported",
+    "frozen_coarse_by_chance_random": "contradicted",
 }
 
 
@@ -178,3 +189,28 @@ def test_a_data_set_that_is_not_at_hand_is_named(bare, small, table, figure):
     line = only(made.shown, network="AlexNet")
     assert line["fine-tuned: ours, %"] == "not run" and line["fine-tuned: thesis, %"] == figure
     assert "Not run" in made.notes[0]
+
+
+def test_the_coarse_array_is_told_one_change_at_a_time(bare, small):
+    base = {"cells": 16, "weights": "imagenet", "size": 80, "chance": 0.125, "metric": "accuracy"}
+    levels = {"rate_of_table_5_3": 0.2, "plain": 0.6}
+    found = [base | {"setting": s, "repetition": k, "value": v + 0.01 * k} for s, v in levels.items() for k in range(3)]
+    write_table(bare / "reports/transfer/coarse_imprints.csv", pd.DataFrame(found))
+    shown = coarse_imprints.build(Results(small.settings(), bare)).shown
+    assert list(shown["what differs"]) == [coarse_imprints.SETTINGS[name] for name in ("plain", "rate_of_table_5_3")]
+    assert shown["accuracy, %"][0].startswith("61.0 [")
+
+
+def test_the_smallest_network_that_is_enough_is_named(bare, small):
+    found = [
+        {"data": "pressure", "method": name, "weights": "imagenet", "mode": "frozen", "split": "runs"}
+        | {"had": "complete", "repetition": k, "metric": "accuracy", "value": level + 0.001 * k}
+        for name, level in (("mobilenet_v2", 0.9), ("vgg16", 0.91), ("alexnet", 0.7)) for k in range(3)
+    ]  # fmt: skip
+    sizes = {"mobilenet_v2": 2e6, "vgg16": 15e6, "alexnet": 1e6}
+    costs = [
+        {"network": n, "size": 96, "parameters": s, "operations": s, "milliseconds": 1.0} for n, s in sizes.items()
+    ]
+    write_table(bare / "reports/transfer/recorded.csv", pd.DataFrame(found))
+    write_table(bare / "reports/bench/networks.csv", pd.DataFrame(costs))
+    assert "best is MobileNetV2." in network_sizes.build(Results(small.settings(), bare)).caption

@@ -45,7 +45,8 @@ def _nearer(results, name, control):
 
 def top(mesh, seen, values):
     """(1, 3): the most salient place of a view, of those that it sees."""
-    return mesh.vertices[[np.where(seen, values.astype(float), -1).argmax()]]
+    masked = np.where(seen, values.astype(float), -1)
+    return mesh.vertices[masked == masked.max()].mean(axis=0, keepdims=True)  # half precision has ties
 
 
 def anywhere(mesh, seen, viewpoint):

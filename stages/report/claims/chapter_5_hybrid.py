@@ -26,14 +26,14 @@ def both_over(method, other, **where):
 
     def differences(results):
         first, second = (accuracies(results, name, "both", **where) for name in (method, other))
-        return (first - second).to_numpy()
+        return (first - second).dropna().to_numpy()
 
     return differences
 
 
 def over_touch(results):
     """Accuracy by sight minus by touch, the separate networks."""
-    return (accuracies(results, "vision", "vision") - accuracies(results, "touch", "touch")).to_numpy()
+    return (accuracies(results, "vision", "vision") - accuracies(results, "touch", "touch")).dropna().to_numpy()
 
 
 def harshest(results, perturbation):
@@ -62,10 +62,13 @@ CLAIMS = [
           "both heads by certainty minus the better sense", both_over("fusion_entropy", "better_sense")),
     claim("apart_over_sum", "ours", "Fed both senses, two answers joined beat the summed streams of the thesis.",
           "both heads by certainty minus the streams summed", both_over("fusion_entropy", "sum_mean")),
-    claim("trust_in_the_dark", "T5.6", "Where sight fails, touch makes up for it.",
+    claim("touch_in_the_dark", "T5.5", "Where sight fails, touch helps.",
           "hardly any light: both heads by certainty minus sight alone",
           trusts("fusion_entropy", "vision", "picture_darkness")),
-    claim("temperatures_help", "ours", "Who is to be trusted is told better with temperatures than without.",
+    claim("harmless_in_the_dark", "ours", "Where sight fails, having it does no harm to touch.",
+          "hardly any light: both heads by certainty minus touch alone",
+          trusts("fusion_entropy", "touch", "picture_darkness")),
+    claim("temperatures_help", "ours", "In the dark temperatures tell better who is to be trusted.",
           "hardly any light: by certainty, with temperatures minus without",
           trusts("fusion_entropy", "fusion_entropy_raw", "picture_darkness")),
 ]  # fmt: skip

@@ -6,7 +6,7 @@ from stages.report.intervals import HOLD_OUT, interval
 from stages.report.items import Figure
 from stages.report.results import NotRun
 from stages.report.style import GREY, INK, PALE, label, plt, save
-from stages.report.tables._transfer import COARSE, FINE, PRINTED, SPLITS, everywhere
+from stages.report.tables._transfer import COARSE, FINE, FOLD_OUT, PRINTED, SPLITS, everywhere
 
 TINTS = {("random", FINE): "#0072B2", ("objects", FINE): "#56B4E9", ("random", COARSE): "#D55E00",
          ("objects", COARSE): "#E69F00"}  # fmt: skip
@@ -34,8 +34,8 @@ def build(results):
         "Figure 5.3: what fine-tuning adds",
         "Accuracy of fine-tuned minus frozen networks in points, a row a network, by array and split.",
         "Accuracy of the network with all layers tuned on imprints minus that with frozen filters, ImageNet's weights. "
-        "Lines: 95 % interval of the paired difference, over repeated splits (touches at random) or the objects left "
-        "out. Diamonds: the thesis's figures, of touches at random.",
+        "Lines: 95 % interval of the paired difference, over repeated splits (touches at random) or folds of objects "
+        "left out. Diamonds: the thesis's figures, of touches at random.",
         [save(figure, results.reports / "figures/figure_5_3.png")],
     )
 
@@ -45,10 +45,10 @@ def _gains(rows):
     seen, found = rows[rows["weights"] == "imagenet"], {}
     for (network, split, data), group in seen.groupby(["method", "split", "data"], sort=False):
         sides = group.pivot_table(index="repetition", columns="mode", values="value")
-        if {"finetuned", "frozen"} <= set(sides):
+        if (split, data) in TINTS and {"finetuned", "frozen"} <= set(sides):
             gain = (sides["finetuned"] - sides["frozen"]).dropna()
             if len(gain):
-                found[network, split, data] = interval(100 * gain, HOLD_OUT if split == "random" else 0.0)
+                found[network, split, data] = interval(100 * gain, HOLD_OUT if split == "random" else FOLD_OUT)
     return found
 
 

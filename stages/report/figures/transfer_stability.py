@@ -33,7 +33,7 @@ def build(results):
         raise NotRun("no disturbed imprints", "transfer")
     clean = measured(results)
     clean = clean[(clean["method"] == NETWORK) & (clean["data"] == FINE) & (clean["split"] == "random")]
-    chance = results.measured("transfer", metric="chance", data=FINE)["value"].mean()
+    chance = results.measured("transfer", metric="chance", data=FINE, split="random")["value"].mean()
     down = -(-(len(found) + 1) // COLUMNS)
     figure, grid = plt.subplots(down, COLUMNS, figsize=(10.2, 2.4 * down), squeeze=False, sharey=True)
     for axes, name in zip(grid.flat, found, strict=False):

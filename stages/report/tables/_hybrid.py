@@ -2,6 +2,8 @@
 
 from stages.report.intervals import HOLD_OUT, interval
 
+from ._transfer import FOLD_OUT
+
 SENSES = {"vision": "sight", "touch": "touch"}
 BOTH = {
     "better_sense": "the better sense alone",
@@ -32,6 +34,6 @@ def first_middle(results):
 
 
 def mean(values, split, top=1.0):
-    """(mean, low, high) over the repetitions: splits of the same items, or objects left out."""
-    middle, low, high = interval(values, HOLD_OUT if split == "random" else 0.0)
+    """(mean, low, high) over the repetitions: splits of the same items, or folds of objects left out."""
+    middle, low, high = interval(values, HOLD_OUT if split == "random" else FOLD_OUT)
     return middle, max(low, 0.0), min(high, top)

@@ -35,7 +35,8 @@ def printed_table(results, data, printed, title):
     """The Table of one of the thesis's data sets: its figures, and ours where the data were at hand."""
     thesis = results.thesis(printed).set_index("network")
     rows = results.transfer("recorded")
-    mine = rows[(rows["data"] == data) & (rows["metric"] == "accuracy")].dropna(subset=["value"])
+    mine = rows[(rows["data"] == data) & (rows["metric"] == "accuracy") & (rows["split"] == "random")]
+    mine = mine.dropna(subset=["value"])
     frame = pd.DataFrame([_printed_line(mine, thesis, *pair) for pair in PRINTED.items()])
     return Table(title, frame, [NOTE] if len(mine) else [ABSENT, NOTE], _printed_shown(frame))
 
@@ -70,9 +71,12 @@ def measured_lines(results):
     lines = []
     keys = ["data", "split", "method", "weights", "mode"]
     for key, part in rows.groupby(keys, sort=False, dropna=False):
-        mean, low, high = interval(part["value"], OVER.get(key[1], HOLD_OUT))
+        values = part["value"]
+        if key[1] in OVER and "object" in part:  # objects are the units: a mean each, without that of all together
+            values = part[part["object"] != "all"].groupby("object")["value"].mean()
+        mean, low, high = interval(values, OVER.get(key[1], HOLD_OUT))
         had = next(iter(part["had"].dropna()), None) if "had" in part else None
-        triple = {"accuracy": mean, "low": max(low, 0.0), "high": min(high, 1.0), "values": len(part), "had": had}
+        triple = {"accuracy": mean, "low": max(low, 0.0), "high": min(high, 1.0), "values": len(values), "had": had}
         lines.append(dict(zip(keys, key, strict=True)) | triple)
     return pd.DataFrame(lines)
 

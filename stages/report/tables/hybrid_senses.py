@@ -10,8 +10,10 @@ from ._hybrid import BOTH, WHOLE, mean, rows
 
 NOTES = [
     "Accuracy in per cent [95 % interval over repeated splits]: each test touch with a picture of the same object, "
-    "items at random. Damage is done to one sense alone; its severity is the harshest measured.",
-    "The better sense: that which was right more often on items that neither learned from. By certainty: each head "
+    "items at random. Damage is done to one sense alone; its severity is the highest measured. A sense that is missing "
+    "says nothing, which counts as wrong: below guessing.",
+    "The better sense: that which was right more often on whole items that neither learned from; it does not know of "
+    "the damage. By certainty: each head "
     "counts by one minus the entropy of its answer, after its temperature was set on such items. The streams summed: "
     "what the thesis's own network does when it is fed both, which the thesis never did.",
 ]

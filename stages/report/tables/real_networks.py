@@ -4,7 +4,7 @@ from stages.report.items import Table
 from stages.report.markdown import with_interval
 from stages.report.style import label
 
-from ._recorded import DATA, SPLITS, measured_lines, origin
+from ._recorded import DATA, OVER, SPLITS, measured_lines, origin
 
 NOTES = [
     "Accuracy in per cent [95 % interval]: over repeated splits, widened for what they share; with objects kept for "
@@ -26,5 +26,11 @@ def build(results):
     shown["filters"] = [label(mode) if isinstance(mode, str) else "–" for mode in frame["mode"]]
     triples = zip(frame["accuracy"], frame["low"], frame["high"], strict=True)
     shown["accuracy, %"] = [with_interval(*triple, 100, 1) for triple in triples]
-    columns = ["data", "split", "network", "starts from", "filters", "accuracy, %", "values"]
+    shown["over"] = [_units(*pair) for pair in zip(frame["split"], frame["values"], strict=True)]
+    columns = ["data", "split", "network", "starts from", "filters", "accuracy, %", "over"]
     return Table("Networks that learned by sight, on recorded touches", frame, NOTES, shown[columns])
+
+
+def _units(split, count):
+    """What an interval runs over."""
+    return f"{count} {'objects' if split in OVER else 'splits'}"

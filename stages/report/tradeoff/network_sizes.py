@@ -1,0 +1,63 @@
+"""Frozen networks on a real pressure array: accuracy against parameters, operations and milliseconds."""
+
+import numpy as np
+import pandas as pd
+
+from stages.kit.files import write_table
+from stages.report.items import Figure
+from stages.report.pareto import pareto_front
+from stages.report.results import NotRun
+from stages.report.style import INK, label, plt, save
+from stages.report.tables._recorded import measured_lines
+
+COSTS = {
+    "parameters": ("parameters, millions", 1e6),
+    "operations": ("multiply-adds an image, billions", 1e9),
+    "milliseconds": ("milliseconds an image, one thread", 1.0),
+}
+SIZE = 96  # pixels a side at which the recorded touches are seen
+SLACK = 0.02  # accuracy that the smallest network may lack of the best one's
+SPLIT = "runs"  # neighbouring touches held out together
+
+
+def build(results):
+    lines = measured_lines(results)
+    wanted = {"data": "pressure", "split": SPLIT, "weights": "imagenet", "mode": "frozen"}
+    frame = lines[(lines[list(wanted)] == pd.Series(wanted)).all(axis=1)].rename(columns={"method": "network"})
+    costs = results.bench("networks")
+    frame = frame.merge(costs[costs["size"] == SIZE].drop(columns="size"), on="network")
+    if frame.empty:
+        raise NotRun("no frozen network on the pressure images", "transfer", runnable=False)
+    enough = frame[frame["accuracy"] >= frame["accuracy"].max() - SLACK]
+    smallest = label(enough.loc[enough["parameters"].idxmin(), "network"])
+    figure, panels = plt.subplots(1, len(COSTS), figsize=(11.4, 3.8), sharey=True)
+    for axes, (cost, (words, unit)) in zip(panels, COSTS.items(), strict=True):
+        _draw(axes, frame.assign(cost=frame[cost] / unit))
+        axes.set_xlabel(words)
+    panels[0].set_ylabel("accuracy, %")
+    figure.tight_layout()
+    folder = results.reports / "tradeoff"
+    write_table(folder / "network_sizes.csv", frame)
+    return Figure(
+        "The smallest network that is enough",
+        "Accuracy of frozen networks on real pressure images against parameters, multiply-adds and milliseconds.",
+        "Up and left is better; the line is the Pareto front, bars are 95 % intervals. ImageNet's weights, frozen, a "
+        f"new head for 22 objects, images of {SIZE} pixels, neighbouring touches held out together. The smallest "
+        f"network within {100 * SLACK:.0f} points of the best is {smallest}.",
+        [save(figure, folder / "network_sizes.png"), folder / "network_sizes.csv"],
+    )
+
+
+def _draw(axes, frame):
+    front = frame[pareto_front(frame["cost"], frame["accuracy"])].sort_values("cost")
+    axes.step(front["cost"], 100 * front["accuracy"], where="post", color=INK, lw=1, zorder=1)
+    for row in frame.itertuples():
+        if np.isfinite(row.low):
+            axes.plot([row.cost] * 2, [100 * row.low, 100 * row.high], color="#0072B2", lw=1.2, alpha=0.5)
+        axes.plot(row.cost, 100 * row.accuracy, "o", color="#0072B2", ms=6, mec="white")
+        axes.annotate(
+            label(row.network), (row.cost, 100 * row.accuracy), xytext=(5, 5), textcoords="offset points", fontsize=8
+        )
+    axes.set_xscale("log")
+    axes.margins(x=0.2)
+    axes.grid(True)
