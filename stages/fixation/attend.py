@@ -44,7 +44,8 @@ def attend(item, folder, settings, methods, tasks, seed):
     for method in methods:
         with Stopwatch() as watch:
             cams, spent = cams_of(folder, method, name, tasks)
-            values, bits = projected(cams, mesh, viewpoints, seen, settings.size)
+            network = method_named(method).network
+            values, bits = projected(cams, mesh, viewpoints, seen, settings.size, network)
             whole = over_views(values, seen)
         names = [*cams, *(MODELS if set(FUSED) & set(cams) else ())]
         seconds = drawn + spent + watch.seconds
@@ -74,12 +75,12 @@ def cams_of(folder, method, name, tasks):
     return found, seconds
 
 
-def projected(cams, mesh, viewpoints, seen, size):
+def projected(cams, mesh, viewpoints, seen, size, network):
     """((v, tasks and models, n) f4 on the vertices of each view, dict task -> mean entropy of its maps in bits)."""
     fused = [k for k, task in enumerate(cams) if task in FUSED]
     values, bits = [], []
     for view, viewpoint in enumerate(viewpoints):
-        pictures = to_size(np.stack([cam[view] for cam in cams.values()]), size)
+        pictures = to_size(np.stack([cam[view] for cam in cams.values()]), size, network)
         models = [model(pictures[fused]) for model in MODELS.values()] if fused else []
         values.append(on_vertices(np.stack([*pictures, *models]), mesh, viewpoint, seen[view]).astype(np.float32))
         bits.append([entropy(picture) for picture in pictures])

@@ -1,7 +1,8 @@
 """Grad-CAM of a network whose head is linear on the pooled last maps (T eq. 3.18, 3.19)."""
 
 import numpy as np
-import torch
+
+from stages.networks.grid import cell_positions
 
 
 def grad_cam(maps, weights, classes):
@@ -22,12 +23,19 @@ def grad_cam(maps, weights, classes):
     return np.maximum(importance[:, None] @ maps.reshape(b, channels, i * j), 0).reshape(b, i, j)
 
 
-def to_size(cams, size):
+def to_size(cams, size, network):
     """Maps (b, i, j) as pictures (b, size, size) f4, bilinear, each over its own maximum; zero maps stay zero.
 
-    The corners of pixels, not their middles, are aligned, as where the network's strides put them.
+    network: whose maps they are; it says around which pixels its cells look (stages.networks.grid). To align the
+    corners of pixels, as resizing does, would move the maps of most networks by half a cell.
     """
-    cams = torch.as_tensor(np.ascontiguousarray(cams, dtype=np.float32))
-    large = torch.nn.functional.interpolate(cams[:, None], (size, size), mode="bilinear")[:, 0].numpy()
+    cams = np.asarray(cams, dtype=np.float32)
+    down, across = (_weights(cell_positions(network, size, cells), cells) for cells in cams.shape[1:])
+    large = down @ cams @ across.T
     top = large.max(axis=(1, 2), keepdims=True)
     return np.divide(large, top, out=np.zeros_like(large), where=top > 0)
+
+
+def _weights(places, cells):
+    """(p, cells) f4: how much each cell counts at a place between two of them."""
+    return np.maximum(1 - np.abs(places[:, None] - np.arange(cells)), 0).astype(np.float32)

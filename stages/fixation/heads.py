@@ -66,7 +66,8 @@ def teach(item, folder, settings, tasks, seed):
     ]
     rows[0]["seconds"] = watch.seconds
     with threadpool_limits(1):
-        return rows + [row | one for one in unseen(features, ids, classes, penalty, settings.folds, rng(seed, task))]
+        apart = unseen(features, ids, classes, settings.penalties, settings.folds, rng(seed, task))
+    return rows + [row | one for one in apart]
 
 
 def gathered(folder, method, known):
@@ -86,13 +87,22 @@ def right(features, ids, classes, train, test, penalty):
     return float((found == classes[ids[test]]).mean())
 
 
-def unseen(features, ids, classes, penalty, folds, generator):
-    """Rows of the accuracy on objects never seen, over all objects whose class has another one."""
+def unseen(features, ids, classes, penalties, folds, generator):
+    """Rows of the accuracy on objects never seen, over all objects whose class has another one.
+
+    The penalty is chosen on the next part of the objects, by heads that saw neither.
+    """
     fold = hold_out(classes, folds, generator)
     found = []
-    for number in np.unique(fold[fold >= 0]):
+    numbers = np.unique(fold[fold >= 0])
+    for number, following in zip(numbers, np.roll(numbers, -1), strict=True):
         train, test = np.flatnonzero(fold[ids] != number), np.flatnonzero(fold[ids] == number)
         if len(np.unique(classes[ids[train]])) > 1:
+            kept, check = train[fold[ids[train]] != following], train[fold[ids[train]] == following]
+            penalty = penalties[0]
+            if len(check) and len(np.unique(classes[ids[kept]])) > 1:
+                tried = [right(features, ids, classes, kept, check, one) for one in penalties]
+                penalty = penalties[int(np.argmax(tried))]
             values = right(features, ids, classes, train, test, penalty), commonest(classes[ids], train, test)
             found.append((*values, len(test)))
     if not found:

@@ -12,11 +12,12 @@ WHOLE = "all"  # all views together
 def judged(mesh, lesson, seen, by_view, whole, places=True):
     """Rows of view, metric, value: one saliency against the people's.
 
-    lesson: arrays of stages.weights.lessons; seen (3, n) boolean and by_view (3, n): the three views and the saliency
-    in each; whole (n,): all views in one, which nss and auc are of. pcc, of a view over the vertices that it sees,
-    weighs each vertex by its area. pcc_masked is the thesis's number, over all vertices with the hidden ones set to
-    zero in both: to know what is visible already gives some of it. With places, a view's distance between fixation
-    centres too (T figure 3.36): the least in units and as distance_share of the diagonal, distance_mean over the pairs.
+    lesson: arrays of stages.weights.lessons; seen (3, n) boolean and by_view (3, n): the three views and the
+    saliency in each; whole (n,): all views in one, which nss and auc are of. pcc, of a view over the vertices that
+    it sees, weighs each vertex by its area. pcc_masked is the thesis's number, over all vertices with the hidden
+    ones set to zero in both, each scaled to 0..1 before: to know what is visible already gives some of it. With
+    places, a view's distance between fixation centres too (T figure 3.36): the least in units and as distance_share
+    of the diagonal, distance_mean over the pairs.
     """
     rows = []
     for view, (visible, values) in enumerate(zip(seen, by_view, strict=True)):
@@ -25,7 +26,7 @@ def judged(mesh, lesson, seen, by_view, whole, places=True):
             continue
         found = {
             "pcc": cc(values[visible], truth),
-            "pcc_masked": pearson(values * visible, lesson["density"] * visible),
+            "pcc_masked": pearson(scaled(values) * visible, scaled(lesson["density"]) * visible),
         }
         if places:
             least, mean = centre_distance(mesh.vertices, lesson["density"], values, visible)
@@ -42,6 +43,12 @@ def truth_of(lesson, visible):
     """The Truth of what a view sees, None where nobody looked at it."""
     amounts, density, areas = (lesson[key][visible] for key in ("amounts", "density", "areas"))
     return Truth(amounts, density, areas) if amounts.any() and (density * areas).any() else None
+
+
+def scaled(values):
+    """Values (n,) from 0 to 1; zero where they are all alike."""
+    low, high = values.min(), values.max()
+    return (values - low) / (high - low) if high > low else np.zeros_like(values)
 
 
 def pearson(one, other):

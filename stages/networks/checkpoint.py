@@ -1,5 +1,6 @@
 """What a training needs to go on after a kill as if nothing had happened: one file, whole or absent."""
 
+import copy
 import pickle
 import sys
 
@@ -32,17 +33,31 @@ def resume(path, settings, **parts):
     try:
         state = torch.load(path, map_location="cpu", weights_only=True)
         reason = _strange(state, settings, parts["model"])
-    except (OSError, RuntimeError, EOFError, KeyError, TypeError, AttributeError, pickle.UnpicklingError) as error:
+        if not reason:
+            _restore(state, parts)
+    except (OSError, RuntimeError, EOFError, KeyError, TypeError, AttributeError, ValueError,
+            pickle.UnpicklingError) as error:  # fmt: skip
         reason = f"it cannot be read ({' '.join(str(error).split())[:80]})"
     if reason:
         print(f"{path.name}: passed over, {reason}; the training begins anew", file=sys.stderr)
         return 0
-    for name, part in parts.items():
-        part.load_state_dict(state["parts"][name])
-    torch.set_rng_state(state["random"])
-    if "random_cuda" in state and torch.cuda.is_available():
-        torch.cuda.set_rng_state(state["random_cuda"])
     return state["epoch"]
+
+
+def _restore(state, parts):
+    """Puts a state back into the parts and into torch's random numbers; where that fails, all is as before."""
+    before = {name: copy.deepcopy(part.state_dict()) for name, part in parts.items()}
+    random, _ = state["random"], state["epoch"]
+    try:
+        for name, part in parts.items():
+            part.load_state_dict(state["parts"][name])
+        torch.set_rng_state(random)
+        if "random_cuda" in state and torch.cuda.is_available():
+            torch.cuda.set_rng_state(state["random_cuda"])
+    except Exception:
+        for name, part in parts.items():
+            part.load_state_dict(before[name])
+        raise
 
 
 def _strange(state, settings, model):

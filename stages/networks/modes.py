@@ -9,6 +9,7 @@ from .device import device_of, enough_memory, mixed
 from .images import augmentation, normalise, to_images
 from .layers import frozen_modules, is_range
 from .network import settle
+from .scaled import Scaled
 from .training import MEMORY
 
 
@@ -16,10 +17,11 @@ from .training import MEMORY
 class Task:
     """What a mode trains: the model, and what it is fed.
 
-    training_inputs(ids) gives the augmented inputs of touches (b,) i8, drawn from torch's random numbers; inputs(ids)
-    the plain ones, always the same; finish(model, ids) is what is left to do when training on the touches ids ends;
-    encode(images) gives the inputs of other images (k, 3, size, size) in 0..1. fixed: names of the model's modules that
-    stay in evaluation mode, so that their statistics stay too.
+    training_inputs(ids) gives the augmented inputs of touches (b,) i8, drawn from torch's random numbers;
+    inputs(ids) the plain ones, always the same; finish(model, ids) is what is left to do when training on the
+    touches ids ends; encode(images) gives the inputs of other images (k, 3, size, size) in 0..1; begin(model, ids)
+    comes before. fixed: names of the model's modules that stay in evaluation mode, so that their statistics stay
+    too.
     """
 
     model: torch.nn.Module
@@ -28,6 +30,7 @@ class Task:
     finish: Callable[[torch.nn.Module, torch.Tensor], None]
     encode: Callable[[torch.Tensor], torch.Tensor]
     fixed: tuple[str, ...] = ()
+    begin: Callable[[torch.nn.Module, torch.Tensor], None] = lambda model, ids: None
 
 
 def frozen(network, imprints, size, copies):
@@ -35,7 +38,8 @@ def frozen(network, imprints, size, copies):
 
     Nothing of the convolutions changes, and neither do the statistics of their normalisation: the network stays in
     evaluation mode. So each image's features are computed once and cached. Cached features cannot be augmented: a few
-    augmented copies of each image (`copies`) are cached beside the plain one, and each step draws among them.
+    augmented copies of each image (`copies`) are cached beside the plain one, and each step draws among them. The head
+    sees them scaled by the touches that it learns from.
     """
     network.eval().requires_grad_(False).head.requires_grad_(True)
     images, moved = to_images(imprints, size).to(device_of(network)), augmentation()
@@ -48,7 +52,11 @@ def frozen(network, imprints, size, copies):
     def encode(others):
         return features(network, others.to(plain.device))
 
-    return Task(network.head, drawn, lambda ids: plain[ids], lambda head, ids: None, encode)
+    def begin(model, ids):
+        model.fit(plain[ids])
+
+    model = Scaled(network.head, plain.shape[1]).to(plain.device)
+    return Task(model, drawn, lambda ids: plain[ids], lambda head, ids: None, encode, begin=begin)
 
 
 def finetuned(network, imprints, size, copies):

@@ -126,8 +126,10 @@ def settle(network, inputs, ids, batch=32, fixed=()):
     network.eval()
     for layer in layers:
         layer.train()
-    # Parts of even size: a rest of one image has no variance.
-    for part in torch.as_tensor(ids).tensor_split(-(-len(ids) // batch)):
+    # Shuffled, since ids come class by class, and a part of one class alone would be centred on that class; by a
+    # generator of its own, so that no other draw changes. Parts of even size: a rest of one image has no variance.
+    order = torch.randperm(len(ids), generator=torch.Generator().manual_seed(0))
+    for part in torch.as_tensor(ids)[order].tensor_split(-(-len(ids) // batch)):
         network(inputs(part))
     for layer, momentum in zip(layers, usual, strict=True):
         layer.momentum = momentum

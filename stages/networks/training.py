@@ -26,11 +26,14 @@ def learn(task, labels, ids, rate, epochs, batch, momentum, seed=None, checkpoin
     if seed is not None:
         torch.manual_seed(seed)
     model, device = copy.deepcopy(task.model), device_of(task.model)
+    task.begin(model, torch.as_tensor(ids))
     optimiser = torch.optim.SGD([p for p in model.parameters() if p.requires_grad], lr=rate, momentum=momentum)
     scaler = torch.amp.GradScaler(device.type, enabled=device.type == "cuda")
     labels, ids = torch.as_tensor(labels), torch.as_tensor(ids)
     batch = min(batch, len(ids))
     settings = {"rate": rate, "epochs": epochs, "batch": batch, "momentum": momentum, "touches": _digest(ids, labels)}
+    settings |= {"seed": seed, "device": device.type}
+    settings["learning"] = [name for name, value in model.named_parameters() if value.requires_grad]
     parts, done = {"model": model, "optimiser": optimiser, "scaler": scaler}, 0
     if checkpoint is not None:
         done = resume(Path(checkpoint), settings, **parts)
@@ -90,8 +93,8 @@ def accuracy(found, labels):
 def search(task, labels, part, validation, rates, **training):
     """(rate, accuracy on the validation part): the best of the learning rates, the first of equals.
 
-    The networks tried see the training part without its validation touches, and never a test touch. training: what
-    `learn` is told besides.
+    The networks tried learn from the training part without its validation touches, and never from a test touch.
+    training: what `learn` is told besides.
     """
     tried = []
     for rate in rates:

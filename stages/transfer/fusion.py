@@ -7,7 +7,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 from scipy.special import log_softmax, softmax
 
-WIDEST = np.log(100)  # temperatures are sought between 1/100 and 100
+WIDEST = np.log(100)  # temperatures are sought between 1 and 100
 BINS = 10  # of the calibration error
 
 
@@ -21,8 +21,9 @@ def probabilities(scores, temperature=1.0):
 def best_temperature(scores, labels):
     """The temperature under which the labels (n,) are most likely (Guo et al. 2017, On calibration of neural networks).
 
-    scores (n, k) must be of items that did not train the network. It never changes which class comes first. Raises
-    ValueError for no items, or scores that are not finite.
+    scores (n, k) must be of items that did not train the network. It never changes which class comes first, and is 1 or
+    more: where all of a few items are right, any sharper answer is likelier still, and the network would be believed
+    even where it sees nothing. Raises ValueError for no items, or scores that are not finite.
     """
     scores, labels = np.asarray(scores, dtype=np.float64), np.asarray(labels)
     if not len(scores) or len(scores) != len(labels) or not np.isfinite(scores).all():
@@ -31,7 +32,7 @@ def best_temperature(scores, labels):
     def surprise(logarithm):
         return -log_softmax(scores / np.exp(logarithm), axis=1)[np.arange(len(labels)), labels].mean()
 
-    return float(np.exp(minimize_scalar(surprise, bounds=(-WIDEST, WIDEST), method="bounded").x))
+    return float(np.exp(minimize_scalar(surprise, bounds=(0, WIDEST), method="bounded").x))
 
 
 def calibration_error(chances, labels):

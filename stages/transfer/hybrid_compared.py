@@ -24,7 +24,7 @@ def compared(hybrid, networks, senses, seconds, name, folder, classes):
         tested[kind] = scored(hybrid, sense.images[sense.test], kind)
         write_arrays(paths / f"{name}.{kind}.npz", **state_arrays(network))
         yield row(SENSES[kind], "accuracy", fusion.accuracy(own, sense.labels[sense.test]), kind, seconds[kind])
-        yield row("hybrid", "max_difference", float(np.abs(own - tested[kind]).max()), kind)
+        yield row("hybrid", "max_difference", float(np.nanmax(np.abs(own - tested[kind]))), kind)
         yield from calibrated(tested[kind], sense.labels[sense.test], kind, float(hybrid.temperature[kind]))
     own = [paths / f"{name}.{kind}.npz" for kind in range(2)]
     apart = sum(path.stat().st_size for path in own)

@@ -23,7 +23,6 @@ from . import fusion
 from .hybrid import SENSES, HybridNet
 from .hybrid_both import fused
 from .hybrid_compared import compared, exported
-from .hybrid_damage import check
 from .hybrid_data import as_images, read_pictures
 from .hybrid_scores import scored
 from .hybrid_training import held, middle_of
@@ -70,11 +69,8 @@ def trials(settings, members):
     """The names of all hybrid networks. members: {split: {class: its objects}}.
 
     The first of hybrid_middles is repeated; the others, which are there for their size, are not. None where
-    hybrid_repetitions is 0. Raises ValueError for a range of layers or a perturbation that cannot be.
+    hybrid_repetitions is 0.
     """
-    check(settings.hybrid_severities)
-    for layers in settings.hybrid_middles:
-        middle_of(layers)
     found = []
     for place, layers in enumerate(settings.hybrid_middles):
         count = settings.hybrid_repetitions if place == 0 else min(settings.hybrid_repetitions, 1)
@@ -105,7 +101,7 @@ def process(name, folder, members, settings, seed):
         hybrid = HybridNet(*networks, middle_of(trial.layers))
         alone = [scored(hybrid, sense.images[sense.check], kind) for kind, sense in enumerate(senses)]
         pairs = zip(alone, senses, strict=True)
-        found = [fusion.best_temperature(scores, sense.labels[sense.check]) for scores, sense in pairs]
+        found = [spoken_temperature(scores, sense.labels[sense.check]) for scores, sense in pairs]
         hybrid.temperature.copy_(torch.tensor(found))
         rows = [*compared(hybrid, networks, senses, seconds, name, folder, classes)]
         if first:
@@ -116,6 +112,12 @@ def process(name, folder, members, settings, seed):
         (folder / "hybrid" / "networks" / f"{name}.npz").unlink()
     about = {"data": "hybrid", "weights": "imagenet", "had": had("mobilenet_v2", settings.source), "mode": trial.layers}
     return [about | {"split": trial.split, "repetition": trial.repetition} | row for row in rows]
+
+
+def spoken_temperature(scores, labels):
+    """The best temperature of the items that a sense said something about: a touch that felt nothing is none."""
+    spoken = np.isfinite(scores).all(axis=1)
+    return fusion.best_temperature(scores[spoken], labels[spoken])
 
 
 def read(folder, members, settings):

@@ -10,7 +10,8 @@ from stages.networks.modes import MODES
 from stages.networks.network import NETWORKS, START
 from stages.networks.weights import had, imagenet_state
 
-from . import disturbed
+from . import disturbed, hybrid_damage
+from .hybrid_training import middle_of
 from .split import SPLITS
 from .touches import arrays
 
@@ -65,6 +66,9 @@ def check(settings):
         raise ValueError("transfer: repetitions and cells, the coarse ones too, must be 1 or more")
     choose(settings.device)
     disturbed.check(settings.severities)
+    hybrid_damage.check(settings.hybrid_severities)
+    for layers in settings.hybrid_middles:
+        middle_of(layers)
 
 
 def plan(classes, vertices, settings):

@@ -103,15 +103,23 @@ def strange(kind, path):
         with pytest.raises(Killed):
             train(killed_after(4, task("finetuned", width=4)), path)
         return None
+    changes = {"rate": {"rate": 0.5}, "seed": {"seed": 6}, "bare": {}}[kind]
     with pytest.raises(Killed):
-        train(killed_after(4, task("finetuned")), path, rate=0.5)
+        train(killed_after(4, task("finetuned")), path, **changes)
+    if kind == "bare":
+        state = torch.load(path, weights_only=True)
+        del state["random"]
+        torch.save(state, path)
     return None
 
 
 @pytest.mark.parametrize(
     ("kind", "word"),
-    [("damaged", "cannot be read"), ("architecture", "another architecture"), ("rate", "with other rate")],
-)
+    [
+        ("damaged", "cannot be read"), ("architecture", "another architecture"), ("rate", "with other rate"),
+        ("seed", "with other seed"), ("bare", "cannot be read"),
+    ],
+)  # fmt: skip
 def test_a_checkpoint_that_does_not_belong_is_passed_over_with_a_word(tmp_path, capsys, kind, word):
     whole, path = task("finetuned"), tmp_path / "trial.pt"
     strange(kind, path)
@@ -122,3 +130,14 @@ def test_a_checkpoint_that_does_not_belong_is_passed_over_with_a_word(tmp_path, 
 
 def test_nothing_to_resume_is_the_beginning(tmp_path):
     assert resume(tmp_path / "none.pt", {}, model=small()) == 0
+
+
+def test_what_cannot_be_put_back_leaves_all_as_it_was(tmp_path, capsys):
+    path, model = tmp_path / "trial.pt", small()
+    optimiser = torch.optim.SGD(model.parameters(), lr=0.1, momentum=0.9)
+    save(path, 3, {}, model=model, optimiser=optimiser)
+    other = small()
+    fewer = torch.optim.SGD(list(other.parameters())[:2], lr=0.1, momentum=0.9)
+    before = {key: value.clone() for key, value in other.state_dict().items()}
+    assert resume(path, {}, model=other, optimiser=fewer) == 0 and "passed over" in capsys.readouterr().err
+    assert all(torch.equal(value, before[key]) for key, value in other.state_dict().items())

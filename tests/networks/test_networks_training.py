@@ -51,7 +51,7 @@ def trained(imprints, mode, epochs, rate=0.01):
 def test_frozen_mode_changes_no_convolution_and_no_statistic(imprints):
     network, task, before, model = trained(imprints, "frozen", 3)
     assert all(torch.equal(value, before[key]) for key, value in network.state_dict().items())
-    assert not torch.equal(model[1].weight, before["head.1.weight"])
+    assert not torch.equal(model.head[1].weight, before["head.1.weight"])
     assert parameters(model, trained=True) == 1280 * 2 + 2
 
 

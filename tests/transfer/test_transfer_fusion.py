@@ -60,12 +60,17 @@ def test_certainty_runs_from_nothing_to_all():
     assert 0 < certainty(np.array([[0.5, 0.5, 0, 0]]))[0] < 1
 
 
-@pytest.mark.parametrize("true", [0.5, 1.0, 4.0])
+@pytest.mark.parametrize("true", [1.0, 4.0])
 def test_the_temperature_of_scores_is_found_again(true):
     generator = np.random.default_rng(0)
     logits = generator.normal(size=(4000, 5)) * 2
     labels = np.array([generator.choice(5, p=row) for row in softmax(logits, axis=1)])
     assert best_temperature(logits * true, labels) == pytest.approx(true, rel=0.1)
+
+
+def test_a_temperature_never_makes_a_network_surer():
+    right = np.eye(4) * 3.0  # every item right: the sharper, the likelier
+    assert best_temperature(right, np.arange(4)) == pytest.approx(1, abs=1e-3)
 
 
 def test_a_temperature_calibrates_and_changes_no_first_class():

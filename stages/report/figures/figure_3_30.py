@@ -6,6 +6,8 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 
 from stages.fixation import fuse, sphere
+from stages.fixation.cam import to_size
+from stages.networks.grid import GRIDS
 from stages.report.drawing import colour_map, picture, square_grid, squared
 from stages.report.items import Figure
 from stages.report.results import NotRun
@@ -28,7 +30,8 @@ def build(results):
     render = picture(mesh, viewpoint=VIEWS[view], rows=ROWS)
     figure, grid = square_grid(len(methods), len(shown) + 1, side=1.6, right=0.9)
     for row, method in zip(grid, methods, strict=True):
-        maps = dict(zip(tasks, map(large, arrays[f"{method}.maps"][view]), strict=True))
+        cams = large(arrays[f"{method}.maps"][view], method.rpartition("-")[0])
+        maps = dict(zip(tasks, cams, strict=True))
         maps["together"] = together(maps)
         for axes, task in zip(row, [*shown, "together"], strict=True):
             axes.imshow(veiled(render, maps[task]))
@@ -57,10 +60,10 @@ def sizes(arrays, methods):
     return " or ".join(f"{rows} x {columns}" for rows, columns in sorted(shapes))
 
 
-def large(cam):
-    """(ROWS, ROWS) f4: a Grad-CAM map (i, j), bilinear, over its maximum; a zero map stays zero."""
-    wide = cv2.resize(cam.astype(np.float32), (ROWS, ROWS), interpolation=cv2.INTER_LINEAR)
-    return wide / (wide.max() or 1)
+def large(cams, network):
+    """(t, ROWS, ROWS) f4: Grad-CAM maps (t, i, j) of a network as it sees them, each over its maximum or zero."""
+    seen = to_size(cams, GRIDS[network][0] * cams.shape[1], network)
+    return np.stack([cv2.resize(cam, (ROWS, ROWS), interpolation=cv2.INTER_LINEAR) for cam in seen])
 
 
 def together(maps):
