@@ -59,5 +59,7 @@ def _draw(axes, frame):
             label(row.network), (row.cost, 100 * row.accuracy), xytext=(5, 5), textcoords="offset points", fontsize=8
         )
     axes.set_xscale("log")
+    axes.set_xticks(frame["cost"], [f"{value:.2g}" for value in frame["cost"]], fontsize=8)
+    axes.minorticks_off()
     axes.margins(x=0.2)
     axes.grid(True)
