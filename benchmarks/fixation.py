@@ -3,9 +3,8 @@
 FOLDER: a working tree in which `dvc repro fixation` ran on meshes with human gaze (`make fixation` leaves one in
 build/fixation). Writes reports/fixation: gaze.csv (the rows of reports/measurements/fixation.csv without dataset and
 seed, values to four digits), tasks.csv and elbow.csv (the classes of the meshes and how their number was found),
-summary.csv (method, task, metric, the mean over the meshes with its interval, seconds a mesh) and hours.csv (what
-fine-tuning costs and gains: network, seconds of all meshes frozen and fine-tuned, agreement of either, difference with
-its interval over the meshes).
+summary.csv (method, task, metric, the mean over the meshes with its interval, seconds a mesh); and the pictures of
+figures 3.30 and 3.34 on these meshes, which the report then shows.
 """
 
 from pathlib import Path
@@ -16,10 +15,13 @@ import pandas as pd
 from benchmarks import arguments
 from stages.fixation.judge import WHOLE
 from stages.kit.files import read_table, whole_file
-from stages.weights.agreement import mean_interval, paired
+from stages.kit.params import params
+from stages.report.figures import figure_3_30, figure_3_34
+from stages.report.figures._kept import keep
+from stages.report.results import Results
+from stages.weights.agreement import mean_interval
 
 OUT = Path("reports/fixation")
-MODEL = "ewigc"
 
 
 def per_mesh(rows):
@@ -40,28 +42,6 @@ def summary(rows):
     return pd.DataFrame(found)
 
 
-def hours(rows):
-    """Frame of networks that ran frozen and fine-tuned: seconds of the whole data set, agreement and its difference."""
-    values, found = per_mesh(rows), []
-    spent = rows[rows["metric"].isin(["views", "accuracy"])].dropna(subset=["seconds"])
-    spent = spent.groupby("method")["seconds"].sum()
-    for name in spent.index[spent.index.str.endswith("-finetuned")]:
-        network, frozen = name.rpartition("-")[0], f"{name.rpartition('-')[0]}-frozen"
-        if frozen not in spent:
-            continue
-        for metric in ("pcc", "nss", "auc", "distance"):
-            own = {one: values.get((one, MODEL, metric), pd.Series(dtype=float)) for one in (frozen, name)}
-            pair = pd.DataFrame(own).dropna()
-            if pair.empty:
-                continue
-            mean, low, high = paired(pair[name].to_numpy(), pair[frozen].to_numpy())
-            found.append({"network": network, "metric": metric, "frozen_seconds": spent[frozen],
-                          "finetuned_seconds": spent[name], "frozen": pair[frozen].mean(),
-                          "finetuned": pair[name].mean(), "difference": mean, "low": low, "high": high})  # fmt: skip
-    columns = ["network", "metric", "frozen_seconds", "finetuned_seconds", "frozen", "finetuned", "difference", "low"]
-    return pd.DataFrame(found, columns=[*columns, "high"])
-
-
 def write(name, frame):
     """Writes a table with four significant digits."""
     with whole_file(OUT / f"{name}.csv") as part:
@@ -70,14 +50,17 @@ def write(name, frame):
 
 
 def main():
-    """Writes the five tables."""
+    """Writes the four tables and both pictures."""
     folder = Path(arguments(__doc__, "folder").folder)
     rows = read_table(folder / "reports/measurements/fixation.csv")
     write("gaze", rows.drop(columns=["dataset", "seed"]))
     for name in ("tasks", "elbow"):
         write(name, read_table(folder / f"data/fixation/{name}.csv"))
     write("summary", summary(rows))
-    write("hours", hours(rows))
+    results = Results(params("report"), folder)
+    for name, figure in (("figure_3_30", figure_3_30), ("figure_3_34", figure_3_34)):
+        keep(figure.build(results), name, OUT)
+        print(OUT / f"{name}.png", flush=True)
 
 
 if __name__ == "__main__":

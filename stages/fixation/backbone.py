@@ -7,7 +7,7 @@ from stages.kit import Stopwatch
 from stages.kit.files import read_arrays, write_arrays
 from stages.kit.repeatable import repeatable
 from stages.networks import build, settle
-from stages.networks.device import choose, device_of
+from stages.networks.device import choose, device_of, enough_memory
 
 from .options import MODES, method_named
 from .pictures import inputs, read_pictures
@@ -63,7 +63,8 @@ def look(item, folder, settings, seed):
 def maps_of(network, pictures):
     """(v, C, i, j) f4: the last maps of grey pictures (v, h, w) u1."""
     layers, device = last_maps(network), device_of(network)
-    parts = [layers(inputs(pictures[k : k + BATCH], device)).cpu().numpy() for k in range(0, len(pictures), BATCH)]
+    with enough_memory():
+        parts = [layers(inputs(pictures[k : k + BATCH], device)).cpu().numpy() for k in range(0, len(pictures), BATCH)]
     return np.concatenate(parts)
 
 

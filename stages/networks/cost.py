@@ -14,8 +14,8 @@ WARM = 2  # runs before the clock starts
 
 
 @torch.no_grad()
-def cost(network, size, channels=3):
-    """dict(parameters, operations, milliseconds) of a network for one image (1, channels, size, size).
+def cost(network, size):
+    """dict(parameters, operations, milliseconds) of a network for one image (1, 3, size, size).
 
     operations: multiply-adds of convolutions and matrix products, as papers count them: half of what torch's counter
     calls floating-point operations, which takes the multiplication and the addition for two. Normalisation, activation
@@ -27,7 +27,7 @@ def cost(network, size, channels=3):
     if size < 1:
         raise ValueError(f"the side of the image must be 1 pixel or more, got {size}")
     here = copy.deepcopy(network).cpu().eval()
-    image = torch.zeros(1, channels, size, size).contiguous(memory_format=torch.channels_last)
+    image = torch.zeros(1, 3, size, size).contiguous(memory_format=torch.channels_last)
     threads = torch.get_num_threads()
     torch.set_num_threads(1)
     try:
@@ -35,7 +35,7 @@ def cost(network, size, channels=3):
             here(image)
         milliseconds = _milliseconds(lambda: here(image))
     except RuntimeError as error:
-        raise ValueError(f"the network cannot take an image of {channels} x {size} x {size}: {error}") from None
+        raise ValueError(f"the network cannot take an image of 3 x {size} x {size}: {error}") from None
     finally:
         torch.set_num_threads(threads)
     operations = counter.get_total_flops() // 2

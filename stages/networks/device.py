@@ -6,6 +6,7 @@ from contextlib import contextmanager
 import torch
 
 DEVICES = ("auto", "cpu", "cuda")
+REMEDY = "take a smaller batch or smaller images (the stage's `batch` and `size`) or fewer workers (parallel.workers)"
 
 
 def choose(name="auto"):
@@ -35,13 +36,13 @@ def mixed(device):
 
 
 @contextmanager
-def enough_memory(remedy):
-    """Turns torch's out-of-memory errors into a ValueError that names the remedy, such as a smaller batch."""
+def enough_memory():
+    """Turns torch's out-of-memory errors into a ValueError that names the remedies."""
     try:
         yield
     except torch.OutOfMemoryError as error:
-        raise ValueError(f"the card has too little memory: {remedy}") from error
+        raise ValueError(f"the card has too little memory: {REMEDY}") from error
     except RuntimeError as error:
         if "can't allocate memory" not in str(error):  # what the processor's allocator says
             raise
-        raise ValueError(f"too little memory: {remedy}") from error
+        raise ValueError(f"too little memory: {REMEDY}") from error

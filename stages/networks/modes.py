@@ -10,7 +10,6 @@ from .images import augmentation, normalise, to_images
 from .layers import frozen_modules, is_range
 from .network import settle
 from .scaled import Scaled
-from .training import MEMORY
 
 
 @dataclass(frozen=True)
@@ -110,6 +109,6 @@ def features(network, images, change=None, batch=32):
     """(k, width) f4: the network's features of images (k, 3, h, w) in 0..1, each batch first given to `change`."""
     found = []
     for part in images.split(batch):
-        with enough_memory(MEMORY), mixed(images.device):
+        with enough_memory(), mixed(images.device):
             found.append(network.features(normalise(part if change is None else change(part))).float())
     return torch.cat(found)

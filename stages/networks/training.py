@@ -9,8 +9,6 @@ import torch
 from .checkpoint import resume, save
 from .device import device_of, enough_memory, mixed
 
-MEMORY = "take a smaller batch (transfer.batch), smaller images (transfer.size) or fewer workers (parallel.workers)"
-
 
 def learn(task, labels, ids, rate, epochs, batch, momentum, seed=None, checkpoint=None):
     """A copy of task.model trained on the touches `ids`, in evaluation mode; the task's own model stays as it was.
@@ -37,7 +35,7 @@ def learn(task, labels, ids, rate, epochs, batch, momentum, seed=None, checkpoin
     parts, done = {"model": model, "optimiser": optimiser, "scaler": scaler}, 0
     if checkpoint is not None:
         done = resume(Path(checkpoint), settings, **parts)
-    with enough_memory(MEMORY):
+    with enough_memory():
         for epoch in range(done, epochs):
             _one_epoch(model, task, labels, ids, batch, optimiser, scaler)
             if checkpoint is not None:
@@ -77,7 +75,7 @@ def answers(model, inputs, ids, batch=64):
     """(n, classes) f4 on the processor: the softmax of the model for inputs(ids), a part at a time."""
     found = []
     for part in torch.as_tensor(ids).split(batch):
-        with enough_memory(MEMORY):
+        with enough_memory():
             given = inputs(part)
             with mixed(device_of(model)):
                 found.append(model(given).float().softmax(dim=1).cpu())

@@ -2,7 +2,7 @@
 
 import torch
 
-from stages.networks.device import device_of
+from stages.networks.device import device_of, enough_memory
 
 from .hybrid import SENSES, Scores, join
 
@@ -22,7 +22,8 @@ def scored(hybrid, images, kind):
 @torch.no_grad()
 def in_parts(function, images, device):
     """function(images), a tensor or Scores, as numpy; computed on the device, a few images at a time."""
-    found = [function(part.to(device)) for part in images.split(BATCH)]
+    with enough_memory():
+        found = [function(part.to(device)) for part in images.split(BATCH)]
     if isinstance(found[0], Scores):
         return Scores(*(torch.cat(part).cpu().numpy() for part in zip(*found, strict=True)))
     return torch.cat(found).cpu().numpy()

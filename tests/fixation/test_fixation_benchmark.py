@@ -3,7 +3,8 @@
 import pandas as pd
 import pytest
 
-from benchmarks.fixation import hours, summary
+from benchmarks.fixation import summary
+from benchmarks.fixation_costs import costs
 
 
 @pytest.fixture
@@ -27,11 +28,8 @@ def test_a_mesh_counts_once_whatever_its_views_and_all_views_together_are_not_a_
     assert table.loc["net-frozen", "low"] < 0.315 < table.loc["net-frozen", "high"]
 
 
-def test_the_saved_hours_and_what_they_cost(rows):
-    row = hours(rows).set_index("metric").loc["pcc"]
-    assert row["frozen_seconds"] == 10 and row["finetuned_seconds"] == 100
-    assert row["difference"] == pytest.approx(0.1) and row["low"] <= row["difference"] <= row["high"]
-
-
-def test_without_a_pair_there_is_no_comparison(rows):
-    assert hours(rows[rows["method"] == "net-frozen"]).empty
+def test_the_chart_of_costs_gets_the_seconds_and_the_fused_map_of_each_view(rows):
+    rows = rows.assign(dataset="gaze", seed=0)
+    found = costs(pd.concat([rows, rows.assign(task="level_1", metric="pcc"), rows.assign(metric="nss")]))
+    assert found["metric"].value_counts().to_dict() == {"pcc": 16, "views": 8, "accuracy": 2}
+    assert set(found["view"].dropna()) == {"0", "1"} and not {"dataset", "seed"} & set(found)

@@ -4,10 +4,12 @@ import sys
 
 import numpy as np
 import pytest
+import torch
 import yaml
 
 from stages.fixation import __main__ as stage
 from stages.fixation import options, read_attention
+from stages.fixation.backbone import maps_of
 from stages.fixation.options import method_named
 from stages.fixation.schema import Params
 from stages.kit.fetch import FetchError
@@ -118,3 +120,18 @@ def test_an_unknown_method_is_named(name):
 def test_settings_that_no_run_can_have_are_refused(changed):
     with pytest.raises(ValueError):
         options.checked(Params(**SETTINGS | changed))
+
+
+def test_too_little_memory_names_the_remedy():
+    class Hungry:
+        convolutions = torch.nn.Conv2d(3, 1, 1)
+
+        def parameters(self):
+            return self.convolutions.parameters()
+
+    def too_much(images):
+        raise torch.OutOfMemoryError("CUDA out of memory")
+
+    Hungry.convolutions.forward = too_much
+    with pytest.raises(ValueError, match="too little memory: take a smaller batch"):
+        maps_of(Hungry(), np.zeros((1, 4, 4), dtype=np.uint8))

@@ -128,8 +128,8 @@ def test_cost_leaves_the_network_and_the_threads_as_they_were():
     assert found["parameters"] == parameters(network)
     with pytest.raises(ValueError, match="1 pixel or more"):
         cost(network, 0)
-    with pytest.raises(ValueError, match="cannot take an image of 6 x 64 x 64"):
-        cost(network.convolutions, 64, channels=6)
+    with pytest.raises(ValueError, match="cannot take an image of 3 x 64 x 64"):
+        cost(torch.nn.Conv2d(6, 1, 3), 64)
 
 
 def test_convolutions_alone_classify_nothing_of_imagenet():

@@ -10,6 +10,7 @@ from stages.networks.images import normalise
 from stages.networks.network import build, parameters, settle
 from stages.networks.weights import PACKAGES
 from stages.transfer.hybrid import MIDDLE, HybridNet, join
+from stages.transfer.hybrid_scores import in_parts
 from stages.transfer.switch import Switch, present
 
 SIZE, CLASSES = 32, 3
@@ -191,3 +192,11 @@ def test_join_refuses_nothing_at_all_and_unequal_sizes():
         join(None, None)
     with pytest.raises(ValueError, match="equal shapes"):
         join(torch.rand(1, 3, 8, 8), torch.rand(2, 3, 8, 8))
+
+
+def test_too_little_memory_names_the_remedy(images):
+    def too_much(part):
+        raise RuntimeError("DefaultCPUAllocator: can't allocate memory: you tried to allocate 9 bytes")
+
+    with pytest.raises(ValueError, match="too little memory: take a smaller batch"):
+        in_parts(too_much, images, "cpu")
