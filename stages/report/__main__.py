@@ -14,7 +14,7 @@ from .items import build_all
 from .markdown import as_text, markdown_table
 from .page import build_page, claims_shown
 from .results import NotRun, Results
-from .verdict import judge
+from .verdict import counted, judge
 from .viewer import pack_viewer
 
 CLAIMS_NOTE = """Each effect is a paired difference, positive on the side that the thesis claims, with its 95 %
@@ -68,7 +68,7 @@ def write_claims(claims, out):
     """Writes claims.csv and claims.md."""
     write_table(out / "claims.csv", claims)
     text = markdown_table(as_text(claims_shown(claims)))
-    write_text(out / "claims.md", f"# Claims of the thesis, tested\n\n{CLAIMS_NOTE}\n\n{text}")
+    write_text(out / "claims.md", f"# Claims of the thesis, tested\n\n{CLAIMS_NOTE}\n\n{counted(claims)}\n\n{text}")
 
 
 def packed_or_none(results, not_run):

@@ -11,6 +11,7 @@ from string import Template
 from PIL import Image
 
 from .markdown import is_numeric, number
+from .verdict import counted
 
 WIDEST = 1280  # pixels of a picture on the page
 LONG = 30  # rows after which a table scrolls in its own box
@@ -28,6 +29,7 @@ def build_page(path, report, meshes, dataset):
         "pipeline": "".join(figure_html(item, path) for item in report["figures"].items if item.name == "pipeline"),
         "claims": claims_html(report["claims"]),
         "counts": counts_html(report["claims"]),
+        "counted": html.escape(counted(report["claims"])),
         "tables": "".join(table_html(item) for item in report["tables"].items),
         "figures": "".join(figure_html(item, path) for item in report["figures"].items if item.name != "pipeline"),
         "charts": "".join(figure_html(item, path) for item in report["tradeoff"].items),

@@ -3,7 +3,7 @@
 from itertools import pairwise
 
 import numpy as np
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
 from stages.kit.files import write_table
 
@@ -109,7 +109,7 @@ def _draw(rows, quality, label, title, reference, quality_label, better, colour,
         axes.plot([], [], "o", color=tint, ms=6, label=spoken(value))
     for value, form in shape.items():
         axes.plot([], [], form, color="none", mec=INK, ms=6, label=spoken(value))
-    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if _narrow(rows["cost_ratio"]) else (1.0,)))
+    axes.xaxis.set_major_locator(_ticks(rows["cost_ratio"].max() / rows["cost_ratio"].min()))
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes.xaxis.set_minor_formatter(NullFormatter())
     if colour:
@@ -119,9 +119,14 @@ def _draw(rows, quality, label, title, reference, quality_label, better, colour,
     save(figure, path)
 
 
-def _narrow(values):
-    """True where powers of ten alone would leave the axis almost without numbers."""
-    return values.max() / values.min() < 100
+def _ticks(span):
+    """What finds the numbers of a logarithmic axis whose dearest choice costs `span` times the cheapest.
+
+    The narrower it is, the closer they must be, or the axis would be almost without any.
+    """
+    if span < 3:
+        return MaxNLocator(6, steps=[1, 2, 2.5, 5, 10])
+    return LogLocator(subs=(1.0, 2.0, 5.0) if span < 100 else (1.0,))
 
 
 def _with_names(rows, named, front, quality, label, better):

@@ -1,5 +1,6 @@
 """What a run has measured, beside what the thesis says; a missing measurement is NotRun, never a crash."""
 
+import copy
 from functools import cached_property
 from pathlib import Path
 
@@ -111,6 +112,15 @@ class Results:
         """Rows of reports/transfer/NAME.csv: networks, measured once on recorded touches or on another data set."""
         why = f"no transfer/{name}.csv: `make transfer` measures it where those data are"
         return self._once(self.reports / "transfer" / f"{name}.csv", why, "transfer")
+
+    def instead(self, stage, rows):
+        """These results with other rows of one stage, such as those measured once on another data set.
+
+        rows: a frame with the columns of that stage's measurements. Side tables and data/ stay this run's.
+        """
+        other = copy.copy(self)
+        other._tables = self._tables | {stage: rows}
+        return other
 
     def fixation(self, name):
         """Rows of reports/fixation/NAME.csv: where networks look, measured once on the meshes with human gaze."""

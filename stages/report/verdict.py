@@ -10,6 +10,7 @@ import pandas as pd
 from .intervals import interval
 from .results import NotRun, Results
 
+BY_CHANCE = 0.025  # how often a 95 % interval lies wholly on one side of zero where the truth is zero
 COLUMNS = ["section", "claim", "verdict", "effect", "low", "high", "unit", "pairs", "over", "tested_on", "key"]
 
 
@@ -38,6 +39,17 @@ def verdict(low, high):
     if low > 0:
         return "supported"
     return "contradicted" if high < 0 else "open"
+
+
+def counted(claims):
+    """Two sentences on a frame of `judge`: how many there are of each word, and how many chance alone would give."""
+    words = {word: int((claims["verdict"] == word).sum()) for word in ("supported", "contradicted", "open")}
+    judged = int(claims["low"].notna().sum())
+    return (
+        f"{len(claims)} verdicts: {', '.join(f'{count} {word}' for word, count in words.items())}. Were there no "
+        f"effect in any of the {judged} that have an interval, chance alone would call about {BY_CHANCE * judged:.0f} "
+        f"of them supported and as many contradicted: {100 * BY_CHANCE:g} % each."
+    )
 
 
 def judge(claims, results):

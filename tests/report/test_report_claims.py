@@ -9,7 +9,7 @@ from stages.report.intervals import HOLD_OUT, interval
 from stages.report.items import build_all
 from stages.report.page import effect
 from stages.report.results import NotRun, Results
-from stages.report.verdict import paired
+from stages.report.verdict import COLUMNS, counted, paired
 
 
 def judged(results, key):
@@ -174,6 +174,30 @@ def test_transfer_that_was_left_out_hands_on_its_note(root, small):
     assert judged(results, "frozen_over_chance_random")["tested_on"] == "not run: no cup"
     assert build_all(tables, results).not_run["table_5_4"] == "no cup"
     assert build_all(tradeoff, results).not_run["networks"] == "no cup"
+
+
+def test_verdicts_are_counted_beside_what_chance_alone_would_give():
+    words = ["supported"] * 30 + ["contradicted"] * 10 + ["open"] * 50
+    lows = [0.0] * 80 + [np.nan] * 10  # ten are open for want of an interval
+    said = counted(pd.DataFrame({"verdict": words, "low": lows}, columns=COLUMNS))
+    assert said.startswith("90 verdicts: 30 supported, 10 contradicted, 50 open.")
+    assert "any of the 80 that have an interval, chance alone would call about 2 of them supported" in said
+
+
+def test_chance_calls_as_many_verdicts_as_is_said():
+    rng = np.random.default_rng(0)
+    claims = [
+        Claim(str(k), "T9", "Sentence.", "what", "unit", "objects", lambda _: rng.normal(size=20)) for k in range(800)
+    ]
+    words = judge(claims, None)["verdict"].value_counts()
+    assert 5 < words["supported"] < 40 and 5 < words["contradicted"] < 40  # 20 of each are said
+
+
+def test_rows_put_in_place_of_a_stage_s_leave_the_others_and_the_run_alone(results):
+    frame = results.measurements("lod")
+    other = results.instead("lod", frame.assign(value=7.0))
+    assert set(other.measurements("lod")["value"]) == {7.0} and set(results.measurements("lod")["value"]) != {7.0}
+    assert other.measurements("classification").equals(results.measurements("classification"))
 
 
 def test_a_new_claim_is_one_entry(results):

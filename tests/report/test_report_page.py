@@ -6,6 +6,7 @@ import re
 import zlib
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from stages.kit.files import write_arrays
@@ -113,6 +114,13 @@ def test_page_carries_the_meshes(page):
     data = json.loads(re.search(r'id="mesh-data">(.*?)</script>', page, re.DOTALL)[1].replace("<\\/", "</"))
     assert [one["name"] for one in data["objects"]] == ["ball", "cube"]
     assert list(data["objects"][0]["ladders"]) == ["qem"]
+
+
+def test_verdicts_are_counted_beside_the_claims(page, root):
+    said = re.search(r"\d+ verdicts: .*2\.5 % each\.", (root / "reports/claims.md").read_text())[0]
+    claims = pd.read_csv(root / "reports/claims.csv")
+    assert said.startswith(f"{len(claims)} verdicts: {(claims['verdict'] == 'supported').sum()} supported")
+    assert f"<p>{said}</p>" in page
 
 
 def test_equal_runs_give_equal_bytes(page, root, small):

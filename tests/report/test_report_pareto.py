@@ -9,6 +9,7 @@ from matplotlib.text import Text
 
 from stages.report import pareto_chart, pareto_front
 from stages.report.names import place_names
+from stages.report.pareto import _ticks
 from stages.report.style import plt
 
 
@@ -63,6 +64,17 @@ def chart(folder, reference="fast"):
         frame(), "seconds", "mean", "name", name="chart", title="Title", reference=reference,
         quality_label="accuracy", folder=folder,
     )  # fmt: skip
+
+
+@pytest.mark.parametrize("span", [1.05, 1.4, 2.9, 3.1, 7, 50, 99, 1e4])
+def test_the_axis_of_costs_has_numbers_however_narrow_it_is(span):
+    figure, axes = plt.subplots()
+    axes.set_xscale("log")
+    axes.plot([1, span], [0, 1])
+    axes.xaxis.set_major_locator(_ticks(span))
+    low, high = axes.get_xlim()
+    assert 2 <= sum(low <= tick <= high for tick in axes.get_xticks()) <= 9
+    plt.close(figure)
 
 
 def test_cost_is_a_ratio_to_the_named_reference(tmp_path):

@@ -13,6 +13,7 @@ from . import (
     chapter_4_sequences,
     chapter_5,
     chapter_5_hybrid,
+    chapter_5_real,
 )
 
 MESHES = [*chapter_3_1_meshes.CLAIMS, *chapter_3_2_meshes.CLAIMS]
@@ -27,6 +28,7 @@ CLAIMS = [
     *chapter_4_sensor.CLAIMS,
     *chapter_4_sequences.CLAIMS,
     *chapter_5.CLAIMS,
+    *chapter_5_real.CLAIMS,
     *chapter_5_hybrid.CLAIMS,
 ]
 

@@ -48,6 +48,17 @@ def over(method, other):
     return differences
 
 
+def resnet_over_vgg(metric):
+    """differences(results): the fused map of ResNet against that of VGG16 by a metric, an object."""
+    vgg, resnet = NETWORKS[:2]
+
+    def differences(results):
+        gains = gap(gaze_scores(results, metric), (resnet, FUSED), (vgg, FUSED))
+        return -PERCENT * gains if metric in (LEAST, PAIRS) else gains
+
+    return differences
+
+
 def mean_over_networks(pair, metric="pcc"):
     """differences(results): gap(table, *pair(method)) an object, the mean over the frozen networks."""
 
@@ -100,13 +111,17 @@ def each_network(key, sentence, tested, other):
         yield Claim(name, "T3.3.6", sentence, where, "PCC", "objects", over(method, other(method)))
 
 
+def by_distance(key, sentence):
+    """(key, sentence, metric, what is measured) of a claim that centres are nearer: all pairs, the thesis's measure."""
+    yield key, sentence, PAIRS, "distance (mean of all pairs)"
+    said = f"{sentence[:-1]}, each by its nearest."
+    yield f"{key}_least", said, LEAST, "distance (nearest, which favours many centres)"
+
+
 def nearer(key, sentence, tested, pair):
-    """The claim that EWIGC's centres are nearer, by all pairs and in the thesis's measure."""
-    for name, said, metric, measure in (
-        (key, sentence, PAIRS, "mean of all pairs"),
-        (f"{key}_least", f"{sentence[:-1]}, each by its nearest.", LEAST, "nearest, which favours many centres"),
-    ):
-        words = f"distance ({measure}) of {tested} minus that of EWIGC"
+    """The claim that EWIGC's centres are nearer, by both distances."""
+    for name, said, metric, measure in by_distance(key, sentence):
+        words = f"{measure} of {tested} minus that of EWIGC"
         yield pooled(name, "T3.3.6", said, words, mean_over_networks(pair, metric), DIAMETER)
 
 
@@ -165,6 +180,17 @@ CLAIMS = [
     pooled(
         "entropy_over_average", "T3.3.4", "Weighing maps by their entropy beats averaging them.",
         "PCC, EWIGC minus equal weights", mean_over_networks(lambda method: ((method, FUSED), (method, AVERAGE))),
+    ),
+    Claim(
+        "resnet_over_vgg", "T3.3.6", "Fused Grad-CAM of ResNet predicts gaze better than that of VGG16.",
+        f"{GAZE}, frozen networks: PCC of EWIGC, ResNet50 minus VGG16", "PCC", "objects", resnet_over_vgg("pcc"),
+    ),
+    *(
+        Claim(key, "T3.3.6", sentence, f"{GAZE}, frozen networks, EWIGC: {measure} of VGG16 minus that of ResNet50",
+              DIAMETER, "objects", resnet_over_vgg(metric))
+        for key, sentence, metric, measure in by_distance(
+            "resnet_nearer_than_vgg", "Fused Grad-CAM of ResNet finds centres nearer to fixations than that of VGG16."
+        )
     ),
     pooled(
         "fused_over_narrowed", "T3.3.6", "The whole map correlates more with gaze than its highest levels alone.",

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from stages.report.intervals import HOLD_OUT, interval
+from stages.report.intervals import interval
 from stages.report.items import Figure
 from stages.report.results import NotRun
 from stages.report.style import GREY, INK, PALE, label, plt, save
-from stages.report.tables._transfer import COARSE, FINE, FOLD_OUT, PRINTED, SPLITS, everywhere
+from stages.report.tables._transfer import COARSE, FINE, PRINTED, SPLITS, everywhere, shared
 
 TINTS = {("random", FINE): "#0072B2", ("objects", FINE): "#56B4E9", ("random", COARSE): "#D55E00",
          ("objects", COARSE): "#E69F00"}  # fmt: skip
@@ -48,7 +48,7 @@ def _gains(rows):
         if (split, data) in TINTS and {"finetuned", "frozen"} <= set(sides):
             gain = (sides["finetuned"] - sides["frozen"]).dropna()
             if len(gain):
-                found[network, split, data] = interval(100 * gain, HOLD_OUT if split == "random" else FOLD_OUT)
+                found[network, split, data] = interval(100 * gain, shared(split, group["object"].iloc[0]))
     return found
 
 

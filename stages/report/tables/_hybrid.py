@@ -1,8 +1,8 @@
 """What the tables, figures, chart and claims of the hybrid network read: rows of the stage transfer, data `hybrid`."""
 
-from stages.report.intervals import HOLD_OUT, interval
+from stages.report.intervals import interval
 
-from ._transfer import FOLD_OUT
+from ._transfer import shared
 
 SENSES = {"vision": "sight", "touch": "touch"}
 BOTH = {
@@ -21,19 +21,28 @@ BOTH = {
 WHOLE = "none"  # the perturbation of senses that are as they should be
 
 
-def rows(results, **where):
-    """Rows of the hybrid network's first middle in this run; NotRun where there is none."""
+def rows(results, middle=None, **where):
+    """Rows of the hybrid network that shares the layers `middle`, by default the first; NotRun where there is none.
+
+    Networks of another middle have the same names of methods: never read both at once.
+    """
     found = results.measured("transfer", data="hybrid", **where)
-    return found[found["mode"] == first_middle(results)]
+    return found[found["mode"] == (middle or first_middle(results))]
 
 
 def first_middle(results):
     """The range of layers that is shared in the network that was repeated."""
+    return middles(results)[0]
+
+
+def middles(results):
+    """The ranges of layers that are shared in a network each, the one that was repeated first."""
     every = results.measured("transfer", data="hybrid", metric="accuracy")
-    return every.groupby("mode", sort=False)["repetition"].nunique().idxmax()
+    counts = every.groupby("mode", sort=False)["repetition"].nunique()
+    return sorted(counts.index, key=lambda middle: -counts[middle])
 
 
-def mean(values, split, top=1.0):
+def mean(values, split, source=None):
     """(mean, low, high) over the repetitions: splits of the same items, or folds of objects left out."""
-    middle, low, high = interval(values, HOLD_OUT if split == "random" else FOLD_OUT)
-    return middle, max(low, 0.0), min(high, top)
+    middle, low, high = interval(values, shared(split, source))
+    return middle, max(low, 0.0), min(high, 1.0)

@@ -5,8 +5,10 @@ import pandas as pd
 from stages.report.intervals import HOLD_OUT, interval
 from stages.report.items import Table
 from stages.report.markdown import with_interval
+from stages.report.results import NotRun
 from stages.report.style import label, start
 
+from ._recorded_pairs import CLASSICAL, KEYS, accuracies, gain, guesses, measured_rows, shared
 from ._transfer import HAD, PRINTED, STARTS
 
 DATA = {
@@ -21,10 +23,8 @@ SPLITS = {
     "random": "touches at random",
     "runs": "neighbouring touches together",
     "test_objects": "objects kept for the test",
-    "objects": "unseen objects",
-    "recordings": "recordings together",
+    "groups": "objects or recordings together",
 }
-OVER = {"test_objects": 0.0, "objects": 0.0}  # splits whose values are of independent objects
 ABSENT = "Not run: the data set is not at hand. Its reader is tested on files in its layout; `make transfer` takes it."
 NOTE = (
     "Accuracy in per cent, a quarter of the touches held out. Recorded touches that are at hand: table real_networks."
@@ -65,20 +65,39 @@ def _printed_shown(frame):
 
 
 def measured_lines(results):
-    """A frame with a row a data set, split, network, start and mode that was measured, the classical features first."""
-    rows = results.transfer("recorded")
-    rows = rows[rows["metric"] == "accuracy"].dropna(subset=["value"])
-    lines = []
-    keys = ["data", "split", "method", "weights", "mode"]
-    for key, part in rows.groupby(keys, sort=False, dropna=False):
-        values = part["value"]
-        if key[1] in OVER and "object" in part:  # objects are the units: a mean each, without that of all together
-            values = part[part["object"] != "all"].groupby("object")["value"].mean()
-        mean, low, high = interval(values, OVER.get(key[1], HOLD_OUT))
-        had = next(iter(part["had"].dropna()), None) if "had" in part else None
-        triple = {"accuracy": mean, "low": max(low, 0.0), "high": min(high, 1.0), "values": len(values), "had": had}
-        lines.append(dict(zip(keys, key, strict=True)) | triple)
-    return pd.DataFrame(lines)
+    """A frame with a row a data set, split, network, start, mode and size that was measured, the classical first.
+
+    accuracy with low and high over so many values; guess; over_features and over_random: the gain over the classical
+    features and over the same network untrained, each with _low, _high and the number of _pairs.
+    """
+    found = accuracies(results)
+    had = measured_rows(results, "accuracy").dropna(subset=["had"]).groupby(KEYS)["had"].first()
+    guess = {pair: _guess(results, *pair) for pair in dict.fromkeys(key[:2] for key in found)}
+    lines = [_line(found, key) | {"guess": guess[key[:2]], "had": had.get(key)} for key in found]
+    order = {name: k for k, name in enumerate([*DATA, *SPLITS, CLASSICAL[0]])}
+    by = {"by": ["data", "split", "method"], "key": lambda names: names.map(order).fillna(len(order))}
+    return pd.DataFrame(lines).sort_values(**by, kind="stable", ignore_index=True)
+
+
+def _line(found, key):
+    data, split, method, _, mode, size = key
+    mean, low, high = interval(found[key], shared(split))
+    line = dict(zip(KEYS, key, strict=True)) | {"accuracy": mean, "low": max(low, 0.0), "high": min(high, 1.0)}
+    line["values"] = len(found[key])
+    controls = {"features": (data, split, *CLASSICAL), "random": (data, split, method, "random", mode, size)}
+    for name, control in controls.items():
+        differences = gain(found, key, control) if key != control else []
+        mean, low, high = interval(differences, shared(split))
+        over = f"over_{name}"
+        line |= {over: mean, f"{over}_low": low, f"{over}_high": high, f"{over}_pairs": len(differences)}
+    return line
+
+
+def _guess(results, data, split):
+    try:
+        return guesses(results, data, split).mean()
+    except NotRun:
+        return float("nan")
 
 
 def origin(weights, had):

@@ -18,6 +18,7 @@ PRINTED = {
 FINE, COARSE = "imprints128", "imprints16"
 SPLITS = {"random": "touches at random", "objects": "unseen objects"}
 FOLD_OUT = 1 / 2  # test over training share of a fold: one object of three
+PSB, PSB_OUT = "princeton", 1 / 4  # the thesis's classes: one object of five
 STARTS, MODES = ("imagenet", "random"), ("finetuned", "frozen")
 HAD = {"complete": "", "convolutions": "its convolutions", "converted": "converted from Keras"}
 NOTES = [
@@ -37,6 +38,16 @@ def measured(results):
     return results.measured("transfer", metric="accuracy")
 
 
+def shared(split, source=None):
+    """Test over training share of a split of a data set."""
+    return HOLD_OUT if split == "random" else {PSB: PSB_OUT}.get(source, FOLD_OUT)
+
+
+def on_psb(results):
+    """The results with the rows on the thesis's own classes for this run's; NotRun where these were not measured."""
+    return results.instead("transfer", results.transfer(PSB))
+
+
 def everywhere(results):
     """{where the objects come from: accuracies}: this run's, and those on the thesis's classes where they are there."""
     found = {}
@@ -46,7 +57,7 @@ def everywhere(results):
     except NotRun as missing:
         absent = missing
     try:
-        rows = results.transfer("princeton").dropna(subset=["value"])
+        rows = results.transfer(PSB).dropna(subset=["value"])
         found |= {f"{name}, the thesis's classes": own for name, own in rows.groupby("object")}
     except NotRun:
         if not found:
@@ -56,8 +67,9 @@ def everywhere(results):
 
 def accuracy(rows, split):
     """(mean, low, high, values) of the rows of one setting."""
-    values = rows.loc[rows["split"] == split, "value"]
-    mean, low, high = interval(values, HOLD_OUT if split == "random" else FOLD_OUT)
+    mine = rows[rows["split"] == split]
+    values = mine["value"]
+    mean, low, high = interval(values, shared(split, next(iter(mine["object"]), None)))
     return mean, max(low, 0.0), min(high, 1.0), len(values)
 
 
@@ -67,7 +79,7 @@ def chances(results):
     for name in everywhere(results):
         source = name.partition(",")[0]
         try:
-            rows = results.transfer("princeton") if "," in name else results.measured("transfer")
+            rows = results.transfer(PSB) if "," in name else results.measured("transfer")
         except NotRun:
             continue
         told = rows[(rows["metric"] == "chance") & (rows["object"] == source)].dropna(subset=["value"])

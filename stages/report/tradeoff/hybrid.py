@@ -12,22 +12,34 @@ SHOWN = {"vision": ("by sight", "#0072B2"), "touch": ("by touch", "#D55E00")}
 
 def build(results):
     frame = table(results).frame
+    frame = frame[frame["objects"] == frame["objects"].iloc[0]]  # not those of another data set in one picture
+    first = frame["shared_layers"].iloc[0]
+    frame = frame[(frame["shared_layers"] == first) | (frame["network"] == "hybrid")]
     splits = list(dict.fromkeys(frame["split"]))
     figure, panels = plt.subplots(1, len(splits), figsize=(4.6 * len(splits), 3.8), squeeze=False, sharey=True)
     for axes, split in zip(panels[0], splits, strict=True):
-        _draw(axes, frame[frame["split"] == split])
+        mine = frame[frame["split"] == split]
+        _draw(axes, mine[mine["shared_layers"] == first])
+        _draw_others(axes, mine[mine["network"] == "hybrid"])
+        axes.set_xticks(mine["megabytes"], [f"{value:.1f}" for value in mine["megabytes"]], fontsize=8)
+        axes.minorticks_off()
         axes.set_title(SPLITS[split].replace("touches", "items"))
     panels[0, 0].set_ylabel("accuracy, %")
     panels[0, -1].legend(fontsize=8.5, loc="upper right")
     figure.tight_layout()
     folder = results.reports / "tradeoff"
     smallest = frame.loc[frame["megabytes"].idxmin(), "network"]
+    others = [layers for layers in dict.fromkeys(frame["shared_layers"]) if layers != first]
+    hollow = (
+        f" Hollow: one training that shares layers {', '.join(others)} instead of {first}, as far from the hybrid as "
+        "it was on the same items."
+    )
     return Figure(
         "One network for sight and touch: accuracy against size",
         "Accuracy by sight and by touch against megabytes on disk, for two networks, the hybrid and its smaller kinds.",
         "Up and left is better. Logarithmic size; bars: 95 % intervals. The smallest file is the "
         f"{METHODS[smallest]}: {frame['megabytes'].min():.1f} MB, {frame['size_ratio'].max():.1f} times less than two "
-        "networks.",
+        f"networks.{hollow if others else ''}",
         [save(figure, folder / "hybrid.png"), _write(frame, folder / "hybrid.csv")],
     )
 
@@ -40,14 +52,22 @@ def _draw(axes, frame):
             bar = [100 * getattr(row, f"{sense}_low"), 100 * getattr(row, f"{sense}_high")]
             axes.plot([row.megabytes] * 2, bar, color=tint, lw=1.2, alpha=0.5)
     axes.set_xscale("log")
-    axes.set_xticks(frame["megabytes"], [f"{value:.1f}" for value in frame["megabytes"]], fontsize=8)
-    axes.minorticks_off()
     for row in frame.itertuples():
         name = METHODS[row.network].replace("hybrid, weights of ", "")
         axes.annotate(name, (row.megabytes, 2), rotation=90, fontsize=8, color=INK, ha="center", va="bottom")
     axes.set_ylim(0, 102)
     axes.set_xlabel("size of the file, MB")
     axes.grid(axis="y")
+
+
+def _draw_others(axes, frame):
+    """Hybrids that share other layers than the first: one training each, so no line through them and no bar."""
+    for row in frame[1:].itertuples():
+        for sense, (_, tint) in SHOWN.items():
+            place = 100 * frame[sense].iloc[0] + getattr(row, f"{sense}_gain")
+            axes.plot(row.megabytes, place, "o", mfc="white", mec=tint, ms=6)
+        axes.annotate(row.shared_layers, (row.megabytes, 2), rotation=90, fontsize=8, color=INK, ha="center",
+                      va="bottom")  # fmt: skip
 
 
 def _write(frame, path):

@@ -22,7 +22,7 @@ SPLIT = "runs"  # neighbouring touches held out together
 
 def build(results):
     lines = measured_lines(results)
-    wanted = {"data": "pressure", "split": SPLIT, "weights": "imagenet", "mode": "frozen"}
+    wanted = {"data": "pressure", "split": SPLIT, "weights": "imagenet", "mode": "frozen", "size": SIZE}
     frame = lines[(lines[list(wanted)] == pd.Series(wanted)).all(axis=1)].rename(columns={"method": "network"})
     costs = results.bench("networks")
     frame = frame.merge(costs[costs["size"] == SIZE].drop(columns="size"), on="network")

@@ -1,0 +1,115 @@
+"""Claims of chapter 5 on the thesis's own classes, on trainings whose truth is known."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from stages.kit.files import write_table
+from stages.report.claims import chapter_5
+from stages.report.figures import figure_5_3
+from stages.report.intervals import HOLD_OUT
+from stages.report.results import NotRun, Results
+from stages.report.tables import _transfer
+from stages.report.verdict import judge
+
+FINE, COARSE = "imprints128", "imprints16"
+LEVELS = {  # (data, weights, mode) -> accuracy
+    (FINE, "imagenet", "finetuned"): 0.8,
+    (FINE, "imagenet", "frozen"): 0.5,
+    (FINE, "imagenet", "18:139"): 0.8,
+    (FINE, "imagenet", "1:134"): 0.7,
+    (FINE, "random", "finetuned"): 0.4,
+    (FINE, "random", "frozen"): 0.3,
+    (COARSE, "imagenet", "finetuned"): 0.6,
+    (COARSE, "imagenet", "frozen"): 0.2,
+}
+KEYS = {
+    "tuned_over_frozen", "frozen_over_chance", "frozen_coarse_by_chance", "fine_over_coarse_frozen",
+    "fine_over_coarse_tuned", "seen_over_random_frozen", "seen_over_random_tuned", "early_and_late", "middle_frozen",
+    "early_decisive",
+}  # fmt: skip
+
+
+def rows(source="princeton", turned=False, **levels):
+    """Five trainings of each setting. levels: others for modes; turned: what was better by a margin is worse by it."""
+    random, found = np.random.default_rng(0), []
+    for (data, weights, mode), level in LEVELS.items():
+        level = levels.get(mode, level)
+        for split in ("random", "objects"):
+            for number in range(5):
+                one = {"object": source, "data": data, "method": "mobilenet_v2", "weights": weights, "mode": mode}
+                one |= {"split": split, "repetition": number, "had": "complete", "seconds": 1.0}
+                value = (1 - level if turned else level) + 0.002 * random.normal()
+                found += [one | {"metric": "accuracy", "value": value}, one | {"metric": "chance", "value": 1 / 6}]
+    return pd.DataFrame(found).assign(dataset=source, seed=0, note=None)
+
+
+@pytest.fixture
+def both(bare, small):
+    """Results of a run in which all is as the thesis says, and of trainings on its classes in which nothing is."""
+    small.write(bare, "transfer", rows("furniture"))
+    write_table(bare / "reports/transfer/princeton.csv", rows(turned=True))
+    return Results(small.settings(), bare)
+
+
+def words(results):
+    """{key: the judged row} of chapter 5."""
+    return judge(chapter_5.CLAIMS, results).set_index("key")
+
+
+def test_each_data_set_is_judged_by_its_own_rows(both):
+    found = words(both)
+    for split in ("random", "objects"):
+        assert found.loc[f"tuned_over_frozen_{split}", "verdict"] == "supported"
+        assert found.loc[f"tuned_over_frozen_{split}_psb", "verdict"] == "contradicted"
+        assert found.loc[f"tuned_over_frozen_{split}_psb", "effect"] == pytest.approx(-30, abs=0.5)
+    assert both.measurements("transfer")["object"].unique() == ["furniture"]
+
+
+def test_every_claim_on_the_thesis_s_classes_has_rows_and_says_where(both):
+    found = words(both)
+    theirs = found[found.index.str.endswith("_psb")]
+    assert {key.removesuffix("_psb").rpartition("_")[0] for key in theirs.index} == KEYS
+    assert (theirs["pairs"] == 5).all()
+    assert theirs["tested_on"].str.startswith("thesis's classes of psb: MobileNetV2, ").all()
+
+
+def test_all_that_the_thesis_says_can_be_supported(bare, small):
+    write_table(bare / "reports/transfer/princeton.csv", rows())
+    found = words(Results(small.settings(), bare))
+    assert set(found.loc[found.index.str.endswith("_psb"), "verdict"]) == {"supported"}
+
+
+def test_early_layers_are_decisive_where_the_last_alone_learn_less(bare, small):
+    write_table(bare / "reports/transfer/princeton.csv", rows(**{"1:134": 0.85}))
+    found = words(Results(small.settings(), bare))
+    assert found.loc["early_decisive_random_psb", "effect"] == pytest.approx(-5, abs=0.5)
+    assert found.loc["early_decisive_objects_psb", "verdict"] == "contradicted"
+
+
+def test_without_trainings_on_them_the_claims_name_what_measures_them(bare, small):
+    small.write(bare, "transfer", rows("furniture"))
+    found = words(Results(small.settings(), bare))
+    assert found.loc["early_decisive_random_psb", "tested_on"].startswith("not run: no transfer/princeton.csv: `make")
+    assert found.loc["tuned_over_frozen_random", "verdict"] == "supported"
+
+
+def test_one_object_of_five_says_more_than_one_of_three():
+    assert _transfer.shared("objects") == 1 / 2 and _transfer.shared("objects", "princeton") == 1 / 4
+    assert _transfer.shared("random", "princeton") == HOLD_OUT
+    frames = (rows(source) for source in ("furniture", "princeton"))
+    one = (frame[(frame["metric"] == "accuracy") & (frame["mode"] == "1:134")] for frame in frames)
+    width = [high - low for _, low, high, _ in (_transfer.accuracy(frame, "objects") for frame in one)]
+    assert width[1] / width[0] == pytest.approx(np.sqrt((1 + 5 / 4) / (1 + 5 / 2)))
+
+
+def test_claims_and_figure_widen_intervals_alike(both):
+    found = words(both).loc["tuned_over_frozen_objects_psb"]
+    own = _transfer.everywhere(both)["princeton, the thesis's classes"]
+    drawn = figure_5_3._gains(own)["mobilenet_v2", "objects", FINE]
+    assert drawn == pytest.approx((found["effect"], found["low"], found["high"]))
+
+
+def test_other_rows_are_not_run_where_they_are_absent(bare, small):
+    with pytest.raises(NotRun, match="princeton"):
+        _transfer.on_psb(Results(small.settings(), bare))
