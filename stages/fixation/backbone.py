@@ -7,7 +7,7 @@ from stages.kit import Stopwatch
 from stages.kit.files import read_arrays, write_arrays
 from stages.kit.repeatable import repeatable
 from stages.networks import build, settle
-from stages.networks.device import choose, device_of, enough_memory
+from stages.networks.device import choose, device_of, enough_memory, mixed
 
 from .options import MODES, method_named
 from .pictures import inputs, read_pictures
@@ -15,17 +15,6 @@ from .pictures import inputs, read_pictures
 BATCH = 16
 SETTLING = 64  # pictures that give an untrained network's normalisation layers their statistics
 FULL = 60_000  # largest value stored: float16 ends at 65,504
-
-
-def last_maps(network):
-    """The module from images to the last maps with the finest grid.
-
-    T3.3.2 takes VGG16's 14 x 14, those of its last convolution, before the pooling that closes torchvision's features.
-    """
-    layers = network.convolutions
-    if isinstance(layers, torch.nn.Sequential) and isinstance(layers[-1], torch.nn.MaxPool2d):
-        return layers[:-1]
-    return layers
 
 
 def prepare(item, folder, settings, objects, seed):
@@ -61,11 +50,12 @@ def look(item, folder, settings, seed):
 
 @torch.inference_mode()
 def maps_of(network, pictures):
-    """(v, C, i, j) f4: the last maps of grey pictures (v, h, w) u1."""
-    layers, device = last_maps(network), device_of(network)
-    with enough_memory():
-        parts = [layers(inputs(pictures[k : k + BATCH], device)).cpu().numpy() for k in range(0, len(pictures), BATCH)]
-    return np.concatenate(parts)
+    """(v, C, i, j) f4: the last maps of grey pictures (v, h, w) u1; VGG16's 14 x 14 are before its last pooling."""
+    device, found = device_of(network), []
+    for k in range(0, len(pictures), BATCH):
+        with enough_memory(), mixed(device):
+            found.append(network.convolutions(inputs(pictures[k : k + BATCH], device)).float().cpu().numpy())
+    return np.concatenate(found)
 
 
 def read_maps(folder, method, name):

@@ -36,7 +36,8 @@ def train(item, folder, settings, tasks, seed):
     with repeatable(seed), Stopwatch() as watch:
         network = build(method.network, len(names), MODES[method.mode], seed, settings.source)
         lesson = lesson_of(network.to(choose(settings.device)), pictures)
-        model = learn(lesson, labels, part, settings.rate, settings.epochs, settings.batch, settings.momentum)
+        told = {"rate": settings.rate, "epochs": settings.epochs, "batch": settings.batch, "momentum": settings.momentum}
+        model = learn(lesson, labels, part, **told, checkpoint=folder / ".networks" / f"{name}-{task}.pt")
     write_state(folder, f"{name}-{task}", model)
     with repeatable(seed):
         maps = maps_of(model, pictures[test])

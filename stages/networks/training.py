@@ -34,6 +34,7 @@ def learn(task, labels, ids, rate, epochs, batch, momentum, seed=None, checkpoin
     settings["learning"] = [name for name, value in model.named_parameters() if value.requires_grad]
     parts, done = {"model": model, "optimiser": optimiser, "scaler": scaler}, 0
     if checkpoint is not None:
+        settings["images"] = list(task.inputs(ids[:1]).shape)
         done = resume(Path(checkpoint), settings, **parts)
     with enough_memory():
         for epoch in range(done, epochs):

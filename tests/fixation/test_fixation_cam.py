@@ -7,7 +7,7 @@ import torch
 from stages.conspicuity import facing
 from stages.fixation import entropy, fuse, grad_cam, narrowed, on_vertices, over_views
 from stages.fixation.attend import MODELS, projected
-from stages.fixation.backbone import last_maps, maps_of
+from stages.fixation.backbone import maps_of
 from stages.fixation.cam import to_size
 from stages.fixation.heads import head, scores
 from stages.fixation.pictures import inputs
@@ -37,7 +37,7 @@ def pictures():
 
 def by_backpropagation(network, pictures, classes):
     """(b, i, j): T eq. 3.18 and 3.19 as they stand, the gradient by torch."""
-    maps = last_maps(network)(inputs(pictures)).detach().requires_grad_(True)
+    maps = network.convolutions(inputs(pictures)).detach().requires_grad_(True)
     found = network.head(network.pool(maps).flatten(1))
     found[torch.arange(len(found)), torch.as_tensor(classes)].sum().backward()
     alpha = maps.grad.mean(dim=(2, 3), keepdim=True)
@@ -55,9 +55,8 @@ def test_grad_cam_from_maps_equals_the_one_by_backpropagation(network, pictures,
 
 
 def test_vgg_is_looked_at_before_its_last_pooling():
-    network = torch.nn.Module()
-    network.convolutions = torch.nn.Sequential(torch.nn.Conv2d(3, 4, 1), torch.nn.ReLU(), torch.nn.MaxPool2d(2))
-    assert last_maps(network)(torch.zeros(1, 3, 28, 28)).shape[-2:] == (28, 28)
+    pictures = np.zeros((1, 32, 32), dtype=np.uint8)
+    assert maps_of(build("vgg16", 2, "random", 0), pictures).shape == (1, 512, 2, 2)
 
 
 def test_maps_that_do_not_fit_are_refused():

@@ -27,9 +27,9 @@ def small(width=8):
     return Network(torch.nn.Sequential(*layers), width, 2, dropout=0.2)
 
 
-def task(mode, width=8):
+def task(mode, width=8, size=SIZE):
     with repeatable(0):
-        return MODES[mode](small(width), IMPRINTS, SIZE, 1)
+        return MODES[mode](small(width), IMPRINTS, size, 1)
 
 
 def killed_after(steps, whole):
@@ -99,9 +99,10 @@ def strange(kind, path):
     """Leaves a checkpoint that is none of this training."""
     if kind == "damaged":
         return path.write_bytes(b"PK\x03\x04 half a file")
-    if kind == "architecture":
+    if kind in ("architecture", "size"):
+        other = {"architecture": {"width": 4}, "size": {"size": SIZE + 8}}[kind]
         with pytest.raises(Killed):
-            train(killed_after(4, task("finetuned", width=4)), path)
+            train(killed_after(4, task("finetuned", **other)), path)
         return None
     changes = {"rate": {"rate": 0.5}, "seed": {"seed": 6}, "bare": {}}[kind]
     with pytest.raises(Killed):
@@ -117,7 +118,7 @@ def strange(kind, path):
     ("kind", "word"),
     [
         ("damaged", "cannot be read"), ("architecture", "another architecture"), ("rate", "with other rate"),
-        ("seed", "with other seed"), ("bare", "cannot be read"),
+        ("seed", "with other seed"), ("size", "with other images"), ("bare", "cannot be read"),
     ],
 )  # fmt: skip
 def test_a_checkpoint_that_does_not_belong_is_passed_over_with_a_word(tmp_path, capsys, kind, word):
