@@ -4,7 +4,7 @@ PYTHON ?= $(shell command -v python3.11 || command -v python3)
 BIN := $(CURDIR)/$(VENV)/bin
 SMOKE := build/smoke
 GAZE := build/gaze
-FROZEN := vgg16-frozen,resnet50-frozen,mobilenet_v2-frozen
+NETWORKS := vgg16-frozen,resnet50-frozen,mobilenet_v2-frozen,mobilenet_v2-finetuned,vgg16-random,resnet50-random,mobilenet_v2-random
 gaze ?= ../shared/data/gaze.zip
 psb ?= ../shared/data/psb.zip
 pressure ?= ../shared/data/pressure_images.zip
@@ -58,18 +58,13 @@ gaze: $(VENV)/ready ## judge every saliency by human gaze (gaze=PATH of gaze.zip
 	python -m benchmarks.annotations $(GAZE)
 	python -m benchmarks.attention $(GAZE)
 
-# Of the thesis's size, and of fewer views with a network that learns with every layer, which would take a day at that
-# size. Resumable: what a killed start has finished stays in build/fixation, as long as neither code nor settings change.
-attend = python -m stages.compose data=gaze "meshes.folder=$(abspath $(gaze))" fixation.parallels=$(1) \
-	  fixation.azimuths=$(2) "fixation.methods=[$(FROZEN),$(3)]" && dvc repro fixation
-
-fixation: $(VENV)/ready ## attention of networks at the thesis's size by human gaze (gaze=PATH of gaze.zip), to reports/fixation (hours)
+# Resumable: what a killed start has finished stays in build/fixation, as long as neither the code nor the settings change.
+fixation: $(VENV)/ready ## attention of networks at the thesis's size by human gaze (gaze=PATH of gaze.zip), to reports/fixation (an hour and a half)
 	[ -d build/fixation ] || { $(call fresh,build/fixation); }
 	rm -rf build/fixation/stages build/fixation/conf
 	git ls-files -z -co --exclude-standard stages conf dvc.yaml pyproject.toml | tar --null -T - -cf - | tar -xf - -C build/fixation
-	cd build/fixation && $(call attend,3,9,mobilenet_v2-finetuned)
-	python -m benchmarks.fixation_costs build/fixation
-	cd build/fixation && $(call attend,9,24,$(subst -frozen,-random,$(FROZEN)))
+	cd build/fixation && python -m stages.compose data=gaze "meshes.folder=$(abspath $(gaze))" fixation.parallels=9 \
+	  fixation.azimuths=24 "fixation.methods=[$(NETWORKS)]" && dvc repro fixation
 	python -m benchmarks.fixation build/fixation
 
 # The lod stage on data set $(1), found at $(2), in a scratch copy; its errors to reports/simplification/$(1).csv.

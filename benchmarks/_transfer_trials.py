@@ -13,6 +13,7 @@ from stages.kit import Stopwatch
 from stages.kit.files import read_json, write_json
 from stages.kit.repeatable import repeatable
 from stages.kit.rng import rng
+from stages.networks.device import enough_memory
 from stages.networks.network import parameters
 from stages.networks.training import accuracy, learn, scores, search
 from stages.networks.weights import had
@@ -72,6 +73,7 @@ def _settings(source):
     return f"{zlib.crc32(repr(found).encode()):08x}"
 
 
+@enough_memory()
 def _train(trial, recorded, kept_for_test, source, device, seed):
     number = int(rng(0, f"repetition {trial.repetition}").integers(2**31))  # that of reports/touch: the same splits
     learnt, validation, test = parts(recorded, trial.split, number, kept_for_test)

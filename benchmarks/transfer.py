@@ -22,6 +22,7 @@ from stages.kit.fetch import FetchError
 from stages.kit.files import write_table
 from stages.kit.parallel import parallel_map, progress
 from stages.networks.device import DEVICES, choose
+from stages.networks.weights import SOURCES as ORIGINS
 
 OUT = Path("reports/transfer")
 NETWORKS = ("mobilenet_v2", "alexnet", "efficientnet_lite0", "resnet50", "vgg16")  # from quick to slow
@@ -62,7 +63,7 @@ def options():
     parser.add_argument("--size", type=int, help=f"pixels a side, if not {SIZES}")
     parser.add_argument("--repetitions", type=int, default=5, help="of the frozen; fine-tuned are three at most")
     parser.add_argument("--device", choices=DEVICES, default="auto")
-    parser.add_argument("--source", choices=("package", "download"), default="package", help="of ImageNet's weights")
+    parser.add_argument("--source", choices=ORIGINS, default="package", help="of ImageNet's weights")
     return parser.parse_args()
 
 

@@ -8,7 +8,7 @@ from stages.kit.files import write_arrays
 from stages.kit.repeatable import repeatable
 from stages.kit.rng import rng
 from stages.networks import build, learn, normalise, settle
-from stages.networks.device import choose, device_of
+from stages.networks.device import choose, device_of, enough_memory
 from stages.networks.modes import Task
 
 from .backbone import BATCH, maps_of, read_state, write_state
@@ -21,6 +21,7 @@ from .split import random_views
 DEGREES, SCALE = 20, (0.8, 1.2)  # random rotation and rescaling; T3.3.2 gives no range
 
 
+@enough_memory()
 def train(item, folder, settings, tasks, seed):
     """Trains one network (`METHOD@TASK`) on the training views; rows of its accuracy on the test views.
 
@@ -36,7 +37,7 @@ def train(item, folder, settings, tasks, seed):
     with repeatable(seed), Stopwatch() as watch:
         network = build(method.network, len(names), MODES[method.mode], seed, settings.source)
         lesson = lesson_of(network.to(choose(settings.device)), pictures)
-        told = {"rate": settings.rate, "epochs": settings.epochs, "batch": settings.batch, "momentum": settings.momentum}
+        told = {name: getattr(settings, name) for name in ("rate", "epochs", "batch", "momentum")}
         model = learn(lesson, labels, part, **told, checkpoint=folder / ".networks" / f"{name}-{task}.pt")
     write_state(folder, f"{name}-{task}", model)
     with repeatable(seed):

@@ -11,7 +11,7 @@ class Params:
     azimuths: int  # viewpoints on each circle, a multiple of three (T3.3.2: 24)
     size: int  # pixels a side of the pictures
     methods: list[str]  # NETWORK-MODE; frozen: a new head alone learns; finetuned: every layer; random: the control
-    source: str  # where ImageNet's weights come from: package (by hash) or download (torchvision's API)
+    source: str  # where ImageNet's weights come from: package (by hash), download (torchvision's) or auto
     device: str  # what the networks run on: cpu, cuda, or auto (a CUDA card where there is one)
     penalties: list[float]  # inverse strengths of regularisation tried for the heads on the validation views
     folds: int  # parts into which whole objects are held out

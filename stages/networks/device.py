@@ -37,11 +37,11 @@ def mixed(device):
 
 @contextmanager
 def enough_memory():
-    """Turns torch's out-of-memory errors into a ValueError that names the remedies."""
+    """Turns errors of too little memory into a ValueError that names the remedies; a context and a decorator."""
     try:
         yield
-    except torch.OutOfMemoryError as error:
-        raise ValueError(f"the card has too little memory: {REMEDY}") from error
+    except (torch.OutOfMemoryError, MemoryError) as error:
+        raise ValueError(f"too little memory: {REMEDY}") from error
     except RuntimeError as error:
         if "can't allocate memory" not in str(error):  # what the processor's allocator says
             raise

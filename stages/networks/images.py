@@ -1,5 +1,6 @@
 """Imprints as a photograph-trained network wants them: red channel, size, normalisation, augmentation (T5.3)."""
 
+import numpy as np
 import torch
 from kornia import augmentation as kornia_augmentation
 from kornia.augmentation import AugmentationSequential
@@ -14,8 +15,9 @@ def to_images(imprints, size):
     """Images (k, 3, size, size) f4 in 0..1: the imprint in the red channel, green and blue zero (T5.3).
 
     imprints: (k, r, c), u1 or floats in 0..1; resized bilinearly, with an anti-alias filter where they shrink. Raises
-    ValueError for another shape, values out of range or NaN.
+    ValueError for another shape, several sizes, values out of range or NaN.
     """
+    one_size(imprints)
     grey = torch.as_tensor(imprints)
     if grey.ndim != 3 or 0 in grey.shape:
         raise ValueError(f"imprints must have shape (k, rows, columns) and not be empty, got {tuple(grey.shape)}")
@@ -27,6 +29,13 @@ def to_images(imprints, size):
     images = torch.zeros(len(grey), 3, size, size)
     images[:, 0] = grey.clamp(0, 1)
     return images
+
+
+def one_size(images):
+    """Raises ValueError, naming the sizes, for a list of images that differ in size."""
+    sizes = [] if hasattr(images, "shape") else sorted({np.shape(image) for image in images})
+    if len(sizes) > 1:
+        raise ValueError(f"images of several sizes, {', '.join(map(str, sizes))}: resize them to one first")
 
 
 def normalise(images):

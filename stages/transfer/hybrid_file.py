@@ -2,6 +2,7 @@
 
 import json
 import zipfile
+from pathlib import Path
 
 import numpy as np
 import torch
@@ -57,6 +58,8 @@ def state_arrays(network):
 
 
 def _read(path):
+    if Path(path).exists() and not zipfile.is_zipfile(path):
+        raise ValueError(f"{path} holds no hybrid network: it is no .npz file")
     try:
         arrays = read_arrays(path)
         header = json.loads(str(arrays.pop(HEADER)))

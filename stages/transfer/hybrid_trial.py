@@ -1,5 +1,6 @@
 """One hybrid network: two trainings, the stitching, and what it does with one sense, both, and broken ones (T5.5)."""
 
+import itertools
 from collections import defaultdict
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -13,7 +14,7 @@ from stages.kit.files import read_arrays
 from stages.kit.repeatable import repeatable
 from stages.kit.rng import rng
 from stages.kit.stats import interval_metrics
-from stages.networks.device import choose
+from stages.networks.device import choose, enough_memory
 from stages.networks.images import augmentation
 from stages.networks.network import build
 from stages.networks.training import learn
@@ -68,17 +69,14 @@ class Sense:
 def trials(settings, members):
     """The names of all hybrid networks. members: {split: {class: its objects}}.
 
-    The first of hybrid_middles is repeated; the others, which are there for their size, are not. None where
-    hybrid_repetitions is 0.
+    None where hybrid_repetitions is 0.
     """
-    found = []
-    for place, layers in enumerate(settings.hybrid_middles):
-        count = settings.hybrid_repetitions if place == 0 else min(settings.hybrid_repetitions, 1)
-        splits = [split for split in settings.splits if len(members[split]) > 1]
-        found += [Trial(layers, split, number).name for split in splits for number in range(count)]
-    return found
+    splits = [split for split in settings.splits if len(members[split]) > 1]
+    every = itertools.product(settings.hybrid_middles, splits, range(settings.hybrid_repetitions))
+    return [Trial(*one).name for one in every]
 
 
+@enough_memory()
 def process(name, folder, members, settings, seed):
     """Trains two networks with their middle frozen, stitches them and tests all; returns the rows.
 
@@ -170,14 +168,18 @@ def summary(rows, settings, seed):
 
 
 def confusion(folder, names, members):
-    """Tidy frame of the confusion matrices (T figure 5.6): trial, sense, true class, predicted class, count."""
+    """Tidy frame of the confusion matrices (T figure 5.6): trial, sense, true class, predicted class, count.
+
+    A touch that felt nothing has no answer, and is in none of the cells.
+    """
     rows = []
     for name in names:
         classes = list(members[Trial.parse(name).split])
         stored = read_arrays(folder / "hybrid" / "predictions" / f"{name}.npz")
         for sense in SENSES:
-            counts = np.zeros((len(classes), len(classes)), dtype=int)
-            np.add.at(counts, (stored[f"{sense}_true"], stored[f"{sense}_scores"].argmax(axis=1)), 1)
+            scores, counts = stored[f"{sense}_scores"], np.zeros((len(classes), len(classes)), dtype=int)
+            spoken = np.isfinite(scores).all(axis=1)
+            np.add.at(counts, (stored[f"{sense}_true"][spoken], scores[spoken].argmax(axis=1)), 1)
             rows += [
                 {"trial": name, "sense": sense, "true": classes[i], "predicted": classes[j], "count": counts[i, j]}
                 for i, j in np.ndindex(counts.shape)

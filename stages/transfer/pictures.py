@@ -6,7 +6,7 @@ from kornia import augmentation as kornia_augmentation
 from kornia.augmentation import AugmentationSequential
 
 from stages.kit import Mesh, Viewpoint
-from stages.networks.images import SCALE, SHIFT
+from stages.networks.images import SCALE, SHIFT, one_size
 from stages.views import render
 
 ELEVATIONS = (-10.0, 60.0)  # degrees: an object on a table, seen by somebody who sits or stands; none from below
@@ -43,8 +43,9 @@ def picture_images(pictures, size):
     """Images (k, 3, size, size) f4 in 0..1 of pictures (k, h, w, 3), u1 or floats in 0..1; resized where they must be.
 
     Bilinearly, with an anti-alias filter where they shrink. Raises ValueError for another shape, values out of range or
-    NaN.
+    NaN, and for several sizes.
     """
+    one_size(pictures)
     images = torch.as_tensor(pictures)
     if images.ndim != 4 or images.shape[3] != 3 or 0 in images.shape:
         raise ValueError(f"pictures must have shape (k, h, w, 3) and not be empty, got {tuple(images.shape)}")

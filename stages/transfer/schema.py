@@ -12,7 +12,7 @@ class Params:
     coarse_cells: list[int]  # sensels a side of other arrays, as wide: no control, no range of layers, no stability
     networks: list[str]  # architectures, names of stages.networks.NETWORKS
     weights: list[str]  # start from imagenet, or from random as the control
-    source: str  # where ImageNet's weights come from: package (by hash, from a registry) or download (torchvision's)
+    source: str  # where ImageNet's weights come from: package (by hash), download (torchvision's) or auto
     modes: list[str]  # frozen: only the new head learns; finetuned: all layers; 18:139: all but those of mobilenet_v2
     splits: list[str]  # random: touches are drawn for testing (T5.1.3); objects: one object of each class is left out
     size: int  # pixels a side of the image that the network sees
@@ -29,7 +29,7 @@ class Params:
     coarse_repetitions: int  # the same with the coarse arrays
     device: str  # where networks are trained: auto (a CUDA card where there is one), cpu, cuda
     severities: dict[str, list[float]]  # of each perturbation of the test touches, from mild to harsh
-    hybrid_middles: list[str]  # layers that both senses share in a hybrid network; the first is repeated
+    hybrid_middles: list[str]  # layers that both senses share in a hybrid network; damage is tried on the first
     hybrid_repetitions: int  # hybrid networks a split; 0: none
     hybrid_pictures: int  # looks at each object
     hybrid_colour: bool  # pictures in the objects' colours, which may give them away; else grey clay

@@ -6,7 +6,7 @@ from stages.kit import Stopwatch
 from stages.kit.files import read_json, write_arrays, write_json
 from stages.kit.repeatable import repeatable
 from stages.kit.rng import rng
-from stages.networks.device import choose
+from stages.networks.device import choose, enough_memory
 from stages.networks.images import normalise, to_images
 from stages.networks.modes import MODES, mode_named
 from stages.networks.network import build, parameters, settle
@@ -21,6 +21,7 @@ from .touches import read_touches
 UNFINISHED = ".unfinished"  # folder of what a killed training goes on from
 
 
+@enough_memory()
 def process(name, folder, members, settings, seed):
     """Trains one network and tests it; writes predictions/NAME.npz, of the first repetition networks/NAME.npz too.
 

@@ -4,7 +4,6 @@ import pandas as pd
 import pytest
 
 from benchmarks.fixation import summary
-from benchmarks.fixation_costs import costs
 
 
 @pytest.fixture
@@ -26,10 +25,3 @@ def test_a_mesh_counts_once_whatever_its_views_and_all_views_together_are_not_a_
     table = summary(rows).set_index("method")
     assert table.loc["net-frozen", "mean"] == pytest.approx(0.315) and table.loc["net-frozen", "meshes"] == 4
     assert table.loc["net-frozen", "low"] < 0.315 < table.loc["net-frozen", "high"]
-
-
-def test_the_chart_of_costs_gets_the_seconds_and_the_fused_map_of_each_view(rows):
-    rows = rows.assign(dataset="gaze", seed=0)
-    found = costs(pd.concat([rows, rows.assign(task="level_1", metric="pcc"), rows.assign(metric="nss")]))
-    assert found["metric"].value_counts().to_dict() == {"pcc": 16, "views": 8, "accuracy": 2}
-    assert set(found["view"].dropna()) == {"0", "1"} and not {"dataset", "seed"} & set(found)

@@ -1,9 +1,12 @@
 """Every network ends at its last maps, starts usable, and refuses what is not its own."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import torch
 
+from stages.kit.files import sha256
 from stages.networks import cost as costs
 from stages.networks.converters.googlenet import converted
 from stages.networks.cost import cost
@@ -137,21 +140,18 @@ def test_convolutions_alone_classify_nothing_of_imagenet():
         imagenet_classifier("vgg16", "download")
 
 
-def test_downloaded_weights_take_the_same_path(monkeypatch):
-    states = {}
-
-    class Published:
-        def __init__(self, name):
-            self.name = name
-
-        def get_state_dict(self, **_):
-            return states[self.name]
-
-    monkeypatch.setattr(torchvision.models, "get_weight", lambda name: Published(name))
+def test_downloaded_weights_take_the_same_path(monkeypatch, tmp_path):
+    urls = {}
+    monkeypatch.setattr(torch.hub, "get_dir", lambda: str(tmp_path))
+    monkeypatch.setattr(torchvision.models, "get_weight", lambda name: SimpleNamespace(url=urls[name]))
+    (tmp_path / "checkpoints").mkdir()
     for name, published in (("alexnet", "AlexNet"), ("googlenet", "GoogLeNet")):
         options = {"init_weights": True} if name == "googlenet" else {}
         whole = torchvision.models.get_model(name, **options)
-        states[f"{published}_Weights.IMAGENET1K_V1"] = whole.state_dict()
+        torch.save(whole.state_dict(), tmp_path / "saved")
+        file = f"{name}-{sha256(tmp_path / 'saved')[:8]}.pth"
+        (tmp_path / "saved").rename(tmp_path / "checkpoints" / file)
+        urls[f"{published}_Weights.IMAGENET1K_V1"] = f"https://example.org/{file}"
         network = build(name, 2, "imagenet", 0, "download")
         weights = [parameter for parameter in whole.parameters() if parameter.ndim == 4][1]
         assert any(torch.equal(weights, parameter) for parameter in network.parameters())

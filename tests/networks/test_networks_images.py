@@ -56,6 +56,7 @@ def test_augmentation_brings_in_no_contact_from_outside():
         (np.zeros((0, 4, 4)), "empty"),
         (np.full((1, 4, 4), np.nan), "0..1"),
         (np.full((1, 4, 4), 1.5), "0..1"),
+        ([np.zeros((4, 4)), np.zeros((4, 5))], r"several sizes, \(4, 4\), \(4, 5\)"),
     ],
 )
 def test_bad_imprints_are_refused(bad, reason):

@@ -6,6 +6,7 @@ import json
 import os
 import pickle
 import zipfile
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -70,15 +71,40 @@ def test_tensors_are_read_and_other_objects_refused():
         weights.read_weights(content, digest, "x")
 
 
-def test_a_failed_download_says_what_to_put_where(monkeypatch):
-    class Published:
-        url = "https://example.org/file.pth"
+@pytest.fixture
+def hub(monkeypatch, tmp_path):
+    """A function that tells where torchvision's weights with this beginning of their hash are kept; no network."""
 
-        def get_state_dict(self, **_):
-            raise OSError("no network")
+    def down(*_, **__):
+        raise OSError("no network")
 
-    monkeypatch.setattr(weights.torchvision.models, "get_weight", lambda name: Published())
-    with pytest.raises(FetchError, match="no network.*example.org/file.pth.*checkpoints"):
+    def kept(prefix):
+        published = SimpleNamespace(url=f"https://example.org/file-{prefix}.pth")
+        monkeypatch.setattr(weights.torchvision.models, "get_weight", lambda name: published)
+        return tmp_path / "checkpoints" / f"file-{prefix}.pth"
+
+    monkeypatch.setattr(torch.hub, "get_dir", lambda: str(tmp_path))
+    monkeypatch.setattr(torch.hub, "download_url_to_file", down)
+    (tmp_path / "checkpoints").mkdir()
+    return kept
+
+
+def test_a_failed_download_says_what_to_put_where(hub):
+    hub("0123abcd")
+    with pytest.raises(FetchError, match="no network.*example.org/file-0123abcd.pth.*checkpoints"):
+        weights.imagenet_state("mobilenet_v2", "download")
+
+
+def test_a_downloaded_file_is_read_as_tensors_alone_and_by_its_hash(hub):
+    content, digest = saved({"a": torch.ones(2)})
+    hub(digest[:8]).write_bytes(content)
+    assert torch.equal(weights.imagenet_state("mobilenet_v2", "download")["a"], torch.ones(2))
+    hub("0123abcd").write_bytes(content)
+    with pytest.raises(FetchError, match=f"SHA-256 {digest} instead of 0123abcd"):
+        weights.imagenet_state("mobilenet_v2", "download")
+    content, digest = saved({"a": hashlib.sha256})
+    hub(digest[:8]).write_bytes(content)
+    with pytest.raises(FetchError, match="more than tensors"):
         weights.imagenet_state("mobilenet_v2", "download")
 
 
@@ -186,7 +212,9 @@ def test_what_a_row_had_is_said_without_a_fetch(offline):
     for name in ("googlenet", "resnet101"):
         with pytest.raises(FetchError, match=f"weights of {name}: choose source=download"):
             weights.had(name)
-        assert weights.had(name, "download") == "complete"
+        assert weights.had(name, "download") == weights.had(name, "auto") == "complete"
+    assert weights.had("resnet50", "auto") == weights.had("resnet50") != weights.had("resnet50", "download")
+    assert weights.had("efficientnet_lite0", "auto") == "complete"
     with pytest.raises(FetchError, match="choose source=package"):
         weights.had("efficientnet_lite0", "download")
 

@@ -197,6 +197,14 @@ def test_views_count_once_in_the_time_spent(seen):
     assert frame.loc[("views", "greedy"), "seconds"].sum() == 14  # seven for each of two objects
 
 
+def test_a_piece_of_work_counts_once_whatever_it_was_judged_in(seen, root, small):
+    rows = [{"object": "ball", "method": "net", "task": task, "view": view, "metric": "pcc", "value": 0.1, "seconds": 5}
+            for task in ("level_1", "ewigc") for view in ("0", "all")]  # fmt: skip
+    small.write(root, "fixation", pd.DataFrame(rows))
+    frame = time_spent.build(Results(small.settings(), root)).frame.set_index(["stage", "method"])
+    assert frame.loc[("fixation", "net"), "seconds"] == 5
+
+
 def test_views_figure_tells_the_fewest(seen):
     assert "3 for the median object" in views_seen.build(seen).caption
 

@@ -118,6 +118,8 @@ def test_damaged_and_strange_files_are_refused(stored, tmp_path):
     for name in ("half.npz", "text.npz", "other.npz"):
         with pytest.raises(ValueError, match=f"{name} holds no hybrid network"):
             load(tmp_path / name)
+    with pytest.raises(ValueError, match="text.npz holds no hybrid network: it is no .npz file$"):
+        load(tmp_path / "text.npz")
     with pytest.raises(FileNotFoundError):
         load(tmp_path / "nowhere.npz")
 

@@ -7,7 +7,7 @@ import pytest
 
 from stages.kit.files import read_arrays, write_arrays
 from stages.networks.network import build
-from stages.transfer import hybrid_trial
+from stages.transfer import hybrid_compared, hybrid_trial
 from stages.transfer.hybrid_file import load
 from stages.transfer.hybrid_training import middle_of
 
@@ -91,17 +91,40 @@ def test_confusion_counts_every_test_item_once(run):
     assert frame.groupby(["sense", "true"])["count"].sum().tolist() == [8] * 4
 
 
+def test_confusion_leaves_out_a_touch_that_felt_nothing(tmp_path):
+    scores, true = np.array([[0.0, 1.0], [np.nan, np.nan], [1.0, 0.0]]), np.array([0, 0, 1])
+    stored = {f"{sense}_{part}": value for sense in ("vision", "touch") for part, value in
+              (("scores", scores), ("true", true))}  # fmt: skip
+    write_arrays(tmp_path / "hybrid" / "predictions" / "hybrid.18-139.random.0.npz", **stored)
+    frame = hybrid_trial.confusion(tmp_path, ["hybrid.18-139.random.0"], members())
+    assert frame.loc[frame["sense"] == "touch", "count"].tolist() == [0, 1, 1, 0]
+
+
+def test_an_answer_where_the_other_has_none_is_no_equality(monkeypatch, tmp_path):
+    images, labels = np.zeros((2, 3, 4, 4)), np.array([0, 1])
+    sense = SimpleNamespace(images=images, labels=labels, test=np.arange(2))
+    own, path = np.array([[np.nan, np.nan], [0.5, 0.25]]), tmp_path / "net.onnx"
+    path.write_bytes(b"")
+    monkeypatch.setattr(hybrid_compared, "export_onnx", lambda *_: None)
+    monkeypatch.setattr(hybrid_compared, "scored", lambda *_: own)
+    monkeypatch.setattr(hybrid_compared, "lone", lambda images, kind: images)
+    for found, expected in ((own + 0.125, 0.125), (np.nan_to_num(own), np.inf)):
+        monkeypatch.setattr(hybrid_compared, "onnx_scores", lambda *_, answer=found: [answer] * 2)
+        rows = list(hybrid_compared.exported(None, [sense] * 2, SimpleNamespace(size=4), path))
+        assert values(rows, metric="max_difference") == [expected]
+
+
 def test_summary_holds_what_the_gate_watches(run):
     found = hybrid_trial.summary(run[1], SimpleNamespace(**SETTINGS), 0)["objects"]
     assert set(found) == {"accuracy_vision", "accuracy_touch", "max_difference", "size_ratio"}
     assert found["size_ratio"]["mean"] == pytest.approx(1.43, abs=0.01)
 
 
-def test_trials_repeat_the_first_middle_alone():
+def test_every_middle_has_a_network_for_each_split_and_repetition():
     names = hybrid_trial.trials(SimpleNamespace(**SETTINGS), members())
     assert names == [
         "hybrid.18-139.random.0", "hybrid.18-139.random.1", "hybrid.18-139.objects.0", "hybrid.18-139.objects.1",
-        "hybrid.18-147.random.0", "hybrid.18-147.objects.0",
+        "hybrid.18-147.random.0", "hybrid.18-147.random.1", "hybrid.18-147.objects.0", "hybrid.18-147.objects.1",
     ]  # fmt: skip
     assert [hybrid_trial.Trial.parse(name).name for name in names] == names
 

@@ -62,6 +62,8 @@ def test_picture_images_are_in_0_to_1_with_channels_first():
     for bad in (pictures[0], pictures[..., :2], np.full((1, 4, 4, 3), np.nan), np.full((1, 4, 4, 3), 7.0)):
         with pytest.raises(ValueError, match="pictures must"):
             picture_images(bad, 8)
+    with pytest.raises(ValueError, match="several sizes"):
+        picture_images([pictures[0], pictures[0, :4]], 8)
 
 
 def test_a_flat_contact_is_a_touch_and_feeling_nothing_is_none():

@@ -28,8 +28,8 @@ NOTES = [
     "they share in training. Few folds make it wide, and say little of other objects.",
     "Every network ends in global average pooling and one new linear layer. The thesis keeps the two fully connected "
     "layers of AlexNet and VGG16 before the last; no registry of packages has their weights.",
-    "Random weights are not in the thesis: they tell what sight adds from what the architecture alone does. Fine-tuned "
-    "from them, ten epochs are too few: the network has not learned its own training touches then.",
+    "Random weights are not in the thesis: they tell what sight adds from what the architecture alone does. How well "
+    "they come to know their own training touches in the few epochs that fine-tuning has was not measured.",
 ]
 
 

@@ -14,7 +14,8 @@ NOTES = [
     "of the training part, whichever is right more often.",
     "Gains in points of accuracy [95 % interval], paired: each split, or object, minus the same one. Over features and "
     "kNN: what table 4.4 recognises the same touches with, of fingertips the readings of their electrodes. Over "
-    "random weights: the same network that did not learn by sight. Numbers of pairs are in the CSV.",
+    "random weights: the same network that did not learn by sight, one draw of its weights, so that the interval holds "
+    "for that draw. Untrained, one architecture is a much better start than another: compare what each alone gains.",
     "Pressure images: Gandarias, García-Cerezo and Gómez-de-Gabriel 2019, 28 x 50 cells. Fingertips: BTS3 v2, 24 "
     "electrodes a finger at their published places, one finger a channel.",
 ]

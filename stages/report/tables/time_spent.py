@@ -8,9 +8,10 @@ from stages.report.results import NotRun
 NOTES = [
     "Seconds of work summed over objects, as each stage measured them in the run that made its figures: several "
     "workers share them, so wall time is shorter. What a stage does not time (start, files) is not in here.",
-    "A row of measurements that repeats the seconds of one piece of work under several metrics counts once.",
+    "A row of measurements that repeats the seconds of one piece of work under several metrics, tasks or views counts "
+    "once.",
 ]
-KEYS = ["value", "metric", "note"]
+KEYS = ["value", "metric", "note", "task", "view", "split"]  # in which rows of one piece of work differ
 SEEN = "seen_share"  # rows of the views that stand for one piece of work, the views in a row
 
 

@@ -1,7 +1,4 @@
-"""Where networks look: agreement with people against the seconds of training and looking.
-
-Of the run that fine-tuned, where there was one (`make fixation`): at few views, since training is dear.
-"""
+"""Where networks look: agreement with people against the seconds of training and looking."""
 
 import pandas as pd
 
@@ -9,13 +6,13 @@ from stages.report.intervals import interval
 from stages.report.judged import signed
 from stages.report.pareto import pareto_chart
 from stages.report.results import NotRun
-from stages.report.tables._fixation import FUSED, best_source, gap, networks, scores, spoken_network, spoken_source
+from stages.report.tables._fixation import FUSED, best_source, gap, networks, scores, spoken_network
 
 REFERENCE = "mobilenet_v2-frozen"
 
 
 def build(results):
-    source, rows = trained(results)
+    source, rows = best_source(results)
     table = scores(rows, "pcc")
     methods = [method for method in networks(rows) if (method, FUSED) in table]
     frame = pd.DataFrame([_line(rows, table, method) for method in methods])
@@ -30,16 +27,6 @@ def build(results):
         f"putting them on the surface. Frozen: the maps are computed once for all tasks. {_saved(table, methods)}"
     )
     return chart
-
-
-def trained(results):
-    """(whose attention the truth is, rows) of the run with fine-tuned networks, or of the best there is."""
-    try:
-        rows = results.fixation("costs").dropna(subset=["value"])
-    except NotRun:
-        return best_source(results)
-    views = rows.loc[rows["metric"] == "views", "value"].median()
-    return f"{spoken_source(rows, 'pcc')}, {views:.0f} views each", rows
 
 
 def _line(rows, table, method):

@@ -43,7 +43,7 @@ def build(results):
         "Accuracy of frozen networks on real pressure images against parameters, multiply-adds and milliseconds.",
         "Up and left is better; the line is the Pareto front, bars are 95 % intervals. ImageNet's weights, frozen, a "
         f"new head for 22 objects, images of {SIZE} pixels, neighbouring touches held out together. The smallest "
-        f"network within {100 * SLACK:.0f} points of the best is {smallest}.",
+        f"network within {100 * SLACK:.0f} points of the best on average is {smallest}.",
         [save(figure, folder / "network_sizes.png"), folder / "network_sizes.csv"],
     )
 
