@@ -2,44 +2,20 @@
 
 FOLDER: a working tree in which `dvc repro fixation` ran on meshes with human gaze (`make fixation` leaves one in
 build/fixation). Writes reports/fixation: gaze.csv (the rows of reports/measurements/fixation.csv without dataset and
-seed, values to four digits), tasks.csv and elbow.csv (the classes of the meshes and how their number was found),
-summary.csv (method, task, metric, the mean over the meshes with its interval, seconds a mesh); and the pictures of
-figures 3.30 and 3.34 on these meshes, which the report then shows.
+seed, values to four digits), tasks.csv and elbow.csv (the classes of the meshes and how their number was found), and
+the pictures of figures 3.30 and 3.34 on these meshes, which the report then shows.
 """
 
 from pathlib import Path
 
-import numpy as np
-import pandas as pd
-
 from benchmarks import arguments
-from stages.fixation.judge import WHOLE
 from stages.kit.files import read_table, whole_file
 from stages.kit.params import params
 from stages.report.figures import figure_3_30, figure_3_34
 from stages.report.figures._kept import keep
 from stages.report.results import Results
-from stages.weights.agreement import mean_interval
 
 OUT = Path("reports/fixation")
-
-
-def per_mesh(rows):
-    """Series (method, task, metric, object) -> mean over the views; nss and auc are of all views together."""
-    views = rows["view"].astype(str) != WHOLE
-    own = rows[views | rows["metric"].isin(["nss", "auc", "pcc_tasks", "entropy"])].dropna(subset=["value", "object"])
-    return own[own["task"].notna()].groupby(["method", "task", "metric", "object"])["value"].mean()
-
-
-def summary(rows):
-    """Frame of the means over the meshes with their intervals."""
-    seconds = rows.dropna(subset=["task", "object"]).groupby(["method", "task"])["seconds"].median()
-    found = []
-    for (method, task, metric), values in per_mesh(rows).groupby(level=[0, 1, 2]):
-        mean, low, high = mean_interval(values.to_numpy())
-        found.append({"method": method, "task": task, "metric": metric, "meshes": len(values), "mean": mean,
-                      "low": low, "high": high, "seconds": seconds.get((method, task), np.nan)})  # fmt: skip
-    return pd.DataFrame(found)
 
 
 def write(name, frame):
@@ -50,13 +26,12 @@ def write(name, frame):
 
 
 def main():
-    """Writes the four tables and both pictures."""
+    """Writes the three tables and both pictures."""
     folder = Path(arguments(__doc__, "folder").folder)
     rows = read_table(folder / "reports/measurements/fixation.csv")
     write("gaze", rows.drop(columns=["dataset", "seed"]))
     for name in ("tasks", "elbow"):
         write(name, read_table(folder / f"data/fixation/{name}.csv"))
-    write("summary", summary(rows))
     results = Results(params("report"), folder)
     for name, figure in (("figure_3_30", figure_3_30), ("figure_3_34", figure_3_34)):
         keep(figure.build(results), name, OUT)

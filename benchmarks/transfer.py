@@ -2,10 +2,10 @@
 
 IMAGES: the pressure images of Gandarias and others (a zip file or folder), GRASPS: BTS3 v2; --vitac, --vt60, --bigs:
 folders of those data sets, where they are at hand. Each network learns from ImageNet's weights and from random ones,
-frozen and fine-tuned, on random splits and on splits by runs, objects or recordings. Writes reports/transfer:
-recorded.csv (every training, the k-nearest-neighbour classifier of reports/touch on the same splits, and a row for
-each network and data set that was not run) and recorded_summary.csv (intervals, chance, gains). What a killed start
-has finished stays in build/transfer. Frozen networks: 20 minutes on two cores; --finetuned names those trained whole.
+frozen and fine-tuned, on random splits and on splits by runs, objects or recordings. Writes
+reports/transfer/recorded.csv: every training, the k-nearest-neighbour classifier of reports/touch on the same splits,
+and a row for each network and data set that was not run. What a killed start has finished stays in build/transfer.
+Frozen networks: 20 minutes on two cores; --finetuned names those trained whole.
 """
 
 import argparse
@@ -17,7 +17,7 @@ import pandas as pd
 
 from benchmarks import _transfer_trials as trials
 from benchmarks._transfer_data import SOURCES
-from benchmarks._transfer_summary import nearest_neighbours, summary
+from benchmarks._transfer_neighbours import nearest_neighbours
 from stages.kit.fetch import FetchError
 from stages.kit.files import write_table
 from stages.kit.parallel import parallel_map, progress
@@ -35,7 +35,7 @@ COLUMNS = [
 
 
 def main():
-    """Runs what is asked for and not yet done; writes both tables, of all that is done, after every network anew."""
+    """Runs what is asked for and not yet done; writes the table, of all that is done, after every network anew."""
     given = options()
     paths = {source.argument: vars(given)[source.argument] for source in SOURCES.values()}
     rows = [*nearest_neighbours(), *not_at_hand(paths)]
@@ -120,12 +120,11 @@ def absent(data, method, weights, mode, note):
 
 
 def write(rows):
-    """Both tables."""
+    """The table of all that is done."""
     frame = pd.DataFrame(rows).reindex(columns=COLUMNS)
     whole = ["repetition", "size", "seed"]
     frame[whole] = frame[whole].astype("Int64")
     write_table(OUT / "recorded.csv", frame)
-    write_table(OUT / "recorded_summary.csv", summary(frame))
     print(f"{OUT / 'recorded.csv'}: {len(frame):,} rows", flush=True)
 
 

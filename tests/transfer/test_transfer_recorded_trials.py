@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 import torch
 
-from benchmarks import _transfer_data, _transfer_summary, transfer
+from benchmarks import _transfer_data, _transfer_neighbours, transfer
 from benchmarks import _transfer_tasks as tasks
 from benchmarks import _transfer_trials as trials
 from stages.transfer.recorded import Recorded
@@ -120,34 +120,8 @@ def test_passes_over_many_touches_are_fewer():
     assert trials._epochs("frozen", 4373) == trials.EPOCHS["frozen"]
 
 
-def rows(method, weights, values, **more):
-    known = {"data": "tiny", "split": "random", "method": method, "weights": weights, "metric": "accuracy"}
-    known |= {"object": "all", "had": "none" if weights == "random" else None, "mode": "frozen", "size": 32} | more
-    return [known | {"repetition": k, "value": value} for k, value in enumerate(values)]
-
-
-def test_gains_are_taken_split_by_split():
-    net = [*rows("net", "imagenet", [0.8, 0.7], had="complete"), *rows("net", "random", [0.5, 0.4])]
-    knn = rows(_transfer_summary.METHOD, None, [0.7, 0.6, 0.1], mode=None, size=None)
-    absent = transfer.absent("bigs", "alexnet", "imagenet", "frozen", "not run: data set not at hand")
-    frame = pd.DataFrame([*net, *knn, absent]).reindex(columns=transfer.COLUMNS)
-    found = _transfer_summary.summary(frame).set_index(["method", "weights"])
-    row = found.loc["net", "imagenet"]
-    assert row["accuracy"] == pytest.approx(0.75) and row["units"] == 2
-    assert row["gain_over_random"] == pytest.approx(0.3) and row["gain_over_knn"] == pytest.approx(0.1)
-    assert found.loc["alexnet", "imagenet"]["note"].startswith("not run")
-
-
-def test_with_fixed_test_objects_the_interval_is_over_them():
-    many = [row for name in ("mug", "shoe") for row in rows("net", "imagenet", [0.5, 0.7], object=name)]
-    whole = rows("net", "imagenet", [0.1, 0.1])
-    frame = pd.DataFrame([row | {"split": "test_objects"} for row in many + whole]).reindex(columns=transfer.COLUMNS)
-    row = _transfer_summary.summary(frame).iloc[0]
-    assert (row["over"], row["units"]) == ("objects", 2) and row["accuracy"] == pytest.approx(0.6)
-
-
 def test_the_nearest_neighbours_of_reports_touch_are_there():
-    found = pd.DataFrame(_transfer_summary.nearest_neighbours())
+    found = pd.DataFrame(_transfer_neighbours.nearest_neighbours())
     assert found.groupby("data")["split"].agg(set).to_dict() == {
         "pressure": {"random", "runs"}, "grasps_object": {"random", "runs"}, "grasps_slip": {"test_objects"},
     }  # fmt: skip

@@ -41,9 +41,9 @@ NOTES = [
     "Distance: between the centres of fixation, the least of a view as in the thesis, in % of the diameter of the "
     "object's bounding sphere; it shrinks with the number of centres alone, so that noise does well. Mean of pairs: "
     "over all pairs of centres of a view.",
-    "Centres are those of the vertices above 95 % of the maximum. The three views are of the same objects, and up to "
-    "60 in 100 of all views taught the heads their classes; none taught them where people look. Heads of frozen networks "
-    "are logistic regressions with an L2 penalty on unaugmented views. ResNet50's weights are converted from Keras's "
+    "Centres are those of the vertices above 95 % of the maximum. The three views are of the same objects, and 60 in "
+    "100 of all views taught the heads their classes; none taught them where people look. Heads of frozen networks are "
+    "logistic regressions with an L2 penalty on unaugmented views. ResNet50's weights are converted from Keras's "
     "training; VGG16's are its convolutions. Untrained: one draw of the weights. Seconds: an object, all views drawn, "
     "looked at and put on the surface.",
     "Brackets: 95 % interval, bootstrap over the objects. Two detectors differ beyond chance where the interval of "
