@@ -10,6 +10,7 @@ from stages.report.claims.chapter_5_hybrid import within_a_point
 from stages.report.figures import figure_5_6, transfer_stability
 from stages.report.results import NotRun, Results
 from stages.report.tables import hybrid_senses, section_5_5
+from stages.report.tables import transfer_stability as breaking
 from stages.report.tables._hybrid import BOTH
 from stages.report.tradeoff import hybrid as chart
 from stages.report.verdict import judge
@@ -171,6 +172,13 @@ def test_pictures_are_drawn(run, module):
     assert module.build(run).paths[0].stat().st_size > 10_000
 
 
+def test_a_network_breaks_where_half_of_its_lead_is_lost(run):
+    row = breaking.build(run).frame.set_index("perturbation").loc["noise"]
+    assert row["breaking_point"] == pytest.approx(0.1775)  # 0.39 at 0.1, 0.29 at 0.2; half way from 0.5 to 0.125
+    assert row["low"] < row["breaking_point"] < row["high"] or np.isnan(row["high"])
+    assert breaking.build(run).shown["unit"].tolist() == ["sigma, share of full scale"]
+
+
 VERDICTS = {
     "sight_over_touch_random": "supported",
     "sight_over_touch_objects": "supported",
@@ -228,6 +236,6 @@ def test_claims_on_the_thesis_s_classes_read_those_alone(bare, run, small):
 
 def test_without_a_hybrid_nothing_is_made_up(bare, small):
     empty = Results(small.settings(), bare)
-    for module in (section_5_5, hybrid_senses, figure_5_6, transfer_stability, chart):
+    for module in (section_5_5, hybrid_senses, figure_5_6, transfer_stability, breaking, chart):
         with pytest.raises(NotRun, match="transfer"):
             module.build(empty)

@@ -5,24 +5,10 @@ from stages.report.results import NotRun
 from stages.report.style import GREY, label, plt, save, start
 from stages.report.tables._hybrid import mean
 from stages.report.tables._transfer import FINE, measured
+from stages.report.tables.transfer_stability import KINDS, NETWORK, UNITS
 
-UNITS = {
-    "noise": "sigma, share of full scale",
-    "blur": "sigma in cells of 128",
-    "dead_cells": "share of the cells",
-    "occlusion": "share of the area",
-    "rotation": "degrees",
-    "resolution": "cells a side",
-    "few_touches": "share of the touches trained on",
-}
-LINES = {
-    ("imagenet", "finetuned"): "#0072B2",
-    ("imagenet", "frozen"): "#56B4E9",
-    ("random", "finetuned"): "#767676",
-    ("random", "frozen"): "#c4c4c4",
-}
+TINTS = dict(zip(KINDS, ("#0072B2", "#56B4E9", "#767676", "#c4c4c4"), strict=True))
 COLUMNS = 4
-NETWORK = "mobilenet_v2"
 
 
 def build(results):
@@ -45,7 +31,7 @@ def build(results):
         axes.set_ylabel("accuracy, %")
     for axes in grid.flat[len(found) :]:
         axes.set_axis_off()
-    for (weights, mode), tint in LINES.items():
+    for (weights, mode), tint in TINTS.items():
         grid.flat[len(found)].plot([], [], "o-", color=tint, ms=4, lw=1.4, label=f"{start(weights)}, {label(mode)}")
     grid.flat[len(found)].plot([], [], ":", color=GREY, lw=1.2, label="guessing")
     grid.flat[len(found)].legend(loc="center left", fontsize=9)
@@ -61,7 +47,7 @@ def build(results):
 
 def _draw(axes, rows, clean):
     steps = list(dict.fromkeys(rows["severity"]))
-    for (weights, mode), tint in LINES.items():
+    for (weights, mode), tint in TINTS.items():
         sides = [frame[(frame["weights"] == weights) & (frame["mode"] == mode)] for frame in (clean, rows)]
         if any(side.empty for side in sides):
             continue
