@@ -60,25 +60,31 @@ def frozen(network, imprints, size, copies):
 
 def finetuned(network, imprints, size, copies):
     """The Task to train every layer on imprints (k, r, c), augmented anew at every step: no copies needed."""
-    return all_but(network, imprints, size, ())
+    return _imprints(network, imprints, size, ())
 
 
 def layer_range(name):
     """The mode that freezes a range of layers of MobileNetV2, in Matlab's numbers, such as `18:139` (T table 5.6)."""
 
     def mode(network, imprints, size, copies):
-        return all_but(network, imprints, size, tuple(frozen_modules(name, network)))
+        return _imprints(network, imprints, size, tuple(frozen_modules(name, network)))
 
     mode.__doc__ = f"The Task to train every layer but {name}."
     return mode
 
 
-def all_but(network, imprints, size, fixed):
-    """The Task to train all but the modules named `fixed`, whose weights and statistics stay as they are."""
+def _imprints(network, imprints, size, fixed):
+    return all_but(network, to_images(imprints, size).to(device_of(network)), augmentation(), fixed)
+
+
+def all_but(network, images, moved, fixed):
+    """The Task to train all but the modules named `fixed`, whose weights and statistics stay as they are.
+
+    images (k, 3, h, w) in 0..1 on the network's device; moved: their augmentation in training.
+    """
     network.requires_grad_(True)
     for name in fixed:
         network.get_submodule(name).requires_grad_(False)
-    images, moved = to_images(imprints, size).to(device_of(network)), augmentation()
 
     def inputs(ids):
         return normalise(images[ids])

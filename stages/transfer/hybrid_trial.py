@@ -16,6 +16,8 @@ from stages.kit.rng import rng
 from stages.kit.stats import interval_metrics
 from stages.networks.device import choose, enough_memory
 from stages.networks.images import augmentation
+from stages.networks.layers import frozen_modules
+from stages.networks.modes import all_but
 from stages.networks.network import build
 from stages.networks.training import learn
 from stages.networks.weights import had
@@ -26,7 +28,7 @@ from .hybrid_both import fused
 from .hybrid_compared import compared, exported
 from .hybrid_data import as_images, read_pictures
 from .hybrid_scores import scored
-from .hybrid_training import held, middle_of
+from .middle import middle_of
 from .pictures import picture_augmentation
 from .split import by_objects, by_touches, stratified_split
 from .touches import arrays, read_touches
@@ -143,7 +145,7 @@ def training(sense, kind, trial, classes, settings, random, kept):
     with Stopwatch() as watch:
         network = build("mobilenet_v2", classes, "imagenet", first_weights, settings.source).to(device)
         moved = picture_augmentation() if kind == "vision" else augmentation()
-        task = held(network, sense.images.to(device), moved, trial.layers)
+        task = all_but(network, sense.images.to(device), moved, tuple(frozen_modules(trial.layers, network)))
         model = learn(
             task, sense.labels, sense.train, settings.hybrid_rate, settings.epochs, settings.batch, settings.momentum,
             seed=seed, checkpoint=kept.with_name(f"{kept.name}.{kind}.pt"),

@@ -11,7 +11,7 @@ from stages.networks.network import NETWORKS, START
 from stages.networks.weights import had, imagenet_state
 
 from . import disturbed, hybrid_damage
-from .hybrid_training import middle_of
+from .middle import middle_of
 from .split import SPLITS
 from .touches import arrays
 

@@ -9,7 +9,7 @@ from stages.kit.files import read_arrays, write_arrays
 from stages.networks.network import build
 from stages.transfer import hybrid_compared, hybrid_trial
 from stages.transfer.hybrid_file import load
-from stages.transfer.hybrid_training import middle_of
+from stages.transfer.middle import middle_of
 
 MEMBERS = {"cup": ["mug", "glass"], "dog": ["poodle", "pug"]}
 SETTINGS = {

@@ -1,9 +1,7 @@
-"""Training the two networks that become one: early and late layers learn, the middle stays ImageNet's (T5.5)."""
+"""The middle of a network that two share, in the numbers of either library (T5.5)."""
 
-from stages.networks.images import normalise
 from stages.networks.layers import frozen_modules
-from stages.networks.modes import Task
-from stages.networks.network import build, settle
+from stages.networks.network import build
 
 
 def middle_of(layers):
@@ -27,26 +25,3 @@ def middle_of(layers):
             f"layers {layers} are not whole blocks of mobilenet_v2 with layers on both sides, as 18:139 are"
         )
     return start, stop
-
-
-def held(network, images, moved, layers):
-    """The Task to train all of a MobileNetV2 but a range of layers on images (k, 3, h, w) in 0..1.
-
-    moved: the augmentation of images in training. The layers keep their weights and their statistics.
-    """
-    fixed = tuple(frozen_modules(layers, network))
-    network.requires_grad_(True)
-    for name in fixed:
-        network.get_submodule(name).requires_grad_(False)
-
-    def inputs(ids):
-        return normalise(images[ids])
-
-    return Task(
-        model=network,
-        training_inputs=lambda ids: normalise(moved(images[ids])),
-        inputs=inputs,
-        finish=lambda model, ids: settle(model, inputs, ids, fixed=fixed),
-        encode=lambda others: normalise(others.to(images.device)),
-        fixed=fixed,
-    )
