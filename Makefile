@@ -97,6 +97,8 @@ transfer: $(VENV)/ready ## networks for photographs on recorded touches (pressur
 	git ls-files -z -co --exclude-standard stages conf dvc.yaml pyproject.toml | tar --null -T - -cf - | tar -xf - -C build/table_5_4
 	cd build/table_5_4 && python -m stages.compose experiment=table_5_4 "classes.folder=$(abspath $(psb))" && dvc repro transfer
 	cp build/table_5_4/reports/measurements/transfer.csv reports/transfer/princeton.csv
+	cd build/table_5_4 && python -m stages.compose experiment=table_5_4_networks "classes.folder=$(abspath $(psb))" && dvc repro transfer
+	cp build/table_5_4/reports/measurements/transfer.csv reports/transfer/princeton_networks.csv
 
 clean: ## remove what was built and computed; fetched files stay in the user's cache
 	rm -rf $(VENV) build .pytest_cache .ruff_cache .dvc/tmp .dvc/cache *.egg-info

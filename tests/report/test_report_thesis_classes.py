@@ -9,7 +9,7 @@ from stages.report.claims import chapter_5
 from stages.report.figures import figure_5_3
 from stages.report.intervals import HOLD_OUT
 from stages.report.results import NotRun, Results
-from stages.report.tables import _transfer
+from stages.report.tables import _transfer, table_5_4
 from stages.report.verdict import judge
 
 FINE, COARSE = "imprints128", "imprints16"
@@ -113,3 +113,14 @@ def test_claims_and_figure_widen_intervals_alike(both):
 def test_other_rows_are_not_run_where_they_are_absent(bare, small):
     with pytest.raises(NotRun, match="princeton"):
         _transfer.on_psb(Results(small.settings(), bare))
+
+
+def test_other_networks_on_their_classes_stand_beside_and_change_no_claim(both):
+    before = words(both)
+    other = rows(frozen=0.9).assign(method="resnet50")
+    write_table(both.reports / "transfer/princeton_networks.csv", other[other["mode"] == "frozen"])
+    again = Results(both.settings, both.reports.parent)
+    shown = table_5_4.build(again).frame.set_index(["objects", "network", "mode", "weights", "split"])
+    where = ("princeton, the thesis's classes", "resnet50", "frozen", "imagenet", "objects")
+    assert shown.loc[where, "accuracy"] == pytest.approx(0.9, abs=0.01) and shown.loc[where, "values"] == 5
+    assert words(again)["effect"].equals(before["effect"])

@@ -28,6 +28,8 @@ NOTES = [
     "they share in training. Few folds make it wide, and say little of other objects.",
     "Every network ends in global average pooling and one new linear layer. The thesis keeps the two fully connected "
     "layers of AlexNet and VGG16 before the last; no registry of packages has their weights.",
+    "Not run: the default run trains MobileNetV2 alone, for the cost of others, and no other network was fine-tuned on "
+    "the thesis's classes; profile=paper trains all. No package has GoogLeNet's weights.",
     "Random weights are not in the thesis: they tell what sight adds from what the architecture alone does. How well "
     "they come to know their own training touches in the few epochs that fine-tuning has was not measured.",
 ]
@@ -45,7 +47,16 @@ def shared(split, source=None):
 
 def on_psb(results):
     """The results with the rows on the thesis's own classes for this run's; NotRun where these were not measured."""
-    return results.instead("transfer", results.transfer(PSB))
+    return results.instead("transfer", psb(results))
+
+
+def psb(results):
+    """Rows on the thesis's own classes: MobileNetV2's, and other networks' where they were measured; NotRun without."""
+    rows = results.transfer(PSB)
+    try:
+        return pd.concat([rows, results.transfer(f"{PSB}_networks")], ignore_index=True)
+    except NotRun:
+        return rows
 
 
 def everywhere(results):
@@ -57,7 +68,7 @@ def everywhere(results):
     except NotRun as missing:
         absent = missing
     try:
-        rows = results.transfer(PSB).dropna(subset=["value"])
+        rows = psb(results).dropna(subset=["value"])
         found |= {f"{name}, the thesis's classes": own for name, own in rows.groupby("object")}
     except NotRun:
         if not found:
@@ -79,7 +90,7 @@ def chances(results):
     for name in everywhere(results):
         source = name.partition(",")[0]
         try:
-            rows = results.transfer(PSB) if "," in name else results.measured("transfer")
+            rows = psb(results) if "," in name else results.measured("transfer")
         except NotRun:
             continue
         told = rows[(rows["metric"] == "chance") & (rows["object"] == source)].dropna(subset=["value"])
