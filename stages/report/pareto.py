@@ -109,7 +109,7 @@ def _draw(rows, quality, label, title, reference, quality_label, better, colour,
         axes.plot([], [], "o", color=tint, ms=6, label=spoken(value))
     for value, form in shape.items():
         axes.plot([], [], form, color="none", mec=INK, ms=6, label=spoken(value))
-    axes.xaxis.set_major_locator(_ticks(rows["cost_ratio"].max() / rows["cost_ratio"].min()))
+    axes.xaxis.set_major_locator(ticks(rows["cost_ratio"].max() / rows["cost_ratio"].min()))
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes.xaxis.set_minor_formatter(NullFormatter())
     if colour:
@@ -119,7 +119,7 @@ def _draw(rows, quality, label, title, reference, quality_label, better, colour,
     save(figure, path)
 
 
-def _ticks(span):
+def ticks(span):
     """What finds the numbers of a logarithmic axis whose dearest choice costs `span` times the cheapest.
 
     The narrower it is, the closer they must be, or the axis would be almost without any.

@@ -9,7 +9,7 @@ from matplotlib.text import Text
 
 from stages.report import pareto_chart, pareto_front
 from stages.report.names import place_names
-from stages.report.pareto import _ticks
+from stages.report.pareto import ticks
 from stages.report.style import plt
 
 
@@ -71,7 +71,7 @@ def test_the_axis_of_costs_has_numbers_however_narrow_it_is(span):
     figure, axes = plt.subplots()
     axes.set_xscale("log")
     axes.plot([1, span], [0, 1])
-    axes.xaxis.set_major_locator(_ticks(span))
+    axes.xaxis.set_major_locator(ticks(span))
     low, high = axes.get_xlim()
     assert 2 <= sum(low <= tick <= high for tick in axes.get_xticks()) <= 9
     plt.close(figure)

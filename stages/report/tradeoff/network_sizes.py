@@ -1,11 +1,15 @@
 """Frozen networks on a real pressure array: accuracy against parameters, operations and milliseconds."""
 
+from itertools import pairwise
+
 import numpy as np
 import pandas as pd
+from matplotlib.ticker import NullFormatter
 
 from stages.kit.files import write_table
 from stages.report.items import Figure
-from stages.report.pareto import pareto_front
+from stages.report.names import place_names
+from stages.report.pareto import pareto_front, ticks
 from stages.report.results import NotRun
 from stages.report.style import INK, label, plt, save
 from stages.report.tables._recorded import measured_lines
@@ -31,11 +35,12 @@ def build(results):
     enough = frame[frame["accuracy"] >= frame["accuracy"].max() - SLACK]
     smallest = label(enough.loc[enough["parameters"].idxmin(), "network"])
     figure, panels = plt.subplots(1, len(COSTS), figsize=(11.4, 3.8), sharey=True)
-    for axes, (cost, (words, unit)) in zip(panels, COSTS.items(), strict=True):
-        _draw(axes, frame.assign(cost=frame[cost] / unit))
+    for axes, (words, _) in zip(panels, COSTS.values(), strict=True):
         axes.set_xlabel(words)
     panels[0].set_ylabel("accuracy, %")
-    figure.tight_layout()
+    figure.tight_layout()  # before names find their places
+    for axes, (cost, (_, unit)) in zip(panels, COSTS.items(), strict=True):
+        _draw(axes, frame.assign(cost=frame[cost] / unit))
     folder = results.reports / "tradeoff"
     write_table(folder / "network_sizes.csv", frame)
     return Figure(
@@ -49,17 +54,22 @@ def build(results):
 
 
 def _draw(axes, frame):
+    axes.set_xscale("log")
     front = frame[pareto_front(frame["cost"], frame["accuracy"])].sort_values("cost")
     axes.step(front["cost"], 100 * front["accuracy"], where="post", color=INK, lw=1, zorder=1)
+    points, lines = [], []
+    for (left, before), (right, after) in pairwise(zip(front["cost"], 100 * front["accuracy"], strict=True)):
+        lines += [((left, before), (right, before)), ((right, before), (right, after))]
     for row in frame.itertuples():
+        points.append((row.cost, 100 * row.accuracy))
         if np.isfinite(row.low):
-            axes.plot([row.cost] * 2, [100 * row.low, 100 * row.high], color="#0072B2", lw=1.2, alpha=0.5)
-        axes.plot(row.cost, 100 * row.accuracy, "o", color="#0072B2", ms=6, mec="white")
-        axes.annotate(
-            label(row.network), (row.cost, 100 * row.accuracy), xytext=(5, 5), textcoords="offset points", fontsize=8
-        )
-    axes.set_xscale("log")
-    axes.set_xticks(frame["cost"], [f"{value:.2g}" for value in frame["cost"]], fontsize=8)
-    axes.minorticks_off()
+            lines.append(((row.cost, 100 * row.low), (row.cost, 100 * row.high)))
+            axes.plot(*zip(*lines[-1], strict=True), color="#0072B2", lw=1.2, alpha=0.5)
+        axes.plot(*points[-1], "o", color="#0072B2", ms=6, mec="white")
     axes.margins(x=0.2)
     axes.grid(True)
+    axes.xaxis.set_major_locator(ticks(frame["cost"].max() / frame["cost"].min()))
+    axes.xaxis.set_major_formatter("{x:g}")
+    axes.xaxis.set_minor_formatter(NullFormatter())
+    names = [(label(row.network), point) for row, point in zip(frame.itertuples(), points, strict=True)]
+    place_names(axes, names, np.array(points), lines)
