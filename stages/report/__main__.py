@@ -83,7 +83,8 @@ def packed_or_none(results, not_run):
 def dataset_line(results):
     """How many objects of which data set, for the head of the page."""
     try:
-        stage = results.measured_stages[0] if results.measured_stages else "meshes"
+        known = results.measured_stages
+        stage = "meshes" if "meshes" in known or not known else known[0]  # stages of classes have another data set
         return f"{len(results.objects)} objects of the data set {results.measurements(stage)['dataset'].iloc[0]}"
     except NotRun:
         return "no objects yet"

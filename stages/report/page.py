@@ -13,7 +13,7 @@ from PIL import Image
 from .markdown import is_numeric, number
 from .verdict import counted
 
-WIDEST = 1000  # pixels of a picture on the page
+WIDEST = 900  # pixels of a picture on the page
 LONG = 30  # rows after which a table scrolls in its own box
 WORDS = {"supported": "yes", "contradicted": "no", "open": "open"}  # word -> class in the style sheet
 
@@ -95,8 +95,8 @@ def small_picture(path):
         whole = image.convert("RGB")
     shown = whole.copy()
     shown.thumbnail((WIDEST, WIDEST), Image.Resampling.LANCZOS)
-    flat = whole.quantize(48, dither=Image.Dither.NONE).convert("RGB")
-    packed = [_webp(shown, quality=65), _webp(flat, lossless=True, quality=60)]
+    flat = whole.quantize(32, dither=Image.Dither.NONE).convert("RGB")
+    packed = [_webp(shown, quality=55), _webp(flat, lossless=True, quality=60)]
     return base64.b64encode(min(packed, key=len)).decode("ascii")
 
 

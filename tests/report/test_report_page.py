@@ -9,8 +9,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.kit.files import write_arrays
-from stages.report.__main__ import write_report
+from stages.kit.files import write_arrays, write_table
+from stages.report.__main__ import dataset_line, write_report
 from stages.report.drawing import VIEWPOINT, picture, visible
 from stages.report.figures import table_4_1
 from stages.report.packing import SHADES, STEPS, Store, ordered
@@ -190,3 +190,10 @@ def test_method_that_was_not_run_is_no_crash(root, small, monkeypatch):
         write_arrays(path, **arrays)
     write_report(Results(small.settings()))
     assert '"itti"' in (root / "reports/index.html").read_text()
+
+
+def test_the_head_of_the_page_names_the_data_set_of_the_meshes(root, small):
+    for stage, dataset in (("classes", "furniture"), ("meshes", "household")):
+        row = {"dataset": dataset, "object": "ball", "metric": "faces", "value": 1.0}
+        write_table(root / f"reports/measurements/{stage}.csv", pd.DataFrame([row]))
+    assert dataset_line(Results(small.settings(), root)).endswith("data set household")
