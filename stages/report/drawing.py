@@ -2,13 +2,15 @@
 
 import matplotlib
 import numpy as np
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
 
 from stages.kit import RayScene, Viewpoint
 from stages.kit.camera import pixel_rays, pixels_per_unit, project
 from stages.kit.mesh import unit
 from stages.kit.rays import barycentric
 
-from .style import MAP, plt
+from .style import GREY, MAP, plt
 
 VIEWPOINT = Viewpoint(305, 22)  # from above and the side: most household objects show their parts
 CLAY = np.array([0.80, 0.80, 0.82])
@@ -87,6 +89,13 @@ def show(axes, mesh, values=None, wires=False, points=None, viewpoint=VIEWPOINT,
         down, across = visible(mesh, points, viewpoint, rows)
         axes.plot(across - left, down - top, "o", color="#D81B1B", ms=4.2, mec="white", mew=0.8, clip_on=False)
     axes.set_axis_off()
+
+
+def colour_bar(figure, box, text):
+    """A bar of the maps' colours from 0 to 1 in box [left, bottom, width, height] of the figure, and what it is of."""
+    bar = figure.colorbar(ScalarMappable(Normalize(0, 1), MAP), cax=figure.add_axes(box))
+    bar.set_label(text, fontsize=9)
+    bar.outline.set_edgecolor(GREY)
 
 
 def colour_map(values):

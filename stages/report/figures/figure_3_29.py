@@ -1,12 +1,9 @@
 """T figure 3.29: where a network looks for the object itself, from three sides."""
 
-from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Normalize
-
-from stages.report.drawing import picture, square_grid
+from stages.report.drawing import colour_bar, picture, square_grid
 from stages.report.items import Figure
 from stages.report.results import NotRun
-from stages.report.style import GREY, MAP, label, save
+from stages.report.style import label, save
 from stages.report.tables._fixation import spoken_network, stored, stored_networks, stored_tasks, untrained
 
 from .figure_3_30 import ROWS, VIEWS, large, sizes, veiled
@@ -29,9 +26,7 @@ def build(results):
             axes.set_axis_off()
         row[0].text(-0.05, 0.5, spoken_network(method).replace(", ", "\n"), rotation=90, va="center", ha="right",
                     fontsize=8.5, transform=row[0].transAxes)  # fmt: skip
-    bar = figure.colorbar(ScalarMappable(Normalize(0, 1), MAP), cax=figure.add_axes([0.93, 0.15, 0.014, 0.7]))
-    bar.set_label("over its maximum", fontsize=9)
-    bar.outline.set_edgecolor(GREY)
+    colour_bar(figure, [0.93, 0.15, 0.014, 0.7], "over its maximum")
     return Figure(
         "Figure 3.29: where networks look from three sides",
         f"Three views of {name} under the Grad-CAM maps of {label(TASK)}, the object itself, a row each for "

@@ -2,16 +2,14 @@
 
 import cv2
 import numpy as np
-from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Normalize
 
 from stages.fixation import fuse, sphere
 from stages.fixation.cam import to_size
 from stages.networks.grid import GRIDS
-from stages.report.drawing import colour_map, picture, square_grid, squared
+from stages.report.drawing import colour_bar, colour_map, picture, square_grid, squared
 from stages.report.items import Figure
 from stages.report.results import NotRun
-from stages.report.style import GREY, MAP, label, save
+from stages.report.style import label, save
 from stages.report.tables._fixation import CHOSEN, TASKS, spoken_network, stored, stored_networks, stored_tasks
 
 VIEWS = sphere(1, 3)[:3]  # the three views whose maps are stored, whatever the settings
@@ -40,9 +38,7 @@ def build(results):
                     fontsize=8.5, transform=row[0].transAxes)  # fmt: skip
     for axes, task in zip(grid[0], [*shown, "fused (EWIGC)"], strict=True):
         axes.set_title(label(task), fontsize=9.5, fontweight="normal", loc="center")
-    bar = figure.colorbar(ScalarMappable(Normalize(0, 1), MAP), cax=figure.add_axes([0.945, 0.15, 0.012, 0.7]))
-    bar.set_label("Grad-CAM over its maximum", fontsize=9)
-    bar.outline.set_edgecolor(GREY)
+    colour_bar(figure, [0.945, 0.15, 0.012, 0.7], "Grad-CAM over its maximum")
     return Figure(
         "Figure 3.30: where networks look, task by task",
         f"A view of {name} under the Grad-CAM maps of {', '.join(map(label, shown))} and their fusion, a row each for "

@@ -1,12 +1,9 @@
 """T figure 3.34: the fused attention of networks on the surface, beside people and other models."""
 
-from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Normalize
-
-from stages.report.drawing import show, square_grid, vivid
+from stages.report.drawing import colour_bar, show, square_grid, vivid
 from stages.report.items import Figure
 from stages.report.results import NotRun
-from stages.report.style import GREY, MAP, label, save
+from stages.report.style import label, save
 from stages.report.tables._fixation import MODELS, NARROWED, spoken_network, stored, stored_networks, untrained
 
 RIVALS = ("enhanced", "mesh_saliency")  # of stages.salient_points
@@ -30,9 +27,7 @@ def build(results):
         row[0].text(-0.04, 0.5, name, rotation=90, va="center", ha="right", transform=row[0].transAxes)
     for axes, title in zip(grid[0], ([marked] if marked else []) + titles, strict=True):
         axes.set_title(title, fontsize=9, fontweight="normal", loc="center")
-    bar = figure.colorbar(ScalarMappable(Normalize(0, 1), MAP), cax=figure.add_axes([0.945, 0.2, 0.012, 0.6]))
-    bar.set_label("over the 98 % quantile", fontsize=9)
-    bar.outline.set_edgecolor(GREY)
+    colour_bar(figure, [0.945, 0.2, 0.012, 0.6], "over the 98 % quantile")
     said = {"marks": " Marks: by a vision model, no human subjects; spread along the surface."}.get(marked, "")
     controls = " Random weights: a control." if any(map(untrained, methods)) else ""
     return Figure(

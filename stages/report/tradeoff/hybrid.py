@@ -31,8 +31,7 @@ def build(results):
     smallest = frame.loc[frame["megabytes"].idxmin(), "network"]
     others = [layers for layers in dict.fromkeys(frame["shared_layers"]) if layers != first]
     hollow = (
-        f" Hollow: one training that shares layers {', '.join(others)} instead of {first}, as far from the hybrid as "
-        "it was on the same items."
+        f" Hollow: layers {', '.join(others)} shared instead of {first}, as far from the hybrid as on the same items."
     )
     return Figure(
         "One network for sight and touch: accuracy against size",
@@ -61,7 +60,7 @@ def _draw(axes, frame):
 
 
 def _draw_others(axes, frame):
-    """Hybrids that share other layers than the first: one training each, so no line through them and no bar."""
+    """Hybrids that share other layers than the first, by their gain over it on the items that both were tested on."""
     for row in frame[1:].itertuples():
         for sense, (_, tint) in SHOWN.items():
             place = 100 * frame[sense].iloc[0] + getattr(row, f"{sense}_gain")
