@@ -26,8 +26,8 @@ from stages.lod import BACKENDS
 from stages.lod.warm_up import warm_up
 from stages.meshes import load
 from stages.meshes.load import FORMATS
-from stages.stability.plain_curve import PlainCurve
-from stages.stability.simplification import answers
+from stages.stability.qem_error_curve import QemErrorCurve
+from stages.stability.simplification import run_cases
 from stages.stability.specimen import Case, Specimen
 
 OUT = Path("reports/bench/broken_meshes.csv")
@@ -73,11 +73,16 @@ def _rows(path, backend):
     if len(mesh.faces) > LARGEST:
         yield {"has": len(mesh.faces), "outcome": "not tried", "note": f"more than {LARGEST} faces"}
         return
-    specimen = Specimen(mesh, PlainCurve(mesh), "sound", path.stem, 0)
+    specimen = Specimen(mesh, QemErrorCurve(mesh), "sound", path.stem, 0)
     look = specimen.surface
-    what = {"has": len(mesh.faces), "pieces": look.pieces, "rim": len(look.border), "flat": look.flat_faces}
-    what |= {"folds": int(look.folds.max()), "crowded": look.crowded, "pinches": look.pinches}
-    for case, answer in answers(specimen, backend, CASES):
+    what = {
+        "has": len(mesh.faces),
+        "pieces": look.components,
+        "rim": len(look.boundary_edges),
+        "flat": look.degenerate_faces,
+    }
+    what |= {"folds": int(look.folds.max()), "crowded": look.non_manifold_edges, "pinches": look.non_manifold_vertices}
+    for case, answer in run_cases(specimen, backend, CASES):
         row = {"budget": case.budget, "kept": case.kept, "asked": answer.asked, "outcome": answer.outcome}
         row |= {"faces": 0 if answer.mesh is None else len(answer.mesh.faces), "error": answer.error}
         yield what | row | {"note": answer.note, "seconds": answer.seconds}

@@ -41,7 +41,7 @@ from stages.kit.parallel import progress
 from stages.kit.rng import rng
 from stages.meshes import normalise
 from stages.meshes.load import parse
-from stages.meshes.sources import PRINCETON, stored_files
+from stages.meshes.sources import PRINCETON, collection_files
 
 OUT, MESHES, PSB = Path("reports/bench/imprints.csv"), Path("data/meshes"), "../shared/data/psb.zip"
 CELLS, PITCHES = (16, 32), (0.002, 0.01)
@@ -125,7 +125,7 @@ def meshes(archive):
     own = {path.stem: read_mesh(path) for path in sorted(MESHES.glob("*.npz"))}
     found = [("household", own)]
     if Path(archive).exists():
-        files = stored_files(archive, *PRINCETON)
+        files = collection_files(archive, *PRINCETON)
         first = {path.split("/")[1]: path for path in reversed(sorted(files)) if path.endswith(".off")}
         found.append(("psb", {name: normalise(parse(files[path](), ".off")) for name, path in sorted(first.items())}))
     for source, named in found:

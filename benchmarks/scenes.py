@@ -1,7 +1,7 @@
 """Every scene of conf/scene, by every way to choose the levels of its objects: `python -m benchmarks.scenes`
 
 Reads data/ of the finished run, whose scene stage does one scene alone, and does what that stage does for each scene:
-ladders, plans, rendered frames, and GLB files that are loaded back. One scene is done again with a perceptual
+LOD chains, plans, rendered frames, and GLB files that are loaded back. One scene is done again with a perceptual
 tolerance. Writes reports/bench/scenes.csv: a row a scene, method and metric over all frames, as the scene stage writes
 them, with how many objects (`objects`), different ones (`shapes`) and frames there are. Files of each scene are left in
 build/scenes.
@@ -22,7 +22,7 @@ from stages.kit.run import object_names
 from stages.scene.__main__ import levels_of
 from stages.scene.export import export
 from stages.scene.measure import measure
-from stages.scene.read import say_missing, scene_of
+from stages.scene.read import report_missing, scene_of
 
 OUT, FOLDER = Path("reports/bench/scenes.csv"), Path("build/scenes")
 SCENES = sorted(path.stem for path in Path("conf/scene").glob("*.yaml"))
@@ -38,7 +38,7 @@ def measured(case, names, seed):
     """(rows of a case, its Scene)."""
     settings = check_section("scene", OmegaConf.to_container(compose(CASES[case]))["scene"])
     scene, missing = scene_of(settings, names)
-    say_missing(settings, scene, missing)
+    report_missing(settings, scene, missing)
     shapes = sorted({placed.name for placed in scene.objects})
     for name in shapes:
         levels_of(name, FOLDER / case, settings, seed)

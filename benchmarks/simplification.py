@@ -13,7 +13,7 @@ which the backends take turns, all warmed up before (pymeshlab_bare: one run of 
 second try; fast_simplification keeps nothing). The ratios are those to `pymeshlab` in the same cell. `outcome`:
 reached; missed: more faces came back than were asked for, so that there are no ratios; refused, by the backend, the
 reason in `note`; infeasible: the target was refused before any backend began. `kept`: every kept vertex survives bit
-for bit; `valid`: as many pieces, handles and rim edges as before, and no new degenerate, folded or non-manifold face.
+for bit; `valid`: components, genus and boundary edges as before, and no new degenerate, folded or non-manifold face.
 Errors against the input: Metro mean, and 1 - SSIM over the twelve views, of meshes up to 250,000 faces.
 """
 
@@ -39,7 +39,7 @@ from stages.lod.topology import faults, topology
 from stages.lod.warm_up import warm_up
 from stages.meshes import normalise
 from stages.meshes.load import parse
-from stages.meshes.sources import PRINCETON, stored_files
+from stages.meshes.sources import PRINCETON, collection_files
 from stages.weights.svm_pixels import select_far_points
 
 OUT = Path("reports/bench/simplification.csv")
@@ -71,7 +71,7 @@ WHOLE = ("pymeshlab", "fast")  # those that simplify takes
 
 def meshes(archive):
     """(source, name, Mesh), small to large."""
-    files = stored_files(archive, *PRINCETON)
+    files = collection_files(archive, *PRINCETON)
     first = {path.split("/")[1]: path for path in reversed(sorted(files)) if path.endswith(".off")}
     found = {name: normalise(parse(files[path](), ".off")) for name, path in sorted(first.items())}
     by_size = sorted(found, key=lambda name: len(found[name].faces))
@@ -176,7 +176,7 @@ def survives(places, vertices):
 
 
 def valid(mesh, found):
-    """True where the surface is made of the same things and has no fault that it had not."""
+    """True where the topology is the same and there is no new fault."""
     return topology(found.faces) == topology(mesh.faces) and not faults(found).added(faults(mesh))
 
 

@@ -1,51 +1,125 @@
 """Composes conf/ into params.yaml: `python -m stages.compose [group=option] [section.key=value] ...`
 
-Examples: `python -m stages.compose profile=smoke`, `python -m stages.compose data=folder meshes.folder=~/scans`.
-The pipeline reads params.yaml alone; without arguments the defaults come back. `dvc exp run -S` composes likewise.
+Examples: `python -m stages.compose profile=smoke`, `python -m stages.compose sets=[folder] meshes.folder=~/scans`,
+`python -m stages.compose sets=[household,gaze] gaze.lod.rings=2`. A setting holds for every set; with a set's name
+before it, for that set alone. The pipeline reads params.yaml alone; without arguments the defaults come back.
 """
 
 import argparse
 import difflib
 import sys
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import hydra
 from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.errors import HydraException
-from omegaconf import OmegaConf
+from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import OmegaConfBaseException
 
+from stages.code import stage_names
+from stages.kit.command import errors_in_one_line
+from stages.kit.conf import conf_folder
 from stages.kit.files import write_text
-from stages.kit.params import FILE, ParamsError, check
+from stages.kit.params import FILE, ParamsError, check_common, check_section, schema_of
 
-OPEN = ("classification.sets",)  # sections whose keys a person may add to
-CONF = Path(__file__).parents[1] / "conf"
+OPEN = ("classification.sets", "meshes.classes", "transfer.networks")  # sections whose keys a person may add to
+CONF = conf_folder()
+SHARED = ("profile", "seed", "parallel", "sets", "report")  # what is said once, not for each set
+READ_TOO = {  # sections that a stage also reads
+    "exploration": ["classification"],
+    "touch_stability": ["classification"],
+    "simulated_to_real": ["recorded"],
+    "recorded_networks": ["recorded"],
+}
 
 
-def compose(overrides=()):
-    """The composed configuration, checked against the schema of each section.
+def compose(overrides: Sequence[str] = ()) -> dict[str, Any]:
+    """The content of params.yaml: the shared settings, the graph, and for each set the sections of its stages.
 
-    overrides: Hydra's `group=option` and `section.key=value`. Raises ParamsError that names the nearest right name.
+    overrides: Hydra's `group=option` and `section.key=value`, or `SET.section.key=value`. The graph names for each
+    stage the sets that it runs on; for stages that begin with files, what tells DVC that these have changed. Raises
+    ParamsError that names the nearest right name, and for a set whose files are not there.
     """
     overrides = [_quoted(override) for override in overrides]
-    _check_options(overrides)
-    try:
-        with hydra.initialize_config_dir(str(CONF), version_base=None):
-            config = hydra.compose("config", overrides)
-        OmegaConf.resolve(config)
-    except (HydraException, OmegaConfBaseException) as error:
-        raise ParamsError(_explain(overrides, error)) from None
-    check(OmegaConf.to_container(config))
-    return config
+    general = [override for override in overrides if not _set_of(override)]
+    common = _composed(general)
+    values = {key: common[key] for key in SHARED}
+    values["graph"] = {stage: [] for stage in stage_names() if stage != "report"}
+    check_section(schema_of("report"), values["report"])
+    check_common(values)
+    for dataset in common["sets"]:
+        own = [override.partition(".")[2] for override in overrides if _set_of(override) == dataset]
+        config = _composed([f"data={dataset}", *general, *own])
+        values[dataset] = _sections(config, dataset)
+        for stage in config["stages"]:
+            values["graph"][stage].append(dataset)
+    values["graph"] = {
+        stage: {name: begins_with(values[name], stage, name) for name in sets} if stage in STARTS else sets
+        for stage, sets in values["graph"].items()
+    }
+    return values
 
 
-def groups():
+STARTS = ("meshes", "recorded", "simulated_to_real", "recorded_networks")  # they read files that no stage has made
+
+
+def begins_with(sections: dict[str, Any], stage: str, dataset: str) -> str:
+    """The path whose change makes a set's first stage run again: its files, or its settings where they are fetched."""
+    return sections["meshes" if stage == "meshes" else "recorded"].get("folder") or f"conf/data/{dataset}.yaml"
+
+
+def absent(values: dict[str, Any]) -> dict[str, str]:
+    """{set: where its files should be} of the switched-on sets whose files are not there."""
+    places = {name: path for stage in STARTS for name, path in values["graph"].get(stage, {}).items()}
+    return {name: path for name, path in places.items() if not Path(path).expanduser().exists()}
+
+
+def groups() -> dict[str, list[str]]:
     """{group: its options} of conf/."""
     folders = sorted(path for path in CONF.iterdir() if path.is_dir())
     return {folder.name: sorted(path.stem for path in folder.glob("*.yaml")) for folder in folders}
 
 
-def _quoted(override):
+def _composed(overrides: Sequence[str]) -> dict[str, Any]:
+    """One composition by Hydra, as plain dicts."""
+    _check_options(overrides)
+    try:
+        with hydra.initialize_config_dir(str(CONF), version_base=None):
+            config = hydra.compose("config", list(overrides))
+        OmegaConf.resolve(config)
+    except (HydraException, OmegaConfBaseException) as error:
+        raise ParamsError(_explain(overrides, error)) from None
+    return _plain(config)
+
+
+def _plain(config: DictConfig) -> dict[str, Any]:
+    return OmegaConf.to_container(config)  # type: ignore[return-value]  # the root of a config is a dict
+
+
+def _sections(config: dict[str, Any], dataset: str) -> dict[str, Any]:
+    """The sections that the stages of one set read, each checked against its schema."""
+    stages = config["stages"]
+    unknown = sorted(set(stages) - set(stage_names()))
+    if unknown or not stages:
+        raise ParamsError(f"{dataset}: stages={stages} must name stages: {', '.join(stage_names())}")
+    if config["obtain"] and not any(config.get(stage, {}).get("folder") for stage in (*STARTS, "recorded")):
+        raise ParamsError(f"{dataset} needs its files: {config['obtain']}")
+    wanted = dict.fromkeys(section for stage in stages for section in [stage, *READ_TOO.get(stage, [])])
+    found = {section: config.get(section, {}) for section in wanted}
+    for section, own in found.items():
+        check_section(schema_of(section), own)
+    return found
+
+
+def _set_of(override: str) -> str:
+    """The set that an override is for, empty where it is for all."""
+    first = override.partition("=")[0].partition(".")[0]
+    return first if first in groups()["data"] and "." in override.partition("=")[0] else ""
+
+
+def _quoted(override: str) -> str:
     """The override, its value in quotes where Hydra's grammar would stumble over it: paths, blanks, accents."""
     try:
         OverridesParser.create().parse_override(override)
@@ -56,7 +130,7 @@ def _quoted(override):
     return override
 
 
-def _check_options(overrides):
+def _check_options(overrides: Sequence[str]) -> None:
     """Raises ParamsError for an option that a group does not have; Hydra passes over an optional group's in silence."""
     known = groups()
     for override in overrides:
@@ -67,9 +141,9 @@ def _check_options(overrides):
             raise ParamsError(f"unknown option {override}: {_near(value, known[name])}")
 
 
-def _explain(overrides, error):
+def _explain(overrides: Sequence[str], error: Exception) -> str:
     """The first override that names nothing known, and the nearest name; else what Hydra said."""
-    keys = [*groups(), *_dotted(OmegaConf.to_container(compose()))] if overrides else []
+    keys = [*groups(), *_dotted(_composed([]))] if overrides else []
     for override in overrides:
         name = override.partition("=")[0]
         if name[0] not in "+~" and name not in keys:
@@ -80,12 +154,12 @@ def _explain(overrides, error):
     return str(error).splitlines()[0]
 
 
-def _near(name, known):
+def _near(name: str, known: Sequence[str]) -> str:
     near = difflib.get_close_matches(name, known, n=1, cutoff=0.4)
     return f"did you mean {near[0]}?" if near else f"known: {', '.join(known)}"
 
 
-def _dotted(values, prefix=""):
+def _dotted(values: dict[str, Any], prefix: str = "") -> list[str]:
     names = []
     for key, value in values.items():
         names.append(f"{prefix}{key}")
@@ -94,19 +168,30 @@ def _dotted(values, prefix=""):
     return names
 
 
-def main():
-    """Composes and writes params.yaml."""
+def main() -> None:
+    """Composes and writes params.yaml; sets whose files are not there are named and left out."""
     parser = argparse.ArgumentParser(
         prog="python -m stages.compose", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("overrides", nargs="*", help="group=option or section.key=value")
     overrides = parser.parse_args().overrides
-    try:
-        text = OmegaConf.to_yaml(compose(overrides))
-    except ParamsError as error:
-        sys.exit(f"compose: {error}")
-    write_text(FILE, text)
+    errors_in_one_line("compose")
+    values = compose(overrides)
+    for dataset, path in absent(values).items():
+        obtain = _composed([f"data={dataset}"])["obtain"]
+        print(f"compose: {dataset} is left out, {path} is not there: {obtain}", file=sys.stderr)
+        leave_out(values, dataset)
+    write_text(FILE, OmegaConf.to_yaml(OmegaConf.create(values)))
     print(f"compose: {FILE} written" + (f" with {' '.join(overrides)}" if overrides else ""))
+
+
+def leave_out(values: dict[str, Any], dataset: str) -> None:
+    """Takes a set out of the graph; its rows of earlier runs stay where they are."""
+    for sets in values["graph"].values():
+        sets.pop(dataset) if isinstance(sets, dict) and dataset in sets else None
+        sets.remove(dataset) if isinstance(sets, list) and dataset in sets else None
+    values["sets"].remove(dataset)
+    del values[dataset]
 
 
 if __name__ == "__main__":

@@ -1,22 +1,24 @@
 """Holds the metric files against their baselines: `python -m stages.gate [--update]`
 
-Compares reports/metrics/*.json with reports/baselines/PROFILE.json ({metric: {value, low, high}}) of the profile that
-params.yaml names; exits 1 and names what moved, by how much. --update writes the baseline from the metrics at hand.
+Compares the metrics of the sets that params.yaml switches on, reports/metrics/SET/STAGE.json, and those of the report
+with reports/baselines/PROFILE.json ({metric: {value, low, high}}) of its profile; exits 1 and names what moved, by how
+much. --update writes the baseline from the metrics at hand.
 """
 
 import argparse
-import sys
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
+from stages.kit.command import errors_in_one_line
 from stages.kit.files import read_json, write_json
-from stages.kit.params import load_params
-from stages.kit.run import METRICS, errors_in_one_line
+from stages.kit.workspace import Workspace
 
-BASELINES = Path("reports/baselines")
+Bounds = dict[str, dict[str, float]]
 BAND = 0.15  # of a measured value: what another processor's rounding moves in simplification and training
 
 MEASURED = ("lod.meshes", "lod.paired_cells")  # counts that follow from measured values: held like these
-# Rates that may lie near zero, where a share of the value is no band: at least so much either way.
+# By stage: rates that may lie near zero, where a share of the value is no band, have at least this much either way.
 LEAST = {
     "stability.": 0.1, "salient_points.": 0.02, "touch_stability.": 0.1, "sequences.": 0.1, "sensor_size.": 0.05,
     "fixation.": 0.1, "transfer.": 0.1,
@@ -25,7 +27,7 @@ FREE = ("report.claims.",)  # a verdict flips where its interval just touches ze
 LISTED = 8  # new metrics that are named
 
 
-def flatten(values, prefix=""):
+def flatten(values: Mapping[str, Any], prefix: str = "") -> dict[str, float]:
     """{"a.b": number} of nested dicts; intervals (keys low and high) are left to the charts."""
     flat = {}
     for key, value in values.items():
@@ -37,24 +39,34 @@ def flatten(values, prefix=""):
     return flat
 
 
-def measured(folder=METRICS):
-    """All metrics of a folder, flat, each under its file's name."""
-    found = flatten({path.stem: read_json(path) for path in sorted(Path(folder).glob("*.json"))})
+def measured(workspace: Workspace) -> dict[str, float]:
+    """All metrics of the report and of the switched-on sets, flat: SET.STAGE.NAME."""
+    files = {"report": workspace.reports / "metrics/report.json"}
+    for dataset, sections in ((name, workspace.params["graph"]) for name in workspace.sets):
+        for stage, sets in sections.items():
+            if dataset in sets:
+                files[f"{dataset}.{stage}"] = workspace.on(dataset).metrics / f"{stage}.json"
+    found = flatten({name: read_json(path) for name, path in files.items() if path.exists()})
     return {name: value for name, value in found.items() if not name.startswith(FREE)}
 
 
-def baseline(metrics):
+def of_stage(name: str) -> str:
+    """A metric's name without the set: `lod.meshes` for `household.lod.meshes`."""
+    return name.partition(".")[2]
+
+
+def baseline(metrics: Mapping[str, float]) -> Bounds:
     """Bounds about the metrics: counts exact, measured values within BAND or, near zero, LEAST."""
     bounds = {}
     for name, value in metrics.items():
-        exact = isinstance(value, int) and name not in MEASURED
-        least = next((band for prefix, band in LEAST.items() if name.startswith(prefix)), 0)
-        reach = 0 if exact else max(BAND * abs(value), least)
-        bounds[name] = {"value": value, "low": value - reach, "high": value + reach}
+        exact = isinstance(value, int) and of_stage(name) not in MEASURED
+        least = next((band for prefix, band in LEAST.items() if of_stage(name).startswith(prefix)), 0)
+        band = 0 if exact else max(BAND * abs(value), least)
+        bounds[name] = {"value": value, "low": value - band, "high": value + band}
     return bounds
 
 
-def compare(metrics, bounds):
+def compare(metrics: Mapping[str, float], bounds: Bounds) -> list[str]:
     """Sentences on every metric that left its bounds or is missing; [] when all hold."""
     moved = []
     for name, bound in bounds.items():
@@ -70,7 +82,30 @@ def compare(metrics, bounds):
     return moved
 
 
-def main():
+def hold(workspace: Workspace, update: bool = False) -> str:
+    """Compares or, with update, writes the baseline; what to say of it. SystemExit where a metric left its bounds."""
+    path = workspace.reports / "baselines" / f"{workspace.params.get('profile', 'laptop')}.json"
+    metrics = measured(workspace)
+    if update and not metrics:
+        raise SystemExit(f"gate: no metrics in {workspace.reports / 'metrics'}: run `dvc repro` first")
+    if update:
+        write_json(path, baseline(metrics))
+        return f"gate: {path} written from {len(metrics)} metrics"
+    if not path.exists():
+        raise SystemExit(f"gate: no {path}; make it by `python -m stages.gate --update` after a run that you trust")
+    bounds = read_json(path)
+    moved = compare(metrics, bounds)
+    if moved:
+        raise SystemExit(
+            "\n".join([f"gate: {len(moved)} of {len(bounds)} metrics left their bounds in {path}", *moved])
+        )
+    new = sorted(set(metrics) - set(bounds))
+    more = f" and {len(new) - LISTED} more" if len(new) > LISTED else ""
+    said = f"gate: {len(bounds)} metrics within the bounds of {path}"
+    return f"{said}; not in the baseline yet: {', '.join(new[:LISTED])}{more}" if new else said
+
+
+def main() -> None:
     """Compares, or updates the baseline."""
     parser = argparse.ArgumentParser(
         prog="python -m stages.gate", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
@@ -78,24 +113,7 @@ def main():
     parser.add_argument("--update", action="store_true", help="write the baseline from the metrics at hand")
     update = parser.parse_args().update
     errors_in_one_line("gate")
-    path, metrics = BASELINES / f"{load_params().get('profile', 'laptop')}.json", measured()
-    if update and not metrics:
-        sys.exit(f"gate: no metrics in {METRICS}: run `dvc repro` first")
-    if update:
-        write_json(path, baseline(metrics))
-        print(f"gate: {path} written from {len(metrics)} metrics")
-        return
-    if not path.exists():
-        sys.exit(f"gate: no {path}; make it by `python -m stages.gate --update` after a run that you trust")
-    bounds = read_json(path)
-    moved = compare(metrics, bounds)
-    new = sorted(set(metrics) - set(bounds))
-    if new:
-        more = f" and {len(new) - LISTED} more" if len(new) > LISTED else ""
-        print(f"gate: not in the baseline yet: {', '.join(new[:LISTED])}{more}")
-    if moved:
-        sys.exit("\n".join([f"gate: {len(moved)} of {len(bounds)} metrics left their bounds in {path}", *moved]))
-    print(f"gate: {len(bounds)} metrics within the bounds of {path}")
+    print(hold(Workspace(Path(".")), update))
 
 
 if __name__ == "__main__":

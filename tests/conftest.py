@@ -3,11 +3,14 @@
 import numpy as np
 import pytest
 import trimesh
+from omegaconf import OmegaConf
 
-from stages.conspicuity import Sight
+from stages.conspicuity import ViewMaps
 from stages.conspicuity.channels import CHANNELS as NINE
 from stages.conspicuity.channels import OTHERS
 from stages.kit import Mesh, RayScene, camera
+from stages.kit.files import write_text
+from stages.kit.workspace import Workspace
 from stages.views import TWELVE
 
 SIZE = (75, 100)
@@ -46,4 +49,17 @@ def spot():
 
 @pytest.fixture(scope="session")
 def sight(ball, spot):
-    return Sight(ball, TWELVE, spot_maps(ball, spot))
+    return ViewMaps(ball, TWELVE, spot_maps(ball, spot))
+
+
+@pytest.fixture
+def make_workspace(tmp_path):
+    """A function from sections of settings to the Workspace of a small run below tmp_path; its stages run in turn."""
+
+    def make(sections, dataset="toys", seed=0, **shared):
+        values = {"seed": seed, "profile": "test", "parallel": {"backend": "sequential"}, "sets": [dataset]}
+        values |= {"graph": {stage: [dataset] for stage in sections}, dataset: sections} | shared
+        write_text(tmp_path / "params.yaml", OmegaConf.to_yaml(OmegaConf.create(values)))
+        return Workspace(tmp_path, dataset)
+
+    return make

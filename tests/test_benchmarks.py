@@ -6,17 +6,14 @@ import sys
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
 import pytest
 import trimesh
 
 from benchmarks import imprints, simplification
 from stages.kit import Mesh
-from stages.kit.files import read_table, write_table
 from stages.lod import SimplifyError
 
 BENCHMARKS = sorted(path.stem for path in Path(simplification.__file__).parent.glob("[a-z]*.py"))
-LOD = ["object", "method", "target", "faces", "points", "kept", "rings", "shrunk", "infeasible", "metric", "value"]
 BALL = Mesh(*(getattr(trimesh.creation.icosphere(2), name) for name in ("vertices", "faces")))
 
 
@@ -34,15 +31,6 @@ def test_help_of_a_benchmark_is_its_docstring(name, monkeypatch, capsys):
     said = capsys.readouterr().out
     assert end.value.code == 0 and said.startswith(f"usage: python -m benchmarks.{name} ")
     assert doc[0] in said and doc[-1] in said
-
-
-def test_errors_of_another_data_set_are_taken_over(monkeypatch, tmp_path):
-    monkeypatch.chdir(tmp_path)
-    row = dict.fromkeys([*LOD, "seconds", "note"]) | {"object": "cup", "faces": 12, "value": 0.123456}
-    write_table(Path("run/reports/measurements/lod.csv"), pd.DataFrame([row]))
-    run_as_program(monkeypatch, "detectors", "run", "gaze")
-    found = read_table(Path("reports/simplification/gaze.csv"))
-    assert list(found) == LOD and found["value"].tolist() == [0.1235]
 
 
 def of_backends(monkeypatch, faces, **answers):

@@ -3,6 +3,7 @@
 import pytest
 
 from stages import gate
+from stages.kit.files import write_json
 
 
 def test_equal_metrics_pass_and_a_moved_one_is_named():
@@ -25,9 +26,9 @@ def test_small_errors_have_narrow_bands():
 
 
 def test_a_rate_near_zero_has_room_and_a_count_beside_it_none():
-    bounds = gate.baseline({"stability.noise": 0.01, "stability.objects": 4})
-    assert gate.compare({"stability.noise": 0.09, "stability.objects": 4}, bounds) == []
-    assert len(gate.compare({"stability.noise": 0.2, "stability.objects": 5}, bounds)) == 2
+    bounds = gate.baseline({"toys.stability.noise": 0.01, "toys.stability.objects": 4})
+    assert gate.compare({"toys.stability.noise": 0.09, "toys.stability.objects": 4}, bounds) == []
+    assert len(gate.compare({"toys.stability.noise": 0.2, "toys.stability.objects": 5}, bounds)) == 2
 
 
 def test_not_a_number_never_passes():
@@ -38,27 +39,27 @@ def test_nested_metrics_are_flat_and_intervals_are_left_out():
     assert gate.flatten({"a": {"b": {"value": 1.0, "low": 0, "high": 2}}, "c": True}) == {"a.b.value": 1.0, "c": True}
 
 
-@pytest.mark.parametrize(("value", "code"), [(0.5, None), (0.1, 1)])
-def test_the_command_ends_with_1_when_something_moved(tmp_path, monkeypatch, capsys, value, code):
-    from stages.kit.files import write_json
-
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "params.yaml").write_text("profile: smoke\n")
-    write_json("reports/baselines/smoke.json", gate.baseline({"m.accuracy": 0.5}))
-    write_json("reports/metrics/m.json", {"accuracy": value})
-    monkeypatch.setattr("sys.argv", ["gate"])
-    if code is None:
-        gate.main()
-        assert "1 metrics within" in capsys.readouterr().out
-    else:
-        with pytest.raises(SystemExit) as stop:
-            gate.main()
-        assert "m.accuracy moved by -0.4" in str(stop.value)
+@pytest.fixture
+def workspace(make_workspace):
+    """A set `toys` with one stage, beside the metrics of a set that is not switched on."""
+    found = make_workspace({"lod": {}})
+    write_json(found.metrics / "lod.json", {"meshes": 100, "error": 0.5})
+    write_json(found.on("other").metrics / "lod.json", {"error": 3})
+    write_json(found.reports / "metrics/report.json", {"claims": {"open": 3}, "tables": 2})
+    gate.hold(found, update=True)
+    return found
 
 
-def test_counts_that_follow_from_measured_values_have_a_band_and_verdicts_are_free(tmp_path):
-    from stages.kit.files import write_json
+def test_the_gate_names_what_moved(workspace):
+    assert "3 metrics within" in gate.hold(workspace)
+    write_json(workspace.metrics / "lod.json", {"meshes": 100, "error": 0.1})
+    with pytest.raises(SystemExit, match=r"1 of 3 metrics left .*\n.*toys.lod.error moved by -0.4"):
+        gate.hold(workspace)
 
-    assert gate.compare({"lod.meshes": 95}, gate.baseline({"lod.meshes": 100})) == []
-    write_json(tmp_path / "report.json", {"claims": {"open": 3}, "tables": 2})
-    assert gate.measured(tmp_path) == {"report.tables": 2}
+
+def test_only_sets_that_are_switched_on_count_and_verdicts_are_free(workspace):
+    assert gate.measured(workspace) == {"toys.lod.meshes": 100, "toys.lod.error": 0.5, "report.tables": 2}
+
+
+def test_counts_that_follow_from_measured_values_have_a_band():
+    assert gate.compare({"toys.lod.meshes": 95}, gate.baseline({"toys.lod.meshes": 100})) == []

@@ -1,27 +1,27 @@
-"""Who is it, by touch: features of an imprint and five classifiers, by the thesis's protocol (T4.2).
+"""Recognition by touch: features of an imprint and five classifiers, by the thesis's protocol (T4.2).
 
-Public names: CLASSIFIERS, classifier, features, FEATURES, evaluate, evaluate_features; holdout and regions (the two
-splits), similarity and shared (of imprints), TouchMap, combine and join (several touches as one sample).
+Public names: classifier, concatenate_touches, confusable, draw_combinations, evaluate, evaluate_features, features,
+random_holdout, region_holdout, similarity, TouchMap, CLASSIFIERS, FEATURES.
 """
 
 from .classifiers import CLASSIFIERS, classifier
 from .features import FEATURES, features
-from .protocol import evaluate, evaluate_features, holdout, regions
-from .similarity import shared, similarity
-from .touches import TouchMap, combine, join
+from .protocol import evaluate, evaluate_features, random_holdout, region_holdout
+from .similarity import confusable, similarity
+from .touches import TouchMap, concatenate_touches, draw_combinations
 
 __all__ = [
     "CLASSIFIERS",
     "FEATURES",
     "TouchMap",
     "classifier",
-    "combine",
+    "concatenate_touches",
+    "confusable",
+    "draw_combinations",
     "evaluate",
     "evaluate_features",
     "features",
-    "holdout",
-    "join",
-    "regions",
-    "shared",
+    "random_holdout",
+    "region_holdout",
     "similarity",
 ]

@@ -1,8 +1,8 @@
-"""Tells objects apart by one touch or a few: T tables 4.1, 4.2, 4.3, 4.5 and 4.6.
+"""Recognises objects by one touch or a few: T tables 4.1, 4.2, 4.3, 4.5 and 4.6.
 
-Reads data/imprints/NAME.npz, writes data/classification/SET.SAMPLING.npz (confusion matrices of the hold-outs),
-reports/measurements/classification.csv (one row a repetition; column variant: plain, or a name in trials.py) and
-reports/metrics/classification.json.
+Reads data/SET/imprints/NAME.npz, writes data/SET/classification/GROUP.SAMPLING.npz (confusion matrices of the
+hold-outs) and reports/measurements/SET/classification.csv.gz: one row per group of objects (classification.sets),
+sampling, variant, classifier, split and repetition.
 
 The mean in the metrics comes with a bootstrap interval over the repetitions. It covers the luck of the split and of
 the training. It does not cover the choice of objects and of touches: all repetitions share the same imprints, and
@@ -11,30 +11,46 @@ their hold-outs overlap, so it is narrower than the interval of a fresh experime
 
 import functools
 from collections import defaultdict
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
 from stages.imprints import read_imprints
-from stages.kit import StageRun, arguments, params
+from stages.kit.command import workspace_of_arguments
 from stages.kit.files import write_arrays
-from stages.kit.run import DATA
+from stages.kit.run import Rows, StageRun
+from stages.kit.split import Split
 from stages.kit.stats import interval_metrics
+from stages.kit.workspace import Workspace
 
 from .classifiers import check_name
-from .gathered import alike, costs, gather
+from .gather import feature_cost_rows, gather, similar_share_rows
+from .multi_touch import MultiTouchTrials
 from .protocol import check_counts, evaluate_features
-from .several import Several
+from .schema import COLUMNS, Params
+from .trials import TouchSet
 from .variants import evaluate_variants
 
+METRICS = {  # (metric, split): the name of their mean in reports/metrics
+    ("accuracy", Split.RANDOM): "accuracy_holdout",
+    ("accuracy", Split.FOLDS): "accuracy_fivefold",
+    ("accuracy", Split.REGIONS): "accuracy_apart",
+    ("accuracy", Split.RANDOM_FEWER): "accuracy_fewer",
+    ("recall", Split.RANDOM): "recall_holdout",
+}
+ONE_SIDE = ("plain_side", "locations", "touches_")  # variants whose regions are one side of all objects
 
-def plan(sets, folder):
-    """{"SET.SAMPLING": imprints an object, or why the sampling is left out}.
 
-    All samplings of a set use equally many imprints of every object. A set with an object that has no imprints is left
-    out as a whole, under the name "SET.".
+def plan(sets: Mapping[str, list[str]], folder: Path) -> dict[str, int | str]:
+    """{"GROUP.SAMPLING": imprints per object, or why the sampling is left out}.
+
+    All samplings of a group use equally many imprints of every object. A group with an object that has no imprints is
+    left out as a whole, under the name "GROUP.".
     """
-    planned = {}
+    planned: dict[str, int | str] = {}
     for name, objects in sets.items():
         missing = [one for one in objects if not (folder / f"{one}.npz").exists()]
         if missing:
@@ -61,14 +77,14 @@ def _counts(one, folder):
     return {sampling: len(found.images) for sampling, found in imprints.items()}
 
 
-def process(item, folder, planned, settings, seed):
-    """One sampling of one set through all classifiers; what fails or is left out gives a row with the reason."""
+def process(item: str, folder: Path, data: Path, planned: Mapping[str, int | str], settings: Params, seed: int) -> Rows:
+    """One sampling of one group through all classifiers; what fails or is left out gives a row with the reason."""
     name, _, sampling = item.rpartition(".")
-    if isinstance(planned[item], str):
-        return [{"object": name, "method": sampling or None, "variant": None, "value": None, "note": planned[item]}]
-    common = {"object": name, "method": sampling}
-    touched, labels = gather(DATA / "imprints", settings.sets[name], sampling, planned[item])
-    rows, confusions = [], {}
+    count, rows, confusions = planned[item], [], {}
+    if isinstance(count, str):
+        return [{"group": name, "method": sampling or None, "metric": "accuracy", "value": None, "note": count}]
+    common = {"group": name, "method": sampling}
+    touched, labels = gather(data / "imprints", settings.sets[name], sampling, count)
     for classifier in settings.classifiers:
         try:
             with threadpool_limits(1):  # equal sums on any number of cores
@@ -76,7 +92,7 @@ def process(item, folder, planned, settings, seed):
                     touched.samples, labels, classifier, settings.repetitions, seed, touched.places, touched.width
                 )
         except Exception as error:  # whatever one classifier trips over, the others still count
-            found = [{"classifier": classifier, "metric": "accuracy_holdout", "value": None}]
+            found: Rows = [{"classifier": classifier, "split": Split.RANDOM, "metric": "accuracy", "value": None}]
             found[0]["note"] = f"{classifier} failed: {error}"
         else:
             confusions[f"{classifier}.confusion"] = confusion
@@ -84,34 +100,38 @@ def process(item, folder, planned, settings, seed):
     able = [key.removesuffix(".confusion") for key in confusions]
     with threadpool_limits(1):
         rows += [{**common, **row} for row in further(name, sampling, touched, able, settings, seed)]
-    rows += [{**common, **row} for row in [*alike(touched, sorted(settings.sets[name])), *costs(touched)]]
+    rows += [
+        {**common, **row}
+        for row in [*similar_share_rows(touched, sorted(settings.sets[name])), *feature_cost_rows(touched)]
+    ]
     write_arrays(folder / f"{item}.npz", objects=np.unique(labels), **confusions)
     return rows
 
 
-def further(name, sampling, touched, classifiers, settings, seed):
+def further(name: str, sampling: str, touched: TouchSet, classifiers: list[str], settings: Params, seed: int) -> Rows:
     """Rows of the variants, as far as the settings ask for them."""
     several = None
     if sampling in settings.closer and name == next(iter(settings.sets)):
         every = sampling == settings.closer[0]
-        several = Several(tuple(settings.touches), settings.combinations, every)
+        several = MultiTouchTrials(tuple(settings.touches), settings.combinations, every)
     closer = sampling in settings.closer
     return evaluate_variants(touched, classifiers, settings.repetitions, seed, several, closer)
 
 
-def summary(rows, seed, closest=None):
-    """{set: {sampling: {classifier: {metric: {mean, low, high}}}}} over the repetitions.
+def summary(rows: Rows, seed: int, closest: tuple[str, str] | None = None) -> dict[str, Any]:
+    """{group: {sampling: {classifier: {metric: {mean, low, high}}}}} over the repetitions.
 
-    closest: (sampling, classifier) of which the variants are told too, under {"variants": {set: {variant: ...}}}.
+    closest: (sampling, classifier) whose variants are summarised too, under {"variants": {group: {variant: ...}}}.
     """
     values = defaultdict(list)
     for row in rows:
         if row["value"] is None or not row.get("classifier"):
             continue
-        if row.get("variant", "plain") == "plain":
-            values[row["object"], row["method"], row["classifier"], row["metric"]].append(row["value"])
+        metric = metric_name(row)
+        if row["variant"].startswith("plain"):
+            values[row["group"], row["method"], row["classifier"], metric].append(row["value"])
         elif (row["method"], row["classifier"]) == closest:
-            values["variants", row["object"], row["variant"], row["metric"]].append(row["value"])
+            values["variants", row["group"], row["variant"], metric].append(row["value"])
     tree = {}
     for (first, second, third, metric), found in values.items():
         branch = tree.setdefault(first, {}).setdefault(second, {}).setdefault(third, {})
@@ -119,18 +139,34 @@ def summary(rows, seed, closest=None):
     return tree
 
 
-def main():
-    arguments(__doc__)
-    settings = params("classification")
+def metric_name(row: Mapping[str, Any]) -> str:
+    """The name in reports/metrics of what a row measures."""
+    if row["split"] == Split.REGIONS and row["variant"].startswith(ONE_SIDE):
+        return "accuracy_side"
+    return METRICS[row["metric"], row["split"]]
+
+
+def run(workspace: Workspace) -> None:
+    """Runs the stage on the data set of a workspace."""
+    settings = workspace.settings(Params)
     for name in settings.classifiers:
         check_name(name)
-    planned = plan(settings.sets, DATA / "imprints")
-    with StageRun("classification", inputs=("imprints",)) as run:
-        rows = run.each(functools.partial(process, planned=planned, settings=settings, seed=run.seed), planned)
-        run.metrics(summary(rows, run.seed, (settings.closer[0], settings.classifiers[0]) if settings.closer else None))
+    planned = plan(settings.sets, workspace.data / "imprints")
+    with StageRun(workspace, "classification", COLUMNS, inputs=("imprints",)) as stage:
+        work = functools.partial(process, data=workspace.data, planned=planned, settings=settings, seed=stage.seed)
+        rows = stage.each(work, list(planned), reads=("imprints",))
+        closest = (settings.closer[0], settings.classifiers[0]) if settings.closer else None
+        stage.metrics(summary(rows, stage.seed, closest))
     for note in sorted({row["note"] for row in rows if row["note"]}):
         print(f"classification: {note}")
-    print(f"classification: {len(settings.sets)} sets, {len(planned)} samplings, {len(rows)} rows")
+    print(
+        f"classification: {workspace.dataset}, {len(settings.sets)} groups, {len(planned)} samplings, {len(rows)} rows"
+    )
+
+
+def main() -> None:
+    """Runs the stage on the data set that the command line names."""
+    run(workspace_of_arguments(__doc__, "classification"))
 
 
 if __name__ == "__main__":

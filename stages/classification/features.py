@@ -1,9 +1,9 @@
-"""Forty-one numbers an imprint: wavelet coefficients, brightness and centre of mass (T4.2.3.4)."""
+"""Forty-one features of an imprint: wavelet coefficients, brightness and centre of mass (T4.2.3.4)."""
 
 import numpy as np
 import pywt
 
-WAVELET = "db2"  # T4.2.3.4 names none; db2 is what the thesis takes in T4.4.9
+WAVELET = "db2"  # T4.2.3.4 names none; T4.4.9 uses db2
 LEVELS = 3
 SMALLEST = 2**LEVELS  # rows and columns that can be halved three times
 IMAGE = 5  # features of the imprint itself, the last ones
@@ -18,15 +18,15 @@ FEATURES = (
 )
 
 
-def features(images):
+def features(images: np.ndarray) -> np.ndarray:
     """(k, 41) f8 features, named by FEATURES, of imprints (k, rows, cols) in 0..1, at least 8 x 8 cells.
 
     Of the horizontal (h), vertical (v) and diagonal (d) coefficients of each of three wavelet levels, level 1 the
     finest: Euclidean norm, mean, standard deviation and entropy. Then maximum, mean, standard deviation and centre of
     mass (row and column, 0..1 over the imprint; 0.5 in an imprint without mass) of the imprint itself.
 
-    Where T4.2.3.4 is silent: the wavelet is db2 with symmetric borders; the entropy is Shannon's, in nats, of the
-    coefficients' shares in the energy (Coifman and Wickerhauser 1992), 0 for coefficients that are all zero.
+    T4.2.3.4 does not give the wavelet and the entropy. Here the wavelet is db2 with symmetric borders. The entropy is
+    Shannon's, in nats, of the coefficients' shares of the energy (Coifman and Wickerhauser 1992), 0 if all are zero.
     Raises ValueError for another shape, fewer cells, or NaN.
     """
     images = np.asarray(images, dtype=np.float64)
@@ -37,7 +37,7 @@ def features(images):
     return np.hstack([wavelet_features(images), image_features(images)])
 
 
-def wavelet_features(images):
+def wavelet_features(images: np.ndarray) -> np.ndarray:
     """The first 36 of `features`."""
     columns, approximation = [], images
     for _ in range(LEVELS):
@@ -48,7 +48,7 @@ def wavelet_features(images):
     return np.stack(columns, axis=1)
 
 
-def image_features(images):
+def image_features(images: np.ndarray) -> np.ndarray:
     """The last five of `features`."""
     statistics = [images.max(axis=(1, 2)), images.mean(axis=(1, 2)), images.std(axis=(1, 2))]
     return np.stack([*statistics, *_centre(images)], axis=1)

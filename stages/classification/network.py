@@ -1,36 +1,36 @@
-"""The thesis's "deep learning": a small feed-forward net trained sample by sample with Adadelta (T4.2.4)."""
+"""The thesis's "deep learning": a small feed-forward network trained sample by sample with Adadelta (T4.2.4)."""
 
 import numpy as np
 from sklearn.base import BaseEstimator, ClassifierMixin
 
-RHO = 0.99  # Adadelta's memory; RapidMiner's default
+RHO = 0.99  # Adadelta's decay; RapidMiner's default
 PRECISION = np.float32  # as in RapidMiner's H2O
 EPSILON = 1e-8  # Adadelta's smallest step, squared; RapidMiner's default
 
 
 class FeedForward(ClassifierMixin, BaseEstimator):
-    """Fully connected net with rectified hidden layers and softmax, in the manner of scikit-learn's estimators.
+    """Fully connected network with rectified hidden layers and softmax, as a scikit-learn estimator.
 
-    The thesis gives rectified units, stochastic gradient descent, Adadelta (Zeiler 2012) and 10 epochs, no layers: two
-    of 50 are the default of RapidMiner, which it used, and so are Adadelta's constants and one sample a step. A
-    compiled loop: at this size a step takes a hundredth of what an autograd framework spends on it, and it is the same
-    on any number of threads.
+    The thesis gives rectified units, stochastic gradient descent, Adadelta (Zeiler 2012) and 10 epochs, but no layers.
+    Two layers of 50, Adadelta's constants and one sample per step are the defaults of RapidMiner, which it used. The
+    loop is compiled: at this size a step takes a hundredth of its time in an autograd framework, and the result does
+    not depend on the number of threads.
 
     hidden: units of each hidden layer; epochs: passes over the samples, each in an order drawn from `seed`.
     """
 
-    def __init__(self, hidden=(50, 50), epochs=10, seed=0):
+    def __init__(self, hidden: tuple[int, ...] = (50, 50), epochs: int = 10, seed: int = 0) -> None:
         self.hidden = hidden
         self.epochs = epochs
         self.seed = seed
 
-    def fit(self, samples, labels):
+    def fit(self, samples: np.ndarray, labels: np.ndarray) -> "FeedForward":
         """Trains on samples (k, d), finite and standardised, and labels (k,)."""
         from .network_kernel import train  # numba takes half a second to load
 
         samples = np.ascontiguousarray(samples, dtype=PRECISION)
         if samples.ndim != 2 or len(samples) != len(labels) or not np.isfinite(samples).all():
-            raise ValueError(f"samples must be finite, of shape (k, d), one a label: {samples.shape}, {len(labels)}")
+            raise ValueError(f"samples must be finite, of shape (k, d), one per label: {samples.shape}, {len(labels)}")
         self.classes_, targets = np.unique(labels, return_inverse=True)
         random = np.random.default_rng(self.seed)
         sizes = (samples.shape[1], *self.hidden, len(self.classes_))
@@ -43,7 +43,7 @@ class FeedForward(ClassifierMixin, BaseEstimator):
         train(parameters, np.array(sizes), samples, targets, order, PRECISION(RHO), PRECISION(EPSILON))
         return self
 
-    def predict_proba(self, samples):
+    def predict_proba(self, samples: np.ndarray) -> np.ndarray:
         """(k, classes) probabilities."""
         values = np.asarray(samples, dtype=PRECISION)
         for weights, bias in self._layers[:-1]:
@@ -51,13 +51,13 @@ class FeedForward(ClassifierMixin, BaseEstimator):
         weights, bias = self._layers[-1]
         return _softmax(values @ weights + bias)
 
-    def predict(self, samples):
+    def predict(self, samples: np.ndarray) -> np.ndarray:
         """(k,) labels."""
         return self.classes_[self.predict_proba(samples).argmax(axis=1)]
 
 
 def _layers(sizes):
-    """(vector, [(weights, bias), ...]): the layers are views into one vector, so that one update serves all."""
+    """(vector, [(weights, bias), ...]): the layers are views into one vector, so that one update changes all."""
     shapes = list(zip(sizes[:-1], sizes[1:], strict=True))
     vector = np.zeros(sum((rows + 1) * columns for rows, columns in shapes), dtype=PRECISION)
     layers, start = [], 0

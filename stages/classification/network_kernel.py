@@ -1,4 +1,4 @@
-"""The training loop of the small feed-forward net, compiled by numba: a tenth of the time that plain numpy takes."""
+"""The training loop of the small feed-forward network, compiled by numba, ten times as fast as plain numpy."""
 
 import numba
 import numpy as np
@@ -6,10 +6,18 @@ import numpy as np
 REAL = np.float32
 
 
-# error_model: divides as numpy does, with no branch on zero, which would keep the loop of Adadelta off the wide units.
+# error_model: divides as numpy does, without a branch on zero that would prevent vectorisation of Adadelta's loop.
 @numba.njit(cache=True, nogil=True, error_model="numpy")
-def train(parameters, sizes, samples, targets, order, rho, epsilon):
-    """Moves the parameters (n,) f4 in place, by one step of Adadelta for every sample that `order` names.
+def train(
+    parameters: np.ndarray,
+    sizes: np.ndarray,
+    samples: np.ndarray,
+    targets: np.ndarray,
+    order: np.ndarray,
+    rho: np.float32,
+    epsilon: np.float32,
+) -> None:
+    """Moves the parameters (n,) f4 in place, by one step of Adadelta for every sample index in `order`.
 
     The parameters are, layer by layer, weights (rows, columns) and biases (columns,), one after another. sizes (d,) i8
     units of each layer, inputs first; samples (k, sizes[0]) f4; targets (k,) i8; rho, epsilon f4 (Zeiler 2012,

@@ -13,16 +13,16 @@ from PIL import Image
 
 FINGERS = ("ff", "mf", "th")  # first and middle finger, thumb
 ELECTRODES = [f"{finger}_biotac_{k}" for finger in FINGERS for k in range(1, 25)]
-PALMS = ("45", "down", "side")  # where the palm looks
+PALMS = ("45", "down", "side")  # direction of the palm
 PRESSURE = "the archive of pressure images: a folder Images with a folder of .jpg files for each class"
 GRASPS = "the archive BTS3 v2: bts3v2_palm_45.csv, _down.csv, _side.csv, and the same three with _test"
 
 
 @dataclass(frozen=True)
 class Grasps:
-    """Grasps by three fingers: electrodes (n, 72) f8, the fingers ff, mf, th one after the other, 24 each; objects
+    """Grasps by three fingers: electrodes (n, 72) f8, 24 of each finger in the order ff, mf, th; objects
     (n,) names; palms (n,) of PALMS; slipped (n,) boolean: the object fell or moved when the hand was lifted; test (n,)
-    boolean: of the objects that the authors keep for testing. In the order of the files, 45, down, side, test last.
+    boolean: of the objects that the authors reserve for testing. In the order of the files, 45, down, side, test last.
     """
 
     electrodes: np.ndarray
@@ -32,33 +32,33 @@ class Grasps:
     test: np.ndarray
 
 
-def read_pressure_images(path):
+def read_pressure_images(path: str | Path) -> dict[str, np.ndarray]:
     """{class: (k, rows, cols) f8 in 0..1}, 1 the highest pressure; classes sorted, touches by their number.
 
     path: the zip file, or a folder with the same in it. In the archive of Gandarias, Garcia-Cerezo and Gomez-de-Gabriel
     (IEEE Sensors Journal 19(16), 2019): 22 classes, 50 touches each, 28 x 50 cells.
-    Raises ValueError, with the file and what to do, where this is something else.
+    Raises ValueError, with the file and the remedy, for anything else.
     """
-    root = _opened(path, PRESSURE)
-    folders = sorted(_inside(root / "Images"), key=lambda folder: folder.name)
-    found = {folder.name: _numbered(folder) for folder in folders if folder.is_dir()}
-    if not found or not all(found.values()):
-        empty = [name for name, files in found.items() if not files] or ["Images"]
-        raise ValueError(f"{path}: no .jpg in {empty[0]}; wanted is {PRESSURE}")
-    images = {name: [_image(file) for file in files] for name, files in found.items()}
+    root = _open_root(path, PRESSURE)
+    folders = sorted(_entries(root / "Images"), key=lambda folder: folder.name)
+    files_by_class = {folder.name: _images_by_number(folder) for folder in folders if folder.is_dir()}
+    if not files_by_class or not all(files_by_class.values()):
+        empty = [name for name, files in files_by_class.items() if not files] or ["Images"]
+        raise ValueError(f"{path}: no .jpg in {empty[0]}; expected {PRESSURE}")
+    images = {name: [_image(file) for file in files] for name, files in files_by_class.items()}
     sizes = {image.shape for group in images.values() for image in group}
     if len(sizes) > 1:
         raise ValueError(f"{path}: images of several sizes, {sorted(sizes)}; all must come from one sensor")
     return {name: np.stack(group) for name, group in images.items()}
 
 
-def read_grasps(path):
+def read_grasps(path: str | Path) -> Grasps:
     """The Grasps in the six tables of BTS3 v2 (Garcia-Garcia and others, IJCNN 2019).
 
-    path: the zip file, or a folder with the tables. Raises ValueError, with the file and what to do, where a table is
-    absent, lacks a column, or holds something that is no number.
+    path: the zip file, or a folder with the tables. Raises ValueError, with the file and the remedy, if a table is
+    missing, lacks a column, or contains a value that is not a number.
     """
-    root, parts = _opened(path, GRASPS), []
+    root, parts = _open_root(path, GRASPS), []
     for test in (False, True):
         for palm in PALMS:
             table = _table(root / f"bts3v2_palm_{palm}{'_test' if test else ''}.csv", path)
@@ -70,60 +70,64 @@ def read_grasps(path):
     )  # fmt: skip
 
 
-def _opened(path, wanted):
+def _open_root(path, expected):
     """The root of a zip file or a folder."""
     path = Path(path)
     if path.is_dir():
         return path
     if not path.exists():
-        raise ValueError(f"{path} is not there: give the path of {wanted}")
+        raise ValueError(f"{path} does not exist: give the path of {expected}")
     try:
         return zipfile.Path(zipfile.ZipFile(path))
     except zipfile.BadZipFile:
-        raise ValueError(f"{path} is no whole zip file: fetch it anew; wanted is {wanted}") from None
+        raise ValueError(f"{path} is not a complete zip file: download it again; expected {expected}") from None
 
 
-def _inside(folder):
+def _entries(folder):
     return list(folder.iterdir()) if folder.is_dir() else []
 
 
-def _numbered(folder):
+def _images_by_number(folder):
     """The .jpg files of a folder in the order of the numbers at the end of their names."""
-    files = [file for file in _inside(folder) if file.name.endswith(".jpg")]
-    return sorted(files, key=lambda file: (int(re.search(r"(\d*)\.jpg$", file.name)[1] or 0), file.name))
+    files = [file for file in _entries(folder) if file.name.endswith(".jpg")]
+    return sorted(files, key=lambda file: (int("0" + re.findall(r"(\d*)\.jpg$", file.name)[0]), file.name))
 
 
 def _image(file):
     try:
         with Image.open(io.BytesIO(_bytes(file))) as image:
             return np.asarray(image.convert("L"), dtype=np.float64) / 255
-    except OSError:  # what Pillow raises for anything that is no picture
-        raise ValueError(f"{file} is no readable picture: fetch the archive anew") from None
+    except OSError:  # Pillow's error for a file that is not a picture
+        raise ValueError(f"{file} is not a readable picture: download the archive again") from None
 
 
 def _bytes(file):
     try:
         return file.read_bytes()
     except (zipfile.BadZipFile, zlib.error, EOFError) as error:
-        raise ValueError(f"{file} is damaged ({error}): fetch the archive anew") from None
+        raise ValueError(f"{file} is damaged ({error}): download the archive again") from None
 
 
 def _table(file, path):
     """One table, its columns checked."""
     if not file.exists():
-        raise ValueError(f"{path} holds no {file.name}; wanted is {GRASPS}")
+        raise ValueError(f"{path} has no {file.name}; expected {GRASPS}")
     try:
         rows = pd.read_csv(io.BytesIO(_bytes(file)))
     except (pd.errors.ParserError, pd.errors.EmptyDataError, UnicodeDecodeError) as error:
-        raise ValueError(f"{file} is no table ({error}): fetch the archive anew") from None
+        raise ValueError(f"{file} is not a valid table ({error}): download the archive again") from None
     missing = [column for column in ("object", "slipped", *ELECTRODES) if column not in rows]
     if missing:
-        raise ValueError(f"{file} has no column {missing[0]}; wanted is {GRASPS}")
-    numbers = rows[["slipped", *ELECTRODES]].apply(pd.to_numeric, errors="coerce")
+        raise ValueError(f"{file} has no column {missing[0]}; expected {GRASPS}")
+    numbers = pd.DataFrame({name: pd.to_numeric(rows[name], errors="coerce") for name in ("slipped", *ELECTRODES)})
     bad = np.flatnonzero(~np.isfinite(numbers.to_numpy(dtype=np.float64)).all(axis=1) | rows["object"].isna())
     if len(bad):
-        raise ValueError(f"{file}, line {bad[0] + 2}: an empty cell or no number: mend it, or fetch the archive anew")
-    odd = np.flatnonzero(~numbers["slipped"].isin((0, 1)))
-    if len(odd):
-        raise ValueError(f"{file}, line {odd[0] + 2}: slipped must be 0 or 1, not {numbers['slipped'].iloc[odd[0]]:g}")
+        raise ValueError(
+            f"{file}, line {bad[0] + 2}: an empty cell or not a number: correct it, or download the archive again"
+        )
+    invalid = np.flatnonzero(~numbers["slipped"].isin((0, 1)))
+    if len(invalid):
+        raise ValueError(
+            f"{file}, line {invalid[0] + 2}: slipped must be 0 or 1, not {numbers['slipped'].iloc[invalid[0]]:g}"
+        )
     return numbers.assign(object=rows["object"].astype(str))

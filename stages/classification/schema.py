@@ -2,12 +2,19 @@
 
 from dataclasses import dataclass
 
+COLUMNS = {
+    "variant": "plain, or the name of a further experiment: see stages/classification/trials.py",
+    "classifier": "a name of stages.classification.CLASSIFIERS",
+    "repetition": "number of the random split",
+    "imprints": "samples that were trained and tested on",
+}
+
 
 @dataclass
 class Params:
     """Section `classification` of params.yaml."""
 
-    sets: dict[str, list[str]]  # name of the set: its objects, each with imprints in data/imprints
+    sets: dict[str, list[str]]  # name of the set: its objects, each with imprints in data/SET/imprints
     classifiers: list[str]  # names of stages.classification.CLASSIFIERS
     repetitions: int  # random hold-outs and foldings, the same for every sampling and classifier
     closer: list[str]  # samplings studied closer: selection, and several touches of the first set; the first in full

@@ -1,23 +1,24 @@
-"""The further experiments of T4.2.4: fewer imprints, locations, selection, several touches; as trials of one split.
+"""The further experiments of T4.2.4 as trials of one split: fewer imprints, locations, selection, several touches.
 
 | variant | samples | thesis |
 |---|---|---|
 | pixels | the imprints themselves instead of their features | none |
-| wavelet_features, image_features | the one or the other part of the features alone | none |
-| first_15 | the first 15 imprints of each object, as the thesis had | shares of T4.2.4 |
+| wavelet_features, image_features | one part of the features alone | none |
+| plain_side | split `regions` with one side of all objects held out, to compare `locations` with | none |
+| first_15 | the first 15 imprints of each object, as in the thesis | shares of T4.2.4 |
 | locations | with the positions of the touches | table 4.5 |
-| locations_turned | the same, tested on objects turned about the vertical | none |
+| locations_turned | the same, tested on objects rotated about the vertical | none |
 | selected | imprints that correlate with another object's removed, before the split | table 4.3 |
-| selected_train | removed from the training part alone, by what is seen there | none |
-| touches_N | N touches and their positions, joined | table 4.6 |
+| selected_train | removed from the training part alone, by its own correlations | none |
+| touches_N | N touches and their positions, concatenated | table 4.6 |
 | touches_N_unplaced | without the positions | none |
 | touches_N_ordered | the touches of a combination in the order of their height | none |
-| touches_N_disjoint | each imprint in one combination: fewer samples the more touches | none |
+| touches_N_disjoint | each imprint in one combination only: fewer samples with more touches | none |
 | touches_N_many | five times as many combinations, without the SVM | none |
 | touches_N_mixed | combinations drawn before the split, so that both sides share imprints | see below |
 
 T4.2.4 removes 33.33, 40, 6.67, 26.67, 13.33 and 20 % of the six objects' imprints: fifteenths. A quarter of fifteen
-cannot make five different touches, so the thesis's combinations seem to be drawn before the split.
+cannot give five different touches, so the thesis's combinations seem to be drawn before the split.
 """
 
 from collections.abc import Iterator
@@ -25,20 +26,23 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .features import IMAGE
-from .protocol import holdout, regions
-from .similarity import shared, similarity
+from stages.kit.split import Split
 
-FIRST = 15  # imprints an object in the thesis, see above
-TOO_NEAR = "an object has no touch farther than the array's width from its held-out region"
-LEAST = 4  # imprints an object of which a quarter can be held out
+from .features import IMAGE
+from .protocol import random_holdout, region_holdout
+from .similarity import confusable, similarity
+
+THESIS_COUNT = 15  # imprints per object in the thesis, see above
+NO_DISTANT_TOUCH = "an object has no touch farther than the array's width from its held-out region"
+MIN_TO_SPLIT = 4  # imprints per object of which a quarter can be held out
 
 
 @dataclass(frozen=True)
-class Touched:
-    """The imprints of all objects of a set: features (k, d), truth (k,) 0.., places (k, 3), width.
+class TouchSet:
+    """The imprints of all objects of a set.
 
-    images: (k, rows, cols) the imprints; alike: (k, k) their similarity.
+    samples: (k, d) features; truth: (k,) object numbers; places: (k, 3) positions; width: of the array; images: (k,
+    rows, cols) the imprints; similarities: (k, k).
     """
 
     samples: np.ndarray
@@ -46,111 +50,113 @@ class Touched:
     places: np.ndarray
     width: float
     images: np.ndarray
-    alike: np.ndarray
+    similarities: np.ndarray
 
     @classmethod
-    def of(cls, samples, images, truth, places, width):
-        """Computes the similarity of all imprints."""
+    def from_images(
+        cls, samples: np.ndarray, images: np.ndarray, truth: np.ndarray, places: np.ndarray, width: float
+    ) -> "TouchSet":
+        """The TouchSet with the similarities of the images."""
         return cls(samples, truth, places, width, images, similarity(images))
 
-    def take(self, chosen):
-        """Those of the imprints that `chosen` (mask or indices) names."""
-        alike = self.alike[chosen][:, chosen]
+    def subset(self, chosen: np.ndarray) -> "TouchSet":
+        """The TouchSet of the imprints `chosen` (mask or indices)."""
+        similarities = self.similarities[chosen][:, chosen]
         own = (self.samples[chosen], self.truth[chosen], self.places[chosen])
-        return Touched(*own, self.width, self.images[chosen], alike)
+        return TouchSet(*own, self.width, self.images[chosen], similarities)
 
-    def first(self, count=FIRST):
-        """The first `count` imprints of each object."""
+    def first_of_each(self, count: int = THESIS_COUNT) -> "TouchSet":
+        """The TouchSet of the first `count` imprints of each object."""
         ranks = np.concatenate([np.arange(size) for size in np.bincount(self.truth)])
-        return self.take(ranks < count)
+        return self.subset(ranks < count)
 
     @property
-    def shared(self):
-        """(k,) boolean: imprints that another object has too."""
-        return shared(self.alike, self.truth)
+    def confusable(self) -> np.ndarray:
+        """(k,) boolean: the imprints confusable with another object's."""
+        return confusable(self.similarities, self.truth)
 
 
 @dataclass(frozen=True)
 class Trial:
-    """One split to train and test on; without a split it says why in `note`.
+    """Samples, and the parts to train and test on as a split draws them; without parts `note` has the reason.
 
-    seconds: spent on the samples before; skipped: classifiers that it is not run with.
+    parts: (train, test) indices; seconds: the time to compute the samples; skipped: classifiers that are not run.
     """
 
     variant: str
-    metric: str
-    samples: np.ndarray = None
-    truth: np.ndarray = None
-    split: tuple = None
+    split: Split
+    samples: np.ndarray | None = None
+    truth: np.ndarray | None = None
+    parts: tuple[np.ndarray, np.ndarray] | None = None
     kind: str = "features"
     seconds: float = 0.0
-    skipped: tuple = ()
+    skipped: tuple[str, ...] = ()
     note: str | None = None
 
 
-def single(touched, number) -> Iterator[Trial]:
+def single_touch_trials(touched: TouchSet, random_state: int) -> Iterator[Trial]:
     """Trials of one touch: other features, fewer imprints, locations."""
-    yield from _features(touched, holdout(touched.truth, number))
+    yield from _feature_trials(touched, random_holdout(touched.truth, random_state))
     located = np.hstack([touched.samples, touched.places])
-    few = touched.first()
-    yield from _both("first_15", few, few.samples, number)
-    yield from _both("locations", touched, located, number, "located")
-    yield _apart("plain", touched, touched.samples, number, "features", side=True)
-    split = holdout(touched.truth, number)
-    turned = _turned(touched, split, number)
-    yield Trial("locations_turned", "accuracy_holdout", turned, touched.truth, split, "located")
-    split = holdout(few.truth, number)
-    few_located = np.hstack([few.samples, few.places])
-    yield Trial("first_15_locations", "accuracy_holdout", few_located, few.truth, split, "located")
+    first_few = touched.first_of_each()
+    yield from _both_splits("first_15", first_few, first_few.samples, random_state)
+    yield from _both_splits("locations", touched, located, random_state, "located")
+    yield _region_trial("plain_side", touched, touched.samples, random_state, "features", side=True)
+    parts = random_holdout(touched.truth, random_state)
+    turned = _rotated_positions(touched, parts, random_state)
+    yield Trial("locations_turned", Split.RANDOM, turned, touched.truth, parts, "located")
+    parts = random_holdout(first_few.truth, random_state)
+    few_located = np.hstack([first_few.samples, first_few.places])
+    yield Trial("first_15_locations", Split.RANDOM, few_located, first_few.truth, parts, "located")
 
 
-def _features(touched, split):
+def _feature_trials(touched, parts):
     """Pixels, and the two parts of the features."""
     for variant, samples, kind in (
         ("pixels", touched.images.reshape(len(touched.images), -1), "features"),
         ("wavelet_features", touched.samples[:, :-IMAGE], "features"),
         ("image_features", touched.samples[:, -IMAGE:], "reduced"),
     ):
-        yield Trial(variant, "accuracy_holdout", samples, touched.truth, split, kind)
+        yield Trial(variant, Split.RANDOM, samples, touched.truth, parts, kind)
 
 
-def selection(touched, number) -> Iterator[Trial]:
-    """Trials with the imprints that other objects have too removed: of all data, or of the training part alone."""
-    for prefix, part in (("", touched), ("first_15_", touched.first())):
-        kept = part.take(~part.shared)
-        if min(np.bincount(kept.truth, minlength=part.truth.max() + 1)) < LEAST:
-            note = f"selection leaves an object fewer than {LEAST} of its {len(part.truth)} imprints"
-            yield Trial(f"{prefix}selected", "accuracy_holdout", note=note)
+def selection_trials(touched: TouchSet, random_state: int) -> Iterator[Trial]:
+    """Trials without confusable imprints: removed from all data, or from the training part alone."""
+    for prefix, part in (("", touched), ("first_15_", touched.first_of_each())):
+        kept = part.subset(~part.confusable)
+        if min(np.bincount(kept.truth, minlength=part.truth.max() + 1)) < MIN_TO_SPLIT:
+            note = f"selection leaves an object fewer than {MIN_TO_SPLIT} of its {len(part.truth)} imprints"
+            yield Trial(f"{prefix}selected", Split.RANDOM, note=note)
         else:
-            yield from _both(f"{prefix}selected", kept, kept.samples, number)
-        train, test = holdout(part.truth, number)
-        own = train[~shared(part.alike, part.truth, train)[train]]
-        split = (own, test) if len(np.unique(part.truth[own])) == part.truth.max() + 1 else None
-        note = None if split else "selection leaves an object no imprint to train on"
-        yield Trial(f"{prefix}selected_train", "accuracy_holdout", part.samples, part.truth, split, note=note)
+            yield from _both_splits(f"{prefix}selected", kept, kept.samples, random_state)
+        train, test = random_holdout(part.truth, random_state)
+        own = train[~confusable(part.similarities, part.truth, train)[train]]
+        parts = (own, test) if len(np.unique(part.truth[own])) == part.truth.max() + 1 else None
+        note = None if parts else "selection leaves an object no imprint to train on"
+        yield Trial(f"{prefix}selected_train", Split.RANDOM, part.samples, part.truth, parts, note=note)
 
 
-def _both(variant, touched, samples, number, kind="features"):
+def _both_splits(variant, touched, samples, random_state, kind="features"):
     """The random hold-out and the held-out regions of one kind of samples."""
-    yield Trial(variant, "accuracy_holdout", samples, touched.truth, holdout(touched.truth, number), kind)
-    yield _apart(variant, touched, samples, number, kind, side=kind == "located")
+    yield Trial(variant, Split.RANDOM, samples, touched.truth, random_holdout(touched.truth, random_state), kind)
+    yield _region_trial(variant, touched, samples, random_state, kind, side=kind == "located")
 
 
-def _apart(variant, touched, samples, number, kind, side):
-    """One region of each object held out; or, where positions are features, one side of all."""
-    split = regions(touched.truth, touched.places, touched.width, number, side)
-    metric, note = "accuracy_side" if side else "accuracy_apart", None if split else TOO_NEAR
-    return Trial(variant, metric, samples, touched.truth, split, kind, note=note)
+def _region_trial(variant, touched, samples, random_state, kind, side):
+    """One region of each object held out; or, if positions are features, one side of all."""
+    parts = region_holdout(touched.truth, touched.places, touched.width, random_state, side)
+    note = None if parts else NO_DISTANT_TOUCH
+    return Trial(variant, Split.REGIONS, samples, touched.truth, parts, kind, note=note)
 
 
-def _turned(touched, split, number):
-    """Located samples whose test part stands turned about the vertical, each object by an angle of its own.
+def _rotated_positions(touched, parts, random_state):
+    """Located samples whose test part is rotated about the vertical, each object by its own angle.
 
-    The array keeps upright (stages.imprints.sensor_axes), so such a turn changes positions and not imprints, but for
-    touches within 18 degrees of the poles.
+    The array is upright (stages.imprints.sensor_axes), so such a rotation changes positions and not imprints, except
+    for touches within 18 degrees of the poles.
     """
-    angles = np.random.default_rng(number).uniform(0, 2 * np.pi, size=touched.truth.max() + 1)[touched.truth]
-    angles[split[0]] = 0
+    angles = np.random.default_rng(random_state).uniform(0, 2 * np.pi, size=touched.truth.max() + 1)[touched.truth]
+    angles[parts[0]] = 0
     x, y, z = touched.places.T
     turned = [np.cos(angles) * x - np.sin(angles) * y, np.sin(angles) * x + np.cos(angles) * y, z]
     return np.column_stack([touched.samples, *turned])

@@ -1,67 +1,76 @@
-"""Runs trials through the classifiers: one row a trial and classifier."""
+"""Runs the trials with the classifiers: one row per trial and classifier."""
 
 import numpy as np
 
 from stages.kit import Stopwatch
+from stages.kit.split import Split
 
 from .classifiers import COMPONENTS, classifier
-from .protocol import draw_number
-from .trials import selection, single
+from .multi_touch import MultiTouchTrials
+from .protocol import repetition_seed
+from .trials import TouchSet, selection_trials, single_touch_trials
 
 
-def evaluate_variants(touched, classifiers, repetitions, seed=0, several=None, closer=False):
-    """Rows (variant, classifier, repetition, metric, value, seconds, imprints, note) of every trial in trials.py.
+def evaluate_variants(
+    touched: TouchSet,
+    classifiers: list[str],
+    repetitions: int,
+    seed: int = 0,
+    multi_touch: MultiTouchTrials | None = None,
+    with_selection: bool = False,
+) -> list[dict]:
+    """Rows (variant, classifier, repetition, split, metric, value, seconds, imprints, note) of all trials in trials.py.
 
-    touched: a Touched; classifiers: names in CLASSIFIERS; several: a Several, for trials of several touches; closer:
-    also those of selection. Splits are those of `evaluate_features` in the same repetition. A trial that cannot be
-    run gives one row with the reason, once.
+    classifiers: names in CLASSIFIERS; multi_touch: for trials of several touches; with_selection: also trials of
+    selection. Splits are those of `evaluate_features` in the same repetition. A trial that cannot be run gives one row
+    with the reason.
     """
-    rows, said = [], set()
+    rows, reported = [], set()
     for repetition in range(repetitions):
-        number = draw_number(seed, repetition)
-        for trial in _trials(touched, number, several, closer):
-            note = _impossible(trial)
+        random_state = repetition_seed(seed, repetition)
+        for trial in _trials(touched, random_state, multi_touch, with_selection):
+            note = _reason_to_skip(trial)
             if note:
-                if (trial.variant, trial.metric, note) not in said:
-                    said.add((trial.variant, trial.metric, note))
-                    row = {"variant": trial.variant, "classifier": None, "metric": trial.metric}
+                if (trial.variant, trial.split, note) not in reported:
+                    reported.add((trial.variant, trial.split, note))
+                    row = {"variant": trial.variant, "classifier": None, "split": trial.split, "metric": "accuracy"}
                     rows.append({**row, "value": None, "note": note})
                 continue
             for name in [name for name in classifiers if name not in trial.skipped]:
-                rows += [{**row, "repetition": repetition} for row in _run(trial, name, number)]
+                rows += [{**row, "repetition": repetition} for row in _trial_rows(trial, name, random_state)]
     return rows
 
 
-def _trials(touched, number, several, closer):
-    yield from single(touched, number)
-    if closer:
-        yield from selection(touched, number)
-    if several:
-        yield from several.trials(touched, number)
+def _trials(touched, random_state, multi_touch, with_selection):
+    yield from single_touch_trials(touched, random_state)
+    if with_selection:
+        yield from selection_trials(touched, random_state)
+    if multi_touch:
+        yield from multi_touch.trials(touched, random_state)
 
 
-def _impossible(trial):
-    """Why a trial cannot be run, or None."""
-    if trial.split is not None and trial.kind != "reduced" and len(trial.split[0]) < COMPONENTS:
-        return f"{len(trial.split[0])} imprints to train on are too few for {COMPONENTS} components"
+def _reason_to_skip(trial):
+    """The reason why a trial cannot be run, or None."""
+    if trial.parts is not None and trial.kind != "reduced" and len(trial.parts[0]) < COMPONENTS:
+        return f"{len(trial.parts[0])} imprints to train on are too few for {COMPONENTS} components"
     return trial.note
 
 
-def _run(trial, name, number):
+def _trial_rows(trial, name, random_state):
     """Rows of one classifier on one trial.
 
-    Selection leaves objects with unequal numbers of imprints, and whoever guesses the commonest does well there: so the
-    mean over the objects of the rate of right answers is a metric of its own, recall_holdout.
+    Selection leaves objects with unequal numbers of imprints, so that guessing the most frequent object is accurate. So
+    the mean over the objects of their recall is another metric, recall.
     """
-    train, test = trial.split
+    train, test = trial.parts
     with Stopwatch() as watch:
-        model = classifier(name, number, trial.kind).fit(trial.samples[train], trial.truth[train])
-        answers = model.predict(trial.samples[test])
-    right = answers == trial.truth[test]
-    common = {"variant": trial.variant, "classifier": name, "imprints": len(train) + len(test), "note": None}
-    common["seconds"] = watch.seconds + trial.seconds
-    rows = [{**common, "metric": trial.metric, "value": float(right.mean())}]
-    if trial.variant.endswith("selected") and trial.metric == "accuracy_holdout":
-        recall = np.mean([right[trial.truth[test] == one].mean() for one in np.unique(trial.truth[test])])
-        rows.append({**common, "metric": "recall_holdout", "value": float(recall)})
+        model = classifier(name, random_state, trial.kind).fit(trial.samples[train], trial.truth[train])
+        predicted = model.predict(trial.samples[test])
+    correct = predicted == trial.truth[test]
+    common = {"variant": trial.variant, "classifier": name, "split": trial.split, "note": None}
+    common |= {"imprints": len(train) + len(test), "seconds": watch.seconds + trial.seconds}
+    rows = [{**common, "metric": "accuracy", "value": float(correct.mean())}]
+    if trial.variant.endswith("selected") and trial.split == Split.RANDOM:
+        recall = np.mean([correct[trial.truth[test] == one].mean() for one in np.unique(trial.truth[test])])
+        rows.append({**common, "metric": "recall", "value": float(recall)})
     return rows

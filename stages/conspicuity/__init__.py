@@ -1,8 +1,8 @@
-"""Nine channels of attention: what stands out in a view, and on the surface that it shows (T3.1.1, T3.2)."""
+"""Conspicuity maps: nine channels of visual attention in a view and on the visible surface (T3.1.1, T3.2)."""
 
 from .channels import CHANNELS, conspicuity
 from .facing import facing
-from .sight import Sight
-from .storage import read_sight
+from .storage import read_view_maps
+from .view_maps import ViewMaps
 
-__all__ = ["CHANNELS", "Sight", "conspicuity", "facing", "read_sight"]
+__all__ = ["CHANNELS", "ViewMaps", "conspicuity", "facing", "read_view_maps"]

@@ -1,58 +1,68 @@
-"""Works out the conspicuity maps of every view: what stands out, channel by channel (T3.1.1, T3.2).
+"""Computes the conspicuity maps of every view: what stands out, channel by channel (T3.1.1, T3.2).
 
-Reads data/meshes/NAME.npz and data/views/NAME/*.npz. Writes data/conspicuity/NAME.npz (maps, mask, viewpoints,
-channels) and reports/measurements/conspicuity.csv. Settings: section `conspicuity` of params.yaml.
+Reads data/SET/meshes/NAME.npz, data/SET/views/viewpoints.csv and data/SET/views/NAME/*.npz. Writes
+data/SET/conspicuity/NAME.npz (maps, mask, viewpoints, channels) and reports/measurements/SET/conspicuity.csv.gz.
 """
 
 import functools
+from pathlib import Path
 
 import cv2
 import numpy as np
 
-from stages.kit import StageRun, arguments, params
+from stages.kit.command import workspace_of_arguments
 from stages.kit.files import read_mesh, read_table, write_arrays
-from stages.kit.run import DATA
+from stages.kit.run import Rows, StageRun
+from stages.kit.workspace import Workspace
 from stages.views import read_view
 
-from .channels import coverage, known_channels
+from .channels import check_channels, mask_at_size
 from .measure import background_rows, measured_maps
+from .schema import COLUMNS, Params
 
 
-def process(name, folder, settings):
+def process(name: str, folder: Path, data: Path, settings: Params) -> Rows:
     """Maps all views of one object; returns what each channel cost and how much of it lies along the silhouette."""
     cv2.setNumThreads(1)  # a worker is one core, and `seconds` are of one core
-    mesh = read_mesh(DATA / "meshes" / f"{name}.npz")
-    channels, size = list(settings.channels), tuple(settings.size)
-    viewpoints = list(read_table(DATA / "views" / "viewpoints.csv")["viewpoint"])
+    mesh = read_mesh(data / "meshes" / f"{name}.npz")
+    channels, (height, width) = list(settings.channels), settings.size
+    size = (height, width)
+    viewpoints = list(read_table(data / "views" / "viewpoints.csv")["viewpoint"])
     maps = np.zeros((len(viewpoints), len(channels), *size), dtype=np.float16)
     mask = np.zeros((len(viewpoints), *size), dtype=bool)
     rows = []
     for k, viewpoint in enumerate(viewpoints):
-        view = read_view(DATA / "views" / name / f"{viewpoint}.npz")
+        view = read_view(data / "views" / name / f"{viewpoint}.npz")
         found, measured = measured_maps(mesh, view, channels, size)
         maps[k] = [found[channel] for channel in channels]
-        mask[k] = coverage(view.mask, size)
+        mask[k] = mask_at_size(view.mask, size)
         rows += measured
         if k == 0 and settings.compare_background:
             rows += background_rows(mesh, view, channels, size)
     write_arrays(folder / f"{name}.npz", maps=maps, mask=mask, viewpoints=viewpoints, channels=channels)
-    return [{"object": name} | row for row in rows]
+    return [{"item": name} | row for row in rows]
 
 
-def main():
-    arguments(__doc__)
-    settings = params("conspicuity")
-    known_channels(settings.channels)
-    with StageRun("conspicuity", inputs=("meshes", "views")) as run:
-        rows = run.each(functools.partial(process, settings=settings), run.objects)
+def run(workspace: Workspace) -> None:
+    """Runs the stage on the data set of a workspace."""
+    settings = workspace.settings(Params)
+    check_channels(settings.channels)
+    with StageRun(workspace, "conspicuity", COLUMNS, inputs=("meshes", "views")) as stage:
+        work = functools.partial(process, data=workspace.data, settings=settings)
+        rows = stage.each(work, stage.objects, reads=("meshes/{}.npz", "views/{}", "views/viewpoints.csv"))
         maps = [row for row in rows if row["metric"] == "silhouette_share"]
         share = float(np.mean([row["value"] for row in maps if row["value"] is not None] or [0]))
-        run.metrics({"maps": len(maps), "silhouette_share": round(share, 6)})
+        stage.metrics({"maps": len(maps), "silhouette_share": round(share, 6)})
     seconds = sum(row["seconds"] for row in maps)
     print(
-        f"conspicuity: {len(run.objects)} objects, {len(maps)} maps in {seconds:.0f} s of one core, "
+        f"conspicuity: {len(stage.objects)} objects, {len(maps)} maps in {seconds:.0f} s of one core, "
         f"{share:.2f} of an even share along the silhouette"
     )
+
+
+def main() -> None:
+    """Runs the stage on the data set that the command line names."""
+    run(workspace_of_arguments(__doc__, "conspicuity"))
 
 
 if __name__ == "__main__":

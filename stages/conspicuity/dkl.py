@@ -1,10 +1,13 @@
-"""DKL: the three mechanisms after the cones, luminance, L - M and S - (L + M)."""
+"""DKL: the three post-receptoral mechanisms, luminance, L - M and S - (L + M)."""
 
 import cv2
 import numpy as np
 
-from .operators import COMMON, centre_surround, normalise, pyramid, reduce
-from .picture import picture
+from stages.kit import Mesh
+from stages.views import View
+
+from .cropped_view import cropped_view
+from .operators import OUTPUT_SCALE, centre_surround, normalise, pyramid, reduce
 
 # Linear RGB of ITU-R BT.709 (the primaries of sRGB) to L, M, S: Smith and Pokorny's cone fundamentals, as in Vienot,
 # Brettel and Mollon, Digital video colourmaps for checking the legibility of displays by dichromats, Color Research
@@ -12,31 +15,32 @@ from .picture import picture
 RGB_TO_LMS = np.array([[17.8824, 43.5161, 4.11935], [3.45565, 27.1554, 3.86714], [0.0299566, 0.184309, 1.46709]])
 LEVELS = np.arange(256) / 255
 LINEAR = np.where(LEVELS <= 0.04045, LEVELS / 12.92, ((LEVELS + 0.055) / 1.055) ** 2.4)  # IEC 61966-2-1 (sRGB)
-FIRST = 2  # linear filters and matrices commute, so the matrix waits for the first scale that is used
+FIRST = 2  # the first scale that is used; the matrix is applied there, since it commutes with linear filters
 
 
-def dkl(mesh, view, filled=True):
+def dkl(mesh: Mesh, view: View, filled: bool = True) -> np.ndarray:
     """The DKL conspicuity map (h / 16, w / 16) f4 in 0..1, T eq. 3.6, of a stages.views.View.
 
     The axes are those of Derrington, Krauskopf and Lennie, J. Physiology 357, 1984 (T [206]); see `mechanisms`. The
-    look-up table of T is the decoding of sRGB's 256 levels.
+    look-up table of T decodes the 256 levels of sRGB.
     """
-    image = picture(view, filled)
+    image = cropped_view(view, filled)
     if image.empty:
-        return image.nothing()
+        return image.zero_map()
     if image.grey_only:  # grey lies on the luminance axis
         planes = [reduce(LINEAR.astype(np.float32)[image.luminance], 0, FIRST)]
     else:
         planes = cv2.split(mechanisms(reduce(LINEAR.astype(np.float32)[image.rgb], 0, FIRST)))
-    summed = sum(centre_surround(pyramid(np.ascontiguousarray(plane), FIRST), image.cover) for plane in planes)
-    return image.whole(normalise(summed, image.cover[COMMON]), COMMON)
+    pyramids = [pyramid(np.ascontiguousarray(plane), FIRST) for plane in planes]
+    summed = np.sum([centre_surround(levels, image.cover) for levels in pyramids], axis=0)
+    return image.place_in_view(normalise(summed, image.cover[OUTPUT_SCALE]), OUTPUT_SCALE)
 
 
-def mechanisms(linear):
+def mechanisms(linear: np.ndarray) -> np.ndarray:
     """(h, w, 3) f4: R_Lum, R_L-M, R_S-Lum of linear RGB (h, w, 3) f4 in 0..1.
 
-    R_Lum = L + M over the white's; the other two are differences weighted so that they vanish on every grey (Brainard,
-    Cone contrast and opponent modulation color spaces, 1996), in units of the white's L + M and S.
+    R_Lum = L + M over that of white. The other two are differences weighted so that they vanish on every grey, in units
+    of L + M and S of white (Brainard, Cone contrast and opponent modulation color spaces, 1996).
     """
     return cv2.transform(linear, MECHANISMS)
 

@@ -3,23 +3,26 @@
 import cv2
 import numpy as np
 
-from .operators import COMMON, normalise, reduce
-from .picture import picture
+from stages.kit import Mesh
+from stages.views import View
 
-SIGMA = 2.0 / 900  # of the image's rows: 2 pixels in the thesis's 1200 x 900, wide enough for the steps of 8 bits
+from .cropped_view import cropped_view
+from .operators import OUTPUT_SCALE, normalise, reduce
+
+SIGMA = 2.0 / 900  # of the image's rows: 2 pixels in the thesis's 1200 x 900, wide enough to smooth the steps of 8 bits
 
 
-def edge(mesh, view, filled=True):
+def edge(mesh: Mesh, view: View, filled: bool = True) -> np.ndarray:
     """The edge conspicuity map (h / 16, w / 16) f4 in 0..1, N of |LoG| (T3.2), of a stages.views.View."""
-    image = picture(view, filled)
+    image = cropped_view(view, filled)
     if image.empty:
-        return image.nothing()
+        return image.zero_map()
     sigma = max(SIGMA * image.shape[0], 0.7)
     response = np.abs(laplacian_of_gaussian(image.luminance, sigma))
-    return image.whole(normalise(reduce(response, 0), image.cover[COMMON]), COMMON)
+    return image.place_in_view(normalise(reduce(response, 0), image.cover[OUTPUT_SCALE]), OUTPUT_SCALE)
 
 
-def laplacian_of_gaussian(image, sigma):
+def laplacian_of_gaussian(image: np.ndarray, sigma: float) -> np.ndarray:
     """(h, w) f4: sigma^2 times the Laplacian of the image (h, w) u1 in 0..1 blurred by sigma pixels.
 
     The factor makes the response to an edge the same at every sigma (Lindeberg 1998).

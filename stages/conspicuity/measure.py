@@ -1,18 +1,24 @@
-"""The maps of a view with what they cost, and the check that they keep off the silhouette."""
+"""The maps of a view with their cost, and the check that they do not respond to the silhouette."""
 
 import math
+from collections.abc import Iterable
 
-from stages.kit import Stopwatch
+import numpy as np
+
+from stages.kit import Mesh, Stopwatch
+from stages.views import View
 
 from .channels import conspicuity
 from .silhouette import silhouette_share
 
 
-def measured_maps(mesh, view, channels, size):
-    """({channel: map}, rows): the maps of a view, and a row for each with metric `silhouette_share`.
+def measured_maps(
+    mesh: Mesh, view: View, channels: Iterable[str], size: tuple[int, int]
+) -> tuple[dict[str, np.ndarray], list[dict]]:
+    """({channel: map}, rows): the maps of a view, and one row per map with metric `silhouette_share`.
 
-    `seconds` is what the channel added in this order: work that channels share (the filled image, the surface points)
-    is charged to the first that asks for it, work on the mesh to the first view.
+    `seconds` is the time that each channel added, in this order: work that channels share (the filled image, the
+    surface points) is charged to the first one that needs it, and work on the mesh to the first view.
     """
     maps, rows = {}, []
     for channel in channels:
@@ -22,8 +28,8 @@ def measured_maps(mesh, view, channels, size):
     return maps, rows
 
 
-def background_rows(mesh, view, channels, size):
-    """Rows with metric `silhouette_share_unfilled`: the same with the background left in the image as rendered."""
+def background_rows(mesh: Mesh, view: View, channels: Iterable[str], size: tuple[int, int]) -> list[dict]:
+    """Rows with metric `silhouette_share_unfilled`: the same with the background as rendered."""
     maps = conspicuity(mesh, view, channels, size, filled=False)
     return [_row(channel, view, "silhouette_share_unfilled", maps[channel], None) for channel in channels]
 

@@ -2,7 +2,7 @@
 
 Sources: T3.1.1; Itti, Koch and Niebur, A model of saliency-based visual attention for rapid scene analysis, IEEE PAMI
 20(11), 1998 (T [41]), section 2. A pyramid is a dict scale -> image; pixel k of scale s lies on pixel k * 2**s of the
-view, since pyrDown keeps the even pixels and pyrUp puts them back there: a map never drifts between scales.
+view, since pyrDown keeps the even pixels and pyrUp restores them, so maps do not shift between scales.
 """
 
 import cv2
@@ -11,17 +11,17 @@ import numpy as np
 SCALES = 9
 CENTRES = (2, 3, 4)
 DELTAS = (3, 4)
-COMMON = 4  # the scale to which across-scale addition reduces its maps
-FLOOR = 1e-3  # a quarter of a grey level of an 8-bit image: below it a map holds rounding, no signal
-PEAK = 0.1  # local maxima under a tenth of the highest don't count, as in Walther and Koch's SaliencyToolbox, 2006
+OUTPUT_SCALE = 4  # the scale to which across-scale addition reduces its maps
+FLOOR = 1e-3  # a quarter of a grey level of an 8-bit image; below it a map is only rounding
+PEAK = 0.1  # local maxima under a tenth of the highest do not count, as in Walther and Koch's SaliencyToolbox, 2006
 
 
-def down(image):
-    """Gaussian blur (5 x 5, binomial) and every second pixel: (h, w) to (ceil(h / 2), ceil(w / 2))."""
+def down(image: np.ndarray) -> np.ndarray:
+    """Gaussian blur (5 x 5, binomial), then every second pixel: (h, w) to (ceil(h / 2), ceil(w / 2))."""
     return cv2.pyrDown(image, borderType=cv2.BORDER_REPLICATE)
 
 
-def pyramid(image, first=0, last=SCALES - 1):
+def pyramid(image: np.ndarray, first: int = 0, last: int = SCALES - 1) -> dict[int, np.ndarray]:
     """The dyadic Gaussian pyramid {first: image, ..., last: ...} of an image given at scale `first`."""
     levels = {first: image}
     for scale in range(first, last):
@@ -29,14 +29,14 @@ def pyramid(image, first=0, last=SCALES - 1):
     return levels
 
 
-def reduce(image, scale, target=COMMON):
+def reduce(image: np.ndarray, scale: int, target: int = OUTPUT_SCALE) -> np.ndarray:
     """The image, given at a scale, at the coarser scale `target`."""
     for _ in range(scale, target):
         image = down(image)
     return image
 
 
-def expand(levels, scale, target):
+def expand(levels: dict[int, np.ndarray], scale: int, target: int) -> np.ndarray:
     """Level `scale` of a pyramid interpolated to the grid of its finer level `target`."""
     image = levels[scale]
     for finer in range(scale - 1, target - 1, -1):
@@ -45,14 +45,16 @@ def expand(levels, scale, target):
     return image
 
 
-def centre_surround(levels, cover, floor=FLOOR, on_centre=False):
+def centre_surround(
+    levels: dict[int, np.ndarray], cover: dict[int, np.ndarray], floor: float = FLOOR, on_centre: bool = False
+) -> np.ndarray:
     """Across-scale sum of N(|I(c) - I(s)|) at scale 4, the inner part of T eq. 3.1.
 
     levels: pyramid {2..8: (h, w) f4}; cover: pyramid {2..4: (h, w) boolean}, where the object is; floor: see
-    `normalise`. Six terms, c in {2, 3, 4} and s = c + {3, 4}. on_centre: a centre below its surround is nothing,
-    as in a cell that its surround inhibits (T3.1.1), instead of as much as one above it.
+    `normalise`. Six terms, c in {2, 3, 4} and s = c + {3, 4}. on_centre: a centre below its surround counts as
+    zero, as in a cell that its surround inhibits (T3.1.1), instead of as much as one above it.
     """
-    total = np.zeros(levels[COMMON].shape, dtype=np.float32)
+    total = np.zeros(levels[OUTPUT_SCALE].shape, dtype=np.float32)
     for c in CENTRES:
         for delta in DELTAS:
             surround = expand(levels, c + delta, c)
@@ -61,11 +63,11 @@ def centre_surround(levels, cover, floor=FLOOR, on_centre=False):
     return total
 
 
-def normalise(values, cover, floor=FLOOR):
+def normalise(values: np.ndarray, cover: np.ndarray, floor: float = FLOOR) -> np.ndarray:
     """N(.): scales a map to 0..1 over the object and multiplies it by (M - m)^2 = (1 - m)^2; zero off the object.
 
-    m is the mean of the local maxima but the highest one: T3.1.1 says "all", its source (Itti 1998, section 2.1) "all
-    other", without which a single peak, the very thing to promote, would be wiped out. A map whose range stays within
+    m is the mean of all local maxima except the highest one. T3.1.1 says "all", its source (Itti 1998, section 2.1)
+    "all other", without which a single peak, which N should promote, would be removed. A map whose range is at most
     `floor` is flat: all zero. values (h, w) f4, cover (h, w) boolean.
     """
     inside = values[cover]
@@ -76,14 +78,14 @@ def normalise(values, cover, floor=FLOOR):
     return scaled * (1 - mean_of_other_maxima(scaled)) ** 2
 
 
-def mean_of_other_maxima(scaled):
-    """The mean of the local maxima of a map in 0..1, over a tenth and without the highest; 0 where there is no other.
+def mean_of_other_maxima(scaled: np.ndarray) -> float:
+    """The mean of the local maxima above a tenth of a map in 0..1, without the highest; 0 if there is no other.
 
-    A local maximum is at least as high as its eight neighbours; a plateau counts once.
+    A local maximum is at least as high as its eight neighbours; a plateau counts as one.
     """
     tops = (scaled >= cv2.dilate(scaled, np.ones((3, 3), np.uint8))) & (scaled > PEAK)
     count, labels = cv2.connectedComponents(tops.astype(np.uint8), connectivity=8)
     heights = np.zeros(count)
-    heights[labels[tops]] = scaled[tops]
+    heights[labels[tops].astype(np.intp)] = scaled[tops]
     others = np.sort(heights[1:])[:-1]
     return float(others.mean()) if len(others) else 0.0

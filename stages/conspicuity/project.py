@@ -1,16 +1,18 @@
-"""From pixels to vertices by exact rays (T3.2.6)."""
+"""Projects pixels of a view to vertices by exact rays (T3.2.6)."""
 
 import numpy as np
 
-from stages.kit import camera
+from stages.kit import Mesh, RayScene, Viewpoint, camera
 
 
-def project_pixels(scene, rows, columns, viewpoint, size):
+def project_pixels(
+    scene: RayScene, rows: np.ndarray, columns: np.ndarray, viewpoint: Viewpoint, size: tuple[int, int]
+) -> tuple[np.ndarray, np.ndarray]:
     """Pixels of a view to vertices of the mesh: (vertices (k,) i8, positions (k, 3) f8 where the rays hit).
 
-    scene: kit RayScene; rows, columns (k,) may be fractional; size: (h, w) of the image that they index. A map of a
-    reduced size needs no correction: its pixel centres and the full image's agree in camera.pixel_rays, as both
-    count from the middle of the image. Raises ValueError when a pixel lies off the object.
+    rows, columns (k,), may be fractional; size: (h, w) of the image that they index. A map of a reduced size needs no
+    correction, since camera.pixel_rays measures pixels of any image from its middle. Raises ValueError when a pixel
+    lies off the object.
     """
     origins, directions = camera.pixel_rays(rows, columns, viewpoint, size)
     hits = scene.cast(origins, directions)
@@ -24,11 +26,11 @@ def project_pixels(scene, rows, columns, viewpoint, size):
     return nearest_corners(scene.mesh, hits.face, positions), positions
 
 
-def nearest_corners(mesh, faces, positions):
-    """(k,) i8: of each face's three corners the one nearest to the position (k, 3).
+def nearest_corners(mesh: Mesh, faces: np.ndarray, positions: np.ndarray) -> np.ndarray:
+    """(k,) i8: the corner of each face (k,) nearest to a position (k, 3).
 
-    T3.2.6 takes the vertex nearest to the face's centroid, whichever point of the face was seen. The corner nearest
-    to the point itself is never farther from it, and on long thin triangles, common in CAD meshes, much nearer.
+    T3.2.6 takes the vertex nearest to the centroid of the face, whichever point of the face was seen. The corner
+    nearest to the point itself is never farther away, and on slivers, common in CAD meshes, it is much nearer.
     """
     corners = mesh.faces[faces]
     distance = ((mesh.vertices[corners] - positions[:, None]) ** 2).sum(axis=2)

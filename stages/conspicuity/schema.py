@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+COLUMNS = {"viewpoint": "name of the viewpoint of the map"}
+
 
 @dataclass
 class Params:

@@ -1,4 +1,4 @@
-"""How much of a map lies along the silhouette: the check that the background is kept out."""
+"""How much of a map lies along the silhouette: the check that the background does not affect the maps."""
 
 import cv2
 import numpy as np
@@ -6,11 +6,11 @@ import numpy as np
 BAND = 12 / 900  # of the image's rows: 12 pixels in the thesis's 1200 x 900
 
 
-def silhouette_share(values, mask):
-    """The share of a map's sum in the band along the silhouette, over that band's share of the object's area.
+def silhouette_share(values: np.ndarray, mask: np.ndarray) -> float:
+    """The share of a map's sum in a band along the silhouette, over the band's share of the object's area.
 
-    1: the band gets what its area deserves; well above 1: the map lights up the silhouette. values (h', w') f4, a map
-    of conspicuity(); mask (h, w) boolean of the view, of the same aspect. NaN for a map that is zero.
+    1: in proportion to the area; well above 1: the map responds to the silhouette. values (h', w') f4, a map of
+    conspicuity(); mask (h, w) boolean of the view, of the same aspect ratio. NaN for a map of zeros.
     """
     padded = cv2.copyMakeBorder(mask.astype(np.uint8), 1, 1, 1, 1, cv2.BORDER_CONSTANT, value=0)
     inward = cv2.distanceTransform(padded, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)[1:-1, 1:-1]

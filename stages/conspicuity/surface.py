@@ -1,24 +1,26 @@
-"""From the surface of the mesh to the view: what lies under every second pixel of the object."""
+"""The surface points under the pixels of a view, and conspicuity maps of values at these points."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
+from stages.kit import Mesh
 from stages.kit.camera import pixel_rays
 from stages.kit.rays import barycentric
+from stages.views import View
 
 from .background import fill
-from .memo import once
-from .operators import COMMON, centre_surround, normalise, pyramid
-from .picture import picture
+from .cropped_view import cropped_view
+from .operators import OUTPUT_SCALE, centre_surround, normalise, pyramid
+from .weak_cache import weak_cache
 
-FLOOR = 0.02  # of the values' range: flatter is noise of the mesh
-SCALE = 1  # centre-surround begins at scale 2; one scale finer keeps small faces from flickering
+FLOOR = 0.02  # of the range of the values; a flatter map is noise of the mesh
+SCALE = 1  # one scale finer than centre-surround starts at, so that small faces are not aliased
 
 
 @dataclass(frozen=True)
-class Seen:
-    """k points of the surface: known (h, w) boolean says at which pixels of the crop at SCALE they are, in order.
+class VisibleSurface:
+    """The k surface points that a view shows: at the true pixels of known (h, w), of the crop at SCALE, in order.
 
     faces (k,), weights (k, 3) barycentric, points (k, 3), back (3,) the direction from the surface to the camera.
     """
@@ -30,14 +32,14 @@ class Seen:
     back: np.ndarray
 
 
-@once
-def seen(view, mesh):
-    """The surface that a view sees. Raises ValueError when the view names faces that the mesh does not have."""
+@weak_cache
+def visible_surface(view: View, mesh: Mesh) -> VisibleSurface:
+    """The VisibleSurface of a view of a mesh. Raises ValueError when the view has faces that the mesh does not have."""
     if view.face.max(initial=-1) >= len(mesh.faces):
         raise ValueError(
             f"the view shows face {view.face.max()}, the mesh has {len(mesh.faces)} faces: render this mesh again"
         )
-    box, step = picture(view).box, 2**SCALE
+    box, step = cropped_view(view).box, 2**SCALE
     face = view.face[box][::step, ::step]
     known = face >= 0
     rows, columns = np.nonzero(known)
@@ -46,18 +48,20 @@ def seen(view, mesh):
     points = origins + view.depth[rows, columns, None].astype(np.float64) * directions
     weights = barycentric(mesh, face[known], points).clip(0, 1)
     weights /= weights.sum(axis=1, keepdims=True)
-    return Seen(known, face[known], weights, points, view.viewpoint.axes[2])
+    return VisibleSurface(known, face[known], weights, points, view.viewpoint.axes[2])
 
 
-def surface_conspicuity(values, mesh, view, filled=True, on_centre=False):
-    """Centre-surround and N of values (k,) at the points of seen(view, mesh): the map (h / 16, w / 16) f4 (T3.1.1).
+def surface_conspicuity(
+    values: np.ndarray, mesh: Mesh, view: View, filled: bool = True, on_centre: bool = False
+) -> np.ndarray:
+    """Centre-surround and N of values (k,) at the points of visible_surface: a map (h / 16, w / 16) f4 (T3.1.1).
 
-    on_centre: see stages.conspicuity.operators.centre_surround.
-    The background takes the values of the surface beside it, unless filled=False, where it is zero.
+    on_centre: see stages.conspicuity.operators.centre_surround. The values extend into the background; with
+    filled=False it is zero.
     """
-    image, known = picture(view), seen(view, mesh).known
-    drawn = np.zeros(known.shape, dtype=np.float32)
-    drawn[known] = values
-    drawn = fill(drawn, known) if filled else drawn
-    summed = centre_surround(pyramid(drawn, SCALE), image.cover, FLOOR, on_centre)
-    return image.whole(normalise(summed, image.cover[COMMON]), COMMON)
+    image, known = cropped_view(view), visible_surface(view, mesh).known
+    image_values = np.zeros(known.shape, dtype=np.float32)
+    image_values[known] = values
+    image_values = fill(image_values, known) if filled else image_values
+    summed = centre_surround(pyramid(image_values, SCALE), image.cover, FLOOR, on_centre)
+    return image.place_in_view(normalise(summed, image.cover[OUTPUT_SCALE]), OUTPUT_SCALE)

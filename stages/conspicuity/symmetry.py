@@ -1,75 +1,81 @@
-"""Symmetry of the surface, found in 3D and seen from the view: of both kinds, and of each alone."""
+"""Symmetry of the shape, found in 3D and projected to the view: bilateral and radial, together and each alone."""
+
+from collections.abc import Sequence
 
 import numpy as np
 
+from stages.kit import Mesh
 from stages.kit.mesh import unit
+from stages.views import View
 
-from .memo import once
-from .picture import picture
-from .planes import shape_symmetries
-from .surface import seen, surface_conspicuity
+from .cropped_view import cropped_view
+from .surface import surface_conspicuity, visible_surface
+from .symmetry_search import Symmetries, shape_symmetries
+from .weak_cache import weak_cache
 
-BAND = 0.015  # of the diagonal: how far from a plane of symmetry its points' immediate neighbours reach (one sigma)
+BAND = 0.015  # of the diagonal: standard deviation of the response around a plane of symmetry
 KINDS = ("lateral", "radial")  # planes of bilateral symmetry, axes of radial symmetry
 
 
-def symmetry(mesh, view, filled=True):
+def symmetry(mesh: Mesh, view: View, filled: bool = True) -> np.ndarray:
     """The symmetry conspicuity map (h / 16, w / 16) f4 in 0..1 (T3.1.1) of a view of a mesh.
 
-    White are the points where planes of symmetry cut the surface and axes of symmetry pierce it. A plane counts with
-    the squared sine of its angle to the image, an axis with the squared cosine to the line of sight: seen flat on, a
-    plane of symmetry mirrors nothing in the image, and its points lie along the silhouette.
+    The response is high where planes of symmetry cut the surface and axes of symmetry pierce it. A plane is weighted
+    by the squared sine of its angle to the image, an axis by the squared cosine of its angle to the line of sight: a
+    plane parallel to the image mirrors nothing in it, and its points lie along the silhouette.
     """
     return _conspicuity(mesh, view, filled, KINDS)
 
 
-def symmetry_lateral(mesh, view, filled=True):
-    """The map as in `symmetry` of bilateral symmetry alone: planes, T3.1.5's SymLat.
+def symmetry_lateral(mesh: Mesh, view: View, filled: bool = True) -> np.ndarray:
+    """The map as in `symmetry` of bilateral symmetry alone: planes, SymLat of T3.1.5.
 
-    A body of revolution has a plane through its axis for every view, so it is white there along the middle.
+    A body of revolution has a plane through its axis for every view, so the response is high along the middle.
     """
     return _conspicuity(mesh, view, filled, ("lateral",))
 
 
-def symmetry_radial(mesh, view, filled=True):
-    """The map as in `symmetry` of radial symmetry alone: where axes pierce the surface, T3.1.5's SymRad."""
+def symmetry_radial(mesh: Mesh, view: View, filled: bool = True) -> np.ndarray:
+    """The map as in `symmetry` of radial symmetry alone: where axes pierce the surface, SymRad of T3.1.5."""
     return _conspicuity(mesh, view, filled, ("radial",))
 
 
 def _conspicuity(mesh, view, filled, kinds):
-    image = picture(view, filled)
+    image = cropped_view(view, filled)
     if image.empty:
-        return image.nothing()
-    here = seen(view, mesh)
-    return surface_conspicuity(symmetric_points(mesh, here.points, here.back, kinds), mesh, view, filled)
+        return image.zero_map()
+    seen = visible_surface(view, mesh)
+    return surface_conspicuity(symmetric_points(mesh, seen.points, seen.back, kinds), mesh, view, filled)
 
 
-def symmetric_points(mesh, points, back=None, kinds=KINDS):
+def symmetric_points(
+    mesh: Mesh, points: np.ndarray, back: np.ndarray | None = None, kinds: Sequence[str] = KINDS
+) -> np.ndarray:
     """(k,) f8 in 0..1: how near points (k, 3) of the surface are to a plane or an axis of symmetry.
 
-    back (3,): the unit direction to the camera, from which planes and axes are judged; None weighs all alike.
+    back (3,): the unit direction to the camera, by which planes and axes are weighted; None weights all equally.
     kinds: which of KINDS count.
     """
-    found = found_symmetries(mesh)
-    reach = 2 * (BAND * mesh.diagonal) ** 2
-    white = np.zeros(len(points))
+    found = symmetries(mesh)
+    spread = 2 * (BAND * mesh.diagonal) ** 2
+    response = np.zeros(len(points))
     for normal, offset, weight in weighted_planes(found, back) if "lateral" in kinds else ():
-        np.maximum(white, weight * np.exp(-((points @ normal - offset) ** 2) / reach), out=white)
+        np.maximum(response, weight * np.exp(-((points @ normal - offset) ** 2) / spread), out=response)
     away = points - found.centre
     for axis, weight in weighted_axes(found, back) if "radial" in kinds else ():
         distance = (away**2).sum(axis=1) - (away @ axis) ** 2
-        np.maximum(white, weight * np.exp(-distance / (4 * reach)), out=white)
-    return white
+        np.maximum(response, weight * np.exp(-distance / (4 * spread)), out=response)
+    return response
 
 
-@once
-def found_symmetries(mesh):
-    """The Symmetries of a mesh, worked out once."""
+@weak_cache
+def symmetries(mesh: Mesh) -> Symmetries:
+    """The Symmetries of a mesh, cached."""
     return shape_symmetries(mesh)
 
 
-def weighted_planes(found, back):
-    """[(normal (3,), offset, weight)]: the planes, and of the family round a body of revolution the one seen edge-on.
+def weighted_planes(found: Symmetries, back: np.ndarray | None) -> list[tuple[np.ndarray, float, float]]:
+    """[(normal (3,), offset, weight)]: the planes, and of those through an axis of revolution the one seen edge-on.
 
     found: Symmetries; back as in `symmetric_points`.
     """
@@ -79,11 +85,11 @@ def weighted_planes(found, back):
             normal = np.cross(axis, back)
             if np.linalg.norm(normal) > 1e-6:
                 normal = unit(normal)
-                # It lies edge-on by construction: how well it shows depends on how much of the axis the image shows.
+                # It is edge-on by construction, so its weight depends on the angle of the axis to the image.
                 planes.append((normal, normal @ found.centre, score * (1 - (axis @ back) ** 2)))
     return [(n, offset, score if back is None else score * (1 - (n @ back) ** 2)) for n, offset, score in planes]
 
 
-def weighted_axes(found, back):
+def weighted_axes(found: Symmetries, back: np.ndarray | None) -> list[tuple[np.ndarray, float]]:
     """[(axis (3,), weight)] of Symmetries; back as in `symmetric_points`."""
     return [(axis, score if back is None else score * (axis @ back) ** 2) for axis, score, _ in found.axes]

@@ -1,10 +1,10 @@
 """Contours followed with the pressure array, blindly and through salient points (T4.4.6).
 
-Public names: gather, draw_pairs, read_sequences, write_sequences, Sequences.
+Public names: draw_pairs, read_sequences, sample_contours, write_sequences, Sequences.
 """
 
 from .files import Sequences, read_sequences, write_sequences
-from .gather import gather
 from .planes import draw_pairs
+from .sample_contours import sample_contours
 
-__all__ = ["Sequences", "draw_pairs", "gather", "read_sequences", "write_sequences"]
+__all__ = ["Sequences", "draw_pairs", "read_sequences", "sample_contours", "write_sequences"]

@@ -1,43 +1,50 @@
-"""Follows contours of the objects of all classes, blindly and through salient points (T4.4.6).
+"""Follows contours of every object, blindly and through salient points (T4.4.6).
 
-Reads data/classes/NAME.npz, writes data/contours/NAME.npz and reports/measurements/contours.csv: for each object and
-strategy the number of sequences and of pairs of points refused, the mean number of loops of a cut and the share of its
-length that the loop followed holds, the share of frames with a smaller array, and the seconds. An object that has
-fewer pairs of points than sequences wanted gives all it has, and its row a note.
+Reads data/SET/meshes/NAME.npz and data/SET/salient_points/NAME.npz, writes data/SET/contours/NAME.npz and
+reports/measurements/SET/contours.csv.gz: per object and strategy the number of sequences, the number of pairs of points
+refused, the mean number of loops of a cut, the share of its length that the loop followed holds, and the share of
+frames with a smaller array. An object with fewer pairs of points than sequences requested gives all of them, and its
+row a note.
 """
 
 import functools
 from collections import defaultdict
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from stages.classes import read_object
 from stages.imprints import Surface
-from stages.kit import StageRun, Stopwatch, arguments, params
+from stages.kit import Stopwatch
+from stages.kit.command import workspace_of_arguments
+from stages.kit.files import read_mesh
 from stages.kit.rng import rng
-from stages.kit.run import DATA
+from stages.kit.run import Rows, StageRun
 from stages.kit.stats import interval_metrics
+from stages.kit.workspace import Workspace
+from stages.salient_points import read_points
 
 from .files import write_sequences
-from .gather import gather
+from .sample_contours import sample_contours
+from .schema import Params
 
 BLIND = "random"  # the strategy that any two vertices serve
 
 
-def process(name, folder, settings, seed):
+def process(name: str, folder: Path, data: Path, settings: Params, seed: int) -> Rows:
     """The contours of one object by all strategies; writes its file and returns its rows."""
-    mesh, found = read_object(DATA / "classes" / f"{name}.npz")
-    points = {BLIND: np.unique(mesh.faces), **found}
+    mesh = read_mesh(data / "meshes" / f"{name}.npz")
+    points = {**read_points(data / "salient_points" / f"{name}.npz"), BLIND: np.unique(mesh.faces)}
     unknown = [strategy for strategy in settings.strategies if strategy not in points]
     if unknown:
-        raise ValueError(f"contours.strategies: {unknown[0]} is not among {', '.join(points)} (classes.methods)")
+        raise ValueError(f"contours.strategies: {unknown[0]} is not among {', '.join(points)} (salient_points.methods)")
     surface, sequences, rows = Surface(mesh), {}, []
     for strategy in settings.strategies:
         draws = rng(seed, f"contours {name} {strategy}")
-        array = settings.frames, tuple(settings.cells), settings.pitch
+        array = settings.frames, (settings.cells[0], settings.cells[1]), settings.pitch
         with Stopwatch() as watch:
-            sequences[strategy], facts = gather(surface, points[strategy], settings.count, draws, *array)
-        common = {"object": name, "method": strategy, "seconds": watch.seconds}
+            sequences[strategy], facts = sample_contours(surface, points[strategy], settings.count, draws, *array)
+        common = {"item": name, "method": strategy, "seconds": watch.seconds}
         rows += [{**common, "metric": key, "value": value, "note": None} for key, value in facts.items()]
         if facts["sequences"] < settings.count:
             rows[-len(facts)]["note"] = (
@@ -48,7 +55,7 @@ def process(name, folder, settings, seed):
     return rows
 
 
-def summary(rows, seed):
+def summary(rows: Rows, seed: int) -> dict[str, Any]:
     """{strategy: {sequences, refused: sums, share, shrunk: {mean, low, high} over the objects}}."""
     values = defaultdict(list)
     for row in rows:
@@ -63,20 +70,26 @@ def summary(rows, seed):
     return tree
 
 
-def main():
-    arguments(__doc__)
-    settings = params("contours")
+def run(workspace: Workspace) -> None:
+    """Runs the stage on the data set of a workspace."""
+    settings = workspace.settings(Params)
     if not settings.strategies:
-        raise ValueError(f"contours.strategies is empty: name {BLIND}, or detectors of classes.methods")
-    with StageRun("contours", inputs=("classes",)) as run:
-        run.dataset = params("classes").source
-        names = sorted(path.stem for path in (DATA / "classes").glob("*.npz"))
-        rows = run.each(functools.partial(process, settings=settings, seed=run.seed), names)
-        run.metrics(summary(rows, run.seed))
+        raise ValueError(f"contours.strategies is empty: name {BLIND}, or methods of salient_points.methods")
+    with StageRun(workspace, "contours", inputs=("meshes", "salient_points")) as stage:
+        objects = stage.objects
+        work = functools.partial(process, data=workspace.data, settings=settings, seed=stage.seed)
+        rows = stage.each(work, objects, reads=("meshes/{}.npz", "salient_points/{}.npz"))
+        stage.metrics(summary(rows, stage.seed))
     for note in [row["note"] for row in rows if row["note"]]:
         print(f"contours: {note}")
     counted = sum(row["value"] for row in rows if row["metric"] == "sequences")
-    print(f"contours: {len(names)} objects, {len(settings.strategies)} strategies, {counted} sequences")
+    strategies = len(settings.strategies)
+    print(f"contours: {workspace.dataset}, {len(objects)} objects, {strategies} strategies, {counted} sequences")
+
+
+def main() -> None:
+    """Runs the stage on the data set that the command line names."""
+    run(workspace_of_arguments(__doc__, "contours"))
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
-"""The files of the stage: data/contours/NAME.npz."""
+"""The files of the stage: data/SET/contours/NAME.npz."""
 
 from dataclasses import dataclass, fields
+from pathlib import Path
 
 import numpy as np
 
@@ -11,9 +12,9 @@ from stages.kit.files import read_arrays, write_arrays
 class Sequences:
     """The n sequences of one object and strategy, in the order in which their planes were drawn.
 
-    images (n, frames, rows, cols) u1: the imprints, 0 touches and 255 is farthest; normals (n, frames, 3) f4 unit
+    images (n, frames, rows, cols) u1: the imprints, 0 is contact and 255 is farthest; normals (n, frames, 3) f4 unit
     vectors of the array; positions (n, frames, 3) f4 and pitches (n, frames) f4 in units of the mesh; planes (n, 2) i8
-    the vertex ids of the two points that make the plane with the object's centre.
+    the vertex ids of the two points that define the plane together with the object's centre.
     """
 
     images: np.ndarray
@@ -26,7 +27,7 @@ class Sequences:
 PARTS = {"images": np.uint8, "normals": np.float32, "positions": np.float32, "pitches": np.float32, "planes": np.int64}
 
 
-def write_sequences(path, sequences):
+def write_sequences(path: str | Path, sequences: dict[str, Sequences]) -> None:
     """Writes {strategy: Sequences} as the arrays STRATEGY.images, .normals, .positions, .pitches and .planes."""
     arrays = {}
     for strategy in sorted(sequences):
@@ -36,7 +37,7 @@ def write_sequences(path, sequences):
     write_arrays(path, **arrays)
 
 
-def read_sequences(path):
+def read_sequences(path: str | Path) -> dict[str, Sequences]:
     """{strategy: Sequences} of one object, the strategies in alphabetical order."""
     arrays = read_arrays(path)
     strategies = sorted({key.rpartition(".")[0] for key in arrays})

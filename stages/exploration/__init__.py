@@ -1,12 +1,22 @@
-"""No more touches than needed: touch one place after another until the belief in one object is strong (T4.2.3.5).
+"""Sequential touch: one place after another until the belief in one object is strong (T4.2.3.5).
 
-Public names: hold_out, SPLITS, Trial, LIKELIHOODS, Calibration, calibrate, explore, stop, WAYS.
+Public names: calibrate, explore, split_touches, stop, Calibration, Trial, LIKELIHOODS, SPLITS, STRATEGIES.
 """
 
 from .belief import Calibration, calibrate
-from .choose import WAYS
+from .choose import STRATEGIES
 from .explore import explore, stop
-from .hold_out import SPLITS, hold_out
+from .split_touches import SPLITS, split_touches
 from .trial import LIKELIHOODS, Trial
 
-__all__ = ["LIKELIHOODS", "SPLITS", "WAYS", "Calibration", "Trial", "calibrate", "explore", "hold_out", "stop"]
+__all__ = [
+    "LIKELIHOODS",
+    "SPLITS",
+    "STRATEGIES",
+    "Calibration",
+    "Trial",
+    "calibrate",
+    "explore",
+    "split_touches",
+    "stop",
+]

@@ -1,44 +1,51 @@
 """Touches one place after another until the belief in one object is strong enough (T4.2.3.5).
 
-Reads data/imprints/NAME.npz of the objects of each set. A quarter of each object's touches is held out, `anywhere` or
-`apart`; the rest are known. Then each object is explored at its held-out places: what it is, the robot believes by the
-likelihood of the imprints felt (`imprint`), of imprints and their places (`imprint_place`), or of imprints as if they
-were independent (`imprint_product`, for comparison); where to touch next, it chooses by saliency (not where the
-points themselves are blind), at random, or where it expects the belief to gain most.
+Reads data/SET/imprints/NAME.npz of the objects of each group (classification.sets). A quarter of each object's touches
+is held out, at random or as a region; the others are training touches. Then each object is explored at its held-out
+places. The belief in an object follows from the likelihood of the imprints (`imprint`), of imprints and their places
+(`imprint_place`), or of imprints as if they were independent (`imprint_product`, for comparison). The next place is
+chosen by saliency (not where the points themselves are blind), at random, or where the expected gain of the belief is
+highest.
 
-Writes data/exploration/SET.METHOD.npz (belief in the likeliest object and whether it is the right one: repetitions,
-explorations, touches) and reports/measurements/exploration.csv, a row a repetition: split, likelihood, way, stop
-(`fixed` at `level` touches, or `confidence` `level`), metric, value, and the means of touches, stated belief and share
-decided (stopped by confidence). Metrics: accuracy, and accuracy_decided of those alone that reached the confidence,
-with the belief that they stated. Seconds are a touch's: choosing it and updating the belief.
+Writes data/SET/exploration/GROUP.METHOD.npz (belief in the likeliest object and whether it is the right one:
+repetitions, explorations, touches) and reports/measurements/SET/exploration.csv.gz: one row per group, method, split,
+likelihood, way, stop and repetition. Metrics: accuracy, and accuracy_decided of those alone that reached the
+confidence, with the belief that they stated. Seconds are those of one touch: choosing it and updating the belief.
 """
 
 import functools
 from collections import defaultdict
+from collections.abc import Mapping
+from typing import Any
 
-from stages.kit import StageRun, arguments, params
+from stages.classification.schema import Params as Classification
+from stages.kit.command import workspace_of_arguments
+from stages.kit.run import Rows, StageRun
+from stages.kit.split import Split
 from stages.kit.stats import interval_metrics
+from stages.kit.workspace import Workspace
 
 from .one_sampling import process
+from .schema import COLUMNS, Params
 
-HEADLINE = {"split": "anywhere", "likelihood": "imprint", "stop": "confidence", "level": 0.95}  # in the metrics
+HEADLINE = {"split": Split.RANDOM, "likelihood": "imprint", "stop": "confidence", "level": 0.95}  # in the metrics
 
 
-def summary(rows, seed):
-    """{set: {method: {way: {accuracy, touches, belief: {mean, low, high}}}}} at the headline confidence."""
+def summary(rows: Rows, seed: int) -> dict[str, Any]:
+    """{group: {method: {way: {accuracy, touches, belief: {mean, low, high}}}}} at the headline confidence."""
     tree, values = {}, defaultdict(list)
     for row in rows:
         if row["metric"] == "accuracy" and all(row.get(key) == wanted for key, wanted in HEADLINE.items()):
             for key in ("value", "touches", "belief"):
-                values[row["object"], row["method"], row["way"], key].append(row[key])
+                values[row["group"], row["method"], row["way"], key].append(row[key])
     for (name, method, way, key), found in values.items():
         branch = tree.setdefault(name, {}).setdefault(method, {}).setdefault(way, {})
         branch["accuracy" if key == "value" else key] = interval_metrics(found, seed)
     return tree
 
 
-def check(settings, sets):
-    """ValueError that names the setting which makes no exploration."""
+def check(settings: Params, sets: Mapping[str, list[str]]) -> None:
+    """Raises ValueError that names a setting with which nothing can be explored."""
     unknown = [name for name in settings.sets if name not in sets]
     if unknown:
         raise ValueError(f"exploration.sets: no set {', '.join(unknown)}; classification.sets: {', '.join(sets)}")
@@ -48,17 +55,26 @@ def check(settings, sets):
         raise ValueError("exploration: most and repetitions must be 1 or more")
 
 
-def main():
-    arguments(__doc__)
-    settings, sets = params("exploration"), params("classification").sets
+def run(workspace: Workspace) -> None:
+    """Runs the stage on the data set of a workspace."""
+    settings, sets = workspace.settings(Params), workspace.settings(Classification).sets
     check(settings, sets)
-    with StageRun("exploration", inputs=("imprints",)) as run:
+    with StageRun(workspace, "exploration", COLUMNS, inputs=("imprints",)) as stage:
         items = [f"{name}.{method}" for name in settings.sets for method in settings.methods]
-        rows = run.each(functools.partial(process, sets=sets, settings=settings, seed=run.seed), items)
-        run.metrics(summary(rows, run.seed))
+        work = functools.partial(process, data=workspace.data, sets=sets, settings=settings, seed=stage.seed)
+        rows = stage.each(work, items, reads=("imprints",))
+        stage.metrics(summary(rows, stage.seed))
     for note in sorted({row["note"] for row in rows if row["note"]}):
         print(f"exploration: {note}")
-    print(f"exploration: {len(settings.sets)} sets, {len(settings.methods)} samplings, {len(rows)} rows")
+    print(
+        f"exploration: {workspace.dataset}, {len(settings.sets)} groups, {len(settings.methods)} samplings, "
+        f"{len(rows)} rows"
+    )
+
+
+def main() -> None:
+    """Runs the stage on the data set that the command line names."""
+    run(workspace_of_arguments(__doc__, "exploration"))
 
 
 if __name__ == "__main__":

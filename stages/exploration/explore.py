@@ -2,38 +2,49 @@
 
 import numpy as np
 
-from .choose import WAYS, State
+from .belief import Calibration
+from .choose import STRATEGIES, State
 
 
-def explore(way, felt, foreseen, chances, calibration, most, random):
-    """(e, most, classes) log belief after each touch of e objects, with the places chosen by a name in WAYS.
+def explore(
+    strategy: str,
+    observed: np.ndarray,
+    predicted: np.ndarray,
+    probabilities: np.ndarray,
+    calibration: Calibration,
+    max_touches: int,
+    random: np.random.Generator,
+) -> np.ndarray:
+    """(e, max_touches, classes) log belief after each touch of e objects; strategy: a name in STRATEGIES.
 
-    felt (e, q, classes): log likelihood of what each of the q places of an object really feels like, most salient
-    first; foreseen, chances: as in `State`; calibration: see `belief`; most: touches, at most q; random: a generator.
-    The way sees of `felt` only what was touched.
+    observed (e, q, classes): log likelihood of the touch at each of the q places of an object, the most salient first;
+    predicted, probabilities: as in `State`; max_touches: at most q. A strategy uses `observed` only of the places that
+    it has touched.
     """
-    count, places, classes = felt.shape
-    if not 1 <= most <= places:
-        raise ValueError(f"most must be 1 to the {places} places that there are to touch, got {most}")
-    state = State(np.zeros((count, classes)), 0, random.random((count, places)), foreseen, chances, calibration)
-    left, rows = np.ones((count, places), dtype=bool), np.arange(count)
-    beliefs = np.empty((count, most, classes))
-    for touch in range(most):
-        place = np.where(left, WAYS[way](state), -np.inf).argmax(axis=1)
-        left[rows, place] = False
-        state.summed, state.touches = state.summed + felt[rows, place], touch + 1
-        beliefs[:, touch] = calibration.log_belief(state.summed, state.touches)
+    count, places, classes = observed.shape
+    if not 1 <= max_touches <= places:
+        raise ValueError(
+            f"max_touches must be 1 to {places}, since there are {places} places to touch, got {max_touches}"
+        )
+    state = State(np.zeros((count, classes)), 0, random.random((count, places)), predicted, probabilities, calibration)
+    untouched, rows = np.ones((count, places), dtype=bool), np.arange(count)
+    beliefs = np.empty((count, max_touches, classes))
+    for touch in range(max_touches):
+        place = np.where(untouched, STRATEGIES[strategy](state), -np.inf).argmax(axis=1)
+        untouched[rows, place] = False
+        state.log_likelihoods, state.touches = state.log_likelihoods + observed[rows, place], touch + 1
+        beliefs[:, touch] = calibration.log_belief(state.log_likelihoods, state.touches)
     return beliefs
 
 
-def stop(beliefs, truth, confidence):
-    """How explorations end that stop at a confidence: (touches (e,), belief (e,), right (e,) boolean).
+def stop(beliefs: np.ndarray, truth: np.ndarray, confidence: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The end of explorations that stop at a confidence: (touches (e,), belief (e,), correct (e,) boolean).
 
-    beliefs (e, most, classes): log beliefs as `explore` gives them; truth (e,). belief is that in the likeliest object
-    after the last touch; below `confidence` where even the last touch did not suffice.
+    beliefs (e, max_touches, classes): log beliefs as `explore` gives them; truth (e,). belief is that in the likeliest
+    object after the last touch. It is below `confidence` if all touches did not suffice.
     """
     best = np.exp(beliefs.max(axis=2))
-    enough = best >= confidence
-    last = np.where(enough.any(axis=1), enough.argmax(axis=1), beliefs.shape[1] - 1)
+    reached = best >= confidence
+    last_index = np.where(reached.any(axis=1), reached.argmax(axis=1), beliefs.shape[1] - 1)
     rows = np.arange(len(beliefs))
-    return last + 1, best[rows, last], beliefs[rows, last].argmax(axis=1) == truth
+    return last_index + 1, best[rows, last_index], beliefs[rows, last_index].argmax(axis=1) == truth

@@ -1,6 +1,7 @@
-"""One sampling of one set of objects, explored under all splits, likelihoods and ways."""
+"""Exploration of one set of objects at the points of one method, for all splits, likelihoods and strategies."""
 
 from collections import defaultdict
+from pathlib import Path
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -10,103 +11,118 @@ from stages.imprints import read_imprints
 from stages.kit import Stopwatch
 from stages.kit.files import write_arrays
 from stages.kit.rng import rng
-from stages.kit.run import DATA
+from stages.kit.run import Rows
+from stages.kit.split import Split
 
-from .choose import WAYS
+from .choose import STRATEGIES
 from .explore import explore, stop
-from .hold_out import hold_out
+from .schema import Params
+from .split_touches import SPLITS, split_touches
 from .trial import Trial
 
-# With places, `apart` would measure the split alone: only the right object has no known touch near the place.
+# With places, `regions` would measure the split alone: only the true object has no training touch near the place.
 EXPERIMENTS = {
-    ("anywhere", "imprint"): tuple(WAYS),
-    ("anywhere", "imprint_place"): tuple(WAYS),
-    ("anywhere", "imprint_product"): ("random",),
-    ("apart", "imprint"): tuple(WAYS),
-    ("apart", "imprint_product"): ("random",),
+    (Split.RANDOM, "imprint"): tuple(STRATEGIES),
+    (Split.RANDOM, "imprint_place"): tuple(STRATEGIES),
+    (Split.RANDOM, "imprint_product"): ("random",),
+    (Split.REGIONS, "imprint"): tuple(STRATEGIES),
+    (Split.REGIONS, "imprint_product"): ("random",),
 }
-UNORDERED = "random"  # the sampling whose points are drawn blindly: none is more salient than another
-ORDERS = 10  # of the places of an object, where they are drawn at random
+UNORDERED = "random"  # the method whose points are drawn at random: none is more salient than another
+ORDERS = 10  # random orders of the places of an object
 
 
-def read_set(objects, method):
+def read_set(folder: Path, objects: list[str], method: str) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
     """(features (k, 41), places (k, 3), truth (k,), width of the array) of objects with equally many touches each.
 
-    Raises ValueError that says why they cannot be told apart by touch.
+    folder: data/SET/imprints. Raises ValueError with the reason if they cannot be compared.
     """
-    missing = [one for one in objects if not (DATA / "imprints" / f"{one}.npz").exists()]
+    missing = [one for one in objects if not (folder / f"{one}.npz").exists()]
     if missing:
         raise ValueError(f"no imprints of {', '.join(missing)}")
     if len(objects) < 2:
-        raise ValueError("at least two objects are needed to tell apart")
-    touched = [read_imprints(DATA / "imprints" / f"{one}.npz").get(method) for one in objects]
-    lacking = [one for one, found in zip(objects, touched, strict=True) if found is None]
-    if lacking:
-        raise ValueError(f"no imprints by {method} of {', '.join(lacking)}")
-    count = min(len(one.images) for one in touched)
-    samples = np.concatenate([features(one.images[:count]) for one in touched])
-    places = np.concatenate([one.positions[:count] for one in touched]).astype(np.float64)
-    return samples, places, np.repeat(np.arange(len(objects)), count), max(one.width for one in touched)
+        raise ValueError("at least two objects are needed")
+    stored = {one: read_imprints(folder / f"{one}.npz") for one in objects}
+    without = [one for one, by_method in stored.items() if method not in by_method]
+    if without:
+        raise ValueError(f"no imprints by {method} of {', '.join(without)}")
+    imprints = [by_method[method] for by_method in stored.values()]
+    count = min(len(one.images) for one in imprints)
+    samples = np.concatenate([features(one.images[:count]) for one in imprints])
+    places = np.concatenate([one.positions[:count] for one in imprints]).astype(np.float64)
+    return samples, places, np.repeat(np.arange(len(objects)), count), max(one.width for one in imprints)
 
 
-def process(item, folder, sets, settings, seed):
-    """One sampling of one set, all splits, likelihoods and ways; a row with the reason where it cannot be explored."""
+def process(item: str, folder: Path, data: Path, sets: dict[str, list[str]], settings: Params, seed: int) -> Rows:
+    """Rows of one item GROUP.METHOD, or one row with the reason if it cannot be explored."""
     name, _, method = item.rpartition(".")
-    common, rows, kept = {"object": name, "method": method}, [], defaultdict(list)
+    common, rows, arrays = {"group": name, "method": method}, [], defaultdict(list)
     try:
-        touched = read_set(sorted(sets[name]), method)
+        touch_data = read_set(data / "imprints", sorted(sets[name]), method)
         with threadpool_limits(1):  # equal sums on any number of cores
-            for (split, likelihood), ways in EXPERIMENTS.items():
+            for (split, likelihood), strategies in EXPERIMENTS.items():
                 for repetition in range(settings.repetitions):
-                    random = rng(seed, f"{item} {split} {repetition}")  # equal hold-outs for all likelihoods
-                    trial = _trial(*touched, split, likelihood, random)
-                    for way in ways:
-                        if (method, way) == (UNORDERED, "saliency"):
+                    random = rng(seed, f"{item} {SPLITS[split]} {repetition}")  # equal hold-outs for all likelihoods
+                    trial = _trial(*touch_data, split, likelihood, random)
+                    for strategy in strategies:
+                        if (method, strategy) == (UNORDERED, "saliency"):
                             continue
-                        where = {"split": split, "likelihood": likelihood, "way": way, "repetition": repetition}
-                        found, beliefs, truth = _explored(trial, way, settings, random)
-                        rows += [common | where | {"note": None} | row for row in found]
-                        kept[f"{split}.{likelihood}.{way}.belief"].append(np.exp(beliefs.max(axis=2)))
-                        kept[f"{split}.{likelihood}.{way}.right"].append(beliefs.argmax(axis=2) == truth[:, None])
+                        where = {"split": split, "likelihood": likelihood, "way": strategy, "repetition": repetition}
+                        strategy_rows, beliefs, truth = _explore_all(trial, strategy, settings, random)
+                        rows += [common | where | {"note": None} | row for row in strategy_rows]
+                        arrays[f"{split}.{likelihood}.{strategy}.belief"].append(np.exp(beliefs.max(axis=2)))
+                        arrays[f"{split}.{likelihood}.{strategy}.right"].append(
+                            beliefs.argmax(axis=2) == truth[:, None]
+                        )
     except ValueError as error:
         return [common | {"metric": "accuracy", "value": None, "note": f"{name}, {method}: {error}"}]
-    write_arrays(folder / f"{name}.{method}.npz", **{key: np.array(found) for key, found in kept.items()})
+    write_arrays(folder / f"{name}.{method}.npz", **{key: np.array(parts) for key, parts in arrays.items()})
     return rows
 
 
 def _trial(samples, places, truth, width, split, likelihood, random):
-    train, test = hold_out(truth, places, split, width, random)
+    train, test = split_touches(truth, places, split, width, random)
     components = classifier("knn")[:-1].fit(samples[train]).transform(samples)
     return Trial(components, places, truth, train, test, likelihood, split, width, random)
 
 
-def _explored(trial, way, settings, random):
-    """(rows, log beliefs, truth) of all objects explored one way."""
-    orders = ORDERS if way == "random" else 1
-    most = min(settings.most, trial.felt.shape[1])
-    given = (trial.felt, trial.foreseen, trial.chances, trial.calibration, most, random)
+def _explore_all(trial, strategy, settings, random):
+    """(rows, log beliefs, truth) of all objects explored with one strategy."""
+    orders = ORDERS if strategy == "random" else 1
+    max_touches = min(settings.most, trial.observed.shape[1])
+    arguments = (trial.observed, trial.predicted, trial.probabilities, trial.calibration, max_touches, random)
     with Stopwatch() as watch:
-        beliefs = np.concatenate([explore(way, *given) for _ in range(orders)])
+        beliefs = np.concatenate([explore(strategy, *arguments) for _ in range(orders)])
     truth = np.tile(trial.truth, orders)
-    seconds = watch.seconds / (len(truth) * most)
+    seconds = watch.seconds / (len(truth) * max_touches)
     return [row | {"seconds": seconds} for row in _rows(beliefs, truth, settings.confidences)], beliefs, truth
 
 
 def _rows(beliefs, truth, confidences):
-    """Rows of explorations that stop after a number of touches, and of such that stop at a confidence."""
+    """Rows of explorations that stop after a number of touches, and of explorations that stop at a confidence."""
     rows = []
     for touches in range(1, beliefs.shape[1] + 1):
         last, belief, right = stop(beliefs[:, :touches], truth, np.inf)
         rows.append(_row("fixed", touches, "accuracy", right, last, belief, None))
     for level in confidences:
         last, belief, right = stop(beliefs, truth, level)
-        sure = belief >= level
-        rows.append(_row("confidence", level, "accuracy", right, last, belief, sure.mean()))
-        rows.append(_row("confidence", level, "accuracy_decided", right[sure], last[sure], belief[sure], sure.mean()))
+        decided_mask = belief >= level
+        rows.append(_row("confidence", level, "accuracy", right, last, belief, decided_mask.mean()))
+        rows.append(
+            _row(
+                "confidence",
+                level,
+                "accuracy_decided",
+                right[decided_mask],
+                last[decided_mask],
+                belief[decided_mask],
+                decided_mask.mean(),
+            )
+        )
     return rows
 
 
-def _row(how, level, metric, right, touches, belief, decided):
+def _row(stop_rule, level, metric, right, touches, belief, decided):
     means = [float(values.mean()) if len(values) else None for values in (right, touches, belief)]
-    row = {"stop": how, "level": level, "metric": metric, "decided": decided}
+    row = {"stop": stop_rule, "level": level, "metric": metric, "decided": decided}
     return row | dict(zip(("value", "touches", "belief"), means, strict=True))

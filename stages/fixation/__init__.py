@@ -1,27 +1,21 @@
-"""Where a network looks: Grad-CAM attention fused over tasks, projected to the surface, beside human gaze (T3.3)."""
+"""Attention of networks: Grad-CAM maps fused over tasks, projected to the surface, compared with human gaze (T3.3)."""
 
-from importlib import import_module
+from stages.kit.lazy import lazy_names
 
-_HOME = {
-    "sphere": "viewpoints",
+_MODULES = {  # public name -> its module
+    "viewpoint_sphere": "viewpoints",
     "gaussian_curvature": "shape",
     "curvature_shares": "shape",
     "eccentricity": "shape",
     "grad_cam": "cam",
     "entropy": "fusion",
     "fuse": "fusion",
-    "narrowed": "fusion",
-    "on_vertices": "vertices",
-    "over_views": "vertices",
+    "highest_level": "fusion",
+    "project_to_vertices": "vertices",
+    "mean_over_views": "vertices",
     "centre_distance": "centres",
     "subtractive_clusters": "subtractive",
     "read_attention": "files",
 }
-__all__ = list(_HOME)
-
-
-def __getattr__(name):
-    # torch takes seconds to import, and whoever reads only the schema does without it.
-    if name in _HOME:
-        return getattr(import_module(f".{_HOME[name]}", __name__), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+__all__ = list(_MODULES)  # pyright: ignore[reportUnsupportedDunderAll]
+__getattr__ = lazy_names(__name__, _MODULES)

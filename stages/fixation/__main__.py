@@ -1,93 +1,125 @@
 """Where networks look on an object while they name its kind: Grad-CAM attention of six tasks, fused (T3.3).
 
-Reads data/meshes, data/weights (people's attention), data/salient_points (the rivals) and data/reference/semantics.csv.
-Takes pictures of each object from all round, groups the objects by convexity, Gaussian curvature and eccentricity and
-by three levels of meaning, teaches a head a task on each network of fixation.methods, and projects the maps of all
-tasks and of their entropy-weighted mean to the vertices. Writes data/fixation: NAME.npz (see
-stages.fixation.read_attention), tasks.csv (the class of every object in every task, and its measures), elbow.csv (sums
-of squared distances over the number of clusters), heads/METHOD/TASK.npz.
+Reads data/SET/meshes, data/SET/weights (people's attention), data/SET/salient_points (the rivals) and
+data/reference/semantics.csv. Takes pictures of each object from all round, groups the objects by convexity, Gaussian
+curvature and eccentricity and by three levels of meaning, trains a head per task on each network of fixation.methods,
+and projects the maps of all tasks and of their entropy-weighted mean to the vertices. Writes data/SET/fixation:
+NAME.npz (see stages.fixation.read_attention), tasks.csv (the class of every object in every task, and its measures),
+elbow.csv (sums of squared distances over the number of clusters), heads/METHOD/TASK.npz. The rows are in
+reports/measurements/SET/fixation.csv.gz; they also hold the classes and the sums of squared distances.
 """
 
+import dataclasses
 import functools
 import shutil
 import sys
 import warnings
+from collections.abc import Mapping
+from pathlib import Path
 
 import pandas as pd
 
-from stages.kit import StageRun, arguments, params
+from stages.kit.command import workspace_of_arguments
 from stages.kit.files import write_table
+from stages.kit.run import Rows, StageRun
+from stages.kit.workspace import Workspace
+from stages.meshes.schema import Params as Meshes
 
-from . import attend, backbone, finetune, heads, pictures
-from .options import available, checked
+from . import attention, backbone, finetune, heads, pictures
+from .options import Method, available, check
+from .schema import COLUMNS, Params
 from .summary import summary, verdicts
-from .tasks import all_tasks
-from .viewpoints import sphere
+from .tasks import SEMANTICS, assign_classes
+from .viewpoints import viewpoint_sphere
 
-HIDDEN = (".pictures", ".maps", ".pooled", ".networks", ".cams")  # caches that a killed run goes on from
+HIDDEN = (".pictures", ".maps", ".pooled", ".networks", ".cams")  # what one step hands to the next
 
 
-def measured(rows):
+def measures_of(rows: Rows) -> dict[str, dict[str, float]]:
     """dict object -> dict measure -> value."""
-    found = {}
+    found: dict[str, dict[str, float]] = {}
     for row in rows:
-        found.setdefault(row["object"], {})[row["metric"]] = row["value"]
+        found.setdefault(row["item"], {})[row["metric"]] = row["value"]
     return found
 
 
-def write_tasks(folder, measures, tasks, curves):
-    """Writes tasks.csv and elbow.csv."""
-    classes = {f"{task}_class": pd.Series(known) for task, known in tasks.items()}
+def task_rows(tasks: Mapping[str, Mapping[str, str]], curves: Mapping[str, tuple[dict[int, float], int]]) -> Rows:
+    """Rows of the class of every object in every task, and of the sums of squared distances over the clusters."""
+    rows: Rows = [
+        {"item": name, "task": task, "metric": "class", "label": label}
+        for task, known in tasks.items()
+        for name, label in known.items()
+    ]
+    for task, (curve, chosen) in curves.items():
+        row = {"task": task, "metric": "ssd"}
+        rows += [row | {"clusters": k, "chosen": bool(k == chosen), "value": ssd} for k, ssd in curve.items()]
+    return rows
+
+
+def write_tasks(
+    folder: Path, measures: Mapping[str, Mapping[str, float]], tasks: Mapping[str, Mapping[str, str]], rows: Rows
+) -> None:
+    """Writes tasks.csv and elbow.csv. rows: those of task_rows."""
+    classes = {f"{task}_class": pd.Series(dict(known)) for task, known in tasks.items()}
     table = pd.DataFrame(measures).T.assign(**classes)
     write_table(folder / "tasks.csv", table.rename_axis("object").reset_index())
-    rows = [
-        {"task": task, "clusters": k, "ssd": ssd, "chosen": k == chosen}
-        for task, (curve, chosen) in curves.items()
-        for k, ssd in curve.items()
-    ]
-    write_table(folder / "elbow.csv", pd.DataFrame(rows, columns=["task", "clusters", "ssd", "chosen"]))
+    elbow = [row | {"ssd": row["value"]} for row in rows if row["metric"] == "ssd"]
+    write_table(folder / "elbow.csv", pd.DataFrame(elbow, columns=["task", "clusters", "ssd", "chosen"]))
 
 
-def learn(run, settings, method, objects, tasks):
-    """All that one method learns and sees, before the maps are put on the surface."""
-    given = {"settings": settings, "seed": run.seed}
-    name = method.name
+def train(
+    stage: StageRun, method: Method, settings: Params, objects: list[str], tasks: Mapping[str, Mapping[str, str]]
+) -> None:
+    """Trains the heads or networks of one method and computes its maps, before these are projected to the vertices."""
+    given = {"made": stage.folder, "method": method, "settings": settings, "seed": stage.seed}
     if method.mode == "finetuned":
-        run.each(functools.partial(finetune.train, tasks=tasks, **given), [f"{name}@{task}" for task in tasks])
-        return run.each(functools.partial(finetune.look, tasks=tasks, **given), [f"{name}@{one}" for one in objects])
+        stage.each(functools.partial(finetune.train_network, tasks=tasks, **given), tasks.keys())
+        stage.each(functools.partial(finetune.compute_cams, tasks=tasks, **given), objects)
+        return
     if method.mode == "random":
-        run.each(functools.partial(backbone.prepare, objects=objects, **given), [f"{name}@network"])
-    run.each(functools.partial(backbone.look, **given), [f"{name}@{one}" for one in objects])
-    return run.each(functools.partial(heads.teach, tasks=tasks, **given), [f"{name}@{task}" for task in tasks])
+        stage.each(functools.partial(backbone.prepare_random_network, objects=objects, **given), [method.name])
+    stage.each(functools.partial(backbone.compute_maps, **given), objects)
+    stage.each(functools.partial(heads.train_head, tasks=tasks, **given), tasks.keys())
 
 
-def main():
-    arguments(__doc__)
-    settings = params("fixation")
+def run(workspace: Workspace) -> None:
+    """Runs the stage on the data set of a workspace."""
+    settings = workspace.settings(Params)
     # Torch's caches make a worker grow; joblib then renews it between two items, loses none, and warns.
     warnings.filterwarnings("ignore", message="A worker stopped while some jobs")
-    checked(settings)
-    views = len(sphere(settings.parallels, settings.azimuths))
+    check(settings)
+    views = len(viewpoint_sphere(settings.parallels, settings.azimuths))
     methods, missing = available(settings)
-    with StageRun("fixation", inputs=("meshes", "salient_points", "weights")) as run:
-        objects = run.objects
-        shapes = run.each(functools.partial(pictures.take, settings=settings), [f"shape@{one}" for one in objects])
-        measures = measured(shapes)
-        tasks, curves = all_tasks(measures, run.dataset, run.seed)
-        write_tasks(run.folder, measures, tasks, curves)
+    data, each = workspace.data, dataclasses.replace(settings, methods=[])  # what an object or one method depends on
+    with StageRun(workspace, "fixation", COLUMNS, inputs=("meshes", "salient_points", "weights")) as stage:
+        objects, seed = stage.objects, stage.seed
+        take = functools.partial(pictures.take_pictures, data=data, settings=each)
+        measures = measures_of(stage.each(take, objects, reads=("meshes/{}.npz",)))
+        source = workspace.settings(Meshes).source
+        tasks, curves = assign_classes(measures, source, seed, workspace.root / SEMANTICS)
+        classes = task_rows(tasks, curves)
+        stage.rows += classes
+        write_tasks(stage.folder, measures, tasks, classes)
         for method in methods:
-            learn(run, settings, method, objects, tasks)
-        see = functools.partial(
-            attend.attend, settings=settings, methods=[one.name for one in methods], tasks=tasks, seed=run.seed
-        )
-        run.each(see, [f"object@{one}" for one in objects])
-        run.rows += [{"method": name, "metric": "accuracy", "note": reason} for name, reason in missing.items()]
-        run.metrics(summary(run.rows, {task: len(set(known.values())) for task, known in tasks.items()}, run.seed))
-        for line in verdicts(pd.DataFrame(run.rows), run.seed):
+            train(stage, method, each, objects, tasks)
+        measure = functools.partial(
+            attention.measure_attention,
+            data=data, made=stage.folder, settings=each, methods=methods, tasks=tasks, seed=seed,
+        )  # fmt: skip
+        reads = ("meshes/{}.npz", "salient_points/{}.npz", "weights/ground_truth/{}.npz")
+        stage.each(measure, objects, reads=reads)
+        stage.rows += [{"method": name, "metric": "accuracy", "note": reason} for name, reason in missing.items()]
+        stage.metrics(summary(stage.rows, {task: len(set(known.values())) for task, known in tasks.items()}, seed))
+        for line in verdicts(pd.DataFrame(stage.rows), seed):
             print(f"fixation: {line}", file=sys.stderr)
         for cache in HIDDEN:
-            shutil.rmtree(run.folder / cache, ignore_errors=True)
+            shutil.rmtree(stage.folder / cache, ignore_errors=True)
     print(f"fixation: {len(objects)} objects, {views} views, tasks {', '.join(tasks)}, {len(methods)} methods")
+
+
+def main() -> None:
+    """Runs the stage on the data set that the command line names."""
+    run(workspace_of_arguments(__doc__, "fixation"))
 
 
 if __name__ == "__main__":

@@ -5,12 +5,12 @@ import numpy as np
 from stages.networks.grid import cell_positions
 
 
-def grad_cam(maps, weights, classes):
-    """(b, i, j) f4, not negative: where b images hold what speaks for their class (Selvaraju et al. 2017, T [65]).
+def grad_cam(maps: np.ndarray, weights: np.ndarray, classes: np.ndarray) -> np.ndarray:
+    """(b, i, j) f4: Grad-CAM maps of b images, not negative (Selvaraju et al. 2017, T [65]).
 
-    maps (b, C, i, j): the last convolution's; weights (k, C): the head's, score = mean over the map @ weights.T +
-    bias; classes (b,) i8: the class whose score is asked about, usually the winning one. The score's derivative by
-    each of the Z pixels of map k is weights[class, k] / Z, so that its mean over the map (T eq. 3.19) is just that: no
+    maps (b, C, i, j): of the last convolution; weights (k, C): of the head, whose scores are the mean over each map @
+    weights.T + bias; classes (b,) i8: the class to explain, usually the predicted one. The derivative of the score by
+    each of the Z pixels of map k is weights[class, k] / Z, which is also its mean over the map (T eq. 3.19). So no
     backward pass is needed, and maps may come from a cache. Raises ValueError for shapes that do not fit.
     """
     maps, weights = np.asarray(maps, dtype=np.float32), np.asarray(weights, dtype=np.float32)
@@ -23,11 +23,11 @@ def grad_cam(maps, weights, classes):
     return np.maximum(importance[:, None] @ maps.reshape(b, channels, i * j), 0).reshape(b, i, j)
 
 
-def to_size(cams, size, network):
-    """Maps (b, i, j) as pictures (b, size, size) f4, bilinear, each over its own maximum; zero maps stay zero.
+def resize_cams(cams: np.ndarray, size: int, network: str) -> np.ndarray:
+    """(b, size, size) f4: maps (b, i, j) resized bilinearly, each divided by its maximum; zero maps stay zero.
 
-    network: whose maps they are; it says around which pixels its cells look (stages.networks.grid). To align the
-    corners of pixels, as resizing does, would move the maps of most networks by half a cell.
+    network: decides the positions of the cells in the image (stages.networks.grid). Ordinary resizing, which aligns the
+    corners of pixels, would shift the maps of most networks by half a cell.
     """
     cams = np.asarray(cams, dtype=np.float32)
     down, across = (_weights(cell_positions(network, size, cells), cells) for cells in cams.shape[1:])
@@ -36,6 +36,6 @@ def to_size(cams, size, network):
     return np.divide(large, top, out=np.zeros_like(large), where=top > 0)
 
 
-def _weights(places, cells):
-    """(p, cells) f4: how much each cell counts at a place between two of them."""
-    return np.maximum(1 - np.abs(places[:, None] - np.arange(cells)), 0).astype(np.float32)
+def _weights(positions, cells):
+    """(p, cells) f4: the weight of each cell at a position between two of them."""
+    return np.maximum(1 - np.abs(positions[:, None] - np.arange(cells)), 0).astype(np.float32)

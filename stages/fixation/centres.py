@@ -1,13 +1,13 @@
-"""How far what a model finds most salient lies from where people looked most (T3.3.6)."""
+"""The distance between the most salient regions of a model and of human fixations (T3.3.6)."""
 
 import numpy as np
 
 from .subtractive import subtractive_clusters
 
-TOP = 0.95  # of the maximum: literally the maximum is one vertex, and the thesis parts regions of maximal saliency
+TOP = 0.95  # of the maximum: the maximum itself is one vertex, while the thesis clusters regions of maximal saliency
 
 
-def centres(vertices, values, seen):
+def centres(vertices: np.ndarray, values: np.ndarray, seen: np.ndarray) -> np.ndarray:
     """(c, 3): the centres of the regions of maximal saliency among the seen vertices; (0, 3) for a constant map."""
     values, ids = np.asarray(values, dtype=np.float64)[seen], np.flatnonzero(seen)
     if not len(values) or values.max() <= max(values.min(), 0):
@@ -16,12 +16,14 @@ def centres(vertices, values, seen):
     return top[subtractive_clusters(top)]
 
 
-def centre_distance(vertices, truth, values, seen):
-    """(least, mean) distance in units between the fixation centres of the truth (n,) and those of values (n,).
+def centre_distance(
+    vertices: np.ndarray, truth: np.ndarray, values: np.ndarray, seen: np.ndarray
+) -> tuple[float, float]:
+    """(least, mean) distance in units between the fixation centres of the ground truth (n,) and those of values (n,).
 
-    The pseudocode of T3.3.6: each centre of the truth, the densest first, is paired with the nearest centre left of the
-    saliency, until either has none. The thesis registers the least for a view; the mean over the pairs is told beside
-    it, since the least shrinks with the number of centres alone. NaN where the truth or the saliency is constant.
+    As in the pseudocode of T3.3.6, each centre of the ground truth, the densest first, is paired with the nearest
+    centre of the saliency that is not yet paired. The thesis reports the least distance per view. The mean over the
+    pairs is given too, since the least shrinks as the number of centres grows. NaN where either map is constant.
     """
     people, ours = centres(vertices, truth, seen), centres(vertices, values, seen)
     found = []

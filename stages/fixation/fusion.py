@@ -1,24 +1,24 @@
-"""The maps of several tasks made into one: EWIGC and EWIGC_L4 (T eq. 3.24, 3.25)."""
+"""The fusion of the maps of several tasks: EWIGC and EWIGC_L4 (T eq. 3.24, 3.25)."""
 
 import numpy as np
 from skimage.filters import threshold_multiotsu
 
 GREYS = 256  # grey levels of an image, as for Matlab's entropy
-BINS = 64  # of the histogram in which thresholds are sought: they move by a hundredth, in a thirtieth of the time
+BINS = 64  # of the histogram for the thresholds: they move by a hundredth, and take a thirtieth of the time of 256
 LEVELS = 4
 
 
-def entropy(picture):
+def entropy(picture: np.ndarray) -> float:
     """The entropy of a map (h, w) in 0..1 as an image of 256 greys, in bits, 0 to 8; 0 for a constant one."""
     greys = np.bincount(np.rint(np.asarray(picture) * (GREYS - 1)).astype(np.int64).ravel(), minlength=GREYS)
     shares = greys[greys > 0] / greys.sum()
     return float(-(shares * np.log2(shares)).sum()) + 0.0  # + 0.0: no -0.0
 
 
-def fuse(pictures):
-    """(h, w): the mean of maps (t, h, w) in 0..1, each weighing its entropy (T eq. 3.24).
+def fuse(pictures: np.ndarray) -> np.ndarray:
+    """(h, w): the mean of maps (t, h, w) in 0..1, weighted by their entropy (T eq. 3.24).
 
-    A constant map tells no place from another: it has no entropy and no weight. Zero where all maps are constant.
+    A constant map has no entropy and no weight. Zero where all maps are constant.
     Raises ValueError for values outside 0..1.
     """
     pictures = _checked(pictures)
@@ -28,15 +28,15 @@ def fuse(pictures):
     return np.tensordot(weights / weights.sum(), pictures, 1)
 
 
-def narrowed(pictures):
-    """Maps (t, h, w) in 0..1 with all below the highest of four levels set to zero (T3.3.4, Otsu, T [242]).
+def highest_level(pictures: np.ndarray) -> np.ndarray:
+    """Maps (t, h, w) in 0..1 with all values below the highest of four levels set to zero (T3.3.4, Otsu, T [242]).
 
-    A map with fewer than four values has no four levels: it stays as it is.
+    A map with fewer than four values stays unchanged.
     """
-    return np.stack([_narrowed(picture) for picture in _checked(pictures)])
+    return np.stack([_highest_level(picture) for picture in _checked(pictures)])
 
 
-def _narrowed(picture):
+def _highest_level(picture):
     binned = np.rint(picture * (BINS - 1)).astype(np.uint8)
     if (np.bincount(binned.ravel()) > 0).sum() < LEVELS:
         return picture

@@ -1,6 +1,8 @@
-"""Linear heads on the pooled maps of a frozen network, one a task, and how well they name the class."""
+"""Linear heads on the pooled maps of a frozen network, one per task, and their accuracy."""
 
 import warnings
+from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 import numpy as np
 from sklearn.exceptions import ConvergenceWarning
@@ -12,16 +14,19 @@ from stages.kit.files import read_arrays, write_arrays
 from stages.kit.rng import rng
 
 from .backbone import read_pooled
-from .split import hold_out, random_views
+from .options import Method
+from .schema import Params
+from .split import object_folds, random_views
 
-ITERATIONS = 200  # of the solver; the maps asked for do not need its last digits
+ITERATIONS = 200  # of the solver; the maps do not need full convergence
 
 
-def head(features, labels, penalty):
-    """(weights (k, C), bias (k,)) of the softmax head that learned features (n, C) with labels (n,) in 0..k-1.
+def fit_head(features: np.ndarray, labels: np.ndarray, penalty: float) -> tuple[np.ndarray, np.ndarray]:
+    """(weights (k, C), bias (k,)) of a softmax head fitted to features (n, C) with labels (n,) in 0..k-1.
 
-    Least cross-entropy with an L2 penalty on features of mean 0 and deviation 1; their scaling is folded into the
-    weights, so that the head is one linear layer on the pooled maps. Of two classes the scores are opposite.
+    Minimises the cross-entropy with an L2 penalty on standardised features. The standardisation is folded into the
+    weights, so that the head is one linear layer on the pooled maps. The scores of two classes are opposite. penalty:
+    inverse strength of the regularisation.
     """
     mean, spread = features.mean(axis=0), features.std(axis=0)
     spread = np.where(spread > 1e-6 * max(spread.max(), 1e-30), spread, np.inf)
@@ -35,43 +40,50 @@ def head(features, labels, penalty):
     return weights, bias - weights @ mean
 
 
-def scores(features, weights, bias):
-    """(n, k) the scores before the softmax."""
+def scores(features: np.ndarray, weights: np.ndarray, bias: np.ndarray) -> np.ndarray:
+    """(n, k): the scores before the softmax."""
     return features @ weights.T + bias
 
 
-def teach(item, folder, settings, tasks, seed):
-    """Teaches one head (`METHOD@TASK`); writes heads/METHOD/TASK.npz, returns the rows of its accuracy.
+def train_head(
+    task: str,
+    folder: Path,
+    made: Path,
+    method: Method,
+    settings: Params,
+    tasks: Mapping[str, Mapping[str, str]],
+    seed: int,
+) -> list[dict]:
+    """Trains the head of one task and writes heads/METHOD/TASK.npz; returns rows of its accuracy.
 
-    The strength of the penalty is that of the best validation accuracy, the strongest of equals. The head that makes
-    the maps is the one of the random split of views, the thesis's way.
+    made: the folder of the pooled maps. The penalty is the one with the best validation accuracy, the strongest of
+    equals. The maps come from the head of the random split of views, as in the thesis.
     """
-    method, task = item.split("@")
-    classes, ids, features = gathered(folder, method, tasks[task])
+    classes, ids, features = read_features(made, method.name, tasks[task])
     with threadpool_limits(1), Stopwatch() as watch:
         train, validation, test = random_views(len(ids), rng(seed, "fixation views"))
-        tried = [right(features, ids, classes, train, validation, penalty) for penalty in settings.penalties]
+        tried = [head_accuracy(features, ids, classes, train, validation, penalty) for penalty in settings.penalties]
         penalty = settings.penalties[int(np.argmax(tried))]
         names, numbers = np.unique(classes[ids][train], return_inverse=True)
-        weights, bias = head(features[train], numbers, penalty)
+        weights, bias = fit_head(features[train], numbers, penalty)
     write_arrays(
-        folder / "heads" / method / f"{task}.npz",
+        folder / "heads" / method.name / f"{task}.npz",
         weights=weights.astype(np.float32), bias=bias.astype(np.float32), classes=names,
     )  # fmt: skip
     found = names[scores(features[test], weights, bias).argmax(axis=1)]
-    row = {"object": None, "method": method, "task": task, "view": None}
+    row = {"method": method.name, "task": task}
     rows = [
         row | {"split": "views", "metric": "accuracy", "value": float((found == classes[ids][test]).mean())},
-        row | {"split": "views", "metric": "chance", "value": commonest(classes[ids], train, test)},
+        row | {"split": "views", "metric": "chance", "value": majority_accuracy(classes[ids], train, test)},
     ]
     rows[0]["seconds"] = watch.seconds
     with threadpool_limits(1):
-        apart = unseen(features, ids, classes, settings.penalties, settings.folds, rng(seed, task))
-    return rows + [row | one for one in apart]
+        unseen = unseen_object_rows(features, ids, classes, settings.penalties, settings.folds, rng(seed, task))
+    return rows + [row | one for one in unseen]
 
 
-def gathered(folder, method, known):
-    """(classes (k,) str of the objects, ids (n,) object of each picture, features (n, C))."""
+def read_features(folder: Path, method: str, known: Mapping[str, str]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(class names (k,) of the objects, ids (n,) of the object of each picture, features (n, C) of the pictures)."""
     parts = [read_pooled(folder, method, name) for name in known]
     return (
         np.array(list(known.values())),
@@ -80,19 +92,28 @@ def gathered(folder, method, known):
     )
 
 
-def right(features, ids, classes, train, test, penalty):
-    """The share of the test pictures whose class a head that learned from the others names."""
+def head_accuracy(
+    features: np.ndarray, ids: np.ndarray, classes: np.ndarray, train: np.ndarray, test: np.ndarray, penalty: float
+) -> float:
+    """The accuracy on the test pictures of a head fitted to the training pictures."""
     names, numbers = np.unique(classes[ids[train]], return_inverse=True)
-    found = names[scores(features[test], *head(features[train], numbers, penalty)).argmax(axis=1)]
+    found = names[scores(features[test], *fit_head(features[train], numbers, penalty)).argmax(axis=1)]
     return float((found == classes[ids[test]]).mean())
 
 
-def unseen(features, ids, classes, penalties, folds, generator):
-    """Rows of the accuracy on objects never seen, over all objects whose class has another one.
+def unseen_object_rows(
+    features: np.ndarray,
+    ids: np.ndarray,
+    classes: np.ndarray,
+    penalties: Sequence[float],
+    folds: int,
+    generator: np.random.Generator,
+) -> list[dict]:
+    """Rows of the accuracy on held-out objects, over all objects whose class has another one.
 
-    The penalty is chosen on the next part of the objects, by heads that saw neither.
+    The penalty is chosen on the next fold, by heads that are trained on neither.
     """
-    fold = hold_out(classes, folds, generator)
+    fold = object_folds(classes, folds, generator)
     found = []
     numbers = np.unique(fold[fold >= 0])
     for number, following in zip(numbers, np.roll(numbers, -1), strict=True):
@@ -101,9 +122,12 @@ def unseen(features, ids, classes, penalties, folds, generator):
             kept, check = train[fold[ids[train]] != following], train[fold[ids[train]] == following]
             penalty = penalties[0]
             if len(check) and len(np.unique(classes[ids[kept]])) > 1:
-                tried = [right(features, ids, classes, kept, check, one) for one in penalties]
+                tried = [head_accuracy(features, ids, classes, kept, check, one) for one in penalties]
                 penalty = penalties[int(np.argmax(tried))]
-            values = right(features, ids, classes, train, test, penalty), commonest(classes[ids], train, test)
+            values = (
+                head_accuracy(features, ids, classes, train, test, penalty),
+                majority_accuracy(classes[ids], train, test),
+            )
             found.append((*values, len(test)))
     if not found:
         return [{"split": "objects", "metric": "accuracy", "value": None, "note": "each object is a class of its own"}]
@@ -114,13 +138,13 @@ def unseen(features, ids, classes, penalties, folds, generator):
     ]
 
 
-def commonest(labels, train, test):
-    """The accuracy of always naming the class that is commonest in training."""
+def majority_accuracy(labels: np.ndarray, train: np.ndarray, test: np.ndarray) -> float:
+    """The test accuracy of always predicting the most common class of the training pictures."""
     names, counts = np.unique(labels[train], return_counts=True)
     return float((labels[test] == names[counts.argmax()]).mean())
 
 
-def read_head(folder, method, task):
-    """(weights (k, C) f4, bias (k,) f4, classes (k,) names)."""
+def read_head(folder: Path, method: str, task: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(weights (k, C) f4, bias (k,) f4, class names (k,)) of a trained head."""
     stored = read_arrays(folder / "heads" / method / f"{task}.npz")
     return stored["weights"], stored["bias"], stored["classes"]

@@ -1,45 +1,49 @@
-"""The settings of a run, checked, and what the stage's steps need of them."""
+"""The methods of the stage, and the check of its settings."""
 
 import sys
 from dataclasses import dataclass
 
 from stages.kit.fetch import FetchError
 from stages.networks import build
-from stages.networks.device import choose
+from stages.networks.device import choose_device
 
-MODES = {  # what the network starts from
-    "frozen": "imagenet",  # it keeps ImageNet's weights, heads of its own learn the tasks
-    "finetuned": "imagenet",  # every layer learns, one network a task
-    "random": "random",  # the control: it never learned anything but its heads
+from .schema import Params
+
+MODES = {  # mode -> the network's initial weights
+    "frozen": "imagenet",  # the network keeps ImageNet's weights, a new head per task is trained
+    "finetuned": "imagenet",  # every layer is trained, one network per task
+    "random": "random",  # the control: an untrained network, of which only the heads are trained
 }
 
 
 @dataclass(frozen=True)
 class Method:
-    """One way to a map: a network and what of it learns."""
+    """A network and the mode in which it is trained."""
 
     name: str
     network: str
     mode: str
 
 
-def method_named(name):
-    """The Method of NETWORK-MODE; ValueError for a name without a known mode."""
+def method_named(name: str) -> Method:
+    """The Method of a name NETWORK-MODE; raises ValueError for a name without a known mode."""
     network, _, mode = name.rpartition("-")
     if not network or mode not in MODES:
-        raise ValueError(f"fixation.methods: {name!r} is no NETWORK-MODE with mode {', '.join(MODES)}")
+        raise ValueError(f"fixation.methods: {name!r} is not NETWORK-MODE with mode {', '.join(MODES)}")
     return Method(name, network, mode)
 
 
-def checked(settings):
-    """Raises ValueError for settings that no run can have."""
-    choose(settings.device)
+def check(settings: Params) -> None:
+    """Raises ValueError for settings that cannot be run."""
+    choose_device(settings.device)
     if settings.size < 32 or settings.folds < 2 or not settings.penalties or not settings.methods:
-        raise ValueError("fixation: size must be 32 or more, folds 2 or more, penalties and methods name at least one")
+        raise ValueError(
+            "fixation: size must be 32 or more, folds 2 or more, and penalties and methods must not be empty"
+        )
 
 
-def available(settings):
-    """(methods that can run, dict method -> why not): those whose weights cannot be had are left out with a word."""
+def available(settings: Params) -> tuple[list[Method], dict[str, str]]:
+    """(methods that can run, dict of the others -> reason): methods without available weights are left out."""
     found, missing = [], {}
     for method in [method_named(name) for name in dict.fromkeys(settings.methods)]:
         try:

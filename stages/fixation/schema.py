@@ -2,6 +2,14 @@
 
 from dataclasses import dataclass
 
+COLUMNS = {
+    "task": "what the networks name: a group of shapes, a level of meaning, a fusion of several (ewigc), or two tasks",
+    "view": "the number of one of the three evaluated views, or all",
+    "clusters": "of metric ssd: the number of clusters tried",
+    "chosen": "of metric ssd: whether the task has this number of classes",
+    "label": "of metric class: the name of the item's class in the task",
+}
+
 
 @dataclass
 class Params:

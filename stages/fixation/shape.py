@@ -1,26 +1,25 @@
-"""What kind of shape an object is: Gaussian curvature and eccentricity (T eq. 3.21 to 3.23).
+"""Measures of an object's shape: Gaussian curvature and eccentricity (T eq. 3.21 to 3.23).
 
-The third measure, convexity (T eq. 3.20), is stages.weights.convexity, which also says what becomes of open meshes: a
-lid closes each hole.
+The third measure, convexity (T eq. 3.20), is in stages.weights.convexity, which closes the holes of open meshes.
 """
 
 import numpy as np
 
-from stages.conspicuity.surface_values import LEAST_AREA, smoother
+from stages.conspicuity.surface_values import MIN_AREA, smoother
 from stages.kit import Mesh
 
-REACH = 0.01  # of the diagonal: bumps smaller than this are noise or tessellation, as for the mean curvature
-FLAT = 1.0  # times 1 / diagonal^2: a ball as large as the object's box has 12; less is bent too little to be seen
+SMOOTHING_RADIUS = 0.01  # of the diagonal: smaller bumps are noise or tessellation, as for the mean curvature
+FLAT = 1.0  # times 1 / diagonal^2: smaller curvatures count as zero; a ball in the object's bounding box has 12
 TAIL = 0.1  # share of the largest and of the smallest distances; T3.3.2.1
 
 
-def gaussian_curvature(mesh):
+def gaussian_curvature(mesh: Mesh) -> np.ndarray:
     """(n,) f8 Gaussian curvature at the vertices, in 1 / unit^2: 1 / r^2 on a sphere, 0 on a cylinder.
 
-    det of the shape operator (T eq. 3.21, 3.22), by Gauss and Bonnet: what the angles around a vertex lack of a full
-    turn is the curvature of its surroundings (Meyer, Desbrun, Schroeder and Barr 2003, Discrete differential-geometry
-    operators for triangulated 2-manifolds, section 4). Then smoothed over REACH of the diagonal, since the angles of
-    scanned surfaces are noisy. Vertices at one place are one. On a rim it is not defined: there it is 0 before
+    The determinant of the shape operator (T eq. 3.21, 3.22), computed as the angle defect of each vertex over its area
+    (Gauss-Bonnet; Meyer, Desbrun, Schroeder and Barr 2003, Discrete differential-geometry operators for triangulated
+    2-manifolds, section 4). It is smoothed over SMOOTHING_RADIUS of the diagonal, since the angles of scanned surfaces
+    are noisy. Vertices at one position are merged. At boundary edges, where it is not defined, it is 0 before
     smoothing. Zero everywhere on a mesh without area.
     """
     places, welded = np.unique(mesh.vertices, axis=0, return_inverse=True)
@@ -32,33 +31,33 @@ def gaussian_curvature(mesh):
     edges, counts = surface.edge_counts
     missing[edges[counts != 2].ravel()] = 0
     missing[surface.vertex_areas <= 0] = 0
-    smooth = smoother(surface, np.ones(len(places)), REACH * surface.diagonal)
-    return smooth(missing / np.maximum(surface.vertex_areas, LEAST_AREA))[welded]
+    smooth = smoother(surface, np.ones(len(places)), SMOOTHING_RADIUS * surface.diagonal)
+    return smooth(missing / np.maximum(surface.vertex_areas, MIN_AREA))[welded]
 
 
-def curvature_shares(mesh):
+def curvature_shares(mesh: Mesh) -> tuple[float, float, float]:
     """(positive, negative, zero): shares of the vertices on the surface by sign of their Gaussian curvature (T3.3.2.1).
 
-    Zero is what lies within FLAT / diagonal^2. Shares of vertices, as the thesis says, not of area: an object that is
-    meshed finer where it is bent counts as more bent. Raises ValueError for a mesh without area.
+    Curvatures within FLAT / diagonal^2 count as zero. These are shares of vertices, as in the thesis, and not of area:
+    an object that is meshed finer where it is curved counts as more curved. Raises ValueError for a mesh without area.
     """
     on = np.unique(mesh.faces[mesh.face_areas > 0])
     if not len(on):
-        raise ValueError("the mesh has no face with an area, so that it has no curvature: give it faces")
+        raise ValueError("the mesh has no face with an area, so its curvature is not defined: give it faces")
     relative = gaussian_curvature(mesh)[on] * mesh.diagonal**2
     positive, negative = float((relative > FLAT).mean()), float((relative < -FLAT).mean())
     return positive, negative, max(1 - positive - negative, 0.0)
 
 
-def eccentricity(mesh):
-    """How far a shape is from a ball, 0 (a ball) to 1 (T eq. 3.23).
+def eccentricity(mesh: Mesh) -> float:
+    """The eccentricity of a shape, 0 for a ball, at most 1 (T eq. 3.23).
 
     a and b are the means of the largest and of the smallest tenth of the distances between the vertices and the centre
-    of gravity, which is that of the surface: open meshes have one too. Raises ValueError for a mesh without area.
+    of gravity. It is that of the surface, which open meshes have too. Raises ValueError for a mesh without area.
     """
     areas = mesh.face_areas
     if not areas.sum() > 0:
-        raise ValueError("the mesh has no face with an area, so that it has no centre of gravity: give it faces")
+        raise ValueError("the mesh has no face with an area, so it has no centre of gravity: give it faces")
     centre = np.average(mesh.vertices[mesh.faces].mean(axis=1), axis=0, weights=areas)
     on = np.unique(mesh.faces[areas > 0])
     distances = np.sort(np.linalg.norm(mesh.vertices[on] - centre, axis=1))

@@ -4,19 +4,19 @@ import numpy as np
 
 SQUASH = 1.25  # radius within which a centre takes away potential, over the radius of influence; Matlab's subclust
 ACCEPT, REJECT = 0.5, 0.15  # of the first centre's potential; Chiu 1994
-BLOCK = 1000  # points whose distances to all are held at once
+BLOCK = 1000  # points whose distances to all others are computed at once
 
 
-def subtractive_clusters(points, radius=0.5):
+def subtractive_clusters(points: np.ndarray, radius: float = 0.5) -> np.ndarray:
     """(c,) i8: which of points (k, d) are centres of clusters, the densest first.
 
     Chiu, Fuzzy model identification based on cluster estimation, Journal of Intelligent and Fuzzy Systems 2, 1994: the
-    points are scaled to the unit hypercube; each has as potential the sum of exp(-4 d^2 / radius^2) over all; the
-    highest becomes a centre and takes its potential from those near it; so on, until what is left is under REJECT of
-    the first. Between ACCEPT and REJECT a point becomes a centre only where it is far enough from the others: its
-    distance over the radius and its share of the first potential sum to one or more. radius 0.5, and a squash factor
-    of 1.25, where Chiu has 1.5, are the defaults of Matlab's subclust, which the thesis used. Equal potentials: the
-    first point. Raises ValueError for no points or values that are not finite.
+    points are scaled to the unit hypercube, and the potential of each is the sum of exp(-4 d^2 / radius^2) over all.
+    The point with the highest potential becomes a centre, and the potential of the points near it is reduced. This
+    repeats until the highest potential is below REJECT of the first. Between REJECT and ACCEPT a point becomes a centre
+    only if its distance to the other centres over the radius plus its share of the first potential is one or more.
+    radius 0.5 and a squash factor of 1.25 (Chiu: 1.5) are the defaults of Matlab's subclust, which the thesis used. Of
+    equal potentials the first point is taken. Raises ValueError for no points or values that are not finite.
     """
     points = np.asarray(points, dtype=np.float64)
     if points.ndim != 2 or not len(points) or not np.isfinite(points).all():

@@ -1,6 +1,7 @@
-"""The six tasks: which class each object has in each of them (T3.3.2.1, T3.3.2.2)."""
+"""The six tasks and the class of each object in each of them (T3.3.2.1, T3.3.2.2)."""
 
 import sys
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -9,26 +10,26 @@ from threadpoolctl import threadpool_limits
 
 from stages.kit.files import read_table
 
-SHAPE = {  # task -> the measures of an object that its classes are clusters of
+SHAPE_MEASURES = {  # task -> the measures by which its objects are clustered into classes
     "convexity": ["convexity"],
     "curvature": ["positive", "negative", "zero"],
     "eccentricity": ["eccentricity"],
 }
 LEVELS = ("level_1", "level_2", "level_3")  # living or not, category, the object itself
-TASKS = (*SHAPE, *LEVELS)
-FUSED = ("curvature", "eccentricity", "level_1", "level_2")  # T eq. 3.24; the other two agree least with gaze
+TASKS = (*SHAPE_MEASURES, *LEVELS)
+FUSED_TASKS = ("curvature", "eccentricity", "level_1", "level_2")  # T eq. 3.24; the other two agree least with gaze
 CLUSTERS = range(2, 11)  # numbers of clusters tried (T3.3.2.1)
-SEMANTICS = Path("data/reference/semantics.csv")
+SEMANTICS = Path("data/reference/semantics.csv")  # in the repository root
 
 
-def clustered(values, seed=0):
+def cluster_objects(values: Sequence | np.ndarray, seed: int = 0) -> tuple[np.ndarray, dict[int, float]]:
     """(labels (k,), dict clusters -> SSD): k-means with the number of clusters at the elbow (T3.3.2.1).
 
-    values (k, d). The rule for the elbow, which the thesis draws by eye: of the curve of the sums of squared distances
-    over 2..10 clusters, both axes scaled to 0..1, the point farthest below the line from its first to its last
-    (Satopaa, Albrecht, Irwin and Raghavan 2011, Finding a kneedle in a haystack). Fewer numbers are tried where there
-    are fewer distinct values. Labels count from the cluster of the smallest first value on; all 0, and no curve, where
-    the values cannot be parted.
+    values (k, d). The thesis chooses the elbow by eye. Here it is the point farthest below the line from the first to
+    the last point of the curve of the sums of squared distances over 2..10 clusters, both axes scaled to 0..1 (Satopaa,
+    Albrecht, Irwin and Raghavan 2011, Finding a kneedle in a haystack). Fewer numbers are tried where there are fewer
+    distinct values. Labels are ordered by the first value of the cluster centres; all 0, and no curve, where the values
+    cannot be clustered.
     """
     values = np.asarray(values, dtype=np.float64)
     distinct = len(np.unique(values.round(9), axis=0))
@@ -36,15 +37,16 @@ def clustered(values, seed=0):
     if not numbers:
         return np.zeros(len(values), dtype=np.int64), {}
     with threadpool_limits(1):
-        fits = {k: KMeans(k, n_init=10, random_state=seed).fit(values) for k in numbers}
-    curve = {k: float(fit.inertia_) for k, fit in fits.items()}
+        # scikit-learn's default of n_init is a string, from which its type is inferred
+        fits = {k: KMeans(k, n_init=10, random_state=seed).fit(values) for k in numbers}  # pyright: ignore
+    curve = {k: float(np.asarray(fit.inertia_)) for k, fit in fits.items()}
     chosen = fits[elbow(curve)]
     rank = np.argsort(np.lexsort(chosen.cluster_centers_.T[::-1]))
     return rank[chosen.labels_].astype(np.int64), curve
 
 
-def elbow(curve):
-    """The number of clusters at the elbow of dict clusters -> SSD; the first where the curve has no bend."""
+def elbow(curve: Mapping[int, float]) -> int:
+    """The number of clusters at the elbow of dict clusters -> SSD; the first where the curve has no elbow."""
     k, ssd = np.array(list(curve), dtype=np.float64), np.array(list(curve.values()))
     if len(k) < 3 or ssd[0] <= ssd[-1]:
         return int(k[0])
@@ -52,40 +54,42 @@ def elbow(curve):
     return int(k[(down - along).argmax()])
 
 
-def semantics(dataset, objects, path=SEMANTICS):
-    """dict level -> list of names, one an object, None where the table does not know the object.
+def semantic_classes(dataset: str, objects: Sequence[str], path: str | Path) -> dict[str, list[str | None]]:
+    """dict level -> list of class names, one per object, None for an object that the table does not contain.
 
-    path: CSV of dataset, object, living (yes or no), category. Level 3 needs no table. Raises ValueError for a table
-    with other columns or an object twice.
+    dataset: the source of the meshes; path: CSV of dataset, object, living (yes or no), category. Level 3 needs no
+    table. Raises ValueError for a table with other columns or a repeated object.
     """
     table = read_table(path)
     if list(table) != ["dataset", "object", "living", "category"]:
         raise ValueError(f"{path} must have the columns dataset, object, living, category, got {', '.join(table)}")
     own = table[table["dataset"] == dataset].set_index("object")
     if own.index.has_duplicates:
-        raise ValueError(f"{path}: {own.index[own.index.duplicated()][0]} stands twice in {dataset}")
+        raise ValueError(f"{path}: {own.index[own.index.duplicated()][0]} appears twice in {dataset}: remove one row")
     columns = {"level_1": own["living"].to_dict(), "level_2": own["category"].to_dict()}
     known = {level: [names.get(name) for name in objects] for level, names in columns.items()}
     return known | {"level_3": list(objects)}
 
 
-def all_tasks(measures, dataset, seed):
+def assign_classes(
+    measures: Mapping[str, Mapping[str, float]], dataset: str, seed: int, path: str | Path
+) -> tuple[dict[str, dict[str, str]], dict[str, tuple[dict[int, float], int]]]:
     """(dict task -> {object: class name}, dict task -> (curve, chosen)): tasks with two classes or more.
 
-    measures: dict object -> dict of the measures that SHAPE names. Objects of which a level knows nothing, and tasks
-    with one class alone, are left out with a word.
+    measures: dict object -> dict of the measures that SHAPE_MEASURES names; dataset, path: as in semantic_classes.
+    Objects without a class in a level, and tasks with one class alone, are left out with a message.
     """
     objects, found, curves = list(measures), {}, {}
-    for task, names in SHAPE.items():
-        labels, curve = clustered([[measures[name][key] for key in names] for name in objects], seed)
+    for task, names in SHAPE_MEASURES.items():
+        labels, curve = cluster_objects([[measures[name][key] for key in names] for name in objects], seed)
         found[task] = {name: f"{label}" for name, label in zip(objects, labels, strict=True)}
         if curve:
             curves[task] = (curve, labels.max() + 1)
-    for level, names in semantics(dataset, objects).items():
+    for level, names in semantic_classes(dataset, objects, path).items():
         found[level] = {name: label for name, label in zip(objects, names, strict=True) if label is not None}
         if len(found[level]) < len(objects):
             missing = [name for name in objects if name not in found[level]]
-            print(f"fixation: {level} without {len(missing)} objects that {SEMANTICS} does not know: "
+            print(f"fixation: {level} leaves out {len(missing)} objects that {SEMANTICS} does not contain: "
                   f"{', '.join(missing[:5])}{', ...' if len(missing) > 5 else ''}", file=sys.stderr)  # fmt: skip
     for task in [task for task, classes in found.items() if len(set(classes.values())) < 2]:
         print(f"fixation: task {task} is left out, it has fewer than two classes", file=sys.stderr)

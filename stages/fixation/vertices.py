@@ -1,18 +1,19 @@
-"""From maps of views to the vertices of the mesh (T3.3.5)."""
+"""The projection of image maps to the vertices of the mesh (T3.3.5)."""
 
 import numpy as np
 from scipy.ndimage import map_coordinates
 
+from stages.kit import Mesh, Viewpoint
 from stages.kit.camera import project
 
 
-def on_vertices(pictures, mesh, viewpoint, seen):
-    """(t, n) f8: maps (t, h, w) of one view at the vertices that it sees, seen (n,) boolean; zero at the others.
+def project_to_vertices(pictures: np.ndarray, mesh: Mesh, viewpoint: Viewpoint, seen: np.ndarray) -> np.ndarray:
+    """(t, n) f8: maps (t, h, w) of one view at its visible vertices, seen (n,) boolean; zero at the others.
 
-    The thesis draws the projected vertices, and stretches the bounding box of the object in the map onto theirs: a
-    Grad-CAM map shows no object whose box could be taken, and boxes of pixels are a pixel off. Here the camera itself
-    says where in the picture each vertex lies, to a fraction of a pixel, and exact rays (stages.conspicuity.facing)
-    say whether it is seen. Bilinear between pixels.
+    The thesis draws the projected vertices and maps the bounding box of the object in the image onto theirs. But a
+    Grad-CAM map shows no object with a bounding box, and boxes of pixels are a pixel off. Here the camera gives the
+    position of each vertex in the image to a fraction of a pixel, and rays (stages.conspicuity.facing) decide which
+    vertices are visible. Interpolates bilinearly between pixels.
     """
     pictures, seen = np.asarray(pictures, dtype=np.float64), np.asarray(seen, dtype=bool)
     if pictures.ndim != 3 or seen.shape != (len(mesh.vertices),):
@@ -24,9 +25,9 @@ def on_vertices(pictures, mesh, viewpoint, seen):
     return found
 
 
-def over_views(values, seen):
-    """(t, n): the mean of values (v, t, n) over the views that see each vertex, seen (v, n); 0 where none does."""
+def mean_over_views(values: np.ndarray, seen: np.ndarray) -> np.ndarray:
+    """(t, n): the mean of values (v, t, n) over the views that see each vertex, seen (v, n) boolean; 0 without any."""
     seen = np.asarray(seen, dtype=np.float64)
-    looks = seen.sum(axis=0)
+    views = seen.sum(axis=0)
     summed = np.einsum("vtn,vn->tn", values, seen)
-    return np.divide(summed, looks, out=np.zeros_like(summed), where=looks > 0)
+    return np.divide(summed, views, out=np.zeros_like(summed), where=views > 0)

@@ -1,14 +1,14 @@
-"""The viewpoints all round an object from which its pictures are taken (T3.3.2)."""
+"""The viewpoints around an object from which its pictures are rendered (T3.3.2)."""
 
 from stages.kit import Viewpoint
 
 
-def sphere(parallels, azimuths):
+def viewpoint_sphere(parallels: int, azimuths: int) -> tuple[Viewpoint, ...]:
     """Viewpoints on parallel circles and at both poles, (parallels x azimuths + 2) of them; the first view first.
 
-    T3.3.2: nine circles, a picture at every 15 degrees, and the poles, so 218 = sphere(9, 24). The thesis does not say
-    how the circles lie: here they are evenly apart, 18 degrees for nine. Raises ValueError for numbers without an
-    equator or without three views a third of a turn apart on it, which `evaluated` names.
+    T3.3.2: nine circles, a picture every 15 degrees, and the poles: viewpoint_sphere(9, 24) has 218. The thesis does
+    not say where the circles are; here they are evenly spaced, by 18 degrees for nine. Raises ValueError for numbers
+    without an equator, or without three views on it a third of a turn apart (see evaluated_views).
     """
     if parallels < 1 or parallels % 2 == 0:
         raise ValueError(f"fixation.parallels must be an odd number, one of them is the equator, got {parallels}")
@@ -19,9 +19,9 @@ def sphere(parallels, azimuths):
     return (*around, Viewpoint(0, 90), Viewpoint(0, -90))
 
 
-def evaluated(parallels, azimuths):
-    """(3,) list: the numbers, within sphere, of the three views from the side, a third of a turn apart.
+def evaluated_views(parallels: int, azimuths: int) -> list[int]:
+    """The indices in viewpoint_sphere of three views on the equator, a third of a turn apart.
 
-    The thesis judges at the three viewpoints of Lavoue's data, whose directions are not published with it.
+    The thesis evaluates at the three viewpoints of Lavoue's data, whose directions are not published with it.
     """
     return [parallels // 2 * azimuths + k * azimuths // 3 for k in range(3)]

@@ -1,8 +1,8 @@
-"""The virtual pressure array: what a flat tactile sensor feels at a point of an object (T4.3).
+"""The virtual pressure array: what a flat tactile sensor measures at a point of an object (T4.3).
 
 Public names: adaptive_pitch, contour, contour_imprints, distances, distances_at, follow, follow_many, indent,
-normalise, place, press, press_at, press_many, quasi_tangent, read_imprints, section, sensor_axes, sensor_normals,
-touchable, warm_up, write_imprints, CONTACTS, Imprints, Loop, Sequence, Skin, Surface.
+normalise, press, press_at, press_many, quasi_tangent, read_imprints, section, sensor_axes, sensor_normals,
+snap_to_surface, touchable, warm_up, write_imprints, Imprints, SectionCurve, Sequence, Skin, Surface, CONTACTS.
 """
 
 from .adaptive import adaptive_pitch
@@ -11,19 +11,19 @@ from .distances import distances, distances_at
 from .files import Imprints, read_imprints, write_imprints
 from .follow import contour, follow, follow_many
 from .frame import sensor_axes, sensor_normals, touchable
-from .place import place
 from .press import normalise, press, press_at, press_many
 from .quasi_tangent import contour_imprints, quasi_tangent
-from .section import Loop, section
+from .section import SectionCurve, section
 from .sequence import Sequence
 from .skin import Skin, indent
+from .snap_to_surface import snap_to_surface
 from .surface import Surface
 from .warm_up import warm_up
 
 __all__ = [
     "CONTACTS",
     "Imprints",
-    "Loop",
+    "SectionCurve",
     "Sequence",
     "Skin",
     "Surface",
@@ -36,7 +36,6 @@ __all__ = [
     "follow_many",
     "indent",
     "normalise",
-    "place",
     "press",
     "press_at",
     "press_many",
@@ -45,6 +44,7 @@ __all__ = [
     "section",
     "sensor_axes",
     "sensor_normals",
+    "snap_to_surface",
     "touchable",
     "warm_up",
     "write_imprints",

@@ -1,84 +1,104 @@
 """Presses the virtual pressure array on every object at the points of its methods (T4.3).
 
-Reads data/meshes/NAME.npz and data/salient_points/NAME.npz, writes data/imprints/NAME.npz and
-reports/measurements/imprints.csv: for each object and method the number of imprints, their mean relief in units of the
-object, the share of cells that felt nothing within reach, and the points that could not be touched.
+Reads data/SET/meshes/NAME.npz and data/SET/salient_points/NAME.npz, writes data/SET/imprints/NAME.npz and
+reports/measurements/SET/imprints.csv.gz: per object and method the number of imprints, their mean relief in units of
+the object, the share of cells without a surface in range, and the points that could not be touched.
 
-A mesh of your own, instead, with a picture of what the array feels and where:
+A mesh of your own, instead, with a picture of what the array measures and where:
   python -m stages.imprints bunny.stl --at salient
   python -m stages.imprints bunny.stl --help
 """
 
 import functools
 import sys
+from pathlib import Path
 
 import numpy as np
 
-from stages.kit import StageRun, Stopwatch, arguments, params
+from stages.kit import Stopwatch
+from stages.kit.command import errors_in_one_line, workspace_of_arguments
 from stages.kit.files import read_mesh
-from stages.kit.run import DATA, errors_in_one_line
+from stages.kit.params import load_params
+from stages.kit.run import Rows, StageRun
+from stages.kit.workspace import Workspace
 from stages.salient_points import read_points
 
 from .contact import check_contact
-from .distances import check_sensor, distances
+from .distances import check_array, distances
 from .files import Imprints, write_imprints
 from .frame import touchable
 from .press import normalise
+from .schema import Params
 from .surface import Surface
 from .warm_up import warm_up
 
 
-def process(name, folder, settings):
+def process(name: str, folder: Path, data: Path, settings: Params) -> Rows:
     """Touches one object at all points of all methods; writes its file and returns its rows."""
     warm_up()
-    mesh = read_mesh(DATA / "meshes" / f"{name}.npz")
+    mesh = read_mesh(data / "meshes" / f"{name}.npz")
     surface, imprints, rows = Surface(mesh), {}, []
-    found = read_points(DATA / "salient_points" / f"{name}.npz")
+    cells = settings.cells[0], settings.cells[1]
+    found = read_points(data / "salient_points" / f"{name}.npz")
     for method in sorted(settings.methods):
         if method not in found:
             raise ValueError(f"imprints.methods: {method} is not among salient_points.methods: {', '.join(found)}")
         points = found[method]
         can = touchable(mesh, points)
         with Stopwatch() as watch:
-            raw = distances(surface, points[can], settings.cells, settings.pitch, contact=settings.contact)
+            raw = distances(surface, points[can], cells, settings.pitch, contact=settings.contact)
             images = normalise(raw, settings.pitch)
         imprints[method] = Imprints(images, points[can], mesh.vertices[points[can]], settings.pitch)
         values = {"imprints": len(images), **_shape_of(raw, settings), "refused": int((~can).sum())}
-        common = {"object": name, "method": method}
+        common = {"item": name, "method": method}
         rows += [{**common, "metric": key, "value": value, "seconds": watch.seconds} for key, value in values.items()]
     write_imprints(folder / f"{name}.npz", imprints)
     return rows
 
 
 def _shape_of(raw, settings):
-    """Mean relief of the imprints in units, and the share of cells without a surface in reach."""
+    """Mean relief of the imprints in units, and the share of cells without a surface in range."""
     if len(raw) == 0:
         return {"relief": None, "missed": None}
-    _, _, reach = check_sensor(settings.cells, settings.pitch)
+    _, _, reach = check_array(settings.cells, settings.pitch)
     return {"relief": float(np.ptp(raw, axis=(1, 2)).mean()), "missed": float((raw >= reach).mean())}
 
 
-def main():
-    if set(sys.argv[1:]) - {"-h", "--help"}:
-        errors_in_one_line("imprints")  # before an import that takes a second, in which a person may press Ctrl-C
-        from .command import run  # the pipeline needs neither its writers nor its pictures
-
-        run(sys.argv[1:])
-        return
-    arguments(__doc__)
-    settings = params("imprints")
-    check_sensor(settings.cells, settings.pitch)
+def run(workspace: Workspace) -> None:
+    """Runs the stage on the data set of a workspace."""
+    settings = workspace.settings(Params)
+    check_array(settings.cells, settings.pitch)
     check_contact(settings.contact)
-    with StageRun("imprints", inputs=("meshes", "salient_points")) as run:
-        rows = run.each(functools.partial(process, settings=settings), run.objects)
+    with StageRun(workspace, "imprints", inputs=("meshes", "salient_points")) as stage:
+        work = functools.partial(process, data=workspace.data, settings=settings)
+        rows = stage.each(work, stage.objects, reads=("meshes/{}.npz", "salient_points/{}.npz"))
         total = {key: sum(row["value"] for row in rows if row["metric"] == key) for key in ("imprints", "refused")}
         relief = [row["value"] for row in rows if row["metric"] == "relief" and row["value"] is not None]
         missed = [row["value"] for row in rows if row["metric"] == "missed" and row["value"] is not None]
         means = {key: round(float(np.mean(v)), 6) for key, v in (("relief", relief), ("missed", missed)) if v}
-        run.metrics({**total, **means})
-        objects = len(run.objects)
+        stage.metrics({**total, **means})
+        objects = len(stage.objects)
     size = "x".join(map(str, settings.cells))
-    print(f"imprints: {objects} objects, {total['imprints']} imprints of {size}, {total['refused']} points refused")
+    print(
+        f"imprints: {workspace.dataset}, {objects} objects, {total['imprints']} imprints of {size}, "
+        f"{total['refused']} points refused"
+    )
+
+
+def main() -> None:
+    """Runs the stage on the data set that the command line names; with a mesh instead, the command in command.py."""
+    errors_in_one_line("imprints")  # before an import that takes a second, in which a person may press Ctrl-C
+    if names_a_mesh(sys.argv[1:]):
+        from .command import run as run_command  # the pipeline needs neither its writers nor its pictures
+
+        run_command(sys.argv[1:])
+        return
+    run(workspace_of_arguments(__doc__, "imprints"))
+
+
+def names_a_mesh(argv: list[str]) -> bool:
+    """False where the arguments are those of the stage: none, --help or --root, or first a set of params.yaml."""
+    return bool(argv) and argv[0] not in ("-h", "--help", "--root", *load_params().get("sets", []))
 
 
 if __name__ == "__main__":

@@ -1,37 +1,49 @@
-"""The array's size adapted to saddles: sensing points move closer until none is inside the object (T4.4.3)."""
+"""The array's size adapted to saddles: the pitch shrinks until no cell is inside the object (T4.4.3)."""
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from .distances import check_sensors, distances_at
+from stages.kit import Mesh
 
-LEAST = 0.2  # of the pitch: palm to fingertip, as T4.3.2's coarse sensor (0.01) to its fine one (0.002)
-SMALLER = 0.99  # times, at most, from one measurement to the next
-TOLERANCE = 0.5  # of the pitch: so deep a cell may sink into the object, as an elastic skin gives
+from .distances import check_arrays, distances_at
+from .surface import Surface
+
+MIN_PITCH = 0.2  # of the pitch, as T4.3.2's fine sensor (0.002) to its coarse one (0.01)
+MAX_FACTOR = 0.99  # between the pitches of two measurements, at most
+TOLERANCE = 0.5  # of the pitch: how deep a cell may be inside the object, as an elastic skin yields
 
 
-def adaptive_pitch(surface, centres, axes, cells=(32, 32), pitch=0.01, least=None, tolerance=None):
+def adaptive_pitch(
+    surface: Mesh | Surface,
+    centres: ArrayLike,
+    axes: ArrayLike,
+    cells: tuple[int, int] = (32, 32),
+    pitch: ArrayLike = 0.01,
+    min_pitch: ArrayLike | None = None,
+    tolerance: ArrayLike | None = None,
+) -> np.ndarray:
     """(k,) pitches, at most `pitch`, at which arrays at centres (k, 3) with axes (k, 3, 3) fit on the object (T4.4.3).
 
-    An array fits when no cell is more than `tolerance` units inside the object. Where one does not, the same cells move
-    closer, to where the deepest cells of two neighbouring square rings say that the tolerance is kept, and are measured
-    again, until it fits or `least` is reached, which is returned whether it fits or not. The thesis shrinks the array
-    and gives no rule. Defaults: `least` a fifth and `tolerance` a half of the pitch. pitch: a number, or (k,).
-    Raises ValueError where cells and pitch make no array, or for a least size beyond the pitch.
+    An array fits when no cell is more than `tolerance` units inside the object. If it does not fit, its pitch shrinks
+    to the size at which the deepest cells of two neighbouring square rings predict a fit, and it is measured again.
+    This ends when the array fits or the pitch is `min_pitch`, which is returned even if it does not fit. The thesis
+    shrinks the array and gives no rule. By default `min_pitch` is a fifth and `tolerance` a half of the pitch. pitch: a
+    number, or (k,). Raises ValueError for invalid cells or pitches, or a `min_pitch` above the pitch.
     """
     centres, axes = np.asarray(centres, dtype=np.float64), np.asarray(axes, dtype=np.float64)
-    cells, pitches, reaches = check_sensors(cells, pitch, None, len(centres))
-    least = _bound("least", least, LEAST * pitches, pitches)
-    tolerance = _bound("tolerance", tolerance, TOLERANCE * pitches, np.inf)
-    pitches, trying = pitches.copy(), np.arange(len(centres))
+    cells, pitches, max_distances = check_arrays(cells, pitch, None, len(centres))
+    min_pitches = _checked_limit("min_pitch", min_pitch, MIN_PITCH * pitches, pitches)
+    tolerances = _checked_limit("tolerance", tolerance, TOLERANCE * pitches, np.inf)
+    pitches, active = pitches.copy(), np.arange(len(centres))
     widths, ring = _rings(cells)
-    while len(trying):
-        found = distances_at(surface, centres[trying], axes[trying], cells, pitches[trying], reaches[trying])
-        room = np.full((len(trying), len(widths)), np.inf)
-        np.minimum.at(room, (slice(None), ring), found.reshape(len(trying), -1) + tolerance[trying, None])
-        cuts = (room < 0).any(axis=1)
-        trying, room = trying[cuts], room[cuts]
-        pitches[trying] = np.maximum(pitches[trying] * _free(widths, room), least[trying])
-        trying = trying[pitches[trying] > least[trying]]
+    while len(active):
+        distances = distances_at(surface, centres[active], axes[active], cells, pitches[active], max_distances[active])
+        clearance = np.full((len(active), len(widths)), np.inf)
+        np.minimum.at(clearance.T, ring, (distances.reshape(len(active), -1) + tolerances[active, None]).T)
+        too_large = (clearance < 0).any(axis=1)
+        active, clearance = active[too_large], clearance[too_large]
+        pitches[active] = np.maximum(pitches[active] * _fitting_widths(widths, clearance), min_pitches[active])
+        active = active[pitches[active] > min_pitches[active]]
     return pitches
 
 
@@ -42,19 +54,19 @@ def _rings(cells):
     return widths, ring.ravel()
 
 
-def _free(widths, room):
-    """(k,) half widths at which the room (k, rings) to the tolerance is used up, by a line between two rings."""
-    first = np.argmax(room < 0, axis=1)
-    rows, inner = np.arange(len(room)), np.maximum(first - 1, 0)
-    left = np.where(first > 0, room[rows, inner], 0.0)
-    share = left / (left - room[rows, first])
+def _fitting_widths(widths, clearance):
+    """(k,) half widths at which the clearance (k, rings) becomes 0, interpolated between two rings."""
+    first = np.argmax(clearance < 0, axis=1)
+    rows, inner = np.arange(len(clearance)), np.maximum(first - 1, 0)
+    left = np.where(first > 0, clearance[rows, inner], 0.0)
+    share = left / (left - clearance[rows, first])
     start = np.where(first > 0, widths[inner], 0.0)
-    return np.minimum(start + share * (widths[first] - start), SMALLER)
+    return np.minimum(start + share * (widths[first] - start), MAX_FACTOR)
 
 
-def _bound(name, value, default, most):
+def _checked_limit(name, value, default, upper):
     value = default if value is None else np.broadcast_to(np.asarray(value, dtype=np.float64), default.shape)
-    if not ((value > 0) & (value <= most)).all():
-        limit = "" if most is np.inf else " and at most the pitch"
+    if not ((value > 0) & (value <= upper)).all():
+        limit = "" if upper is np.inf else " and at most the pitch"
         raise ValueError(f"{name} must be above 0{limit}, got {value.min()} to {value.max()}")
     return value

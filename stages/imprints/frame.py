@@ -1,44 +1,46 @@
-"""How the array stands on the object: its normal and the directions of its rows and columns."""
+"""The orientation of the array on the object: its normal and the directions of its rows and columns."""
 
 from functools import lru_cache
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from stages.kit import Mesh
 from stages.kit.mesh import corner_sum, unit
 
-POLE = 0.95  # |z| of a normal above which "up" is no usable direction on the plane: within 18 degrees of the pole
-CANCELLED = 1e-6  # shorter than this, an average of unit normals is rounding error and has no direction
+POLE = 0.95  # |z| of a normal above which +z has no stable projection on the plane: within 18 degrees of the pole
+CANCELLED = 1e-6  # length below which an average of unit normals is rounding error
 
 
-def sensor_normals(mesh, vertices):
+def sensor_normals(mesh: Mesh, vertices: ArrayLike) -> np.ndarray:
     """(k, 3) unit normals of the array's plane at vertices (k,): the average of the unit normals of the faces around.
 
-    Every face around the vertex counts alike, as in T4.3.1. Weighting by area (`Mesh.vertex_normals`) or by angle
-    tilts the plane where the faces differ in size. Faces without area have no normal and do not count.
-    Raises ValueError naming the first vertex that is not in the mesh, is in no face, or whose faces cancel out.
+    Every face around the vertex has the same weight, as in T4.3.1. Weights by area (`Mesh.vertex_normals`) or by angle
+    tilt the plane where the faces differ in size. Faces without area have no normal and do not count.
+    Raises ValueError that names the first vertex that is not in the mesh, is in no face, or whose faces cancel out.
     """
     vertices = check_vertices(mesh, vertices)
-    average = vertex_averages(mesh)[vertices]
+    average = mean_vertex_normals(mesh)[vertices]
     bad = np.flatnonzero(np.linalg.norm(average, axis=1) <= CANCELLED)
     if len(bad):
         raise ValueError(
             f"vertex {vertices[bad[0]]} has no normal: it is in no face with area, or its faces cancel out; "
-            "leave it out (stages.imprints.touchable says which vertices can be touched)"
+            "leave it out (stages.imprints.touchable tells which vertices can be touched)"
         )
     return unit(average)
 
 
-def touchable(mesh, vertices):
-    """(k,) boolean: the vertices (k,) at which the array has a normal and so can be pressed on the object."""
-    return np.linalg.norm(vertex_averages(mesh)[check_vertices(mesh, vertices)], axis=1) > CANCELLED
+def touchable(mesh: Mesh, vertices: ArrayLike) -> np.ndarray:
+    """(k,) boolean: the vertices (k,) at which the array has a normal, so that it can be pressed on the object."""
+    return np.linalg.norm(mean_vertex_normals(mesh)[check_vertices(mesh, vertices)], axis=1) > CANCELLED
 
 
-def sensor_axes(normals):
+def sensor_axes(normals: ArrayLike) -> np.ndarray:
     """(k, 3, 3) rows right, up, normal of arrays with unit normals (k, 3), seen from outside onto the object.
 
-    Up is +z projected on the plane, so that the array keeps upright wherever it touches; within 18 degrees of the
-    poles, where that has no stable direction, +y takes its place. The thesis is silent on the array's turn about its
-    normal. The axes depend on the normal alone: neither on the order of the vertices nor on that of the faces.
+    Up is +z projected on the plane, so that the array is upright everywhere. Within 18 degrees of the poles, where that
+    has no stable direction, +y is projected. The thesis does not give the array's rotation about its normal. The axes
+    depend on the normal alone, not on the order of vertices or faces.
     """
     normals = np.asarray(normals, dtype=np.float64)
     if normals.ndim != 2 or normals.shape[1] != 3:
@@ -49,8 +51,8 @@ def sensor_axes(normals):
     return np.stack([np.cross(up, normals), up, normals], axis=1)
 
 
-def check_vertices(mesh, vertices):
-    """The vertex ids as (k,) i8; ValueError where they are no whole numbers or not in the mesh."""
+def check_vertices(mesh: Mesh, vertices: ArrayLike) -> np.ndarray:
+    """The vertex ids as (k,) i8; raises ValueError if they are not integers or not in the mesh."""
     vertices = np.asarray(vertices)
     if vertices.ndim != 1:
         raise ValueError(f"vertices must have shape (k,), got {vertices.shape}")
@@ -63,8 +65,8 @@ def check_vertices(mesh, vertices):
     return vertices
 
 
-@lru_cache(maxsize=4)  # asked for at every touch
-def vertex_averages(mesh):
+@lru_cache(maxsize=4)  # used at every touch
+def mean_vertex_normals(mesh: Mesh) -> np.ndarray:
     """(n, 3) means of the unit normals of the faces around each vertex; zero at a vertex in no face."""
     solid = mesh.face_areas > 0
     total = corner_sum(mesh, np.repeat(mesh.face_normals[:, None], 3, axis=1))

@@ -1,4 +1,4 @@
-"""What `python -m stages.imprints MESH` may be asked for, and what is refused before any work."""
+"""The options of `python -m stages.imprints MESH`, and their checks before any work."""
 
 import argparse
 import os
@@ -7,105 +7,107 @@ from dataclasses import fields
 from pathlib import Path
 
 from stages.meshes.normalise import TO_Z_UP
-from stages.salient_points.methods import METHODS, teachable
-from stages.weights import Learned
+from stages.salient_points.methods import METHODS, split_runnable
+from stages.weights import LearnedWeights
 
 from .contact import CONTACTS
-from .distances import check_sensor
+from .distances import check_array
 from .skin import Skin
 
-WAYS = ("salient", "random")  # of choosing the places, which --count goes with
-COUNT = 6
-POINT = re.compile(r"-?[\d.][^,]*,[^,]+,[^,]+")  # a position, which may begin as an option does
+SELECTIONS = ("salient", "random")  # of places, which --count applies to
+DEFAULT_COUNT = 6
+POINT = re.compile(r"-?[\d.][^,]*,[^,]+,[^,]+")  # a position, which may begin with a minus like an option
 
 
-def parser(about):
-    """The command line; about: what --help says, its first line at the top."""
-    first, _, rest = about.partition("\n")
+def parser(description: str) -> argparse.ArgumentParser:
+    """The parser of the command line; description: the text of --help."""
+    first, _, rest = description.partition("\n")
     form = argparse.RawDescriptionHelpFormatter
     usage = "%(prog)s MESH [--at PLACE ...] [options]"
-    made = argparse.ArgumentParser("python -m stages.imprints", usage, first, rest, formatter_class=form)
-    made.add_argument("mesh", metavar="MESH", type=Path, help="the file to touch: STL, OBJ, PLY, OFF or GLB")
-    help_at = "where: salient (default), random, ids of vertices, or positions x,y,z in the file's coordinates"
-    made.add_argument("--at", metavar="PLACE", nargs="+", default=[WAYS[0]], help=help_at)
-    help_cells = "of the array (default: 16 16)"
-    made.add_argument("--cells", metavar=("ROWS", "COLS"), nargs=2, type=int, default=[16, 16], help=help_cells)
-    help_pitch = "from cell to cell, in units of the object, whose bounding sphere is 1 across (default: %(default)s)"
-    made.add_argument("--pitch", metavar="UNITS", type=float, default=0.01, help=help_pitch)
-    help_count = f"how many places to choose, salient or random (default: {COUNT})"
-    made.add_argument("--count", metavar="N", type=int, help=help_count)
-    made.add_argument("--method", help="who says what is salient (default: enhanced, our model of human gaze)")
-    help_contact = "tangent: the array stands at the place (default); rigid: it rests on what it meets first"
-    made.add_argument("--contact", choices=CONTACTS, default=CONTACTS[0], help=help_contact)
-    help_depth = "how deep the object goes into the skin at its highest point (default: each imprint's own relief)"
-    made.add_argument("--depth", metavar="UNITS", type=float, help=help_depth)
+    result = argparse.ArgumentParser("python -m stages.imprints", usage, first, rest, formatter_class=form)
+    result.add_argument("mesh", metavar="MESH", type=Path, help="the file to touch: STL, OBJ, PLY, OFF or GLB")
+    help_at = "places: salient (default), random, ids of vertices, or positions x,y,z in the file's coordinates"
+    result.add_argument("--at", metavar="PLACE", nargs="+", default=[SELECTIONS[0]], help=help_at)
+    help_cells = "size of the array (default: 16 16)"
+    result.add_argument("--cells", metavar=("ROWS", "COLS"), nargs=2, type=int, default=[16, 16], help=help_cells)
+    help_pitch = "distance of two cells, in units: the bounding sphere is 1 across (default: %(default)s)"
+    result.add_argument("--pitch", metavar="UNITS", type=float, default=0.01, help=help_pitch)
+    help_count = f"number of salient or random places (default: {DEFAULT_COUNT})"
+    result.add_argument("--count", metavar="N", type=int, help=help_count)
+    result.add_argument("--method", help="detector of salient places (default: enhanced, a model of human gaze)")
+    help_contact = "tangent: the array stands at the place (default); rigid: it rests on the first contact"
+    result.add_argument("--contact", choices=CONTACTS, default=CONTACTS[0], help=help_contact)
+    help_depth = "how deep the object's highest point goes into the skin (default: the relief of each imprint)"
+    result.add_argument("--depth", metavar="UNITS", type=float, help=help_depth)
     names = ", ".join(field.name for field in fields(Skin) if field.name != "seed")
-    help_skin = f"faults of a real sensor, such as blur=0.8,noise=0.02; of {names}"
-    made.add_argument("--skin", metavar="NAME=VALUE,...", help=help_skin)
-    made.add_argument("--up", choices=list(TO_Z_UP), help="the axis that points up (default: y for a glb, else z)")
-    made.add_argument("--seed", type=int, default=0, help="of random places and of the skin (default: %(default)s)")
-    made.add_argument("--out", metavar="FOLDER", type=Path, help="for what is written (default: MESH_imprints)")
-    made.add_argument("--show", action="store_true", help="open the picture in a window as well")
-    return made
+    help_skin = f"faults of a real sensor, such as blur=0.8,noise=0.02; the names are {names}"
+    result.add_argument("--skin", metavar="NAME=VALUE,...", help=help_skin)
+    result.add_argument("--up", choices=list(TO_Z_UP), help="the axis that points up (default: y for a glb, else z)")
+    result.add_argument(
+        "--seed", type=int, default=0, help="seed of random places and of the skin (default: %(default)s)"
+    )
+    result.add_argument("--out", metavar="FOLDER", type=Path, help="output folder (default: MESH_imprints)")
+    result.add_argument("--show", action="store_true", help="also open the picture in a window")
+    return result
 
 
-def parse(about, argv):
-    """The options of a command line, checked; a position that begins with a minus is no option."""
-    chosen = parser(about).parse_args([f" {word}" if POINT.fullmatch(word) else word for word in argv])
-    check_sensor(chosen.cells, chosen.pitch)
-    if chosen.pitch >= 1 and max(chosen.cells) > 1:
-        raise ValueError(f"--pitch {chosen.pitch:g} is larger than the object, which is 1 unit across: try 0.01")
-    if chosen.depth is not None and not 0 < chosen.depth < float("inf"):
-        raise ValueError(f"--depth {chosen.depth:g}: give a positive number of units")
-    if chosen.seed < 0:
-        raise ValueError(f"--seed {chosen.seed}: give 0 or more")
-    _check_choice(chosen)
-    chosen.skin = skin(chosen.skin, chosen.seed)
-    chosen.out = chosen.out or Path(f"{chosen.mesh.stem}_imprints")
-    check_folder(chosen.out)
-    return chosen
+def parse_options(description: str, argv: list[str]) -> argparse.Namespace:
+    """The options of a command line, checked; a position may begin with a minus."""
+    options = parser(description).parse_args([f" {word}" if POINT.fullmatch(word) else word for word in argv])
+    check_array(options.cells, options.pitch)
+    if options.pitch >= 1 and max(options.cells) > 1:
+        raise ValueError(f"--pitch {options.pitch:g} is larger than the object, which is 1 unit across: try 0.01")
+    if options.depth is not None and not 0 < options.depth < float("inf"):
+        raise ValueError(f"--depth {options.depth:g}: give a positive number of units")
+    if options.seed < 0:
+        raise ValueError(f"--seed {options.seed}: give 0 or more")
+    _check_combination(options)
+    options.skin = parse_skin(options.skin, options.seed)
+    options.out = options.out or Path(f"{options.mesh.stem}_imprints")
+    check_folder(options.out)
+    return options
 
 
-def skin(text, seed):
+def parse_skin(text: str | None, seed: int) -> Skin | None:
     """The Skin of a text such as `blur=0.8,noise=0.02`; None of None."""
     if text is None:
         return None
-    known = [field.name for field in fields(Skin) if field.name != "seed"]
+    names = [field.name for field in fields(Skin) if field.name != "seed"]
     values = {}
     for part in text.split(","):
         name, _, value = (word.strip() for word in part.partition("="))
-        if name not in known:
-            raise ValueError(f"--skin {part}: there is no {name!r}; write NAME=VALUE with one of {', '.join(known)}")
+        if name not in names:
+            raise ValueError(f"--skin {part}: {name!r} is unknown; write NAME=VALUE with one of {', '.join(names)}")
         try:
             values[name] = float(value)
         except ValueError:
-            raise ValueError(f"--skin {part}: {value!r} is no number") from None
+            raise ValueError(f"--skin {part}: {value!r} is not a number") from None
     return Skin(**values, seed=seed)
 
 
-def check_folder(folder):
-    """Raises ValueError where nothing could be written to the folder, or one above it."""
+def check_folder(folder: Path) -> None:
+    """Raises ValueError unless the folder can be written to, or created."""
     if folder.exists() and not folder.is_dir():
         raise ValueError(f"--out {folder} is a file: name a folder")
-    there = next(place for place in [folder.absolute(), *folder.absolute().parents] if place.exists())
-    if not there.is_dir() or not os.access(there, os.W_OK):
-        raise ValueError(f"--out {folder}: nothing can be written to {there}")
+    existing = next(place for place in [folder.absolute(), *folder.absolute().parents] if place.exists())
+    if not existing.is_dir() or not os.access(existing, os.W_OK):
+        raise ValueError(f"--out {folder}: {existing} is not writable")
 
 
-def _check_choice(chosen):
-    """Raises ValueError for options that would change nothing together, and for methods that cannot look."""
-    way = chosen.at[0] if len(chosen.at) == 1 and chosen.at[0] in WAYS else None
-    if any(word in WAYS for word in chosen.at) and way is None:
-        raise ValueError(f"--at {' '.join(chosen.at)}: `salient` and `random` stand alone")
-    if chosen.count is not None and way is None:
-        raise ValueError("--count goes with --at salient or --at random: the places are counted already")
-    if chosen.count is not None and chosen.count < 1:
-        raise ValueError(f"--count {chosen.count}: give 1 or more")
-    if chosen.method is not None and way != "salient":
-        raise ValueError("--method goes with --at salient")
-    runs, others = teachable(METHODS, Learned())
+def _check_combination(options):
+    """Raises ValueError for options that do not apply together, and for methods that cannot run on a single mesh."""
+    selection = options.at[0] if len(options.at) == 1 and options.at[0] in SELECTIONS else None
+    if any(word in SELECTIONS for word in options.at) and selection is None:
+        raise ValueError(f"--at {' '.join(options.at)}: `salient` and `random` cannot be combined with other places")
+    if options.count is not None and selection is None:
+        raise ValueError("--count applies to --at salient or --at random only")
+    if options.count is not None and options.count < 1:
+        raise ValueError(f"--count {options.count}: give 1 or more")
+    if options.method is not None and selection != "salient":
+        raise ValueError("--method applies to --at salient only")
+    runs, others = split_runnable(METHODS, LearnedWeights())
     usable = [name for name in runs if name != "random"]
-    if chosen.method is not None and chosen.method not in usable:
-        reason = "it learns from the pipeline's objects" if chosen.method in others else "there is no such method"
-        reason = "that is --at random" if chosen.method == "random" else reason
-        raise ValueError(f"--method {chosen.method}: {reason}; choose one of {', '.join(usable)}")
+    if options.method is not None and options.method not in usable:
+        reason = "it is trained on the pipeline's objects" if options.method in others else "there is no such method"
+        reason = "use --at random" if options.method == "random" else reason
+        raise ValueError(f"--method {options.method}: {reason}; choose one of {', '.join(usable)}")

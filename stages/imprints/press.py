@@ -1,45 +1,71 @@
-"""Imprints: the array's distances as images in 0..1."""
+"""Imprints: the distances of the array as images in 0..1."""
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from .distances import check_sensors, distances, distances_at
+from stages.kit import Mesh
 
-FLAT = 1e-3  # of the pitch: relief below it is rounding in the model's coordinates, not shape
-BLOCK = 1 << 20  # cells scaled at once: in double precision 8 MB
+from .distances import check_arrays, distances, distances_at
+from .surface import Surface
+
+FLAT = 1e-3  # of the pitch: relief below it is rounding of the mesh's coordinates
+BLOCK = 1 << 20  # cells scaled at once, 8 MB in double precision
 
 
-def press(mesh, vertex, cells=(16, 16), pitch=0.01, reach=None, contact="tangent"):
+def press(
+    mesh: Mesh | Surface,
+    vertex: int,
+    cells: tuple[int, int] = (16, 16),
+    pitch: float = 0.01,
+    max_distance: float | None = None,
+    contact: str = "tangent",
+) -> np.ndarray:
     """(rows, cols) f4 in 0..1: the imprint of the virtual pressure array pressed on a mesh at one vertex (T4.3.1).
 
-    0 is contact: the cell that the object would press first. 1 is the cell farthest from the surface. So the image is
-    one of distance, dark where the pressure is high; 1 - image is the pressure. A flat place gives all zeros, and so
-    does an array that has missed the object with every cell. Parameters, errors and sources as in `distances`.
+    0 is the cell of first contact, 1 the cell farthest from the surface. So the image shows distance and is dark where
+    the pressure is high; 1 - image is the pressure. A flat place gives all zeros, and so does an array that misses the
+    object with every cell. Parameters, errors and sources as in `distances`.
     """
-    return press_many(mesh, [vertex], cells, pitch, reach, contact)[0]
+    return press_many(mesh, [vertex], cells, pitch, max_distance, contact)[0]
 
 
-def press_many(mesh, vertices, cells=(16, 16), pitch=0.01, reach=None, contact="tangent"):
+def press_many(
+    mesh: Mesh | Surface,
+    vertices: ArrayLike,
+    cells: tuple[int, int] = (16, 16),
+    pitch: float = 0.01,
+    max_distance: float | None = None,
+    contact: str = "tangent",
+) -> np.ndarray:
     """(k, rows, cols) f4 in 0..1: the imprints at vertices (k,), as `press` gives them."""
-    return normalise(distances(mesh, vertices, cells, pitch, reach, contact=contact), pitch)
+    return normalise(distances(mesh, vertices, cells, pitch, max_distance, contact=contact), pitch)
 
 
-def press_at(surface, centres, axes, cells=(16, 16), pitch=0.01, reach=None, contact="tangent"):
+def press_at(
+    surface: Mesh | Surface,
+    centres: ArrayLike,
+    axes: ArrayLike,
+    cells: tuple[int, int] = (16, 16),
+    pitch: ArrayLike = 0.01,
+    max_distance: ArrayLike | None = None,
+    contact: str = "tangent",
+) -> np.ndarray:
     """(k, rows, cols) f4 in 0..1: the imprints of arrays at centres (k, 3) with axes (k, 3, 3), see `distances_at`."""
-    return normalise(distances_at(surface, centres, axes, cells, pitch, reach, contact), pitch)
+    return normalise(distances_at(surface, centres, axes, cells, pitch, max_distance, contact), pitch)
 
 
-def normalise(distances, pitch):
+def normalise(distances: ArrayLike, pitch: ArrayLike) -> np.ndarray:
     """Distances (k, rows, cols) scaled to 0..1, each imprint by its own least and greatest (T4.3.1): f4.
 
-    pitch: a number, or (k,) one an imprint.
+    pitch: a number, or (k,), one per imprint.
 
-    The thesis names the reason: a rigid array touches first where the distance is most negative, and the shift puts
-    the zero there. An imprint whose relief is below a thousandth of the pitch is flat: all zero, not amplified noise.
+    The reason in the thesis: a rigid array touches first where the distance is most negative, and the shift makes this
+    cell zero. An imprint with a relief below a thousandth of the pitch is flat: all zero, not amplified noise.
     """
     distances = np.asarray(distances)
     if distances.ndim != 3:
         raise ValueError(f"distances must have shape (k, rows, cols), got {distances.shape}")
-    cells, pitches, _ = check_sensors(distances.shape[1:], pitch, None, len(distances))
+    cells, pitches, _ = check_arrays(distances.shape[1:], pitch, None, len(distances))
     images, step = np.empty(distances.shape, dtype=np.float32), max(1, BLOCK // (cells[0] * cells[1]))
     for i in range(0, len(distances), step):
         above = distances[i : i + step].astype(np.float64)

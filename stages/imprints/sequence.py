@@ -1,4 +1,4 @@
-"""What the sensor feels along one contour (T4.4.5)."""
+"""The measurements of the sensor along one contour (T4.4.5)."""
 
 from dataclasses import dataclass
 
@@ -7,12 +7,12 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Sequence:
-    """The frames of one contour, in the order of the walk.
+    """The frames of one contour, in the order of motion.
 
     images (frames, rows, cols) f4 in 0..1 (the cutaneous cues), normals (frames, 3) unit vectors of the array and
     positions (frames, 3) in units of the mesh (the kinesthetic cues), pitches (frames,) units between neighbouring
-    cells. Of the cut: loops, the number of its pieces; length of the piece that was followed, in units, and share of
-    it in the length of all pieces.
+    cells. loops: the number of curves of the section; length of the one that was followed, in units; share: of the
+    length of all curves.
     """
 
     images: np.ndarray

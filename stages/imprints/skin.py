@@ -1,9 +1,10 @@
-"""A real sensor's faults on top of the ideal array: elastic skin, lag, gain, noise, ceiling, dead cells (T4.2.3)."""
+"""A real sensor's faults on top of the ideal array: elastic skin, lag, gain, noise, saturation, dead cells (T4.2.3)."""
 
 import functools
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.ndimage import gaussian_filter
 
 from stages.kit.rng import rng
@@ -20,27 +21,25 @@ class Skin:
         skin = Skin(blur=0.8, hysteresis=0.05, noise=0.02, dead=0.02)
         images = skin(press_many(mesh, vertices))
 
-    What a sensel of an elastic skin over a rigid array feels is how deep the object indents the skin above it (the
-    elastic foundation of Winkler; Johnson, Contact Mechanics, 1985, section 4.3). An imprint is that already, upside
-    down: 1 - image is the depth as a share of the imprint's relief, of an array pressed until its farthest cell
-    touches. `indent` gives the imprint of an array pressed less, or more. So the steps work on 1 - image, the load, in
-    this order, each as a share of full scale unless said otherwise; the defaults change nothing.
+    A sensel of an elastic skin over a rigid array measures how deep the object indents the skin above it (the elastic
+    foundation of Winkler; Johnson, Contact Mechanics, 1985, section 4.3). An imprint contains this depth: 1 - image is
+    the depth as a share of the imprint's relief, for an array pressed until its farthest cell touches. `indent` gives
+    the imprint of an array pressed less, or more. So the steps apply to 1 - image, the load, in the order below. Values
+    are shares of full scale unless another unit is given. The defaults change nothing.
 
-    blur: standard deviation, in cells, of the Gaussian by which the skin spreads the load; none leaves at the rim, so
-    that the sum stays. An elastic cover is a low-pass filter on the load (Shimojo 1997, IEEE Trans. Robotics and
-    Automation 13); the Gaussian is our approximation of its kernel.
-    hysteresis: how far a sensel lags its load, 0..1: a rising load reads so much too low, a falling one so much too
-    high. One play operator (Krasnosel'skii and Pokrovskii 1989, Systems with Hysteresis); sums of them fit tactile
-    sensors of this kind (Sanchez-Duran et al. 2012, Microsystem Technologies 18).
-    gain: reading per load: how hard the array is pressed, and its amplifier.
-    noise: standard deviation of white Gaussian noise of the electronics, drawn anew for each imprint.
-    saturation: the ceiling of a reading, in (0, 1]: the resistance of an FSR falls no further above some force. A
-    reading is never below 0.
-    dead: share of the cells that read nothing, whatever touches them. Which is the sensor's own: the same in every
-    imprint, drawn by seed and size of the array, and more of them hold the fewer.
-    seed: which sensor it is, for dead cells and noise.
+    blur: standard deviation, in cells, of the Gaussian by which the skin spreads the load. Reflection at the border
+    keeps the sum. An elastic cover is a low-pass filter on the load (Shimojo 1997, IEEE Trans. Robotics and Automation
+    13); the Gaussian is our approximation of its kernel. hysteresis: how far a sensel lags behind its load, 0..1: the
+    reading of a rising load is too low by this amount, that of a falling one too high. One play operator
+    (Krasnosel'skii and Pokrovskii 1989, Systems with Hysteresis); sums of them fit tactile sensors of this kind
+    (Sanchez-Duran et al. 2012, Microsystem Technologies 18). gain: reading per load, which depends on the force and the
+    amplifier. noise: standard deviation of white Gaussian noise of the electronics, drawn for each imprint. saturation:
+    the highest reading, in (0, 1]: above some force the resistance of an FSR does not fall further. A reading is never
+    below 0. dead: share of the cells that always read 0. They belong to the sensor: the same in every imprint, drawn by
+    seed and size of the array. The dead cells of a smaller share are among those of a larger one. seed: of the dead
+    cells and the noise.
 
-    Raises ValueError for values out of range. Each step alone can be left out; none depends on the imprints beside it.
+    Raises ValueError for values out of range. Each step can be left out; none depends on the other imprints.
     """
 
     blur: float = 0.0
@@ -51,30 +50,30 @@ class Skin:
     dead: float = 0.0
     seed: int = 0
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         for name, (low, high) in LIMITS.items():
             value = getattr(self, name)
-            inside = isinstance(value, int | float | np.number) and low <= value <= high and np.isfinite(value)
-            if not inside or (name in POSITIVE and value == 0):
-                least = "above 0" if name in POSITIVE else "0 or more"
-                most = f" and at most {high}" if high < np.inf else ""
-                raise ValueError(f"{name} must be {least}{most}, got {value}")
+            valid = isinstance(value, int | float | np.number) and low <= value <= high and np.isfinite(value)
+            if not valid or (name in POSITIVE and value == 0):
+                lower = "above 0" if name in POSITIVE else "0 or more"
+                upper = f" and at most {high}" if high < np.inf else ""
+                raise ValueError(f"{name} must be {lower}{upper}, got {value}")
         if self.seed != int(self.seed) or self.seed < 0:
-            raise ValueError(f"seed must be a whole number of 0 or more, got {self.seed}")
+            raise ValueError(f"seed must be an integer of 0 or more, got {self.seed}")
 
-    def __call__(self, images, name="", first=0):
-        """The same imprints as this sensor would give them: f4 of the same shape, in 0..1.
+    def __call__(self, images: ArrayLike, name: str = "", first: int = 0) -> np.ndarray:
+        """The imprints as this sensor measures them: f4 of the same shape, in 0..1.
 
-        images: (k, rows, cols) in 0..1 as `press_many` gives them, each touched by a rested skin; or (k, frames, rows,
-        cols), k sequences whose frames are felt one after the other, so that hysteresis has a history (a frame of ones
-        between two touches lifts the array). name, first: whose imprints they are and the number of the first of them,
-        for the noise alone: imprint i of a name has the same noise in whatever batch it comes.
+        images: (k, rows, cols) in 0..1 as `press_many` gives them, each of a skin at rest; or (k, frames, rows, cols),
+        k sequences whose frames follow each other, so that hysteresis has a history (a frame of ones between two
+        touches lifts the array). name, first: the object's name and the number of the first imprint, used for the noise
+        alone: imprint i of a name has the same noise in every batch.
         """
         images = np.asarray(images)
         if images.ndim not in (3, 4):
             raise ValueError(f"imprints must have shape (k, rows, cols) or (k, frames, rows, cols), got {images.shape}")
         if images.size and not (images.min() >= 0 and images.max() <= 1):  # NaN fails as well
-            raise ValueError("imprints must be in 0..1: normalise or indent the distances first")
+            raise ValueError("imprints must be in 0..1: apply normalise or indent to the distances first")
         load = self._spread(1 - images.astype(np.float64))
         reading = self.gain * self._lagged(load) + self._noise(images.shape, name, first)
         reading = np.clip(reading, 0, self.saturation)
@@ -86,15 +85,15 @@ class Skin:
         return gaussian_filter(load, sigma, mode="reflect") if self.blur else load
 
     def _lagged(self, load):
-        """The play operator along the frames, from an unloaded start: a single touch is a sequence of one frame."""
+        """The play operator along the frames from an unloaded start; a single touch is a sequence of one frame."""
         if not self.hysteresis:
             return load
         frames = load if load.ndim == 4 else load[:, None]
-        felt, last = np.empty_like(frames), np.zeros(frames.shape[:1] + frames.shape[2:])
+        lagged, previous = np.empty_like(frames), np.zeros(frames.shape[:1] + frames.shape[2:])
         for frame in range(frames.shape[1]):
-            now = frames[:, frame]
-            felt[:, frame] = last = np.clip(last, now - self.hysteresis, now + self.hysteresis)
-        return felt.reshape(load.shape)
+            current = frames[:, frame]
+            lagged[:, frame] = previous = np.clip(previous, current - self.hysteresis, current + self.hysteresis)
+        return lagged.reshape(load.shape)
 
     def _noise(self, shape, name, first):
         if not self.noise:
@@ -104,18 +103,18 @@ class Skin:
 
 
 @functools.cache
-def dead_cells(cells, share, seed=0):
-    """(rows, cols) boolean: the dead cells of the array of `cells` (rows, cols) with this seed; a share of all."""
+def dead_cells(cells: tuple[int, int], share: float, seed: int = 0) -> np.ndarray:
+    """(rows, cols) boolean: the dead cells, a share of all, of an array of `cells` (rows, cols) with this seed."""
     order = rng(seed, f"dead {cells[0]}x{cells[1]}").permutation(cells[0] * cells[1]).reshape(cells)
     return order < round(share * order.size)
 
 
-def indent(distances, depth):
-    """(k, rows, cols) f4 in 0..1: imprints of a skin into which the object goes `depth` units at its highest point.
+def indent(distances: ArrayLike, depth: float) -> np.ndarray:
+    """(k, rows, cols) f4 in 0..1: imprints of a skin that the object's highest point indents by `depth` units.
 
-    distances: (k, rows, cols) from stages.imprints.distances, in units of the mesh; depth: a number of units, above 0,
-    the same for all. 0 is the cell indented most, 1 a cell that the object does not reach. Unlike `normalise`, which
-    stretches every imprint to 0..1, this keeps what is shallow shallow: as a sensor pressed to one depth has it.
+    distances: (k, rows, cols) from stages.imprints.distances, in units of the mesh; depth: in units, above 0, the same
+    for all. 0 is the cell indented deepest, 1 a cell that the object does not touch. Unlike `normalise`, which scales
+    every imprint to 0..1, this keeps shallow imprints shallow, like a sensor pressed to a fixed depth.
     """
     distances = np.asarray(distances, dtype=np.float64)
     if distances.ndim != 3:
@@ -124,5 +123,5 @@ def indent(distances, depth):
         raise ValueError(f"depth must be a positive number of units, got {depth}")
     if not np.isfinite(distances).all():
         raise ValueError("distances must be finite numbers of units")
-    below = distances - distances.min(axis=(1, 2), keepdims=True)
-    return np.minimum(below / depth, 1).astype(np.float32)
+    depths = distances - distances.min(axis=(1, 2), keepdims=True)
+    return np.minimum(depths / depth, 1).astype(np.float32)

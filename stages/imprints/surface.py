@@ -1,4 +1,4 @@
-"""A mesh made ready for touching."""
+"""A mesh prepared for touching."""
 
 from functools import lru_cache
 
@@ -8,40 +8,40 @@ from stages.kit import Mesh
 
 from .kernels import face_tree, measure
 
-LIFT = 1e-6  # of the mesh's diagonal: so near the plane a face counts as at it; 16 steps of single precision
+LIFT = 1e-6  # of the mesh's diagonal: a face within this distance of the plane is at it; 16 steps in f4
 
 
 class Surface:
-    """A mesh made ready for touching: its faces in a tree of boxes, built once (20 ms for 50,000 faces).
+    """A mesh prepared for touching: its faces in a tree of boxes (20 ms for 50,000 faces).
 
-    mesh: a Mesh, not changed afterwards. Faces without area are nowhere felt. Make one where a mesh is touched time and
-    again; it costs less to build than to send to another process.
+    mesh: a Mesh, which must not change afterwards. Faces without area are ignored. Use a Surface to touch a mesh many
+    times. Building one costs less than sending it to another process.
     """
 
-    def __init__(self, mesh):
+    def __init__(self, mesh: Mesh) -> None:
         if not isinstance(mesh, Mesh):
             raise ValueError(f"touch a Mesh (stages.kit) or a Surface of one, got {type(mesh).__name__}")
         self.mesh = mesh
         solid = mesh.face_areas > 0
         self._tree = face_tree(mesh.vertices[mesh.faces[solid]], 2 * mesh.face_areas[solid])
 
-    def measure(self, centres, axes, cells, pitches):
-        """(k, rows, cols) signed distances of the cells of arrays, inf where missed; see `distances`, which checks.
+    def measure(self, centres: np.ndarray, axes: np.ndarray, cells: tuple[int, int], pitches: np.ndarray) -> np.ndarray:
+        """(k, rows, cols) signed distances of the cells of arrays, inf where missed. `distances` checks the arguments.
 
         centres (k, 3), axes (k, 3, 3), pitches (k,), all f8. The result for an array does not depend on the others.
         """
         if not len(self._tree[0]):
             return np.full((len(centres), *cells), np.inf)
-        # Writeable: for an array that is not, numba would compile everything anew.
-        places = [np.require(values, np.float64, "CW") for values in (centres, axes, pitches)]
+        # Writeable: for a read-only array numba would compile everything again.
+        places = [np.require(values, np.float64, ["C", "W"]) for values in (centres, axes, pitches)]
         return measure(*self._tree, self.mesh.diagonal, LIFT * self.mesh.diagonal, cells, *places)
 
 
-@lru_cache(maxsize=2)  # whoever touches one mesh point by point, beside another
-def _surface(mesh):
+@lru_cache(maxsize=2)  # for touching one mesh, or two in turn, point by point
+def _cached_surface(mesh):
     return Surface(mesh)
 
 
-def ready(mesh):
-    """The Surface of a Mesh, as a rule made once; a Surface as it is."""
-    return mesh if isinstance(mesh, Surface) else _surface(mesh)
+def as_surface(mesh: Mesh | Surface) -> Surface:
+    """The Surface of a Mesh, cached; a Surface is returned as it is."""
+    return mesh if isinstance(mesh, Surface) else _cached_surface(mesh)

@@ -1,4 +1,4 @@
-"""What a process does once before it measures seconds: the first touch loads compiled code, which is no work."""
+"""Warm-up before time is measured: the first touch of a process loads compiled code."""
 
 import functools
 
@@ -10,7 +10,7 @@ from .press import press
 
 
 @functools.cache
-def warm_up():
-    """Touches a tetrahedron, once a process."""
+def warm_up() -> None:
+    """Touches a tetrahedron, the first time it is called in a process."""
     corners = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
-    press(Mesh(corners, [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]), 0)
+    press(Mesh(corners, np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])), 0)

@@ -1,15 +1,12 @@
-"""What several stages share: mesh arrays, camera, rays, files, params, parallel map, statistics.
+"""What several stages share: mesh arrays, camera, rays, files, settings, parallel map, statistics.
 
 The kit imports no stage. Its geometry speaks arrays only; embree, joblib and OmegaConf stay inside the file that
-adapts them.
+adapts them. What only the pipeline needs is imported from its file: `stages.kit.run`, `stages.kit.workspace`.
 """
 
 from .camera import Viewpoint
 from .mesh import Mesh
-from .parallel import parallel_map
-from .params import params
 from .rays import RayScene
-from .run import StageRun, arguments
 from .timing import Stopwatch
 
-__all__ = ["Mesh", "RayScene", "StageRun", "Stopwatch", "Viewpoint", "arguments", "parallel_map", "params"]
+__all__ = ["Mesh", "RayScene", "Stopwatch", "Viewpoint"]

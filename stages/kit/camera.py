@@ -1,5 +1,6 @@
 """The thesis's virtual camera: orthographic, 10 units from the origin, view angle 6 degrees (T3.2.6)."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,13 +22,13 @@ class Viewpoint:
     roll: float = 0.0
 
     @property
-    def name(self):
+    def name(self) -> str:
         """A short name for files and tables, for example `az120_el-45`."""
         name = f"az{self.azimuth:g}_el{self.elevation:g}"
         return name if self.roll == 0 else f"{name}_ro{self.roll:g}"
 
     @property
-    def axes(self):
+    def axes(self) -> np.ndarray:
         """(3, 3) rows right, up, back: the camera's axes in the world; back points from the origin to the camera."""
         az, el, roll = np.radians([self.azimuth, self.elevation, self.roll])
         back = np.array([np.cos(el) * np.cos(az), np.cos(el) * np.sin(az), np.sin(el)])
@@ -36,12 +37,12 @@ class Viewpoint:
         return np.array([np.cos(roll) * right - np.sin(roll) * up, np.sin(roll) * right + np.cos(roll) * up, back])
 
 
-def pixels_per_unit(rows):
-    """Image rows a unit of the mesh takes: 858.7 at 900 rows (T eq. 3.11)."""
+def pixels_per_unit(rows: int) -> float:
+    """Image rows per unit of the mesh: 858.7 at 900 rows (T eq. 3.11)."""
     return rows / (2 * DISTANCE * np.tan(np.radians(VIEW_ANGLE) / 2))
 
 
-def project(points, viewpoint, size):
+def project(points: np.ndarray, viewpoint: Viewpoint, size: Sequence[int]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """World points (k, 3) to image: (rows (k,), columns (k,), depths (k,)), fractional pixels and units.
 
     Pixel centres lie at whole numbers; depth is the distance from the camera's plane along the view axis.
@@ -52,7 +53,9 @@ def project(points, viewpoint, size):
     return (h - 1) / 2 - up * scale, (w - 1) / 2 + right * scale, DISTANCE - back
 
 
-def pixel_rays(rows, columns, viewpoint, size):
+def pixel_rays(
+    rows: np.ndarray, columns: np.ndarray, viewpoint: Viewpoint, size: Sequence[int]
+) -> tuple[np.ndarray, np.ndarray]:
     """Rays through pixels: (origins (k, 3), directions (k, 3) of length one), the camera's plane to the object.
 
     Exact where T eq. 3.12 to 3.16 turn offsets into angles and back: in an orthographic camera every ray runs parallel

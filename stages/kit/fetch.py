@@ -7,7 +7,9 @@ import tarfile
 import tempfile
 import zipfile
 import zlib
+from collections.abc import Iterable, Iterator
 from pathlib import Path, PurePosixPath
+from typing import IO
 
 from .files import sha256
 
@@ -16,13 +18,13 @@ class FetchError(RuntimeError):
     """A file could be neither found nor fetched, or is not the one expected; the message says what to do by hand."""
 
 
-def cache_folder():
+def cache_folder() -> Path:
     """Where fetched files lie: HAPTIC_GLANCE_CACHE, or haptic-glance below the user's cache folder."""
     base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
     return Path(os.environ.get("HAPTIC_GLANCE_CACHE") or Path(base) / "haptic-glance")
 
 
-def fetch_package(requirement, filename, digest):
+def fetch_package(requirement: str, filename: str, digest: str) -> Path:
     """Path of a wheel named by requirement (`name==version`), file name and SHA-256, downloaded once.
 
     The download goes through the machine's own pip, so that its index and proxy settings hold; the file appears in
@@ -33,7 +35,7 @@ def fetch_package(requirement, filename, digest):
     return _fetch(requirement, filename, digest, lambda folder: _pip(requirement, digest, folder, options), by_hand)
 
 
-def fetch_sdist(requirement, filename, digest):
+def fetch_sdist(requirement: str, filename: str, digest: str) -> Path:
     """Path of a source package, as fetch_package; nothing of it is built or run.
 
     pip asks a source package for its name and version before it lets go of it, and that would run its setup.py. So pip
@@ -73,7 +75,7 @@ def prepare_metadata_for_build_wheel(folder, config_settings=None):
 """
 
 
-def fetch_npm(package, filename, digest):
+def fetch_npm(package: str, filename: str, digest: str) -> Path:
     """Path of an npm package named by `name@version`, file name and SHA-256, as fetch_package; nothing of it is run.
 
     The download goes through the machine's own npm. Raises FetchError, saying where to put the file by hand, on a
@@ -92,7 +94,7 @@ def fetch_npm(package, filename, digest):
     return _fetch(package, filename, digest, download, f"on a machine with Node.js by `npm pack {package}`")
 
 
-def fetch_debian(filename, digest):
+def fetch_debian(filename: str, digest: str) -> Path:
     """Path of a Debian package named by its file (`name_version_architecture.deb`) and SHA-256, downloaded once.
 
     As fetch_package, through the machine's own apt-get, which needs no root for a download. Raises FetchError, saying
@@ -143,29 +145,30 @@ def _apt_download(package, folder):
     return next((line for line in done.stderr.splitlines() if line.startswith("E:")), "another file came")
 
 
-def debian_files(path):
+def debian_files(path: str | Path) -> Iterator[tuple[str, IO[bytes]]]:
     """Yields (name, binary stream) of the files in a Debian package, in its order, which is never unpacked to disk.
 
-    Needs neither root nor dpkg: a .deb is an ar archive (a header of 60 characters a member, an even number of bytes
+    Needs neither root nor dpkg: a .deb is an ar archive (a header of 60 characters per member, an even number of bytes
     each) with a compressed data.tar inside. Read a stream before the next file is asked for. Raises FetchError for a
-    file that is no such package.
+    file of another kind.
     """
     with open(path, "rb") as package:
         if package.read(8) != b"!<arch>\n":
-            raise FetchError(f"{path} is no Debian package: remove it, so that it is fetched again")
+            raise FetchError(f"{path} is not a Debian package: remove it, so that it is fetched again")
         while len(header := package.read(60)) == 60 and not header.startswith(b"data.tar"):
             size = int(header[48:58])
             package.seek(size + size % 2, os.SEEK_CUR)
         try:
             with tarfile.open(fileobj=package, mode="r|*") as data:
                 for member in data:
-                    if member.isfile():
-                        yield member.name.removeprefix("./"), data.extractfile(member)
+                    content = data.extractfile(member) if member.isfile() else None
+                    if content is not None:
+                        yield member.name.removeprefix("./"), content
         except (tarfile.TarError, EOFError) as error:
             raise FetchError(f"{path} is damaged ({error}): remove it, so that it is fetched again") from None
 
 
-def read_members(archive, names):
+def read_members(archive: str | Path | IO[bytes], names: Iterable[str]) -> Iterator[tuple[str, bytes]]:
     """Yields (name, bytes) of the named members of a zip archive, which is never unpacked to disk.
 
     A member whose name would escape a folder is refused; a missing one raises FetchError that names it.
@@ -183,7 +186,7 @@ def read_members(archive, names):
                 raise FetchError(f"{archive}: member {name!r} is damaged ({error})") from None
 
 
-def read_tar_members(archive, names):
+def read_tar_members(archive: str | Path, names: Iterable[str]) -> Iterator[tuple[str, bytes]]:
     """Yields (name, bytes) of the named members of a compressed tar archive, in its order; never unpacked to disk.
 
     Raises FetchError for a file that is damaged and for members that are missing, which it names.
@@ -192,9 +195,10 @@ def read_tar_members(archive, names):
     try:
         with tarfile.open(archive, mode="r|*") as stored:
             for member in stored:
-                if member.isfile() and member.name in missing:
+                content = stored.extractfile(member) if member.isfile() and member.name in missing else None
+                if content is not None:
                     missing.remove(member.name)
-                    yield member.name, stored.extractfile(member).read()
+                    yield member.name, content.read()
                 if not missing:
                     return
     except (tarfile.TarError, EOFError, zlib.error) as error:

@@ -1,23 +1,29 @@
 """Files that are whole or absent: every writer goes through a temporary name and moves it into place."""
 
 import csv
+import gzip
 import hashlib
 import json
 import os
 import tempfile
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pandas as pd
 
+from .extras import from_extra
 from .mesh import Mesh
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 PART = ".part-"  # how the name of a file begins that is not whole yet
 
 
 @contextmanager
-def whole_file(path):
+def whole_file(path: str | Path) -> Iterator[Path]:
     """A temporary path beside `path`, moved onto it when the block ends well and removed when it fails."""
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -31,60 +37,67 @@ def whole_file(path):
         Path(temporary).unlink(missing_ok=True)
 
 
-def write_text(path, text):
+def write_text(path: str | Path, text: str) -> None:
     """Writes text, utf-8, newline at the end."""
     with whole_file(path) as part:
         part.write_text(text if text.endswith("\n") else text + "\n", encoding="utf-8")
 
 
-def write_json(path, value):
+def write_json(path: str | Path, value: Any) -> None:
     """Writes JSON with sorted keys, so that equal values give equal bytes."""
     write_text(path, json.dumps(value, indent=2, sort_keys=True, ensure_ascii=False))
 
 
-def read_json(path):
-    """Reads a JSON file; ValueError that names it when it is none."""
+def read_json(path: str | Path) -> Any:
+    """Reads a JSON file; ValueError that names it when it is not valid."""
     try:
         return json.loads(Path(path).read_text(encoding="utf-8"))
     except ValueError as error:
-        raise ValueError(f"{path} is no JSON: {error}") from None
+        raise ValueError(f"{path} is not valid JSON: {error}") from None
 
 
-def write_arrays(path, **arrays):
+def write_arrays(path: str | Path, **arrays: Any) -> None:
     """Writes arrays to a compressed .npz; equal arrays give equal bytes."""
     with whole_file(path) as part, open(part, "wb") as stream:
         np.savez_compressed(stream, **arrays)
 
 
-def read_arrays(path):
+def read_arrays(path: str | Path) -> dict[str, np.ndarray]:
     """Reads an .npz to a dict of arrays; never unpickles."""
     with np.load(path, allow_pickle=False) as stored:
         return {name: stored[name] for name in stored.files}
 
 
-def write_table(path, frame):
-    """Writes a tidy frame to CSV: no index, six significant digits."""
+def write_table(path: str | Path, frame: "pd.DataFrame") -> None:
+    """Writes a tidy frame to CSV: no index, six significant digits; compressed where the name ends with `.gz`."""
+    content = frame.to_csv(index=False, float_format="%.6g", quoting=csv.QUOTE_MINIMAL).encode()
+    if Path(path).suffix == ".gz":
+        content = gzip.compress(content, mtime=0)  # no time inside: equal tables give equal bytes
     with whole_file(path) as part:
-        frame.to_csv(part, index=False, float_format="%.6g", quoting=csv.QUOTE_MINIMAL)
+        part.write_bytes(content)
 
 
-def read_table(path):
-    """Reads a tidy CSV."""
-    return pd.read_csv(path)
+def read_table(path: str | Path, dtype: Any = None) -> "pd.DataFrame":
+    """Reads a tidy CSV, compressed or not. dtype: the types of columns that are not to be guessed."""
+    with from_extra():
+        import pandas as pd
+
+    return pd.read_csv(path, dtype=dtype)
 
 
-def sha256(path):
+def sha256(path: str | Path) -> str:
     """The file's SHA-256, in hex."""
     with open(path, "rb") as stream:
         return hashlib.file_digest(stream, "sha256").hexdigest()
 
 
-def write_mesh(path, mesh):
+def write_mesh(path: str | Path, mesh: Mesh) -> None:
     """Writes a kit Mesh to .npz."""
     colors = {} if mesh.colors is None else {"colors": mesh.colors}
     write_arrays(path, vertices=mesh.vertices, faces=mesh.faces, **colors)
 
 
-def read_mesh(path):
+def read_mesh(path: str | Path) -> Mesh:
     """Reads a kit Mesh from .npz."""
-    return Mesh(**read_arrays(path))
+    arrays = read_arrays(path)
+    return Mesh(arrays["vertices"], arrays["faces"], arrays.get("colors"))

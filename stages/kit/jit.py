@@ -1,7 +1,9 @@
 """Compiled kernels: numba, kept on disk between runs."""
 
 import hashlib
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numba
 
@@ -10,7 +12,7 @@ from .fetch import cache_folder
 inlined = numba.njit(inline="always", error_model="numpy")  # where a call costs as much as what it does
 
 
-def kept_in(file):
+def kept_in(file: str) -> Path:
     """The folder in which the kernels of the folder of a file (`__file__`) are kept.
 
     numba renews a kept kernel when its own file changes, not when a kernel of another file that it calls does: so all
@@ -21,7 +23,7 @@ def kept_in(file):
     return cache_folder() / "kernels" / digest
 
 
-def kernel_of(file, **options):
+def kernel_of(file: str, **options: Any) -> Callable[[Callable[..., Any]], Any]:
     """The decorator for all kernels of the folder that a file (`__file__`) lies in; options are numba's.
 
     error_model: divides as numpy does, with no branch on zero. Where kernels are kept is numba's setting for the whole
@@ -29,11 +31,12 @@ def kernel_of(file, **options):
     """
     folder = str(kept_in(file))
 
-    def kernel(function):
-        before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, folder
+    def kernel(function: Callable[..., Any]) -> Any:
+        config: Any = getattr(numba, "config")  # noqa: B009  # numba does not declare it
+        before, config.CACHE_DIR = config.CACHE_DIR, folder
         try:
             return numba.njit(cache=True, nogil=True, error_model="numpy", **options)(function)
         finally:
-            numba.config.CACHE_DIR = before
+            config.CACHE_DIR = before
 
     return kernel

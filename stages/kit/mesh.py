@@ -22,7 +22,7 @@ class Mesh:
     colors: np.ndarray | None = None
     texture: Texture | None = None
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         for name in ("faces", "colors"):
             values = getattr(self, name)
             if values is not None and np.size(values) and np.asarray(values).dtype.kind not in "iu":
@@ -48,33 +48,33 @@ class Mesh:
             raise ValueError(f"the texture must be of {len(faces)} faces, got {len(self.texture.image)}")
 
     @cached_property
-    def face_crosses(self):
+    def face_crosses(self) -> np.ndarray:
         """(m, 3) cross products of two edges: normal times twice the area."""
         a, b, c = self.vertices[self.faces].transpose(1, 0, 2)
         return np.cross(b - a, c - a)
 
     @cached_property
-    def face_areas(self):
+    def face_areas(self) -> np.ndarray:
         """(m,) areas, in square units of the mesh."""
         return np.linalg.norm(self.face_crosses, axis=1) / 2
 
     @cached_property
-    def face_normals(self):
+    def face_normals(self) -> np.ndarray:
         """(m, 3) unit normals; zero where the face has no area."""
         return unit(self.face_crosses)
 
     @cached_property
-    def vertex_normals(self):
+    def vertex_normals(self) -> np.ndarray:
         """(n, 3) unit normals, area-weighted over the faces around; zero at a vertex in no face."""
         return unit(corner_sum(self, np.repeat(self.face_crosses[:, None], 3, axis=1)))
 
     @cached_property
-    def vertex_areas(self):
+    def vertex_areas(self) -> np.ndarray:
         """(n,) a third of the area of the faces around each vertex; zero at a vertex in no face."""
         return corner_sum(self, np.repeat(self.face_areas[:, None] / 3, 3, axis=1))
 
     @cached_property
-    def adjacency(self):
+    def adjacency(self) -> sparse.csr_matrix:
         """(n, n) sparse boolean matrix: True where an edge joins two vertices."""
         tail = self.faces.ravel()
         head = np.roll(self.faces, -1, axis=1).ravel()
@@ -83,24 +83,24 @@ class Mesh:
         return sparse.csr_matrix((ones, (np.r_[tail, head], np.r_[head, tail])), shape=(n, n))
 
     @cached_property
-    def edge_counts(self):
+    def edge_counts(self) -> tuple[np.ndarray, np.ndarray]:
         """(edges (e, 2) i8 with the lower id first, counts (e,)): how many faces share each edge."""
         edges = np.sort(np.stack([self.faces, np.roll(self.faces, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
         return np.unique(edges, axis=0, return_counts=True)
 
     @property
-    def watertight(self):
+    def watertight(self) -> bool:
         """True when every edge is shared by exactly two faces."""
         return len(self.faces) > 0 and bool((self.edge_counts[1] == 2).all())
 
     @cached_property
-    def diagonal(self):
+    def diagonal(self) -> float:
         """Length of the bounding-box diagonal; vertices in no face do not count, but on a mesh without faces."""
         used = np.full(len(self.vertices), len(self.faces) == 0)
         used[self.faces.ravel()] = True
         return float(np.linalg.norm(np.ptp(self.vertices[used], axis=0)))
 
-    def rings(self, vertices, count):
+    def rings(self, vertices: np.ndarray, count: int) -> np.ndarray:
         """(n,) boolean: the given vertices and all within `count` edges of them."""
         near = np.zeros(len(self.vertices), dtype=bool)
         near[np.asarray(vertices, dtype=np.int64)] = True
@@ -109,14 +109,14 @@ class Mesh:
         return near
 
 
-def unit(vectors):
+def unit(vectors: np.ndarray) -> np.ndarray:
     """Vectors of length one along the last axis; a zero vector stays zero."""
     length = np.linalg.norm(vectors, axis=-1, keepdims=True)
     return np.divide(vectors, length, out=np.zeros_like(vectors, dtype=np.float64), where=length > 0)
 
 
-def corner_sum(mesh, values):
-    """Sums values (m, 3) or (m, 3, d), one a face corner, onto the vertices: (n,) or (n, d)."""
+def corner_sum(mesh: Mesh, values: np.ndarray) -> np.ndarray:
+    """Sums values (m, 3) or (m, 3, d), one per face corner, onto the vertices: (n,) or (n, d)."""
     n = len(mesh.vertices)
     ids = mesh.faces.ravel()
     flat = values.reshape(len(ids), int(np.prod(values.shape[2:])))

@@ -2,33 +2,39 @@
 
 import os
 import sys
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any, TypeVar
 
 from joblib import Parallel, delayed, parallel_config
 from tqdm import tqdm
 
-from .params import load_params
+Item = TypeVar("Item")
+Result = TypeVar("Result")
 
 
-def parallel_map(function, items, desc, backend=None, workers=None):
-    """[function(item) for item in items] on the workers of `parallel` in params.yaml, in the order of the items.
+def parallel_map(
+    function: Callable[[Item], Result],
+    items: Iterable[Item],
+    desc: str,
+    backend: str = "loky",
+    workers: int = -1,
+) -> list[Result]:
+    """[function(item) for item in items], side by side, in the order of the items.
 
-    backend: `loky` (processes here), `dask` (a cluster: DASK_SCHEDULER names its scheduler, one is started here
-    without it) or `sequential`. An exception of an item ends the map: functions that may meet bad input return the
-    reason instead. The bar is silent when stderr is no terminal.
+    backend: `loky` (processes here), `dask` (a cluster: DASK_SCHEDULER names its scheduler; without it one is started
+    here) or `sequential`. An exception of an item ends the map: functions that may meet bad input return the reason
+    instead. The bar is silent when stderr is not a terminal.
     """
     items = list(items)
-    settings = load_params().get("parallel", {})
-    backend = backend or settings.get("backend", "loky")
-    workers = workers or settings.get("workers", -1)
     return list(progress(_results(function, items, backend, workers), desc, len(items)))
 
 
-def progress(items, desc, total=None):
+def progress(items: Iterable[Item], desc: str, total: int | None = None) -> Iterable[Item]:
     """The items, with a progress bar on a terminal; silent elsewhere."""
     return tqdm(items, desc=desc, total=total, disable=not sys.stderr.isatty())
 
 
-def _results(function, items, backend, workers):
+def _results(function: Callable[[Item], Result], items: list[Item], backend: str, workers: int) -> Iterator[Any]:
     if backend == "sequential" or len(items) < 2:
         yield from map(function, items)
     elif backend == "dask":

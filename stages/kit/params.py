@@ -2,27 +2,24 @@
 
 import difflib
 import importlib
-from functools import cache
 from pathlib import Path
+from typing import Any, TypeVar
 
 from omegaconf import OmegaConf
 from omegaconf.errors import OmegaConfBaseException
 from yaml import YAMLError
 
 FILE = Path("params.yaml")
-SECTIONS = (
-    "meshes", "views", "conspicuity", "weights", "salient_points", "lod", "scene", "fixation", "imprints",
-    "classification", "exploration", "touch_stability", "classes", "sensor_size", "contours", "sequences", "transfer",
-    "stability", "report",
-)  # fmt: skip
-COMMON = {"profile": str, "seed": int, "parallel": dict}
+COMMON = {"profile": str, "seed": int, "parallel": dict, "sets": list, "graph": dict, "report": dict}
+
+Settings = TypeVar("Settings")
 
 
 class ParamsError(ValueError):
     """A setting that no schema knows, or of the wrong type; the message names the nearest right one."""
 
 
-def load_params(path=FILE):
+def load_params(path: str | Path = FILE) -> dict[str, Any]:
     """The whole params.yaml as plain dicts; {} where there is none."""
     path = Path(path)
     if not path.exists():
@@ -30,63 +27,50 @@ def load_params(path=FILE):
     try:
         values = OmegaConf.to_container(OmegaConf.load(path))
     except (YAMLError, OmegaConfBaseException) as error:
-        raise ParamsError(f"{path} is no YAML: {' '.join(str(error).split())}") from None
+        raise ParamsError(f"{path} is not valid YAML: {' '.join(str(error).split())}") from None
     if not isinstance(values, dict):
         raise ParamsError(f"{path} must hold sections, not a {type(values).__name__}")
-    return values
+    return {str(key): value for key, value in values.items()}
 
 
-def schema(section):
+def section_of(schema: type) -> str:
+    """The section that a schema belongs to: `lod` for stages.lod.schema.Params."""
+    return schema.__module__.split(".")[-2]
+
+
+def schema_of(section: str) -> type:
     """The typed schema of a section: the dataclass `Params` of stages/SECTION/schema.py."""
     return importlib.import_module(f"stages.{section}.schema").Params
 
 
-@cache
-def params(section, path=FILE):
-    """The settings of one section of params.yaml, as an instance of its schema.
-
-    Raises ParamsError for a key that the schema does not have, or a value of the wrong type.
-    """
-    if not Path(path).exists():
-        raise ParamsError(f"no {path} here: run this in the repository root, or make it by `python -m stages.compose`")
-    values = load_params(path)
-    check_common(values)
-    if section not in values:
-        raise ParamsError(f"{path} has no section {section}: make it anew by `python -m stages.compose`")
-    return check_section(section, values[section])
-
-
-def check_section(section, values):
-    """Checks a section's values against its schema and returns them as an instance of it."""
+def check_section(schema: type[Settings], values: Any) -> Settings:
+    """Checks the values of a section against its schema and returns them as an instance of it."""
+    section = section_of(schema)
     if not isinstance(values, dict):
-        raise ParamsError(f"{section}: {values!r} is no section of settings")
-    typed = OmegaConf.structured(schema(section))
-    _check_keys(section, values, OmegaConf.to_container(typed, throw_on_missing=False))
+        raise ParamsError(f"{section}: {values!r} is not a section of settings")
+    typed = OmegaConf.structured(schema)
+    known: Any = OmegaConf.to_container(typed, throw_on_missing=False)
+    _check_keys(section, values, list(known))
     try:
-        return OmegaConf.to_object(OmegaConf.merge(typed, values))
+        return OmegaConf.to_object(OmegaConf.merge(typed, values))  # type: ignore[return-value]  # of the schema's type
     except OmegaConfBaseException as error:
         key = f"{section}.{error.full_key}" if error.full_key else section
         raise ParamsError(f"{key}: {str(error).splitlines()[0]}") from None
 
 
-def check(values):
-    """Checks a whole composed configuration; raises ParamsError at the first fault."""
-    check_common(values)
-    for section in SECTIONS:
-        check_section(section, values.get(section, {}))
-
-
-def check_common(values):
+def check_common(values: dict[str, Any]) -> None:
     """Checks the names of the sections and the settings that all stages share."""
-    _check_keys("", values, dict.fromkeys((*COMMON, *SECTIONS)))
+    if "graph" not in values or "sets" not in values:
+        raise ParamsError(f"{FILE} is of an older layout: run `python -m stages.compose` to make it anew")
+    _check_keys("", values, [*COMMON, *values["sets"]])
     for key, kind in COMMON.items():
         if key in values and not isinstance(values[key], kind):
-            raise ParamsError(f"{key}: {values[key]!r} is no {kind.__name__}")
+            raise ParamsError(f"{key}: {values[key]!r} is not of type {kind.__name__}")
     if values.get("seed", 0) < 0:
         raise ParamsError(f"seed: {values['seed']} is negative")
 
 
-def _check_keys(where, values, known):
+def _check_keys(where: str, values: dict[str, Any], known: list[Any]) -> None:
     for key in values:
         if key not in known:
             name = f"{where}.{key}" if where else key

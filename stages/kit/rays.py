@@ -6,6 +6,8 @@ import numpy as np
 from embreex import rtcore_scene
 from embreex.mesh_construction import TriangleMesh
 
+from .mesh import Mesh
+
 
 @dataclass(frozen=True)
 class Hits:
@@ -15,27 +17,27 @@ class Hits:
     face: np.ndarray
 
     @property
-    def hit(self):
+    def hit(self) -> np.ndarray:
         """(k,) boolean: the ray met the mesh."""
         return self.face >= 0
 
 
 class RayScene:
-    """A mesh made ready for rays; build it once a mesh, never send it to another process (embree cannot pickle).
+    """A mesh made ready for rays; build it once per mesh, never send it to another process (embree cannot pickle).
 
     Distances are refined in double precision against the hit face's plane (Moeller and Trumbore 1997, T [221]), since
     embree itself works in single precision.
     """
 
-    def __init__(self, mesh):
+    def __init__(self, mesh: Mesh) -> None:
         self.mesh = mesh
-        self._scene = rtcore_scene.EmbreeScene(robust=True)
+        self._scene = rtcore_scene.EmbreeScene(robust=True)  # pyright: ignore[reportAttributeAccessIssue] (no stub)
         triangles = mesh.vertices[mesh.faces].astype(np.float32)
         self._geometry = TriangleMesh(self._scene, triangles) if len(triangles) else None
         offsets = np.einsum("ij,ij->i", mesh.face_normals, mesh.vertices[mesh.faces[:, 0]])
-        self._planes = np.column_stack([mesh.face_normals, offsets])  # one gather a hit instead of three
+        self._planes = np.column_stack([mesh.face_normals, offsets])  # one gather per hit instead of three
 
-    def cast(self, origins, directions):
+    def cast(self, origins: np.ndarray, directions: np.ndarray) -> Hits:
         """First hits of rays from origins (k, 3) along unit directions (k, 3), both sides of a face counted."""
         origins = np.ascontiguousarray(origins, dtype=np.float64)
         directions = np.ascontiguousarray(directions, dtype=np.float64)
@@ -54,7 +56,7 @@ class RayScene:
         return Hits(distance, face)
 
 
-def barycentric(mesh, faces, points):
+def barycentric(mesh: Mesh, faces: np.ndarray, points: np.ndarray) -> np.ndarray:
     """(k, 3) barycentric coordinates of points (k, 3), each in the plane of its face of faces (k,)."""
     a, b, c = mesh.vertices[mesh.faces[faces]].transpose(1, 0, 2)
     normal = mesh.face_crosses[faces]

@@ -1,12 +1,13 @@
 """What makes a training in torch repeatable."""
 
+from collections.abc import Iterator
 from contextlib import contextmanager
 
 import torch
 
 
 @contextmanager
-def repeatable(seed):
+def repeatable(seed: int) -> Iterator[None]:
     """One thread, deterministic algorithms and a fixed seed, all put back at the end.
 
     Sums in another order round differently and training blows the difference up, so that a result would depend on

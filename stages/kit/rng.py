@@ -5,6 +5,6 @@ import zlib
 import numpy as np
 
 
-def rng(seed, name):
+def rng(seed: int, name: object) -> np.random.Generator:
     """A generator for one named item."""
     return np.random.default_rng([seed, zlib.crc32(str(name).encode("utf-8"))])

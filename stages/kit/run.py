@@ -1,158 +1,160 @@
-"""The run of one stage: its scratch folder, its measurements, and the move into place at the end."""
+"""The run of one stage on one data set: its inputs, its rows, its objects, and the move into place at the end."""
 
-import argparse
 import functools
-import hashlib
-import os
 import shutil
-import sys
-import traceback
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
+from types import TracebackType
+from typing import Any, TypeVar
 
-import pandas as pd
-
-from .fetch import FetchError
-from .files import PART, read_json, sha256, write_json, write_table
+from .code import stage_digest
+from .files import write_json
+from .guard import only_reads
+from .objects import Objects, key_of
 from .parallel import parallel_map, progress
-from .params import load_params
+from .rows import SUFFIX, write_rows
+from .workspace import Workspace
 
-DATA = Path("data")
-PARTIAL = DATA / ".partial"
-MEASUREMENTS = Path("reports/measurements")
-METRICS = Path("reports/metrics")
-FIRST, LAST = ("dataset", "object", "method"), ("metric", "value", "seconds", "seed")  # columns of every table
+Rows = list[dict[str, Any]]
+Item = TypeVar("Item")
+Result = TypeVar("Result")
 
 
 class StageRun:
-    """Where one run of a stage works, so that `data/STAGE` is whole or absent and a killed run goes on.
+    """Where one run of a stage works, so that `data/SET/STAGE` is whole or absent and a killed run goes on.
 
-    Everything is written to a scratch folder whose name holds a digest of the settings, the code and the inputs.
-    `each` skips the items that an interrupted run with the same digest has finished. When the block ends well, the
-    folder becomes `data/STAGE`, and the rows become `reports/measurements/STAGE.csv`: the seconds in them differ from
-    run to run, so they stay out of `data/`, whose bytes do not.
+    Everything is written to a scratch folder. `each` keeps what it makes of an object in a cache, and takes from there
+    what an earlier or killed run has made of the same inputs. When the block ends well, the folder becomes
+    `data/SET/STAGE`, and the rows become `reports/measurements/SET/STAGE.csv.gz`: the seconds in them differ from run
+    to run, so they stay out of `data/`, whose bytes do not.
 
-        with StageRun("lod", inputs=("meshes", "salient_points")) as run:
-            run.each(functools.partial(process, settings=settings), run.objects)
+        with StageRun(workspace, "lod", COLUMNS, inputs=("meshes", "salient_points")) as run:
+            work = functools.partial(process, data=workspace.data, settings=settings, seed=run.seed)
+            run.each(work, run.objects, reads=("meshes/{}.npz", "salient_points/{}.npz"))
+
+    columns: those of the stage's rows beside the common ones, each with a word on it (see stages.kit.rows).
+    inputs: the stages of the same data set whose folders it reads.
     """
 
-    def __init__(self, stage, inputs=()):
-        settings = load_params()
+    def __init__(
+        self, workspace: Workspace, stage: str, columns: Mapping[str, str] | None = None, inputs: Sequence[str] = ()
+    ) -> None:
+        self.workspace = workspace
         self.stage = stage
-        self.target = DATA / stage
-        self.dataset = settings.get("meshes", {}).get("source", "none")
-        self.seed = settings.get("seed", 0)
-        chosen = {key: value for key, value in settings.items() if key != "parallel"}  # it may read others' sections
-        self.inputs = [DATA / name for name in inputs]
-        self.folder = PARTIAL / f"{stage}-{_digest(chosen, self.inputs)}"
-        self.rows = []
+        self.columns = columns or {}
+        self.seed = workspace.seed
+        self.dataset = workspace.dataset
+        self.target = workspace.data / stage
+        self.inputs = [workspace.data / name for name in inputs]
+        self.folder = workspace.build / "partial" / workspace.dataset / stage
+        self.rows: Rows = []
+        self._before = ""  # what the objects of earlier calls of `each` came from: later calls may build on them
 
-    def __enter__(self):
+    def __enter__(self) -> "StageRun":
         for folder in self.inputs:
             if not folder.is_dir() or not any(folder.iterdir()):
-                raise ValueError(f"{folder} is not there: run `dvc repro {folder.name}` first")
-        self.folder.mkdir(parents=True, exist_ok=True)
-        self._sweep()
+                stage = f"{folder.name}@{self.dataset}" if folder.parent.name == self.dataset else folder.name
+                raise ValueError(f"{folder} is not there: run `dvc repro {stage}` first")
+        shutil.rmtree(self.folder, ignore_errors=True)
+        self.folder.mkdir(parents=True)
         return self
 
-    def _sweep(self):
-        """Removes the files that a killed run, or a worker that outlived it, was about to write."""
-        for half in self.folder.rglob(f"{PART}*"):
-            half.unlink(missing_ok=True)
-
     @property
-    def objects(self):
-        """The names of all objects that the meshes stage accepted, in alphabetical order."""
-        return object_names()
+    def objects(self) -> list[str]:
+        """The names of all objects of the data set that the meshes stage accepted, in alphabetical order."""
+        return object_names(self.workspace)
 
-    def each(self, process, names):
-        """Runs process(name, folder) -> list of row dicts over the names, side by side; returns all rows in order.
+    def each(
+        self,
+        process: Callable[[Any, Path], Rows],
+        names: Iterable[str] | Mapping[str, Any],
+        reads: Sequence[str] = (),
+        made_of: Mapping[str, str] | None = None,
+    ) -> Rows:
+        """Runs process(name, folder) -> rows over the names, side by side; returns all rows in order.
 
-        `process` writes its files below `folder` through kit.files, and is a function of a module (or a partial of
-        one), since it travels to other processes.
+        names: a mapping hands its values to `process` instead of the names; made_of must then tell the values apart.
+
+        `process` is a function of a module, or a functools.partial of one. What it makes depends on nothing but the
+        code of the stage, its other arguments, the files that it reads and earlier calls of `each` in this run: what
+        agrees in all of them is taken from the cache. It writes its files below its `folder` through kit.files, and
+        may leave there what a killed run goes on from.
+
+        reads: files or folders relative to data/SET, `{}` stands for the name; opening another file below data/ is an
+        error. made_of: for each name what else tells its input apart, such as the hash of a source file.
         """
-        done = functools.partial(_process_once, process, self.folder)
-        rows = [row for found in parallel_map(done, list(names), desc=self.stage) for row in found]
+        values: Mapping[str, Any] = names if isinstance(names, Mapping) else {name: name for name in names}
+        given = process.keywords if isinstance(process, functools.partial) else {}
+        function = process.func if isinstance(process, functools.partial) else process
+        code = f"{stage_digest(self.stage)} {self._before}" if _is_of_stages(function) else self._before
+        keys = {}
+        for name in values:
+            read = [self.workspace.data / pattern.format(name) for pattern in reads]
+            identity = f"{function.__module__}.{function.__qualname__}"
+            keys[name] = key_of(code, identity, given, name, read, (made_of or {}).get(name, ""))
+        work = functools.partial(_make, process, self.workspace, self.folder, tuple(reads), keys)
+        rows = [row for made in self.map(work, values.items()) for row in made]
+        self._before = "".join([self._before, *(key[:8] for key in keys.values())])
         self.rows += rows
         return rows
 
-    def progress(self, items):
-        """The items, with a progress bar; silent when stderr is no terminal."""
-        return progress(items, self.stage)
+    def map(self, function: Callable[[Item], Result], items: Iterable[Item]) -> list[Result]:
+        """[function(item) for item in items], side by side as params.yaml says, in the order of the items."""
+        return parallel_map(function, items, f"{self.stage} {self.dataset}", **self.workspace.parallel)
 
-    def metrics(self, values):
+    def progress(self, items: Iterable[Item]) -> Iterable[Item]:
+        """The items, with a progress bar; silent when stderr is not a terminal."""
+        return progress(items, f"{self.stage} {self.dataset}")
+
+    def metrics(self, values: Mapping[str, Any]) -> None:
         """Writes the small numbers that the gate and `dvc metrics` look at."""
-        write_json(METRICS / f"{self.stage}.json", values)
+        write_json(self.workspace.metrics / f"{self.stage}.json", values)
 
-    def __exit__(self, error, *_):
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
         if error is not None:
             return
-        frame = pd.DataFrame(self.rows) if self.rows else pd.DataFrame(columns=[*FIRST, *LAST])
-        frame["dataset"], frame["seed"] = self.dataset, self.seed
-        others = [name for name in frame if name not in (*FIRST, *LAST)]
-        order = [name for name in (*FIRST, *others, *LAST) if name in frame]
-        write_table(MEASUREMENTS / f"{self.stage}.csv", frame[order])
-        shutil.rmtree(self.folder / ".rows", ignore_errors=True)
-        self._sweep()
+        path = self.workspace.measurements / f"{self.stage}{SUFFIX}"
+        write_rows(path, self.rows, self.columns, self.dataset, self.seed)
         shutil.rmtree(self.target, ignore_errors=True)
+        self.target.parent.mkdir(parents=True, exist_ok=True)
         self.folder.rename(self.target)
-        for left in PARTIAL.glob(f"{self.stage}-*"):
-            shutil.rmtree(left, ignore_errors=True)
 
 
-def object_names():
+def object_names(workspace: Workspace) -> list[str]:
     """The names of all objects that the meshes stage accepted, in alphabetical order."""
-    return sorted(path.stem for path in (DATA / "meshes").glob("*.npz"))
+    return sorted(path.stem for path in (workspace.data / "meshes").glob("*.npz"))
 
 
-def arguments(doc):
-    """Answers --help with the stage's docstring, and lets errors of input and settings end in one line.
-
-    A stage has no other argument: its settings live in params.yaml.
-    """
-    first, _, rest = (doc or "").partition("\n")
-    form = argparse.RawDescriptionHelpFormatter
-    stage = Path(sys.argv[0]).parent.name
-    program = f"python -m stages.{stage}"
-    argparse.ArgumentParser(prog=program, description=first, epilog=rest, formatter_class=form).parse_args()
-    errors_in_one_line(stage)
-
-
-def errors_in_one_line(name):
-    """From now on what a person did (ValueError, a missing file, no network, Ctrl-C) ends in one line, no traceback.
-
-    A fault of ours keeps its traceback. After Ctrl-C Python ends by the signal itself, which shells report as 130, and
-    which stops a loop of theirs as well.
-    """
-
-    def show(kind, error, trace):
-        if issubclass(kind, KeyboardInterrupt):
-            return print(f"{name}: stopped", file=sys.stderr)
-        if not issubclass(kind, ValueError | FetchError | OSError):
-            return sys.__excepthook__(kind, error, trace)
-        ours = [place for place in traceback.extract_tb(trace) if f"{os.sep}stages{os.sep}" in place.filename]
-        where = f" [{Path(ours[-1].filename).name}:{ours[-1].lineno}]" if ours else ""
-        print(f"{name}: {error}{where}", file=sys.stderr)
-
-    sys.excepthook = show
+def _make(
+    process: Callable[[Any, Path], Rows],
+    workspace: Workspace,
+    folder: Path,
+    reads: tuple[str, ...],
+    keys: Mapping[str, str],
+    named: tuple[str, Any],
+) -> Rows:
+    """The rows of one object, whose files are then below `folder`: from the cache, or made now."""
+    name, value = named
+    objects = Objects(workspace.build / "objects")
+    rows = objects.take(keys[name], folder)
+    if rows is not None:
+        return rows
+    scratch = workspace.build / "scratch" / keys[name][:32]  # by what it is made of: a killed run finds it again
+    scratch.mkdir(parents=True, exist_ok=True)
+    try:
+        with only_reads(workspace.root / "data", [workspace.data / pattern.format(name) for pattern in reads]):
+            made = process(value, scratch)
+    except ValueError as error:
+        raise ValueError(f"{name}: {error}") from error
+    objects.keep(keys[name], made, scratch)
+    shutil.rmtree(scratch)
+    rows = objects.take(keys[name], folder)
+    if rows is None:
+        raise OSError(f"{objects.folder} does not keep what is written to it: is the disk full?")
+    return rows
 
 
-def _process_once(process, folder, name):
-    finished = folder / ".rows" / f"{name}.json"
-    if not finished.exists():
-        try:
-            write_json(finished, process(name, folder))
-        except ValueError as error:
-            raise ValueError(f"{name}: {error}") from error
-    return read_json(finished)
-
-
-def _digest(settings, inputs):
-    """Twelve hex digits of the settings, the code of all stages and the input folders."""
-    digest = hashlib.sha256(repr(settings).encode())
-    code = sorted(
-        path for path in Path(__file__).parents[1].rglob("*.*") if path.is_file() and "__pycache__" not in path.parts
-    )
-    data = [path for folder in inputs for path in sorted(folder.rglob("*")) if path.is_file()]
-    for path in [*code, *data]:
-        digest.update(str(path.name).encode() + sha256(path).encode())
-    return digest.hexdigest()[:12]
+def _is_of_stages(function: Callable[..., Any]) -> bool:
+    return function.__module__.split(".")[0] in ("stages", "__main__")

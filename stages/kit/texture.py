@@ -1,4 +1,4 @@
-"""Pictures on a surface: texture coordinates a face corner, so that a seam splits the picture and not the surface."""
+"""Pictures on a surface: texture coordinates per face corner, so that a seam splits the picture and not the surface."""
 
 from dataclasses import dataclass
 
@@ -9,15 +9,15 @@ import numpy as np
 class Texture:
     """What a mesh of m faces is painted with; a material of one plain colour is an image of one pixel.
 
-    uv (m, 3, 2) f8, a pair a face corner: u to the right, v up, (0, 0) the lower left corner of the image, which
+    uv (m, 3, 2) f8, a pair per face corner: u to the right, v up, (0, 0) the lower left corner of the image, which
     repeats outside 0..1. image (m,) i8: which of the images a face shows. images: arrays (h, w, 4) u1, RGBA.
     """
 
     uv: np.ndarray
     image: np.ndarray
-    images: tuple
+    images: tuple[np.ndarray, ...]
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         uv = np.ascontiguousarray(self.uv, dtype=np.float64)
         image = np.ascontiguousarray(self.image, dtype=np.int64)
         images = tuple(np.ascontiguousarray(one, dtype=np.uint8) for one in self.images)
@@ -32,17 +32,17 @@ class Texture:
         for name, value in (("uv", uv), ("image", image), ("images", images)):
             object.__setattr__(self, name, value)
 
-    def of(self, faces):
+    def of(self, faces: np.ndarray) -> "Texture":
         """The Texture of some faces: ids or (m,) boolean."""
         return Texture(self.uv[faces], self.image[faces], self.images)
 
-    def turned(self, flips):
+    def turned(self, flips: np.ndarray) -> "Texture":
         """The Texture after the order of the corners was reversed in the faces (m,) boolean."""
         uv = self.uv.copy()
         uv[flips] = uv[flips][:, ::-1]
         return Texture(uv, self.image, self.images)
 
-    def sample(self, faces, uv):
+    def sample(self, faces: np.ndarray, uv: np.ndarray) -> np.ndarray:
         """(k, 3) u1 RGB at texture coordinates uv (k, 2) on the images of faces (k,), nearest pixel."""
         found = np.empty((len(faces), 3), dtype=np.uint8)
         shown = self.image[faces]

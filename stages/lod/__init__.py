@@ -1,4 +1,4 @@
-"""LOD: fewer faces where nobody looks, and how much that shows (T3.1.3, T3.1.4, T3.2.8)."""
+"""LOD: simplification that spares the salient regions, and its errors (T3.1.3, T3.1.4, T3.2.8)."""
 
 from .attributes import carry
 from .export import write_any

@@ -1,7 +1,7 @@
-"""Borders between materials, held while a mesh is simplified: cut open before, closed again after.
+"""Borders between materials, preserved while a mesh is simplified: cut open before, closed again after.
 
-An error of shape does not see where one material ends and the next begins. On a flat side, which needs few faces, the
-border would end up wherever an edge happens to run. Cut open it is a boundary, which simplification leaves as it is.
+A geometric error does not depend on where one material ends and the next begins. On a flat side, which needs few faces,
+the border would end up on any edge. Cut open it is a boundary, which simplification preserves.
 """
 
 import numpy as np
@@ -9,8 +9,8 @@ import numpy as np
 from stages.kit import Mesh
 
 
-def cut_borders(mesh):
-    """(Mesh, ids (n',)): vertices on a border between two materials become one a material; ids: their old numbers."""
+def cut_borders(mesh: Mesh) -> tuple[Mesh, np.ndarray]:
+    """(Mesh, ids (n',)): vertices on a border become one per material; ids: the old id of each vertex."""
     if mesh.texture is None:
         return mesh, np.arange(len(mesh.vertices))
     n = len(mesh.vertices)
@@ -18,7 +18,7 @@ def cut_borders(mesh):
     found, first, inverse = np.unique(pairs, return_index=True, return_inverse=True)
     source, owner = found % n, found // n
     home = np.full(n, -1)
-    home[source[::-1]] = owner[::-1]  # a vertex keeps its number in the first of its materials
+    home[source[::-1]] = owner[::-1]  # a vertex keeps its id in the first of its materials
     extra = owner != home[source]
     number = np.where(extra, n + np.cumsum(extra) - 1, source)
     ids = np.r_[np.arange(n), source[extra]]
@@ -26,8 +26,8 @@ def cut_borders(mesh):
     return Mesh(mesh.vertices[ids], number[inverse].reshape(-1, 3), colors, mesh.texture), ids
 
 
-def close_borders(mesh, cut, ids):
-    """The simplified `mesh` with the vertices that `cut_borders` doubled made one again; unused ones go."""
+def close_borders(mesh: Mesh, cut: Mesh, ids: np.ndarray) -> Mesh:
+    """The simplified `mesh` with the vertices that `cut_borders` doubled merged again; unused ones are removed."""
     doubled = np.bincount(ids)[ids] > 1
     rows, place = np.unique(np.concatenate([cut.vertices[doubled], mesh.vertices]), axis=0, return_inverse=True)
     place = place.ravel()

@@ -1,40 +1,40 @@
-"""The fast backend: compiled quadric edge collapse, then a fit of what is left to the surface it stands for."""
+"""The fast backend: compiled quadric edge collapse, then a fit of the remaining vertices to the original surface."""
 
 import numpy as np
 
 from stages.kit import Mesh
 
 from .feasibility import InfeasibleTarget, SimplifyError
-from .kernels import Surface, compact, decimate, fans, partners, refit, unit_box, vertex_quadrics
+from .kernels import HalfEdgeMesh, compact, decimate, fans, opposites, refit, unit_box, vertex_quadrics
 from .topology import NONE, faults
 
 # (least cosine by which a collapse may turn a face, least quality of a face after it), tried in this order until the
-# faces are few enough and have no fault that the mesh had not.
+# faces are few enough and have no new fault.
 ATTEMPTS = ((0.7, 0.1), (0.8, 0.02), (0.5, 0.02), (0.5, 0.3))
-LAST = (0.2, 0.01)  # the two limits for what is left to collapse after those
+LAST = (0.2, 0.01)  # the two limits for the collapses that remain after those
 FOLD = -0.9  # least cosine between the normals of two neighbours after a collapse
-# Where sheets lie on each other (the lid in a teapot's rim) that limit stops most collapses, and what is left to
-# collapse is ruined: such meshes are first tried without it.
+# Where sheets lie on each other (the lid in a teapot's rim) that limit stops most collapses, and the few that remain
+# ruin the surface: such meshes are first tried without it.
 NO_FOLD = -2.0
-FIT_BELOW = 0.35  # share of the faces left: above it the fit gains little, 4 % of the error at a half for half the time
-SAMPLES = 6  # points to fit to, for each vertex that is left
+FIT_BELOW = 0.35  # share of the faces left: above it the fit gains little (4 % of the error at 0.5, for half the time)
+SAMPLES = 6  # target points of the fit per remaining vertex
 
 
-def collapse(mesh, faces, frozen, weights=None):
+def collapse(mesh: Mesh, faces: int, frozen: np.ndarray, weights: np.ndarray | None = None) -> Mesh:
     """A sound Mesh of at most `faces` faces, without colours.
 
-    frozen (m,) boolean: faces that come through bit for bit, as does the open boundary. weights (n,) f8: what each
-    vertex's quadric is multiplied by, and its weight in the fit; None for 1.
+    frozen (m,) boolean: faces that are preserved bit for bit, as is the boundary. weights (n,) f8: factor of each
+    vertex's quadric, and its weight in the fit; None for 1.
     Raises InfeasibleTarget when no collapse is left above the target, SimplifyError when every attempt is faulty.
     """
-    before, said, least = None, "", len(mesh.faces)
+    before, reason, least = None, "", len(mesh.faces)
     waiting = [(*limits, FOLD) for limits in ATTEMPTS]
     while waiting:
         found, left = _attempt(mesh, faces, frozen, weights, *waiting.pop(0))
         after = faults(found)
         if left <= faces and after == NONE:
             return found
-        if before is None:  # now it pays to know
+        if before is None:  # computed only where it is needed
             before = faults(mesh)
             if before.folded:
                 waiting = [(*limits, NO_FOLD) for limits in ATTEMPTS] + [(*ATTEMPTS[0], FOLD), *waiting]
@@ -42,17 +42,19 @@ def collapse(mesh, faces, frozen, weights=None):
         added = after.added(before)
         if left <= faces and not added:
             return found
-        said = said or added
-        least = least if added else min(least, left)  # a count is promised only where it was had soundly
-    if least < len(mesh.faces) or not said:
+        reason = reason or added
+        least = least if added else min(least, left)  # only counts of sound meshes are offered
+    if least < len(mesh.faces) or not reason:
         raise InfeasibleTarget(faces, least, int(frozen.sum()))
-    raise SimplifyError(f"{faces} faces leave {said}: ask for more faces")
+    raise SimplifyError(f"{faces} faces leave {reason}: ask for more faces")
 
 
 def _attempt(mesh, faces, frozen, weights, turn, shape, fold):
-    surface, source, (middle, size) = _surface(mesh, frozen, weights)
+    surface, source, (middle, size) = _half_edge_mesh(mesh, frozen, weights)
     points, corner = surface.position.copy(), surface.corner.copy()
-    weight = surface.quadric[:, 0] + surface.quadric[:, 3] + surface.quadric[:, 5]  # the area around, times the weight
+    weight = (
+        surface.quadric[:, 0] + surface.quadric[:, 3] + surface.quadric[:, 5]
+    )  # area around each vertex, times its weight
     left = decimate(surface, faces, turn, shape, fold)
     if left > faces:
         left = decimate(surface, faces, *LAST, fold)
@@ -65,17 +67,19 @@ def _attempt(mesh, faces, frozen, weights, turn, shape, fold):
     return Mesh(vertices, kept), left
 
 
-def _surface(mesh, frozen, weights):
-    """(Surface in a unit box, (n',) the vertex of the mesh that each of its vertices was, (middle, size) of the box).
+def _half_edge_mesh(mesh, frozen, weights):
+    """(HalfEdgeMesh in a unit box, (n',) the vertex of the mesh of each of its vertices, (middle, size) of the box).
 
-    A vertex where fans of faces touch becomes one a fan. Rims and corners of frozen faces are locked.
+    A vertex at which fans of faces touch is split. Boundary vertices and corners of frozen faces are locked.
     """
     ids = mesh.faces.ravel().astype(np.int32)
-    twin = partners(ids, len(mesh.vertices), True)[0]
-    corner, start, source, rim = fans(ids, twin)
-    locked = rim.copy()
+    opposite = opposites(ids, len(mesh.vertices), True)[0]
+    corner, start, source, boundary = fans(ids, opposite)
+    locked = boundary.copy()
     locked[corner.reshape(-1, 3)[frozen]] = True
     position, middle, size = unit_box(mesh.vertices, source)
     quadric = vertex_quadrics(position, corner, np.ones(len(source)) if weights is None else weights[source])
-    surface = Surface(corner, twin, start, rim, locked, position, quadric, np.arange(len(source), dtype=np.int32))
+    surface = HalfEdgeMesh(
+        corner, opposite, start, boundary, locked, position, quadric, np.arange(len(source), dtype=np.int32)
+    )
     return surface, source, (middle, size)

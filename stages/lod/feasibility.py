@@ -1,56 +1,65 @@
-"""How few faces a mesh can have when some of them are frozen, known before anything is collapsed.
+"""The smallest feasible face count of a mesh with frozen faces, before anything is collapsed.
 
-A collapse takes one vertex and two faces away and leaves frozen faces, the open boundary and the topology as they are.
-By Euler's formula the free part of the surface (R rim edges in L loops, C pieces, genus G) then cannot have fewer than
-R + 2 L - 4 C + 4 G faces: the gaps tiled with no free vertex left. Near that number the islands are joined straight to
-each other and the surface between them collapses. Measured on twelve household objects with 3, 8 and 20 points kept at
-one and three rings (72 cells), the mean error against plain QEM with as many faces as are free here:
+A collapse removes one vertex and two faces, and preserves frozen faces, the boundary and the topology. By Euler's
+formula the free part of the surface (B boundary edges in L loops, C components, genus G) then cannot have fewer than
+B + 2 L - 4 C + 4 G faces: the gaps tiled with no free vertex left. Near that number the frozen regions are joined
+directly to each other and the surface between them collapses. Measured on twelve household objects with 3, 8 and 20
+points kept at one and three rings (72 cells), the mean error relative to plain QEM with as many faces as are free here:
 
     free faces / least number    1.1    1.25   1.5    2      2.5    3      4
     error ratio, median          7.9    4.7    2.6    1.7    1.4    1.3    1.1
     error ratio, 90 % below      19     10     4.6    2.4    1.8    1.6    1.4
 
-At twice the number a hand still lost its thumb; from two and a half times on the islands cost no more than the free
-faces that they take (measured with pymeshlab). Handles (often scanning noise) want about 20 faces each, or the surface
-between them goes the same way. It is a floor, no promise: close to it a mesh is as coarse as plain QEM with that few
-free faces. Asked for exactly the floor, the fast backend gave it on 39 of 39 meshes (household and Princeton) with
-eight points kept at one ring. With nothing kept it did on 116 of 164: thin and folded ones, where nothing more may be
-collapsed without a fault, end at 6 to 118 faces instead of 4, or at 24 to 70 a handle. That is not known before it is
-tried; then the error's `smallest` is the count that was reached, and all 48 could be simplified to it.
+At twice the number a hand still lost its thumb; from two and a half times on, the frozen regions cost no more than the
+free faces that they replace (measured with pymeshlab). Each unit of genus (often scanning noise) needs about 20 faces,
+or the surface around it collapses too. The count is a lower bound, not a guarantee: close to it a mesh is as coarse as
+plain QEM with that few free faces. Asked for exactly this bound, the fast backend reached it on 39 of 39 meshes
+(household and Princeton) with eight points kept at one ring. With nothing kept it did on 116 of 164: thin and folded
+meshes, where no further collapse is sound, end at 6 to 118 faces instead of 4, or at 24 to 70 per unit of genus. That
+shows only in the attempt; then the error's `smallest` is the count reached, and all 48 could be simplified to it.
 """
+
+from collections.abc import Sequence
 
 import numpy as np
 
+from stages.kit import Mesh
+
 from .topology import topology
 
-RIM_FACTOR = 2.5  # the table above
-# Of 33 closed objects with handles, 25 can be collapsed further with the fast backend, to 10 to 16 a handle: at 20 the
-# median error is 1.6 times smaller. Seven end above it, at 24 to 70.
-FACES_PER_HANDLE = 20
-CLOSED_FLOOR = 4  # a tetrahedron: the smallest closed surface, reached by 85 of 126 closed meshes without handles
+BOUNDARY_FACTOR = 2.5  # the table above
+# Of 33 closed objects with genus above 0, 25 can be collapsed further with the fast backend, to 10 to 16 faces per
+# unit: at 20 the median error is 1.6 times smaller. Seven end above it, at 24 to 70.
+FACES_PER_GENUS = 20
+CLOSED_FLOOR = 4  # a tetrahedron: the smallest closed surface, reached by 85 of 126 closed meshes of genus 0
+
+Keep = Sequence[int] | np.ndarray | None  # vertex ids
+Rings = int | np.ndarray  # one number, or one per vertex
 
 
 class InfeasibleTarget(ValueError):
-    """The target leaves too few free faces; `smallest` is the least face count that can be had, `faces` the target."""
+    """The target leaves too few free faces; `smallest` is the smallest feasible face count, `faces` the target."""
 
-    def __init__(self, faces, smallest, frozen=0):
+    def __init__(self, faces: int, smallest: int, frozen: int = 0) -> None:
         self.faces, self.smallest, self.frozen = int(faces), int(smallest), int(frozen)
-        super().__init__(f"{faces} faces cannot be had with {frozen} frozen: the smallest feasible count is {smallest}")
+        super().__init__(
+            f"{faces} faces are infeasible with {frozen} frozen: the smallest feasible count is {smallest}"
+        )
 
-    def __reduce__(self):
+    def __reduce__(self) -> tuple:
         return type(self), (self.faces, self.smallest, self.frozen)
 
 
 class SimplifyError(ValueError):
-    """Every attempt left faces folded, degenerate or non-manifold that were not so before."""
+    """Every attempt left new folded, degenerate or non-manifold faces."""
 
 
-def frozen_faces(mesh, keep=None, rings=3):
+def frozen_faces(mesh: Mesh, keep: Keep = None, rings: Rings = 3) -> np.ndarray:
     """(m,) boolean: the faces whose corners all lie within `rings` edges of a kept vertex (T3.2.8).
 
-    rings: one number for all or (k,), one a kept vertex. With 0 rings the faces that touch the vertex, which could not
-    stay without them; with -1, in an array, the vertex is not kept.
-    Raises ValueError for ids outside the mesh, or rings that are no whole numbers, too few or too many.
+    rings: one number for all, or (k,) per kept vertex. With 0 rings the faces that touch the vertex, which it needs;
+    with -1, in an array, the vertex is not kept.
+    Raises ValueError for ids outside the mesh, or rings that are not whole numbers or not as many as the vertices.
     """
     keep = check_keep(mesh, keep)
     rings = check_rings(keep, rings)
@@ -58,52 +67,53 @@ def frozen_faces(mesh, keep=None, rings=3):
     if len(keep) == 0:
         return np.zeros(len(mesh.faces), dtype=bool)
     near = np.zeros(len(mesh.vertices), dtype=bool)
-    for left in range(rings.max(), 0, -1):  # the widest neighbourhoods set out first, so that all end together
+    for left in range(rings.max(), 0, -1):  # the widest neighbourhoods start first, so that all end together
         near[keep[rings == left]] = True
         near |= mesh.adjacency @ near
     touched = mesh.rings(keep, 0)
-    return near[mesh.faces].all(axis=1) | touched[mesh.faces].any(axis=1)
+    return np.logical_or(near[mesh.faces].all(axis=1), touched[mesh.faces].any(axis=1))
 
 
-def check_keep(mesh, keep):
-    """(k,) i8 vertex ids; raises ValueError for what is none."""
+def check_keep(mesh: Mesh, keep: Keep) -> np.ndarray:
+    """(k,) i8 vertex ids; raises ValueError for anything else."""
     keep = np.zeros(0, dtype=np.int64) if keep is None or len(keep) == 0 else np.asarray(keep)
     if keep.ndim != 1 or not np.issubdtype(keep.dtype, np.integer):
         raise ValueError(f"keep must be a list of vertex ids, got shape {keep.shape} of {keep.dtype}")
     if len(keep) and (keep.min() < 0 or keep.max() >= len(mesh.vertices)):
-        raise ValueError(f"keep names vertices outside 0..{len(mesh.vertices) - 1}")
+        raise ValueError(f"keep has vertex ids outside 0..{len(mesh.vertices) - 1}")
     return keep.astype(np.int64)
 
 
-def check_rings(keep, rings):
-    """(k,) i8 rings, one a kept vertex; raises ValueError for what is none."""
+def check_rings(keep: np.ndarray, rings: Rings) -> np.ndarray:
+    """(k,) i8 rings per kept vertex; raises ValueError for anything else."""
     found = np.asarray(rings)
     if not np.issubdtype(found.dtype, np.integer) and found.size:
         raise ValueError(f"rings must be whole numbers, got {found.dtype}")
     if found.ndim == 0 and found < 0:
         raise ValueError(f"rings must be 0 or more, got {rings}")
     if found.ndim and found.shape != keep.shape:
-        raise ValueError(f"rings must be one number or one a kept vertex, {keep.shape}, got {found.shape}")
+        raise ValueError(f"rings must be one number or one per kept vertex, {keep.shape}, got {found.shape}")
     if found.size and found.min() < -1:
         raise ValueError(f"rings must be -1 (not kept), 0 or more, got {found.min()}")
     return np.broadcast_to(found, keep.shape).astype(np.int64)
 
 
-def smallest_feasible(mesh, keep=None, rings=3):
-    """The least number of faces that keeps the frozen faces, the boundary, the topology and a sound surface between.
+def smallest_feasible(mesh: Mesh, keep: Keep = None, rings: Rings = 3) -> int:
+    """The smallest face count that preserves frozen faces, boundary and topology, with a sound surface between.
 
-    keep and rings as in `frozen_faces`. The count of the mesh itself where it has nothing to spare.
+    keep and rings as in `frozen_faces`. The mesh's own count where no face can be removed.
     """
     return smallest_with(mesh, frozen_faces(mesh, keep, rings))
 
 
-def smallest_with(mesh, frozen):
+def smallest_with(mesh: Mesh, frozen: np.ndarray) -> int:
     """As `smallest_feasible`, for frozen faces given as (m,) boolean."""
     free = mesh.faces[~frozen]
     if len(free) == 0:
         return len(mesh.faces)
     found = topology(free)
-    tiles = max(found.rim + 2 * found.loops - 4 * (found.pieces - found.closed), 0)
-    needed = RIM_FACTOR * tiles + CLOSED_FLOOR * found.closed + FACES_PER_HANDLE * found.handles
+    open_components = found.components - found.closed_components
+    tiles = max(found.boundary_edges + 2 * found.boundary_loops - 4 * open_components, 0)
+    needed = BOUNDARY_FACTOR * tiles + CLOSED_FLOOR * found.closed_components + FACES_PER_GENUS * found.genus
     least = int(frozen.sum() + np.ceil(needed))
-    return min(least + (len(mesh.faces) - least) % 2, len(mesh.faces))  # each collapse takes two faces
+    return min(least + (len(mesh.faces) - least) % 2, len(mesh.faces))  # each collapse removes two faces

@@ -1,4 +1,4 @@
-"""What `python -m stages.lod MESH` may be asked for, and what is refused before any work."""
+"""The command line of `python -m stages.lod MESH`, and its checks before any work."""
 
 import argparse
 import os
@@ -9,57 +9,61 @@ import numpy as np
 
 from stages.meshes.normalise import TO_Z_UP
 from stages.salient_points import METHODS
-from stages.salient_points.methods import teachable
-from stages.weights import Learned
+from stages.salient_points.methods import split_runnable
+from stages.weights import LearnedWeights
 
 from .export import FORMATS
-from .neighbourhood import RINGS, WAYS
+from .neighbourhood import NEIGHBOURHOODS, RINGS
 from .simplify import BACKEND, BACKENDS
 from .targets import face_count
 from .variant import PLAIN, SOFT
 
 
-def parser(about):
-    """The command line; about: what --help says, its first line at the top."""
+def parser(about: str) -> argparse.ArgumentParser:
+    """The parser; about: the text of --help, whose first line comes first."""
     first, _, rest = about.partition("\n")
     form = argparse.RawDescriptionHelpFormatter
-    made = argparse.ArgumentParser("python -m stages.lod", description=first, epilog=rest, formatter_class=form)
-    made.add_argument("mesh", metavar="MESH", type=Path, help="the file to simplify")
-    target = made.add_mutually_exclusive_group(required=True)
-    target.add_argument("--faces", metavar="N", help="how many faces to have: 1500, or a share such as 10%%")
-    help_tolerance = "the fewest faces with a Metro mean error of at most so much of the diagonal: 0.2%%"
+    command = argparse.ArgumentParser("python -m stages.lod", description=first, epilog=rest, formatter_class=form)
+    command.add_argument("mesh", metavar="MESH", type=Path, help="the file to simplify")
+    target = command.add_mutually_exclusive_group(required=True)
+    target.add_argument("--faces", metavar="N", help="target face count: 1500, or a share such as 10%%")
+    help_tolerance = "the fewest faces with a Metro mean error of at most this share of the diagonal: 0.2%%"
     target.add_argument("--tolerance", metavar="SHARE", type=share, help=help_tolerance)
-    made.add_argument("--out", metavar="FILE", type=Path, required=True, help=f"the result: {', '.join(FORMATS)}")
-    made.add_argument("--picture", metavar="FILE", type=Path, help="a picture of the saliency, and of before and after")
-    help_method = "whose saliency, and whose points (default: enhanced; qem: nobody's, every place counts the same)"
-    made.add_argument("--method", default="enhanced", help=help_method)
-    help_ways = "soft: the saliency weighs the error, nothing is frozen (default); the others freeze the faces around"
+    command.add_argument("--out", metavar="FILE", type=Path, required=True, help=f"the result: {', '.join(FORMATS)}")
+    command.add_argument(
+        "--picture", metavar="FILE", type=Path, help="also draw the saliency, and the mesh before and after"
+    )
+    help_method = "saliency and points by this method (default: enhanced; qem: none, every place has the same weight)"
+    command.add_argument("--method", default="enhanced", help=help_method)
+    help_ways = "soft: the saliency weights the error, nothing is frozen (default); the others freeze the faces around"
     help_ways += f" the salient points, within {RINGS} rings, or by the mesh's density, or by the salient area"
-    made.add_argument("--neighbourhood", choices=[SOFT, *WAYS], default=SOFT, help=help_ways)
+    command.add_argument("--neighbourhood", choices=[SOFT, *NEIGHBOURHOODS], default=SOFT, help=help_ways)
     help_keep = "how many points to freeze the faces around (default: those past the method's threshold)"
-    made.add_argument("--keep", metavar="N", type=int, help=help_keep)
-    made.add_argument("--rings", metavar="N", type=int, help=f"rings of --neighbourhood fixed (default: {RINGS})")
-    made.add_argument("--shrink", action="store_true", help="freeze fewer faces where N is too low for all of them")
-    made.add_argument("--up", choices=list(TO_Z_UP), help="the axis that points up (default: y for a glb, else z)")
-    made.add_argument("--backend", choices=list(BACKENDS), default=BACKEND, help="default: %(default)s")
-    made.add_argument("--seed", type=int, default=0, help="of the samples of the errors (default: %(default)s)")
-    return made
+    command.add_argument("--keep", metavar="N", type=int, help=help_keep)
+    command.add_argument("--rings", metavar="N", type=int, help=f"rings of --neighbourhood fixed (default: {RINGS})")
+    command.add_argument(
+        "--shrink", action="store_true", help="freeze fewer faces where the target is too low for all of them"
+    )
+    command.add_argument("--up", choices=list(TO_Z_UP), help="the axis that points up (default: y for a glb, else z)")
+    command.add_argument("--backend", choices=list(BACKENDS), default=BACKEND, help="default: %(default)s")
+    command.add_argument("--seed", type=int, default=0, help="for the samples of the errors (default: %(default)s)")
+    return command
 
 
-def share(text):
+def share(text: str) -> float:
     """A share of the diagonal from `0.2%` or `0.002`."""
     match = re.fullmatch(r"(\d*\.?\d+(?:e-?\d+)?)(%?)", text.strip(), re.IGNORECASE)
     value = float(match[1]) / (100 if match[2] else 1) if match else np.inf
     if value == 0:
-        reason = "rounding alone is more than 0: allow a little, such as 0.001%"
+        reason = "rounding alone exceeds 0: allow a little, such as 0.001%"
         raise argparse.ArgumentTypeError(f"{text!r}: {reason}")
     if not value < 1:
-        raise argparse.ArgumentTypeError(f"{text!r} is no share of the diagonal: write one like 0.2% or 0.002")
+        raise argparse.ArgumentTypeError(f"{text!r} is not a share of the diagonal: write one like 0.2% or 0.002")
     return value
 
 
-def check_places(chosen):
-    """Raises ValueError before any work where the result or the picture could not be written, or over the mesh."""
+def check_paths(chosen: argparse.Namespace) -> None:
+    """Raises ValueError where the result or the picture cannot be written, or would overwrite the mesh."""
     if chosen.out.suffix.lower() not in FORMATS:
         raise ValueError(f"--out {chosen.out}: meshes are written as {', '.join(FORMATS)}")
     for path in filter(None, (chosen.out, chosen.picture)):
@@ -68,44 +72,44 @@ def check_places(chosen):
         if not path.absolute().parent.is_dir():
             raise ValueError(f"{path}: no such folder {path.parent}")
         if not os.access(path.absolute().parent, os.W_OK):
-            raise ValueError(f"{path}: nothing can be written to {path.parent}")
+            raise ValueError(f"{path}: the folder {path.parent} is not writable")
         if path.exists() and chosen.mesh.exists() and path.samefile(chosen.mesh):
-            raise ValueError(f"{path} is the mesh itself, which would be lost: write to another file")
+            raise ValueError(f"{path} is the mesh itself, which would be overwritten: write to another file")
     if chosen.picture:
         from .picture import check_picture  # brings matplotlib, which nothing else here needs
 
         check_picture(chosen.picture)
 
 
-def check_way(chosen):
-    """Raises ValueError for options that would change nothing together, unknown methods, and counts that are none."""
+def check_options(chosen: argparse.Namespace) -> None:
+    """Raises ValueError for options without effect, unknown methods, and invalid counts."""
     if chosen.faces:
         face_count(chosen.faces, 1, "--faces")
     if chosen.seed < 0:
         raise ValueError(f"--seed {chosen.seed}: give 0 or more")
     check_method(chosen.method)
-    hard = {"--keep": chosen.keep, "--rings": chosen.rings, "--shrink": chosen.shrink or None}
-    given = next((name for name, value in hard.items() if value is not None), None)
+    freezing = {"--keep": chosen.keep, "--rings": chosen.rings, "--shrink": chosen.shrink or None}
+    given = next((name for name, value in freezing.items() if value is not None), None)
     if chosen.method == PLAIN and (given or chosen.neighbourhood != SOFT):
-        raise ValueError(f"{given or '--neighbourhood'} does nothing with --method {PLAIN}, which keeps no place")
+        raise ValueError(f"{given or '--neighbourhood'} has no effect with --method {PLAIN}, which freezes nothing")
     if given and chosen.neighbourhood == SOFT:
-        remedy = f"add --neighbourhood {' or '.join(WAYS)}, or leave it out"
-        raise ValueError(f"{given} does nothing where no faces are frozen: {remedy}")
+        remedy = f"add --neighbourhood {' or '.join(NEIGHBOURHOODS)}, or leave it out"
+        raise ValueError(f"{given} has no effect where no faces are frozen: {remedy}")
     if chosen.rings is not None and chosen.neighbourhood != "fixed":
-        raise ValueError(f"--rings does nothing with --neighbourhood {chosen.neighbourhood}: it is for fixed")
+        raise ValueError(f"--rings has no effect with --neighbourhood {chosen.neighbourhood}: it is for fixed")
     if chosen.keep is not None and chosen.keep < 1:
         raise ValueError(f"--keep {chosen.keep}: give 1 or more points; --method {PLAIN} keeps none")
     if chosen.rings is not None and chosen.rings < 0:
         raise ValueError(f"--rings {chosen.rings}: give 0 (the faces that touch a point) or more")
 
 
-def check_method(method):
-    """Raises ValueError for a method that cannot say where people look at a mesh that the pipeline has not seen."""
-    runs, others = teachable(METHODS, Learned())
+def check_method(method: str) -> None:
+    """Raises ValueError for a method without a saliency for meshes outside the pipeline's data sets."""
+    runs, others = split_runnable(METHODS, LearnedWeights())
     usable = [PLAIN, *(name for name in runs if hasattr(METHODS[name], "saliency"))]
     if method in usable:
         return
     reason = "there is no such method"
     if method in METHODS:
-        reason = "it learns from the pipeline's objects" if method in others else "it looks at nothing"
+        reason = "its weights are learned in the pipeline" if method in others else "it has no saliency"
     raise ValueError(f"--method {method}: {reason}; choose one of {', '.join(usable)}")

@@ -1,7 +1,10 @@
-"""How different a simplified mesh looks (T3.1.4, T3.2.9.2)."""
+"""Errors of the pictures of a simplified mesh (T3.1.4, T3.2.9.2)."""
+
+from collections.abc import Sequence
 
 import numpy as np
 
+from stages.kit import Mesh, Viewpoint
 from stages.views import TWELVE, render
 
 from .laplacian import laplacian_distance
@@ -12,24 +15,29 @@ LUMA = (0.299, 0.587, 0.114)  # ITU-R BT.601
 MEASURES = {"ssim": ssim_error, "dlap": laplacian_distance, "dnor": normalised_laplacian_distance}
 
 
-def perceptual(reference, mesh, viewpoints=TWELVE, size=(225, 300), renderer="raycast"):
+def perceptual(
+    reference: Mesh, mesh: Mesh, viewpoints: Sequence[Viewpoint] = TWELVE, size: tuple[int, int] = (225, 300),
+    renderer: str = "raycast",
+) -> dict[str, float]:  # fmt: skip
     """Errors of the pictures of a mesh against those of the reference, averaged over the viewpoints.
 
     dict(ssim, dlap, dnor), each 0 for equal pictures: 1 minus the structural similarity (T [63], see `similarity`), and
     the distances in the Laplacian and in the normalised Laplacian domain (T [225], see `laplacian` and
-    `normalised_laplacian`). All are over the whole pictures, as in the thesis: the empty background counts as alike, so
-    that a value is also a share of the picture. At a size below the thesis's 900 x 1200 the window of 11 pixels covers
-    more of the object: at 225 x 300 four meshes measured 0.7 to 1.5 times the ssim of the full size. Compare values of
-    one size only.
+    `normalised_laplacian`). All are over the whole pictures, as in the thesis: the empty background counts as
+    equal, so that a value is also a share of the picture. At a size below the thesis's 900 x 1200 the window of 11
+    pixels covers more of the object: at 225 x 300 four meshes had 0.7 to 1.5 times the ssim of the full size. Compare
+    values of one size only.
 
-    Raises ValueError for meshes that leave the frame (see stages.meshes.normalise), no viewpoint, or a size below 11.
+    Raises ValueError for meshes that exceed the frame (see stages.meshes.normalise), no viewpoint, or a size below 11.
     """
     pictures = (take_pictures(each, viewpoints, size, renderer) for each in (reference, mesh))
     return picture_errors(*pictures)
 
 
-def take_pictures(mesh, viewpoints=TWELVE, size=(225, 300), renderer="raycast"):
-    """(views, rows, columns) f8 luminance, 0 to 255, of a mesh: make those of a reference once, compare many meshes."""
+def take_pictures(
+    mesh: Mesh, viewpoints: Sequence[Viewpoint] = TWELVE, size: tuple[int, int] = (225, 300), renderer: str = "raycast"
+) -> np.ndarray:
+    """(views, rows, columns) f8 luminance, 0 to 255, of a mesh; those of a reference serve many comparisons."""
     if len(viewpoints) == 0:
         raise ValueError("pictures need one viewpoint or more")
     if min(size) < WINDOW:
@@ -37,7 +45,7 @@ def take_pictures(mesh, viewpoints=TWELVE, size=(225, 300), renderer="raycast"):
     return np.stack([render(mesh, viewpoint, size, renderer=renderer).rgb @ np.array(LUMA) for viewpoint in viewpoints])
 
 
-def picture_errors(reference, pictures):
+def picture_errors(reference: np.ndarray, pictures: np.ndarray) -> dict[str, float]:
     """dict(ssim, dlap, dnor) of pictures (views, rows, columns) against the reference's, averaged over the views."""
     if reference.shape != pictures.shape:
         raise ValueError(f"pictures of {pictures.shape} cannot be compared with the reference's {reference.shape}")

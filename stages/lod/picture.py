@@ -1,4 +1,6 @@
-"""One picture of what was done to a mesh: where people look, and the faces before and after."""
+"""A picture of one simplification: the saliency, and the faces before and after."""
+
+from pathlib import Path
 
 import matplotlib
 import numpy as np
@@ -13,45 +15,44 @@ from .within_frame import within_frame
 
 VIEWPOINT = Viewpoint(305, 22)  # from above and the side, as in the report
 ROWS, FINER = 600, 2  # rows of a panel; drawn twice as fine and averaged
-BRIGHT = 0.98  # of the vertices are coloured by their value, those above as the brightest
+TOP = 0.98  # quantile of the values at which the colours saturate
 MAP = "viridis"
 WIRE = np.array([40, 56, 82])
 
 
-def write_picture(path, before, after, saliency, points):
-    """Writes a picture of three panels: saliency (n,) in 0..1 with the points (k,), and the wires before and after.
+def write_picture(path: Path, before: Mesh, after: Mesh, saliency: np.ndarray, points: np.ndarray) -> None:
+    """Writes a picture of three panels: saliency (n,) and points (k,), and the wireframes before and after.
 
-    before, after: Meshes in the frame of stages.meshes.normalise, +z up; where a coarse one reaches beyond it, both are
-    drawn smaller. The format follows the suffix of the path; ValueError for one of which there is none
-    (`check_picture`).
+    before, after: Meshes in the frame of stages.meshes.normalise, +z up; where a coarse one exceeds it, both are drawn
+    smaller. The format follows the suffix of the path; ValueError for an unknown one (`check_picture`).
     """
     check_picture(path)
     (before, after), _ = within_frame([before, after])
     figure = Figure(figsize=(12, 4.4), layout="constrained")
     axes = figure.subplots(1, 3)
-    axes[0].imshow(shown(_by_value(before, saliency)))
-    rows, columns = in_sight(before, points)
+    axes[0].imshow(draw(_coloured(before, saliency)))
+    rows, columns = visible_points(before, points)
     axes[0].plot(columns, rows, "o", color="#D81B1B", ms=5, mec="white", mew=0.8)
     kept = f", {len(points)} point{'' if len(points) == 1 else 's'} kept" if len(points) else ""
-    axes[0].set_title(f"where people look{kept}")
-    for where, mesh, word in ((axes[1], before, "before"), (axes[2], after, "after")):
-        where.imshow(shown(Mesh(mesh.vertices, mesh.faces), wires=True))
-        where.set_title(f"{word}: {len(mesh.faces):,} faces")
-    for where in axes:
-        where.set_axis_off()
+    axes[0].set_title(f"saliency{kept}")
+    for panel, mesh, word in ((axes[1], before, "before"), (axes[2], after, "after")):
+        panel.imshow(draw(Mesh(mesh.vertices, mesh.faces), wires=True))
+        panel.set_title(f"{word}: {len(mesh.faces):,} faces")
+    for panel in axes:
+        panel.set_axis_off()
     with whole_file(path) as part:
         figure.savefig(part, dpi=130, format=path.suffix.lower()[1:])
 
 
-def check_picture(path):
-    """Raises ValueError where matplotlib does not write the format of the path's suffix."""
+def check_picture(path: Path) -> None:
+    """Raises ValueError where matplotlib cannot write the format of the path's suffix."""
     kinds = Figure().canvas.get_supported_filetypes()
     if path.suffix.lower()[1:] not in kinds:
         raise ValueError(f"{path.name}: pictures are written as {', '.join(sorted(kinds))}")
 
 
-def shown(mesh, wires=False):
-    """(ROWS, ROWS, 3) u1 picture of a mesh on white; wires draws the edges between the faces that are seen."""
+def draw(mesh: Mesh, wires: bool = False) -> np.ndarray:
+    """(ROWS, ROWS, 3) u1 picture of a mesh on white; wires: with the edges between visible faces."""
     side = ROWS * FINER
     view = render(mesh, VIEWPOINT, (side, side), renderer="raycast", background="white")
     image = view.rgb.astype(np.float64)
@@ -63,17 +64,17 @@ def shown(mesh, wires=False):
     return image.reshape(ROWS, FINER, ROWS, FINER, 3).mean(axis=(1, 3)).astype(np.uint8)
 
 
-def in_sight(mesh, vertices):
-    """(rows, columns) in the picture of those of the vertices that nothing hides."""
+def visible_points(mesh: Mesh, vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(rows, columns) in the picture of the visible ones of the vertices."""
     size = (ROWS, ROWS)
     depth = render(mesh, VIEWPOINT, size, renderer="raycast").depth
     rows, columns, depths = project(mesh.vertices[vertices], VIEWPOINT, size)
     r, c = (np.clip(np.rint(place).astype(int), 0, ROWS - 1) for place in (rows, columns))
-    near = depths <= depth[r, c] + 0.02  # units: a point on the limb may miss its own surface by a pixel
+    near = depths <= depth[r, c] + 0.02  # units: a point on the silhouette may miss its own surface by a pixel
     return rows[near], columns[near]
 
 
-def _by_value(mesh, values):
-    top = np.quantile(values, BRIGHT) or values.max() or 1.0
+def _coloured(mesh, values):
+    top = np.quantile(values, TOP) or values.max() or 1.0
     colors = 255 * matplotlib.colormaps[MAP](np.clip(values / top, 0, 1))[:, :3]
     return Mesh(mesh.vertices, mesh.faces, np.rint(colors).astype(np.uint8))

@@ -2,6 +2,18 @@
 
 from dataclasses import dataclass
 
+COLUMNS = {
+    "target": "the face count asked for, as in the settings",
+    "asked": "the same as a number of faces",
+    "faces": "the faces of the simplified mesh; empty where there is none",
+    "points": "salient points to keep",
+    "kept": "those that were kept",
+    "rings": "mean rings of faces frozen around a kept point",
+    "smallest_feasible": "the fewest faces with which all points can be kept",
+    "infeasible": "whether the target is too low for what is kept",
+    "shrunk": "whether neighbourhoods are smaller than asked for",
+}
+
 
 @dataclass
 class Params:

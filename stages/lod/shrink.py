@@ -1,21 +1,24 @@
 """Smaller neighbourhoods where the target is too low for all of them, the least salient first."""
 
 from bisect import bisect_left
+from collections.abc import Iterator
 
 import numpy as np
 
-from .feasibility import InfeasibleTarget, check_keep, check_rings, frozen_faces, smallest_with
+from stages.kit import Mesh
+
+from .feasibility import InfeasibleTarget, Keep, Rings, check_keep, check_rings, frozen_faces, smallest_with
 
 LOWER = 0.8  # of the target, at each further try
 
 
-def shrunk_rings(mesh, faces, keep, rings=3):
+def shrunk_rings(mesh: Mesh, faces: int, keep: Keep, rings: Rings = 3) -> np.ndarray:
     """(k,) i8 rings, none larger than given, with which `faces` faces are feasible; -1 where a vertex is not kept.
 
-    keep: vertex ids, most salient first. rings: one number, or (k,) one a kept vertex. From the least salient vertex to
-    the most salient each gives up one ring, again and again until none has a ring left; then, from the least salient
-    on, they are not kept. The walk ends at the first step from which the target is feasible: of two points with equal
-    neighbourhoods the more salient one never has the smaller, and one step less would be infeasible. The thesis has no
+    keep: vertex ids, most salient first. rings: one number, or (k,) per kept vertex. From the least salient vertex to
+    the most salient, each gives up one ring, in rounds until none has a ring left; then, from the least salient on,
+    they are not kept. It stops at the first step at which the target is feasible: of two points with equal
+    neighbourhoods the more salient one never gets the smaller, and one step less would be infeasible. The thesis has no
     such rule; its meshes are distorted at such targets (T3.1.5).
 
     Raises InfeasibleTarget when the target is too low even with nothing kept.
@@ -29,7 +32,7 @@ def shrunk_rings(mesh, faces, keep, rings=3):
 
     def feasible(steps):
         frozen = frozen_faces(mesh, keep, after(steps))
-        return bool(frozen.sum() <= faces and smallest_with(mesh, frozen) <= faces)  # the first is cheap
+        return bool(frozen.sum() <= faces and smallest_with(mesh, frozen) <= faces)  # the first test is cheap
 
     if feasible(0):
         return rings
@@ -39,10 +42,10 @@ def shrunk_rings(mesh, faces, keep, rings=3):
     return after(steps)
 
 
-def ever_smaller(mesh, faces, keep, rings=3):
-    """Yields `shrunk_rings` for the target, then for ever lower ones, at last none kept at all.
+def shrinking_rings(mesh: Mesh, faces: int, keep: Keep, rings: Rings = 3) -> Iterator[np.ndarray]:
+    """Yields `shrunk_rings` for the target, then for ever lower ones, at last with nothing kept.
 
-    For a backend that finds no sound mesh where the count alone would allow one.
+    For a backend that finds no sound mesh although the count is feasible.
     """
     rings, target = check_rings(check_keep(mesh, keep), rings), faces
     while True:
@@ -57,7 +60,7 @@ def ever_smaller(mesh, faces, keep, rings=3):
 
 
 def _order(rings):
-    """(s,) which kept vertex each step of the walk takes one from: rings by rounds, then the vertices themselves."""
+    """(s,) the kept vertex that loses a ring at each step: in rounds, then the vertices themselves."""
     vertex = np.repeat(np.arange(len(rings)), rings + 1)
     taken = np.arange(len(vertex)) - np.repeat(np.cumsum(rings + 1) - (rings + 1), rings + 1)
     final = rings.max(initial=0)

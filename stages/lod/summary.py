@@ -1,24 +1,27 @@
-"""The few numbers of a run that the gate looks at."""
+"""The few numbers of a run that the gate checks."""
+
+from collections.abc import Sequence
 
 import pandas as pd
 
 METRICS = ("metro_mean", "ssim_error", "salient_error")
 
 
-def summarise(rows):
-    """dict of mean errors a method over the cells (object, target) that every method reached, so that they are paired.
+def summarise(rows: Sequence[dict]) -> dict[str, int | float | None]:
+    """dict of mean errors per method over the cells (object, target) for which every method has a mesh (paired).
 
-    Methods that reached no cell at all have None and stay out of the pairing. Beside them: how many such cells, how
-    many meshes, the shares of infeasible cells and of those with smaller neighbourhoods than wished, over all and a
-    method, among those that ask for fewer faces than the object has.
+    A method without any mesh has None and is left out of the pairing. Also the number of such cells and of meshes, and
+    the shares of infeasible cells and of those with shrunk neighbourhoods, over all and per method, among the cells
+    that ask for fewer faces than the object has.
     """
     table = pd.DataFrame(rows)
-    cells = table[(table["metric"] == "faces") & (table["value"].notna() | table["infeasible"])]
+    cells = pd.DataFrame(table[(table["metric"] == "faces") & (table["value"].notna() | table["infeasible"])])
     methods = list(dict.fromkeys(table["method"]))
-    summary = {"meshes": int(cells["value"].notna().sum()), "paired_cells": len(paired(table, "faces"))}
+    summary: dict[str, int | float | None] = {"meshes": len(cells.dropna(subset="value"))}
+    summary["paired_cells"] = len(paired(table, "faces"))
     for share in ("infeasible", "shrunk"):
-        summary[f"share_{share}"] = round(float(cells[share].mean()), 6)
-        by_method = cells.groupby("method")[share].mean()
+        summary[f"share_{share}"] = round(float(cells[share].to_numpy().mean()), 6)
+        by_method = pd.Series(cells.groupby("method")[share].mean())
         summary |= {
             f"{share}_{method}": round(float(by_method[method]), 6) for method in methods if method in by_method
         }
@@ -28,9 +31,9 @@ def summarise(rows):
     return summary
 
 
-def paired(table, metric):
-    """Frame of one metric, a column a method, a row a cell that all of them reached."""
-    wide = table[table["metric"] == metric].pivot(index=["object", "target"], columns="method", values="value")
+def paired(table: pd.DataFrame, metric: str) -> pd.DataFrame:
+    """Frame of one metric, one column per method, one row per cell for which all methods have a mesh."""
+    wide = table[table["metric"] == metric].pivot(index=["item", "target"], columns="method", values="value")
     return wide.astype(float).dropna(axis="columns", how="all").dropna()
 
 

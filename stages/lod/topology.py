@@ -1,10 +1,12 @@
-"""What a surface is made of: half-edges, pieces, loops, handles, and the faults that simplification must not add."""
+"""Topology of a surface (boundary loops, components, genus), and the faults that simplification must not add."""
 
 from dataclasses import astuple, dataclass
 
 import numpy as np
 
-from .kernels import components, count_faults, partners, pieces, signed_volumes, split_fans
+from stages.kit import Mesh
+
+from .kernels import count_faults, face_components, graph_components, opposites, signed_volumes, split_fans
 
 FOLD = -0.99  # cosine between neighbouring normals: folded back within 8 degrees of flat
 THIN = 1e-7  # height of a face over the bounding-box diagonal, below which it counts as degenerate
@@ -12,76 +14,82 @@ THIN = 1e-7  # height of a face over the bounding-box diagonal, below which it c
 
 @dataclass(frozen=True)
 class Topology:
-    """Counts of a surface: rim edges, loops of them, pieces (joined by edges), closed pieces, handles."""
+    """Counts of a surface: boundary edges and loops, components (joined by edges), closed ones of them, genus."""
 
-    rim: int
-    loops: int
-    pieces: int
-    closed: int
-    handles: int
+    boundary_edges: int
+    boundary_loops: int
+    components: int
+    closed_components: int
+    genus: int
 
 
 @dataclass(frozen=True)
 class Faults:
-    """Counts of degenerate faces, pairs of neighbours folded onto each other, half-edges on edges of three or more
-    faces, and closed pieces whose inside is out."""
+    """Counts of degenerate faces, folded pairs of neighbours, half-edges on non-manifold edges, and closed components
+    that are inside out."""
 
     degenerate: int
     folded: int
-    crowded: int
+    non_manifold: int
     inverted: int
 
-    def added(self, before):
-        """The faults that `before` has not, in words; empty when there are none."""
-        names = ("degenerate faces", "folded pairs of faces", "half-edges on non-manifold edges", "pieces inside out")
+    def added(self, before: "Faults") -> str:
+        """The faults in excess of `before`, in words; empty when there are none."""
+        names = (
+            "degenerate faces",
+            "folded pairs of faces",
+            "half-edges on non-manifold edges",
+            "components inside out",
+        )
         ours, theirs = astuple(self), astuple(before)
         return ", ".join(f"{a - b} new {name}" for name, a, b in zip(names, ours, theirs, strict=True) if a > b)
 
 
-NONE = Faults(degenerate=0, folded=0, crowded=0, inverted=0)
+NONE = Faults(degenerate=0, folded=0, non_manifold=0, inverted=0)
 
 
-def faults(mesh):
+def faults(mesh: Mesh) -> Faults:
     """The Faults of a mesh."""
     if len(mesh.faces) == 0:
         return NONE
-    ids, other, crowded = half_edges(mesh.faces)
+    ids, other, non_manifold = half_edges(mesh.faces)
     degenerate, folded = count_faults(mesh.vertices, ids, other, THIN * mesh.diagonal, FOLD)
     inverted = int((signed_volumes(mesh.vertices, ids, other) < -THIN * mesh.diagonal**3).sum())
-    return Faults(degenerate, folded, crowded, inverted)
+    return Faults(degenerate, folded, non_manifold, inverted)
 
 
-def topology(faces):
+def topology(faces: np.ndarray) -> Topology:
     """The Topology of the surface made of faces (m, 3).
 
-    Pieces that touch in one vertex, or in an edge of three or more faces, count apart.
+    Components that touch only in a vertex or in a non-manifold edge count as separate.
     """
     ids, other, _ = half_edges(faces)
     fan, n = split_fans(ids, other)
-    piece, count = pieces(other)
-    rim = np.flatnonzero(other < 0)
-    open_pieces = len(np.unique(piece[rim // 3]))
-    tails, heads = fan[rim], fan[np.where(rim % 3 == 2, rim - 2, rim + 1)]
-    at_rim = len(np.unique(np.r_[tails, heads]))
-    loops = components(tails, heads, n)[1] - (n - at_rim)
-    euler = n - (len(ids) + len(rim)) // 2 + len(faces)
-    handles = max((2 * count - loops - euler) // 2, 0)
-    return Topology(len(rim), loops, count, count - open_pieces, handles)
+    component, count = face_components(other)
+    boundary = np.flatnonzero(other < 0)
+    open_components = len(np.unique(component[boundary // 3]))
+    tails, heads = fan[boundary], fan[np.where(boundary % 3 == 2, boundary - 2, boundary + 1)]
+    on_boundary = len(np.unique(np.r_[tails, heads]))
+    loops = graph_components(tails, heads, n)[1] - (n - on_boundary)
+    euler = n - (len(ids) + len(boundary)) // 2 + len(faces)
+    genus = max((2 * count - loops - euler) // 2, 0)
+    return Topology(len(boundary), loops, count, count - open_components, genus)
 
 
-def half_edges(faces):
-    """Faces (3 m,) i4, the half-edge on the other side of each, and how many lie on edges of three or more faces.
+def half_edges(faces: np.ndarray) -> tuple[np.ndarray, np.ndarray, int]:
+    """Faces (3 m,) i4, the opposite of each half-edge (3 m,) i4, and how many half-edges lie on non-manifold edges.
 
-    Half-edge 3 f + k runs from corner k of face f to the next. Its other side is -1 unless exactly two share the edge.
+    Half-edge 3 f + k runs from corner k of face f to the next. Its opposite is -1 unless exactly two faces share it.
     """
     ids = faces.astype(np.int32).ravel()
-    return ids, *partners(ids, int(faces.max()) + 1, False)
+    other, non_manifold = opposites(ids, int(faces.max()) + 1, False)
+    return ids, other, non_manifold
 
 
-def split_pinches(faces):
-    """Faces (m, 3) with new vertex ids: a vertex is doubled where fans of faces touch in it alone.
+def split_nonmanifold_vertices(faces: np.ndarray) -> np.ndarray:
+    """Faces (m, 3) with new vertex ids: one vertex per fan of faces where several fans touch in a vertex.
 
-    After it each vertex has one fan, and edges with three or more faces have become rims.
+    Non-manifold edges become boundary edges.
     """
     ids, other, _ = half_edges(faces)
     return split_fans(ids, other)[0].reshape(-1, 3).astype(np.int64)

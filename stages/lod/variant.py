@@ -1,10 +1,10 @@
-"""What the name of a method in lod.methods means: whose points, and how they are kept."""
+"""The meaning of a name in lod.methods: which method's points, and how they are preserved."""
 
 from dataclasses import dataclass
 
 from stages.salient_points import METHODS
 
-from .neighbourhood import WAYS
+from .neighbourhood import NEIGHBOURHOODS
 
 PLAIN = "qem"
 SOFT = "soft"
@@ -14,26 +14,26 @@ SOFT = "soft"
 class Variant:
     """One way of simplifying: the method of salient_points (None: plain QEM), and how it is used.
 
-    way: a way of `neighbourhoods`, by which the points are kept, or `soft`: the saliency weighs the error, nothing is
-    kept; None for plain QEM.
+    rule: that of `neighbourhoods`, which preserves the points, or `soft`: the saliency weights the error and nothing is
+    frozen; None for plain QEM.
     """
 
     name: str
     method: str | None
-    way: str | None
+    rule: str | None
 
 
-def variant(name):
-    """The Variant that a name means: `qem`, `enhanced` (three rings), `enhanced-adaptive`, `-area` or `-soft`.
+def variant(name: str) -> Variant:
+    """The Variant of a name: `qem`, `enhanced` (three rings), `enhanced-adaptive`, `-area` or `-soft`.
 
-    Raises ValueError that says which part of the name is wrong.
+    Raises ValueError that names the wrong part.
     """
     if name == PLAIN:
         return Variant(name, None, None)
-    method, dash, way = name.partition("-")
-    suffixes = [each for each in (*WAYS, SOFT) if each != "fixed"]
+    method, dash, rule = name.partition("-")
+    suffixes = [each for each in (*NEIGHBOURHOODS, SOFT) if each != "fixed"]
     if method not in METHODS:
         raise ValueError(f"lod.methods: {name!r}: unknown method {method!r}; methods are {PLAIN}, {', '.join(METHODS)}")
-    if dash and way not in suffixes:
-        raise ValueError(f"lod.methods: {name!r} ends on {way!r}; endings are -{', -'.join(suffixes)}, or none")
-    return Variant(name, method, way or "fixed")
+    if dash and rule not in suffixes:
+        raise ValueError(f"lod.methods: {name!r} ends in {rule!r}; endings are -{', -'.join(suffixes)}, or none")
+    return Variant(name, method, rule or "fixed")

@@ -1,4 +1,4 @@
-"""What a process does once before it measures seconds: the first call loads compiled code, which is no work."""
+"""A first call before seconds are measured, since it loads compiled code."""
 
 import functools
 
@@ -10,12 +10,12 @@ from stages.kit import Mesh
 from .metro import metro
 from .simplify import BACKEND, simplify
 
-FACES = 200  # of 1,280: few enough for every step of the backends to run
+FACES = 200  # of 1,280: few enough that every step of the backends runs
 
 
 @functools.cache
-def warm_up(backend=BACKEND):
-    """Simplifies a small ball and measures it, once a process and backend."""
+def warm_up(backend: str = BACKEND) -> None:
+    """Simplifies a small ball and measures it, once per process and backend."""
     ball = trimesh.creation.icosphere(subdivisions=3, radius=0.5)
     mesh = Mesh(ball.vertices, ball.faces)
     metro(mesh, simplify(mesh, FACES, [0], 1, backend, shrink=True), samples=100)

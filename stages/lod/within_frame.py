@@ -1,4 +1,6 @@
-"""Meshes drawn smaller together where one of them reaches beyond the picture."""
+"""Meshes scaled down together where one of them exceeds the picture."""
+
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -8,14 +10,14 @@ from stages.kit.camera import DISTANCE, VIEW_ANGLE
 FITS = 0.999 * DISTANCE * np.tan(np.radians(VIEW_ANGLE) / 2)  # radius that fills the rows, less 0.1 % for rounding
 
 
-def within_frame(meshes):
-    """(list of Meshes, scale): all shrunk about the origin by one scale, at most 1, so that no picture crops any.
+def within_frame(meshes: Sequence[Mesh]) -> tuple[list[Mesh], float]:
+    """(list of Meshes, scale): all scaled about the origin by one factor, at most 1, so that no picture crops any.
 
-    With few faces the vertices stand far outside a round surface, since its facets cut through it. A scale of 1 hands
-    the meshes back as they are; vertices in no face do not count.
+    With few faces the vertices lie far outside a round surface, since the facets cut through it. At a scale of 1 the
+    meshes are returned unchanged; vertices in no face do not count.
     """
-    reach = max(np.linalg.norm(mesh.vertices[np.unique(mesh.faces)], axis=1).max(initial=0.0) for mesh in meshes)
-    if reach <= FITS:
+    radius = max(np.linalg.norm(mesh.vertices[np.unique(mesh.faces)], axis=1).max(initial=0.0) for mesh in meshes)
+    if radius <= FITS:
         return list(meshes), 1.0
-    scale = float(FITS / reach)
+    scale = float(FITS / radius)
     return [Mesh(scale * mesh.vertices, mesh.faces, mesh.colors, mesh.texture) for mesh in meshes], scale

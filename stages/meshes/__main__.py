@@ -1,55 +1,89 @@
 """Collects a data set of meshes, repairs or refuses each one, centres and scales it.
 
-Reads the source named by meshes.source (household, furniture: fetched by hash once; folder: a person's own files).
-Writes data/meshes/NAME.npz, manifest.csv (what each mesh is) and refused.csv (what was left out and why).
+Reads the source that meshes.source names (household and furniture are fetched by hash; folder: your own files).
+Writes data/SET/meshes: NAME.npz, manifest.csv (what each mesh is), refused.csv (what was left out and why) and, where
+the settings name classes, classes.csv (the class of each object). A class that is left with fewer than two objects has
+a note among the rows: no object of it can be held out.
 """
 
+import dataclasses
+import functools
+import hashlib
 import sys
+from pathlib import Path
 
 import pandas as pd
 
-from stages.kit import StageRun, Stopwatch, arguments, params
-from stages.kit.fetch import FetchError
+from stages.kit import Stopwatch
+from stages.kit.command import workspace_of_arguments
 from stages.kit.files import write_mesh, write_table
+from stages.kit.run import Rows, StageRun
+from stages.kit.workspace import Workspace
 
-from .collect import prepare
+from .classes import CLASSES, chosen_objects, small_classes
+from .collect import prepare_mesh
 from .load import MeshError
-from .sources import SOURCES
+from .schema import Params
+from .sources import SOURCES, MeshFile
 
 REFUSED = ["object", "file", "reason"]
 
 
-def main():
-    arguments(__doc__)
-    settings = params("meshes")
-    if settings.source not in SOURCES:
-        sys.exit(f"meshes.source={settings.source!r} is not known: {', '.join(SOURCES)}")
+def process(item: MeshFile, folder: Path, without_plane: bool) -> Rows:
+    """Prepares one mesh. Its row holds its line of the manifest or, where it is refused, the reason as `note`."""
+    row = {"item": item.name, "metric": "faces", "value": None}
     try:
-        items = {item.name: item for item in SOURCES[settings.source](settings)}
-    except (MeshError, FetchError) as error:
-        sys.exit(f"meshes: {error}")
-    with StageRun("meshes") as run:
-        manifest, refused = [], []
-        for item in run.progress(items.values()):
-            try:
-                with Stopwatch() as watch:
-                    mesh, row = prepare(item, settings.remove_plane)
-                    write_mesh(run.folder / f"{item.name}.npz", mesh)
-            except MeshError as error:
-                print(f"meshes: refused {item.file}: {error}", file=sys.stderr)
-                refused.append({"object": item.name, "file": item.file, "reason": str(error)})
-                if settings.strict:
-                    sys.exit("meshes: stopped at the first refusal, as meshes.strict asks")
-                continue
-            manifest.append(row)
-            run.rows.append({"object": item.name, "metric": "faces", "value": row["faces"], "seconds": watch.seconds})
+        with Stopwatch() as watch:
+            mesh, known = prepare_mesh(item, without_plane)
+            write_mesh(folder / f"{item.name}.npz", mesh)
+    except MeshError as error:
+        return [row | {"note": str(error)}]
+    return [row | {"value": known["faces"], "seconds": watch.seconds, "manifest": known}]
+
+
+def content_hash(item: MeshFile) -> str:
+    """The hash of what a mesh is made of: its file and what the source says of it. Unreadable files have one, too."""
+    try:
+        content = item.content()
+    except (OSError, ValueError, RuntimeError) as error:
+        content = str(error).encode()
+    known = (item.name, item.file, item.suffix, item.up, item.unit, item.licence, item.creator)
+    return hashlib.sha256(repr(known).encode() + content).hexdigest()
+
+
+def run(workspace: Workspace) -> None:
+    """Runs the stage on the data set of a workspace."""
+    settings = workspace.settings(Params)
+    if settings.source not in SOURCES:
+        raise ValueError(f"meshes.source={settings.source!r} is not one of {', '.join(SOURCES)}")
+    chosen = dataclasses.replace(settings, objects=chosen_objects(settings.objects, settings.classes))
+    items = {item.name: item for item in SOURCES[settings.source](chosen)}
+    with StageRun(workspace, "meshes") as stage:
+        work = functools.partial(process, without_plane=settings.remove_plane)
+        rows = stage.each(work, items, made_of={name: content_hash(item) for name, item in items.items()})
+        manifest = [row.pop("manifest") for row in rows if "manifest" in row]
+        refused = [(row["item"], items[row["item"]].file, row["note"]) for row in rows if row["value"] is None]
+        for _, file, reason in refused:
+            print(f"meshes: refused {file}: {reason}", file=sys.stderr)
+        if refused and settings.strict:
+            raise ValueError("stopped: meshes.strict is set, and a mesh was refused")
         if not manifest:
-            sys.exit("meshes: every mesh was refused; nothing is left to work on")
-        write_table(run.folder / "manifest.csv", pd.DataFrame(manifest))
-        write_table(run.folder / "refused.csv", pd.DataFrame(refused, columns=REFUSED))
-        closed = sum(row["watertight"] for row in manifest)
-        run.metrics({"objects": len(manifest), "refused": len(refused), "watertight": closed})
-    print(f"meshes: {len(manifest)} objects, {closed} watertight, {len(refused)} refused")
+            raise ValueError("every mesh was refused; none is left to work on")
+        write_table(stage.folder / "manifest.csv", pd.DataFrame(manifest))
+        write_table(stage.folder / "refused.csv", pd.DataFrame(refused, columns=REFUSED))
+        if settings.classes:
+            accepted = [known["object"] for known in manifest]
+            pairs = [(name, one) for name, objects in settings.classes.items() for one in objects if one in accepted]
+            write_table(stage.folder / CLASSES, pd.DataFrame(pairs, columns=["class", "object"]))
+            stage.rows += small_classes(settings.classes, accepted)
+        closed = sum(known["watertight"] for known in manifest)
+        stage.metrics({"objects": len(manifest), "refused": len(refused), "watertight": closed})
+    print(f"meshes: {workspace.dataset}, {len(manifest)} objects, {closed} watertight, {len(refused)} refused")
+
+
+def main() -> None:
+    """Runs the stage on the data set that the command line names."""
+    run(workspace_of_arguments(__doc__, "meshes"))
 
 
 if __name__ == "__main__":

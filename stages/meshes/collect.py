@@ -1,45 +1,51 @@
-"""From one item of a source to a mesh that the later stages can use, and what is known of it."""
+"""Turns one mesh file of a source into a mesh that the later stages can use, and a row of its metadata."""
 
 import hashlib
 
 import numpy as np
 from scipy.sparse.csgraph import connected_components
 
+from stages.kit import Mesh
 from stages.kit.fetch import FetchError
 
 from .clean import clean
 from .load import MeshError, parse
-from .normalise import normalise, turn_up
+from .normalise import normalise, rotate_to_z_up
 from .plane import remove_plane
+from .sources import MeshFile
 
 
-def prepare(item, without_table=False):
-    """(mesh, row of the manifest) of a source's Item: read, repaired, turned upright, centred and scaled.
+def prepare_mesh(item: MeshFile, remove_table: bool = False) -> tuple[Mesh, dict]:
+    """The mesh of a MeshFile, repaired, turned upright, centred and scaled, and its row of the manifest (a dict).
 
-    without_table: first take out the plane that a scanned object stands on (remove_plane). Raises MeshError with the
-    reason where the item gives no usable mesh.
+    remove_table: first removes the plane that a scanned object stands on (remove_plane). Raises MeshError with the
+    reason when the file gives no usable mesh.
     """
     try:
         content = item.content()
         raw, notes = clean(parse(content, item.suffix))
-        if without_table:
-            raw, notes = _off_the_table(raw, notes)
-        mesh = normalise(turn_up(raw, item.up))
+        if remove_table:
+            raw, notes = _without_table(raw, notes)
+        mesh = normalise(rotate_to_z_up(raw, item.up))
     except (FetchError, ValueError, OSError) as error:
         raise MeshError(str(error)) from error
     used = np.unique(mesh.faces)
     counts = mesh.edge_counts[1]
-    parts = connected_components(mesh.adjacency[used][:, used])[0]
+    components = connected_components(mesh.adjacency[used][:, used])[0]
     return mesh, {
         "object": item.name, "file": item.file, "licence": item.licence, "creator": item.creator, "unit": item.unit,
         "up": item.up, "size": float(np.ptp(raw.vertices[np.unique(raw.faces)], axis=0).max()),
-        "vertices": len(mesh.vertices), "faces": len(mesh.faces), "parts": int(parts), "watertight": mesh.watertight,
-        "open_edges": int((counts == 1).sum()), "nonmanifold_edges": int((counts > 2).sum()),
-        "colors": mesh.colors is not None, "repairs": "; ".join(notes), "sha256": hashlib.sha256(content).hexdigest(),
+        "vertices": len(mesh.vertices), "faces": len(mesh.faces), "parts": int(components),
+        "watertight": mesh.watertight, "open_edges": int((counts == 1).sum()),
+        "nonmanifold_edges": int((counts > 2).sum()), "colors": mesh.colors is not None,
+        "repairs": "; ".join(notes), "sha256": hashlib.sha256(content).hexdigest(),
     }  # fmt: skip
 
 
-def _off_the_table(mesh, notes):
-    alone = remove_plane(mesh)
-    gone = len(mesh.faces) - len(alone.faces)
-    return alone, [*notes, f"supporting plane removed with {gone} faces" if gone else "no supporting plane found"]
+def _without_table(mesh, notes):
+    remaining = remove_plane(mesh)
+    removed = len(mesh.faces) - len(remaining.faces)
+    return remaining, [
+        *notes,
+        f"supporting plane removed with {removed} faces" if removed else "no supporting plane found",
+    ]

@@ -1,33 +1,34 @@
-"""Objects in classes, three a class, from the catalogue of furniture that Debian carries (sweethome3d-furniture).
+"""Objects in classes, three per class, from the Debian package sweethome3d-furniture.
 
-Each was looked at from both sides, since names mislead ("Clothes horse" is no animal): it stands upright, is whole and
-firm to the touch, shows the outer side of its faces, and has from 1,000 to 60,000 of them. Materials are left in the
-package, since the stages store no texture.
+Each object was inspected from both sides, since names mislead ("Clothes horse" is not an animal). It stands upright,
+is complete and solid, shows the outer side of its faces, and has 1,000 to 60,000 faces. Materials are not extracted,
+since the stages store no texture.
 """
 
 import hashlib
 import io
 import re
 import zipfile
+from pathlib import Path
 
 import numpy as np
 
 from stages.kit.fetch import cache_folder, debian_files, fetch_debian, read_members
 from stages.kit.files import whole_file
 
-from .painted import vertices_of
+from .materials import obj_vertices
 
 PACKAGE = "sweethome3d-furniture_1.8-1_all.deb"
 HASH = "3ccb90c63f9525e887a767b9cd5c8b6933b8b6b2973a615a5359ee68a2118668"
 FOLDER = "usr/share/sweethome3d/furniture"
 CATALOGUE = "PluginFurnitureCatalog.properties"
-UP = 1  # the axis that is up in all its models: y
+UP = 1  # index of the axis that points up in all its models: y
 LICENCES = {
     "BlendSwap-CC-0": "CC0-1.0", "BlendSwap-CC-BY": "CC-BY-3.0", "KatorLegaz": "CC-BY-3.0-US",
     "Reallusion": "CC-BY-3.0-US", "Scopia": "CC-BY-3.0",
 }  # fmt: skip
 
-# name: (library, entry of its catalogue). Eight classes as in T figure 4.18, as near as it gets, then two in reserve.
+# name: (library, entry of its catalogue). Eight classes as close as possible to those of T figure 4.18, then two more.
 FURNITURE = {
     "horse": ("BlendSwap-CC-BY", "horse"),
     "dog": ("Scopia", "dog"),
@@ -62,24 +63,25 @@ FURNITURE = {
 }
 
 
-def furniture_files():
-    """(path of the extract, {name: (creator, unit)}): an archive in the cache with NAME.obj of every one of FURNITURE.
+def furniture_files() -> tuple[Path, dict[str, tuple[str, str]]]:
+    """(path of an archive in the cache with NAME.obj for each name of FURNITURE, {name: (creator, unit)}).
 
-    Made once from the package of 119.8 MB, which is only needed for that; the extract's own name follows the list. The
-    unit is a length in cm, since some models are drawn at a scale of their own and the catalogue says how tall they
-    are. FetchError says which file to put where when the package cannot be fetched.
+    The archive is made from the package of 119.8 MB when it is missing; its file name depends on FURNITURE. The unit
+    is a length in cm: models differ in scale, and the catalogue states their height. Raises FetchError, saying which
+    file to put where, when the package cannot be fetched.
     """
     listed = hashlib.sha256(repr(FURNITURE).encode()).hexdigest()[:8]
     extract = cache_folder() / f"furniture-1.8-1-{listed}.zip"
     if not zipfile.is_zipfile(extract):
         _extract(fetch_debian(PACKAGE, HASH), extract)
     with zipfile.ZipFile(extract) as stored:
-        known = {name: tuple(stored.getinfo(f"{name}.obj").comment.decode().split("\n")) for name in FURNITURE}
-    return extract, known
+        comments = {name: stored.getinfo(f"{name}.obj").comment.decode() for name in FURNITURE}
+    metadata = {name: (comment.split("\n")[0], comment.split("\n")[1]) for name, comment in comments.items()}
+    return extract, metadata
 
 
 def _extract(package, extract):
-    with whole_file(extract) as part, zipfile.ZipFile(part, "w", zipfile.ZIP_DEFLATED) as chosen:
+    with whole_file(extract) as part, zipfile.ZipFile(part, "w", zipfile.ZIP_DEFLATED) as target:
         for path, stream in debian_files(package):
             library = path.removeprefix(f"{FOLDER}/").removesuffix(".sh3f")
             if library not in LICENCES:
@@ -88,15 +90,15 @@ def _extract(package, extract):
             entries = _entries(next(read_members(archive, [CATALOGUE]))[1])
             for name, (where, entry) in FURNITURE.items():
                 if where == library:
-                    _copy(archive, entries[entry], name, chosen)
+                    _copy(archive, entries[entry], name, target)
 
 
-def _copy(archive, entry, name, chosen):
+def _copy(archive, entry, name, target):
     ((_, content),) = read_members(archive, [entry["model"].lstrip("/")])
     member = zipfile.ZipInfo(f"{name}.obj")
-    unit = float(entry["height"]) / np.ptp(vertices_of(content)[:, UP])
+    unit = float(entry["height"]) / np.ptp(obj_vertices(content)[:, UP])
     member.comment = f"{entry['creator']}\n{unit:.3g} cm".encode()
-    chosen.writestr(member, content, zipfile.ZIP_DEFLATED)
+    target.writestr(member, content, zipfile.ZIP_DEFLATED)
 
 
 def _entries(catalogue):

@@ -1,12 +1,12 @@
-"""The frame that every later stage works in: +z up, centred, bounding sphere of radius 0.5."""
+"""The coordinate frame of all later stages: +z up, centred, a bounding sphere of radius 0.5."""
 
 import numpy as np
 
 from stages.kit import Mesh
 
-RADIUS = 0.5  # the sphere then fills 859 of the 900 image rows of the thesis's camera
+RADIUS = 0.5  # the sphere then spans 859 of the 900 image rows of the thesis's camera
 
-# Rows are the new x, y, z in terms of the old axes; each is a rotation, so no mesh is mirrored.
+# Rows are the new x, y, z in terms of the old axes. Each matrix is a rotation, so no mesh is mirrored.
 TO_Z_UP = {
     "x": np.array([[0, 1, 0], [0, 0, 1], [1, 0, 0]]),
     "y": np.array([[0, 0, 1], [1, 0, 0], [0, 1, 0]]),
@@ -14,21 +14,21 @@ TO_Z_UP = {
 }
 
 
-def normalise(mesh):
+def normalise(mesh: Mesh) -> Mesh:
     """The mesh with the centre of its bounding box at 0 and a bounding sphere about it of radius 0.5 (T3.2.9).
 
-    Only vertices that a face uses count, so that a stray vertex cannot shrink the object. Raises ValueError where
-    the mesh has no extent.
+    Only vertices that a face uses count, so that a stray vertex cannot shrink the object. Raises ValueError when the
+    mesh has no faces or no extent.
     """
-    centre, radius = frame(mesh)
+    centre, radius = centre_and_radius(mesh)
     return Mesh((mesh.vertices - centre) * (RADIUS / radius), mesh.faces, mesh.colors, mesh.texture)
 
 
-def frame(mesh):
+def centre_and_radius(mesh: Mesh) -> tuple[np.ndarray, float]:
     """(centre (3,) of the bounding box, radius of the bounding sphere about it), in the units of the mesh."""
     used = mesh.vertices[np.unique(mesh.faces)]
     if len(used) == 0:
-        raise ValueError("the mesh has no faces to normalise by")
+        raise ValueError("the mesh has no faces, so that it cannot be normalised")
     centre = (used.min(axis=0) + used.max(axis=0)) / 2
     radius = np.linalg.norm(used - centre, axis=1).max()
     if radius == 0:
@@ -36,8 +36,8 @@ def frame(mesh):
     return centre, radius
 
 
-def turn_up(mesh, up):
-    """The mesh turned so that its axis `up` (x, y or z) becomes +z."""
+def rotate_to_z_up(mesh: Mesh, up: str) -> Mesh:
+    """The mesh rotated so that its axis `up` (x, y or z) becomes +z; ValueError for another axis."""
     if up not in TO_Z_UP:
-        raise ValueError(f"up axis {up!r} is not one of {', '.join(TO_Z_UP)}")
+        raise ValueError(f"unknown up axis {up!r}: choose one of {', '.join(TO_Z_UP)}")
     return Mesh(mesh.vertices @ TO_Z_UP[up].T, mesh.faces, mesh.colors, mesh.texture)

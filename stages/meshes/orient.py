@@ -1,4 +1,4 @@
-"""Turns faces so that they agree with their neighbours and a closed surface faces outwards."""
+"""Makes the winding of faces consistent, and turns closed surfaces outwards."""
 
 import numpy as np
 from scipy import sparse
@@ -7,16 +7,17 @@ from scipy.sparse.csgraph import connected_components
 from stages.kit import Mesh
 
 
-def orient(mesh):
-    """(mesh, notes): neighbours wound alike, closed parts outwards; only the order within a face ever changes.
+def orient(mesh: Mesh) -> tuple[Mesh, list[str]]:
+    """The mesh with neighbours wound alike and closed parts facing outwards, and notes: (Mesh, list of str).
 
-    The virtual sensor tells inside from outside by the faces' normals, so an inverted mesh would feel empty. In a part
-    (faces joined by edges of two faces) the fewer faces turn; a part that cannot be wound alike (a Moebius strip)
-    stays. A closed part of negative volume turns with all that lies in its bounding box, but one within the box of
-    another stays: it may be the wall of a cavity.
+    Only the vertex order within faces changes. The virtual sensor distinguishes inside from outside by face normals,
+    so an inverted mesh would seem empty to it. A part is a set of faces connected by edges that exactly two faces
+    share. In each part the minority of faces is flipped; a part that cannot be oriented (a Moebius strip) stays. A
+    closed part of negative volume is flipped with all parts inside its bounding box. One that lies inside the box of
+    another closed part stays, since it may be the wall of a cavity.
     """
     first, second, alike, closed_edges = _neighbours(mesh)
-    flips = _against_the_majority(len(mesh.faces), first, second, alike)
+    flips = _minority_faces(len(mesh.faces), first, second, alike)
     turned = flips.sum()
     mesh = _flipped(mesh, flips)
     inverted = _inverted(mesh, first, second, closed_edges)
@@ -26,8 +27,10 @@ def orient(mesh):
 
 
 def _neighbours(mesh):
-    """Face pairs that share an edge of two faces: (first (e,), second (e,), wound alike (e,)), and (m,) boolean:
-    all three edges of the face are such edges."""
+    """Pairs of faces that share an edge of exactly two faces: (first (e,), second (e,), wound alike (e,), closed).
+
+    closed (m,) boolean: all three edges of the face are of that kind.
+    """
     tails, heads = mesh.faces.ravel(), np.roll(mesh.faces, -1, axis=1).ravel()
     forward = tails < heads
     edge = np.minimum(tails, heads) * len(mesh.vertices) + np.maximum(tails, heads)
@@ -40,10 +43,10 @@ def _neighbours(mesh):
     return one // 3, other // 3, forward[one] != forward[other], closed.reshape(-1, 3).all(axis=1)
 
 
-def _against_the_majority(count, first, second, alike):
-    """(m,) boolean: the faces to turn, found on the double cover of the face graph.
+def _minority_faces(count, first, second, alike):
+    """(m,) boolean: the faces to flip, from the double cover of the face graph.
 
-    Each face stands there twice, as it is and turned; neighbours wound alike join equal copies, others unequal ones.
+    Each face has two nodes there, unflipped and flipped. Neighbours wound alike connect equal nodes, others unequal.
     """
     if alike.all():
         return np.zeros(count, dtype=bool)
@@ -52,7 +55,7 @@ def _against_the_majority(count, first, second, alike):
     columns = np.r_[second + crossed, (second + count + crossed) % (2 * count)]
     graph = sparse.coo_matrix((np.ones(len(rows)), (rows, columns)), shape=(2 * count, 2 * count))
     label = connected_components(graph, directed=False)[1]
-    kept = np.bincount(label[:count], minlength=label.max() + 1)  # faces as they are in each copy of a part
+    kept = np.bincount(label[:count], minlength=label.max() + 1)  # unflipped faces in each component
     as_is, turned = label[:count], label[count:]
     return (kept[as_is] < kept[turned]) | ((kept[as_is] == kept[turned]) & (as_is > turned))
 

@@ -8,9 +8,10 @@ class Params:
     """Section `meshes` of params.yaml."""
 
     source: str  # which collection: household, furniture, folder, gaze, princeton or interest_points
-    folder: str  # where the files lie: your own folder, or a collection's folder or zip; household, furniture need none
+    folder: str  # where the files lie: your own folder, or the folder or zip of a collection that is not fetched
     up: str  # the axis that points up in the files of folder and interest_points: x, y or z
     unit: str  # the unit of the folder's files, for the manifest
-    objects: list[str]  # the objects to take, all of the source when empty
+    objects: list[str]  # the objects to take; empty: those of classes, or all
+    classes: dict[str, list[str]]  # class: its objects, for stages that recognise classes of several objects
     strict: bool  # stop at the first refused mesh instead of going on without it
     remove_plane: bool = False  # take out the table that a scanned object stands on, before anything else (T4.2.3.2)

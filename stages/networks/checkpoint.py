@@ -1,18 +1,20 @@
-"""What a training needs to go on after a kill as if nothing had happened: one file, whole or absent."""
+"""Checkpoints from which an interrupted training continues with the same result: one file, complete or absent."""
 
 import copy
 import pickle
 import sys
+from pathlib import Path
+from typing import Any
 
 import torch
 
 from stages.kit.files import whole_file
 
 
-def save(path, epoch, settings, **parts):
-    """Writes the state of each part (a model, an optimiser, ...) and of torch's random numbers behind `epoch` passes.
+def save(path: Path, epoch: int, settings: dict[str, Any], **parts: Any) -> None:
+    """Writes the state of each part (a model, an optimiser, ...) and of torch's random numbers after `epoch` epochs.
 
-    settings: what the training is of, as plain values; it goes on only under the same.
+    settings: of the training, as plain values; it is resumed only under the same ones.
     """
     state = {"epoch": epoch, "settings": settings, "random": torch.get_rng_state()}
     if torch.cuda.is_available():
@@ -22,30 +24,29 @@ def save(path, epoch, settings, **parts):
         torch.save(state, temporary)
 
 
-def resume(path, settings, **parts):
-    """The passes that are done: their state is put back into the parts and into torch's random numbers. 0 where none.
+def resume(path: Path, settings: dict[str, Any], **parts: Any) -> int:
+    """The number of epochs done, 0 without a file; loads their state into the parts and torch's random numbers.
 
-    A file that is damaged, of another architecture or of other settings is passed over with a word, and the training
-    begins anew. Nothing is unpickled but tensors and plain values.
+    A file that is damaged, or of another architecture or other settings, is ignored with a message, and the training
+    starts again. Only tensors and plain values are unpickled.
     """
     if not path.exists():
         return 0
     try:
         state = torch.load(path, map_location="cpu", weights_only=True)
-        reason = _strange(state, settings, parts["model"])
+        reason = _mismatch(state, settings, parts["model"])
         if not reason:
             _restore(state, parts)
+            return state["epoch"]
     except (OSError, RuntimeError, EOFError, KeyError, TypeError, AttributeError, ValueError,
             pickle.UnpicklingError) as error:  # fmt: skip
         reason = f"it cannot be read ({' '.join(str(error).split())[:80]})"
-    if reason:
-        print(f"{path.name}: passed over, {reason}; the training begins anew", file=sys.stderr)
-        return 0
-    return state["epoch"]
+    print(f"{path.name}: ignored, {reason}; the training starts again", file=sys.stderr)
+    return 0
 
 
 def _restore(state, parts):
-    """Puts a state back into the parts and into torch's random numbers; where that fails, all is as before."""
+    """Loads a state into the parts and into torch's random numbers; where that fails, all stay unchanged."""
     before = {name: copy.deepcopy(part.state_dict()) for name, part in parts.items()}
     random, _ = state["random"], state["epoch"]
     try:
@@ -60,14 +61,14 @@ def _restore(state, parts):
         raise
 
 
-def _strange(state, settings, model):
-    """Why a state is not one of this training; "" where it is."""
+def _mismatch(state, settings, model):
+    """Why a state does not belong to this training; "" where it does."""
     stored, own = _shapes(state["parts"]["model"]), _shapes(model.state_dict())
     if stored != own:
         first = min(key for key in stored.keys() | own.keys() if stored.get(key) != own.get(key))
         return f"it is of another architecture: {first} has shape {stored.get(first)}, here {own.get(first)}"
-    strange = [key for key in settings if state["settings"].get(key) != settings[key]]
-    return f"it is of a training with other {', '.join(strange)}" if strange else ""
+    different = [key for key in settings if state["settings"].get(key) != settings[key]]
+    return f"it is of a training with other {', '.join(different)}" if different else ""
 
 
 def _shapes(state):

@@ -1,6 +1,7 @@
-"""Where a network runs: the processor, or a graphics card where there is one."""
+"""The device that a network runs on: the CPU, or a CUDA card where there is one."""
 
 import os
+from collections.abc import Iterator
 from contextlib import contextmanager
 
 import torch
@@ -9,10 +10,11 @@ DEVICES = ("auto", "cpu", "cuda")
 REMEDY = "take a smaller batch or smaller images (the stage's `batch` and `size`) or fewer workers (parallel.workers)"
 
 
-def choose(name="auto"):
-    """The torch.device of a name: `auto` takes a CUDA card where there is one; ValueError for one that is not there.
+def choose_device(name: str = "auto") -> torch.device:
+    """The torch.device of a name of DEVICES: `auto` is a CUDA card where there is one, else the CPU.
 
-    A card has no deterministic form of some steps (pooling, for one): from here on torch warns of these and goes on.
+    Some operations, pooling for one, have no deterministic form on a card: torch then warns of them and continues.
+    Raises ValueError for an unknown name, or `cuda` without a card.
     """
     if name not in DEVICES:
         raise ValueError(f"unknown device {name!r}, known: {', '.join(DEVICES)}")
@@ -20,29 +22,29 @@ def choose(name="auto"):
         raise ValueError("device cuda: torch finds no CUDA card here; take auto or cpu")
     device = torch.device("cuda" if name != "cpu" and torch.cuda.is_available() else "cpu")
     if device.type == "cuda":
-        os.environ.setdefault("CUBLAS_WORKSPACE_CONFIG", ":4096:8")  # else deterministic sums are refused there
+        os.environ.setdefault("CUBLAS_WORKSPACE_CONFIG", ":4096:8")  # without it CUDA refuses deterministic sums
         torch.use_deterministic_algorithms(torch.are_deterministic_algorithms_enabled(), warn_only=True)
     return device
 
 
-def device_of(module):
-    """Where the parameters of a module lie."""
+def device_of(module: torch.nn.Module) -> torch.device:
+    """The device of a module's parameters."""
     return next(module.parameters()).device
 
 
-def mixed(device):
-    """The context in which a CUDA card computes in half precision where that is safe; on a processor nothing."""
+def mixed_precision(device: torch.device) -> torch.autocast:
+    """A context in which a CUDA card computes in half precision where that is safe; without effect on a CPU."""
     return torch.autocast(device.type, dtype=torch.float16, enabled=device.type == "cuda")
 
 
 @contextmanager
-def enough_memory():
-    """Turns errors of too little memory into a ValueError that names the remedies; a context and a decorator."""
+def explain_out_of_memory() -> Iterator[None]:
+    """A context manager and decorator that turns out-of-memory errors into a ValueError that names the remedies."""
     try:
         yield
     except (torch.OutOfMemoryError, MemoryError) as error:
         raise ValueError(f"too little memory: {REMEDY}") from error
     except RuntimeError as error:
-        if "can't allocate memory" not in str(error):  # what the processor's allocator says
+        if "can't allocate memory" not in str(error):  # the message of the CPU's allocator
             raise
         raise ValueError(f"too little memory: {REMEDY}") from error

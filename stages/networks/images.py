@@ -1,23 +1,26 @@
-"""Imprints as a photograph-trained network wants them: red channel, size, normalisation, augmentation (T5.3)."""
+"""Imprints as inputs of a network trained on photographs: red channel, size, normalisation, augmentation (T5.3)."""
+
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import torch
 from kornia import augmentation as kornia_augmentation
 from kornia.augmentation import AugmentationSequential
 
-MEAN = (0.485, 0.456, 0.406)  # of ImageNet's red, green, blue, as torchvision's weights were trained
+Transform = Callable[[torch.Tensor], torch.Tensor]  # of images or ids to images, such as an augmentation
+MEAN = (0.485, 0.456, 0.406)  # of red, green and blue in ImageNet, as for torchvision's weights
 STD = (0.229, 0.224, 0.225)
 SHIFT = 0.1  # translation, as a share of the side; the thesis gives no range
 SCALE = (0.9, 1.1)  # likewise
 
 
-def to_images(imprints, size):
+def to_images(imprints: np.ndarray | list[np.ndarray], size: int) -> torch.Tensor:
     """Images (k, 3, size, size) f4 in 0..1: the imprint in the red channel, green and blue zero (T5.3).
 
-    imprints: (k, r, c), u1 or floats in 0..1; resized bilinearly, with an anti-alias filter where they shrink. Raises
-    ValueError for another shape, several sizes, values out of range or NaN.
+    imprints: (k, r, c), u1 or floats in 0..1; resized bilinearly, with an anti-aliasing filter where they shrink.
+    Raises ValueError for another shape, several sizes, values out of range or NaN.
     """
-    one_size(imprints)
+    check_one_size(imprints)
     grey = torch.as_tensor(imprints)
     if grey.ndim != 3 or 0 in grey.shape:
         raise ValueError(f"imprints must have shape (k, rows, columns) and not be empty, got {tuple(grey.shape)}")
@@ -31,25 +34,25 @@ def to_images(imprints, size):
     return images
 
 
-def one_size(images):
-    """Raises ValueError, naming the sizes, for a list of images that differ in size."""
+def check_one_size(images: Sequence[np.ndarray] | np.ndarray | torch.Tensor) -> None:
+    """Raises ValueError, which names the sizes, for a list of images of several sizes."""
     sizes = [] if hasattr(images, "shape") else sorted({np.shape(image) for image in images})
     if len(sizes) > 1:
         raise ValueError(f"images of several sizes, {', '.join(map(str, sizes))}: resize them to one first")
 
 
-def normalise(images):
-    """Images (k, 3, h, w) in 0..1 to ImageNet's mean and standard deviation a channel."""
+def normalise(images: torch.Tensor) -> torch.Tensor:
+    """Images (k, 3, h, w) in 0..1, normalised by ImageNet's mean and standard deviation per channel."""
     mean = torch.tensor(MEAN, device=images.device).view(3, 1, 1)
     std = torch.tensor(STD, device=images.device).view(3, 1, 1)
     return ((images - mean) / std).contiguous(memory_format=torch.channels_last)
 
 
-def augmentation():
+def augmentation() -> AugmentationSequential:
     """Random reflection, translation and scaling of images in 0..1, for training only (T5.3).
 
-    Draws from torch's own random numbers. What moves in from outside continues the imprint's edge, since black, the
-    usual filling, would mean contact.
+    Uses torch's random numbers. Pixels that move in from outside repeat the imprint's border, since black, the usual
+    fill value, would mean contact.
     """
     return AugmentationSequential(
         kornia_augmentation.RandomHorizontalFlip(p=0.5),

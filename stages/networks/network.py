@@ -1,43 +1,48 @@
-"""Networks whose classification layers are replaced by new ones for the classes of touch."""
+"""Networks for photographs with a new classifier."""
 
+from collections.abc import Sequence
+
+import numpy as np
 import torch
 
 from .architectures.alexnet import alexnet
 from .architectures.efficientnet_lite0 import efficientnet_lite0
 from .architectures.googlenet import googlenet
 from .architectures.mobilenet_v2 import mobilenet_v2
-from .architectures.resnet import resnet50, resnet50_early, resnet101
+from .architectures.resnet import resnet50, resnet50_v1, resnet101
 from .architectures.vgg16 import vgg16
-from .weights import chosen, had, imagenet_state
+from .images import Transform
+from .weights import available_weights, imagenet_state, resolve_source
 
-START = ("imagenet", "random")
-SMALLEST = 32  # pixels: below, some of the networks have no last map left
+WEIGHTS = ("imagenet", "random")
+SMALLEST = 32  # pixels a side: with fewer, the last feature maps of some networks are empty
 
 
 class Network(torch.nn.Module):
-    """Convolutions made for photographs and a new head for k classes of imprints.
+    """The convolutions of an architecture with a new head for k classes.
 
-    Images (b, 3, h, w) f4, ImageNet-normalised, to scores (b, k) before the softmax. `features` gives what the head
-    sees, (b, width); `head` maps it to the scores.
+    Maps images (b, 3, h, w) f4, normalised as for ImageNet, to scores (b, k) before the softmax. `features` gives the
+    pooled feature maps, (b, width); `head` maps them to the scores.
     """
 
-    def __init__(self, convolutions, width, classes, dropout):
+    def __init__(self, convolutions: torch.nn.Sequential, width: int, classes: int, dropout: float) -> None:
         super().__init__()
         self.convolutions = convolutions
         self.pool = torch.nn.AdaptiveAvgPool2d(1)
-        self.head = torch.nn.Sequential(torch.nn.Dropout(dropout), torch.nn.Linear(width, classes))
-        torch.nn.init.normal_(self.head[1].weight, std=0.01)  # as torchvision does for MobileNetV2
-        torch.nn.init.zeros_(self.head[1].bias)
+        linear = torch.nn.Linear(width, classes)
+        self.head = torch.nn.Sequential(torch.nn.Dropout(dropout), linear)
+        torch.nn.init.normal_(linear.weight, std=0.01)  # as torchvision does for MobileNetV2
+        torch.nn.init.zeros_(linear.bias)
 
-    def features(self, images):
-        """(b, width): the pooled last convolution. Raises ValueError for images of another shape or too small."""
+    def features(self, images: torch.Tensor) -> torch.Tensor:
+        """(b, width): the mean of each last feature map. Raises ValueError for images of another shape or too small."""
         if images.ndim != 4 or images.shape[1] != 3 or min(images.shape[2:]) < SMALLEST:
             raise ValueError(
                 f"images must have shape (b, 3, h, w) with sides of {SMALLEST} or more, got {tuple(images.shape)}"
             )
         return self.pool(self.convolutions(images)).flatten(1)
 
-    def forward(self, images):
+    def forward(self, images: torch.Tensor) -> torch.Tensor:
         return self.head(self.features(images))
 
 
@@ -50,19 +55,19 @@ NETWORKS = {
     "mobilenet_v2": mobilenet_v2,
     "efficientnet_lite0": efficientnet_lite0,
 }
-EARLY = {"resnet50": resnet50_early}  # what a registry's weights fit where they are not torchvision's
+PACKAGE_VARIANTS = {"resnet50": resnet50_v1}  # architectures of a package's weights where torchvision's differ
 
 
-def build(name, classes, weights, seed, source="package"):
+def build(name: str, classes: int, weights: str, seed: int, source: str = "package") -> Network:
     """A Network for `classes` classes, in evaluation mode.
 
-    name: one of NETWORKS. weights: `imagenet`, or `random` for the control. source: `package` or `download`, where the
-    weights come from; it also says which form of ResNet50 they and their control have. The seed fixes the head and,
-    for `random`, the convolutions; the caller's own random numbers are left as they were. Raises ValueError for an
-    unknown name, FetchError for weights that cannot be had.
+    name: one of NETWORKS. weights: `imagenet`, or `random` for the control. source: where the weights come from, one of
+    stages.networks.weights.SOURCES; it also decides the variant of ResNet50, for the control too. The seed decides the
+    initial head and, for `random`, the convolutions; the caller's random numbers are left unchanged. Raises ValueError
+    for an unknown name, FetchError for weights that are not available.
     """
-    if weights not in START:
-        raise ValueError(f"unknown weights {weights!r}, known: {', '.join(START)}")
+    if weights not in WEIGHTS:
+        raise ValueError(f"unknown weights {weights!r}, known: {', '.join(WEIGHTS)}")
     if classes < 2:
         raise ValueError(f"a classifier needs two classes or more, got {classes}")
     design = _design(name, source)
@@ -74,17 +79,18 @@ def build(name, classes, weights, seed, source="package"):
     return _ready(network)
 
 
-def imagenet_classifier(name, source="package"):
+def imagenet_classifier(name: str, source: str = "package") -> Network:
     """The Network of ImageNet's 1000 classes, in torchvision's order of categories, with the published head.
 
-    Raises ValueError where there is none: AlexNet and VGG16 have more layers behind their convolutions than a Network
-    does; FetchError for weights that cannot be had.
+    Raises ValueError for AlexNet and VGG16, which have more layers after their convolutions than a Network, and
+    FetchError for weights that are not available.
     """
-    if had(name, source) == "convolutions":
-        raise ValueError(f"{name} has its convolutions alone here, and no classifier of ImageNet's classes")
+    if available_weights(name, source) == "convolutions":
+        raise ValueError(f"only the convolutions of {name} are available, without a classifier of ImageNet's classes")
     state = imagenet_state(name, source)
     with torch.random.fork_rng(devices=[]):
         parts = _design(name, source)(state)
+        assert parts.classifier is not None  # only networks with their convolutions alone have none
         network = Network(parts.convolutions, parts.width, parts.classifier.out_features, parts.dropout)
     network.head[1].load_state_dict(parts.classifier.state_dict())
     return _ready(network)
@@ -93,47 +99,53 @@ def imagenet_classifier(name, source="package"):
 def _design(name, source):
     if name not in NETWORKS:
         raise ValueError(f"unknown network {name!r}, known: {', '.join(NETWORKS)}")
-    return EARLY.get(name, NETWORKS[name]) if chosen(name, source) == "package" else NETWORKS[name]
+    return PACKAGE_VARIANTS.get(name, NETWORKS[name]) if resolve_source(name, source) == "package" else NETWORKS[name]
 
 
 def _ready(network):
-    # Channels last halves the time of a convolution on a CPU and changes no result's shape.
+    # The channels-last layout halves the time of a convolution on a CPU.
     return network.to(memory_format=torch.channels_last).eval()
 
 
 @torch.no_grad()
-def settle(network, inputs, ids, batch=32, fixed=()):
-    """Gives the normalisation layers the statistics of the touches `ids` (n,) i8; inputs(ids) gives their images.
+def recalibrate(
+    network: torch.nn.Module,
+    inputs: Transform,
+    ids: np.ndarray | torch.Tensor,
+    batch: int = 32,
+    fixed: Sequence[str] = (),
+) -> None:
+    """Sets the statistics of the normalisation layers to those of the touches `ids` (n,) i8; inputs(ids): their images.
 
-    fixed: names of modules that keep theirs. Raises ValueError for less than two touches.
+    fixed: names of modules that keep their statistics. Uses no labels and changes no weights. Raises ValueError for
+    fewer than two touches.
 
-    No label is used and no weight changes. Done at the end of a training, as Matlab's trainNetwork, which the thesis
-    used, does: the running means of a short training lag behind its weights. And done to an untrained network, since
-    the control would fail otherwise for a reason that has nothing to do with transfer: in evaluation mode an untrained
-    MobileNetV2 shrinks every image to features below 1e-8. AlexNet and VGG16 have no such layers and stay as they are;
-    their untrained start keeps the signal (architectures.parts.he_start).
+    At the end of a training this replaces the running means, which lag behind the weights in a short training; Matlab's
+    trainNetwork, which the thesis used, does the same. An untrained network needs it too, since in evaluation mode an
+    untrained MobileNetV2 maps every image to features below 1e-8, and the control would fail for a reason unrelated to
+    transfer. AlexNet and VGG16 have no normalisation layers (see architectures.architecture.he_initialise).
     """
     if len(ids) < 2:
         raise ValueError(f"statistics need two touches or more, got {len(ids)}")
     normalisations = {n: layer for n, layer in network.named_modules() if isinstance(layer, torch.nn.BatchNorm2d)}
     layers = [layer for name, layer in normalisations.items() if name not in fixed]
-    usual = [layer.momentum for layer in layers]
+    momenta = [layer.momentum for layer in layers]
     for layer in layers:
         layer.reset_running_stats()
-        layer.momentum = None  # torch's way to say: the plain mean over all batches
+        layer.momentum = None  # None: the plain mean over all batches
     network.eval()
     for layer in layers:
         layer.train()
-    # Shuffled, since ids come class by class, and a part of one class alone would be centred on that class; by a
-    # generator of its own, so that no other draw changes. Parts of even size: a rest of one image has no variance.
+    # Shuffled, since ids are sorted by class and a part of one class would be centred on it; with a generator of its
+    # own, so that no other random number changes. Parts of equal size, since a part of one image has no variance.
     order = torch.randperm(len(ids), generator=torch.Generator().manual_seed(0))
     for part in torch.as_tensor(ids)[order].tensor_split(-(-len(ids) // batch)):
         network(inputs(part))
-    for layer, momentum in zip(layers, usual, strict=True):
+    for layer, momentum in zip(layers, momenta, strict=True):
         layer.momentum = momentum
     network.eval()
 
 
-def parameters(module, trained=False):
-    """Number of parameters of a module; with trained=True those that learn alone."""
+def count_parameters(module: torch.nn.Module, trained: bool = False) -> int:
+    """The number of parameters of a module; with trained=True only of those that are trained."""
     return sum(p.numel() for p in module.parameters() if p.requires_grad or not trained)

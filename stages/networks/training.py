@@ -2,24 +2,39 @@
 
 import copy
 import zlib
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import torch
 
 from .checkpoint import resume, save
-from .device import device_of, enough_memory, mixed
+from .device import device_of, explain_out_of_memory, mixed_precision
+from .images import Transform
+from .modes import Task
 
 
-def learn(task, labels, ids, rate, epochs, batch, momentum, seed=None, checkpoint=None):
-    """A copy of task.model trained on the touches `ids`, in evaluation mode; the task's own model stays as it was.
+def train_model(
+    task: Task,
+    labels: np.ndarray | torch.Tensor,
+    ids: np.ndarray | torch.Tensor,
+    rate: float,
+    epochs: int,
+    batch: int,
+    momentum: float,
+    seed: int | None = None,
+    checkpoint: Path | None = None,
+) -> torch.nn.Module:
+    """A copy of task.model trained on the touches `ids`, in evaluation mode; the task's own model stays unchanged.
 
-    task: one that stages.networks.modes makes; labels (k,) i8 of all touches; ids (n,) i8. Minimises the cross-entropy
-    of a softmax; the touches are shuffled at every epoch, and an odd rest below a batch waits for the next (T5.3). On a
-    CUDA card in mixed precision. seed: of torch's random numbers, which go on as they are where it is None.
+    task: of stages.networks.modes; labels (k,) i8 of all touches; ids (n,) i8. Minimises the cross-entropy of a
+    softmax. The touches are shuffled at every epoch, and the last ones that do not fill a batch are skipped (T5.3).
+    Uses mixed precision on a CUDA card. seed: of torch's random numbers; None leaves them as they are.
 
-    checkpoint: a path where the state is kept after every epoch; a training that finds one there goes on behind it and
-    ends with the same weights, bit for bit on one thread of a processor. It is removed at the end. Raises ValueError,
-    with a remedy, when the memory is too small.
+    checkpoint: a path where the state is saved after every epoch and removed at the end. A training that finds one
+    there continues from it and ends with the same weights, bit for bit on one CPU thread. Raises ValueError, with a
+    remedy, when there is too little memory.
     """
     if seed is not None:
         torch.manual_seed(seed)
@@ -36,7 +51,7 @@ def learn(task, labels, ids, rate, epochs, batch, momentum, seed=None, checkpoin
     if checkpoint is not None:
         settings["images"] = list(task.inputs(ids[:1]).shape)
         done = resume(Path(checkpoint), settings, **parts)
-    with enough_memory():
+    with explain_out_of_memory():
         for epoch in range(done, epochs):
             _one_epoch(model, task, labels, ids, batch, optimiser, scaler)
             if checkpoint is not None:
@@ -55,10 +70,10 @@ def _one_epoch(model, task, labels, ids, batch, optimiser, scaler):
         model.get_submodule(name).eval()
     shuffled = ids[torch.randperm(len(ids))]
     for start in range(0, len(ids) - batch + 1, batch):
-        chosen = shuffled[start : start + batch]
-        given, wanted = task.training_inputs(chosen), labels[chosen].to(device)
-        with mixed(device):
-            loss = torch.nn.functional.cross_entropy(model(given), wanted)
+        part = shuffled[start : start + batch]
+        inputs, targets = task.training_inputs(part), labels[part].to(device)
+        with mixed_precision(device):
+            loss = torch.nn.functional.cross_entropy(model(inputs), targets)
         optimiser.zero_grad()
         scaler.scale(loss).backward()
         scaler.step(optimiser)
@@ -66,39 +81,41 @@ def _one_epoch(model, task, labels, ids, batch, optimiser, scaler):
 
 
 @torch.no_grad()
-def scores(model, task, ids, batch=64):
-    """(n, classes) f4: the softmax of the model for the touches `ids`, not augmented."""
-    return answers(model, task.inputs, ids, batch)
-
-
-@torch.no_grad()
-def answers(model, inputs, ids, batch=64):
-    """(n, classes) f4 on the processor: the softmax of the model for inputs(ids), a part at a time."""
+def predict_probabilities(
+    model: torch.nn.Module, inputs: Transform, ids: np.ndarray | torch.Tensor, batch: int = 64
+) -> torch.Tensor:
+    """(n, classes) f4 on the CPU: the softmax of the model for inputs(ids), computed in batches."""
     found = []
     for part in torch.as_tensor(ids).split(batch):
-        with enough_memory():
-            given = inputs(part)
-            with mixed(device_of(model)):
-                found.append(model(given).float().softmax(dim=1).cpu())
+        with explain_out_of_memory():
+            images = inputs(part)
+            with mixed_precision(device_of(model)):
+                found.append(model(images).float().softmax(dim=1).cpu())
     return torch.cat(found)
 
 
-def accuracy(found, labels):
-    """Share of touches whose highest score is that of their class; scores that are not finite count as wrong."""
-    right = found.argmax(dim=1) == torch.as_tensor(labels)
-    return float((right & found.isfinite().all(dim=1)).float().mean())
+def accuracy(probabilities: torch.Tensor, labels: np.ndarray | torch.Tensor) -> float:
+    """The share of touches whose class has the highest probability; rows that are not finite count as wrong."""
+    right = probabilities.argmax(dim=1) == torch.as_tensor(labels)
+    return float((right & probabilities.isfinite().all(dim=1)).float().mean())
 
 
-def search(task, labels, part, validation, rates, **training):
+def search_rate(
+    task: Task,
+    labels: np.ndarray | torch.Tensor,
+    part: np.ndarray,
+    validation: np.ndarray,
+    rates: Sequence[float],
+    **training: Any,
+) -> tuple[float, float]:
     """(rate, accuracy on the validation part): the best of the learning rates, the first of equals.
 
-    The networks tried learn from the training part without its validation touches, and never from a test touch.
-    training: what `learn` is told besides.
+    part, validation: ids of touches to train on and to validate on. training: the other arguments of train_model.
     """
     tried = []
     for rate in rates:
-        model = learn(task, labels, part, rate, **training)
-        tried.append((accuracy(scores(model, task, validation), labels[validation]), rate))
+        model = train_model(task, labels, part, rate, **training)
+        tried.append((accuracy(predict_probabilities(model, task.inputs, validation), labels[validation]), rate))
     best = max(tried, key=lambda pair: pair[0])
     return best[1], best[0]
 

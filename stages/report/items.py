@@ -1,7 +1,5 @@
-"""What the report is made of: tables, figures, and how the files that build them are found."""
+"""What the report is made of: tables and figures."""
 
-import importlib
-import pkgutil
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -10,8 +8,6 @@ import pandas as pd
 from stages.kit.files import write_table, write_text
 
 from .markdown import as_text, markdown_table
-from .results import NotRun
-from .style import look
 
 
 @dataclass
@@ -24,7 +20,7 @@ class Table:
     shown: pd.DataFrame | None = None
     name: str = ""
 
-    def write(self, folder):
+    def write(self, folder: Path) -> list[Path]:
         """Writes NAME.csv and NAME.md; returns the paths."""
         self.shown = as_text(self.frame if self.shown is None else self.shown)
         write_table(folder / f"{self.name}.csv", self.frame)
@@ -50,24 +46,3 @@ class Built:
 
     items: list = field(default_factory=list)
     not_run: dict[str, str] = field(default_factory=dict)
-
-
-def modules(package):
-    """The modules of a package in the order of their names, those with a leading underscore left out."""
-    names = sorted(info.name for info in pkgutil.iter_modules(package.__path__) if not info.name.startswith("_"))
-    return {name: importlib.import_module(f"{package.__name__}.{name}") for name in names}
-
-
-def build_all(package, results):
-    """Calls build(results) of each module of a package; one that lacks its measurement is noted as not run."""
-    built = Built()
-    for name, module in modules(package).items():
-        try:
-            with look():
-                item = module.build(results)
-        except NotRun as missing:
-            built.not_run[name] = str(missing)
-            continue
-        item.name = name
-        built.items.append(item)
-    return built

@@ -29,6 +29,13 @@ def with_interval(mean, low, high, scale=1, places=None):
     return show(mean) if low != low else f"{show(mean)} [{show(low)}, {show(high)}]"
 
 
+def signed(mean, low, high, places=2):
+    """`+0.83 [0.61, 1.05]`."""
+    mean, low, high = (round(value, places) + 0.0 for value in (mean, low, high))  # no minus before a zero
+    span = f" [{low:.{places}f}, {high:.{places}f}]" if low == low else ""
+    return f"{mean:+.{places}f}{span}"
+
+
 def as_text(frame):
     """A frame of strings, numbers rounded to three significant digits."""
     return frame.map(number)

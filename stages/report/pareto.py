@@ -9,7 +9,7 @@ from stages.kit.files import write_table
 
 from .items import Figure
 from .names import place_names
-from .style import INK, MARKERS, colours, look, plt, save
+from .style import INK, MARKERS, colours, plot_style, plt, save
 from .style import label as spoken
 
 LISTED = 8  # names of the front that a caption lists at most
@@ -66,7 +66,7 @@ def pareto_chart(
     rows["on_front"] = pareto_front(rows["cost_ratio"], rows[quality], better)
     folder.mkdir(parents=True, exist_ok=True)
     write_table(folder / f"{name}.csv", rows)
-    with look():
+    with plot_style():
         _draw(rows, quality, label, title, reference, quality_label, better, colour, marker, tints,
               folder / f"{name}.png")  # fmt: skip
     front = _listed(list(rows.loc[rows["on_front"]].sort_values("cost_ratio")[label]))

@@ -1,26 +1,30 @@
-"""What a run has measured, beside what the thesis says; a missing measurement is NotRun, never a crash."""
+"""What was measured, set by set, beside what the thesis says; a missing measurement is NotRun, never a crash."""
 
-import copy
+from collections.abc import Iterable, Sequence
 from functools import cached_property
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 
 from stages.conspicuity.storage import read_maps
 from stages.imprints import read_imprints
+from stages.kit import Mesh, Viewpoint
 from stages.kit.files import read_arrays, read_mesh, read_table
+from stages.kit.rows import SUFFIX, read_rows
+from stages.kit.workspace import Workspace
 from stages.salient_points import read_points, read_saliency, read_strong_points
-from stages.weights import learned_for
+from stages.weights import read_learned_weights
 
-NUMBERS = {"four": 4, "six": 6}  # names of sets that tell how many objects they hold
-# Stages whose rows are about sets of objects.
-OF_SETS = ("classification", "exploration", "touch_stability")
+from .schema import Params
+
+NUMBERS = {"four": 4, "six": 6}  # names of groups that tell how many objects they hold
 
 
 class NotRun(Exception):
     """A measurement that is absent; the message says what is missing and, where a run would help, of which stage."""
 
-    def __init__(self, what, stage, runnable=True):
+    def __init__(self, what: str, stage: str, runnable: bool = True) -> None:
         super().__init__(f"{what}: run `dvc repro {stage}`" if runnable else what)
         self.stage = stage
 
@@ -28,196 +32,191 @@ class NotRun(Exception):
 class ByMethod(dict):
     """What a stage found by each method; one that it did not run is NotRun."""
 
-    def __init__(self, stage, found):
+    def __init__(self, stage: str, found: dict[str, np.ndarray]) -> None:
         super().__init__(found)
         self.stage = stage
 
-    def __missing__(self, method):
+    def __missing__(self, method: str) -> np.ndarray:
         raise NotRun(f"{method} is not among the methods of {self.stage}", self.stage, runnable=False)
 
-    def those_of(self, methods):
+    def those_of(self, methods: Iterable[str]) -> list[str]:
         """The methods that were run, in the order given; NotRun where there is none."""
         found = [method for method in methods if method in self]
         return found or [self[method] for method in methods]
 
 
 class Results:
-    """Everything the report reads, below one repository root. settings: the report's section of params.yaml."""
+    """Everything that the report reads: rows of measurements, and what the stages left in data/.
 
-    def __init__(self, settings, root="."):
-        self.settings = settings
-        self.data = Path(root) / "data"
-        self.reports = Path(root) / "reports"
-        self._tables = {}
+    Rows of every set that was ever measured are read by the same methods; those that are switched on come first.
+    settings: the report's section of params.yaml.
+    """
 
-    def measurements(self, stage, **where):
-        """Rows of reports/measurements/STAGE.csv, filtered: `metric="accuracy"` or a list of accepted values.
+    def __init__(self, workspace: Workspace, settings: Params) -> None:
+        self.workspace, self.settings = workspace, settings
+        self.data, self.reports = workspace.root / "data", workspace.reports
+        self._tables: dict[Path, pd.DataFrame] = {}
 
-        Raises NotRun when the file is absent, lacks the column, or no row is left; with the stage's own note on why it
-        left them out, where there is one.
+    @property
+    def sets(self) -> list[str]:
+        """Names of the data sets that are switched on, in order."""
+        return self.workspace.sets
+
+    def datasets(self, stage: str) -> list[str]:
+        """The sets that have rows of a stage: those that are switched on first, then the others by the alphabet."""
+        found = {path.parent.name for path in (self.reports / "measurements").glob(f"*/{stage}{SUFFIX}")}
+        return self._in_order(found)
+
+    @property
+    def stages(self) -> list[str]:
+        """Names of the stages that have rows of any set, in alphabetical order."""
+        return sorted({path.name.partition(".")[0] for path in (self.reports / "measurements").glob(f"*/*{SUFFIX}")})
+
+    def rows(self, stage: str, dataset: str | None = None, **where: object) -> pd.DataFrame:
+        """Rows of a stage on one set, filtered: `metric="accuracy"`, a list of accepted values, or None for no value.
+
+        dataset: None for the first of `datasets(stage)`. Raises NotRun when the rows are absent, lack the column, or
+        none is left; with the stage's own note on why it left them out, where there is one.
         """
-        frame, notes = self._read(stage), self.notes(stage, **where)
+        frame = self._read(stage, dataset)
         for column, wanted in where.items():
             if column in frame:
-                frame = frame[frame[column].isin(_listed(wanted))]
-            elif not notes:
-                raise NotRun(f"no column {column} in {stage}.csv", stage)
-            if notes and (column not in frame or frame.empty):
+                frame = frame[_accepted(frame[column], wanted)]
+                if not frame.empty:
+                    continue
+            notes = self.notes(stage, dataset, **where)
+            if notes:
                 raise NotRun("; ".join(notes[:2]), stage, runnable=False)
-            if frame.empty:
-                kind = "set" if column == "object" and stage in OF_SETS else column
-                what = f"{kind} {' or '.join(map(str, _listed(wanted)))} is not among those that {stage} measured"
-                raise NotRun(what, stage, runnable=False)
+            if column not in frame:
+                raise NotRun(f"no column {column} in the rows of {stage}", stage)
+            what = f"{column} {' or '.join(map(str, _listed(wanted)))} is not among those that {stage} measured"
+            raise NotRun(what, stage, runnable=False)
         return frame
 
-    def measured(self, stage, **where):
-        """As `measurements`, only the rows that have a value; NotRun where there is none."""
-        frame = self.measurements(stage, **where).dropna(subset=["value"])
+    def measured(self, stage: str, dataset: str | None = None, **where: object) -> pd.DataFrame:
+        """As `rows`, only those that have a value; NotRun where there is none."""
+        frame = self.rows(stage, dataset, **where).dropna(subset=["value"])
         if frame.empty:
-            notes = self.notes(stage, **where) or [f"{stage} has rows of this, but no value"]
+            notes = self.notes(stage, dataset, **where) or [f"{stage} has rows of this, but no value"]
             raise NotRun("; ".join(notes[:2]), stage, runnable=False)
         return frame
 
-    def notes(self, stage, **where):
-        """Why rows of a stage have no value, each reason once; an empty cell of a row stands for whatever is wanted."""
-        frame = self._read(stage)
+    def notes(self, stage: str, dataset: str | None = None, **where: object) -> list[str]:
+        """Why rows of a stage have no value, each reason one time; an empty cell of a row stands for any value."""
+        frame = self._read(stage, dataset)
         if "note" not in frame or "value" not in frame:
             return []
         frame = frame[frame["value"].isna() & frame["note"].notna()]
         for column, wanted in where.items():
             if column in frame:
-                frame = frame[frame[column].isin(_listed(wanted)) | frame[column].isna()]
+                frame = frame[_accepted(frame[column], wanted) | frame[column].isna()]
         return list(dict.fromkeys(frame["note"]))
 
-    def attention(self, name):
-        """Rows of reports/attention/NAME.csv: measured once, on the meshes with human gaze."""
-        why = f"no attention/{name}.csv: `make gaze` measures it where the meshes with gaze are"
-        return self._once(self.reports / "attention" / f"{name}.csv", why, "gaze")
+    def _read(self, stage: str, dataset: str | None) -> pd.DataFrame:
+        known = self.datasets(stage)
+        if dataset is None and not known:
+            raise NotRun(f"no measurements of {stage}", stage)
+        dataset = dataset or known[0]
+        path = self.reports / "measurements" / dataset / f"{stage}{SUFFIX}"
+        return self._table(path, f"no measurements of {stage} on {dataset}", stage, dataset in self.sets)
 
-    def simplification(self, data):
-        """Rows of reports/simplification/DATA.csv: the lod stage's, measured once on another data set."""
-        why = f"no simplification/{data}.csv: `make detectors` measures it where the meshes of {data} are"
-        return self._once(self.reports / "simplification" / f"{data}.csv", why, "lod")
-
-    def bench(self, name):
-        """Rows of reports/bench/NAME.csv: what `make bench` measured; times are ratios to a named peer."""
-        return self._once(self.reports / "bench" / f"{name}.csv", f"no bench/{name}.csv: `make bench` writes it", "lod")
-
-    def touch(self, name):
-        """Rows of reports/touch/NAME.csv: measured once, on recorded touches or on another data set."""
-        why = f"no touch/{name}.csv: `make touch` measures it where those data are"
-        return self._once(self.reports / "touch" / f"{name}.csv", why, "classification")
-
-    def transfer(self, name):
-        """Rows of reports/transfer/NAME.csv: networks, measured once on recorded touches or on another data set."""
-        why = f"no transfer/{name}.csv: `make transfer` measures it where those data are"
-        return self._once(self.reports / "transfer" / f"{name}.csv", why, "transfer")
-
-    def instead(self, stage, rows):
-        """These results with other rows of one stage, such as those measured once on another data set.
-
-        rows: a frame with the columns of that stage's measurements. Side tables and data/ stay this run's.
-        """
-        other = copy.copy(self)
-        other._tables = self._tables | {stage: rows}
-        return other
-
-    def fixation(self, name):
-        """Rows of reports/fixation/NAME.csv: where networks look, measured once on the meshes with human gaze."""
-        why = f"no fixation/{name}.csv: `make fixation` measures it where the meshes with gaze are"
-        return self._once(self.reports / "fixation" / f"{name}.csv", why, "fixation")
-
-    def _once(self, path, why, stage):
-        """A table that no stage of this run writes; NotRun with `why` where it is absent."""
+    def _table(self, path: Path, why: str, stage: str, runnable: bool) -> pd.DataFrame:
         if path not in self._tables:
             if not path.exists():
-                raise NotRun(why, stage, runnable=False)
-            self._tables[path] = read_table(path)
+                raise NotRun(why, stage, runnable)
+            self._tables[path] = read_rows(path) if path.name.endswith(SUFFIX) else read_table(path)
         return self._tables[path]
 
-    def classes(self, name):
-        """How many objects a set of the classification held."""
-        paths = sorted((self.data / "classification").glob(f"{name}.*.npz"))
-        if not paths:
-            raise NotRun(f"no {name}.*.npz in data/classification", "classification")
-        return len(read_arrays(paths[0])["objects"])
+    def bench(self, name: str) -> pd.DataFrame:
+        """Rows of reports/bench/NAME.csv: what `make bench` measured; times are ratios to a named peer."""
+        path = self.reports / "bench" / f"{name}.csv"
+        return self._table(path, f"no bench/{name}.csv: `make bench` writes it", "bench", runnable=False)
 
-    def set_text(self, name):
-        """A set in words: "six objects", or "4 objects (set six)" where the name does not tell the number."""
-        count = self.classes(name)
-        return f"{name} objects" if count == NUMBERS.get(name) else f"{count} objects (set {name})"
-
-    def _read(self, stage):
-        path = self.reports / "measurements" / f"{stage}.csv"
-        if stage not in self._tables:
-            if not path.exists():
-                raise NotRun(f"no measurements/{path.name}", stage)
-            self._tables[stage] = read_table(path)
-        return self._tables[stage]
-
-    @property
-    def measured_stages(self):
-        """Names of the stages that have measurements, in alphabetical order."""
-        return sorted(path.stem for path in (self.reports / "measurements").glob("*.csv"))
-
-    def thesis(self, name):
+    def thesis(self, name: str) -> pd.DataFrame:
         """One of the thesis's own tables, data/reference/thesis/NAME.csv."""
         path = self.data / "reference/thesis" / f"{name}.csv"
         if not path.exists():
             raise FileNotFoundError(f"{path} is part of the repository: restore it with `git checkout {path}`")
         return read_table(path)
 
-    def table(self, stage, name):
-        """A side table of a stage, data/STAGE/NAME."""
-        path = self.data / stage / name
+    def classes(self, group: str, dataset: str | None = None) -> int:
+        """How many objects a group of the classification held."""
+        paths = sorted(self.folder("classification", dataset).glob(f"{group}.*.npz"))
+        if not paths:
+            raise NotRun(f"no {group}.*.npz in data/classification", "classification")
+        return len(read_arrays(paths[0])["objects"])
+
+    def group_text(self, group: str, dataset: str | None = None) -> str:
+        """A group in words: "six objects", or "4 objects (group six)" where the name does not tell the number.
+
+        Where data/ is absent, as in a fresh clone, the name stands for the number.
+        """
+        try:
+            count = self.classes(group, dataset)
+        except NotRun:
+            return f"{group} objects" if group in NUMBERS else f"group {group}"
+        return f"{group} objects" if count == NUMBERS.get(group) else f"{count} objects (group {group})"
+
+    def folder(self, stage: str, dataset: str | None = None) -> Path:
+        """data/SET/STAGE; NotRun when it is not there. dataset: None for the first set that has it."""
+        found = self._in_order({path.parent.name for path in self.data.glob(f"*/{stage}") if path.is_dir()})
+        if dataset not in found and (dataset or not found):
+            raise NotRun(f"no data/{dataset or 'SET'}/{stage}", stage)
+        return self.data / (dataset or found[0]) / stage
+
+    def table(self, stage: str, name: str, dataset: str | None = None) -> pd.DataFrame:
+        """A side table of a stage, data/SET/STAGE/NAME."""
+        path = self.folder(stage, dataset) / name
         if not path.exists():
             raise NotRun(f"no {stage}/{name}", stage)
         return pd.read_csv(path)
 
     @cached_property
-    def objects(self):
-        """Names of all objects with a mesh, in alphabetical order."""
-        names = sorted(path.stem for path in (self.data / "meshes").glob("*.npz"))
+    def objects(self) -> list[str]:
+        """Names of all objects with a mesh in the first set that has meshes, in alphabetical order."""
+        names = sorted(path.stem for path in self.folder("meshes").glob("*.npz"))
         if not names:
             raise NotRun("no meshes", "meshes")
         return names
 
-    def choose(self, preferred, count, stage="salient_points"):
+    def choose(self, preferred: Sequence[str], count: int, stage: str = "salient_points") -> list[str]:
         """Up to `count` objects that `stage` has data for: the preferred ones first, then by the alphabet."""
-        folder = self.data / stage
+        folder = self.folder(stage)
         ready = [name for name in self.objects if (folder / f"{name}.npz").exists() or (folder / name).is_dir()]
         if not ready:
-            raise NotRun(f"no data/{stage}", stage)
+            raise NotRun(f"no objects in {stage}", stage)
         first = [name for name in preferred if name in ready]
         return (first + [name for name in ready if name not in first])[:count]
 
-    def mesh(self, name):
+    def mesh(self, name: str, dataset: str | None = None) -> Mesh:
         """The original mesh of an object."""
-        return read_mesh(self._path("meshes", name))
+        return read_mesh(self._path("meshes", name, dataset))
 
-    def points(self, name):
+    def points(self, name: str, dataset: str | None = None) -> ByMethod:
         """dict method -> (k,) vertex ids, most salient first."""
-        return ByMethod("salient_points", read_points(self._path("salient_points", name)))
+        return ByMethod("salient_points", read_points(self._path("salient_points", name, dataset)))
 
-    def strong_points(self, name):
+    def strong_points(self, name: str, dataset: str | None = None) -> ByMethod:
         """dict method -> (k',) vertex ids, the leading points that the simplification keeps."""
-        return ByMethod("salient_points", read_strong_points(self._path("salient_points", name)))
+        return ByMethod("salient_points", read_strong_points(self._path("salient_points", name, dataset)))
 
-    def saliency(self, name):
-        """dict method -> (n,) saliency in 0..1 a vertex."""
-        return ByMethod("salient_points", read_saliency(self._path("salient_points", name)))
+    def saliency(self, name: str, dataset: str | None = None) -> ByMethod:
+        """dict method -> (n,) saliency in 0..1 per vertex."""
+        return ByMethod("salient_points", read_saliency(self._path("salient_points", name, dataset)))
 
-    def imprints(self, name):
+    def imprints(self, name: str, dataset: str | None = None) -> ByMethod:
         """dict method -> (k, rows, cols) imprints in 0..1."""
-        found = read_imprints(self._path("imprints", name))
+        found = read_imprints(self._path("imprints", name, dataset))
         return ByMethod("imprints", {method: touches.images for method, touches in found.items()})
 
-    def maps(self, name, wanted=None):
+    def maps(
+        self, name: str, wanted: Sequence[str] | None = None, dataset: str | None = None
+    ) -> tuple[np.ndarray, np.ndarray, list[Viewpoint], list[str]]:
         """(maps (v, channels, h, w) f4, mask (v, h, w) boolean, viewpoints, channels) of an object.
 
         wanted: the channels, in this order; NotRun where one was not computed. None: those that were.
         """
-        maps, mask, viewpoints, stored = read_maps(self._path("conspicuity", name))
+        maps, mask, viewpoints, stored = read_maps(self._path("conspicuity", name, dataset))
         if wanted is None:
             return maps, mask, viewpoints, stored
         missing = [channel for channel in wanted if channel not in stored]
@@ -225,44 +224,51 @@ class Results:
             raise NotRun(f"no maps of {', '.join(missing)}", "conspicuity", runnable=False)
         return maps[:, [stored.index(channel) for channel in wanted]], mask, viewpoints, list(wanted)
 
-    def lesson(self, name):
-        """Arrays of data/weights/lessons/NAME.npz: density, points and more (stages.weights.lessons)."""
-        path = self.data / "weights/lessons" / f"{name}.npz"
+    def ground_truth(self, name: str, dataset: str | None = None) -> dict[str, np.ndarray]:
+        """Arrays of data/SET/weights/ground_truth/NAME.npz: density, points and more (stages.weights.training_data)."""
+        path = self.folder("weights", dataset) / "ground_truth" / f"{name}.npz"
         if not path.exists():
-            raise NotRun(f"no weights/lessons/{name}.npz: no ground truth of {name}, or not run", "weights")
+            raise NotRun(f"no weights/ground_truth/{name}.npz: no ground truth of {name}, or not run", "weights")
         return read_arrays(path)
 
-    def learned(self, name, mesh):
-        """What the weights stage learned, as it may be applied to this object: a stages.weights.Learned."""
-        if not (self.data / "weights/weights.csv").exists():
+    def learned(self, name: str, mesh: Mesh, dataset: str | None = None):
+        """What the weights stage learned, as it may be applied to this object: a stages.weights.LearnedWeights."""
+        folder = self.folder("weights", dataset)
+        if not (folder / "weights.csv").exists():
             raise NotRun("no weights/weights.csv", "weights")
-        return learned_for(self.data / "weights", name, mesh)
+        return read_learned_weights(folder, name, mesh)
 
-    def taught(self, preferred, count):
+    def with_ground_truth(self, preferred: Sequence[str], count: int) -> list[str]:
         """Up to `count` objects that have ground truth and salient points: the preferred ones first."""
-        lessons = sorted(path.stem for path in (self.data / "weights/lessons").glob("*.npz"))
-        if not lessons:
+        ready = {path.stem for path in (self.folder("weights") / "ground_truth").glob("*.npz")}
+        if not ready:
             raise NotRun("no object has ground truth", "weights")
-        ready = set(lessons)
         found = [name for name in self.choose(preferred, len(self.objects)) if name in ready]
         if not found:
             raise NotRun("no object with ground truth has salient points", "salient_points")
         return found[:count]
 
-    def lods(self, name, method):
+    def lods(self, name: str, method: str, dataset: str | None = None) -> list[tuple[str, Mesh]]:
         """Simplified meshes of one method, most faces first: list of (target, Mesh)."""
-        paths = (self.data / "lod" / name).glob(f"{method}_*.npz")
+        paths = (self.folder("lod", dataset) / name).glob(f"{method}_*.npz")
         found = [(path.stem.removeprefix(f"{method}_").replace("pct", "%"), read_mesh(path)) for path in paths]
         if not found:
-            raise NotRun(f"no data/lod/{name}/{method}_*.npz", "lod")
+            raise NotRun(f"no lod/{name}/{method}_*.npz", "lod")
         return sorted(found, key=lambda item: (-len(item[1].faces), item[0]))
 
-    def _path(self, stage, name):
-        path = self.data / stage / f"{name}.npz"
+    def _in_order(self, names: set[str]) -> list[str]:
+        return [name for name in self.sets if name in names] + sorted(names - set(self.sets))
+
+    def _path(self, stage: str, name: str, dataset: str | None) -> Path:
+        path = self.folder(stage, dataset) / f"{name}.npz"
         if not path.exists():
-            raise NotRun(f"no {path.name} in data/{stage}", stage)
+            raise NotRun(f"no {path.name} in data/{path.parent.parent.name}/{stage}", stage)
         return path
 
 
-def _listed(wanted):
-    return wanted if isinstance(wanted, list) else [wanted]
+def _accepted(column: pd.Series, wanted: object) -> pd.Series:
+    return column.isna() if wanted is None else column.isin(_listed(wanted))
+
+
+def _listed(wanted: object) -> list:
+    return list(wanted) if isinstance(wanted, list | tuple | set | frozenset) else [wanted]

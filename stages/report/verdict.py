@@ -1,50 +1,50 @@
-"""Claims of the thesis, and the one word that a measurement says to each."""
+"""The one word that a measurement says to each claim, with the differences that it rests on."""
 
-import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
 
-from .intervals import interval
+from stages.kit.stats import interval
+
+from .claims import Claim
+from .differences import differences, rounded
 from .results import NotRun, Results
+from .words import tested_on
 
 BY_CHANCE = 0.025  # how often a 95 % interval lies wholly on one side of zero where the truth is zero
-COLUMNS = ["section", "claim", "verdict", "effect", "low", "high", "unit", "pairs", "over", "tested_on", "key"]
+WORDS = ("supported", "contradicted", "open")
+COLUMNS = [
+    "section", "claim", "verdict", "effect", "low", "high", "unit", "pairs", "over", "shared", "tested_on", "key",
+]  # fmt: skip
 
 
 @dataclass(frozen=True)
-class Claim:
-    """One testable sentence of the thesis and the measurement that it is tested on.
-
-    tested_on: {six} stands for the set six in words, with the number of objects that it held in this run.
-    differences(results) returns the paired differences (k,), positive on the side that the thesis claims, in `unit`;
-    it raises NotRun where the measurement is absent. over: what the pairs are (objects, repetitions). shared: test
-    over training share where the pairs are repeated splits of the same imprints (see intervals.interval).
-    """
+class FunctionClaim:
+    """A claim whose differences a function computes, with its words by hand. To be replaced by Claim."""
 
     key: str
     section: str
     sentence: str
     tested_on: str
     unit: str
-    over: str
-    differences: Callable[[Results], np.ndarray]
-    shared: float = 0.0
+    pairs: str
+    differences: Callable[[Results], np.ndarray | pd.Series]
+    share: float = 0.0
 
 
-def verdict(low, high):
+def verdict(low: float, high: float) -> str:
     """The word: supported when the interval lies above 0 (the claimed side), contradicted below, else open."""
     if low > 0:
         return "supported"
     return "contradicted" if high < 0 else "open"
 
 
-def counted(claims):
+def counted(claims: pd.DataFrame) -> str:
     """Two sentences on a frame of `judge`: how many there are of each word, and how many chance alone would give."""
-    words = {word: int((claims["verdict"] == word).sum()) for word in ("supported", "contradicted", "open")}
-    judged = int(claims["low"].notna().sum())
+    words = {word: list(claims["verdict"]).count(word) for word in WORDS}
+    judged = np.isfinite(claims["low"].to_numpy(dtype=float)).sum()
     return (
         f"{len(claims)} verdicts: {', '.join(f'{count} {word}' for word, count in words.items())}. Were there no "
         f"effect in any of the {judged} that have an interval, chance alone would call about {BY_CHANCE * judged:.0f} "
@@ -52,45 +52,45 @@ def counted(claims):
     )
 
 
-def judge(claims, results):
-    """A frame with one row a claim: effect with its interval and the word; unmeasured ones are open and say why."""
-    return pd.DataFrame([_row(claim, results) for claim in claims], columns=COLUMNS)
+def judge(claims: Iterable[Claim | FunctionClaim], results: Results) -> pd.DataFrame:
+    """A frame with one row per claim: effect with its interval and the word; unmeasured ones are open and say why."""
+    return judged(claims, results)[0]
 
 
-def _row(claim, results):
+def judged(claims: Iterable[Claim | FunctionClaim], results: Results) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """(the frame of `judge`, the differences behind it: columns key, pair, difference in the claim's unit).
+
+    A verdict follows from its differences and `shared` alone: `verdict(*interval(differences, shared)[1:])`.
+    """
+    rows, pairs = [], []
+    for claim in claims:
+        row, found = _row(claim, results)
+        rows.append(row)
+        names = ["/".join(map(str, one)) if isinstance(one, tuple) else str(one) for one in found.index]
+        pairs.append(pd.DataFrame({"key": claim.key, "pair": names, "difference": found.to_numpy()}))
+    empty = pd.DataFrame({"key": [], "pair": [], "difference": []})
+    return pd.DataFrame(rows, columns=COLUMNS), pd.concat(pairs, ignore_index=True) if pairs else empty
+
+
+def _row(claim: Claim | FunctionClaim, results: Results) -> tuple[dict, pd.Series]:
     said = {"section": claim.section, "claim": claim.sentence, "unit": claim.unit, "key": claim.key}
     try:
-        differences = claim.differences(results)
-        tested_on = _tested_on(claim, results)
+        if isinstance(claim, Claim):
+            found, words = differences(results, claim), tested_on(claim, results)
+        else:
+            found, words = pd.Series(claim.differences(results), dtype=float), claim.tested_on
     except NotRun as missing:
-        return said | {"verdict": "open", "pairs": 0, "over": "", "tested_on": f"not run: {missing}"}
-    mean, low, high = interval(differences, claim.shared)
+        said |= {"verdict": "open", "pairs": 0, "over": "", "tested_on": f"not run: {missing}"}
+        return said, pd.Series(dtype=float)
+    found = pd.Series(rounded(found), index=found.index)
+    mean, low, high = interval(found, claim.share)
     numbers = {"verdict": verdict(low, high), "effect": mean, "low": low, "high": high}
-    numbers |= {"pairs": len(differences), "over": claim.over}
-    return said | numbers | {"tested_on": tested_on + _unknown(low, len(differences))}
+    numbers |= {"pairs": len(found), "over": claim.pairs, "shared": claim.share}
+    return said | numbers | {"tested_on": words + _unknown(low, len(found))}, found
 
 
-def _tested_on(claim, results):
-    """What a claim is tested on, its sets of objects in words."""
-    return re.sub(r"\{(\w+)\}", lambda found: results.set_text(found[1]), claim.tested_on)
-
-
-def _unknown(low, pairs):
+def _unknown(low: float, pairs: int) -> str:
     """Why there is no interval, where there is none."""
     if low == low:
         return ""
     return "; no interval: " + (f"all {pairs} differences are equal" if pairs > 1 else "fewer than two differences")
-
-
-def paired(results, stage, over, first, second, **where):
-    """value of `first` minus value of `second`, matched on the columns `over`: a Series indexed by them.
-
-    first, second: dict column -> value, the rows of each side; where: what both sides have in common. Several rows of
-    one pair are averaged. Raises NotRun where a side was not measured or no pair is left.
-    """
-    sides = [results.measured(stage, **where, **side).groupby(over)["value"].mean() for side in (first, second)]
-    joined = pd.concat(sides, axis=1, join="inner").dropna()
-    if joined.empty:
-        names = " and ".join(" ".join(map(str, side.values())) for side in (first, second))
-        raise NotRun(f"no pairs of {names}", stage, runnable=False)
-    return joined.iloc[:, 0] - joined.iloc[:, 1]

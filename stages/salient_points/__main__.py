@@ -1,72 +1,88 @@
 """Finds the salient points of each object by each method (T3.1.2, T3.2.5, T3.2.6), and how well they agree with people.
 
-Reads data/meshes, data/conspicuity, data/weights. Writes data/salient_points/NAME.npz: for each method METHOD the
-arrays METHOD.points (k,) vertex ids, most salient first; METHOD.strong (), how many leading ones pass the method's own
-threshold; METHOD.saliency (n,) in 0..1, absent for `random` and `farthest`. In reports/measurements/salient_points.csv,
-saliency_at_points is read on one map for all methods, that of the first method that has one; cc, nss, auc, sim, kl and
-fne, fpe, wme are there for objects with ground truth; seconds include the sight that the methods share.
+Reads data/SET/meshes, data/SET/conspicuity, data/SET/weights. Writes data/SET/salient_points/NAME.npz: for each method
+METHOD the arrays METHOD.points (k,) vertex ids, most salient first; METHOD.strong (), how many leading ones pass the
+method's own threshold; METHOD.saliency (n,) in 0..1, absent for `random` and `farthest`. In
+reports/measurements/SET/salient_points.csv.gz, saliency_at_points is read on one map for all methods, that of the first
+method that has one; cc, nss, auc, sim, kl and fne, fpe, wme are there for objects with ground truth; seconds include
+the reading of the maps that the methods share.
 """
 
 import functools
 import sys
+from pathlib import Path
 
-from stages.conspicuity import read_sight
-from stages.kit import StageRun, Stopwatch, arguments, params
+from stages.conspicuity import read_view_maps
+from stages.kit import Stopwatch
+from stages.kit.command import workspace_of_arguments
 from stages.kit.files import read_arrays, read_mesh
-from stages.kit.run import DATA
-from stages.weights import learned_for
+from stages.kit.run import Rows, StageRun
+from stages.kit.workspace import Workspace
+from stages.weights import read_learned_weights
 
-from .judge import judged
-from .measure import rows_of, summary
-from .methods import find_all, method_named, teachable
+from .agreement import agreement_rows
+from .measure import measurement_rows, summary
+from .methods import find_all, method_named, split_runnable
 from .options import Options
-from .storage import write_found
+from .schema import Params
+from .storage import write_points
+
+# Of the learned weights, what applies to an object: without ground truth in the set nothing here depends on the others.
+READS = (
+    "meshes/{}.npz", "conspicuity/{}.npz", "weights/weights.csv", "weights/ground_truth/{}.npz",
+    "weights/convexity.csv", "weights/svm.npz", "weights/svm",
+)  # fmt: skip
 
 
-def process(name, folder, settings, seed):
+def process(name: str, folder: Path, data: Path, settings: Params, seed: int) -> Rows:
     """Finds, writes, measures and judges the points of one object by all methods."""
-    mesh = read_mesh(DATA / "meshes" / f"{name}.npz")
-    learned = learned_for(DATA / "weights", name, mesh)
-    methods, _ = teachable(settings.methods, learned)
+    mesh = read_mesh(data / "meshes" / f"{name}.npz")
+    learned = read_learned_weights(data / "weights", name, mesh)
+    methods, _ = split_runnable(settings.methods, learned)
     options = Options(learned, settings.selection, settings.radius, settings.smoothing, seed, name)
-    with Stopwatch() as looking:
-        sight = read_sight(DATA / "conspicuity" / f"{name}.npz", mesh)
-    found, seconds = find_all(mesh, sight, methods, options, settings.count)
-    write_found(folder / f"{name}.npz", found)
+    with Stopwatch() as reading:
+        maps = read_view_maps(data / "conspicuity" / f"{name}.npz", mesh)
+    found, seconds = find_all(mesh, maps, methods, options, settings.count)
+    write_points(folder / f"{name}.npz", found)
     standard = next((result.saliency for result in found.values() if result.saliency is not None), None)
-    shared = {method: looking.seconds if method_named(method).channels else 0.0 for method in found}
+    cost = {method: seconds[method] + (reading.seconds if method_named(method).channels else 0) for method in found}
     rows = [
         row
         for method, result in found.items()
-        for row in rows_of(name, method, result, mesh, standard, seconds[method] + shared[method])
+        for row in measurement_rows(name, method, result, mesh, standard, cost[method])
     ]
-    lesson = DATA / "weights" / "lessons" / f"{name}.npz"
-    if lesson.exists():
-        cost = {method: seconds[method] + shared[method] for method in found}
-        agreed = judged(mesh, read_arrays(lesson), found)
-        rows += [{"object": name, "seconds": cost.get(row["method"])} | row for row in agreed]
+    ground_truth = data / "weights" / "ground_truth" / f"{name}.npz"
+    if ground_truth.exists():
+        agreed = agreement_rows(mesh, read_arrays(ground_truth), found)
+        rows += [{"item": name, "seconds": cost.get(row["method"])} | row for row in agreed]
     return rows
 
 
-def main():
-    arguments(__doc__)
-    settings = params("salient_points")
+def run(workspace: Workspace) -> None:
+    """Runs the stage on the data set of a workspace."""
+    settings = workspace.settings(Params)
     for method in settings.methods:
         method_named(method)
     if settings.count < 1 or not settings.methods:
         raise ValueError("salient_points: count must be 1 or more, and methods name at least one")
-    with StageRun("salient_points", inputs=("meshes", "conspicuity", "weights")) as run:
-        work = functools.partial(process, settings=settings, seed=run.seed)
-        rows = run.each(work, run.objects)
-        run.metrics(summary(rows))
+    with StageRun(workspace, "salient_points", inputs=("meshes", "conspicuity", "weights")) as stage:
+        work = functools.partial(process, data=workspace.data, settings=settings, seed=stage.seed)
+        rows = stage.each(work, stage.objects, READS)
+        stage.metrics(summary(rows))
     ran = {row["method"] for row in rows}
     idle = [method for method in settings.methods if method not in ran]
     if idle:
         print(f"salient_points: left out for want of ground truth to learn from: {', '.join(idle)}", file=sys.stderr)
     found = sum(row["value"] for row in rows if row["metric"] == "points")
     print(
-        f"salient_points: {len(run.objects)} objects, {len(settings.methods) - len(idle)} methods, {found:.0f} points"
+        f"salient_points: {workspace.dataset}, {len(stage.objects)} objects, "
+        f"{len(settings.methods) - len(idle)} methods, {found:.0f} points"
     )
+
+
+def main() -> None:
+    """Runs the stage on the data set that the command line names."""
+    run(workspace_of_arguments(__doc__, "salient_points"))
 
 
 if __name__ == "__main__":

@@ -1,10 +1,12 @@
 """One saliency map out of many conspicuity maps (T eq. 3.8 and 3.9), and the thesis's combinations by name."""
 
+from collections.abc import Mapping
+
 import numpy as np
 
 CLASSICAL = ("color", "intensity", "orientation")  # Itti, Koch and Niebur 1998, T [41]
 
-# T3.1.5. `VisAttAll` holds the eight channels of T3.2.2; edge joins only in eq. 3.9, which is the method `enhanced`.
+# T3.1.5. `VisAttAll` has the eight channels of T3.2.2; edge is added only in eq. 3.9 (methods `thesis_*`).
 COMBINATIONS = {
     "VisAtt": CLASSICAL,
     "VisAttCon": (*CLASSICAL, "contrast"),
@@ -18,17 +20,18 @@ COMBINATIONS = {
 }
 
 
-def fuse(maps, weights=None):
-    """The weighted average of conspicuity maps: an array of the maps' shape, in 0..1 when they are.
+def fuse(maps: Mapping[str, np.ndarray], weights: Mapping[str, float] | None = None) -> np.ndarray:
+    """The weighted average of conspicuity maps: an array of their shape, in 0..1 where they are.
 
-    maps: dict channel -> array, all of one shape. weights: dict channel -> weight of at least zero (T eq. 3.9);
-    None weighs all maps alike (T eq. 3.8). Maps without a weight stay out. Raises ValueError for no maps, unequal
-    shapes, a negative or NaN weight, weights that name an unknown channel, or weights that are all zero.
+    maps: dict channel -> array, all of one shape. weights: dict channel -> weight of at least zero (T eq. 3.9); None
+    gives all maps the same weight (T eq. 3.8). Maps without a weight are left out. Raises ValueError for no maps,
+    unequal shapes, a negative or NaN weight, weights of an unknown channel, or weights that are all zero.
     """
     weights = dict.fromkeys(maps, 1.0) if weights is None else weights
     _check(maps, weights)
     total = sum(weights.values())
-    return sum(np.asarray(maps[channel], dtype=np.float64) * (weight / total) for channel, weight in weights.items())
+    parts = [np.asarray(maps[channel], dtype=np.float64) * (weight / total) for channel, weight in weights.items()]
+    return np.asarray(sum(parts))
 
 
 def _check(maps, weights):
@@ -44,4 +47,4 @@ def _check(maps, weights):
     if bad:
         raise ValueError(f"weights must be finite and not negative, got {bad}")
     if sum(weights.values()) == 0:
-        raise ValueError("all weights are zero: at least one channel must count")
+        raise ValueError("all weights are zero: give at least one channel a positive weight")

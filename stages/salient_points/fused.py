@@ -1,100 +1,106 @@
-"""Methods that fuse conspicuity maps, and pick points in each view."""
+"""Methods that fuse conspicuity maps and select points in each view."""
+
+from collections.abc import Iterable
 
 import numpy as np
 
+from stages.conspicuity import ViewMaps
+from stages.kit import Mesh
+
 from .fuse import fuse
 from .merge import continue_on_surface, merge_views
-from .options import SELECTIONS, Found
+from .options import SELECTIONS, Detection, Options
 
 
-class Fused:
-    """An average of channels (T eq. 3.8)."""
+class FusedDetector:
+    """The unweighted average of channels (T eq. 3.8)."""
 
-    learned = None  # the weights or SVMs that the method cannot do without
+    required_weights: str | None = None  # name of the weights or SVMs without which the method cannot run
 
-    def __init__(self, channels):
+    def __init__(self, channels: Iterable[str]) -> None:
         self.channels = tuple(channels)
 
-    def fused(self, sight, _options):
-        """(p,) f8: the saliency map of all views, pixel by pixel."""
+    def fused(self, sight: ViewMaps, _options: Options) -> np.ndarray:
+        """(p,) f8: the saliency of each pixel of all views."""
         return fuse(self.maps(sight))
 
-    def maps(self, sight):
-        """dict channel -> (p,): the maps that the method looks at; ValueError for one that is not there."""
+    def maps(self, sight: ViewMaps) -> dict[str, np.ndarray]:
+        """dict channel -> (p,): the maps that the method uses; ValueError for a missing one."""
         missing = [channel for channel in self.channels if channel not in sight.maps]
         if missing:
             raise ValueError(f"no map for {', '.join(missing)}: this method needs {', '.join(self.channels)}")
         return {channel: sight.maps[channel] for channel in self.channels}
 
-    def saliency(self, _mesh, sight, options):
-        """(n,) f8 in 0..1 on the vertices."""
-        return sight.on_vertices(self.fused(sight, options), options.smoothing)
+    def saliency(self, _mesh: Mesh, sight: ViewMaps, options: Options) -> np.ndarray:
+        """(n,) f8 in 0..1 per vertex."""
+        return sight.vertex_saliency(self.fused(sight, options), options.smoothing)
 
-    def candidates(self, sight, options, count):
+    def candidates(self, sight: ViewMaps, options: Options, count: int | None) -> tuple[np.ndarray, ...]:
         """The points of each view, before they are merged: (vertices, values, strong), each (c,)."""
         values = self.fused(sight, options)
         select, radius = SELECTIONS[options.selection], options.radius * sight.pixels_per_unit
         parts = []
         for view in range(len(sight.viewpoints)):
-            image, ids = sight.image(values, view)
-            picked = select(image, radius, count)
-            strong = np.arange(len(picked.rows)) < picked.strong
-            parts.append((ids[picked.rows, picked.columns], picked.values, strong))
+            image, ids = sight.cropped_image(values, view)
+            selected = select(image, radius, count)
+            strong = np.arange(len(selected.rows)) < selected.strong
+            parts.append((ids[selected.rows, selected.columns], selected.values, strong))
         return tuple(np.concatenate(part) for part in zip(*parts, strict=True))
 
-    def find(self, mesh, sight, options, count=None):
-        """Found points; count None gives the strong ones alone."""
+    def find(self, mesh: Mesh, sight: ViewMaps, options: Options, count: int | None = None) -> Detection:
+        """The Detection; count None gives the strong points alone."""
         saliency = self.saliency(mesh, sight, options)
-        points, strong = merge_views(mesh, *self.candidates(sight, options, count), options.radius)
+        vertices, values, above = self.candidates(sight, options, count)
+        points, strong = merge_views(mesh, vertices, values, above, options.radius)
         if count is not None:
             points = continue_on_surface(mesh, points, saliency, options.radius, count)
-        return Found(points, min(strong, len(points)), saliency)
+        return Detection(points, min(strong, len(points)), saliency)
 
 
-class Weighted(Fused):
+class WeightedDetector(FusedDetector):
     """All nine channels with the weights of that name (T eq. 3.9), published or learned."""
 
-    def __init__(self, name, channels):
+    def __init__(self, name: str, channels: Iterable[str]) -> None:
         super().__init__(channels)
-        self.learned = name
+        self.required_weights, self._name = name, name
 
-    def fused(self, sight, options):
-        return fuse(self.maps(sight), options.learned.weights[self.learned])
+    def fused(self, sight: ViewMaps, options: Options) -> np.ndarray:
+        return fuse(self.maps(sight), options.learned.weights[self._name])
 
 
-class Machine(Fused):
+class SvmDetector(FusedDetector):
     """The SVM of that name on the channels of each pixel (T3.2.3).
 
-    It sees the pixels of the stored maps one by one, where the thesis shrinks them to 200 x 200, predicts and
-    enlarges the answer: the same function, without the blur of two resizings.
+    It predicts for each pixel of the stored maps, where the thesis shrinks the maps to 200 x 200, predicts and enlarges
+    the prediction: the same function, without the blur of two resizings.
     """
 
-    def __init__(self, name, channels):
+    def __init__(self, name: str, channels: Iterable[str]) -> None:
         super().__init__(channels)
-        self.learned = name
+        self.required_weights, self._name = name, name
 
-    def fused(self, sight, options):
-        models = options.learned.svms[self.learned]
+    def fused(self, sight: ViewMaps, options: Options) -> np.ndarray:
+        models = options.learned.svms[self._name]
         rows = np.stack(list(self.maps(sight).values()), axis=1)
         if len(models) == 1:
             return next(iter(models.values())).predict(rows)
         values = np.zeros(len(rows))
         for view, model in models.items():
-            part = sight.pixels_of(view)
+            part = sight.pixels_of_view(view)
             values[part] = model.predict(rows[part])
         return values
 
 
-class Merged(Fused):
-    """The points of several methods together; the saliency is the first one's (the thesis's names in ...P, T3.1.5)."""
+class MergedDetector(FusedDetector):
+    """The points of several methods together, with the saliency of the first (the thesis's names in ...P, T3.1.5)."""
 
-    def __init__(self, *parts):
+    def __init__(self, *parts: FusedDetector) -> None:
         super().__init__(dict.fromkeys(channel for part in parts for channel in part.channels))
         self._parts = parts
 
-    def fused(self, sight, options):
+    def fused(self, sight: ViewMaps, options: Options) -> np.ndarray:
         return self._parts[0].fused(sight, options)
 
-    def candidates(self, sight, options, count):
-        found = [part.candidates(sight, options, count) for part in self._parts]
-        return tuple(np.concatenate(part) for part in zip(*found, strict=True))
+    def candidates(self, sight: ViewMaps, options: Options, count: int | None) -> tuple[np.ndarray, ...]:
+        per_method = [part.candidates(sight, options, count) for part in self._parts]
+        return tuple(np.concatenate(part) for part in zip(*per_method, strict=True))

@@ -1,20 +1,23 @@
-"""What every method is given and what it returns."""
+"""What every method receives and returns."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
 from stages.conspicuity.surface_values import SMOOTHING
-from stages.weights import Learned
+from stages.kit import Mesh
+from stages.weights import LearnedWeights
 
-from .select import select_by_centroid, select_by_suppression
+from .select import SelectedPixels, select_by_centroid, select_by_suppression
 
 RADIUS = 0.058  # units, 50 pixels at 900 rows: the width of the kernel that keeps points apart in T3.2.1.3
 
-# How points are taken from one map (h, w), given a radius in pixels and a count.
-SELECTIONS = {
+# How points are selected from one map (h, w), given a radius in pixels and a count.
+SELECTIONS: dict[str, Callable[[np.ndarray, float, int | None], SelectedPixels]] = {
     "suppression": select_by_suppression,
-    "centroid": lambda image, radius, count: select_by_centroid(image, count),  # regions keep apart by themselves
+    "centroid": lambda image, radius, count: select_by_centroid(image, count),  # separate regions need no radius
 }
 
 
@@ -22,14 +25,14 @@ SELECTIONS = {
 class Options:
     """learned: the weights of each method; radius, smoothing in units; seed and name for the draws of `random`."""
 
-    learned: Learned = field(default_factory=Learned)
+    learned: LearnedWeights = field(default_factory=LearnedWeights)
     selection: str = "suppression"
     radius: float = RADIUS
     smoothing: float = SMOOTHING
     seed: int = 0
     name: str = ""
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if self.selection not in SELECTIONS:
             raise ValueError(f"unknown selection {self.selection!r}: choose one of {', '.join(SELECTIONS)}")
         if not self.radius > 0 or not self.smoothing >= 0:
@@ -37,12 +40,32 @@ class Options:
 
 
 @dataclass(frozen=True)
-class Found:
+class Detection:
     """points (k,) i8, most salient first; strong: how many pass the threshold; saliency (n,) f8.
 
-    strong and saliency are None where a method has no such thing.
+    strong is None for a method without a threshold, saliency for one that only places points.
     """
 
     points: np.ndarray
     strong: int | None
     saliency: np.ndarray | None
+
+
+class Detector(Protocol):
+    """An entry of METHODS; see stages.salient_points.methods."""
+
+    @property
+    def channels(self) -> tuple[str, ...]: ...
+
+    @property
+    def required_weights(self) -> str | None: ...
+
+    # sight: a ViewMaps, or None where the method has no channels
+    def find(self, mesh: Mesh, sight: Any, options: Options, count: int | None = None, /) -> Detection: ...
+
+
+@runtime_checkable
+class HasSaliency(Protocol):
+    """A Detector that gives each vertex a saliency: all but those that only place points."""
+
+    def saliency(self, mesh: Mesh, sight: Any, options: Options, /) -> np.ndarray: ...

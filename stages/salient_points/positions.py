@@ -1,21 +1,22 @@
-"""Where a place is, as if it were a saliency: the plainest rivals, and strong ones on human gaze."""
+"""The position of a vertex as its saliency: the simplest rivals, and strong ones on human gaze."""
 
 import numpy as np
 
 from stages.conspicuity import facing
+from stages.kit import Mesh
 from stages.views import FOUR
 
 
-def height(mesh):
-    """How high each vertex is, (n,): people look at the upper part of things."""
+def height(mesh: Mesh) -> np.ndarray:
+    """(n,) height of each vertex: people look at the upper part of things."""
     return mesh.vertices[:, 2] - mesh.vertices[:, 2].min()
 
 
-def centre_distance(mesh):
-    """How far each vertex is from the centre of the bounding sphere, (n,)."""
+def centre_distance(mesh: Mesh) -> np.ndarray:
+    """(n,) distance of each vertex to the centre of the bounding sphere."""
     return np.linalg.norm(mesh.vertices, axis=1)
 
 
-def facing_viewer(mesh):
-    """How squarely the four views from the side see each vertex on average, (n,)."""
+def facing_viewer(mesh: Mesh) -> np.ndarray:
+    """(n,) cosine between the normal and the view direction, averaged over the four views from the side."""
     return facing(mesh, FOUR).mean(axis=0)

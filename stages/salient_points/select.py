@@ -1,4 +1,4 @@
-"""Interest points of one saliency map: by threshold and centroid (T3.1.2), or by suppression (T3.2.5)."""
+"""Salient pixels of one saliency map: by threshold and centroid (T3.1.2), or by suppression (T3.2.5)."""
 
 from dataclasses import dataclass
 
@@ -10,10 +10,10 @@ REGION_SHARE = 0.3  # of the object's pixels, the most salient ones; T3.1.1
 
 
 @dataclass(frozen=True)
-class Picked:
+class SelectedPixels:
     """Pixels of one map, most salient first: rows, columns (k,) i8, values (k,) f8.
 
-    strong: how many leading ones pass the thesis's own threshold; the rest follow because a count was asked for.
+    strong: how many leading ones pass the thesis's threshold; the others only fill up the count.
     """
 
     rows: np.ndarray
@@ -22,21 +22,23 @@ class Picked:
     strong: int
 
 
-def select_by_suppression(image, radius, count=None, threshold=SUPPRESSION_THRESHOLD):
-    """The brightest pixel, its neighbourhood set to zero, the next one, down to `threshold` of the maximum (T3.2.5).
+def select_by_suppression(
+    image: np.ndarray, radius: float, count: int | None = None, threshold: float = SUPPRESSION_THRESHOLD
+) -> SelectedPixels:
+    """Takes the largest value, sets its neighbourhood to zero, and repeats down to `threshold` of the maximum (T3.2.5).
 
-    image (h, w), zero off the object; radius in pixels: no two points lie nearer than this or at it. count: return so
-    many, going on below the threshold if need be, as long as there are pixels above zero; None stops at the
-    threshold. A map of zeros gives no points. Returns Picked. Raises ValueError for a map that is empty, not 2D,
-    negative or NaN, and for a negative radius or count.
+    image (h, w), zero off the object; radius in pixels: all points are farther apart. count: how many, going on below
+    the threshold where needed, as long as there are pixels above zero; None stops at the threshold. A map of zeros
+    gives no points. Raises ValueError for a map that is empty, not 2D, negative or NaN, and for a negative radius or
+    count.
     """
     left = check_map(image).copy()
     if radius < 0 or (count is not None and count < 0):
         raise ValueError(f"radius and count must not be negative, got {radius} and {count}")
     floor = threshold * left.max()
-    most = left.size if count is None else count
+    limit = left.size if count is None else count
     pixels, values = [], []
-    while len(pixels) < most:
+    while len(pixels) < limit:
         at = np.unravel_index(left.argmax(), left.shape)
         if left[at] <= (floor if count is None else 0):
             break
@@ -45,31 +47,32 @@ def select_by_suppression(image, radius, count=None, threshold=SUPPRESSION_THRES
         _clear_disc(left, at, radius)
     rows, columns = np.array(pixels, dtype=np.int64).reshape(-1, 2).T
     values = np.array(values, dtype=np.float64)
-    return Picked(rows, columns, values, int((values > floor).sum()))
+    return SelectedPixels(rows, columns, values, int((values > floor).sum()))
 
 
 def _clear_disc(image, centre, radius):
-    reach = int(radius)
+    extent = int(radius)
     (r, c), (h, w) = centre, image.shape
-    top, left = max(r - reach, 0), max(c - reach, 0)
-    rows, columns = np.ogrid[top : min(r + reach + 1, h), left : min(c + reach + 1, w)]
+    top, left = max(r - extent, 0), max(c - extent, 0)
+    rows, columns = np.ogrid[top : min(r + extent + 1, h), left : min(c + extent + 1, w)]
     window = image[top : top + len(rows), left : left + columns.size]
     window[(rows - r) ** 2 + (columns - c) ** 2 <= radius**2] = 0
 
 
-def select_by_centroid(image, count=None, share=REGION_SHARE):
+def select_by_centroid(image: np.ndarray, count: int | None = None, share: float = REGION_SHARE) -> SelectedPixels:
     """Centroids of the connected regions among the `share` of highest saliency values (T3.1.1, T3.1.2).
 
     image (h, w), zero off the object: the share is of the pixels above zero. Pixels that touch at a corner are
-    connected. Where a region is concave its centroid may lie beside it: then the region's pixel nearest to the
-    centroid is taken. Ordered by the region's highest value. Every centroid is strong; count keeps the first ones.
-    Returns Picked. Raises ValueError as select_by_suppression does, and for a share outside 0..1.
+    connected. The centroid of a concave region may lie outside it, so the region's pixel nearest to it is taken.
+    Ordered by the region's highest value. Every centroid is strong; count keeps the first ones. Raises ValueError as
+    select_by_suppression does, and for a share outside 0..1.
     """
     image = check_map(image)
     if not 0 < share <= 1:
         raise ValueError(f"share must be above 0 and at most 1, got {share}")
     if not image.any():
-        return Picked(*np.zeros((2, 0), dtype=np.int64), np.zeros(0), 0)
+        none = np.zeros(0, dtype=np.int64)
+        return SelectedPixels(none, none, np.zeros(0), 0)
     region = (image > 0) & (image >= np.quantile(image[image > 0], 1 - share))
     labels = cv2.connectedComponents(region.astype(np.uint8), connectivity=8)[1]
     rows, columns = np.nonzero(region)
@@ -79,7 +82,7 @@ def select_by_centroid(image, count=None, share=REGION_SHARE):
     centres = np.array([_central_member(rows[ids], columns[ids]) for ids in members])
     peaks = np.array([image[rows[ids], columns[ids]].max() for ids in members])
     first = np.argsort(-peaks, kind="stable")[:count]
-    return Picked(centres[first, 0], centres[first, 1], peaks[first], len(first))
+    return SelectedPixels(centres[first, 0], centres[first, 1], peaks[first], len(first))
 
 
 def _central_member(rows, columns):
@@ -88,7 +91,7 @@ def _central_member(rows, columns):
     return rows[nearest], columns[nearest]
 
 
-def check_map(image):
+def check_map(image: np.ndarray) -> np.ndarray:
     """The map as (h, w) f8; raises ValueError when it is empty, not 2D, negative or not finite."""
     image = np.asarray(image, dtype=np.float64)
     if image.ndim != 2 or image.size == 0:

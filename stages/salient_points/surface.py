@@ -1,63 +1,71 @@
-"""Methods that work on the surface: a value at each vertex, and its peaks as points."""
+"""Methods that work on the surface: a value per vertex, and its peaks as points."""
+
+from collections.abc import Callable, Iterable
+from typing import Any
 
 import numpy as np
 
 from stages.conspicuity.surface_values import smoother
+from stages.kit import Mesh
 from stages.weights import fixation_density, vertex_features
 from stages.weights.features import standardise
 
 from .merge import continue_on_surface
-from .options import Found
+from .options import Detection, Options
 from .rivals.maxima import local_maxima
 
 
-class OnSurface:
-    """A detector that gives each vertex a value, and its own choice of points."""
+class SurfaceDetector:
+    """A detector that computes a value per vertex from the mesh alone, and selects points by it."""
 
-    channels = ()  # it looks at no conspicuity map
-    learned = None
+    channels: tuple[str, ...] = ()
+    required_weights: str | None = None
 
-    def __init__(self, values, points=None):
+    def __init__(
+        self,
+        values: Callable[[Mesh], np.ndarray],
+        points: Callable[[Mesh, np.ndarray], np.ndarray] | None = None,
+    ) -> None:
         """values: mesh -> (n,) f8, at least zero; points: (mesh, values) -> (k,) most salient first, None for peaks."""
         self._values, self._points = values, points
 
-    def saliency(self, mesh, _sight, _options):
+    def saliency(self, mesh: Mesh, sight: Any, options: Options) -> np.ndarray:
         """(n,) f8 in 0..1, the largest 1."""
         return scaled(self._values(mesh))
 
-    def find(self, mesh, sight, options, count=None):
-        """Found points: the detector's own are strong; count continues them by the value."""
+    def find(self, mesh: Mesh, sight: Any, options: Options, count: int | None = None) -> Detection:
+        """The Detection: the detector's own points are strong; count continues them by the value."""
         saliency = self.saliency(mesh, sight, options)
         own = peaks(mesh, saliency, options) if self._points is None else self._points(mesh, saliency)
         points = own if count is None else continue_on_surface(mesh, own, saliency, options.radius, count)
-        return Found(points, min(len(own), len(points)), saliency)
+        return Detection(points, min(len(own), len(points)), saliency)
 
 
-class Fixations(OnSurface):
-    """The density of looks that the fixation model predicts (stages.weights.fixations)."""
+class FixationDetector(SurfaceDetector):
+    """The fixation density that the log-linear model predicts (stages.weights.fixations)."""
 
-    def __init__(self, name, channels):
-        super().__init__(None)
-        self.learned, self.channels = name, tuple(channels)
+    def __init__(self, name: str, channels: Iterable[str]) -> None:
+        self._points = None
+        self.required_weights, self._name, self.channels = name, name, tuple(channels)
 
-    def saliency(self, mesh, sight, options):
-        channels = {name: sight.averaged(sight.maps[name], options.smoothing) for name in self.channels}
-        weights = options.learned.weights[self.learned]
+    def saliency(self, mesh: Mesh, sight: Any, options: Options) -> np.ndarray:
+        channels = {name: sight.vertex_values(sight.maps[name], options.smoothing) for name in self.channels}
+        weights = options.learned.weights[self._name]
         features = vertex_features(mesh, sight.viewpoints, sight.facing, channels)
         return scaled(np.where(mesh.vertex_areas > 0, fixation_density(features, weights), 0))
 
 
-def scaled(values):
-    """Values (n,) of at least zero over the largest, rounded so that last bits decide nothing; zeros stay zeros."""
+def scaled(values: np.ndarray) -> np.ndarray:
+    """Values (n,) of at least zero over their maximum, rounded to six digits so that rounding errors decide nothing."""
     top = values.max(initial=0)
     return (values / top).round(6) if top > 0 else np.zeros(len(values))
 
 
-def peaks(mesh, saliency, options):
-    """(k,) vertices, most salient first, where the smoothed saliency is highest within the radius and stands out.
+def peaks(mesh: Mesh, saliency: np.ndarray, options: Options) -> np.ndarray:
+    """(k,) vertices, most salient first, where the smoothed saliency has a high maximum within the radius.
 
-    Smoothed over options.smoothing, since noise has peaks too. To stand out is to lie more than one deviation above the
-    mean over the area: on human gaze about as many points as the thesis's threshold gives (T3.2.5), at fewer misses.
+    Smoothed over options.smoothing, since noise has peaks too. High is more than one standard deviation above the mean
+    over the area: on human gaze about as many points as the thesis's threshold gives (T3.2.5), with fewer misses.
     """
     if not saliency.any():
         return np.zeros(0, dtype=np.int64)

@@ -3,8 +3,8 @@
 from .budget import budget
 from .camera import Camera, fly
 from .frames import Frames
-from .ladder import Level, build_ladder
 from .levels import Plan
+from .lod_chain import Level, build_lod_chain
 from .place import Placed, Scene
 
-__all__ = ["Camera", "Frames", "Level", "Placed", "Plan", "Scene", "budget", "build_ladder", "fly"]
+__all__ = ["Camera", "Frames", "Level", "Placed", "Plan", "Scene", "budget", "build_lod_chain", "fly"]

@@ -1,62 +1,82 @@
 """Finds the fewest faces of every object of a scene along a camera path, and compares them with other ways (T3.1.3).
 
-Reads data/meshes, data/salient_points and data/lod (the curves that the thesis's network learns from). Writes
-data/scene/levels/NAME (the levels, and their errors), data/scene/plan.csv (a row the level of an object in a frame),
-data/scene/pictures.npz (frames for the report), data/scene/export (a GLB a level, manifest.json) and
-reports/measurements/scene.csv: a row a method and metric, over all frames or of one. Seconds are those of one plan, its
-rendering included; what an earlier plan rendered is not rendered again. Settings: section `scene` of params.yaml.
+Reads data/SET/meshes, data/SET/salient_points and data/SET/lod (the curves that the thesis's network learns from).
+Writes data/SET/scene/levels/NAME (the levels, and their errors), data/SET/scene/plans (our levels at each tolerance),
+data/SET/scene/plan.csv (one row per object and frame), data/SET/scene/pictures.npz (frames for the report),
+data/SET/scene/export (one GLB per level, manifest.json) and reports/measurements/SET/scene.csv.gz: one row per method
+and metric, over all frames or of one. Seconds are those of one plan, its rendering included; what an earlier plan
+rendered is not rendered again, but for the network, which starts anew. Settings: section `scene` of params.yaml.
 """
 
 import functools
+from pathlib import Path
 
-from stages.kit import StageRun, Stopwatch, arguments, params
+from stages.kit import Stopwatch
+from stages.kit.command import workspace_of_arguments
+from stages.kit.run import Rows, StageRun
+from stages.kit.workspace import Workspace
 from stages.lod.variant import variant
 
 from .compare import OURS, PLAIN
 from .export import export
-from .ladder import build_ladder
-from .measure import measure
-from .network import judged
-from .read import read_object, say_missing, scene_of
+from .lod_chain import build_lod_chain
+from .measure import measure, measure_network
+from .network import CURVE, evaluation_rows
+from .read import MESH, POINTS, read_object, report_missing, scene_of
 from .rows import summary
-from .storage import write_ladder
+from .schema import COLUMNS, Params
+from .storage import write_chain
 
 
-def levels_of(name, folder, settings, seed):
-    """Builds the ladders of one object; returns a row each, with the seconds."""
-    mesh, options, _ = read_object(name, settings.method)
+def levels_of(name: str, folder: Path, data: Path, method: str, seed: int) -> Rows:
+    """Builds the chains of one object; returns one row per chain, with the seconds."""
+    mesh, options, _ = read_object(data, name, method)
     rows = []
     for kind, chosen in ((OURS, options), (PLAIN, {})):
         with Stopwatch() as watch:
-            levels = build_ladder(mesh, seed=seed, **chosen)
-        write_ladder(folder / "levels" / name, kind, levels)
-        rows.append({"object": name, "method": kind, "frame": "all", "metric": "levels", "value": len(levels)}
-                    | {"scene": settings.name, "seconds": watch.seconds})  # fmt: skip
+            levels = build_lod_chain(mesh, seed=seed, **chosen)
+        write_chain(folder / "levels" / name, kind, levels)
+        row = {"item": name, "method": kind, "frame": "all", "metric": "levels", "value": len(levels)}
+        rows.append(row | {"seconds": watch.seconds})
     return rows
 
 
-def main():
-    arguments(__doc__)
-    settings = params("scene")
+def run(workspace: Workspace) -> None:
+    """Runs the stage on the data set of a workspace."""
+    settings, data = workspace.settings(Params), workspace.data
     variant(settings.method)
-    with StageRun("scene", inputs=("meshes", "salient_points", "lod")) as run:
-        scene, missing = scene_of(settings, run.objects)
-        say_missing(settings, scene, missing)
-        names = sorted({placed.name for placed in scene.objects})
-        run.each(functools.partial(levels_of, settings=settings, seed=run.seed), names)
+    with StageRun(workspace, "scene", COLUMNS, inputs=("meshes", "salient_points", "lod")) as stage:
+        scene, missing = scene_of(settings, stage.objects)
+        report_missing(settings, scene, missing)
+        shown = sorted({placed.name for placed in scene.objects})
+        others = [name for name in stage.objects if name not in shown]
+        chains = functools.partial(levels_of, data=data, method=settings.method, seed=stage.seed)
+        stage.each(chains, shown, reads=(MESH, POINTS))
         factors = {f"tolerance_{factor:g}": factor for factor in dict.fromkeys([1.0, *settings.factors])}
-        job = functools.partial(measure, settings=settings, factors=factors, objects=run.objects, seed=run.seed)
-        rows = run.each(job, list(factors))
-        run.rows += judged(run.objects, run.seed)
-        export(run.folder, settings, run.objects)
+        values = {name: repr(factor) for name, factor in factors.items()}
+        own = [pattern.format(name) for name in shown for pattern in (MESH, POINTS)]
+        learned_from = [pattern.format(name) for name in others for pattern in (MESH, CURVE)]
+        given = {"data": data, "made": stage.folder, "settings": settings, "shown": shown, "seed": stage.seed}
+        rows = stage.each(functools.partial(measure, **given), factors, own, values)
+        network = functools.partial(measure_network, **given, others=others)
+        rows += stage.each(network, factors, [*own, *learned_from], values)
+        for row in stage.rows:
+            row["group"] = settings.name
+        stage.rows += evaluation_rows(data, stage.objects, stage.seed, stage.map)
+        export(stage.folder, data, scene, settings)
         found = summary(rows)
-        run.metrics(found)
+        stage.metrics(found)
     print(
-        f"scene: {settings.name}, {len(scene.objects)} objects, {len(scene.cameras)} frames: "
-        f"{found['faces_ours']:.0f} faces a frame for {found['faces_full']:.0f}, "
+        f"scene: {workspace.dataset}, {settings.name}, {len(scene.objects)} objects, {len(scene.cameras)} frames: "
+        f"{found['faces_ours']:.0f} faces per frame of {found['faces_full']:.0f}, "
         f"{found['saved_uniform_error']:.0%} fewer than uniform levels at equal error, "
-        f"{found['held_ours']:.0%} of frames hold"
+        f"{found['held_ours']:.0%} of frames within the tolerance"
     )
+
+
+def main() -> None:
+    """Runs the stage on the data set that the command line names."""
+    run(workspace_of_arguments(__doc__, "scene"))
 
 
 if __name__ == "__main__":

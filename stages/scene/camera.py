@@ -1,8 +1,10 @@
-"""A perspective camera on a path: what a person before a screen sees (the kit's is the thesis's orthographic)."""
+"""A perspective camera on a path, as for a screen (the kit's camera is the thesis's orthographic one)."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.interpolate import PchipInterpolator
 
 from stages.kit.mesh import unit
@@ -10,10 +12,10 @@ from stages.kit.mesh import unit
 
 @dataclass(frozen=True)
 class Camera:
-    """Where a frame is taken from, in metres: eye and target (3,); angle, vertical in degrees; size, rows and columns.
+    """The camera of one frame: eye and target (3,) in metres; vertical view angle in degrees; size, rows and columns.
 
-    +z is up. Pixel centres lie at whole numbers. Raises ValueError for a camera that has no direction or looks straight
-    up or down, and for an angle outside 1 to 170 degrees.
+    +z is up. Pixel centres lie at whole numbers. Raises ValueError for a camera that has no direction or renderings
+    straight up or down, and for an angle outside 1 to 170 degrees.
     """
 
     eye: tuple[float, float, float]
@@ -21,7 +23,7 @@ class Camera:
     angle: float
     size: tuple[int, int]
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         along = np.subtract(self.target, self.eye)
         if not np.isfinite(along).all() or np.hypot(along[0], along[1]) <= 1e-6 * (1 + np.abs(along[2])):
             raise ValueError(f"a camera at {self.eye} cannot look at {self.target}: same place, or straight up or down")
@@ -31,26 +33,26 @@ class Camera:
             raise ValueError(f"a screen of {self.size[0]} x {self.size[1]} pixels shows nothing")
 
     @property
-    def axes(self):
+    def axes(self) -> np.ndarray:
         """(3, 3) rows right, up, forward: the camera's axes in the world."""
         forward = unit(np.subtract(self.target, self.eye))
         right = unit(np.cross(forward, [0.0, 0.0, 1.0]))
         return np.array([right, np.cross(right, forward), forward])
 
     @property
-    def focal(self):
-        """Pixels that a metre takes at a depth of one metre; at depth d it takes focal / d."""
+    def focal(self) -> float:
+        """Focal length: the pixels that one metre covers at a depth of one metre; at depth d it is focal / d."""
         return self.size[0] / (2 * np.tan(np.radians(self.angle) / 2))
 
-    def project(self, points):
+    def project(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """World points (k, 3) to (rows (k,), columns (k,), depths (k,)): pixels, and metres along the view axis."""
         right, up, depth = self.axes @ (np.asarray(points, dtype=np.float64) - self.eye).T
         far = np.where(depth > 0, depth, np.nan)
         h, w = self.size
         return (h - 1) / 2 - up / far * self.focal, (w - 1) / 2 + right / far * self.focal, depth
 
-    def directions(self, rows, columns):
-        """Directions (k, 3) of length one of the rays through pixels."""
+    def directions(self, rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
+        """Unit directions (k, 3) of the rays through pixels."""
         h, w = self.size
         right, up, forward = self.axes
         across = ((np.asarray(columns) - (w - 1) / 2) / self.focal)[:, None]
@@ -58,18 +60,19 @@ class Camera:
         return unit(forward + across * right + down * up)
 
 
-def fly(eyes, targets, frames, angle, size):
+def fly(eyes: ArrayLike, targets: ArrayLike, frames: int, angle: float, size: Sequence[int]) -> list[Camera]:
     """`frames` Cameras along keyframes: eyes and targets (k, 3), at equal times, joined by a smooth curve.
 
-    The curve (Fritsch and Carlson 1980, monotone piecewise cubic) never swings out beyond its keyframes.
+    The curve (Fritsch and Carlson 1980, monotone piecewise cubic) does not overshoot its keyframes.
     Raises ValueError for no keyframe or no frame.
     """
-    eyes, targets = (np.asarray(points, dtype=np.float64) for points in (eyes, targets))
-    if eyes.ndim != 2 or eyes.shape[1:] != (3,) or eyes.shape != targets.shape or not len(eyes) or frames < 1:
-        raise ValueError("a camera path needs a frame or more, and keyframes of an eye and a target, x, y, z each")
-    if len(eyes) > 1:
-        times = np.linspace(0, len(eyes) - 1, frames)
-        eyes, targets = (PchipInterpolator(range(len(points)), points)(times) for points in (eyes, targets))
+    eye, target = np.asarray(eyes, dtype=np.float64), np.asarray(targets, dtype=np.float64)
+    if eye.ndim != 2 or eye.shape[1:] != (3,) or eye.shape != target.shape or not len(eye) or frames < 1:
+        raise ValueError("a camera path needs at least one frame, and keyframes with x, y, z of an eye and a target")
+    if len(eye) > 1:
+        times = np.linspace(0, len(eye) - 1, frames)
+        eye, target = (PchipInterpolator(range(len(points)), points)(times) for points in (eye, target))
     else:
-        eyes, targets = np.repeat(eyes, frames, axis=0), np.repeat(targets, frames, axis=0)
-    return [Camera(tuple(eye), tuple(target), angle, tuple(size)) for eye, target in zip(eyes, targets, strict=True)]
+        eye, target = np.repeat(eye, frames, axis=0), np.repeat(target, frames, axis=0)
+    screen = size[0], size[1]
+    return [Camera(tuple(place), tuple(aim), angle, screen) for place, aim in zip(eye, target, strict=True)]

@@ -1,6 +1,8 @@
-"""One scene at one tolerance: our plan, and the others at the same measured error of the rendered frames."""
+"""One scene at one tolerance: our plan, and those of other methods at the same error of the rendered frames."""
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 import numpy as np
 
@@ -10,19 +12,20 @@ from stages.kit.mesh import Mesh
 from . import rivals
 from .budget import budget
 from .frames import Frames
-from .ladder import ERRORS
 from .levels import Plan
+from .lod_chain import ERRORS, Level
+from .place import Scene
 from .plan import cheapest
-from .storage import full_of, read_ladders
+from .storage import finest_levels, read_chains
 
-OURS, PLAIN = "ours", "plain"  # kinds of ladder: with the salient places minded, and without
+OURS, PLAIN = "ours", "plain"  # kinds of LOD chain: with the salient regions spared, and without
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
-    """A plan by a method. matched: what was made equal to ours, `error` (mean over the frames of the frame error),
-    `displacement` (mean over the pixels), `held` (every frame within the tolerance), or nothing; `limit`: half of the
-    faces of our fullest frame are all that a frame may have.
+class MethodPlan:
+    """A plan by a method. matched: the quantity made equal to ours, `error` (mean over the frames of the frame error),
+    `displacement` (mean over the pixels), `held` (every frame within the tolerance), or ""; `limit`: under a face limit
+    of half of our fullest frame; `asked`: the network's own counts, not tuned.
     """
 
     method: str
@@ -33,120 +36,124 @@ class Found:
 
 
 @dataclass(frozen=True, eq=False)
-class Contest:
-    """A scene, its meshes and frames, and the ladders of each kind for its objects."""
+class SceneSetup:
+    """A scene, its meshes and frames, and the LOD chains of each kind for its objects."""
 
-    scene: object
+    scene: Scene
     meshes: dict[str, Mesh]
     frames: Frames
-    ladders: dict[str, dict] = field(repr=False)
+    chains: dict[str, dict[str, tuple[Level, ...]]] = field(repr=False)
 
-    def of(self, kind):
-        """The ladder of each object of the scene."""
-        return tuple(self.ladders[kind][placed.name] for placed in self.scene.objects)
+    def of(self, kind: str) -> tuple[tuple[Level, ...], ...]:
+        """The LOD chain of each object of the scene."""
+        return tuple(self.chains[kind][placed.name] for placed in self.scene.objects)
 
 
-def contest(scene, meshes, folder):
-    """A Contest from the ladders in a folder."""
-    full = full_of({name: meshes[name] for name in sorted({placed.name for placed in scene.objects})})
-    ladders = {kind: read_ladders(folder, kind, full) for kind in (OURS, PLAIN)}
+def load_setup(scene: Scene, meshes: Mapping[str, Mesh], folder: Path) -> SceneSetup:
+    """The SceneSetup with the LOD chains in a folder."""
+    full = finest_levels({name: meshes[name] for name in sorted({placed.name for placed in scene.objects})})
+    chains = {kind: read_chains(folder, kind, full) for kind in (OURS, PLAIN)}
     frames = Frames(scene, meshes, [full[placed.name] for placed in scene.objects])
-    return Contest(scene, meshes, frames, ladders)
+    return SceneSetup(scene, dict(meshes), frames, chains)
 
 
-def mean_error(plan):
-    """Mean over the frames of the error held against the tolerance."""
+def mean_error(plan: Plan) -> float:
+    """Mean over the frames of the error compared with the tolerance."""
     return float(plan.errors.mean())
 
 
-def mean_displacement(plan):
-    """Mean displacement in pixels over all pixels in which an object is seen."""
+def mean_displacement(plan: Plan) -> float:
+    """Mean displacement in pixels over all pixels that show an object."""
     return float(np.concatenate([check.displacements for check in plan.checks]).mean())
 
 
-def worst_error(plan):
+def worst_error(plan: Plan) -> float:
     """The error of the worst frame."""
     return float(plan.errors.max())
 
 
-def compare(own, counts=None, all_matches=True):
-    """list[Found]: ours first.
+def compare(setup: SceneSetup, all_matches: bool = True) -> list[MethodPlan]:
+    """The plan of each method but the thesis's network, ours first.
 
-    counts: (frames, objects) faces that the thesis's network answers, or None; tuned by one factor on all of them.
-    all_matches: also plans that are equal to ours in other ways, the full meshes, plans by the levels' own errors,
-    never rendered, and plans under a limit of faces.
+    all_matches: also plans that equal ours in other quantities, the full meshes, plans by the levels' own errors
+    without rendering, and plans under a face limit.
     """
-    found = [_timed(OURS, "", lambda: _budget(own, OURS)), _timed("ours_plain", "", lambda: _budget(own, PLAIN))]
+    found = [_timed(OURS, "", lambda: _budget(setup, OURS)), _timed("ours_plain", "", lambda: _budget(setup, PLAIN))]
     ours = found[0].plan
     for method, by_size in (("uniform", False), ("uniform_size", True)):
-        found += _tuned(own, method, _uniform(own, by_size), ours, all_matches)
-    if counts is not None:
-        found += _tuned(own, "network", _network(own, counts), ours, all_matches)
+        found += _tuned(setup, method, _uniform(setup, by_size), ours, all_matches)
     if all_matches:
-        found += [_timed("full", "", lambda: rivals.full(own.frames)), *_unrendered(own), *_limited(own, ours)]
-        if counts is not None:
-            found.append(_timed("network", "asked", lambda: _network(own, counts)(1.0)))
+        found += [_timed("full", "", lambda: rivals.full(setup.frames)), *_unrendered(setup), *_limited(setup, ours)]
     return found
 
 
-def _budget(own, kind):
-    return budget(own.meshes, own.scene, ladders=own.ladders[kind], frames=own.frames)
+def compare_network(setup: SceneSetup, counts: np.ndarray, ours: Plan, all_matches: bool = True) -> list[MethodPlan]:
+    """The plans by the faces that the thesis's network predicts, counts (frames, objects), tuned by one common factor.
+
+    all_matches: also plans that equal ours in other quantities, and its own counts.
+    """
+    found = _tuned(setup, "network", _network(setup, counts), ours, all_matches)
+    return [*found, _timed("network", "asked", lambda: _network(setup, counts)(1.0))] if all_matches else found
 
 
-def _uniform(own, by_size):
-    return lambda coarseness: rivals.uniform(own.frames, own.of(OURS), 1 / coarseness, by_size)
+def _budget(setup, kind):
+    return budget(setup.meshes, setup.scene, chains=setup.chains[kind], frames=setup.frames)
 
 
-def _network(own, counts):
-    return lambda coarseness: rivals.by_counts(own.frames, own.of(OURS), counts / coarseness)
+def _uniform(setup, by_size):
+    return lambda coarseness: rivals.uniform(setup.frames, setup.of(OURS), 1 / coarseness, by_size)
 
 
-def _limited(own, ours):
-    """Half of the faces of our fullest frame, shared where it hurts least, and equally."""
-    coarsest = [ladder[-1].faces for ladder in ours.ladders]
-    smallest = int((own.frames.in_view * coarsest).sum(axis=1).max())
+def _network(setup, counts):
+    return lambda coarseness: rivals.by_counts(setup.frames, setup.of(OURS), counts / coarseness)
+
+
+def _limited(setup, ours):
+    """Half of the faces of our fullest frame, distributed by error, and equally."""
+    coarsest = [chain[-1].faces for chain in ours.chains]
+    smallest = int((setup.frames.in_view * coarsest).sum(axis=1).max())
     limit = max(int(ours.faces.sum(axis=1).max()) // 2, smallest, 1)
-    scene = replace(own.scene, limit=limit)
+    scene = replace(setup.scene, limit=limit)
     plans = {
-        OURS: lambda: budget(own.meshes, scene, ladders=own.ladders[OURS], frames=own.frames),
+        OURS: lambda: budget(setup.meshes, scene, chains=setup.chains[OURS], frames=setup.frames),
         "equal": lambda: rivals.equal(ours, limit),
     }
     return [replace(_timed(name, "limit", make), note=f"limit of {limit:,} faces") for name, make in plans.items()]
 
 
-def _tuned(own, method, plan_of, ours, all_matches):
+def _tuned(setup, method, plan_of, ours, all_matches):
     found = [_timed(method, "error", lambda: rivals.tune(plan_of, mean_error, mean_error(ours)))]
     if mean_error(found[0].plan) < mean_error(ours):
         found = [replace(found[0], note="even its coarsest plan has less error than ours")]
     if all_matches:
-        wanted = mean_displacement(ours)
-        found.append(_timed(method, "displacement", lambda: rivals.tune(plan_of, mean_displacement, wanted)))
-        found.append(_timed(method, "held", lambda: rivals.tune_below(plan_of, worst_error, own.scene.tolerance)))
+        target = mean_displacement(ours)
+        found.append(_timed(method, "displacement", lambda: rivals.tune(plan_of, mean_displacement, target)))
+        found.append(_timed(method, "held", lambda: rivals.tune_below(plan_of, worst_error, setup.scene.tolerance)))
     return found
 
 
-def _unrendered(own):
-    """Plans by one measure of the levels' own surfaces: does it foretell what the frames show?"""
-    ladders = own.of(OURS)
+def _unrendered(setup):
+    """Plans by one error of the levels' own surfaces, without rendering: do these predict the errors of the frames?"""
+    chains = setup.of(OURS)
     plans = []
     for name in ERRORS:
         with Stopwatch() as watch:
-            levels = [_by_surface(own, item, ladder, name) for item, ladder in enumerate(ladders)]
-        plan = Plan(np.stack(levels, axis=1), ladders, own.frames)
-        plans.append(Found(f"unrendered_{name}", "", plan, watch.seconds))
+            levels = [_by_surface(setup, item, chain, name) for item, chain in enumerate(chains)]
+        plan = Plan(np.stack(levels, axis=1), chains, setup.frames)
+        plans.append(MethodPlan(f"unrendered_{name}", "", plan, watch.seconds))
     return plans
 
 
-def _by_surface(own, item, ladder, name):
-    errors = np.array([level.error[name] for level in ladder]) * own.frames.scale[:, item, None]
-    faces = np.array([level.faces for level in ladder]) * own.frames.in_view[:, item, None]
-    # The distance of two levels is at most the sum of their errors; as these point anywhere, about the root of squares.
-    steps = np.hypot(errors[:, :, None], errors[:, None, :])
-    return cheapest(faces, errors, steps, own.scene.tolerance, own.scene.hold)
+def _by_surface(setup, item, chain, name):
+    errors = np.array([level.error[name] for level in chain]) * setup.frames.scale[:, item, None]
+    faces = np.array([level.faces for level in chain]) * setup.frames.in_view[:, item, None]
+    # The distance of two levels is at most the sum of their errors; for random directions about their root sum square.
+    jumps = np.hypot(errors[:, :, None], errors[:, None, :])
+    return cheapest(faces, errors, jumps, setup.scene.tolerance, setup.scene.hold)
 
 
-def _timed(method, matched, make):
+def _timed(method, matched, make: Callable[[], Plan]) -> MethodPlan:
     with Stopwatch() as watch:
         plan = make()
-        plan.errors  # noqa: B018 (rendered within the time)
-    return Found(method, matched, plan, watch.seconds)
+        _ = plan.errors  # rendered within the time
+    return MethodPlan(method, matched, plan, watch.seconds)

@@ -1,62 +1,67 @@
-"""The levels that a plan shows as GLB files that a viewer or an engine reads, with a manifest.
+"""The levels that a plan shows as GLB files for viewers and engines, with a manifest.
 
-glTF has +y up and metres, so meshes are turned and scaled; colours go along as vertex colours. MSFT_lod is a vendor
-extension of the Khronos registry: one node a level, the finest first, and as a hint the least share of the screen at
-which each is to be shown, here of its height. manifest.json says the same, and the errors, without an extension. Every
-file is loaded back once it is written.
+glTF has +y up and metres, so meshes are turned and scaled; colours become vertex colours. MSFT_lod is a vendor
+extension of the Khronos registry: one node per level, the finest first, and as a hint the least share of the screen,
+here of its height, at which to show each. manifest.json has the same, and the errors, without an extension. Every file
+is loaded again after it is written, and checked.
 """
 
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
 import numpy as np
+import pandas as pd
 import trimesh
+from trimesh.exchange.gltf import export_glb
 
 from stages.kit import Mesh
 from stages.kit.files import read_mesh, read_table, whole_file, write_json
-from stages.kit.run import DATA
 
 from .compare import OURS
-from .ladder import finest
 from .loaded_back import EXTENSION, check_glb, read_lod
-from .place import world_mesh
-from .read import scene_of
-from .storage import read_ladder
+from .lod_chain import Level, finest
+from .place import Scene, world_mesh
+from .read import MESH
+from .schema import Params
+from .storage import read_chain
 
 FOLDER, MANIFEST = "export", "manifest.json"
 Y_UP = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])
 
 
-def export(folder, settings, objects):
-    """Writes the GLB files of what the plan in folder/plan.csv shows, and the manifest.
+def export(folder: Path, data: Path, scene: Scene, settings: Params) -> None:
+    """Writes the GLB files of the plan in folder/plan.csv, and the manifest.
 
-    Raises ValueError that names the file where one cannot be loaded back as it was meant.
+    Raises ValueError that names the file where one does not load back unchanged.
     """
-    scene, _ = scene_of(settings, objects)
-    plan, rows = read_table(folder / "plan.csv"), []
+    plan, rows = read_table(folder / "plan.csv", {"item": str}), []
     plan = plan[plan["in_view"]]
-    meshes = {name: read_mesh(DATA / "meshes" / f"{name}.npz") for name in sorted(set(plan["object"]))}
-    ladders = {name: read_ladder(folder / "levels" / name, OURS, finest(mesh)) for name, mesh in meshes.items()}
-    sizes = {placed.name: placed.size for placed in reversed(scene.objects)}  # of the first of several copies
-    for name, ladder in ladders.items():
-        used = sorted(set(plan.loc[plan["object"] == name, "level"]))
-        levels = [ladder[k] for k in used]
-        found = [describe(name, level, size_in_metres(ladder[0].mesh, sizes[name]), scene) for level in levels]
+    meshes = {name: read_mesh(data / MESH.format(name)) for name in sorted(set(plan["item"]))}
+    chains = {name: read_chain(folder / "levels" / name, OURS, finest(mesh)) for name, mesh in meshes.items()}
+    sizes = {placed.name: placed.size for placed in reversed(scene.objects)}  # of several copies the first one's
+    for name, chain in chains.items():
+        used = sorted(set(plan.loc[plan["item"] == name, "level"]))
+        levels = [chain[k] for k in used]
+        found = [describe(name, level, metres_per_unit(chain[0].mesh, sizes[name]), scene) for level in levels]
         for level, row in zip(levels, found, strict=True):
             write_glb(folder / FOLDER / row["file"], [to_gltf(level.mesh, row["metres_a_unit"])], [row["file"][:-4]])
         if settings.msft_lod:
             write_lod(folder / FOLDER / f"{name}.glb", levels, found, scene.cameras[0].size[0])
         rows += found
-    nearest = _frame_with_most(plan)
+    fullest = _fullest_frame(plan)
     if len(plan):
-        write_scene(folder / FOLDER / "scene.glb", scene, meshes, ladders, plan[plan["frame"] == nearest])
+        write_scene(folder / FOLDER / "scene.glb", scene, meshes, chains, pd.DataFrame(plan[plan["frame"] == fullest]))
     manifest = {"scene": settings.name, "tolerance": scene.tolerance, "kind": scene.kind}
-    manifest |= {"screen_rows": scene.cameras[0].size[0], "scene_of_frame": nearest, "levels": rows}
+    manifest |= {"screen_rows": scene.cameras[0].size[0], "scene_of_frame": fullest, "levels": rows}
     write_json(folder / FOLDER / MANIFEST, manifest)
 
 
-def describe(name, level, metres, scene):
+def describe(name: str, level: Level, metres: float, scene: Scene) -> dict[str, Any]:
     """The manifest's row of a level.
 
     error: 99 % quantile of its distance to the full surface, metres. enough_up_to: rows of the screen that the
-    object's longest side may take while that error stays within the tolerance; None for the full mesh, which is always
+    object's longest side may cover with that error within the tolerance; None for the full mesh, which is always
     enough, and where the tolerance is not in pixels.
     """
     error = level.error["q99"] * metres
@@ -69,37 +74,39 @@ def describe(name, level, metres, scene):
     }  # fmt: skip
 
 
-def size_in_metres(mesh, longest):
-    """Metres a unit of the mesh, for a longest side of the bounding box in metres."""
+def metres_per_unit(mesh: Mesh, longest: float) -> float:
+    """Metres per unit of the mesh, for the longest side of its bounding box in metres."""
     return longest / float(np.ptp(mesh.vertices[np.unique(mesh.faces)], axis=0).max())
 
 
-def to_gltf(mesh, metres=1.0):
+def to_gltf(mesh: Mesh, metres: float = 1.0) -> Mesh:
     """A Mesh in metres with +y up."""
     return Mesh(mesh.vertices @ Y_UP.T * metres, mesh.faces, mesh.colors)
 
 
-def write_glb(path, meshes, names, edit=None):
-    """Writes Meshes, as they are, to one GLB, a node each, and loads it back.
+def write_glb(
+    path: Path, meshes: Sequence[Mesh], names: Sequence[str], edit: Callable[[dict], None] | None = None
+) -> None:
+    """Writes Meshes, unchanged, to one GLB, one node per mesh, and checks the file.
 
-    edit: function of the glTF's JSON tree, or None. Raises ValueError where other meshes come back.
+    edit: function of the glTF's JSON tree, or None. Raises ValueError where other meshes load back.
     """
     scene = trimesh.Scene()
     for mesh, name in zip(meshes, names, strict=True):
         scene.add_geometry(_trimesh(mesh), node_name=name, geom_name=name)
-    content = trimesh.exchange.gltf.export_glb(scene, include_normals=True, tree_postprocessor=edit)
+    content = export_glb(scene, include_normals=True, tree_postprocessor=edit)
     with whole_file(path) as part:
         part.write_bytes(content)
     check_glb(path, meshes, names)
 
 
-def write_lod(path, levels, rows, screen_rows):
-    """Writes one GLB with all levels of an object, finest first, joined by MSFT_lod; rows: what `describe` says."""
+def write_lod(path: Path, levels: Sequence[Level], rows: Sequence[dict], screen_rows: int) -> None:
+    """Writes one GLB with all levels of an object, finest first, joined by MSFT_lod; rows: those of `describe`."""
     meshes = [to_gltf(level.mesh, row["metres_a_unit"]) for level, row in zip(levels, rows, strict=True)]
     names = [row["level"] for row in rows]
 
-    def join(tree):
-        # trimesh puts a node above all: it goes, so that the coarser levels hang on the extension alone.
+    def join(tree: dict) -> None:
+        # trimesh adds a root node: removed, so that the coarser levels are referenced by the extension alone.
         places = {node.get("name"): node for node in tree["nodes"]}
         tree["nodes"], tree["scenes"] = [places[each] for each in names], [{"nodes": [0]}]
         if len(names) > 1:
@@ -116,14 +123,16 @@ def write_lod(path, levels, rows, screen_rows):
         raise ValueError(f"{path}: {EXTENSION} came back as {', '.join(read_lod(path))}")
 
 
-def write_scene(path, scene, meshes, ladders, plan):
-    """Writes a frame's rows of the plan as one GLB: every object that it shows at its level, where it stands."""
+def write_scene(
+    path: Path, scene: Scene, meshes: Mapping[str, Mesh], chains: Mapping[str, Sequence[Level]], plan: pd.DataFrame
+) -> None:
+    """Writes a frame's rows of the plan as one GLB: every visible object at its level and place."""
     shown, names = [], []
-    for row in plan.itertuples():
-        placed = scene.objects[row.item]
-        mesh = world_mesh(ladders[placed.name][row.level].mesh, placed.pose(meshes[placed.name]))
+    for item, level, faces in zip(plan["place"], plan["level"], plan["faces"], strict=True):
+        placed = scene.objects[item]
+        mesh = world_mesh(chains[placed.name][level].mesh, placed.pose(meshes[placed.name]))
         shown.append(to_gltf(mesh))
-        names.append(f"{row.item}_{placed.name}_{row.faces}")
+        names.append(f"{item}_{placed.name}_{faces}")
     write_glb(path, shown, names)
 
 
@@ -131,6 +140,6 @@ def _trimesh(mesh):
     return trimesh.Trimesh(mesh.vertices, mesh.faces, vertex_colors=mesh.colors, process=False)
 
 
-def _frame_with_most(plan):
+def _fullest_frame(plan):
     shown = plan.groupby("frame")["faces"].sum()
     return int(shown.idxmax()) if len(shown) else 0

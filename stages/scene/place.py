@@ -1,5 +1,6 @@
-"""What stands where: a mesh placed in the world, and the scene of all of them before a camera path."""
+"""Meshes placed in the world, and the scene of all of them along a camera path."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +10,7 @@ from stages.kit import Mesh
 from .camera import Camera
 
 KINDS = ("pixels", "ssim")
+Box = tuple[np.ndarray, np.ndarray]  # low (3,), high (3,)
 
 
 @dataclass(frozen=True)
@@ -22,8 +24,8 @@ class Placed:
     turn: float
     size: float
 
-    def pose(self, mesh):
-        """A Pose of this object's mesh. Raises ValueError for a size that is not above 0 or a mesh without faces."""
+    def pose(self, mesh: Mesh) -> "Pose":
+        """The Pose of this object's mesh. Raises ValueError for a size that is not above 0 or a mesh without faces."""
         if not len(mesh.faces):
             raise ValueError(f"{self.name} has no faces to show")
         if not self.size > 0:
@@ -37,36 +39,36 @@ class Placed:
 
 @dataclass(frozen=True)
 class Pose:
-    """turn (3, 3), scale in metres a unit of the mesh, foot (3,) in the mesh, position (3,) in the world, its box."""
+    """Rotation turn (3, 3); metres per unit, scale; foot (3,) in the mesh; position (3,) in the world; its box."""
 
     turn: np.ndarray
     scale: float
     foot: np.ndarray
     position: np.ndarray
-    box: tuple[np.ndarray, np.ndarray]
+    box: Box
 
-    def to_world(self, points):
+    def to_world(self, points: np.ndarray) -> np.ndarray:
         """Points (k, 3) of the mesh in metres."""
         return (points - self.foot) @ self.turn.T * self.scale + self.position
 
-    def to_mesh(self, points):
+    def to_mesh(self, points: np.ndarray) -> np.ndarray:
         """World points (k, 3) in the mesh's own coordinates."""
         return (points - self.position) @ self.turn / self.scale + self.foot
 
-    def corners(self, box=None):
+    def corners(self, box: Box | None = None) -> np.ndarray:
         """(8, 3) corners in the world of a box (low, high) in the mesh's own coordinates, or of the mesh's own."""
+        low, high = box or self.box
         picks = np.array(np.meshgrid([0, 1], [0, 1], [0, 1])).reshape(3, 8).T
-        return self.to_world(np.where(picks == 0, *(box or self.box)))
+        return self.to_world(np.where(picks == 0, low, high))
 
 
 @dataclass(frozen=True)
 class Scene:
-    """Objects before a camera path, and what the eye tolerates.
+    """Objects, a camera path, and the tolerated error.
 
-    objects: Placed, one or more. cameras: one a frame. tolerance: above 0, in pixels of the screen (kind `pixels`), or
-    a share of the structure lost, 1 - SSIM (kind `ssim`). limit: faces that all objects of a frame may have together,
-    0 for no limit. hold: frames that a level stays at least.
-    Raises ValueError for anything else.
+    objects: Placed, one or more. cameras: one per frame. tolerance: above 0, in pixels of the screen (kind `pixels`),
+    or a share of the structure lost, 1 - SSIM (kind `ssim`). limit: faces of all objects of a frame together, 0 for no
+    limit. hold: the least number of frames that a level stays. Raises ValueError for anything else.
     """
 
     objects: tuple[Placed, ...]
@@ -76,21 +78,23 @@ class Scene:
     limit: int = 0
     hold: int = 3
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if not self.objects or not self.cameras:
-            raise ValueError("a scene needs one object and one camera or more")
+            raise ValueError("a scene needs at least one object and one camera")
         if not (np.isfinite(self.tolerance) and self.tolerance > 0):
-            raise ValueError(f"the tolerance is {self.tolerance}: it must be above 0, as only the full mesh has none")
+            raise ValueError(
+                f"the tolerance is {self.tolerance}: it must be above 0, since only the full mesh has no error"
+            )
         if self.kind not in KINDS:
             raise ValueError(f"unknown kind of tolerance {self.kind!r}: choose one of {', '.join(KINDS)}")
         if self.limit < 0 or self.hold < 1:
             raise ValueError(f"limit ({self.limit}) must be 0 or more and hold ({self.hold}) 1 or more")
 
-    def poses(self, meshes):
-        """A Pose an object; ValueError for a name that meshes (dict name -> Mesh) has not, or an eye in an object."""
+    def poses(self, meshes: Mapping[str, Mesh]) -> list[Pose]:
+        """One Pose per object; ValueError for an object without a mesh, or an eye inside one."""
         missing = sorted({placed.name for placed in self.objects} - set(meshes))
         if missing:
-            raise ValueError(f"no mesh of {', '.join(missing)}: known are {', '.join(sorted(meshes))}")
+            raise ValueError(f"no mesh of {', '.join(missing)}: there are {', '.join(sorted(meshes))}")
         poses = [placed.pose(meshes[placed.name]) for placed in self.objects]
         for placed, pose in zip(self.objects, poses, strict=True):
             eyes = pose.to_mesh(np.array([camera.eye for camera in self.cameras]))
@@ -101,12 +105,12 @@ class Scene:
         return poses
 
 
-def bounds(mesh):
+def bounds(mesh: Mesh) -> Box:
     """(low (3,), high (3,)): the box around the faces of a mesh."""
     corners = mesh.vertices[np.unique(mesh.faces)]
     return corners.min(axis=0), corners.max(axis=0)
 
 
-def world_mesh(mesh, pose):
-    """The mesh in metres, where it stands."""
+def world_mesh(mesh: Mesh, pose: Pose) -> Mesh:
+    """The mesh in world coordinates, in metres."""
     return Mesh(pose.to_world(mesh.vertices), mesh.faces, mesh.colors)

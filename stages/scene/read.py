@@ -1,29 +1,38 @@
-"""From settings and data/ to a Scene, its meshes, and how their salient places are minded."""
+"""From settings and data/ to a Scene, its meshes, and the options that spare their salient regions."""
 
 import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
 
+import numpy as np
+
+from stages.kit import Mesh
 from stages.kit.files import read_mesh
-from stages.kit.run import DATA
-from stages.lod.cell import Subject, wished
+from stages.lod.cell import keep_rule
+from stages.lod.inputs import ObjectInputs
 from stages.lod.variant import variant
 from stages.salient_points import read_saliency, read_strong_points
 
 from .camera import fly
 from .place import Placed, Scene
+from .schema import Params
+
+MESH, POINTS = "meshes/{}.npz", "salient_points/{}.npz"  # of an object, below data/SET
 
 
-def scene_of(settings, known, factor=1.0):
-    """(Scene, names left out since they are not among `known`), the tolerance times `factor`.
+def scene_of(settings: Params, names: Sequence[str], factor: float = 1.0) -> tuple[Scene, list[str]]:
+    """(Scene of the settings, its objects that are not among `names`), the tolerance times `factor`.
 
-    Where none of its objects is known, as with meshes of one's own, those that are known stand in their places, in
-    their order, once each. Raises ValueError where the scene has no place, and for what Scene and fly refuse.
+    Where none of its objects is among `names`, as with meshes of one's own, the named ones take their places in order,
+    once each. Raises ValueError where the scene has no place, and as Scene and fly do.
     """
-    missing = list(dict.fromkeys(item.name for item in settings.objects if item.name not in known))
-    there = [(item.name, item) for item in settings.objects if item.name in known]
-    there = there or list(zip(known, settings.objects, strict=False))
-    if not there:
-        raise ValueError(f"scene {settings.name} names no object, or data/meshes is empty: take another")
-    placed = tuple(Placed(name, _place(item), item.turn, item.size) for name, item in there)
+    missing = list(dict.fromkeys(item.name for item in settings.objects if item.name not in names))
+    present = [(item.name, item) for item in settings.objects if item.name in names]
+    present = present or list(zip(names, settings.objects, strict=False))
+    if not present:
+        raise ValueError(f"scene {settings.name} has no object, or data/SET/meshes is empty: choose another scene")
+    placed = tuple(Placed(name, _place(item), item.turn, item.size) for name, item in present)
     if len(settings.screen) != 2:
         raise ValueError(f"scene.screen is {settings.screen}: give rows and columns")
     eyes, targets = ([getattr(key, end) for key in settings.camera] for end in ("eye", "target"))
@@ -35,22 +44,24 @@ def scene_of(settings, known, factor=1.0):
 def _place(item):
     if len(item.position) != 3:
         raise ValueError(f"{item.name} stands at {item.position}: give x, y, z in metres")
-    return tuple(item.position)
+    x, y, z = item.position
+    return x, y, z
 
 
-def say_missing(settings, scene, missing):
-    """Tells a person which objects the scene goes on without, and which stand in where it has none of its own."""
+def report_missing(settings: Params, scene: Scene, missing: Sequence[str]) -> None:
+    """Prints which objects are missing, and which take their places where none of the scene's own is present."""
     if missing:
         named = {item.name for item in settings.objects}
         others = ", ".join(dict.fromkeys(item.name for item in scene.objects if item.name not in named))
-        on = f"with {others} in their places" if others else "on without them"
-        print(f"scene: {settings.name} goes {on}; not in data/meshes: {', '.join(missing)}", file=sys.stderr)
+        how = f"with {others} in their places" if others else "without them"
+        print(f"scene: {settings.name} continues {how}; not in data/SET/meshes: {', '.join(missing)}", file=sys.stderr)
 
 
-def read_object(name, method):
-    """(Mesh, options of simplify, saliency (n,) or None) of an object in data/, by the name of a method of lod."""
-    path = DATA / "salient_points" / f"{name}.npz"
-    mesh, saliency = read_mesh(DATA / "meshes" / f"{name}.npz"), read_saliency(path)
-    wish = wished(Subject(name, mesh, read_strong_points(path), saliency, None), variant(method))
-    options = {"keep": wish.keep, "rings": wish.rings, "weights": wish.weights}
-    return mesh, options, saliency.get(variant(method).method)
+def read_object(data: Path, name: str, method: str) -> tuple[Mesh, dict[str, Any], np.ndarray | None]:
+    """(Mesh, options of simplify, saliency (n,) or None) of an object in data/SET, for a method of the lod stage."""
+    path = data / POINTS.format(name)
+    mesh, saliency = read_mesh(data / MESH.format(name)), read_saliency(path)
+    chosen = variant(method)
+    rule = keep_rule(ObjectInputs(name, mesh, read_strong_points(path), saliency), chosen)
+    options = {"keep": rule.vertices, "rings": rule.rings, "weights": rule.weights}
+    return mesh, options, saliency.get(chosen.method or "")

@@ -1,79 +1,92 @@
-"""Plans as rows of measurements, and the few numbers of a run that the gate looks at."""
+"""Plans as rows of measurements, and the few numbers of a run that the gate checks."""
+
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from stages.kit.rng import rng
 
+from .compare import MethodPlan, SceneSetup
+from .levels import Plan
 from .pictures import picture_error
 
 RESAMPLES = 2000
 SAVED_AGAINST = ("uniform", "uniform_size", "network")
-OF_OURS = ("error_worst", "step_worst", "salient_displacement", "ssim_error")  # what the gate hears of ours alone
-PRECISION = 1e-9  # of a tolerance: rounding of an error that was found equal to it
+OF_OURS = (
+    "error_worst",
+    "step_worst",
+    "salient_displacement",
+    "ssim_error",
+)  # metrics that the gate checks of ours alone
+PRECISION = 1e-9  # of a tolerance: rounding of an error equal to it
 
 
-def plan_rows(own, found, saliency, pictures=True):
-    """Rows of one Found over all frames: faces, errors, how far switches jump, and the cost.
+def plan_rows(
+    setup: SceneSetup, found: MethodPlan, saliency: Mapping[str, np.ndarray | None], pictures: bool = True
+) -> list[dict]:
+    """Rows of one MethodPlan over all frames: faces, errors, jumps at switches, and the cost.
 
-    saliency: dict name -> (n,) or None, for the displacement at salient places. pictures: also 1 - SSIM.
+    saliency: dict name -> (n,) or None, for the displacement weighted by it. pictures: also 1 - SSIM.
     """
     plan, checks = found.plan, found.plan.checks
     spread = np.concatenate([check.displacements for check in checks])
-    jumps = [step for _, _, step in plan.steps]
+    jumps = [jump for _, _, jump in plan.jumps]
     values = {
         "faces": float(plan.faces.sum(axis=1).mean()), "faces_most": int(plan.faces.sum(axis=1).max()),
         "error": float(plan.errors.mean()), "error_worst": float(plan.errors.max()),
         "worst_frame": int(plan.errors.argmax()), "held": held(plan),
         "displacement_mean": _or_zero(np.mean, spread), "displacement_95": _or_zero(np.quantile, spread, 0.95),
         "displacement_99.9": _or_zero(np.quantile, spread, 0.999), "displacement_max": _or_zero(np.max, spread),
-        "salient_displacement": salient_displacement(own, plan, saliency),
+        "salient_displacement": salient_displacement(setup, plan, saliency),
         "switches": len(jumps), "step_worst": max(jumps, default=0.0),
     }  # fmt: skip
     if pictures:
         frames = range(len(plan.levels))
-        values["ssim_error"] = float(np.mean([picture_error(own.frames, frame, plan.shown(frame)) for frame in frames]))
-    return [_row(own, found, "all", metric, value) for metric, value in values.items()]
+        values["ssim_error"] = float(
+            np.mean([picture_error(setup.frames, frame, plan.shown(frame)) for frame in frames])
+        )
+    return [_row(setup, found, "all", metric, value) for metric, value in values.items()]
 
 
-def frame_rows(own, found):
+def frame_rows(setup: SceneSetup, found: MethodPlan) -> list[dict]:
     """Rows of each frame: faces and error."""
     faces, errors = found.plan.faces.sum(axis=1), found.plan.errors
     return [
-        _row(own, found, frame, metric, value) | {"seconds": None}  # those of the plan are on its own rows
+        _row(setup, found, frame, metric, value) | {"seconds": None}  # those of the plan are on its own rows
         for frame in range(len(errors))
         for metric, value in (("faces", int(faces[frame])), ("error", float(errors[frame])))
     ]
 
 
-def object_rows(own, found):
-    """Rows of each object: its faces, mean over the frames that show it."""
+def object_rows(setup: SceneSetup, found: MethodPlan) -> list[dict]:
+    """Rows of each object: its faces, averaged over the frames that show it."""
     rows = []
-    for item, placed in enumerate(own.scene.objects):
-        seen = own.frames.in_view[:, item]
-        if seen.any():
-            value = float(found.plan.faces[seen, item].mean())
+    for item, placed in enumerate(setup.scene.objects):
+        visible = setup.frames.in_view[:, item]
+        if visible.any():
+            value = float(found.plan.faces[visible, item].mean())
             rows.append(
-                _row(own, found, "all", "object_faces", value) | {"object": placed.name, "item": item, "seconds": None}
+                _row(setup, found, "all", "object_faces", value) | {"item": placed.name, "place": item, "seconds": None}
             )
     return rows
 
 
-def saved_rows(own, ours, others, seed):
+def saved_rows(setup: SceneSetup, ours: MethodPlan, others: Sequence[MethodPlan], seed: int) -> list[dict]:
     """Rows of the share of the faces that ours saves against others, with a 95 % interval over the objects."""
-    rows, names = [], [placed.name for placed in own.scene.objects]
+    rows, names = [], [placed.name for placed in setup.scene.objects]
     for other in others:
         if other.method in SAVED_AGAINST and other.matched not in ("", "asked"):
             value, low, high = saved(ours.plan.faces.sum(axis=0), other.plan.faces.sum(axis=0), names, seed)
-            row = _row(own, ours, "all", f"saved_{other.method}", value) | {"low": low, "high": high}
+            row = _row(setup, ours, "all", f"saved_{other.method}", value) | {"low": low, "high": high}
             rows.append(row | {"matched": other.matched, "seconds": None})
     return rows
 
 
-def saved(ours, others, names, seed=0):
+def saved(ours: np.ndarray, others: np.ndarray, names: Sequence[str], seed: int = 0) -> tuple[float, float, float]:
     """(share, low, high): 1 - the sum of ours (o,) over that of the others, bootstrap over the objects.
 
-    names: of the objects; copies of one say the same of shapes, so they are drawn together (cluster bootstrap: Davison
-    and Hinkley 1997, section 3.8). One name alone has no interval: NaN.
+    names: of the objects; copies of one shape are not independent, so they are drawn together (cluster bootstrap:
+    Davison and Hinkley 1997, section 3.8). With one name alone the interval is NaN.
     """
     _, which = np.unique(names, return_inverse=True)
     ours, others = (np.bincount(which, weights=faces) for faces in (ours, others))
@@ -86,25 +99,25 @@ def saved(ours, others, names, seed=0):
     return share, float(low), float(high)
 
 
-def held(plan):
+def held(plan: Plan) -> float:
     """Share of the frames within the tolerance."""
     return float((plan.errors <= plan.frames.scene.tolerance * (1 + PRECISION)).mean())
 
 
-def salient_displacement(own, plan, saliency):
-    """Mean displacement in pixels of what the full frames show, weighted by the saliency there; None without any."""
+def salient_displacement(setup: SceneSetup, plan: Plan, saliency: Mapping[str, np.ndarray | None]) -> float | None:
+    """Mean displacement in pixels over the full frames, weighted by the saliency there; None without any."""
     total, weight = 0.0, 0.0
     for frame in range(len(plan.levels)):
         for item, level in enumerate(plan.shown(frame)):
-            values = saliency.get(own.scene.objects[item].name)
+            values = saliency.get(setup.scene.objects[item].name)
             if values is not None:
-                shown, weights = own.frames.weighted(frame, item, level, values)
-                total, weight = total + shown, weight + weights
+                products, weights = setup.frames.weighted(frame, item, level, values)
+                total, weight = total + products, weight + weights
     return total / weight if weight > 0 else None
 
 
-def summary(rows):
-    """dict for the gate: what the main methods cost and hold at the scene's own tolerance."""
+def summary(rows: Sequence[dict]) -> dict[str, float]:
+    """dict for the gate: faces, errors and frames within the tolerance of the main methods at the scene's tolerance."""
     rows = [row for row in rows if row.get("factor") == 1.0 and row["frame"] == "all"]
     found = {}
     for row in rows:
@@ -118,11 +131,11 @@ def summary(rows):
     return {name: round(float(value), 6) for name, value in found.items() if value is not None}
 
 
-def _row(own, found, frame, metric, value):
+def _row(setup, found, frame, metric, value):
     return {
-        "object": None, "item": None, "method": found.method, "scene": None, "kind": own.scene.kind,
-        "tolerance": own.scene.tolerance, "matched": found.matched, "frame": frame, "metric": metric, "value": value,
-        "low": None, "high": None, "seconds": found.seconds, "note": found.note,
+        "item": None, "method": found.method, "kind": setup.scene.kind,
+        "tolerance": setup.scene.tolerance, "matched": found.matched, "frame": frame, "metric": metric, "value": value,
+        "seconds": found.seconds, "note": found.note,
     }  # fmt: skip
 
 

@@ -2,12 +2,27 @@
 
 from dataclasses import dataclass
 
+COLUMNS = {
+    "place": "the object's number in the scene",
+    "kind": "what the tolerance is of: pixels or ssim",
+    "tolerance": "the tolerated error of a frame",
+    "factor": "the same over the scene's own tolerance",
+    "matched": "the quantity in which a method equals ours, or limit, or asked; empty for a plan of its own",
+    "frame": "the number of a frame, or all",
+    "condition": "what the models of the face count are tested on",
+    "setting": "the number of objects that they are trained on",
+    "cases": "test cases of a model",
+    "objects": "objects that the cases are of",
+    "low": "the interval's lower end, 95 %",
+    "high": "its upper end",
+}
+
 
 @dataclass
 class Item:
     """One object of a scene."""
 
-    name: str  # of an object in data/meshes; what is not there is left out, or stood in for if none is, and said
+    name: str  # of an object in data/SET/meshes; what is not there is left out, or stood in for if none is, and said
     position: list[float]  # x, y, z in metres of the middle of its foot; +z is up
     turn: float  # degrees about +z, counter-clockwise seen from above
     size: float  # metres, the longest side of its bounding box
@@ -37,4 +52,4 @@ class Params:
     hold: int  # frames that a level stays at least, so that nothing flickers
     method: str  # how the levels mind the salient places: a name of lod.methods, say enhanced-soft
     factors: list[float]  # times the tolerance: what the chart of faces against error is measured at
-    msft_lod: bool  # also write one GLB an object that holds all its levels (MSFT_lod)
+    msft_lod: bool  # also write one GLB per object that holds all its levels (MSFT_lod)

@@ -1,15 +1,20 @@
-"""The files of a ladder: data/scene/levels/NAME/KIND_FACES.npz, and KIND.csv with the errors."""
+"""The files of an LOD chain, data/SET/scene/levels/NAME/KIND_FACES.npz and KIND.csv with the errors; those of plans."""
 
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
 import pandas as pd
 
-from stages.kit.files import read_mesh, read_table, write_mesh, write_table
+from stages.kit import Mesh
+from stages.kit.files import read_arrays, read_mesh, read_table, write_arrays, write_mesh, write_table
 
-from .ladder import Level, finest
+from .lod_chain import Level, finest
 
-DIGITS = 9  # decimals of an error, which a mesh of unit size does not need
+DIGITS = 9  # decimals of an error, enough for a mesh of unit size
 
 
-def write_ladder(folder, kind, levels):
+def write_chain(folder: Path, kind: str, levels: Sequence[Level]) -> None:
     """Writes the levels below the finest, and KIND.csv: faces and the errors of each."""
     for level in levels[1:]:
         write_mesh(folder / f"{kind}_{level.faces}.npz", level.mesh)
@@ -18,18 +23,28 @@ def write_ladder(folder, kind, levels):
     write_table(folder / f"{kind}.csv", pd.DataFrame(rows))
 
 
-def read_ladder(folder, kind, full):
+def read_chain(folder: Path, kind: str, full: Level) -> tuple[Level, ...]:
     """The Levels of an object; full: the finest one, which all kinds share."""
     table = read_table(folder / f"{kind}.csv").set_index("faces")
     below = [Level(read_mesh(folder / f"{kind}_{faces}.npz"), dict(row)) for faces, row in table.iloc[1:].iterrows()]
     return (full, *below)
 
 
-def read_ladders(folder, kind, full):
+def read_chains(folder: Path, kind: str, full: Mapping[str, Level]) -> dict[str, tuple[Level, ...]]:
     """dict name -> Levels; full: dict name -> the finest Level."""
-    return {name: read_ladder(folder / name, kind, level) for name, level in full.items()}
+    return {name: read_chain(folder / name, kind, level) for name, level in full.items()}
 
 
-def full_of(meshes):
-    """dict name -> the finest Level of dict name -> Mesh."""
+def finest_levels(meshes: Mapping[str, Mesh]) -> dict[str, Level]:
+    """dict name -> the finest Level, of dict name -> Mesh."""
     return {name: finest(mesh) for name, mesh in meshes.items()}
+
+
+def write_plan(folder: Path, factor: float, levels: np.ndarray) -> None:
+    """Writes our levels (frames, objects) at the scene's tolerance times a factor."""
+    write_arrays(folder / "plans" / f"tolerance_{factor:g}.npz", levels=levels)
+
+
+def read_plan(folder: Path, factor: float) -> np.ndarray:
+    """What write_plan wrote."""
+    return read_arrays(folder / "plans" / f"tolerance_{factor:g}.npz")["levels"]

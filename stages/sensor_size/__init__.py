@@ -1,10 +1,10 @@
-"""How large a pressure array must be, and how fine, to tell classes of objects apart (T4.3.2, figure 4.11).
+"""The size and resolution that a pressure array needs to classify objects (T4.3.2, figure 4.11).
 
-Public names: CLASSIFIERS, classifier, evaluate, smallest_enough, chosen_again.
+Public names: choice_repeatability, classifier, evaluate, smallest_sufficient, CLASSIFIERS.
 """
 
 from .classifiers import CLASSIFIERS, classifier
 from .protocol import evaluate
-from .smallest import chosen_again, smallest_enough
+from .smallest import choice_repeatability, smallest_sufficient
 
-__all__ = ["CLASSIFIERS", "chosen_again", "classifier", "evaluate", "smallest_enough"]
+__all__ = ["CLASSIFIERS", "choice_repeatability", "classifier", "evaluate", "smallest_sufficient"]

@@ -2,14 +2,22 @@
 
 from dataclasses import dataclass
 
+COLUMNS = {
+    "classifier": "a name of stages.sensor_size.CLASSIFIERS",
+    "cells": "sensels along each side of the array",
+    "pitch": "distance of two sensels, in units of the mesh",
+    "touches": "imprints per object at most",
+    "fold": "number of the round in which the item was tested",
+}
+
 
 @dataclass
 class Params:
     """Section `sensor_size` of params.yaml."""
 
-    classes: list[str]  # of the classes stage, which to tell apart; all when empty
-    method: str  # where to touch: a detector of classes.methods
-    touches: int  # imprints an object, its most salient points
+    classes: list[str]  # of meshes.classes, which to recognise; all when empty
+    method: str  # where to touch: a method of salient_points.methods
+    touches: int  # imprints per object, at its most salient points
     cells: list[int]  # sensels a side that are tried
     pitches: list[float]  # distances of two sensels that are tried, in units of the mesh
     classifiers: list[str]  # names of stages.sensor_size.CLASSIFIERS

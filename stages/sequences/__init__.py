@@ -1,12 +1,25 @@
-"""Which class of objects is it, by following a contour: networks and conventional classifiers (T4.4.7 to T4.4.10).
+"""Classification of objects by following a contour: networks and conventional classifiers (T4.4.7 to T4.4.10).
 
-Public names: directions, series, sequence_features, SelfOrganisingMap, ImageNet, NormalNet, classifier.
+Public names: classifier, directional_std, sequence_features, series, ImageNet, NormalNet, SelfOrganisingMap.
 """
 
+from typing import TYPE_CHECKING
+
 from .classifiers import classifier
-from .contourlet import directions
-from .networks import ImageNet, NormalNet
+from .contourlet import directional_std
 from .series import sequence_features, series
 from .som import SelfOrganisingMap
 
-__all__ = ["ImageNet", "NormalNet", "SelfOrganisingMap", "classifier", "directions", "sequence_features", "series"]
+if TYPE_CHECKING:
+    from .networks import ImageNet, NormalNet
+
+__all__ = ["ImageNet", "NormalNet", "SelfOrganisingMap", "classifier", "directional_std", "sequence_features", "series"]
+
+
+def __getattr__(name: str) -> object:
+    # torch takes seconds to import, and whoever reads only the schema does without it.
+    if name not in ("ImageNet", "NormalNet"):
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from . import networks
+
+    return getattr(networks, name)

@@ -1,32 +1,36 @@
-"""Tells classes of objects apart by whole contours: T tables 4.7 to 4.9 and figure 4.19.
+"""Recognises classes of objects by whole contours: T tables 4.7 to 4.9 and figure 4.19.
 
-Reads data/contours/NAME.npz and data/classes. Two networks and the sum of their probabilities, kNN and SVM, each with
-sequences drawn at random for testing, as in the thesis, and with whole objects left out. Writes
-data/sequences/confusion.csv, layers.csv and predictions/TRIAL.npz, reports/measurements/sequences.csv and
-reports/metrics/sequences.json.
+Reads data/SET/contours/NAME.npz and the classes of data/SET/meshes. Two networks and the sum of their probabilities,
+kNN and SVM, each with sequences drawn at random for testing, as in the thesis, and with whole objects held out. Writes
+data/SET/sequences/confusion.csv, layers.csv and predictions/TRIAL.npz, and
+reports/measurements/SET/sequences.csv.gz: one row per trial and classifier, of unseen objects also one per class.
 """
 
 import functools
 import sys
 import warnings
 from collections import defaultdict
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
 import torch
 
-from stages.classes import read_classes
-from stages.kit import StageRun, arguments, params
+from stages.kit.command import workspace_of_arguments
 from stages.kit.files import read_arrays, write_table
-from stages.kit.run import DATA
+from stages.kit.run import Rows, StageRun
 from stages.kit.stats import interval_metrics
+from stages.kit.workspace import Workspace
+from stages.meshes.classes import read_classes
 
 from .networks import ImageNet, NormalNet, layers
 from .plan import plan
-from .trial import process
+from .schema import COLUMNS, Params
+from .trial import SPLITS, Trial, process
 
 
-def confusion(folder, trials, classes):
+def confusion(folder: Path, trials: list[Trial], classes: list[str]) -> pd.DataFrame:
     """Tidy frame of the confusion matrices: method, split, classifier, true, predicted, count over all rounds.
 
     Of the trials with whole sequences alone, the size that the first of them has.
@@ -47,7 +51,7 @@ def confusion(folder, trials, classes):
     return pd.DataFrame(rows)
 
 
-def network_layers(trials, classes):
+def network_layers(trials: list[Trial], classes: int) -> pd.DataFrame:
     """Tidy frame: network, layer, kind, output, parameters, of networks for whole sequences."""
     frames, cells = trials[0].frames_and_cells
     films, normals = torch.zeros((1, frames, cells, cells)), torch.zeros((1, frames, 3))
@@ -58,39 +62,42 @@ def network_layers(trials, classes):
     return pd.concat([layers(*one).assign(network=name) for name, one in both.items()])
 
 
-def summary(rows, seed):
-    """{strategy: {split: {classifier: {mean, low, high}}}} of the accuracy with whole sequences, and the chance."""
+def summary(rows: Rows, seed: int) -> dict[str, Any]:
+    """{strategy: {split: {classifier: {mean, low, high}}}} of the accuracy with whole sequences, and chance."""
     values, tree = defaultdict(list), {}
     for row in rows:
         if row["metric"] == "accuracy" and (row["frames"], row["cells"]) == (rows[0]["frames"], rows[0]["cells"]):
             values[row["method"], row["split"], row["classifier"]].append(row["value"])
             tree["chance"] = round(1 / row["classes"], 6)
     for (method, split, classifier), found in values.items():
-        branch = tree.setdefault(method, {}).setdefault(split, {})
+        branch = tree.setdefault(method, {}).setdefault(SPLITS[split], {})
         branch[classifier] = interval_metrics(found, seed)
     return tree
 
 
-def main():
-    arguments(__doc__)
-    settings, source = params("sequences"), params("classes").source
+def run(workspace: Workspace) -> None:
+    """Runs the stage on the data set of a workspace."""
+    settings, data = workspace.settings(Params), workspace.data
     # Torch's caches make a worker grow; joblib then renews it between two items, loses none, and warns.
     warnings.filterwarnings("ignore", message="A worker stopped while some jobs")
-    with StageRun("sequences", inputs=("classes", "contours")) as run:
-        run.dataset = source
-        planned = plan(read_classes(DATA / "classes"), DATA / "contours", settings)
-        train = functools.partial(process, members=planned.members, settings=settings, seed=run.seed)
-        rows = run.each(train, [trial.name for trial in planned.trials])
-        for row in rows:
-            row["object"] = source
-        run.rows += [{"object": source, "metric": "accuracy", "value": None, "note": note} for note in planned.notes]
-        run.metrics(summary(rows, run.seed))
+    with StageRun(workspace, "sequences", COLUMNS, inputs=("meshes", "contours")) as stage:
+        planned = plan(read_classes(data / "meshes"), data / "contours", settings)
+        train = functools.partial(process, data=data, members=planned.members, settings=settings, seed=stage.seed)
+        rows = stage.each(train, [trial.name for trial in planned.trials], reads=("contours",))
+        stage.rows += [{"metric": "accuracy", "value": None, "note": note} for note in planned.notes]
+        stage.metrics(summary(rows, stage.seed))
         if planned.trials:
-            write_table(run.folder / "confusion.csv", confusion(run.folder, planned.trials, list(planned.members)))
-            write_table(run.folder / "layers.csv", network_layers(planned.trials, len(planned.members)))
+            write_table(stage.folder / "confusion.csv", confusion(stage.folder, planned.trials, list(planned.members)))
+            write_table(stage.folder / "layers.csv", network_layers(planned.trials, len(planned.members)))
     for note in planned.notes:
         print(f"sequences: {note}", file=sys.stderr)
-    print(f"sequences: {len(planned.members)} classes of {source}, {len(planned.trials)} trials, {len(rows)} rows")
+    classes, trials = len(planned.members), len(planned.trials)
+    print(f"sequences: {workspace.dataset}, {classes} classes, {trials} trials, {len(rows)} rows")
+
+
+def main() -> None:
+    """Runs the stage on the data set that the command line names."""
+    run(workspace_of_arguments(__doc__, "sequences"))
 
 
 if __name__ == "__main__":

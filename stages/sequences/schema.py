@@ -2,6 +2,15 @@
 
 from dataclasses import dataclass
 
+COLUMNS = {
+    "classifier": "cnn_images, cnn_normals, cnn (the sum of their probabilities), or a name of CONVENTIONAL",
+    "repetition": "number of the random split, or of the object of each class that was tested",
+    "frames": "touches of a sequence",
+    "cells": "sensels along each side of an imprint",
+    "classes": "number of classes",
+    "sequences": "number of sequences, to train and to test",
+}
+
 
 @dataclass
 class Params:

@@ -1,40 +1,41 @@
-"""How the features of the imprints vary along a contour: 19 series, their wavelets, three statistics (T4.4.9)."""
+"""Features of a contour: 19 series of imprint features and normals, their wavelets, three statistics (T4.4.9)."""
 
 import numpy as np
 import pywt
+from numpy.typing import ArrayLike
 
-from .contourlet import DIRECTIONS, directions
+from .contourlet import DIRECTIONS, directional_std
 
 WAVELET, LEVELS = "db2", 3  # T4.4.9
-MODE = "symmetric"  # at the ends of a series; the thesis is silent, and it is the default of the Matlab it used
+MODE = "symmetric"  # at the ends of a series; the thesis names none, and this is the default of Matlab, which it used
 STATISTICS = ("rms", "std", "skewness")
 BANDS = (*(f"detail{level}" for level in range(1, LEVELS + 1)), "sequence")
 CHANNELS = (*(f"direction{k}" for k in range(DIRECTIONS)), "normal_x", "normal_y", "normal_z")
 FEATURES = tuple(f"{channel}.{band}.{name}" for channel in CHANNELS for band in BANDS for name in STATISTICS)
-CONSTANT = 1e-9  # of the largest value of its series: a spread below it is rounding, and has no skewness
+CONSTANT = 1e-9  # of the largest value of its series: a smaller standard deviation is rounding error
 
 
-def series(images, normals):
-    """(n, frames, 19) f8: sixteen directions of each imprint, then its normal (T4.4.9).
+def series(images: ArrayLike, normals: ArrayLike) -> np.ndarray:
+    """(n, frames, 19) f8: sixteen directional features of each imprint, then the array's normal (T4.4.9).
 
     images (n, frames, rows, cols) u1 0..255 or floats 0..1, normals (n, frames, 3).
     """
     images, normals = np.asarray(images), np.asarray(normals, dtype=np.float64)
     if images.ndim != 4 or normals.shape != (*images.shape[:2], 3):
         raise ValueError(
-            f"images (n, frames, rows, cols) and normals (n, frames, 3) are wanted: {images.shape}, {normals.shape}"
+            f"images must have shape (n, frames, rows, cols), normals (n, frames, 3): {images.shape}, {normals.shape}"
         )
     count, frames, *cells = images.shape
-    felt = directions(images.reshape(count * frames, *cells)).reshape(count, frames, DIRECTIONS)
-    return np.concatenate([felt, normals], axis=2)
+    directions = directional_std(images.reshape(count * frames, *cells)).reshape(count, frames, DIRECTIONS)
+    return np.concatenate([directions, normals], axis=2)
 
 
-def sequence_features(values):
-    """(n, 12 s) f8: root mean square, standard deviation and skewness of s series each, and of their wavelets.
+def sequence_features(values: ArrayLike) -> np.ndarray:
+    """(n, 12 s) f8: root mean square, standard deviation and skewness of s series and of their wavelets.
 
-    values: (n, frames, s). Of every series the detail coefficients of three levels of db2, level 1 the finest, and the
-    series itself: for the 19 of `series` 228 numbers, named by FEATURES. A constant series has skewness 0. Three
-    levels are taken of short series too; their coefficients then mostly tell of the ends.
+    values: (n, frames, s). The statistics are taken of the series itself and of its detail coefficients in three levels
+    of db2, level 1 the finest. The 19 series of `series` give 228 numbers, named by FEATURES. A constant series has
+    skewness 0. Short series have three levels too, although their coefficients mostly depend on the ends.
     Raises ValueError for another shape, fewer than 2 frames, or NaN.
     """
     values = np.asarray(values, dtype=np.float64)

@@ -1,48 +1,37 @@
-"""Which sequences train and which test: at random, as in the thesis, or whole objects held out."""
-
-from typing import NamedTuple
+"""Training, validation and test sequences: drawn at random, as in the thesis, or with whole objects held out."""
 
 import numpy as np
 
-TEST = 0.2  # T4.4.10: 80:20
-CHECK = 0.2  # of the training sequences, where a setting has to be chosen
+from stages.kit.holdout import Split as Parts
+
+TEST_SHARE = 0.2  # T4.4.10: 80:20
+VALIDATION_SHARE = 0.2  # of the training sequences, to choose settings on
 
 
-class Split(NamedTuple):
-    """Ids of sequences: train and test are disjoint and hold all; check is a part of train, to choose settings on."""
-
-    train: np.ndarray
-    check: np.ndarray
-    test: np.ndarray
-
-    @property
-    def fit(self):
-        """The part of train that is not in check."""
-        return np.setdiff1d(self.train, self.check)
-
-
-def by_sequences(labels, random):
-    """A fifth of every class, drawn at random, tests: objects, and planes that nearly coincide, stand on both sides."""
-    test = _drawn(labels, np.arange(len(labels)), TEST, random)
+def split_by_sequences(labels: np.ndarray, generator: np.random.Generator) -> Parts:
+    """The Parts that tests a random fifth of every class. Both sides share objects and nearly equal planes."""
+    test = _draw_share(labels, np.arange(len(labels)), TEST_SHARE, generator)
     train = np.setdiff1d(np.arange(len(labels)), test)
-    return Split(train, _drawn(labels, train, CHECK, random), test)
+    return Parts(train, _draw_share(labels, train, VALIDATION_SHARE, generator), test)
 
 
-def by_objects(labels, ranks, fold, folds, random):
-    """The object of rank `fold` of every class tests, the others train; the next object of every class is the check.
+def split_by_objects(
+    labels: np.ndarray, ranks: np.ndarray, fold: int, folds: int, generator: np.random.Generator
+) -> Parts:
+    """The Parts that tests the object of rank `fold` of every class; the next object of every class is for validation.
 
-    With two objects a class the check is a fifth of the training sequences.
+    With two objects per class, a random fifth of the training sequences is for validation.
     """
     test, train = np.flatnonzero(ranks == fold), np.flatnonzero(ranks != fold)
     if folds < 3:
-        return Split(train, _drawn(labels, train, CHECK, random), test)
-    return Split(train, np.flatnonzero(ranks == (fold + 1) % folds), test)
+        return Parts(train, _draw_share(labels, train, VALIDATION_SHARE, generator), test)
+    return Parts(train, np.flatnonzero(ranks == (fold + 1) % folds), test)
 
 
-def _drawn(labels, ids, share, random):
-    """Sorted ids: a share of those of every class, one or more of each that has two."""
-    labels, found = np.asarray(labels), []
+def _draw_share(labels, ids, share, generator):
+    """Sorted indices: a share of every class, at least one of each class that has two."""
+    labels, drawn = np.asarray(labels), []
     for label in np.unique(labels[ids]):
-        own = random.permutation(ids[labels[ids] == label])
-        found.append(own[: min(max(round(share * len(own)), 1), len(own) - 1)])
-    return np.sort(np.concatenate(found))
+        members = generator.permutation(ids[labels[ids] == label])
+        drawn.append(members[: min(max(round(share * len(members)), 1), len(members) - 1)])
+    return np.sort(np.concatenate(drawn))

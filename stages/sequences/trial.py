@@ -1,116 +1,132 @@
-"""One trial: strategy, split, repetition, kind of classifier, size. An interrupted run does not repeat those done."""
+"""One trial: the classifiers of one kind on one strategy, split, repetition and size of the sequences."""
 
+from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
 from threadpoolctl import threadpool_limits
 
 from stages.kit import Stopwatch
 from stages.kit.files import write_arrays
+from stages.kit.holdout import Split as Parts
 from stages.kit.rng import rng
-from stages.kit.run import DATA
+from stages.kit.run import Rows
+from stages.kit.split import Split
 
-from .classifiers import CONVENTIONAL, choose_size, classifier
-from .dataset import read_data, smaller
+from .classifiers import CONVENTIONAL, choose_dimensions, classifier
+from .dataset import SequenceData, downsample, read_sequence_data
+from .schema import Params
 from .series import sequence_features, series
-from .split import by_objects, by_sequences
-from .training import Images, Normals, learn, probabilities
+from .split import split_by_objects, split_by_sequences
+from .training import ImageInputs, NormalInputs, class_probabilities, train_network
 
-SPLITS = ("sequences", "objects")
+# Each split by its word in reports/metrics and in the seeds of the random numbers, on which the results depend.
+SPLITS = {Split.RANDOM: "sequences", Split.OBJECTS: "objects"}
 KINDS = ("networks", "conventional")
+Result = tuple[np.ndarray, float, dict[str, int]]  # predictions for the test part, seconds, further metrics
 
 
 class Trial(NamedTuple):
-    """What one trial is; its name is STRATEGY.SPLIT.REPETITION.KIND.FRAMESxCELLS."""
+    """The parts of a trial's name, STRATEGY.SPLIT.REPETITION.KIND.FRAMESxCELLS."""
 
     strategy: str
-    split: str
+    split: Split
     repetition: int
     kind: str
     size: str
 
     @property
-    def name(self):
+    def name(self) -> str:
         return ".".join(map(str, self))
 
     @classmethod
-    def parse(cls, name):
-        """The trial of a name."""
+    def parse(cls, name: str) -> "Trial":
+        """The Trial with this name."""
         strategy, split, repetition, kind, size = name.rsplit(".", 4)
-        return cls(strategy, split, int(repetition), kind, size)
+        return cls(strategy, Split(split), int(repetition), kind, size)
 
     @property
-    def frames_and_cells(self):
-        """(frames, cells a side)."""
+    def frames_and_cells(self) -> tuple[int, int]:
+        """(frames, cells per side)."""
         frames, _, cells = self.size.partition("x")
         return int(frames), int(cells)
 
 
-def process(name, folder, members, settings, seed):
-    """Trains and asks the classifiers of one trial; writes predictions/NAME.npz and returns the rows.
+def process(name: str, folder: Path, data: Path, members: dict[str, list[str]], settings: Params, seed: int) -> Rows:
+    """Trains and tests the classifiers of one trial; writes predictions/NAME.npz and returns the rows.
 
-    The split and the random numbers of the training depend on split and repetition alone, not on the strategy.
+    The random numbers of split and training depend on the split and the repetition alone, not on the strategy.
     """
     trial = Trial.parse(name)
-    data = smaller(read_data(DATA / "contours", members, trial.strategy), *trial.frames_and_cells)
-    random = rng(seed, f"sequences {trial.split} {trial.repetition}")
-    if trial.split == "objects":
-        split = by_objects(data.labels, data.ranks, trial.repetition, data.folds, random)
+    read = downsample(read_sequence_data(data / "contours", members, trial.strategy), *trial.frames_and_cells)
+    random = rng(seed, f"sequences {SPLITS[trial.split]} {trial.repetition}")
+    if trial.split == Split.OBJECTS:
+        parts = split_by_objects(read.labels, read.ranks, trial.repetition, read.folds, random)
     else:
-        split = by_sequences(data.labels, random)
+        parts = split_by_sequences(read.labels, random)
     with threadpool_limits(1):  # equal sums on any number of cores
         if trial.kind == "networks":
-            answers = networks(data, split, settings, int(random.integers(2**31)))
+            results = network_results(read, parts, settings, int(random.integers(2**31)))
         else:
-            answers = conventional(data, split)
-    found = {classifier: said for classifier, (said, _, _) in answers.items()}
-    truth = data.labels[split.test]
-    write_arrays(folder / "predictions" / f"{name}.npz", test=split.test, true=truth, **found)
-    return _rows(trial, data, truth, answers)
+            results = conventional_results(read, parts)
+    predictions = {classifier: predicted for classifier, (predicted, _, _) in results.items()}
+    truth = read.labels[parts.test]
+    write_arrays(folder / "predictions" / f"{name}.npz", test=parts.test, true=truth, **predictions)
+    return _rows(trial, read, truth, results)
 
 
-def networks(data, split, settings, seed):
-    """{classifier: (answers on the test part, seconds, facts)} of both networks and of their summed probabilities."""
-    found = {}
+def network_results(data: SequenceData, parts: Parts, settings: Params, seed: int) -> dict[str, Result]:
+    """{classifier: Result} of both networks and of the sum of their probabilities."""
+    predictions = {}
     for name, kind, epochs in (
-        ("cnn_images", Images, settings.image_epochs),
-        ("cnn_normals", Normals, settings.normal_epochs),
+        ("cnn_images", ImageInputs, settings.image_epochs),
+        ("cnn_normals", NormalInputs, settings.normal_epochs),
     ):
         with Stopwatch() as watch:
-            inputs = kind(getattr(data, name.removeprefix("cnn_")), split.train)
-            network = learn(inputs, data.labels, split.train, len(data.classes), epochs, seed)
-            found[name] = probabilities(network, inputs, split.test), watch
-    summed = sum(chances for chances, _ in found.values())
-    answers = {name: (chances.argmax(axis=1), watch.seconds, {}) for name, (chances, watch) in found.items()}
-    answers["cnn"] = summed.argmax(axis=1), sum(seconds for _, seconds, _ in answers.values()), {}
-    return answers
+            inputs = kind(getattr(data, name.removeprefix("cnn_")), parts.train)
+            network = train_network(inputs, data.labels, parts.train, len(data.classes), epochs, seed)
+            predictions[name] = class_probabilities(network, inputs, parts.test), watch
+    summed = np.sum([probabilities for probabilities, _ in predictions.values()], axis=0)
+    results = {
+        name: (probabilities.argmax(axis=1), watch.seconds, {}) for name, (probabilities, watch) in predictions.items()
+    }
+    results["cnn"] = summed.argmax(axis=1), sum(seconds for _, seconds, _ in results.values()), {}
+    return results
 
 
-def conventional(data, split):
-    """{classifier: (answers on the test part, seconds with those of the features, facts)} of CONVENTIONAL."""
-    with Stopwatch() as looking:
+def conventional_results(data: SequenceData, parts: Parts) -> dict[str, Result]:
+    """{classifier: Result} of CONVENTIONAL; the seconds include the features."""
+    with Stopwatch() as feature_watch:
         samples = sequence_features(series(data.images, data.normals))
-    answers, labels = {}, data.labels
+    results, labels = {}, data.labels
     for name in CONVENTIONAL:
         with Stopwatch() as watch:
-            size = None if name.endswith("_no_som") else choose_size(name, samples, labels, split.fit, split.check)
-            model = classifier(name, size).fit(samples[split.train], labels[split.train])
-            said = model.predict(samples[split.test])
-        answers[name] = said, looking.seconds + watch.seconds, {} if size is None else {"map_dimensions": size}
-    return answers
+            dimensions = None
+            if not name.endswith("_no_som"):
+                dimensions = choose_dimensions(name, samples, labels, parts.fit, parts.validation)
+            model = classifier(name, dimensions).fit(samples[parts.train], labels[parts.train])
+            predicted = model.predict(samples[parts.test])
+        results[name] = (
+            predicted,
+            feature_watch.seconds + watch.seconds,
+            {} if dimensions is None else {"map_dimensions": dimensions},
+        )
+    return results
 
 
-def _rows(trial, data, truth, answers):
+def _rows(trial, data, truth, results):
     frames, cells = trial.frames_and_cells
     common = {"method": trial.strategy, "split": trial.split, "repetition": trial.repetition}
     common |= {"frames": frames, "cells": cells, "classes": len(data.classes), "sequences": len(data.labels)}
     rows = []
-    for name, (said, seconds, facts) in answers.items():
-        one, right = common | {"classifier": name, "class": None, "seconds": None, "note": None}, said == truth
-        rows.append(one | {"metric": "accuracy", "value": float(right.mean()), "seconds": seconds})
-        rows += [one | {"metric": metric, "value": value} for metric, value in facts.items()]
-        if trial.split == "objects":  # one object of each class was tested: this is what each of them gave
-            each = {label: float(right[truth == k].mean()) for k, label in enumerate(data.classes)}
+    for name, (predicted, seconds, extra_metrics) in results.items():
+        common_row, correct = common | {"classifier": name}, predicted == truth
+        rows.append(common_row | {"metric": "accuracy", "value": float(correct.mean()), "seconds": seconds})
+        rows += [common_row | {"metric": metric, "value": value} for metric, value in extra_metrics.items()]
+        if trial.split == Split.OBJECTS:  # one object of each class was tested: its accuracy
+            accuracy_by_class = {label: float(correct[truth == k].mean()) for k, label in enumerate(data.classes)}
             rows += [
-                one | {"class": label, "metric": "accuracy_object", "value": value} for label, value in each.items()
+                common_row | {"group": label, "metric": "accuracy_object", "value": value}
+                for label, value in accuracy_by_class.items()
             ]
     return rows

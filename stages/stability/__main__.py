@@ -1,57 +1,64 @@
 """Disturbs a few objects in many ways and measures what each method finds again, and where it breaks.
 
-Reads data/meshes and data/weights. Writes data/stability/NAME.npz (each method's worst case at a middle severity, for
-the picture) and reports/measurements/stability.csv: a row an object, method, perturbation, severity and metric.
+Reads data/SET/meshes and data/SET/weights. Writes data/SET/stability/NAME.npz (each method's worst case at a middle
+severity, for the picture) and reports/measurements/SET/stability.csv.gz: one row per object, method, perturbation,
+severity and metric.
 `repeatability`: share of the points found again within 2 % of the diagonal; `chance`: the same of random points;
 `drift`: one minus the correlation of the saliency; `points`: how many of the points pass the method's own threshold.
-Perturbation `none` is the object as it is. Seconds include an even share of the one look that all methods share.
+Perturbation `none` is the object as it is. Seconds include an even share of the rendering and the maps that all methods
+share.
 
-The objects `broken` are broken in the ways of stages.stability.BROKEN, too, and every backend of stages.lod simplifies
+The objects `broken` are broken in the ways of stages.stability.DAMAGES, too, and every backend of stages.lod simplifies
 them: a row `faces` a case (method: the backend; perturbation: the damage; severity: the faces asked for; budget, kept,
 soft: what was asked; outcome: valid, refused, ruined or crash, with the reason in `note`) and, where a mesh came back,
 a row `error`, its Metro mean, beside the `limit` of ruin.
 Settings: section `stability` of params.yaml.
 """
 
+import dataclasses
 import functools
 from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
 
-from stages.kit import StageRun, arguments, params
+from stages.kit.command import workspace_of_arguments
 from stages.kit.files import read_mesh, write_arrays
-from stages.kit.run import DATA
-from stages.salient_points.methods import method_named, teachable
+from stages.kit.run import Rows, StageRun
+from stages.kit.workspace import Workspace
+from stages.salient_points.methods import method_named, split_runnable
 from stages.salient_points.options import Options
-from stages.weights import learned_for
+from stages.weights import read_learned_weights
 
 from .perturbations import PERTURBATIONS
+from .schema import COLUMNS, Params
 from .simplification import OUTCOMES, simplification_rows
 from .subject import Subject, worst_arrays
-from .summary import middle, summarise, summarise_simplification
+from .summary import middle_severity, summarise, summarise_simplification
 
 
-def process(name, folder, settings, seed):
+def process(name: str, folder: Path, data: Path, settings: Params, seed: int) -> Rows:
     """Disturbs one object in every way, breaks and simplifies it if that is asked for; returns the rows."""
-    mesh = read_mesh(DATA / "meshes" / f"{name}.npz")
-    learned = learned_for(DATA / "weights", name, mesh)
-    methods, _ = teachable(settings.methods, learned)
+    mesh = read_mesh(data / "meshes" / f"{name}.npz")
+    learned = read_learned_weights(data / "weights", name, mesh)
+    methods, _ = split_runnable(settings.methods, learned)
     subject = Subject(mesh, methods, Options(learned, seed=seed, name=name), settings.count, settings.size)
-    rows, cases = subject.plain_rows(), []
+    rows, cases = subject.unperturbed_rows(), []
     for perturbation in settings.perturbations:
         for severity in settings.severities[perturbation]:
             try:
-                case = subject.disturbed(perturbation, severity)
+                case = subject.perturbed(perturbation, severity)
             except ValueError as error:
                 rows += subject.failed_rows(perturbation, severity, str(error))
                 continue
             rows += subject.rows(perturbation, severity, case)
-            if severity == middle(settings.severities[perturbation]):
+            if severity == middle_severity(settings.severities[perturbation]):
                 cases.append((perturbation, severity, case))
     write_arrays(folder / f"{name}.npz", **worst_arrays(subject, cases))
     return rows + simplification_rows(mesh, name, seed) if name in settings.broken else rows
 
 
-def check(settings):
-    """ValueError that names a method, perturbation or severity that is not there."""
+def check(settings: Params) -> None:
+    """Raises ValueError that names a method, perturbation or severity that is not there."""
     for method in settings.methods:
         method_named(method)
     unknown = [name for name in (*settings.perturbations, *settings.severities) if name not in PERTURBATIONS]
@@ -64,20 +71,22 @@ def check(settings):
         raise ValueError("stability: count and most must be 1 or more")
 
 
-def chosen(settings, names):
+def chosen(settings: Params, names: Sequence[str]) -> Sequence[str]:
     """The objects to disturb: those of the settings that are there, or else the first of all."""
     wanted = [name for name in settings.objects if name in names] or names
     return wanted[: settings.most]
 
 
-def main():
-    arguments(__doc__)
-    settings = params("stability")
+def run(workspace: Workspace) -> None:
+    """Runs the stage on the data set of a workspace."""
+    settings = workspace.settings(Params)
     check(settings)
-    with StageRun("stability", inputs=("meshes", "weights")) as run:
-        objects = chosen(settings, run.objects)
-        rows = run.each(functools.partial(process, settings=settings, seed=run.seed), objects)
-        run.metrics(summarise(rows) | {"simplified": summarise_simplification(rows)})
+    each = dataclasses.replace(settings, objects=[], most=0)  # what an object depends on
+    with StageRun(workspace, "stability", COLUMNS, inputs=("meshes", "weights")) as stage:
+        objects = chosen(settings, stage.objects)
+        work = functools.partial(process, data=workspace.data, settings=each, seed=stage.seed)
+        rows = stage.each(work, objects, reads=("meshes/{}.npz", "weights"))
+        stage.metrics(summarise(rows) | {"simplified": summarise_simplification(rows)})
     broken = sum(value is not None for value in summarise(rows)["breaking_point"].values())
     outcomes = Counter(row["outcome"] for row in rows if row["metric"] == "faces")
     print(
@@ -85,6 +94,11 @@ def main():
         f"{broken} breaking points within range; broken meshes simplified: "
         + ", ".join(f"{outcomes[outcome]} {outcome}" for outcome in OUTCOMES)
     )
+
+
+def main() -> None:
+    """Runs the stage on the data set that the command line names."""
+    run(workspace_of_arguments(__doc__, "stability"))
 
 
 if __name__ == "__main__":

@@ -1,24 +1,29 @@
-"""Is a simplified mesh sound? Asked of trimesh and numpy, not of the functions that simplifiers ask themselves."""
+"""Whether a simplified mesh is sound, checked by trimesh and numpy and not by the simplifiers' own functions."""
 
 import numpy as np
 import point_cloud_utils as pcu
 import trimesh
 
+from stages.kit import Mesh
+
 from .surface import FLAT, Surface
 
-COUNTS = {  # of a Surface, that may not grow
-    "flat_faces": "faces without area", "folds": "folds", "copies": "copies of faces", "crowded": "crowded edges",
-    "pinches": "pinches",
-}  # fmt: skip
-SAMPLES = 2000  # points on each surface: the mean error within 3 %
+COUNTS = {  # counts of a Surface that simplification must not increase -> their names in messages
+    "degenerate_faces": "faces without area",
+    "folds": "folds",
+    "duplicate_faces": "duplicate faces",
+    "non_manifold_edges": "non-manifold edges",
+    "non_manifold_vertices": "non-manifold vertices",
+}
+SAMPLES = 2000  # points on each surface: the mean error is then exact to 3 %
 
 
-def complaints(old, found, faces, kept_vertices, kept_faces):
-    """What a result owes and has not, in words: [] when it is sound.
+def find_faults(old: Surface, found: Mesh, faces: int, kept_vertices: np.ndarray, kept_faces: np.ndarray) -> list[str]:
+    """The faults of a simplified mesh as phrases, [] when it is sound.
 
-    old: Surface; found: Mesh; faces: what was asked for; kept_vertices (k,) ids and kept_faces (j, 3), which must have
-    survived bit for bit. A simplifier may first throw out copies of faces and faces that name a vertex twice: boundary
-    and pieces are held against the mesh with or without them.
+    old: the surface before simplification; found: the result; faces: the number of faces asked for; kept_vertices (k,)
+    ids and kept_faces (j, 3): what must survive bit for bit. A simplifier may first remove duplicate faces and faces
+    that name a vertex twice: boundary and connected components may be those of the mesh with or without them.
     """
     if len(found.faces) == 0:
         return ["no face left"]
@@ -31,25 +36,25 @@ def complaints(old, found, faces, kept_vertices, kept_faces):
     lost = _missing(_triples(before.vertices[kept_faces]), _triples(found.vertices[found.faces]))
     if lost:
         said.append(f"{lost} kept faces lost")
-    if new.border not in (old.border, old.tidy.border):
-        said.append(f"boundary changed in {len(new.border ^ old.border)} edges")
-    if new.pieces not in (old.pieces, old.tidy.pieces):
-        said.append(f"{new.pieces} pieces, were {old.pieces}")
+    if new.boundary_edges not in (old.boundary_edges, old.deduplicated.boundary_edges):
+        said.append(f"boundary changed in {len(new.boundary_edges ^ old.boundary_edges)} edges")
+    if new.components not in (old.components, old.deduplicated.components):
+        said.append(f"{new.components} connected components instead of {old.components}")
     for name, words in COUNTS.items():
-        more = np.min(getattr(new, name) - getattr(old, name))  # folds: new in both ways of counting
+        more = np.min(getattr(new, name) - getattr(old, name))  # folds are counted in two ways
         if more > 0:
             said.append(f"{more} new {words}")
     if old.closed and not new.closed:
-        said.append("no more closed")
+        said.append("no longer closed")
     elif old.closed and old.volume * new.volume < 0:
         said.append("inside out")
     return said
 
 
-def surface_error(before, found):
+def surface_error(before: Mesh, found: Mesh) -> float:
     """The mean distance of two surfaces, the larger of both directions, over the diagonal of the first (T3.1.4).
 
-    Of points drawn evenly by area; of the corners where a mesh has no area.
+    Measured at points drawn uniformly by area, or at the corners of the faces where a mesh has no area.
     """
     place, size = before.vertices[before.faces[0, 0]], before.diagonal or 1.0
     one, other = (
@@ -67,12 +72,12 @@ def _mean_distance(one, other):
 
 
 def _missing(rows, among):
-    """How many of the rows (k, d) are not among the others, bit for bit."""
+    """How many of the rows (k, d) are not bit for bit among the others."""
     have = {row.tobytes() for row in np.ascontiguousarray(among)}
     return sum(row.tobytes() not in have for row in np.ascontiguousarray(rows))
 
 
 def _triples(corners):
-    """(j, 9) of the corners (j, 3, 3) of triangles, in the order of their places: equal for equal triangles."""
+    """(j, 9): the corners (j, 3, 3) of each triangle sorted by position, so that equal triangles give equal rows."""
     order = np.lexsort(corners.transpose(2, 0, 1)[::-1], axis=-1)
     return np.take_along_axis(corners, order[:, :, None], axis=1).reshape(-1, 9)

@@ -1,11 +1,12 @@
-"""Broken meshes, hopeless budgets and odd kept sets, through every simplifier: valid, refused, ruined or crash?
+"""Broken meshes, tight budgets and unusual kept sets, through every simplifier: valid, refused, ruined or crash.
 
-`valid`: a mesh came back and nothing is wrong with it (stages.stability.checks); `refused`: an error said why there is
-none; `ruined`: a mesh came back that is not sound, or another one on the second run; `crash`: any other error.
+`valid`: the simplifier returned a sound mesh (stages.stability.checks); `refused`: it raised an error that gives the
+reason; `ruined`: it returned a mesh that is not sound, or another mesh on the second run; `crash`: any other error.
 """
 
 import traceback
 import warnings
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,22 +16,27 @@ from stages.lod import BACKENDS, simplify
 from stages.lod.targets import face_count
 from stages.lod.warm_up import warm_up
 
-from .broken import BROKEN
-from .checks import complaints, surface_error
-from .plain_curve import PlainCurve
+from .broken import DAMAGES
+from .checks import find_faults, surface_error
+from .qem_error_curve import QemErrorCurve
 from .specimen import KEPT, RINGS, WEIGHTS, Case, Specimen
 
 OUTCOMES = ("valid", "refused", "ruined", "crash")
 BUDGETS = ("4", "16", "64", "256", "1024", "50%", "90%")
-SMALLEST = "smallest"  # the budget that an InfeasibleTarget names: it must be possible
-TWICE = ("50%",)  # budgets at which the same is asked again, for the same bytes
+SMALLEST = "smallest"  # the budget that an InfeasibleTarget names, which must be feasible
+REPEATED_BUDGETS = ("50%",)  # budgets at which a case is run twice and must give the same bytes
 KEPT_ON, KEPT_BUDGETS = ("sound", "wide_holes", "fins", "soup", "everything"), ("256", "1024", "50%", "90%")
 SOFT_ON, SOFT_BUDGETS = ("sound", "islands"), ("256", "50%")
 
 
 @dataclass(frozen=True, eq=False)
-class Answer:
-    """What came of a case. smallest: the face count that a refusal names, 0 without; mesh: what came back, or None."""
+class Result:
+    """The result of a case.
+
+    outcome: one of OUTCOMES; note: the reason; asked: the face count asked for; mesh: what was returned, or None;
+    error: its mean error, and limit the largest one allowed, over the diagonal; smallest: the face count that a refusal
+    names, 0 without.
+    """
 
     outcome: str
     note: str
@@ -42,34 +48,34 @@ class Answer:
     smallest: int = 0
 
 
-def ask(specimen, case, backend, asked=None):
+def run_case(specimen: Specimen, case: Case, backend: str, asked: int | None = None) -> Result:
     """The Answer of a backend to a case; asked: the face count where the case's budget is SMALLEST."""
     asked = asked or face_count(case.budget, len(specimen.mesh.faces))
     kept, weights = specimen.kept(case), specimen.weights(case)
 
     def work():
-        return simplify(specimen.mesh, asked, kept, RINGS, backend=backend, **weights)
+        return simplify(specimen.mesh, asked, kept, RINGS, backend=backend, weights=weights)
 
     with warnings.catch_warnings(), Stopwatch() as watch:
         warnings.simplefilter("error", RuntimeWarning)
         try:
             found, problem = work(), None
-        except Exception as error:  # that is the question
+        except Exception as error:  # any error is an outcome
             found, problem = None, error
     if found is None:
         return _no_mesh(problem, asked, watch.seconds)
     frozen = specimen.kept_faces(kept)
     limit, apart = specimen.limit(asked, len(frozen)), surface_error(specimen.mesh, found)
-    said = complaints(specimen.surface, found, asked, kept, frozen)
+    said = find_faults(specimen.surface, found, asked, kept, frozen)
     if not apart <= limit:
-        said.append(f"mean error {apart:.2g} of the diagonal; {limit:.2g} is a ruin")
-    if case.budget in TWICE and not _same(found, work()):
+        said.append(f"mean error {apart:.2g} of the diagonal, more than the {limit:.2g} allowed")
+    if case.budget in REPEATED_BUDGETS and not _same(found, work()):
         said.append("another mesh on the second run")
-    return Answer("ruined" if said else "valid", "; ".join(said), asked, watch.seconds, found, apart, limit)
+    return Result("ruined" if said else "valid", "; ".join(said), asked, watch.seconds, found, apart, limit)
 
 
-def cases_of(damage):
-    """The cases that a damage is tried with."""
+def cases_for(damage: str) -> list[Case]:
+    """The cases run on a damaged mesh."""
     cases = [Case(budget) for budget in BUDGETS]
     if damage in KEPT_ON:
         cases += [Case(budget, kept) for kept in list(KEPT)[1:] for budget in KEPT_BUDGETS]
@@ -78,47 +84,52 @@ def cases_of(damage):
     return cases
 
 
-def answers(specimen, backend, cases):
-    """Yields (Case, Answer); after the first refusal of a kept set that names a smallest count, also that one."""
-    told = set()
+def run_cases(specimen: Specimen, backend: str, cases: Iterable[Case]) -> Iterator[tuple[Case, Result]]:
+    """Yields each Case with its Result.
+
+    After the first refusal of a kept set that names a smallest face count, the case with that count follows.
+    """
+    refused = set()
     for case in cases:
-        answer = ask(specimen, case, backend)
-        yield case, answer
-        if answer.smallest and (case.kept, case.soft) not in told:
-            told.add((case.kept, case.soft))
+        result = run_case(specimen, case, backend)
+        yield case, result
+        if result.smallest and (case.kept, case.soft) not in refused:
+            refused.add((case.kept, case.soft))
             least = Case(SMALLEST, case.kept, case.soft)
-            yield least, ask(specimen, least, backend, answer.smallest)
+            yield least, run_case(specimen, least, backend, result.smallest)
 
 
-def simplification_rows(mesh, name, seed, damages=tuple(BROKEN), backends=tuple(BACKENDS)):
-    """Rows of one object: `faces` of every case (0 where nothing came back) and, where a mesh did, its `error`."""
-    curve, rows = PlainCurve(mesh), []
+def simplification_rows(
+    mesh: Mesh, name: str, seed: int, damages: Sequence[str] = tuple(DAMAGES), backends: Sequence[str] = tuple(BACKENDS)
+) -> list[dict]:
+    """Rows of one object: `faces` of every case (0 without a mesh) and, where there is a mesh, its `error`."""
+    curve, rows = QemErrorCurve(mesh), []
     for backend in backends:
         warm_up(backend)
     for damage in damages:
         specimen = Specimen(mesh, curve, damage, name, seed)
         for backend in backends:
-            for case, answer in answers(specimen, backend, cases_of(damage)):
-                rows += _rows(name, damage, backend, case, answer)
+            for case, result in run_cases(specimen, backend, cases_for(damage)):
+                rows += _rows(name, damage, backend, case, result)
     return rows
 
 
-def _rows(name, damage, backend, case, answer):
+def _rows(name, damage, backend, case, result):
     row = {
-        "object": name, "method": backend, "perturbation": damage, "severity": answer.asked, "budget": case.budget,
-        "kept": case.kept, "soft": case.soft, "outcome": answer.outcome, "limit": answer.limit, "note": answer.note,
-        "seconds": answer.seconds,
+        "item": name, "method": backend, "perturbation": damage, "severity": result.asked, "budget": case.budget,
+        "kept": case.kept, "soft": case.soft, "outcome": result.outcome, "limit": result.limit, "note": result.note,
+        "seconds": result.seconds,
     }  # fmt: skip
-    rows = [row | {"metric": "faces", "value": 0 if answer.mesh is None else len(answer.mesh.faces)}]
-    return rows if answer.mesh is None else [*rows, row | {"metric": "error", "value": answer.error}]
+    rows = [row | {"metric": "faces", "value": 0 if result.mesh is None else len(result.mesh.faces)}]
+    return rows if result.mesh is None else [*rows, row | {"metric": "error", "value": result.error}]
 
 
 def _no_mesh(error, asked, seconds):
-    """A refusal is a ValueError that this project raised and that says why; all else is a crash."""
+    """The Result without a mesh: a ValueError of this project with a reason is a refusal, all else a crash."""
     place, note = traceback.extract_tb(error.__traceback__)[-1], " ".join(str(error).split())
     if isinstance(error, ValueError) and "stages" in place.filename and note:
-        return Answer("refused", note, asked, seconds, smallest=getattr(error, "smallest", 0))
-    return Answer("crash", f"{type(error).__name__}: {note}", asked, seconds)
+        return Result("refused", note, asked, seconds, smallest=getattr(error, "smallest", 0))
+    return Result("crash", f"{type(error).__name__}: {note}", asked, seconds)
 
 
 def _same(one, other):

@@ -1,19 +1,20 @@
-"""A mesh broken in one way, what is asked of its simplification, and the error beyond which the answer is a ruin."""
+"""A mesh broken in one way, the cases of its simplification, and the error beyond which a result is ruined."""
 
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
+from stages.kit import Mesh
 from stages.kit.rng import rng
 
-from .broken import BROKEN
-from .plain_curve import PlainCurve
+from .broken import DAMAGES
+from .qem_error_curve import QemErrorCurve
 from .surface import Surface
 
-RINGS = 3  # round a kept vertex; T3.1.3
-RUIN = 4.0  # times the mean error of plain QEM of the sound mesh with as many faces as are free here
-FURTHEST = 0.15  # of the diagonal: a ruin at any budget; 0.12 is that of a tetrahedron whose corners lie on a sphere
+RINGS = 3  # rings of faces kept around a kept vertex; T3.1.3
+RUIN = 4.0  # times the mean error of plain QEM on the sound mesh at the number of free faces
+LARGEST_ERROR = 0.15  # of the diagonal, allowed at any budget; a tetrahedron inscribed in a sphere has 0.12
 KEPT = {"none": 0, "1": 1, "5": 5, "60": 60, "half": 0.5, "all": 1.0}  # kept vertices: a number or a share
 WEIGHTS = {
     "zero": lambda n, _: np.zeros(n),
@@ -25,7 +26,7 @@ WEIGHTS = {
 
 @dataclass(frozen=True)
 class Case:
-    """What is asked: the face count, how many vertices are kept (KEPT), with which weights (WEIGHTS)."""
+    """What is asked for: the face count, the kept vertices (a name of KEPT) and the weights (a name of WEIGHTS)."""
 
     budget: str
     kept: str = "none"
@@ -33,40 +34,43 @@ class Case:
 
 
 class Specimen:
-    """A sound mesh broken in one way (a name of BROKEN), with what its cases share. name, seed decide every draw."""
+    """A sound mesh broken in one way (a name of DAMAGES), with what its cases share.
 
-    def __init__(self, sound, curve: PlainCurve, damage, name, seed):
+    name and seed decide all random numbers.
+    """
+
+    def __init__(self, sound: Mesh, curve: QemErrorCurve, damage: str, name: str, seed: int) -> None:
         self.curve, self.damage, self.name, self.seed = curve, damage, f"{name} {damage}", seed
-        self.mesh = BROKEN[damage].make(sound, rng(seed, self.name))
+        self.mesh = DAMAGES[damage].make(sound, rng(seed, self.name))
         self.surface = Surface(self.mesh)
 
     @cached_property
-    def _order(self):
-        return rng(self.seed, f"{self.name} kept").permutation(np.unique(self.surface.tidy.mesh.faces))
+    def _order(self) -> np.ndarray:
+        return rng(self.seed, f"{self.name} kept").permutation(np.unique(self.surface.deduplicated.mesh.faces))
 
-    def kept(self, case):
-        """Ids of the vertices that a case keeps, of those that a face uses, in an order drawn once."""
+    def kept(self, case: Case) -> np.ndarray:
+        """Ids of the vertices that a case keeps: the first of all used vertices in one random order."""
         count = KEPT[case.kept]
         return self._order[: round(count * len(self._order)) if isinstance(count, float) else count]
 
-    def weights(self, case):
-        """dict(weights=(n,)) of a case, or an empty one."""
+    def weights(self, case: Case) -> np.ndarray | None:
+        """The weights (n,) of a case, or None."""
         generator = rng(self.seed, f"{self.name} {case.soft}")
-        return {"weights": WEIGHTS[case.soft](len(self.mesh.vertices), generator)} if case.soft else {}
+        return WEIGHTS[case.soft](len(self.mesh.vertices), generator) if case.soft else None
 
-    def kept_faces(self, kept):
+    def kept_faces(self, kept: np.ndarray) -> np.ndarray:
         """(j, 3) faces that must survive with the kept vertices: those within RINGS edges of them."""
-        faces = self.surface.tidy.mesh.faces
+        faces = self.surface.deduplicated.mesh.faces
         near = np.isin(np.arange(len(self.mesh.vertices)), kept)
         for _ in range(RINGS):
             near[faces[near[faces].any(axis=1)]] = True
         return faces[near[faces].all(axis=1)]
 
-    def limit(self, asked, frozen):
-        """The mean error beyond which `asked` faces, `frozen` of them kept, are a ruin.
+    def limit(self, asked: int, frozen: int) -> float:
+        """The largest mean error allowed for a result of `asked` faces, `frozen` of them kept.
 
-        Each edge of the rim takes a face, each further piece four: what is left is free. What the damage itself moved
-        is allowed on top.
+        Each boundary edge needs one face and each further connected component four; the other faces are free. What the
+        damage itself moved is added.
         """
-        free = asked - frozen - len(self.surface.border) - 4 * (self.surface.tidy.pieces - 1)
-        return min(RUIN * self.curve.error(free) + BROKEN[self.damage].moved, FURTHEST)
+        free = asked - frozen - len(self.surface.boundary_edges) - 4 * (self.surface.deduplicated.components - 1)
+        return min(RUIN * self.curve.error(free) + DAMAGES[self.damage].moved, LARGEST_ERROR)

@@ -1,5 +1,6 @@
-"""One object: what every method finds on it as it is, and under a perturbation."""
+"""One object: what every method finds on it unperturbed and under each perturbation."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -8,104 +9,109 @@ from stages.kit import Mesh, Stopwatch
 from stages.kit.rng import rng
 from stages.meshes import normalise
 from stages.salient_points.methods import find_all, method_named
-from stages.salient_points.options import Found, Options
+from stages.salient_points.options import Detection, Options
 
-from .measures import REACH, carried_back, chance_repeatability, drift, repeatability
+from .maps import maps_under_conditions
+from .measures import TOLERANCE, at_original_vertices, chance_repeatability, drift, repeatability
 from .perturbations import PERTURBATIONS, Conditions, Perturbed
-from .sights import look
 
-NONE = "none"  # the perturbation of rows about the object as it is
+UNPERTURBED = "none"  # the perturbation in the rows of the unperturbed object
 
 
 @dataclass(frozen=True, eq=False)
-class Case:
-    """What the methods found on one mesh: the Perturbed as it was looked at, dict method -> Found, its seconds."""
+class Findings:
+    """What the methods found on one mesh, per method, with the seconds that each took."""
 
     perturbed: Perturbed
-    found: dict[str, Found]
+    found: dict[str, Detection]
     seconds: dict[str, float]
 
 
 class Subject:
-    """An object and the methods to be tried on it; `plain` is the Case without a perturbation.
+    """An object and the methods tried on it; `unperturbed` are the Findings without a perturbation.
 
-    mesh: normalised; options: stages.salient_points.options.Options, its seed and name decide all draws; count: points
-    a method; size: (rows, columns) of the views.
+    mesh: normalised; options: its seed and name decide all random numbers; count: points per method; size: (rows,
+    columns) of the views.
     """
 
-    def __init__(self, mesh: Mesh, methods, options: Options, count, size):
+    def __init__(self, mesh: Mesh, methods: Sequence[str], options: Options, count: int, size: Sequence[int]) -> None:
         self.mesh, self.methods, self.options, self.count, self.size = mesh, methods, options, count, tuple(size)
         self.channels = tuple(dict.fromkeys(name for method in methods for name in method_named(method).channels))
-        self.plain = self._case(Perturbed(mesh, mesh.vertices, Conditions()), NONE)
+        self.unperturbed = self._findings(Perturbed(mesh, mesh.vertices, Conditions()), UNPERTURBED)
 
-    def disturbed(self, perturbation, severity):
-        """The Case under one perturbation; ValueError where this mesh cannot be so changed, or be looked at then."""
+    def perturbed(self, perturbation: str, severity: float) -> Findings:
+        """The Findings under one perturbation.
+
+        Raises ValueError where this mesh cannot be perturbed in this way, or cannot be rendered afterwards.
+        """
         name = f"{self.options.name} {perturbation}"
         changed = PERTURBATIONS[perturbation].apply(self.mesh, severity, rng(self.options.seed, name))
-        return self._case(replace(changed, mesh=normalise(changed.mesh)), f"{perturbation} {severity:g}")
+        return self._findings(replace(changed, mesh=normalise(changed.mesh)), f"{perturbation} {severity:g}")
 
-    def _case(self, perturbed, what):
-        """Random points are drawn anew for each case: drawn alike, they would seem to be found again."""
-        with Stopwatch() as looking:
-            sight = look(perturbed.mesh, self.channels, perturbed.conditions, self.size)
+    def _findings(self, perturbed, what):
+        """Random points are drawn anew each time: equal draws would look repeatable."""
+        with Stopwatch() as watch:
+            sight = maps_under_conditions(perturbed.mesh, self.channels, perturbed.conditions, self.size)
         options = replace(self.options, name=f"{self.options.name} {what}")
         found, seconds = find_all(perturbed.mesh, sight, self.methods, options, self.count)
-        lookers = [method for method in found if method_named(method).channels]
-        for method in lookers:
-            seconds[method] += looking.seconds / len(lookers)
-        return Case(perturbed, found, seconds)
+        image_based = [method for method in found if method_named(method).channels]
+        for method in image_based:
+            seconds[method] += watch.seconds / len(image_based)
+        return Findings(perturbed, found, seconds)
 
-    def plain_rows(self):
-        """Rows of the object as it is: how many points each method has, and its seconds."""
+    def unperturbed_rows(self) -> list[dict]:
+        """Rows of the unperturbed object: how many points each method has, and its seconds."""
         return [
-            self._row(method, NONE, None, "points", found.strong, self.plain.seconds[method])
-            for method, found in self.plain.found.items()
+            self._row(method, UNPERTURBED, None, "points", found.strong, self.unperturbed.seconds[method])
+            for method, found in self.unperturbed.found.items()
         ]
 
-    def rows(self, perturbation, severity, case):
-        """Rows of a Case: repeatability, chance (of as many random points), drift where there is a map, points."""
+    def rows(self, perturbation: str, severity: float, case: Findings) -> list[dict]:
+        """Rows of Findings: repeatability, chance (of as many random points), drift where there is a map, points."""
         rows = []
         for method, found in case.found.items():
-            before = self.mesh.vertices[self.plain.found[method].points]
-            reach = REACH * self.mesh.diagonal
+            before = self.mesh.vertices[self.unperturbed.found[method].points]
+            tolerance = TOLERANCE * self.mesh.diagonal
             draws = rng(self.options.seed, f"{self.options.name} {perturbation} {severity:g} {method} chance")
             values = {
-                "repeatability": repeatability(before, case.perturbed.places[found.points], reach),
-                "chance": chance_repeatability(before, case.perturbed, len(found.points), draws, reach),
+                "repeatability": repeatability(before, case.perturbed.original_positions[found.points], tolerance),
+                "chance": chance_repeatability(before, case.perturbed, len(found.points), draws, tolerance),
                 "points": found.strong,
             }
-            if found.saliency is not None:
-                back = carried_back(self.mesh, case.perturbed, found.saliency)
-                values["drift"] = drift(self.plain.found[method].saliency, back, self.mesh.vertex_areas)
+            saliency = self.unperturbed.found[method].saliency
+            if saliency is not None and found.saliency is not None:
+                back = at_original_vertices(self.mesh, case.perturbed, found.saliency)
+                values["drift"] = drift(saliency, back, self.mesh.vertex_areas)
             seconds = case.seconds[method]
             rows += [self._row(method, perturbation, severity, *item, seconds) for item in values.items()]
         return rows
 
-    def failed_rows(self, perturbation, severity, why):
-        """A row a method that says why there is no Case."""
+    def failed_rows(self, perturbation: str, severity: float, why: str) -> list[dict]:
+        """One row per method with the reason why there are no Findings."""
         return [self._row(method, perturbation, severity, "repeatability", None, None, why) for method in self.methods]
 
     def _row(self, method, perturbation, severity, metric, value, seconds, note=None):
         return {
-            "object": self.options.name, "method": method, "perturbation": perturbation, "severity": severity,
+            "item": self.options.name, "method": method, "perturbation": perturbation, "severity": severity,
             "note": note, "metric": metric, "value": value, "seconds": seconds,
         }  # fmt: skip
 
 
-def worst_arrays(subject, cases):
-    """Arrays of each method's worst case, for the picture: dict METHOD.KEY -> array.
+def worst_arrays(subject: Subject, cases: Sequence[tuple[str, float, Findings]]) -> dict[str, np.ndarray]:
+    """Arrays of each method's worst case, for the figure: dict METHOD.KEY -> array.
 
-    cases: list of (perturbation, severity, Case). KEY: perturbation, severity, repeatability, and before and after of
-    points and saliency; vertices and faces of the perturbed mesh. Methods without a saliency are left out.
+    cases: list of (perturbation, severity, Findings). KEY: perturbation, severity, repeatability, points and saliency
+    before and after, and vertices and faces of the perturbed mesh. Methods without a saliency are left out.
     """
     arrays = {}
-    for method, plain in subject.plain.found.items():
+    for method, plain in subject.unperturbed.found.items():
         if plain.saliency is None or not cases:
             continue
         scores = [_score(subject, method, case) for *_, case in cases]
         worst = int(np.argmin(scores))
         perturbation, severity, case = cases[worst]
         found, mesh = case.found[method], case.perturbed.mesh
+        assert found.saliency is not None  # a method has one under every perturbation or under none
         values = {
             "perturbation": np.array(perturbation), "severity": np.float64(severity),
             "repeatability": np.float64(scores[worst]), "before_points": plain.points,
@@ -117,6 +123,6 @@ def worst_arrays(subject, cases):
 
 
 def _score(subject, method, case):
-    before = subject.mesh.vertices[subject.plain.found[method].points]
-    after = case.perturbed.places[case.found[method].points]
-    return repeatability(before, after, REACH * subject.mesh.diagonal)
+    before = subject.mesh.vertices[subject.unperturbed.found[method].points]
+    after = case.perturbed.original_positions[case.found[method].points]
+    return repeatability(before, after, TOLERANCE * subject.mesh.diagonal)

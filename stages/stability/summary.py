@@ -1,63 +1,76 @@
-"""The few numbers of a run that the gate looks at: repeatability, breaking points, what became of broken meshes."""
+"""The numbers of a run that the gate checks: repeatability, breaking points, outcomes on broken meshes."""
+
+from collections import Counter
+from collections.abc import Sequence
+from typing import cast
 
 import numpy as np
 import pandas as pd
 
-from .measures import breaking_point
+from stages.kit.breaking_point import breaking_point
+
 from .perturbations import PERTURBATIONS
 from .simplification import OUTCOMES, SMALLEST
 
+KEYS = ["perturbation", "method", "severity"]
 
-def middle(severities):
-    """The severity in the middle of a list, the milder one of two: harsh enough to tell methods apart."""
+
+def middle_severity(severities: Sequence[float]) -> float:
+    """The severity in the middle of a list, the milder of two: harsh enough to separate the methods."""
     return severities[(len(severities) - 1) // 2]
 
 
-def mean_repeatability(rows):
-    """Frame with columns perturbation, method, severity, value: the mean over the objects, in the rows' own order."""
+def mean_repeatability(rows: list[dict] | pd.DataFrame) -> pd.DataFrame:
+    """Frame of perturbation, method, severity and value, the mean over the objects, in the order of the rows."""
     table = pd.DataFrame(rows)
-    table = table[(table["metric"] == "repeatability")].assign(value=lambda frame: frame["value"].astype(float))
-    return table.groupby(["perturbation", "method", "severity"], sort=False)["value"].mean().reset_index()
+    table = table.loc[table["metric"] == "repeatability", [*KEYS, "value"]].astype({"value": float})
+    return table.groupby(KEYS, sort=False, as_index=False).mean()
 
 
-def breaking_points(rows):
+def breaking_points(rows: list[dict] | pd.DataFrame) -> dict[tuple[str, str], float]:
     """dict (perturbation, method) -> the severity at which the mean repeatability falls below one half, or NaN.
 
-    Also NaN where a severity has no value at all before that.
+    Also NaN where a severity before it has no value at all.
     """
-    found = {}
-    for (perturbation, method), group in mean_repeatability(rows).groupby(["perturbation", "method"], sort=False):
-        unharmed = PERTURBATIONS[perturbation].unharmed
-        found[perturbation, method] = breaking_point(list(group["severity"]), list(group["value"]), unharmed)
-    return found
+    return {
+        (perturbation, method): breaking_point(severities, values, PERTURBATIONS[perturbation].unharmed)
+        for perturbation, method, severities, values in _curves(rows)
+    }
 
 
-def summarise(rows):
+def summarise(rows: list[dict]) -> dict[str, dict]:
     """Numbers for the gate: `repeatability`, of each PERTURBATION.METHOD at the middle severity; `breaking_point`."""
-    means = mean_repeatability(rows)
-    mids = {}
-    for (perturbation, method), group in means.groupby(["perturbation", "method"], sort=False):
-        at = middle(list(group["severity"]))
-        mids[f"{perturbation}.{method}"] = float(group.loc[group["severity"] == at, "value"].iloc[0])
+    means = {
+        f"{perturbation}.{method}": values[severities.index(middle_severity(severities))]
+        for perturbation, method, severities, values in _curves(rows)
+    }
     breaks = {f"{perturbation}.{method}": value for (perturbation, method), value in breaking_points(rows).items()}
-    return {"repeatability": _known(mids), "breaking_point": _known(breaks)}
+    return {"repeatability": _rounded(means), "breaking_point": _rounded(breaks)}
 
 
-def summarise_simplification(rows):
-    """Numbers for the gate, of each backend: shares of its cases by outcome, and of the smallest counts that were had.
+def summarise_simplification(rows: list[dict]) -> dict[str, dict]:
+    """Numbers for the gate, per backend: the share of its cases by outcome, and of the smallest counts that were met.
 
-    Crashes are a count: none is allowed, on any machine.
+    Crashes are counted: none is allowed on any machine.
     """
     rows, found = [row for row in rows if row["metric"] == "faces"], {}
     for backend in dict.fromkeys(row["method"] for row in rows):
-        cases = pd.DataFrame([row for row in rows if row["method"] == backend])
-        shares = {outcome: round(float((cases["outcome"] == outcome).mean()), 6) for outcome in OUTCOMES[:-1]}
-        least = cases.loc[cases["budget"] == SMALLEST, "outcome"] == "valid"
-        found[backend] = shares | {"smallest_had": round(float(least.mean()), 6) if len(least) else None}
-        found[backend]["crashes"] = int((cases["outcome"] == OUTCOMES[-1]).sum())
+        cases = [row for row in rows if row["method"] == backend]
+        outcomes = Counter(row["outcome"] for row in cases)
+        met = [row["outcome"] == "valid" for row in cases if row["budget"] == SMALLEST]
+        found[backend] = {outcome: round(outcomes[outcome] / len(cases), 6) for outcome in OUTCOMES[:-1]}
+        found[backend]["smallest_had"] = round(sum(met) / len(met), 6) if met else None
+        found[backend]["crashes"] = outcomes[OUTCOMES[-1]]
     return found
 
 
-def _known(values):
-    """Rounded to six digits; what is NaN (never broke, or never measured) is None, which the gate passes over."""
+def _curves(rows):
+    """(perturbation, method, severities, mean repeatabilities) of each perturbation and method."""
+    for key, group in mean_repeatability(rows).groupby(["perturbation", "method"], sort=False):
+        perturbation, method = cast(tuple[str, str], key)
+        yield perturbation, method, list(group["severity"]), list(group["value"])
+
+
+def _rounded(values):
+    """Values rounded to six digits; NaN (never broken, or never measured) becomes None, which the gate ignores."""
     return {key: round(value, 6) if np.isfinite(value) else None for key, value in values.items()}

@@ -1,7 +1,6 @@
-"""What can be counted on a surface: border, pieces, faces without area, folds, copies, crowded edges, pinches.
+"""Counts on a surface: boundary edges, connected components, degenerate and duplicate faces, folds, non-manifold parts.
 
-By trimesh and plain numpy: an error in stages.lod's own idea of a boundary, a piece or a fold shows here, and is not
-shared.
+Computed by trimesh and numpy and not by stages.lod, so that an error in its own functions shows here.
 """
 
 from dataclasses import dataclass
@@ -14,43 +13,43 @@ from scipy.sparse.csgraph import connected_components
 
 from stages.kit import Mesh
 
-FOLDED = 0.99  # cosine between two neighbours seen along their edge: folded together within 8 degrees
-FLAT = 1e-8  # height of a face over the diagonal, below which it has no area
+FOLDED = 0.99  # cosine between two neighbours seen along their edge: at most 8 degrees apart
+FLAT = 1e-8  # height of a face over the diagonal, below which it counts as without area
 
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """What is counted on a mesh. The mesh must have a face."""
+    """The counts of a mesh, which must have a face."""
 
     mesh: Mesh
 
     @cached_property
-    def scene(self):
-        """The same as a trimesh, nothing merged, at unit size: trimesh's tolerances are absolute."""
+    def as_trimesh(self) -> trimesh.Trimesh:
+        """The mesh in trimesh, with nothing merged, at unit size since trimesh's tolerances are absolute."""
         vertices, size = self.mesh.vertices, self.mesh.diagonal or 1.0
         centre = vertices[self.mesh.faces[0, 0]]
         return trimesh.Trimesh((vertices - centre) / size, self.mesh.faces, process=False, validate=False)
 
     @cached_property
-    def sides(self):
+    def edge_counts(self) -> tuple[np.ndarray, np.ndarray]:
         """((e, 2) edges, (e,) how many faces each has)."""
-        edges, count = np.unique(self.scene.edges_sorted, axis=0, return_counts=True)
+        edges, count = np.unique(self.as_trimesh.edges_sorted, axis=0, return_counts=True)
         return edges, count
 
     @cached_property
-    def welded(self):
-        """The same, equal places made one vertex, without the faces that then name a vertex twice."""
-        places, at = np.unique(self.scene.vertices, axis=0, return_inverse=True)
+    def welded(self) -> trimesh.Trimesh:
+        """The mesh in trimesh with vertices at equal positions merged, without faces that then name a vertex twice."""
+        places, at = np.unique(self.as_trimesh.vertices, axis=0, return_inverse=True)
         faces = at.ravel()[self.mesh.faces]
         whole = (faces != np.roll(faces, 1, axis=1)).all(axis=1)
         return trimesh.Trimesh(places, faces[whole], process=False, validate=False)
 
     @cached_property
-    def border(self):
-        """Set of edges, as bytes of both ends' places, that an odd number of faces share once equal places are one.
+    def boundary_edges(self) -> set[bytes]:
+        """The edges that an odd number of faces share once equal positions are merged, as bytes of both ends.
 
-        The boundary in the sense of homology: no collapse that leaves the rims alone changes it, whatever it does to
-        crowded edges; a hole torn, closed or moved does.
+        This is the boundary in the sense of homology. A collapse inside the surface leaves it unchanged, whatever it
+        does to non-manifold edges; a hole that opens, closes or moves changes it.
         """
         places, at = np.unique(self.mesh.vertices, axis=0, return_inverse=True)
         ends = np.sort(at.ravel()[self.mesh.faces][:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
@@ -58,38 +57,40 @@ class Surface:
         return {pair.tobytes() for pair in places[edges[count % 2 == 1]] + 0.0}  # + 0.0: minus zero is zero
 
     @cached_property
-    def pieces(self):
-        """How many pieces: faces joined by edges that two of them share."""
-        return len(trimesh.graph.connected_components(self.scene.face_adjacency, nodes=np.arange(len(self.mesh.faces))))
+    def components(self) -> int:
+        """The number of connected components: faces are connected by edges that exactly two of them share."""
+        return len(
+            trimesh.graph.connected_components(self.as_trimesh.face_adjacency, nodes=np.arange(len(self.mesh.faces)))
+        )
 
     @cached_property
-    def flat_faces(self):
-        """How many faces have no area, or a vertex twice."""
-        return int((~trimesh.triangles.nondegenerate(self.scene.triangles, height=FLAT)).sum())
+    def degenerate_faces(self) -> int:
+        """The number of faces without area or with a repeated vertex."""
+        return int((~trimesh.triangles.nondegenerate(self.as_trimesh.triangles, height=FLAT)).sum())
 
     @cached_property
-    def folds(self):
-        """(2,) pairs of neighbours that lie upon each other, as the mesh is and with equal places made one vertex.
+    def folds(self) -> np.ndarray:
+        """(2,) numbers of pairs of neighbouring faces that are folded onto each other, of the mesh as it is and welded.
 
-        An edge without length hides a fold from the first, a third face at the edge from the second.
+        The first misses a fold at an edge without length, the second one at an edge with a third face.
         """
-        return np.array([_folds(self.scene), _folds(self.welded)])
+        return np.array([_folds(self.as_trimesh), _folds(self.welded)])
 
     @cached_property
-    def copies(self):
-        """How many faces have the places of another one."""
+    def duplicate_faces(self) -> int:
+        """The number of faces with the same corner positions as another one."""
         corners = np.sort(self.welded.faces, axis=1)
         return len(corners) - len(np.unique(corners, axis=0))
 
     @cached_property
-    def crowded(self):
-        """How many edges have three faces or more."""
-        return int((self.sides[1] > 2).sum())
+    def non_manifold_edges(self) -> int:
+        """The number of edges with three faces or more."""
+        return int((self.edge_counts[1] > 2).sum())
 
     @cached_property
-    def pinches(self):
-        """How many fans of faces meet others in a vertex alone."""
-        pairs, edges = self.scene.face_adjacency, self.scene.face_adjacency_edges
+    def non_manifold_vertices(self) -> int:
+        """The number of fans of faces that share nothing but a vertex with the others around it."""
+        pairs, edges = self.as_trimesh.face_adjacency, self.as_trimesh.face_adjacency_edges
         faces, n = self.mesh.faces, len(self.mesh.faces)
         tails, heads = [], []
         for end in edges.T:
@@ -100,13 +101,13 @@ class Surface:
         return connected_components(joined, directed=False)[0] - len(np.unique(faces))
 
     @cached_property
-    def volume(self):
-        """Signed volume in diagonals cubed, of a closed surface."""
-        return float(np.einsum("ij,ij->", self.scene.triangles[:, 0], self.scene.triangles_cross) / 6)
+    def volume(self) -> float:
+        """The signed volume of a closed surface, in cubed diagonals."""
+        return float(np.einsum("ij,ij->", self.as_trimesh.triangles[:, 0], self.as_trimesh.triangles_cross) / 6)
 
     @cached_property
-    def tidy(self):
-        """The Surface without faces that name a vertex twice and without a face's second copy."""
+    def deduplicated(self) -> "Surface":
+        """The Surface without duplicate faces and without faces that name a vertex twice."""
         corners = np.sort(self.mesh.faces, axis=1)
         whole = (corners[:, 0] != corners[:, 1]) & (corners[:, 1] != corners[:, 2])
         first = np.zeros(len(corners), dtype=bool)
@@ -114,13 +115,13 @@ class Surface:
         return Surface(Mesh(self.mesh.vertices, self.mesh.faces[whole & first]))
 
     @cached_property
-    def closed(self):
-        """True when every edge has two faces that agree on which side is out."""
-        return bool(self.scene.is_watertight and self.scene.is_winding_consistent)
+    def closed(self) -> bool:
+        """True when every edge has two faces with consistent winding."""
+        return bool(self.as_trimesh.is_watertight and self.as_trimesh.is_winding_consistent)
 
 
 def _folds(scene):
-    """Seen along the edge, so that winding has no say."""
+    """The number of folds; measured along the edge, so that the winding does not matter."""
     ends = scene.vertices[scene.face_adjacency_edges]
     along = trimesh.util.unitize(ends[:, 1] - ends[:, 0])
     sides = []

@@ -1,21 +1,10 @@
-"""Where recognition by touch breaks: misplaced, turned and faulty sensors, moved objects, coarse models, few touches.
+"""Breaking points of recognition by touch: sensor errors, moved objects, coarse models, few touches.
 
-Public names: PERTURBATIONS, Perturbation, Felt, FEATURES, Touches, breaking_point, lead_left, recognise, NONE.
+Public names: recognition_rows, Perturbation, PerturbedTouches, Touches, CLEAN, FEATURES, PERTURBATIONS.
 """
 
-from .breaking import breaking_point, lead_left
-from .perturbations import PERTURBATIONS, Felt, Perturbation
-from .recognise import FEATURES, NONE, recognise
+from .perturbations import PERTURBATIONS, Perturbation, PerturbedTouches
+from .recognition import CLEAN, FEATURES, recognition_rows
 from .touches import Touches
 
-__all__ = [
-    "FEATURES",
-    "NONE",
-    "PERTURBATIONS",
-    "Felt",
-    "Perturbation",
-    "Touches",
-    "breaking_point",
-    "lead_left",
-    "recognise",
-]
+__all__ = ["CLEAN", "FEATURES", "PERTURBATIONS", "Perturbation", "PerturbedTouches", "Touches", "recognition_rows"]

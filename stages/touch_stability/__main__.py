@@ -1,50 +1,59 @@
 """Disturbs the touches of a set of objects in many ways and measures where recognition breaks.
 
-Reads data/meshes, data/imprints, data/salient_points and data/lod of the objects of one set. Classifiers learn from
-clean touches and recognise disturbed ones of other places; where the model is coarse, or touches are few, it is the
-known touches that suffer. Writes data/touch_stability/NAME.npz (features and, of the first touches, imprints, of every
-perturbation and severity) and reports/measurements/touch_stability.csv: a row a split (`anywhere`, `apart`: see
-stages.exploration), classifier, perturbation, severity and repetition; `none` is clean touches, severity 0.
-The metrics hold the breaking points: the severity at which half of the lead over guessing is lost.
+Reads meshes, imprints, salient_points and lod of the objects of one group (classification.sets) in data/SET.
+Classifiers train on clean touches and recognise disturbed ones of other places; where the model is coarse, or touches
+are few, the training touches are disturbed. Writes data/SET/touch_stability/NAME.npz (features and, of the first
+touches, imprints, of every perturbation and severity) and reports/measurements/SET/touch_stability.csv.gz: one row per
+split, classifier, perturbation, severity and repetition; `none` is clean touches, severity 0. The metrics hold the
+breaking points: the severity at which half of the lead over guessing is lost.
 """
 
 import functools
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
 
 import numpy as np
-import pandas as pd
 
 from stages.classification import CLASSIFIERS
+from stages.classification.schema import Params as Classification
+from stages.exploration import SPLITS
 from stages.imprints import read_imprints
-from stages.kit import StageRun, arguments, params
-from stages.kit.run import DATA
+from stages.kit.breaking_point import breaking_point, lead_left
+from stages.kit.command import workspace_of_arguments
+from stages.kit.run import Rows, StageRun
+from stages.kit.workspace import Workspace
 
-from .breaking import breaking_point, lead_left
 from .one_object import process
 from .perturbations import PERTURBATIONS
-from .recognise import NONE
+from .recognition import CLEAN
+from .schema import COLUMNS, Params
 from .trial import trial
 
 
-def summary(rows):
+def summary(rows: Rows) -> dict[str, dict[str, Any]]:
     """{accuracy: {SPLIT.FEATURES.CLASSIFIER}, breaking_point: {....PERTURBATION}}; None where it does not break."""
-    table = pd.DataFrame(rows).dropna(subset=["value"])
-    tree = {"accuracy": {}, "breaking_point": {}}
-    if table.empty:
-        return tree
-    for key, group in table.groupby(["split", "features", "classifier"], sort=False):
-        means = group.groupby(["perturbation", "severity"], sort=False)["value"].mean()
-        clean, chance = means[NONE].iloc[0], group["chance"].iloc[0]
-        tree["accuracy"][".".join(key)] = round(float(clean), 6)
-        for perturbation in dict.fromkeys(group["perturbation"]):
-            if perturbation != NONE:
-                left = lead_left(means[perturbation].to_numpy(), clean, chance)
-                at = breaking_point(list(means[perturbation].index), left, PERTURBATIONS[perturbation].unharmed)
-                tree["breaking_point"][".".join((*key, perturbation))] = round(at, 6) if np.isfinite(at) else None
+    tree: dict[str, dict[str, Any]] = {"accuracy": {}, "breaking_point": {}}
+    values: dict[str, dict[str, dict[float, list[float]]]] = {}  # of each model, perturbation and severity
+    chances = {}
+    for row in rows:
+        if row["value"] is not None:
+            model = ".".join([SPLITS[row["split"]], row["features"], row["classifier"]])
+            by_severity = values.setdefault(model, {}).setdefault(row["perturbation"], {})
+            by_severity.setdefault(row["severity"], []).append(row["value"])
+            chances[model] = row["chance"]
+    for model, by_perturbation in values.items():
+        clean = float(np.mean(by_perturbation.pop(CLEAN)[0.0]))
+        tree["accuracy"][model] = round(clean, 6)
+        for perturbation, by_severity in by_perturbation.items():
+            left = lead_left([np.mean(found) for found in by_severity.values()], clean, chances[model])
+            at = breaking_point(list(by_severity), left.tolist(), PERTURBATIONS[perturbation].unharmed)
+            tree["breaking_point"][f"{model}.{perturbation}"] = round(at, 6) if np.isfinite(at) else None
     return tree
 
 
-def check(settings, sets):
-    """ValueError that names a setting which makes no measurement."""
+def check(settings: Params, sets: Mapping[str, list[str]]) -> None:
+    """Raises ValueError that names a setting with which nothing can be measured."""
     if settings.set not in sets:
         raise ValueError(f"touch_stability.set: no set {settings.set}; classification.sets: {', '.join(sets)}")
     unknown = [name for name in settings.severities if name not in PERTURBATIONS]
@@ -55,37 +64,53 @@ def check(settings, sets):
         raise ValueError(f"touch_stability.classifiers: {', '.join(strange)}; choose from {', '.join(CLASSIFIERS)}")
 
 
-def left_out(settings, objects):
-    """Why the objects cannot be told apart by touch, or None; the touches an object, and the array's width."""
+def left_out(settings: Params, objects: list[str], folder: Path) -> tuple[str | None, int, float]:
+    """(why the objects cannot be recognised by touch, or None; touches per object; the array's width).
+
+    folder: data/SET/imprints.
+    """
     if len(objects) < 2:
-        return f"set {settings.set} left out: at least two objects are needed to tell apart", 0, 0.0
-    missing = [name for name in objects if not (DATA / "imprints" / f"{name}.npz").exists()]
+        return f"set {settings.set} left out: at least two objects are needed", 0, 0.0
+    missing = [name for name in objects if not (folder / f"{name}.npz").exists()]
     if missing:
         return f"set {settings.set} left out: no imprints of {', '.join(missing)}", 0, 0.0
-    found = [read_imprints(DATA / "imprints" / f"{name}.npz").get(settings.method) for name in objects]
-    if None in found:
+    every = [read_imprints(folder / f"{name}.npz") for name in objects]
+    found = [by_method[settings.method] for by_method in every if settings.method in by_method]
+    if len(found) < len(objects):
         return f"set {settings.set} left out: no imprints by {settings.method}", 0, 0.0
     return None, min(len(one.images) for one in found), max(one.width for one in found)
 
 
-def main():
-    arguments(__doc__)
-    settings, sets = params("touch_stability"), params("classification").sets
+def run(workspace: Workspace) -> None:
+    """Runs the stage on the data set of a workspace."""
+    settings, sets = workspace.settings(Params), workspace.settings(Classification).sets
     check(settings, sets)
     objects = sorted(sets[settings.set])
-    with StageRun("touch_stability", inputs=("meshes", "imprints", "salient_points", "lod")) as run:
-        note, count, width = left_out(settings, objects)
+    with StageRun(
+        workspace, "touch_stability", COLUMNS, inputs=("meshes", "imprints", "salient_points", "lod")
+    ) as stage:
+        note, count, width = left_out(settings, objects, workspace.data / "imprints")
         if note:
-            run.rows.append({"object": settings.set, "method": settings.method, "value": None, "note": note})
+            row = {"group": settings.set, "method": settings.method, "metric": "accuracy", "value": None, "note": note}
+            stage.rows.append(row)
         else:
-            run.each(functools.partial(process, settings=settings, count=count, seed=run.seed), objects)
-            work = functools.partial(trial, objects=objects, settings=settings, width=width, seed=run.seed)
-            run.each(work, [f"repetition {number}" for number in range(settings.repetitions)])
-        found = summary(run.rows)
-        run.metrics(found)
+            common = {"settings": settings, "seed": stage.seed}
+            disturb = functools.partial(process, data=workspace.data, count=count, **common)
+            reads = ("meshes/{}.npz", "imprints/{}.npz", "salient_points/{}.npz", "lod/{}")
+            stage.each(disturb, objects, reads)
+            recognise = functools.partial(trial, made=stage.folder, objects=objects, width=width, **common)
+            stage.each(recognise, [f"repetition {number}" for number in range(settings.repetitions)])
+        found = summary(stage.rows)
+        stage.metrics(found)
     broken = sum(value is not None for value in found["breaking_point"].values())
-    print(f"touch_stability: {note or f'{len(objects)} objects, {len(settings.severities)} perturbations'}; "
-          f"{broken} of {len(found['breaking_point'])} break within range")  # fmt: skip
+    measured = note or f"{len(objects)} objects, {len(settings.severities)} perturbations"
+    breaking = f"{broken} of {len(found['breaking_point'])} break within range"
+    print(f"touch_stability: {workspace.dataset}, {measured}; {breaking}")
+
+
+def main() -> None:
+    """Runs the stage on the data set that the command line names."""
+    run(workspace_of_arguments(__doc__, "touch_stability"))
 
 
 if __name__ == "__main__":

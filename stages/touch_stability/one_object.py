@@ -1,53 +1,59 @@
 """All disturbed touches of one object."""
 
+from pathlib import Path
+
 from stages.classification import features
 from stages.imprints import read_imprints
 from stages.kit.files import read_mesh, write_arrays
-from stages.kit.run import DATA
+from stages.kit.run import Rows
 from stages.salient_points import read_saliency
 
 from .perturbations import PERTURBATIONS
-from .recognise import pairs
+from .recognition import perturbation_severities
+from .schema import Params
 from .touches import Touches
 
-DRAWS = 3  # of a perturbation that is a matter of luck; the repetitions take them in turn
-SHOWN = 4  # touches whose imprints are kept for the picture
-SALIENCY = "enhanced"  # what simplification spares, as lod's enhanced-soft
+DRAWS = 3  # of a random perturbation; the repetitions use them in turn
+STORED_IMPRINTS = 4  # touches per perturbation whose imprints are stored for the figure
+SALIENCY = "enhanced"  # detector whose saliency weights the simplification, as lod's enhanced-soft
 
 
-def touches_of(name, settings, count, seed):
-    """The first `count` Touches of an object, with the simplified meshes that are there."""
-    found = read_imprints(DATA / "imprints" / f"{name}.npz")[settings.method]
-    levels = {path.stem: read_mesh(path) for path in sorted((DATA / "lod" / name).glob("*.npz")) if _wanted(path.stem)}
-    saliency = read_saliency(DATA / "salient_points" / f"{name}.npz").get(SALIENCY)
-    mesh, cells = read_mesh(DATA / "meshes" / f"{name}.npz"), found.images.shape[1:]
+def touches_of(name: str, data: Path, settings: Params, count: int, seed: int) -> Touches:
+    """The first `count` Touches of an object, with the simplified meshes that exist. data: data/SET."""
+    found = read_imprints(data / "imprints" / f"{name}.npz")[settings.method]
+    levels = {
+        path.stem: read_mesh(path) for path in sorted((data / "lod" / name).glob("*.npz")) if _is_used_level(path.stem)
+    }
+    saliency = read_saliency(data / "salient_points" / f"{name}.npz").get(SALIENCY)
+    mesh, cells = read_mesh(data / "meshes" / f"{name}.npz"), found.images.shape[1:]
     return Touches(name, mesh, found.vertices[:count], cells, float(found.pitch), saliency, levels, seed)
 
 
-def _wanted(level):
+def _is_used_level(level):
     return level.rpartition("_")[0] in ("qem", "enhanced-soft")
 
 
-def process(name, folder, settings, count, seed):
-    """Makes all disturbed touches of one object; returns a row where a perturbation cannot be had."""
-    touches, rows = touches_of(name, settings, count, seed), []
+def process(name: str, folder: Path, data: Path, settings: Params, count: int, seed: int) -> Rows:
+    """Writes all disturbed touches of one object; returns a row per severity that is not available."""
+    touches, rows = touches_of(name, data, settings, count, seed), []
     kept = {"clean": features(touches.images), "positions": touches.positions}
-    kept["shown.clean"] = touches.images[:SHOWN]
-    for key, severity in pairs(settings.severities):
-        known = PERTURBATIONS[key]
-        for draw in range((DRAWS if known.drawn else 1) if known.disturb else 0):
+    kept["shown.clean"] = touches.images[:STORED_IMPRINTS]
+    for key, severity in perturbation_severities(settings.severities):
+        perturbation = PERTURBATIONS[key]
+        for draw in range(DRAWS if perturbation.random_draws else 1):
+            if perturbation.apply is None:
+                break
             try:
-                felt = known.disturb(touches, severity, draw)
+                perturbed = perturbation.apply(touches, severity, draw)
             except ValueError as error:
                 note = f"{key} {severity:g} left out: {name}: {error}"
-                rows.append(
-                    {"perturbation": key, "severity": severity, "metric": "accuracy", "value": None, "note": note}
-                )
+                where = {"item": name, "perturbation": key, "severity": severity}
+                rows.append(where | {"metric": "accuracy", "value": None, "note": note})
                 break
-            kept[f"{key}.{severity:g}.{draw}"] = features(felt.images)
-            if known.moves:
-                kept[f"{key}.{severity:g}.{draw}.positions"] = felt.positions
+            kept[f"{key}.{severity:g}.{draw}"] = features(perturbed.images)
+            if perturbed.positions is not None:
+                kept[f"{key}.{severity:g}.{draw}.positions"] = perturbed.positions
             if draw == 0:
-                kept[f"shown.{key}.{severity:g}"] = felt.images[:SHOWN]
+                kept[f"shown.{key}.{severity:g}"] = perturbed.images[:STORED_IMPRINTS]
     write_arrays(folder / f"{name}.npz", **kept)
     return rows

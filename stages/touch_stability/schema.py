@@ -2,12 +2,21 @@
 
 from dataclasses import dataclass
 
+COLUMNS = {
+    "features": "imprint: imprints alone; imprint_place: with their positions",
+    "classifier": "a name of stages.classification.CLASSIFIERS",
+    "perturbation": "a name of stages.touch_stability.PERTURBATIONS; none is clean touches",
+    "severity": "in the perturbation's own unit; 0 for clean touches",
+    "repetition": "number of the random split",
+    "chance": "accuracy of guessing",
+}
+
 
 @dataclass
 class Params:
     """Section `touch_stability` of params.yaml."""
 
-    set: str  # the set of classification.sets whose objects are told apart
+    set: str  # the set of classification.sets whose objects are recognised
     method: str  # where they are touched: a method of imprints.methods
     classifiers: list[str]  # names of stages.classification.CLASSIFIERS
     severities: dict[str, list[float]]  # of each perturbation, in its own unit, from mild to harsh

@@ -1,26 +1,30 @@
-"""One repetition: who recognises the disturbed touches, anywhere and on unseen regions."""
+"""One repetition: recognition of disturbed touches, at random places and on unseen regions."""
+
+from pathlib import Path
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
 from stages.exploration import SPLITS
 from stages.kit.files import read_arrays
+from stages.kit.run import Rows
 
 from .one_object import DRAWS
 from .perturbations import PERTURBATIONS
-from .recognise import recognise
+from .recognition import recognition_rows
+from .schema import Params
 
 
-def trial(item, folder, objects, settings, width, seed):
-    """The rows of one repetition, whose number the item's name ends on."""
+def trial(item: str, folder: Path, made: Path, objects: list[str], settings: Params, width: float, seed: int) -> Rows:
+    """The rows of one repetition; the item's name ends with its number. made: the folder of the objects' touches."""
     repetition = int(item.rpartition(" ")[2])
-    stored = [read_arrays(folder / f"{name}.npz") for name in objects]
+    stored = [read_arrays(made / f"{name}.npz") for name in objects]
 
     def gathered(key):
         return np.concatenate([one[key] for one in stored])
 
-    def disturbed(perturbation, severity, features):
-        draw = repetition % DRAWS if PERTURBATIONS[perturbation].drawn else 0
+    def perturbed_features(perturbation, severity, features):
+        draw = repetition % DRAWS if PERTURBATIONS[perturbation].random_draws else 0
         key = f"{perturbation}.{severity:g}.{draw}"
         if not all(key in one for one in stored):
             return None
@@ -29,13 +33,14 @@ def trial(item, folder, objects, settings, width, seed):
     places = gathered("positions")
     clean = {"imprint": gathered("clean"), "imprint_place": np.hstack([gathered("clean"), places])}
     truth = np.repeat(np.arange(len(objects)), len(places) // len(objects))
-    common = {"object": settings.set, "method": settings.method, "repetition": repetition, "chance": 1 / len(objects)}
+    common = {"group": settings.set, "method": settings.method, "repetition": repetition, "chance": 1 / len(objects)}
     rows = []
     with threadpool_limits(1):  # equal sums on any number of cores
         for split in SPLITS:
             given = (places, truth, split, width, settings.severities, settings.classifiers, repetition, seed)
             try:
-                rows += [common | row | {"note": None} for row in recognise(clean, disturbed, *given)]
+                rows += [common | row | {"note": None} for row in recognition_rows(clean, perturbed_features, *given)]
             except ValueError as error:
-                rows.append(common | {"split": split, "value": None, "note": f"set {settings.set}, {split}: {error}"})
+                note = f"set {settings.set}, {split}: {error}"
+                rows.append(common | {"split": split, "metric": "accuracy", "value": None, "note": note})
     return rows

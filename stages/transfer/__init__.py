@@ -1,18 +1,12 @@
-"""From vision to touch: a network that learned on photographs recognises imprints (T chapter 5)."""
+"""From vision to touch: networks trained on photographs classify imprints (T chapter 5)."""
 
-from importlib import import_module
+from stages.kit.lazy import lazy_names
 
-_HOME = {
+_MODULES = {  # public name -> its module
     "HybridNet": "hybrid",
     "Touches": "touches",
     "press_touches": "touches",
     "stratified_split": "split",
 }
-__all__ = list(_HOME)
-
-
-def __getattr__(name):
-    # torch takes seconds to import, and whoever reads only the schema does without it.
-    if name in _HOME:
-        return getattr(import_module(f".{_HOME[name]}", __name__), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+__all__ = list(_MODULES)  # pyright: ignore[reportUnsupportedDunderAll]
+__getattr__ = lazy_names(__name__, _MODULES)

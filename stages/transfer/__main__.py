@@ -1,77 +1,95 @@
 """Lets networks that learned on photographs recognise imprints, beside ones that learned on nothing (T5.2 to T5.4).
 
-Reads data/classes. Presses the touches of every object with a fine and a coarse array, then trains transfer.networks
-from each of transfer.weights in each of transfer.modes, with touches drawn at random for testing and with whole objects
-left out. Writes data/transfer/imprints/NAME.npz, networks/TRIAL.npz (what was trained, of the first repetition),
-predictions/TRIAL.npz, confusion.csv, weight_change.csv (of each convolution) and stability.csv (disturbed touches).
-Stitches hybrid networks for sight and touch (T5.5) of networks that share their middle: data/transfer/hybrid.
+Reads data/SET/meshes and data/SET/salient_points of classes of objects. Presses the touches of every object with a
+fine and a coarse array, then trains transfer.networks from each of transfer.weights, with touches drawn at random for
+testing and with whole objects left out. Writes data/SET/transfer: imprints/NAME.npz, networks/TRIAL.npz (what was
+trained, of the first repetition), predictions/TRIAL.npz, confusion.csv, weight_change.csv (of each convolution) and
+stability.csv (disturbed touches). Stitches hybrid networks for sight and touch (T5.5) of networks that share their
+middle, to data/SET/transfer/hybrid. The rows are in reports/measurements/SET/transfer.csv.gz.
 """
 
+import dataclasses
 import functools
-import shutil
 import sys
 import warnings
+from collections.abc import Mapping, Sequence
+from pathlib import Path
 
-from stages.classes import read_classes
-from stages.kit import StageRun, arguments, params
-from stages.kit.files import write_table
-from stages.kit.run import DATA
+from stages.kit.command import workspace_of_arguments
+from stages.kit.files import read_mesh, write_table
+from stages.kit.run import Rows, StageRun
+from stages.kit.workspace import Workspace
+from stages.meshes.classes import read_classes
 from stages.networks.weights import imagenet_state
 
 from . import hybrid_data, hybrid_trial, touches, trial
-from .plan import check, plan
-from .tables import KNOWN, confusion, sorted_out, summary
-from .touches import touchable_vertices
+from .plan import Plan, check, plan
+from .schema import COLUMNS, Params
+from .tables import confusion, sort_rows, summary
+from .touches import count_touchable_vertices
 
 
-def stitch(run, members, settings):
-    """(rows, metrics) of the hybrid networks, one network for sight and touch each; none where none is wanted."""
-    names = hybrid_trial.trials(settings, members)
-    if not names:
-        return [], {}
-    imagenet_state("mobilenet_v2", settings.source)  # before the work starts, not in each worker
-    look = functools.partial(hybrid_data.process, settings=settings, seed=run.seed)
-    run.each(look, hybrid_data.items(members["random"]))
-    train = functools.partial(hybrid_trial.process, members=members, settings=settings, seed=run.seed)
-    rows = run.each(train, names)
-    write_table(run.folder / "hybrid" / "confusion.csv", hybrid_trial.confusion(run.folder, names, members))
-    return rows, {"hybrid": hybrid_trial.summary(rows, settings, run.seed)}
+def train(
+    name: str, folder: Path, made: Path, members: Mapping[str, Mapping[str, Sequence[str]]], settings: Params, seed: int
+) -> Rows:
+    """Rows of one training, or of one hybrid network."""
+    kind = hybrid_trial if name.startswith("hybrid.") else trial
+    return kind.process(name, folder, made, members, settings, seed)
 
 
-def main():
-    arguments(__doc__)
-    settings, source = params("transfer"), params("classes").source
+def train_all(stage: StageRun, planned: Plan, settings: Params) -> dict[str, dict]:
+    """Presses, trains and stitches what is planned; writes the tables and returns the metrics."""
+    members, data = planned.members, stage.workspace.data
+    objects = [name for names in members["random"].values() for name in names]
+    # What says only which trainings there are is left out: one training more repeats no other.
+    counts = dict.fromkeys(("repetitions", "coarse_repetitions", "hybrid_repetitions"), 0)
+    each = dataclasses.replace(settings, networks={}, weights=[], splits=[], **counts)
+    press = functools.partial(touches.process, data=data, settings=each, seed=stage.seed)
+    stage.each(press, objects, reads=("meshes/{}.npz", "salient_points/{}.npz"))
+    hybrids = hybrid_trial.trials(settings, members)
+    if hybrids:
+        imagenet_state("mobilenet_v2", settings.source)  # before the work starts, not in each worker
+        take = functools.partial(hybrid_data.process, data=data, settings=each, seed=stage.seed)
+        stage.each(take, objects, reads=("meshes/{}.npz",))
+    work = functools.partial(train, made=stage.folder, members=members, settings=each, seed=stage.seed)
+    rows = stage.each(work, [*(one.name for one in planned.trials), *hybrids])
+    plain, disturbed, layers = sort_rows([row for row in rows if "trial" in row], planned.pretrained)
+    stitched = [row for row in rows if "trial" not in row]
+    stage.rows = plain + stitched
+    write_table(stage.folder / "stability.csv", disturbed)
+    write_table(stage.folder / "weight_change.csv", layers)
+    write_table(stage.folder / "confusion.csv", confusion(stage.folder, planned.trials, members))
+    metrics = summary(plain, stage.seed)
+    if hybrids:
+        write_table(stage.folder / "hybrid" / "confusion.csv", hybrid_trial.confusion(stage.folder, hybrids, members))
+        metrics["hybrid"] = hybrid_trial.summary(stitched, settings, stage.seed)
+    return metrics
+
+
+def run(workspace: Workspace) -> None:
+    """Runs the stage on the data set of a workspace."""
+    settings = workspace.settings(Params)
     check(settings)
     # Torch's caches make a worker grow; joblib then renews it between two items, loses none, and warns.
     warnings.filterwarnings("ignore", message="A worker stopped while some jobs")
-    with StageRun("transfer", inputs=("classes",)) as run:
-        run.dataset = source
-        classes = read_classes(DATA / "classes")
-        vertices = {name: touchable_vertices(name) for objects in classes.values() for name in objects}
+    with StageRun(workspace, "transfer", COLUMNS, inputs=("meshes", "salient_points")) as stage:
+        classes = read_classes(workspace.data / "meshes")
+        vertices = {
+            name: count_touchable_vertices(read_mesh(workspace.data / "meshes" / f"{name}.npz"))
+            for objects in classes.values()
+            for name in objects
+        }
         planned = plan(classes, vertices, settings)
-        run.rows = [
-            KNOWN | about | {"metric": "accuracy", "value": None, "note": note} for about, note in planned.notes
-        ]
         for _, note in planned.notes:
             print(f"transfer: {note}", file=sys.stderr)
-        metrics = {}
-        if planned.trials:
-            objects = [name for objects in planned.members["random"].values() for name in objects]
-            run.each(functools.partial(touches.process, settings=settings, seed=run.seed), objects)
-            train = functools.partial(trial.process, members=planned.members, settings=settings, seed=run.seed)
-            notes = list(run.rows)
-            found, disturbed, layers = sorted_out(run.each(train, [one.name for one in planned.trials]), planned.had)
-            stitched, parts = stitch(run, planned.members, settings)
-            run.rows = found + stitched + notes
-            metrics = summary(found, run.seed) | parts
-            write_table(run.folder / "stability.csv", disturbed)
-            write_table(run.folder / "weight_change.csv", layers)
-            write_table(run.folder / "confusion.csv", confusion(run.folder, planned.trials, planned.members))
-            shutil.rmtree(run.folder / trial.UNFINISHED, ignore_errors=True)
-        for row in run.rows:
-            row["object"] = source
-        run.metrics(metrics)
-    print(f"transfer: {len(planned.members['random'])} classes of {source}, {len(planned.trials)} trainings")
+        stage.metrics(train_all(stage, planned, settings) if planned.trials else {})
+        stage.rows += [about | {"metric": "accuracy", "value": None, "note": note} for about, note in planned.notes]
+    print(f"transfer: {workspace.dataset}, {len(planned.members['random'])} classes, {len(planned.trials)} trainings")
+
+
+def main() -> None:
+    """Runs the stage on the data set that the command line names."""
+    run(workspace_of_arguments(__doc__, "transfer"))
 
 
 if __name__ == "__main__":

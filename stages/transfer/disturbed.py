@@ -1,5 +1,6 @@
-"""Imprints as a worse sensor, or a hand less steady, would give them: what the networks did not learn from."""
+"""Perturbations of imprints by a worse sensor or a less steady hand, which are not in the training data."""
 
+from collections.abc import Mapping, Sequence
 from functools import partial
 
 import cv2
@@ -7,15 +8,15 @@ import numpy as np
 
 from stages.imprints import Skin
 
-FEW = "few_touches"  # not the test touches are disturbed: fewer are trained on
+FEW_TOUCHES = "few_touches"  # not a perturbation of the test touches: fewer touches are used for training
 
 
 def _skin(images, severity, random, what):
     return Skin(**{what: severity}, seed=int(random.integers(2**31)))(images)
 
 
-def occlusion(images, severity, random):
-    """A square of the array, `severity` of its area, at a random place, feels nothing: a rag, or a torn wire."""
+def occlusion(images: np.ndarray, severity: float, random: np.random.Generator) -> np.ndarray:
+    """A square of the array, `severity` of its area, at a random position, gives no contact, as with a torn wire."""
     cells = images.shape[1]
     side = min(round(cells * np.sqrt(severity)), cells)
     found = images.copy()
@@ -24,18 +25,18 @@ def occlusion(images, severity, random):
     return found
 
 
-def rotation(images, severity, random):
-    """Each imprint turned about its middle by `severity` degrees, left or right; at the rim its edge goes on."""
+def rotation(images: np.ndarray, severity: float, random: np.random.Generator) -> np.ndarray:
+    """Each imprint rotated about its centre by `severity` degrees to either side; its border pixels are repeated."""
     rows, columns = images.shape[1:]
-    middle, found = ((columns - 1) / 2, (rows - 1) / 2), np.empty_like(images)
+    centre, found = ((columns - 1) / 2, (rows - 1) / 2), np.empty_like(images)
     for i, side in enumerate(random.choice([-1, 1], len(images))):
-        turn = cv2.getRotationMatrix2D(middle, float(side * severity), 1.0)
+        turn = cv2.getRotationMatrix2D(centre, float(side * severity), 1.0)
         found[i] = cv2.warpAffine(images[i], turn, (columns, rows), borderMode=cv2.BORDER_REPLICATE)
     return found
 
 
-def resolution(images, severity, random):
-    """The imprint by an array of `severity` sensels a side, equally wide: each the mean of those it replaces."""
+def resolution(images: np.ndarray, severity: float, random: np.random.Generator) -> np.ndarray:
+    """The imprint of an array as wide with `severity` sensels a side, each the mean of those it replaces."""
     cells = int(severity)
     return np.stack([cv2.resize(image, (cells, cells), interpolation=cv2.INTER_AREA) for image in images])
 
@@ -50,15 +51,14 @@ PERTURBATIONS = {
 }
 
 
-def disturb(images, name, severity, random):
-    """(k, rows, cols) f4 in 0..1: imprints (k, r, c) u1 under one of PERTURBATIONS; random: a numpy generator."""
+def disturb(images: np.ndarray, name: str, severity: float, random: np.random.Generator) -> np.ndarray:
+    """(k, rows, cols) f4 in 0..1: imprints (k, r, c) u1 under one of PERTURBATIONS."""
     return np.clip(PERTURBATIONS[name](images.astype(np.float32) / 255, severity, random), 0, 1).astype(np.float32)
 
 
-def check(severities):
-    """Raises ValueError for a perturbation that is not known."""
-    strange = sorted(set(severities) - {*PERTURBATIONS, FEW})
-    if strange:
-        raise ValueError(
-            f"transfer.severities: {', '.join(strange)} not known, choose of {', '.join((*PERTURBATIONS, FEW))}"
-        )
+def check(severities: Mapping[str, Sequence[float]]) -> None:
+    """Raises ValueError for an unknown perturbation."""
+    unknown = sorted(set(severities) - {*PERTURBATIONS, FEW_TOUCHES})
+    if unknown:
+        known = ", ".join((*PERTURBATIONS, FEW_TOUCHES))
+        raise ValueError(f"transfer.severities: {', '.join(unknown)} not known, choose from {known}")

@@ -7,6 +7,7 @@ import torch
 
 from stages.networks.device import device_of
 from stages.networks.images import MEAN, STD
+from stages.networks.network import Network
 
 from .switch import Switch, present
 
@@ -16,14 +17,14 @@ SENSES = ("vision", "touch")
 
 
 class Scores(NamedTuple):
-    """Scores before the softmax, (b, classes) each, of the two heads; NaN where the head's sense is absent."""
+    """Scores before the softmax, (b, classes) for each head; NaN where the head's sense is absent."""
 
     vision: torch.Tensor
     touch: torch.Tensor
 
 
 class Prediction(NamedTuple):
-    """What was recognised and who said so: label (b,) i8, probability (b,) f4, sense (b,) i8 into SENSES.
+    """The predicted label (b,) i8, its probability (b,) f4, and the sense that decided, (b,) i8 into SENSES.
 
     Where both senses are absent the label and the sense are -1 and the probability is NaN.
     """
@@ -34,21 +35,25 @@ class Prediction(NamedTuple):
 
 
 class HybridNet(torch.nn.Module):
-    """One network for pictures and imprints, of two Networks `mobilenet_v2` that were trained apart (T5.5).
+    """One network for pictures and imprints, of two Networks `mobilenet_v2` that were trained separately (T5.5).
 
-    Six channels in 0..1, (b, 6, h, w): red, green, blue of the picture, then the three of the imprint; an absent sense
-    has zeros there. Split, each stream through its own normalisation and early layers, switched off where its three
-    channels are constant, summed, through the shared middle and then through two late parts with a head each. A head
-    whose sense is absent gives NaN: it saw only what the other sense felt, so its numbers would mean nothing; rows
-    with both senses absent are NaN throughout. Where both are present each head sees the sum of both streams, as in
-    the thesis, who never fed both; `apart` and `predict` keep them apart instead.
+    Input: six channels in 0..1, (b, 6, h, w): red, green and blue of the picture, then the three of the imprint; zeros
+    for an absent sense. Each stream has its own normalisation and early layers and is switched off where its three
+    channels are constant. The streams are summed and pass through the shared middle, then through two late parts with a
+    head each. A head whose sense is absent gives NaN, since its scores would come from the other sense alone. Where
+    both senses are present each head gets the sum of both streams, as in the thesis, which never used both at the same
+    time; `separate_scores` and `predict` keep the streams separate instead.
 
-    vision, touch: Networks whose features[start:stop], of `middle`, are equal; the layers are copied. The network is
-    for prediction alone: it stays in evaluation mode, and nothing of it learns. Raises ValueError for another
-    architecture and for middles that differ, naming the first tensor that does.
+    vision, touch: Networks with equal features[start:stop], of `middle`; the layers are copied. The network is for
+    prediction alone: it stays in evaluation mode and is not trained. Raises ValueError for another architecture, and
+    for middles that differ, naming the first tensor that does.
     """
 
-    def __init__(self, vision, touch, middle=MIDDLE):
+    mean: torch.Tensor
+    std: torch.Tensor
+    temperature: torch.Tensor
+
+    def __init__(self, vision: Network, touch: Network, middle: tuple[int, int] = MIDDLE) -> None:
         super().__init__()
         start, stop = self.middle = _check(vision, touch, middle)
         vision, touch = copy.deepcopy(vision), copy.deepcopy(touch)
@@ -61,27 +66,27 @@ class HybridNet(torch.nn.Module):
         )
         self.register_buffer("mean", torch.tensor(MEAN * 2).view(6, 1, 1))
         self.register_buffer("std", torch.tensor(STD * 2).view(6, 1, 1))
-        self.register_buffer("temperature", torch.ones(2))  # of each head's softmax; stages.transfer.fusion finds it
+        self.register_buffer("temperature", torch.ones(2))  # of each head's softmax, from stages.transfer.fusion
         self.requires_grad_(False).eval().to(device_of(vision))
 
-    def forward(self, images):
+    def forward(self, images: torch.Tensor) -> Scores:
         """Scores of images (b, 6, h, w) in 0..1."""
         shared = self.shared(self._stream(images, 0) + self._stream(images, 1))
         return Scores(*(self._head(images, shared, sense) for sense in range(2)))
 
-    def apart(self, images):
-        """Scores as forward gives them, but each head sees its own stream alone, even where both senses are present."""
+    def separate_scores(self, images: torch.Tensor) -> Scores:
+        """Scores like those of forward, but each head gets its own stream alone, even where both senses are present."""
         return Scores(*(self._head(images, self.shared(self._stream(images, sense)), sense) for sense in range(2)))
 
     @torch.no_grad()
-    def predict(self, images):
-        """Prediction for images (b, 6, h, w): the surer of the senses that are present, of equals vision.
+    def predict(self, images: torch.Tensor) -> Prediction:
+        """Prediction for images (b, 6, h, w) by the more confident of the present senses, of equals vision.
 
-        Sure is the higher probability after each head's `temperature`. Raises ValueError for images of another shape
-        and for values that are not in 0..1.
+        Confidence is the highest probability after each head's `temperature`. Raises ValueError for images of another
+        shape and for values that are not in 0..1.
         """
         check_images(images)
-        scaled = [scores / t for scores, t in zip(self.apart(images), self.temperature, strict=True)]
+        scaled = [scores / t for scores, t in zip(self.separate_scores(images), self.temperature, strict=True)]
         best = torch.stack([scores.softmax(dim=1).amax(dim=1).nan_to_num(nan=-1) for scores in scaled])
         probability, sense = best.max(dim=0)
         labels = torch.stack([scores.argmax(dim=1) for scores in scaled])
@@ -92,9 +97,10 @@ class HybridNet(torch.nn.Module):
         )
 
     @property
-    def classes(self):
-        """Number of classes of (vision's head, touch's head)."""
-        return tuple(late[-1][-1].out_features for late in self.late)
+    def classes(self) -> tuple[int, int]:
+        """The numbers of classes of the heads of (vision, touch)."""
+        # the items of a ModuleList are typed as Module
+        return tuple(late[-1][-1].out_features for late in self.late)  # pyright: ignore
 
     def _own(self, images, sense):
         return images[:, 3 * sense : 3 * sense + 3]
@@ -105,22 +111,23 @@ class HybridNet(torch.nn.Module):
         return self.switch(own, self.early[sense](normal))
 
     def _head(self, images, shared, sense):
-        there = present(self._own(images, sense))
-        return self.late[sense](shared).where(there[:, None], torch.nan)
+        available = present(self._own(images, sense))
+        return self.late[sense](shared).where(available[:, None], torch.nan)
 
 
-def join(pictures, imprints):
-    """(b, 6, h, w) f4: what a HybridNet takes, of images (b, 3, h, w) of each sense; None is an absent one."""
-    if pictures is None and imprints is None:
+def join_senses(pictures: torch.Tensor | None, imprints: torch.Tensor | None) -> torch.Tensor:
+    """(b, 6, h, w) f4: the input of a HybridNet from images (b, 3, h, w) of each sense; None for an absent sense."""
+    present_sense = imprints if pictures is None else pictures
+    if present_sense is None:
         raise ValueError("one of the two senses must be given")
-    pictures = torch.zeros_like(imprints) if pictures is None else pictures
-    imprints = torch.zeros_like(pictures) if imprints is None else imprints
+    pictures = torch.zeros_like(present_sense) if pictures is None else pictures
+    imprints = torch.zeros_like(present_sense) if imprints is None else imprints
     if pictures.shape != imprints.shape:
         raise ValueError(f"both senses need equal shapes, got {tuple(pictures.shape)} and {tuple(imprints.shape)}")
     return torch.cat([pictures, imprints], dim=1)
 
 
-def check_images(images):
+def check_images(images: torch.Tensor) -> None:
     """Raises ValueError unless images are (b, 6, h, w) with finite values in 0..1."""
     if images.ndim != 4 or images.shape[1] != 6 or 0 in images.shape:
         raise ValueError(f"images must have shape (b, 6, h, w) and not be empty, got {tuple(images.shape)}")
@@ -135,7 +142,7 @@ def _check(vision, touch, middle):
     for sense, network in zip(SENSES, (vision, touch), strict=True):
         found = len(getattr(network, "convolutions", ()))
         if found != LAYERS:
-            raise ValueError(f"{sense} is no mobilenet_v2: its convolutions have {found} parts instead of {LAYERS}")
+            raise ValueError(f"{sense} is not a mobilenet_v2: its convolutions have {found} parts instead of {LAYERS}")
     other = touch.convolutions[start:stop].state_dict()
     for key, value in vision.convolutions[start:stop].state_dict().items():
         if "num_batches_tracked" in key:  # a counter that nothing in evaluation mode reads

@@ -1,40 +1,53 @@
-"""The hybrid network beside the two it was made of: accuracy, equality, size, calibration, and as ONNX (T5.5)."""
+"""The hybrid network compared with its two parent networks: accuracy, size, calibration, and as ONNX (T5.5)."""
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
 
 import numpy as np
 
 from stages.kit.files import write_arrays
 from stages.networks.device import device_of
 from stages.networks.images import normalise
-from stages.networks.network import parameters
+from stages.networks.network import Network, count_parameters
 
 from . import fusion
-from .hybrid import SENSES
+from .hybrid import SENSES, HybridNet
+from .hybrid_data import SenseData
 from .hybrid_file import load, save, state_arrays
-from .hybrid_scores import in_parts, lone, row, scored
+from .hybrid_scores import in_batches, row, sense_scores, single_sense
 from .onnx_export import export_onnx, onnx_scores
-from .smaller import KINDS
+from .precision import PRECISIONS
+from .schema import Params
 
 
-def compared(hybrid, networks, senses, seconds, name, folder, classes):
-    """Rows of the two networks, of the hybrid and of its smaller kinds: accuracy, equality, size, calibration."""
+def comparison_rows(
+    hybrid: HybridNet,
+    networks: Sequence[Network],
+    senses: Sequence[SenseData],
+    seconds: Sequence[float],
+    name: str,
+    folder: Path,
+    classes: Sequence[str],
+) -> Iterator[dict]:
+    """Rows of the two networks, the hybrid and its versions of lower precision: accuracy, size, calibration."""
     paths = folder / "hybrid" / "networks"
     tested = {}
     for kind, (sense, network) in enumerate(zip(senses, networks, strict=True)):
-        own = in_parts(lambda part, n=network: n(normalise(part)), sense.images[sense.test], device_of(network))
-        tested[kind] = scored(hybrid, sense.images[sense.test], kind)
+        own = in_batches(lambda part, n=network: n(normalise(part)), sense.images[sense.test], device_of(network))
+        tested[kind] = sense_scores(hybrid, sense.images[sense.test], kind)
         write_arrays(paths / f"{name}.{kind}.npz", **state_arrays(network))
         yield row(SENSES[kind], "accuracy", fusion.accuracy(own, sense.labels[sense.test]), kind, seconds[kind])
         yield row("hybrid", "max_difference", float(np.nanmax(np.abs(own - tested[kind]))), kind)
-        yield from calibrated(tested[kind], sense.labels[sense.test], kind, float(hybrid.temperature[kind]))
+        yield from calibration_rows(tested[kind], sense.labels[sense.test], kind, float(hybrid.temperature[kind]))
     own = [paths / f"{name}.{kind}.npz" for kind in range(2)]
     apart = sum(path.stat().st_size for path in own)
     for kind, path in enumerate(own):
         yield row(SENSES[kind], "size_bytes", path.stat().st_size, kind)
-        yield row(SENSES[kind], "parameters", parameters(networks[kind]), kind)
+        yield row(SENSES[kind], "parameters", count_parameters(networks[kind]), kind)
         path.unlink()
-    yield row("hybrid", "parameters", parameters(hybrid))
-    yield row("hybrid", "parameter_ratio", sum(map(parameters, networks)) / parameters(hybrid))
-    for number in reversed(KINDS):  # float32 last: it is the file that stays
+    yield row("hybrid", "parameters", count_parameters(hybrid))
+    yield row("hybrid", "parameter_ratio", sum(map(count_parameters, networks)) / count_parameters(hybrid))
+    for number in reversed(PRECISIONS):  # float32 last, whose file is kept
         save(paths / f"{name}.npz", hybrid, classes, number)
         size = (paths / f"{name}.npz").stat().st_size
         method = "hybrid" if number == "float32" else f"hybrid_{number}"
@@ -42,7 +55,7 @@ def compared(hybrid, networks, senses, seconds, name, folder, classes):
         yield row(method, "size_bytes", size)
         yield row(method, "size_ratio", apart / size)
         for kind, sense in enumerate(senses):
-            scores = scored(loaded, sense.images[sense.test], kind)
+            scores = sense_scores(loaded, sense.images[sense.test], kind)
             yield row(method, "accuracy", fusion.accuracy(scores, sense.labels[sense.test]), kind)
     write_arrays(
         folder / "hybrid" / "predictions" / f"{name}.npz",
@@ -52,26 +65,26 @@ def compared(hybrid, networks, senses, seconds, name, folder, classes):
     )
 
 
-def calibrated(scores, labels, kind, temperature):
+def calibration_rows(scores: np.ndarray, labels: np.ndarray, kind: int, temperature: float) -> Iterator[dict]:
     """Rows of a head's temperature and of its calibration error without it and with it."""
     yield row("hybrid", "temperature", temperature, kind)
     for metric, value in (("calibration_error_raw", 1.0), ("calibration_error", temperature)):
         yield row("hybrid", metric, fusion.calibration_error(fusion.probabilities(scores, value), labels), kind)
 
 
-def exported(hybrid, senses, settings, path):
-    """Rows on the network as ONNX, over all test items: the largest difference of a score, and how often they agree.
+def onnx_rows(hybrid: HybridNet, senses: Sequence[SenseData], settings: Params, path: Path) -> Iterator[dict]:
+    """Rows of the network as ONNX over all test items: the largest difference of a score, and the agreement of classes.
 
-    The difference is infinite where one has an answer and the other, for want of that sense, has none.
+    The difference is infinite where only one of them treats a sense as absent.
     """
     export_onnx(path, hybrid, settings.size)
     worst, agree = 0.0, []
     for kind, sense in enumerate(senses):
-        own = scored(hybrid, sense.images[sense.test], kind)
-        found = onnx_scores(path, lone(sense.images[sense.test], kind))[kind]
-        silent = np.isnan(own)
-        equal = np.array_equal(np.isnan(found), silent)
-        worst = max(worst, float(np.abs(found - own)[~silent].max(initial=0)) if equal else np.inf)
+        own = sense_scores(hybrid, sense.images[sense.test], kind)
+        found = onnx_scores(path, single_sense(sense.images[sense.test], kind))[kind]
+        absent = np.isnan(own)
+        equal = np.array_equal(np.isnan(found), absent)
+        worst = max(worst, float(np.abs(found - own)[~absent].max(initial=0)) if equal else np.inf)
         agree += list(found.argmax(axis=1) == own.argmax(axis=1))
     yield row("hybrid_onnx", "max_difference", worst)
     yield row("hybrid_onnx", "agreement", float(np.mean(agree)))

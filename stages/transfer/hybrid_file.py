@@ -2,6 +2,7 @@
 
 import json
 import zipfile
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -11,32 +12,32 @@ from stages.kit.files import read_arrays, write_arrays
 from stages.networks import build
 
 from .hybrid import SENSES, HybridNet
-from .smaller import KINDS
+from .precision import PRECISIONS
 
 ARCHITECTURE = "hybrid_mobilenet_v2"
 HEADER = "header"  # the array with the JSON text
 
 
-def save(path, network, classes, kind="float32"):
-    """Writes a HybridNet to an .npz with its header: architecture, senses, classes, middle, kind of numbers.
+def save(path: Path, network: HybridNet, classes: Sequence[str], precision: str = "float32") -> None:
+    """Writes a HybridNet to an .npz with a header: architecture, senses, classes, middle, precision.
 
-    classes: their names, in the order of both heads. kind: `float32` keeps every bit; `float16` and `int8` are the
-    smaller ones of stages.transfer.smaller. Equal networks give equal bytes. Raises ValueError for another number of
-    names than the heads have classes, or an unknown kind.
+    classes: their names, in the order of both heads. precision: one of stages.transfer.precision.PRECISIONS; `float32`
+    is exact. Equal networks give equal bytes. Raises ValueError for another number of names than the heads have
+    classes, or an unknown precision.
     """
     if network.classes != (len(classes),) * 2:
         raise ValueError(f"{len(classes)} names of classes for heads of {network.classes} classes")
-    if kind not in KINDS:
-        raise ValueError(f"unknown kind of numbers {kind!r}, known: {', '.join(KINDS)}")
+    if precision not in PRECISIONS:
+        raise ValueError(f"unknown precision {precision!r}, known: {', '.join(PRECISIONS)}")
     header = {"architecture": ARCHITECTURE, "senses": SENSES, "classes": list(classes), "middle": network.middle}
-    arrays = KINDS[kind].pack(state_arrays(network))
-    write_arrays(path, **{HEADER: np.array(json.dumps(header | {"kind": kind}))}, **arrays)
+    arrays = PRECISIONS[precision].pack(state_arrays(network))
+    write_arrays(path, **{HEADER: np.array(json.dumps(header | {"kind": precision}))}, **arrays)
 
 
-def load(path):
-    """(HybridNet, names of its classes) of a file that `save` wrote; of a smaller kind with its weights unpacked.
+def load(path: Path) -> tuple[HybridNet, list[str]]:
+    """(HybridNet, names of its classes) from a file that `save` wrote, with the weights unpacked to float32.
 
-    Raises ValueError, saying what was found, for a file that is none, is damaged or holds another architecture.
+    Raises ValueError for another file, a damaged one or another architecture.
     """
     header, arrays = _read(path)
     try:
@@ -44,22 +45,22 @@ def load(path):
         classes = [str(name) for name in header["classes"]]
         network = build("mobilenet_v2", len(classes), "random", 0)
         hybrid = HybridNet(network, network, (start, stop))
-        state = {key: torch.from_numpy(value) for key, value in KINDS[header["kind"]].unpack(arrays).items()}
+        state = {key: torch.from_numpy(value) for key, value in PRECISIONS[header["kind"]].unpack(arrays).items()}
         hybrid.load_state_dict(state)
     except (KeyError, TypeError, ValueError, RuntimeError) as error:
         raise ValueError(f"{path} does not hold the network its header names: {str(error).splitlines()[0]}") from None
     return hybrid, classes
 
 
-def state_arrays(network):
-    """Dict of contiguous arrays of a module's state, without the counters that nothing in evaluation mode reads."""
+def state_arrays(network: torch.nn.Module) -> dict[str, np.ndarray]:
+    """The state of a module as contiguous arrays, without the batch counters, which evaluation mode does not use."""
     state = {key: value for key, value in network.state_dict().items() if not key.endswith("num_batches_tracked")}
     return {key: np.ascontiguousarray(value.cpu().numpy()) for key, value in state.items()}
 
 
 def _read(path):
     if Path(path).exists() and not zipfile.is_zipfile(path):
-        raise ValueError(f"{path} holds no hybrid network: it is no .npz file")
+        raise ValueError(f"{path} holds no hybrid network: it is not an .npz file")
     try:
         arrays = read_arrays(path)
         header = json.loads(str(arrays.pop(HEADER)))

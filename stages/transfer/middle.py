@@ -1,13 +1,13 @@
-"""The middle of a network that two share, in the numbers of either library (T5.5)."""
+"""The shared middle of two networks, in the layer numbers of Matlab and torchvision (T5.5)."""
 
 from stages.networks.layers import frozen_modules
 from stages.networks.network import build
 
 
-def middle_of(layers):
+def middle_of(layers: str) -> tuple[int, int]:
     """(start, stop) of the parts of torchvision's `features` that a range of Matlab's layers such as `18:139` covers.
 
-    Raises ValueError for a range that cuts a part in two or leaves no part before it or behind it: streams cannot be
+    Raises ValueError for a range that divides a part, or that leaves none before or after it: networks cannot be
     stitched there.
     """
     network = build("mobilenet_v2", 2, "random", 0)

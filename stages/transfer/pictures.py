@@ -1,4 +1,6 @@
-"""Sight of the objects that are touched: pictures of their meshes from all round (T5.5)."""
+"""Pictures of the touched objects: renderings of their meshes from all sides (T5.5)."""
+
+from collections.abc import Sequence
 
 import numpy as np
 import torch
@@ -6,46 +8,46 @@ from kornia import augmentation as kornia_augmentation
 from kornia.augmentation import AugmentationSequential
 
 from stages.kit import Mesh, Viewpoint
-from stages.networks.images import SCALE, SHIFT, one_size
+from stages.networks.images import SCALE, SHIFT, check_one_size
 from stages.views import render
 
-ELEVATIONS = (-10.0, 60.0)  # degrees: an object on a table, seen by somebody who sits or stands; none from below
-SAMPLES = 3  # rays a pixel and side; their mean is the pixel, so that thin legs are grey instead of dotted
+ELEVATIONS = (-10.0, 60.0)  # degrees: an object on a table, seen by a person who sits or stands, and never from below
+SAMPLES = 3  # rays per pixel and side; the pixel is their mean, so that thin parts are grey instead of dotted
 
 
-def viewpoints(count, generator):
-    """`count` Viewpoints all round an upright object: azimuths evenly spaced from a random start, elevations drawn.
+def viewpoints(count: int, generator: np.random.Generator) -> list[Viewpoint]:
+    """`count` Viewpoints around an upright object: azimuths evenly spaced from a random start, elevations random.
 
-    Elevations are uniform in their sine, so that equal areas of the sphere get equally many views.
+    Elevations are uniform in their sine, so that viewpoints are uniform on the sphere.
     """
     if count < 1:
-        raise ValueError(f"one picture or more, got {count}")
+        raise ValueError(f"the number of pictures must be 1 or more, got {count}")
     azimuths = (360 * np.arange(count) / count + 360 * generator.random()) % 360
     low, high = np.sin(np.radians(ELEVATIONS))
     elevations = np.degrees(np.arcsin(generator.uniform(low, high, count)))
     return [Viewpoint(float(a), float(e)) for a, e in zip(azimuths, elevations, strict=True)]
 
 
-def take_pictures(mesh, views, size, colour=False):
-    """(k, size, size, 3) u1: the normalised mesh from k Viewpoints, on white, as a photograph of a catalogue.
+def take_pictures(mesh: Mesh, views: Sequence[Viewpoint], size: int, colour: bool = False) -> np.ndarray:
+    """(k, size, size, 3) u1: the normalised mesh from k Viewpoints on a white background.
 
-    Grey clay unless `colour`: colours would tell two objects apart that have one shape. The ray caster draws, so that
-    a picture is the same on every machine.
+    Grey unless `colour`, since colours would distinguish objects of the same shape. Rendered by the ray caster, so that
+    pictures are equal on every machine.
     """
-    shown = mesh if colour else Mesh(mesh.vertices, mesh.faces)
+    rendered = mesh if colour else Mesh(mesh.vertices, mesh.faces)
     fine = (size * SAMPLES, size * SAMPLES)
-    taken = [render(shown, view, fine, renderer="raycast", background="white").rgb for view in views]
+    taken = [render(rendered, view, fine, renderer="raycast", background="white").rgb for view in views]
     blocks = np.stack(taken).reshape(-1, size, SAMPLES, size, SAMPLES, 3)
     return np.rint(blocks.mean(axis=(2, 4))).astype(np.uint8)
 
 
-def picture_images(pictures, size):
-    """Images (k, 3, size, size) f4 in 0..1 of pictures (k, h, w, 3), u1 or floats in 0..1; resized where they must be.
+def picture_images(pictures: np.ndarray, size: int) -> torch.Tensor:
+    """Images (k, 3, size, size) f4 in 0..1 of pictures (k, h, w, 3), u1 or floats in 0..1; resized where needed.
 
-    Bilinearly, with an anti-alias filter where they shrink. Raises ValueError for another shape, values out of range or
-    NaN, and for several sizes.
+    Resizing is bilinear, with an anti-aliasing filter where they shrink. Raises ValueError for another shape, values
+    out of range or NaN, and for several sizes.
     """
-    one_size(pictures)
+    check_one_size(pictures)
     images = torch.as_tensor(pictures)
     if images.ndim != 4 or images.shape[3] != 3 or 0 in images.shape:
         raise ValueError(f"pictures must have shape (k, h, w, 3) and not be empty, got {tuple(images.shape)}")
@@ -58,8 +60,8 @@ def picture_images(pictures, size):
     return images
 
 
-def picture_augmentation():
-    """Random reflection (left and right alone: things stand upright), translation and scaling of pictures in 0..1."""
+def picture_augmentation() -> AugmentationSequential:
+    """Random reflection (left to right, since objects are upright), translation and scaling of pictures in 0..1."""
     return AugmentationSequential(
         kornia_augmentation.RandomHorizontalFlip(p=0.5),
         kornia_augmentation.RandomAffine(

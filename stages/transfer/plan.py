@@ -1,23 +1,25 @@
-"""Which trainings there are to run, and what has to be left out, with the reason."""
+"""The trainings of a run, and what is left out, with the reason."""
 
 import itertools
-from typing import NamedTuple
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple, Self
 
 from stages.kit.fetch import FetchError
-from stages.networks.device import choose
-from stages.networks.layers import is_range, parse
+from stages.networks.device import choose_device
+from stages.networks.layers import is_range, parse_range
 from stages.networks.modes import MODES
-from stages.networks.network import NETWORKS, START
-from stages.networks.weights import had, imagenet_state
+from stages.networks.network import NETWORKS, WEIGHTS
+from stages.networks.weights import available_weights, imagenet_state
 
 from . import disturbed, hybrid_damage
 from .middle import middle_of
+from .schema import Params
 from .split import SPLITS
-from .touches import arrays
+from .touches import sensor_arrays
 
 
 class Trial(NamedTuple):
-    """What one training is; its name is DATA.NETWORK.WEIGHTS.MODE.SPLIT.REPETITION, a range with - for its colon."""
+    """The settings of one training; its name is DATA.NETWORK.WEIGHTS.MODE.SPLIT.REPETITION, with - for a colon."""
 
     data: str
     network: str
@@ -27,67 +29,76 @@ class Trial(NamedTuple):
     repetition: int
 
     @property
-    def name(self):
+    def name(self) -> str:
         return ".".join(map(str, self)).replace(":", "-")
 
     @classmethod
-    def parse(cls, name):
-        """The trial of a name."""
+    def parse(cls, name: str) -> Self:
+        """The trial with this name."""
         data, network, weights, mode, split, repetition = name.split(".")
         return cls(data, network, weights, mode.replace("-", ":"), split, int(repetition))
 
 
 class Plan(NamedTuple):
-    """What a run does.
+    """The trainings of a run.
 
-    trials: all trainings. members: {split: {class: its objects}} that take part. had: {network: which ImageNet weights
-    it has}. notes: (what the row is about, one sentence) for all that is left out.
+    trials: all trainings. members: {split: {class: its objects}} that take part. pretrained: {network: which of its
+    ImageNet weights are available}. notes: (columns of the row, one sentence) for everything that is left out.
     """
 
     trials: list[Trial]
     members: dict[str, dict[str, list[str]]]
-    had: dict[str, str]
+    pretrained: dict[str, str | None]
     notes: list[tuple[dict, str]]
 
 
-def check(settings):
-    """Raises ValueError, naming the setting and what is known, for what cannot be run."""
-    for key, known in (("weights", START), ("splits", SPLITS), ("networks", tuple(NETWORKS))):
-        strange = sorted(set(getattr(settings, key)) - set(known))
-        if strange or not getattr(settings, key):
-            raise ValueError(f"transfer.{key}: {', '.join(strange) or 'none'} not known, choose of {', '.join(known)}")
-    strange = sorted(mode for mode in settings.modes if mode not in MODES and not is_range(mode))
-    if strange or not settings.modes:
-        known = f"{', '.join(MODES)}, or ranges of mobilenet_v2's layers such as 18:139"
-        raise ValueError(f"transfer.modes: {', '.join(strange) or 'none'} not known, choose of {known}")
-    for mode in filter(is_range, settings.modes):
-        parse(mode)
+def check(settings: Params) -> None:
+    """Raises ValueError, which names the setting and its possible values, for settings that cannot be run."""
+    for key, known in (("weights", WEIGHTS), ("splits", SPLITS), ("networks", tuple(NETWORKS))):
+        unknown = sorted(set(getattr(settings, key)) - set(known))
+        if unknown or not getattr(settings, key):
+            raise ValueError(
+                f"transfer.{key}: {', '.join(unknown) or 'none'} not known, choose from {', '.join(known)}"
+            )
+    for network, modes in settings.networks.items():
+        _check_modes(network, modes)
     if min(settings.repetitions, settings.coarse_repetitions, settings.cells, *settings.coarse_cells) < 1:
         raise ValueError("transfer: repetitions and cells, the coarse ones too, must be 1 or more")
-    choose(settings.device)
+    choose_device(settings.device)
     disturbed.check(settings.severities)
     hybrid_damage.check(settings.hybrid_severities)
     for layers in settings.hybrid_middles:
         middle_of(layers)
 
 
-def plan(classes, vertices, settings):
-    """The Plan for classes {class: its objects}. vertices: {object: how many of its vertices can be touched}.
+def _check_modes(network: str, modes: Sequence[str]) -> None:
+    """Raises ValueError for a mode that a network does not have; only mobilenet_v2 has ranges of layers."""
+    ranges = [mode for mode in modes if is_range(mode) and network == "mobilenet_v2"]
+    unknown = [mode for mode in modes if mode not in (*MODES, *ranges)]
+    if unknown or not modes:
+        known = f"{', '.join(MODES)}, or for mobilenet_v2 ranges of layers such as 18:139"
+        raise ValueError(f"transfer.networks.{network}: {', '.join(unknown) or 'none'} not known, choose from {known}")
+    for mode in ranges:
+        parse_range(mode)
 
-    All kinds of weights and modes on the first data, in every split; on the others, which are there for the
-    resolution, ImageNet's weights alone and no range of layers. A range of layers has no control. No trials where less
-    than two classes are left.
+
+def plan(classes: Mapping[str, Sequence[str]], vertices: Mapping[str, int], settings: Params) -> Plan:
+    """The Plan for classes {class: its objects}. vertices: {object: number of vertices that can be touched}.
+
+    On the first data all weights and all modes of each network are trained, in every split. On the others, which are
+    for comparing resolutions, only ImageNet's weights and no range of layers. A range of layers has no control. There
+    are no trials where fewer than two classes are left.
     """
     members, notes = _members(classes, vertices, settings.touches)
     if len(members["random"]) < 2:
         note = (
-            f"two classes or more are needed, got {', '.join(members['random']) or 'none'}: add some to classes.names"
+            f"two classes or more are needed, got {', '.join(members['random']) or 'none'}: add some to meshes.classes"
         )
         return Plan([], members, {}, [*notes, ({}, note)])
-    found, left_out = weights_of(settings)
+    found, left_out = fetch_weights(settings)
     splits = [split for split in settings.splits if len(members[split]) > 1]
     if "objects" in settings.splits and "objects" not in splits:
-        left_out.append(({"split": "objects"}, "less than two classes can spare an object: none is left out"))
+        left_out.append(({"split": "objects"}, "fewer than two classes have a second object: none is left out"))
     trials = []
     for kind in _kinds(settings, found):
         count = settings.repetitions if kind[0] == main_data(settings) else settings.coarse_repetitions
@@ -95,46 +106,45 @@ def plan(classes, vertices, settings):
     return Plan(trials, members, found, notes + left_out)
 
 
-def main_data(settings):
-    """The data that everything is measured on: the finest array's."""
-    return next(iter(arrays(settings)))
+def main_data(settings: Params) -> str:
+    """The data on which everything is measured: the imprints of the first, finest array."""
+    return next(iter(sensor_arrays(settings)))
 
 
-def weights_of(settings):
-    """({network: which ImageNet weights it had}, notes on those that cannot be fetched); fetches what is missing."""
+def fetch_weights(settings: Params) -> tuple[dict[str, str | None], list[tuple[dict, str]]]:
+    """({network: which of its ImageNet weights are available}, notes on the others); fetches what is missing."""
     if "imagenet" not in settings.weights:
         return dict.fromkeys(settings.networks), []
     found, notes = {}, []
     for network in settings.networks:
         try:
             imagenet_state(network, settings.source)  # before the work starts, not in each worker
-            found[network] = had(network, settings.source)
+            found[network] = available_weights(network, settings.source)
         except FetchError as error:
             notes.append(({"method": network}, f"{network} left out, no weights: {error}"))
     return found, notes
 
 
 def _kinds(settings, networks):
-    """(data, network, weights, mode) of all that is trained."""
+    """(data, network, weights, mode) of all trainings."""
     first = main_data(settings)
-    for data, network, weights, mode in itertools.product(arrays(settings), networks, settings.weights, settings.modes):
-        ranged = is_range(mode)
-        extra = weights == "random" or ranged
-        if (extra and data != first) or (ranged and (weights == "random" or network != "mobilenet_v2")):
-            continue
-        yield data, network, weights, mode
+    for data, network, weights in itertools.product(sensor_arrays(settings), networks, settings.weights):
+        for mode in settings.networks[network]:
+            control, ranged = weights == "random", is_range(mode)
+            if not (control and ranged) and (data == first or not (control or ranged)):
+                yield data, network, weights, mode
 
 
 def _members(classes, vertices, touches):
-    """({split: {class: its objects}}, notes); an object without vertices enough for its touches cannot take part."""
+    """({split: {class: its objects}}, notes); an object with fewer vertices than touches cannot take part."""
     kept, notes = {}, []
     for name, objects in classes.items():
-        poor = [one for one in objects if vertices.get(one, 0) < touches]
+        small = [one for one in objects if vertices.get(one, 0) < touches]
         notes += [
             ({}, f"class {name}: {one} left out, {vertices.get(one, 0)} vertices can be touched, not {touches}")
-            for one in poor
+            for one in small
         ]
-        left = [one for one in objects if one not in poor]
+        left = [one for one in objects if one not in small]
         if left:
             kept[name] = left
         else:

@@ -2,18 +2,30 @@
 
 from dataclasses import dataclass
 
+COLUMNS = {
+    "data": "imprints128, imprints16: the array of that many sensels a side; hybrid: pictures and imprints",
+    "weights": "what the network starts from: imagenet or random",
+    "pretrained": "which of the ImageNet weights are available; empty for random ones",
+    "mode": "what learns: frozen, finetuned, or all layers but a range",
+    "repetition": "the number of the split and of its random numbers",
+    "sense": "of a hybrid network: vision, touch or both",
+    "perturbation": "what was disturbed in the input of a hybrid network",
+    "severity": "how much, in the perturbation's unit",
+}
+
 
 @dataclass
 class Params:
+    """Section `transfer` of params.yaml."""
+
     touches: int  # imprints an object: its salient points first, then blind ones
-    detector: str  # which salient points come first, one of classes.methods
+    detector: str  # which salient points come first, one of salient_points.methods
     cells: int  # sensels a side of the pressure array
     pitch: float  # distance of two sensels; times cells it is the sensor's width, 1 is the object's diameter
     coarse_cells: list[int]  # sensels a side of other arrays, as wide: no control, no range of layers, no stability
-    networks: list[str]  # architectures, names of stages.networks.NETWORKS
+    networks: dict[str, list[str]]  # network: what learns, the new head (frozen), all (finetuned), all but a range
     weights: list[str]  # start from imagenet, or from random as the control
     source: str  # where ImageNet's weights come from: package (by hash), download (torchvision's) or auto
-    modes: list[str]  # frozen: only the new head learns; finetuned: all layers; 18:139: all but those of mobilenet_v2
     splits: list[str]  # random: touches are drawn for testing (T5.1.3); objects: one object of each class is left out
     size: int  # pixels a side of the image that the network sees
     copies: int  # augmented copies of each image whose frozen features are cached
@@ -31,7 +43,7 @@ class Params:
     severities: dict[str, list[float]]  # of each perturbation of the test touches, from mild to harsh
     hybrid_middles: list[str]  # layers that both senses share in a hybrid network; damage is tried on the first
     hybrid_repetitions: int  # hybrid networks a split; 0: none
-    hybrid_pictures: int  # looks at each object
+    hybrid_pictures: int  # pictures of each object
     hybrid_colour: bool  # pictures in the objects' colours, which may give them away; else grey clay
     hybrid_rate: float  # learning rate of its two networks
     hybrid_onnx: bool  # also write the first network as ONNX

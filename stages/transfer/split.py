@@ -1,61 +1,50 @@
-"""Which touches train and which test: drawn at random, as in the thesis, or those of whole objects left out."""
-
-from typing import NamedTuple
+"""The division into training and test touches: at random, as in the thesis, or by objects that are left out."""
 
 import numpy as np
+
+from stages.kit.holdout import Split
 
 SPLITS = ("random", "objects")
 
 
-class Split(NamedTuple):
-    """Sorted ids of touches: train and test are disjoint and hold all; check is a part of train to choose rates on."""
+def by_touches(objects: np.ndarray, train_share: float, validation_share: float, rng: np.random.Generator) -> Split:
+    """The Split with a share of every object's touches for training, and the rest for testing.
 
-    train: np.ndarray
-    check: np.ndarray
-    test: np.ndarray
-
-    @property
-    def fit(self):
-        """The part of train that is not in check."""
-        return np.setdiff1d(self.train, self.check)
-
-
-def by_touches(objects, train_share, check_share, rng):
-    """A share of every object's touches trains, the rest tests; check is a share of those that train.
-
-    objects: (k,) i8, which object each touch is of. The thesis splits touches at random, 75 % to 25 % (T5.1.3), and so
-    does this: touches of one object, neighbours even, lie on both sides, so a result says how well a known object is
-    recognised, not how well an unseen one of its class.
+    objects: (k,) i8, the object of each touch; validation_share: of the training touches. The thesis splits touches at
+    random, 75 % to 25 % (T5.1.3). Touches of one object, even neighbouring ones, are then on both sides, so the
+    accuracy is that on known objects, not on unseen ones of the same class.
     """
     train, test = stratified_split(objects, train_share, rng)
-    check, _ = stratified_split(objects[train], check_share, rng)
-    return Split(train, train[check], test)
+    validation, _ = stratified_split(objects[train], validation_share, rng)
+    return Split(train, train[validation], test)
 
 
-def by_objects(labels, ranks, number, check_share, rng):
-    """One object of each class tests, that of rank `number` modulo the objects of its class; the others train.
+def by_objects(
+    labels: np.ndarray, ranks: np.ndarray, number: int, validation_share: float, rng: np.random.Generator
+) -> Split:
+    """The Split with one object of each class for testing, and the others for training.
 
-    labels, ranks: (k,) i8, the class of each touch and which object of its class it is of, 0 the first. The next object
-    of every class is the check, so that the learning rate too is chosen on objects that the tried network has not felt;
-    where a class has two objects alone, the check is a share of the touches that train. Raises ValueError for a class
-    with one object.
+    labels, ranks: (k,) i8, the class of each touch and the index of its object in the class. The test object has rank
+    `number` modulo the number of objects. The next object of every class is for validation, so that the learning rate,
+    too, is chosen on unseen objects. Where a class has only two objects, validation is a share of the training touches.
+    Raises ValueError for a class with one object.
     """
     counts = np.array([len(np.unique(ranks[labels == label])) for label in range(labels.max() + 1)])
     if counts.min() < 2:
         raise ValueError(f"class {counts.argmin()} has one object alone: it cannot be left out")
-    turn = (ranks - number) % counts[labels]  # 0: tests, 1: the next one
+    turn = (ranks - number) % counts[labels]  # 0: test, 1: validation
     train, test = np.flatnonzero(turn != 0), np.flatnonzero(turn == 0)
     if counts.min() > 2:
         return Split(train, np.flatnonzero(turn == 1), test)
-    check, _ = stratified_split(labels[train], check_share, rng)
-    return Split(train, train[check], test)
+    validation, _ = stratified_split(labels[train], validation_share, rng)
+    return Split(train, train[validation], test)
 
 
-def stratified_split(labels, share, rng):
+def stratified_split(labels: np.ndarray, share: float, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
     """(first, second): sorted ids of two disjoint parts that together hold all; first holds `share` of each label.
 
-    labels: (k,) integers. Each label keeps one touch or more on both sides. Raises ValueError for a share outside
-    (0, 1) or a label with less than two touches.
+    labels: (k,) integers. Each label has at least one item in both parts. Raises ValueError for a share outside
+    (0, 1) or a label with fewer than two items.
     """
     labels = np.asarray(labels)
     if labels.ndim != 1 or not np.issubdtype(labels.dtype, np.integer):

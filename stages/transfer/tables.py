@@ -1,6 +1,8 @@
-"""The tables of a run: what the trials' rows become."""
+"""The tables of a run, from the rows of its trials."""
 
 from collections import defaultdict
+from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -10,29 +12,31 @@ from stages.kit.stats import interval_metrics
 
 from .plan import Trial
 
-LAYERS = ["trial", "layer", "part", "value"]
-KNOWN = {"data": None, "method": None, "weights": None, "had": None, "mode": None, "split": None, "repetition": None}
+LAYER_COLUMNS = ["trial", "layer", "part", "value"]
+TRIAL_COLUMNS = ["data", "method", "weights", "pretrained", "mode", "split", "repetition"]
 
 
-def told(row, had):
-    """A row with what its trial is about in place of the trial's name. had: {network: which weights it had}."""
+def trial_row(row: dict, pretrained: Mapping[str, str | None]) -> dict:
+    """A row with the columns of its trial instead of the trial's name. pretrained: as in Plan."""
     trial = Trial.parse(row["trial"])
-    about = {"data": trial.data, "method": trial.network, "weights": trial.weights}
-    about["had"] = had[trial.network] if trial.weights == "imagenet" else None
+    about: dict = {"data": trial.data, "method": trial.network, "weights": trial.weights}
+    about["pretrained"] = pretrained[trial.network] if trial.weights == "imagenet" else None
     about |= {"mode": trial.mode, "split": trial.split, "repetition": trial.repetition}
-    return about | {"seconds": None, "note": None} | {key: value for key, value in row.items() if key != "trial"}
+    return about | {key: value for key, value in row.items() if key != "trial"}
 
 
-def sorted_out(rows, had):
-    """(rows of measurements, frame of the disturbed touches, frame of the layers' changes)."""
+def sort_rows(rows: list[dict], pretrained: Mapping[str, str | None]) -> tuple[list[dict], pd.DataFrame, pd.DataFrame]:
+    """(rows of measurements, frame of the disturbed touches, frame of the changes of the layers)."""
     layers = [row for row in rows if "layer" in row]
-    disturbed = [told(row, had) for row in rows if "perturbation" in row]
-    plain = [told(row, had) for row in rows if "layer" not in row and "perturbation" not in row]
-    columns = [*KNOWN, "perturbation", "severity", "metric", "value"]
-    return plain, pd.DataFrame(disturbed, columns=columns), pd.DataFrame(layers, columns=LAYERS)
+    disturbed = [trial_row(row, pretrained) for row in rows if "perturbation" in row]
+    plain = [trial_row(row, pretrained) for row in rows if "layer" not in row and "perturbation" not in row]
+    columns = [*TRIAL_COLUMNS, "perturbation", "severity", "metric", "value"]
+    return plain, pd.DataFrame(disturbed, columns=columns), pd.DataFrame(layers, columns=LAYER_COLUMNS)
 
 
-def confusion(folder, trials, members):
+def confusion(
+    folder: Path, trials: Sequence[Trial], members: Mapping[str, Mapping[str, Sequence[str]]]
+) -> pd.DataFrame:
     """Tidy frame of the confusion matrices: trial, true class, predicted class, count of test touches."""
     rows = []
     for trial in trials:
@@ -47,7 +51,7 @@ def confusion(folder, trials, members):
     return pd.DataFrame(rows)
 
 
-def summary(rows, seed):
+def summary(rows: list[dict], seed: int) -> dict[str, dict]:
     """{data: {split: {network: {MODE_WEIGHTS: {mean, low, high}}}}} of the accuracy, and the chance of each split."""
     values, tree = defaultdict(list), {}
     for row in rows:

@@ -1,51 +1,57 @@
-"""The renderer on OpenGL: pyrender (scikit-robot-pyrender) through EGL, off screen, with shaders of our own.
+"""The renderer on OpenGL: pyrender (scikit-robot-pyrender) off screen through EGL, with its shaders replaced.
 
-pyrender's segmentation pass is the one without multisampling, so silhouettes stay crisp; our two shaders make it draw
-the faces' numbers in one pass and the shaded material in the next. That pass culls faces seen from behind, so each
-face is uploaded twice, the second time turned round.
+pyrender's segmentation pass has no multisampling, so silhouettes stay sharp. The two shaders make it draw face ids in
+one pass and the shaded material in the next. That pass culls back faces, so each face is uploaded twice, the second
+time with reversed winding.
 """
 
 import os
 from functools import cache, lru_cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from stages.kit import Mesh, Viewpoint
 from stages.kit.camera import DISTANCE, pixels_per_unit
+from stages.kit.extras import from_extra
 
 from .shading import GREY, corner_groups
 from .view import View, empty_view, pixel_box, round_depth
 
 SHADERS = Path(__file__).parent / "shaders"
-NEAR, FAR = DISTANCE - 1, DISTANCE + 1  # planes around anything that fits the frame: 24 bits of depth are 1.2e-7
-NUMBERS, SHADED = (255, 255, 255), (0, 0, 0)  # the uniform `color` tells the fragment shader what to draw
+NEAR, FAR = (
+    DISTANCE - 1,
+    DISTANCE + 1,
+)  # clipping planes; 24 bits of depth resolve 1.2e-7 between them
+FACE_IDS, SHADED = (255, 255, 255), (0, 0, 0)  # the uniform `color` selects what the fragment shader draws
 
 
 @cache
-def missing():
-    """Why this renderer cannot run here, or an empty string when it can; makes this process's context."""
+def egl_error() -> str:
+    """Why this renderer cannot run here, or an empty string when it can. Creates the context of this process."""
     try:
         _offscreen()
-    except Exception as error:  # PyOpenGL fails in a dozen ways without libEGL or a driver
+    except Exception as error:  # PyOpenGL raises many types without libEGL or a driver
         return f"{type(error).__name__}: {error}"
     return ""
 
 
-def render_pyrender(mesh, viewpoint, size, background):
-    """Renders a View (see stages.views.render) by OpenGL; OSError where no EGL context can be made."""
-    if missing():
+def render_pyrender(mesh: Mesh, viewpoint: Viewpoint, size: tuple[int, int], background: str) -> View:
+    """Renders a View (see stages.views.render) by OpenGL; OSError when no EGL context can be created."""
+    if egl_error():
         raise OSError(
-            f"renderer pyrender needs EGL, which is not to be had here ({missing()}): install it (Debian: apt-get "
-            "install libegl1 libgl1-mesa-dri), or take renderer=raycast"
+            f"the renderer pyrender needs EGL, which is not available ({egl_error()}): install it (Debian: apt-get "
+            "install libegl1 libgl1-mesa-dri), or set renderer=raycast"
         )
     view = empty_view(viewpoint, size, background)
     if pixel_box(mesh, viewpoint, size) == (0, 0, 0, 0):
         return view
     scene, node = _upload(mesh)
     _place_camera(scene, viewpoint, size)
-    numbers, depth = _draw(scene, node, size, NUMBERS)
+    ids, depth = _draw(scene, node, size, FACE_IDS)
     shaded, _ = _draw(scene, node, size, SHADED)
-    drawn = numbers.astype(np.int32) @ np.array([1, 256, 65536], dtype=np.int32)
+    drawn = ids.astype(np.int32) @ np.array([1, 256, 65536], dtype=np.int32)
     on = drawn > 0
     face = np.where(on, (drawn - 1) % max(len(mesh.faces), 1), -1).astype(np.int32)
     rgb = np.where(on[..., None], shaded, view.rgb)
@@ -53,20 +59,21 @@ def render_pyrender(mesh, viewpoint, size, background):
 
 
 @cache
-def _offscreen():
-    """This process's one renderer; its context is made here, never before a worker process starts."""
+def _offscreen() -> Any:
+    """The renderer of this process. Its context is created here, so never before a worker process starts."""
     os.environ.setdefault("PYOPENGL_PLATFORM", "egl")  # read when OpenGL is first imported
-    import pyrender
-    from pyrender.shader_program import ShaderProgramCache
+    with from_extra():
+        import pyrender
+        from pyrender.shader_program import ShaderProgramCache
 
-    offscreen = pyrender.OffscreenRenderer(1, 1)
+    offscreen: Any = pyrender.OffscreenRenderer(1, 1)  # typed as if its renderer and results could be missing
     offscreen._renderer._program_cache = ShaderProgramCache(shader_dir=str(SHADERS))
     return offscreen
 
 
-@lru_cache(maxsize=1)  # pyrender frees a mesh that is not in the scene it draws
+@lru_cache(maxsize=1)  # pyrender frees meshes that are not in the scene it draws
 def _upload(mesh):
-    """(scene, node) of the mesh: each group of smooth corners a vertex, each face twice, its two windings."""
+    """(scene, node) of the mesh: one vertex per group of smooth corners, and each face in both windings."""
     import pyrender
 
     groups, normals = corner_groups(mesh)
@@ -105,7 +112,7 @@ def _draw(scene, node, size, color):
 
 
 def _linear(depth):
-    """Distances from the camera: pyrender unprojects as if every camera were a perspective one, so that is undone."""
+    """Distances from the camera. pyrender unprojects as if the camera were a perspective one, which is undone here."""
     depth = np.where(depth > 0, depth, FAR).astype(np.float64)
     window = (FAR + NEAR - 2 * FAR * NEAR / depth) / (FAR - NEAR)
     return NEAR + (window + 1) / 2 * (FAR - NEAR)

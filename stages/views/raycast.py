@@ -1,17 +1,17 @@
-"""The renderer that runs everywhere: one ray through each pixel that the object's bounding box covers."""
+"""The renderer that runs on every machine: one embree ray through each pixel of the object's bounding box."""
 
 from functools import lru_cache
 
 import numpy as np
 
-from stages.kit import RayScene
+from stages.kit import Mesh, RayScene, Viewpoint
 from stages.kit.camera import pixel_rays, project
 
 from .shading import corner_groups, shade
-from .view import empty_view, pixel_box, round_depth
+from .view import View, empty_view, pixel_box, round_depth
 
 
-def render_raycast(mesh, viewpoint, size, background):
+def render_raycast(mesh: Mesh, viewpoint: Viewpoint, size: tuple[int, int], background: str) -> View:
     """Renders a View (see stages.views.render) by embree rays."""
     view = empty_view(viewpoint, size, background)
     top, left, bottom, right = pixel_box(mesh, viewpoint, size)
@@ -30,15 +30,15 @@ def render_raycast(mesh, viewpoint, size, background):
     return view
 
 
-@lru_cache(maxsize=2)  # the views of one mesh follow each other; two, for a mesh beside its simplified twin
+@lru_cache(maxsize=2)  # views of one mesh are rendered in turn; two, for a mesh and its simplified version
 def _prepare(mesh):
-    """(RayScene, corner normals (m, 3, 3)): what all views of a mesh share."""
+    """(RayScene, corner normals (m, 3, 3)), which all views of a mesh share."""
     groups, normals = corner_groups(mesh)
     return RayScene(mesh), normals[groups]
 
 
 def _weights(mesh, viewpoint, size, faces, rows, columns):
-    """(k, 3) barycentric weights of pixels within the faces they see: linear in the image of an orthographic camera."""
+    """(k, 3) barycentric weights of pixels in their faces, linear in image coordinates (orthographic camera)."""
     r, c, _ = project(mesh.vertices, viewpoint, size)
     corners = np.stack([r, c], axis=1)[mesh.faces]
     origin = corners[:, 0]
@@ -48,7 +48,7 @@ def _weights(mesh, viewpoint, size, faces, rows, columns):
     turned = np.stack([d[:, 1], -d[:, 0], -b[:, 1], b[:, 0]], axis=1) * inverse[:, None]
     p, q = rows - origin[faces, 0], columns - origin[faces, 1]
     g = turned[faces]
-    # A ray on an edge may see either face: rounding must not carry the weights outside.
+    # A ray on an edge may hit either face: clipped, so that rounding cannot move the weights outside.
     wb = (g[:, 0] * p + g[:, 1] * q).clip(0, 1)
     wd = np.minimum((g[:, 2] * p + g[:, 3] * q).clip(0, 1), 1 - wb)
     return np.stack([1 - wb - wd, wb, wd], axis=1)

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+COLUMNS = {"viewpoint": "name of the viewpoint", "views": "how many views together, this one the last"}
+
 
 @dataclass
 class Params:

@@ -1,30 +1,31 @@
-"""The material and light that both renderers share: smooth neutral grey under one head light at infinity (T3.1.1).
+"""The material and light of both renderers: smooth neutral grey under one head light at infinity (T3.1.1).
 
-Pure Lambert: brightness is the cosine between the normal and the view axis, so that the limb of a smooth object fades
-into the black background and draws no attention (T3.1.1). A face seen from behind is lit as if turned round, since
-objects scanned or drawn as thin sheets are seen from both sides.
+Lambertian shading: brightness is the cosine between the normal and the view axis, so that the silhouette of a smooth
+object fades into the black background and draws no attention (T3.1.1). A face seen from behind is lit as if its normal
+were reversed, since objects that are scanned or modelled as thin sheets are seen from both sides.
 """
 
 import numpy as np
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
+from stages.kit import Mesh
 from stages.kit.mesh import unit
 
-GREY = 204  # brightness of the material facing the light: grey, and 8 bits are used well
-CREASE = 40.0  # degrees between two faces: a round of nine sides (40) is smooth, the edges of boxes and rims are not
+GREY = 204  # of 255, the brightness of the material facing the light; uses most of the 8 bits
+CREASE = 40.0  # degrees between two faces: a prism of nine sides (40) is smooth, the edges of a box are not
 
 
-def corner_groups(mesh):
-    """Which corners of faces share a normal: (groups (m, 3) i8, normals (g, 3) f8 of length one).
+def corner_groups(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
+    """Groups of face corners that share a normal: (groups (m, 3) i8, unit normals (g, 3) f8).
 
-    Corners at one vertex share a normal when smooth edges join their faces: an edge is smooth when exactly two faces
-    of agreeing winding meet there at no more than CREASE degrees. The normal is the area-weighted mean: weights by
-    the corners' angles let the small faces of a rounded rim drag streaks over the long faces beside it.
+    Corners at one vertex share a normal when smooth edges connect their faces. An edge is smooth when exactly two faces
+    of consistent winding meet there at no more than CREASE degrees. The normal is the area-weighted mean: with weights
+    by corner angle, the small faces of a rounded edge cause streaks on the long faces next to it.
     """
     m = len(mesh.faces)
     first, second = _smooth_pairs(mesh)
-    # Half-edge h runs from corner h to the next corner of its face; its twin runs the other way.
+    # Half-edge h runs from corner h to the next corner of its face; the opposite half-edge runs back.
     links = np.r_[first, _next_corner(first)], np.r_[_next_corner(second), second]
     graph = sparse.coo_matrix((np.ones(len(links[0]), dtype=bool), links), shape=(3 * m, 3 * m))
     count, groups = connected_components(graph, directed=False)
@@ -38,7 +39,7 @@ def _next_corner(corners):
 
 
 def _smooth_pairs(mesh):
-    """Twin half-edges over smooth edges: two arrays of corner numbers 3 * face + corner."""
+    """Opposite half-edges of smooth edges: two arrays of corner numbers 3 * face + corner."""
     tail = mesh.faces.ravel()
     head = np.roll(mesh.faces, -1, axis=1).ravel()
     key = np.minimum(tail, head) * len(mesh.vertices) + np.maximum(tail, head)
@@ -48,16 +49,16 @@ def _smooth_pairs(mesh):
     first, second = order[pairs], order[pairs + 1]
     normals = mesh.face_normals
     cosine = np.einsum("ij,ij->i", normals[first // 3], normals[second // 3])
-    # The cosine of a fold of exactly CREASE may round either way; it counts as smooth.
+    # The cosine of an angle of exactly CREASE may round either way; it counts as smooth.
     smooth = (cosine >= np.cos(np.radians(CREASE)) - 1e-9) & (tail[first] == head[second])
     return first[smooth], second[smooth]
 
 
-def shade(mesh, normals, facing, faces, weights):
+def shade(mesh: Mesh, normals: np.ndarray, facing: np.ndarray, faces: np.ndarray, weights: np.ndarray) -> np.ndarray:
     """rgb (k, 3) u1 of k surface points under the head light.
 
-    normals (m, 3, 3), one a face corner; facing (m, 3), the direction towards the light for each face, turned for
-    faces seen from behind; faces (k,) and weights (k, 3) say where the points are.
+    normals (m, 3, 3), one per face corner; facing (m, 3), the direction towards the light for each face, reversed for
+    faces seen from behind; faces (k,) and weights (k, 3): the faces and barycentric coordinates of the points.
     """
     normal = np.einsum("ij,ijk->ik", weights, normals[faces])
     length = np.sqrt(np.einsum("ij,ij->i", normal, normal))

@@ -1,4 +1,6 @@
-"""A view as a small file: only the object's bounding box, coded so that deflate finds the smoothness of surfaces."""
+"""A view as a small file: the object's bounding box as second differences, which compress well."""
+
+from pathlib import Path
 
 import numpy as np
 
@@ -9,11 +11,11 @@ from stages.kit.files import read_arrays, write_arrays
 from .view import DEPTH_STEP, View
 
 
-def write_view(path, view):
+def write_view(path: str | Path, view: View) -> None:
     """Writes a view to a compressed .npz; equal views give equal bytes.
 
-    Everything comes back exactly but for depths off the whole steps of DEPTH_STEP (rendered ones lie on them), which
-    are rounded. Raises ValueError when the background has more than one colour.
+    Lossless, except that depths are rounded to multiples of DEPTH_STEP; rendered depths are multiples already. Raises
+    ValueError when the background has more than one colour.
     """
     mask = view.mask
     off = view.rgb[~mask]
@@ -35,15 +37,15 @@ def write_view(path, view):
         viewpoint=np.array([view.viewpoint.azimuth, view.viewpoint.elevation, view.viewpoint.roll]),
         background=background,
         mask=np.packbits(inside),
-        rgb=_bends(rgb),
-        depth=_bytes(_bends(steps - round(DISTANCE / DEPTH_STEP))),
-        run_face=_bytes(np.diff(faces[starts], prepend=0)),
-        run_length=_bytes(np.diff(starts, append=len(faces))),
+        rgb=_differences(rgb),
+        depth=_to_bytes(_differences(steps - round(DISTANCE / DEPTH_STEP))),
+        run_face=_to_bytes(np.diff(faces[starts], prepend=0)),
+        run_length=_to_bytes(np.diff(starts, append=len(faces))),
     )
 
 
-def read_view(path):
-    """Reads what write_view wrote."""
+def read_view(path: str | Path) -> View:
+    """Reads a view written by write_view."""
     stored = read_arrays(path)
     h, w = stored["rgb"].shape[:2]
     size = tuple(int(side) for side in stored["size"])
@@ -53,9 +55,9 @@ def read_view(path):
     face = np.full(size, -1, dtype=np.int32)
     top, left = stored["origin"]
     box = slice(top, top + h), slice(left, left + w)
-    rgb[box] = _unbend(stored["rgb"])
-    depth[box][inside] = DISTANCE + _unbend(_numbers(stored["depth"]).reshape(h, w))[inside] * DEPTH_STEP
-    face[box][inside] = np.repeat(np.cumsum(_numbers(stored["run_face"])), _numbers(stored["run_length"]))
+    rgb[box] = _summed(stored["rgb"])
+    depth[box][inside] = DISTANCE + _summed(_from_bytes(stored["depth"]).reshape(h, w))[inside] * DEPTH_STEP
+    face[box][inside] = np.repeat(np.cumsum(_from_bytes(stored["run_face"])), _from_bytes(stored["run_length"]))
     return View(rgb, depth, face, Viewpoint(*(float(angle) for angle in stored["viewpoint"])))
 
 
@@ -67,24 +69,24 @@ def _box(mask):
     return rows[0], columns[0], rows[-1] + 1, columns[-1] + 1
 
 
-def _bends(image):
-    """What differs from the plane through the pixels above, to the left and between: near zero on a smooth surface."""
+def _differences(image):
+    """The mixed second differences of an image, near zero on a smooth surface."""
     zero = image.dtype.type(0)
     return np.diff(np.diff(image, axis=0, prepend=zero), axis=1, prepend=zero)
 
 
-def _unbend(bends):
-    """Undoes _bends; u1 wraps round as it did there."""
+def _summed(bends):
+    """The inverse of _differences; u1 wraps around in both."""
     return np.cumsum(np.cumsum(bends, axis=1, dtype=bends.dtype), axis=0, dtype=bends.dtype)
 
 
-def _bytes(numbers):
-    """(4, k) u1 of k whole numbers: the sign folded into the lowest bit, low bytes first, so that the rest is zeros."""
+def _to_bytes(numbers):
+    """(4, k) u1 of k integers: the sign in the lowest bit, low bytes first, so that high bytes are mostly zero."""
     folded = (np.abs(numbers) * 2 - (numbers < 0)).astype("<u4").ravel()
     return np.ascontiguousarray(folded.view(np.uint8).reshape(-1, 4).T)
 
 
-def _numbers(planes):
-    """(k,) i8: undoes _bytes."""
+def _from_bytes(planes):
+    """(k,) i8: the inverse of _to_bytes."""
     folded = np.ascontiguousarray(planes.T).view("<u4").ravel().astype(np.int64)
     return np.where(folded % 2, -(folded + 1) // 2, folded // 2)

@@ -2,8 +2,8 @@
 
 from stages.kit import Viewpoint
 
-# T figure 3.2. Its caption repeats (b) as (k), while the text on the four principal views sets (k) and (l) on the two
-# sides of one axis. The one axis that no other view looks along is z, so (k) and (l) are read as top and bottom.
+# T figure 3.2. Its caption repeats (b) as (k), while the text on the four principal views places (k) and (l) at the two
+# ends of one axis. The only axis without another view is z, so (k) and (l) are taken as top and bottom.
 TWELVE = tuple(
     Viewpoint(azimuth, elevation)
     for elevation, azimuths in (
@@ -15,13 +15,13 @@ TWELVE = tuple(
     )
     for azimuth in azimuths
 )
-FOUR = TWELVE[:4]  # all round the upright object; the thesis's own four principal views (T3.1.2) stand on +-z and +-y
+FOUR = TWELVE[:4]  # around the upright object; the four principal views of the thesis (T3.1.2) are at +-z and +-y
 
 VIEWPOINTS = {"twelve": TWELVE, "four": FOUR}
 
 
-def viewpoint_set(name):
-    """The tuple of viewpoints that a set's name stands for; ValueError for an unknown name."""
+def viewpoint_set(name: str) -> tuple[Viewpoint, ...]:
+    """The viewpoints of a named set; ValueError for an unknown name."""
     if name not in VIEWPOINTS:
-        raise ValueError(f"views.viewpoints={name!r} is no set of viewpoints: choose one of {', '.join(VIEWPOINTS)}")
+        raise ValueError(f"views.viewpoints={name!r} is not a set of viewpoints: choose one of {', '.join(VIEWPOINTS)}")
     return VIEWPOINTS[name]

@@ -1,77 +1,94 @@
 """Learns the weight of each conspicuity channel from where people look or mark (T3.2.1 to T3.2.3).
 
-Reads data/meshes, data/conspicuity and the ground truth: data/annotations/NAME.csv, or what comes with the collection
-(gaze, interest points). Writes data/weights: weights.csv (method, channel, weight, left_out: the object that this row
-has not seen), lessons/NAME.npz (the ground truth on the vertices and all that the learning takes from an object),
-svm.npz, svm/NAME.npz, convexity.csv. Objects without ground truth are left alone; with none at all only the published
-weights are written. Settings: section `weights` of params.yaml.
+Reads data/SET/meshes, data/SET/conspicuity and the ground truth: data/annotations/NAME.csv, or what comes with the
+collection (gaze, interest points). Writes data/SET/weights: weights.csv (method, channel, weight, left_out: the object
+that was not trained on), ground_truth/NAME.npz (the ground truth on the vertices and all that the training takes from
+an object), svm.npz, svm/NAME.npz, convexity.csv; and reports/measurements/SET/weights.csv.gz. Objects without ground
+truth are left out; with none at all only the published weights are written.
 """
 
 import functools
 import sys
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
-from stages.conspicuity import read_sight
-from stages.kit import StageRun, arguments, params
-from stages.kit.files import read_arrays, read_mesh, write_arrays, write_table
-from stages.kit.parallel import parallel_map
-from stages.kit.run import DATA
+from stages.conspicuity import read_view_maps
+from stages.kit.command import workspace_of_arguments
+from stages.kit.files import read_mesh, write_arrays, write_table
+from stages.kit.run import Rows, StageRun
+from stages.kit.workspace import Workspace
+from stages.meshes.schema import Params as MeshesParams
 
 from .convexity import convexity
-from .lessons import lesson
-from .table import weight_table
+from .ground_truth import PUBLISHED, ground_truth_amounts, ground_truth_digests
+from .schema import COLUMNS, Params
+from .table import weight_rows, weight_table
 from .train import train_all, train_object
-from .truth import truth_of
+from .training_data import collect_training_data, read_training_data
+
+GROUND_TRUTH = "ground_truth"  # the folder of the training data in data/SET/weights
 
 
-def process(name, folder, source, place, seed):
-    """Takes the lesson of one object that has ground truth; a row of how many points it has, or why it is left out."""
-    mesh = read_mesh(DATA / "meshes" / f"{name}.npz")
-    path = DATA / "conspicuity" / f"{name}.npz"
+def process(name: str, folder: Path, data: Path, source: str, place: str | Path, seed: int) -> Rows:
+    """Writes the training data of an object with ground truth; a row with its number of points, or why it has none."""
+    mesh = read_mesh(data / "meshes" / f"{name}.npz")
+    path = data / "conspicuity" / f"{name}.npz"
     try:
-        amounts = truth_of(name, source, mesh, place)
+        amounts = ground_truth_amounts(name, source, mesh, place)
         if amounts is None or not amounts.any():
             return []
-        found = lesson(name, mesh, read_sight(path, mesh), path, amounts, seed)
-        row = {"object": name, "metric": "points", "value": len(found["points"]), "convexity": convexity(mesh)}
-    except ValueError as error:  # marks of another mesh of this name, for example: the others still teach
-        return [{"object": name, "metric": "points", "value": None, "note": str(error)}]
-    write_arrays(folder / "lessons" / f"{name}.npz", **found)
+        found = collect_training_data(name, mesh, read_view_maps(path, mesh), path, amounts, seed)
+        row = {"item": name, "metric": "points", "value": len(found["points"]), "convexity": convexity(mesh)}
+    except ValueError as error:  # marks of another mesh of this name, for example: the other objects are trained on
+        return [{"item": name, "metric": "points", "value": None, "note": str(error)}]
+    write_arrays(folder / GROUND_TRUTH / f"{name}.npz", **found)
     return [row]
 
 
-def main():
-    arguments(__doc__)
-    chosen, meshes = params("weights").method, params("meshes")
-    with StageRun("weights", inputs=("meshes", "conspicuity", "annotations")) as run:
-        take = functools.partial(process, source=meshes.source, place=meshes.folder, seed=run.seed)
-        rows = run.each(take, run.objects)
-        taken = [row for row in rows if "note" not in row]
+def run(workspace: Workspace) -> None:
+    """Runs the stage on the data set of a workspace."""
+    chosen, meshes = workspace.settings(Params).method, workspace.settings(MeshesParams)
+    place = meshes.folder if meshes.source in PUBLISHED else workspace.root / "data" / "annotations"
+    with StageRun(workspace, "weights", COLUMNS, inputs=("meshes", "conspicuity")) as stage:
+        # Objects without ground truth are no items: what is trained on the others does not depend on them.
+        digests = ground_truth_digests(stage.objects, meshes.source, place)
+        collect = functools.partial(
+            process, data=workspace.data, source=meshes.source, place=place, seed=workspace.seed
+        )
+        reads = ("meshes/{}.npz", "conspicuity/{}.npz", "../annotations/{}.csv")
+        rows = stage.each(collect, list(digests), reads=reads, made_of=digests)
         for row in rows:
             if "note" in row:
-                print(f"weights: {row['object']} is left out: {row['note']}", file=sys.stderr)
-        lessons = {row["object"]: read_arrays(run.folder / "lessons" / f"{row['object']}.npz") for row in taken}
-        table = weight_table(lessons, chosen)
-        write_table(run.folder / "weights.csv", table)
-        if lessons:
-            write_table(run.folder / "convexity.csv", pd.DataFrame(taken)[["object", "convexity"]])
-            train = functools.partial(train_object, folder=run.folder, lessons=lessons, seed=run.seed)
-            run.rows += train_all(run.folder, lessons, run.seed)
-            run.rows += [row for rows in parallel_map(train, lessons, desc="svm") for row in rows]
-        run.rows = [{key: value for key, value in row.items() if key != "convexity"} for row in run.rows]
-        run.metrics({"objects": len(lessons)} | accuracies(run.rows))
-    print(f"weights: {len(lessons)} of {len(run.objects)} objects have ground truth; enhanced takes {chosen}")
+                print(f"weights: {row['item']} is left out: {row['note']}", file=sys.stderr)
+        convexities = [(row["item"], row.pop("convexity")) for row in rows if "convexity" in row]
+        training_data = read_training_data(stage.folder / GROUND_TRUTH)
+        table = weight_table(training_data, chosen)
+        write_table(stage.folder / "weights.csv", table)
+        stage.rows += weight_rows(table)
+        if training_data:
+            write_table(stage.folder / "convexity.csv", pd.DataFrame(convexities, columns=["object", "convexity"]))
+            stage.rows += train_all(stage.folder, training_data, stage.seed)
+            train = functools.partial(train_object, made=stage.folder / GROUND_TRUTH, seed=stage.seed)
+            stage.each(train, list(training_data))
+        stage.metrics({"objects": len(training_data)} | accuracies(stage.rows))
+    count = f"{len(training_data)} of {len(stage.objects)} objects"
+    print(f"weights: {count} have ground truth; enhanced takes {chosen}")
 
 
-def accuracies(rows):
+def accuracies(rows: Rows) -> dict[str, float]:
     """The SVMs' mean accuracy for the gate: dict "TRAINING.VALIDATION" -> value, six digits."""
     found = {}
     for row in rows:
         if row["metric"] == "accuracy":
             found.setdefault(f"svm.{row['area']}.{row['training']}.{row['validation']}", []).append(row["value"])
     return {name: round(float(np.mean(values)), 6) for name, values in found.items()}
+
+
+def main() -> None:
+    """Runs the stage on the data set that the command line names."""
+    run(workspace_of_arguments(__doc__, "weights"))
 
 
 if __name__ == "__main__":

@@ -1,27 +1,29 @@
 """Channel weights from the distance of a map's brightest pixels to the ground truth points (T3.2.1.1).
 
-The thesis's way is kept, with what follows from it:
+This follows the thesis, with these consequences:
 
-- "Average pairwise" is the mean over all pairs of the n brightest pixels and the n points, not over nearest ones.
-  That mean is smallest between the points, not on them: one blob in the middle of four points beats four peaks
-  exactly on them.
-- The n brightest pixels are neighbours on one peak, so that a map counts by where its highest peak is.
-- The distances of a view are normalised over the channels, so that in each view the farthest channel gets 0 and the
+- "Average pairwise" is the mean over all pairs of the n brightest pixels and the n points, not over nearest pairs. It
+  is smallest between the points, not on them: one blob in the middle of four points scores better than four peaks
+  exactly on the points.
+- The n brightest pixels are neighbours on one peak, so only the position of the highest peak of a map matters.
+- The distances are normalised over the channels of each view, so that the farthest channel of a view gets 0 and the
   nearest 1, however little they differ.
 """
+
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 
 
-def view_distances(maps, rows, columns):
-    """How far each channel looks past the points of one view: dict channel -> mean distance, in pixels.
+def view_distances(maps: Mapping[str, np.ndarray], rows: np.ndarray, columns: np.ndarray) -> dict[str, float]:
+    """The distance of each channel's brightest pixels to the points of one view: dict channel -> mean, in pixels.
 
     maps: dict channel -> (h, w), all of one shape; rows, columns (n,): the ground truth points visible in this view,
-    in pixels of the maps, fractions allowed. The mean runs over all pairs of the n brightest pixels of the map and the
-    n points (T3.2.1.1; MATLAB's `mean(pdist2(a, b), 'all')`). Where pixels of equal brightness stand in line for the
-    last places, each counts by its chance of a place: a flat map gets the distance of a pixel drawn blindly.
+    in pixels of the maps, fractions allowed. The mean is over all pairs of the n brightest pixels of the map and the n
+    points (T3.2.1.1; MATLAB's `mean(pdist2(a, b), 'all')`). Pixels that tie for the last of the n places count equally,
+    so that a flat map gets the mean distance of all pixels.
 
-    A view without points has no distances: {}. Raises ValueError for no maps, maps of unequal shapes, with NaN or not
+    A view without points gives {}. Raises ValueError for no maps, maps of unequal shapes, with NaN or not
     2D, and for points that are not finite or off the map.
     """
     maps, shape = checked_maps(maps)
@@ -32,7 +34,7 @@ def view_distances(maps, rows, columns):
 
 
 def _distance(image, points):
-    """Mean distance of the brightest pixels to the points, as many pixels as points."""
+    """Mean distance of the brightest pixels to the points; as many pixels as points."""
     count = min(len(points), image.size)
     cut = np.partition(image, image.size - count, axis=None)[image.size - count]
     above, tied = image > cut, image == cut
@@ -42,20 +44,20 @@ def _distance(image, points):
 
 
 def _to_points(chosen, points):
-    """The mean distance to the points of each chosen pixel (h, w) boolean -> (k,)."""
+    """(k,) the mean distance to the points of each of the chosen pixels (h, w) boolean."""
     pixels = np.nonzero(chosen)
     total = np.zeros(len(pixels[0]))
-    for row, column in points:  # one point at a time: a flat map chooses a million pixels
+    for row, column in points:  # one point at a time: on a flat map, a million pixels are chosen
         total += np.hypot(pixels[0] - row, pixels[1] - column)
     return total / len(points)
 
 
-def euclidean_weights(views):
+def euclidean_weights(views: Iterable[Mapping[str, float]]) -> dict[str, float]:
     """One minus the distance, normalised over the channels of each view, averaged: dict channel -> weight in 0..1.
 
-    views: the dicts of view_distances, each view counts alike; an empty one (no point in sight) is left out. Where all
-    channels of a view are equally far, none is farther than the nearest: all get 1. For several objects, `average`
-    the objects' weights, so that an object with more views does not count more. T3.2.1.1, T table 3.1, third column.
+    views: the dicts of view_distances, weighted equally; empty ones (no visible point) are left out. If all channels of
+    a view are equally far, all get 1. For several objects, `average` the weights of the objects, so that an object with
+    more views does not count more. T3.2.1.1, T table 3.1, third column.
 
     Raises ValueError when no view has a point, or the views name different channels.
     """
@@ -73,14 +75,14 @@ def _nearness(distances):
     return dict(zip(distances, (1 - relative).tolist(), strict=True))
 
 
-def average(tables):
-    """The mean of dicts channel -> value, in the channels' order; empty dicts are left out.
+def average(tables: Iterable[Mapping[str, float]]) -> dict[str, float]:
+    """The mean of dicts channel -> value, in the order of the channels; empty dicts are left out.
 
     Raises ValueError when none is left, or when they name different channels.
     """
     tables = [table for table in tables if table]
     if not tables:
-        raise ValueError("no view has a ground truth point in sight: weights need at least one")
+        raise ValueError("no view shows a ground truth point: weights need at least one")
     channels = list(tables[0])
     for table in tables:
         if set(table) != set(channels):
@@ -88,7 +90,7 @@ def average(tables):
     return {channel: float(np.mean([table[channel] for table in tables])) for channel in channels}
 
 
-def checked_maps(maps):
+def checked_maps(maps: Mapping[str, np.ndarray]) -> tuple[dict[str, np.ndarray], tuple[int, int]]:
     """(dict channel -> (h, w) f8, shape); ValueError for no maps, NaN, unequal shapes or maps that are not 2D."""
     if not maps:
         raise ValueError("no conspicuity maps: give at least one channel")

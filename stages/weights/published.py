@@ -1,7 +1,7 @@
-"""The weights that need no learning: equal ones, and those of T table 3.1."""
+"""Published weights: equal ones, those of T table 3.1, and those learned from human gaze."""
 
 # T table 3.1: channel -> (average SSIM over 43 models, one minus the average normalised Euclidean distance).
-# They stand here and not in a file beside the package, so that they are there wherever the package is installed.
+# In code rather than in a data file, so that they are available wherever the package is installed.
 TABLE = {
     "color": (0.1096, 0.6417),
     "contrast": (0.7692, 0.3941),
@@ -15,29 +15,29 @@ TABLE = {
 }
 
 
-ENHANCED = "enhanced"  # the method whose weights are a choice of the settings
+ENHANCED = "enhanced"  # the method whose weights are chosen by the setting weights.method
 
 
-def equal():
+def equal() -> dict[str, float]:
     """One for every channel: the plain average (T eq. 3.8)."""
     return dict.fromkeys(TABLE, 1.0)
 
 
-def thesis_ssim():
-    """Similarity of each channel's map to the ground truth's (T3.2.1.2 and T3.2.1.4)."""
+def thesis_ssim() -> dict[str, float]:
+    """Similarity of each channel's map to that of the ground truth (T3.2.1.2 and T3.2.1.4)."""
     return {channel: ssim for channel, (ssim, _) in TABLE.items()}
 
 
-def thesis_ed():
+def thesis_ed() -> dict[str, float]:
     """One minus the distance of each channel's brightest pixels from the ground truth (T3.2.1.1).
 
     The text calls this column a value "for a selected viewpoint from model of skull", the caption an average over 43
-    models. Table 3.1's caption and T3.2.2 agree with each other, so the average is what is meant here.
+    models. T3.2.2 agrees with the caption, so this is taken as the average.
     """
     return {channel: nearness for channel, (_, nearness) in TABLE.items()}
 
 
-# Of the fixation model (stages.weights.fixations), learned from the gaze of 32 people on 19 meshes by `make gaze`.
+# Of the fixation model (stages.weights.fixations), learned from 32 people's gaze on 19 meshes, the data set `gaze`.
 GAZE = {
     "symmetry": 0.23,
     "height": 0.35,
@@ -50,19 +50,19 @@ GAZE = {
 }
 
 
-def gaze():
-    """What draws the eye in a log-linear density of looks, feature by feature: not for eq. 3.9 but for `enhanced`."""
+def gaze() -> dict[str, float]:
+    """Weights of the features in a log-linear density of fixations: for `enhanced`, not for T eq. 3.9."""
     return dict(GAZE)
 
 
 METHODS = {"equal": equal, "thesis_ssim": thesis_ssim, "thesis_ed": thesis_ed, "gaze": gaze}
 
 
-def weights(method):
-    """The weight of each channel by one method: dict channel -> weight, not normalised.
+def weights(method: str) -> dict[str, float]:
+    """The weight of each channel by a method of METHODS: dict channel -> weight, not normalised.
 
-    All nine channels, for eq. 3.9, which divides by their sum; of `gaze` the features of stages.weights.features.
-    Raises ValueError for a method that METHODS does not have.
+    The methods give weights of all nine channels, for T eq. 3.9, which divides by their sum; `gaze` gives weights of
+    the features of stages.weights.features. Raises ValueError for an unknown method.
     """
     if method not in METHODS:
         raise ValueError(f"unknown weights {method!r}: choose one of {', '.join(METHODS)}")

@@ -2,6 +2,15 @@
 
 from dataclasses import dataclass
 
+COLUMNS = {
+    "channel": "channel, or feature of the fixation model, that the weight is of",
+    "area": "where the pixels were drawn: on the `object`, or from the whole `image` as in the thesis",
+    "training": "what an SVM is trained on: one_for_all, one_per_object or one_per_viewpoint",
+    "validation": "what the folds leave out: pixels, views or objects",
+    "deviation": "standard deviation of the accuracy over the folds",
+    "background_alone": "accuracy of labelling every pixel of the object as salient",
+}
+
 
 @dataclass
 class Params:

@@ -1,12 +1,13 @@
-"""A support vector machine that tells salient pixels from the rest by their nine conspicuities (T3.2.3).
+"""A support vector machine that classifies pixels as salient or not by their nine conspicuities (T3.2.3).
 
-The thesis's recipe: classes balanced by dropping rows of the larger one, features weighted by their information gain,
-a Gaussian kernel. Own additions: rows are capped, and nothing of scikit-learn is stored, only arrays.
+As in the thesis, classes are balanced by dropping rows of the larger one, features are weighted by their information
+gain, and the kernel is Gaussian. Additions: the number of rows is limited, and models are stored as plain arrays.
 
-Information gain looks at one feature at a time. Of a rule that no feature alone betrays (an exact XOR) it sees
-nothing, and weighs by chance.
+Information gain considers one feature at a time. If the label depends only on a combination of features (an exact
+XOR), the gains are due to chance.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -14,16 +15,16 @@ import numpy as np
 from stages.kit.rng import rng
 
 BINS = 10  # of equal counts, to estimate the information gain from
-MOST = 1000  # rows a model: the cost grows with their square, and 3,000 gain under 0.01 in AUC on objects left out
-ENTRIES = 2**20  # of the kernel matrix held at once by predict: 8 MB
+MAX_ROWS = 1000  # per model: cost grows with their square, and 3,000 add less than 0.01 to the AUC on held-out objects
+ENTRIES = 2**20  # of the kernel matrix that predict holds in memory: 8 MB
 
 
 @dataclass(frozen=True, eq=False)
-class Model:
+class SVMModel:
     """A trained SVM as plain arrays: s support vectors of c features.
 
-    center, scale (c,): features are compared as (features - center) * scale; gains (c,) in bits, 0 of a feature that
-    has no say; support (s, c), so scaled; dual (s,); intercept and gamma, of shape ().
+    center, scale (c,): features are scaled as (features - center) * scale; gains (c,) in bits, 0 for an unused feature;
+    support (s, c), scaled; dual (s,); intercept and gamma, of shape ().
     """
 
     center: np.ndarray
@@ -34,15 +35,15 @@ class Model:
     intercept: np.ndarray
     gamma: np.ndarray
 
-    def predict(self, features):
-        """How salient each row of features (k, c) is: (k,) f8 in 0..1, above 0.5 where the SVM says salient.
+    def predict(self, features: np.ndarray) -> np.ndarray:
+        """The saliency of each row of features (k, c): (k,) f8 in 0..1, above 0.5 if classified as salient.
 
-        (1 + tanh f) / 2 of the decision function f, so that rows keep f's order and the margins lie at 0.12 and 0.88;
-        no probability. Raises ValueError for another number of features or NaN.
+        (1 + tanh f) / 2 of the decision function f, which keeps the order of f and maps the margins to 0.12 and 0.88.
+        It is not a probability. Raises ValueError for another number of features or NaN.
         """
         features = _checked_features(features)
         if features.shape[1] != len(self.center):
-            raise ValueError(f"this model knows {len(self.center)} features a row, got {features.shape[1]}")
+            raise ValueError(f"this model needs {len(self.center)} features per row, got {features.shape[1]}")
         step = max(ENTRIES // max(len(self.support), 1), 1)
         parts = [self._decision(features[k : k + step]) for k in range(0, len(features), step)]
         return (1 + np.tanh(np.concatenate(parts or [np.zeros(0)]))) / 2
@@ -52,36 +53,36 @@ class Model:
         square = (scaled**2).sum(axis=1)[:, None] + (self.support**2).sum(axis=1) - 2 * scaled @ self.support.T
         return np.exp(-self.gamma * square.clip(0)) @ self.dual + self.intercept
 
-    def to_arrays(self):
+    def to_arrays(self) -> dict[str, np.ndarray]:
         """dict name -> array, for an .npz."""
         return {field.name: getattr(self, field.name) for field in fields(self)}
 
     @classmethod
-    def from_arrays(cls, arrays):
-        """The model that to_arrays gave away; other names in the dict are left alone. ValueError for one missing."""
+    def from_arrays(cls, arrays: Mapping[str, np.ndarray]) -> "SVMModel":
+        """The model of a dict of to_arrays; other names are ignored. ValueError if a name is missing."""
         missing = [field.name for field in fields(cls) if field.name not in arrays]
         if missing:
-            raise ValueError(f"these arrays are no SVM model: {', '.join(missing)} missing")
+            raise ValueError(f"these arrays are not an SVM model: {', '.join(missing)} missing")
         return cls(**{field.name: np.asarray(arrays[field.name], dtype=np.float64) for field in fields(cls)})
 
 
-def fit_svm(features, labels, seed, most=MOST):
-    """A Model trained on features (k, c) and labels (k,), true for salient (T3.2.3).
+def fit_svm(features: np.ndarray, labels: np.ndarray, seed: int, max_rows: int = MAX_ROWS) -> SVMModel:
+    """An SVMModel trained on features (k, c) and labels (k,), true for salient (T3.2.3).
 
-    The larger class is cut down to the smaller one, both to `most` rows in all, drawn by the seed. Features are
-    brought to unit deviation, times their information gain; gamma is one over their total variance then, C is 1
-    (scikit-learn's gamma="scale"; the thesis names neither). Where no feature has any gain, every row gets 0.5.
+    The larger class is reduced to the size of the smaller one, and both to `max_rows` rows in total, drawn by the seed.
+    Features are scaled to unit deviation times their information gain. gamma is one over their total variance, and C is
+    1 (scikit-learn's gamma="scale"; the thesis states neither). If no feature has any gain, every row gets 0.5.
 
-    Raises ValueError for NaN, unequal lengths, one class alone, or `most` below 2.
+    Raises ValueError for NaN, unequal lengths, a single class, or `max_rows` below 2.
     """
-    features, labels = checked_rows(features, labels, most)
-    chosen = balanced_rows(labels, rng(seed, "svm"), most)
+    features, labels = checked_rows(features, labels, max_rows)
+    chosen = balanced_rows(labels, rng(seed, "svm"), max_rows)
     return fit_rows(features[chosen], labels[chosen])
 
 
-def fit_rows(features, labels):
-    """A Model of just these rows, as fit_svm describes it."""
-    from sklearn.svm import SVC  # takes half a second to import, which those who only read a Model need not wait for
+def fit_rows(features: np.ndarray, labels: np.ndarray) -> SVMModel:
+    """An SVMModel trained on exactly these rows, otherwise as fit_svm."""
+    from sklearn.svm import SVC  # takes half a second to import, and is not needed to read a model
 
     gains = np.array([information_gain(column, labels) for column in features.T])
     spread = features.std(axis=0)
@@ -89,18 +90,18 @@ def fit_rows(features, labels):
     center = features.mean(axis=0)
     if not scale.any():
         nothing = np.zeros((0, len(scale)))
-        return Model(center, scale, gains, nothing, np.zeros(0), np.array(0.0), np.array(1.0))
+        return SVMModel(center, scale, gains, nothing, np.zeros(0), np.array(0.0), np.array(1.0))
     scaled = (features - center) * scale
     gamma = 1 / scaled.var(axis=0).sum()
     svc = SVC(kernel="rbf", gamma=gamma, cache_size=100).fit(scaled, labels)
-    return Model(center, scale, gains, svc.support_vectors_, svc.dual_coef_[0], svc.intercept_[0], np.array(gamma))
+    return SVMModel(center, scale, gains, svc.support_vectors_, svc.dual_coef_[0], svc.intercept_[0], np.array(gamma))
 
 
-def information_gain(values, labels):
-    """How many bits of a label a value tells, at least 0 (Quinlan 1986; T3.2.3).
+def information_gain(values: np.ndarray, labels: np.ndarray) -> float:
+    """The information gain of a value about a label in bits, at least 0 (Quinlan 1986; T3.2.3).
 
-    values (k,) are cut into bins of equal counts, a value that fills a bin has it alone; labels (k,) are boolean. A
-    constant tells exactly nothing. The chance that bins of few rows look telling is taken off as in Miller 1955:
+    values (k,) are divided into bins of equal counts, and a value that fills a bin is its only one; labels (k,) are
+    boolean. The gain of a constant is 0. The bias due to bins of few rows is subtracted as in Miller 1955:
     (bins - 1) / (2 k ln 2) bits.
     """
     values, labels = np.asarray(values), np.asarray(labels, dtype=bool)
@@ -109,25 +110,25 @@ def information_gain(values, labels):
     bins = np.unique(below + upto, return_inverse=True)[1]
     rows = np.bincount(bins)
     within = (rows * _entropy(np.bincount(bins, labels) / rows)).sum() / len(labels)
-    chance = (len(rows) - 1) / (2 * len(labels) * np.log(2))
-    return float(max(_entropy(labels.mean()) - within - chance, 0.0))
+    bias = (len(rows) - 1) / (2 * len(labels) * np.log(2))
+    return float(max(_entropy(labels.mean()) - within - bias, 0.0))
 
 
 def _entropy(share):
-    """Bits of a coin that shows heads with this share."""
+    """Entropy in bits of a binary variable with this share."""
     shares = np.stack([share, 1 - np.asarray(share)])
     return -(shares * np.log2(np.where(shares > 0, shares, 1))).sum(axis=0)
 
 
-def balanced_rows(labels, generator, most):
-    """Ids of rows, in order: as many of each class as the smaller has, at most `most` in all (T3.2.3).
+def balanced_rows(labels: np.ndarray, generator: np.random.Generator, max_rows: int) -> np.ndarray:
+    """Ids of rows, in order: as many of each class as the smaller has, at most `max_rows` in total (T3.2.3).
 
     Raises ValueError when a class is missing.
     """
     classes = [np.flatnonzero(labels), np.flatnonzero(~labels)]
-    count = min(len(classes[0]), len(classes[1]), most // 2)
+    count = min(len(classes[0]), len(classes[1]), max_rows // 2)
     if count == 0:
-        raise ValueError(f"{len(classes[0])} of {len(labels)} rows are salient: an SVM needs rows of both kinds")
+        raise ValueError(f"{len(classes[0])} of {len(labels)} rows are salient: an SVM needs rows of both classes")
     return np.sort(np.concatenate([generator.choice(ids, count, replace=False) for ids in classes]))
 
 
@@ -138,11 +139,11 @@ def _checked_features(features):
     return features
 
 
-def checked_rows(features, labels, most):
+def checked_rows(features: np.ndarray, labels: np.ndarray, max_rows: int) -> tuple[np.ndarray, np.ndarray]:
     """(features (k, c) f8, labels (k,) boolean); ValueError as fit_svm."""
     features, labels = _checked_features(features), np.asarray(labels)
     if labels.shape != features.shape[:1] or labels.dtype != bool:
         raise ValueError(f"labels must be {len(features)} booleans, got {labels.dtype} of shape {labels.shape}")
-    if most < 2:
-        raise ValueError(f"most must leave room for a row of each class, got {most}")
+    if max_rows < 2:
+        raise ValueError(f"max_rows must be at least 2, one row per class, got {max_rows}")
     return features, labels

@@ -1,28 +1,37 @@
-"""The table of weights: a row a method, a channel (or feature), and an object that was left out of the learning."""
+"""The table of weights: one row per method, channel (or feature) and object left out of the training."""
 
+import numpy as np
 import pandas as pd
 
-from .learn import ALL, learned_rows
+from stages.kit.run import Rows
+
+from .learn_weights import ALL, learned_weight_rows
 from .published import ENHANCED, METHODS, weights
 
-OF_FEATURES = ("gaze", "fixations")  # weights of the fixation model's features; the others weigh channels
+FEATURE_METHODS = ("gaze", "fixations")  # weights of the features of the fixation model; the others are of channels
 
 
-def weight_table(lessons, chosen):
+def weight_table(training_data: dict[str, dict[str, np.ndarray]], chosen: str) -> pd.DataFrame:
     """Frame with columns method, channel, weight, left_out; the rows of `enhanced` repeat those of the chosen method.
 
-    lessons: dict name -> lesson, may be empty. So the choice travels with the data, and later stages follow it without
-    reading another stage's settings. Raises ValueError for a choice that is not in OF_FEATURES or was not learned here.
+    training_data: dict name -> arrays of collect_training_data, may be empty. The choice is stored in the table, so
+    that later stages do not read the settings of another stage. Raises ValueError for a choice that is not in
+    FEATURE_METHODS, or whose weights were not learned for lack of ground truth.
     """
     rows = [
         {"method": method, "channel": channel, "weight": weight, "left_out": ALL}
         for method in METHODS
         for channel, weight in weights(method).items()
     ]
-    rows += learned_rows(lessons) if lessons else []
-    repeated = [row | {"method": ENHANCED} for row in rows if row["method"] == chosen and chosen in OF_FEATURES]
+    rows += learned_weight_rows(training_data) if training_data else []
+    repeated = [row | {"method": ENHANCED} for row in rows if row["method"] == chosen and chosen in FEATURE_METHODS]
     if not repeated:
-        known = ", ".join(OF_FEATURES)
-        learn = "" if lessons else "; no object has ground truth to learn from"
-        raise ValueError(f"weights.method {chosen!r} is not there: choose {known}{learn}")
+        reason = "" if training_data else "; no object has ground truth to learn from"
+        raise ValueError(f"weights.method {chosen!r} is not available: choose {', '.join(FEATURE_METHODS)}{reason}")
     return pd.DataFrame(rows + repeated)
+
+
+def weight_rows(table: pd.DataFrame) -> Rows:
+    """The table as measurements: `item` is the object left out, empty where the weights are of all objects."""
+    renamed = table.rename(columns={"left_out": "item", "weight": "value"})
+    return renamed.assign(metric="weight").to_dict("records")

@@ -76,12 +76,12 @@ def test_rows_of_a_picture_are_the_shorter_side_of_the_sensor(stored):
 
 
 def test_an_archive_of_pressure_images_without_its_folder_is_refused(stored):
-    with pytest.raises(ValueError, match=r"archive.*no \.jpg in Images.*wanted is"):
+    with pytest.raises(ValueError, match=r"archive.*no \.jpg in Images.*expected"):
         read_pressure_images(stored({"other.txt": b"none"}))
 
 
 def test_a_picture_that_is_none_is_named(stored):
-    with pytest.raises(ValueError, match=r"tub2\.jpg is no readable picture: fetch"):
+    with pytest.raises(ValueError, match=r"tub2\.jpg is not a readable picture: download"):
         read_pressure_images(stored(images(**{"Images/tube/tub2.jpg": b"no picture"})))
 
 
@@ -92,10 +92,10 @@ def test_pictures_of_several_sizes_are_refused(stored):
 
 @pytest.mark.parametrize("read", [read_pressure_images, read_grasps])
 def test_what_is_no_zip_file_or_not_there_is_named(read, tmp_path):
-    with pytest.raises(ValueError, match="gone.zip is not there: give the path of"):
+    with pytest.raises(ValueError, match="gone.zip does not exist: give the path of"):
         read(tmp_path / "gone.zip")
     (tmp_path / "half.zip").write_bytes(b"PK but no more")
-    with pytest.raises(ValueError, match="half.zip is no whole zip file: fetch it anew"):
+    with pytest.raises(ValueError, match="half.zip is not a complete zip file: download it again"):
         read(tmp_path / "half.zip")
 
 
@@ -107,7 +107,7 @@ def test_a_damaged_member_is_named(tmp_path):
     content = bytearray(path.read_bytes())
     content[content.index(b"tub1.jpg") + 60] ^= 0xFF
     path.write_bytes(content)
-    with pytest.raises(ValueError, match=r"tub1\.jpg is damaged .*fetch the archive anew"):
+    with pytest.raises(ValueError, match=r"tub1\.jpg is damaged .*download the archive again"):
         read_pressure_images(path)
 
 
@@ -121,7 +121,7 @@ def test_grasps_keep_electrodes_objects_palms_labels_and_which_are_tests(stored)
 
 
 def test_a_missing_table_is_named(stored):
-    with pytest.raises(ValueError, match=r"archive.* holds no bts3v2_palm_down_test\.csv; wanted is"):
+    with pytest.raises(ValueError, match=r"archive.* has no bts3v2_palm_down_test\.csv; expected"):
         read_grasps(stored(grasps(down_test=None)))
 
 
@@ -133,8 +133,8 @@ def test_a_missing_column_is_named(stored):
 @pytest.mark.parametrize(
     "change, said",
     [
-        ({"ff_biotac_1": [1, "odd"]}, "line 3: an empty cell or no number"),
-        ({"th_biotac_9": [None, 1]}, "line 2: an empty cell or no number"),
+        ({"ff_biotac_1": [1, "odd"]}, "line 3: an empty cell or not a number"),
+        ({"th_biotac_9": [None, 1]}, "line 2: an empty cell or not a number"),
         ({"slipped": [0, 2]}, "line 3: slipped must be 0 or 1, not 2"),
     ],
 )
@@ -145,7 +145,7 @@ def test_a_bad_cell_is_named_by_its_line(stored, change, said):
 
 def test_a_table_that_is_none_is_named(stored):
     files = grasps() | {"bts3v2_palm_side.csv": b""}
-    with pytest.raises(ValueError, match=r"palm_side\.csv is no table"):
+    with pytest.raises(ValueError, match=r"palm_side\.csv is not a valid table"):
         read_grasps(stored(files))
 
 

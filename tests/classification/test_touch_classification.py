@@ -1,31 +1,30 @@
 """The classification stage on a small folder of imprints."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 from stages.classification import CLASSIFIERS, evaluate
-from stages.classification.__main__ import plan, process, summary
+from stages.classification.__main__ import plan, process, run, summary
 from stages.classification.schema import Params
 from stages.imprints import Imprints, write_imprints
-from stages.kit.files import read_arrays
+from stages.kit.files import read_arrays, read_json
+from stages.kit.rows import read_rows
 
 NAMES = ("cup", "duck", "hand")
 
 
 @pytest.fixture
-def imprints(tmp_path, monkeypatch, bumps):
-    """data/imprints of three objects: sampling `random` with 16 imprints each, `itti` with 16, of the duck 12."""
-    monkeypatch.chdir(tmp_path)
+def imprints(tmp_path, bumps):
+    """data/toys/imprints of three objects: sampling `random` with 16 imprints each, `itti` with 16, of the duck 12."""
+    folder = tmp_path / "data/toys/imprints"
     for name, images in bumps(NAMES, 16, jitter=2.0).items():
         places = np.arange(48.0).reshape(16, 3)
         touched = {
             sampling: Imprints(images[:count], np.arange(count), places[:count], 0.01)
             for sampling, count in (("random", 16), ("itti", 12 if name == "duck" else 16))
         }
-        write_imprints(f"data/imprints/{name}.npz", touched)
-    return Path("data/imprints")
+        write_imprints(folder / f"{name}.npz", touched)
+    return folder
 
 
 def settings(**changes):
@@ -59,19 +58,19 @@ def test_sampling_with_too_few_imprints_is_left_out_with_its_reason(imprints, tm
     write_imprints(imprints / "cup.npz", {"itti": few, "random": many})
     planned = plan(settings().sets, imprints)
     assert planned["three.random"] == 16 and "itti: cup has 9 imprints" in planned["three.itti"]
-    (row,) = process("three.itti", tmp_path, planned, settings(), 0)
+    (row,) = process("three.itti", tmp_path, imprints.parent, planned, settings(), 0)
     assert row["value"] is None and row["note"] == planned["three.itti"]
 
 
 def test_stage_agrees_with_evaluate_and_writes_equal_bytes(imprints, tmp_path, bumps):
     planned = plan(settings().sets, imprints)
-    rows = process("three.random", tmp_path / "a", planned, settings(), 7)
-    process("three.random", tmp_path / "b", planned, settings(), 7)
+    rows = process("three.random", tmp_path / "a", imprints.parent, planned, settings(), 7)
+    process("three.random", tmp_path / "b", imprints.parent, planned, settings(), 7)
     assert (tmp_path / "a/three.random.npz").read_bytes() == (tmp_path / "b/three.random.npz").read_bytes()
     images = {name: stack[:12].astype("f4") for name, stack in bumps(NAMES, 16, jitter=2.0).items()}
     expected = [row["value"] for name in ("knn", "naive_bayes") for row in evaluate(images, name, 2, seed=7)]
     plain = [row for row in rows if row["variant"] == "plain"]
-    assert [row["value"] for row in plain if row["metric"] in ("accuracy_holdout", "accuracy_fivefold")] == expected
+    assert [row["value"] for row in plain if row.get("split") in ("random", "folds")] == expected
     stored = read_arrays(tmp_path / "a/three.random.npz")
     assert stored["objects"].tolist() == list(NAMES) and stored["knn.confusion"].sum() == 2 * 9
 
@@ -79,16 +78,17 @@ def test_stage_agrees_with_evaluate_and_writes_equal_bytes(imprints, tmp_path, b
 def test_a_failing_classifier_does_not_lose_the_others(imprints, tmp_path, monkeypatch):
     monkeypatch.setitem(CLASSIFIERS, "broken", lambda seed: 1 / 0)
     chosen = settings(classifiers=["broken", "knn"])
-    rows = process("three.itti", tmp_path, plan(chosen.sets, imprints), chosen, 0)
+    rows = process("three.itti", tmp_path, imprints.parent, plan(chosen.sets, imprints), chosen, 0)
     assert rows[0]["value"] is None and "broken failed: division by zero" in rows[0]["note"]
     assert len([row for row in rows if row["classifier"] == "knn" and row["value"] is not None]) >= 4
     assert list(read_arrays(tmp_path / "three.itti.npz")) == ["objects", "knn.confusion"]
 
 
 def test_summary_holds_mean_and_interval_of_the_repetitions():
-    common = {"object": "three", "method": "itti", "classifier": "knn", "metric": "accuracy_holdout"}
+    common = {"group": "three", "method": "itti", "classifier": "knn", "variant": "plain"}
+    common |= {"split": "random", "metric": "accuracy"}
     tree = summary([{**common, "value": value} for value in (0.5, 0.7, None)], seed=0)
-    assert tree["three"]["itti"]["knn"]["accuracy_holdout"] == {"mean": 0.6, "low": 0.5, "high": 0.7}
+    assert tree["three"]["itti"]["knn"]["accuracy_holdout"] == {"mean": 0.6, "low": -0.316817, "high": 1.516817}
     variants = [{**common, "value": 0.9, "variant": name} for name in ("locations", "touches_2")]
     further = summary(variants, seed=0, closest=("itti", "knn"))
     assert further == {"variants": {"three": {v["variant"]: {"accuracy_holdout": {"mean": 0.9}} for v in variants}}}
@@ -101,17 +101,34 @@ def test_several_touches_are_of_the_first_set_and_the_closer_samplings_alone(imp
     chosen = settings(sets={"three": list(NAMES), "two": ["hand", "cup"]}, closer=["random"], repetitions=1)
     planned = plan(chosen.sets, imprints)
     variants = {
-        item: {row["variant"] for row in process(item, tmp_path, planned, chosen, 0)} for item in sorted(planned)
+        item: {row["variant"] for row in process(item, tmp_path, imprints.parent, planned, chosen, 0)}
+        for item in sorted(planned)
     }
     assert "touches_2_mixed" in variants["three.random"] and "selected" in variants["three.random"]
     assert "selected" in variants["two.random"] and "touches_2" not in variants["two.random"]
     one_touch = {"pixels", "wavelet_features", "image_features", "locations", "locations_turned"}
-    assert variants["three.itti"] == {"plain", "first_15", "first_15_locations", *one_touch}
+    assert variants["three.itti"] == {"plain", "first_15", "first_15_locations", *one_touch, "plain_side"}
 
 
 def test_shares_are_told_of_all_objects_and_of_each(imprints, tmp_path):
     planned = plan(settings().sets, imprints)
-    rows = process("three.random", tmp_path, planned, settings(), 0)
+    rows = process("three.random", tmp_path, imprints.parent, planned, settings(), 0)
     shares = [row for row in rows if row["metric"] == "similar_share" and row["variant"] == "plain"]
-    assert [row["of"] for row in shares] == ["all", *NAMES]
+    assert [row["item"] for row in shares] == [None, *NAMES]
     assert shares[0]["value"] == pytest.approx(np.mean([row["value"] for row in shares[1:]]))
+
+
+def test_the_stage_writes_rows_by_split_and_metrics_by_their_names(imprints, make_workspace):
+    workspace = make_workspace({"classification": vars(settings(closer=["random"], repetitions=1))})
+    run(workspace)
+    rows = read_rows(workspace.measurements / "classification.csv.gz")
+    assert set(rows["split"].dropna()) == {"random", "folds", "regions", "random_fewer"}
+    assert set(rows["group"]) == {"three"} and set(rows["item"].dropna()) == set(NAMES)
+    metrics = read_json(workspace.metrics / "classification.json")
+    names = {f"accuracy_{split}" for split in ("holdout", "fivefold", "apart", "fewer", "side")}
+    assert set(metrics["three"]["random"]["knn"]) == names
+    assert set(metrics["variants"]["three"]["locations"]) == {"accuracy_holdout", "accuracy_side"}
+    assert {path.name for path in (workspace.data / "classification").iterdir()} == {
+        "three.itti.npz",
+        "three.random.npz",
+    }

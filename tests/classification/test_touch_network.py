@@ -13,25 +13,25 @@ SAMPLES = RANDOM.normal(size=(120, 5)) + 3 * np.repeat(np.eye(3, 5), 40, axis=0)
 
 def test_agrees_with_torch_autograd_and_its_adadelta():
     ours = FeedForward(hidden=(7, 4), epochs=0, seed=3).fit(SAMPLES, LABELS)
-    twin = torch.nn.Sequential(
+    reference = torch.nn.Sequential(
         torch.nn.Linear(5, 7), torch.nn.ReLU(), torch.nn.Linear(7, 4), torch.nn.ReLU(), torch.nn.Linear(4, 3)
     )
     with torch.no_grad():
-        for layer, (weights, bias) in zip(twin[::2], ours._layers, strict=True):
+        for layer, (weights, bias) in zip(reference[::2], ours._layers, strict=True):
             layer.weight.copy_(torch.as_tensor(weights.T.copy()))
             layer.bias.copy_(torch.as_tensor(bias.copy()))
-    optimiser = torch.optim.Adadelta(twin.parameters(), lr=1.0, rho=0.99, eps=1e-8)
+    optimiser = torch.optim.Adadelta(reference.parameters(), lr=1.0, rho=0.99, eps=1e-8)
     trained = FeedForward(hidden=(7, 4), epochs=2, seed=3).fit(SAMPLES, LABELS)
     order = np.random.default_rng(3)
     for weights, _ in ours._layers:
         order.uniform(size=weights.shape)  # the draws that made the weights
     for _ in range(2):
         for i in order.permutation(len(SAMPLES)):
-            logits = twin(torch.as_tensor(SAMPLES[i], dtype=torch.float32))
+            logits = reference(torch.as_tensor(SAMPLES[i], dtype=torch.float32))
             optimiser.zero_grad()
             torch.nn.functional.cross_entropy(logits, torch.tensor(i // 40)).backward()
             optimiser.step()
-    expected = twin(torch.as_tensor(SAMPLES, dtype=torch.float32)).softmax(dim=1).detach().numpy()
+    expected = reference(torch.as_tensor(SAMPLES, dtype=torch.float32)).softmax(dim=1).detach().numpy()
     assert np.allclose(trained.predict_proba(SAMPLES), expected, atol=1e-4)
     assert not np.allclose(ours.predict_proba(SAMPLES), expected, atol=1e-2)
 

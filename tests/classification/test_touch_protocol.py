@@ -6,17 +6,17 @@ import pytest
 from stages.classification import CLASSIFIERS, classifier, evaluate, evaluate_features, features, protocol
 
 
-def mean(rows, metric):
-    return np.mean([row["value"] for row in rows if row["metric"] == metric])
+def mean(rows, split):
+    return np.mean([row["value"] for row in rows if (row["metric"], row["split"]) == ("accuracy", split)])
 
 
 @pytest.mark.parametrize("name", ["knn", "svm", "decision_tree", "naive_bayes", "deep_learning"])
 def test_every_classifier_beats_chance_on_what_is_easy_and_not_on_noise(bumps, name):
     easy = bumps(count=24)
-    assert mean(evaluate(easy, name, 3), "accuracy_holdout") > 0.8
-    assert mean(evaluate(easy, name, 3), "accuracy_fivefold") > 0.7
+    assert mean(evaluate(easy, name, 3), "random") > 0.8
+    assert mean(evaluate(easy, name, 3), "folds") > 0.7
     noise = dict(zip("abc", np.random.default_rng(1).random((3, 40, 16, 16)), strict=True))
-    assert mean(evaluate(noise, name, 4), "accuracy_holdout") < 0.6
+    assert mean(evaluate(noise, name, 4), "random") < 0.6
 
 
 def test_thesis_settings():
@@ -77,11 +77,11 @@ def test_hold_out_is_a_quarter_and_never_trained_on(bumps, monkeypatch):
 def test_splits_are_the_same_for_every_classifier_and_sampling(monkeypatch):
     splits = []
 
-    def answer(name, number, samples, truth, train, test):
+    def answer(name, random_state, samples, truth, train, test):
         splits.append(np.r_[train, test])
         return truth[test], 0.0
 
-    monkeypatch.setattr(protocol, "_answer", answer)
+    monkeypatch.setattr(protocol, "_fit_and_predict", answer)
     labels = np.repeat([0, 1], 20)
     evaluate_features(np.zeros((40, 2)), labels, "knn", repetitions=2)
     evaluate_features(np.ones((40, 3)), labels, "svm", repetitions=2)
@@ -94,24 +94,24 @@ def test_confusion_counts_the_hold_outs(bumps):
     samples = np.concatenate([features(stack) for stack in images.values()])
     rows, confusion = evaluate_features(samples, np.repeat(list(images), 16), "knn", repetitions=5)
     assert (confusion.sum(axis=1) == 5 * 4).all()
-    assert confusion.trace() / confusion.sum() == pytest.approx(mean(rows, "accuracy_holdout"))
+    assert confusion.trace() / confusion.sum() == pytest.approx(mean(rows, "random"))
 
 
 def test_apart_holds_out_a_region_far_from_all_training(monkeypatch):
     splits = []
 
-    def answer(name, number, samples, truth, train, test):
+    def answer(name, random_state, samples, truth, train, test):
         splits.append((train, test))
         return truth[test], 0.0
 
-    monkeypatch.setattr(protocol, "_answer", answer)
+    monkeypatch.setattr(protocol, "_fit_and_predict", answer)
     places = np.tile(np.arange(16.0)[:, None] * [1, 0, 0], (3, 1))
-    rows, _ = evaluate_features(np.zeros((48, 2)), np.repeat([0, 1, 2], 16), "knn", 4, places=places, apart=2.5)
-    assert [row["value"] for row in rows if row["metric"] == "accuracy_apart"] == [1.0] * 4
+    rows, _ = evaluate_features(np.zeros((48, 2)), np.repeat([0, 1, 2], 16), "knn", 4, places=places, min_distance=2.5)
+    assert [row["value"] for row in rows if row["split"] == "regions"] == [1.0] * 4
     for train, test in splits[6::8]:
         assert len(test) == 12 and len(train) >= 3 * 8
-        for first in (0, 16, 32):
-            own = [part[(part >= first) & (part < first + 16)] for part in (train, test)]
+        for first_of_each in (0, 16, 32):
+            own = [part[(part >= first_of_each) & (part < first_of_each + 16)] for part in (train, test)]
             assert np.ptp(own[1]) == 3 and np.abs(own[0][:, None] - own[1]).min() == 3
     for (far, _), (few, test) in zip(splits[6::8], splits[7::8], strict=True):
         assert np.array_equal(np.bincount(far // 16), np.bincount(few // 16)) and not np.isin(few, test).any()
@@ -119,8 +119,10 @@ def test_apart_holds_out_a_region_far_from_all_training(monkeypatch):
 
 def test_apart_is_none_where_all_touches_overlap(bumps):
     samples = np.concatenate([features(stack) for stack in bumps().values()])
-    rows, _ = evaluate_features(samples, np.repeat([0, 1, 2], 16), "knn", 1, places=np.zeros((48, 3)), apart=0.16)
-    assert [row["metric"] for row in rows[-2:]] == ["accuracy_apart", "accuracy_fewer"]
+    rows, _ = evaluate_features(
+        samples, np.repeat([0, 1, 2], 16), "knn", 1, places=np.zeros((48, 3)), min_distance=0.16
+    )
+    assert [row["split"] for row in rows[-2:]] == ["regions", "random_fewer"]
     assert rows[-2]["value"] is None and rows[-1]["value"] is None
 
 
@@ -130,9 +132,9 @@ def test_overlap_is_what_apart_and_as_few_samples_at_random_differ_by():
     labels = np.repeat([0, 1], 200)
     felt = np.hstack([places, places**2, np.sin(9 * places), np.cos(9 * places)])  # tells the place, not the object
     noise = felt + 1e-3 * random.normal(size=felt.shape)
-    twins = places + np.where(labels, 0.5, 0)[:, None] * (places[:, :1] > 0.5)  # objects differ on one side alone
-    rows, _ = evaluate_features(np.hstack([noise, twins]), labels, "knn", 6, places=places, apart=0.3)
-    assert mean(rows, "accuracy_fewer") > mean(rows, "accuracy_apart") + 0.05
+    differing = places + np.where(labels, 0.5, 0)[:, None] * (places[:, :1] > 0.5)  # objects differ on one side alone
+    rows, _ = evaluate_features(np.hstack([noise, differing]), labels, "knn", 6, places=places, min_distance=0.3)
+    assert mean(rows, "random_fewer") > mean(rows, "regions") + 0.05
 
 
 def test_located_samples_keep_the_place_behind_the_components():
@@ -143,7 +145,7 @@ def test_located_samples_keep_the_place_behind_the_components():
     located = classifier("decision_tree", 0, "located").fit(np.hstack([samples, places])[::2], labels[::2])
     assert located[0].transform(np.hstack([samples, places])).shape == (120, 15)
     assert located.score(np.hstack([samples, places])[1::2], labels[1::2]) > 0.9
-    with pytest.raises(ValueError, match="kind is one of features, located, reduced"):
+    with pytest.raises(ValueError, match="kind must be one of features, located, reduced"):
         classifier("knn", 0, "places")
 
 
@@ -151,7 +153,7 @@ def test_located_samples_keep_the_place_behind_the_components():
     "change, name, words",
     [
         ({}, "knm", "did you mean knn"),
-        ({}, "perceptron of old", "there are: knn"),
+        ({}, "perceptron of old", "choose one of knn"),
         ({"cup": np.zeros((9, 16, 16))}, "knn", "cup has 9 imprints"),
         ({"cup": np.zeros((20, 4, 4))}, "knn", "at least 8 x 8"),
     ],
@@ -169,7 +171,7 @@ def test_one_object_cannot_be_told_apart(bumps):
 def test_side_is_held_out_of_all_objects_alike():
     places = np.random.default_rng(0).uniform(-1, 1, size=(120, 3))
     truth = np.repeat([0, 1], 60)
-    train, test = protocol.regions(truth, places, 0.1, 5, side=True)
+    train, test = protocol.region_holdout(truth, places, 0.1, 5, side=True)
     centre = places[test].mean(axis=0)
     for own in (test[truth[test] == 0], test[truth[test] == 1]):
         assert len(own) == 15 and places[own].mean(axis=0) @ centre > 0.5 * np.linalg.norm(centre) ** 2

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from skimage.feature import match_template
 
-from stages.classification import shared, similarity
+from stages.classification import confusable, similarity
 
 RANDOM = np.random.default_rng(0)
 IMAGES = RANDOM.random((5, 9, 7))
@@ -30,10 +30,10 @@ def test_flat_imprints_are_like_each_other_and_like_nothing_else(value):
 
 def test_shared_are_those_that_another_object_has_too():
     images = np.concatenate([IMAGES[:2], IMAGES[:1], IMAGES[2:4]])
-    alike = similarity(images)
-    assert shared(alike, ["a", "a", "b", "b", "b"]).tolist() == [True, False, True, False, False]
-    assert not shared(alike, ["a", "a", "a", "b", "b"]).any()
-    assert not shared(alike, ["a", "a", "b", "b", "b"], among=[0, 1, 3]).tolist()[0]
+    similarities = similarity(images)
+    assert confusable(similarities, ["a", "a", "b", "b", "b"]).tolist() == [True, False, True, False, False]
+    assert not confusable(similarities, ["a", "a", "a", "b", "b"]).any()
+    assert not confusable(similarities, ["a", "a", "b", "b", "b"], among=[0, 1, 3]).tolist()[0]
 
 
 @pytest.mark.parametrize("bad", [np.zeros((9, 7)), np.full((1, 9, 7), np.nan)])
@@ -43,5 +43,5 @@ def test_what_is_no_stack_of_imprints_is_refused(bad):
 
 
 def test_imprints_of_two_arrays_cannot_be_compared():
-    with pytest.raises(ValueError, match="equally many cells: 63 and 64"):
+    with pytest.raises(ValueError, match="the same number of cells: 63 and 64"):
         similarity(IMAGES, np.zeros((1, 8, 8)))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from stages.classification import TouchMap, combine, join
+from stages.classification import TouchMap, concatenate_touches, draw_combinations
 
 RANDOM = np.random.default_rng(0)
 TRUTH = np.repeat([0, 1, 2], 8)
@@ -21,10 +21,10 @@ def test_map_keeps_neighbours_near_and_strangers_apart():
 
 def test_map_is_decided_by_its_seed_and_by_the_training_samples_alone():
     samples, others = RANDOM.normal(size=(30, 4)), RANDOM.normal(size=(9, 4))
-    first = TouchMap(3).fit(samples).transform(others)
-    assert np.array_equal(first, TouchMap(3).fit(samples).transform(others))
-    assert np.array_equal(first[:2], TouchMap(3).fit(samples).transform(others[:2]))
-    assert not np.array_equal(first, TouchMap(4).fit(samples).transform(others))
+    first_of_each = TouchMap(3).fit(samples).transform(others)
+    assert np.array_equal(first_of_each, TouchMap(3).fit(samples).transform(others))
+    assert np.array_equal(first_of_each[:2], TouchMap(3).fit(samples).transform(others[:2]))
+    assert not np.array_equal(first_of_each, TouchMap(4).fit(samples).transform(others))
 
 
 def test_map_bears_a_feature_that_never_changes():
@@ -34,17 +34,17 @@ def test_map_bears_a_feature_that_never_changes():
 
 @pytest.mark.parametrize("count", [1, 3, 8])
 def test_each_imprint_begins_one_combination_of_different_imprints_of_its_object(count):
-    joined = combine(TRUTH, count, np.random.default_rng(0))
+    joined = draw_combinations(TRUTH, count, np.random.default_rng(0))
     assert joined.shape == (24, count) and np.array_equal(joined[:, 0], np.arange(24))
     assert (TRUTH[joined] == TRUTH[:, None]).all()
     assert all(len(set(row)) == count for row in joined.tolist())
 
 
 def test_combination_larger_than_an_object_is_refused():
-    with pytest.raises(ValueError, match="8 imprints of one object make no combination of 9"):
-        combine(TRUTH, 9, np.random.default_rng(0))
+    with pytest.raises(ValueError, match="an object has 8 imprints, a combination needs 9"):
+        draw_combinations(TRUTH, 9, np.random.default_rng(0))
 
 
 def test_joined_numbers_stand_one_touch_after_another():
     numbers = np.arange(48).reshape(24, 2)
-    assert join(numbers, np.array([[2, 0], [5, 23]])).tolist() == [[4, 5, 0, 1], [10, 11, 46, 47]]
+    assert concatenate_touches(numbers, np.array([[2, 0], [5, 23]])).tolist() == [[4, 5, 0, 1], [10, 11, 46, 47]]

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from stages.classification.several import Several
-from stages.classification.trials import Touched, selection, single
+from stages.classification.multi_touch import MultiTouchTrials
+from stages.classification.trials import TouchSet, selection_trials, single_touch_trials
 from stages.classification.variants import evaluate_variants
 
 
@@ -13,24 +13,24 @@ def touched(bumps, count=24, jitter=0.5):
     images = np.concatenate(list(bumps(count=count, jitter=jitter).values()))
     samples = np.hstack([np.arange(len(images))[:, None], np.random.default_rng(1).normal(size=(len(images), 40))])
     places = np.arange(float(len(images)))[:, None] * [1, 0, 0]
-    return Touched.of(samples, images, np.repeat([0, 1, 2], count), places, 1.5)
+    return TouchSet.from_images(samples, images, np.repeat([0, 1, 2], count), places, 1.5)
 
 
 def by_name(trials):
-    return {(trial.variant, trial.metric): trial for trial in trials}
+    return {(trial.variant, trial.split): trial for trial in trials}
 
 
 def test_first_are_the_first_fifteen_of_each_object(bumps):
-    few = touched(bumps).first()
-    assert np.array_equal(few.samples[:, 0] % 24, np.tile(np.arange(15), 3)) and few.alike.shape == (45, 45)
-    assert np.array_equal(np.diag(few.alike).round(9), np.ones(45))
+    few = touched(bumps).first_of_each()
+    assert np.array_equal(few.samples[:, 0] % 24, np.tile(np.arange(15), 3)) and few.similarities.shape == (45, 45)
+    assert np.array_equal(np.diag(few.similarities).round(9), np.ones(45))
 
 
 def test_locations_are_the_last_three_columns_and_turn_about_the_vertical_in_the_test_part_alone(bumps):
     data = touched(bumps)
-    trials = by_name(single(data, 7))
-    upright, turned = (trials[name, "accuracy_holdout"] for name in ("locations", "locations_turned"))
-    train, test = turned.split
+    trials = by_name(single_touch_trials(data, 7))
+    upright, turned = (trials[name, "random"] for name in ("locations", "locations_turned"))
+    train, test = turned.parts
     assert np.array_equal(upright.samples[:, -3:], data.places) and upright.kind == "located"
     assert np.array_equal(turned.samples[train, -3:], data.places[train])
     assert np.allclose(np.linalg.norm(turned.samples[test, -3:], axis=1), np.linalg.norm(data.places[test], axis=1))
@@ -39,57 +39,61 @@ def test_locations_are_the_last_three_columns_and_turn_about_the_vertical_in_the
 
 def test_selection_removes_before_the_split_or_from_training_alone(bumps):
     data = touched(bumps, jitter=2.5)
-    trials = by_name(selection(data, 3))
-    everywhere, training = (trials[name, "accuracy_holdout"] for name in ("selected", "selected_train"))
-    left = data.samples[~data.shared, 0]
+    trials = by_name(selection_trials(data, 3))
+    everywhere, training = (trials[name, "random"] for name in ("selected", "selected_train"))
+    left = data.samples[~data.confusable, 0]
     assert 0 < len(left) < 72 and np.array_equal(everywhere.samples[:, 0], left)
-    train, test = training.split
+    train, test = training.parts
     assert len(test) == 18 and (np.bincount(data.truth[test]) == 6).all()
-    alike = data.alike[np.ix_(train, train)] >= 0.85
-    assert not (alike & (data.truth[train][:, None] != data.truth[train])).any()
-    rows = evaluate_variants(data, ["knn"], 2, closer=True)
-    assert {row["metric"] for row in rows if row["variant"] == "selected"} >= {"accuracy_holdout", "recall_holdout"}
+    similarities = data.similarities[np.ix_(train, train)] >= 0.85
+    assert not (similarities & (data.truth[train][:, None] != data.truth[train])).any()
+    rows = evaluate_variants(data, ["knn"], 2, with_selection=True)
+    assert {row["metric"] for row in rows if row["variant"] == "selected"} == {"accuracy", "recall"}
 
 
 def test_selection_that_leaves_too_little_says_so_once(bumps):
     images = bumps(names=("cup",), count=24)["cup"]
-    same = Touched.of(np.zeros((48, 41)), np.tile(images, (2, 1, 1)), np.repeat([0, 1], 24), np.zeros((48, 3)), 1.0)
-    rows = [row for row in evaluate_variants(same, ["knn"], 3, closer=True) if row["variant"] == "selected"]
+    same = TouchSet.from_images(
+        np.zeros((48, 41)), np.tile(images, (2, 1, 1)), np.repeat([0, 1], 24), np.zeros((48, 3)), 1.0
+    )
+    rows = [row for row in evaluate_variants(same, ["knn"], 3, with_selection=True) if row["variant"] == "selected"]
     assert len(rows) == 1 and rows[0]["value"] is None and "fewer than 4 of its 48" in rows[0]["note"]
 
 
 @pytest.mark.parametrize("way", ["", "_unplaced", "_ordered", "_disjoint", "_many"])
 def test_no_touch_is_on_both_sides(bumps, way):
     data = touched(bumps)
-    trials = by_name(Several((1, 3), 2, True).trials(data, 5))
-    trial = trials[f"touches_3{way}", "accuracy_holdout"]
+    trials = by_name(MultiTouchTrials((1, 3), 2, True).trials(data, 5))
+    trial = trials[f"touches_3{way}", "random"]
     if way != "_unplaced":
-        train, test = (trial.samples[side][:, 2::5] for side in trial.split)  # the x of each touch is its number
+        train, test = (trial.samples[side][:, 2::5] for side in trial.parts)  # the x of each touch is its number
         assert train.shape[1] == 3 and not np.isin(train, test).any()
-        assert (data.truth[train.astype(int)] == trial.truth[trial.split[0]][:, None]).all()
+        assert (data.truth[train.astype(int)] == trial.truth[trial.parts[0]][:, None]).all()
     assert trial.samples.shape[1] == (6 if way == "_unplaced" else 15) and trial.kind == "reduced"
-    assert len(trial.split[0]) == {"_disjoint": 18, "_many": 540}.get(way, 2 * 3 * 18)
+    assert len(trial.parts[0]) == {"_disjoint": 18, "_many": 540}.get(way, 2 * 3 * 18)
     assert trial.skipped == (("svm",) if way == "_many" else ())
 
 
 def test_mixed_combinations_share_touches_and_come_of_fifteen_too(bumps):
-    trials = by_name(Several((4,), 2, True).trials(touched(bumps), 5))
-    mixed = trials["touches_4_mixed", "accuracy_holdout"]
-    train, test = (mixed.samples[side][:, 2::5] for side in mixed.split)
+    trials = by_name(MultiTouchTrials((4,), 2, True).trials(touched(bumps), 5))
+    mixed = trials["touches_4_mixed", "random"]
+    train, test = (mixed.samples[side][:, 2::5] for side in mixed.parts)
     assert np.isin(test, train).mean() > 0.9
-    assert len(trials["first_15_touches_4_mixed", "accuracy_holdout"].samples) == 2 * 45
+    assert len(trials["first_15_touches_4_mixed", "random"].samples) == 2 * 45
 
 
 def test_more_touches_than_one_side_has_are_left_out_with_the_reason(bumps):
-    trials = by_name(Several((2, 5), 1, False).trials(touched(bumps, count=16), 5))
-    assert trials["touches_2", "accuracy_holdout"].split
-    assert "4 touches on one side of the split: no combination of 5" in trials["touches_5", "accuracy_holdout"].note
-    assert {metric for _, metric in trials} == {"accuracy_holdout", "accuracy_side"}
+    trials = by_name(MultiTouchTrials((2, 5), 1, False).trials(touched(bumps, count=16), 5))
+    assert trials["touches_2", "random"].parts
+    assert "4 touches on one side of the split: no combination of 5" in trials["touches_5", "random"].note
+    assert {split for _, split in trials} == {"random", "regions"}
 
 
 def test_rows_are_the_same_from_run_to_run(bumps):
     def run():
-        rows = evaluate_variants(touched(bumps), ["knn", "naive_bayes"], 2, 3, Several((1, 2), 1, True), closer=True)
+        rows = evaluate_variants(
+            touched(bumps), ["knn", "naive_bayes"], 2, 3, MultiTouchTrials((1, 2), 1, True), with_selection=True
+        )
         return [{key: value for key, value in row.items() if key != "seconds"} for row in rows]
 
     assert run() == run()

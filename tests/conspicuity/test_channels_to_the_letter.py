@@ -12,7 +12,7 @@ from stages.conspicuity.edge import laplacian_of_gaussian
 from stages.conspicuity.entropy import local_entropy
 from stages.conspicuity.operators import centre_surround, expand, mean_of_other_maxima, normalise, pyramid
 from stages.conspicuity.orientation import ANGLES, energy
-from stages.conspicuity.planes import shape_symmetries
+from stages.conspicuity.symmetry_search import shape_symmetries
 from stages.kit import Mesh
 from stages.views import View, Viewpoint, render
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from stages.conspicuity.background import fill
-from stages.conspicuity.memo import once
+from stages.conspicuity.cropped_view import core
 from stages.conspicuity.operators import centre_surround, expand, mean_of_other_maxima, normalise, pyramid
-from stages.conspicuity.picture import core
+from stages.conspicuity.weak_cache import weak_cache
 
 EVERYWHERE = np.ones((60, 80), dtype=bool)
 
@@ -112,7 +112,7 @@ def test_once_computes_once_an_owner_and_lets_go():
 
     calls = []
 
-    @once
+    @weak_cache
     def double(owner, factor):
         calls.append(factor)
         return 2 * factor

@@ -7,7 +7,7 @@ import pytest
 import trimesh
 
 from stages.conspicuity import CHANNELS, conspicuity
-from stages.conspicuity.channels import OTHERS, fit, known_channels
+from stages.conspicuity.channels import OTHERS, check_channels, resize_map
 from stages.conspicuity.symmetry import symmetric_points
 from stages.kit import Mesh
 from stages.views import Viewpoint, render
@@ -27,7 +27,7 @@ CONE = kit_mesh(trimesh.creation.revolve([[0, -0.4], [0.3, -0.4], [0.15, 0], [0,
 def test_the_nine_stay_the_nine_and_the_others_are_known_beside_them():
     assert len(CHANNELS) == 9 and not set(CHANNELS) & set(OTHERS)
     assert list(OTHERS) == ["symmetry_lateral", "symmetry_radial", "spectral_residual", "fine_grained"]
-    assert known_channels(["edge", *OTHERS]) == ["edge", *OTHERS]
+    assert check_channels(["edge", *OTHERS]) == ["edge", *OTHERS]
     view = render(BOX, Viewpoint(30, 20), SIZE, "raycast")
     assert list(conspicuity(BOX, view, ["fine_grained", "edge"])) == ["fine_grained", "edge"]
     assert list(conspicuity(BOX, view)) == list(CHANNELS)
@@ -109,9 +109,9 @@ def test_a_shape_without_an_axis_has_no_radial_map():
 @pytest.mark.parametrize("scale", [2, 4])
 def test_fit_knows_the_scale_of_a_map_by_its_size(shape, scale):
     sides = [-(-side // 2**scale) for side in shape]
-    found = fit(np.ones(sides, dtype=np.float32), shape, (12, 16))
+    found = resize_map(np.ones(sides, dtype=np.float32), shape, (12, 16))
     np.testing.assert_allclose(found, 1, rtol=1e-5)
-    slope = fit(np.arange(sides[1], dtype=np.float32)[None].repeat(sides[0], axis=0), shape, (12, 16))[6]
+    slope = resize_map(np.arange(sides[1], dtype=np.float32)[None].repeat(sides[0], axis=0), shape, (12, 16))[6]
     expected = ((np.arange(16) + 0.5) * shape[1] / 16 - 0.5) / 2**scale
     inner = (expected > 1) & (expected < sides[1] - 2)
     np.testing.assert_allclose(slope[inner], expected[inner], atol=0.15)

@@ -13,7 +13,7 @@ from stages.kit import Mesh
 from stages.kit.files import read_mesh
 from stages.views import Viewpoint, render
 
-MESHES = Path(__file__).parents[2] / "data" / "meshes"
+MESHES = Path(__file__).parents[2] / "data/household/meshes"
 
 
 def disc(radius=140):
@@ -46,7 +46,7 @@ def test_filling_keeps_a_box_from_being_outlined():
 @pytest.mark.parametrize("name", ["elephant", "teapot", "airplane"])
 def test_no_channel_lights_the_silhouette_of_a_real_object(name):
     if not (MESHES / f"{name}.npz").exists():
-        pytest.skip("data/meshes is not here: `dvc repro meshes` makes it")
+        pytest.skip("data/household/meshes is not here: `dvc repro meshes@household` makes it")
     mesh = read_mesh(MESHES / f"{name}.npz")
     shares = {channel: [] for channel in CHANNELS}
     for viewpoint in (Viewpoint(30, 20), Viewpoint(200, -30)):

@@ -8,8 +8,8 @@ import trimesh
 
 from stages.conspicuity import CHANNELS, conspicuity
 from stages.conspicuity.curvature import capped_curvature, mean_curvature
-from stages.conspicuity.planes import mirror, shape_symmetries, turn
 from stages.conspicuity.symmetry import symmetric_points
+from stages.conspicuity.symmetry_search import mirror, rotate, shape_symmetries
 from stages.kit import Mesh
 from stages.views import Viewpoint, render
 
@@ -69,7 +69,7 @@ def test_curvature_stands_slivers_and_noise():
     assert np.quantile(np.abs(mean_curvature(smooth) / 2.5 - 1), 0.95) < 0.15
     ball = trimesh.creation.icosphere(subdivisions=5, radius=0.4)
     noise = np.random.default_rng(0).normal(0, 0.0005, (len(ball.vertices), 1))
-    noisy = mean_curvature(Mesh(ball.vertices * (1 + noise), ball.faces), reach=0.03)
+    noisy = mean_curvature(Mesh(ball.vertices * (1 + noise), ball.faces), smoothing=0.03)
     assert np.median(noisy) == pytest.approx(2.5, rel=0.05) and (noisy > 0).mean() > 0.95
 
 
@@ -135,8 +135,8 @@ def test_mirror_and_turn_undo_themselves():
     points = np.random.default_rng(0).normal(size=(20, 3))
     axis = np.array([0.6, 0, 0.8])
     np.testing.assert_allclose(mirror(mirror(points, axis, 0.3), axis, 0.3), points, atol=1e-12)
-    np.testing.assert_allclose(turn(turn(points, axis, 50, points[0]), axis, -50, points[0]), points, atol=1e-12)
-    np.testing.assert_allclose(turn(np.eye(3)[:1], np.array([0, 0, 1.0]), 90, np.zeros(3)), [[0, 1, 0]], atol=1e-12)
+    np.testing.assert_allclose(rotate(rotate(points, axis, 50, points[0]), axis, -50, points[0]), points, atol=1e-12)
+    np.testing.assert_allclose(rotate(np.eye(3)[:1], np.array([0, 0, 1.0]), 90, np.zeros(3)), [[0, 1, 0]], atol=1e-12)
 
 
 def test_maps_are_of_one_size_in_0_to_1_and_zero_off_the_object():

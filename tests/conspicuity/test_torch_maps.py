@@ -12,15 +12,15 @@ import pytest
 import torch
 import trimesh
 
-from stages.conspicuity import CHANNELS, background, channels, conspicuity, operators, picture
-from stages.conspicuity.batch import conspicuity_batch, frame, maps, peaks, pixels, stack
+from stages.conspicuity import CHANNELS, background, channels, conspicuity, cropped_view, operators
+from stages.conspicuity.batch import conspicuity_batch, maps, peaks, pixels, resize, stack
 from stages.conspicuity.batch.grid import Grid
 from stages.conspicuity.entropy import local_entropy
 from stages.kit import Mesh
 from stages.kit.files import read_mesh
 from stages.views import View, Viewpoint, render
 
-MESHES = Path(__file__).parents[2] / "data" / "meshes"
+MESHES = Path(__file__).parents[2] / "data/household/meshes"
 VIEWPOINTS = (Viewpoint(20, 10), Viewpoint(130, -50), Viewpoint(0, 90))
 CLOSE = 1e-3
 
@@ -39,7 +39,7 @@ def one_core():
 @pytest.fixture
 def at_once(monkeypatch):
     """All views of a call in one stack, on the CPU too."""
-    monkeypatch.setattr(maps, "AT_ONCE", {"cpu": 99, "cuda": 99})
+    monkeypatch.setattr(maps, "BATCH", {"cpu": 99, "cuda": 99})
 
 
 @functools.cache
@@ -83,7 +83,7 @@ def test_the_nine_maps_are_those_of_opencv(at_once, kind, device):
 @pytest.mark.parametrize("name", ["elephant", "cup", "airplane", "cubesmall", "eyeglasses"])
 def test_the_maps_of_real_objects_are_those_of_opencv(at_once, name, device):
     if not (MESHES / f"{name}.npz").exists():
-        pytest.skip("data/meshes is not here: `dvc repro meshes` makes it")
+        pytest.skip("data/household/meshes is not here: `dvc repro meshes@household` makes it")
     mesh = read_mesh(MESHES / f"{name}.npz")
     check(mesh, looks(mesh), device=device)
 
@@ -121,7 +121,7 @@ def test_how_many_views_go_together_does_not_matter(monkeypatch, device):
     mesh, views = bumpy("colour"), looks(bumpy("colour"), (150, 200))
     results = []
     for many in (1, 2, 99):
-        monkeypatch.setattr(maps, "AT_ONCE", {"cpu": many, "cuda": many})
+        monkeypatch.setattr(maps, "BATCH", {"cpu": many, "cuda": many})
         results.append(conspicuity_batch(mesh, views, device=device))
     for other in results[1:]:
         for channel in CHANNELS:
@@ -181,7 +181,7 @@ def test_filling_and_cores_are_opencvs(device):
     assert not filled[1].any()
     for rim in (1, 3):
         mine = stack.core(torch.from_numpy(known)[None, None].to(device), rim)[0, 0].cpu()
-        np.testing.assert_array_equal(mine, picture.core(known, rim))
+        np.testing.assert_array_equal(mine, cropped_view.core(known, rim))
 
 
 def spiral(side=41):
@@ -209,7 +209,7 @@ def test_every_region_is_counted_once(name, device):
         "none": np.zeros((41, 41), dtype=bool),
     }[name]
     count, labels = cv2.connectedComponents(tops.astype(np.uint8), connectivity=8)
-    ones = peaks.one_of_each(torch.from_numpy(tops)[None, None].to(device))[0, 0].cpu().numpy()
+    ones = peaks.one_per_plateau(torch.from_numpy(tops)[None, None].to(device))[0, 0].cpu().numpy()
     assert ones.sum() == count - 1 and sorted(labels[ones]) == list(range(1, count))
 
 
@@ -233,7 +233,7 @@ def test_median_luminance_and_entropy_are_opencvs(device):
     rgb = rng.integers(0, 256, (60, 80, 3)).astype(np.uint8)
     full = View(rgb, np.full((60, 80), 10, np.float32), np.zeros((60, 80), np.int32), Viewpoint(0, 0))
     luminance = stack.Stack([full], device).luminance
-    expected = picture.picture(full).luminance
+    expected = cropped_view.cropped_view(full).luminance
     np.testing.assert_array_equal(luminance[0, 0].cpu(), expected)
     framed = torch.nn.functional.pad(luminance, (1, 1, 1, 1), mode="replicate")
     np.testing.assert_array_equal(pixels._median(framed)[0, 0].cpu(), cv2.medianBlur(expected, 3))
@@ -252,11 +252,11 @@ def test_maps_reach_their_size_as_in_opencv(size, device):
     crops = stack.Stack(views, device)
     values = np.random.default_rng(6).random((2, 1, *crops.grid.shape(4)), dtype=np.float32)
     values *= crops.grid.within(4).cpu().numpy()
-    found = frame.fit(crops, torch.from_numpy(values).to(device), size).cpu()
+    found = resize.resize_maps(crops, torch.from_numpy(values).to(device), size).cpu()
     for k, view in enumerate(views):
         h, w = crops.grid.sizes_at(4)[k]
-        whole = picture.picture(view).whole(values[k, 0, :h, :w], 4)
-        np.testing.assert_allclose(found[k, 0], channels.fit(whole, view.mask.shape, size), atol=1e-4)
+        whole = cropped_view.cropped_view(view).place_in_view(values[k, 0, :h, :w], 4)
+        np.testing.assert_allclose(found[k, 0], channels.resize_map(whole, view.mask.shape, size), atol=1e-4)
 
 
 def test_what_cannot_be_done_is_named():

@@ -1,34 +1,41 @@
 """The figure of contours: built from what the stage wrote, and told where nothing was."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 import trimesh
 
-from stages.classes.files import write_object
-from stages.contours import gather, write_sequences
+from stages.contours import sample_contours, write_sequences
 from stages.imprints import Surface
 from stages.kit import Mesh
+from stages.kit.files import write_mesh, write_text
 from stages.kit.rng import rng
-from stages.report.figures import figure_4_14
-from stages.report.figures._contours import followed
-from stages.report.results import NotRun
+from stages.kit.workspace import Workspace
+from stages.report.results import NotRun, Results
+from stages.report.schema import Params
+from stages.report.sequences import figure_4_14
+from stages.report.sequences.contours import followed
 
 SHAPE = trimesh.creation.torus(0.35, 0.15, major_sections=40, minor_sections=20)
 RING = Mesh(SHAPE.vertices, SHAPE.faces)
+PARAMS = "seed: 0\nprofile: test\nparallel: {backend: sequential}\ngraph: {}\nsets: [furniture]\n"
 
 
 def results(root, preferred=()):
-    settings = SimpleNamespace(figure_objects=list(preferred))
-    return SimpleNamespace(data=root / "data", reports=root / "reports", settings=settings)
+    write_text(root / "params.yaml", PARAMS)
+    settings = Params(
+        hero_object="a", figure_objects=list(preferred), viewer_objects=[], viewer_count=1, viewer_faces=100,
+        viewer_lod_methods=[], viewer_kilobytes=100,
+    )  # fmt: skip
+    return Results(Workspace(root), settings)
 
 
 def write(root, names, strategies):
     for name in names:
-        write_object(root / f"data/classes/{name}.npz", RING, {})
-        found = {one: gather(Surface(RING), np.arange(800), 3, rng(0, one), cells=(8, 8))[0] for one in strategies}
-        write_sequences(root / f"data/contours/{name}.npz", found)
+        write_mesh(root / f"data/furniture/meshes/{name}.npz", RING)
+        found = {
+            one: sample_contours(Surface(RING), np.arange(800), 3, rng(0, one), cells=(8, 8))[0] for one in strategies
+        }
+        write_sequences(root / f"data/furniture/contours/{name}.npz", found)
 
 
 def test_the_figure_shows_blind_and_guided_contours_and_what_is_felt(tmp_path):
@@ -51,7 +58,7 @@ def test_without_contours_the_figure_is_not_run(tmp_path):
 
 
 def test_the_contour_drawn_is_the_one_followed():
-    found, _ = gather(Surface(RING), np.arange(800), 5, rng(0, "a"), cells=(8, 8))
+    found, _ = sample_contours(Surface(RING), np.arange(800), 5, rng(0, "a"), cells=(8, 8))
     for pair, positions in zip(found.planes, found.positions, strict=True):
         drawn = followed(RING, pair)
         ends = np.roll(drawn.points, -1, axis=0)

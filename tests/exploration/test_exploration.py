@@ -3,7 +3,17 @@
 import numpy as np
 import pytest
 
-from stages.exploration import LIKELIHOODS, SPLITS, WAYS, Calibration, Trial, calibrate, explore, hold_out, stop
+from stages.exploration import (
+    LIKELIHOODS,
+    SPLITS,
+    STRATEGIES,
+    Calibration,
+    Trial,
+    calibrate,
+    explore,
+    split_touches,
+    stop,
+)
 from stages.exploration.likelihood import feature_kernel, log_likelihood, place_kernel
 
 PLAIN = Calibration(1.0, 0.0)
@@ -13,46 +23,48 @@ def random(seed=0):
     return np.random.default_rng(seed)
 
 
-def one_object_of_two(felt):
+def one_object_of_two(observed):
     """Two objects with the same places: log likelihoods (places, 2), foreseen just as they will be felt."""
-    felt = np.stack([felt, felt[:, ::-1]])
-    foreseen = np.stack([felt[0], felt[1]], axis=1)  # (places, hypotheses, classes)
-    return felt, np.repeat(foreseen[None, :, :, None], 2, axis=0), np.ones((2, len(felt[0]), 2, 1))
+    observed = np.stack([observed, observed[:, ::-1]])
+    predicted = np.stack([observed[0], observed[1]], axis=1)  # (places, hypotheses, classes)
+    return observed, np.repeat(predicted[None, :, :, None], 2, axis=0), np.ones((2, len(observed[0]), 2, 1))
 
 
 def test_saliency_touches_in_the_order_of_the_points():
-    felt, foreseen, chances = one_object_of_two(np.array([[0.3, 0.0], [2.0, 0.0], [0.5, 0.0]]))
-    beliefs = explore("saliency", felt, foreseen, chances, PLAIN, 3, random())
+    observed, predicted, probabilities = one_object_of_two(np.array([[0.3, 0.0], [2.0, 0.0], [0.5, 0.0]]))
+    beliefs = explore("saliency", observed, predicted, probabilities, PLAIN, 3, random())
     expected = np.cumsum([0.3, 2.0, 0.5])
     assert np.allclose(beliefs[0, :, 0] - beliefs[0, :, 1], expected)
 
 
 def test_gain_touches_the_telling_place_first():
-    felt, foreseen, chances = one_object_of_two(np.array([[0.3, 0.0], [2.0, 0.0], [0.5, 0.0]]))
-    beliefs = explore("gain", felt, foreseen, chances, PLAIN, 3, random())
+    observed, predicted, probabilities = one_object_of_two(np.array([[0.3, 0.0], [2.0, 0.0], [0.5, 0.0]]))
+    beliefs = explore("gain", observed, predicted, probabilities, PLAIN, 3, random())
     assert np.allclose(beliefs[0, :, 0] - beliefs[0, :, 1], np.cumsum([2.0, 0.5, 0.3]))
 
 
-@pytest.mark.parametrize("way", WAYS)
-def test_no_place_is_touched_twice(way):
+@pytest.mark.parametrize("strategy", STRATEGIES)
+def test_no_place_is_touched_twice(strategy):
     values = np.array([[1.0, 0.0], [20.0, 0.0], [300.0, 0.0], [4000.0, 0.0]])  # any sum tells its parts
-    felt, foreseen, chances = one_object_of_two(values)
-    beliefs = explore(way, felt, foreseen, chances, PLAIN, 4, random())
+    observed, predicted, probabilities = one_object_of_two(values)
+    beliefs = explore(strategy, observed, predicted, probabilities, PLAIN, 4, random())
     odds = beliefs[:, -1, 0] - beliefs[:, -1, 1]
     assert np.allclose(odds, [4321, -4321])
 
 
 def test_random_orders_differ_and_come_again_with_the_generator():
-    felt, foreseen, chances = one_object_of_two(np.stack([np.arange(9.0), np.zeros(9)], axis=1))
-    first, again, other = (explore("random", felt, foreseen, chances, PLAIN, 9, random(k)) for k in (1, 1, 2))
+    observed, predicted, probabilities = one_object_of_two(np.stack([np.arange(9.0), np.zeros(9)], axis=1))
+    first, again, other = (
+        explore("random", observed, predicted, probabilities, PLAIN, 9, random(k)) for k in (1, 1, 2)
+    )
     assert np.array_equal(first, again) and not np.allclose(first, other)
 
 
-@pytest.mark.parametrize("most", [0, 4])
-def test_touching_more_than_there_is_to_touch_is_refused(most):
-    felt, foreseen, chances = one_object_of_two(np.zeros((3, 2)))
+@pytest.mark.parametrize("max_touches", [0, 4])
+def test_touching_more_than_there_is_to_touch_is_refused(max_touches):
+    observed, predicted, probabilities = one_object_of_two(np.zeros((3, 2)))
     with pytest.raises(ValueError, match="3 places"):
-        explore("saliency", felt, foreseen, chances, PLAIN, most, random())
+        explore("saliency", observed, predicted, probabilities, PLAIN, max_touches, random())
 
 
 def test_stopping_waits_for_the_confidence_and_no_longer():
@@ -80,21 +92,21 @@ def gaussian_touches(shared, count=4000, touches=6):
 
 def test_independent_touches_add_up():
     found = calibrate(*gaussian_touches(0.0))
-    assert found.weight == pytest.approx(1, abs=0.1) and found.sharing == pytest.approx(0, abs=0.05)
+    assert found.weight == pytest.approx(1, abs=0.1) and found.redundancy == pytest.approx(0, abs=0.05)
 
 
 def test_what_touches_share_is_found():
-    assert calibrate(*gaussian_touches(0.95)).sharing > 0.8
+    assert calibrate(*gaussian_touches(0.95)).redundancy > 0.8
 
 
 def test_the_plain_product_is_overconfident_where_touches_share_and_the_calibrated_belief_is_not():
     sequences, truth = gaussian_touches(0.6)
     learn, check = slice(0, 2000), slice(2000, None)
     gaps = {}
-    for sharing in (True, False):
-        calibration = calibrate(sequences[learn], truth[learn], sharing)
+    for redundancy in (True, False):
+        calibration = calibrate(sequences[learn], truth[learn], redundancy)
         belief = np.exp(calibration.log_belief(sequences[check].sum(axis=1), 6))
-        gaps[sharing] = belief.max(axis=1).mean() - (belief.argmax(axis=1) == truth[check]).mean()
+        gaps[redundancy] = belief.max(axis=1).mean() - (belief.argmax(axis=1) == truth[check]).mean()
     assert abs(gaps[True]) < 0.02 and gaps[False] > 0.05
 
 
@@ -106,15 +118,15 @@ def test_belief_sums_to_one():
 @pytest.mark.parametrize("split", SPLITS)
 def test_hold_out_takes_a_quarter_and_shares_nothing(split):
     truth, places = np.repeat([0, 1], 40), random().uniform(-0.5, 0.5, (80, 3))
-    train, test = hold_out(truth, places, split, 0.1, random())
+    train, test = split_touches(truth, places, split, 0.1, random())
     assert not set(train) & set(test) and np.bincount(truth[test]).tolist() == [10, 10]
-    if split == "anywhere":
+    if split == "random":
         assert len(train) == 60
 
 
 def test_apart_keeps_its_distance_within_an_object():
     truth, places = np.repeat([0, 1], 40), random().uniform(-0.5, 0.5, (80, 3))
-    train, test = hold_out(truth, places, "apart", 0.3, random())
+    train, test = split_touches(truth, places, "regions", 0.3, random())
     for one in (0, 1):
         known, unknown = places[train[truth[train] == one]], places[test[truth[test] == one]]
         assert np.linalg.norm(known[:, None] - unknown[None], axis=2).min() > 0.3
@@ -122,9 +134,9 @@ def test_apart_keeps_its_distance_within_an_object():
 
 def test_hold_out_refuses_objects_with_too_few_touches():
     with pytest.raises(ValueError, match="too few touches"):
-        hold_out(np.zeros(10, dtype=int), np.zeros((10, 3)), "apart", 0.1, random())
-    with pytest.raises(ValueError, match="no split is called sideways"):
-        hold_out(np.zeros(10, dtype=int), np.zeros((10, 3)), "sideways", 0.1, random())
+        split_touches(np.zeros(10, dtype=int), np.zeros((10, 3)), "regions", 0.1, random())
+    with pytest.raises(ValueError, match="unknown split sideways"):
+        split_touches(np.zeros(10, dtype=int), np.zeros((10, 3)), "sideways", 0.1, random())
 
 
 def test_likelihood_is_the_mean_kernel_of_an_objects_touches():
@@ -140,13 +152,13 @@ def test_kernels_are_one_at_no_distance_and_fall(kernel):
     assert values[0] == 1 and values[0] > values[1] > values[2] > 0
 
 
-def trial(likelihood="imprint", split="anywhere", tell=3.0):
+def trial(likelihood="imprint", split="random", tell=3.0):
     """Two objects of 40 touches: the half with x > 0 feels unlike, by `tell`, the other half the same."""
     generator = random()
     truth, places = np.repeat([0, 1], 40), generator.uniform(-0.5, 0.5, (80, 3))
     samples = generator.standard_normal((80, 2)) * 0.3
     samples[:, 0] += tell * truth * (places[:, 0] > 0)
-    train, test = hold_out(truth, places, split, 0.1, random())
+    train, test = split_touches(truth, places, split, 0.1, random())
     return Trial(samples, places, truth, train, test, likelihood, split, 0.1, random()), places[test].reshape(2, -1, 3)
 
 
@@ -155,22 +167,22 @@ def trial(likelihood="imprint", split="anywhere", tell=3.0):
 def test_a_trial_gives_whole_finite_numbers(likelihood, split):
     found, places = trial(likelihood, split)
     count = places.shape[1]
-    assert found.felt.shape == (2, count, 2) and found.foreseen.shape[:3] == (2, count, 2)
-    assert all(np.isfinite(values).all() for values in (found.felt, found.foreseen, found.chances))
-    assert np.allclose(found.chances.sum(axis=3), 1) and found.truth.tolist() == [0, 1]
+    assert found.observed.shape == (2, count, 2) and found.predicted.shape[:3] == (2, count, 2)
+    assert all(np.isfinite(values).all() for values in (found.observed, found.predicted, found.probabilities))
+    assert np.allclose(found.probabilities.sum(axis=3), 1) and found.truth.tolist() == [0, 1]
 
 
 @pytest.mark.parametrize("likelihood", ["imprint", "imprint_place"])
 def test_gain_looks_where_the_objects_differ(likelihood):
     found, places = trial(likelihood)
     differ = (places[:, :, 0] > 0).mean()
-    given = (found.felt, found.foreseen, found.chances, found.calibration, 1, random())
+    given = (found.observed, found.predicted, found.probabilities, found.calibration, 1, random())
     first = np.exp(explore("gain", *given)[[0, 1], 0, [0, 1]])
-    alike = np.exp(found.calibration.log_belief(found.felt, 1))[[0, 1], :, [0, 1]][places[:, :, 0] < 0]
+    alike = np.exp(found.calibration.log_belief(found.observed, 1))[[0, 1], :, [0, 1]][places[:, :, 0] < 0]
     assert 0.3 < differ < 0.7 and first.min() > 0.7 and first.min() > np.median(alike)
 
 
 def test_no_difference_leaves_the_belief_near_even():
     found, _ = trial(tell=0.0)
-    beliefs = explore("gain", found.felt, found.foreseen, found.chances, found.calibration, 10, random())
+    beliefs = explore("gain", found.observed, found.predicted, found.probabilities, found.calibration, 10, random())
     assert np.exp(beliefs).max() < 0.9

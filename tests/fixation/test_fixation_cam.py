@@ -5,16 +5,16 @@ import pytest
 import torch
 
 from stages.conspicuity import facing
-from stages.fixation import entropy, fuse, grad_cam, narrowed, on_vertices, over_views
-from stages.fixation.attend import MODELS, projected
-from stages.fixation.backbone import maps_of
-from stages.fixation.cam import to_size
-from stages.fixation.heads import head, scores
-from stages.fixation.pictures import inputs
-from stages.fixation.viewpoints import sphere
+from stages.fixation import entropy, fuse, grad_cam, highest_level, mean_over_views, project_to_vertices
+from stages.fixation.attention import MODELS, project_maps
+from stages.fixation.backbone import last_maps
+from stages.fixation.cam import resize_cams
+from stages.fixation.heads import fit_head, scores
+from stages.fixation.pictures import network_inputs
+from stages.fixation.viewpoints import viewpoint_sphere
 from stages.kit import Viewpoint
 from stages.kit.camera import project
-from stages.networks import build, settle
+from stages.networks import build, recalibrate
 
 SIZE = 96
 
@@ -24,7 +24,7 @@ def network():
     """An untrained MobileNetV2 with a head of five classes that are not all alike."""
     found = build("mobilenet_v2", 5, "random", 0)
     images = torch.rand(8, 3, SIZE, SIZE, generator=torch.Generator().manual_seed(0))
-    settle(found, lambda ids: images[ids], np.arange(8))
+    recalibrate(found, lambda ids: images[ids], np.arange(8))
     torch.manual_seed(0)
     torch.nn.init.normal_(found.head[1].weight)
     return found
@@ -37,7 +37,7 @@ def pictures():
 
 def by_backpropagation(network, pictures, classes):
     """(b, i, j): T eq. 3.18 and 3.19 as they stand, the gradient by torch."""
-    maps = network.convolutions(inputs(pictures)).detach().requires_grad_(True)
+    maps = network.convolutions(network_inputs(pictures)).detach().requires_grad_(True)
     found = network.head(network.pool(maps).flatten(1))
     found[torch.arange(len(found)), torch.as_tensor(classes)].sum().backward()
     alpha = maps.grad.mean(dim=(2, 3), keepdim=True)
@@ -46,7 +46,7 @@ def by_backpropagation(network, pictures, classes):
 
 @pytest.mark.parametrize("shift", [0, 1, 3])
 def test_grad_cam_from_maps_equals_the_one_by_backpropagation(network, pictures, shift):
-    maps = maps_of(network, pictures)
+    maps = last_maps(network, pictures)
     weights, bias = (x.detach().numpy() for x in (network.head[1].weight, network.head[1].bias))
     classes = (scores(maps.mean(axis=(2, 3)), weights, bias).argmax(axis=1) + shift) % 5
     expected = by_backpropagation(network, pictures, classes)
@@ -56,7 +56,7 @@ def test_grad_cam_from_maps_equals_the_one_by_backpropagation(network, pictures,
 
 def test_vgg_is_looked_at_before_its_last_pooling():
     pictures = np.zeros((1, 32, 32), dtype=np.uint8)
-    assert maps_of(build("vgg16", 2, "random", 0), pictures).shape == (1, 512, 2, 2)
+    assert last_maps(build("vgg16", 2, "random", 0), pictures).shape == (1, 512, 2, 2)
 
 
 def test_maps_that_do_not_fit_are_refused():
@@ -71,7 +71,7 @@ def test_a_head_names_what_can_be_told_apart_and_survives_dead_channels():
     features[:, 4] = 7.0
     features[:, 0] += 50 * features[:, 0].std() * labels
     for classes in (labels, labels.clip(max=1)):
-        weights, bias = head(features, classes, 0.1)
+        weights, bias = fit_head(features, classes, 0.1)
         assert weights.shape == (classes.max() + 1, 12) and np.isfinite(weights).all() and not weights[:, 4].any()
         assert (scores(features, weights, bias).argmax(axis=1) == classes).mean() > 0.95
 
@@ -93,12 +93,12 @@ def test_a_constant_map_has_no_say_and_constant_maps_alone_say_nothing():
     assert np.allclose(fuse(np.stack([steps, even])), steps)
     for value in (0.0, 0.5, 1.0):
         assert not fuse(np.full((3, 4, 4), value)).any()
-        assert not fuse(narrowed(np.full((3, 4, 4), value))).any()
+        assert not fuse(highest_level(np.full((3, 4, 4), value))).any()
 
 
 def test_narrowing_keeps_the_highest_of_four_levels():
     levels = np.repeat([0.1, 0.4, 0.7, 1.0], 16).reshape(8, 8)
-    kept = narrowed(levels[None])[0]
+    kept = highest_level(levels[None])[0]
     assert (kept[levels == 1.0] == 1.0).all() and not kept[levels < 1.0].any()
 
 
@@ -111,7 +111,7 @@ def test_maps_outside_0_to_1_are_refused(bad):
 def test_a_map_keeps_its_place_when_it_is_enlarged():
     cam = np.zeros((2, 7, 7), dtype=np.float32)
     cam[0, 2, 5] = 3
-    large = to_size(cam, 224, "mobilenet_v2")
+    large = resize_cams(cam, 224, "mobilenet_v2")
     row, column = np.unravel_index(large[0].argmax(), (224, 224))
     assert (row, column) == (2 * 32, 5 * 32) and large[0].max() == 1
     assert not large[1].any()
@@ -121,7 +121,7 @@ def test_a_picture_of_positions_comes_back_as_positions(shapes):
     ball, viewpoint = shapes["ball"], Viewpoint(40, 25)
     seen = facing(ball, [viewpoint])[0] > 0
     rows, columns = np.mgrid[:64, :64].astype(float)
-    found = on_vertices(np.stack([rows, columns]), ball, viewpoint, seen)
+    found = project_to_vertices(np.stack([rows, columns]), ball, viewpoint, seen)
     expected = project(ball.vertices, viewpoint, (64, 64))
     assert 0.4 < seen.mean() < 0.6 and not found[:, ~seen].any()
     assert np.allclose(found[:, seen], np.array(expected[:2])[:, seen], atol=1e-9)
@@ -130,11 +130,11 @@ def test_a_picture_of_positions_comes_back_as_positions(shapes):
 def test_views_are_averaged_over_those_that_see():
     seen = np.array([[True, True, False], [True, False, False]])
     values = np.array([[[2.0, 4.0, 0.0]], [[4.0, 0.0, 0.0]]])
-    assert over_views(values, seen).tolist() == [[3.0, 4.0, 0.0]]
+    assert mean_over_views(values, seen).tolist() == [[3.0, 4.0, 0.0]]
 
 
 def test_what_every_task_sees_at_one_place_lies_there_on_the_surface(shapes):
-    ball, views = shapes["ball"], sphere(1, 6)
+    ball, views = shapes["ball"], viewpoint_sphere(1, 6)
     place = np.array([0.0, 0.0, 0.5])
     tasks = ("curvature", "eccentricity", "level_1", "level_2", "convexity")
     cams = []
@@ -143,8 +143,8 @@ def test_what_every_task_sees_at_one_place_lies_there_on_the_surface(shapes):
         r, c = np.mgrid[:14, :14]
         cams.append(np.exp(-((r - row) ** 2 + (c - column) ** 2) / 4))
     seen = facing(ball, views) > 0
-    values, bits = projected(dict.fromkeys(tasks, np.stack(cams)), ball, views, seen, 224, "vgg16")
-    whole = over_views(values, seen)
+    values, bits = project_maps(dict.fromkeys(tasks, np.stack(cams)), ball, views, seen, 224, "vgg16")
+    whole = mean_over_views(values, seen)
     assert (
         values.shape == (8, len(tasks) + len(MODELS), len(ball.vertices))
         and set(bits) == set(tasks)

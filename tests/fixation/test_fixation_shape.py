@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from stages.fixation import curvature_shares, eccentricity, gaussian_curvature, sphere
-from stages.fixation.viewpoints import evaluated
+from stages.fixation import curvature_shares, eccentricity, gaussian_curvature, viewpoint_sphere
+from stages.fixation.viewpoints import evaluated_views
 from stages.kit import Mesh
 
 
@@ -61,13 +61,13 @@ def test_a_vertex_in_no_face_counts_for_nothing(shapes):
 
 
 def test_the_thesis_has_218_viewpoints():
-    views = sphere(9, 24)
+    views = viewpoint_sphere(9, 24)
     assert len(views) == len(set(views)) == 218
-    three = [views[k] for k in evaluated(9, 24)]
+    three = [views[k] for k in evaluated_views(9, 24)]
     assert [(v.azimuth, v.elevation) for v in three] == [(0, 0), (120, 0), (240, 0)]
 
 
 @pytest.mark.parametrize(("parallels", "azimuths"), [(2, 9), (0, 9), (3, 8), (3, 0)])
 def test_viewpoints_without_the_three_that_are_judged_are_refused(parallels, azimuths):
     with pytest.raises(ValueError, match="fixation"):
-        sphere(parallels, azimuths)
+        viewpoint_sphere(parallels, azimuths)

@@ -1,20 +1,20 @@
 """The stage on four shapes, in a folder of its own, with an untrained network: nothing is fetched."""
 
-import sys
+import shutil
 
 import numpy as np
 import pytest
 import torch
-import yaml
 
 from stages.fixation import __main__ as stage
 from stages.fixation import options, read_attention
-from stages.fixation.backbone import maps_of
+from stages.fixation.backbone import last_maps
 from stages.fixation.options import method_named
 from stages.fixation.schema import Params
+from stages.fixation.tasks import SEMANTICS
 from stages.kit.fetch import FetchError
-from stages.kit.files import read_arrays, read_table, sha256, write_arrays, write_mesh
-from stages.kit.params import params
+from stages.kit.files import read_arrays, read_table, sha256, write_arrays, write_mesh, write_text
+from stages.kit.rows import read_rows
 
 METHOD = "mobilenet_v2-random"
 SETTINGS = {
@@ -23,37 +23,40 @@ SETTINGS = {
 }  # fmt: skip
 
 
+MESHES = {"source": "test", "folder": "", "up": "z", "unit": "", "objects": [], "classes": {}, "strict": False}
+
+
 @pytest.fixture
-def run(shapes, tmp_path, monkeypatch):
-    """A function that runs the stage with some settings changed."""
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(sys, "argv", ["stages/fixation/__main__.py"])
-    monkeypatch.setattr(sys, "excepthook", sys.excepthook)
-    lines = ["dataset,object,living,category"]
-    for number, name in enumerate(("ball", "egg", "torus", "tube")):
-        mesh = shapes[name]
-        write_mesh(f"data/meshes/{name}.npz", mesh)
-        values = np.linspace(0, 1, len(mesh.vertices)).astype(np.float32)
-        write_arrays(f"data/salient_points/{name}.npz", **{"enhanced.saliency": values})
-        lines.append(f"test,{name},{'yes' if number < 2 else 'no'},{'round' if number < 2 else 'hollow'}")
-    density = np.exp(-20 * ((shapes["ball"].vertices - [0.5, 0, 0]) ** 2).sum(axis=1))
-    write_arrays("data/weights/lessons/ball.npz", amounts=density, density=density, areas=shapes["ball"].vertex_areas)
-    (tmp_path / "data/reference").mkdir()
-    (tmp_path / "data/reference/semantics.csv").write_text("\n".join(lines) + "\n")
+def run(shapes, make_workspace):
+    """A function that runs the stage with some settings changed and returns the workspace."""
 
     def go(**changed):
-        settings = {"seed": 0, "meshes": {"source": "test"}, "parallel": {"backend": "sequential"}}
-        (tmp_path / "params.yaml").write_text(yaml.safe_dump(settings | {"fixation": SETTINGS | changed}))
-        params.cache_clear()
-        stage.main()
+        workspace = make_workspace({"meshes": MESHES, "fixation": SETTINGS | changed})
+        lines = ["dataset,object,living,category"]
+        for number, name in enumerate(("ball", "egg", "torus", "tube")):
+            mesh = shapes[name]
+            write_mesh(workspace.data / f"meshes/{name}.npz", mesh)
+            values = np.linspace(0, 1, len(mesh.vertices)).astype(np.float32)
+            write_arrays(workspace.data / f"salient_points/{name}.npz", **{"enhanced.saliency": values})
+            lines.append(f"test,{name},{'yes' if number < 2 else 'no'},{'round' if number < 2 else 'hollow'}")
+        ball = shapes["ball"]
+        density = np.exp(-20 * ((ball.vertices - [0.5, 0, 0]) ** 2).sum(axis=1))
+        path = workspace.data / "weights/ground_truth/ball.npz"
+        write_arrays(path, amounts=density, density=density, areas=ball.vertex_areas)
+        write_text(workspace.root / SEMANTICS, "\n".join(lines))
+        stage.run(workspace)
+        return workspace
 
-    yield go
-    params.cache_clear()
+    return go
 
 
-def test_stage_writes_the_contract_the_same_bytes_twice(run, shapes, tmp_path):
-    run()
-    folder = tmp_path / "data/fixation"
+def rows_of(workspace):
+    return read_rows(workspace.measurements / "fixation.csv.gz")
+
+
+def test_stage_writes_the_contract_the_same_bytes_twice(run, shapes):
+    workspace = run()
+    folder = workspace.data / "fixation"
     stored = read_arrays(folder / "ball.npz")
     n = len(shapes["ball"].vertices)
     tasks = ["convexity", "curvature", "eccentricity", "level_1", "level_2", "level_3"]
@@ -67,19 +70,24 @@ def test_stage_writes_the_contract_the_same_bytes_twice(run, shapes, tmp_path):
     assert set(read_attention(folder / "ball.npz")) == {
         f"{METHOD}.{name}" for name in (*kept, "ewigc", "ewigc_l4", "average")
     }
-    assert len(read_table(folder / "tasks.csv")) == 4
-    assert list(read_table(folder / "elbow.csv")) == ["task", "clusters", "ssd", "chosen"]
+    rows, tasks = rows_of(workspace), read_table(folder / "tasks.csv").set_index("object")
+    level = rows[(rows["metric"] == "class") & (rows["task"] == "level_2")].set_index("item")["label"]
+    assert level.to_dict() == tasks["level_2_class"].to_dict() == {
+        "ball": "round", "egg": "round", "torus": "hollow", "tube": "hollow"
+    }  # fmt: skip
+    elbow = read_table(folder / "elbow.csv")
+    assert elbow["ssd"].tolist() == rows[rows["metric"] == "ssd"]["value"].tolist() and elbow["chosen"].any()
     assert not list(folder.glob(".*"))  # the caches are gone
     before = {path.relative_to(folder): sha256(path) for path in folder.rglob("*") if path.is_file()}
+    shutil.rmtree(workspace.build)  # or else all comes from the cache
     run()
     assert before == {path.relative_to(folder): sha256(path) for path in folder.rglob("*") if path.is_file()}
 
 
 def test_stage_judges_models_rivals_and_controls_where_people_looked(run, capsys):
-    run()
-    rows = read_table("reports/measurements/fixation.csv")
+    rows = rows_of(run())
     judged = rows[rows["metric"] == "pcc"]
-    assert set(judged["object"]) == {"ball"} and set(judged["view"]) == {"0", "1", "2", "all"}
+    assert set(judged["item"]) == {"ball"} and set(judged["view"]) == {"0", "1", "2", "all"}
     assert {("control", "centre_prior"), ("control", "random"), ("rival", "enhanced"), (METHOD, "ewigc")} <= set(
         zip(judged["method"], judged["task"], strict=True)
     )
@@ -92,8 +100,7 @@ def test_stage_judges_models_rivals_and_controls_where_people_looked(run, capsys
 
 def test_finetuning_runs_beside_the_frozen_way(run, monkeypatch):
     monkeypatch.setitem(options.MODES, "finetuned", "random")  # from scratch: no weights are fetched here
-    run(methods=["mobilenet_v2-finetuned"])
-    rows = read_table("reports/measurements/fixation.csv")
+    rows = rows_of(run(methods=["mobilenet_v2-finetuned"]))
     own = rows[rows["method"] == "mobilenet_v2-finetuned"]
     assert {"accuracy", "chance", "views", "entropy", "pcc"} <= set(own["metric"])
 
@@ -104,8 +111,7 @@ def test_a_network_without_weights_is_left_out_with_the_reason(run, monkeypatch,
             raise FetchError("nobody carries it")
 
     monkeypatch.setattr(options, "build", missing)
-    run(methods=[METHOD, "resnet101-frozen"])
-    rows = read_table("reports/measurements/fixation.csv")
+    rows = rows_of(run(methods=[METHOD, "resnet101-frozen"]))
     assert rows.loc[rows["method"] == "resnet101-frozen", "note"].tolist() == ["nobody carries it"]
     assert "resnet101-frozen is left out: nobody carries it" in capsys.readouterr().err
 
@@ -119,7 +125,7 @@ def test_an_unknown_method_is_named(name):
 @pytest.mark.parametrize("changed", [{"size": 8}, {"folds": 1}, {"methods": []}, {"device": "abacus"}])
 def test_settings_that_no_run_can_have_are_refused(changed):
     with pytest.raises(ValueError):
-        options.checked(Params(**SETTINGS | changed))
+        options.check(Params(**SETTINGS | changed))
 
 
 def test_too_little_memory_names_the_remedy():
@@ -134,4 +140,4 @@ def test_too_little_memory_names_the_remedy():
 
     Hungry.convolutions.forward = too_much
     with pytest.raises(ValueError, match="too little memory: take a smaller batch"):
-        maps_of(Hungry(), np.zeros((1, 4, 4), dtype=np.uint8))
+        last_maps(Hungry(), np.zeros((1, 4, 4), dtype=np.uint8))

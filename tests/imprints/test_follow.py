@@ -5,7 +5,7 @@ import pytest
 import trimesh
 from scipy.spatial.transform import Rotation
 
-from stages.imprints import Surface, contour, follow, follow_many, place, press_at
+from stages.imprints import Surface, contour, follow, follow_many, press_at, snap_to_surface
 from stages.kit import Mesh
 
 CELLS, ORIGIN = (8, 8), np.zeros(3)
@@ -111,7 +111,7 @@ def test_the_contour_is_that_of_the_sequence_in_its_direction():
 
 def test_places_are_on_the_surface():
     found = follow(RING, UPRIGHT, cells=CELLS)
-    assert np.allclose(place(Surface(RING), found.positions)[0], found.positions, atol=1e-6)
+    assert np.allclose(snap_to_surface(Surface(RING), found.positions)[0], found.positions, atol=1e-6)
 
 
 def test_the_array_shrinks_inside_a_narrow_ring_and_not_on_a_ball():
@@ -185,8 +185,8 @@ def test_broken_meshes_give_finite_sequences_or_a_reason():
     thin = Mesh(sheet.vertices, np.r_[sheet.faces, sheet.faces[:, ::-1]])
     triangle = Mesh(np.eye(3), [[0, 1, 2]])
     inward = Mesh(BALL.vertices, BALL.faces[:, ::-1])
-    twins = Mesh(np.r_[BALL.vertices, BALL.vertices + 3], np.r_[BALL.faces, BALL.faces + len(BALL.vertices)])
-    for mesh in (sheet, thin, triangle, inward, twins, Mesh(np.eye(3), np.zeros((0, 3), dtype=int))):
+    overlapping = Mesh(np.r_[BALL.vertices, BALL.vertices + 3], np.r_[BALL.faces, BALL.faces + len(BALL.vertices)])
+    for mesh in (sheet, thin, triangle, inward, overlapping, Mesh(np.eye(3), np.zeros((0, 3), dtype=int))):
         planes = rng.normal(size=(6, 3, 3)) * 0.3 + mesh.vertices.mean(axis=0)
         for found in follow_many(mesh, planes, frames=5, cells=CELLS):
             if not isinstance(found, str):

@@ -29,7 +29,7 @@ def test_it_ends_at_the_least_size_even_where_that_does_not_fit(shapes):
     mesh, vertex = shapes.solid(lambda x, y: 30 * np.abs(x), spacing=0.002)
     place = at(mesh, vertex)
     assert adaptive_pitch(mesh, *place, (16, 16), 0.01).tolist() == [0.002]
-    assert adaptive_pitch(mesh, *place, (16, 16), 0.01, least=0.005).tolist() == [0.005]
+    assert adaptive_pitch(mesh, *place, (16, 16), 0.01, min_pitch=0.005).tolist() == [0.005]
 
 
 def test_a_larger_tolerance_keeps_a_larger_array(shapes):
@@ -54,8 +54,8 @@ def test_no_array_has_no_size(shapes):
 @pytest.mark.parametrize(
     "change, words",
     [
-        ({"least": 0.02}, "least must be above 0 and at most the pitch"),
-        ({"least": 0.0}, "least must be"),
+        ({"min_pitch": 0.02}, "min_pitch must be above 0 and at most the pitch"),
+        ({"min_pitch": 0.0}, "min_pitch must be"),
         ({"tolerance": -1.0}, "tolerance must be"),
         ({"cells": (0, 1)}, "cells must be"),
         ({"pitch": 0.0}, "pitch must be"),

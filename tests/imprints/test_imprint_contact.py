@@ -54,7 +54,7 @@ def test_after_normalisation_both_are_one_where_one_surface_covers_the_array(sha
 
 def test_it_rests_on_what_hangs_over_the_place_and_the_tangent_array_does_not_feel_it():
     shelf = boxes(((1, 1, 0.2), (0, 0, -0.1)), ((0.2, 1, 0.02), (0.3, 0, 0.1)))  # a board 0.09 over the right part
-    at = dict(cells=(8, 8), pitch=0.1, reach=0.5)
+    at = dict(cells=(8, 8), pitch=0.1, max_distance=0.5)
     tangent = distances_at(Surface(shelf), np.zeros((1, 3)), FLAT, **at)[0]
     rigid = distances_at(Surface(shelf), np.zeros((1, 3)), FLAT, **at, contact="rigid")[0]
     assert np.allclose(tangent, 0, atol=1e-15)
@@ -71,9 +71,9 @@ def test_over_a_narrow_shallow_cup_it_rests_on_the_rim():
     assert np.allclose(found[[0, -1]], 0, atol=1e-14) and np.allclose(found[3:-3, 3:-3], 0.1, atol=1e-14)
 
 
-def test_in_a_cup_narrower_than_the_array_and_deeper_than_its_reach_it_stays_where_it_starts():
+def test_in_a_cup_narrower_than_the_array_and_deeper_than_the_sensing_depth_it_stays_where_it_starts():
     found = distances_at(Surface(cup(0.5, 3.0)), np.zeros((1, 3)), FLAT, (14, 14), 0.05, contact="rigid")[0]
-    assert np.allclose(found[[0, -1]], 0) and np.allclose(found[3:-3, 3:-3], 0.7)  # the floor is its reach away
+    assert np.allclose(found[[0, -1]], 0) and np.allclose(found[3:-3, 3:-3], 0.7)  # the floor is max_distance away
 
 
 def test_between_cells_the_place_itself_carries_it():
@@ -84,14 +84,14 @@ def test_between_cells_the_place_itself_carries_it():
     assert np.allclose(found, 0.4, atol=1e-12)  # no cell meets the spike, whose tip is the place
 
 
-def test_where_nothing_is_met_every_cell_reports_the_reach():
+def test_without_contact_every_cell_reports_max_distance():
     found = distances_at(Surface(boxes(((1, 1, 1), (0, 0, 0)))), [[9.0, 0, 0]], FLAT, (4, 4), 0.1, contact="rigid")
     assert (found == 0.4).all()
 
 
-def test_depth_is_cut_at_the_reach_from_where_it_rests(shapes):
+def test_depth_is_limited_from_where_it_rests(shapes):
     mesh, vertex = shapes.solid(lambda x, y: 20 * (x * x - y * y))
-    found = distances(mesh, [vertex], (16, 16), 0.01, reach=0.02, contact="rigid")
+    found = distances(mesh, [vertex], (16, 16), 0.01, max_distance=0.02, contact="rigid")
     assert found.min() == 0 and found.max() == 0.02
 
 

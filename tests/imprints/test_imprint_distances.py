@@ -25,10 +25,10 @@ def test_distances_are_exact_and_negative_inside(shapes, name, cells):
     mesh, vertex = shapes.solid(SURFACES[name])
     x, y = shapes.cell_places(cells, 0.01)
     expected = SURFACES[name](0.0, 0.0) - SURFACES[name](x, y)
-    assert np.allclose(distances(mesh, [vertex], cells, 0.01, reach=1.0)[0], expected, atol=1e-14, rtol=0)
+    assert np.allclose(distances(mesh, [vertex], cells, 0.01, max_distance=1.0)[0], expected, atol=1e-14, rtol=0)
 
 
-def test_cells_off_the_object_report_the_reach(shapes):
+def test_cells_off_the_object_report_max_distance(shapes):
     mesh, vertex = shapes.solid(shapes.sphere, half=12)
     found = distances(mesh, [vertex], (16, 16), 0.01)[0]
     x, y = shapes.cell_places((16, 16), 0.01)
@@ -36,9 +36,9 @@ def test_cells_off_the_object_report_the_reach(shapes):
     assert (found[off] == 0.16).all() and (found[~off] < 0.16).all()
 
 
-def test_reach_bounds_the_distance_both_ways(shapes):
+def test_max_distance_bounds_the_distance_both_ways(shapes):
     mesh, vertex = shapes.solid(lambda x, y: 20 * (x * x - y * y))
-    found = distances(mesh, [vertex], (16, 16), 0.01, reach=0.02)
+    found = distances(mesh, [vertex], (16, 16), 0.01, max_distance=0.02)
     assert found.min() == -0.02 and found.max() == 0.02
 
 
@@ -124,7 +124,7 @@ def test_open_mesh_touched_on_its_inside_feels_nothing_below():
         ({"cells": (2.5, 4)}, "cells must be"),
         ({"pitch": 0.0}, "pitch must be"),
         ({"pitch": np.nan}, "pitch must be"),
-        ({"reach": -1.0}, "reach must be"),
+        ({"max_distance": -1.0}, "max_distance must be"),
         ({"vertices": [7]}, "vertex 7 is not in the mesh"),
         ({"vertices": [-1]}, "vertex -1 is not in the mesh"),
         ({"vertices": [0.5]}, "whole numbers"),

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from stages.imprints import Imprints, indent, normalise, press, press_many, read_imprints, touchable, write_imprints
-from stages.imprints.__main__ import process
-from stages.imprints.schema import Params
+from stages.imprints.__main__ import run
 from stages.kit import Mesh
 from stages.kit.files import write_arrays, write_mesh
+from stages.kit.rows import read_rows
 
 
 def test_plane_gives_flat_imprint(shapes):
@@ -90,22 +90,28 @@ def test_files_keep_methods_images_and_places(tmp_path):
     assert (tmp_path / "a.npz").read_bytes() == (tmp_path / "b.npz").read_bytes()
 
 
-def test_stage_presses_every_method_and_counts_what_it_refuses(shapes, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_stage_presses_every_method_and_counts_what_it_refuses(shapes, make_workspace):
+    settings = {"methods": ["itti", "random", "enhanced"], "cells": [15, 15], "pitch": 0.01, "contact": "tangent"}
+    workspace = make_workspace({"imprints": settings})
     mesh, vertex = shapes.solid(shapes.sphere)
     mesh = Mesh(np.r_[mesh.vertices, [[1, 1, 1]]], mesh.faces)
     lone = len(mesh.vertices) - 1
-    write_mesh("data/meshes/ball.npz", mesh)
+    write_mesh(workspace.data / "meshes/ball.npz", mesh)
     points = {"random": np.array([vertex, lone]), "itti": np.array([vertex]), "enhanced": np.zeros(0, "i8")}
     arrays = {f"{method}.points": ids for method, ids in points.items()}
     arrays |= {f"{method}.strong": np.int64(len(ids)) for method, ids in points.items()}
-    write_arrays("data/salient_points/ball.npz", **arrays)
-    settings = Params(methods=["itti", "random", "enhanced"], cells=[15, 15], pitch=0.01, contact="tangent")
-    rows = process("ball", tmp_path / "out", settings)
-    value = {(row["method"], row["metric"]): row["value"] for row in rows}
-    assert value["random", "imprints"] == 1 and value["random", "refused"] == 1 and value["enhanced", "relief"] is None
-    assert value["itti", "relief"] == pytest.approx(0.3 - shapes.sphere(0.07, 0.07)) and value["itti", "missed"] == 0
-    written = read_imprints(tmp_path / "out" / "ball.npz")
+    write_arrays(workspace.data / "salient_points/ball.npz", **arrays)
+    run(workspace)
+    rows = read_rows(workspace.measurements / "imprints.csv.gz")
+    value = rows.set_index(["method", "metric"])["value"]
+    assert (
+        value["random", "imprints"] == 1 and value["random", "refused"] == 1 and np.isnan(value["enhanced", "relief"])
+    )
+    assert (
+        value["itti", "relief"] == pytest.approx(0.3 - shapes.sphere(0.07, 0.07), rel=1e-5)
+        and value["itti", "missed"] == 0
+    )
+    written = read_imprints(workspace.data / "imprints/ball.npz")
     assert np.array_equal(written["itti"].images[0], press(mesh, vertex, (15, 15), 0.01))
     assert np.allclose(written["itti"].positions, mesh.vertices[[vertex]])
     assert not touchable(mesh, [lone])[0]

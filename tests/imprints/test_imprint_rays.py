@@ -60,9 +60,9 @@ def compare(mesh, cells, pitch, count=20):
     random = np.random.default_rng(0)
     vertices = random.permutation(len(mesh.vertices))
     vertices = vertices[touchable(mesh, vertices)][:count]
-    axes, reach = sensor_axes(sensor_normals(mesh, vertices)), 2 * mesh.diagonal
-    expected = np.clip(by_rays(mesh, mesh.vertices[vertices], axes, cells, pitch), -reach, reach)
-    found = distances_at(Surface(mesh), mesh.vertices[vertices], axes, cells, pitch, reach)
+    axes, max_distance = sensor_axes(sensor_normals(mesh, vertices)), 2 * mesh.diagonal
+    expected = np.clip(by_rays(mesh, mesh.vertices[vertices], axes, cells, pitch), -max_distance, max_distance)
+    found = distances_at(Surface(mesh), mesh.vertices[vertices], axes, cells, pitch, max_distance)
     return float((np.abs(found - expected) > 1e-9).mean())
 
 
@@ -120,5 +120,7 @@ def test_where_one_part_stands_on_another_its_inside_is_inside_whatever_the_orde
     low, high = (trimesh.creation.box((1, 1, 1), trimesh.transformations.translation_matrix((0, 0, z))) for z in (0, 1))
     both = trimesh.util.concatenate([low, high])
     for faces in (both.faces, both.faces[::-1]):
-        found = distances_at(Mesh(both.vertices, faces), [[0.1, 0.2, 0.9]], np.eye(3)[None], (4, 4), 0.1, reach=5.0)
+        found = distances_at(
+            Mesh(both.vertices, faces), [[0.1, 0.2, 0.9]], np.eye(3)[None], (4, 4), 0.1, max_distance=5.0
+        )
         assert np.allclose(found, -0.6, atol=1e-15)

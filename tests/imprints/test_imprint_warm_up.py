@@ -22,7 +22,7 @@ def test_the_stage_warms_up_before_it_reads_the_object(monkeypatch, tmp_path):
     monkeypatch.setattr(stage, "warm_up", lambda: order.append("warm"))
     monkeypatch.setattr(stage, "read_mesh", lambda path: order.append("read") or (_ for _ in ()).throw(OSError))
     with pytest.raises(OSError):
-        stage.process("ball", tmp_path, None)
+        stage.process("ball", tmp_path, tmp_path, None)
     assert order == ["warm", "read"]
 
 

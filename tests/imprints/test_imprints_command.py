@@ -11,14 +11,14 @@ import pytest
 import trimesh
 from PIL import Image
 
-from stages.imprints import __main__, own_mesh, pictures, press_many
+from stages.imprints import __main__, pictures, press_many, user_mesh
 from stages.imprints.command import run
-from stages.imprints.options import POINT, parse, skin
-from stages.imprints.own_mesh import OwnMesh
-from stages.imprints.pictures import CANDIDATES, _apart, _columns, best_views, visible, write_picture
+from stages.imprints.options import POINT, parse_options, parse_skin
+from stages.imprints.pictures import CANDIDATES, _columns, _label_positions, best_views, visible, write_picture
 from stages.imprints.skin import Skin
+from stages.imprints.user_mesh import UserMesh
 from stages.kit import Mesh
-from stages.meshes import load, normalise, turn_up
+from stages.meshes import load, normalise, rotate_to_z_up
 
 PLACE, SIZE = np.array([120.0, -40.0, 7.0]), 25.0
 
@@ -70,9 +70,9 @@ def test_places_far_from_the_origin_are_told_apart(tmp_path, touched):
     _, table, printed, _ = touched("--at", 3, 100, source=tmp_path / "far.obj")
     assert np.allclose(table[["x", "y", "z"]], 1e6 + shape.vertices[[3, 100]], rtol=0, atol=1e-4)
     assert len({line.split()[2] for line in printed.splitlines() if line[:5].strip().isdigit()}) == 2
-    with pytest.raises(ValueError, match="the nearest place is --at") as told:
+    with pytest.raises(ValueError, match="the nearest place is --at") as raised:
         run([str(tmp_path / "far.obj"), "--at", "1000000,1000000,1000002", "--out", str(tmp_path / "off")])
-    touched("--at", str(told.value).rpartition("--at ")[2], source=tmp_path / "far.obj")
+    touched("--at", str(raised.value).rpartition("--at ")[2], source=tmp_path / "far.obj")
 
 
 def test_relief_is_in_units_and_in_the_files(touched, file):
@@ -111,11 +111,11 @@ def test_normals_and_axes_are_those_of_the_file(touched, file):
 @pytest.mark.parametrize("up", ["x", "y", "z"])
 def test_coordinates_come_back_from_the_meshs_frame(up):
     given = Mesh(bumpy().vertices, bumpy().faces)
-    own = OwnMesh(given, up, "ball")
+    own = UserMesh(given, up, "ball")
     points = np.random.default_rng(0).random((5, 3))
     assert np.allclose(own.from_file(own.to_file(points)), points)
     assert np.allclose(own.to_file(own.mesh.vertices), given.vertices)
-    assert np.allclose(own.mesh.vertices, normalise(turn_up(given, up)).vertices)
+    assert np.allclose(own.mesh.vertices, normalise(rotate_to_z_up(given, up)).vertices)
 
 
 def test_random_places_depend_on_the_seed_alone(touched):
@@ -156,8 +156,8 @@ def test_skin_and_depth_change_the_images_and_not_the_distances(touched):
 
 
 def test_skin_is_read_by_name():
-    assert skin("blur=0.8, noise=0.02", 3) == Skin(blur=0.8, noise=0.02, seed=3)
-    assert skin(None, 3) is None
+    assert parse_skin("blur=0.8, noise=0.02", 3) == Skin(blur=0.8, noise=0.02, seed=3)
+    assert parse_skin(None, 3) is None
 
 
 @pytest.mark.parametrize("suffix", [".stl", ".obj", ".ply", ".off", ".glb"])
@@ -171,7 +171,7 @@ def test_every_format_is_touched(suffix, tmp_path, touched):
 def test_picture_is_drawn_for_any_number(count, tmp_path):
     mesh = normalise(Mesh(bumpy().vertices, bumpy().faces))
     vertices = np.random.default_rng(count).choice(len(mesh.vertices), count, replace=False)
-    axes = np.stack([own_mesh.sensor_normals(mesh, vertices)] * 3, axis=1)
+    axes = np.stack([user_mesh.sensor_normals(mesh, vertices)] * 3, axis=1)
     images = press_many(mesh, vertices, (6, 6), 0.02)
     write_picture(tmp_path / "a.png", mesh, mesh.vertices[vertices], axes, images, np.ones(count), 0.02)
     write_picture(tmp_path / "b.png", mesh, mesh.vertices[vertices], axes, images, np.ones(count), 0.02)
@@ -200,9 +200,9 @@ def test_place_behind_another_part_is_out_of_sight():
 
 
 def test_numbers_keep_apart():
-    at = _apart(np.zeros(8), np.linspace(0, 20, 8), 30.0)
+    at = _label_positions(np.zeros(8), np.linspace(0, 20, 8), 30.0)
     gaps = np.linalg.norm(at[:, None] - at[None], axis=2) + 100 * np.eye(8)
-    assert gaps.min() > 25 and _apart(np.zeros(0), np.zeros(0), 30.0).shape == (0, 2)
+    assert gaps.min() > 25 and _label_positions(np.zeros(0), np.zeros(0), 30.0).shape == (0, 2)
 
 
 def test_wide_imprints_stand_one_below_the_other_and_high_ones_side_by_side():
@@ -216,28 +216,28 @@ def test_grid_is_as_large_as_it_can_be():
 @pytest.mark.parametrize(
     "options, words",
     [
-        (["--at", "9999"], "ball.ply: --at 9999: it has no such vertex, its 642 are 0 to 641"),
+        (["--at", "9999"], "ball.ply: --at 9999: no such vertex; the mesh has 0 to 641"),
         (["--at", "-1"], "no such vertex"),
         (["--at", "1.5"], "id of a vertex"),
         (["--at", "other.stl"], "id of a vertex"),
         (["--at", "1,2"], "three numbers"),
         (["--at", "1,2,x"], "three numbers"),
         (["--at", "120,-40,100"], "off the mesh, by .* in the file's units .* the nearest place is --at 1"),
-        (["--at", "salient", "3"], "stand alone"),
-        (["--at", "0", "--count", "3"], "--count goes with"),
+        (["--at", "salient", "3"], "cannot be combined"),
+        (["--at", "0", "--count", "3"], "--count applies to"),
         (["--at", "random", "--count", "0"], "give 1 or more"),
-        (["--at", "random", "--method", "itti"], "--method goes with"),
+        (["--at", "random", "--method", "itti"], "--method applies to"),
         (["--at", "salient", "--method", "itty"], "no such method; choose one of enhanced"),
-        (["--at", "salient", "--method", "random"], "that is --at random"),
-        (["--at", "salient", "--method", "svm"], "learns from the pipeline's objects"),
+        (["--at", "salient", "--method", "random"], "use --at random"),
+        (["--at", "salient", "--method", "svm"], "trained on the pipeline's objects"),
         (["--at", "0", "--cells", "0", "4"], "cells must be"),
         (["--at", "0", "--pitch", "-1"], "pitch must be"),
         (["--at", "0", "--pitch", "3"], "--pitch 3 is larger than the object"),
         (["--at", "0", "--depth", "0"], "--depth 0"),
         (["--at", "0", "--seed", "-2"], "--seed -2"),
-        (["--at", "0", "--cells", "90000", "90000", "--pitch", "1e-5"], "cells in all; take fewer"),
-        (["--at", "0", "--skin", "blurr=1"], "there is no 'blurr'; write NAME=VALUE with one of blur"),
-        (["--at", "0", "--skin", "blur"], "is no number"),
+        (["--at", "0", "--cells", "90000", "90000", "--pitch", "1e-5"], "cells in all; use fewer"),
+        (["--at", "0", "--skin", "blurr=1"], "'blurr' is unknown; write NAME=VALUE with one of blur"),
+        (["--at", "0", "--skin", "blur"], "is not a number"),
         (["--at", "0", "--skin", "dead=2"], "dead must be"),
     ],
 )
@@ -253,7 +253,7 @@ def test_what_a_person_gets_wrong_is_named_with_its_remedy(options, words, file,
         ("gone.stl", None, "gone.stl: no such file"),
         ("text.ply", b"hello", "text.ply: unreadable as PLY"),
         ("empty.off", b"", "empty.off: the file is empty"),
-        ("model.step", b"x", "format .step is not read; known: .stl"),
+        ("model.step", b"x", "cannot read .step: the formats are .stl"),
     ],
 )
 def test_files_without_a_mesh_are_named(name, content, words, tmp_path):
@@ -268,13 +268,13 @@ def test_folders_are_no_meshes_and_files_no_folders(file, tmp_path):
         run([str(tmp_path), "--at", "0", "--out", str(tmp_path / "out")])
     with pytest.raises(ValueError, match="is a file: name a folder"):
         run([str(file), "--at", "0", "--out", str(file)])
-    with pytest.raises(ValueError, match="nothing can be written"):
+    with pytest.raises(ValueError, match="is not writable"):
         run([str(file), "--at", "0", "--out", str(file / "below")])
 
 
 def test_window_without_a_display_is_refused_before_any_work(file, tmp_path, monkeypatch):
     monkeypatch.setattr("matplotlib.pyplot.get_backend", lambda: "agg")
-    with pytest.raises(ValueError, match="--show: there is no display here"):
+    with pytest.raises(ValueError, match="--show: there is no display"):
         run([str(file), "--at", "0", "--show", "--out", str(tmp_path / "out")])
     assert not (tmp_path / "out").exists()
 
@@ -287,7 +287,7 @@ def test_array_larger_than_the_object_and_flat_imprints_are_said(touched):
 
 
 def test_folder_is_named_after_the_mesh(file):
-    assert parse("about", [str(file), "--at", "0"]).out == Path("ball_imprints")
+    assert parse_options("about", [str(file), "--at", "0"]).out == Path("ball_imprints")
 
 
 def test_command_runs_and_says_errors_in_one_line(file, tmp_path):
@@ -305,4 +305,13 @@ def test_help_tells_of_units_and_has_examples(capsys, monkeypatch):
     with pytest.raises(SystemExit) as done:
         __main__.main()
     said = capsys.readouterr().out
-    assert done.value.code == 0 and "--at salient" in said and "bounding sphere 1 unit across" in said
+    assert done.value.code == 0 and "--at salient" in said and "bounding sphere is 1 unit across" in said
+
+
+def test_a_set_of_the_settings_runs_the_stage_and_anything_else_the_command(make_workspace, monkeypatch):
+    root = make_workspace({"imprints": {}}).root
+    monkeypatch.chdir(root)  # the command line reads the settings of the current folder
+    for stage in ([], ["toys"], ["--help"], ["--root", "elsewhere"], ["toys", "--root", "elsewhere"]):
+        assert not __main__.names_a_mesh(stage)
+    for command in (["bunny.stl"], ["bunny.stl", "--help"], ["--at", "salient", "bunny.stl"], ["tous"]):
+        assert __main__.names_a_mesh(command)

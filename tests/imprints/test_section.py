@@ -24,14 +24,14 @@ BOX = mesh_of(trimesh.creation.box((2.0, 4.0, 6.0)))
 SQUARE = Mesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]])
 
 
-def in_order(piece):
+def in_order(curve):
     """Whether each segment lies in the face that it names."""
-    return piece.faces.shape == piece.steps.shape
+    return curve.faces.shape == curve.steps.shape
 
 
-def on_edges(mesh, piece):
-    a, b = mesh.vertices[piece.edges].transpose(1, 0, 2)
-    return np.allclose((1 - piece.weights[:, None]) * a + piece.weights[:, None] * b, piece.points, atol=1e-12)
+def on_edges(mesh, curve):
+    a, b = mesh.vertices[curve.edges].transpose(1, 0, 2)
+    return np.allclose((1 - curve.weights[:, None]) * a + curve.weights[:, None] * b, curve.points, atol=1e-12)
 
 
 @pytest.mark.parametrize("height", [0.0, 0.2, -0.4])
@@ -43,9 +43,9 @@ def test_a_sphere_is_cut_in_a_circle_of_the_right_length(height):
 
 def test_points_lie_on_the_plane_and_on_their_edges():
     point, normal = np.array([0.05, 0.02, 0.01]), np.array([0.4, 0.5, -0.7])
-    for piece in section(RING, point, normal):
-        assert np.abs((piece.points - point) @ normal).max() < 1e-12
-        assert on_edges(RING, piece) and in_order(piece)
+    for curve in section(RING, point, normal):
+        assert np.abs((curve.points - point) @ normal).max() < 1e-12
+        assert on_edges(RING, curve) and in_order(curve)
 
 
 def test_points_follow_each_other_within_the_face_named():
@@ -57,8 +57,8 @@ def test_points_follow_each_other_within_the_face_named():
 
 def test_a_torus_is_cut_in_two_loops():
     across = section(RING, ORIGIN, X)
-    assert [piece.closed for piece in across] == [True, True]
-    assert [piece.length for piece in across] == pytest.approx([2 * np.pi * 0.15] * 2, rel=5e-3)
+    assert [curve.closed for curve in across] == [True, True]
+    assert [curve.length for curve in across] == pytest.approx([2 * np.pi * 0.15] * 2, rel=5e-3)
     outer, inner = section(RING, ORIGIN, Z)
     assert (outer.length, inner.length) == pytest.approx((2 * np.pi * 0.5, 2 * np.pi * 0.2), rel=5e-3)
 
@@ -107,11 +107,11 @@ def test_several_pieces_come_longest_first():
 def test_an_edge_of_three_faces_ends_a_line_and_one_of_four_does_not():
     spokes = [(1, 0), (0, 1), (-1, 0), (0, -1)]
     corners = [[0, 0, 0], [0, 0, 1], *[[x, y, 0.5] for x, y in spokes]]
-    for count, pieces in ((2, 1), (3, 2), (4, 2)):
+    for count, curves in ((2, 1), (3, 2), (4, 2)):
         fan = Mesh(corners, [[0, 1, 2 + i] for i in range(count)])
         found = section(fan, (0, 0, 0.4), Z)
-        assert len(found) == pieces
-        assert sum(piece.length for piece in found) == pytest.approx(0.8 * count)
+        assert len(found) == curves
+        assert sum(curve.length for curve in found) == pytest.approx(0.8 * count)
 
 
 def test_pieces_do_not_depend_on_the_turn_of_faces_nor_on_inward_ones():
@@ -130,7 +130,7 @@ def test_a_seam_of_doubled_vertices_does_not_end_a_loop():
 def test_faces_without_area_do_not_break_a_loop():
     sliver = np.r_[BOX.vertices, [[0, 0, 3]]]
     collapsed = Mesh(np.r_[sliver, [[0, 0, 3]]], np.r_[BOX.faces, [[8, 9, 0]]])
-    assert [piece.closed for piece in section(collapsed, ORIGIN, Z)] == [True]
+    assert [curve.closed for curve in section(collapsed, ORIGIN, Z)] == [True]
 
 
 def test_every_crossed_face_of_a_soup_is_walked_once_and_in_its_place():
@@ -142,12 +142,12 @@ def test_every_crossed_face_of_a_soup_is_walked_once_and_in_its_place():
         normal = rng.integers(-1, 2, size=3) + [0, 0, 2]
         found = section(soup, (1, 1, 1), normal)
         sides = ((corners - 1) @ normal >= 0)[soup.faces].sum(axis=1)
-        walked = np.concatenate([piece.faces for piece in found]) if found else np.zeros(0, dtype=int)
+        walked = np.concatenate([curve.faces for curve in found]) if found else np.zeros(0, dtype=int)
         assert len(set(walked.tolist())) == len(walked) and np.isin(sides[walked], [1, 2]).all()
         left = np.setdiff1d(np.flatnonzero(np.isin(sides, [1, 2])), walked)
         assert (soup.face_areas[left] == 0).all()
-        for piece in found:
-            assert on_edges(soup, piece) and in_order(piece) and np.isfinite(piece.points).all()
+        for curve in found:
+            assert on_edges(soup, curve) and in_order(curve) and np.isfinite(curve.points).all()
 
 
 def test_backwards_names_the_same_faces_and_starts_at_the_same_point():
@@ -175,7 +175,7 @@ def test_agrees_with_trimesh_on_real_meshes(name):
         found = section(mesh, ORIGIN, normal)
         lines = trimesh.intersections.mesh_plane(peer, normal, ORIGIN)
         expected = np.linalg.norm(lines[:, 1] - lines[:, 0], axis=1).sum()
-        assert sum(piece.length for piece in found) == pytest.approx(expected, rel=1e-5)
+        assert sum(curve.length for curve in found) == pytest.approx(expected, rel=1e-5)
         if mesh.watertight:
             assert len(found) == len(peer.section(normal, ORIGIN).discrete)
 
@@ -186,6 +186,6 @@ def test_a_crack_that_no_finger_feels_does_not_end_a_loop(gap, closed):
     right = ball.triangles_center[:, 0] > 0
     vertices = np.concatenate([ball.vertices, ball.vertices + [gap, 0, 0]])
     faces = ball.faces + len(ball.vertices) * right[:, None]
-    pieces = section(Mesh(vertices, faces), [0, 0, 0.01], [0, 0, 1])
-    assert (len(pieces) == 1 and pieces[0].closed) == closed
-    assert sum(piece.length for piece in pieces) == pytest.approx(np.pi, rel=0.02)
+    curves = section(Mesh(vertices, faces), [0, 0, 0.01], [0, 0, 1])
+    assert (len(curves) == 1 and curves[0].closed) == closed
+    assert sum(curve.length for curve in curves) == pytest.approx(np.pi, rel=0.02)

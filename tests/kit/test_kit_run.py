@@ -1,4 +1,4 @@
-"""Randomness by name, results independent of the workers, and runs that can be killed."""
+"""Results independent of the workers, runs that can be killed, and objects that are made once."""
 
 import functools
 import os
@@ -7,13 +7,19 @@ import subprocess
 import sys
 from pathlib import Path
 
-import numpy as np
 import pytest
 
-from stages.kit import StageRun, parallel_map
-from stages.kit.files import read_table, write_text
+from stages.kit.code import code_text
+from stages.kit.files import read_json, write_json, write_text
+from stages.kit.guard import UndeclaredRead
+from stages.kit.objects import Objects
+from stages.kit.parallel import parallel_map
 from stages.kit.rng import rng
-from stages.kit.stats import bootstrap_interval
+from stages.kit.rows import read_rows, write_rows
+from stages.kit.run import StageRun
+from stages.kit.workspace import Workspace
+
+ROOT = Path(__file__).parents[2]
 
 
 def noisy(name):
@@ -33,65 +39,140 @@ def test_dask_gives_the_same_result():
     assert parallel_map(noisy, ["a", "b", "c"], "dask", "dask", 2) == [noisy(name) for name in "abc"]
 
 
-def test_bootstrap_interval_covers_the_mean_and_narrows():
-    values = np.random.default_rng(0).normal(5, 1, 400)
-    mean, low, high = bootstrap_interval(values)
-    wide = bootstrap_interval(values[:25])
-    assert low < mean < high and low < 5 < high and high - low < wide[2] - wide[1]
-    assert high - low == pytest.approx(2 * 1.96 / 20, rel=0.15)  # the normal theory's width
-
-
-def test_bootstrap_interval_of_one_value_is_unknown():
-    mean, low, high = bootstrap_interval([0.5, np.nan])
-    assert mean == 0.5 and np.isnan(low) and np.isnan(high)
-
-
-def write_item(name, folder, log):
-    with open(log, "a") as stream:
-        stream.write(f"{name}\n")
-    write_text(folder / f"{name}.txt", name)
-    return [{"object": name, "metric": "length", "value": len(name), "seconds": 0.1}]
+def write_params(root, seed=0):
+    """A params.yaml of one data set, and a folder of inputs in it."""
+    common = f"seed: {seed}\nprofile: test\nparallel: {{backend: sequential}}\nsets: [toys]\ngraph: {{views: [toys]}}\n"
+    write_text(root / "params.yaml", common + "toys: {}\n")
 
 
 @pytest.fixture
-def workspace(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    Path("params.yaml").write_text("seed: 0\nparallel: {backend: sequential}\ndemo: {x: 1}\n")
-    return tmp_path
+def workspace(tmp_path):
+    write_params(tmp_path)
+    for name in "abc":
+        write_text(tmp_path / f"data/toys/meshes/{name}.txt", name)
+    return Workspace(tmp_path, "toys")
 
 
-def test_failed_run_keeps_the_old_folder_and_goes_on_where_it_stopped(workspace):
-    process = functools.partial(write_item, log=workspace / "log")
-    with StageRun("demo") as run:
-        run.each(process, ["a"])
-    Path("params.yaml").write_text("seed: 0\nparallel: {backend: sequential}\ndemo: {x: 2}\n")
-    with pytest.raises(RuntimeError), StageRun("demo") as run:
-        run.each(process, ["b"])
-        raise RuntimeError
-    assert [path.name for path in Path("data/demo").iterdir()] == ["a.txt"]
-    with StageRun("demo") as run:
-        run.each(process, ["b", "c"])
-    assert sorted(path.name for path in Path("data/demo").iterdir()) == ["b.txt", "c.txt"]
-    assert (workspace / "log").read_text().split() == ["a", "b", "c"]  # b was not made again
-    assert read_table("reports/measurements/demo.csv").object.tolist() == ["b", "c"]
-    assert not list(Path("data/.partial").iterdir())
+def write_item(name, folder, log, data, factor=1):
+    """Copies the object's input; the log tells for whom it ran."""
+    with open(log, "a") as stream:
+        stream.write(f"{name}\n")
+    text = (data / f"meshes/{name}.txt").read_text()
+    write_text(folder / f"deep/{name}.txt", text * factor)
+    return [{"item": name, "metric": "length", "value": len(text), "seconds": 0.1}]
+
+
+def run_items(workspace, names="abc", factor=1, reads=("meshes/{}.txt",), broken=False):
+    """Runs the stage `views` on some objects; returns the names of those that were made anew."""
+    log = workspace.root / "log"
+    write_text(log, "")
+    work = functools.partial(write_item, log=log, data=workspace.data, factor=factor)
+    with StageRun(workspace, "views", inputs=("meshes",)) as run:
+        run.each(work, names, reads=reads)
+        if broken:
+            raise RuntimeError
+    return log.read_text().split()
+
+
+def made(workspace):
+    return {path.stem: path.read_text().strip() for path in (workspace.data / "views/deep").glob("*")}
+
+
+def test_an_object_is_made_once(workspace):
+    assert run_items(workspace) == ["a", "b", "c"]
+    before = (made(workspace), (workspace.measurements / "views.csv.gz").read_bytes())
+    assert run_items(workspace) == []
+    assert (made(workspace), (workspace.measurements / "views.csv.gz").read_bytes()) == before
+
+
+def test_one_object_more_costs_one_object(workspace):
+    run_items(workspace)
+    write_text(workspace.data / "meshes/d.txt", "d")
+    assert run_items(workspace, "abcd") == ["d"] and set(made(workspace)) == set("abcd")
+
+
+def test_a_changed_input_or_setting_is_made_again_and_a_removed_object_is_gone(workspace):
+    run_items(workspace)
+    write_text(workspace.data / "meshes/b.txt", "other")
+    assert run_items(workspace) == ["b"] and made(workspace)["b"] == "other"
+    assert run_items(workspace, "ab", factor=2) == ["a", "b"] and set(made(workspace)) == set("ab")
+
+
+def test_changed_code_is_made_again(workspace, monkeypatch):
+    run_items(workspace)
+    monkeypatch.setattr("stages.kit.run.stage_digest", lambda stage: "other")
+    monkeypatch.setattr("stages.kit.run._is_of_stages", lambda function: True)
+    assert run_items(workspace) == ["a", "b", "c"]
+
+
+def test_reading_what_was_not_declared_is_an_error(workspace):
+    with pytest.raises(UndeclaredRead, match="meshes/a.txt is read, but not declared"):
+        run_items(workspace, reads=("views/{}.npz",))
+
+
+def test_a_failed_run_keeps_the_old_folder_and_the_next_goes_on_where_it_stopped(workspace):
+    run_items(workspace, "a")
+    with pytest.raises(RuntimeError):
+        run_items(workspace, "ab", broken=True)
+    assert set(made(workspace)) == {"a"}
+    assert run_items(workspace, "abc") == ["c"]
+
+
+def test_a_damaged_entry_is_made_again_and_said(workspace, capsys):
+    run_items(workspace)
+    for path in (workspace.build / "objects").rglob("*.val"):
+        content = bytearray(path.read_bytes())
+        content[len(content) // 3] ^= 255
+        path.write_bytes(bytes(content))
+    assert set(run_items(workspace)) == set("abc") and set(made(workspace)) == set("abc")
+    assert "is damaged" in capsys.readouterr().err
+
+
+def test_a_damaged_index_is_begun_anew(workspace, capsys):
+    run_items(workspace, "a")
+    for path in (workspace.build / "objects").glob("cache.db*"):
+        path.write_bytes(b"no database" * 1000)
+    assert run_items(workspace, "a") == ["a"] and "is damaged" in capsys.readouterr().err
+
+
+def test_objects_keep_files_and_rows(tmp_path):
+    write_json(tmp_path / "from/x/y.json", [1])
+    (tmp_path / "from/.part-half").write_text("half")
+    kept = Objects(tmp_path / "cache")
+    kept.keep("k", [{"value": 1.5}], tmp_path / "from")
+    assert kept.take("k", tmp_path / "to") == [{"value": 1.5}] and read_json(tmp_path / "to/x/y.json") == [1]
+    assert not (tmp_path / "to/.part-half").exists() and kept.take("other", tmp_path / "to") is None
 
 
 def test_a_run_without_rows_leaves_a_table_of_headings(workspace):
-    with StageRun("demo") as run:
+    with StageRun(workspace, "views") as run:
         run.metrics({})
-    table = read_table(Path("reports/measurements/demo.csv"))
-    assert table.empty and {"object", "metric", "value"} <= set(table)
+    table = read_rows(workspace.measurements / "views.csv.gz")
+    assert table.empty and {"item", "metric", "value"} <= set(table)
 
 
-def test_changed_settings_or_input_start_afresh(workspace):
-    Path("data/up").mkdir(parents=True)
-    Path("data/up/x").write_text("1")
-    first = StageRun("demo", inputs=("up",)).folder
-    Path("data/up/x").write_text("2")
-    second = StageRun("demo", inputs=("up",)).folder
-    Path("params.yaml").write_text("seed: 1\ndemo: {x: 1}\n")
-    assert len({first, second, StageRun("demo", inputs=("up",)).folder}) == 3
+def write(tmp_path, row, columns=()):
+    write_rows(tmp_path / "x.csv.gz", [{"metric": "m", "value": 1} | row], dict.fromkeys(columns, ""), "toys", 0)
+    return read_rows(tmp_path / "x.csv.gz").iloc[0]
+
+
+def test_rows_know_their_data_set_and_names_stay_texts(tmp_path):
+    row = write(tmp_path, {"item": "61", "split": "random", "views": 3}, ["views"])
+    assert (row["dataset"], row["item"], row["views"]) == ("toys", "61", 3)
+
+
+@pytest.mark.parametrize(
+    ("row", "fault"),
+    [
+        ({"veiws": 3}, "columns veiws are not declared"),
+        ({"split": "anywhere"}, "split anywhere is not one of"),
+        ({"metric": None}, "row 0 has no metric"),
+        ({"value": "many"}, "many"),
+    ],
+)
+def test_a_row_outside_the_schema_is_refused(tmp_path, row, fault):
+    with pytest.raises(ValueError, match=fault):
+        write(tmp_path, row)
 
 
 def refuse(name, folder):
@@ -99,14 +180,14 @@ def refuse(name, folder):
 
 
 def test_an_error_names_the_object(workspace):
-    with pytest.raises(ValueError, match="b c: too small"), StageRun("demo") as run:
+    with pytest.raises(ValueError, match="b c: too small"), StageRun(workspace, "views") as run:
         run.each(refuse, ["b c"])
 
 
 def test_missing_input_names_the_stage_to_run(workspace):
-    with pytest.raises(ValueError, match="data/up is not there: run `dvc repro up` first"), StageRun("demo", ("up",)):
+    fault = "toys/lod is not there: run `dvc repro lod@toys` first"
+    with pytest.raises(ValueError, match=fault), StageRun(workspace, "views", inputs=("lod",)):
         pass
-    assert not Path("data/.partial").exists()
 
 
 @pytest.mark.parametrize(
@@ -117,32 +198,56 @@ def test_missing_input_names_the_stage_to_run(workspace):
     ],
 )
 def test_what_a_person_did_ends_in_one_line(raised, lines, code):
-    program = f"from stages.kit.run import errors_in_one_line\nerrors_in_one_line('demo')\nraise {raised}"
-    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
+    program = f"from stages.kit.command import errors_in_one_line\nerrors_in_one_line('demo')\nraise {raised}"
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, text=True)
     assert (done.stderr.splitlines(), done.returncode) == (lines, code)
+    loud = environment | {"HAPTIC_GLANCE_DEBUG": "1"}
+    done = subprocess.run([sys.executable, "-c", program], env=loud, capture_output=True, text=True)
+    assert "Traceback" in done.stderr
 
 
 KILLED = """
 import os, signal, sys
-from stages.kit import StageRun
+from pathlib import Path
 from stages.kit.files import write_text
+from stages.kit.run import StageRun
+from stages.kit.workspace import Workspace
 def item(name, folder):
+    with open("log", "a") as log:
+        log.write(name)
     write_text(folder / name, name)
     (folder / ".part-half").write_text("x") if sys.argv[1] == "die" else None
     if name == "b" and sys.argv[1] == "die":
         os.kill(os.getpid(), signal.SIGKILL)
-    return [{"object": name, "metric": "m", "value": 1, "seconds": 0}]
-with StageRun("demo") as run:
+    return [{"item": name, "metric": "m", "value": 1, "seconds": 0}]
+with StageRun(Workspace(Path("."), "toys"), "views") as run:
     run.each(item, ["a", "b", "c"])
 """
 
 
 def test_killed_run_leaves_nothing_in_place_and_the_next_gives_the_same_bytes(workspace):
-    root = str(Path(__file__).parents[2])
-    environment = {**os.environ, "PYTHONPATH": root}
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     command = [sys.executable, "-c", KILLED]
-    assert subprocess.run([*command, "die"], env=environment).returncode == -signal.SIGKILL
-    assert not Path("data/demo").exists()
-    assert subprocess.run([*command, "live"], env=environment).returncode == 0
-    assert {path.name: path.read_text() for path in Path("data/demo").iterdir()} == {x: f"{x}\n" for x in "abc"}
+    assert subprocess.run([*command, "die"], env=environment, cwd=workspace.root).returncode == -signal.SIGKILL
+    assert not (workspace.data / "views").exists()
+    assert subprocess.run([*command, "live"], env=environment, cwd=workspace.root).returncode == 0
+    assert {path.name: path.read_text() for path in (workspace.data / "views").iterdir()} == {
+        x: f"{x}\n" for x in "abc"
+    }
+    assert (workspace.root / "log").read_text() == "abbc"
+
+
+CODE = '''
+"""About."""
+# why
+def twice(x):
+    """Doubles."""
+    return 2 * x  # by two
+'''
+
+
+def test_words_and_types_do_not_change_the_digest_of_code_and_work_does():
+    same = CODE.replace("Doubles", "Two times").replace("# why", "").replace("(x)", "(x: int) -> int")
+    assert code_text(CODE) == code_text(same) != code_text(CODE.replace("2 *", "3 *"))
+    assert code_text("class A:\n    x: int = 1\n") != code_text("class A:\n    x: str = 1\n")  # dataclasses read these

@@ -32,7 +32,7 @@ MESHES = {
     "torus": Mesh(RING.vertices, RING.faces),
     "open sheet": sheet(),
     "flat sheet": Mesh(sheet().vertices * [1, 1, 0], sheet().faces),
-    "two pieces far apart": Mesh(
+    "two components far apart": Mesh(
         np.r_[BALL.vertices, BALL.vertices * 0.01 + [40, 0, 0]], np.r_[BALL.faces, BALL.faces + len(BALL.vertices)]
     ),
     "inward normals": Mesh(BALL.vertices, BALL.faces[:, ::-1]),
@@ -51,8 +51,8 @@ def check_sound(mesh, found, faces, keep, rings):
     assert np.isfinite(found.vertices).all()
     assert not faults(found).added(faults(mesh))
     before, after = topology(mesh.faces), topology(found.faces)
-    assert (after.pieces, after.closed, after.rim, after.loops) == (
-        before.pieces, before.closed, before.rim, before.loops,
+    assert (after.components, after.closed_components, after.boundary_edges, after.boundary_loops) == (
+        before.components, before.closed_components, before.boundary_edges, before.boundary_loops,
     )  # fmt: skip
     held = {place.tobytes() for place in found.vertices}
     kept = np.unique(mesh.faces[frozen_faces(mesh, keep, rings)])

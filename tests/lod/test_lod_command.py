@@ -14,14 +14,14 @@ from PIL import Image
 
 from stages.kit import Mesh
 from stages.kit.texture import Texture
-from stages.lod import __main__, command, errors_table, metro, simplify
+from stages.lod import __main__, command, error_table, metro, simplify
 from stages.lod.command import run
 from stages.lod.export import FORMATS, to_trimesh, write_any
 from stages.lod.feasibility import SimplifyError
 from stages.lod.fewest import fewest_faces
-from stages.lod.one_mesh import repaired
 from stages.lod.options import parser, share
 from stages.lod.picture import write_picture
+from stages.lod.task import repaired
 from stages.lod.within_frame import within_frame
 from stages.meshes import load
 from stages.views import TWELVE, render
@@ -119,7 +119,7 @@ def test_pictures_go_along(simplified, tmp_path, out):
 def test_format_without_colours_says_so(simplified, tmp_path):
     write_any(tmp_path / "wrapped.obj", textured())
     _, _, said = simplified("--faces", 500, source=tmp_path / "wrapped.obj", out="out.stl")
-    assert ".stl holds no colours" in said
+    assert ".stl files have no colours" in said
 
 
 def test_picture_shows_before_and_after(simplified, tmp_path):
@@ -145,7 +145,7 @@ def test_without_options_the_saliency_weighs_and_nothing_is_frozen(simplified, m
         seen.append(weights)
         return real(*arguments, weights=weights)
 
-    monkeypatch.setattr("stages.lod.one_mesh.simplify", watched)
+    monkeypatch.setattr("stages.lod.task.simplify", watched)
     _, said, _ = simplified("--faces", 300)
     ours, plain = weights
     assert plain is None and np.ptp(ours) > 0.5 and len(ours) == len(bumpy().vertices)
@@ -171,12 +171,12 @@ def test_open_borders_that_stay_are_counted_with_what_they_allow(simplified, tmp
     assert rows(said)["border edges kept"] == [str(edges), str(edges), "-"]
     least = int(rows(said)["fewest faces that keep them"][1])
     simplified("--faces", least, source=tmp_path / "bowl.ply")
-    with pytest.raises(ValueError, match=f"since {edges} edges of open borders stay .*: ask for --faces {least} or"):
+    with pytest.raises(ValueError, match=f"since {edges} boundary edges are frozen: ask for --faces {least} or"):
         simplified("--faces", least - 1, source=tmp_path / "bowl.ply")
 
 
-def test_the_axis_that_was_taken_as_up_is_told(simplified):
-    assert "z up (else say --up)" in simplified("--faces", 300)[2]
+def test_the_axis_taken_as_up_is_reported(simplified):
+    assert "z up (if another axis points up: --up)" in simplified("--faces", 300)[2]
     assert "x up\n" in simplified("--faces", 300, "--up", "x")[2]
 
 
@@ -217,8 +217,8 @@ def test_a_soup_of_doubled_faces_is_joined_and_simplified(simplified, tmp_path):
     found, said, told = simplified("--faces", 300, source=tmp_path / "soup.ply")
     assert len(found.faces) == 300 and found.watertight
     assert rows(said)["faces"][0] == "1,280"
-    assert "1280 doubled faces removed" in told
-    assert f"{6 * 1280 - len(mesh.vertices):,} vertices at the place of another joined" in told
+    assert "1280 duplicate faces removed" in told
+    assert f"{6 * 1280 - len(mesh.vertices):,} coincident vertices merged" in told
 
 
 def test_vertices_are_joined_only_where_that_closes_edges():
@@ -229,11 +229,14 @@ def test_vertices_are_joined_only_where_that_closes_edges():
     assert len(repaired(bowl()[0])[0].vertices) == len(mesh.vertices)
 
 
-def test_pieces_that_share_nothing_are_refused_with_what_to_do(simplified, tmp_path):
+def test_components_that_share_nothing_are_refused_with_what_to_do(simplified, tmp_path):
     generator = np.random.default_rng(0)
     corners = (generator.random((200, 1, 3)) + 0.1 * generator.random((200, 3, 3))).reshape(-1, 3)
     write_any(tmp_path / "shards.ply", Mesh(corners, np.arange(600).reshape(-1, 3)))
-    with pytest.raises(ValueError, match="shards.ply: 50 faces cannot be had, since 600 edges .*: join its pieces"):
+    with pytest.raises(
+        ValueError,
+        match="shards.ply: 50 faces are infeasible, since 600 boundary edges .*: join its connected components",
+    ):
         simplified("--faces", 50, source=tmp_path / "shards.ply")
 
 
@@ -248,17 +251,16 @@ def test_picture_of_a_mesh_that_reaches_beyond_its_original(tmp_path):
 def test_a_tolerance_that_nothing_meets_gives_the_mesh_itself_and_says_so(simplified):
     found, said, told = simplified("--tolerance", "1e-9")
     assert len(found.faces) == 1280 and rows(said)["faces"][1] == "1,280"
-    assert "no fewer faces stay within the tolerance" in told
+    assert "no simplified mesh is within the tolerance" in told
 
 
 @pytest.mark.parametrize("link", ["same", "relative", "symlink", "of a symlink"])
 def test_the_mesh_itself_is_never_written_over(file, tmp_path, monkeypatch, link):
-    monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(command, "read", lambda path: pytest.fail("it was read before it was refused"))
     (tmp_path / "link.obj").symlink_to(file)
     mesh, out = {
-        "same": (file, file), "relative": (file, "../" + tmp_path.name + "/ball.obj"), "symlink": (file, "link.obj"),
-        "of a symlink": ("link.obj", file),
+        "same": (file, file), "relative": (file, os.path.relpath(file)), "symlink": (file, tmp_path / "link.obj"),
+        "of a symlink": (tmp_path / "link.obj", file),
     }[link]  # fmt: skip
     content = file.read_bytes()
     with pytest.raises(ValueError, match="is the mesh itself"):
@@ -273,8 +275,8 @@ HARD = ("--neighbourhood", "fixed")
     ("options", "reason"),
     [
         (["--faces", "300", "--out", "x.dae"], r"written as \.glb"),
-        (["--faces", "9000", "--out", "x.glb"], "ball.obj: --faces 9000: the object has only 1,280 faces"),
-        (["--faces", "many", "--out", "x.glb"], "^--faces='many' is no face count"),
+        (["--faces", "9000", "--out", "x.glb"], "ball.obj: --faces 9000: the mesh has only 1,280 faces"),
+        (["--faces", "many", "--out", "x.glb"], "^--faces='many' is not a face count"),
         (["--faces", "0", "--out", "x.glb"], "^--faces='0' must be 1 or more"),
         (["--faces", "100%", "--out", "x.glb"], "^--faces='100%' must lie between"),
         (["--faces", "300", "--out", "missing/x.glb"], "no such folder"),
@@ -284,23 +286,22 @@ HARD = ("--neighbourhood", "fixed")
             ["--faces", "300", "--out", "x.glb", "--method", "guess"],
             "there is no such method; choose one of qem, enhanced",
         ),
-        (["--faces", "300", "--out", "x.glb", "--keep", "3"], "--keep does nothing where no faces are frozen"),
-        (["--faces", "300", "--out", "x.glb", "--rings", "-1"], "--rings does nothing where no faces are frozen"),
+        (["--faces", "300", "--out", "x.glb", "--keep", "3"], "--keep has no effect where no faces are frozen"),
+        (["--faces", "300", "--out", "x.glb", "--rings", "-1"], "--rings has no effect where no faces are frozen"),
         (["--faces", "300", "--out", "x.glb", "--shrink"], "add --neighbourhood fixed or adaptive or area"),
-        (["--faces", "300", "--out", "x.glb", "--method", "qem", "--shrink"], "--shrink does nothing with"),
-        (["--faces", "300", "--out", "x.glb", "--method", "qem", *HARD], "--neighbourhood does nothing with --method"),
+        (["--faces", "300", "--out", "x.glb", "--method", "qem", "--shrink"], "--shrink has no effect with"),
+        (["--faces", "300", "--out", "x.glb", "--method", "qem", *HARD], "--neighbourhood has no effect with --method"),
         (["--faces", "300", "--out", "x.glb", "--neighbourhood", "area", "--rings", "2"], "it is for fixed"),
         (["--faces", "300", "--out", "x.glb", *HARD, "--rings", "-1"], "--rings -1: give 0"),
         (["--faces", "300", "--out", "x.glb", *HARD, "--keep", "0"], "--keep 0: give 1 or more points"),
         (["--faces", "90", "--out", "x.glb", *HARD, "--keep", "9"], r"ask for --faces \d+ or more.* let them --shrink"),
     ],
 )
-def test_what_cannot_be_done_is_said_before_anything_is_written(file, tmp_path, monkeypatch, options, reason):
-    monkeypatch.chdir(tmp_path)
+def test_what_cannot_be_done_is_said_before_anything_is_written(file, tmp_path, options, reason):
     (tmp_path / "folder.glb").mkdir()
     before = sorted(tmp_path.iterdir())
     with pytest.raises(ValueError, match=reason):
-        run([str(file), "--method", "height", *options])
+        run([str(file), "--method", "height", *(str(tmp_path / word) if "." in word else word for word in options)])
     assert sorted(tmp_path.iterdir()) == before
 
 
@@ -308,8 +309,8 @@ def test_what_cannot_be_done_is_said_before_anything_is_written(file, tmp_path, 
     ("options", "reason"),
     [
         (["--method", "nosuch"], "--method nosuch: there is no such method"),
-        (["--method", "random"], "--method random: it looks at nothing"),
-        (["--method", "svm"], "--method svm: it learns from the pipeline's objects"),
+        (["--method", "random"], "--method random: it has no saliency"),
+        (["--method", "svm"], "--method svm: its weights are learned in the pipeline"),
         (["--seed", "-1"], "--seed -1: give 0 or more"),
     ],
 )
@@ -319,8 +320,8 @@ def test_options_are_refused_before_the_mesh_is_read(file, tmp_path, monkeypatch
         run([str(file), "--faces", "300", "--out", str(tmp_path / "x.glb"), *options])
 
 
-def test_frozen_faces_that_leave_nothing_are_blamed_and_not_the_pieces(simplified):
-    with pytest.raises(ValueError, match="1,280 faces around 642 points stay") as refused:
+def test_frozen_faces_that_leave_nothing_are_blamed_and_not_the_components(simplified):
+    with pytest.raises(ValueError, match="1,280 faces around 642 points are frozen") as refused:
         simplified("--faces", 100, *HARD, "--keep", 100000, "--rings", 50)
     remedies = str(refused.value).split(": ", 2)[-1]
     assert remedies.startswith("--keep fewer points, or take fewer --rings, or let them --shrink")
@@ -330,28 +331,28 @@ def test_frozen_faces_that_leave_nothing_are_blamed_and_not_the_pieces(simplifie
 def test_what_no_option_can_change_is_not_blamed_on_the_frozen_faces(simplified, tmp_path):
     corners = np.eye(3)[None] + 5 * np.arange(9)[:, None, None]
     write_any(tmp_path / "shards.ply", Mesh(corners.reshape(-1, 3), np.arange(27).reshape(-1, 3)))
-    with pytest.raises(ValueError, match="open borders stay as they are: join its pieces first$"):
+    with pytest.raises(ValueError, match="boundary edges are frozen: join its connected components first$"):
         simplified("--faces", 4, *HARD, "--keep", 2, source=tmp_path / "shards.ply")
     write_any(
         tmp_path / "least.ply", Mesh(np.r_[np.eye(3), -np.ones((1, 3))], [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]])
     )
-    with pytest.raises(ValueError, match="3 faces cannot be had: nothing can be taken away$"):
+    with pytest.raises(ValueError, match="3 faces are infeasible: the mesh cannot be simplified further$"):
         simplified("--faces", 3, source=tmp_path / "least.ply")
 
 
 def test_one_face_is_one_face(tmp_path, capsys):
     write_any(tmp_path / "one.ply", Mesh(np.eye(3), [[0, 1, 2]]))
-    with pytest.raises(ValueError, match="has only 1 face, nothing"):
+    with pytest.raises(ValueError, match="has only 1 face, there is nothing"):
         run([str(tmp_path / "one.ply"), "--faces", "9", "--out", str(tmp_path / "x.glb")])
     assert "lod: 1 face\n" in capsys.readouterr().err
 
 
-def test_a_mesh_too_small_for_its_digits_is_told_so(tmp_path):
+def test_a_mesh_too_small_for_its_digits_is_refused_with_the_reason(tmp_path):
     ball = bumpy()
     lines = [f"v {x * 1e-30:.8f} {y * 1e-30:.8f} {z * 1e-30:.8f}" for x, y, z in ball.vertices]
     lines += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in ball.faces]
     (tmp_path / "tiny.obj").write_text("\n".join(lines))
-    with pytest.raises(ValueError, match="tiny.obj: its extent is 0: write it in smaller units, or with more digits"):
+    with pytest.raises(ValueError, match="tiny.obj: its extent is 0: export it in smaller units, or with more digits"):
         run([str(tmp_path / "tiny.obj"), "--faces", "9", "--out", str(tmp_path / "x.glb")])
 
 
@@ -391,7 +392,7 @@ def test_pictures_that_fail_leave_dashes_and_the_reason(simplified, monkeypatch)
     def fails(reference, pictures):
         raise ValueError("no light")
 
-    monkeypatch.setattr(errors_table, "picture_errors", fails)
+    monkeypatch.setattr(error_table, "picture_errors", fails)
     _, said, told = simplified("--faces", 300)
     assert rows(said)["1 - SSIM of the pictures"] == ["-", "-", "-"]
     assert told.count("no errors of the pictures with 300 faces: no light") == 2
@@ -407,11 +408,22 @@ def test_any_option_means_the_command_for_one_mesh(monkeypatch, capsys, words):
     assert "MESH" in (said.out if "--help" in words else said.err.splitlines()[-1])
 
 
-def test_help_alone_is_that_of_the_stage(monkeypatch, capsys):
-    monkeypatch.setattr(sys, "argv", ["stages/lod/__main__.py", "--help"])
+@pytest.mark.parametrize("words", [["--help"], ["household", "--help"]])
+def test_help_without_a_mesh_is_that_of_the_stage(monkeypatch, capsys, words):
+    monkeypatch.setattr(sys, "argv", ["stages/lod/__main__.py", *words])
     with pytest.raises(SystemExit):
         __main__.main()
     assert "Settings: section `lod`" in " ".join(capsys.readouterr().out.split())
+
+
+@pytest.mark.parametrize("words", [[], ["toys"], ["--root=there"], ["toys", "--root", "there"]])
+def test_a_word_without_a_suffix_is_a_data_set(monkeypatch, words):
+    ran = []
+    monkeypatch.setattr(sys, "argv", ["lod", *words])
+    monkeypatch.setattr(__main__, "workspace_of_arguments", lambda doc, stage: stage)
+    monkeypatch.setattr(__main__, "run", ran.append)
+    __main__.main()
+    assert ran == ["lod"]
 
 
 def test_interrupted_it_says_one_line_and_leaves_nothing(file, tmp_path):
@@ -421,7 +433,7 @@ def test_interrupted_it_says_one_line_and_leaves_nothing(file, tmp_path):
     command_line = [sys.executable, "-m", "stages.lod", *words]
     heard = functools.partial(signal.signal, signal.SIGINT, signal.SIG_DFL)  # what runs in the background ignores it
     work = subprocess.Popen(command_line, cwd=tmp_path, env=ours, stderr=subprocess.PIPE, text=True, preexec_fn=heard)
-    while "looking" not in (line := work.stderr.readline()):
+    while "rendering" not in (line := work.stderr.readline()):
         assert line, "it ended before it could be interrupted"
     work.send_signal(signal.SIGINT)
     assert work.stderr.read().splitlines()[-1] == "lod: stopped"
@@ -450,7 +462,7 @@ def test_smaller_neighbourhoods_make_the_target_feasible(simplified):
     assert int(rows(said)["fewest faces that keep them"][1].replace(",", "")) > 90
 
 
-@pytest.mark.parametrize(("content", "reason"), [(b"not a mesh", "cut off"), (b"", "empty"), (None, "no such file")])
+@pytest.mark.parametrize(("content", "reason"), [(b"not a mesh", "truncated"), (b"", "empty"), (None, "no such file")])
 def test_unreadable_mesh_is_named(tmp_path, content, reason):
     if content is not None:
         (tmp_path / "bad.stl").write_bytes(content)
@@ -468,14 +480,14 @@ def test_tolerance_is_a_share_of_the_diagonal(text, value):
 def test_tolerance_of_nothing_is_refused_with_the_reason(text, capsys):
     with pytest.raises(SystemExit):
         parser("").parse_args(["x.stl", "--out", "x.glb", "--tolerance", text])
-    assert "rounding alone is more than 0" in capsys.readouterr().err
+    assert "rounding alone exceeds 0" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("text", ["-1", "-0", "150%", "much", "nan", ""])
 def test_tolerance_that_is_no_share_is_refused(text, capsys):
     with pytest.raises(SystemExit):
         parser("").parse_args(["x.stl", "--out", "x.glb", f"--tolerance={text}"])
-    assert "no share of the diagonal" in capsys.readouterr().err
+    assert "not a share of the diagonal" in capsys.readouterr().err
 
 
 def test_help_shows_how(capsys):

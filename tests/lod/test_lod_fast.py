@@ -75,7 +75,7 @@ def test_the_fit_brings_the_surface_nearer(monkeypatch):
 
 def test_the_fit_moves_free_vertices_and_leaves_locked_ones():
     mesh = bumpy()
-    surface = fast._surface(mesh, frozen_faces(mesh, [7, 900], 2), None)[0]
+    surface = fast._half_edge_mesh(mesh, frozen_faces(mesh, [7, 900], 2), None)[0]
     points, corner = surface.position.copy(), surface.corner.copy()
     decimate(surface, 900, *fast.ATTEMPTS[0], fast.FOLD)
     before_fit = surface.position.copy()
@@ -86,7 +86,7 @@ def test_the_fit_moves_free_vertices_and_leaves_locked_ones():
 
 
 def wavy_sheet(side=30):
-    """An open sheet, wavy across, with a hole: two loops of rim."""
+    """An open sheet, wavy across, with a hole: two boundary loops."""
     x, y = np.meshgrid(np.linspace(0, 1, side), np.linspace(0, 1, side), indexing="ij")
     a = np.arange(side * side).reshape(side, side)[:-1, :-1].ravel()
     faces = np.r_[np.c_[a, a + side, a + 1], np.c_[a + 1, a + side, a + side + 1]]
@@ -98,16 +98,16 @@ def wavy_sheet(side=30):
 def fan(surface, vertex):
     """The half-edges that leave a vertex, found from the one that is named as its first."""
     found = [int(surface.start[vertex])]
-    while (h := int(surface.twin[before(found[-1])])) >= 0 and h != found[0]:
+    while (h := int(surface.opposite[before(found[-1])])) >= 0 and h != found[0]:
         found.append(h)
     return found
 
 
 @pytest.mark.parametrize("make", [wavy_sheet, bumpy])
 def test_the_whole_fan_of_a_vertex_is_found_after_any_collapses(make):
-    # At a rim it is found from its first half-edge alone, on which all checks rest: one lost face is one not checked.
+    # On the boundary it is found from its first half-edge alone, on which all checks rest: a lost face is not checked.
     for faces in (1200, 700, 300):
-        surface = fast._surface(make(), nothing(make()), None)[0]
+        surface = fast._half_edge_mesh(make(), nothing(make()), None)[0]
         decimate(surface, faces, *fast.ATTEMPTS[0], fast.FOLD)
         alive = np.flatnonzero(surface.corner >= 0)
         for vertex in np.unique(surface.corner[alive]):
@@ -118,7 +118,7 @@ def test_a_tetrahedron_never_becomes_two_faces_back_to_back():
     tetrahedron = Mesh(
         [[0, 0, 0], [1, 0, 0], [0.5, 0.9, 0], [0.5, 0.3, 0.8]], [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]
     )
-    surface = fast._surface(tetrahedron, nothing(tetrahedron), None)[0]
+    surface = fast._half_edge_mesh(tetrahedron, nothing(tetrahedron), None)[0]
     assert decimate(surface, 2, *fast.LAST, fast.NO_FOLD) == 4  # where folds count, they hold it up as well
 
 

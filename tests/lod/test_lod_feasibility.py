@@ -8,19 +8,19 @@ import trimesh
 
 from stages.kit import Mesh
 from stages.lod import BACKENDS, InfeasibleTarget, frozen_faces, simplify, smallest_feasible
-from stages.lod.topology import Topology, faults, split_pinches, topology
+from stages.lod.topology import Topology, faults, split_nonmanifold_vertices, topology
 
 SPHERE = trimesh.creation.icosphere(subdivisions=3, radius=0.5)
 TORUS = trimesh.creation.torus(0.35, 0.15, major_sections=24, minor_sections=12)
 
 
 def test_topology_of_known_surfaces():
-    assert topology(SPHERE.faces) == Topology(rim=0, loops=0, pieces=1, closed=1, handles=0)
-    assert topology(TORUS.faces) == Topology(rim=0, loops=0, pieces=1, closed=1, handles=1)
-    assert topology(np.array([[0, 1, 2]])) == Topology(rim=3, loops=1, pieces=1, closed=0, handles=0)
+    assert topology(SPHERE.faces) == Topology(0, 0, 1, 1, genus=0)
+    assert topology(TORUS.faces) == Topology(0, 0, 1, 1, genus=1)
+    assert topology(np.array([[0, 1, 2]])) == Topology(3, 1, 1, 0, genus=0)
     tube = trimesh.creation.cylinder(0.2, 0.6, sections=16)
     side = tube.faces[np.abs(tube.face_normals[:, 2]) < 0.5]
-    assert topology(side) == Topology(rim=32, loops=2, pieces=1, closed=0, handles=0)
+    assert topology(side) == Topology(32, 2, 1, 0, genus=0)
 
 
 def test_topology_does_not_depend_on_winding_or_order():
@@ -29,17 +29,17 @@ def test_topology_does_not_depend_on_winding_or_order():
     assert topology(faces) == topology(TORUS.faces)
 
 
-def test_pieces_that_touch_in_a_vertex_count_apart():
+def test_components_that_touch_in_a_vertex_count_apart():
     bow_tie = np.array([[0, 1, 2], [0, 3, 4]])
-    assert topology(bow_tie) == Topology(rim=6, loops=2, pieces=2, closed=0, handles=0)
-    assert len(np.unique(split_pinches(bow_tie))) == 6
+    assert topology(bow_tie) == Topology(6, 2, 2, 0, genus=0)
+    assert len(np.unique(split_nonmanifold_vertices(bow_tie))) == 6
 
 
 def test_edge_of_three_faces_becomes_a_rim():
     book = np.array([[0, 1, 2], [0, 1, 3], [0, 1, 4]])
-    assert topology(book).pieces == 3
+    assert topology(book).components == 3
     mesh = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0, -1, 1]], book)
-    assert faults(mesh).crowded == 3
+    assert faults(mesh).non_manifold == 3
 
 
 def test_faults_count_degenerate_and_folded_faces():

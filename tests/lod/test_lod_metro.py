@@ -7,7 +7,7 @@ import trimesh
 
 from stages.kit import Mesh
 from stages.lod import metro, simplify
-from stages.lod.nearest import Surface
+from stages.lod.nearest import SurfaceIndex
 
 BALL = trimesh.creation.icosphere(subdivisions=4, radius=0.5)
 SPHERE = Mesh(BALL.vertices, BALL.faces)
@@ -39,7 +39,7 @@ def test_moved_cube_has_the_known_mean_and_maximum():
     a = Mesh(cube.vertices, cube.faces)
     found = metro(a, Mesh(a.vertices + [shift, 0, 0], a.faces), 20_000)
     outside = shift * 1 + 4 * shift * shift / 2
-    # The x face left inside the other cube is nearest to that cube's x face, but for a rim where a side is nearer.
+    # The x face left inside the other cube is nearest to that cube's x face, but for a boundary where a side is nearer.
     inside = shift - 4 * shift**2 / 2 + 8 * shift**3 / 6
     assert found["max"] == pytest.approx(shift / np.sqrt(3), rel=1e-9)
     assert found["mean"] == pytest.approx((outside + inside) / 6 / np.sqrt(3), rel=0.02)
@@ -94,7 +94,7 @@ def test_agrees_with_pymeshlab_within_sampling_error():
 
 def test_samples_are_even_by_area():
     mesh = Mesh(np.r_[square().vertices, square(1, 3).vertices], np.r_[square().faces, square().faces + 4])
-    points = Surface(mesh).sample(1000, np.random.default_rng(0))[0]
+    points = SurfaceIndex(mesh).sample(1000, np.random.default_rng(0))[0]
     assert (points[:, 2] == 0).sum() == pytest.approx(100, abs=1)
     upper = points[points[:, 2] == 1]
     assert (upper[:, :2].mean(axis=0) == pytest.approx(1.5, abs=0.1)) and upper.max() <= 3

@@ -73,5 +73,5 @@ def test_a_target_below_the_mesh_itself_is_infeasible():
 def test_bad_arguments_are_named():
     with pytest.raises(ValueError, match="outside"):
         shrunk_rings(SPHERE, 100, [10**6])
-    with pytest.raises(ValueError, match="one a kept vertex"):
+    with pytest.raises(ValueError, match="one per kept vertex"):
         shrunk_rings(SPHERE, 100, [1, 2], [3])

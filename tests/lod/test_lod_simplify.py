@@ -56,7 +56,7 @@ def together(*meshes):
 
 @pytest.mark.parametrize("make", [sphere, torus, hill])
 @pytest.mark.parametrize("keep", [None, [5, 700]])
-def test_boundary_pieces_and_handles_hold_and_no_fault_is_added(make, keep):
+def test_boundary_components_and_genus_hold_and_no_fault_is_added(make, keep):
     mesh = make()
     simple = simplify(mesh, 900, keep)
     assert 898 <= len(simple.faces) <= 900
@@ -78,13 +78,13 @@ def test_frozen_faces_survive_bit_for_bit(rings):
 def test_open_boundary_survives_bit_for_bit():
     mesh = hill()
     edges, counts = mesh.edge_counts
-    rim = {tuple(point) for point in mesh.vertices[np.unique(edges[counts == 1])].tolist()}
-    assert rim <= {tuple(point) for point in simplify(mesh, 900).vertices.tolist()}
+    boundary = {tuple(point) for point in mesh.vertices[np.unique(edges[counts == 1])].tolist()}
+    assert boundary <= {tuple(point) for point in simplify(mesh, 900).vertices.tolist()}
 
 
-def test_separate_pieces_stay_separate():
+def test_separate_components_stay_separate():
     mesh = together(sphere(3), Mesh(sphere(3).vertices + [1.2, 0, 0], sphere(3).faces))
-    assert topology(simplify(mesh, 300).faces).pieces == 2
+    assert topology(simplify(mesh, 300).faces).components == 2
 
 
 def test_same_call_gives_same_bytes_whatever_was_called_before():
@@ -134,10 +134,10 @@ def test_surfaces_that_touch_in_a_point_are_simplified_apart():
     pair = together(one, other)
     pair = Mesh(pair.vertices, np.where(pair.faces == top + len(one.vertices), top, pair.faces))
     simple = simplify(pair, 300)
-    assert topology(simple.faces) == Topology(rim=0, loops=0, pieces=2, closed=2, handles=0)
+    assert topology(simple.faces) == Topology(0, 0, 2, 2, genus=0)
 
 
-def test_many_pinches_do_not_hold_the_surface_up():
+def test_many_nonmanifold_vertices_do_not_hold_the_surface_up():
     inner = sphere(3)
     pinched = []
     for vertex in range(642):  # no two joined by an edge: that would be an edge of four faces, not two pinches
@@ -153,9 +153,9 @@ def test_many_pinches_do_not_hold_the_surface_up():
 
 def test_a_tiny_piece_and_a_thin_handle_survive_a_low_target():
     speck = Mesh(sphere(2).vertices * 0.01 + [0.6, 0, 0], sphere(2).faces)
-    assert topology(simplify(together(sphere(3), speck), 60).faces).pieces == 2
+    assert topology(simplify(together(sphere(3), speck), 60).faces).components == 2
     thin = trimesh.creation.torus(0.4, 0.02, major_sections=48, minor_sections=12)
-    assert topology(simplify(Mesh(thin.vertices, thin.faces), 60).faces).handles == 1
+    assert topology(simplify(Mesh(thin.vertices, thin.faces), 60).faces).genus == 1
 
 
 def test_infeasible_target_names_the_smallest_count_and_that_count_works():
@@ -261,10 +261,10 @@ def test_quadric_weights_grow_with_saliency_from_one_within_what_every_backend_t
         ({"faces": 100, "keep": [-1]}, "outside"),
         ({"faces": 100, "keep": [0.5]}, "vertex ids"),
         ({"faces": 100, "keep": [1], "rings": -1}, "rings"),
-        ({"faces": 100, "keep": [1, 2], "rings": [3]}, "one a kept vertex"),
+        ({"faces": 100, "keep": [1, 2], "rings": [3]}, "one per kept vertex"),
         ({"faces": 100, "keep": [1, 2], "rings": [3, -2]}, "-1"),
         ({"faces": 100, "keep": [1, 2], "rings": [3.0, 1.0]}, "whole numbers"),
-        ({"faces": 100, "weights": [0.5]}, "one a vertex"),
+        ({"faces": 100, "weights": [0.5]}, "one per vertex"),
         ({"faces": 100, "weights": np.full(162, 1.5)}, "0..1"),
         ({"faces": 100, "weights": np.r_[np.nan, np.zeros(161)]}, "NaN"),
         ({"faces": 100, "backend": "nobody"}, "pymeshlab"),

@@ -1,25 +1,28 @@
 """The stage's cells: nothing is dropped without a word, and the summary is paired."""
 
 import dataclasses
+import functools
 
 import numpy as np
 import pytest
 import trimesh
 
+from stages.compose import compose
 from stages.kit import Mesh
 from stages.kit.files import read_mesh, read_table, write_arrays, write_mesh
-from stages.lod import __main__ as stage
-from stages.lod import shrunk_rings, simplify, take_pictures
-from stages.lod.cell import Subject, measure_cells
-from stages.lod.errors import errors_of
+from stages.kit.rows import read_rows
+from stages.lod import __main__, data_set, shrunk_rings, simplify, take_pictures
+from stages.lod.cell import measure_cells
+from stages.lod.errors import measure_errors
+from stages.lod.inputs import ObjectInputs
 from stages.lod.schema import Params
 from stages.lod.summary import summarise
 from stages.lod.targets import face_count, file_name
 from stages.lod.variant import Variant, variant
-from stages.salient_points.options import Found
-from stages.salient_points.storage import write_found
+from stages.salient_points.options import Detection
+from stages.salient_points.storage import write_points
 from stages.views import viewpoint_set
-from stages.weights.truth import spread_on_surface
+from stages.weights.ground_truth import spread_on_surface
 
 SETTINGS = Params(
     methods=["qem", "enhanced", "enhanced-soft", "itti", "random-area"], targets=["50%", "10%", "4000"], rings=3,
@@ -34,7 +37,7 @@ def new_subject():
     pictures = take_pictures(mesh, viewpoint_set("four"), (48, 64))
     points = {"enhanced": np.array([0, 300]), "random": np.array([5])}
     saliency = {"enhanced": ((mesh.vertices[:, 2] + 0.5).clip(0, 1)).astype(np.float32)}
-    return Subject("ball", mesh, points, saliency, pictures)
+    return ObjectInputs("ball", mesh, points, saliency, pictures)
 
 
 @pytest.fixture(scope="module")
@@ -80,9 +83,9 @@ def test_the_soft_variant_keeps_no_point_and_needs_no_room(rows):
 def test_equal_kept_sets_are_simplified_once(tmp_path, monkeypatch):
     subject, calls = new_subject(), []
     monkeypatch.setattr("stages.lod.cell.simplify", lambda *a, **k: calls.append(a) or simplify(*a, **k))
-    twins = dataclasses.replace(SETTINGS, targets=["50%", "640"])
+    settings = dataclasses.replace(SETTINGS, targets=["50%", "640"])
     subject.points["itti"] = subject.points["enhanced"][::-1]
-    rows = [row for method in ("enhanced", "itti") for row in measure_cells(subject, method, tmp_path, twins, 0)]
+    rows = [row for method in ("enhanced", "itti") for row in measure_cells(subject, method, tmp_path, settings, 0)]
     assert len(calls) == 1
     assert len({row["value"] for row in rows if row["metric"] == "metro_mean"}) == 1
     assert len(list((tmp_path / "ball").glob("*.npz"))) == 4
@@ -104,7 +107,7 @@ def test_gaze_counts_the_errors_of_the_side_that_people_looked_at():
         vertices = subject.mesh.vertices.copy()
         flat = side * vertices[:, 0] > 0.4
         vertices[flat, 0] = side * 0.4
-        parts = errors_of(subject, Mesh(vertices, subject.mesh.faces), SETTINGS, 0)
+        parts = measure_errors(subject, Mesh(vertices, subject.mesh.faces), SETTINGS, 0)
         return {part["metric"]: part["value"] for part in parts}
 
     front, back = errors(1), errors(-1)
@@ -112,29 +115,50 @@ def test_gaze_counts_the_errors_of_the_side_that_people_looked_at():
     assert front["salient_error"] == pytest.approx(back["salient_error"], rel=0.2)  # the model looks up, at neither
 
 
-def test_only_recorded_gaze_is_human_gaze(tmp_path, monkeypatch):
-    monkeypatch.setattr(stage, "DATA", tmp_path)
-    write_arrays(tmp_path / "weights" / "lessons" / "ball.npz", density=np.arange(3.0))
-    assert stage.human_gaze("ball", "gaze").tolist() == [0, 1, 2]
-    assert stage.human_gaze("ball", "household") is None  # a lesson of marks
-    assert stage.human_gaze("cube", "gaze") is None
+@pytest.fixture
+def workspace(make_workspace):
+    """A function of the source of the meshes: a data set of one object, with ground truth."""
+
+    def make(source):
+        subject = new_subject()
+        settings = compose()["household"]["meshes"] | {"source": source}
+        workspace = make_workspace({"lod": dataclasses.asdict(SHRINKING), "meshes": settings})
+        write_mesh(workspace.data / "meshes/ball.npz", subject.mesh)
+        found = {
+            name: Detection(points, len(points), subject.saliency.get(name)) for name, points in subject.points.items()
+        }
+        write_points(workspace.data / "salient_points/ball.npz", found)
+        density = 0.6 + subject.mesh.vertices[:, 0]
+        write_arrays(workspace.data / "weights/ground_truth/ball.npz", density=density)
+        return workspace
+
+    return make
 
 
-def test_curve_has_the_rows_without_what_differs_from_run_to_run(tmp_path, monkeypatch):
-    subject = new_subject()
-    for kind in ("meshes", "salient_points"):
-        (tmp_path / kind).mkdir()
-    write_mesh(tmp_path / "meshes" / "ball.npz", subject.mesh)
-    found = {name: Found(points, len(points), subject.saliency.get(name)) for name, points in subject.points.items()}
-    write_found(tmp_path / "salient_points" / "ball.npz", found)
-    monkeypatch.setattr(stage, "DATA", tmp_path)
-    rows = [stage.process("ball", tmp_path / turn, SHRINKING, 0, "gaze") for turn in ("one", "two")][0]
-    curves = [(tmp_path / turn / "ball" / "curve.csv").read_bytes() for turn in ("one", "two")]
+@pytest.mark.parametrize(("source", "measured"), [("gaze", True), ("household", False)])
+def test_only_recorded_gaze_is_human_gaze(workspace, source, measured):
+    workspace = workspace(source)
+    __main__.run(workspace)
+    rows = read_rows(workspace.measurements / "lod.csv.gz")
+    assert "salient_error" in set(rows["metric"]) and ("gaze_error" in set(rows["metric"])) == measured
+    assert set(rows["item"]) == {"ball"} and rows["split"].isna().all()
+
+
+def test_without_a_file_there_is_no_gaze(tmp_path):
+    assert data_set.human_gaze(tmp_path / "cube.npz") is None
+
+
+def test_curve_has_the_rows_without_what_differs_from_run_to_run(workspace):
+    workspace = workspace("household")
+    work = functools.partial(data_set.process, data=workspace.data, settings=SHRINKING, seed=0, gaze=False)
+    folder = workspace.root
+    rows = [work("ball", folder / turn) for turn in ("one", "two")][0]
+    curves = [(folder / turn / "ball" / "curve.csv").read_bytes() for turn in ("one", "two")]
     assert curves[0] == curves[1]
-    table = read_table(tmp_path / "one" / "ball" / "curve.csv")
-    assert "salient_error" in set(table["metric"]) and "gaze_error" not in set(table["metric"])  # no lesson, no gaze
+    table = read_table(folder / "one" / "ball" / "curve.csv")
+    assert "salient_error" in set(table["metric"]) and "gaze_error" not in set(table["metric"])
     assert list(table) == [name for name in rows[0] if name not in ("seconds", "note")] and len(table) == len(rows)
-    meshes = [sorted((tmp_path / turn / "ball").glob("*.npz")) for turn in ("one", "two")]
+    meshes = [sorted((folder / turn / "ball").glob("*.npz")) for turn in ("one", "two")]
     assert [path.read_bytes() for path in meshes[0]] == [path.read_bytes() for path in meshes[1]]
 
 
@@ -169,7 +193,7 @@ def test_a_failing_backend_becomes_a_note(tmp_path, monkeypatch):
 
 def test_summary_compares_only_cells_that_all_methods_reach():
     def row(method, target, metric, value, infeasible=False):
-        return {"object": "a", "method": method, "target": target, "metric": metric, "value": value,
+        return {"item": "a", "method": method, "target": target, "metric": metric, "value": value,
                 "infeasible": infeasible, "shrunk": method == "itti"}  # fmt: skip
 
     rows = [row("svm", "50%", "faces", None)]
@@ -200,7 +224,7 @@ def test_names_of_methods_mean_points_and_a_way(name, method, way):
     ("name", "message"),
     [
         ("", "unknown method ''"), ("enhancd", "unknown method 'enhancd'"), ("enhanced-", "endings are"),
-        ("enhanced-fixed", "endings are -adaptive, -area, -soft"), ("enhanced-soft-area", "ends on 'soft-area'"),
+        ("enhanced-fixed", "endings are -adaptive, -area, -soft"), ("enhanced-soft-area", "ends in 'soft-area'"),
         ("qem-soft", "unknown method 'qem'"), ("-area", "unknown method ''"),
     ],
 )  # fmt: skip

@@ -7,7 +7,7 @@ import trimesh
 
 from stages.kit import Mesh
 from stages.lod.metro import metro, vertex_errors
-from stages.lod.nearest import Surface
+from stages.lod.nearest import SurfaceIndex
 
 BALL = trimesh.creation.icosphere(subdivisions=3, radius=0.5)
 SPHERE = Mesh(BALL.vertices, BALL.faces)
@@ -43,16 +43,16 @@ def test_distances_agree_with_point_cloud_utils(name, spread):
     noise = np.random.default_rng(1).normal(size=(400, 3))
     points = spread * mesh.vertices[np.arange(400) % len(mesh.vertices)] + 0.02 * noise
     expected, _, _ = point_cloud_utils.closest_points_on_mesh(points, mesh.vertices, mesh.faces)
-    found, faces = Surface(mesh).nearest(points)
+    found, faces = SurfaceIndex(mesh).nearest(points)
     assert found == pytest.approx(expected, rel=1e-9, abs=1e-12)
     alone = [
-        Surface(Mesh(mesh.vertices, mesh.faces[[face]])).nearest(points[[k]])[0][0] for k, face in enumerate(faces)
+        SurfaceIndex(Mesh(mesh.vertices, mesh.faces[[face]])).nearest(points[[k]])[0][0] for k, face in enumerate(faces)
     ]
     assert np.array(alone) == pytest.approx(found, rel=1e-9, abs=1e-12)
 
 
 def test_order_of_the_questions_does_not_matter():
-    surface, points = Surface(SPHERE), np.random.default_rng(2).normal(scale=0.3, size=(500, 3))
+    surface, points = SurfaceIndex(SPHERE), np.random.default_rng(2).normal(scale=0.3, size=(500, 3))
     order = np.random.default_rng(3).permutation(500)
     assert surface.nearest(points[order])[0] == pytest.approx(surface.nearest(points)[0][order], rel=1e-12)
 
@@ -60,7 +60,7 @@ def test_order_of_the_questions_does_not_matter():
 def test_weights_name_the_nearest_place():
     points = np.random.default_rng(4).normal(scale=0.5, size=(300, 3))
     for mesh in MESHES.values():
-        surface = Surface(mesh)
+        surface = SurfaceIndex(mesh)
         found, faces = surface.nearest(points)
         weights = surface.weights(points, faces)
         assert weights.min() >= 0 and weights.sum(axis=1) == pytest.approx(np.ones(300))
@@ -71,7 +71,7 @@ def test_weights_name_the_nearest_place():
 def test_faces_without_area_are_segments_and_points():
     mesh = Mesh([[0, 0, 0], [1, 0, 0], [2, 0, 0], [5, 5, 5]], [[0, 1, 2], [2, 0, 1], [3, 3, 3], [0, 2, 2]])
     points = np.array([[0.5, 1, 0], [3, 0, 0], [-1, 0, 0], [5, 5, 6], [1, 0, 0]])
-    assert Surface(mesh).nearest(points)[0] == pytest.approx([1, 1, 1, 1, 0])
+    assert SurfaceIndex(mesh).nearest(points)[0] == pytest.approx([1, 1, 1, 1, 0])
 
 
 @pytest.mark.parametrize("height", [1e-2, 1e-5, 1e-8, 1e-11, 1e-13, 1e-15, 0.0])
@@ -83,13 +83,13 @@ def test_needles_are_as_far_as_their_sides_at_most_their_height_less(height, foo
     places = np.stack([along.ravel(), np.zeros(36), up.ravel()], axis=1)
     low, high = min(foot, 0), max(foot, 1)
     expected = np.hypot(places[:, 0] - places[:, 0].clip(low, high), places[:, 2])
-    found, _ = Surface(Mesh(corners, [[0, 1, 2]])).nearest(places @ turn + 0.1)
+    found, _ = SurfaceIndex(Mesh(corners, [[0, 1, 2]])).nearest(places @ turn + 0.1)
     assert np.abs(found - expected).max() <= height + 1e-12
 
 
 def test_near_questions_are_answered_alike_after_far_ones():
     for mesh in MESHES.values():
-        surface, points = Surface(mesh), mesh.vertices[:100] * 1.01
+        surface, points = SurfaceIndex(mesh), mesh.vertices[:100] * 1.01
         before = surface.nearest(points)[0]
         surface.nearest([[1e3, 0, 0]])
         assert (surface.nearest(points)[0] == before).all()
@@ -98,15 +98,15 @@ def test_near_questions_are_answered_alike_after_far_ones():
 def test_flat_meshes_and_meshes_far_from_the_origin_are_measured():
     flat = Mesh(SPHERE.vertices * [1, 1, 0], SPHERE.faces)
     moved = Mesh(flat.vertices + [1e4, 0, 0], flat.faces)
-    assert Surface(flat).nearest([[0, 0, 0.2], [2, 0, 0]])[0] == pytest.approx([0.2, 1.5], rel=1e-6)
-    assert Surface(moved).nearest([[1e4, 0, 0.2]])[0] == pytest.approx([0.2], rel=1e-6)
+    assert SurfaceIndex(flat).nearest([[0, 0, 0.2], [2, 0, 0]])[0] == pytest.approx([0.2, 1.5], rel=1e-6)
+    assert SurfaceIndex(moved).nearest([[1e4, 0, 0.2]])[0] == pytest.approx([0.2], rel=1e-6)
 
 
 def test_long_slanted_faces_do_not_fill_the_grid():
     # Each side of a thin slanted column lies in the boxes of thousands of cells, were the cells as small as elsewhere.
     column = trimesh.creation.cylinder(0.5, 20.0, sections=3000)
     column.apply_transform(trimesh.transformations.rotation_matrix(0.7, [1, 1, 0]))
-    surface = Surface(Mesh(column.vertices, column.faces))
+    surface = SurfaceIndex(Mesh(column.vertices, column.faces))
     assert len(surface.grid[1]) <= 64 * len(column.faces)
     middles = column.triangles_center
     assert surface.nearest(middles + 0.1 * column.face_normals)[0] == pytest.approx(
@@ -129,7 +129,7 @@ def test_max_is_over_the_vertices_too():
     spiked = Mesh(vertices, np.r_[SPHERE.faces, [[0, 0, len(SPHERE.vertices)]]])
     nearest = np.linalg.norm([0, 0, 5]) - 0.5
     for pair in ((SPHERE, spiked), (spiked, SPHERE)):
-        assert metro(*pair, 3)["max"] * Surface(pair[0]).diagonal == pytest.approx(nearest, rel=0.01)
+        assert metro(*pair, 3)["max"] * SurfaceIndex(pair[0]).diagonal == pytest.approx(nearest, rel=0.01)
 
 
 def test_concentric_boxes_have_the_known_errors():
@@ -150,12 +150,12 @@ def test_a_mesh_without_faces_is_named():
 
 def test_meshes_and_points_out_of_range_are_named():
     with pytest.raises(ValueError, match="out of range"):
-        Surface(Mesh(1e120 * SPHERE.vertices, SPHERE.faces))
+        SurfaceIndex(Mesh(1e120 * SPHERE.vertices, SPHERE.faces))
     for bad in (np.nan, np.inf, 1e200):
         with pytest.raises(ValueError, match="points"):
-            Surface(SPHERE).nearest([[bad, 0, 0]])
+            SurfaceIndex(SPHERE).nearest([[bad, 0, 0]])
 
 
 def test_points_far_away_and_points_as_surfaces_are_measured():
-    assert Surface(SPHERE).nearest([[1e30, 0, 0]])[0] == pytest.approx([1e30])
-    assert Surface(Mesh(np.ones((3, 3)), [[0, 1, 2]])).nearest([[1, 1, 3], [1, 1, 1]])[0] == pytest.approx([2, 0])
+    assert SurfaceIndex(SPHERE).nearest([[1e30, 0, 0]])[0] == pytest.approx([1e30])
+    assert SurfaceIndex(Mesh(np.ones((3, 3)), [[0, 1, 2]])).nearest([[1, 1, 3], [1, 1, 1]])[0] == pytest.approx([2, 0])

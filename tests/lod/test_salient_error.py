@@ -76,8 +76,8 @@ def test_a_mesh_has_no_error_to_itself():
 @pytest.mark.parametrize(
     ("saliency", "said"),
     [
-        (np.zeros(len(UPPER)), "nobody looks"),
-        (np.ones(3), "one value a vertex"),
+        (np.zeros(len(UPPER)), "zero on the whole surface"),
+        (np.ones(3), "one value per vertex"),
         (-UPPER, "0 or more"),
         (np.full(len(UPPER), np.nan), "finite"),
     ],

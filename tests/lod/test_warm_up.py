@@ -2,7 +2,7 @@
 
 import pytest
 
-from stages.lod import __main__ as stage
+from stages.lod import data_set
 from stages.lod import warm_up as module
 from stages.lod.simplify import simplify
 
@@ -26,13 +26,12 @@ def test_it_works_once_for_each_backend(monkeypatch):
 
 def test_the_stage_warms_its_backend_up_before_it_reads_the_object(monkeypatch, tmp_path):
     order = []
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(stage, "warm_up", order.append)
-    monkeypatch.setattr(stage, "read_mesh", lambda path: order.append("read") or (_ for _ in ()).throw(OSError))
+    monkeypatch.setattr(data_set, "warm_up", order.append)
+    monkeypatch.setattr(data_set, "read_mesh", lambda path: order.append("read") or (_ for _ in ()).throw(OSError))
 
     class Settings:
         backend = "fast"
 
     with pytest.raises(OSError):
-        stage.process("ball", tmp_path, Settings, 0, "household")
+        data_set.process("ball", tmp_path, tmp_path, Settings, 0, False)
     assert order == ["fast", "read"]

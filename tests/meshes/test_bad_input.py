@@ -30,12 +30,12 @@ STL, GLB, PLY = (CUBE.export(file_type=kind) for kind in ("stl", "glb", "ply"))
 REFUSED = {
     "empty.stl": (b"", "empty"),
     "empty.obj": (b"# nothing\n", "no geometry|no faces|unreadable"),
-    "truncated.stl": (STL[: len(STL) // 2], "cut off"),
-    "truncated.glb": (GLB[: len(GLB) // 2], "cut off"),
-    "truncated.ply": (PLY[: len(PLY) - 20], "unreadable|faces name|cut off"),
-    "truncated.off": (off(CUBE.vertices, CUBE.faces)[:-40], "unreadable|cut off"),
-    "truncated_ascii.stl": (CUBE.export(file_type="stl_ascii").encode()[:900], "cut off"),
-    "noise.stl": (RNG.bytes(5000), "cut off|unreadable"),
+    "truncated.stl": (STL[: len(STL) // 2], "truncated"),
+    "truncated.glb": (GLB[: len(GLB) // 2], "truncated"),
+    "truncated.ply": (PLY[: len(PLY) - 20], "unreadable|faces name|truncated"),
+    "truncated.off": (off(CUBE.vertices, CUBE.faces)[:-40], "unreadable|truncated"),
+    "truncated_ascii.stl": (CUBE.export(file_type="stl_ascii").encode()[:900], "truncated"),
+    "noise.stl": (RNG.bytes(5000), "truncated|unreadable"),
     "noise.obj": (RNG.bytes(5000), "no geometry|no faces|unreadable"),
     "noise.ply": (RNG.bytes(5000), "unreadable"),
     "noise.off": (RNG.bytes(5000), "unreadable"),
@@ -51,7 +51,7 @@ REFUSED = {
     "negative_vertex.off": (off(TRIANGLE, [(0, 1, -2)]), "do not exist|unreadable"),
     "claims_too_much.ply": (ply(TRIANGLE, [(0, 1, 2)], count=10**13), "unreadable|fits in memory|no faces"),
     "huge.off": (off(np.array(TRIANGLE) * 1e300, [(0, 1, 2)]), "overflow|NaN"),
-    "wrong.xyz": (b"0 0 0\n", "format .xyz is not read"),
+    "wrong.xyz": (b"0 0 0\n", "cannot read .xyz"),
     "header_only.stl": (b"\0" * 80 + struct.pack("<I", 0), "no faces|no geometry|unreadable"),
 }
 
@@ -125,10 +125,10 @@ def test_non_manifold_mesh_is_taken_as_it_is(tmp_path):
     assert mesh.edge_counts[1].max() == 3
 
 
-def test_doubled_and_degenerate_faces_go_and_are_told():
+def test_duplicate_and_degenerate_faces_are_removed_and_noted():
     mesh, notes = clean(load_faces([(0, 1, 2), (1, 2, 0), (0, 0, 1), (2, 1, 0)]))
     assert len(mesh.faces) == 2  # the face seen from the back stays: a thin sheet
-    assert notes == ["1 degenerate faces removed", "1 doubled faces removed"]
+    assert notes == ["1 degenerate faces removed", "1 duplicate faces removed"]
 
 
 def load_faces(faces):

@@ -14,7 +14,7 @@ import yaml
 from stages.compose import CONF
 from stages.kit.fetch import FetchError, cache_folder, debian_files, fetch_debian
 from stages.meshes import furniture
-from stages.meshes.collect import prepare
+from stages.meshes.collect import prepare_mesh
 from stages.meshes.sources import SOURCES
 
 CUBE = trimesh.creation.box((2, 4, 6))
@@ -75,7 +75,7 @@ def test_the_chosen_entry_comes_out_of_the_package_with_its_maker_licence_and_un
     (item,) = items()
     assert (item.name, item.creator, item.licence, item.up) == ("box", "A. Carpenter", "CC-BY-3.0", "y")
     assert item.unit == "10 cm"  # the model is 4 high, the catalogue says 40 cm
-    mesh, row = prepare(item)
+    mesh, row = prepare_mesh(item)
     assert row["watertight"] and row["faces"] == 12 and row["size"] == 6
     np.testing.assert_allclose(np.ptp(mesh.vertices, axis=0) / np.ptp(mesh.vertices), [1, 2 / 6, 4 / 6])
 
@@ -119,7 +119,7 @@ def test_a_failed_download_names_what_apt_said_and_leaves_nothing(tmp_path, monk
     assert not list((tmp_path / "cache").iterdir())
 
 
-@pytest.mark.parametrize(("content", "reason"), [(b"nothing", "no Debian package"), (b"!<arch>\n", "damaged")])
+@pytest.mark.parametrize(("content", "reason"), [(b"nothing", "not a Debian package"), (b"!<arch>\n", "damaged")])
 def test_a_file_that_is_no_package_is_named(tmp_path, content, reason):
     (tmp_path / "x.deb").write_bytes(content)
     with pytest.raises(FetchError, match=reason):
@@ -135,7 +135,7 @@ def test_a_package_cut_off_is_named(package):
 def test_every_listed_piece_has_a_licence_and_the_classes_name_listed_pieces():
     assert {library for library, _ in furniture.FURNITURE.values()} == set(furniture.LICENCES)
     assert len(set(furniture.FURNITURE.values())) == len(furniture.FURNITURE)
-    classes = yaml.safe_load((CONF / "classes/furniture.yaml").read_text())["classes"]["names"]
+    classes = yaml.safe_load((CONF / "data/furniture.yaml").read_text())["meshes"]["classes"]
     assert [len(objects) for objects in classes.values()] == [3] * 8
     assert all(name in furniture.FURNITURE for objects in classes.values() for name in objects)
 
@@ -143,7 +143,7 @@ def test_every_listed_piece_has_a_licence_and_the_classes_name_listed_pieces():
 @pytest.mark.skipif(not list(cache_folder().glob("furniture-*.zip")), reason="the furniture was never fetched here")
 def test_the_real_pieces_are_upright_outward_and_of_the_promised_size():
     for item in items():
-        mesh, row = prepare(item)
+        mesh, row = prepare_mesh(item)
         assert 1000 <= row["faces"] <= 60_000, item.name
         low, high = np.quantile(mesh.vertices[:, 2], [0, 1])
         assert np.ptp(mesh.vertices[mesh.vertices[:, 2] < low + 0.05 * (high - low)], axis=0)[:2].max() > 0.05

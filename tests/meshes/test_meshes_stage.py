@@ -1,78 +1,112 @@
 """The stage on a person's own folder: good meshes pass, bad ones are named, nothing is lost."""
 
-import os
-import subprocess
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
 import trimesh
 
-from stages.kit.files import read_mesh, read_table
+from stages.kit import Mesh
+from stages.kit.files import read_json, read_mesh, read_table
+from stages.kit.rows import read_rows
+from stages.meshes import __main__ as stage
 from stages.meshes import normalise
-from stages.meshes.normalise import turn_up
-
-ROOT = Path(__file__).parents[2]
-PARAMS = """
-profile: smoke
-seed: 0
-parallel: {backend: sequential, workers: 1}
-meshes: {source: folder, folder: mine, up: y, unit: mm, objects: [], strict: %s}
-"""
+from stages.meshes.classes import read_classes
+from stages.meshes.normalise import rotate_to_z_up
 
 
 @pytest.fixture
-def run(tmp_path):
+def start(tmp_path, make_workspace):
+    """A function that runs the stage on a folder of four files, two of them of one name, one broken."""
     (tmp_path / "mine" / "sub folder").mkdir(parents=True)
     trimesh.creation.box((1, 2, 4)).export(tmp_path / "mine" / "Kiste à thé.stl")
     trimesh.creation.icosphere(2).export(tmp_path / "mine" / "sub folder" / "ball.ply")
     trimesh.creation.icosphere(1).export(tmp_path / "mine" / "sub folder" / "ball.off")
     (tmp_path / "mine" / "broken.obj").write_bytes(b"\0\1\2")
 
-    def start(strict="false"):
-        (tmp_path / "params.yaml").write_text(PARAMS % strict)
-        environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-        command = [sys.executable, "-m", "stages.meshes"]
-        return subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)
+    def start(**settings):
+        section = {"source": "folder", "folder": str(tmp_path / "mine"), "up": "y", "unit": "mm", "objects": []}
+        workspace = make_workspace({"meshes": section | {"strict": False, "classes": {}} | settings})
+        stage.run(workspace)
+        return workspace
 
-    return tmp_path, start
+    return start
 
 
-def test_good_meshes_pass_and_bad_ones_are_named(run):
-    folder, start = run
-    done = start()
-    assert done.returncode == 0 and "Traceback" not in done.stderr
-    assert "refused broken.obj: the file holds no geometry" in done.stderr
-    manifest = read_table(folder / "data/meshes/manifest.csv")
+def test_good_meshes_pass_and_bad_ones_are_named(start, capsys):
+    workspace = start()
+    assert "refused broken.obj: the file holds no geometry" in capsys.readouterr().err
+    folder = workspace.data / "meshes"
+    manifest = read_table(folder / "manifest.csv")
     assert sorted(manifest.object) == ["Kiste à thé", "sub folder__ball", "sub folder__ball_ply"]
     assert manifest.watertight.all() and (manifest.unit == "mm").all() and manifest["size"].max() == 4
-    assert read_table(folder / "data/meshes/refused.csv").reason.tolist() == ["the file holds no geometry"]
-    mesh = read_mesh(folder / "data/meshes/Kiste à thé.npz")
+    assert read_table(folder / "refused.csv").reason.tolist() == ["the file holds no geometry"]
+    mesh = read_mesh(folder / "Kiste à thé.npz")
     assert np.linalg.norm(mesh.vertices, axis=1).max() == pytest.approx(0.5)
     assert np.ptp(mesh.vertices, axis=0).argmin() == 1  # x was the shortest side; y up turns x to y
 
 
-def test_strict_stops_at_the_first_refusal_and_keeps_the_earlier_result(run):
-    folder, start = run
+def test_rows_hold_the_faces_of_each_mesh_or_why_it_has_none(start):
+    workspace = start()
+    rows = read_rows(workspace.measurements / "meshes.csv.gz").set_index("item")
+    assert set(rows.metric) == {"faces"} and rows.value["Kiste à thé"] == 12 and np.isnan(rows.value["broken"])
+    assert rows.note["broken"] == "the file holds no geometry" and rows.note.isna().sum() == 3
+    assert read_json(workspace.metrics / "meshes.json") == {"objects": 3, "refused": 1, "watertight": 3}
+    assert not (workspace.data / "meshes" / "classes.csv").exists()
+
+
+def test_only_a_changed_file_is_prepared_again(start, tmp_path, monkeypatch):
+    prepared = []
+    prepare = stage.prepare_mesh
+
+    def noted(item, without_plane):
+        prepared.append(item.name)
+        return prepare(item, without_plane)
+
+    monkeypatch.setattr(stage, "prepare_mesh", noted)
     start()
-    done = start("true")
-    assert done.returncode == 1 and "strict" in done.stderr and "Traceback" not in done.stderr
-    assert len(read_table(folder / "data/meshes/manifest.csv")) == 3
+    assert len(prepared) == 4
+    trimesh.creation.box((1, 1, 4)).export(tmp_path / "mine" / "broken.obj")
+    start(strict=True)
+    assert prepared[4:] == ["broken"]
+    start(unit="m")
+    assert len(prepared) == 5 + 4
 
 
-def test_missing_folder_is_named(run):
-    folder, start = run
-    (folder / "mine").rename(folder / "yours")
-    done = start()
-    assert done.returncode == 1 and "meshes.folder='mine' is no folder" in done.stderr
-    assert "Traceback" not in done.stderr
+def test_strict_stops_at_the_first_refusal_and_keeps_the_earlier_result(start):
+    workspace = start()
+    with pytest.raises(ValueError, match="meshes.strict is set"):
+        start(strict=True)
+    assert len(read_table(workspace.data / "meshes" / "manifest.csv")) == 3
+
+
+def test_missing_folder_is_named(start):
+    with pytest.raises(ValueError, match="meshes.folder='yours' is not a folder"):
+        start(folder="yours")
+
+
+def test_an_unknown_source_is_named_with_the_known_ones(start):
+    with pytest.raises(ValueError, match="meshes.source='attic' is not one of household, furniture"):
+        start(source="attic")
+
+
+def test_objects_of_classes_are_taken_and_small_classes_have_a_note(start):
+    workspace = start(
+        classes={"round": ["sub folder__ball", "sub folder__ball_ply"], "flat": ["broken", "Kiste à thé"]}
+    )
+    folder = workspace.data / "meshes"
+    assert read_classes(folder) == {"round": ["sub folder__ball", "sub folder__ball_ply"], "flat": ["Kiste à thé"]}
+    rows = read_rows(workspace.measurements / "meshes.csv.gz")
+    small = rows[rows.metric == "objects"].iloc[0]
+    assert (small.group, small.value) == ("flat", 1) and "has 1 of its 2 objects" in small.note
+    assert len(rows[rows.metric == "faces"]) == 4
+    assert set(read_table(folder / "manifest.csv").object) == {
+        "Kiste à thé",
+        "sub folder__ball",
+        "sub folder__ball_ply",
+    }
 
 
 def test_normalise_ignores_vertices_that_no_face_uses():
     box = trimesh.creation.box((1, 2, 4))
-    from stages.kit import Mesh
-
     mesh = normalise(Mesh(np.vstack([box.vertices + 7, [(1000, 0, 0)]]), box.faces))
     used = mesh.vertices[:-1]
     np.testing.assert_allclose(used.min(axis=0) + used.max(axis=0), 0, atol=1e-12)
@@ -81,9 +115,7 @@ def test_normalise_ignores_vertices_that_no_face_uses():
 
 @pytest.mark.parametrize("up", "xyz")
 def test_turning_up_keeps_handedness(up):
-    from stages.kit import Mesh
-
     axes = Mesh(np.eye(3), np.array([(0, 1, 2)]))
-    turned = turn_up(axes, up)
+    turned = rotate_to_z_up(axes, up)
     assert turned.vertices["xyz".index(up)].tolist() == [0, 0, 1]
     assert np.linalg.det(turned.vertices) == pytest.approx(1)

@@ -84,5 +84,5 @@ def test_a_moebius_strip_stays_and_is_no_crash():
 
 
 def test_parts_too_far_apart_to_be_seen_are_refused():
-    with pytest.raises(MeshError, match="too small to be seen"):
+    with pytest.raises(MeshError, match="too small for its extent"):
         clean(joined((BALL.vertices, BALL.faces), (BALL.vertices + 1000, BALL.faces)))

@@ -1,9 +1,6 @@
 """The published collections as sources of meshes: names, up axis, vertices as stored, a remedy where one is absent."""
 
 import io
-import os
-import subprocess
-import sys
 import zipfile
 from pathlib import Path
 from types import SimpleNamespace
@@ -15,6 +12,7 @@ from scipy.io import savemat
 
 from stages.kit.fetch import FetchError
 from stages.meshes import MeshError
+from stages.meshes.__main__ import run
 from stages.meshes.load import parse
 from stages.meshes.sources import SOURCES
 
@@ -64,7 +62,7 @@ def test_a_zip_and_its_folder_give_the_same_readable_items(archives, source, nam
         np.testing.assert_allclose(mesh.vertices * (3 if source == "interest_points" else 1), BALL.vertices, atol=1e-7)
 
 
-def test_matlab_models_keep_every_digit_and_doubled_vertex(tmp_path):
+def test_matlab_models_keep_every_digit_and_duplicate_vertex(tmp_path):
     vertices = np.random.default_rng(0).normal(size=(6, 3)) * 1e-3
     vertices[5] = vertices[0]
     (tmp_path / "MODEL_DATASET").mkdir()
@@ -83,9 +81,9 @@ def test_a_file_that_is_no_model_is_refused_with_its_reason(tmp_path):
     first, second, third = items("interest_points", tmp_path)
     with pytest.raises(MeshError, match="unreadable as a MATLAB file"):
         first.content()
-    with pytest.raises(MeshError, match="holds no F"):
+    with pytest.raises(MeshError, match="has no variable F"):
         second.content()
-    with pytest.raises(MeshError, match="V and F must be numbers"):
+    with pytest.raises(MeshError, match="V and F must be numeric"):
         third.content()
 
 
@@ -105,22 +103,18 @@ def test_an_object_that_is_not_there_is_named_with_the_known_ones(archives):
 )
 def test_an_absent_or_foreign_archive_is_named_with_the_remedy(archives, source, place):
     for folder in ("", archives / "gone.zip"):
-        with pytest.raises(FetchError, match=f"holds no {source} data: get .* from {place}.*set meshes.folder"):
+        with pytest.raises(FetchError, match=f"not hold the {source} data: get .* from {place}.*set meshes.folder"):
             items(source, folder)
     (archives / "other").mkdir()
     (archives / "other/readme.txt").write_text("")
-    with pytest.raises(FetchError, match="no file of the 1 there .* the published archive"):
+    with pytest.raises(FetchError, match="none of the 1 files matches .* the published archive"):
         items(source, archives / "other")
 
 
-def test_the_stage_says_so_in_one_line(tmp_path):
-    settings = "meshes: {source: gaze, folder: nowhere.zip, up: z, unit: m, objects: [], strict: false}\n"
-    (tmp_path / "params.yaml").write_text(f"profile: smoke\nseed: 0\n{settings}")
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    command = [sys.executable, "-m", "stages.meshes"]
-    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)
-    assert done.returncode == 1 and "Traceback" not in done.stderr
-    assert "meshes.folder='nowhere.zip' holds no gaze data: get Models_3D" in done.stderr
+def test_the_stage_says_so(make_workspace):
+    section = {"source": "gaze", "folder": "nowhere.zip", "up": "z", "unit": "m", "objects": [], "strict": False}
+    with pytest.raises(FetchError, match="meshes.folder='nowhere.zip' does not hold the gaze data: get Models_3D"):
+        run(make_workspace({"meshes": section | {"classes": {}}}))
 
 
 @pytest.mark.skipif(not (SHARED / "psb.zip").exists(), reason="../shared/data is not there")

@@ -8,8 +8,8 @@ from scipy.spatial.transform import Rotation
 from stages.kit import Mesh
 from stages.kit.texture import Texture
 from stages.meshes import remove_plane
-from stages.meshes.collect import prepare
-from stages.meshes.sources import Item
+from stages.meshes.collect import prepare_mesh
+from stages.meshes.sources import MeshFile
 
 CELLS = 50  # of the table's grid, a side
 
@@ -163,7 +163,7 @@ def test_a_mesh_without_surface_is_named_and_a_single_face_comes_back():
 def test_the_stage_takes_the_table_out_on_request_and_says_so():
     mesh, own = scan("box", bottom=False)
     content = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False).export(file_type="ply")
-    item = Item("box", "box.ply", ".ply", lambda: content, "z", "m", "unknown")
-    assert prepare(item)[1]["faces"] == len(mesh.faces)
-    _, row = prepare(item, without_table=True)
+    item = MeshFile("box", "box.ply", ".ply", lambda: content, "z", "m", "unknown")
+    assert prepare_mesh(item)[1]["faces"] == len(mesh.faces)
+    _, row = prepare_mesh(item, remove_table=True)
     assert row["faces"] == own.sum() and f"plane removed with {(~own).sum()} faces" in row["repairs"]

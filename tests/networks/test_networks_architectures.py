@@ -8,12 +8,12 @@ import torch
 
 from stages.kit.files import sha256
 from stages.networks import cost as costs
-from stages.networks.converters.googlenet import converted
+from stages.networks.converters.googlenet import convert
 from stages.networks.cost import cost
-from stages.networks.network import NETWORKS, SMALLEST, build, imagenet_classifier, parameters, settle
+from stages.networks.network import NETWORKS, SMALLEST, build, count_parameters, imagenet_classifier, recalibrate
 from stages.networks.restore import restore
-from stages.networks.vision import torchvision
-from stages.networks.weights import had
+from stages.networks.torchvision_import import torchvision
+from stages.networks.weights import available_weights
 
 SIDE = {"alexnet": 13, "vgg16": 14}  # of the last maps at 224 pixels; 7 for the others
 PUBLISHED = {  # million parameters, giga multiply-adds, as torchvision and the papers give them, with 1000 classes
@@ -34,7 +34,7 @@ def untrained(request):
 def test_size_and_cost_are_those_of_the_papers(untrained, monkeypatch):
     name, network = untrained
     monkeypatch.setattr(costs, "RUNS", 1)
-    monkeypatch.setattr(costs, "WARM", 0)
+    monkeypatch.setattr(costs, "WARM_UPS", 0)
     found = cost(network, 224)
     million, giga = PUBLISHED.get(name) or CONVOLUTIONS[name]
     head = 0 if name in PUBLISHED else network.head[1].weight.numel()
@@ -55,7 +55,7 @@ def test_untrained_networks_tell_images_apart_once_settled(untrained):
     _, network = untrained
     images = torch.randn(8, 3, 64, 64, generator=torch.Generator().manual_seed(0))
     images *= torch.linspace(0.2, 2, 8).view(8, 1, 1, 1)
-    settle(network, lambda ids: images[ids], np.arange(8))
+    recalibrate(network, lambda ids: images[ids], np.arange(8))
     with torch.no_grad():
         features = network.features(images)
     assert 1e-2 < features.std(dim=0).mean() < 1e2
@@ -100,7 +100,7 @@ def test_images_of_another_shape_are_refused(shape):
 
 def test_statistics_of_one_image_are_refused():
     with pytest.raises(ValueError, match="two touches or more, got 1"):
-        settle(build("mobilenet_v2", 2, "random", 0), lambda ids: torch.zeros(len(ids), 3, 32, 32), [0])
+        recalibrate(build("mobilenet_v2", 2, "random", 0), lambda ids: torch.zeros(len(ids), 3, 32, 32), [0])
 
 
 def test_a_checkpoint_comes_back_from_arrays_as_from_tensors():
@@ -112,14 +112,14 @@ def test_a_checkpoint_comes_back_from_arrays_as_from_tensors():
 def test_a_checkpoint_of_another_network_is_refused_by_name():
     network = build("mobilenet_v2", 3, "random", 0)
     before = network.head[1].weight.clone()
-    with pytest.raises(ValueError, match=r"no weights of mobilenet_v2: .*missing, first .*too many, first"):
+    with pytest.raises(ValueError, match=r"not weights of mobilenet_v2: .*missing, first .*unexpected, first"):
         restore(network, build("alexnet", 3, "random", 0).state_dict(), "mobilenet_v2")
     with pytest.raises(ValueError, match=r"head\.1\.weight is \(4, 1280\) instead of \(3, 1280\)"):
         restore(network, build("mobilenet_v2", 4, "random", 0).state_dict(), "mobilenet_v2")
     damaged = network.state_dict() | {"head.1.bias": torch.tensor([0.0, float("nan"), 0.0])}
     with pytest.raises(ValueError, match="damaged: head.1.bias holds values that are not finite"):
         restore(network, damaged, "mobilenet_v2")
-    with pytest.raises(ValueError, match="no weights of mobilenet_v2"):
+    with pytest.raises(ValueError, match="not weights of mobilenet_v2"):
         restore(network, 7, "mobilenet_v2")
     assert torch.equal(network.head[1].weight, before)
 
@@ -128,7 +128,7 @@ def test_cost_leaves_the_network_and_the_threads_as_they_were():
     network, threads = build("alexnet", 2, "random", 0).train(), torch.get_num_threads()
     found = cost(network, 64)
     assert network.training and torch.get_num_threads() == threads
-    assert found["parameters"] == parameters(network)
+    assert found["parameters"] == count_parameters(network)
     with pytest.raises(ValueError, match="1 pixel or more"):
         cost(network, 0)
     with pytest.raises(ValueError, match="cannot take an image of 3 x 64 x 64"):
@@ -136,7 +136,7 @@ def test_cost_leaves_the_network_and_the_threads_as_they_were():
 
 
 def test_convolutions_alone_classify_nothing_of_imagenet():
-    with pytest.raises(ValueError, match="vgg16 has its convolutions alone"):
+    with pytest.raises(ValueError, match="only the convolutions of vgg16"):
         imagenet_classifier("vgg16", "download")
 
 
@@ -155,7 +155,10 @@ def test_downloaded_weights_take_the_same_path(monkeypatch, tmp_path):
         network = build(name, 2, "imagenet", 0, "download")
         weights = [parameter for parameter in whole.parameters() if parameter.ndim == 4][1]
         assert any(torch.equal(weights, parameter) for parameter in network.parameters())
-    assert had("alexnet", "download") == "convolutions" and had("googlenet", "download") == "complete"
+    assert (
+        available_weights("alexnet", "download") == "convolutions"
+        and available_weights("googlenet", "download") == "complete"
+    )
 
 
 def test_googlenets_own_colours_move_into_its_first_layer():
@@ -165,7 +168,7 @@ def test_googlenets_own_colours_move_into_its_first_layer():
         theirs.conv1.bn.running_mean.normal_()
         theirs.conv1.bn.running_var.uniform_(0.5, 2)
         ours = torchvision.models.googlenet(init_weights=True, aux_logits=False, transform_input=False).eval()
-        ours.load_state_dict(converted(theirs.state_dict()))
+        ours.load_state_dict(convert(theirs.state_dict()))
         images = torch.randn(2, 3, 48, 48)
         expected = theirs.conv1(theirs._transform_input(images))
         inside = (..., slice(2, -2), slice(2, -2))  # the kernel of 7 reaches the padding outside

@@ -10,7 +10,7 @@ from stages.kit.repeatable import repeatable
 from stages.networks.checkpoint import resume, save
 from stages.networks.modes import MODES
 from stages.networks.network import Network
-from stages.networks.training import learn
+from stages.networks.training import train_model
 
 SIZE = 32
 LABELS = np.arange(24) % 2
@@ -46,7 +46,7 @@ def killed_after(steps, whole):
 
 def train(task, checkpoint=None, **other):
     with repeatable(1):
-        return learn(task, LABELS, np.arange(24), checkpoint=checkpoint, **(TRAINING | other))
+        return train_model(task, LABELS, np.arange(24), checkpoint=checkpoint, **(TRAINING | other))
 
 
 def same(one, other):
@@ -126,7 +126,7 @@ def test_a_checkpoint_that_does_not_belong_is_passed_over_with_a_word(tmp_path, 
     strange(kind, path)
     assert same(train(whole, path), train(whole))
     said = capsys.readouterr().err
-    assert "trial.pt: passed over" in said and word in said
+    assert "trial.pt: ignored" in said and word in said
 
 
 def test_nothing_to_resume_is_the_beginning(tmp_path):
@@ -140,5 +140,5 @@ def test_what_cannot_be_put_back_leaves_all_as_it_was(tmp_path, capsys):
     other = small()
     fewer = torch.optim.SGD(list(other.parameters())[:2], lr=0.1, momentum=0.9)
     before = {key: value.clone() for key, value in other.state_dict().items()}
-    assert resume(path, {}, model=other, optimiser=fewer) == 0 and "passed over" in capsys.readouterr().err
+    assert resume(path, {}, model=other, optimiser=fewer) == 0 and "ignored" in capsys.readouterr().err
     assert all(torch.equal(value, before[key]) for key, value in other.state_dict().items())

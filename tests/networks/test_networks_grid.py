@@ -45,5 +45,5 @@ def test_pixels_beyond_the_outer_cells_belong_to_them():
 
 
 def test_an_unknown_network_is_named():
-    with pytest.raises(ValueError, match="no grid known of 'lenet'"):
+    with pytest.raises(ValueError, match="unknown network 'lenet'"):
         cell_positions("lenet", 224, 7)

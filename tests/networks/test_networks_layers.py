@@ -3,7 +3,7 @@
 import pytest
 import torch
 
-from stages.networks.layers import LAYERS, frozen_modules, layers, parse
+from stages.networks.layers import LAYERS, frozen_modules, layers, parse_range
 from stages.networks.network import Network, build
 
 
@@ -72,15 +72,15 @@ def test_a_range_freezes_what_lies_within_and_nothing_else(network, layer_range,
 
 @pytest.mark.parametrize(
     ("layer_range", "reason"),
-    [("139:18", "first before last"), ("0:9", "1 to 154"), ("1:155", "1 to 154"), ("18-139", "no range")],
+    [("139:18", "first before last"), ("0:9", "1 to 154"), ("1:155", "1 to 154"), ("18-139", "not a range")],
 )
 def test_ranges_that_cannot_be_are_refused(layer_range, reason):
     with pytest.raises(ValueError, match=reason):
-        parse(layer_range)
+        parse_range(layer_range)
 
 
 def test_the_classifier_must_learn_and_other_networks_have_no_ranges(network):
-    with pytest.raises(ValueError, match="must learn"):
+    with pytest.raises(ValueError, match="must be trained"):
         frozen_modules("18:154", network)
     other = Network(torch.nn.Sequential(torch.nn.Conv2d(3, 8, 3)), 8, 2, dropout=0.0)
     with pytest.raises(ValueError, match="another network"):

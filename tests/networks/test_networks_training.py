@@ -7,12 +7,12 @@ import pytest
 import torch
 
 from stages.kit.repeatable import repeatable
-from stages.networks.device import choose
+from stages.networks.device import choose_device
 from stages.networks.images import normalise, to_images
 from stages.networks.layers import frozen_modules
 from stages.networks.modes import MODES, mode_named
-from stages.networks.network import Network, build, parameters, settle
-from stages.networks.training import accuracy, learn, scores, search
+from stages.networks.network import Network, build, count_parameters, recalibrate
+from stages.networks.training import accuracy, predict_probabilities, search_rate, train_model
 
 SIZE = 32
 LABELS = np.arange(32) % 2
@@ -36,7 +36,7 @@ def as_inputs(imprints):
 def untrained(imprints, mode, classes=2):
     """A network from random weights with statistics of the imprints, and its task."""
     network = build("mobilenet_v2", classes, "random", 0)
-    settle(network, as_inputs(imprints), np.arange(24))
+    recalibrate(network, as_inputs(imprints), np.arange(24))
     return network, MODES[mode](network, imprints, SIZE, 1)
 
 
@@ -44,7 +44,7 @@ def trained(imprints, mode, epochs, rate=0.01):
     with repeatable(0):
         network, task = untrained(imprints, mode)
         before = {key: value.clone() for key, value in network.state_dict().items()}
-        model = learn(task, LABELS, np.arange(24), rate, epochs, batch=8, momentum=0.9)
+        model = train_model(task, LABELS, np.arange(24), rate, epochs, batch=8, momentum=0.9)
         return network, task, before, model
 
 
@@ -52,7 +52,7 @@ def test_frozen_mode_changes_no_convolution_and_no_statistic(imprints):
     network, task, before, model = trained(imprints, "frozen", 3)
     assert all(torch.equal(value, before[key]) for key, value in network.state_dict().items())
     assert not torch.equal(model.head[1].weight, before["head.1.weight"])
-    assert parameters(model, trained=True) == 1280 * 2 + 2
+    assert count_parameters(model, trained=True) == 1280 * 2 + 2
 
 
 def test_finetuned_mode_changes_every_convolution(imprints):
@@ -60,7 +60,7 @@ def test_finetuned_mode_changes_every_convolution(imprints):
     layers = {key: value for key, value in model.state_dict().items() if value.ndim == 4}
     assert len(layers) == 52
     assert all(not torch.equal(value, before[key]) for key, value in layers.items())
-    assert parameters(model, trained=True) == parameters(network)
+    assert count_parameters(model, trained=True) == count_parameters(network)
 
 
 def test_training_leaves_the_tasks_own_model_alone(imprints):
@@ -80,11 +80,11 @@ def small():
 def test_two_visibly_different_classes_are_learned(imprints, mode):
     with repeatable(0):
         network = small()
-        settle(network, as_inputs(imprints), np.arange(24))
+        recalibrate(network, as_inputs(imprints), np.arange(24))
         task = MODES[mode](network, imprints, SIZE, 1)
-        model = learn(task, LABELS, np.arange(24), 0.03, epochs=12, batch=8, momentum=0.9)
+        model = train_model(task, LABELS, np.arange(24), 0.03, epochs=12, batch=8, momentum=0.9)
     unseen = np.arange(24, 32)
-    assert accuracy(scores(model, task, unseen), LABELS[unseen]) >= 0.8
+    assert accuracy(predict_probabilities(model, task.inputs, unseen), LABELS[unseen]) >= 0.8
 
 
 def test_same_seed_same_weights_whatever_the_threads(imprints):
@@ -124,14 +124,14 @@ def test_settled_statistics_give_an_untrained_network_features_that_differ(impri
     network = build("mobilenet_v2", 2, "random", 0)
     with torch.no_grad():
         assert network.features(inputs(ids)).std(dim=0).max() < 1e-6
-        settle(network, inputs, ids)
+        recalibrate(network, inputs, ids)
         assert network.features(inputs(ids)).std(dim=0).mean() > 1e-2
 
 
 def test_settling_changes_no_weight_and_takes_any_number_of_images(imprints):
     network = build("mobilenet_v2", 2, "random", 0)
     before = [value.clone() for value in network.parameters()]
-    settle(network, as_inputs(imprints), np.arange(9), batch=8)
+    recalibrate(network, as_inputs(imprints), np.arange(9), batch=8)
     assert all(torch.equal(a, b) for a, b in zip(before, network.parameters(), strict=True))
     assert {layer.momentum for layer in network.modules() if isinstance(layer, torch.nn.BatchNorm2d)} == {0.1}
 
@@ -141,7 +141,7 @@ def test_search_takes_the_rate_that_learns(imprints):
         task = MODES["finetuned"](small(), imprints, SIZE, 0)
         rates = [1e-9, 0.03]
         part, validation = np.arange(20), np.arange(20, 32)
-        rate, found = search(task, LABELS, part, validation, rates, epochs=10, batch=8, momentum=0.9)
+        rate, found = search_rate(task, LABELS, part, validation, rates, epochs=10, batch=8, momentum=0.9)
     assert rate == 0.03
     assert found >= 0.8
 
@@ -161,16 +161,16 @@ def test_unknown_networks_are_refused(change):
 def test_a_range_of_layers_keeps_its_weights_and_statistics_and_all_others_learn(imprints, layer_range):
     with repeatable(0):
         network = build("mobilenet_v2", 2, "random", 0)
-        settle(network, as_inputs(imprints), np.arange(24))
+        recalibrate(network, as_inputs(imprints), np.arange(24))
         task = mode_named(layer_range)(network, imprints, SIZE, 0)
-        model = learn(task, LABELS, np.arange(24), 0.01, 1, batch=8, momentum=0.9)
+        model = train_model(task, LABELS, np.arange(24), 0.01, 1, batch=8, momentum=0.9)
     before, after = network.state_dict(), model.state_dict()
     same = {key for key in before if torch.equal(before[key], after[key])}
     kept = {key for key in before if key.rpartition(".")[0] in frozen_modules(layer_range, network)}
     assert same - {key for key in before if key.endswith("num_batches_tracked")} == {
         key for key in kept if not key.endswith("num_batches_tracked")
     }
-    assert parameters(model, trained=True) == parameters(network) - sum(
+    assert count_parameters(model, trained=True) == count_parameters(network) - sum(
         before[key].numel() for key in kept if key.endswith(("weight", "bias"))
     )
 
@@ -187,15 +187,15 @@ def test_too_little_memory_names_the_setting(imprints):
         raise torch.OutOfMemoryError("CUDA out of memory")
 
     with pytest.raises(ValueError, match="smaller batch"):
-        learn(replace(task, training_inputs=too_much), LABELS, np.arange(24), 0.01, 1, batch=8, momentum=0.9)
+        train_model(replace(task, training_inputs=too_much), LABELS, np.arange(24), 0.01, 1, batch=8, momentum=0.9)
     with pytest.raises(ValueError, match="smaller batch"):
-        scores(network, replace(task, inputs=too_much), np.arange(8))
+        predict_probabilities(network, too_much, np.arange(8))
 
 
 def test_a_device_that_is_not_there_is_named(monkeypatch):
     monkeypatch.setattr(torch.cuda, "is_available", lambda: False)
-    assert choose("auto").type == choose("cpu").type == "cpu"
+    assert choose_device("auto").type == choose_device("cpu").type == "cpu"
     with pytest.raises(ValueError, match="take auto or cpu"):
-        choose("cuda")
+        choose_device("cuda")
     with pytest.raises(ValueError, match="unknown device 'abacus'"):
-        choose("abacus")
+        choose_device("abacus")

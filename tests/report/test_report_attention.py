@@ -1,34 +1,41 @@
 """What the report says of where people look: tables, figures, charts and claims, on rows with a known truth."""
 
-import importlib
 import re
 
 import numpy as np
 import pandas as pd
 import pytest
 
-from stages.kit.files import read_arrays, write_arrays, write_table
-from stages.report import CLAIMS, figures, judge, tables, tradeoff
-from stages.report.costs import gaze_seconds
-from stages.report.drawing import vivid
-from stages.report.figures import figure_3_3, figure_3_4, figure_3_10, figure_3_12, figure_3_13, pipeline, views_seen
-from stages.report.figures import table_4_1 as drawn
-from stages.report.items import build_all
-from stages.report.judged import agreement, best_rival, difference, signed
-from stages.report.pareto import pareto_chart
-from stages.report.results import NotRun, Results
-from stages.report.style import colours
-from stages.report.tables import (
+from stages.kit.files import read_arrays, write_arrays
+from stages.kit.stats import interval
+from stages.report import meshes
+from stages.report.attention import (
+    agreement,
     annotations,
-    attention_gaze,
-    attention_marks,
+    charts,
+    figure_3_3,
+    figure_3_10,
+    figure_3_13,
     section_3_2_3,
+    surfaces,
     table_3_1,
-    table_3_1_5_combinations,
-    time_spent,
-)
+    views_seen,
+)  # fmt: skip
+from stages.report.attention import rows as judged_rows
+from stages.report.attention.rows import best_rival, difference
+from stages.report.costs import attention_seconds
+from stages.report.drawing import vivid
+from stages.report.markdown import signed
+from stages.report.meshes.simplification import METHODS
+from stages.report.meshes.table_3_1_5_combinations import combined_cells
+from stages.report.pareto import pareto_chart
+from stages.report.results import NotRun
+from stages.report.stability import time_spent
+from stages.report.style import colours
+from stages.report.topics import CLAIMS, TOPICS, build_all
+from stages.report.touch import one_touch, pipeline
+from stages.report.verdict import judge
 from stages.report.viewer import pack_viewer
-from stages.weights.agreement import mean_interval
 
 FIGURES = ["figure_3_3", "figure_3_6", "figure_3_10", "figure_3_12", "figure_3_13", "views_seen"]
 
@@ -37,13 +44,13 @@ FIGURES = ["figure_3_3", "figure_3_6", "figure_3_10", "figure_3_12", "figure_3_1
 def seen(root, small):
     """The results of the small run with everything about attention."""
     small.write_attention(root)
-    return Results(small.settings(), root)
+    return small.results(root)
 
 
-def again(results, small, name, frame):
-    """The results with another table of what was measured on gaze."""
-    write_table(results.reports / "attention" / f"{name}.csv", frame)
-    return Results(small.settings(), results.data.parent)
+def again(results, small, stage, frame):
+    """The results with other rows of a stage on gaze."""
+    small.write(results.data.parent, stage, frame, "gaze")
+    return small.results(results.data.parent)
 
 
 def judged_claim(results, key):
@@ -51,7 +58,7 @@ def judged_claim(results, key):
 
 
 def test_rows_stand_in_the_order_of_nss_below_the_ceiling(seen):
-    frame = attention_gaze.build(seen).frame
+    frame = agreement.against_gaze(seen).frame
     order = frame[frame["metric"] == "nss"]
     assert order["method"].iloc[0] == "human"
     assert order["mean"].iloc[1:].is_monotonic_decreasing
@@ -59,23 +66,23 @@ def test_rows_stand_in_the_order_of_nss_below_the_ceiling(seen):
 
 
 def test_gain_is_paired_so_that_hard_meshes_do_not_widen_it(seen):
-    frame = agreement(seen.attention("gaze"), ["nss"]).set_index("method")
+    frame = judged_rows.agreement(seen.rows("salient_points", "gaze"), ["nss"]).set_index("method")
     row = frame.loc["itti"]
     assert row["gain"] == pytest.approx(1.3, abs=0.02)
     assert row["gain_high"] - row["gain_low"] < 0.1 < row["high"] - row["low"]
 
 
 def test_methods_that_have_seen_the_object_are_starred_and_are_no_rivals(seen):
-    table = attention_gaze.build(seen)
+    table = agreement.against_gaze(seen)
     assert "SVM of the object *" in set(table.shown["method"])
-    assert best_rival(seen.attention("gaze")) == "facing_viewer"
+    assert best_rival(seen.rows("salient_points", "gaze")) == "facing_viewer"
     assert any("facing viewer: ours − it NSS +0.8" in note for note in table.notes)
 
 
 def test_sentences_follow_from_the_numbers(seen, small):
-    assert any("higher than 7 of the 7 others" in note for note in attention_gaze.build(seen).notes)
-    worse = again(seen, small, "gaze", small.judged({"enhanced": 0.25}))
-    notes = " ".join(attention_gaze.build(worse).notes)
+    assert any("higher than 7 of the 7 others" in note for note in agreement.against_gaze(seen).notes)
+    worse = again(seen, small, "salient_points", small.judged({"enhanced": 0.25}))
+    notes = " ".join(agreement.against_gaze(worse).notes)
     assert "In NSS ours is higher than 3 of the 7 others" in notes
     assert "not than facing viewer" in notes
     for pair, word in (
@@ -87,40 +94,44 @@ def test_sentences_follow_from_the_numbers(seen, small):
 
 def test_table_of_gaze_stands_without_our_method_or_the_ceiling(seen, small):
     rows = small.judged()
-    table = attention_gaze.build(again(seen, small, "gaze", rows[~rows["method"].isin(["enhanced", "human"])]))
+    table = agreement.against_gaze(
+        again(seen, small, "salient_points", rows[~rows["method"].isin(["enhanced", "human"])])
+    )
     assert table.frame["method"].iloc[0] == "svm_object"
     assert (table.shown["ours − it, NSS"] == "–").all()
 
 
 def test_marks_are_said_to_be_no_human_gaze(seen, root, small):
-    assert any("No human subjects" in note for note in attention_marks.build(seen).notes)
-    small.write(root, "salient_points", small.judged().assign(dataset="princeton"))
-    notes = attention_marks.build(Results(small.settings(), root)).notes
+    assert any("No human subjects" in note for note in agreement.against_marks(seen).notes)
+    (root / "reports/measurements/household/salient_points.csv.gz").unlink()
+    small.write(root, "salient_points", small.judged(), "furniture")
+    notes = agreement.against_marks(small.results(root)).notes
     assert not any("vision model" in note for note in notes)
-    assert any("data set princeton" in note for note in notes)
+    assert any("data set furniture" in note for note in notes)
 
 
 def test_run_without_ground_truth_has_no_table_of_marks(seen, root, small):
     rows = small.judged()
-    small.write(root, "salient_points", rows[rows["metric"] == "points_strong"])
+    small.write(root, "salient_points", rows[rows["metric"] == "points_strong"], "household")
     with pytest.raises(NotRun, match="ground truth"):
-        attention_marks.build(Results(small.settings(), root))
+        agreement.against_marks(small.results(root))
 
 
 def test_intervals_of_learned_weights_are_those_of_the_objects(seen, small):
     _, own = small.learned_weights()
-    frame = table_3_1.build(seen).frame.set_index(["source", "method", "channel"])
+    frame = table_3_1.build(seen).frame.set_index(["dataset", "method", "channel"])
     thesis = seen.thesis("table_3_1_channel_weights").set_index("channel")
     row = frame.loc[("gaze", "guided_ssim", "color")]
-    assert row[["mean", "low", "high"]].tolist() == pytest.approx(mean_interval(own[:, 0]), abs=1e-5)
+    assert row[["mean", "low", "high"]].tolist() == pytest.approx(interval(own[:, 0]), abs=1e-5)
     assert row["thesis"] == thesis.loc["color", "ssim"]
-    assert frame.loc[("run", "guided_ed", "edge"), "thesis"] == thesis.loc["edge", "one_minus_ed"]
+    assert frame.loc[("gaze", "guided_ed", "edge"), "thesis"] == thesis.loc["edge", "one_minus_ed"]
     assert np.isnan(frame.loc[("gaze", "guided_ssim_object", "color"), "thesis"])
 
 
-def test_learned_weights_of_one_source_alone_make_the_table(seen, root):
-    (root / "data/weights/weights.csv").unlink()
-    assert set(table_3_1.build(seen).frame["source"]) == {"gaze"}
+def test_learned_weights_of_all_sets_make_the_table_and_gaze_comes_first(seen, root, small):
+    assert set(table_3_1.build(seen).frame["dataset"]) == {"gaze"}
+    small.write(root, "weights", seen.rows("weights", "gaze"), "household")
+    assert list(dict.fromkeys(table_3_1.build(small.results(root)).frame["dataset"])) == ["gaze", "household"]
 
 
 def test_accuracy_of_the_thesis_stands_beside_its_own_way_only(seen):
@@ -142,29 +153,31 @@ def test_marks_are_compared_with_chance_and_the_least_agreed_object_is_named(see
 
 @pytest.mark.parametrize("name", FIGURES)
 def test_figure_is_drawn_and_says_what_it_shows(seen, name):
-    figure = importlib.import_module(f"stages.report.figures.{name}").build(seen)
+    build = {name: build for topic in TOPICS for name, build in topic.FIGURES.items()}[name]
+    figure = build(seen)
     assert figure.paths[0].name == f"{name}.png" and figure.paths[0].exists()
     assert len(figure.alt) > 20 and len(figure.caption) > 20
 
 
-@pytest.mark.parametrize("package", [tables, figures, tradeoff])
-def test_without_attention_its_pieces_are_not_run(bare, small, package):
-    built = build_all(package, Results(small.settings(), bare))
-    names = {tables: ["attention_gaze", "attention_marks", "table_3_1", "section_3_2_3", "annotations"],
-             figures: [*FIGURES, "figure_3_4"], tradeoff: ["attention", "attention_settings"]}  # fmt: skip
-    assert set(names[package]) <= set(built.not_run)
+@pytest.mark.parametrize(
+    ("kind", "names"),
+    [("tables", ["attention_gaze", "attention_marks", "table_3_1", "section_3_2_3", "annotations"]),
+     ("figures", [*FIGURES, "saliency", "figure_3_4"]), ("tradeoff", ["attention", "attention_settings"])],
+)  # fmt: skip
+def test_without_attention_its_pieces_are_not_run(bare, small, kind, names):
+    assert set(names) <= set(build_all(kind, small.results(bare)).not_run)
 
 
 def test_object_without_ground_truth_is_passed_over(seen, root):
-    (root / "data/weights/lessons/ball.npz").unlink()
-    assert seen.taught(["ball"], 2) == ["cube"]
-    (root / "data/weights/lessons/cube.npz").unlink()
+    (root / "data/test/weights/ground_truth/ball.npz").unlink()
+    assert seen.with_ground_truth(["ball"], 2) == ["cube"]
+    (root / "data/test/weights/ground_truth/cube.npz").unlink()
     with pytest.raises(NotRun, match="ground truth"):
-        figure_3_12.build(seen)
+        surfaces.figure_3_12(seen)
 
 
 def test_maps_without_a_channel_are_not_run_but_no_crash(seen, root):
-    for path in (root / "data/conspicuity").glob("*.npz"):
+    for path in (root / "data/test/conspicuity").glob("*.npz"):
         stored = read_arrays(path)
         write_arrays(path, **stored | {"channels": stored["channels"][:3], "maps": stored["maps"][:, :3]})
     for figure in (figure_3_3, figure_3_13):
@@ -178,17 +191,17 @@ def test_errors_of_combinations_are_over_what_all_of_them_reach(seen, root, smal
     itti, reaches_less = (rows[rows["method"] == "enhanced"].assign(method=name) for name in ("itti", "VisAttAll"))
     reaches_less.loc[reaches_less["target"] == "50%", "value"] = np.nan
     small.write(root, "lod", pd.concat([rows, itti, reaches_less]))
-    found = table_3_1_5_combinations.combined_cells(Results(small.settings(), root))
-    assert set(zip(found["object"], found["target"], strict=True)) == {("ball", "25%")}
+    found = combined_cells(small.results(root))
+    assert set(zip(found["item"], found["target"], strict=True)) == {("ball", "25%")}
     with pytest.raises(NotRun, match="3 objects"):
-        figure_3_4.build(Results(small.settings(), root))
+        meshes.FIGURES["figure_3_4"](small.results(root))
 
 
 def test_figure_of_combinations_is_drawn(seen, root, small):
     rows = pd.concat([small.lod().replace({"ball": f"ball{k}", "cube": f"cube{k}"}) for k in range(2)])
     others = [rows[rows["method"] == "enhanced"].assign(method=name) for name in ("itti", "VisAttCon")]
     small.write(root, "lod", pd.concat([rows, *others]))
-    figure = figure_3_4.build(Results(small.settings(), root))
+    figure = meshes.FIGURES["figure_3_4"](small.results(root))
     assert "50%: 4 objects" in figure.caption and "25%" not in figure.caption  # two objects reach it
 
 
@@ -198,10 +211,11 @@ def test_views_count_once_in_the_time_spent(seen):
 
 
 def test_a_piece_of_work_counts_once_whatever_it_was_judged_in(seen, root, small):
-    rows = [{"object": "ball", "method": "net", "task": task, "view": view, "metric": "pcc", "value": 0.1, "seconds": 5}
+    work = {"dataset": "test", "item": "ball", "method": "net", "metric": "pcc", "value": 0.1, "seconds": 5}
+    rows = [work | {"task": task, "view": view}
             for task in ("level_1", "ewigc") for view in ("0", "all")]  # fmt: skip
     small.write(root, "fixation", pd.DataFrame(rows))
-    frame = time_spent.build(Results(small.settings(), root)).frame.set_index(["stage", "method"])
+    frame = time_spent.build(small.results(root)).frame.set_index(["stage", "method"])
     assert frame.loc[("fixation", "net"), "seconds"] == 5
 
 
@@ -210,13 +224,13 @@ def test_views_figure_tells_the_fewest(seen):
 
 
 def test_cost_counts_views_channels_and_points(seen):
-    cost = gaze_seconds(seen)
+    cost = attention_seconds(seen, "gaze")
     assert cost["itti"] == pytest.approx(2 + 3 + 0.5)
     assert cost["facing_viewer"] == pytest.approx(0.5)
 
 
 def test_chart_of_attention_leaves_out_those_that_have_seen_the_mesh(seen):
-    chart = build_all(tradeoff, seen)
+    chart = build_all("tradeoff", seen)
     assert "attention" in [item.name for item in chart.items]
     rows = pd.read_csv(seen.reports / "tradeoff/attention.csv").set_index("method")
     assert not {"svm_object", "human"} & set(rows.index)
@@ -225,7 +239,7 @@ def test_chart_of_attention_leaves_out_those_that_have_seen_the_mesh(seen):
 
 
 def test_smallest_setting_that_loses_nothing_is_named(seen):
-    chart = tradeoff.attention_settings.build(seen)
+    chart = charts.by_setting(seen)
     assert "four, 450 rows, symmetry (10.0 times as fast" in chart.caption
     assert "one, 450 rows, none (" not in chart.caption
     rows = pd.read_csv(seen.reports / "tradeoff/attention_settings.csv").set_index("name")
@@ -235,19 +249,18 @@ def test_smallest_setting_that_loses_nothing_is_named(seen):
 
 
 def test_a_setting_that_loses_in_auc_alone_is_not_named(seen, small):
-    rows = seen.attention("settings")
-    worse = rows.assign(auc=rows["auc"] - 0.05 * (rows["views"] == "four"))
-    assert (
-        "four, 450 rows"
-        not in tradeoff.attention_settings.build(again(seen, small, "settings", worse)).caption.split("Smallest")[1]
-    )
+    rows = seen.rows("attention_settings")
+    loss = rows["item"].map(dict(zip("abcdef", np.linspace(0.04, 0.06, 6), strict=True)))
+    loss *= (rows["views"] == "four") & (rows["metric"] == "auc")
+    worse = again(seen, small, "attention_settings", rows.assign(value=rows["value"] - loss))
+    assert "four, 450 rows" not in charts.by_setting(worse).caption.split("Smallest")[1]
 
 
 def test_one_setting_alone_is_not_run(seen, small):
-    rows = seen.attention("settings")
-    less = again(seen, small, "settings", rows[rows["views"] == "four"])
+    rows = seen.rows("attention_settings")
+    less = again(seen, small, "attention_settings", rows[rows["views"] == "four"])
     with pytest.raises(NotRun, match="fewer than two settings"):
-        tradeoff.attention_settings.build(less)
+        charts.by_setting(less)
 
 
 @pytest.mark.parametrize(
@@ -266,7 +279,7 @@ def test_claim_on_svms_takes_the_thesis_way(seen):
 
 def test_method_that_was_not_judged_is_named(seen):
     with pytest.raises(NotRun, match="sift"):
-        difference(seen.attention("gaze"), "nss", "enhanced", "sift")
+        difference(seen.rows("salient_points", "gaze"), "nss", "enhanced", "sift")
 
 
 def test_zero_has_no_minus():
@@ -285,13 +298,13 @@ def test_colours_keep_the_order_and_are_not_spoilt_by_one_peak():
 
 def test_page_offers_few_methods_and_any_where_none_of_those_ran(seen, root):
     assert list(pack_viewer(seen)["objects"][0]["saliency"]) == ["enhanced", "itti"]
-    for path in (root / "data/salient_points").glob("*.npz"):
+    for path in (root / "data/test/salient_points").glob("*.npz"):
         write_arrays(path, **{key: values for key, values in read_arrays(path).items() if key.startswith("height")})
     assert list(pack_viewer(seen)["objects"][0]["saliency"]) == ["height"]
 
 
 def test_each_method_of_the_chart_of_simplification_has_its_own_colour():
-    tints = colours(tradeoff.simplification.METHODS)
+    tints = colours(METHODS)
     assert len(set(tints.values())) == len(tints) == 8
 
 
@@ -306,12 +319,12 @@ def test_long_front_is_told_by_its_ends(tmp_path):
 def test_bars_are_those_of_the_samplings_that_ran(root, small):
     rows = small.classification()
     small.write(root, "classification", rows[rows["method"] != "thesis_ssim"])
-    results = Results(small.settings(), root)
+    results = small.results(root)
     places = {}
     with pytest.MonkeyPatch.context() as patch:
-        draw = drawn.draw_bars
-        patch.setattr(drawn, "draw_bars", lambda *args, **kw: places.update(draw(*args, **kw)) or places)
-        drawn.build(results)
+        draw = one_touch.draw_bars
+        patch.setattr(one_touch, "draw_bars", lambda *args, **kw: places.update(draw(*args, **kw)) or places)
+        one_touch.figure_4_1(results)
     assert list(places) == ["random", "itti", "enhanced"]
     assert sum(places.values()) == pytest.approx(0)
     assert set(pipeline.NEEDED) <= set(places)

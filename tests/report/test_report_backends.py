@@ -5,10 +5,10 @@ import pandas as pd
 import pytest
 
 from stages.kit.files import write_table
-from stages.report.growth import growth
-from stages.report.results import NotRun, Results
-from stages.report.tables import backends
-from stages.report.tradeoff import backends as chart
+from stages.report.meshes import backends
+from stages.report.meshes import backends_chart as chart
+from stages.report.meshes.growth import growth
+from stages.report.results import NotRun
 
 SIZES = [2000, 20_000, 50_000, 100_000, 400_000, 1_000_000]
 LEVELS = {0.5: 1.0, 0.1: 2.0}  # seconds of a share, beside the other's
@@ -35,7 +35,7 @@ def benched(power=1.0, noise=0.0):
 def bench(bare, small):
     def written(rows):
         write_table(bare / "reports/bench/simplification.csv", rows)
-        return Results(small.settings(), bare)
+        return small.results(bare)
 
     return written
 
@@ -92,10 +92,10 @@ def test_what_is_to_be_reached_is_said_without_and_with_points(bench):
     rows.loc[poor, "ratio"] *= 0.8 * spread[poor]
     rows.loc[poor, "error_ratio"] = 1.2
     without, with_points = backends.build(bench(rows)).notes[:2]
-    assert without.startswith("fast (ours), nothing kept: 25.0 times faster than pymeshlab; 20 times is reached on av")
-    assert "1 or less is reached on average (no interval)" in without and "n log n is missed" in without
+    assert without.startswith("fast (ours), nothing kept: 25.0 times faster than pymeshlab; 20 times is met on av")
+    assert "1 or less is met on average (no interval)" in without and "n log n is missed" in without
     assert "points kept" in with_points and "1 or less is missed" in with_points
-    assert "20 times is reached on average (interval from" in with_points
+    assert "20 times is met on average (interval from" in with_points
 
 
 def test_what_is_surely_reached_is_said_to_be(bench):
@@ -104,7 +104,7 @@ def test_what_is_surely_reached_is_said_to_be(bench):
     rows["ratio"] *= 0.5 * np.exp(0.1 * random.normal(size=len(rows)))
     rows["error_ratio"] *= 0.9 * np.exp(0.01 * random.normal(size=len(rows)))
     for said in backends.build(bench(rows)).notes[:2]:
-        assert said.count("is reached.") == 3 and "20 times is reached. Its" in said
+        assert said.count("is met.") == 3 and "20 times is met. Its" in said
 
 
 def test_growth_is_fitted_without_and_with_points_apart(bench):

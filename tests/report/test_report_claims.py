@@ -1,19 +1,36 @@
-"""Claims: pairing, intervals, and the one word."""
+"""Claims: pairing, intervals, words, and the one word."""
+
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
 import pytest
 
-from stages.report import CLAIMS, Claim, judge, tables, tradeoff, verdict
-from stages.report.intervals import HOLD_OUT, interval
-from stages.report.items import build_all
+from stages.kit.stats import interval
+from stages.report import CLAIMS, judge, verdict
+from stages.report.__main__ import write_claims
+from stages.report.claims import Claim, highest_of, lowest_of
+from stages.report.differences import differences
 from stages.report.page import effect
-from stages.report.results import NotRun, Results
-from stages.report.verdict import COLUMNS, counted, paired
+from stages.report.results import NotRun
+from stages.report.topics import build_all
+from stages.report.verdict import COLUMNS, counted, judged
 
 
-def judged(results, key):
+def of(results, key):
     return judge([claim for claim in CLAIMS if claim.key == key], results).iloc[0]
+
+
+def values(root, small, **columns):
+    """Results whose stage `test` has rows of these columns."""
+    small.write(root, "test", pd.DataFrame({"dataset": "test", "metric": "error"} | columns))
+    return small.results(root)
+
+
+def claim(**fields):
+    """A claim on the rows of `values`, one pair per item."""
+    return Claim(**{"key": "one", "section": "T9", "sentence": "Sentence.", "stage": "test", "over": ("item",),
+                    "scale": 1.0, "unit": "units"} | fields)  # fmt: skip
 
 
 @pytest.mark.parametrize(
@@ -29,7 +46,7 @@ def test_no_interval_is_open():
 
 
 def test_clear_effect_is_supported(results):
-    row = judged(results, "enhanced_over_itti")
+    row = of(results, "enhanced_over_itti")
     assert row["verdict"] == "supported"
     assert row["effect"] == pytest.approx(30, abs=2)
     assert row["pairs"] == 6
@@ -37,143 +54,183 @@ def test_clear_effect_is_supported(results):
 
 def test_reversed_effect_is_contradicted(root, small):
     small.write(root, "classification", small.classification(enhanced=0.4, rivals=0.7))
-    assert judged(Results(small.settings(), root), "enhanced_over_itti")["verdict"] == "contradicted"
+    assert of(small.results(root), "enhanced_over_itti")["verdict"] == "contradicted"
 
 
 def test_no_effect_is_open(results):
-    assert judged(results, "itti_over_blind")["verdict"] == "open"
+    assert of(results, "itti_over_blind")["verdict"] == "open"
 
 
 def test_unmeasured_claim_is_open_and_names_the_stage(results):
-    row = judged(results, "tuned_over_frozen_random")
+    row = of(results, "tuned_over_frozen_random")
     assert row["verdict"] == "open"
     assert "dvc repro transfer" in row["tested_on"]
 
 
 def test_errors_are_compared_in_pairs_and_relative_to_their_size(results):
-    row = judged(results, "keep_metro")
+    row = of(results, "keep_metro")
     assert row["effect"] == pytest.approx(100 * (1 - 2) / 1.5)
     assert row["pairs"] == 2
 
 
 def test_more_faces_claim_takes_fewest_minus_most(root, small):
-    frame = Results(small.settings(), root).measurements("lod").copy()
+    frame = small.results(root).rows("lod").copy()
     frame.loc[frame["target"] == "25%", "faces"] = 50
-    small.write(root, "lod", frame[frame["object"] == "ball"])
-    assert judged(Results(small.settings(), root), "more_faces")["effect"] == pytest.approx(100 * (0.06 - 0.02))
+    small.write(root, "lod", frame[frame["item"] == "ball"])
+    assert of(small.results(root), "more_faces")["effect"] == pytest.approx(100 * (0.06 - 0.02))
 
 
 def test_beyond_chance_takes_guessing_off(root, small):
     frame = small.classification()
-    frame = frame.assign(value=frame["object"].map({"six": 1 / 6, "four": 1 / 4}))
+    frame = frame.assign(value=frame["group"].map({"six": 1 / 6, "four": 1 / 4}))
     small.write(root, "classification", frame)
-    results = Results(small.settings(), root)
-    assert judged(results, "four_easier")["effect"] == pytest.approx(100 * (1 / 4 - 1 / 6), rel=1e-3)
-    assert judged(results, "four_easier_beyond_chance")["effect"] == pytest.approx(0, abs=1e-3)
+    results = small.results(root)
+    assert of(results, "four_easier")["effect"] == pytest.approx(100 * (1 / 4 - 1 / 6), rel=1e-3)
+    assert of(results, "four_easier_beyond_chance")["effect"] == pytest.approx(0, abs=1e-3)
 
 
-def test_pairs_match_by_repetition_not_by_row(results, small):
-    frame = results.measurements("classification").iloc[::-1]
-    small.write(results.data.parent, "classification", frame)
-    again = Results(small.settings(), results.data.parent)
-    sides = {"first": {"method": "enhanced"}, "second": {"method": "itti"}}
-    where = {"object": "six", "classifier": "knn"}
-    before = paired(results, "classification", ["repetition"], **sides, **where)
-    after = paired(again, "classification", ["repetition"], **sides, **where)
+def test_pairs_match_by_repetition_not_by_row(root, results, small):
+    one = next(claim for claim in CLAIMS if claim.key == "ours_over_enhanced")
+    before = differences(results, one)
+    small.write(root, "classification", results.rows("classification").iloc[::-1])
+    after = differences(small.results(root), one)
     assert np.allclose(before.sort_index(), after.sort_index())
 
 
 def test_side_that_was_not_measured_is_not_run(results):
+    one = next(claim for claim in CLAIMS if claim.key == "enhanced_over_heat_kernel")
     with pytest.raises(NotRun, match="heat_kernel"):
-        paired(results, "classification", ["repetition"], {"method": "heat_kernel"}, {"method": "itti"})
+        differences(results, one)
+
+
+def test_second_side_may_be_a_number(root, small):
+    results = values(root, small, item=list("ab"), value=[0.5, 0.7])
+    assert differences(results, claim(second=0.4)).tolist() == pytest.approx([0.1, 0.3])
+
+
+def test_several_values_are_averaged_where_all_were_measured(root, small):
+    columns = {"item": list("aaabbb"), "method": ["one", "two", "base"] * 2, "value": [1, 3, 1, np.nan, 5, 1]}
+    found = differences(
+        values(root, small, **columns), claim(first={"method": ("one", "two")}, second={"method": "base"})
+    )
+    assert found.to_dict() == {"a": 1.0}
+
+
+def test_best_and_worst_rival_are_picked_by_their_means_and_never_the_other_side(root, small):
+    columns = {"item": list("aaaabbbb"), "method": ["mine", "low", "high", "seen"] * 2}
+    results = values(root, small, **columns, value=[9, 1, 3, 8, 9, 2, 5, 8])
+    mine = {"method": "mine"}
+    but = ("se*",)
+    assert differences(results, claim(first=mine, second={"method": highest_of(but=but)})).tolist() == [6, 4]
+    assert differences(results, claim(first=mine, second={"method": lowest_of()})).tolist() == [8, 7]
+    assert differences(results, claim(first=mine, second={"method": highest_of("low")})).tolist() == [8, 7]
+    with pytest.raises(NotRun, match="no other method than mine"):
+        differences(results, claim(first=mine, second={"method": highest_of("absent")}))
+
+
+def test_relative_differences_are_matched_within_a_unit_and_then_averaged(root, small):
+    columns = {"item": list("aaaa"), "target": [1, 1, 2, 2], "method": ["x", "y"] * 2, "value": [3, 1, 0, 0]}
+    sides = {"first": {"method": "x"}, "second": {"method": "y"}}
+    found = differences(values(root, small, **columns), claim(**sides, within=("target",), relative=True))
+    assert found.to_dict() == {"a": 0.5}  # 2 / 2 at the first target, 0 where both are zero
+
+
+def test_contrast_is_a_difference_of_differences(root, small):
+    columns = {"item": list("aaaa"), "target": [1, 1, 2, 2], "method": ["x", "y"] * 2, "value": [3, 1, 2, 1]}
+    sides = {"first": {"method": "x"}, "second": {"method": "y"}}
+    found = differences(values(root, small, **columns), claim(**sides, contrast=({"target": 1}, {"target": 2})))
+    assert found.tolist() == [1.0]
+
+
+def test_one_side_may_count_by_its_mean(root, small):
+    columns = {"item": ["a", "b", None, None], "method": ["own", "own", "all", "all"], "value": [3, 4, 1, 2]}
+    sides = {"first": {"method": "own"}, "second": {"method": "all"}, "mean_of": "second"}
+    small.write(root, "test", pd.DataFrame({"dataset": "test", "fold": [0, 1, 2, 3]} | columns))
+    found = differences(small.results(root), claim(**sides, over=("fold",)))
+    assert found.tolist() == [1.5, 2.5]
+
+
+def test_pattern_and_empty_cell_choose_rows(root, small):
+    columns = {"item": list("aabb"), "method": ["net-frozen", "net-tuned"] * 2, "sense": [None, None, "x", "x"]}
+    results = values(root, small, **columns, value=[1, 2, 3, 4])
+    assert differences(results, claim(where={"method": "*-frozen"}, second=0)).to_dict() == {"a": 1, "b": 3}
+    assert differences(results, claim(where={"sense": None}, second=0)).to_dict() == {"a": 1.5}
+
+
+def test_scale_comes_before_margin(root, small):
+    results = values(root, small, item=list("ab"), value=[0.01, 0.02])
+    assert differences(results, claim(second=0, scale=100, margin=1)).tolist() == pytest.approx([2, 3])
 
 
 def test_every_claim_has_its_own_key_and_answers_without_measurements(bare, small):
-    table = judge(CLAIMS, Results(small.settings(), bare))
+    table = judge(CLAIMS, small.results(bare))
     assert table["key"].is_unique
     assert set(table["verdict"]) == {"open"}
 
 
-def test_interval_covers_as_often_as_it_says():
-    rng = np.random.default_rng(0)
-    for count in (4, 15):
-        found = [interval(rng.normal(size=count)) for _ in range(400)]
-        assert np.mean([low < 0 < high for _, low, high in found]) > 0.91
-
-
-def test_splitting_the_same_data_more_often_does_not_shrink_the_interval_to_nothing():
-    values = np.random.default_rng(0).normal(size=4000)
-    width = {n: np.subtract(*interval(values[:n], HOLD_OUT)[:0:-1]) for n in (100, 4000)}
-    assert width[4000] > 0.8 * width[100]
-    independent = np.subtract(*interval(values)[:0:-1])
-    assert independent < 0.1 * width[4000]
-
-
-def test_one_value_has_no_interval():
-    mean, low, high = interval([0.5])
-    assert mean == 0.5
-    assert np.isnan([low, high]).all()
-
-
-def test_equal_values_have_no_interval():
-    mean, low, high = interval([0.066667, 0.066666, 0.066667])  # equal but for the six digits of the measurements
-    assert mean == pytest.approx(0.0666667, abs=1e-6)
-    assert np.isnan([low, high]).all()
-    assert np.isfinite(interval([0.066, 0.067, 0.068])).all()
-
-
-def test_equal_differences_are_open_and_say_why(results):
-    claim = Claim("equal", "T9", "Sentence.", "what", "unit", "repetitions", lambda _: np.array([6.67, 6.67, 6.67]))
-    table = judge([claim], results)
+def test_equal_differences_are_open_and_say_why(root, small):
+    results = values(root, small, item=list("abc"), value=[6.67, 6.67, 6.67])
+    table = judge([claim(second=0.0)], results)
     assert table["verdict"].tolist() == ["open"]
-    assert table["tested_on"][0] == "what; no interval: all 3 differences are equal"
-    assert effect(table.iloc[0]) == "+6.67 unit"
+    assert table["tested_on"][0].endswith("; no interval: all 3 differences are equal")
+    assert effect(table.iloc[0]) == "+6.67 units"
 
 
-def test_tested_on_tells_the_objects_that_the_set_held(root, results, small):
-    assert judged(results, "enhanced_over_itti")["tested_on"] == "kNN, six objects, enhanced minus itti"
+def test_words_are_written_from_the_fields(root, results, small):
+    said = "test, kNN, six objects, test part drawn at random, all imprints, enhanced attention minus visual attention"
+    assert of(results, "enhanced_over_itti")["tested_on"] == said
     small.write_set(root, "six", 4)
-    assert judged(results, "enhanced_over_itti")["tested_on"] == "kNN, 4 objects (set six), enhanced minus itti"
+    assert of(results, "enhanced_over_itti")["tested_on"] == said.replace("six objects", "4 objects (group six)")
+    rivals = of(results, "knn_best")["tested_on"]
+    assert rivals.endswith("kNN minus the highest of the others")
 
 
-def test_chance_follows_the_objects_that_the_set_held(root, small):
+def test_a_change_of_a_field_changes_the_words(results):
+    one = next(claim for claim in CLAIMS if claim.key == "enhanced_over_itti")
+    other = replace(one, where=one.where | {"classifier": "deep_learning"}, note="so")
+    words = [judge([claim], results)["tested_on"][0] for claim in (one, other)]
+    assert words[1] == words[0].replace("kNN", "deep learning") + ", so"
+
+
+def test_chance_follows_the_objects_that_the_group_held(root, small):
     frame = small.classification()
-    small.write(root, "classification", frame.assign(value=frame["object"].map({"six": 1 / 3, "four": 1 / 4})))
+    small.write(root, "classification", frame.assign(value=frame["group"].map({"six": 1 / 3, "four": 1 / 4})))
     small.write_set(root, "six", 3)
-    row = judged(Results(small.settings(), root), "four_easier_beyond_chance")
+    row = of(small.results(root), "four_easier_beyond_chance")
     assert row["effect"] == pytest.approx(0, abs=1e-3)
 
 
-def test_set_that_was_left_out_hands_on_its_note(root, small):
-    small.write(root, "classification", small.left_out(small.classification(), "six: no duck", object="six"))
-    results = Results(small.settings(), root)
+def test_group_that_was_left_out_hands_on_its_note(root, small):
+    small.write(root, "classification", small.left_out(small.classification(), "six: no duck", group="six"))
+    results = small.results(root)
     for key in ("enhanced_over_itti", "enhanced_over_blind_all", "knn_best", "four_easier"):
-        assert judged(results, key)["tested_on"] == "not run: six: no duck"
-    assert judged(results, "enhanced_over_blind_four")["verdict"] == "supported"
+        assert of(results, key)["tested_on"] == "not run: six: no duck"
+    assert of(results, "enhanced_over_blind_four")["verdict"] == "supported"
 
 
 def test_sampling_or_classifier_that_was_left_out_hands_on_its_note(root, small):
-    frame = small.left_out(small.classification(), "too few touches", object="six", method="thesis_ssim")
-    failed = {"object": "six", "method": "random", "classifier": "knn", "metric": "accuracy_holdout"}
+    frame = small.left_out(small.classification(), "too few touches", group="six", method="thesis_ssim")
+    failed = {"group": "six", "method": "random", "classifier": "knn", "metric": "accuracy"}
     small.write(root, "classification", small.left_out(frame, "knn failed: why", **failed))
-    results = Results(small.settings(), root)
-    assert judged(results, "enhanced_over_itti")["tested_on"] == "not run: too few touches"
-    assert judged(results, "itti_over_blind")["tested_on"] == "not run: knn failed: why"
+    results = small.results(root)
+    assert of(results, "enhanced_over_itti")["tested_on"] == "not run: too few touches"
+    assert of(results, "itti_over_blind")["tested_on"] == "not run: knn failed: why"
 
 
-def test_absent_set_is_called_a_set(root, small):
+def test_absent_group_is_called_a_group(root, small):
     frame = small.classification()
-    small.write(root, "classification", frame[frame["object"] == "four"])
-    assert judged(Results(small.settings(), root), "knn_best")["tested_on"].startswith("not run: set six is not among")
+    small.write(root, "classification", frame[frame["group"] == "four"])
+    assert of(small.results(root), "knn_best")["tested_on"].startswith("not run: group six is not among")
 
 
 def test_transfer_that_was_left_out_hands_on_its_note(root, small):
-    small.write(root, "transfer", pd.DataFrame([{"dataset": "test", "object": "six", "value": None, "note": "no cup"}]))
-    results = Results(small.settings(), root)
-    assert judged(results, "tuned_over_frozen_random")["tested_on"] == "not run: no cup"
-    assert judged(results, "frozen_over_chance_random")["tested_on"] == "not run: no cup"
-    assert build_all(tables, results).not_run["table_5_4"] == "no cup"
-    assert build_all(tradeoff, results).not_run["networks"] == "no cup"
+    row = {"dataset": "test", "method": None, "metric": "accuracy", "value": None, "seconds": None, "note": "no cup"}
+    small.write(root, "transfer", pd.DataFrame([row]))
+    results = small.results(root)
+    assert of(results, "tuned_over_frozen_random")["tested_on"] == "not run: no cup"
+    assert of(results, "frozen_over_chance_random")["tested_on"] == "not run: no cup"
+    assert build_all("tables", results).not_run["table_5_4"] == "no cup"
+    assert build_all("tradeoff", results).not_run["networks"] == "no cup"
 
 
 def test_verdicts_are_counted_beside_what_chance_alone_would_give():
@@ -184,22 +241,31 @@ def test_verdicts_are_counted_beside_what_chance_alone_would_give():
     assert "any of the 80 that have an interval, chance alone would call about 2 of them supported" in said
 
 
-def test_chance_calls_as_many_verdicts_as_is_said():
-    rng = np.random.default_rng(0)
-    claims = [
-        Claim(str(k), "T9", "Sentence.", "what", "unit", "objects", lambda _: rng.normal(size=20)) for k in range(800)
-    ]
-    words = judge(claims, None)["verdict"].value_counts()
+def test_chance_calls_as_many_verdicts_as_is_said(root, small):
+    noise = np.random.default_rng(0).normal(size=(800, 20))
+    frame = pd.DataFrame({"dataset": "test", "method": np.repeat([f"m{k}" for k in range(800)], 20)})
+    small.write(root, "test", frame.assign(item=list(range(20)) * 800, value=noise.ravel()))
+    claims = [claim(key=str(k), first={"method": f"m{k}"}, second=0) for k in range(800)]
+    words = judge(claims, small.results(root))["verdict"].value_counts()
     assert 5 < words["supported"] < 40 and 5 < words["contradicted"] < 40  # 20 of each are said
 
 
-def test_rows_put_in_place_of_a_stage_s_leave_the_others_and_the_run_alone(results):
-    frame = results.measurements("lod")
-    other = results.instead("lod", frame.assign(value=7.0))
-    assert set(other.measurements("lod")["value"]) == {7.0} and set(results.measurements("lod")["value"]) != {7.0}
-    assert other.measurements("classification").equals(results.measurements("classification"))
+def test_a_new_claim_is_one_entry(root, small):
+    results = values(root, small, item=list("abcde"), value=[1.0, 1.1, 0.9, 1.0, 1.05])
+    assert judge([claim(second=0)], results)["verdict"].tolist() == ["supported"]
 
 
-def test_a_new_claim_is_one_entry(results):
-    claim = Claim("new", "T9", "Sentence.", "what", "unit", "objects", lambda _: np.array([1.0, 1.1, 0.9, 1.0, 1.05]))
-    assert judge([claim], results)["verdict"].tolist() == ["supported"]
+def test_every_verdict_can_be_recomputed_from_the_differences(root, results, small):
+    small.write(
+        root, "test", pd.DataFrame({"dataset": "test", "item": list("abc"), "value": [0.1234567891, 0.2, -0.01]})
+    )
+    table, pairs = judged([*CLAIMS, claim(second=0)], small.results(root))
+    write_claims(table, pairs, root / "reports")
+    claims = pd.read_csv(root / "reports/claims.csv")
+    stored = pd.read_csv(root / "reports/claims/differences.csv.gz", dtype={"pair": str})
+    found = {key: part["difference"] for key, part in stored.groupby("key", sort=False)}
+    assert set(found) == set(claims.loc[claims["pairs"] > 0, "key"]) and len(found) > 10
+    for row in claims[claims["pairs"] > 0].itertuples():
+        mean, low, high = interval(found[row.key], row.shared)
+        assert len(found[row.key]) == row.pairs and verdict(low, high) == row.verdict
+        assert (mean, low, high) == pytest.approx((row.effect, row.low, row.high), rel=1e-5, nan_ok=True)

@@ -5,13 +5,15 @@ import pandas as pd
 import pytest
 
 from stages.kit.files import write_arrays
-from stages.report.claims import chapter_4_exploration as claims
-from stages.report.figures import exploration_calibration, touch_stability_imprints
-from stages.report.figures import touch_stability as degradation
+from stages.report.exploration import calibration as exploration_calibration
+from stages.report.exploration import claims, exploration
+from stages.report.exploration import exploration_chart as chart
+from stages.report.exploration import rows as _exploration
 from stages.report.results import NotRun
-from stages.report.tables import _exploration, exploration, touch_stability
-from stages.report.tables._touch_stability import breaking, curve, harmless
-from stages.report.tradeoff import exploration as chart
+from stages.report.stability import touch as touch_stability
+from stages.report.stability import touch_figure as degradation
+from stages.report.stability import touch_imprints as touch_stability_imprints
+from stages.report.stability.rows import breaking, curve, harmless
 from stages.report.verdict import judge
 
 CURVE = {1: 0.6, 2: 0.8, 3: 0.9, 4: 0.95, 5: 0.98}
@@ -21,15 +23,21 @@ SAVED = {"gain": 2.0, "saliency": 3.5, "random": 3.0}  # touches until 95 %, at 
 def explored():
     """Rows of three ways: all have one curve of fixed numbers, and stop after different numbers of touches."""
     generator, rows = np.random.default_rng(0), []
-    cells = [("anywhere", "imprint"), ("anywhere", "imprint_place"), ("anywhere", "imprint_product"),
-             ("apart", "imprint"), ("apart", "imprint_product")]  # fmt: skip
+    cells = [("random", "imprint"), ("random", "imprint_place"), ("random", "imprint_product"),
+             ("regions", "imprint"), ("regions", "imprint_product")]  # fmt: skip
     for split, likelihood in cells:
         for way in ("random",) if likelihood == "imprint_product" else ("gain", "saliency", "random"):
             for repetition in range(8):
                 noise = 0.002 * generator.normal()
-                common = {"object": "six", "method": "thesis_ssim", "split": split, "likelihood": likelihood}
-                common |= {"way": way, "repetition": repetition, "seconds": 1e-5, "seed": 0}
-                sure = 0.2 if likelihood == "imprint_product" and split == "apart" else 0.0
+                common = {
+                    "dataset": "test",
+                    "group": "six",
+                    "method": "thesis_ssim",
+                    "split": split,
+                    "likelihood": likelihood,
+                }
+                common |= {"likelihood": likelihood, "way": way, "repetition": repetition, "seconds": 1e-5, "seed": 0}
+                sure = 0.2 if likelihood == "imprint_product" and split == "regions" else 0.0
                 for touches, accuracy in CURVE.items():
                     noise = 0.002 * generator.normal()
                     row = {"stop": "fixed", "level": touches, "metric": "accuracy", "value": accuracy + noise}
@@ -54,7 +62,7 @@ def test_table_tells_how_many_touches_a_fixed_number_takes(explorer):
 
 
 def test_accuracy_beyond_the_curve_is_never_reached():
-    rows = explored().query("split == 'anywhere' and likelihood == 'imprint' and way == 'gain'")
+    rows = explored().query("split == 'random' and likelihood == 'imprint' and way == 'gain'")
     assert np.isnan(_exploration.needed(rows, 0.999))
     assert _exploration.needed(rows, 0.1) == 1
 
@@ -94,7 +102,7 @@ def disturbed():
     generator, rows = np.random.default_rng(0), []
     for repetition in range(8):
         for (perturbation, severity), loss in lost.items():
-            row = {"object": "six", "method": "enhanced", "split": "anywhere", "features": "imprint"}
+            row = {"dataset": "test", "group": "six", "method": "enhanced", "split": "random", "features": "imprint"}
             row |= {"classifier": "knn", "repetition": repetition, "perturbation": perturbation, "severity": severity}
             value = 0.8 - loss + 0.002 * generator.normal()
             rows.append(row | {"chance": 0.2, "metric": "accuracy", "value": value, "seconds": 1e-3, "note": None})
@@ -102,14 +110,14 @@ def disturbed():
 
 
 def test_half_of_the_lead_is_lost_where_the_rows_say_so():
-    points = curve(disturbed(), "noise", ("anywhere", "imprint", "knn"))
+    points = curve(disturbed(), "noise", ("random", "imprint", "knn"))
     at, low, high = breaking(points, "noise")
     assert at == pytest.approx(0.2, abs=0.01) and low < at < high
     assert np.isnan(harmless(points, "noise"))
 
 
 def test_severities_that_fall_go_from_mild_to_harsh():
-    points = curve(disturbed(), "coarse_model", ("anywhere", "imprint", "knn"))
+    points = curve(disturbed(), "coarse_model", ("random", "imprint", "knn"))
     assert points["severity"].tolist() == [400, 100] and harmless(points, "coarse_model") == 400
 
 
@@ -136,7 +144,7 @@ def test_the_picture_of_degradation_is_drawn(root, results, small):
 def test_the_picture_of_disturbed_imprints_goes_from_mild_to_harsh(root, results):
     images = np.zeros((1, 8, 8))
     keys = ("clean", "gain.0.5", "gain.0.9", "noise.0.1", "coarse_model.100")
-    write_arrays(root / "data/touch_stability/ball.npz", **{f"shown.{key}": images for key in keys})
+    write_arrays(root / "data/test/touch_stability/ball.npz", **{f"shown.{key}": images for key in keys})
     figure = touch_stability_imprints.build(results)
     assert figure.paths[0].exists() and "coarse" not in figure.alt
     stored = {f"shown.{key}": images for key in keys}

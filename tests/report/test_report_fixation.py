@@ -8,31 +8,20 @@ import pandas as pd
 import pytest
 
 from stages.fixation import tasks as stage_tasks
-from stages.fixation.judge import WHOLE
-from stages.fixation.viewpoints import evaluated, sphere
-from stages.kit.files import read_arrays, write_arrays, write_table
-from stages.report.claims import CLAIMS, chapter_3_fixation
-from stages.report.claims._places import anywhere, middle, same_place
-from stages.report.figures import (
-    figure_3_28,
-    figure_3_29,
-    figure_3_29_gaze,
-    figure_3_30,
-    figure_3_30_gaze,
-    figure_3_31,
-    figure_3_32,
-    figure_3_34,
-    figure_3_34_gaze,
-    figure_3_35,
-    figure_3_36,
-)
-from stages.report.figures._kept import keep
-from stages.report.intervals import interval
+from stages.fixation.agreement import ALL_VIEWS
+from stages.fixation.viewpoints import evaluated_views, viewpoint_sphere
+from stages.kit.files import read_arrays, write_arrays
+from stages.kit.stats import interval
+from stages.report.differences import differences
+from stages.report.fixation import agreement as table
+from stages.report.fixation import claims as chapter_3_fixation
+from stages.report.fixation import detectors, figure_3_28, figure_3_31, figure_3_32, maps
+from stages.report.fixation import fixation_chart as chart
+from stages.report.fixation import rows as _fixation
+from stages.report.fixation.places import nearer_than_chance, nearer_than_middle
 from stages.report.items import Figure
-from stages.report.results import NotRun, Results
-from stages.report.tables import _fixation
-from stages.report.tables import fixation as table
-from stages.report.tradeoff import fixation as chart
+from stages.report.results import NotRun
+from stages.report.topics import CLAIMS
 from stages.report.verdict import judge
 
 NETWORKS = ["mobilenet_v2-frozen", "mobilenet_v2-finetuned", "vgg16-frozen", "resnet50-frozen", "mobilenet_v2-random",
@@ -44,8 +33,11 @@ OTHERS = {("rival", "mesh_saliency"): 0.15, ("rival", "enhanced"): 0.6, ("contro
 DISTANCES = {"ewigc": 0.1, "ewigc_l4": 0.15, "mesh_saliency": 0.2, "enhanced": 0.08, "centre_prior": 0.2,
              "random": 0.05}  # fmt: skip
 ALIKE = {"vgg16-frozen": 0.5, "resnet50-frozen": 0.7}  # mean correlation of two tasks' maps; 0.4 for others
-FIGURES = [figure_3_28, figure_3_31, figure_3_32, figure_3_35, figure_3_36]
-VIEWED = [figure_3_29, figure_3_30, figure_3_34]
+FIGURES = [
+    figure_3_28.build, figure_3_31.build, figure_3_32.build, detectors.figure_3_35, detectors.figure_3_36,
+]  # fmt: skip
+VIEWED = [maps.figure_3_29, maps.figure_3_30, maps.figure_3_34]
+ON_GAZE = [maps.on_gaze(build, f"{build.__name__}_gaze") for build in VIEWED]
 
 
 def rows(dataset="gaze", count=6, resnet=0.0, **means):
@@ -59,7 +51,7 @@ def rows(dataset="gaze", count=6, resnet=0.0, **means):
     known |= {(method, task): mean for method in NETWORKS for task, mean in means.items()}
     for level, name in zip(np.linspace(-0.2, 0.2, count), "abcdefgh", strict=False):
         for (method, task), mean in known.items():
-            row = {"object": name, "method": method, "task": task, "seconds": 2.0 if "-" in method else None}
+            row = {"item": name, "method": method, "task": task, "seconds": 2.0 if "-" in method else None}
             gain = resnet if method == "resnet50-frozen" else 0.0
             value = mean + gain + level + 0.002 * random.normal()
             for view in range(3):
@@ -70,7 +62,7 @@ def rows(dataset="gaze", count=6, resnet=0.0, **means):
                     found.append(row | {"view": view, "metric": "distance", "value": far})
                     found.append(row | {"view": view, "metric": "distance_mean", "value": 2 * far})
             for metric, whole in {"pcc": 0.9, "nss": 2 * value, "auc": 0.5 + value / 4}.items():
-                found.append(row | {"view": WHOLE, "metric": metric, "value": whole})
+                found.append(row | {"view": ALL_VIEWS, "metric": metric, "value": whole})
         found += [one for method in NETWORKS for one in of_network(name, method, level)]
     found += [one for method in NETWORKS for one in taught(method)]
     return pd.DataFrame(found).assign(dataset=dataset, seed=0)
@@ -78,7 +70,7 @@ def rows(dataset="gaze", count=6, resnet=0.0, **means):
 
 def of_network(name, method, level):
     """Rows of what an object cost, and how alike its maps are."""
-    row = {"object": name, "method": method, "view": WHOLE}
+    row = {"item": name, "method": method, "view": ALL_VIEWS}
     yield row | {"view": None, "metric": "views", "value": 29, "seconds": 1.0}
     for k, (one, other) in enumerate(combinations(["level_1", "level_2", "convexity"], 2)):
         value = ALIKE.get(method, 0.4) + 0.1 * level + 0.1 * (k - 1)
@@ -98,30 +90,24 @@ def elbow():
     """A curve for each kind of shape, its elbow at four clusters."""
     ssd = {2: 10.0, 3: 6.0, 4: 2.0, 5: 1.8, 6: 1.6}
     return pd.DataFrame(
-        {"task": task, "clusters": k, "ssd": value, "chosen": k == 4}
+        {"method": task, "task": task, "clusters": k, "metric": "ssd", "value": value, "chosen": k == 4}
         for task in _fixation.SHAPE
         for k, value in ssd.items()
     )
 
 
-def measured_once(root, frame):
-    """Puts rows where `make fixation` does, without the columns that it leaves out."""
-    write_table(root / "reports/fixation/gaze.csv", frame.drop(columns=["dataset", "seed"]))
-
-
 @pytest.fixture
 def gaze(bare, small):
     """Results with rows of the meshes with human gaze, and of a run on marked objects."""
-    measured_once(bare, rows())
-    small.write(bare, "fixation", rows("household", 4))
-    write_table(bare / "data/fixation/elbow.csv", elbow())
-    return Results(small.settings(), bare)
+    small.write(bare, "fixation", rows())
+    small.write(bare, "fixation", pd.concat([rows("household", 4), elbow()]), "household")
+    return small.results(bare)
 
 
 def again(results, small, frame):
     """The results with other rows on gaze."""
-    measured_once(results.data.parent, frame)
-    return Results(small.settings(), results.data.parent)
+    small.write(results.data.parent, "fixation", frame)
+    return small.results(results.data.parent)
 
 
 def one(results, key):
@@ -138,14 +124,14 @@ def line(frame, **where):
 
 
 def test_names_are_those_of_the_stage():
-    assert stage_tasks.FUSED == _fixation.CHOSEN
+    assert stage_tasks.FUSED_TASKS == _fixation.CHOSEN
     assert set(stage_tasks.TASKS) == set(_fixation.TASKS)
-    assert WHOLE == _fixation.ALL_VIEWS
-    assert [sphere(9, 24)[view] for view in evaluated(9, 24)] == list(figure_3_30.VIEWS)
+    assert ALL_VIEWS == _fixation.ALL_VIEWS
+    assert [viewpoint_sphere(9, 24)[view] for view in evaluated_views(9, 24)] == list(_fixation.VIEWPOINTS)
 
 
 def test_score_of_an_object_is_the_mean_of_its_three_views_or_of_all_in_one(gaze):
-    frame = gaze.fixation("gaze")
+    frame = gaze.rows("fixation", "gaze")
     found = _fixation.scores(frame, "pcc")["vgg16-frozen", "ewigc"]
     assert found["a"] == pytest.approx(0.4 - 0.2, abs=0.01)  # 0.9, of all views in one, is not among them
     assert _fixation.scores(frame, "nss")["vgg16-frozen", "ewigc"]["a"] == pytest.approx(0.4, abs=0.02)
@@ -153,7 +139,9 @@ def test_score_of_an_object_is_the_mean_of_its_three_views_or_of_all_in_one(gaze
 
 def test_views_are_told_apart_whether_they_are_read_as_words_or_as_numbers():
     frame = rows()
-    read = frame.assign(view=frame["view"].map(lambda view: view if view == WHOLE or view is None else f"{view:.0f}"))
+    read = frame.assign(
+        view=frame["view"].map(lambda view: view if view == ALL_VIEWS or view is None else f"{view:.0f}")
+    )
     pd.testing.assert_frame_equal(_fixation.scores(frame, "pcc"), _fixation.scores(read, "pcc"))
 
 
@@ -166,7 +154,7 @@ def test_truths_are_named_and_gaze_comes_first(gaze):
 def test_a_run_without_anyones_attention_still_says_how_alike_tasks_are(bare, small):
     frame = rows("furniture")
     small.write(bare, "fixation", frame[frame["metric"] != "pcc"])
-    results = Results(small.settings(), bare)
+    results = small.results(bare)
     assert figure_3_31.build(results).paths[0].exists()
     with pytest.raises(NotRun, match="ground truth"):
         table.build(results)
@@ -196,20 +184,19 @@ def test_detectors_stand_in_the_order_of_their_correlation(gaze):
 
 
 def test_marks_are_said_to_be_no_human_gaze_only_where_they_are_the_truth(gaze):
-    root = gaze.reports
     assert any("no human subjects" in note for note in table.build(gaze).notes)
-    assert "no human subjects" in figure_3_35.build(gaze).caption
-    (root / "measurements/fixation.csv").unlink()
-    alone = Results(gaze.settings, root.parent)
-    assert not any("no human subjects" in note for note in table.build(alone).notes)
+    assert "no human subjects" in detectors.figure_3_35(gaze).caption
+    (gaze.reports / "measurements/household/fixation.csv.gz").unlink()
+    assert not any("no human subjects" in note for note in table.build(gaze).notes)
+    assert "no human subjects" not in detectors.figure_3_35(gaze).caption
 
 
-def test_networks_that_could_not_be_had_are_named_once(gaze, small):
+def test_networks_that_are_not_available_are_named_once(gaze, small):
     frame = rows("household", 4)
     missing = {"dataset": "household", "method": "googlenet-frozen", "metric": "accuracy", "note": "no weights"}
     alone = {"dataset": "household", "method": "vgg16-frozen", "task": "level_3", "metric": "accuracy", "note": "alone"}
     small.write(gaze.data.parent, "fixation", pd.concat([frame, pd.DataFrame([missing, alone])]))
-    notes = [note for note in table.build(Results(small.settings(), gaze.data.parent)).notes if "Not run" in note]
+    notes = [note for note in table.build(small.results(gaze.data.parent)).notes if "Not run" in note]
     assert notes == ["Not run here: GoogLeNet, frozen: no weights."]
 
 
@@ -240,7 +227,8 @@ def test_claims_say_what_the_rows_hold(gaze, key):
 
 
 def test_resnets_tasks_are_compared_with_vggs_an_object(gaze):
-    assert chapter_3_fixation.more_alike(gaze).to_numpy() == pytest.approx(np.full(6, 0.2))
+    claim = next(claim for claim in chapter_3_fixation.CLAIMS if claim.key == "resnet_more_alike")
+    assert differences(gaze, claim).to_numpy() == pytest.approx(np.full(6, 0.2))
 
 
 @pytest.mark.parametrize(("gain", "word"), [(0.05, "supported"), (-0.05, "contradicted")])
@@ -260,14 +248,14 @@ def test_a_claim_turns_with_the_rows(gaze, small):
 
 
 def test_entropy_is_compared_with_plain_averages_where_they_were_measured(gaze, small):
-    assert one(gaze, "entropy_over_average")["tested_on"].startswith("not run: average, MobileNetV2, frozen")
+    assert one(gaze, "entropy_over_average")["tested_on"].startswith("not run: task average")
     assert one(again(gaze, small, rows(average=0.38)), "entropy_over_average")["verdict"] == "supported"
 
 
 def test_a_network_that_was_not_run_leaves_its_claim_open_and_is_named(gaze, small):
     frame = rows()
     found = one(again(gaze, small, frame[~frame["method"].str.startswith("vgg16")]), "ewigc_over_lee_vgg16")
-    assert found["verdict"] == "open" and "VGG16" in found["tested_on"]
+    assert found["verdict"] == "open" and "vgg16-frozen" in found["tested_on"]
     assert one(gaze, "fused_over_narrowed")["effect"] == pytest.approx(0.1, abs=0.01)
 
 
@@ -281,7 +269,7 @@ def test_claims_of_t_3_3_stand_between_those_of_attention_and_of_meshes():
 
 @pytest.mark.parametrize("figure", FIGURES)
 def test_figures_are_drawn_of_both_truths(gaze, figure):
-    assert figure.build(gaze).paths[0].stat().st_size > 10_000
+    assert figure(gaze).paths[0].stat().st_size > 10_000
 
 
 def test_no_interval_of_a_correlation_leaves_its_range():
@@ -305,15 +293,16 @@ def test_cost_is_teaching_once_and_looking_at_every_object(gaze):
 def looked(root, small):
     """Results of a run with two balls at which two networks have looked."""
     small.write_attention(root)
-    small.write(root, "fixation", rows("household", 4))
+    classes = [{"item": "ball", "task": task, "metric": "class", "label": "1"} for task in TASKS if "ewigc" not in task]
+    small.write(root, "fixation", pd.concat([rows("test", 4), pd.DataFrame(classes)]), "test")
     for name in ("ball", "cube"):
         write_look(root, name, small.ball(), np.array([0.0, 0, 1]))
-    return Results(small.settings(), root)
+    return small.results(root)
 
 
 def write_look(root, name, mesh, peak):
     """Leaves the attention on a mesh: highest towards `peak` in all views, or at each picture's middle for None."""
-    axes = np.array([view.axes[2] for view in figure_3_30.VIEWS])
+    axes = np.array([view.axes[2] for view in _fixation.VIEWPOINTS])
     visible = mesh.vertices @ axes.T > -0.05
     arrays = {"visible": visible.T, "seen": visible.any(axis=1)}
     for method in ("mobilenet_v2-frozen", "mobilenet_v2-random"):
@@ -321,69 +310,77 @@ def write_look(root, name, mesh, peak):
         for task in TASKS:
             views = np.stack([mesh.vertices @ (axis if peak is None else peak) + 0.5 for axis in axes])
             arrays |= {f"{method}.{task}": views.mean(axis=0).astype(np.float16), f"{method}.{task}.views": views}
-    write_arrays(root / f"data/fixation/{name}.npz", **arrays)
-    names = [task for task in TASKS if not task.startswith("ewigc")]
-    write_table(root / "data/fixation/tasks.csv", pd.DataFrame([{"object": name} | {f"{t}_class": "1" for t in names}]))
+    write_arrays(root / f"data/test/fixation/{name}.npz", **arrays)
 
 
 @pytest.mark.parametrize("figure", VIEWED)
 def test_maps_are_drawn_on_the_object(looked, figure):
-    made = figure.build(looked)
+    made = figure(looked)
     assert made.paths[0].stat().st_size > 10_000
     assert "MobileNetV2" in made.alt
-    assert ("random weights" in made.alt) == (figure is not figure_3_29)  # which shows no controls
+    assert ("random weights" in made.alt) == (figure is not maps.figure_3_29)  # which shows no controls
 
 
 def test_a_map_is_drawn_where_it_is_high():
     cam = np.zeros((7, 7), dtype=np.float16)
     cam[1, 5] = 3
-    found = figure_3_30.large(cam[None], "mobilenet_v2")[0]  # whose cells lie on pixels 0, 32, 64, ... of 224
+    found = maps.large(cam[None], "mobilenet_v2")[0]  # whose cells lie on pixels 0, 32, 64, ... of 224
     place = (60, 300)
     assert np.unravel_index(found.argmax(), found.shape) == pytest.approx(place, abs=3) and found.max() > 0.98
-    assert not figure_3_30.large(np.zeros((1, 7, 7)), "mobilenet_v2").any()
+    assert not maps.large(np.zeros((1, 7, 7)), "mobilenet_v2").any()
 
 
 def test_fused_attention_stands_beside_models_where_nobody_marked_anything(looked):
-    for path in (looked.data / "weights/lessons").glob("*.npz"):
+    for path in (looked.data / "test/weights/ground_truth").glob("*.npz"):
         path.unlink()
-    made = figure_3_34.build(looked)
+    made = maps.figure_3_34(looked)
     assert "marks" not in made.alt.lower() and "mesh saliency" not in made.alt and "ours" in made.alt
 
 
 def test_one_place_seen_from_all_sides_is_told_from_chance_and_from_the_middle(looked):
-    for control in (anywhere, middle):
-        found = same_place(control)(looked)
-        assert len(found) == 2 and (found > 40).all()  # all views look at the pole
+    for nearer in (nearer_than_chance, nearer_than_middle):
+        found = nearer(looked, None)
+        assert len(found) == 2 and (found > 0.4).all()  # all views look at the pole
 
 
 def test_looking_at_the_middle_of_each_picture_is_no_place_of_the_object(looked, small):
     for name in ("ball", "cube"):
         write_look(looked.data.parent, name, small.ball(), None)
-    assert (same_place(anywhere)(looked) < -5).all()
-    assert same_place(middle)(looked) == pytest.approx([0, 0], abs=1)
+    assert (nearer_than_chance(looked, None) < -0.05).all()
+    assert nearer_than_middle(looked, None).to_numpy() == pytest.approx([0, 0], abs=0.01)
 
 
 def test_a_view_that_sees_nothing_has_no_place(looked, root):
-    path = root / "data/fixation/ball.npz"
+    path = root / "data/test/fixation/ball.npz"
     arrays = read_arrays(path)
     arrays["visible"][1:] = False
     write_arrays(path, **arrays)
-    assert len(same_place(anywhere)(looked)) == 1  # one view of the ball is left, nothing to compare it with
+    assert len(nearer_than_chance(looked, None).dropna()) == 1  # one view of the ball is left
 
 
-def test_a_kept_picture_comes_back_with_its_words(bare, small, tmp_path):
-    path = tmp_path / "drawn.png"
-    plt.imsave(path, np.zeros((4, 4)))
-    keep(Figure("Figure 3.34: fused", "an alt", "a caption", [path]), "figure_3_34", bare / "reports/fixation")
-    made = figure_3_34_gaze.build(Results(small.settings(), bare))
-    assert made.title == "Figure 3.34: fused, on meshes with human gaze" and made.caption == "a caption"
-    assert made.paths[0].read_bytes() == path.read_bytes() and made.paths[0].parent.name == "figures"
+def test_a_picture_on_gaze_is_kept_with_its_words_where_the_meshes_are_absent(bare, small):
+    def draw(results, dataset):
+        path = maps.path_of(results, "3_34", dataset)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        plt.imsave(path, np.zeros((4, 4)))
+        return Figure("Figure 3.34: fused", "an alt", "a caption", [path])
+
+    build, results = maps.on_gaze(draw, "figure_3_34_gaze"), small.results(bare)
+    (bare / "data/gaze/fixation").mkdir(parents=True)
+    drawn = build(results)
+    (bare / "data/gaze/fixation").rmdir()
+    assert build(results) == drawn
+    assert drawn.title == "Figure 3.34: fused, on meshes with human gaze" and drawn.caption == "a caption"
+    assert {path.name for path in drawn.paths} == {"figure_3_34_gaze.png", "figure_3_34_gaze.json"}
+    drawn.paths[0].unlink()
+    with pytest.raises(NotRun, match="figure_3_34_gaze.png"):
+        build(results)
 
 
 def test_without_any_attention_nothing_is_made_up(bare, small):
-    empty = Results(small.settings(), bare)
-    for module in (*FIGURES, table, chart, figure_3_29_gaze, figure_3_30_gaze, figure_3_34_gaze):
+    empty = small.results(bare)
+    for build in (*FIGURES, *VIEWED, *ON_GAZE, table.build, chart.build):
         with pytest.raises(NotRun, match="fixation"):
-            module.build(empty)
+            build(empty)
     judged = judge(chapter_3_fixation.CLAIMS, empty)
     assert (judged["verdict"] == "open").all() and judged["tested_on"].str.startswith("not run").all()

@@ -4,26 +4,31 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.kit.files import write_arrays, write_mesh, write_table
-from stages.report import figures, judge, tables, tradeoff
-from stages.report.claims import MESHES
-from stages.report.claims._errors import (
-    falls_with_faces,
-    higher,
-    higher_than_each,
-    more_at_few_faces,
-    ranks_agree,
-    room_within,
-    wider_at_few_faces,
+from stages.kit.files import write_arrays, write_mesh
+from stages.kit.stats import interval
+from stages.report import judge
+from stages.report.claims import highest_of, lowest_of
+from stages.report.differences import differences
+from stages.report.meshes import (
+    figure_3_4,
+    figure_3_5,
+    figure_3_7,
+    figure_3_8,
+    figure_3_21,
+    figure_3_22,
+    figure_3_23,
+    lod_claims,
+    lod_detectors,
+    simplification,
+    table_3_1_5_combinations,
+    table_3_2,
 )
-from stages.report.figures import figure_3_4, figure_3_5, figure_3_7, figure_3_8, figure_3_21, figure_3_22, figure_3_23
-from stages.report.intervals import interval
-from stages.report.items import build_all
-from stages.report.lod_cells import OWN, Source, data_sets, face_counts, paired_cells
-from stages.report.results import NotRun, Results
+from stages.report.meshes.groups import BOTH, FEW_MINUS_MANY, claim, lod_claim
+from stages.report.meshes.lod_claims import CLAIMS
+from stages.report.meshes.rows import data_sets, face_counts, paired_cells
+from stages.report.results import NotRun
 from stages.report.style import label
-from stages.report.tables import lod_claims, lod_detectors, table_3_1_5_combinations, table_3_2
-from stages.report.tradeoff import simplification
+from stages.report.topics import KINDS, build_all
 
 OBJECTS = ["a", "b", "c", "d"]
 POINTS = {"heat_kernel": 3, "SymRad": 4, "itti": 15, "guided_ssim": 16, "guided_ed": 17, "svm": 18, "harris": 50,
@@ -45,7 +50,7 @@ def measured(dataset="test", seed=0, objects=OBJECTS):
             for target, faces in TARGETS.items():
                 error = level * (3 / faces) * (1 + points / 100 * 3000 / faces) * (0.95 if way else 1)
                 error *= 1 + 0.001 * random.normal()
-                cell = {"dataset": dataset, "object": name, "method": method, "target": target, "asked": faces}
+                cell = {"dataset": dataset, "item": name, "method": method, "target": target, "asked": faces}
                 cell |= {"faces": faces, "points": points, "kept": points, "rings": 3.0}
                 cell |= {"shrunk": points == 60 and target == "1500", "infeasible": False}
                 values = {"faces": faces, "metro_mean": error, "metro_rms": 2 * error, "metro_max": 9 * error}
@@ -56,13 +61,13 @@ def measured(dataset="test", seed=0, objects=OBJECTS):
 
 @pytest.fixture
 def run(bare, small):
-    """A function that writes rows (and those of committed sets) and returns the results."""
+    """A function that writes rows (and those of further sets, without seconds) and returns the results."""
 
-    def written(rows, **elsewhere):
+    def written(rows, **further):
         small.write(bare, "lod", rows)
-        for name, frame in elsewhere.items():
-            write_table(bare / "reports/simplification" / f"{name}.csv", frame.drop(columns="seconds"))
-        return Results(small.settings(), bare)
+        for frame in further.values():
+            small.write(bare, "lod", frame.assign(seconds=np.nan))
+        return small.results(bare)
 
     return written
 
@@ -76,40 +81,37 @@ def without(rows, value=np.nan, **where):
 def test_only_cells_where_nothing_shrank_when_asked_for_the_whole(run):
     results = run(measured())
     every = paired_cells(results, ["metro_mean"], ["itti", "corners"])
-    whole = paired_cells(results, ["metro_mean"], ["itti", "corners"], Source(whole=True))
+    whole = paired_cells(results, ["metro_mean"], ["itti", "corners"], whole=True)
     assert set(every["target"]) == set(TARGETS)
     assert set(whole["target"]) == {"25%", "3000"}
-    assert set(paired_cells(results, ["metro_mean"], ["itti"], Source(whole=True))["target"]) == set(TARGETS)
+    assert set(paired_cells(results, ["metro_mean"], ["itti"], whole=True)["target"]) == set(TARGETS)
 
 
-def test_committed_sets_stand_beside_the_run_and_have_no_seconds(run):
+def test_sets_that_are_not_switched_on_stand_behind_those_that_are(run):
     results = run(measured(), princeton=measured("princeton", 1), gaze=measured("gaze", 2))
-    assert data_sets(results) == {"test": OWN, "psb": Source("princeton"), "gaze meshes": Source("gaze")}
-    rows = paired_cells(results, ["metro_mean"], ["qem", "itti"], Source("princeton"))
+    assert data_sets(results) == ["test", "gaze", "princeton"]
+    rows = paired_cells(results, ["metro_mean"], ["qem", "itti"], "princeton")
     assert rows["seconds"].isna().all() and len(rows) == 2 * len(OBJECTS) * len(TARGETS)
 
 
-def test_a_run_on_psb_is_not_shown_twice(run):
-    results = run(measured("princeton"), princeton=measured("princeton", 1))
-    assert data_sets(results) == {"psb": OWN}
-
-
-def test_committed_set_alone_is_enough(bare, small):
-    write_table(bare / "reports/simplification/gaze.csv", measured("gaze").drop(columns="seconds"))
-    assert data_sets(Results(small.settings(), bare)) == {"gaze meshes": Source("gaze")}
-    with pytest.raises(NotRun, match="make detectors"):
-        Results(small.settings(), bare).simplification("princeton")
+def test_one_set_alone_is_enough_and_without_any_it_is_not_run(run, bare, small):
+    with pytest.raises(NotRun, match="lod"):
+        data_sets(small.results(bare))
+    results = run(measured("gaze"))
+    assert data_sets(results) == ["gaze"]
+    with pytest.raises(NotRun, match="princeton"):
+        paired_cells(results, ["metro_mean"], ["itti"], "princeton")
 
 
 def test_face_counts_come_before_shares_and_need_objects(run):
     rows = measured()
     assert face_counts(rows) == ["3000", "1500"]
     assert face_counts(rows[rows["target"] == "25%"]) == ["25%"]
-    assert face_counts(rows[rows["object"].isin(["a", "b"])]) == []
+    assert face_counts(rows[rows["item"].isin(["a", "b"])]) == []
 
 
 def test_table_3_2_compares_all_methods_on_the_same_objects(run):
-    rows = without(measured(), object="d", target="1500", method="guided_ed", metric="ssim_error")
+    rows = without(measured(), item="d", target="1500", method="guided_ed", metric="ssim_error")
     frame = table_3_2.build(run(rows)).frame
     counts = frame.groupby(["target", "metric"])["objects"].unique().map(list).to_dict()
     assert counts["1500", "ssim_error"] == [3] and counts["1500", "metro_mean"] == [4]
@@ -122,14 +124,14 @@ def test_table_3_2_shows_the_thesis_and_every_data_set(run):
     shown = table_3_2.build(run(measured(), gaze=measured("gaze", 2))).shown.set_index(["target", "kept points"])
     row = shown.loc[("3,000 faces", "guided by SSIM")]
     assert row["Metro mean, %, thesis"] == "0.180"
-    assert row["Metro mean, %, test"].endswith("+") and "[" in row["Metro mean, %, gaze meshes"]
+    assert row["Metro mean, %, test"].endswith("+") and "[" in row["Metro mean, %, meshes with human gaze"]
     assert not shown.loc[("3,000 faces", "plain QEM"), "Metro mean, %, test"].endswith(("+", "–"))
 
 
 def test_table_3_2_repeats_what_nothing_shrank_only_where_it_differs(run):
     rows = measured()
     assert not table_3_2.build(run(rows)).frame["nothing_shrunk"].any()
-    rows.loc[(rows["method"] == "svm") & (rows["object"] == "a"), "shrunk"] = True
+    rows.loc[(rows["method"] == "svm") & (rows["item"] == "a"), "shrunk"] = True
     found = table_3_2.build(run(rows)).frame.groupby("nothing_shrunk")["objects"].max()
     assert found.to_dict() == {False: 4, True: 3}
 
@@ -156,84 +158,112 @@ def test_combinations_without_errors_are_not_run(run):
     assert float(shown.loc["VisAtt", "Metro mean, %"]) > 0
 
 
+def higher(results, worse, better, target=None):
+    """How much higher the Metro mean error of `worse` is than that of `better`, in % of the mean of the two."""
+    return differences(results, lod_claim("k", "s", "Sentence.", worse, better, "metro_mean", target))
+
+
+def stated(results, statistic, **fields):
+    """The differences of a claim of one of the further statistics."""
+    return differences(results, claim(key="k", section="s", sentence="Sentence.", statistic=statistic, **fields))
+
+
+ERROR = {"metric": "metro_mean"}
+
+
 def test_difference_is_relative_and_reverses_with_its_sides(run):
     results = run(measured())
-    there = higher("corners", "itti", targets=["3000"])(results)
-    back = higher("itti", "corners", targets=["3000"])(results)
+    there = higher(results, "corners", "itti", "3000")
+    back = higher(results, "itti", "corners", "3000")
     assert there.to_numpy() == pytest.approx(-back.to_numpy())
     assert there.mean() == pytest.approx(100 * (1.6 - 1.15) / 1.375, rel=0.02)
 
 
 def test_group_is_the_mean_of_those_that_were_run(run):
     results = run(measured())
-    group = higher(["corners", "sift"], "itti")(results)
-    assert group.to_numpy() == pytest.approx(higher("corners", "itti")(results).to_numpy())
+    group = higher(results, ("corners", "sift"), "itti")
+    assert group.to_numpy() == pytest.approx(higher(results, "corners", "itti").to_numpy())
     with pytest.raises(NotRun, match="sift"):
-        higher(["sift"], "itti")(results)
+        higher(results, ("sift",), "itti")
+
+
+def test_a_target_that_one_side_misses_does_not_count(run):
+    rows = without(measured(), item="d", target="1500", method="corners", metric="metro_mean")
+    found = higher(run(rows), "corners", "itti", "1500")
+    assert list(found.index) == ["a", "b", "c"]
 
 
 def test_against_each_takes_the_worst_or_the_best_of_the_others(run):
     results = run(measured())
-    worst = higher_than_each("corners", ["itti", "harris"])(results)
-    best = higher_than_each("corners", ["itti", "harris"], worst=False)(results)
-    assert worst.to_numpy() == pytest.approx(higher("corners", "harris")(results).to_numpy())
-    assert best.to_numpy() == pytest.approx(higher("corners", "itti")(results).to_numpy())
+    worst = higher(results, "corners", highest_of("itti", "harris"))
+    best = higher(results, "corners", lowest_of("itti", "harris"))
+    assert worst.to_numpy() == pytest.approx(higher(results, "corners", "harris").to_numpy())
+    assert best.to_numpy() == pytest.approx(higher(results, "corners", "itti").to_numpy())
 
 
 def test_gap_and_spread_grow_at_few_faces(run):
-    results = run(measured())
-    assert (more_at_few_faces("corners", "itti")(results) > 0).all()
-    assert (more_at_few_faces("itti", "corners")(results) < 0).all()
-    assert (wider_at_few_faces(list(POINTS))(results) > 0).all()
+    results, at = run(measured()), {"where": ERROR, "contrast": FEW_MINUS_MANY}
+    there, back = {"method": "corners"}, {"method": "itti"}
+    assert (stated(results, "difference", first=there, second=back, **at) > 0).all()
+    assert (stated(results, "difference", first=back, second=there, **at) < 0).all()
+    assert (stated(results, "spread", first={"method": tuple(POINTS)}, **at) > 0).all()
     rows = measured()
-    with pytest.raises(NotRun, match="3000 and 1500"):
-        more_at_few_faces("corners", "itti")(run(rows[rows["target"] != "3000"]))
+    with pytest.raises(NotRun, match="target 3000 is not among"):
+        stated(run(rows[rows["target"] != "3000"]), "difference", first=there, second=back, **at)
 
 
 def test_error_falls_with_faces(run):
-    rows = measured()
-    assert (falls_with_faces("itti")(run(rows)) > 0).all()
-    once = (rows["object"] == "a") & (rows["target"] != "1500")
-    assert list(falls_with_faces("itti")(run(rows[~once])).index) == ["b", "c", "d"]  # with one count nothing can fall
+    rows, fields = measured(), {"where": ERROR, "first": {"method": "itti"}}
+    assert (stated(run(rows), "falls_with_faces", **fields) > 0).all()
+    single = (rows["item"] == "a") & (rows["target"] != "1500")
+    found = stated(run(rows[~single]), "falls_with_faces", **fields)
+    assert list(found.index) == ["b", "c", "d"]  # with one count nothing can fall
     with pytest.raises(NotRun, match="two face counts"):
-        falls_with_faces("itti")(run(rows[rows["target"] == "1500"]))
+        stated(run(rows[rows["target"] == "1500"]), "falls_with_faces", **fields)
+
+
+def room(results, margin, methods, base):
+    """What the differences of methods from a base leave of a margin."""
+    sides = {"first": {"method": methods}, "second": {"method": base}}
+    return stated(results, "room", where=ERROR | BOTH, margin=margin, **sides)
 
 
 def test_equivalence_holds_within_the_margin_and_fails_beyond_it(run):
     results = run(measured())
-    gap = 100 * higher("guided_ed", "guided_ssim", targets=["3000", "1500"])(results).abs().mean()
-    assert gap > 0  # they differ, beyond doubt, but little
-    _, low, _ = interval(room_within(1e-3, ["guided_ed"], "guided_ssim")(results))
+    assert higher(results, "guided_ed", "guided_ssim", "1500").mean() > 0  # they differ, beyond doubt, but little
+    _, low, _ = interval(room(results, 1e-3, ("guided_ed",), "guided_ssim"))
     assert low > 0
-    _, _, high = interval(room_within(1e-6, ["guided_ed"], "guided_ssim")(results))
+    _, _, high = interval(room(results, 1e-6, ("guided_ed",), "guided_ssim"))
     assert high < 0
-    _, _, high = interval(room_within(1e-4, ["guided_ed", "corners"], "guided_ssim")(results))
+    _, _, high = interval(room(results, 1e-4, ("guided_ed", "corners"), "guided_ssim"))
     assert high < 0  # the farthest of them decides
 
 
 def test_equivalence_does_not_depend_on_which_side_is_higher(run):
     results = run(measured())
-    there, back = (room_within(1e-4, [a], b)(results) for a, b in (("itti", "svm"), ("svm", "itti")))
+    there, back = (room(results, 1e-4, (a,), b) for a, b in (("itti", "svm"), ("svm", "itti")))
     assert there.to_numpy() == pytest.approx(back.to_numpy())
 
 
 def test_ranks_agree_where_the_error_grows_with_the_points(run):
-    assert ranks_agree("points", "metro_mean")(run(measured())).min() > 0.98
+    assert stated(run(measured()), "ranks_agree", first=ERROR).min() > 0.98
     reversed_ = measured()
     reversed_["points"] = 100 - reversed_["points"]
-    assert ranks_agree("points", "metro_mean")(run(reversed_)).max() < -0.98
+    results = run(reversed_)
+    assert stated(results, "ranks_agree", first=ERROR).max() < -0.98
+    assert stated(results, "ranks_agree", first=ERROR, second={"metric": "dlap"}).min() > 0.98
 
 
 def test_every_claim_on_meshes_is_judged_on_every_set(run):
     results = run(measured(), princeton=measured("princeton", 1))
     table = lod_claims.build(results)
-    assert len(table.shown) == len(MESHES)
+    assert len(table.shown) == len(CLAIMS)
     words = table.frame.set_index(["key", "data"])["verdict"]
     for data in ("test", "psb"):
         assert words["many_points_distort", data] == "supported"
         assert words["adaptive_svm_metro", data] == "supported"
         assert words["hks_high", data] == "contradicted"
-    own = judge(MESHES, results).set_index("key")["verdict"]
+    own = judge(CLAIMS, results).set_index("key")["verdict"]
     assert (own == words.xs("test", level="data").reindex(own.index)).all()
 
 
@@ -249,12 +279,12 @@ def with_people():
 @pytest.mark.parametrize("own", [True, False])
 def test_where_people_look_is_judged_on_the_meshes_with_gaze(run, own):
     results = run(with_people()) if own else run(measured(), gaze=with_people())
-    found = judge(MESHES, results).set_index("key")
+    found = judge(CLAIMS, results).set_index("key")
     assert found.loc["ours_keep_gaze", "verdict"] == "supported"
     assert found.loc["ours_keep_gaze", "tested_on"].startswith("meshes with human gaze, error weighted by human gaze")
     assert found.loc["ours_keep_salient", "verdict"] == "contradicted"  # the model and people differ
     table = lod_claims.build(results).frame.set_index(["key", "data"])["verdict"]
-    assert table["ours_keep_gaze", "gaze meshes"] == "supported"
+    assert table["ours_keep_gaze", "meshes with human gaze"] == "supported"
     assert own or table["ours_keep_gaze", "test"] == "open"
 
 
@@ -262,7 +292,7 @@ def test_where_people_look_is_judged_on_the_meshes_with_gaze(run, own):
 def test_tables_show_the_error_by_gaze_where_it_was_measured(run, own):
     results = run(with_people()) if own else run(measured(), gaze=with_people())
     shown = lod_detectors.build(results).shown
-    assert ("error where people look, %" + ("" if own else ", gaze meshes")) in shown
+    assert ("error where people look, %" + ("" if own else ", meshes with human gaze")) in shown
     assert ("error where people look, %" in table_3_1_5_combinations.build(results).shown) == own
 
 
@@ -276,16 +306,16 @@ def test_not_run_claims_say_so(run):
 def meshes(run, small):
     """A run with points, and simplified meshes of two objects on the disk."""
     results = run(measured())
-    root, mesh = results.data.parent, small.ball()
+    root, mesh = results.data / "test", small.ball()
     methods = ["qem", *POINTS, *WAYS]
     for name in ("a", "b"):
-        write_mesh(root / f"data/meshes/{name}.npz", mesh)
+        write_mesh(root / f"meshes/{name}.npz", mesh)
         arrays = {f"{method}.points": np.array([3, 50, 100]) for method in POINTS}
         arrays |= {f"{method}.strong": np.int64(2) for method in POINTS}
-        write_arrays(root / f"data/salient_points/{name}.npz", **arrays)
+        write_arrays(root / f"salient_points/{name}.npz", **arrays)
         for method in methods:
-            write_mesh(root / f"data/lod/{name}/{method}_3000.npz", small.ball(9))
-            write_mesh(root / f"data/lod/{name}/{method}_1500.npz", small.ball(6))
+            write_mesh(root / f"lod/{name}/{method}_3000.npz", small.ball(9))
+            write_mesh(root / f"lod/{name}/{method}_1500.npz", small.ball(6))
     return results
 
 
@@ -304,13 +334,13 @@ def test_pictures_of_meshes_are_drawn(meshes, module, monkeypatch):
 
 
 def test_pictures_take_the_same_target_of_all_methods(meshes):
-    for path in (meshes.data / "lod/a").glob("corners_1500.npz"):
+    for path in (meshes.data / "test/lod/a").glob("corners_1500.npz"):
         path.unlink()
     assert "a at 3,000 faces" in figure_3_7.build(meshes).caption
 
 
 def test_picture_of_many_and_few_points_takes_the_object_where_they_differ(meshes):
-    path = meshes.data / "salient_points/b.npz"
+    path = meshes.data / "test/salient_points/b.npz"
     arrays = {f"{method}.points": np.arange(60) for method in POINTS}
     counts = {"corners": 60, "VisAttCurvSymCon": 14}
     write_arrays(path, **arrays | {f"{method}.strong": np.int64(counts.get(method, 3)) for method in POINTS})
@@ -319,7 +349,7 @@ def test_picture_of_many_and_few_points_takes_the_object_where_they_differ(meshe
 
 def test_boxes_hold_the_objects_without_error(run, monkeypatch):
     rows, drawn = measured(), []
-    exact = (rows["object"] == "a") & (rows["metric"] == "metro_mean")
+    exact = (rows["item"] == "a") & (rows["metric"] == "metro_mean")
     rows.loc[exact, "value"] = 0.0
     monkeypatch.setattr(figure_3_23.np, "quantile", lambda values, _: drawn.append(values) or [1e-9, 1, 2, 3, 4])
     figure_3_23.build(run(rows))
@@ -329,7 +359,7 @@ def test_boxes_hold_the_objects_without_error(run, monkeypatch):
 def test_chart_of_costs_has_a_front_for_each_share(run, monkeypatch):
     rows = measured()
     more = rows[rows["target"] == "25%"].assign(target="50%", value=lambda half: half["value"] / 2)
-    monkeypatch.setattr(simplification, "looking_seconds", lambda _: dict.fromkeys(POINTS, 0.9))
+    monkeypatch.setattr(simplification, "attention_seconds", lambda _: dict.fromkeys(POINTS, 0.9))
     figure = simplification.build(run(pd.concat([rows, more])))
     found = pd.read_csv(figure.paths[1]).set_index(["metric", "target", "method"])
     plain = found.xs("qem", level="method")
@@ -346,9 +376,9 @@ def test_colours_of_the_error_are_those_of_the_distance(small):
 
 
 def test_all_of_it_is_not_run_without_measurements(bare, small):
-    results = Results(small.settings(), bare)
+    results = small.results(bare)
     missing = {}
-    for kind in (tables, figures, tradeoff):
+    for kind in KINDS:
         missing |= build_all(kind, results).not_run
     names = ["table_3_2", "lod_detectors", "lod_claims", "backends", "figure_3_4", "figure_3_5", "figure_3_7"]
     assert set(names + ["figure_3_8", "figure_3_21", "figure_3_22", "figure_3_23", "simplification"]) <= set(missing)

@@ -9,20 +9,17 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.kit.files import write_arrays, write_table
+from stages.kit.files import write_arrays, write_mesh
 from stages.report.__main__ import dataset_line, write_report
 from stages.report.drawing import VIEWPOINT, picture, visible
-from stages.report.figures import table_4_1
 from stages.report.packing import SHADES, STEPS, Store, ordered
-from stages.report.results import Results
 from stages.report.viewer import pack_viewer
 
 
 @pytest.fixture
-def page(root, small, monkeypatch):
+def page(root, small):
     """The text of the page of the small run."""
-    monkeypatch.chdir(root)
-    write_report(Results(small.settings()))
+    write_report(small.results(root))
     return (root / "reports/index.html").read_text()
 
 
@@ -85,7 +82,7 @@ def test_ordering_leaves_unused_vertices_out(small):
 
 def test_objects_that_do_not_fit_are_named(results, small):
     size = len(pack_viewer(results)["objects"][0]["store"]) / 1000
-    tight = Results(small.settings(viewer_kilobytes=int(1.5 * size)), results.data.parent)
+    tight = small.results(results.data.parent, viewer_kilobytes=int(1.5 * size))
     packed = pack_viewer(tight)
     assert [one["name"] for one in packed["objects"]] == ["ball"]
     assert packed["left_out"] == ["cube"]
@@ -126,7 +123,7 @@ def test_verdicts_are_counted_beside_the_claims(page, root):
 def test_equal_runs_give_equal_bytes(page, root, small):
     files = sorted(path for path in (root / "reports").rglob("*") if path.is_file())
     before = [path.read_bytes() for path in files]
-    write_report(Results(small.settings()))
+    write_report(small.results(root))
     assert [path.read_bytes() for path in files] == before
 
 
@@ -135,24 +132,22 @@ def test_old_results_go_and_those_of_others_stay(page, root, small):
     for path in (mine, other):
         path.parent.mkdir(exist_ok=True)
         path.write_text("old")
-    write_report(Results(small.settings()))
+    write_report(small.results(root))
     assert not mine.exists()
     assert other.exists()
 
 
-def test_nothing_measured_is_listed_and_no_error(bare, small, monkeypatch, capsys):
-    monkeypatch.chdir(bare)
-    write_report(Results(small.settings()))
+def test_nothing_measured_is_listed_and_no_error(bare, small, capsys):
+    write_report(small.results(bare))
     said = capsys.readouterr().out
     assert "tables/table_4_1 not run" in said and "dvc repro classification" in said
-    assert "not run: no meshes" in (bare / "reports/index.html").read_text()
+    assert "not run: no data/SET/meshes" in (bare / "reports/index.html").read_text()
 
 
-def test_names_from_data_are_escaped(root, small, monkeypatch):
-    monkeypatch.chdir(root)
-    frame = Results(small.settings()).measurements("lod").assign(method="<b>&qem</b>")
+def test_names_from_data_are_escaped(root, small):
+    frame = small.results(root).rows("lod").assign(method="<b>&qem</b>")
     small.write(root, "lod", frame)
-    write_report(Results(small.settings()))
+    write_report(small.results(root))
     assert "<b>&qem</b>" not in (root / "reports/index.html").read_text()
 
 
@@ -163,18 +158,6 @@ def test_picture_is_white_off_the_object_only(small):
     assert (image[30, 30] < 1).all()
 
 
-def test_line_of_chance_follows_the_objects_that_the_set_held(root, results, small, monkeypatch):
-    drawn = {}
-    monkeypatch.setattr(table_4_1, "draw_bars", lambda axes, *_, chance: drawn.update(chance=chance, axes=axes) or {})
-    small.write_set(root, "six", 4)
-    table_4_1.build(results)
-    assert drawn["chance"] == 1 / 4
-    assert (
-        drawn["axes"].get_title(loc="left") + drawn["axes"].get_title()
-        == "Recognising 4 objects (set six) by one touch"
-    )
-
-
 def test_points_behind_the_object_are_hidden(small):
     mesh = small.ball()
     towards = mesh.vertices @ VIEWPOINT.axes[2]
@@ -183,17 +166,14 @@ def test_points_behind_the_object_are_hidden(small):
     assert abs(down[0] - 29.5) < 6
 
 
-def test_method_that_was_not_run_is_no_crash(root, small, monkeypatch):
-    monkeypatch.chdir(root)
-    for path in (root / "data/salient_points").glob("*.npz"):
+def test_method_that_was_not_run_is_no_crash(root, small):
+    for path in (root / "data/test/salient_points").glob("*.npz"):
         arrays = {key.replace("enhanced", "itti"): value for key, value in np.load(path).items()}
         write_arrays(path, **arrays)
-    write_report(Results(small.settings()))
+    write_report(small.results(root))
     assert '"itti"' in (root / "reports/index.html").read_text()
 
 
 def test_the_head_of_the_page_names_the_data_set_of_the_meshes(root, small):
-    for stage, dataset in (("classes", "furniture"), ("meshes", "household")):
-        row = {"dataset": dataset, "object": "ball", "metric": "faces", "value": 1.0}
-        write_table(root / f"reports/measurements/{stage}.csv", pd.DataFrame([row]))
-    assert dataset_line(Results(small.settings(), root)).endswith("data set household")
+    write_mesh(root / "data/furniture/meshes/chair.npz", small.ball())
+    assert dataset_line(small.results(root)).endswith("2 objects of the data set test")  # the first that is switched on

@@ -6,39 +6,37 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.kit.files import write_table
-from stages.report.claims.chapter_4_real import CLAIMS
-from stages.report.figures import real_touches
-from stages.report.results import NotRun, Results
-from stages.report.style import look
-from stages.report.tables import grasps, simulated_to_real, table_4_4
+from stages.report.recorded import grasps, real_touches, simulated_to_real, table_4_4
+from stages.report.recorded.claims_touches import CLAIMS
+from stages.report.results import NotRun
+from stages.report.style import plot_style
 from stages.report.verdict import judge
 
 CLASSIFIERS = {"knn": 0.7, "svm": 0.4, "decision_tree": 0.5, "naive_bayes": 0.6, "deep_learning": 0.65}
 GAIN = {"all": 0.0, "selected": 0.05, "selected_training": -0.05}
-LOSS = {"accuracy_holdout": 0.0, "accuracy_blocked": 0.1, "accuracy_fivefold": 0.02}
+LOSS = {"random": 0.0, "blocks": 0.1, "folds": 0.02}
 
 
 def recorded():
     """Rows in which the selection gains 5 points, in training alone loses 5; blocks lose 10."""
     random, rows = np.random.default_rng(0), []
     for name in table_4_4.SETS:
-        share = {"object": name, "method": "all", "metric": "share_similar", "value": 0.2, "repetition": 0}
+        share = {"group": name, "method": "all", "metric": "share_similar", "value": 0.2, "repetition": 0}
         rows.append(share | {"chosen": "can pen"})
         for repetition in range(6):
             luck = 0.01 * random.normal()
             rows += [
                 {
-                    "object": name, "method": method, "classifier": classifier, "metric": metric,
+                    "group": name, "method": method, "classifier": classifier, "metric": "accuracy", "split": split,
                     "repetition": repetition, "chosen": "can pen",
                     "value": mean + gain - loss + luck + 0.002 * random.normal(),
                 }
                 for method, gain in GAIN.items() for classifier, mean in CLASSIFIERS.items()
-                for metric, loss in LOSS.items()
+                for split, loss in LOSS.items()
             ]  # fmt: skip
     for name, near in (("can", 0.6), ("pen", 0.5), ("tube", 0.7)):
-        rows.append({"object": name, "metric": "neighbour_correlation", "value": near})
-        rows.append({"object": name, "metric": "pair_correlation", "value": near / 2})
+        rows.append({"group": name, "metric": "neighbour_correlation", "value": near})
+        rows.append({"group": name, "metric": "pair_correlation", "value": near / 2})
     return pd.DataFrame(rows)
 
 
@@ -50,7 +48,7 @@ def grasped():
             common = {"task": task, "split": split, "palm": "all", "scaled": "training", "components": components}
             common |= {"classifier": classifier, "metric": "accuracy", "seconds": 0.1}
             for k in range(5):
-                row = {"repetition": k} if task == "recognition" else {"object": f"o{k}"}
+                row = {"repetition": k} if task == "recognition" else {"item": f"o{k}"}
                 rows.append(common | row | {"value": 0.8 + 0.01 * random.normal()})
     rows += [
         {"task": "slip", "palm": palm, "metric": metric, "value": value}
@@ -58,9 +56,9 @@ def grasped():
                                     ("down", "drift_drawn", 1.2))
     ]  # fmt: skip
     for classifier, mean in {"knn": 0.9, "svm": 0.5, "majority": 0.5}.items():
-        common = {"task": "slip", "split": "unseen", "palm": "down", "scaled": "own", "components": 12}
+        common = {"task": "slip", "split": "test_objects", "palm": "down", "scaled": "own", "components": 12}
         common |= {"classifier": classifier, "metric": "accuracy", "seconds": 0.1}
-        rows += [common | {"object": f"o{k}", "value": mean + 0.01 * (-1) ** k} for k in range(6)]
+        rows += [common | {"item": f"o{k}", "value": mean + 0.01 * (-1) ** k} for k in range(6)]
     return pd.DataFrame(rows)
 
 
@@ -72,7 +70,7 @@ def transferred(help=0.1):
             for touches in (0, 1, 5, 20):
                 mean = 0.2 + 0.02 * touches + 0.01 * random.normal()
                 common = {"classifier": classifier, "touches": touches, "repetition": repetition, "metric": "accuracy"}
-                common |= {"object": "all", "seconds": 0.1}
+                common |= {"group": "all", "seconds": 0.1}
                 if touches:
                     rows.append(common | {"training": "real", "value": mean})
                 for kind in ("array", "resting_skin"):
@@ -80,16 +78,23 @@ def transferred(help=0.1):
                         said = {"training": "both" if touches else "simulated", "simulation": kind, "aligned": aligned}
                         rows.append(common | said | {"value": mean + help + 0.001 * random.normal()})
                         if not touches:
-                            rows.append(common | said | {"object": "ball", "value": 0.5 + 0.1 * aligned})
+                            rows.append(common | said | {"group": "ball", "value": 0.5 + 0.1 * aligned})
     return pd.DataFrame(rows)
+
+
+PLACES = {  # name of the rows -> their stage and set
+    "real": ("recorded", "pressure_images"), "grasps": ("recorded", "biotac_grasps"),
+    "simulated_to_real": ("simulated_to_real", "pressure_images"),
+}  # fmt: skip
 
 
 @pytest.fixture
 def measured(bare, small):
     def write(**frames):
         for name, rows in frames.items():
-            write_table(bare / "reports/touch" / f"{name}.csv", rows)
-        return Results(small.settings(), bare)
+            stage, dataset = PLACES[name]
+            small.write(bare, stage, rows, dataset)
+        return small.results(bare)
 
     return write
 
@@ -113,7 +118,7 @@ def test_table_4_4_stands_beside_the_thesis(measured):
 
 def test_a_set_without_a_selection_is_not_run_in_its_cells(measured):
     rows = recorded()
-    rows = rows[~((rows["object"] == "six") & (rows["method"] == "selected"))]
+    rows = rows[~((rows["group"] == "six") & (rows["method"] == "selected"))]
     shown = table_4_4.build(measured(real=rows)).shown
     cell = shown[(shown["set"] == "first six classes") & (shown["selection"] == "selection")]
     assert cell["SVM: ours · thesis, %"].item().startswith("not run")
@@ -144,7 +149,7 @@ def test_simulation_is_compared_by_the_number_of_real_touches(measured):
 
 
 def test_the_picture_of_simulated_and_real_touches_is_drawn(measured):
-    with look():
+    with plot_style():
         figure = real_touches.build(measured(simulated_to_real=transferred()))
     assert figure.paths[0].stat().st_size > 10_000
 
@@ -166,10 +171,10 @@ def test_selection_and_the_best_classifier_are_judged_on_real_touches(measured):
 
 @pytest.mark.parametrize("build", [table_4_4.build, grasps.build, simulated_to_real.build, real_touches.build])
 def test_without_recorded_touches_nothing_is_run_and_the_remedy_is_told(build, measured):
-    with pytest.raises(NotRun, match="make touch"):
+    with pytest.raises(NotRun, match="no measurements of"):
         build(measured())
 
 
 def test_claims_without_recorded_touches_are_open(measured):
     found = judged(measured())
-    assert (found["verdict"] == "open").all() and found["tested_on"].str.startswith("not run: no touch/").all()
+    assert (found["verdict"] == "open").all() and found["tested_on"].str.startswith("not run: no measurements of").all()

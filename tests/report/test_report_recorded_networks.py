@@ -4,12 +4,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.kit.files import write_table
-from stages.report.claims.chapter_5_real import CLAIMS, SETTINGS
-from stages.report.intervals import HOLD_OUT, interval
-from stages.report.results import NotRun, Results
-from stages.report.tables import real_networks
-from stages.report.tradeoff import network_sizes
+from stages.kit.split import shared_by
+from stages.kit.stats import interval
+from stages.report.recorded import network_sizes, real_networks
+from stages.report.recorded.claims_networks import CLAIMS, SETTINGS
+from stages.report.results import NotRun
 from stages.report.verdict import judge
 
 LEVELS = {  # (network, weights, mode) -> accuracy; the gain of each way is exact, the splits differ by far more
@@ -23,7 +22,21 @@ LEVELS = {  # (network, weights, mode) -> accuracy; the gain of each way is exac
     ("resnet50", "random", "frozen"): 0.3,
 }
 FEATURES, CHANCE, MAJORITY = 0.6, 0.1, 0.2
-COLUMNS = ["data", "object", "method", "weights", "had", "mode", "size", "split", "repetition", "metric", "value"]
+COLUMNS = [
+    "dataset",
+    "data",
+    "item",
+    "method",
+    "weights",
+    "pretrained",
+    "mode",
+    "size",
+    "split",
+    "repetition",
+    "metric",
+    "value",
+]
+DATASETS = {"pressure": "pressure_images", "grasps_object": "biotac_grasps", "grasps_slip": "biotac_grasps"}
 PIXELS = {"frozen": 96, "finetuned": 64}
 OBJECTS = ("cup", "hat", "pan", "shoe")
 
@@ -34,7 +47,7 @@ def touches(levels=LEVELS, repetitions=4):
     for data, split in SETTINGS.values():
         for (network, weights, mode), level in levels.items():
             way = {"method": network, "weights": weights, "mode": mode, "size": PIXELS[mode]}
-            way |= {"had": "complete" if weights == "imagenet" else "none"}
+            way |= {"pretrained": "complete" if weights == "imagenet" else "none"}
             rows += _trained({"data": data, "split": split} | way, level, random, repetitions)
         rows += _trained({"data": data, "split": split, "method": "features_knn"}, FEATURES, random, repetitions + 3)
     return pd.DataFrame(rows, columns=COLUMNS)
@@ -44,20 +57,20 @@ def _trained(said, level, random, repetitions):
     """Rows of one way; a later repetition is a harder split, and a later object a harder one."""
     kept = OBJECTS if said["split"] == "test_objects" else ()
     for number in range(repetitions):
-        common = said | {"repetition": number, "object": "all"}
+        common = said | {"repetition": number, "dataset": DATASETS[said["data"]]}
         yield common | {"metric": "accuracy", "value": level - 0.05 * number + 0.001 * random.normal()}
         if "mode" in said:
             yield common | {"metric": "chance", "value": CHANCE}
             yield common | {"metric": "majority", "value": MAJORITY}
         for k, name in enumerate(kept):
             value = level - 0.1 * k + 0.001 * random.normal()
-            yield common | {"object": name, "metric": "accuracy", "value": value}
+            yield common | {"item": name, "metric": "accuracy", "value": value}
 
 
 def majority():
-    """Rows of reports/touch/grasps.csv: what the commonest answer gets right, of each object kept for the test."""
-    said = {"task": "slip", "split": "unseen", "palm": "all", "scaled": "training", "metric": "accuracy"}
-    rows = [said | {"classifier": "majority", "object": name, "value": 0.4 - 0.1 * k} for k, name in enumerate(OBJECTS)]
+    """Rows of the recorded grasps: what the commonest answer gets right, of each object kept for the test."""
+    said = {"task": "slip", "split": "test_objects", "palm": "all", "scaled": "training", "metric": "accuracy"}
+    rows = [said | {"classifier": "majority", "item": name, "value": 0.4 - 0.1 * k} for k, name in enumerate(OBJECTS)]
     others = [{"palm": "side"}, {"task": "recognition"}, {"scaled": "own"}, {"classifier": "knn"}]
     return pd.DataFrame([*rows, *(rows[0] | other | {"value": 1.0} for other in others)])
 
@@ -67,9 +80,9 @@ def measured(bare, small):
     """frame -> the Results of a root with these trainings, and with what guessing gets right of grasps."""
 
     def write(frame):
-        write_table(bare / "reports/transfer/recorded.csv", frame)
-        write_table(bare / "reports/touch/grasps.csv", majority())
-        return Results(small.settings(), bare)
+        small.write(bare, "recorded_networks", frame)
+        small.write(bare, "recorded", majority(), "biotac_grasps")
+        return small.results(bare)
 
     return write
 
@@ -111,12 +124,12 @@ def test_objects_kept_for_the_test_are_the_pairs(measured):
 
 @pytest.mark.parametrize(
     ("data", "split", "unit", "shared"),
-    [("pressure", "random", "repetition", HOLD_OUT), ("grasps_slip", "test_objects", "object", 0.0)],
+    [("pressure", "random", "repetition", shared_by("random")), ("grasps_slip", "test_objects", "item", 0.0)],
 )
 def test_intervals_are_widened_for_repeated_splits_and_not_for_objects(measured, data, split, unit, shared):
     frame = touches()
     mine = frame[(frame["data"] == data) & (frame["split"] == split) & (frame["method"] == "features_knn")]
-    mine = mine[(mine["object"] != "all") == (unit == "object")]
+    mine = mine[mine["item"].notna() == (unit == "item")]
     mean, low, high = interval(mine.groupby(unit)["value"].mean(), shared)
     found = line(measured(frame), data, split, "features_knn", "", "")
     assert (found["accuracy"], found["low"], found["high"]) == pytest.approx((mean, low, high))
@@ -163,7 +176,14 @@ def test_untrained_networks_have_no_gain_over_themselves(measured):
 
 
 def test_data_sets_that_are_not_at_hand_are_left_out(measured):
-    absent = {"data": "vt60", "method": "alexnet", "weights": "imagenet", "mode": "frozen", "metric": "accuracy"}
+    absent = {
+        "dataset": "vt60",
+        "data": "vt60",
+        "method": "alexnet",
+        "weights": "imagenet",
+        "mode": "frozen",
+        "metric": "accuracy",
+    }
     shown = real_networks.build(measured(pd.concat([touches(), pd.DataFrame([absent])]))).shown
     assert "VT-60 (BathTip)" not in set(shown["data"])
 
@@ -171,7 +191,7 @@ def test_data_sets_that_are_not_at_hand_are_left_out(measured):
 @pytest.mark.parametrize("piece", [real_networks, network_sizes])
 def test_without_accuracies_the_pieces_are_not_run(measured, piece):
     frame = touches()
-    with pytest.raises(NotRun, match="no accuracies"):
+    with pytest.raises(NotRun, match="no accuracy"):
         piece.build(measured(frame.assign(value=np.nan)))
 
 
@@ -221,8 +241,8 @@ def test_thesis_s_own_lead_over_guessing_is_the_bar(measured):
 
 
 def test_claims_over_repeated_splits_alone_are_widened():
-    shares = {(claim.over, claim.shared) for claim in CLAIMS}
-    assert shares == {("repetitions", HOLD_OUT), ("objects", 0.0), ("networks", 0.0)}
+    shares = {(claim.pairs, claim.share) for claim in CLAIMS}
+    assert shares == {("repetitions", shared_by("random")), ("objects", 0.0), ("networks", 0.0)}
 
 
 def test_networks_are_the_pairs_where_all_of_them_are_asked(measured):
@@ -236,7 +256,7 @@ def test_a_claim_names_the_training_that_it_lacks(measured):
     judged = verdicts(measured(touches(levels)))
     found = judged.loc["recorded_tuned_over_frozen_pressure_random"]
     assert found["verdict"] == "open" and "no MobileNetV2, fine-tuned, from ImageNet, 64 pixels" in found["tested_on"]
-    assert "make transfer" in found["tested_on"]
+    assert "dvc repro recorded_networks" in found["tested_on"]
     assert judged.loc["recorded_frozen_over_features_pressure_random", "verdict"] == "supported"
 
 
@@ -247,8 +267,8 @@ def test_a_network_alone_is_not_the_best(measured):
 
 
 def test_without_recorded_touches_all_claims_are_open(bare, small):
-    judged = verdicts(Results(small.settings(), bare))
-    assert set(judged["verdict"]) == {"open"} and judged["tested_on"].str.contains("make transfer").all()
+    judged = verdicts(small.results(bare))
+    assert set(judged["verdict"]) == {"open"} and judged["tested_on"].str.contains("dvc repro recorded_networks").all()
 
 
 def test_every_claim_of_recorded_touches_is_in_the_report():

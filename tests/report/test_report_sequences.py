@@ -4,11 +4,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.report.claims import chapter_4_sequences
-from stages.report.figures import figure_4_19
-from stages.report.results import NotRun, Results
-from stages.report.tables import _sequences, table_4_7, table_4_9
-from stages.report.tradeoff import sequences as chart
+from stages.report.results import NotRun
+from stages.report.sequences import claims as chapter_4_sequences
+from stages.report.sequences import figure_4_19, table_4_7, table_4_9
+from stages.report.sequences import rows as _sequences
+from stages.report.sequences import sequences_chart as chart
 from stages.report.verdict import judge
 
 CLASSES = ("car", "chair", "vase")
@@ -24,7 +24,7 @@ MEANS = {
 SECONDS = {"cnn": 60.0, "cnn_images": 58.0, "cnn_normals": 2.0}
 
 
-def rows(guided=0.08, unseen=-0.2, folds=3, splits=("sequences", "objects"), source="furniture"):
+def rows(guided=0.08, unseen=-0.2, folds=3, splits=("random", "objects"), dataset="furniture"):
     """Rows whose truth is known: guided is better by a margin, unseen objects are harder, smaller films are worse."""
     random, found = np.random.default_rng(0), []
     films = [(25, 32, 0.0), (13, 32, -0.05), (25, 16, -0.01)]
@@ -32,7 +32,7 @@ def rows(guided=0.08, unseen=-0.2, folds=3, splits=("sequences", "objects"), sou
         for frames, cells, loss in films if method == "thesis_ssim" else films[:1]:
             for split in splits if loss == 0 else splits[-1:]:
                 for name, mean in MEANS.items():
-                    common = {"object": source, "method": method, "split": split, "classifier": name}
+                    common = {"dataset": dataset, "method": method, "split": split, "classifier": name}
                     common |= {"frames": frames, "cells": cells, "classes": len(CLASSES), "sequences": 900}
                     level = mean + gain + loss + (unseen if split == "objects" else 0.0)
                     for number in range(folds):
@@ -44,21 +44,21 @@ def rows(guided=0.08, unseen=-0.2, folds=3, splits=("sequences", "objects"), sou
                             "value": each.mean(),
                             "seconds": seconds,
                         }
-                        found.append(one | {"class": None, "note": None})
+                        found.append(one | {"group": None, "note": None})
                         if split == "objects":
                             found += [
                                 common
-                                | {"repetition": number, "metric": "accuracy_object", "class": label, "value": value}
+                                | {"repetition": number, "metric": "accuracy_object", "group": label, "value": value}
                                 for label, value in zip(CLASSES, each, strict=True)
                             ]
-    return pd.DataFrame(found).assign(dataset="household", seed=0)
+    return pd.DataFrame(found).assign(seed=0)
 
 
 @pytest.fixture
 def run(bare, small):
     """Results of a run that has measured the sequences."""
     small.write(bare, "sequences", rows())
-    return Results(small.settings(), bare)
+    return small.results(bare)
 
 
 def cell(frame, **where):
@@ -71,11 +71,11 @@ def cell(frame, **where):
 
 def test_twin_stands_beside_the_thesis_s_figures(run):
     table = table_4_9.build(run)
-    row = cell(table.frame, split="sequences", classifier="cnn", strategy="thesis_ssim")
+    row = cell(table.frame, split="random", classifier="cnn", strategy="thesis_ssim")
     assert row["accuracy"] == pytest.approx(0.98, abs=0.01) and row["thesis"] == 0.9897
-    assert cell(table.frame, split="sequences", classifier="svm", strategy="random")["thesis"] == 0.7721
+    assert cell(table.frame, split="random", classifier="svm", strategy="random")["thesis"] == 0.7721
     assert np.isnan(cell(table.frame, split="objects", classifier="cnn", strategy="thesis_ssim")["thesis"])
-    assert np.isnan(cell(table.frame, split="sequences", classifier="cnn", strategy="enhanced")["thesis"])
+    assert np.isnan(cell(table.frame, split="random", classifier="cnn", strategy="enhanced")["thesis"])
     line = cell(table.shown, split="sequences drawn at random", classifier="CNNs")
     assert line["enhanced attention (SSIM), %"].endswith("· 99.0") and line["chance"] == "33.3"
 
@@ -83,7 +83,7 @@ def test_twin_stands_beside_the_thesis_s_figures(run):
 def test_interval_of_unseen_objects_is_over_the_objects(run):
     frame = table_4_9.build(run).frame
     assert cell(frame, split="objects", classifier="cnn", strategy="random")["values"] == 9
-    assert cell(frame, split="sequences", classifier="cnn", strategy="random")["values"] == 3
+    assert cell(frame, split="random", classifier="cnn", strategy="random")["values"] == 3
 
 
 def test_smaller_films_are_not_in_the_table(run):
@@ -92,29 +92,28 @@ def test_smaller_films_are_not_in_the_table(run):
 
 def test_larger_run_stands_below_where_there_is_one(bare, small):
     small.write(bare, "sequences", rows())
-    folder = bare / "reports/touch"
-    folder.mkdir(parents=True)
-    rows(source="princeton").to_csv(folder / "sequences_princeton.csv", index=False)
-    frame = table_4_9.build(Results(small.settings(), bare)).frame
-    assert list(dict.fromkeys(frame["objects"])) == ["furniture", "princeton, as in the thesis"]
+    small.write(bare, "sequences", rows(dataset="princeton_eight"))
+    table = table_4_9.build(small.results(bare))
+    assert list(dict.fromkeys(table.frame["objects"])) == ["furniture", "princeton_eight"]
+    assert list(dict.fromkeys(table.shown["objects"])) == ["furniture", "psb, the thesis's 8 classes"]
 
 
 def test_what_was_left_out_is_a_note(bare, small):
-    note = {"object": "furniture", "metric": "accuracy", "value": None, "note": "class far: no sequences of away"}
+    note = {"dataset": "furniture", "metric": "accuracy", "value": None, "note": "class far: no sequences of away"}
     small.write(bare, "sequences", pd.concat([rows(), pd.DataFrame([note])], ignore_index=True))
-    assert "Not run: class far: no sequences of away." in table_4_9.build(Results(small.settings(), bare)).notes
+    assert "Not run: class far: no sequences of away." in table_4_9.build(small.results(bare)).notes
 
 
 def test_without_objects_left_out_the_table_has_one_half(bare, small):
-    small.write(bare, "sequences", rows(splits=("sequences",)))
-    frame = table_4_9.build(Results(small.settings(), bare)).frame
-    assert set(frame["split"]) == {"sequences"}
+    small.write(bare, "sequences", rows(splits=("random",)))
+    frame = table_4_9.build(small.results(bare)).frame
+    assert set(frame["split"]) == {"random"}
 
 
 @pytest.mark.parametrize("piece", [table_4_9, table_4_7, figure_4_19, chart])
 def test_unmeasured_is_not_run(bare, small, piece):
     with pytest.raises(NotRun):
-        piece.build(Results(small.settings(), bare))
+        piece.build(small.results(bare))
 
 
 def test_chart_charges_each_choice_its_seconds(run):
@@ -142,8 +141,8 @@ def test_confusions_are_drawn_for_every_strategy_of_the_thesis(run, bare):
         for one in CLASSES
         for other in CLASSES
     ]
-    (bare / "data/sequences").mkdir()
-    pd.DataFrame(found).to_csv(bare / "data/sequences/confusion.csv", index=False)
+    (bare / "data/furniture/sequences").mkdir(parents=True)
+    pd.DataFrame(found).to_csv(bare / "data/furniture/sequences/confusion.csv", index=False)
     figure = figure_4_19.build(run)
     assert figure.paths[0].exists() and "car, chair, vase" in figure.alt
 
@@ -153,8 +152,8 @@ def test_layers_stand_beside_the_printed_ones(run, bare):
         {"network": network, "layer": layer, "kind": "Conv3d", "output": "8x5", "parameters": 7}
         for network, layer in table_4_7.SAID
     ]
-    (bare / "data/sequences").mkdir()
-    pd.DataFrame(layers).to_csv(bare / "data/sequences/layers.csv", index=False)
+    (bare / "data/furniture/sequences").mkdir(parents=True)
+    pd.DataFrame(layers).to_csv(bare / "data/furniture/sequences/layers.csv", index=False)
     table = table_4_7.build(run)
     assert (table.frame["thesis"] != "").all() and "3D 42; 1D 42" in table.notes[-1]
 
@@ -162,9 +161,8 @@ def test_layers_stand_beside_the_printed_ones(run, bare):
 def verdicts(bare, small, frame):
     """dict key -> verdict, and the frame of all, of the claims on these rows, in this run and on the other data set."""
     small.write(bare, "sequences", frame)
-    (bare / "reports/touch").mkdir(parents=True)
-    frame.assign(object="princeton").to_csv(bare / "reports/touch/sequences_princeton.csv", index=False)
-    found = judge(chapter_4_sequences.CLAIMS, Results(small.settings(), bare)).set_index("key")
+    small.write(bare, "sequences", frame, "princeton_eight")
+    found = judge(chapter_4_sequences.CLAIMS, small.results(bare)).set_index("key")
     return found["verdict"].to_dict(), found
 
 

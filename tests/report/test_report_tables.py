@@ -1,29 +1,30 @@
-"""Tables: twins of the thesis's, and how they are written."""
+"""Tables: beside the thesis's, and how they are written."""
 
 import numpy as np
 import pandas as pd
 import pytest
 
-from stages.report import tables
-from stages.report.items import Table, build_all
-from stages.report.lod_cells import paired_cells
+from stages.report.grid import grid, means
+from stages.report.items import Table
 from stages.report.markdown import as_text, is_numeric, markdown_table, number, with_interval
-from stages.report.results import NotRun, Results
-from stages.report.tables import table_4_1
+from stages.report.meshes.rows import paired_cells
+from stages.report.results import NotRun
+from stages.report.topics import build_all
+from stages.report.touch.one_touch import table_4_1
 
 
-def test_twin_holds_every_cell_of_the_thesis(results):
-    frame = table_4_1.build(results).frame
+def test_table_holds_every_cell_of_the_thesis(results):
+    frame = table_4_1(results).frame
     thesis = results.thesis("table_4_1_six_virtual_objects").set_index("sampling")
-    twins = frame[frame["sampling"].isin(thesis.index)]
-    assert len(twins) == thesis.size
-    assert frame.loc[~frame.index.isin(twins.index), "sampling"].unique().tolist() == ["enhanced"]  # ours, below
-    for row in twins.itertuples():
+    theirs = frame[frame["sampling"].isin(thesis.index)]
+    assert len(theirs) == thesis.size
+    assert frame.loc[~frame.index.isin(theirs.index), "sampling"].unique().tolist() == ["enhanced"]  # ours, below
+    for row in theirs.itertuples():
         assert row.thesis == thesis.loc[row.sampling, row.classifier]
 
 
-def test_twin_maps_the_methods_and_says_what_was_not_run(results):
-    table = table_4_1.build(results)
+def test_table_maps_the_methods_and_says_what_was_not_run(results):
+    table = table_4_1(results)
     cell = table.frame.set_index(["sampling", "classifier"])
     assert cell.loc[("enhanced_visual_attention", "knn"), "accuracy"] == pytest.approx(0.8, abs=0.02)
     assert cell.loc[("visual_attention", "knn"), "accuracy"] == pytest.approx(0.5, abs=0.02)
@@ -34,16 +35,16 @@ def test_twin_maps_the_methods_and_says_what_was_not_run(results):
     assert shown.loc["hks"].str.endswith("59").any()
 
 
-def test_title_tells_the_objects_that_the_set_held(root, results, small):
-    assert table_4_1.build(results).title.startswith("Table 4.1: recognising six objects by")
+def test_title_tells_the_objects_that_the_group_held(root, results, small):
+    assert table_4_1(results).title.startswith("Table 4.1: recognising six objects by")
     small.write_set(root, "six", 4)
-    assert table_4_1.build(results).title.startswith("Table 4.1: recognising 4 objects (set six) by")
+    assert table_4_1(results).title.startswith("Table 4.1: recognising 4 objects (group six) by")
 
 
 def test_left_out_sampling_is_a_note_of_its_table(root, small):
-    frame = small.left_out(small.classification(), "too few touches", object="six", method="itti")
-    small.write(root, "classification", small.left_out(frame, "no cup", object="four"))
-    built = build_all(tables, Results(small.settings(), root))
+    frame = small.left_out(small.classification(), "too few touches", group="six", method="itti")
+    small.write(root, "classification", small.left_out(frame, "no cup", group="four"))
+    built = build_all("tables", small.results(root))
     table = next(table for table in built.items if table.name == "table_4_1")
     assert "Not run: too few touches." in table.notes
     assert np.isnan(table.frame.set_index(["sampling", "classifier"]).loc[("visual_attention", "knn"), "accuracy"])
@@ -52,26 +53,26 @@ def test_left_out_sampling_is_a_note_of_its_table(root, small):
 
 def test_paired_cells_are_those_that_every_method_reaches(results):
     found = paired_cells(results, ["metro_mean"], ["qem", "enhanced"])
-    assert set(found.loc[found["target"] == "25%", "object"]) == {"ball"}
-    assert set(found.loc[found["target"] == "50%", "object"]) == {"ball", "cube"}
+    assert set(found.loc[found["target"] == "25%", "item"]) == {"ball"}
+    assert set(found.loc[found["target"] == "50%", "item"]) == {"ball", "cube"}
 
 
 def test_lod_seconds_are_those_of_the_simplification(root, results, small):
-    frame = results.measurements("lod").copy()
+    frame = results.rows("lod").copy()
     frame.loc[frame["metric"] != "faces", "seconds"] = 99.0
     small.write(root, "lod", frame)
-    assert (paired_cells(Results(small.settings(), root), ["metro_mean"], ["qem", "enhanced"])["seconds"] == 0.1).all()
+    assert (paired_cells(small.results(root), ["metro_mean"], ["qem", "enhanced"])["seconds"] == 0.1).all()
 
 
 def test_without_measurements_every_table_is_not_run_or_made(bare, small):
-    built = build_all(tables, Results(small.settings(), bare))
+    built = build_all("tables", small.results(bare))
     assert "table_4_1" in built.not_run
     assert "dvc repro classification" in built.not_run["table_4_1"]
 
 
 def test_missing_column_is_not_run(results):
     with pytest.raises(NotRun, match="no column speed"):
-        results.measurements("lod", speed=1)
+        results.rows("lod", speed=1)
 
 
 def test_table_is_written_as_numbers_and_as_text(tmp_path):
@@ -104,3 +105,38 @@ def test_interval_reads_well():
 def test_column_of_words_is_not_numeric():
     assert is_numeric(as_text(pd.DataFrame({"a": [1.5, np.nan]}))["a"])
     assert not is_numeric(pd.Series(["1.5 % of it"]))
+
+
+def cells():
+    """Two samplings and two classifiers, one cell of which is absent and one without an interval."""
+    rows = [
+        ("b", "knn", 0.5, 0.4, 0.6, 0.55),
+        ("b", "svm", 0.7, np.nan, np.nan, np.nan),
+        ("a", "knn", 0.1, 0, 0.2, 0.3),
+    ]
+    return pd.DataFrame(rows, columns=["sampling", "classifier", "accuracy", "low", "high", "thesis"])
+
+
+def test_grid_keeps_the_order_of_the_cells_and_says_what_is_absent():
+    shown = grid(cells(), "sampling", "classifier", names={"sampling": str.upper}, head=lambda name: f"{name}, %")
+    assert shown.to_dict("list") == {
+        "sampling": ["B", "A"], "knn, %": ["50 [40, 60] · 55", "10 [0, 20] · 30"], "svm, %": ["70 · –", "not run"],
+    }  # fmt: skip
+
+
+def test_grid_may_leave_an_unknown_figure_out_and_go_down_by_several_columns():
+    shown = grid(cells().assign(of="x"), ["of", "sampling"], "classifier", gap=None, places=1)
+    assert shown.columns.tolist() == ["of", "sampling", "knn", "svm"]
+    assert shown["svm"].tolist() == ["70.0", "not run"] and shown["knn"][1] == "10.0 [0.0, 20.0] · 30.0"
+
+
+def test_grid_without_figures_beside():
+    assert grid(cells(), "sampling", "classifier", beside=())["knn"].tolist() == ["50 [40, 60]", "10 [0, 20]"]
+
+
+def test_means_cut_the_interval_at_what_is_possible():
+    values = [1.0, 1.0, 0.7, 0.98, 0.2, 0.0]
+    frame = pd.DataFrame({"method": ["x"] * 3 + ["y"] * 3, "value": values, "seconds": [9.0, 1.0, 1.0] * 2})
+    one, other = means(frame, ["method"], top=1.0)
+    assert one["method"] == "x" and one["high"] == 1.0 and one["seconds"] == 1.0 and one["values"] == 3
+    assert other["low"] == 0.0

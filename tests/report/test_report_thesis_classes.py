@@ -4,12 +4,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.kit.files import write_table
-from stages.report.claims import chapter_5
-from stages.report.figures import figure_5_3
-from stages.report.intervals import HOLD_OUT
-from stages.report.results import NotRun, Results
-from stages.report.tables import _transfer, table_5_4
+from stages.kit.split import shared_by
+from stages.report import networks as _transfer
+from stages.report.results import NotRun
+from stages.report.transfer import claims as chapter_5
+from stages.report.transfer import figure_5_3, table_5_4
 from stages.report.verdict import judge
 
 FINE, COARSE = "imprints128", "imprints16"
@@ -30,26 +29,26 @@ KEYS = {
 }  # fmt: skip
 
 
-def rows(source="princeton", turned=False, **levels):
+def rows(dataset="princeton_six", turned=False, **levels):
     """Five trainings of each setting. levels: others for modes; turned: what was better by a margin is worse by it."""
     random, found = np.random.default_rng(0), []
     for (data, weights, mode), level in LEVELS.items():
         level = levels.get(mode, level)
         for split in ("random", "objects"):
             for number in range(5):
-                one = {"object": source, "data": data, "method": "mobilenet_v2", "weights": weights, "mode": mode}
-                one |= {"split": split, "repetition": number, "had": "complete", "seconds": 1.0}
+                one = {"dataset": dataset, "data": data, "method": "mobilenet_v2", "weights": weights, "mode": mode}
+                one |= {"split": split, "repetition": number, "pretrained": "complete", "seconds": 1.0}
                 value = (1 - level if turned else level) + 0.002 * random.normal()
                 found += [one | {"metric": "accuracy", "value": value}, one | {"metric": "chance", "value": 1 / 6}]
-    return pd.DataFrame(found).assign(dataset=source, seed=0, note=None)
+    return pd.DataFrame(found).assign(seed=0, note=None)
 
 
 @pytest.fixture
 def both(bare, small):
     """Results of a run in which all is as the thesis says, and of trainings on its classes in which nothing is."""
     small.write(bare, "transfer", rows("furniture"))
-    write_table(bare / "reports/transfer/princeton.csv", rows(turned=True))
-    return Results(small.settings(), bare)
+    small.write(bare, "transfer", rows(turned=True))
+    return small.results(bare)
 
 
 def words(results):
@@ -63,7 +62,7 @@ def test_each_data_set_is_judged_by_its_own_rows(both):
         assert found.loc[f"tuned_over_frozen_{split}", "verdict"] == "supported"
         assert found.loc[f"tuned_over_frozen_{split}_psb", "verdict"] == "contradicted"
         assert found.loc[f"tuned_over_frozen_{split}_psb", "effect"] == pytest.approx(-30, abs=0.5)
-    assert both.measurements("transfer")["object"].unique() == ["furniture"]
+    assert both.rows("transfer")["dataset"].unique() == ["furniture"]
 
 
 def test_every_claim_on_the_thesis_s_classes_has_rows_and_says_where(both):
@@ -71,33 +70,35 @@ def test_every_claim_on_the_thesis_s_classes_has_rows_and_says_where(both):
     theirs = found[found.index.str.endswith("_psb")]
     assert {key.removesuffix("_psb").rpartition("_")[0] for key in theirs.index} == KEYS
     assert (theirs["pairs"] == 5).all()
-    assert theirs["tested_on"].str.startswith("thesis's classes of psb: MobileNetV2, ").all()
+    assert theirs["tested_on"].str.startswith("psb, the thesis's 6 classes, MobileNetV2, ").all()
 
 
 def test_all_that_the_thesis_says_can_be_supported(bare, small):
-    write_table(bare / "reports/transfer/princeton.csv", rows())
-    found = words(Results(small.settings(), bare))
+    small.write(bare, "transfer", rows())
+    found = words(small.results(bare))
     assert set(found.loc[found.index.str.endswith("_psb"), "verdict"]) == {"supported"}
 
 
 def test_early_layers_are_decisive_where_the_last_alone_learn_less(bare, small):
-    write_table(bare / "reports/transfer/princeton.csv", rows(**{"1:134": 0.85}))
-    found = words(Results(small.settings(), bare))
+    small.write(bare, "transfer", rows(**{"1:134": 0.85}))
+    found = words(small.results(bare))
     assert found.loc["early_decisive_random_psb", "effect"] == pytest.approx(-5, abs=0.5)
     assert found.loc["early_decisive_objects_psb", "verdict"] == "contradicted"
 
 
 def test_without_trainings_on_them_the_claims_name_what_measures_them(bare, small):
     small.write(bare, "transfer", rows("furniture"))
-    found = words(Results(small.settings(), bare))
-    assert found.loc["early_decisive_random_psb", "tested_on"].startswith("not run: no transfer/princeton.csv: `make")
+    found = words(small.results(bare))
+    assert found.loc["early_decisive_random_psb", "tested_on"].startswith(
+        "not run: no measurements of transfer on princeton_six"
+    )
     assert found.loc["tuned_over_frozen_random", "verdict"] == "supported"
 
 
 def test_one_object_of_five_says_more_than_one_of_three():
-    assert _transfer.shared("objects") == 1 / 2 and _transfer.shared("objects", "princeton") == 1 / 4
-    assert _transfer.shared("random", "princeton") == HOLD_OUT
-    frames = (rows(source) for source in ("furniture", "princeton"))
+    assert _transfer.shared("objects") == 1 / 2 and _transfer.shared("objects", "princeton_six") == 1 / 4
+    assert _transfer.shared("random", "princeton_six") == shared_by("random")
+    frames = (rows(source) for source in ("furniture", "princeton_six"))
     one = (frame[(frame["metric"] == "accuracy") & (frame["mode"] == "1:134")] for frame in frames)
     width = [high - low for _, low, high, _ in (_transfer.accuracy(frame, "objects") for frame in one)]
     assert width[1] / width[0] == pytest.approx(np.sqrt((1 + 5 / 4) / (1 + 5 / 2)))
@@ -105,22 +106,23 @@ def test_one_object_of_five_says_more_than_one_of_three():
 
 def test_claims_and_figure_widen_intervals_alike(both):
     found = words(both).loc["tuned_over_frozen_objects_psb"]
-    own = _transfer.everywhere(both)["princeton, the thesis's classes"]
+    own = _transfer.everywhere(both)["princeton_six"]
     drawn = figure_5_3._gains(own)["mobilenet_v2", "objects", FINE]
     assert drawn == pytest.approx((found["effect"], found["low"], found["high"]))
 
 
 def test_other_rows_are_not_run_where_they_are_absent(bare, small):
     with pytest.raises(NotRun, match="princeton"):
-        _transfer.on_psb(Results(small.settings(), bare))
+        _transfer.measured(small.results(bare), "princeton_six")
 
 
-def test_other_networks_on_their_classes_stand_beside_and_change_no_claim(both):
+def test_other_networks_on_their_classes_stand_beside_and_change_no_claim(both, small):
     before = words(both)
     other = rows(frozen=0.9).assign(method="resnet50")
-    write_table(both.reports / "transfer/princeton_networks.csv", other[other["mode"] == "frozen"])
-    again = Results(both.settings, both.reports.parent)
+    frame = pd.concat([both.rows("transfer", "princeton_six"), other[other["mode"] == "frozen"]], ignore_index=True)
+    small.write(both.workspace.root, "transfer", frame)
+    again = small.results(both.workspace.root)
     shown = table_5_4.build(again).frame.set_index(["objects", "network", "mode", "weights", "split"])
-    where = ("princeton, the thesis's classes", "resnet50", "frozen", "imagenet", "objects")
+    where = ("princeton_six", "resnet50", "frozen", "imagenet", "objects")
     assert shown.loc[where, "accuracy"] == pytest.approx(0.9, abs=0.01) and shown.loc[where, "values"] == 5
     assert words(again)["effect"].equals(before["effect"])

@@ -23,7 +23,7 @@ SOFTWARE_GL = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swi
 @pytest.fixture
 def levels(results, small):
     """The results with two levels of the ball; the coarser is pressed flat, the finer is the ball itself, sparser."""
-    folder = results.data / "lod/ball"
+    folder = results.data / "test/lod/ball"
     write_mesh(folder / "qem_25pct.npz", small.ball(8))
     flat = small.ball(6)
     write_mesh(folder / "qem_10pct.npz", Mesh(flat.vertices * [1, 1, 0.9], flat.faces))
@@ -57,7 +57,7 @@ def test_levels_share_one_scale_on_which_the_error_grows(levels):
 
 def test_level_equal_to_the_original_has_no_error(results, small, monkeypatch):
     monkeypatch.setattr("stages.report.viewer.FINEST", 1.0)
-    write_mesh(results.data / "lod/ball/qem_50pct.npz", small.ball())
+    write_mesh(results.data / "test/lod/ball/qem_50pct.npz", small.ball())
     packed = pack_object(results, "ball")
     level = packed["ladders"]["qem"]["levels"][0]
     assert level["error_max"] == level["error_mean"] == 0
@@ -65,7 +65,7 @@ def test_level_equal_to_the_original_has_no_error(results, small, monkeypatch):
 
 
 def test_levels_nearly_as_fine_as_the_original_are_left_out(results, small):
-    write_mesh(results.data / "lod/ball/qem_90pct.npz", small.ball(11))
+    write_mesh(results.data / "test/lod/ball/qem_90pct.npz", small.ball(11))
     faces = len(small.ball().faces)
     assert all(one["faces"] <= FINEST * faces for one in pack_object(results, "ball")["ladders"]["qem"]["levels"])
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.conspicuity import Sight
-from stages.conspicuity.storage import viewpoint_named
+from stages.conspicuity import ViewMaps
+from stages.conspicuity.storage import parse_viewpoint
 from stages.kit import Mesh
 from stages.kit.rng import rng
 from stages.meshes import normalise
@@ -20,22 +20,22 @@ from stages.salient_points import (
     read_strong_points,
     saliency,
 )
-from stages.salient_points.chance import random_vertices
-from stages.salient_points.fused import Fused
+from stages.salient_points.fused import FusedDetector
 from stages.salient_points.merge import continue_on_surface, merge_views
-from stages.salient_points.methods import find_all, teachable
+from stages.salient_points.methods import find_all, split_runnable
 from stages.salient_points.options import Options
-from stages.salient_points.storage import write_found
+from stages.salient_points.random_points import random_vertices
+from stages.salient_points.storage import write_points
 from stages.views import FOUR, TWELVE
-from stages.weights import Learned, weights
+from stages.weights import LearnedWeights, weights
 
-RUNS, _ = teachable(METHODS, Learned())  # the others need a run of the stage `weights`
-FUSED = [name for name in RUNS if isinstance(METHODS[name], Fused)]
+RUNS, _ = split_runnable(METHODS, LearnedWeights())  # the others need a run of the stage `weights`
+FUSED = [name for name in RUNS if isinstance(METHODS[name], FusedDetector)]
 
 
 def weighted(given):
     """Options whose method `thesis_ssim` has these weights."""
-    return Options(Learned({"thesis_ssim": given}))
+    return Options(LearnedWeights({"thesis_ssim": given}))
 
 
 def shuffled(mesh, seed=0):
@@ -62,7 +62,7 @@ def test_count_is_honoured_without_duplicates(method, count, sight, ball):
 def test_a_mesh_with_too_few_vertices_gives_all_of_them(method, make_maps):
     box = trimesh.creation.box(extents=[0.5, 0.5, 0.5])
     mesh = Mesh(np.r_[box.vertices, [[0, 0, 0]]], box.faces)  # the last vertex is in no face
-    sight = Sight(mesh, FOUR, make_maps(mesh, np.array([0.25, 0.25, 0.25]), FOUR))
+    sight = ViewMaps(mesh, FOUR, make_maps(mesh, np.array([0.25, 0.25, 0.25]), FOUR))
     assert sorted(METHODS[method].find(mesh, sight, Options(), 20).points) == list(range(8))
 
 
@@ -81,7 +81,7 @@ def test_strong_points_come_first_and_more_points_change_none_of_them(sight, bal
 
 
 def test_maps_without_a_signal_have_no_strong_points_but_honour_a_count(ball):
-    blank = Sight(ball, FOUR, dict.fromkeys(weights("equal"), np.zeros((4, 75, 100))))
+    blank = ViewMaps(ball, FOUR, dict.fromkeys(weights("equal"), np.zeros((4, 75, 100))))
     assert len(METHODS["thesis_ssim"].find(ball, blank, Options()).points) == 0
     found = METHODS["thesis_ssim"].find(ball, blank, Options(), 10)
     assert (len(found.points), found.strong) == (10, 0)
@@ -92,7 +92,7 @@ def test_weights_decide_between_channels(ball, make_maps):
     here, there = np.array([0.5, 0, 0]), np.array([0, 0.5, 0])
     maps = make_maps(ball, here, channels=("edge",)) | make_maps(ball, there, channels=("color",))
     blank = dict.fromkeys(weights("equal"), np.zeros_like(maps["edge"]))
-    sight = Sight(ball, TWELVE, blank | maps)
+    sight = ViewMaps(ball, TWELVE, blank | maps)
     for winner, place in (("edge", here), ("color", there)):
         options = weighted(dict.fromkeys(weights("equal"), 0.1) | {winner: 1.0})
         first = METHODS["thesis_ssim"].find(ball, sight, options, 1).points[0]
@@ -102,7 +102,7 @@ def test_weights_decide_between_channels(ball, make_maps):
 def test_merged_methods_hold_the_points_of_their_parts(ball, make_maps):
     here, there = np.array([0.5, 0, 0]), np.array([-0.5, 0, 0])
     maps = make_maps(ball, here) | make_maps(ball, there, channels=("curvature",))
-    sight = Sight(ball, TWELVE, maps)
+    sight = ViewMaps(ball, TWELVE, maps)
     places = ball.vertices[METHODS["VisAttCurvP"].find(ball, sight, Options()).points]
     assert min(np.linalg.norm(places - here, axis=1)) < 0.05
     assert min(np.linalg.norm(places - there, axis=1)) < 0.05
@@ -137,7 +137,7 @@ def test_points_do_not_depend_on_the_order_of_the_vertices(selection, ball, spot
     options = Options(selection=selection)
     found = []
     for mesh in (ball, other):
-        sight = Sight(mesh, TWELVE, make_maps(mesh, spot))
+        sight = ViewMaps(mesh, TWELVE, make_maps(mesh, spot))
         found.append(find_all(mesh, sight, ["thesis_ssim", "random"], options, 60)[0])
     for method in ("thesis_ssim", "random"):
         assert (found[0][method].points == old[found[1][method].points]).all()
@@ -214,7 +214,7 @@ def test_random_gets_as_many_strong_points_as_the_first_method(sight, ball):
 
 def test_file_gives_back_points_strong_points_and_saliency(sight, ball, tmp_path):
     found, _ = find_all(ball, sight, ["enhanced", "random"], Options(), 30)
-    write_found(tmp_path / "ball.npz", found)
+    write_points(tmp_path / "ball.npz", found)
     points, strong = read_points(tmp_path / "ball.npz"), read_strong_points(tmp_path / "ball.npz")
     assert list(points) == ["enhanced", "random"]
     assert (points["enhanced"] == found["enhanced"].points).all()
@@ -224,9 +224,9 @@ def test_file_gives_back_points_strong_points_and_saliency(sight, ball, tmp_path
 
 @pytest.mark.parametrize("viewpoint", TWELVE, ids=lambda viewpoint: viewpoint.name)
 def test_a_viewpoint_comes_back_from_its_name(viewpoint):
-    assert viewpoint_named(viewpoint.name) == viewpoint
+    assert parse_viewpoint(viewpoint.name) == viewpoint
     turned = dataclasses.replace(viewpoint, roll=-22.5)
-    assert viewpoint_named(turned.name) == turned
+    assert parse_viewpoint(turned.name) == turned
 
 
 @pytest.mark.parametrize(
@@ -240,7 +240,7 @@ def test_a_viewpoint_comes_back_from_its_name(viewpoint):
         (lambda mesh: find_points(mesh, "random", 5, radius=0), "radius must be positive"),
         (lambda mesh: find_points(mesh, "enhanced", weights="ssim"), "unknown weights 'ssim'"),
         (lambda mesh: find_points(mesh, "itti", weights="equal"), "'itti' has no weights"),
-        (lambda mesh: saliency(mesh, "guided_ssim"), "needs weights learned by the stage `weights`"),
+        (lambda mesh: saliency(mesh, "guided_ssim"), "needs weights that the stage `weights` learns"),
         (lambda mesh: saliency(mesh, "enhanced", weights={"shine": 1.0}), "no feature shine"),
         (lambda mesh: saliency(mesh, "svm", weights="equal"), "run the pipeline for it"),
         (lambda mesh: saliency(mesh, "itti", viewpoints=[]), "no viewpoints"),
@@ -248,7 +248,7 @@ def test_a_viewpoint_comes_back_from_its_name(viewpoint):
         (lambda mesh: saliency(mesh, "random"), "has no saliency"),
         (lambda mesh: find_points(Mesh(np.zeros((3, 3)), [[0, 1, 2]]), "random", 5), "no extent"),
         (lambda mesh: random_vertices(Mesh(np.zeros((3, 3)), [[0, 1, 2]]), 5, rng(0, "")), "no area"),
-        (lambda mesh: viewpoint_named("front"), "'front' is no viewpoint's name"),
+        (lambda mesh: parse_viewpoint("front"), "'front' is not the name of a viewpoint"),
     ],
 )
 def test_bad_input_is_an_error_with_a_remedy(call, message, ball):
@@ -269,6 +269,6 @@ def test_bad_weights_are_errors(given, message, sight, ball):
 
 
 def test_a_channel_without_a_map_is_named(ball, make_maps):
-    sight = Sight(ball, FOUR, make_maps(ball, np.zeros(3), FOUR, channels=("color", "intensity")))
+    sight = ViewMaps(ball, FOUR, make_maps(ball, np.zeros(3), FOUR, channels=("color", "intensity")))
     with pytest.raises(ValueError, match="no map for orientation"):
         METHODS["itti"].find(ball, sight, Options())

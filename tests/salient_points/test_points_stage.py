@@ -1,32 +1,56 @@
-"""The stage on one object, in a folder of its own."""
+"""The stage on one object, and on a data set to which an object is added."""
+
+import dataclasses
+import functools
 
 import numpy as np
 import pytest
 
 from stages.kit.files import read_arrays, sha256, write_arrays, write_mesh, write_table
+from stages.kit.rows import read_rows
+from stages.salient_points import __main__ as stage
 from stages.salient_points import read_points, read_strong_points
-from stages.salient_points.__main__ import process
-from stages.salient_points.measure import rows_of, spread, summary
-from stages.salient_points.options import Found
+from stages.salient_points.measure import mean_spacing, measurement_rows, summary
+from stages.salient_points.options import Detection
 from stages.salient_points.schema import Params
 from stages.views import TWELVE
 from stages.weights.table import weight_table
 
 METHODS = ["enhanced", "itti", "random"]
+SETTINGS = Params(METHODS, 30, "suppression", 0.058, 0.02)
 
 
 @pytest.fixture
-def run(ball, spot, make_maps, tmp_path, monkeypatch):
-    """A function that processes the ball and returns its rows."""
-    monkeypatch.chdir(tmp_path)
+def workspace(ball, spot, make_maps, make_workspace):
+    """A data set of one object, without ground truth."""
+    workspace = make_workspace({"salient_points": dataclasses.asdict(SETTINGS)})
     maps = make_maps(ball, spot)
-    write_mesh("data/meshes/ball.npz", ball)
+    write_mesh(workspace.data / "meshes/ball.npz", ball)
     stacked = np.stack(list(maps.values()), axis=1).astype(np.float16)
     names = {"viewpoints": np.array([v.name for v in TWELVE]), "channels": np.array(list(maps))}
-    write_arrays("data/conspicuity/ball.npz", maps=stacked, mask=stacked[:, 0] > 0, **names)
-    write_table("data/weights/weights.csv", weight_table({}, "gaze"))
-    settings = Params(METHODS, 30, "suppression", 0.058, 0.02)
-    return lambda folder: process("ball", tmp_path / folder, settings, 0)
+    write_arrays(workspace.data / "conspicuity/ball.npz", maps=stacked, mask=stacked[:, 0] > 0, **names)
+    write_table(workspace.data / "weights/weights.csv", weight_table({}, "gaze"))
+    return workspace
+
+
+@pytest.fixture
+def run(workspace):
+    """A function that processes the ball and returns its rows."""
+    work = functools.partial(stage.process, data=workspace.data, settings=SETTINGS, seed=0)
+    return lambda folder: work("ball", workspace.root / folder)
+
+
+def test_one_object_more_costs_one_object(workspace, monkeypatch):
+    made = []
+    find_all = stage.find_all
+    monkeypatch.setattr(stage, "find_all", lambda *rest: made.append(rest[3].name) or find_all(*rest))
+    stage.run(workspace)
+    for kind in ("meshes", "conspicuity"):
+        (workspace.data / kind / "other.npz").write_bytes((workspace.data / kind / "ball.npz").read_bytes())
+    stage.run(workspace)
+    assert made == ["ball", "other"]
+    rows = read_rows(workspace.measurements / "salient_points.csv.gz")
+    assert set(rows["item"]) == set(made) and set(rows["dataset"]) == {"toys"}
 
 
 def test_stage_writes_the_contract(run, tmp_path, ball):
@@ -53,15 +77,15 @@ def test_stage_measures_every_method(run):
     assert {(row["method"], row["metric"]) for row in rows} == {
         (method, metric) for method in METHODS for metric in ("points_strong", "points", "spread", "saliency_at_points")
     }
-    assert all(row["object"] == "ball" and row["seconds"] > 0 for row in rows)
+    assert all(row["item"] == "ball" and row["seconds"] > 0 for row in rows)
     means = summary(rows)
     assert means["enhanced.points"] == 30
     assert means["enhanced.saliency_at_points"] > means["random.saliency_at_points"]
 
 
 def test_what_does_not_apply_stays_out_of_the_summary(ball):
-    blind = Found(np.array([0, 5]), 1, None)
-    assert set(summary(rows_of("ball", "random", blind, ball, None, 0.1))) == {
+    blind = Detection(np.array([0, 5]), 1, None)
+    assert set(summary(measurement_rows("ball", "random", blind, ball, None, 0.1))) == {
         "random.points",
         "random.points_strong",
         "random.spread",
@@ -69,5 +93,5 @@ def test_what_does_not_apply_stays_out_of_the_summary(ball):
 
 
 def test_spread_of_a_unit_grid_is_one():
-    assert spread(np.stack(np.meshgrid(range(3), range(4), [0]), axis=-1).reshape(-1, 3)) == 1
-    assert np.isnan(spread(np.zeros((1, 3))))
+    assert mean_spacing(np.stack(np.meshgrid(range(3), range(4), [0]), axis=-1).reshape(-1, 3)) == 1
+    assert np.isnan(mean_spacing(np.zeros((1, 3))))

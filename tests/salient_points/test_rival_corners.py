@@ -24,8 +24,8 @@ def test_the_points_of_a_cube_are_its_corners(cube):
 def test_edges_and_faces_are_far_below_corners(cube):
     box = cube(5)
     values = corners.saliency(box)
-    reach = np.sort(np.abs(box.vertices), axis=1)
-    corner, edge, face = reach[:, 0] > 0.49, (reach[:, 1] > 0.49) & (reach[:, 0] < 0.1), reach[:, 1] < 0.1
+    extent = np.sort(np.abs(box.vertices), axis=1)
+    corner, edge, face = extent[:, 0] > 0.49, (extent[:, 1] > 0.49) & (extent[:, 0] < 0.1), extent[:, 1] < 0.1
     assert corner.sum() == 8 and edge.any() and face.any()
     assert values[edge].max() < 0.3 * values[corner].min() and values[face].max() < 0.3 * values[corner].min()
 

@@ -17,11 +17,11 @@ def round_cube(sphere):
 
 
 def test_the_value_on_a_sphere_is_the_closed_form(sphere):
-    """On z = r - sqrt(r^2 - x^2 - y^2) the fit has p1 = p3 = reach / r, so E = 2 p1^2 I and R = (4 - 0.04 16) p1^4."""
+    """On z = r - sqrt(r^2 - x^2 - y^2) the fit has p1 = p3 = extent / r, so E = 2 p1^2 I and R = (4 - 0.04 16) p1^4."""
     ball = sphere(5, 0.7)
     values = harris.saliency(ball)
-    reach = harris.REACH * 2  # of the size, a diameter, in radii
-    assert values.mean() == pytest.approx((4 - 16 * harris.HARRIS) ** 0.25 * reach, rel=0.02)
+    extent = harris.EXTENT * 2  # of the size, a diameter, in radii
+    assert values.mean() == pytest.approx((4 - 16 * harris.HARRIS) ** 0.25 * extent, rel=0.02)
     assert values.std() < 0.02 * values.mean()
 
 
@@ -50,7 +50,7 @@ def test_a_bump_on_a_sphere_is_the_best_point(raised, sphere):
 def test_points_are_one_of_each_cluster(round_cube):
     places = round_cube.vertices[harris.points(round_cube)]
     distance = np.linalg.norm(places[:, None] - places, axis=2) + np.eye(len(places))
-    assert len(places) >= 8 and distance.min() > harris.APART * 2 * 3 ** (1 / 3)  # from corner to corner
+    assert len(places) >= 8 and distance.min() > harris.SPACING * 2 * 3 ** (1 / 3)  # from corner to corner
 
 
 def test_neighbourhoods_grow_until_they_reach_far_enough(sphere):

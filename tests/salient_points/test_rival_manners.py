@@ -166,7 +166,7 @@ def test_a_vertex_in_no_face_is_not_salient(rival, bumpy):
 
 
 def test_values_of_another_mesh_are_refused(rival, bumpy):
-    with pytest.raises(ValueError, match="one a vertex"):
+    with pytest.raises(ValueError, match="one per vertex"):
         rival.points(bumpy, np.ones(7))
 
 

@@ -5,8 +5,8 @@ import pytest
 import trimesh
 
 from stages.kit import Mesh
-from stages.salient_points.rivals.averages import gaussian_average, pieces, sample
 from stages.salient_points.rivals.maxima import local_maxima
+from stages.salient_points.rivals.surface_average import gaussian_average, subdivide, surface_elements
 
 BALL = trimesh.creation.icosphere(subdivisions=3)
 MESH = Mesh(BALL.vertices, BALL.faces)
@@ -39,20 +39,22 @@ def test_values_that_do_not_fit_and_radii_of_nothing_are_refused(values, radius)
 def test_pieces_are_short_and_keep_the_area():
     sliver = Mesh([[0, 0, 0], [1, 0, 0], [0.5, 0.001, 0]], [[0, 1, 2]])
     for mesh in MESH, sliver:
-        corners = pieces(mesh, mesh.vertices)
+        corners = subdivide(mesh, mesh.vertices)
         assert np.linalg.norm(np.roll(corners, 1, axis=1) - corners, axis=2).max() <= 0.01 * mesh.diagonal * 1.5
-        np.testing.assert_allclose(sample(mesh, mesh.vertices).areas.sum(), mesh.face_areas.sum())
+        np.testing.assert_allclose(surface_elements(mesh, mesh.vertices).areas.sum(), mesh.face_areas.sum())
         np.testing.assert_allclose(corners[..., 3:], corners[..., :3], atol=1e-12)
 
 
 def test_an_average_of_one_value_is_that_value_and_of_a_sphere_lies_below_it():
     """Within 2 sigma of the Gaussian a sphere of radius 1 sinks by the mean of distance^2 / 2 along the normal."""
     sigma = 0.1
-    ones = gaussian_average(MESH, sample(MESH, np.ones((len(MESH.vertices), 1))), sigma)
+    ones = gaussian_average(MESH, surface_elements(MESH, np.ones((len(MESH.vertices), 1))), sigma)
     np.testing.assert_allclose(ones, 1)
     fine = trimesh.creation.icosphere(subdivisions=5)
     mesh = Mesh(fine.vertices, fine.faces)
-    sunk = 1 - np.einsum("ij,ij->i", gaussian_average(mesh, sample(mesh, mesh.vertices), sigma), mesh.vertices)
+    sunk = 1 - np.einsum(
+        "ij,ij->i", gaussian_average(mesh, surface_elements(mesh, mesh.vertices), sigma), mesh.vertices
+    )
     mean_square = 2 * sigma**2 * (1 - 2 * np.exp(-2) / (1 - np.exp(-2)))  # of a Gaussian in the plane, cut at 2 sigma
     np.testing.assert_allclose(sunk.mean(), mean_square / 2, rtol=0.05)
 
@@ -62,13 +64,13 @@ def test_an_average_does_not_follow_the_tessellation():
     box = trimesh.creation.box()
     fine = trimesh.Trimesh(*trimesh.remesh.subdivide(box.vertices, box.faces, rng.choice(12, 5, replace=False)))
     coarse, other = Mesh(box.vertices, box.faces), Mesh(fine.vertices, fine.faces)
-    first = gaussian_average(coarse, sample(coarse, coarse.vertices), 0.1)
-    second = gaussian_average(other, sample(other, other.vertices), 0.1)[: len(first)]
+    first = gaussian_average(coarse, surface_elements(coarse, coarse.vertices), 0.1)
+    second = gaussian_average(other, surface_elements(other, other.vertices), 0.1)[: len(first)]
     np.testing.assert_allclose(first, second, atol=0.003)
 
 
 def test_a_vertex_with_no_surface_near_has_no_average():
     mesh = Mesh(np.r_[MESH.vertices, [[9, 9, 9]]], MESH.faces)
-    means = gaussian_average(mesh, sample(mesh, mesh.vertices), 0.1)
+    means = gaussian_average(mesh, surface_elements(mesh, mesh.vertices), 0.1)
     assert np.isnan(means[-1]).all()
     assert np.isfinite(means[:-1]).all()

@@ -5,7 +5,7 @@ import pytest
 import trimesh
 
 from stages.kit import Mesh
-from stages.scene import Frames, Placed, Scene, build_ladder, fly
+from stages.scene import Frames, Placed, Scene, build_lod_chain, fly
 
 
 def bumpy(seed, subdivisions=4):
@@ -22,8 +22,8 @@ def meshes():
 
 
 @pytest.fixture(scope="session")
-def ladders(meshes):
-    return {name: build_ladder(mesh) for name, mesh in meshes.items()}
+def chains(meshes):
+    return {name: build_lod_chain(mesh) for name, mesh in meshes.items()}
 
 
 @pytest.fixture(scope="session")
@@ -42,6 +42,6 @@ def make_scene():
 
 
 @pytest.fixture(scope="session")
-def frames_of(meshes, ladders):
+def frames_of(meshes, chains):
     """Function of a Scene to its Frames."""
-    return lambda scene: Frames(scene, meshes, [ladders[placed.name][0] for placed in scene.objects])
+    return lambda scene: Frames(scene, meshes, [chains[placed.name][0] for placed in scene.objects])

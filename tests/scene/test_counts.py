@@ -7,11 +7,10 @@ import pytest
 from stages.kit import Mesh
 from stages.scene.counts import (
     Curve,
+    evaluate_counts,
     fit_counts,
     fit_power_law,
     focal_length,
-    judge,
-    judge_counts,
     read_curves,
     rebuild,
     tolerated_error,
@@ -88,7 +87,7 @@ def test_curves_are_read_one_an_object_and_method():
     rows = [("a", "itti", 3, 50, "metro_mean", 0.2), ("a", "itti", 3, 80, "metro_mean", 0.1),
             ("a", "qem", 0, 50, "metro_mean", 0.1), ("a", "qem", 0, 50, "metro_max", 9.0),
             ("a", "itti", 3, None, "faces", None)]  # fmt: skip
-    frame = pd.DataFrame(rows, columns=["object", "method", "points", "faces", "metric", "value"])
+    frame = pd.DataFrame(rows, columns=["item", "method", "points", "faces", "metric", "value"])
     found = read_curves(frame, {"a": 100})
     assert [(c.method, c.points, c.faces.tolist()) for c in found] == [("itti", 3, [50, 80]), ("qem", 0, [50])]
     with pytest.raises(ValueError, match="for a"):
@@ -129,9 +128,9 @@ def test_counts_stay_between_a_tetrahedron_and_the_object(kind):
 def test_the_count_is_the_average_over_the_combinations():
     coarse = [law(f"o{k}", 2000 + 500 * k, k, "VisAttCon", scale=1e-5) for k in range(8)]
     fine = [law(f"o{k}", 2000 + 500 * k, k, "itti") for k in range(8)]
-    ask = (1.0, 2.0, 4000, {"itti": 3, "VisAttCon": 5})
-    alone = [fit_counts(fine + coarse, [name], "linear").faces_needed(*ask) for name in ("itti", "VisAttCon")]
-    both = fit_counts(fine + coarse, ["itti", "VisAttCon"], "linear").faces_needed(*ask)
+    question = (1.0, 2.0, 4000, {"itti": 3, "VisAttCon": 5})
+    alone = [fit_counts(fine + coarse, [name], "linear").faces_needed(*question) for name in ("itti", "VisAttCon")]
+    both = fit_counts(fine + coarse, ["itti", "VisAttCon"], "linear").faces_needed(*question)
     assert alone[0] > 2 * alone[1] and both == pytest.approx(np.mean(alone), abs=1)
 
 
@@ -139,8 +138,8 @@ def test_equal_seeds_give_equal_networks_in_any_order_of_calls():
     first = fit_counts(curves(), COMBINATIONS, "network", seed=3)
     fit_counts(curves(6), COMBINATIONS, "network", seed=1)
     again = fit_counts(curves(), COMBINATIONS, "network", seed=3)
-    ask = (np.geomspace(0.1, 5, 9), 4, 5000, 4)
-    assert first.faces_needed(*ask).tolist() == again.faces_needed(*ask).tolist()
+    question = (np.geomspace(0.1, 5, 9), 4, 5000, 4)
+    assert first.faces_needed(*question).tolist() == again.faces_needed(*question).tolist()
 
 
 def test_models_say_what_is_wrong():
@@ -175,43 +174,42 @@ def ball_curves():
 
 
 @pytest.fixture(scope="module")
-def judged():
-    """The rows of a small judgement, by (method, condition, metric)."""
+def evaluated():
+    """The rows of a small evaluation, by (method, condition, metric)."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(judge, "parallel_map", lambda function, items, desc: list(map(function, items)))
         patch.setattr(rebuild, "BUILT", 1)
-        frame = pd.DataFrame(judge_counts(*ball_curves()))
+        frame = pd.DataFrame(evaluate_counts(*ball_curves()))
     return frame.set_index(["method", "condition", "metric"]).sort_index()
 
 
-def test_all_models_are_right_where_one_law_holds(judged):
+def test_all_models_are_right_where_one_law_holds(evaluated):
     for method in ("network", "linear", "one_mesh", "lookup"):
-        assert judged.loc[(method, "left_out", "factor_90"), "value"].item() < 1.3
+        assert evaluated.loc[(method, "left_out", "factor_90"), "value"].item() < 1.3
     for method in ("linear", "one_mesh", "lookup"):
-        assert judged.loc[(method, "left_out", "factor_90"), "value"].item() < 1.1
+        assert evaluated.loc[(method, "left_out", "factor_90"), "value"].item() < 1.1
 
 
-def test_a_safety_factor_raises_the_rate_and_the_waste(judged):
+def test_a_safety_factor_raises_the_rate_and_the_waste(evaluated):
     for method in ("network", "linear"):
-        rows = judged.loc[method]
+        rows = evaluated.loc[method]
         for metric in ("within", "waste"):
             raw, safe = (rows.loc[(condition, metric), "value"].item() for condition in ("left_out", "equal_rate"))
             assert safe >= raw
 
 
-def test_built_meshes_are_measured(judged):
-    rows = judged.loc[("lookup", "built")]
+def test_built_meshes_are_measured(evaluated):
+    rows = evaluated.loc[("lookup", "built")]
     assert rows.loc["excess", "objects"].item() == 5
     assert 0 <= rows.loc["within", "value"].item() <= 1
 
 
-def test_costs_are_ratios_to_the_lookup(judged):
-    assert judged.loc[("lookup", "cost", "fit"), "value"].item() == 1
-    assert (judged.loc[(slice(None), "cost"), "seconds"] > 0).all()
+def test_costs_are_ratios_to_the_lookup(evaluated):
+    assert evaluated.loc[("lookup", "cost", "fit"), "value"].item() == 1
+    assert (evaluated.loc[(slice(None), "cost"), "seconds"] > 0).all()
 
 
 def test_too_few_objects_are_a_note():
     made, meshes, points = ball_curves()
-    (row,) = judge_counts(made[:3], meshes, points)
+    (row,) = evaluate_counts(made[:3], meshes, points)
     assert row["value"] is None and "3 objects" in row["note"]
-    assert judge_counts([], {}, {})[0]["note"].startswith("0 objects")
+    assert evaluate_counts([], {}, {})[0]["note"].startswith("0 objects")

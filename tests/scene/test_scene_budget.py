@@ -5,7 +5,7 @@ import pytest
 
 from stages.kit import Mesh
 from stages.scene import Frames, Level, Placed, budget, rivals
-from stages.scene.ladder import ERRORS, finest
+from stages.scene.lod_chain import ERRORS, finest
 from stages.scene.pictures import picture_error
 from stages.scene.rows import saved
 
@@ -16,8 +16,8 @@ def scene(make_scene):
 
 
 @pytest.fixture(scope="module")
-def plan(meshes, ladders, scene):
-    return budget(meshes, scene, ladders=ladders)
+def plan(meshes, chains, scene):
+    return budget(meshes, scene, chains=chains)
 
 
 def test_every_rendered_frame_holds_the_tolerance(plan, scene):
@@ -27,40 +27,40 @@ def test_every_rendered_frame_holds_the_tolerance(plan, scene):
 
 def test_far_frames_need_fewer_faces_than_near_ones(plan):
     total = plan.faces.sum(axis=1)
-    assert total[0] < total[-1] < 0.5 * sum(ladder[0].faces for ladder in plan.ladders)
+    assert total[0] < total[-1] < 0.5 * sum(chain[0].faces for chain in plan.chains)
 
 
 def test_one_level_coarser_breaks_the_tolerance_somewhere(plan, scene):
-    coarser = rivals.by_counts(plan.frames, plan.ladders, np.maximum(plan.faces // 2, 1))
+    coarser = rivals.by_counts(plan.frames, plan.chains, np.maximum(plan.faces // 2, 1))
     assert coarser.errors.max() > scene.tolerance
 
 
 def test_no_switch_jumps_further_than_the_tolerance(plan, scene):
-    assert plan.steps and max(step for _, _, step in plan.steps) <= scene.tolerance
+    assert plan.jumps and max(jump for _, _, jump in plan.jumps) <= scene.tolerance
 
 
-def test_a_wider_tolerance_needs_no_more_faces(meshes, ladders, make_scene, plan):
-    wide = budget(meshes, make_scene(tolerance=2.0), ladders=ladders)
+def test_a_wider_tolerance_needs_no_more_faces(meshes, chains, make_scene, plan):
+    wide = budget(meshes, make_scene(tolerance=2.0), chains=chains)
     assert wide.faces.sum() < plan.faces.sum() and wide.errors.max() <= 2.0
 
 
-def test_equal_runs_give_equal_plans(meshes, ladders, make_scene, plan):
-    assert np.array_equal(budget(meshes, make_scene(), ladders=ladders).levels, plan.levels)
+def test_equal_runs_give_equal_plans(meshes, chains, make_scene, plan):
+    assert np.array_equal(budget(meshes, make_scene(), chains=chains).levels, plan.levels)
 
 
-def test_the_perceptual_tolerance_holds_too(meshes, ladders, make_scene):
+def test_the_perceptual_tolerance_holds_too(meshes, chains, make_scene):
     scene = make_scene(frames=3, tolerance=0.1, kind="ssim")
-    found = budget(meshes, scene, ladders=ladders)
+    found = budget(meshes, scene, chains=chains)
     assert 0 < found.errors.max() <= 0.1
     assert found.faces.sum() < rivals.full(found.frames).faces.sum() / 2
 
 
 @pytest.mark.parametrize("aside", [0.28, 0.34])
-def test_the_perceptual_tolerance_holds_for_what_another_partly_hides(meshes, ladders, make_scene, aside):
+def test_the_perceptual_tolerance_holds_for_what_another_partly_hides(meshes, chains, make_scene, aside):
     """The outline of the one in front is what breaks the other's picture: finer levels of the latter do not help."""
     objects = (Placed("one", (0, 0, 0), 0.0, 0.5), Placed("two", (aside, 0.6, 0.1), 0.0, 0.2))
     scene = make_scene(objects=objects, frames=3, tolerance=0.05, kind="ssim")
-    found = budget(meshes, scene, ladders=ladders)
+    found = budget(meshes, scene, chains=chains)
     assert 0 < found.errors.max() <= 0.05
     assert found.faces[:, 1].max() < len(meshes["two"].faces) / 2
 
@@ -72,39 +72,39 @@ def test_salient_places_can_be_minded_by_options_alone(meshes, make_scene):
     assert found.errors.max() <= 1.0
 
 
-def test_a_limit_holds_and_costs_error(meshes, ladders, make_scene, plan):
+def test_a_limit_holds_and_costs_error(meshes, chains, make_scene, plan):
     limit = int(plan.faces.sum(axis=1).max() * 0.7)
-    found = budget(meshes, make_scene(limit=limit), ladders=ladders)
+    found = budget(meshes, make_scene(limit=limit), chains=chains)
     assert found.faces.sum(axis=1).max() <= limit
     assert found.errors.max() > plan.errors.max()
 
 
-def test_a_limit_below_the_smallest_total_names_it(meshes, ladders, make_scene):
-    smallest = 2 * ladders["one"][-1].faces + ladders["two"][-1].faces
+def test_a_limit_below_the_smallest_total_names_it(meshes, chains, make_scene):
+    smallest = 2 * chains["one"][-1].faces + chains["two"][-1].faces
     with pytest.raises(ValueError, match=f"{smallest} together"):
-        budget(meshes, make_scene(limit=smallest - 1), ladders=ladders)
-    assert budget(meshes, make_scene(limit=smallest), ladders=ladders).faces.sum(axis=1).max() == smallest
+        budget(meshes, make_scene(limit=smallest - 1), chains=chains)
+    assert budget(meshes, make_scene(limit=smallest), chains=chains).faces.sum(axis=1).max() == smallest
 
 
-def test_what_is_out_of_view_costs_nothing(meshes, ladders, make_scene):
+def test_what_is_out_of_view_costs_nothing(meshes, chains, make_scene):
     objects = (Placed("one", (0, 0, 0), 0.0, 0.25), Placed("one", (0, -9.0, 0), 0.0, 0.25))
-    found = budget(meshes, make_scene(objects=objects), ladders=ladders)
+    found = budget(meshes, make_scene(objects=objects), chains=chains)
     assert (found.faces[:, 0] > 0).all() and (found.faces[:, 1] == 0).all()
 
 
-def test_what_leaves_the_view_close_to_the_eye_does_not_need_all_its_faces(meshes, ladders, make_scene):
+def test_what_leaves_the_view_close_to_the_eye_does_not_need_all_its_faces(meshes, chains, make_scene):
     """Its box reaches behind the camera, so that its distance says nothing of what is seen of it."""
     scene = make_scene(objects=(Placed("one", (0.42, -1.1, 0.2), 0.0, 0.4),))
-    found = budget(meshes, scene, ladders=ladders)
+    found = budget(meshes, scene, chains=chains)
     behind = [camera.project(found.frames.poses[0].corners())[2].min() < 0.1 for camera in scene.cameras]
     assert behind[-1] and found.frames.in_view[-1, 0]
     assert found.errors.max() <= 1 and found.faces[-1, 0] < 0.5 * len(meshes["one"].faces)
 
 
-def test_what_is_hidden_takes_the_coarsest_level(meshes, ladders, make_scene):
+def test_what_is_hidden_takes_the_coarsest_level(meshes, chains, make_scene):
     objects = (Placed("one", (0, 0, 0), 0.0, 0.6), Placed("two", (0, 0.8, 0.1), 0.0, 0.1))
-    found = budget(meshes, make_scene(objects=objects), ladders=ladders)
-    assert (found.levels[:, 1] == len(ladders["two"]) - 1).all()
+    found = budget(meshes, make_scene(objects=objects), chains=chains)
+    assert (found.levels[:, 1] == len(chains["two"]) - 1).all()
 
 
 def shifted(mesh, by):
@@ -149,22 +149,22 @@ def test_joined_frames_show_what_one_ray_cast_of_the_whole_scene_shows(meshes, f
     assert (frames.owners(1, frames.full) == expected).mean() > 0.999
 
 
-def test_uniform_levels_go_by_distance_alone(frames_of, make_scene, meshes, ladders):
-    """Half of the faces at twice the reach: two levels of the ladder that ours is chosen from."""
+def test_uniform_levels_go_by_distance_alone(frames_of, make_scene, meshes, chains):
+    """Half of the faces at twice the distance: two levels of the chain that ours is chosen from."""
     scene = make_scene()
     frames = frames_of(scene)
-    own = tuple((full, *ladders[placed.name][1:]) for full, placed in zip(frames.full, scene.objects, strict=True))
+    own = tuple((full, *chains[placed.name][1:]) for full, placed in zip(frames.full, scene.objects, strict=True))
     found = rivals.uniform(frames, own, 1.0)
     expected = np.maximum(np.rint(2 * np.log2(frames.distance)), 0)
     assert np.array_equal(found.levels, expected) and len(np.unique(expected)) > 2
     assert (rivals.uniform(frames, own, 1e3).levels == 0).all()
-    assert (rivals.uniform(frames, own, 1e-3).levels == [len(ladder) - 1 for ladder in own]).all()
+    assert (rivals.uniform(frames, own, 1e-3).levels == [len(chain) - 1 for chain in own]).all()
 
 
-def test_uniform_levels_by_size_show_a_larger_copy_finer(frames_of, make_scene, ladders):
+def test_uniform_levels_by_size_show_a_larger_copy_finer(frames_of, make_scene, chains):
     objects = (Placed("one", (-0.3, 0, 0), 0.0, 0.2), Placed("one", (0.3, 0, 0), 0.0, 0.4))
     frames = frames_of(make_scene(objects=objects))
-    own = tuple((full, *ladders["one"][1:]) for full in frames.full)
+    own = tuple((full, *chains["one"][1:]) for full in frames.full)
     found = rivals.uniform(frames, own, 2.0, by_size=True)
     assert (found.levels[:, 1] < found.levels[:, 0]).all()
 
@@ -175,41 +175,41 @@ def test_a_limit_shared_equally_gives_all_the_same_count(plan):
     over = plan.faces.sum(axis=1) > limit
     assert over.any() and (found.faces.sum(axis=1) <= limit).all()
     assert np.array_equal(found.levels[~over], plan.levels[~over])
-    counts = [[level.faces for level in ladder] for ladder in plan.ladders]
+    counts = [[level.faces for level in chain] for chain in plan.chains]
     for levels in found.levels[over]:
         common = max(own[k] for own, k in zip(counts, levels, strict=True))
         expected = [next(k for k, n in enumerate(own) if n <= common) for own in counts]
         assert levels.tolist() == expected
 
 
-def test_a_limit_shared_where_it_hurts_least_hurts_less(meshes, ladders, make_scene, plan):
+def test_a_limit_shared_where_it_hurts_least_hurts_less(meshes, chains, make_scene, plan):
     limit = int(plan.faces.sum(axis=1).max() * 0.6)
-    found = budget(meshes, make_scene(limit=limit), ladders=ladders)
+    found = budget(meshes, make_scene(limit=limit), chains=chains)
     assert found.errors.max() < rivals.equal(plan, limit).errors.max()
 
 
-def test_a_level_that_sticks_out_of_the_box_is_seen_to_its_end(meshes, ladders, make_scene, frames_of):
+def test_a_level_that_sticks_out_of_the_box_is_seen_to_its_end(meshes, chains, make_scene, frames_of):
     frames = frames_of(make_scene(frames=1))
-    full = ladders["one"][0]
+    full = chains["one"][0]
     wide = Level(Mesh(full.mesh.vertices * [1.5, 1, 1], full.mesh.faces), dict.fromkeys(ERRORS, 0.0))
-    columns = [np.ptp(frames.look(0, 0, level).pixels % 80) for level in (full, wide)]
+    columns = [np.ptp(frames.rendering(0, 0, level).pixels % 80) for level in (full, wide)]
     assert columns[1] > columns[0] + 1
 
 
-def test_what_hides_an_object_counts_nothing_for_its_structure(meshes, ladders, make_scene):
+def test_what_hides_an_object_counts_nothing_for_its_structure(meshes, chains, make_scene):
     """The hidden one is at full detail: the picture changes where the other stands, and that is the other's alone."""
     objects = (Placed("one", (0, 0, 0), 0.0, 0.6), Placed("two", (0, 0.8, 0.1), 0.0, 0.1))
     scene = make_scene(objects=objects, frames=1, kind="ssim", tolerance=0.1)
-    frames = Frames(scene, meshes, [ladders["one"][0], ladders["two"][0]])
-    found = frames.check(0, [ladders["one"][-1], ladders["two"][0]]).objects
+    frames = Frames(scene, meshes, [chains["one"][0], chains["two"][0]])
+    found = frames.check(0, [chains["one"][-1], chains["two"][0]]).objects
     assert found[0] > 0.05 and found[1] == 0
-    assert frames.between(0, 1, ladders["two"][0], ladders["two"][-1]) == 0
+    assert frames.between(0, 1, chains["two"][0], chains["two"][-1]) == 0
 
 
-def test_tuning_meets_the_wanted_error_from_above(frames_of, make_scene, ladders):
+def test_tuning_meets_the_wanted_error_from_above(frames_of, make_scene, chains):
     scene = make_scene()
     frames = frames_of(scene)
-    own = tuple((full, *ladders[placed.name][1:]) for full, placed in zip(frames.full, scene.objects, strict=True))
+    own = tuple((full, *chains[placed.name][1:]) for full, placed in zip(frames.full, scene.objects, strict=True))
     plan_of = lambda factor: rivals.uniform(frames, own, 1 / factor)  # noqa: E731
     wanted = 0.6 * plan_of(1e3).errors.mean()  # the coarsest has more
     found = rivals.tune(plan_of, lambda plan: plan.errors.mean(), wanted)
@@ -234,8 +234,8 @@ def test_one_object_alone_has_no_interval():
     assert share == 0.5 and np.isnan([low, high]).all()
 
 
-def test_a_ladder_gets_coarser_and_worse(ladders):
-    faces = [level.faces for level in ladders["one"]]
-    errors = [level.error["q99"] for level in ladders["one"]]
+def test_a_ladder_gets_coarser_and_worse(chains):
+    faces = [level.faces for level in chains["one"]]
+    errors = [level.error["q99"] for level in chains["one"]]
     assert len(faces) > 8 and faces == sorted(faces, reverse=True) and errors[0] == 0
     assert errors[1] < errors[len(errors) // 2] < errors[-1]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from stages.scene import Camera, Placed, Scene, fly
-from stages.scene.look import look, pixel_box, rays_of
+from stages.scene.rendering import pixel_box, rays_of, render_level
 
 
 @pytest.fixture
@@ -67,11 +67,11 @@ def test_a_placed_object_stands_on_its_foot_at_its_size(meshes):
     assert np.allclose(quarter[:, 1], (meshes["one"].vertices - pose.foot)[:, 0] * pose.scale)
 
 
-def test_a_look_sees_the_surface_where_it_is(meshes, ladders):
+def test_a_rendering_shows_the_surface_where_it_is(meshes, chains):
     camera = Camera((0.0, -2.0, 0.3), (0.0, 0.0, 0.1), 30.0, (60, 80))
     pose = Placed("one", (0.05, 0.0, 0.0), 40.0, 0.3).pose(meshes["one"])
-    level = ladders["one"][0]
-    seen = look(level, camera, pose)
+    level = chains["one"][0]
+    seen = render_level(level, camera, pose)
     points, _ = rays_of(seen, camera, pose)
     rows, columns, depth = camera.project(pose.to_world(points))
     assert len(seen.pixels) > 200
@@ -92,7 +92,7 @@ def test_an_eye_in_an_object_is_named(meshes, make_scene):
 
 
 def test_an_unknown_object_is_named_with_the_known_ones(meshes, make_scene):
-    with pytest.raises(ValueError, match=r"no mesh of nothing: known are one, two"):
+    with pytest.raises(ValueError, match=r"no mesh of nothing: there are one, two"):
         make_scene(objects=(Placed("nothing", (0, 0, 0), 0, 1),)).poses(meshes)
 
 

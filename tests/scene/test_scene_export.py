@@ -12,7 +12,7 @@ import pytest
 import trimesh
 
 from stages.kit import Mesh
-from stages.scene.export import describe, size_in_metres, to_gltf, write_glb, write_lod, write_scene
+from stages.scene.export import describe, metres_per_unit, to_gltf, write_glb, write_lod, write_scene
 from stages.scene.loaded_back import check_glb, read_lod
 
 VALIDATE = """
@@ -23,9 +23,9 @@ validator.validateBytes(new Uint8Array(fs.readFileSync(process.argv[1]))).then(
 
 
 @pytest.fixture(scope="module")
-def painted(ladders):
+def painted(chains):
     """Levels of a mesh with a colour a vertex."""
-    levels = ladders["two"][2:5]
+    levels = chains["two"][2:5]
     for level in levels:
         colors = np.random.default_rng(0).integers(256, size=level.mesh.vertices.shape)
         object.__setattr__(level.mesh, "colors", colors.astype(np.uint8))
@@ -35,7 +35,7 @@ def painted(ladders):
 
 
 def rows_of(levels, scene):
-    return [describe("two", level, size_in_metres(level.mesh, 0.2), scene) for level in levels]
+    return [describe("two", level, metres_per_unit(level.mesh, 0.2), scene) for level in levels]
 
 
 def nodes(path):
@@ -52,8 +52,8 @@ def test_a_level_comes_back_with_its_faces_places_and_colours(painted, tmp_path)
     assert np.array_equal(found.visual.vertex_colors[:, :3], mesh.colors)
 
 
-def test_up_is_y_and_sides_are_not_mirrored(ladders):
-    mesh = ladders["two"][0].mesh
+def test_up_is_y_and_sides_are_not_mirrored(chains):
+    mesh = chains["two"][0].mesh
     turned = to_gltf(mesh)
     assert np.allclose(turned.vertices[:, 1], mesh.vertices[:, 2])
     volume = [trimesh.Trimesh(each.vertices, each.faces, process=False).volume for each in (mesh, turned)]
@@ -80,12 +80,12 @@ def test_one_level_alone_needs_no_extension(painted, make_scene, tmp_path):
         read_lod(tmp_path / "one.glb")
 
 
-def test_the_manifest_tells_up_to_which_size_a_level_is_enough(ladders, make_scene):
-    scene, level = make_scene(tolerance=2.0), ladders["two"][5]
-    row = describe("two", level, size_in_metres(level.mesh, 0.2), scene)
+def test_the_manifest_tells_up_to_which_size_a_level_is_enough(chains, make_scene):
+    scene, level = make_scene(tolerance=2.0), chains["two"][5]
+    row = describe("two", level, metres_per_unit(level.mesh, 0.2), scene)
     assert row["size"] == pytest.approx(0.2) and row["faces"] == level.faces
     assert row["error"] * row["enough_up_to"] / row["size"] == pytest.approx(2.0, rel=1e-4)
-    assert describe("two", ladders["two"][0], 1.0, scene)["enough_up_to"] is None
+    assert describe("two", chains["two"][0], 1.0, scene)["enough_up_to"] is None
 
 
 def test_a_file_that_comes_back_otherwise_is_named(painted, tmp_path):
@@ -93,7 +93,7 @@ def test_a_file_that_comes_back_otherwise_is_named(painted, tmp_path):
     write_glb(path, [mesh], ["a"])
     others = {
         "faces": Mesh(mesh.vertices, mesh.faces[::-1], mesh.colors),
-        "places": Mesh(mesh.vertices * 1.001, mesh.faces, mesh.colors),
+        "positions": Mesh(mesh.vertices * 1.001, mesh.faces, mesh.colors),
         "colours": Mesh(mesh.vertices, mesh.faces, mesh.colors // 2),
     }
     for what, other in others.items():
@@ -112,9 +112,9 @@ def test_a_join_that_goes_wrong_is_named(painted, make_scene, tmp_path, monkeypa
         write_lod(tmp_path / "lod.glb", painted, rows_of(painted, make_scene()), 60)
 
 
-def test_equal_meshes_give_equal_bytes(ladders, tmp_path):
+def test_equal_meshes_give_equal_bytes(chains, tmp_path):
     for name in "ab":
-        write_glb(tmp_path / f"{name}.glb", [to_gltf(ladders["two"][3].mesh)], ["x"])
+        write_glb(tmp_path / f"{name}.glb", [to_gltf(chains["two"][3].mesh)], ["x"])
     assert (tmp_path / "a.glb").read_bytes() == (tmp_path / "b.glb").read_bytes()
 
 
@@ -126,12 +126,12 @@ def validator():
 
 @pytest.mark.skipif(shutil.which("node") is None, reason="no node here")
 @pytest.mark.skipif(validator() is None, reason="no gltf-validator: `npm install gltf-validator@2.0.0-dev.3.10`")
-def test_the_khronos_validator_finds_no_fault(painted, ladders, meshes, make_scene, tmp_path):
+def test_the_khronos_validator_finds_no_fault(painted, chains, meshes, make_scene, tmp_path):
     scene = make_scene()
     write_glb(tmp_path / "level.glb", [to_gltf(painted[0].mesh)], ["level"])
     write_lod(tmp_path / "lod.glb", painted, rows_of(painted, scene), 60)
     plan = pd.DataFrame([{"item": k, "faces": 1, "level": 2, "in_view": True} for k in range(3)])
-    write_scene(tmp_path / "scene.glb", scene, meshes, ladders, plan)
+    write_scene(tmp_path / "scene.glb", scene, meshes, chains, plan)
     for path in sorted(tmp_path.glob("*.glb")):
         done = subprocess.run(["node", "-e", VALIDATE, path], capture_output=True, text=True, check=True,
                               env=os.environ | {"NODE_PATH": str(Path(validator()).resolve())})  # fmt: skip

@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 import pytest
 
-from stages.scene.plan import BROKEN, cheapest, share
+from stages.scene.plan import VIOLATION_COST, cheapest, share_limit
 
 FACES = np.array([100.0, 40.0, 10.0])
 
@@ -25,9 +25,9 @@ def by_trial(faces, errors, steps, tolerance, hold):
 
 
 def cost(levels, faces, errors, steps, tolerance):
-    total = sum(faces[t, k] + BROKEN * max(errors[t, k] / tolerance - 1, 0) for t, k in enumerate(levels))
+    total = sum(faces[t, k] + VIOLATION_COST * max(errors[t, k] / tolerance - 1, 0) for t, k in enumerate(levels))
     switches = [(t, levels[t - 1], levels[t]) for t in range(1, len(levels)) if levels[t - 1] != levels[t]]
-    return total + sum(BROKEN * max(steps[t, a, b] / tolerance - 1, 0) for t, a, b in switches)
+    return total + sum(VIOLATION_COST * max(steps[t, a, b] / tolerance - 1, 0) for t, a, b in switches)
 
 
 @pytest.mark.parametrize("hold", [1, 2, 3])
@@ -70,11 +70,11 @@ def test_an_infinite_error_is_never_chosen_when_there_is_another():
 def test_a_limit_is_shared_where_it_hurts_least():
     faces = [np.array([100, 50, 20]), np.array([100, 50, 20])]
     errors = [np.array([0, 0.1, 0.2]), np.array([0, 1.0, 4.0])]
-    assert share([0, 0], faces, errors, 200).tolist() == [0, 0]
-    assert share([0, 0], faces, errors, 150).tolist() == [1, 0]
-    assert share([0, 0], faces, errors, 120).tolist() == [2, 0]
-    assert share([0, 0], faces, errors, 70).tolist() == [2, 1]
-    assert share([0, 0], faces, errors, 1).tolist() == [2, 2]
+    assert share_limit([0, 0], faces, errors, 200).tolist() == [0, 0]
+    assert share_limit([0, 0], faces, errors, 150).tolist() == [1, 0]
+    assert share_limit([0, 0], faces, errors, 120).tolist() == [2, 0]
+    assert share_limit([0, 0], faces, errors, 70).tolist() == [2, 1]
+    assert share_limit([0, 0], faces, errors, 1).tolist() == [2, 2]
 
 
 def test_no_sharing_has_a_smaller_worst_error():
@@ -85,6 +85,6 @@ def test_no_sharing_has_a_smaller_worst_error():
     total = {levels: sum(own[k] for own, k in zip(faces, levels, strict=True)) for levels in all_levels}
     worst = {levels: max(own[k] for own, k in zip(errors, levels, strict=True)) for levels in all_levels}
     for limit in (60, 100, 150, 200, 250):
-        found = tuple(share([0, 0, 0], faces, errors, limit).tolist())
+        found = tuple(share_limit([0, 0, 0], faces, errors, limit).tolist())
         assert total[found] <= limit
         assert worst[found] == min(worst[levels] for levels in all_levels if total[levels] <= limit)

@@ -1,6 +1,7 @@
 """From settings to rows: the committed scenes are sound, a scene goes on without what is not there, rows say it all."""
 
 import dataclasses
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -10,19 +11,22 @@ import yaml
 
 from stages.kit.files import read_arrays, read_table, write_arrays, write_mesh, write_table
 from stages.kit.params import check_section
-from stages.kit.run import DATA
+from stages.kit.rows import read_rows
+from stages.scene import __main__
+from stages.scene import measure as stage_measure
 from stages.scene.__main__ import levels_of
 from stages.scene.export import export
-from stages.scene.measure import measure
-from stages.scene.read import say_missing, scene_of
+from stages.scene.measure import measure, measure_network
+from stages.scene.read import report_missing, scene_of
 from stages.scene.rows import summary
+from stages.scene.schema import Params
 
 SCENES = sorted((Path(__file__).parents[2] / "conf/scene").glob("*.yaml"))
 COMMON = {"limit": 0, "hold": 2, "method": "enhanced-soft", "factors": [1.0], "msft_lod": True}
 
 
 def settings_of(path, **changes):
-    return check_section("scene", COMMON | yaml.safe_load(path.read_text())["scene"] | changes)
+    return check_section(Params, COMMON | yaml.safe_load(path.read_text())["scene"] | changes)
 
 
 @pytest.fixture(scope="module")
@@ -36,27 +40,35 @@ def settings():
 
 @pytest.fixture(scope="module")
 def root(meshes, tmp_path_factory):
-    """A folder with data/meshes and data/salient_points of the two meshes."""
+    """A folder with meshes and salient_points: the two meshes of the scene, and a third without a curve."""
     root = tmp_path_factory.mktemp("root")
-    for name, mesh in meshes.items():
-        write_mesh(root / DATA / f"meshes/{name}.npz", mesh)
+    for name, mesh in (meshes | {"third": meshes["two"]}).items():
+        write_mesh(root / f"meshes/{name}.npz", mesh)
         saliency = np.linspace(0, 1, len(mesh.vertices)).astype(np.float32)
         found = {"enhanced.points": np.array([0, 5]), "enhanced.strong": np.int64(2), "enhanced.saliency": saliency}
-        write_arrays(root / DATA / f"salient_points/{name}.npz", **found)
+        found |= {"itti.points": np.array([0, 5]), "itti.strong": np.int64(2)}
+        write_arrays(root / f"salient_points/{name}.npz", **found)
     return root
 
 
 @pytest.fixture(scope="module")
-def run(settings, root):
-    with pytest.MonkeyPatch.context() as patch:
-        patch.chdir(root)
-        folder = Path("out")
-        rows = [row for name in ("one", "two") for row in levels_of(name, folder, settings, 0)]
-        factors = {"tolerance_1": 1.0, "tolerance_2": 2.0}
-        for job in factors:
-            rows += measure(job, folder, settings, factors, ["one", "two"], 0)
-        export(folder, settings, ["one", "two"])
-        yield root / folder, rows
+def run_in(settings, root):
+    """A function of a folder and factors: all jobs of the stage; returns their rows."""
+
+    def work(folder, factors, others=("third",)):
+        rows = [row for name in ("one", "two") for row in levels_of(name, folder, root, settings.method, 0)]
+        for factor in factors:
+            rows += measure(factor, folder, root, folder, settings, ["one", "two"], 0)
+            rows += measure_network(factor, folder, root, folder, settings, ["one", "two"], others, 0)
+        export(folder, root, scene_of(settings, ["one", "two"])[0], settings)
+        return rows
+
+    return work
+
+
+@pytest.fixture(scope="module")
+def run(run_in, root):
+    return root / "out", run_in(root / "out", [1.0, 2.0])
 
 
 @pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
@@ -70,21 +82,21 @@ def test_every_scene_is_sound(path):
 
 def test_a_scene_goes_on_without_what_is_not_there_and_says_so(settings, capsys):
     scene, missing = scene_of(settings, ["one", "two"])
-    say_missing(settings, scene, missing)
+    report_missing(settings, scene, missing)
     assert [placed.name for placed in scene.objects] == ["one", "two"]
-    assert "on without them; not in data/meshes: nothing" in capsys.readouterr().err
+    assert "without them; not in data/SET/meshes: nothing" in capsys.readouterr().err
 
 
 def test_other_meshes_stand_in_where_the_data_has_none_of_the_scene(settings, capsys):
     scene, missing = scene_of(settings, ["cube", "urn"])
-    say_missing(settings, scene, missing)
+    report_missing(settings, scene, missing)
     assert [placed.name for placed in scene.objects] == ["cube", "urn"]
     assert [placed.size for placed in scene.objects] == [item.size for item in settings.objects[:2]]
     assert "with cube, urn in their places" in capsys.readouterr().err
 
 
 def test_a_scene_of_nothing_is_refused(settings):
-    with pytest.raises(ValueError, match="scene small names no object"):
+    with pytest.raises(ValueError, match="scene small has no object"):
         scene_of(settings, [])
 
 
@@ -106,7 +118,7 @@ def test_bad_settings_are_named(settings, change, reason):
 
 def value(rows, method, metric, matched="", factor=1.0):
     found = [row["value"] for row in rows if (row["method"], row["metric"], row.get("matched"), row.get("factor")) ==
-             (method, metric, matched, factor) and row["frame"] == "all" and not row["object"]]  # fmt: skip
+             (method, metric, matched, factor) and row["frame"] == "all" and not row["item"]]  # fmt: skip
     assert len(found) == 1, (method, metric, matched)
     return found[0]
 
@@ -154,7 +166,7 @@ def test_pictures_show_the_full_frame_beside_the_others(run):
 def test_each_level_of_the_plan_is_exported_once(run):
     folder, _ = run
     plan = read_table(folder / "plan.csv").query("in_view")
-    wanted = {f"{row.object}_{row.faces}.glb" for row in plan.itertuples()}
+    wanted = {f"{row.item}_{row.faces}.glb" for row in plan.itertuples()}
     names = {path.name for path in (folder / "export").glob("*.glb")}
     assert wanted | {"one.glb", "two.glb", "scene.glb"} == names
 
@@ -165,26 +177,46 @@ def test_the_summary_is_small_and_finite(run):
     assert all(np.isfinite(number) for number in found.values())
 
 
-def test_equal_runs_give_equal_files(run, settings, root, monkeypatch):
-    monkeypatch.chdir(root)
-    folder = Path("again")
-    for name in ("one", "two"):
-        levels_of(name, folder, settings, 0)
-    measure("tolerance_1", folder, settings, {"tolerance_1": 1.0}, ["one", "two"], 0)
-    export(folder, settings, ["one", "two"])
+def test_equal_runs_give_equal_files(run, run_in, root):
+    folder = root / "again"
+    run_in(folder, [1.0])
     for path in sorted(path for path in folder.rglob("*") if path.is_file()):
         assert path.read_bytes() == (run[0] / path.relative_to(folder)).read_bytes(), path
 
 
-def test_the_network_is_asked_where_there_are_curves(run, settings, root, monkeypatch):
-    monkeypatch.chdir(root)
+def write_curve(data, name):
+    """An object outside the scene with a curve, on which the network learns."""
+    for kind in ("meshes", "salient_points"):
+        write_arrays(data / kind / f"{name}.npz", **read_arrays(data / kind / "two.npz"))
     curve = pd.DataFrame({"faces": [25, 50, 100, 200, 400]})
-    curve = curve.assign(object="third", method="itti", points=4, metric="metro_mean", value=2 / curve["faces"])
-    write_table(root / DATA / "lod/third/curve.csv", curve)
-    known = read_arrays(root / DATA / "salient_points/one.npz")
-    for name in ("one", "two", "third"):
-        more = {"itti.points": np.array([0, 5]), "itti.strong": np.int64(2)}
-        write_arrays(root / DATA / f"salient_points/{name}.npz", **known | more)
-    write_arrays(root / DATA / "meshes/third.npz", **read_arrays(root / DATA / "meshes/two.npz"))
-    rows = measure("tolerance_2", run[0], settings, {"tolerance_2": 2.0}, ["one", "two", "third"], 0)
-    assert value(rows, "network", "faces", "error", 2.0) > 0
+    curve = curve.assign(item=name, method="itti", points=4, metric="metro_mean", value=2 / curve["faces"])
+    write_table(data / f"lod/{name}/curve.csv", curve)
+
+
+@pytest.fixture
+def workspace(settings, root, make_workspace):
+    """A data set whose third object, outside the scene, has a curve."""
+    workspace = make_workspace({"scene": dataclasses.asdict(settings)})
+    for kind in ("meshes", "salient_points"):
+        shutil.copytree(root / kind, workspace.data / kind)
+    write_curve(workspace.data, "third")
+    return workspace
+
+
+def test_an_object_outside_the_scene_runs_the_network_again_and_nothing_else(workspace, monkeypatch):
+    ran = []
+    for name in ("build_lod_chain", "compare", "compare_network"):
+        place = __main__ if name == "build_lod_chain" else stage_measure
+        work = getattr(place, name)
+        monkeypatch.setattr(place, name, lambda *a, name=name, work=work, **k: ran.append(name) or work(*a, **k))
+    __main__.run(workspace)
+    assert ran == [*["build_lod_chain"] * 4, "compare", "compare_network"]
+    rows = read_rows(workspace.measurements / "scene.csv.gz").to_dict("records")
+    assert {row["group"] for row in rows if row["condition"] != row["condition"]} == {"small"}
+    assert {
+        row["value"] for row in rows if (row["method"], row["metric"], row["matched"]) == ("network", "held", "held")
+    }
+    ran.clear()
+    write_curve(workspace.data, "fourth")
+    __main__.run(workspace)
+    assert ran == ["compare_network"]

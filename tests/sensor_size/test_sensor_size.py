@@ -3,9 +3,14 @@
 from types import SimpleNamespace
 
 import numpy as np
+import pandas as pd
 import pytest
+import trimesh
 
-from stages.sensor_size import CLASSIFIERS, chosen_again, classifier, evaluate, smallest_enough
+from stages.kit import Mesh
+from stages.kit.files import write_arrays, write_mesh, write_table
+from stages.kit.rows import read_rows
+from stages.sensor_size import CLASSIFIERS, choice_repeatability, classifier, evaluate, smallest_sufficient
 from stages.sensor_size import __main__ as stage
 from stages.sensor_size.__main__ import chosen_classes, summary
 
@@ -19,7 +24,7 @@ def touches(level, seed, count=12, noise=0.05):
 
 def unseen(imprints, name):
     """The rows of objects that were never touched in training."""
-    return [row for row in evaluate(imprints, [name]) if row["metric"] == "accuracy"]
+    return [row for row in evaluate(imprints, [name]) if row["split"] == "objects"]
 
 
 @pytest.fixture(scope="module")
@@ -45,7 +50,7 @@ def test_the_tested_object_is_never_trained_on():
     """Each object has its own level: who learned it would name it, who did not takes the nearest other class."""
     levels = {"a": (0.0, 10.0), "b": (1.0, 11.0)}
     own = {one: [touches(level, i, noise=0.01) for i, level in enumerate(pair)] for one, pair in levels.items()}
-    found = {(row["class"], row["fold"]): row["value"] for row in unseen(own, "knn")}
+    found = {(row["group"], row["fold"]): row["value"] for row in unseen(own, "knn")}
     assert found == {("a", 0): 1.0, ("b", 0): 0.0, ("a", 1): 0.0, ("b", 1): 1.0} or set(found.values()) <= {0.0, 1.0}
     assert np.mean(list(found.values())) == 0.5
 
@@ -53,8 +58,8 @@ def test_the_tested_object_is_never_trained_on():
 def test_a_random_quarter_of_the_touches_is_told_where_the_object_is_known():
     levels = {"a": (0.0, 10.0), "b": (1.0, 11.0)}
     own = {one: [touches(level, i, noise=0.01) for i, level in enumerate(pair)] for one, pair in levels.items()}
-    rows = [row for row in evaluate(own, ["knn"]) if row["metric"] == "accuracy_holdout"]
-    assert [(row["class"], row["tested"], row["value"]) for row in rows] == [
+    rows = [row for row in evaluate(own, ["knn"]) if row["split"] == "random"]
+    assert [(row["group"], row["item"], row["value"]) for row in rows] == [
         ("a", 0, 1.0), ("a", 1, 1.0), ("b", 0, 1.0), ("b", 1, 1.0)
     ]  # fmt: skip
 
@@ -62,26 +67,26 @@ def test_a_random_quarter_of_the_touches_is_told_where_the_object_is_known():
 def test_a_class_with_fewer_objects_sits_out_the_later_folds(plain):
     uneven = plain | {"low": plain["low"][:2]}
     rows = unseen(uneven, "knn")
-    assert sorted((row["class"], row["fold"]) for row in rows if row["class"] == "low") == [("low", 0), ("low", 1)]
+    assert sorted((row["group"], row["fold"]) for row in rows if row["group"] == "low") == [("low", 0), ("low", 1)]
     assert len(rows) == 8
 
 
 def test_the_answer_does_not_depend_on_the_order_of_the_classes(plain):
     turned = dict(reversed(plain.items()))
     for name in ("knn", "svm"):
-        one, other = ({(r["class"], r["fold"]): r["value"] for r in unseen(x, name)} for x in (plain, turned))
+        one, other = ({(r["group"], r["fold"]): r["value"] for r in unseen(x, name)} for x in (plain, turned))
         assert one == other
 
 
 def test_the_smallest_array_has_the_fewest_sensels_then_the_least_width():
     accuracy = {(16, 0.01): 0.80, (16, 0.002): 0.79, (32, 0.01): 0.81, (8, 0.01): 0.6}
-    assert smallest_enough(accuracy, 0.02) == (16, 0.002)
-    assert smallest_enough(accuracy, 0.01) == (16, 0.01)
-    assert smallest_enough(accuracy, 0.0) == (32, 0.01)
+    assert smallest_sufficient(accuracy, 0.02) == (16, 0.002)
+    assert smallest_sufficient(accuracy, 0.01) == (16, 0.01)
+    assert smallest_sufficient(accuracy, 0.0) == (32, 0.01)
     with pytest.raises(ValueError, match="slack"):
-        smallest_enough(accuracy, -0.1)
+        smallest_sufficient(accuracy, -0.1)
     with pytest.raises(ValueError, match="at least one"):
-        smallest_enough({}, 0.1)
+        smallest_sufficient({}, 0.1)
 
 
 def test_bad_input_is_named(plain):
@@ -93,39 +98,59 @@ def test_bad_input_is_named(plain):
         evaluate(plain | {"low": [plain["low"][0], plain["low"][1][:0]]}, ["knn"])
     with pytest.raises(ValueError, match="touch more often"):
         evaluate({one: [images[:1] for images in objects] for one, objects in plain.items()}, ["knn"])
-    with pytest.raises(ValueError, match="called bayes"):
+    with pytest.raises(ValueError, match="unknown classifier bayes"):
         classifier("bayes")
 
 
 def test_classes_are_chosen_by_name_and_lonely_objects_left_out():
     found = {"a": ["a1", "a2"], "b": ["b1"], "c": ["c1", "c2", "c3"]}
     assert list(chosen_classes(found, [])) == ["a", "c"] and list(chosen_classes(found, ["c"])) == ["c"]
-    with pytest.raises(ValueError, match="no d in data/classes"):
+    with pytest.raises(ValueError, match="no d in meshes.classes"):
         chosen_classes(found, ["d"])
 
 
 def test_the_metrics_name_the_smallest_array():
     rows = [
-        {"metric": "accuracy", "classifier": "knn", "cells": cells, "pitch": 0.01, "value": value + wobble}
-        for cells, value in ((8, 0.5), (16, 0.9), (32, 0.91)) for wobble in (-0.05, 0.05)
+        {"metric": "accuracy", "split": "objects", "classifier": "knn", "cells": cells, "pitch": 0.01, "value": value}
+        for cells, mean in ((8, 0.5), (16, 0.9), (32, 0.91)) for value in (mean - 0.05, mean + 0.05)
     ]  # fmt: skip
     found = summary(rows, 0.02, 0)["knn"]
     assert found["smallest"] == {"cells": 16, "pitch": 0.01, "accuracy": 0.9, "again": 1.0}
-    assert found["arrays"]["8-0.01"]["low"] == 0.45
+    assert found["arrays"]["8-0.01"]["low"] == pytest.approx(0.5 - 0.458408, abs=1e-5)
 
 
 def test_the_choice_is_trusted_where_one_array_leads_and_not_where_all_are_alike():
     noise = np.random.default_rng(0)
     clear = {(8, 0.01): noise.normal(0.2, 0.05, 24), (16, 0.01): noise.normal(0.9, 0.05, 24)}
-    assert chosen_again(clear, 0.02) == 1
+    assert choice_repeatability(clear, 0.02) == 1
     alike = {(cells, 0.01): noise.normal(0.3, 0.15, 24) for cells in (8, 16, 32, 64)}
-    assert chosen_again(alike, 0.02) < 0.8
+    assert choice_repeatability(alike, 0.02) < 0.8
 
 
-def test_loading_code_is_no_part_of_a_touchs_seconds(monkeypatch):
+def test_loading_code_is_no_part_of_a_touchs_seconds(monkeypatch, tmp_path):
     done = []
     monkeypatch.setattr(stage, "warm_up", lambda: done.append("loaded"))
     monkeypatch.setattr(stage, "touch", lambda *_: done.append("touched") or np.random.default_rng(0).random((9, 8, 8)))
     settings = SimpleNamespace(method="enhanced", touches=9, classifiers=["knn"])
-    stage.process("8-0.01", None, {"a": ["a1", "a2"], "b": ["b1", "b2"]}, "household", settings, 0)
+    stage.process("8-0.01", tmp_path, tmp_path, {"a": ["a1", "a2"], "b": ["b1", "b2"]}, settings, 0)
     assert done[0] == "loaded" and done.count("touched") == 4
+
+
+def test_the_stage_tests_each_object_of_the_classes(make_workspace):
+    settings = {"classes": [], "method": "salient", "touches": 12, "cells": [4], "pitches": [0.02], "slack": 0.02}
+    workspace = make_workspace({"sensor_size": settings | {"classifiers": ["knn"]}})
+    sizes = {"cube": (0.5, 0.5, 0.5), "brick": (0.5, 0.4, 0.5), "stick": (0.1, 0.1, 0.6), "pole": (0.12, 0.1, 0.6)}
+    for name, size in sizes.items():
+        box = trimesh.creation.box(size).subdivide().subdivide()
+        write_mesh(workspace.data / f"meshes/{name}.npz", Mesh(box.vertices, box.faces))
+        points = {"salient.points": np.arange(0, 90, 3), "salient.strong": np.int64(30)}
+        write_arrays(workspace.data / f"salient_points/{name}.npz", **points)
+    table = pd.DataFrame({"class": ["box", "box", "rod", "rod"], "object": list(sizes)})
+    write_table(workspace.data / "meshes/classes.csv", table)
+    stage.run(workspace)
+    rows = read_rows(workspace.measurements / "sensor_size.csv.gz")
+    tested = rows[rows["split"] == "objects"]
+    assert dict(zip(tested["item"], tested["group"], strict=True)) == dict(
+        zip(table["object"], table["class"], strict=True)
+    )
+    assert (workspace.data / "sensor_size/smallest.csv").exists() and len(rows) == 1 + 4 + 4

@@ -5,7 +5,7 @@ import pytest
 import torch
 
 from stages.sequences.networks import ImageNet, NormalNet, layers
-from stages.sequences.training import Images, Normals, learn, probabilities
+from stages.sequences.training import ImageInputs, NormalInputs, class_probabilities, train_network
 
 
 def films(count=60, frames=8, cells=8, classes=3, seed=0):
@@ -43,7 +43,7 @@ def test_settings_are_those_of_the_tables():
     assert (network.conv2.kernel_size, network.conv2.padding) == ((3, 5, 5), (0, 1, 1))
     assert network.drop.p == pytest.approx(0.2)  # 0.8 are kept
     assert NormalNet(25, 8).drop_convolved.p == pytest.approx(0.5)
-    assert (Images.batch, Normals.batch) == (10, 16)
+    assert (ImageInputs.batch, NormalInputs.batch) == (10, 16)
 
 
 def test_table_of_layers_counts_all_parameters():
@@ -66,60 +66,60 @@ def test_too_small_is_named():
     assert NormalNet(8, 3)(torch.zeros(2, 8, 3)).shape == (2, 3)
 
 
-@pytest.mark.parametrize("kind", [Images, Normals])
+@pytest.mark.parametrize("kind", [ImageInputs, NormalInputs])
 def test_training_learns_classes_that_differ(kind):
     images, normals, labels = films()
     train, test = np.arange(40), np.arange(40, 60)
-    inputs = kind(images if kind is Images else normals, train)
-    chances = probabilities(learn(inputs, labels, train, 3, 30, seed=0), inputs, test)
+    inputs = kind(images if kind is ImageInputs else normals, train)
+    chances = class_probabilities(train_network(inputs, labels, train, 3, 30, seed=0), inputs, test)
     np.testing.assert_allclose(chances.sum(axis=1), 1, rtol=1e-5)
     assert (chances.argmax(axis=1) == labels[test]).mean() > 0.9
 
 
 def test_training_is_repeatable_and_leaves_the_caller_s_chance_alone():
     images, _, labels = films()
-    inputs = Images(images, np.arange(40))
+    inputs = ImageInputs(images, np.arange(40))
     torch.manual_seed(5)
     before = torch.rand(1)
     torch.manual_seed(5)
-    first = learn(inputs, labels, np.arange(40), 3, 2, seed=1)
+    first = train_network(inputs, labels, np.arange(40), 3, 2, seed=1)
     assert torch.rand(1) == before
     torch.manual_seed(99)
-    again = learn(inputs, labels, np.arange(40), 3, 2, seed=1)
+    again = train_network(inputs, labels, np.arange(40), 3, 2, seed=1)
     for one, other in zip(first.parameters(), again.parameters(), strict=True):
         assert torch.equal(one, other)
-    assert not torch.equal(first.fc1.weight, learn(inputs, labels, np.arange(40), 3, 2, seed=2).fc1.weight)
+    assert not torch.equal(first.fc1.weight, train_network(inputs, labels, np.arange(40), 3, 2, seed=2).fc1.weight)
 
 
 def test_nothing_of_the_test_part_leaks_into_training():
     images, normals, labels = films()
     train, changed, bent = np.arange(40), images.copy(), normals.copy()
     changed[40:], bent[40:] = 255, 100.0
-    for kind, usual, other in ((Images, images, changed), (Normals, normals, bent)):
-        one, two = (learn(kind(values, train), labels, train, 3, 1, seed=0) for values in (usual, other))
+    for kind, usual, other in ((ImageInputs, images, changed), (NormalInputs, normals, bent)):
+        one, two = (train_network(kind(values, train), labels, train, 3, 1, seed=0) for values in (usual, other))
         assert torch.equal(one.fc1.weight, two.fc1.weight)
 
 
 def test_inputs_are_standardised_by_the_training_part():
     images, normals, _ = films()
     train = np.arange(30)
-    standard = Images(images, train)(train)
+    standard = ImageInputs(images, train)(train)
     assert float(standard.mean()) == pytest.approx(0, abs=1e-4) and float(standard.std()) == pytest.approx(1, abs=1e-3)
-    moved = Normals(normals, train)(train)
+    moved = NormalInputs(normals, train)(train)
     np.testing.assert_allclose(moved.mean(dim=(0, 1)), 0, atol=1e-5)
     np.testing.assert_allclose(moved.std(dim=(0, 1)), 1, rtol=1e-2)
 
 
 def test_constant_inputs_are_finite():
     train = np.arange(4)
-    assert torch.isfinite(Images(np.full((4, 8, 8, 8), 7, dtype=np.uint8), train)(train)).all()
-    assert torch.isfinite(Normals(np.ones((4, 8, 3), dtype=np.float32), train)(train)).all()
+    assert torch.isfinite(ImageInputs(np.full((4, 8, 8, 8), 7, dtype=np.uint8), train)(train)).all()
+    assert torch.isfinite(NormalInputs(np.ones((4, 8, 3), dtype=np.float32), train)(train)).all()
 
 
 def test_network_that_ran_away_says_nothing():
     _, normals, labels = films()
-    inputs = Normals(normals, np.arange(40))
+    inputs = NormalInputs(normals, np.arange(40))
     network = inputs.network(3).eval()
     with torch.no_grad():
         network.scores.bias[0] = float("nan")
-    np.testing.assert_allclose(probabilities(network, inputs, np.arange(5)), 1 / 3)
+    np.testing.assert_allclose(class_probabilities(network, inputs, np.arange(5)), 1 / 3)

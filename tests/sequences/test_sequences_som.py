@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from stages.sequences.classifiers import CONVENTIONAL, SIZES, choose_size, classifier
+from stages.sequences.classifiers import CONVENTIONAL, MAP_DIMENSIONS, choose_dimensions, classifier
 from stages.sequences.reduction import MostInformative
 from stages.sequences.som import NEURONS, SelfOrganisingMap
 
@@ -15,7 +15,7 @@ def blobs(count=40, classes=3, width=8, apart=6.0, seed=0):
     return apart * random.normal(size=(classes, width))[labels] + random.normal(size=(len(labels), width)), labels
 
 
-@pytest.mark.parametrize("dimensions", SIZES)
+@pytest.mark.parametrize("dimensions", MAP_DIMENSIONS)
 def test_places_lie_in_the_cube_of_the_size(dimensions):
     samples, _ = blobs()
     found = SelfOrganisingMap(dimensions).fit_transform(samples)
@@ -25,7 +25,7 @@ def test_places_lie_in_the_cube_of_the_size(dimensions):
 
 def test_maps_of_all_sizes_have_about_as_many_neurons():
     samples, _ = blobs()
-    for dimensions in SIZES:
+    for dimensions in MAP_DIMENSIONS:
         neurons = len(SelfOrganisingMap(dimensions).fit(samples).neurons_)
         assert NEURONS / 2 < neurons < 2 * NEURONS
 
@@ -110,7 +110,7 @@ def test_settings_are_the_thesis_s():
 def test_chosen_size_does_not_see_the_other_samples():
     samples, labels = blobs(apart=1.0, width=30)
     fit, check, test = np.array_split(np.random.default_rng(0).permutation(len(samples)), 3)
-    first = choose_size("knn", samples, labels, fit, check)
+    first = choose_dimensions("knn", samples, labels, fit, check)
     changed, wrong = samples.copy(), labels.copy()
     changed[test], wrong[test] = 1e3, 0
-    assert choose_size("knn", changed, wrong, fit, check) == first in SIZES
+    assert choose_dimensions("knn", changed, wrong, fit, check) == first in MAP_DIMENSIONS

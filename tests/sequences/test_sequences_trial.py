@@ -11,9 +11,9 @@ from stages.contours import Sequences, write_sequences
 from stages.sequences import trial as trials
 from stages.sequences.__main__ import confusion, network_layers, summary
 from stages.sequences.classifiers import CONVENTIONAL
-from stages.sequences.dataset import counts_in, read_data, smaller
+from stages.sequences.dataset import count_sequences, downsample, read_sequence_data
 from stages.sequences.plan import plan
-from stages.sequences.split import by_objects, by_sequences
+from stages.sequences.split import split_by_objects, split_by_sequences
 from stages.sequences.trial import Trial, process
 
 CLASSES = {"flat": ["plate", "tray"], "round": ["ball", "egg"]}
@@ -39,80 +39,81 @@ def sequences(level, count=10, frames=10, cells=8, seed=0):
 
 @pytest.fixture
 def contours(tmp_path, monkeypatch):
-    """A folder data/contours below which two classes of two objects have sequences by two strategies."""
+    """The folder data/toys/contours in which two classes of two objects have sequences by two strategies."""
     for level, objects in zip((20, 220), CLASSES.values(), strict=True):
         for k, name in enumerate(objects):
             found = {strategy: sequences(level, seed=k) for strategy in ("guided", "random")}
-            write_sequences(tmp_path / "contours" / f"{name}.npz", found)
-    monkeypatch.setattr(trials, "DATA", tmp_path)
+            write_sequences(tmp_path / "data/toys/contours" / f"{name}.npz", found)
     monkeypatch.setattr("stages.sequences.som.NEURONS", 30)  # quicker; few samples need no more
-    return tmp_path / "contours"
+    return tmp_path / "data/toys/contours"
 
 
 def test_random_split_takes_a_fifth_of_every_class():
     labels = np.repeat([0, 1, 2], [50, 30, 20])
-    split = by_sequences(labels, np.random.default_rng(0))
+    split = split_by_sequences(labels, np.random.default_rng(0))
     assert np.bincount(labels[split.test]).tolist() == [10, 6, 4]
     assert sorted([*split.train, *split.test]) == list(range(100))
-    assert set(split.check) < set(split.train)
-    assert sorted([*split.fit, *split.check]) == split.train.tolist()
+    assert set(split.validation) < set(split.train)
+    assert sorted([*split.fit, *split.validation]) == split.train.tolist()
 
 
 def test_left_out_objects_are_on_one_side_alone():
     labels, ranks = np.repeat([0, 1], 30), np.tile(np.repeat([0, 1, 2], 10), 2)
     for fold in range(3):
-        split = by_objects(labels, ranks, fold, 3, np.random.default_rng(0))
+        split = split_by_objects(labels, ranks, fold, 3, np.random.default_rng(0))
         assert set(ranks[split.test]) == {fold}
         assert set(ranks[split.train]) == {0, 1, 2} - {fold}
-        assert set(ranks[split.check]) == {(fold + 1) % 3}
+        assert set(ranks[split.validation]) == {(fold + 1) % 3}
         assert set(ranks[split.fit]) == {(fold + 2) % 3}
         assert set(labels[split.test]) == set(labels[split.fit]) == {0, 1}
 
 
 def test_of_two_objects_the_check_is_drawn_from_the_one_that_trains():
     labels, ranks = np.repeat([0, 1], 20), np.tile(np.repeat([0, 1], 10), 2)
-    split = by_objects(labels, ranks, 0, 2, np.random.default_rng(0))
-    assert set(ranks[split.check]) == set(ranks[split.fit]) == {1}
-    assert len(split.check) == 4 and len(split.fit) == 16
+    split = split_by_objects(labels, ranks, 0, 2, np.random.default_rng(0))
+    assert set(ranks[split.validation]) == set(ranks[split.fit]) == {1}
+    assert len(split.validation) == 4 and len(split.fit) == 16
 
 
 def test_fewer_frames_are_evenly_spread_and_cells_are_means_of_blocks(contours):
-    data = read_data(contours, CLASSES, "guided")
-    less = smaller(data, 5, 4)
+    data = read_sequence_data(contours, CLASSES, "guided")
+    less = downsample(data, 5, 4)
     assert less.images.shape == (40, 5, 4, 4) and less.images.dtype == np.uint8
     np.testing.assert_array_equal(less.normals, data.normals[:, [0, 2, 4, 6, 8]])
     assert less.images[3, 1, 2, 1] == np.round(data.images[3, 2, 4:6, 2:4].mean())
-    assert smaller(data, 10, 8) is data
+    assert downsample(data, 10, 8) is data
 
 
 def test_oblong_imprints_are_averaged_in_squares(contours):
-    data = read_data(contours, CLASSES, "guided")
-    wide = smaller(replace(data, images=data.images[:, :, :4]), 10, 2)
+    data = read_sequence_data(contours, CLASSES, "guided")
+    wide = downsample(replace(data, images=data.images[:, :, :4]), 10, 2)
     assert wide.images.shape == (40, 10, 2, 4)
 
 
-@pytest.mark.parametrize(("frames", "cells", "word"), [(11, 8, "frames wanted"), (0, 8, "frames"), (10, 3, "averaged")])
+@pytest.mark.parametrize(
+    ("frames", "cells", "word"), [(11, 8, "frames requested"), (0, 8, "frames"), (10, 3, "averaged")]
+)
 def test_impossible_size_is_named(contours, frames, cells, word):
     with pytest.raises(ValueError, match=word):
-        smaller(read_data(contours, CLASSES, "guided"), frames, cells)
+        downsample(read_sequence_data(contours, CLASSES, "guided"), frames, cells)
 
 
 def test_data_know_class_and_object(contours):
-    data = read_data(contours, CLASSES, "random")
+    data = read_sequence_data(contours, CLASSES, "random")
     assert data.labels.tolist() == [0] * 20 + [1] * 20
     assert data.ranks.tolist() == ([0] * 10 + [1] * 10) * 2
     assert data.folds == 2 and data.classes == ["flat", "round"]
 
 
 def test_counts_are_read_without_the_images(contours):
-    assert counts_in(contours / "ball.npz") == {"guided": 10, "random": 10}
+    assert count_sequences(contours / "ball.npz") == {"guided": 10, "random": 10}
 
 
 def test_plan_holds_both_splits_and_the_smaller_sequences(contours):
     planned = plan(CLASSES, contours, SETTINGS)
     names = [one.name for one in planned.trials]
     assert not planned.notes and len(names) == len(set(names)) == 2 * 3 * 2 + 2 + 2
-    assert {"guided.sequences.0.networks.10x8", "random.objects.1.conventional.10x8"} <= set(names)
+    assert {"guided.random.0.networks.10x8", "random.objects.1.conventional.10x8"} <= set(names)
     assert {"guided.objects.0.conventional.5x4", "guided.objects.1.networks.9x8"} <= set(names)
     assert all(Trial.parse(name) == one for name, one in zip(names, planned.trials, strict=True))
 
@@ -122,7 +123,7 @@ def test_what_is_left_out_is_said(contours):
     (contours / "egg.npz").unlink()
     write_sequences(contours / "ball.npz", {"guided": sequences(220), "random": sequences(220, count=3)})
     notes = " ".join(plan(CLASSES | {"far": ["away"]}, contours, settings).notes)
-    for words in ("no sequences of egg", "no sequences of away", "random left out", "of ball", "no class can spare",
+    for words in ("no sequences of egg", "no sequences of away", "random left out", "of ball", "are not held out",
                   "size 20x8 left out", "networks left out at 5x8"):  # fmt: skip
         assert words in notes
     alone = plan({"flat": ["plate"]}, contours, settings)
@@ -135,24 +136,25 @@ def test_mistyped_size_is_an_error(contours):
         plan(CLASSES, contours, settings)
 
 
-@pytest.mark.parametrize("split", ["sequences", "objects"])
+@pytest.mark.parametrize("split", ["random", "objects"])
 def test_trials_tell_clear_classes_apart(contours, tmp_path, split):
     rows = []
     for kind in ("networks", "conventional"):
         name = f"guided.{split}.0.{kind}.10x8"
-        rows += process(name, tmp_path, CLASSES, SETTINGS, seed=0)
+        rows += process(name, tmp_path, contours.parent, CLASSES, SETTINGS, seed=0)
     frame = pd.DataFrame(rows)
     rates = frame[frame["metric"] == "accuracy"].set_index("classifier")["value"]
     assert set(rates.index) == {"cnn", "cnn_images", "cnn_normals", *CONVENTIONAL}
     assert (rates[["cnn", "cnn_images", "svm_no_som"]] > 0.8).all()
     assert set(frame.loc[frame["metric"] == "map_dimensions", "classifier"]) == {"knn", "svm"}
     assert (frame.loc[frame["metric"] == "accuracy", "seconds"] > 0).all()
+    assert {row.get("group") for row in rows} - {None} == (set(CLASSES) if split == "objects" else set())
 
 
 def test_trial_is_the_same_when_repeated(contours, tmp_path):
     for kind in ("networks", "conventional"):
-        name = f"guided.sequences.0.{kind}.10x8"
-        first, again = (process(name, tmp_path, CLASSES, SETTINGS, seed=0) for _ in range(2))
+        name = f"guided.random.0.{kind}.10x8"
+        first, again = (process(name, tmp_path, contours.parent, CLASSES, SETTINGS, seed=0) for _ in range(2))
         assert [row["value"] for row in first] == [row["value"] for row in again]
 
 
@@ -160,10 +162,10 @@ def test_side_tables_hold_every_answer_and_layer(contours, tmp_path, monkeypatch
     monkeypatch.setattr(trials, "CONVENTIONAL", ("knn_no_som", "svm_no_som"))
     planned = plan(CLASSES, contours, SETTINGS)
     done = [one for one in planned.trials if one.strategy == "guided" and one.kind == "conventional"]
-    rows = [row for one in done for row in process(one.name, tmp_path, CLASSES, SETTINGS, seed=0)]
+    rows = [row for one in done for row in process(one.name, tmp_path, contours.parent, CLASSES, SETTINGS, seed=0)]
     counts = confusion(tmp_path, done, ["flat", "round"])
     each = counts.groupby(["split", "classifier"])["count"].sum()
-    assert (each["objects"] == 40).all() and (each["sequences"] == 8).all()
+    assert (each["objects"] == 40).all() and (each["random"] == 8).all()
     assert len(counts) == 2 * 2 * 4
     tree = summary(rows, seed=0)
     assert tree["chance"] == 0.5 and tree["guided"]["objects"]["svm_no_som"]["mean"] > 0.6

@@ -10,8 +10,8 @@ from stages.kit import Mesh
 from stages.meshes import normalise
 from stages.salient_points.methods import METHODS
 from stages.salient_points.options import Options
-from stages.stability import Conditions, look
-from stages.weights import Learned
+from stages.stability import Conditions, maps_under_conditions
+from stages.weights import LearnedWeights
 
 SIZE = (180, 240)
 COUNT = 5
@@ -44,13 +44,13 @@ ODD = {
     ),
 }
 CHANNELS = tuple(dict.fromkeys(name for method in METHODS.values() for name in method.channels))
-RUNNING = [name for name, method in METHODS.items() if method.learned in {None, *Learned().weights}]
+RUNNING = [name for name, method in METHODS.items() if method.required_weights in {None, *LearnedWeights().weights}]
 
 
 @cache
 def seen(name):
     mesh = normalise(ODD[name])
-    return mesh, look(mesh, CHANNELS, Conditions(), SIZE)
+    return mesh, maps_under_conditions(mesh, CHANNELS, Conditions(), SIZE)
 
 
 @pytest.mark.filterwarnings("error")
@@ -75,12 +75,12 @@ def test_an_image_of_one_grey_value_has_maps_of_zeros(channel):
 
 def test_specks_too_small_for_a_pixel_are_refused_with_a_remedy():
     with pytest.raises(ValueError, match="no pixel of any view sees the mesh"):
-        look(normalise(twice(BALL, 5000)), ("intensity",), Conditions(), SIZE)
+        maps_under_conditions(normalise(twice(BALL, 5000)), ("intensity",), Conditions(), SIZE)
 
 
 def test_a_mesh_without_area_or_faces_is_refused():
     needle = Mesh([[0, 0, 0], [1, 0, 0], [2, 0, 0]], [[0, 1, 2]])
     with pytest.raises(ValueError, match="no pixel of any view sees the mesh"):
-        look(normalise(needle), ("intensity",), Conditions(), SIZE)
+        maps_under_conditions(normalise(needle), ("intensity",), Conditions(), SIZE)
     with pytest.raises(ValueError, match="no faces"):
         normalise(Mesh([[0, 0, 0]], np.zeros((0, 3), dtype=int)))

@@ -6,8 +6,8 @@ import trimesh
 
 from stages.kit import Mesh
 from stages.kit.rng import rng
-from stages.stability.broken import BROKEN
-from stages.stability.broken_faces import NEEDLE
+from stages.stability.broken import DAMAGES
+from stages.stability.broken_faces import SLIVER_HEIGHT
 from stages.stability.surface import Surface
 
 BALL = trimesh.creation.icosphere(subdivisions=3)
@@ -33,10 +33,10 @@ COUNTS = {
 
 
 def broken(name):
-    return BROKEN[name].make(SOUND, rng(0, name))
+    return DAMAGES[name].make(SOUND, rng(0, name))
 
 
-@pytest.mark.parametrize("name", BROKEN)
+@pytest.mark.parametrize("name", DAMAGES)
 def test_equal_draws_give_equal_bytes_and_the_sound_mesh_stays(name):
     before = SOUND.vertices.copy(), SOUND.faces.copy()
     one, other = broken(name), broken(name)
@@ -47,25 +47,31 @@ def test_equal_draws_give_equal_bytes_and_the_sound_mesh_stays(name):
 @pytest.mark.parametrize("name", COUNTS)
 def test_the_damage_is_the_one_that_the_name_says(name):
     surface = Surface(broken(name))
-    found = (len(surface.border), surface.pieces, surface.flat_faces, surface.crowded, surface.pinches)
+    found = (
+        len(surface.boundary_edges),
+        surface.components,
+        surface.degenerate_faces,
+        surface.non_manifold_edges,
+        surface.non_manifold_vertices,
+    )
     for value, wanted in zip(found, COUNTS[name], strict=True):
         assert wanted is None or value == wanted
 
 
 def test_holes_and_halves_are_open():
-    assert 40 < len(Surface(broken("pin_holes")).border) <= 60
-    assert len(Surface(broken("wide_holes")).border) > 20 and len(Surface(broken("half")).border) > 20
+    assert 40 < len(Surface(broken("pin_holes")).boundary_edges) <= 60
+    assert len(Surface(broken("wide_holes")).boundary_edges) > 20 and len(Surface(broken("half")).boundary_edges) > 20
 
 
 def test_needles_are_as_thin_as_they_say():
     mesh = broken("needles")
     longest = np.linalg.norm(np.diff(mesh.vertices[mesh.faces[:, [0, 1, 2, 0]]], axis=1), axis=2).max(axis=1)
     slimness = np.sort(2 * mesh.face_areas / longest**2)
-    assert slimness[0] > 0 and slimness[199] < NEEDLE < slimness[200]
+    assert slimness[0] > 0 and slimness[199] < SLIVER_HEIGHT < slimness[200]
 
 
 def test_mixed_winding_cannot_be_told_inside_from_outside_and_a_moebius_strip_never():
-    assert not Surface(broken("mixed_winding")).scene.is_winding_consistent
+    assert not Surface(broken("mixed_winding")).as_trimesh.is_winding_consistent
     strip = trimesh.Trimesh(*(getattr(broken("moebius"), name) for name in ("vertices", "faces")), process=False)
     trimesh.repair.fix_winding(strip)
     assert not strip.is_winding_consistent
@@ -74,7 +80,7 @@ def test_mixed_winding_cannot_be_told_inside_from_outside_and_a_moebius_strip_ne
 def test_a_seam_doubles_places_and_leaves_the_surface_closed_in_space():
     mesh = broken("seam")
     assert len(np.unique(mesh.vertices, axis=0)) < len(mesh.vertices) and not mesh.watertight
-    assert not Surface(mesh).border
+    assert not Surface(mesh).boundary_edges
 
 
 @pytest.mark.parametrize("sigma", [0.001, 0.01])

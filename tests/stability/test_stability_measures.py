@@ -5,10 +5,11 @@ import pytest
 import trimesh
 
 from stages.kit import Mesh
-from stages.stability import breaking_point, chance_repeatability, drift, repeatability
-from stages.stability.measures import carried_back
+from stages.kit.breaking_point import breaking_point
+from stages.stability import chance_repeatability, drift, repeatability
+from stages.stability.measures import at_original_vertices
 from stages.stability.perturbations.perturbed import Perturbed
-from stages.stability.summary import breaking_points, middle, summarise
+from stages.stability.summary import breaking_points, middle_severity, summarise
 from stages.weights.svm_pixels import select_far_points
 
 GRID = np.stack([*np.mgrid[:4, :5].reshape(2, -1), np.zeros(20)], axis=1).astype(float)
@@ -37,16 +38,16 @@ def test_many_points_everywhere_do_not_pay():
 def test_repeatability_without_points_is_zero_or_unknown():
     assert repeatability(GRID, np.zeros((0, 3)), 0.1) == repeatability([], GRID, 0.1) == 0
     assert np.isnan(repeatability([], [], 0.1))
-    with pytest.raises(ValueError, match="reach"):
+    with pytest.raises(ValueError, match="tolerance"):
         repeatability(GRID, GRID, -0.1)
 
 
 def test_chance_is_the_covered_share_of_the_area(ball):
     """On a ball of area pi a disc of radius r covers the share r^2; the discs of far points are disjoint."""
-    reach, few, many = 0.1, 10, 40
+    tolerance, few, many = 0.1, 10, 40
     spots = ball.vertices[select_far_points(ball.vertices, few)]
-    found = chance_repeatability(spots, Perturbed(ball, ball.vertices), many, np.random.default_rng(1), reach)
-    expected = (few * (1 - (1 - reach**2) ** many) + many * few * reach**2) / (few + many)
+    found = chance_repeatability(spots, Perturbed(ball, ball.vertices), many, np.random.default_rng(1), tolerance)
+    expected = (few * (1 - (1 - tolerance**2) ** many) + many * few * tolerance**2) / (few + many)
     assert found == pytest.approx(expected, abs=0.03)
 
 
@@ -74,7 +75,7 @@ def test_a_map_comes_back_by_place_and_never_from_a_vertex_in_no_face(ball):
     stray = np.r_[ball.vertices[order], ball.vertices[:1]]
     shuffled = Perturbed(Mesh(stray, np.argsort(order)[ball.faces]), stray)
     values = np.r_[ball.vertices[order, 2], 99.0]
-    assert np.allclose(carried_back(ball, shuffled, values), ball.vertices[:, 2])
+    assert np.allclose(at_original_vertices(ball, shuffled, values), ball.vertices[:, 2])
 
 
 @pytest.mark.parametrize(
@@ -115,7 +116,7 @@ def test_summary_takes_means_over_objects_at_the_middle_and_says_what_never_brok
 
 
 def test_the_middle_of_two_is_the_milder():
-    assert [middle(list(range(k))) for k in (1, 2, 3, 4)] == [0, 0, 1, 1]
+    assert [middle_severity(list(range(k))) for k in (1, 2, 3, 4)] == [0, 0, 1, 1]
 
 
 def test_a_missing_value_is_left_out_of_the_mean():

@@ -8,8 +8,8 @@ from stages.conspicuity import CHANNELS, conspicuity
 from stages.kit import Mesh, RayScene, Viewpoint
 from stages.kit.rng import rng
 from stages.meshes import normalise
-from stages.stability import PERTURBATIONS, Conditions, look
-from stages.stability.sights import corner_normals, relit
+from stages.stability import PERTURBATIONS, Conditions, maps_under_conditions
+from stages.stability.maps import corner_normals, relit
 from stages.views import render
 
 SIZE = (120, 160)
@@ -53,7 +53,7 @@ def test_the_same_generator_gives_the_same_and_the_original_stays(name, pear):
 @pytest.mark.parametrize("name", PERTURBATIONS)
 def test_places_lie_on_the_original_surface(name, pear):
     """Along a ray from the centre, since the pear is star-shaped."""
-    places = apply(name, pear, MILD[name]).places
+    places = apply(name, pear, MILD[name]).original_positions
     length = np.linalg.norm(places, axis=1)
     hits = RayScene(pear).cast(np.zeros_like(places), places / length[:, None])
     tolerance = 0.015 if name in WHERE_NOT_EVEN else 1e-6
@@ -75,14 +75,14 @@ def test_harsher_of_the_same_kind_goes_farther(name, pear):
     if name in ("decimation", "image_size"):
         mild, harsh = harsh, mild
     measure = {
-        "noise": lambda p: np.linalg.norm(p.mesh.vertices - p.places, axis=1).mean(),
+        "noise": lambda p: np.linalg.norm(p.mesh.vertices - p.original_positions, axis=1).mean(),
         "decimation": lambda p: -len(p.mesh.faces),
         "remeshing": lambda p: -len(p.mesh.faces),
         "missing_faces": lambda p: -len(p.mesh.faces),
         "vertex_order": lambda p: (p.mesh.vertices != pear.vertices).any(axis=1).sum(),
         "winding": lambda p: (p.mesh.faces != pear.faces).any(axis=1).sum(),
-        "turn": lambda p: np.linalg.norm(p.mesh.vertices - p.places, axis=1).mean(),
-        "tilt": lambda p: np.linalg.norm(p.mesh.vertices - p.places, axis=1).mean(),
+        "turn": lambda p: np.linalg.norm(p.mesh.vertices - p.original_positions, axis=1).mean(),
+        "tilt": lambda p: np.linalg.norm(p.mesh.vertices - p.original_positions, axis=1).mean(),
         "scale": lambda p: p.mesh.diagonal,
         "light": lambda p: p.conditions.light,
         "background": lambda p: p.conditions.background,
@@ -180,25 +180,28 @@ def test_light_brightens_the_side_it_comes_from(pear):
 
 
 def test_a_background_that_is_kept_out_changes_no_map(pear):
-    plain, white = (look(pear, tuple(CHANNELS), Conditions(background=b), SIZE).maps for b in (0.0, 1.0))
+    plain, white = (
+        maps_under_conditions(pear, tuple(CHANNELS), Conditions(background=b), SIZE).maps for b in (0.0, 1.0)
+    )
     assert all(np.array_equal(plain[name], white[name]) for name in CHANNELS)
 
 
 def test_a_background_left_in_changes_the_maps(pear):
     black, white = (
-        look(pear, ("intensity", "edge"), Conditions(background=b, filled=False), SIZE).maps for b in (0.0, 1.0)
+        maps_under_conditions(pear, ("intensity", "edge"), Conditions(background=b, filled=False), SIZE).maps
+        for b in (0.0, 1.0)
     )
     assert all(np.abs(black[name] - white[name]).max() > 0.05 for name in black)
 
 
 def test_a_look_without_conditions_is_the_plain_one(pear):
-    sight = look(pear, ("edge",), Conditions(), SIZE)
+    sight = maps_under_conditions(pear, ("edge",), Conditions(), SIZE)
     view = render(pear, sight.viewpoints[3], SIZE, "raycast")
     expected = conspicuity(pear, view, ["edge"], (30, 40))["edge"]
-    image, _ = sight.image(sight.maps["edge"], 3)
+    image, _ = sight.cropped_image(sight.maps["edge"], 3)
     assert image.max() == pytest.approx(expected.max(), abs=1e-6)
 
 
 def test_smaller_images_give_smaller_maps(pear):
-    assert look(pear, ("edge",), Conditions(rows=0.5), SIZE).size == (15, 20)
-    assert look(pear, (), Conditions(), SIZE) is None
+    assert maps_under_conditions(pear, ("edge",), Conditions(rows=0.5), SIZE).size == (15, 20)
+    assert maps_under_conditions(pear, (), Conditions(), SIZE) is None

@@ -8,7 +8,7 @@ import trimesh
 from scipy.stats import rankdata, spearmanr
 
 from stages.conspicuity import conspicuity
-from stages.conspicuity.channels import coverage
+from stages.conspicuity.channels import mask_at_size
 from stages.conspicuity.entropy import local_entropy
 from stages.conspicuity.silhouette import silhouette_share
 from stages.kit import Mesh, Viewpoint
@@ -47,7 +47,7 @@ def textured(view, depth=0.4):
 
 def agreement(mesh, view):
     """Rank correlation of the entropy map with the contrast map, over the object."""
-    maps, inside = conspicuity(mesh, view, ["entropy", "contrast"], MAP), coverage(view.mask, MAP)
+    maps, inside = conspicuity(mesh, view, ["entropy", "contrast"], MAP), mask_at_size(view.mask, MAP)
     return spearmanr(maps["entropy"][inside], maps["contrast"][inside])[0]
 
 
@@ -92,10 +92,10 @@ def symmetry_at_the_ends(mesh):
     gains, maps = [], []
     for viewpoint in VIEWPOINTS:
         view = render(mesh, viewpoint, SIZE, "raycast")
-        inside = coverage(view.mask, MAP)
+        inside = mask_at_size(view.mask, MAP)
         tip = np.abs(mesh.vertices[mesh.faces[np.maximum(view.face, 0), 0], 0]) > 0.36
         symmetry = conspicuity(mesh, view, ["symmetry"], MAP)["symmetry"]
-        gains.append(information_gain(symmetry[inside], coverage(view.mask & tip, MAP)[inside]))
+        gains.append(information_gain(symmetry[inside], mask_at_size(view.mask & tip, MAP)[inside]))
         maps.append(symmetry)
     return gains, maps
 

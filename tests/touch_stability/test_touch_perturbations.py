@@ -5,11 +5,12 @@ import pytest
 import trimesh
 
 from stages.kit import Mesh
-from stages.touch_stability import PERTURBATIONS, Touches, breaking_point, lead_left
-from stages.touch_stability.perturbations.localisation import on_surface
-from stages.touch_stability.touches import about
+from stages.kit.breaking_point import breaking_point, lead_left
+from stages.touch_stability import PERTURBATIONS, Touches
+from stages.touch_stability.perturbations.localisation import snap_with_blended_normals
+from stages.touch_stability.touches import rotations_about
 
-DISTURBING = [name for name, known in PERTURBATIONS.items() if known.disturb]
+DISTURBING = [name for name, known in PERTURBATIONS.items() if known.apply]
 HARSH = {
     "localisation": 0.1, "sensor_turned": 45.0, "sensor_leaning": 20.0, "noise": 0.3, "dead_cells": 0.3, "gain": 0.5,
     "saturation": 0.5, "blur": 2.0, "hysteresis": 0.3, "object_turned": 45.0, "object_tilted": 45.0,
@@ -34,72 +35,74 @@ def touches(mesh):
 @pytest.mark.parametrize("name", DISTURBING)
 def test_the_unharmed_severity_changes_nothing(touches, name):
     known = PERTURBATIONS[name]
-    felt = known.disturb(touches, known.unharmed, 0)
-    assert np.allclose(felt.images, touches.images, atol=1e-3)
-    assert felt.positions is None or np.allclose(felt.positions, touches.positions, atol=1e-9)
+    perturbed = known.apply(touches, known.unharmed, 0)
+    assert np.allclose(perturbed.images, touches.images, atol=1e-3)
+    assert perturbed.positions is None or np.allclose(perturbed.positions, touches.positions, atol=1e-9)
 
 
 @pytest.mark.parametrize("name", DISTURBING)
 def test_a_harsh_severity_changes_imprints_or_places(touches, name):
-    felt = PERTURBATIONS[name].disturb(touches, HARSH[name], 0)
-    change = np.abs(felt.images - touches.images).mean()
-    moved = 0 if felt.positions is None else np.abs(felt.positions - touches.positions).max()
-    assert max(change, moved) > 0.01 and felt.images.shape == touches.images.shape
-    assert felt.images.min() >= 0 and felt.images.max() <= 1
+    perturbed = PERTURBATIONS[name].apply(touches, HARSH[name], 0)
+    change = np.abs(perturbed.images - touches.images).mean()
+    moved = 0 if perturbed.positions is None else np.abs(perturbed.positions - touches.positions).max()
+    assert max(change, moved) > 0.01 and perturbed.images.shape == touches.images.shape
+    assert perturbed.images.min() >= 0 and perturbed.images.max() <= 1
 
 
 @pytest.mark.parametrize("name", DISTURBING)
 def test_draws_differ_where_it_is_a_matter_of_luck_and_come_again(touches, name):
     known = PERTURBATIONS[name]
-    first, again, other = (known.disturb(touches, HARSH[name], draw).images for draw in (0, 0, 1))
-    assert np.array_equal(first, again) and np.array_equal(first, other) != known.drawn
+    first, again, other = (known.apply(touches, HARSH[name], draw).images for draw in (0, 0, 1))
+    assert np.array_equal(first, again) and np.array_equal(first, other) != known.random_draws
 
 
 @pytest.mark.parametrize("name", DISTURBING)
 def test_positions_change_just_where_the_registry_says_so(touches, name):
-    assert (PERTURBATIONS[name].disturb(touches, HARSH[name], 0).positions is not None) == PERTURBATIONS[name].moves
+    assert (PERTURBATIONS[name].apply(touches, HARSH[name], 0).positions is not None) == PERTURBATIONS[
+        name
+    ].moves_positions
 
 
 def test_a_turn_about_the_vertical_moves_places_and_leaves_imprints(touches):
-    felt = PERTURBATIONS["object_turned"].disturb(touches, 90.0, 0)
+    perturbed = PERTURBATIONS["object_turned"].apply(touches, 90.0, 0)
     upright = np.abs(touches.normals[:, 2]) < 0.95  # at the poles the array's "up" is another
-    assert np.allclose(felt.images[upright], touches.images[upright], atol=1e-4)
-    assert np.allclose(felt.positions, touches.positions[:, [1, 0, 2]] * [-1, 1, 1])
+    assert np.allclose(perturbed.images[upright], touches.images[upright], atol=1e-4)
+    assert np.allclose(perturbed.positions, touches.positions[:, [1, 0, 2]] * [-1, 1, 1])
 
 
 def test_a_turned_object_feels_as_its_turned_mesh_does(mesh, touches):
-    felt = PERTURBATIONS["object_tilted"].disturb(touches, 40.0, 0)
+    perturbed = PERTURBATIONS["object_tilted"].apply(touches, 40.0, 0)
     azimuth = touches.random("object_tilted", 0).uniform(0, 2 * np.pi)
-    rotation = about(np.array([np.cos(azimuth), np.sin(azimuth), 0.0]), np.float64(40.0))
+    rotation = rotations_about(np.array([np.cos(azimuth), np.sin(azimuth), 0.0]), np.float64(40.0))
     tilted = Touches("egg", Mesh(mesh.vertices @ rotation.T, mesh.faces), np.arange(0, 600, 40), (16, 16), 0.02)
-    assert np.allclose(felt.images, tilted.images, atol=1e-3)
-    assert np.allclose(felt.positions, tilted.positions)
+    assert np.allclose(perturbed.images, tilted.images, atol=1e-3)
+    assert np.allclose(perturbed.positions, tilted.positions)
 
 
 def test_a_scaled_object_feels_as_its_scaled_mesh_does(mesh, touches):
-    felt = PERTURBATIONS["object_larger"].disturb(touches, 1.5, 0)
+    perturbed = PERTURBATIONS["object_larger"].apply(touches, 1.5, 0)
     larger = Touches("egg", Mesh(1.5 * mesh.vertices, mesh.faces), np.arange(0, 600, 40), (16, 16), 0.02)
-    assert np.allclose(felt.images, larger.images, atol=1e-3)
+    assert np.allclose(perturbed.images, larger.images, atol=1e-3)
 
 
 def test_a_missed_place_is_on_the_surface_and_no_farther_than_the_error(touches):
-    felt = PERTURBATIONS["localisation"].disturb(touches, 0.05, 0)
-    gaps = np.linalg.norm(felt.positions - touches.positions, axis=1)
-    back, _ = on_surface(touches.mesh, felt.positions)
-    assert np.allclose(back, felt.positions, atol=1e-6)
+    perturbed = PERTURBATIONS["localisation"].apply(touches, 0.05, 0)
+    gaps = np.linalg.norm(perturbed.positions - touches.positions, axis=1)
+    back, _ = snap_with_blended_normals(touches.mesh, perturbed.positions)
+    assert np.allclose(back, perturbed.positions, atol=1e-6)
     assert gaps.max() < 0.051 and gaps.min() > 0.02
 
 
 def test_normals_on_the_surface_are_those_of_the_vertices_at_the_vertices(touches):
-    positions, normals = on_surface(touches.mesh, touches.positions)
+    positions, normals = snap_with_blended_normals(touches.mesh, touches.positions)
     assert np.allclose(positions, touches.positions) and np.allclose(normals, touches.normals, atol=1e-6)
 
 
 def test_a_simplified_mesh_that_is_there_is_used(mesh):
     flat = Mesh(np.array([[-9, -9, 0], [9, -9, 0], [0, 9, 0.0]]), np.array([[0, 1, 2]]))
     found = Touches("egg", mesh, np.arange(0, 600, 40), (16, 16), 0.02, levels={"qem_40": flat})
-    assert (PERTURBATIONS["coarse_object"].disturb(found, 40.0, 0).images == 0).all()
-    assert (PERTURBATIONS["coarse_object"].disturb(found, 100.0, 0).images != 0).any()
+    assert (PERTURBATIONS["coarse_object"].apply(found, 40.0, 0).images == 0).all()
+    assert (PERTURBATIONS["coarse_object"].apply(found, 100.0, 0).images != 0).any()
 
 
 @pytest.mark.parametrize(
@@ -107,11 +110,11 @@ def test_a_simplified_mesh_that_is_there_is_used(mesh):
 )
 def test_severities_out_of_range_are_refused(touches, name, severity):
     with pytest.raises(ValueError, match="must"):
-        PERTURBATIONS[name].disturb(touches, severity, 0)
+        PERTURBATIONS[name].apply(touches, severity, 0)
 
 
 def test_rotations_turn_by_the_right_hand():
-    assert np.allclose(about(np.array([0, 0, 1.0]), np.float64(90.0)) @ [1, 0, 0], [0, 1, 0])
+    assert np.allclose(rotations_about(np.array([0, 0, 1.0]), np.float64(90.0)) @ [1, 0, 0], [0, 1, 0])
 
 
 def test_half_of_the_lead_is_where_it_breaks():

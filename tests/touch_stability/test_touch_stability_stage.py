@@ -4,49 +4,49 @@ import numpy as np
 import pandas as pd
 import pytest
 import trimesh
-from omegaconf import OmegaConf
 
 from stages.imprints import Imprints, press_many, write_imprints
 from stages.kit import Mesh
+from stages.kit.breaking_point import lead_left
 from stages.kit.files import read_json, write_arrays, write_mesh
-from stages.touch_stability import NONE, lead_left, recognise
+from stages.kit.rows import read_rows
+from stages.touch_stability import CLEAN, recognition_rows
 from stages.touch_stability import __main__ as stage
-from stages.touch_stability.recognise import few
+from stages.touch_stability.recognition import first_of_each
 from stages.touch_stability.schema import Params
 
 SEVERITIES = {"noise": [0.05, 1.0], "object_turned": [90.0], "coarse_model": [60.0], "few_touches": [8.0]}
 SETTINGS = {
     "set": "pair", "method": "here", "classifiers": ["knn"], "severities": SEVERITIES, "repetitions": 2,
 }  # fmt: skip
+CLASSIFICATION = {"classifiers": [], "repetitions": 1, "closer": [], "touches": [], "combinations": 1}
 
 
 @pytest.fixture
-def run(tmp_path, monkeypatch):
+def run(tmp_path, make_workspace):
     """run(**changes) -> the measurements of a stage run over a ball and a box."""
-    monkeypatch.chdir(tmp_path)
+    data = tmp_path / "data/toys"
     solids = {"ball": trimesh.creation.icosphere(subdivisions=3, radius=0.4), "box": trimesh.creation.box((0.5,) * 3)}
     solids["box"] = solids["box"].subdivide().subdivide().subdivide()
     for name, solid in solids.items():
         mesh = Mesh(solid.vertices, solid.faces)
         ids = np.random.default_rng(0).permutation(len(mesh.vertices))[:40]
-        write_mesh(f"data/meshes/{name}.npz", mesh)
+        write_mesh(data / f"meshes/{name}.npz", mesh)
         write_imprints(
-            f"data/imprints/{name}.npz",
+            data / f"imprints/{name}.npz",
             {"here": Imprints(press_many(mesh, ids, (16, 16), 0.01), ids, mesh.vertices[ids], 0.01)},
         )
         saliency = np.linspace(0, 1, len(mesh.vertices))
         found = {"enhanced.points": ids, "enhanced.strong": np.int64(2), "enhanced.saliency": saliency}
-        write_arrays(f"data/salient_points/{name}.npz", **found)
-        write_mesh(f"data/lod/{name}/qem_50pct.npz", mesh)
+        write_arrays(data / f"salient_points/{name}.npz", **found)
+        write_mesh(data / f"lod/{name}/qem_50pct.npz", mesh)
 
     def call(objects=("ball", "box"), **changes):
-        values = {"seed": 0, "touch_stability": SETTINGS | changes, "parallel": {"backend": "sequential"}}
-        values["classification"] = {"sets": {"pair": list(objects)}}
-        OmegaConf.save(OmegaConf.create(values), "params.yaml")
-        monkeypatch.setattr(stage, "params", lambda section: OmegaConf.create(values[section]))
-        monkeypatch.setattr("sys.argv", ["stages/touch_stability/__main__.py"])
-        stage.main()
-        return pd.read_csv("reports/measurements/touch_stability.csv")
+        sections = {"touch_stability": SETTINGS | changes}
+        sections["classification"] = CLASSIFICATION | {"sets": {"pair": list(objects)}}
+        workspace = make_workspace(sections)
+        stage.run(workspace)
+        return read_rows(workspace.measurements / "touch_stability.csv.gz")
 
     return call
 
@@ -54,15 +54,15 @@ def run(tmp_path, monkeypatch):
 def test_a_run_measures_every_severity_by_every_split(run):
     rows = run()
     found = set(zip(rows["perturbation"], rows["severity"], strict=True))
-    assert found == {(NONE, 0.0), *((name, one) for name, levels in SEVERITIES.items() for one in levels)}
-    assert set(rows["split"]) == {"anywhere", "apart"} and rows["value"].between(0, 1).all()
-    assert set(rows.loc[rows["features"] == "imprint_place", "perturbation"]) == {NONE, "object_turned"}
+    assert found == {(CLEAN, 0.0), *((name, one) for name, levels in SEVERITIES.items() for one in levels)}
+    assert set(rows["split"]) == {"random", "regions"} and rows["value"].between(0, 1).all()
+    assert set(rows.loc[rows["features"] == "imprint_place", "perturbation"]) == {CLEAN, "object_turned"}
     assert (rows["chance"] == 0.5).all()
 
 
 def test_clean_touches_are_told_apart_and_pure_noise_is_not(run):
     means = run().groupby(["perturbation", "severity"])["value"].mean()
-    assert means[NONE, 0.0] > 0.9 and means["noise", 1.0] < 0.7
+    assert means[CLEAN, 0.0] > 0.9 and means["noise", 1.0] < 0.7
 
 
 def test_there_is_no_lead_to_lose_where_clean_touches_are_no_better_than_guessing():
@@ -70,9 +70,9 @@ def test_there_is_no_lead_to_lose_where_clean_touches_are_no_better_than_guessin
     assert np.isnan(lead_left([0.1, 0.3], 0.3, 0.4)).all() and np.isnan(lead_left([0.1], 0.4, 0.4)).all()
 
 
-def test_the_metrics_hold_accuracy_and_breaking_points(run):
+def test_the_metrics_hold_accuracy_and_breaking_points(run, tmp_path):
     run()
-    found = read_json("reports/metrics/touch_stability.json")
+    found = read_json(tmp_path / "reports/metrics/toys/touch_stability.json")
     assert 0 < found["breaking_point"]["anywhere.imprint.knn.noise"] < 1
     assert found["breaking_point"]["anywhere.imprint.knn.object_turned"] is None
     assert found["accuracy"]["anywhere.imprint.knn"] > 0.9
@@ -117,7 +117,7 @@ def test_settings_that_make_no_measurement_are_refused(changes, message):
 
 def test_few_keeps_as_many_of_each_object():
     truth = np.array([0, 0, 0, 1, 1, 1, 1])
-    assert few(np.array([2, 6, 0, 3, 1, 5, 4]), truth, 2).tolist() == [0, 2, 3, 6]
+    assert first_of_each(np.array([2, 6, 0, 3, 1, 5, 4]), truth, 2).tolist() == [0, 2, 3, 6]
 
 
 def test_what_is_learned_from_coarse_models_is_asked_about_clean_touches():
@@ -131,6 +131,6 @@ def test_what_is_learned_from_coarse_models_is_asked_about_clean_touches():
         return both[features][::-1]
 
     severities = {"noise": [1.0], "coarse_model": [1.0]}
-    rows = pd.DataFrame(recognise(both, swapped, places, truth, "anywhere", 0.1, severities, ["knn"], 0))
+    rows = pd.DataFrame(recognition_rows(both, swapped, places, truth, "random", 0.1, severities, ["knn"], 0))
     means = rows[rows["features"] == "imprint"].groupby("perturbation")["value"].mean()
-    assert means[NONE] == 1 and means["noise"] == 0 and means["coarse_model"] == 0
+    assert means[CLEAN] == 1 and means["noise"] == 0 and means["coarse_model"] == 0

@@ -7,10 +7,10 @@ import torch
 
 from stages.kit.fetch import cache_folder
 from stages.networks.images import normalise
-from stages.networks.network import build, parameters, settle
+from stages.networks.network import build, count_parameters, recalibrate
 from stages.networks.weights import PACKAGES
-from stages.transfer.hybrid import MIDDLE, HybridNet, join
-from stages.transfer.hybrid_scores import in_parts
+from stages.transfer.hybrid import MIDDLE, HybridNet, join_senses
+from stages.transfer.hybrid_scores import in_batches
 from stages.transfer.switch import Switch, present
 
 SIZE, CLASSES = 32, 3
@@ -31,7 +31,7 @@ def base():
     """An untrained network whose every layer passes a signal on: its statistics are of noise."""
     network = build("mobilenet_v2", CLASSES, "random", 0)
     noise = normalise(torch.rand(16, 3, SIZE, SIZE, generator=torch.Generator().manual_seed(0)))
-    settle(network, lambda ids: noise[ids], range(16))
+    recalibrate(network, lambda ids: noise[ids], range(16))
     network.head[1].weight.data.mul_(10)
     return network
 
@@ -54,7 +54,7 @@ def images():
 @torch.no_grad()
 def differences(hybrid, pair, images):
     own = [network(normalise(images)) for network in pair]
-    found = hybrid(join(images, None)).vision, hybrid(join(None, images)).touch
+    found = hybrid(join_senses(images, None)).vision, hybrid(join_senses(None, images)).touch
     spread = min(float((scores.amax(0) - scores.amin(0)).max()) for scores in own)
     return [float((a - b).abs().max()) for a, b in zip(own, found, strict=True)], spread
 
@@ -76,17 +76,17 @@ def test_with_imagenets_weights_too(images):
 
 
 def test_the_senses_have_heads_and_early_layers_of_their_own(hybrid, images):
-    seen, felt = hybrid(join(images, None)).vision, hybrid(join(None, images)).touch
+    seen, felt = hybrid(join_senses(images, None)).vision, hybrid(join_senses(None, images)).touch
     assert (seen - felt).abs().max() > 1e-3
 
 
 def test_the_head_of_an_absent_sense_says_nothing(hybrid, images):
-    assert hybrid(join(images, None)).touch.isnan().all()
-    assert hybrid(join(None, images)).vision.isnan().all()
+    assert hybrid(join_senses(images, None)).touch.isnan().all()
+    assert hybrid(join_senses(None, images)).vision.isnan().all()
 
 
 def test_rows_of_a_batch_are_absent_one_by_one(hybrid, images):
-    mixed = join(images, images.flip(0))
+    mixed = join_senses(images, images.flip(0))
     mixed[0, 3:] = 0  # sees
     mixed[1, :3] = 0  # feels
     mixed[2] = 0  # neither
@@ -95,23 +95,23 @@ def test_rows_of_a_batch_are_absent_one_by_one(hybrid, images):
     assert [row.isnan().all().item() for row in scores.touch] == [True, False, True, False]
     assert answer.sense[:3].tolist() == [0, 1, -1]
     assert answer.label[2] == -1 and answer.probability[2].isnan()
-    alone = hybrid(join(images[:1], None)).vision[0]  # summed in another order than in a batch
+    alone = hybrid(join_senses(images[:1], None)).vision[0]  # summed in another order than in a batch
     assert torch.allclose(scores.vision[0], alone, rtol=1e-3)
 
 
 def test_both_at_once_see_the_sum_in_forward_and_not_in_apart(hybrid, images):
-    both, other = join(images, images.flip(0)), join(images, None)
-    assert torch.allclose(hybrid.apart(both).vision, hybrid(other).vision, atol=1e-5)
+    both, other = join_senses(images, images.flip(0)), join_senses(images, None)
+    assert torch.allclose(hybrid.separate_scores(both).vision, hybrid(other).vision, atol=1e-5)
     assert (hybrid(both).vision - hybrid(other).vision).abs().max() > 1e-3
 
 
 def test_prediction_is_by_the_surer_sense_after_its_temperature(pair, images):
-    hybrid, both = HybridNet(*pair), join(images, images.flip(0))
+    hybrid, both = HybridNet(*pair), join_senses(images, images.flip(0))
     hybrid.temperature.copy_(torch.tensor([1e-3, 1e3]))
     first = hybrid.predict(both)
     hybrid.temperature.copy_(torch.tensor([1e3, 1e-3]))
     second = hybrid.predict(both)
-    apart = hybrid.apart(both)
+    apart = hybrid.separate_scores(both)
     assert first.sense.tolist() == [0] * 4 and first.label.equal(apart.vision.argmax(dim=1))
     assert second.sense.tolist() == [1] * 4 and second.label.equal(apart.touch.argmax(dim=1))
 
@@ -136,14 +136,14 @@ def test_switch_keeps_or_clears_each_row():
 
 
 def test_shared_layers_are_counted_once(hybrid, pair):
-    shared = parameters(pair[0].convolutions[MIDDLE[0] : MIDDLE[1]])
-    assert parameters(hybrid) == 2 * parameters(pair[0]) - shared
-    assert 1.42 < 2 * parameters(pair[0]) / parameters(hybrid) < 1.43  # T5.5: 1.4284, of files
+    shared = count_parameters(pair[0].convolutions[MIDDLE[0] : MIDDLE[1]])
+    assert count_parameters(hybrid) == 2 * count_parameters(pair[0]) - shared
+    assert 1.42 < 2 * count_parameters(pair[0]) / count_parameters(hybrid) < 1.43  # T5.5: 1.4284, of files
 
 
 def test_a_longer_middle_makes_a_smaller_network(base, hybrid):
     wide = HybridNet(tuned(base, 1, (3, 18)), tuned(base, 2, (3, 18)), (3, 18))
-    assert parameters(wide) < 0.9 * parameters(hybrid)
+    assert count_parameters(wide) < 0.9 * count_parameters(hybrid)
 
 
 def test_middles_that_differ_are_refused_by_the_name_of_the_tensor(pair):
@@ -161,7 +161,7 @@ def test_statistics_that_differ_are_refused_too(pair):
 
 
 def test_other_architectures_and_middles_are_refused(pair):
-    with pytest.raises(ValueError, match="touch is no mobilenet_v2"):
+    with pytest.raises(ValueError, match="touch is not a mobilenet_v2"):
         HybridNet(pair[0], torch.nn.Linear(2, 2))
     with pytest.raises(ValueError, match="middle must be"):
         HybridNet(*pair, middle=(0, 17))
@@ -170,11 +170,11 @@ def test_other_architectures_and_middles_are_refused(pair):
 def test_training_the_originals_later_does_not_reach_the_hybrid(base, images):
     pair = tuned(base, 1), tuned(base, 2)
     hybrid = HybridNet(*pair)
-    before = hybrid(join(images, None)).vision
+    before = hybrid(join_senses(images, None)).vision
     for network in pair:
         for value in network.parameters():
             value.data.zero_()
-    assert hybrid(join(images, None)).vision.equal(before)
+    assert hybrid(join_senses(images, None)).vision.equal(before)
     assert not any(value.requires_grad for value in hybrid.parameters()) and not hybrid.training
 
 
@@ -189,9 +189,9 @@ def test_images_that_are_not_six_channels_in_0_to_1_are_refused(hybrid, bad):
 
 def test_join_refuses_nothing_at_all_and_unequal_sizes():
     with pytest.raises(ValueError, match="one of the two senses"):
-        join(None, None)
+        join_senses(None, None)
     with pytest.raises(ValueError, match="equal shapes"):
-        join(torch.rand(1, 3, 8, 8), torch.rand(2, 3, 8, 8))
+        join_senses(torch.rand(1, 3, 8, 8), torch.rand(2, 3, 8, 8))
 
 
 def test_too_little_memory_names_the_remedy(images):
@@ -199,4 +199,4 @@ def test_too_little_memory_names_the_remedy(images):
         raise RuntimeError("DefaultCPUAllocator: can't allocate memory: you tried to allocate 9 bytes")
 
     with pytest.raises(ValueError, match="too little memory: take a smaller batch"):
-        in_parts(too_much, images, "cpu")
+        in_batches(too_much, images, "cpu")

@@ -8,11 +8,11 @@ import torch
 
 from stages.kit.files import read_arrays, sha256, write_arrays
 from stages.networks.images import normalise
-from stages.networks.network import build, settle
-from stages.transfer.hybrid import HybridNet, join
+from stages.networks.network import build, recalibrate
+from stages.transfer.hybrid import HybridNet, join_senses
 from stages.transfer.hybrid_file import load, save, state_arrays
 from stages.transfer.onnx_export import export_onnx, onnx_scores
-from stages.transfer.smaller import LEVELS, dequantise, half, quantise
+from stages.transfer.precision import LEVELS, dequantise, quantise, to_half
 
 SIZE, NAMES = 32, ["cup", "dog", "sofa"]
 
@@ -22,7 +22,7 @@ def hybrid():
     """An untrained network that passes a signal on, and every rounding with it: trained ones are far less sensitive."""
     network = build("mobilenet_v2", len(NAMES), "random", 0)
     noise = normalise(torch.rand(16, 3, SIZE, SIZE, generator=torch.Generator().manual_seed(0)))
-    settle(network, lambda ids: noise[ids], range(16))
+    recalibrate(network, lambda ids: noise[ids], range(16))
     network.head[1].weight.data.mul_(10)
     found = HybridNet(network, network)
     found.late[1][-1][-1].weight.mul_(-1)
@@ -34,7 +34,7 @@ def hybrid():
 def images():
     pictures, imprints = torch.rand(2, 5, 3, SIZE, SIZE, generator=torch.Generator().manual_seed(1))
     pictures[1], imprints[2], pictures[3], imprints[3] = 0, 0, 0, 0
-    return join(pictures, imprints)
+    return join_senses(pictures, imprints)
 
 
 def test_a_saved_network_comes_back_bit_for_bit(hybrid, images, tmp_path):
@@ -74,13 +74,13 @@ def test_quantised_weights_are_off_by_half_a_step_at_most():
 
 def test_what_half_precision_cannot_hold_is_refused():
     with pytest.raises(ValueError, match="c does not fit"):
-        half({"c": np.array([1e6], dtype=np.float32)})
+        to_half({"c": np.array([1e6], dtype=np.float32)})
 
 
 def test_wrong_numbers_of_names_and_unknown_kinds_are_refused(hybrid, tmp_path):
     with pytest.raises(ValueError, match="2 names of classes"):
         save(tmp_path / "net.npz", hybrid, NAMES[:2])
-    with pytest.raises(ValueError, match="unknown kind of numbers 'int4'"):
+    with pytest.raises(ValueError, match="unknown precision 'int4'"):
         save(tmp_path / "net.npz", hybrid, NAMES, "int4")
     assert not list(tmp_path.iterdir())
 
@@ -118,7 +118,7 @@ def test_damaged_and_strange_files_are_refused(stored, tmp_path):
     for name in ("half.npz", "text.npz", "other.npz"):
         with pytest.raises(ValueError, match=f"{name} holds no hybrid network"):
             load(tmp_path / name)
-    with pytest.raises(ValueError, match="text.npz holds no hybrid network: it is no .npz file$"):
+    with pytest.raises(ValueError, match="text.npz holds no hybrid network: it is not an .npz file$"):
         load(tmp_path / "text.npz")
     with pytest.raises(FileNotFoundError):
         load(tmp_path / "nowhere.npz")

@@ -32,7 +32,9 @@ def run(tmp_path_factory):
             write_arrays(folder / "imprints" / f"{name}.npz", vertices=np.arange(8), imprints32=imprints)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(hybrid_trial, "build", lambda name, classes, *_: build(name, classes, "random", 0))
-        rows = hybrid_trial.process("hybrid.18-139.objects.0", folder, members(), SimpleNamespace(**SETTINGS), 0)
+        rows = hybrid_trial.process(
+            "hybrid.18-139.objects.0", folder, folder, members(), SimpleNamespace(**SETTINGS), 0
+        )
     return folder, rows
 
 
@@ -106,11 +108,11 @@ def test_an_answer_where_the_other_has_none_is_no_equality(monkeypatch, tmp_path
     own, path = np.array([[np.nan, np.nan], [0.5, 0.25]]), tmp_path / "net.onnx"
     path.write_bytes(b"")
     monkeypatch.setattr(hybrid_compared, "export_onnx", lambda *_: None)
-    monkeypatch.setattr(hybrid_compared, "scored", lambda *_: own)
-    monkeypatch.setattr(hybrid_compared, "lone", lambda images, kind: images)
+    monkeypatch.setattr(hybrid_compared, "sense_scores", lambda *_: own)
+    monkeypatch.setattr(hybrid_compared, "single_sense", lambda images, kind: images)
     for found, expected in ((own + 0.125, 0.125), (np.nan_to_num(own), np.inf)):
         monkeypatch.setattr(hybrid_compared, "onnx_scores", lambda *_, answer=found: [answer] * 2)
-        rows = list(hybrid_compared.exported(None, [sense] * 2, SimpleNamespace(size=4), path))
+        rows = list(hybrid_compared.onnx_rows(None, [sense] * 2, SimpleNamespace(size=4), path))
         assert values(rows, metric="max_difference") == [expected]
 
 
@@ -126,7 +128,7 @@ def test_every_middle_has_a_network_for_each_split_and_repetition():
         "hybrid.18-139.random.0", "hybrid.18-139.random.1", "hybrid.18-139.objects.0", "hybrid.18-139.objects.1",
         "hybrid.18-147.random.0", "hybrid.18-147.random.1", "hybrid.18-147.objects.0", "hybrid.18-147.objects.1",
     ]  # fmt: skip
-    assert [hybrid_trial.Trial.parse(name).name for name in names] == names
+    assert [hybrid_trial.HybridTrial.parse(name).name for name in names] == names
 
 
 def test_no_repetitions_and_no_classes_are_no_trials():

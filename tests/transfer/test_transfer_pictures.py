@@ -6,7 +6,7 @@ import trimesh
 
 from stages.kit import Mesh
 from stages.transfer.hybrid_damage import PICTURES, check, damage, damage_pictures
-from stages.transfer.hybrid_data import imprint_images, pair
+from stages.transfer.hybrid_data import imprint_images, pair_pictures
 from stages.transfer.pictures import ELEVATIONS, picture_images, take_pictures, viewpoints
 from stages.transfer.switch import present
 
@@ -29,7 +29,7 @@ def test_viewpoints_go_all_round_and_not_below_the_table():
     assert np.allclose(np.diff(azimuths), 10)
     assert all(ELEVATIONS[0] <= view.elevation <= ELEVATIONS[1] for view in views)
     assert np.ptp([view.elevation for view in views]) > 30
-    with pytest.raises(ValueError, match="one picture or more"):
+    with pytest.raises(ValueError, match="must be 1 or more"):
         viewpoints(0, random())
 
 
@@ -75,11 +75,11 @@ def test_a_flat_contact_is_a_touch_and_feeling_nothing_is_none():
 
 def test_every_touch_is_paired_with_its_own_object():
     seen, felt = np.repeat([0, 1, 2], 3), np.array([2, 0, 0, 0, 0, 1])
-    found = pair(seen, felt, random())
+    found = pair_pictures(seen, felt, random())
     assert np.array_equal(seen[found], felt)
     assert set(found[1:5]) == {0, 1, 2}  # all looks are used before one is used twice
-    with pytest.raises(ValueError, match="object 7 was touched"):
-        pair(seen, np.array([7]), random())
+    with pytest.raises(ValueError, match="object 7 has touches"):
+        pair_pictures(seen, np.array([7]), random())
 
 
 @pytest.mark.parametrize(("name", "mild", "harsh"), [(n, *s) for n, s in zip(

@@ -12,15 +12,15 @@ ENOUGH = dict.fromkeys([name for objects in CLASSES.values() for name in objects
 
 @pytest.fixture
 def weights(monkeypatch):
-    """Nothing is fetched; had() knows all networks but GoogLeNet."""
+    """Nothing is fetched; there are weights for all networks but GoogLeNet."""
 
-    def had(network, source):
+    def fetched(network, source):
         if network == "googlenet":
             raise FetchError("no registry has it")
         return "complete"
 
-    monkeypatch.setattr(planning, "had", had)
-    monkeypatch.setattr(planning, "imagenet_state", had)
+    monkeypatch.setattr(planning, "available_weights", fetched)
+    monkeypatch.setattr(planning, "imagenet_state", fetched)
 
 
 def test_a_trials_name_is_its_file_and_gives_it_back():
@@ -30,8 +30,8 @@ def test_a_trials_name_is_its_file_and_gives_it_back():
 
 
 def test_controls_and_ranges_are_trained_on_the_fine_array_alone(small, weights):
-    modes, networks = ["frozen", "finetuned", "18:139"], ["mobilenet_v2", "alexnet"]
-    both = small.settings(weights=["imagenet", "random"], modes=modes, networks=networks, splits=["random"])
+    networks = {"mobilenet_v2": ["frozen", "finetuned", "18:139"], "alexnet": ["frozen", "finetuned"]}
+    both = small.settings(weights=["imagenet", "random"], networks=networks, splits=["random"])
     trials = plan(CLASSES, ENOUGH, both).trials
     kinds = {trial[:4] for trial in trials}
     assert len(kinds) == len(trials) == 2 * 4 + 1 + 2 * 2
@@ -50,7 +50,7 @@ def test_a_class_with_one_object_is_trained_but_not_left_out(small):
 def test_without_a_class_to_spare_an_object_touches_are_still_drawn(small):
     planned = plan({"chair": ["stool"], "vase": ["urn"]}, ENOUGH, small.settings())
     assert {trial.split for trial in planned.trials} == {"random"}
-    assert "less than two classes can spare an object" in planned.notes[-1][1]
+    assert "fewer than two classes have a second object" in planned.notes[-1][1]
 
 
 def test_objects_with_too_few_vertices_and_empty_classes_are_named(small):
@@ -64,23 +64,29 @@ def test_objects_with_too_few_vertices_and_empty_classes_are_named(small):
 def test_one_class_alone_gives_a_note_and_no_training(small):
     planned = plan({"animal": CLASSES["animal"]}, ENOUGH, small.settings())
     assert planned.trials == []
-    assert planned.notes == [({}, "two classes or more are needed, got animal: add some to classes.names")]
+    assert planned.notes == [({}, "two classes or more are needed, got animal: add some to meshes.classes")]
 
 
 def test_a_network_without_weights_is_a_note_and_the_others_run(small, weights):
-    planned = plan(CLASSES, ENOUGH, small.settings(weights=["imagenet"], networks=["googlenet", "mobilenet_v2"]))
+    planned = plan(
+        CLASSES,
+        ENOUGH,
+        small.settings(weights=["imagenet"], networks={"googlenet": ["frozen"], "mobilenet_v2": ["frozen"]}),
+    )
     about = {"method": "googlenet"}, "googlenet left out, no weights: no registry has it"
-    assert about in planned.notes and planned.had == {"mobilenet_v2": "complete"}
+    assert about in planned.notes and planned.pretrained == {"mobilenet_v2": "complete"}
     assert {trial.network for trial in planned.trials} == {"mobilenet_v2"}
 
 
 @pytest.mark.parametrize(
     ("change", "reason"),
     [
-        ({"modes": ["frozen", "boiled"]}, "transfer.modes: boiled not known"),
-        ({"modes": ["18:200"]}, "layers are 1 to 154"),
+        ({"networks": {"mobilenet_v2": ["frozen", "boiled"]}}, "transfer.networks.mobilenet_v2: boiled not known"),
+        ({"networks": {"mobilenet_v2": []}}, "transfer.networks.mobilenet_v2: none not known"),
+        ({"networks": {"mobilenet_v2": ["18:200"]}}, "layers are 1 to 154"),
+        ({"networks": {"alexnet": ["18:139"]}}, "transfer.networks.alexnet: 18:139 not known"),
         ({"weights": []}, "transfer.weights: none not known"),
-        ({"networks": ["lenet"]}, "transfer.networks: lenet not known"),
+        ({"networks": {"lenet": ["frozen"]}}, "transfer.networks: lenet not known"),
         ({"splits": ["half"]}, "transfer.splits: half not known"),
         ({"repetitions": 0}, "must be 1 or more"),
         ({"device": "abacus"}, "unknown device"),

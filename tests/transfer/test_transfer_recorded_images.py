@@ -7,7 +7,7 @@ import pytest
 
 from stages.classification.recorded import Grasps, read_grasps, read_pressure_images
 from stages.transfer.recorded import grasp_images, pressure_images
-from stages.transfer.recorded.grasps import COLUMNS, ROWS, lay_out
+from stages.transfer.recorded.grasps import COLUMNS, ROWS, electrode_images
 
 DATA = Path(__file__).parents[2] / "../shared/data"
 
@@ -25,7 +25,7 @@ def test_an_electrode_shows_where_it_lies_in_the_colour_of_its_finger():
         for electrode in (0, 9, 15, 23):
             values = np.zeros((1, 72))
             values[0, 24 * finger + electrode] = 1
-            image = lay_out(values)[0]
+            image = electrode_images(values)[0]
             assert image[ROWS[electrode], COLUMNS[electrode], finger] == 255
             assert (np.delete(image, finger, axis=2) == 128).all()
             assert image[..., finger].min() >= 128
@@ -38,7 +38,7 @@ def test_the_electrodes_lie_apart_and_mirrored():
 
 def test_equal_readings_of_a_finger_fill_it_evenly():
     values = np.repeat([0.5, -0.5, 0.25], 24)[None]
-    image = lay_out(values)[0]
+    image = electrode_images(values)[0]
     assert (image == np.round(128 + 127 * np.array([0.5, -0.5, 0.25]))).all()
 
 

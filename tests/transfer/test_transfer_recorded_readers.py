@@ -7,7 +7,7 @@ import pytest
 from PIL import Image
 
 from stages.transfer.recorded import Recorded, read_bigs, read_vitac, read_vt60
-from stages.transfer.recorded.bigs import GRID, on_grid, reshape
+from stages.transfer.recorded.bigs import GRID, colour_image, electrode_grid
 
 CLOTHS = (11, 22, 100)
 
@@ -88,10 +88,10 @@ def test_vitac_reads_the_hundred_cloths_and_only_what_was_pressed(tmp_path):
 
 
 def test_vitac_says_what_is_wanted(tmp_path):
-    with pytest.raises(ValueError, match="nowhere is no folder: give the unpacked ViTac"):
+    with pytest.raises(ValueError, match="nowhere is not a folder: give the unpacked ViTac"):
         read_vitac(tmp_path / "nowhere")
     picture(tmp_path / "11t" / "1_1.jpg")
-    with pytest.raises(ValueError, match="holds 1 folders of cloths by touch; wanted is ViTac"):
+    with pytest.raises(ValueError, match="holds 1 folders of cloths by touch; expected is ViTac"):
         read_vitac(tmp_path)
     (tmp_path / "22t").mkdir()
     with pytest.raises(ValueError, match="22t holds no picture"):
@@ -124,7 +124,7 @@ def test_bigs_has_an_image_a_finger_of_each_successful_grasp(bigs):
 
 def test_reshape_is_matlabs():
     cells = np.arange(7 * 3 * 700).reshape(7, 3, 700)
-    image = reshape(cells)
+    image = colour_image(cells)
     for row, column, sample in ((0, 0, 0), (6, 2, 699), (3, 1, 233), (5, 2, 400)):
         place = row + 7 * column + 21 * sample
         pixel = place % 70, place // 70 % 70, place // 4900
@@ -134,13 +134,14 @@ def test_reshape_is_matlabs():
 
 def test_each_electrode_has_one_cell_and_the_gaps_their_neighbours_mean():
     assert sorted(np.ravel(GRID)) == [0, 0, *range(1, 20)]
-    image = on_grid(np.arange(1, 20)[None].astype(float))[0]
+    image = electrode_grid(np.arange(1, 20)[None].astype(float))[0]
     assert image[0].tolist() == [9, 7, 8] and image[6].tolist() == [16, 19, 6]
     assert image[3].tolist() == [13, 8, 3] and image[4].tolist() == [14, 9, 4]
 
 
 @pytest.mark.parametrize(
-    ("text", "said"), [("1,2\n3,4", "2 lines of 2 numbers"), ("1;2", "no table"), ("nan," * 18 + "1", "1 lines of 19")]
+    ("text", "said"),
+    [("1,2\n3,4", "2 lines of 2 numbers"), ("1;2", "not a table"), ("nan," * 18 + "1", "1 lines of 19")],
 )
 def test_bigs_names_a_table_that_does_not_fit(bigs, text, said):
     (bigs / "box/success/grasp_1/left.csv").write_text(text)
@@ -153,7 +154,7 @@ def test_bigs_names_what_is_missing(bigs):
     with pytest.raises(ValueError, match="grasp_1 holds 2 tables, 3 are needed"):
         read_bigs(bigs)
     (bigs / "ball").rename(bigs / "tube")
-    with pytest.raises(ValueError, match="ball/success is no folder"):
+    with pytest.raises(ValueError, match="ball/success is not a folder"):
         read_bigs(bigs)
 
 

@@ -52,13 +52,17 @@ def test_what_cannot_be_split_is_refused(labels, share, reason):
 def whole(split):
     """True when train and test are disjoint and hold all, and check lies within train."""
     touches = sorted([*split.train, *split.test]) == list(range(len(CLASSES)))
-    return touches and set(split.check) < set(split.train) and sorted([*split.fit, *split.check]) == list(split.train)
+    return (
+        touches
+        and set(split.validation) < set(split.train)
+        and sorted([*split.fit, *split.validation]) == list(split.train)
+    )
 
 
 def test_touches_of_every_object_lie_on_both_sides():
     split = by_touches(CLASSES * 4 + RANKS, 0.8, 0.25, rng())
     assert whole(split)
-    for part, count in ((split.train, 8), (split.test, 2), (split.check, 2)):
+    for part, count in ((split.train, 8), (split.test, 2), (split.validation, 2)):
         assert set(np.bincount((CLASSES * 4 + RANKS)[part])) <= {0, count}
 
 
@@ -67,7 +71,7 @@ def test_an_object_left_out_is_in_no_other_part(number):
     split = by_objects(CLASSES, RANKS, number, 0.2, rng())
     assert whole(split)
     for label, count in enumerate((3, 4)):
-        parts = [set(RANKS[part[CLASSES[part] == label]]) for part in (split.test, split.check, split.fit)]
+        parts = [set(RANKS[part[CLASSES[part] == label]]) for part in (split.test, split.validation, split.fit)]
         assert parts[0] == {number % count} and parts[1] == {(number + 1) % count}
         assert not parts[2] & (parts[0] | parts[1]) and len(parts[2]) == count - 2
 
@@ -82,7 +86,7 @@ def test_of_two_objects_the_check_is_a_share_of_the_touches_that_train():
     labels, ranks = CLASSES[two], RANKS[two]
     split = by_objects(labels, ranks, 1, 0.2, rng())
     assert set(ranks[split.test]) == {1} and set(ranks[split.train]) == {0}
-    assert np.bincount(labels[split.check]).tolist() == [2, 2]
+    assert np.bincount(labels[split.validation]).tolist() == [2, 2]
 
 
 def test_a_class_with_one_object_cannot_be_left_out():

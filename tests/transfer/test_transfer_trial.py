@@ -7,7 +7,7 @@ import pytest
 from stages.kit.files import read_arrays, sha256, write_arrays
 from stages.transfer import trial
 from stages.transfer.plan import Trial
-from stages.transfer.tables import confusion, sorted_out, summary
+from stages.transfer.tables import confusion, sort_rows, summary
 from stages.transfer.touches import read_touches
 
 SIZE = 32
@@ -30,7 +30,7 @@ def folder(tmp_path):
 
 
 def run(folder, settings, one=FROZEN):
-    return trial.process(one.name, folder, MEMBERS, settings, seed=0)
+    return trial.process(one.name, folder, folder, MEMBERS, settings, seed=0)
 
 
 def plain(rows):
@@ -53,19 +53,19 @@ def test_a_trial_gives_equal_files_each_time_and_tidy_rows(folder, small):
     values = plain(rows)
     assert values["chance"] == 0.5 and values["trained_parameters"] == 2562 and values["weight_change"] == 0
     assert values["learning_rate"] in settings.frozen_rates and 0 <= values["accuracy"] <= 1
-    assert not list((folder / trial.UNFINISHED).iterdir())
+    assert {path.name for path in folder.iterdir()} == {"imprints", "networks", "predictions"}
     table = confusion(folder, [FROZEN], MEMBERS)
     assert table["count"].sum() == 8
     assert table.query("true == predicted")["count"].sum() == round(values["accuracy"] * 8)
 
 
 def test_disturbed_touches_are_rows_of_their_own(folder, small):
-    found, disturbed, layers = sorted_out(run(folder, small.settings()), {"mobilenet_v2": None})
+    found, disturbed, layers = sort_rows(run(folder, small.settings()), {"mobilenet_v2": None})
     asked = [("noise", 0.01), ("noise", 0.5), ("few_touches", 0.5)]
     assert list(zip(disturbed["perturbation"], disturbed["severity"], strict=True)) == asked
     assert set(disturbed["metric"]) == {"accuracy"} and disturbed["value"].between(0, 1).all()
     assert layers.empty and not any("perturbation" in row or "trial" in row for row in found)
-    assert {row["split"] for row in found} == {"random"} and {row["had"] for row in found} == {None}
+    assert {row["split"] for row in found} == {"random"} and {row["pretrained"] for row in found} == {None}
 
 
 def test_a_left_out_object_is_tested_and_a_range_changes_its_other_layers(folder, small):
@@ -80,16 +80,16 @@ def test_a_left_out_object_is_tested_and_a_range_changes_its_other_layers(folder
 def test_a_trial_killed_in_its_last_training_seeks_no_rate_again(folder, small, monkeypatch):
     settings = small.settings(severities={})
     expected = plain(run(folder, settings))
-    learned = trial.learn
+    train_model = trial.train_model
 
     def killed(*_, **__):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(trial, "learn", killed)
+    monkeypatch.setattr(trial, "train_model", killed)
     with pytest.raises(KeyboardInterrupt):
         run(folder, settings)
-    monkeypatch.setattr(trial, "learn", learned)
-    monkeypatch.setattr(trial, "search", killed)
+    monkeypatch.setattr(trial, "train_model", train_model)
+    monkeypatch.setattr(trial, "search_rate", killed)
     assert plain(run(folder, settings)) == expected
 
 
@@ -99,6 +99,8 @@ def test_summary_has_an_interval_over_repetitions_and_none_for_a_single_one():
     rows += [known | {"metric": "accuracy", "value": value} for value in (0.6, 0.8)]
     found = summary(rows, 0)
     assert found["chance"] == {"objects": 0.5}
-    assert found["imprints128"]["objects"]["alexnet"] == {"frozen_random": {"mean": 0.7, "low": 0.6, "high": 0.8}}
+    assert found["imprints128"]["objects"]["alexnet"] == {
+        "frozen_random": {"mean": 0.7, "low": -0.216817, "high": 1.616817}
+    }
     assert summary(rows[:2], 0)["imprints128"]["objects"]["alexnet"] == {"frozen_random": {"mean": 0.6}}
     assert summary([], 0) == {}

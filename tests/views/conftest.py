@@ -31,6 +31,6 @@ def shapes():
 @pytest.fixture(params=["raycast", "pyrender"])
 def renderer(request):
     """Each renderer that can run here."""
-    if request.param == "pyrender" and gl.missing():
-        pytest.skip(f"no EGL context on this machine: {gl.missing()}")
+    if request.param == "pyrender" and gl.egl_error():
+        pytest.skip(f"no EGL context on this machine: {gl.egl_error()}")
     return request.param

@@ -11,7 +11,7 @@ SIZE = (300, 400)
 FOOTPRINT = 1 / pixels_per_unit(SIZE[0])
 
 
-@pytest.mark.skipif(bool(gl.missing()), reason=f"no EGL context on this machine: {gl.missing()}")
+@pytest.mark.skipif(bool(gl.egl_error()), reason=f"no EGL context on this machine: {gl.egl_error()}")
 @pytest.mark.parametrize("viewpoint", [Viewpoint(0, 0), Viewpoint(120, 45), Viewpoint(240, -45, 30), Viewpoint(0, 90)])
 @pytest.mark.parametrize("name", ["sphere", "torus", "cube", "bowl", "coloured"])
 def test_renderers_agree(shapes, name, viewpoint):
@@ -28,17 +28,17 @@ def test_renderers_agree(shapes, name, viewpoint):
 
 
 def test_auto_without_egl_takes_the_rays_and_says_so_once(shapes, monkeypatch, capsys):
-    monkeypatch.setattr(gl, "missing", lambda: "no libEGL")
-    renderer._best.cache_clear()
+    monkeypatch.setattr(gl, "egl_error", lambda: "no libEGL")
+    renderer._available.cache_clear()
     try:
         views = [render(shapes["cube"], Viewpoint(0, 0), (90, 120), "auto") for _ in range(2)]
     finally:
-        renderer._best.cache_clear()
+        renderer._available.cache_clear()
     assert all(view.mask.any() for view in views)
-    assert capsys.readouterr().err.count("ray caster") == 1
+    assert capsys.readouterr().err.count("raycast") == 1
 
 
 def test_pyrender_without_egl_says_what_to_install(shapes, monkeypatch):
-    monkeypatch.setattr(gl, "missing", lambda: "no libEGL")
+    monkeypatch.setattr(gl, "egl_error", lambda: "no libEGL")
     with pytest.raises(OSError, match="libegl1"):
         render(shapes["cube"], Viewpoint(0, 0), (90, 120), "pyrender")

@@ -7,7 +7,7 @@ import pytest
 import trimesh
 
 from stages.kit import Mesh, Viewpoint
-from stages.views import CANDIDATES, SETS, best_viewpoints, hidden_surface
+from stages.views import CANDIDATES, PERPENDICULAR_SETS, best_viewpoints, hidden_surface
 from stages.views.candidates import BETWEEN
 
 
@@ -48,7 +48,7 @@ def flat_level(_):
 
 def test_a_convex_body_hides_nothing_and_gets_no_added_view(ball):
     assert not hidden_surface(ball, CANDIDATES).any()
-    assert best_viewpoints(ball, flat_level) == list(SETS[0])
+    assert best_viewpoints(ball, flat_level) == list(PERPENDICULAR_SETS[0])
 
 
 def test_things_in_a_row_hide_each_other_along_it_alone(row):
@@ -58,30 +58,30 @@ def test_things_in_a_row_hide_each_other_along_it_alone(row):
 
 def test_the_added_view_stands_between_the_hiding_one_and_the_next(row):
     def level(view):
-        return 10.0 * (view in SETS[9]) + 1.0 * (view in BETWEEN[9])
+        return 10.0 * (view in PERPENDICULAR_SETS[9]) + 1.0 * (view in BETWEEN[9])
 
-    assert {view.name for view in SETS[9]} == {"az90_el0", "az0_el90", "az270_el0", "az0_el-90"}
-    assert best_viewpoints(row, level) == [*SETS[9], Viewpoint(90, 45), Viewpoint(270, -45)]
+    assert {view.name for view in PERPENDICULAR_SETS[9]} == {"az90_el0", "az0_el90", "az270_el0", "az0_el-90"}
+    assert best_viewpoints(row, level) == [*PERPENDICULAR_SETS[9], Viewpoint(90, 45), Viewpoint(270, -45)]
 
 
 def test_added_views_count_in_the_average(row):
     """With poor added views, a set that needs none beats one whose four are a little better."""
 
     def level(view):
-        return 10.0 * (view in SETS[9]) + 9.0 * (view in SETS[0])
+        return 10.0 * (view in PERPENDICULAR_SETS[9]) + 9.0 * (view in PERPENDICULAR_SETS[0])
 
-    assert best_viewpoints(row, level) == list(SETS[0])
+    assert best_viewpoints(row, level) == list(PERPENDICULAR_SETS[0])
 
 
 def test_the_best_set_has_the_highest_average_of_all(ball):
     levels = dict(zip(CANDIDATES, np.random.default_rng(0).random(62), strict=True))
-    means = [np.mean([levels[view] for view in views]) for views in SETS]
-    assert best_viewpoints(ball, levels.__getitem__) == list(SETS[int(np.argmax(means))])
+    means = [np.mean([levels[view] for view in views]) for views in PERPENDICULAR_SETS]
+    assert best_viewpoints(ball, levels.__getitem__) == list(PERPENDICULAR_SETS[int(np.argmax(means))])
 
 
 def test_equal_sets_go_by_order_whatever_the_rounding(ball):
-    assert best_viewpoints(ball, lambda view: 0.1 + 1e-17 * view.azimuth) == list(SETS[0])
-    assert best_viewpoints(ball, lambda view: 0.0) == list(SETS[0])
+    assert best_viewpoints(ball, lambda view: 0.1 + 1e-17 * view.azimuth) == list(PERPENDICULAR_SETS[0])
+    assert best_viewpoints(ball, lambda view: 0.0) == list(PERPENDICULAR_SETS[0])
 
 
 def test_each_level_is_computed_once(row):
@@ -99,7 +99,7 @@ def test_at_most_four_views_are_added():
     shells = [trimesh.creation.icosphere(subdivisions=2, radius=radius) for radius in (0.5, 0.4)]
     nested = as_mesh(trimesh.util.concatenate(shells))
     assert hidden_surface(nested, CANDIDATES).all()
-    assert best_viewpoints(nested, flat_level) == [*SETS[0], *BETWEEN[0]]
+    assert best_viewpoints(nested, flat_level) == [*PERPENDICULAR_SETS[0], *BETWEEN[0]]
 
 
 def test_rays_meet_the_faces_that_exact_intersection_counts():
@@ -140,7 +140,7 @@ def test_a_doubled_surface_counts_once(ball):
 
 def test_one_triangle_has_four_views():
     triangle = Mesh(np.array([[0, 0, 0], [0.5, 0, 0], [0, 0.5, 0]]), np.array([[0, 1, 2]]))
-    assert best_viewpoints(triangle, flat_level) == list(SETS[0])
+    assert best_viewpoints(triangle, flat_level) == list(PERPENDICULAR_SETS[0])
 
 
 @pytest.mark.parametrize("mesh", [
@@ -149,7 +149,7 @@ def test_one_triangle_has_four_views():
     Mesh(np.array([[0, 0, 0], [0.5, 0, 0], [1, 0, 0]]), np.array([[0, 1, 2]])),
 ], ids=["empty", "point", "line"])  # fmt: skip
 def test_a_mesh_without_area_is_refused(mesh):
-    with pytest.raises(ValueError, match="no surface"):
+    with pytest.raises(ValueError, match="no visible surface"):
         best_viewpoints(mesh, flat_level)
 
 

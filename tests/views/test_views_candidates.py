@@ -5,7 +5,7 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from stages.views import CANDIDATES, SETS
+from stages.views import CANDIDATES, PERPENDICULAR_SETS
 from stages.views.candidates import BETWEEN, on_circle
 
 
@@ -14,13 +14,13 @@ def backs(views):
 
 
 def test_there_are_18_sets_of_four_and_62_different_viewpoints_in_all():
-    assert [len(views) for views in SETS] == [4] * 18
+    assert [len(views) for views in PERPENDICULAR_SETS] == [4] * 18
     assert len(CANDIDATES) == len({view.name for view in CANDIDATES}) == 62
-    assert set(CANDIDATES) == {view for views in SETS for view in views}
+    assert set(CANDIDATES) == {view for views in PERPENDICULAR_SETS for view in views}
 
 
 def test_ten_of_the_72_are_repetitions_and_all_of_them_at_the_poles():
-    times = Counter(view for views in SETS for view in views)
+    times = Counter(view for views in PERPENDICULAR_SETS for view in views)
     assert sum(times.values()) - len(times) == 10
     assert {view.elevation: count for view, count in times.items() if count > 1} == {90: 6, -90: 6}
 
@@ -30,7 +30,7 @@ def test_no_two_candidates_look_from_the_same_side():
     assert apart[np.triu_indices(62, 1)].min() > 14  # neighbours on the parallels of 60 degrees: 14.4
 
 
-@pytest.mark.parametrize("views", SETS, ids=lambda views: views[0].name)
+@pytest.mark.parametrize("views", PERPENDICULAR_SETS, ids=lambda views: views[0].name)
 def test_the_views_of_a_set_are_perpendicular_in_turn_around_one_axis(views):
     looks = backs(views)
     turn = np.roll(looks, -1, axis=0)
@@ -41,12 +41,12 @@ def test_the_views_of_a_set_are_perpendicular_in_turn_around_one_axis(views):
 
 
 def test_sets_are_different():
-    assert len({frozenset(views) for views in SETS}) == 18
+    assert len({frozenset(views) for views in PERPENDICULAR_SETS}) == 18
 
 
 @pytest.mark.parametrize("k", range(18))
 def test_an_added_view_stands_half_way_between_two_of_its_set(k):
-    views, between = backs(SETS[k]), backs(BETWEEN[k])
+    views, between = backs(PERPENDICULAR_SETS[k]), backs(BETWEEN[k])
     half = np.cos(np.radians(45))
     np.testing.assert_allclose(np.einsum("ij,ij->i", views, between), half)
     np.testing.assert_allclose(np.einsum("ij,ij->i", np.roll(views, -1, axis=0), between), half)
@@ -59,7 +59,7 @@ def test_the_arrangement_is_a_grid_of_parallels_and_both_poles():
 
 
 def test_images_stay_upright_over_the_top():
-    for views in (*SETS, *BETWEEN):
+    for views in (*PERPENDICULAR_SETS, *BETWEEN):
         for view in views:
             assert -90 <= view.elevation <= 90 and 0 <= view.azimuth < 360 and view.roll == 0
             assert view.axes[1][2] >= -1e-12
@@ -67,7 +67,9 @@ def test_images_stay_upright_over_the_top():
 
 def test_one_set_holds_the_four_principal_views_of_the_thesis():
     principal = {tuple(end) for end in np.vstack([np.eye(3)[1:], -np.eye(3)[1:]])}
-    found = [views for views in SETS if {tuple(np.round(back, 9) + 0.0) for back in backs(views)} == principal]
+    found = [
+        views for views in PERPENDICULAR_SETS if {tuple(np.round(back, 9) + 0.0) for back in backs(views)} == principal
+    ]
     assert len(found) == 1
 
 

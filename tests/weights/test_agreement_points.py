@@ -5,7 +5,7 @@ import pytest
 import trimesh
 
 from stages.kit import Mesh
-from stages.weights.agreement import TOLERANCES, interest_point_errors, people_near, truth_points
+from stages.weights.agreement import TOLERANCES, annotators_near, gaze_peaks, interest_point_errors
 from stages.weights.agreement.geodesic import Geodesics
 
 
@@ -86,7 +86,7 @@ def test_weights_may_differ_by_tolerance():
 def test_people_are_counted_once_however_often_they_marked():
     mesh = grid(21)
     marks = [[0, 1, 2], [2], []]
-    found = people_near(mesh, [0, 10], marks, np.array([0, 1, 2, 8]) / mesh.diagonal)
+    found = annotators_near(mesh, [0, 10], marks, np.array([0, 1, 2, 8]) / mesh.diagonal)
     assert found.tolist() == [[1, 1, 2, 2], [0, 0, 0, 2]]
 
 
@@ -146,7 +146,7 @@ def bumps(mesh, places, heights, width=0.08):
 
 def test_truth_points_are_the_peaks_with_the_gaze_around_them():
     places = 0.5 * np.eye(3)
-    points, weights = truth_points(BALL, bumps(BALL, places, [1, 3, 2]), radius=0.2)
+    points, weights = gaze_peaks(BALL, bumps(BALL, places, [1, 3, 2]), radius=0.2)
     assert points.tolist() == [nearest(BALL, places[i]) for i in (1, 2, 0)]
     assert weights == pytest.approx([1 / 2, 1 / 3, 1 / 6], abs=0.01)
 
@@ -154,66 +154,66 @@ def test_truth_points_are_the_peaks_with_the_gaze_around_them():
 def test_a_peak_in_the_reach_of_a_higher_one_is_none():
     places = np.array([[0.5, 0, 0], [0.4, 0.3, 0]])  # 0.32 apart over the surface, 0.19 of the diagonal
     density = bumps(BALL, places, [2, 1])
-    assert len(truth_points(BALL, density, radius=0.15)[0]) == 2
-    assert truth_points(BALL, density, radius=0.25)[0].tolist() == [nearest(BALL, places[0])]
+    assert len(gaze_peaks(BALL, density, radius=0.15)[0]) == 2
+    assert gaze_peaks(BALL, density, radius=0.25)[0].tolist() == [nearest(BALL, places[0])]
 
 
 def test_stray_looks_are_left_out():
     density = bumps(BALL, 0.5 * np.eye(3), [1, 1, 0.04])  # the last with 2 % of the gaze
-    assert len(truth_points(BALL, density, least=0.05)[0]) == 2
-    assert len(truth_points(BALL, density)[0]) == 3
+    assert len(gaze_peaks(BALL, density, min_weight=0.05)[0]) == 2
+    assert len(gaze_peaks(BALL, density)[0]) == 3
 
 
 def test_a_peak_below_even_attention_is_left_out():
     density = 1 + bumps(BALL, [[0.5, 0, 0], [-0.5, 0, 0]], [5, -0.5]) + bumps(BALL, [[-0.5, 0, 0]], [0.4], width=0.02)
     assert density[nearest(BALL, [-0.5, 0, 0])] < 1
-    assert truth_points(BALL, density, radius=0.05, least=0)[0].tolist() == [nearest(BALL, [0.5, 0, 0])]
+    assert gaze_peaks(BALL, density, radius=0.05, min_weight=0)[0].tolist() == [nearest(BALL, [0.5, 0, 0])]
 
 
 def test_truth_points_ignore_vertex_order_scale_and_unit_even_with_ties():
     draw = np.random.default_rng(2)
     density = np.minimum(bumps(BALL, 0.5 * np.eye(3), [1, 1, 1]), 0.4)  # flat tops: seven equal vertices
     order, rounding = draw.permutation(642), 1 + 1e-13 * draw.random(642)
-    points, weights = truth_points(BALL, density, radius=0.2)
+    points, weights = gaze_peaks(BALL, density, radius=0.2)
     moved = Mesh(80 * BALL.vertices[order], np.argsort(order)[BALL.faces])
-    found, shares = truth_points(moved, 1e-7 * (density * rounding)[order], radius=0.2)
+    found, shares = gaze_peaks(moved, 1e-7 * (density * rounding)[order], radius=0.2)
     assert len(points) == 3 and set(order[found]) == set(points)
     assert shares == pytest.approx(weights)
 
 
 def test_a_peak_is_found_where_no_edge_is_as_short_as_the_radius():
     box = as_mesh(trimesh.creation.box())
-    points, weights = truth_points(box, np.arange(8) == 5, radius=0.01)
+    points, weights = gaze_peaks(box, np.arange(8) == 5, radius=0.01)
     assert points.tolist() == [5] and weights == pytest.approx([1])
 
 
 def test_a_vertex_below_its_neighbour_is_no_peak_even_beyond_the_radius():
-    assert truth_points(ONE_FACE, [0.9, 1.0, 0.2], radius=0.01)[0].tolist() == [1]
+    assert gaze_peaks(ONE_FACE, [0.9, 1.0, 0.2], radius=0.01)[0].tolist() == [1]
 
 
 def test_density_at_a_vertex_in_no_face_is_no_point():
     lone = Mesh(np.r_[BALL.vertices, [[2, 2, 2]]], BALL.faces)
     density = np.r_[bumps(BALL, [[0.5, 0, 0]], [1]), 1e15]
-    assert truth_points(lone, density)[0].tolist() == [nearest(BALL, [0.5, 0, 0])]
+    assert gaze_peaks(lone, density)[0].tolist() == [nearest(BALL, [0.5, 0, 0])]
 
 
 @pytest.mark.parametrize(
     ("density", "named"),
     [(np.ones(641), "642"), (np.full(642, np.nan), "finite"), (-np.ones(642), "negative")]
-    + [(np.zeros(642), "empty"), (np.full(642, 0.1), "even")],
+    + [(np.zeros(642), "empty"), (np.full(642, 0.1), "uniform")],
 )
 def test_a_density_without_peaks_is_an_error_that_says_why(density, named):
     with pytest.raises(ValueError, match=named):
-        truth_points(BALL, density)
+        gaze_peaks(BALL, density)
 
 
 def test_bad_meshes_give_defined_answers():
     assert interest_point_errors(ONE_FACE, [1], [0])["fne"].tolist() == [1] * 13
-    assert truth_points(ONE_FACE, [0.0, 1.0, 0.5])[0].tolist() == [1]
+    assert gaze_peaks(ONE_FACE, [0.0, 1.0, 0.5])[0].tolist() == [1]
     bare = Mesh(np.zeros((3, 3)), np.zeros((0, 3), dtype=int))
     assert interest_point_errors(bare, [1], [0])["fne"].tolist() == [0] * 13  # all at one place
     with pytest.raises(ValueError, match="empty"):
-        truth_points(bare, np.ones(3))
+        gaze_peaks(bare, np.ones(3))
 
 
 def test_distances_on_a_plane_are_straight_along_edges_and_over_pairs_of_faces():

@@ -76,9 +76,9 @@ class Hand:
         self.page.mouse.move(*(self.middle + [right, down]), steps=5)
         self.page.mouse.up()
         self.azimuth, self.elevation = self.azimuth - TURN * right, self.elevation + TURN * down
-        self.settle()
+        self.wait_for_paint()
 
-    def settle(self):
+    def wait_for_paint(self):
         """Waits until the picture is drawn."""
         self.page.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
 
@@ -88,7 +88,7 @@ class Hand:
 
     def dot(self, place):
         """Middle of a numbered dot in the window."""
-        self.settle()
+        self.wait_for_paint()
         box = self.page.locator("#dots span").nth(place).bounding_box()
         return np.array([box["x"] + box["width"] / 2, box["y"] + box["height"] / 2])
 
@@ -154,7 +154,7 @@ def test_numbered_dots_lie_where_their_vertices_are_and_fade_behind(opened):
     assert np.abs(hand.dot(0) - hand.where(vertex)).max() < 1
     assert "hidden" not in hand.page.locator("#dots span").get_attribute("class")
     hand.drag(-250, 0)
-    hand.settle()
+    hand.wait_for_paint()
     assert "hidden" in hand.page.locator("#dots span").get_attribute("class")
 
 
@@ -164,7 +164,7 @@ def test_clicks_beside_the_object_and_on_known_points_add_nothing(opened):
     hand.page.mouse.click(*(hand.middle - [255, 0]))
     hand.reads("#message", "No point there")
     hand.click(vertex)
-    hand.settle()
+    hand.wait_for_paint()
     hand.click(vertex)
     hand.reads("#message", "Point 1 chosen")
     assert hand.listed == [vertex]
@@ -175,7 +175,7 @@ def test_a_single_point_is_removed_and_undo_brings_it_back(opened, tmp_path):
     first, second, third = hand.facing(7)[::3]
     for vertex in (first, second, third):
         hand.click(vertex)
-    hand.settle()
+    hand.wait_for_paint()
     hand.click(second)
     hand.page.keyboard.press("Delete")
     assert hand.listed == [first, third]
@@ -201,7 +201,7 @@ def test_leaving_asks_while_points_are_unsaved_and_reopening_loads_the_saved_one
     hand.page.reload()
     hand.reads("#message", "1 point of ann loaded")
     assert hand.listed == [kept] and asked == []
-    hand.settle()
+    hand.wait_for_paint()
     hand.click(lost)
     hand.reads("#state", "not saved")
     hand.page.reload()
@@ -236,7 +236,7 @@ def test_a_second_person_starts_afresh_and_leaves_the_first_ones_points(opened, 
     hand.page.keyboard.press("Enter")
     hand.reads("#who", "bob")
     assert hand.listed == []
-    hand.settle()
+    hand.wait_for_paint()
     hand.click(second)
     hand.page.click("#save")
     hand.reads("#message", "Saved 1 point")
@@ -335,7 +335,7 @@ def test_keys_alone_turn_mark_and_save(opened, tmp_path):
         hand.page.keyboard.press("ArrowLeft")
     hand.page.keyboard.press("ArrowUp")
     hand.azimuth, hand.elevation = START[0] + 40, START[1] - 8
-    hand.settle()
+    hand.wait_for_paint()
     hand.page.keyboard.press("Enter")
     hand.page.keyboard.press("Control+s")
     hand.reads("#message", "Saved 1 point")
@@ -346,7 +346,7 @@ def test_a_narrow_window_shows_everything_without_scrolling_sideways(opened):
     hand = opened(viewport=NARROW)
     for vertex in hand.facing(12):
         hand.click(vertex)
-    hand.settle()
+    hand.wait_for_paint()
     assert hand.page.evaluate("document.documentElement.scrollWidth") <= NARROW["width"]
     for button in hand.page.locator("main button").all():
         box = button.bounding_box()

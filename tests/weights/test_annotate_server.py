@@ -17,6 +17,7 @@ import trimesh
 
 from stages.kit import Mesh
 from stages.kit.files import write_mesh
+from stages.kit.workspace import Workspace
 from stages.meshes import normalise
 from stages.weights.annotate import open_server, read_marks, write_marks
 from stages.weights.annotate.__main__ import find_mesh
@@ -121,10 +122,10 @@ def test_own_rows_that_the_page_has_not_seen_are_a_conflict(server, tmp_path):
     "changes, reason",
     [
         ({"mesh": "another"}, "now shows cube"),
-        ({"annotator": " "}, "needs a name"),
+        ({"annotator": " "}, "name must have 1 to"),
         ({"marks": [{"time": TIME, "vertex": 8}]}, "vertex 8 is not on the mesh"),
         ({"marks": [{"time": TIME, "vertex": 1.5}]}, "vertex 1.5"),
-        ({"marks": [{"time": "soon", "vertex": 1}]}, "no time"),
+        ({"marks": [{"time": "soon", "vertex": 1}]}, "not a time"),
         ({"marks": 5}, "not iterable"),
     ],
 )
@@ -157,7 +158,7 @@ def test_a_damaged_file_is_named_and_stays(server, tmp_path):
 
 def test_marks_of_another_mesh_are_not_mixed_in(server, cube, tmp_path):
     save(server, [5])
-    with pytest.raises(ValueError, match="marks another mesh"):
+    with pytest.raises(ValueError, match="is of another mesh"):
         open_server("cube", Mesh(cube.vertices[::-1], cube.faces), tmp_path / "marks")
 
 
@@ -168,26 +169,27 @@ def test_a_taken_port_is_said_so(server, cube, tmp_path):
         open_server("cube", cube, tmp_path, port=70000)
 
 
-def test_meshes_are_found_by_file_and_by_name(cube, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    with pytest.raises(ValueError, match="none; `dvc repro meshes`"):
-        find_mesh("cube")
-    write_mesh(tmp_path / "data/meshes/cube.npz", cube)
-    write_mesh(tmp_path / "data/meshes/box.npz", cube)
-    assert find_mesh("cube")[0] == "cube"
+def test_meshes_are_found_by_file_and_by_name(cube, tmp_path):
+    workspace = Workspace(tmp_path, "toys")
+    with pytest.raises(ValueError, match="none; `dvc repro meshes@toys` fills .*data/toys/meshes"):
+        find_mesh("cube", workspace)
+    write_mesh(tmp_path / "data/toys/meshes/cube.npz", cube)
+    write_mesh(tmp_path / "data/toys/meshes/box.npz", cube)
+    assert find_mesh("cube", workspace)[0] == "cube"
     with pytest.raises(ValueError, match="'cup' is neither a mesh file nor an object; objects: box, cube"):
-        find_mesh("cup")
+        find_mesh("cup", workspace)
     trimesh.creation.box(extents=[2, 4, 4]).export(tmp_path / "brick.off")
-    name, mesh = find_mesh("brick.off")
+    name, mesh = find_mesh(str(tmp_path / "brick.off"), workspace)
     assert name == "brick" and np.allclose(np.linalg.norm(mesh.vertices, axis=1), 0.5)
     (tmp_path / "torn.off").write_text("OFF\n9 9 9\n")
-    with pytest.raises(ValueError, match=r"torn\.off: cut off"):
-        find_mesh("torn.off")
+    with pytest.raises(ValueError, match=r"torn\.off: truncated"):
+        find_mesh(str(tmp_path / "torn.off"), workspace)
 
 
 def test_the_command_serves_until_it_is_interrupted(tmp_path):
     trimesh.creation.box().export(tmp_path / "brick.off")
-    command = [sys.executable, "-m", "stages.weights.annotate", str(tmp_path / "brick.off"), "--folder", str(tmp_path)]
+    command = [sys.executable, "-m", "stages.weights.annotate", "toys", str(tmp_path / "brick.off")]
+    command += ["--folder", str(tmp_path)]
     bare = {key: value for key, value in os.environ.items() if key not in ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")}
     options = {"cwd": ROOT, "env": bare, "text": True, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
     heard = functools.partial(signal.signal, signal.SIGINT, signal.SIG_DFL)  # what runs in the background ignores it

@@ -5,7 +5,7 @@ import pytest
 import trimesh
 
 from stages.kit import Mesh
-from stages.weights.convexity import convexity, nearest
+from stages.weights.convexity import convexity, nearest_convexity
 
 BALL = trimesh.creation.icosphere(3)
 CUBE = trimesh.creation.box((1, 1, 1))
@@ -125,15 +125,15 @@ def test_a_mesh_without_area_is_an_error(faces):
 
 
 def test_the_nearest_in_convexity_is_found():
-    assert nearest(0.6, {"mug": 0.28, "elephant": 0.66, "cube": 1.0}) == "elephant"
+    assert nearest_convexity(0.6, {"mug": 0.28, "elephant": 0.66, "cube": 1.0}) == "elephant"
 
 
 def test_of_equally_near_ones_the_first_by_name_whatever_the_rounding():
-    assert nearest(1.0, {"sphere": 1.0, "cube": 1 - 1e-12}) == "cube"
-    assert nearest(0.5, {"b": 0.6, "a": 0.4}) == nearest(0.5, {"a": 0.4, "b": 0.6}) == "a"
+    assert nearest_convexity(1.0, {"sphere": 1.0, "cube": 1 - 1e-12}) == "cube"
+    assert nearest_convexity(0.5, {"b": 0.6, "a": 0.4}) == nearest_convexity(0.5, {"a": 0.4, "b": 0.6}) == "a"
 
 
 @pytest.mark.parametrize(("value", "others"), [(0.5, {}), (float("nan"), {"a": 0.5}), (0.5, {"a": float("inf")})])
 def test_nothing_to_choose_from_is_an_error(value, others):
-    with pytest.raises(ValueError, match="no object to choose from|must be finite"):
-        nearest(value, others)
+    with pytest.raises(ValueError, match="no other object to choose|must be finite"):
+        nearest_convexity(value, others)

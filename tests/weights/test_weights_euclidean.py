@@ -84,7 +84,7 @@ def test_a_view_without_points_has_no_distances():
 
 
 def test_no_points_in_any_view_is_an_error():
-    with pytest.raises(ValueError, match="no view has a ground truth point"):
+    with pytest.raises(ValueError, match="no view shows a ground truth point"):
         euclidean_weights([{}, {}])
 
 

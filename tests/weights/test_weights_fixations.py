@@ -9,7 +9,7 @@ from stages.kit import Mesh
 from stages.meshes import normalise
 from stages.views import TWELVE
 from stages.weights import fit_fixations, fixation_density, vertex_features
-from stages.weights.features import POSITION, standardise
+from stages.weights.features import POSITION_FEATURES, standardise
 
 TRUE = np.array([1.2, -0.7, 0.0])
 
@@ -94,7 +94,7 @@ def cone():
 
 def test_features_say_what_they_are_named_for(cone):
     found = features_of(cone)
-    assert list(found) == list(POSITION)
+    assert list(found) == list(POSITION_FEATURES)
     top = cone.vertices[:, 2].argmax()
     assert found["height"][top] == found["height"].max()
     assert found["convexity"][top] > found["convexity"].max() - 0.5  # the point bends most

@@ -69,7 +69,7 @@ def test_the_opposite_of_the_ground_truth_gets_no_weight():
 
 
 def test_no_ground_truth_in_any_view_is_an_error():
-    with pytest.raises(ValueError, match="no view has a ground truth point"):
+    with pytest.raises(ValueError, match="no view shows a ground truth point"):
         similarity_weights([{}])
 
 

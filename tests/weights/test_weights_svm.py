@@ -8,7 +8,7 @@ from sklearn.svm import SVC
 from stages.kit.files import read_arrays, write_arrays
 from stages.kit.rng import rng
 from stages.weights import svm
-from stages.weights.svm import Model, balanced_rows, fit_svm, information_gain
+from stages.weights.svm import SVMModel, balanced_rows, fit_svm, information_gain
 from stages.weights.svm_pixels import pixel_features, pixel_samples, predicted_map, select_far_points
 from stages.weights.svm_validation import cross_validated, grouped_validated
 
@@ -101,10 +101,10 @@ def test_information_gain_finds_a_rare_value(rare):
 
 def test_classes_are_balanced_and_capped():
     labels = np.arange(1000) % 10 == 0
-    for most, count in ((5000, 100), (60, 30)):
-        rows = balanced_rows(labels, rng(0, "x"), most)
+    for max_rows, count in ((5000, 100), (60, 30)):
+        rows = balanced_rows(labels, rng(0, "x"), max_rows)
         assert labels[rows].sum() == count and len(np.unique(rows)) == 2 * count
-    assert len(fit_svm(draw(1000), labels, seed=0, most=40).support) <= 40
+    assert len(fit_svm(draw(1000), labels, seed=0, max_rows=40).support) <= 40
 
 
 def test_prediction_is_that_of_the_library():
@@ -131,18 +131,18 @@ def test_model_comes_back_from_a_file_without_pickle(tmp_path):
     features = draw()
     model = fit_svm(features, band(features), seed=0)
     write_arrays(tmp_path / "model.npz", **model.to_arrays())
-    again = Model.from_arrays(read_arrays(tmp_path / "model.npz"))
+    again = SVMModel.from_arrays(read_arrays(tmp_path / "model.npz"))
     np.testing.assert_array_equal(again.predict(features), model.predict(features))
-    with pytest.raises(ValueError, match="no SVM model: center"):
-        Model.from_arrays({})
+    with pytest.raises(ValueError, match="not an SVM model: center"):
+        SVMModel.from_arrays({})
 
 
 def test_the_seed_decides_and_not_the_order_of_calls():
     features = draw(1000)
-    one = fit_svm(features, band(features), seed=3, most=100).predict(features)
-    other = fit_svm(features, band(features), seed=4, most=100).predict(features)
+    one = fit_svm(features, band(features), seed=3, max_rows=100).predict(features)
+    other = fit_svm(features, band(features), seed=4, max_rows=100).predict(features)
     assert not np.array_equal(one, other)
-    np.testing.assert_array_equal(fit_svm(features, band(features), seed=3, most=100).predict(features), one)
+    np.testing.assert_array_equal(fit_svm(features, band(features), seed=3, max_rows=100).predict(features), one)
 
 
 def view_rows(seeds):
@@ -234,25 +234,25 @@ def test_far_points_are_the_corners_and_then_the_middle():
 
 
 @pytest.mark.parametrize(
-    ("features", "labels", "most", "message"),
+    ("features", "labels", "max_rows", "message"),
     [
         (draw(), np.zeros(400, dtype=bool), 100, "0 of 400 rows are salient"),
         (draw(), np.ones(400, dtype=bool), 100, "400 of 400 rows are salient"),
         (draw(), np.ones(3, dtype=bool), 100, "400 booleans"),
         (draw(), np.ones(400), 100, "400 booleans"),
         (draw() * np.nan, np.ones(400, dtype=bool), 100, "finite"),
-        (draw(), np.ones(400, dtype=bool), 1, "most"),
+        (draw(), np.ones(400, dtype=bool), 1, "max_rows"),
     ],
 )
-def test_bad_rows_are_named(features, labels, most, message):
+def test_bad_rows_are_named(features, labels, max_rows, message):
     for train in (fit_svm, cross_validated):
         with pytest.raises(ValueError, match=message):
-            train(features, labels, seed=0, most=most)
+            train(features, labels, seed=0, max_rows=max_rows)
 
 
 def test_bad_questions_are_named():
     model = fit_svm(draw(), band(draw()), seed=0)
-    with pytest.raises(ValueError, match="knows 3 features"):
+    with pytest.raises(ValueError, match="needs 3 features"):
         model.predict(np.zeros((5, 9)))
     with pytest.raises(ValueError, match="must agree"):
         predicted_map(model, maps_of(0), MASK[:5])
@@ -262,7 +262,7 @@ def test_bad_questions_are_named():
         pixel_samples(maps_of(0), spots(0), 0, "x", share=0)
     with pytest.raises(ValueError, match="points must be finite"):
         select_far_points([[np.nan, 0]])
-    with pytest.raises(ValueError, match="groups must name"):
+    with pytest.raises(ValueError, match="groups must have one group"):
         grouped_validated(draw(), band(draw()), np.zeros(3), seed=0)
     with pytest.raises(ValueError, match="too few"):
         cross_validated(draw(2), np.array([True, False]), seed=0)

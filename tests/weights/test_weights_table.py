@@ -8,16 +8,17 @@ import pytest
 
 from stages.conspicuity import CHANNELS
 from stages.kit.files import write_table
-from stages.weights import METHODS, Learned, learned_for, weights
-from stages.weights.features import POSITION, SEEN
-from stages.weights.learn import learned_rows
+from stages.kit.rows import read_rows
+from stages.weights import METHODS, LearnedWeights, read_learned_weights, weights
+from stages.weights.features import CHANNEL_FEATURES, POSITION_FEATURES
+from stages.weights.learn_weights import learned_weight_rows
 from stages.weights.table import weight_table
 
-GAZE = Path(__file__).parents[2] / "reports/attention/weights.csv"
+GAZE = Path(__file__).parents[2] / "reports/measurements/gaze/weights.csv.gz"
 THESIS = Path(__file__).parents[2] / "data/reference/thesis/table_3_1_channel_weights.csv"
 
 
-def lesson(best, seed):
+def arrays(best, seed):
     """One object in whose views the channel `best` stands on the points, and whose looks follow its first feature."""
     random = np.random.default_rng(seed)
     features = random.normal(size=(400, 3))
@@ -33,12 +34,12 @@ def lesson(best, seed):
     }
 
 
-LESSONS = {"cup": lesson("edge", 0), "duck": lesson("edge", 1), "hand": lesson("color", 2)}
+TRAINING_DATA = {"cup": arrays("edge", 0), "duck": arrays("edge", 1), "hand": arrays("color", 2)}
 
 
 @pytest.fixture
 def table(tmp_path):
-    write_table(tmp_path / "weights.csv", weight_table(LESSONS, "fixations"))
+    write_table(tmp_path / "weights.csv", weight_table(TRAINING_DATA, "fixations"))
     return tmp_path
 
 
@@ -54,14 +55,14 @@ def test_equal_weights_are_equal():
 
 @pytest.mark.parametrize("method", METHODS)
 def test_every_method_weighs_every_channel_in_their_order(method):
-    expected = [*SEEN, *POSITION] if method == "gaze" else list(CHANNELS)
+    expected = [*CHANNEL_FEATURES, *POSITION_FEATURES] if method == "gaze" else list(CHANNELS)
     assert list(weights(method)) == expected
 
 
 def test_the_published_gaze_weights_are_those_that_the_gaze_taught():
-    table = pd.read_csv(GAZE)
-    table = table[(table.method == "fixations") & table.left_out.isna()]
-    learned = dict(zip(table.channel, table.weight.round(3), strict=True))
+    table = read_rows(GAZE)
+    table = table[(table["metric"] == "weight") & (table["method"] == "fixations") & table["item"].isna()]
+    learned = dict(zip(table["channel"], table["value"].round(3), strict=True))
     assert weights("gaze") == learned
 
 
@@ -77,21 +78,23 @@ def test_unknown_method_is_named_with_the_known_ones():
 
 def test_without_ground_truth_only_what_is_published_is_there(tmp_path):
     write_table(tmp_path / "weights.csv", weight_table({}, "gaze"))
-    found = learned_for(tmp_path, "cup", None)
+    found = read_learned_weights(tmp_path, "cup", None)
     assert set(found.weights) == {*METHODS, "enhanced", "enhanced_seen"} and found.svms == {}
     assert found.weights["enhanced"] == pytest.approx(weights("gaze"))
-    assert Learned().weights["thesis_ed"] == found.weights["thesis_ed"]
+    assert LearnedWeights().weights["thesis_ed"] == found.weights["thesis_ed"]
 
 
 def test_an_object_with_ground_truth_takes_weights_that_have_not_seen_it(table):
-    own, seen = (learned_for(table, "hand", None).weights[name] for name in ("guided_ssim", "guided_ssim_seen"))
+    own, seen = (
+        read_learned_weights(table, "hand", None).weights[name] for name in ("guided_ssim", "guided_ssim_seen")
+    )
     assert own == pytest.approx({"edge": 0.9, "color": 0.2})  # of the cup and the duck
     assert seen["color"] > 0.3  # the hand itself says 0.85
-    assert learned_for(table, "elephant", None).weights["guided_ssim"] == seen
+    assert read_learned_weights(table, "elephant", None).weights["guided_ssim"] == seen
 
 
 def test_the_nearer_channel_and_the_likelier_feature_win(table):
-    found = learned_for(table, "hand", None).weights
+    found = read_learned_weights(table, "hand", None).weights
     assert found["guided_ed"] == pytest.approx({"edge": 1, "color": 0})
     assert found["guided_ssim_object"] == pytest.approx({"edge": 0.5, "color": 0})  # what is unlike gets no say
     assert found["fixations"]["edge"] == pytest.approx(2, abs=0.4) and abs(found["fixations"]["height"]) < 0.2
@@ -99,24 +102,24 @@ def test_the_nearer_channel_and_the_likelier_feature_win(table):
 
 
 def test_one_object_alone_teaches_others_but_not_itself():
-    assert {row["left_out"] for row in learned_rows({"cup": LESSONS["cup"]})} == {""}
+    assert {row["left_out"] for row in learned_weight_rows({"cup": TRAINING_DATA["cup"]})} == {""}
 
 
 def test_the_only_object_with_ground_truth_takes_nothing_that_was_learned_from_it(tmp_path):
-    write_table(tmp_path / "weights.csv", weight_table({"cup": LESSONS["cup"]}, "fixations"))
-    (tmp_path / "lessons").mkdir()
-    (tmp_path / "lessons/cup.npz").touch()
-    found = learned_for(tmp_path, "cup", None).weights
+    write_table(tmp_path / "weights.csv", weight_table({"cup": TRAINING_DATA["cup"]}, "fixations"))
+    (tmp_path / "ground_truth").mkdir()
+    (tmp_path / "ground_truth/cup.npz").touch()
+    found = read_learned_weights(tmp_path, "cup", None).weights
     assert not {"enhanced", "fixations", "guided_ed"} & set(found) and {"guided_ed_seen", "equal"} <= set(found)
-    assert "enhanced" in learned_for(tmp_path, "duck", None).weights
+    assert "enhanced" in read_learned_weights(tmp_path, "duck", None).weights
 
 
 @pytest.mark.parametrize("choice", ["equal", "guided_ssim"])
 def test_weights_of_channels_are_no_choice_for_the_model_of_features(choice):
     with pytest.raises(ValueError, match="choose gaze, fixations"):
-        weight_table(LESSONS, choice)
+        weight_table(TRAINING_DATA, choice)
 
 
 def test_a_choice_that_is_not_there_is_an_error_that_lists_those_that_are():
-    with pytest.raises(ValueError, match="'fixations' is not there.*gaze.*no object has ground truth"):
+    with pytest.raises(ValueError, match="'fixations' is not available.*gaze.*no object has ground truth"):
         weight_table({}, "fixations")

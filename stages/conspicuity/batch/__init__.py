@@ -1,6 +1,6 @@
-"""The nine channels of many views at once, on tensors: the same maps as stages.conspicuity, on CPU or GPU.
+"""The nine channels for a batch of views, on tensors: the same maps as stages.conspicuity, on CPU or GPU.
 
-Nothing else in the project imports this package, so that torch is loaded where it is asked for and nowhere else.
+No other package imports this one, so that torch is loaded only where it is needed.
 """
 
 from .maps import conspicuity_batch

@@ -1,20 +1,22 @@
-"""The channels of the surface on a Stack: facts of the mesh, worked out once, drawn under every second pixel."""
+"""The channels of the surface on a Stack: values of the mesh at every second pixel."""
 
 import numpy as np
 import torch
 
+from stages.kit import Mesh
 from stages.kit.camera import DISTANCE, pixels_per_unit
 
 from ..curvature import capped_curvature
 from ..operators import SCALES
 from ..surface import SCALE
-from ..symmetry import BAND, found_symmetries, weighted_axes, weighted_planes
+from ..symmetry import BAND, symmetries, weighted_axes, weighted_planes
+from .stack import Stack
 
 
-class Seen:
-    """The surface under the pixels of a Stack at SCALE: known (v, 1, h, w), points (3, v, 1, h, w), faces."""
+class VisibleSurface:
+    """The surface under the pixels of a Stack at SCALE: known, faces (v, 1, h, w) and points (3, v, 1, h, w)."""
 
-    def __init__(self, stack, mesh):
+    def __init__(self, stack: Stack, mesh: Mesh) -> None:
         step = 2**SCALE
         self.stack, self.mesh, self.views = stack, mesh, stack.views
         crops = list(zip(stack.views, stack.boxes, strict=True))
@@ -25,7 +27,7 @@ class Seen:
         self.points = self._points(torch.where(self.known, depths, 0).double(), step)
 
     def _points(self, depths, step):
-        """stages.kit.camera.pixel_rays, followed to their depths."""
+        """The points at given depths along stages.kit.camera.pixel_rays."""
         (h, w), scale = self.stack.view_shape, pixels_per_unit(self.stack.view_shape[0])
         axes = self.tensor(np.stack([view.viewpoint.axes for view in self.views]).transpose(1, 2, 0))
         right, up, back = axes[..., None, None, None]
@@ -34,11 +36,11 @@ class Seen:
         x, y = (left + columns - (w - 1) / 2) / scale, ((h - 1) / 2 - top - rows[:, None]) / scale
         return (DISTANCE - depths) * back + x * right + y * up
 
-    def tensor(self, values):
-        """Numbers as f8 on the device."""
+    def tensor(self, values: np.ndarray) -> torch.Tensor:
+        """The values as f8 on the device."""
         return torch.from_numpy(np.ascontiguousarray(values, dtype=np.float64)).to(self.stack.device)
 
-    def interpolate(self, values):
+    def interpolate(self, values: np.ndarray) -> torch.Tensor:
         """(v, 1, h, w) f8 of values (n,) f8 at the vertices: barycentric, as stages.kit.rays.barycentric."""
         corners = self.tensor(self.mesh.vertices[self.mesh.faces].transpose(1, 2, 0))  # corner, coordinate, face
         normals = self.tensor(self.mesh.face_crosses.T)
@@ -51,34 +53,34 @@ class Seen:
         weights = weights / weights.sum(0)
         return (weights * self.tensor(values[self.mesh.faces].T)[:, self.faces]).sum(0)
 
-    def pyramid(self, values):
-        """{1..8: (v, 1, h, w) f4} of values (v, 1, h, w) on the surface, which run on into the background."""
-        drawn = self.stack.grid.fill(torch.where(self.known, values, 0).float(), self.known, SCALE)
-        return self.stack.grid.pyramid(drawn, SCALE, SCALES - 1)
+    def pyramid(self, values: torch.Tensor) -> dict[int, torch.Tensor]:
+        """{1..8: (v, 1, h, w) f4} of values (v, 1, h, w) on the surface, extended into the background."""
+        filled = self.stack.grid.fill(torch.where(self.known, values, 0).float(), self.known, SCALE)
+        return self.stack.grid.pyramid(filled, SCALE, SCALES - 1)
 
 
-def curvature(seen):
+def curvature(seen: VisibleSurface) -> dict[int, torch.Tensor]:
     """{2..8: (v, 1, h, w)}."""
     return seen.pyramid(seen.interpolate(capped_curvature(seen.mesh)))
 
 
-def symmetry(seen):
+def symmetry(seen: VisibleSurface) -> dict[int, torch.Tensor]:
     """{2..8: (v, 1, h, w)}: stages.conspicuity.symmetry.symmetric_points, plane by plane and axis by axis."""
-    found, reach = found_symmetries(seen.mesh), 2 * (BAND * seen.mesh.diagonal) ** 2
+    found, spread = symmetries(seen.mesh), 2 * (BAND * seen.mesh.diagonal) ** 2
     backs = [view.viewpoint.axes[2] for view in seen.views]
-    white = torch.zeros_like(seen.points[0])
+    response = torch.zeros_like(seen.points[0])
     for normal, offset, weight in _across_views(seen, [weighted_planes(found, back) for back in backs]):
         height = (seen.points * normal).sum(0) - offset
-        white = torch.maximum(white, weight * torch.exp(-(height**2) / reach))
+        response = torch.maximum(response, weight * torch.exp(-(height**2) / spread))
     away = seen.points - seen.tensor(found.centre)[:, None, None, None, None]
     for axis, weight in _across_views(seen, [weighted_axes(found, back) for back in backs]):
         distance = (away**2).sum(0) - (away * axis).sum(0) ** 2
-        white = torch.maximum(white, weight * torch.exp(-distance / (4 * reach)))
-    return seen.pyramid(white)
+        response = torch.maximum(response, weight * torch.exp(-distance / (4 * spread)))
+    return seen.pyramid(response)
 
 
 def _across_views(seen, lists):
-    """Tuples of tensors, one for the k-th plane or axis of every view; a view that has fewer gets one of no weight."""
+    """Yields tuples of tensors with the k-th plane or axis of each view; views with fewer get one of zero weight."""
     nothing = tuple(np.zeros_like(part) for part in next((first for first, *_ in filter(None, lists)), ()))
     for k in range(max(map(len, lists))):
         parts = zip(*(each[k] if k < len(each) else nothing for each in lists), strict=True)

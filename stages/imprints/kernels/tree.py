@@ -9,12 +9,12 @@ NUMBERS = 10  # of a face: x, y, z of its corners, and twice its area
 
 
 @kernel
-def face_tree(corners, doubled):
+def face_tree(corners: np.ndarray, doubled: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(blocks (b, 320), boxes (2 b - 1, 6), children (2 b - 1,)) of the faces with corners (m, 3, 3).
 
-    A block holds 32 faces, number by number; what the last one lacks is NaN. A node's box is the middle and the half
-    widths; its children are children[node] and the next; a node of one block has none, it is block -1 - children[node].
-    A node is cut across the longest side of the box of its faces' middles, so that all blocks but the last are full.
+    A block holds 32 faces, number by number; the last one is filled up with NaN. A node's box is its centre and half
+    widths. Its children are children[node] and the next; a leaf has none and is block -1 - children[node]. A node is
+    split across the longest side of the box of its faces' centres, so that all blocks but the last are full.
     """
     count = len(corners)
     blocks = (count + LANES - 1) // LANES
@@ -36,12 +36,12 @@ def face_tree(corners, doubled):
         ranges[used, 0], ranges[used, 1] = first, middle
         ranges[used + 1, 0], ranges[used + 1, 1] = middle, last
         children[node], used = used, used + 2
-    return filled(corners, doubled, order, blocks), boxes_of(corners, order, children), children
+    return pack_blocks(corners, doubled, order, blocks), node_boxes(corners, order, children), children
 
 
 @inlined
-def longest_axis(middles, order, start, stop):
-    """The axis along which the middles of the faces order[start:stop] lie farthest apart."""
+def longest_axis(middles: np.ndarray, order: np.ndarray, start: int, stop: int) -> int:
+    """The axis along which the centres of the faces order[start:stop] extend farthest."""
     best, widest = 0, -1.0
     for axis in range(3):
         low, high = np.inf, -np.inf
@@ -54,7 +54,7 @@ def longest_axis(middles, order, start, stop):
 
 
 @inlined
-def split(middles, order, start, stop, middle, axis):
+def split(middles: np.ndarray, order: np.ndarray, start: int, stop: int, middle: int, axis: int) -> None:
     """Orders order[start:stop] so that no face before `middle` lies farther along the axis than one after it."""
     low, high = start, stop - 1
     while low < high:
@@ -78,7 +78,7 @@ def split(middles, order, start, stop, middle, axis):
 
 
 @inlined
-def filled(corners, doubled, order, count):
+def pack_blocks(corners: np.ndarray, doubled: np.ndarray, order: np.ndarray, count: int) -> np.ndarray:
     """(count, 320): the numbers of the faces, block by block."""
     blocks = np.full((count, NUMBERS * LANES), np.nan)
     for k in range(len(order)):
@@ -91,8 +91,8 @@ def filled(corners, doubled, order, count):
 
 
 @inlined
-def boxes_of(corners, order, children):
-    """(nodes, 6): the middle and the half widths of the box around the faces of each node."""
+def node_boxes(corners: np.ndarray, order: np.ndarray, children: np.ndarray) -> np.ndarray:
+    """(nodes, 6): centre and half widths of the box around the faces of each node."""
     low, high = np.full((len(children), 3), np.inf), np.full((len(children), 3), -np.inf)
     for node in range(len(children) - 1, -1, -1):
         child, start = children[node], (-1 - children[node]) * LANES

@@ -1,15 +1,15 @@
-"""What simplification does a million times a second: compiled kernels on plain arrays."""
+"""The inner loops of simplification and of its error measures: compiled kernels on plain arrays."""
 
-from .components import components
-from .corners import fans, partners
+from .components import graph_components
+from .corners import fans, opposites
 from .decimate import decimate
 from .faults import count_faults
-from .parts import pieces, signed_volumes, split_fans
+from .parts import face_components, signed_volumes, split_fans
 from .quadrics import vertex_quadrics
 from .refit import refit
-from .surface import Surface, compact, unit_box
+from .surface import HalfEdgeMesh, compact, unit_box
 
 __all__ = [
-    "Surface", "compact", "components", "count_faults", "decimate", "fans", "partners", "pieces",
+    "HalfEdgeMesh", "compact", "count_faults", "decimate", "face_components", "fans", "graph_components", "opposites",
     "refit", "signed_volumes", "split_fans", "unit_box", "vertex_quadrics",
 ]  # fmt: skip

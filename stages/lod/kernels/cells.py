@@ -7,7 +7,7 @@ from .jit import kernel
 
 
 @kernel
-def bounding_box(vertices, faces):
+def bounding_box(vertices: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Lower and upper corner of the box around all faces."""
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     for f in range(len(faces)):
@@ -19,8 +19,8 @@ def bounding_box(vertices, faces):
 
 
 @kernel
-def planes_of(vertices, faces, low):
-    """The planes (m, 16) of all faces, from the corner `low` on, and twice their areas (m,)."""
+def planes_of(vertices: np.ndarray, faces: np.ndarray, low: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The planes (m, 16) of all faces, relative to the corner `low`, and twice their areas (m,)."""
     planes, areas = np.empty((len(faces), NUMBERS)), np.empty(len(faces))
     for f in range(len(faces)):
         areas[f] = set_planes(vertices, faces[f, 0], faces[f, 1], faces[f, 2], low, planes, f)
@@ -28,25 +28,27 @@ def planes_of(vertices, faces, low):
 
 
 @kernel
-def cell_boxes(vertices, faces, low, cell, shape):
-    """(m, 6) i4 first and last cell of each face along the axes, and how many cells all boxes hold together."""
+def cell_boxes(
+    vertices: np.ndarray, faces: np.ndarray, low: np.ndarray, cell: float, shape: np.ndarray
+) -> tuple[np.ndarray, int]:
+    """(m, 6) i4 first and last cell of each face along the axes, and the number of cells in all these boxes."""
     boxes, per_unit, total = np.empty((len(faces), 6), dtype=np.int32), 1 / cell, 0
     for f in range(len(faces)):
         a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
-        room = 1
+        cells = 1
         for axis in range(3):
             p, q, r = vertices[a, axis], vertices[b, axis], vertices[c, axis]
             first = int((min(p, q, r) - low[axis]) * per_unit)
             last = min(int((max(p, q, r) - low[axis]) * per_unit), shape[axis] - 1)
             boxes[f, axis], boxes[f, axis + 3] = first, last
-            room *= last - first + 1
-        total += room
+            cells *= last - first + 1
+        total += cells
     return boxes, total
 
 
 @kernel
-def fill_cells(boxes, total, shape):
-    """(where each cell's faces begin, the faces, cell by cell), with one more beginning at the end."""
+def fill_cells(boxes: np.ndarray, total: int, shape: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(start of each cell's faces, and one more at the end; the faces, cell by cell)."""
     sx, sy = shape[0], shape[1]
     starts = np.zeros(sx * sy * shape[2] + 2, dtype=np.int32)
     for f in range(len(boxes)):

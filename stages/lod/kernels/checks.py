@@ -1,39 +1,58 @@
-"""What a collapse must not do: turn a face over, make a needle, or change what is joined to what."""
+"""Which collapses are allowed: none may turn a face over, make a sliver, or change the topology."""
+
+import numpy as np
 
 from .corners import after, before
-from .jit import kernel
+from .jit import Id, kernel
 
-STEADY = 0.98  # cosine between a face's normal before and after above which its neighbours are not looked at
+STEADY = 0.98  # cosine between a face's normal before and after above which its neighbours are not checked
 
 
 @kernel
-def may_collapse(corner, twin, start, locked, p, mark, last, h, x, y, z, turn, shape, fold):
-    """Whether the edge of half-edge h may become one vertex at x, y, z: nothing folds, and the link condition holds.
+def may_collapse(
+    corner: np.ndarray,
+    opposite: np.ndarray,
+    start: np.ndarray,
+    locked: np.ndarray,
+    p: np.ndarray,
+    mark: np.ndarray,
+    last: np.ndarray,
+    h: Id,
+    x: float,
+    y: float,
+    z: float,
+    turn: float,
+    shape: float,
+    fold: float,
+) -> bool:
+    """Whether the edge of half-edge h may collapse to x, y, z: nothing folds, and the link condition holds.
 
-    The link condition: the ends share no neighbour but the two across the edge, and no tetrahedron closes. mark (n,)
-    scratch, last (1,) the number of the last marking; turn, shape, fold: see `look_around`.
+    The link condition: the ends share no neighbour but the two opposite the edge, and no tetrahedron closes. mark (n,)
+    scratch, last (1,) the tag of the last marking; turn, shape, fold: see `check_move`.
     """
-    t = twin[h]
+    t = opposite[h]
     i, j, k, m = corner[h], corner[t], corner[before(h)], corner[before(t)]
-    if k == m or _shut(corner, twin, h, m) or _shut(corner, twin, t, k):
+    if k == m or _closes_tetrahedron(corner, opposite, h, m) or _closes_tetrahedron(corner, opposite, t, k):
         return False
     last[0] += 1
     if locked[i]:
-        mark_neighbours(corner, twin, start, mark, last[0], i)
-    elif look_around(corner, twin, start, p, mark, last[0], i, j, x, y, z, turn, shape, fold) < 0:
+        _mark_neighbours(corner, opposite, start, mark, last[0], i)
+    elif check_move(corner, opposite, start, p, mark, last[0], i, j, x, y, z, turn, shape, fold) < 0:
         return False
     if locked[j]:
-        shared = mark_neighbours(corner, twin, start, mark, last[0], j)
+        shared = _mark_neighbours(corner, opposite, start, mark, last[0], j)
     else:
-        shared = look_around(corner, twin, start, p, mark, last[0], j, i, x, y, z, turn, shape, fold)
+        shared = check_move(corner, opposite, start, p, mark, last[0], j, i, x, y, z, turn, shape, fold)
     if shared != 2:
         return False
-    return _seam_holds(corner, twin, p, i, j, h, x, y, z, fold) and _seam_holds(corner, twin, p, i, j, t, x, y, z, fold)
+    return _seam_holds(corner, opposite, p, i, j, h, x, y, z, fold) and _seam_holds(
+        corner, opposite, p, i, j, t, x, y, z, fold
+    )
 
 
 @kernel
-def mark_neighbours(corner, twin, start, mark, tag, v):
-    """Marks all vertices that an edge joins to v by `tag`; returns how many had that mark already."""
+def _mark_neighbours(corner, opposite, start, mark, tag, v):
+    """Marks all neighbours of v with `tag`; returns how many had that mark already."""
     found = 0
     h = first = start[v]
     while True:
@@ -41,7 +60,7 @@ def mark_neighbours(corner, twin, start, mark, tag, v):
         found += mark[a] == tag
         mark[a] = tag
         back = before(h)
-        h = twin[back]
+        h = opposite[back]
         if h < 0:
             found += mark[corner[back]] == tag
             mark[corner[back]] = tag
@@ -51,9 +70,9 @@ def mark_neighbours(corner, twin, start, mark, tag, v):
 
 
 @kernel
-def _seam_holds(corner, twin, p, i, j, h, x, y, z, fold):
-    """The two faces that become neighbours when the face of h goes do not fold onto each other, or one was folded."""
-    one, two = twin[after(h)], twin[before(h)]
+def _seam_holds(corner, opposite, p, i, j, h, x, y, z, fold):
+    """Whether the faces that become neighbours without that of h do not fold, or one was folded before."""
+    one, two = opposite[after(h)], opposite[before(h)]
     if one < 0 or two < 0:
         return True
     ax, ay, az = _normal(corner, p, one, i, j, x, y, z)
@@ -84,14 +103,29 @@ def _place(p, v, i, j, x, y, z):
 
 
 @kernel
-def look_around(corner, twin, start, p, mark, tag, v, other, x, y, z, turn, shape, fold):
-    """-1 where a face around v, but those it shares with `other`, goes bad when v moves to x, y, z.
+def check_move(
+    corner: np.ndarray,
+    opposite: np.ndarray,
+    start: np.ndarray,
+    p: np.ndarray,
+    mark: np.ndarray,
+    tag: Id,
+    v: Id,
+    other: Id,
+    x: float,
+    y: float,
+    z: float,
+    turn: float,
+    shape: float,
+    fold: float,
+) -> int:
+    """-1 where moving v to x, y, z spoils a face around v; faces that also touch `other` are left out.
 
-    Bad is: turned too far, folded onto a neighbour as it was not before, or a needle. Else it marks the neighbours of v
-    as `mark_neighbours` does, on the same way round. v: not at a rim. p (n, 3). turn: least cosine, above 0, between a
-    face's normal before and after; shape: least quality of a face after (1 for an equilateral triangle, 0 for a
-    needle), unless it was below it before and does not get worse; fold: least cosine, below 0, between the normals of
-    two neighbours.
+    Spoiled is a face that turns too far, becomes a sliver, or folds onto a neighbour where it did not before. Otherwise
+    the neighbours of v are marked and counted as by `_mark_neighbours`. v: not on the boundary. p (n, 3). turn: least
+    cosine, above 0, between a face's normal before and after; shape: least quality of a face after (1 for an
+    equilateral triangle, 0 for a sliver), unless it was lower before; fold: least cosine, below 0, between the normals
+    of two neighbours.
     """
     vx, vy, vz = p[v, 0], p[v, 1], p[v, 2]
     # Normals, after and before, of the face before this one and of the first.
@@ -117,10 +151,10 @@ def look_around(corner, twin, start, p, mark, tag, v, other, x, y, z, turn, shap
             along = nx * ox + ny * oy + nz * oz
             if old > 0.0 and (along <= 0.0 or along * along < turn * turn * new * old):
                 return -1
-            now = _sides(sx, sy, sz, ex, ey, ez)
-            if 12 * new < shape * shape * now * now:
-                was = _sides(tx, ty, tz, ex, ey, ez)
-                if new * was * was <= old * now * now:
+            sides = _sides(sx, sy, sz, ex, ey, ez)
+            if 12 * new < shape * shape * sides * sides:
+                before_sides = _sides(tx, ty, tz, ex, ey, ez)
+                if new * before_sides * before_sides <= old * sides * sides:
                     return -1
             if _folds(nx, ny, nz, lx, ly, lz, fold) and not _folds(ox, oy, oz, mx, my, mz, fold):
                 return -1
@@ -128,13 +162,13 @@ def look_around(corner, twin, start, p, mark, tag, v, other, x, y, z, turn, shap
             if h == first:
                 fx, fy, fz, gx, gy, gz = nx, ny, nz, ox, oy, oz
             if along * along < STEADY * STEADY * new * old:
-                g = twin[after(h)]
+                g = opposite[after(h)]
                 if g >= 0:
                     cx, cy, cz = _normal(corner, p, g, -1, -1, x, y, z)
                     if _folds(nx, ny, nz, cx, cy, cz, fold) and not _folds(ox, oy, oz, cx, cy, cz, fold):
                         return -1
         a, ax, ay, az = b, bx, by, bz
-        h = twin[back]
+        h = opposite[back]
         if h == first:
             bad = _folds(fx, fy, fz, lx, ly, lz, fold) and not _folds(gx, gy, gz, mx, my, mz, fold)
             return -1 if bad else found
@@ -157,7 +191,7 @@ def _sides(ax, ay, az, ex, ey, ez):
 
 
 @kernel
-def _shut(corner, twin, h, opposite):
-    """True where the corner across h has but three faces, and the outer one ends at the edge's other corner."""
-    one, two = twin[after(h)], twin[before(h)]
-    return one >= 0 and two >= 0 and corner[before(one)] == opposite and corner[before(two)] == opposite
+def _closes_tetrahedron(corner, opposite, h, apex):
+    """Whether the corner across h has only three faces, the outer one of which ends at the other corner `apex`."""
+    one, two = opposite[after(h)], opposite[before(h)]
+    return one >= 0 and two >= 0 and corner[before(one)] == apex and corner[before(two)] == apex

@@ -1,4 +1,4 @@
-"""Connected components by union and find."""
+"""Connected components of a graph by union-find."""
 
 import numpy as np
 
@@ -6,8 +6,8 @@ from .jit import kernel
 
 
 @kernel
-def components(tails, heads, count):
-    """(labels (count,) i4, how many) of a graph with edges tails (e,) to heads (e,); labels from 0 as ids come."""
+def graph_components(tails: np.ndarray, heads: np.ndarray, count: int) -> tuple[np.ndarray, int]:
+    """(labels (count,) i4, number of components) of a graph with edges tails (e,) to heads (e,)."""
     parent = np.arange(count)
     for edge in range(len(tails)):
         a, b = _root(parent, tails[edge]), _root(parent, heads[edge])

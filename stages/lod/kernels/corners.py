@@ -1,33 +1,33 @@
-"""The corner table: which half-edge lies on the other side, and one vertex a fan of faces.
+"""The corner table: the opposite of each half-edge, and one vertex per fan of faces.
 
 Half-edge 3 f + k runs from corner k of face f to the next; it is also the name of that corner.
 """
 
 import numpy as np
 
-from .jit import kernel
+from .jit import Id, kernel
 
-CROWD = 64  # edges at a vertex, to vertices of higher ids, above which looking through them takes too long
+MAX_EDGES = 64  # at a vertex, to vertices of higher ids: with more of them the linear search takes too long
 
 
 @kernel
-def after(h):
+def after(h: Id) -> Id:
     """The next half-edge of the face."""
     return h - 2 if np.uint32(h) % np.uint32(3) == np.uint32(2) else h + 1
 
 
 @kernel
-def before(h):
+def before(h: Id) -> Id:
     """The previous half-edge of the face."""
     return h + 2 if np.uint32(h) % np.uint32(3) == np.uint32(0) else h - 1
 
 
 @kernel
-def partners(faces, count, oriented):
-    """The half-edge on the other side of each, (3 m,) i4, and how many lie on edges that three or more faces share.
+def opposites(faces: np.ndarray, count: int, oriented: bool) -> tuple[np.ndarray, int]:
+    """The opposite of each half-edge, (3 m,) i4, and how many half-edges lie on non-manifold edges.
 
-    faces (3 m,) vertex ids below `count`. The other side is -1 at a rim: where one, three or more faces share the edge
-    and, if `oriented`, where its two faces disagree on which side is out.
+    faces (3 m,) vertex ids below `count`. The opposite is -1 on the boundary: where one, three or more faces share the
+    edge and, if `oriented`, where its two faces have opposite windings.
     """
     other = np.full(len(faces), -1, dtype=np.int32)
     if _closed(faces, count, other):
@@ -37,7 +37,7 @@ def partners(faces, count, oriented):
     seen = np.full(count, -1, dtype=np.int32)
     slot = np.zeros(count, dtype=np.int32)
     shared = np.zeros(count, dtype=np.int32)
-    crowded = 0
+    non_manifold = 0
     for low in range(count):
         for at in range(first[low], first[low + 1]):
             h = order[at]
@@ -45,25 +45,25 @@ def partners(faces, count, oriented):
             high = max(tail, head)
             if seen[high] != low:
                 seen[high], slot[high], shared[high] = low, h, 0
-            mate = slot[high]  # the first half-edge of the edge counts for all
+            first_half = slot[high]  # of the edge, which keeps the count
             shared[high] += 1
-            if shared[high] == 2 and not (oriented and faces[mate] == tail):
-                other[h], other[mate] = mate, h
+            if shared[high] == 2 and not (oriented and faces[first_half] == tail):
+                other[h], other[first_half] = first_half, h
             elif shared[high] > 3:
-                crowded += 1
+                non_manifold += 1
             elif shared[high] == 3:
-                crowded += 3
-                if other[mate] >= 0:
-                    other[other[mate]] = -1
-                    other[mate] = -1
-    return other, crowded
+                non_manifold += 3
+                if other[first_half] >= 0:
+                    other[other[first_half]] = -1
+                    other[first_half] = -1
+    return other, non_manifold
 
 
 @kernel
 def _closed(faces, count, other):
-    """Fills `other` where each edge has one half-edge up, to the higher id, and one down; False where one has not.
+    """Fills `other` for a closed manifold with consistent winding, else returns False.
 
-    Most meshes are such, and are done in a third of the time.
+    There each edge has one half-edge up, to the higher id, and one down. Most meshes are such: a third of the time.
     """
     first = np.zeros(count + 1, dtype=np.int32)
     for f in range(0, len(faces), 3):
@@ -73,7 +73,7 @@ def _closed(faces, count, other):
         first[min(c, a)] += c < a
     total = 0
     for low in range(count):
-        if first[low] > CROWD:
+        if first[low] > MAX_EDGES:
             return False
         total += first[low]
         first[low] = total
@@ -109,7 +109,7 @@ def _note(first, up, high, tail, head, h):
 
 @kernel
 def _match(first, up, high, other, tail, head, h):
-    """Pairs half-edge h with the first that goes up from its head to its tail; False where that is not free."""
+    """Pairs half-edge h with the first one from its head up to its tail; False where that already has a pair."""
     for at in range(first[head], first[head + 1]):
         if high[at] == tail:
             g = up[at]
@@ -136,31 +136,32 @@ def _by_lower_end(faces, count):
 
 
 @kernel
-def fans(faces, twin):
-    """A vertex of its own for each fan of faces, where fans touch in one vertex alone.
+def fans(faces: np.ndarray, opposite: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """One vertex per fan of faces, so that vertices at which several fans touch are split.
 
-    Returns corner (3 m,) i4: the fan at the tail of each half-edge; start (k,) i4: the first half-edge that leaves a
-    fan's vertex (of an open fan that along its rim); source (k,) i4: the vertex that it was; rim (k,) boolean: open.
+    Returns corner (3 m,) i4: the new vertex at the tail of each half-edge; start (k,) i4: the first half-edge that
+    leaves a new vertex (of an open fan the one on the boundary); source (k,) i4: the old vertex of each; boundary (k,)
+    boolean: whether the fan is open.
     """
     size = len(faces)
     corner = np.full(size, -1, dtype=np.int32)
     start = np.empty(size, dtype=np.int32)
     source = np.empty(size, dtype=np.int32)
-    rim = np.zeros(size, dtype=np.bool_)
+    boundary = np.zeros(size, dtype=np.bool_)
     count = 0
     for seed in range(size):
         if corner[seed] >= 0:
             continue
         h = seed
-        while twin[h] >= 0:  # back to the rim, or once round
-            h = after(twin[h])
+        while opposite[h] >= 0:  # back to the boundary, or around once
+            h = after(opposite[h])
             if h == seed:
                 break
-        start[count], source[count], rim[count] = h, faces[h], twin[h] < 0
+        start[count], source[count], boundary[count] = h, faces[h], opposite[h] < 0
         while corner[h] < 0:
             corner[h] = count
-            h = twin[before(h)]
+            h = opposite[before(h)]
             if h < 0:
                 break
         count += 1
-    return corner, start[:count].copy(), source[:count].copy(), rim[:count].copy()
+    return corner, start[:count].copy(), source[:count].copy(), boundary[:count].copy()

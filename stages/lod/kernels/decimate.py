@@ -6,28 +6,28 @@ from .checks import may_collapse
 from .corners import after
 from .jit import kernel
 from .quadrics import best_place, error_at
-from .queue import BUCKETS, bucket_of, empty_queue, pop, push, waits
-from .surface import collapse_edge
+from .queue import BUCKETS, bucket_of, empty_queue, is_queued, pop, push
+from .surface import HalfEdgeMesh, collapse_edge
 
-LATER = 8  # buckets that a refused collapse waits, until the cost at hand has grown sixteenfold
+LATER = 8  # buckets by which a refused collapse is put off: until the current cost has grown sixteenfold
 
 
 @kernel
-def decimate(surface, faces, turn, shape, fold):
-    """Collapses edges of the surface until `faces` are left, or no collapse is allowed any more; returns the count.
+def decimate(surface: HalfEdgeMesh, faces: int, turn: float, shape: float, fold: float) -> int:
+    """Collapses edges of the surface until `faces` are left or none may collapse; returns the face count.
 
-    turn, shape, fold: the limits of `look_around`. The cost in the queue is a lower bound, since quadrics only
-    grow: an edge whose cost rose meanwhile is put back when its turn comes. So is one that was refused, further back,
-    and then needles a tenth as wide are allowed: rather those on a flat place than a corner cut off.
+    turn, shape, fold: the limits of `check_move`. The cost in the queue is a lower bound, since quadrics only grow: an
+    edge whose cost has risen is put back when its turn comes. So is a refused one, further back, and then slivers a
+    tenth as wide are allowed: slivers on a flat region are better than a cut-off corner.
     """
-    corner, twin, start, rim, locked, position, quadric, parent = surface
+    corner, opposite, start, boundary, locked, position, quadric, parent = surface
     mark, last = np.zeros(len(position), dtype=np.int32), np.zeros(1, dtype=np.int32)
     head, following, lowest = empty_queue(len(corner))
     left = 0
     for h in range(len(corner)):
         left += corner[h] >= 0
-        if twin[h] > h and corner[h] >= 0:
-            _offer(corner, twin, locked, position, quadric, head, following, lowest, h)
+        if opposite[h] > h and corner[h] >= 0:
+            _offer(corner, opposite, locked, position, quadric, head, following, lowest, h)
     left //= 3
     while left > faces:
         h, bucket = pop(head, following, lowest)
@@ -41,11 +41,11 @@ def decimate(surface, faces, turn, shape, fold):
             push(head, following, lowest, h, now)
             continue
         least = shape if bucket == now else shape * 0.1 ** ((bucket - now) / LATER)
-        if may_collapse(corner, twin, start, locked, position, mark, last, h, x, y, z, turn, least, fold):
-            one, two = collapse_edge(corner, twin, start, rim, locked, position, quadric, parent, h, x, y, z)
+        if may_collapse(corner, opposite, start, locked, position, mark, last, h, x, y, z, turn, least, fold):
+            one, two = collapse_edge(corner, opposite, start, boundary, locked, position, quadric, parent, h, x, y, z)
             for g in (one, two):
-                if g >= 0 and not (waits(following, g) or (twin[g] >= 0 and waits(following, twin[g]))):
-                    _offer(corner, twin, locked, position, quadric, head, following, lowest, g)
+                if g >= 0 and not (is_queued(following, g) or (opposite[g] >= 0 and is_queued(following, opposite[g]))):
+                    _offer(corner, opposite, locked, position, quadric, head, following, lowest, g)
             left -= 2
         elif bucket + LATER < BUCKETS:
             push(head, following, lowest, h, bucket + LATER)
@@ -53,8 +53,8 @@ def decimate(surface, faces, turn, shape, fold):
 
 
 @kernel
-def _offer(corner, twin, locked, position, quadric, head, following, lowest, h):
-    if twin[h] >= 0 and not (locked[corner[h]] and locked[corner[after(h)]]):
+def _offer(corner, opposite, locked, position, quadric, head, following, lowest, h):
+    if opposite[h] >= 0 and not (locked[corner[h]] and locked[corner[after(h)]]):
         cost = _cost(corner, locked, position, quadric, h)[0]
         push(head, following, lowest, h, bucket_of(cost))
 

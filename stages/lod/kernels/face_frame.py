@@ -1,23 +1,23 @@
 """One face and one point: the planes of the face, and the distance to it, compiled by numba.
 
-Planes are 16 numbers: those of the face itself and of its three sides, upright on it and outward; four x, four y and
-four z of their normals, four offsets. They bound the distance from below by 24 products and sums without a branch; as a
-rule the bound is the distance. Faces without area are segments or points, and are measured as such.
+Planes are 16 numbers: those of the face itself and of its three sides, perpendicular to it and outward; four x, four y
+and four z of their normals, four offsets. They give a lower bound of the distance by 24 products and sums without a
+branch, which mostly is the distance. Faces without area are measured as segments or points.
 """
 
 import math
 
 import numpy as np
 
-from .jit import inlined, kernel
+from .jit import Id, inlined, kernel
 
 NUMBERS = 16  # of the planes
-SLIM = 1e-3  # height of a face over its foot's place along it: below, the axes are squared up
-NEEDLE = 1e-12  # height of a face over its length: a flatter one has no inside
+SLIM = 1e-3  # height of a face over the position of its foot: below, the axes are orthogonalised again
+SLIVER = 1e-12  # height of a face over its length: a flatter face has no interior
 
 
 @inlined
-def frame_of(vertices, a, b, c):
+def _frame_of(vertices, a, b, c):
     """Two axes in the plane of a face, then length, cx, cy: its corners in them are (0, 0), (length, 0), (cx, cy)."""
     ax, ay, az = vertices[a, 0], vertices[a, 1], vertices[a, 2]
     ux, uy, uz = vertices[b, 0] - ax, vertices[b, 1] - ay, vertices[b, 2] - az
@@ -32,11 +32,11 @@ def frame_of(vertices, a, b, c):
     wx, wy, wz = vx - cx * ux, vy - cx * uy, vz - cx * uz
     size = math.sqrt(wx * wx + wy * wy + wz * wz)
     turns = 0 if size > SLIM * abs(cx) else 2
-    while turns > 0:  # what is left of a needle's third corner is rounding: made to stand upright once more
+    while turns > 0:  # of a sliver's third corner rounding is left: orthogonalised once more
         turns -= 1
         if size > 0:
             wx, wy, wz = wx / size, wy / size, wz / size
-        elif abs(ux) < 0.9:  # no area: any axis across will do
+        elif abs(ux) < 0.9:  # no area: any perpendicular axis
             wx, wy, wz = 0.0, -uz, uy
         else:
             wx, wy, wz = -uz, 0.0, ux
@@ -49,14 +49,14 @@ def frame_of(vertices, a, b, c):
 
 
 @inlined
-def set_planes(vertices, a, b, c, low, planes, f):
-    """Writes the planes of a face, offsets counted from `low`; returns twice its area."""
-    (ux, uy, uz), (wx, wy, wz), length, cx, cy = frame_of(vertices, a, b, c)
+def set_planes(vertices: np.ndarray, a: Id, b: Id, c: Id, low: np.ndarray, planes: np.ndarray, f: Id) -> float:
+    """Writes the planes of a face, offsets relative to `low`; returns twice its area."""
+    (ux, uy, uz), (wx, wy, wz), length, cx, cy = _frame_of(vertices, a, b, c)
     side, back = math.sqrt((cx - length) ** 2 + cy * cy), math.sqrt(cx * cx + cy * cy)
     side, back = 1 / side if side > 0 else 0.0, 1 / back if back > 0 else 0.0
     row = planes[f]
     row[0], row[4], row[8] = uy * wz - uz * wy, uz * wx - ux * wz, ux * wy - uy * wx
-    down = -1.0 if cy > NEEDLE * length else 0.0  # zero: no point is beyond or inside
+    down = -1.0 if cy > SLIVER * length else 0.0  # zero: no point is beyond or inside
     row[1], row[5], row[9] = down * wx, down * wy, down * wz
     p, q = cy * side, (length - cx) * side
     row[2], row[6], row[10] = p * ux + q * wx, p * uy + q * wy, p * uz + q * wz
@@ -70,8 +70,8 @@ def set_planes(vertices, a, b, c, low, planes, f):
 
 
 @inlined
-def bound_to(planes, f, x, y, z):
-    """Lower bound of the squared distance of a point, counted from `low`, to a face: that to its planes."""
+def bound_to(planes: np.ndarray, f: Id, x: float, y: float, z: float) -> float:
+    """Lower bound of the squared distance of a point, relative to `low`, to a face: that to its planes."""
     w = planes[f, 0] * x + planes[f, 4] * y + planes[f, 8] * z + planes[f, 12]
     one = planes[f, 1] * x + planes[f, 5] * y + planes[f, 9] * z + planes[f, 13]
     two = planes[f, 2] * x + planes[f, 6] * y + planes[f, 10] * z + planes[f, 14]
@@ -83,7 +83,7 @@ def bound_to(planes, f, x, y, z):
 
 
 @inlined
-def square_to_side(x, y, z, dx, dy, dz):
+def _square_to_side(x, y, z, dx, dy, dz):
     """Squared distance of a point to the segment from the origin to d."""
     size = dx * dx + dy * dy + dz * dz
     t = (x * dx + y * dy + z * dz) / size if size > 0.0 else 0.0
@@ -94,8 +94,10 @@ def square_to_side(x, y, z, dx, dy, dz):
 
 
 @inlined
-def square_to(vertices, faces, planes, f, x, y, z):
-    """Squared distance of a point to a face, counted from the face's own corners, so that no offset rounds it."""
+def square_to(
+    vertices: np.ndarray, faces: np.ndarray, planes: np.ndarray, f: Id, x: float, y: float, z: float
+) -> float:
+    """Squared distance of a point to a face, relative to the face's own corners, so that no offset adds rounding."""
     a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
     ax, ay, az = x - vertices[a, 0], y - vertices[a, 1], z - vertices[a, 2]
     bx, by, bz = x - vertices[b, 0], y - vertices[b, 1], z - vertices[b, 2]
@@ -106,18 +108,18 @@ def square_to(vertices, faces, planes, f, x, y, z):
     three = planes[f, 3] * cx + planes[f, 7] * cy + planes[f, 11] * cz
     if one < 0.0 and two < 0.0 and three < 0.0:
         return w * w
-    best = square_to_side(ax, ay, az, ax - bx, ay - by, az - bz)
-    best = min(best, square_to_side(bx, by, bz, bx - cx, by - cy, bz - cz))
-    return min(best, square_to_side(cx, cy, cz, cx - ax, cy - ay, cz - az))
+    best = _square_to_side(ax, ay, az, ax - bx, ay - by, az - bz)
+    best = min(best, _square_to_side(bx, by, bz, bx - cx, by - cy, bz - cz))
+    return min(best, _square_to_side(cx, cy, cz, cx - ax, cy - ay, cz - az))
 
 
 @kernel
-def corner_weights(points, owners, vertices, faces):
-    """(k, 3) barycentric weights, 0 to 1, of the place in faces[owners] (k,) nearest to points (k, 3)."""
+def corner_weights(points: np.ndarray, owners: np.ndarray, vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
+    """(k, 3) barycentric weights, 0 to 1, of the points of faces[owners] (k,) nearest to points (k, 3)."""
     weights = np.empty((len(points), 3))
     for i in range(len(points)):
         a, b, c = faces[owners[i], 0], faces[owners[i], 1], faces[owners[i], 2]
-        (ux, uy, uz), (wx, wy, wz), length, cx, cy = frame_of(vertices, a, b, c)
+        (ux, uy, uz), (wx, wy, wz), length, cx, cy = _frame_of(vertices, a, b, c)
         x, y, z = points[i, 0] - vertices[a, 0], points[i, 1] - vertices[a, 1], points[i, 2] - vertices[a, 2]
         u, v = x * ux + y * uy + z * uz, x * wx + y * wy + z * wz
         if length > 0 and cy > 0:
@@ -134,8 +136,8 @@ def corner_weights(points, owners, vertices, faces):
             square = dx * dx + dy * dy
             t = ((u - px[k]) * dx + (v - py[k]) * dy) / square if square > 0 else 0.0
             t = min(max(t, 0.0), 1.0)
-            found = (u - px[k] - t * dx) ** 2 + (v - py[k] - t * dy) ** 2
-            if found < best:
-                best = found
+            square_distance = (u - px[k] - t * dx) ** 2 + (v - py[k] - t * dy) ** 2
+            if square_distance < best:
+                best = square_distance
                 weights[i, k], weights[i, after], weights[i, (k + 2) % 3] = 1 - t, t, 0.0
     return weights

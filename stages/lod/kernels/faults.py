@@ -1,4 +1,4 @@
-"""Faults of a surface, counted."""
+"""Counts of a surface's faults."""
 
 import numpy as np
 
@@ -6,10 +6,12 @@ from .jit import kernel
 
 
 @kernel
-def count_faults(vertices, faces, other, thin, fold):
+def count_faults(
+    vertices: np.ndarray, faces: np.ndarray, other: np.ndarray, thin: float, fold: float
+) -> tuple[int, int]:
     """(degenerate faces, pairs of neighbours folded onto each other).
 
-    faces, other (3 m,) as `partners` has them. thin: height of a degenerate face; fold: cosine of the normals.
+    faces (3 m,); other (3 m,): their `opposites`. thin: height of a degenerate face; fold: cosine of the normals.
     """
     count = len(faces) // 3
     normal = np.zeros((count, 3))
@@ -29,5 +31,5 @@ def count_faults(vertices, faces, other, thin, fold):
         if other[h] > h:
             f, g = h // 3, other[h] // 3
             along = normal[f, 0] * normal[g, 0] + normal[f, 1] * normal[g, 1] + normal[f, 2] * normal[g, 2]
-            folded += (-along if faces[h] == faces[other[h]] else along) < fold  # whichever side is out
+            folded += (-along if faces[h] == faces[other[h]] else along) < fold  # whatever the winding
     return degenerate, folded

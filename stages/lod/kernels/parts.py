@@ -1,4 +1,4 @@
-"""The parts of a surface: fans of faces around a vertex, pieces joined by edges."""
+"""The parts of a surface: fans of faces around a vertex, components joined by edges."""
 
 import numpy as np
 
@@ -7,10 +7,10 @@ from .jit import kernel
 
 
 @kernel
-def split_fans(faces, other):
-    """(3 m,) i4 the fan at each corner, and how many there are; neighbours may disagree on which side is out.
+def split_fans(faces: np.ndarray, other: np.ndarray) -> tuple[np.ndarray, int]:
+    """(3 m,) i4: the fan at each corner, and the number of fans; the windings of neighbours may differ.
 
-    faces, other (3 m,) as `partners` has them.
+    faces (3 m,); other (3 m,): their `opposites`.
     """
     fan = np.full(len(faces), -1, dtype=np.int32)
     count = 0
@@ -18,7 +18,7 @@ def split_fans(faces, other):
         if fan[seed] >= 0:
             continue
         fan[seed] = count
-        for side in range(2):  # to one rim, then to the other; once round where there is none
+        for side in range(2):  # to one end of the fan, then to the other; around once where it is closed
             edge, tail = (seed, True) if side == 0 else (before(seed), False)  # tail: the corner is that of the edge
             while other[edge] >= 0:
                 across = other[edge]
@@ -33,44 +33,46 @@ def split_fans(faces, other):
 
 
 @kernel
-def pieces(other):
-    """(m,) i4 the piece of each face, and how many there are: faces joined by edges. other (3 m,)."""
-    piece = np.full(len(other) // 3, -1, dtype=np.int32)
-    waiting = np.empty(len(piece), dtype=np.int32)
+def face_components(other: np.ndarray) -> tuple[np.ndarray, int]:
+    """(m,) i4: the component, joined by edges, of each face, and their number. other (3 m,): see `opposites`."""
+    component = np.full(len(other) // 3, -1, dtype=np.int32)
+    waiting = np.empty(len(component), dtype=np.int32)
     count = 0
-    for seed in range(len(piece)):
-        if piece[seed] >= 0:
+    for seed in range(len(component)):
+        if component[seed] >= 0:
             continue
-        piece[seed], waiting[0], left = count, seed, 1
+        component[seed], waiting[0], left = count, seed, 1
         while left:
             left -= 1
             f = waiting[left]
             for h in range(3 * f, 3 * f + 3):
-                g = other[h] // 3  # of a rim -1, which is no face
-                if g >= 0 and piece[g] < 0:
-                    piece[g], waiting[left] = count, g
+                g = other[h] // 3  # -1 on the boundary
+                if g >= 0 and component[g] < 0:
+                    component[g], waiting[left] = count, g
                     left += 1
         count += 1
-    return piece, count
+    return component, count
 
 
 @kernel
-def signed_volumes(vertices, faces, other):
-    """(k,) volume inside each piece, negative where its inside is out; 0 for a piece with a rim."""
-    piece, count = pieces(other)
+def signed_volumes(vertices: np.ndarray, faces: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """(k,) volume inside each component, negative where it is inside out; 0 for one with a boundary."""
+    component, count = face_components(other)
     volume = np.zeros(count)
-    rim = np.zeros(count, dtype=np.bool_)
+    boundary = np.zeros(count, dtype=np.bool_)
     origin = np.full(count, -1, dtype=np.int64)
-    for f in range(len(piece)):
-        at = piece[f]
+    for f in range(len(component)):
+        at = component[f]
         if origin[at] < 0:
-            origin[at] = faces[3 * f]  # a point of the piece itself: far from it, small volumes are lost
+            origin[at] = faces[
+                3 * f
+            ]  # a point of the component itself: from afar, small volumes would be lost to rounding
         o, i, j, k = origin[at], faces[3 * f], faces[3 * f + 1], faces[3 * f + 2]
         ax, ay, az = vertices[i, 0] - vertices[o, 0], vertices[i, 1] - vertices[o, 1], vertices[i, 2] - vertices[o, 2]
         bx, by, bz = vertices[j, 0] - vertices[o, 0], vertices[j, 1] - vertices[o, 1], vertices[j, 2] - vertices[o, 2]
         cx, cy, cz = vertices[k, 0] - vertices[o, 0], vertices[k, 1] - vertices[o, 1], vertices[k, 2] - vertices[o, 2]
         volume[at] += (ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)) / 6
         for h in range(3 * f, 3 * f + 3):
-            rim[at] |= other[h] < 0
-    volume[rim] = 0.0
+            boundary[at] |= other[h] < 0
+    volume[boundary] = 0.0
     return volume

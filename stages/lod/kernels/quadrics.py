@@ -2,15 +2,15 @@
 
 import numpy as np
 
-from .jit import kernel
+from .jit import Id, kernel
 
-PULL = 1e-6  # weight of the distance to the point itself beside that to the plane: on a flat place it decides alone
-REACH = 2.0  # how far the optimum may lie from the edge's middle, in lengths of the edge
+PULL = 1e-6  # weight of the distance to the point itself relative to the plane: on a flat region it alone decides
+MAX_SHIFT = 2.0  # of the optimum from the edge's midpoint, in lengths of the edge
 
 
 @kernel
-def vertex_quadrics(position, corner, weight):
-    """(n, 10) quadrics: x.A.x + 2 b.x + c as A (xx, xy, xz, yy, yz, zz), b, c; weight (n,) multiplies the planes."""
+def vertex_quadrics(position: np.ndarray, corner: np.ndarray, weight: np.ndarray) -> np.ndarray:
+    """(n, 10) quadrics: x.A.x + 2 b.x + c as A (xx, xy, xz, yy, yz, zz), b, c; weight (n,) multiplies them."""
     found = np.zeros((len(position), 10))
     for f in range(len(corner) // 3):
         i, j, k = corner[3 * f], corner[3 * f + 1], corner[3 * f + 2]
@@ -44,12 +44,12 @@ def _add(q, v, s, x, y, z, d, px, py, pz):
     q[v, 9] += s * d * d + w * (px * px + py * py + pz * pz)
 
 
-# Below, arrays and ids are handed on rather than rows and tuples of arrays: a row is an object that numba counts
-# references to, and the count took six times as long as the arithmetic.
+# Below, arrays and ids are passed rather than rows or tuples of arrays: a row is an object whose references numba
+# counts, which took six times as long as the arithmetic.
 
 
 @kernel
-def error_at(q, i, j, x, y, z):
+def error_at(q: np.ndarray, i: Id, j: Id, x: float, y: float, z: float) -> float:
     """The error at a point of the sum of the quadrics of two vertices."""
     gx = (q[i, 0] + q[j, 0]) * x + 2 * ((q[i, 1] + q[j, 1]) * y + (q[i, 2] + q[j, 2]) * z + q[i, 6] + q[j, 6])
     gy = (q[i, 3] + q[j, 3]) * y + 2 * ((q[i, 4] + q[j, 4]) * z + q[i, 7] + q[j, 7])
@@ -58,8 +58,8 @@ def error_at(q, i, j, x, y, z):
 
 
 @kernel
-def best_place(q, p, i, j):
-    """(error, x, y, z): where the sum of the quadrics of two vertices at p (n, 3) is least, near the edge's middle."""
+def best_place(q: np.ndarray, p: np.ndarray, i: Id, j: Id) -> tuple[float, float, float, float]:
+    """(error, x, y, z): the minimum of the quadrics of two vertices at p (n, 3), near their midpoint."""
     x, y, z = (p[i, 0] + p[j, 0]) / 2, (p[i, 1] + p[j, 1]) / 2, (p[i, 2] + p[j, 2]) / 2
     a, b, c = q[i, 0] + q[j, 0], q[i, 3] + q[j, 3], q[i, 5] + q[j, 5]
     d, e, f = q[i, 1] + q[j, 1], q[i, 2] + q[j, 2], q[i, 4] + q[j, 4]
@@ -72,6 +72,8 @@ def best_place(q, p, i, j):
     dx, dy, dz = xx * gx + xy * gy + xz * gz, xy * gx + yy * gy + yz * gz, xz * gx + yz * gy + zz * gz
     dx, dy, dz = dx * inverse, dy * inverse, dz * inverse
     ux, uy, uz = p[i, 0] - p[j, 0], p[i, 1] - p[j, 1], p[i, 2] - p[j, 2]
-    if dx * dx + dy * dy + dz * dz <= REACH * REACH * (ux * ux + uy * uy + uz * uz):  # False for NaN, where A is flat
+    if dx * dx + dy * dy + dz * dz <= MAX_SHIFT * MAX_SHIFT * (
+        ux * ux + uy * uy + uz * uz
+    ):  # False for NaN, where A is flat
         error, x, y, z = error + gx * dx + gy * dy + gz * dz, x + dx, y + dy, z + dz
     return max(error, 0.0), x, y, z

@@ -1,57 +1,60 @@
-"""Free vertices fitted to the surface that they stand for, after the collapses.
+"""Free vertices fitted to the original surface after the collapses.
 
-A quadric pulls a vertex to the planes around it, so that on a curved place it comes to lie outside. What is measured is
-the distance between surfaces: so each vertex is moved to where the faces around it lie nearest to the vertices that
-went into it (least squares, as in Hoppe et al. 1993, "Mesh optimization", section 4.1; one step is enough).
+A quadric pulls a vertex to the planes around it, so that on a curved region it lies outside. The error measured is the
+distance between surfaces. So each vertex is moved to where the faces around it lie nearest to the original vertices
+merged into it (least squares, as in Hoppe et al. 1993, "Mesh optimization", section 4.1; one step is enough).
 """
 
 import numpy as np
 
-from .checks import look_around
+from .checks import check_move
 from .corners import after, before
 from .jit import kernel
+from .surface import HalfEdgeMesh
 
-STEP = 1.4  # of the step that is sure not to overshoot: more converges faster
+STEP = 1.4  # over the step that cannot overshoot: converges faster
 TURN = 0.8  # least cosine by which the fit may turn a face
-SHAPE = 0.1  # least quality of a face, as in `look_around`
+SHAPE = 0.1  # least quality of a face, as in `check_move`
 
 
 @kernel
-def refit(surface, points, faces, weight, samples, fold):
+def refit(
+    surface: HalfEdgeMesh, points: np.ndarray, faces: np.ndarray, weight: np.ndarray, samples: int, fold: float
+) -> None:
     """Moves the unlocked vertices of the surface, in place.
 
-    points (n, 3), faces (3 m,): the surface as it was, of whose vertices and face centres about `samples` are looked
-    at. weight (n,): the area around each vertex, times what it counts beside others. fold: as in `look_around`.
+    points (n, 3), faces (3 m,): the original surface, of whose vertices and face centres about `samples` are targets.
+    weight (n,): the area around each vertex, times its weight. fold: as in `check_move`.
     """
-    corner, twin, start, rim, locked, position, quadric, parent = surface
+    corner, opposite, start, boundary, locked, position, quadric, parent = surface
     count = len(points) + len(faces) // 3
     pull = np.zeros((len(position), 4))
-    mark = np.empty(len(position), dtype=np.int32)  # look_around wants it
+    mark = np.empty(len(position), dtype=np.int32)  # scratch of check_move
     for at in range(0, count, max(count // max(samples, 1), 1)):
         owner, x, y, z, share = _target(points, faces, weight, at)
-        _pull(corner, twin, start, position, _root(parent, owner), x, y, z, share, pull)
+        _pull(corner, opposite, start, position, _root(parent, owner), x, y, z, share, pull)
     for v in range(len(position)):
         if pull[v, 3] > 0.0 and not locked[v]:
             by = STEP / pull[v, 3]
             x = position[v, 0] + by * pull[v, 0]
             y = position[v, 1] + by * pull[v, 1]
             z = position[v, 2] + by * pull[v, 2]
-            if look_around(corner, twin, start, position, mark, v, v, -1, x, y, z, TURN, SHAPE, fold) >= 0:
+            if check_move(corner, opposite, start, position, mark, v, v, -1, x, y, z, TURN, SHAPE, fold) >= 0:
                 position[v, 0], position[v, 1], position[v, 2] = x, y, z
 
 
 @kernel
 def _root(parent, v):
-    """The vertex that v went into at last."""
+    """The vertex into which v was merged in the end."""
     while parent[v] != v:
-        parent[v] = parent[parent[v]]  # halves the way for those that come after
+        parent[v] = parent[parent[v]]  # halves the path for later calls
         v = parent[v]
     return v
 
 
 @kernel
 def _target(points, faces, weight, at):
-    """(vertex that it belongs to, x, y, z, weight) of one target: the vertices, then the centres of the faces.
+    """(vertex, x, y, z, weight) of one target: the vertices, then the centres of the faces.
 
     A face weighs a third of what its corners weigh, so that all faces together weigh as much as all vertices.
     """
@@ -66,11 +69,11 @@ def _target(points, faces, weight, at):
 
 
 @kernel
-def _pull(corner, twin, start, position, v, x, y, z, weight, pull):
-    """Adds what a target at x, y, z asks of the three corners of the face next to it, among those around v.
+def _pull(corner, opposite, start, position, v, x, y, z, weight, pull):
+    """Adds the pull of a target at x, y, z on the corners of the nearest face around v.
 
-    It asks for its distance to the plane of the face, along the normal: along the surface nothing has to move, and a
-    target that lies beyond the faces around v would drag them there.
+    The pull is its distance to the plane of the face, along the normal: along the surface nothing has to move, and a
+    target beyond the faces around v would drag them there.
     """
     least, at, s, t = np.inf, start[v], 0.0, 0.0
     h = first = start[v]
@@ -78,7 +81,7 @@ def _pull(corner, twin, start, position, v, x, y, z, weight, pull):
         far, along, aside = _nearest(position, v, corner[after(h)], corner[before(h)], x, y, z)
         if far < least:
             least, at, s, t = far, h, along, aside
-        h = twin[before(h)]
+        h = opposite[before(h)]
         if h < 0 or h == first:
             break
     i, j = corner[after(at)], corner[before(at)]
@@ -90,13 +93,13 @@ def _pull(corner, twin, start, position, v, x, y, z, weight, pull):
         return
     off = (x - position[v, 0]) * nx + (y - position[v, 1]) * ny + (z - position[v, 2]) * nz
     dx, dy, dz = off * nx / square, off * ny / square, off * nz / square
-    _ask(pull, v, (1 - s - t) * weight, dx, dy, dz)
-    _ask(pull, i, s * weight, dx, dy, dz)
-    _ask(pull, j, t * weight, dx, dy, dz)
+    _add(pull, v, (1 - s - t) * weight, dx, dy, dz)
+    _add(pull, i, s * weight, dx, dy, dz)
+    _add(pull, j, t * weight, dx, dy, dz)
 
 
 @kernel
-def _ask(pull, v, share, dx, dy, dz):
+def _add(pull, v, share, dx, dy, dz):
     pull[v, 0] += share * dx
     pull[v, 1] += share * dy
     pull[v, 2] += share * dz

@@ -1,21 +1,29 @@
-"""The surface while it is simplified, and one edge collapse on it."""
+"""The half-edge mesh while it is simplified, and one edge collapse on it."""
 
-from collections import namedtuple
+from typing import NamedTuple
 
 import numpy as np
 
 from .corners import after, before
-from .jit import kernel
+from .jit import Id, kernel
 
-# corner (3 m,) vertex at the tail of each half-edge; twin (3 m,); start (n,) first half-edge that leaves a vertex;
-# rim, locked (n,) boolean; position (n, 3); quadric (n, 10); parent (n,) the vertex that each went into.
-# The corners of a face that went are -1.
-Surface = namedtuple("Surface", "corner twin start rim locked position quadric parent")
+
+class HalfEdgeMesh(NamedTuple):
+    """A triangle mesh by half-edges; the corners of a removed face are -1."""
+
+    corner: np.ndarray  # (3 m,) vertex at the tail of each half-edge
+    opposite: np.ndarray  # (3 m,) half-edge
+    start: np.ndarray  # (n,) first half-edge that leaves a vertex
+    boundary: np.ndarray  # (n,) boolean
+    locked: np.ndarray  # (n,) boolean
+    position: np.ndarray  # (n, 3)
+    quadric: np.ndarray  # (n, 10)
+    parent: np.ndarray  # (n,) the vertex into which each was merged
 
 
 @kernel
-def unit_box(vertices, source):
-    """(vertices[source] in a box of size 1 around 0, its middle (3,) and size before)."""
+def unit_box(vertices: np.ndarray, source: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+    """(vertices[source] scaled to a box of size 1 around 0, the box's middle (3,) and size before)."""
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     for v in source:
         for axis in range(3):
@@ -31,33 +39,46 @@ def unit_box(vertices, source):
 
 
 @kernel
-def collapse_edge(corner, twin, start, rim, locked, position, quadric, parent, h, x, y, z):
-    """Merges the ends of the edge of half-edge h at x, y, z, or at the locked one's place, which stays.
+def collapse_edge(
+    corner: np.ndarray,
+    opposite: np.ndarray,
+    start: np.ndarray,
+    boundary: np.ndarray,
+    locked: np.ndarray,
+    position: np.ndarray,
+    quadric: np.ndarray,
+    parent: np.ndarray,
+    h: Id,
+    x: float,
+    y: float,
+    z: float,
+) -> tuple[Id, Id]:
+    """Merges the ends of the edge of half-edge h at x, y, z; a locked end keeps its position.
 
-    Returns a half-edge of each of the two edges that two edges have become.
+    Returns a half-edge of each of the two edges that result from merging two.
     """
-    t = np.int64(twin[h])
+    t = np.int64(opposite[h])
     i, j = corner[h], corner[t]
     stays, goes = (i, j) if locked[i] else (j, i)
     g = first = start[goes]
     while True:
         corner[g] = stays
-        g = twin[before(g)]
+        g = opposite[before(g)]
         if g < 0 or g == first:
             break
-    up, down = twin[before(h)], twin[before(t)]  # what leaves i and j beside the two faces that go
+    up, down = opposite[before(h)], opposite[before(t)]  # half-edges that leave i and j beside the two removed faces
     if start[stays] // 3 == h // 3 or start[stays] // 3 == t // 3:
-        start[stays] = down if rim[stays] and stays == i else up
-    left, right = twin[after(h)], twin[after(t)]
+        start[stays] = down if boundary[stays] and stays == i else up
+    left, right = opposite[after(h)], opposite[after(t)]
     left, right = (left if left >= 0 else up), (right if right >= 0 else down)
     for g in (h, t):
-        one, two, across = twin[after(g)], twin[before(g)], corner[before(g)]
+        one, two, across = opposite[after(g)], opposite[before(g)], corner[before(g)]
         if start[across] == before(g):
             start[across] = one
         if one >= 0:
-            twin[one] = two
+            opposite[one] = two
         if two >= 0:
-            twin[two] = one
+            opposite[two] = one
         f = g - g % 3
         corner[f] = corner[f + 1] = corner[f + 2] = -1
     position[stays, 0], position[stays, 1], position[stays, 2] = x, y, z
@@ -68,8 +89,8 @@ def collapse_edge(corner, twin, start, rim, locked, position, quadric, parent, h
 
 
 @kernel
-def compact(surface, source, count):
-    """What is left: faces (k, 3) i8 and (n',) the vertex of the surface that each of their vertices is.
+def compact(surface: HalfEdgeMesh, source: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """The remaining faces (k, 3) i8, and (n',) the vertex of the surface that each of their vertices is.
 
     source (n,): ids below `count`; locked vertices of one source become one vertex again.
     """

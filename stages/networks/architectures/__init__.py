@@ -1,5 +1,5 @@
-"""One architecture a file: its convolutions up to the last maps, and what classified them.
+"""One architecture per file: its convolutions up to the last feature maps, and its ImageNet classifier.
 
-Each is a function of ImageNet weights (None: torchvision's own random start) that returns Parts. All convolutions take
-images that are normalised as torchvision's weights want them, and end at the last maps, before any pooling.
+Each is a function of ImageNet weights (None: torchvision's random initialisation) that returns an Architecture. All
+convolutions take images normalised as for torchvision's weights, and end at the last feature maps, before any pooling.
 """

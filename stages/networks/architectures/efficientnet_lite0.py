@@ -1,14 +1,14 @@
 """EfficientNet-Lite0: EfficientNet-B0 (Tan & Le 2019) without squeeze and excitation, with ReLU6, for small machines.
 
-Own, since torchvision has none and the package that carries the weights has had one release, in 2020. Layers, paddings
-and normalisation are those of the published TensorFlow model; its stochastic depth, a regulariser of long trainings,
-is left out.
+Implemented here, since torchvision has none and the package with its weights has had one release, in 2020. Layers,
+paddings and normalisation are those of the published TensorFlow model; its stochastic depth, a regulariser for long
+trainings, is left out.
 """
 
 import torch
 
 from ..restore import restore
-from .parts import Parts
+from .architecture import Architecture
 
 STAGES = (  # repeats, kernel, stride, expansion, channels
     (1, 3, 1, 1, 16),
@@ -23,17 +23,20 @@ STEM, WIDTH = 32, 1280
 EPSILON = 1e-3  # of the normalisation layers
 
 
-def efficientnet_lite0(state):
-    """Parts; state: the names of `whole`, or None. 7 x 7 maps of 1280 at 224 pixels."""
-    network = whole()
+def efficientnet_lite0(state: dict[str, torch.Tensor] | None) -> Architecture:
+    """EfficientNet-Lite0's Architecture: 1280 maps of 7 x 7 at 224 pixels. state: of `full_network`, or None."""
+    network = full_network()
     if state is not None:
         restore(network, state, "efficientnet_lite0")
-    return Parts(network.convolutions, WIDTH, dropout=0.2, classifier=network.classifier)
+    convolutions, classifier = network.children()
+    assert isinstance(convolutions, torch.nn.Sequential) and isinstance(classifier, torch.nn.Linear)
+    return Architecture(convolutions, WIDTH, dropout=0.2, classifier=classifier)
 
 
-def whole():
-    """The convolutions and the classifier of ImageNet's 1000 classes, in the order of the published weights."""
-    layers, channels = [_unit(3, STEM, kernel=3, stride=2)], STEM
+def full_network() -> torch.nn.ModuleDict:
+    """The convolutions and the ImageNet classifier, in the order of the published weights."""
+    layers: list[torch.nn.Module] = [_unit(3, STEM, kernel=3, stride=2)]
+    channels = STEM
     for repeats, kernel, stride, expansion, out in STAGES:
         for repeat in range(repeats):
             layers.append(InvertedBottleneck(channels, out, kernel, 1 if repeat else stride, expansion))
@@ -48,26 +51,30 @@ def whole():
 
 
 class InvertedBottleneck(torch.nn.Module):
-    """Widens, filters each channel by itself, narrows again; beside it a short cut where the shapes allow one."""
+    """Expansion, depthwise convolution and projection, with a shortcut where the shapes allow one."""
 
-    def __init__(self, channels, out, kernel, stride, expansion):
+    def __init__(self, channels: int, out: int, kernel: int, stride: int, expansion: int) -> None:
         super().__init__()
         wide = channels * expansion
         layers = [_unit(channels, wide)] if expansion > 1 else []
         layers += [_unit(wide, wide, kernel, stride, groups=wide), _unit(wide, out, activate=False)]
         self.layers = torch.nn.Sequential(*layers)
-        self.short_cut = stride == 1 and channels == out
+        self.shortcut = stride == 1 and channels == out
 
-    def forward(self, maps):
-        return maps + self.layers(maps) if self.short_cut else self.layers(maps)
+    def forward(self, maps: torch.Tensor) -> torch.Tensor:
+        return maps + self.layers(maps) if self.shortcut else self.layers(maps)
 
 
 def _unit(channels, out, kernel=1, stride=1, groups=1, activate=True):
-    """Convolution and normalisation. Where it halves the maps, the odd row and column of padding lie below and right,
-    as TensorFlow puts them for maps of an even size.
+    """Convolution and normalisation.
+
+    Where it halves the maps, the odd row and column of padding lie below and to the right, as in TensorFlow for maps of
+    an even size.
     """
     before, after = (kernel - stride) // 2, (kernel - stride + 1) // 2
-    layers = [torch.nn.ZeroPad2d((before, after, before, after))] if before != after else []
+    layers: list[torch.nn.Module] = []
+    if before != after:
+        layers.append(torch.nn.ZeroPad2d((before, after, before, after)))
     padding = 0 if before != after else before
     layers.append(torch.nn.Conv2d(channels, out, kernel, stride, padding, groups=groups, bias=False))
     layers.append(torch.nn.BatchNorm2d(out, eps=EPSILON))

@@ -1,22 +1,25 @@
 """VGG16's convolutions (Simonyan & Zisserman 2015, T [235])."""
 
+import torch
+
 from ..restore import restore
-from ..vision import torchvision
+from ..torchvision_import import torchvision
 from .alexnet import features_of
-from .parts import Parts, he_start
+from .architecture import Architecture, he_initialise
 
 
-def vgg16(state):
-    """Parts; state: {`features.N.weight` or `.bias`: tensor}, where `classifier.*` may be too, or None.
+def vgg16(state: dict[str, torch.Tensor] | None) -> Architecture:
+    """VGG16's Architecture. state: {`features.N.weight` or `.bias`: tensor}, with or without `classifier.*`, or None.
 
-    Up to the rectified thirteenth convolution, without the last max pooling: 14 x 14 maps of 512 at 224 pixels, which
-    Grad-CAM looks at. The thesis keeps the fully connected layers fc6 and fc7 and replaces fc8; here, since no registry
-    has their weights, the maps are pooled by their mean for one new layer. That is 14.7 of 138 million parameters.
+    The convolutions end at the rectified thirteenth one, without the last max pooling: 512 maps of 14 x 14 at 224
+    pixels, which Grad-CAM uses. The thesis keeps the fully connected layers fc6 and fc7 and replaces fc8. No package
+    registry has their weights, so here the maps are averaged and classified by one new layer: 14.7 of 138 million
+    parameters.
     """
     vgg = torchvision.models.vgg
-    convolutions = vgg.make_layers(vgg.cfgs["D"])[:-1]  # the whole would first draw its 124 million others
+    convolutions = vgg.make_layers(vgg.cfgs["D"])[:-1]  # so that the 124 million other parameters are not initialised
     if state is None:
-        he_start(convolutions)
+        he_initialise(convolutions)
     else:
         restore(convolutions, features_of(state), "vgg16's convolutions")
-    return Parts(convolutions, width=512, dropout=0.5, classifier=None)
+    return Architecture(convolutions, width=512, dropout=0.5, classifier=None)

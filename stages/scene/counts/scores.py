@@ -1,33 +1,37 @@
-"""What answers are worth: the error of the count and the quality that follows, with intervals over the objects."""
+"""Scores of predicted counts: the error of the count and of the mesh, with intervals over the objects."""
+
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pandas as pd
 
 from stages.kit.rng import rng
 
-RESAMPLES = 400  # of the objects, with all their cases: the interval's ends are then known to a tenth of its width
+from .cases import Case
+
+RESAMPLES = 400  # of the objects, with all their cases: the interval's ends are then within a tenth of its width
 
 
-def scored(cases, found):
-    """Frame of a row a case: object, ratio (count / needed), error (error there / tolerance), within (kept to it).
+def score_counts(cases: Sequence[Case], counts: np.ndarray) -> pd.DataFrame:
+    """Frame with one row per case: object, ratio (count / needed), error (over the tolerance), within (tolerance met).
 
-    The error is read from the object's whole measured curve. Where the count lies below all that were measured it is
-    that of the coarsest mesh, which is too small: the case still counts as broken.
+    The error is read from the object's whole measured curve. For a count below all measured ones it is that of the
+    coarsest mesh, which is too low: the case still does not meet the tolerance.
     """
     rows = []
-    for case, count in zip(cases, found, strict=True):
+    for case, count in zip(cases, counts, strict=True):
         error = float(case.curve.error_at(count)) / case.error
         rows.append({"object": case.curve.object, "ratio": count / case.needed, "error": error})
     frame = pd.DataFrame(rows, columns=["object", "ratio", "error"])
     return frame.assign(within=frame["ratio"] >= 1)
 
 
-def summarise(frame, seed):
-    """dict metric -> (value, low, high): over the cases of a frame of `scored`, 95 % bootstrap over its objects.
+def summarise(frame: pd.DataFrame, seed: int) -> dict[str, tuple[float, float, float]]:
+    """dict metric -> (value, low, high): over the cases of a frame of `score_counts`, 95 % bootstrap over its objects.
 
-    count_bias: geometric mean of count / needed. factor_median, factor_90: the factor, either way, that half and 90 %
-    of the counts stay within. within: share of cases within the tolerance. excess: error over the tolerance, less one,
-    median of those that break it, NaN where none does. waste: faces beyond the needed ones over the needed ones, mean.
+    count_bias: geometric mean of count / needed. factor_median, factor_90: the factor, up or down, within which half
+    and 90 % of the counts are. within: share of cases within the tolerance. excess: error over the tolerance, minus
+    one, median of the cases beyond it, NaN where there is none. waste: mean of the excess faces over the needed ones.
     """
     groups = [group for _, group in frame.groupby("object")]
     values = _metrics(frame)
@@ -45,7 +49,7 @@ def summarise(frame, seed):
     return found
 
 
-def _metrics(cases):
+def _metrics(cases: Mapping | pd.DataFrame) -> dict[str, float]:
     ratio, error, within = (np.asarray(cases[name]) for name in ("ratio", "error", "within"))
     factor = np.exp(np.abs(np.log(ratio)))
     return {

@@ -1,6 +1,6 @@
-"""The registry of perturbations: what can happen to an object, and to the look at it, that should change nothing.
+"""The registry of perturbations: changes of an object, or of how it is rendered, that should not change the result.
 
-To add one, add a file and an entry. The severity that changes nothing is `unharmed`, in the perturbation's unit.
+To add one, add a file and an entry.
 """
 
 from .background import background, background_left_in

@@ -1,8 +1,12 @@
-"""Smaller images, or the object farther away: in an orthographic image that is one."""
+"""Smaller images, which in an orthographic view is the same as an object farther away."""
 
-from .perturbed import Conditions, in_range, same_places
+import numpy as np
+
+from stages.kit import Mesh
+
+from .perturbed import Conditions, Perturbed, in_range, under_conditions
 
 
-def image_size(mesh, severity, _generator):
-    """Images of the share `severity` of the rows and columns; maps shrink alike."""
-    return same_places(mesh, Conditions(rows=in_range(severity, 0.05, 1, "the share of rows")))
+def image_size(mesh: Mesh, severity: float, _generator: np.random.Generator) -> Perturbed:
+    """Images with the share `severity` of the rows and columns; the maps shrink by the same factor."""
+    return under_conditions(mesh, Conditions(rows=in_range(severity, 0.05, 1, "the share of rows")))

@@ -1,8 +1,12 @@
 """Light from the side instead of from the camera."""
 
-from .perturbed import Conditions, in_range, same_places
+import numpy as np
+
+from stages.kit import Mesh
+
+from .perturbed import Conditions, Perturbed, in_range, under_conditions
 
 
-def light(mesh, severity, _generator):
+def light(mesh: Mesh, severity: float, _generator: np.random.Generator) -> Perturbed:
     """The head light moves `severity` degrees off the camera, up and to the left in the image."""
-    return same_places(mesh, Conditions(light=in_range(severity, 0, 180, "degrees off the camera")))
+    return under_conditions(mesh, Conditions(light=in_range(severity, 0, 180, "degrees off the camera")))

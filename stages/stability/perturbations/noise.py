@@ -1,4 +1,4 @@
-"""Noise of a scanner: every place of the surface moves a little."""
+"""Noise of a scanner: every vertex moves a little."""
 
 import numpy as np
 
@@ -7,10 +7,10 @@ from stages.kit import Mesh
 from .perturbed import Perturbed, in_range
 
 
-def noise(mesh, severity, generator):
-    """Gaussian noise on the vertices, sigma `severity` of the diagonal in each coordinate.
+def noise(mesh: Mesh, severity: float, generator: np.random.Generator) -> Perturbed:
+    """Gaussian noise on each coordinate of the vertices, with a sigma of `severity` of the diagonal.
 
-    Vertices at one place move together, so that a seam does not tear.
+    Vertices at one position move together, so that a seam does not open.
     """
     in_range(severity, 0, 1, "sigma over the diagonal")
     places, at = np.unique(mesh.vertices, axis=0, return_inverse=True)

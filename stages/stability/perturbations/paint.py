@@ -1,4 +1,4 @@
-"""Colour that the thesis's grey objects do not have: one coat of paint, or a pattern of two."""
+"""Colours, which the thesis's grey objects do not have: one for the whole object, or a pattern of two."""
 
 import colorsys
 
@@ -10,17 +10,17 @@ from stages.views.shading import GREY
 from .perturbed import Perturbed, in_range
 
 WAVES = 12  # sine waves whose sum decides between the two colours
-LENGTH = 0.3  # of the diagonal: a wave's length, so that patches are the size of an object's parts
+LENGTH = 0.3  # of a wave, over the diagonal: patches are then the size of an object's parts
 
 
-def paint(mesh, severity, generator):
-    """The whole object in one colour of this saturation; the hue is drawn at random."""
+def paint(mesh: Mesh, severity: float, generator: np.random.Generator) -> Perturbed:
+    """The whole object in one colour with a saturation of `severity`; the hue is drawn at random."""
     colour = _colour(generator.random(), in_range(severity, 0, 1, "saturation"))
     return _painted(mesh, np.tile(colour, (len(mesh.vertices), 1)))
 
 
-def pattern(mesh, severity, generator):
-    """Patches of two opposite colours of this saturation, smooth random shapes cut out of space."""
+def pattern(mesh: Mesh, severity: float, generator: np.random.Generator) -> Perturbed:
+    """Smooth random patches of two complementary colours with a saturation of `severity`."""
     hue, saturation = generator.random(), in_range(severity, 0, 1, "saturation")
     waves = 2 * np.pi / (LENGTH * max(mesh.diagonal, 1e-30)) * _directions(generator)
     height = np.cos(mesh.vertices @ waves.T + generator.uniform(0, 2 * np.pi, WAVES)).sum(axis=1)
@@ -34,7 +34,7 @@ def _directions(generator):
 
 
 def _colour(hue, saturation):
-    """(3,) f8: the paint as a share of the brightness underneath, in each of red, green and blue."""
+    """(3,) f8: the factor by which the paint multiplies red, green and blue underneath."""
     return np.array(colorsys.hsv_to_rgb(hue % 1, saturation, 1.0))
 
 

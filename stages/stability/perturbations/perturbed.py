@@ -1,4 +1,4 @@
-"""What a perturbation makes of a mesh."""
+"""The types of a perturbation and of its result."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,9 +10,9 @@ from stages.kit import Mesh
 
 @dataclass(frozen=True)
 class Conditions:
-    """How a mesh is looked at: light in degrees off the camera, background from 0 (black) to 1 (white).
+    """How a mesh is rendered: light in degrees off the camera, background from 0 (black) to 1 (white).
 
-    rows: share of the image's rows that is rendered. filled: the background is kept out of the maps.
+    rows: the image's rows as a share of the usual number. filled: the background is kept out of the maps.
     """
 
     light: float = 0.0
@@ -23,22 +23,23 @@ class Conditions:
 
 @dataclass(frozen=True, eq=False)
 class Perturbed:
-    """mesh: in a frame of its own, to be normalised before a look; conditions: of that look.
+    """A perturbed mesh, in a frame of its own (normalise it before rendering), and the conditions of rendering.
 
-    places (n, 3): where on the original mesh each of its vertices lies, in the original's frame.
+    original_positions (n, 3): where each of its vertices lies on the original mesh, in the original's frame.
     """
 
     mesh: Mesh
-    places: np.ndarray
+    original_positions: np.ndarray
     conditions: Conditions = Conditions()
 
 
 @dataclass(frozen=True)
 class Perturbation:
-    """unit: of the severity; unharmed: the severity that changes nothing.
+    """One way to perturb a mesh: apply(mesh, severity, generator) -> Perturbed.
 
-    apply(mesh, severity, generator) -> Perturbed. The generator is at its start for each severity, so that the
-    severities differ in strength alone. ValueError for a severity out of range, or a mesh that cannot be so changed.
+    unit: of the severity; unharmed: the severity that changes nothing. The generator starts anew for each severity, so
+    that severities differ in strength alone. apply raises ValueError for a severity out of range, or a mesh that cannot
+    be changed in this way.
     """
 
     unit: str
@@ -46,13 +47,13 @@ class Perturbation:
     apply: Callable[[Mesh, float, np.random.Generator], Perturbed]
 
 
-def in_range(severity, low, high, what):
-    """The severity; ValueError that names what it is when it lies outside low..high."""
+def in_range(severity: float, low: float, high: float, what: str) -> float:
+    """The severity; raises ValueError, naming it as `what`, where it lies outside low..high."""
     if not low <= severity <= high:
         raise ValueError(f"{what} must lie in {low:g}..{high:g}, got {severity:g}")
     return severity
 
 
-def same_places(mesh, conditions):
-    """The mesh as it is, looked at under other conditions."""
+def under_conditions(mesh: Mesh, conditions: Conditions) -> Perturbed:
+    """The mesh as it is, rendered under other conditions."""
     return Perturbed(mesh, mesh.vertices, conditions)

@@ -1,14 +1,16 @@
-"""Other triangles on the same surface, of equal size everywhere."""
+# pymeshlab comes without types:
+# pyright: reportAttributeAccessIssue=false
+"""The same surface with other triangles, all of about the same size."""
 
 import numpy as np
 import pymeshlab
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 
 from stages.kit import Mesh
 
 from .perturbed import Perturbed, in_range
 
-# Every parameter, every time: pymeshlab gives one that is left out the value of the call before, not its default.
+# All parameters are given: pymeshlab sets one that is left out to its value in the call before, not to its default.
 SETTINGS = {
     "iterations": 5,
     "adaptive": False,
@@ -24,10 +26,10 @@ SETTINGS = {
 }
 
 
-def remeshing(mesh, severity, _generator):
+def remeshing(mesh: Mesh, severity: float, _generator: np.random.Generator) -> Perturbed:
     """Isotropic triangles with edges of `severity` of the diagonal: splits, collapses, flips, smoothing (pymeshlab).
 
-    Colours come from the nearest vertex. ValueError where the surface collapses at this length.
+    Colours are those of the nearest vertex. Raises ValueError where the surface collapses at this edge length.
     """
     length = 100 * in_range(severity, 1e-3, 1, "the edge length over the diagonal")
     work = pymeshlab.MeshSet(verbose=False)
@@ -41,5 +43,5 @@ def remeshing(mesh, severity, _generator):
     vertices, faces = work.current_mesh().vertex_matrix(), work.current_mesh().face_matrix()
     if len(faces) == 0 or not np.isfinite(vertices).all():
         raise ValueError(f"no surface is left at edges of {severity:g} of the diagonal: take shorter ones")
-    colors = None if mesh.colors is None else mesh.colors[cKDTree(mesh.vertices).query(vertices)[1]]
+    colors = None if mesh.colors is None else mesh.colors[KDTree(mesh.vertices).query(vertices)[1]]
     return Perturbed(Mesh(vertices, faces, colors), vertices)

@@ -1,4 +1,4 @@
-"""The same object, placed otherwise: turned about the vertical, or tilted."""
+"""The same object in another orientation: turned about the vertical axis, or tilted."""
 
 import numpy as np
 
@@ -7,13 +7,13 @@ from stages.kit import Mesh
 from .perturbed import Perturbed
 
 
-def turn(mesh, severity, _generator):
-    """Turned by `severity` degrees about the vertical: the views fall on other sides."""
+def turn(mesh: Mesh, severity: float, _generator: np.random.Generator) -> Perturbed:
+    """Turned by `severity` degrees about the vertical axis: the views show other sides."""
     return _rotated(mesh, severity, np.array([0.0, 0.0, 1.0]))
 
 
-def tilt(mesh, severity, generator):
-    """Tilted by `severity` degrees about a level axis drawn at random: up is no longer up."""
+def tilt(mesh: Mesh, severity: float, generator: np.random.Generator) -> Perturbed:
+    """Tilted by `severity` degrees about a random horizontal axis: the object is no longer upright."""
     way = generator.uniform(0, 2 * np.pi)
     return _rotated(mesh, severity, np.array([np.cos(way), np.sin(way), 0.0]))
 

@@ -1,4 +1,4 @@
-"""The same surface, its vertices numbered otherwise."""
+"""The same surface with its vertices in another order."""
 
 import numpy as np
 
@@ -7,8 +7,8 @@ from stages.kit import Mesh
 from .perturbed import Perturbed, in_range
 
 
-def vertex_order(mesh, severity, generator):
-    """The share `severity` of the vertices swap numbers; the surface stays."""
+def vertex_order(mesh: Mesh, severity: float, generator: np.random.Generator) -> Perturbed:
+    """The share `severity` of the vertices are shuffled; the surface is unchanged."""
     n = len(mesh.vertices)
     old = np.arange(n)
     moved = generator.choice(n, int(round(in_range(severity, 0, 1, "the share of vertices") * n)), replace=False)

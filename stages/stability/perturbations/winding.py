@@ -1,14 +1,16 @@
-"""Faces that look inwards, as in files whose winding nobody checked."""
+"""Faces with inverted winding, as in files whose winding nobody checked."""
+
+import numpy as np
 
 from stages.kit import Mesh
 
 from .perturbed import Perturbed, in_range
 
 
-def winding(mesh, severity, generator):
-    """The share `severity` of the faces, drawn at random, is wound the other way; at 1 the whole mesh is inside out.
+def winding(mesh: Mesh, severity: float, generator: np.random.Generator) -> Perturbed:
+    """The share `severity` of the faces, drawn at random, is inverted; at 1 the whole mesh is inside out.
 
-    The meshes stage turns such faces back; whoever asks for a saliency directly brings them along.
+    The meshes stage corrects such faces; a caller who computes a saliency directly may still have them.
     """
     turned = generator.random(len(mesh.faces)) < in_range(severity, 0, 1, "the share of faces")
     faces = mesh.faces.copy()

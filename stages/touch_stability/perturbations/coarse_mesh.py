@@ -4,28 +4,30 @@ from functools import partial
 
 import numpy as np
 
-from stages.imprints import Surface, place, sensor_axes
+from stages.imprints import Surface, sensor_axes, snap_to_surface
 from stages.lod import simplify
 
-from .perturbation import Felt
+from ..touches import Touches
+from .perturbation import PerturbedTouches
 
-SOFT = "enhanced-soft"  # of lod.methods: the error counts more where the object is salient
+SOFT = "enhanced-soft"  # of lod.methods: errors have more weight where the object is salient
 
 
-def coarse(touches, severity, draw, way):
-    """The touches at the nearest places of a mesh of `severity` faces, made by a way of lod.methods.
+def touch_simplified(touches: Touches, severity: float, draw: int, way: str) -> PerturbedTouches:
+    """The touches at the nearest positions on a mesh of `severity` faces, simplified by a method of lod.methods.
 
-    That of data/lod where there is one, else made here in the same manner. An object that has no more faces stays.
+    The mesh is that of data/SET/lod if it exists, else it is simplified here in the same way. An object without more
+    faces is unchanged.
     """
     faces = int(severity)
     if len(touches.mesh.faces) <= faces:
-        return Felt(touches.images)
+        return PerturbedTouches(touches.images)
     found = touches.levels.get(f"{way}_{faces}")
     mesh = simplify(touches.mesh, faces, weights=touches.saliency if way == SOFT else None) if found is None else found
     surface = Surface(mesh)
-    positions, normals = place(surface, touches.positions, tolerance=np.inf)
-    return Felt(touches.press(positions, sensor_axes(normals), surface))
+    positions, normals = snap_to_surface(surface, touches.positions, tolerance=np.inf)
+    return PerturbedTouches(touches.press(positions, sensor_axes(normals), surface))
 
 
-plain = partial(coarse, way="qem")
-salient_kept = partial(coarse, way=SOFT)
+simplified = partial(touch_simplified, way="qem")
+simplified_by_saliency = partial(touch_simplified, way=SOFT)

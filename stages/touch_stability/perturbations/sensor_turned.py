@@ -1,22 +1,24 @@
-"""The sensor is not held upright: turned about its normal, or leaning."""
+"""The sensor is not upright: rotated about its normal, or tilted."""
 
 import numpy as np
 
-from ..touches import about
-from .perturbation import Felt, in_range
+from ..touches import Touches, rotations_about
+from .perturbation import PerturbedTouches, check_range
 
 
-def sensor_turned(touches, severity, draw):
-    """Each array turned about its normal by `severity` degrees, to the left or to the right."""
-    in_range(severity, 0, 180, "the turn in degrees")
+def sensor_turned(touches: Touches, severity: float, draw: int) -> PerturbedTouches:
+    """Each array rotated about its normal by `severity` degrees, randomly to the left or to the right."""
+    check_range(severity, 0, 180, "the turn in degrees")
     side = touches.random("sensor_turned", draw).choice([-1, 1], len(touches.positions))
-    return Felt(touches.press(axes=touches.axes @ about(touches.normals, side * severity).transpose(0, 2, 1)))
+    return PerturbedTouches(
+        touches.press(axes=touches.axes @ rotations_about(touches.normals, side * severity).transpose(0, 2, 1))
+    )
 
 
-def sensor_leaning(touches, severity, draw):
-    """Each array's normal `severity` degrees off the surface's, towards a random side; it stays on its place."""
-    in_range(severity, 0, 60, "the lean in degrees")
+def sensor_leaning(touches: Touches, severity: float, draw: int) -> PerturbedTouches:
+    """Each array tilted by `severity` degrees from the surface's normal in a random direction, at the same place."""
+    check_range(severity, 0, 60, "the lean in degrees")
     angle = touches.random("sensor_leaning", draw).uniform(0, 2 * np.pi, len(touches.positions))[:, None]
     axis = np.cos(angle) * touches.axes[:, 0] + np.sin(angle) * touches.axes[:, 1]
     degrees = np.full(len(axis), severity)
-    return Felt(touches.press(axes=touches.axes @ about(axis, degrees).transpose(0, 2, 1)))
+    return PerturbedTouches(touches.press(axes=touches.axes @ rotations_about(axis, degrees).transpose(0, 2, 1)))

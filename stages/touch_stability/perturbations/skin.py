@@ -1,14 +1,14 @@
-"""The sensor is no ideal one: each perturbation is one property of stages.imprints.Skin."""
+"""The sensor is not ideal: each perturbation is one property of stages.imprints.Skin."""
 
 from functools import partial
 
 from stages.imprints import Skin
 
-from .perturbation import Felt
+from .perturbation import PerturbedTouches
 
 
 def _felt(touches, severity, draw, what):
-    return Felt(Skin(**{what: severity}, seed=draw)(touches.images, touches.name))
+    return PerturbedTouches(Skin(**{what: severity}, seed=draw)(touches.images, touches.name))
 
 
 noise = partial(_felt, what="noise")

@@ -1,4 +1,4 @@
-"""Readers of recorded touches for networks: one data set a file, one common result, Recorded."""
+"""Readers of recorded touches for networks: one data set per file, with Recorded as their common result."""
 
 from .bigs import read_bigs
 from .grasps import grasp_images

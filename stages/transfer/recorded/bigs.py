@@ -2,57 +2,60 @@
 
 Paper: Chebotar, Hausman, Su, Molchanov, Kroemer, Sukhatme, Schaal, BiGS: BioTac grasp stability dataset, ICRA 2016
 workshop on grasping and manipulation datasets (T [104]); each finger has 19 electrodes, sampled at 100 Hz.
-Layout: what the published files hold, and how they name it, could not be established here. So a plain layout is read:
+Layout: the layout of the published files is not known here. So a plain layout is read:
 `OBJECT/success/GRASP/FINGER.csv`, OBJECT one of box, ball, cylinder, GRASP any name, three fingers, each a table
-without a head, a sample a line, the readings of electrodes 1 to 19 in the columns, separated by commas. Anything
-beside `success` (a folder `failure`) is left out, as in the thesis.
-To get it: on a machine with a network take the data set from the authors' page named in the paper, and write the
-electrode readings of each finger of each grasp into such a table.
+without a header, one sample per line, with the readings of electrodes 1 to 19 in columns separated by commas. Other
+folders than `success`, such as `failure`, are ignored, as in the thesis.
+To get it: download the data set from the authors' page named in the paper, and write the electrode readings of each
+finger of each grasp into such a table.
 """
+
+from pathlib import Path
 
 import numpy as np
 
-from .touches import Recorded, folder
+from .touches import Recorded, existing_folder
 
-WANTED = "BiGS: OBJECT/success/GRASP/FINGER.csv, OBJECT box, ball, cylinder, three fingers, 19 columns, 700 lines"
+LAYOUT = "BiGS: OBJECT/success/GRASP/FINGER.csv, OBJECT box, ball, cylinder, three fingers, 19 columns, 700 lines"
 OBJECTS = ("ball", "box", "cylinder")
 FINGERS, ELECTRODES = 3, 19
 SAMPLES, SIDE = 700, 70  # 7 x 3 cells x 700 samples are 70 x 70 x 3 numbers
-GRID = [  # electrodes seen from above, tip first, three columns by their places y = +, 0, - on the finger; 0 has none
+GRID = [  # electrodes from above, tip first, in columns by their position y = +, 0, - on the finger; 0: none
     [9, 7, 8], [11, 10, 1], [12, 17, 2], [13, 0, 3], [14, 0, 4], [15, 18, 5], [16, 19, 6],
 ]  # fmt: skip
-SPREAD = 0.99  # share of the readings that the grey values span; the few beyond are clipped
+SPREAD = 0.99  # share of the readings within the range of grey values; the others are clipped
 
 
-def read_bigs(path):
-    """The Recorded of BiGS: one 70 x 70 x 3 image a finger of a successful grasp; groups: the grasp, OBJECT/GRASP.
+def read_bigs(path: str | Path) -> Recorded:
+    """The Recorded of BiGS: one 70 x 70 x 3 image per finger of a successful grasp; groups: the grasp, OBJECT/GRASP.
 
-    A finger's readings less its first are laid out as 7 x 3 cells, cut to the first 700 samples, and reshaped. Grey 128
-    is no change; one factor for the whole set scales the changes. Raises ValueError that names what is missing.
+    A finger's readings minus its first are arranged in 7 x 3 cells, cut to the first 700 samples, and reshaped. Grey
+    128 is no change; the changes are scaled by one factor for the whole set. Raises ValueError that names what is
+    missing.
     """
-    root, changes, labels, groups = folder(path, WANTED), [], [], []
+    root, series, labels, groups = existing_folder(path, LAYOUT), [], [], []
     for label, name in enumerate(OBJECTS):
-        for grasp in sorted(folder(root / name / "success", WANTED).iterdir()):
+        for grasp in sorted(existing_folder(root / name / "success", LAYOUT).iterdir()):
             fingers = sorted(grasp.glob("*.csv"))
             if len(fingers) != FINGERS:
-                raise ValueError(f"{grasp} holds {len(fingers)} tables, {FINGERS} are needed; wanted is {WANTED}")
-            changes += [_changes(file) for file in fingers]
+                raise ValueError(f"{grasp} holds {len(fingers)} tables, {FINGERS} are needed; expected is {LAYOUT}")
+            series += [_changes(file) for file in fingers]
             labels += [label] * FINGERS
             groups += [f"{name}/{grasp.name}"] * FINGERS
-    if not changes:
-        raise ValueError(f"{root} holds no grasp; wanted is {WANTED}")
-    changes = np.stack(changes)
+    if not series:
+        raise ValueError(f"{root} holds no grasp; expected is {LAYOUT}")
+    changes = np.stack(series)
     span = np.quantile(np.abs(changes), SPREAD) or 1
     grey = np.round(128 + 127 * np.clip(changes / span, -1, 1)).astype(np.uint8)
-    return Recorded(np.stack([reshape(series) for series in grey]), np.array(labels), list(OBJECTS), np.array(groups))
+    return Recorded(np.stack([colour_image(one) for one in grey]), np.array(labels), list(OBJECTS), np.array(groups))
 
 
-def on_grid(readings):
+def electrode_grid(readings: np.ndarray) -> np.ndarray:
     """(n, 7, 3): readings (n, 19) of the electrodes as a tactile image of n instants (T figure 5.2b).
 
-    By the electrodes' places in the maker's manual: five in the middle column, seven on each side. The two cells of the
-    middle column without an electrode have the mean of their neighbours on both sides. The thesis names the 7 x 3 image
-    but not the order of its cells: this one is ours.
+    Follows the electrodes' positions in the manufacturer's manual: five in the middle column, seven on each side. The
+    two cells of the middle column without an electrode get the mean of their neighbours on both sides. The thesis names
+    the 7 x 3 image but not the order of its cells, which is chosen here.
     """
     grid = np.array(GRID)
     image = readings[:, np.maximum(grid - 1, 0)].astype(np.float32)
@@ -61,12 +64,12 @@ def on_grid(readings):
     return image
 
 
-def reshape(series):
+def colour_image(series: np.ndarray) -> np.ndarray:
     """(70, 70, 3): a tactile series (7, 3, 700) as one colour image, by Matlab's reshape (T5.1.4).
 
-    Matlab counts the first axis fastest: the value of row r, column c, sample t goes to place n = r + 7 c + 21 t, and
-    pixel (i, j) of channel k is place n = i + 70 j + 4900 k. So the colours are the three thirds of the seven seconds,
-    233 1/3 samples each; the 21 cells of a sample stand below one another, a column of pixels holds 3 1/3 samples.
+    In Matlab the first axis varies fastest: the value of row r, column c, sample t has index n = r + 7 c + 21 t, and
+    pixel (i, j) of channel k has index n = i + 70 j + 4900 k. So the colours are the three thirds of the seven seconds,
+    233 1/3 samples each. The 21 cells of a sample are below one another, and a column of pixels has 3 1/3 samples.
     """
     return np.asarray(series).reshape(SIDE, SIDE, 3, order="F")
 
@@ -76,8 +79,8 @@ def _changes(file):
     try:
         readings = np.loadtxt(file, delimiter=",", ndmin=2)
     except ValueError as error:
-        raise ValueError(f"{file} is no table of numbers ({error}); wanted is {WANTED}") from None
+        raise ValueError(f"{file} is not a table of numbers ({error}); expected is {LAYOUT}") from None
     if readings.shape[1] != ELECTRODES or len(readings) < SAMPLES or not np.isfinite(readings).all():
         lines, columns = readings.shape
-        raise ValueError(f"{file}: {lines} lines of {columns} numbers, all finite; wanted is {WANTED}, or leave it out")
-    return np.moveaxis(on_grid(readings[:SAMPLES] - readings[0]), 0, 2)
+        raise ValueError(f"{file}: {lines} lines of {columns} numbers, all finite; expected is {LAYOUT}, or remove it")
+    return np.moveaxis(electrode_grid(readings[:SAMPLES] - readings[0]), 0, 2)

@@ -1,11 +1,13 @@
-"""Grasps by BioTac SP fingertips as colour images, one finger a channel: what T5.1.4 does for BiGS, without its time.
+"""Grasps by BioTac SP fingertips as colour images, one finger per channel, similar to BiGS in T5.1.4.
 
-BiGS has a series of 700 samples to fill an image with, BTS3 one instant of 24 electrodes a finger. So the electrodes
-are laid out where they are on the finger and the gaps are filled; as there, three parts make the three colours.
+BiGS has a series of 700 samples per finger, BTS3 one instant of 24 electrodes. So the electrodes are arranged as on the
+finger and the gaps are filled. As there, three parts make the three colours.
 """
 
 import numpy as np
 from scipy.interpolate import griddata
+
+from stages.classification.recorded import Grasps
 
 from .touches import Recorded
 
@@ -15,29 +17,29 @@ CELLS = (12, 11)
 # predicting grasp stability?, IROS 2018 workshop RoboTac (biotac-sp-images: code/Dataset Processing).
 ROWS = [0, 1, 4, 5, 6, 7, 8, 9, 10, 11, 0, 1, 4, 5, 6, 7, 8, 9, 10, 11, 2, 3, 3, 5]
 COLUMNS = [1, 2, 0, 1, 3, 0, 1, 4, 2, 1, 9, 8, 10, 9, 7, 10, 9, 6, 8, 9, 5, 4, 6, 5]
-DEVIATIONS = 3  # of an electrode's readings from their mean that the grey values span
+DEVIATIONS = 3  # standard deviations of an electrode's readings within the range of grey values
 TARGETS = ("objects", "slipped")
 
 
-def grasp_images(grasps, target="objects"):
+def grasp_images(grasps: Grasps, target: str = "objects") -> Recorded:
     """The Recorded of Grasps (stages.classification.recorded.read_grasps): images (k, 12, 11, 3), groups: the object.
 
-    target: what the classes are, the grasped `objects`, or `slipped`: `slipped` and `stable`. Red is the first finger,
-    green the middle one, blue the thumb. Each electrode's readings are scaled by their own mean and deviation over the
-    grasps of objects that the authors do not keep for testing (no label is used); grey 128 is the mean. Between the
-    electrodes the values are linear, outside them those of the nearest. Sorted by object and
-    palm, and then as in the files, whatever the target.
+    target: the classes, `objects` for the grasped objects or `slipped` for `slipped` and `stable`. Red is the first
+    finger, green the middle one, blue the thumb. Each electrode's readings are scaled by their own mean and deviation
+    over the grasps of objects that the authors do not keep for testing (no label is used); grey 128 is the mean. Values
+    are interpolated linearly between the electrodes and are those of the nearest one outside. Sorted by object and
+    palm, then as in the files, whatever the target.
     """
     if target not in TARGETS:
         raise ValueError(f"unknown target {target!r}, known: {', '.join(TARGETS)}")
     names = grasps.objects if target == "objects" else np.where(grasps.slipped, "slipped", "stable")
     order = np.lexsort((np.arange(len(names)), grasps.palms, grasps.objects))
     classes, labels = np.unique(names[order], return_inverse=True)
-    images = lay_out(_scaled(grasps)[order])
+    images = electrode_images(_scaled(grasps)[order])
     return Recorded(images, labels.astype(np.int64), classes.tolist(), grasps.objects[order])
 
 
-def lay_out(values):
+def electrode_images(values: np.ndarray) -> np.ndarray:
     """(k, 12, 11, 3) u1: values (k, 72) in -1..1 of three fingers, 24 electrodes each, as images; 0 is grey 128."""
     fingers = np.asarray(values).reshape(-1, 3, 24) @ _filling().T
     grey = np.round(128 + 127 * np.clip(fingers, -1, 1)).astype(np.uint8)
@@ -46,13 +48,13 @@ def lay_out(values):
 
 def _scaled(grasps):
     """(n, 72) in -1..1 for readings within DEVIATIONS."""
-    known = grasps.electrodes[~grasps.test]
-    spread = known.std(axis=0)
-    return (grasps.electrodes - known.mean(axis=0)) / (DEVIATIONS * np.where(spread > 0, spread, 1))
+    training = grasps.electrodes[~grasps.test]
+    spread = training.std(axis=0)
+    return (grasps.electrodes - training.mean(axis=0)) / (DEVIATIONS * np.where(spread > 0, spread, 1))
 
 
 def _filling():
-    """(132, 24): what share each electrode has in the value of a cell."""
-    places, cells = np.transpose([ROWS, COLUMNS]), np.indices(CELLS).reshape(2, -1).T
-    linear, nearest = (griddata(places, np.eye(len(places)), cells, method=how) for how in ("linear", "nearest"))
+    """(132, 24): the weight of each electrode in the value of a cell."""
+    positions, cells = np.transpose([ROWS, COLUMNS]), np.indices(CELLS).reshape(2, -1).T
+    linear, nearest = (griddata(positions, np.eye(len(positions)), cells, method=how) for how in ("linear", "nearest"))
     return np.where(np.isnan(linear), nearest, linear)

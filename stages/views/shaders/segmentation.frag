@@ -3,7 +3,7 @@
 in vec3 view_normal;
 in vec3 albedo;
 
-uniform vec3 color;  // white: draw the faces' numbers, from 1 on; black: draw the material
+uniform vec3 color;  // white: draw face ids, from 1 on; black: draw the material
 
 out vec4 frag_color;
 
@@ -13,7 +13,7 @@ void main()
         int number = gl_PrimitiveID + 1;
         frag_color = vec4(vec3(number & 255, (number >> 8) & 255, (number >> 16) & 255) / 255.0, 1.0);
     } else {
-        // The head light stands on the view axis, at infinity: the cosine is the normal's own z.
+        // The head light is on the view axis, at infinity: the cosine is the z component of the normal.
         float cosine = max(view_normal.z / max(length(view_normal), 1e-30), 0.0);
         frag_color = vec4(albedo * cosine, 1.0);
     }

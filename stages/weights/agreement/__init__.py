@@ -1,20 +1,21 @@
-"""How well a saliency agrees with people: metrics at the vertices, errors of interest points, intervals over meshes."""
+"""Agreement of a saliency with people: metrics at the vertices, errors of interest points."""
+
+import numpy as np
 
 from .auc import auc
 from .cc import cc
-from .interest_points import TOLERANCES, interest_point_errors, people_near
-from .intervals import mean_interval, paired
+from .gaze_peaks import gaze_peaks
+from .ground_truth import GroundTruth
+from .interest_points import TOLERANCES, annotators_near, interest_point_errors
 from .kl import kl
 from .nss import nss
 from .sim import sim
-from .truth import Truth
-from .truth_points import truth_points
 
-METRICS = {"cc": cc, "nss": nss, "auc": auc, "sim": sim, "kl": kl}  # all but kl: more is better
+METRICS = {"cc": cc, "nss": nss, "auc": auc, "sim": sim, "kl": kl}  # higher is better, except for kl
 
 
-def agreement(saliency, truth):
-    """Every metric of METRICS of saliency (n,), not negative, against a Truth: dict name -> float.
+def agreement(saliency: np.ndarray, truth: GroundTruth) -> dict[str, float]:
+    """All METRICS of a saliency (n,), not negative, against a GroundTruth: dict name -> float.
 
     Raises ValueError for a saliency of another shape, with NaN or with negative values.
     """
@@ -22,6 +23,6 @@ def agreement(saliency, truth):
 
 
 __all__ = [
-    "METRICS", "TOLERANCES", "Truth", "agreement", "auc", "cc", "interest_point_errors", "kl", "mean_interval", "nss",
-    "paired", "people_near", "sim", "truth_points",
+    "METRICS", "TOLERANCES", "GroundTruth", "agreement", "annotators_near", "auc", "cc", "gaze_peaks",
+    "interest_point_errors", "kl", "nss", "sim",
 ]  # fmt: skip

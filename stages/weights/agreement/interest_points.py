@@ -1,35 +1,45 @@
-"""How well detected interest points agree with those of people: false negatives, false positives, weighted misses.
+"""Agreement of detected interest points with those of people: false negatives, false positives, weighted misses.
 
 Source: Dutagaci, Cheung and Godil, Evaluation of 3D interest point detection techniques via human-generated ground
 truth, The Visual Computer 2012, section on evaluation measures (T's reference 7).
 """
 
+from collections.abc import Sequence
+
 import numpy as np
+
+from stages.kit import Mesh
 
 from .geodesic import geodesics
 
 TOLERANCES = np.linspace(0.0, 0.12, 13)  # of the diagonal: the range of the paper's curves
 
 
-def interest_point_errors(mesh, detected, points, weights=None, tolerances=TOLERANCES):
+def interest_point_errors(
+    mesh: Mesh,
+    detected: np.ndarray,
+    points: np.ndarray,
+    weights: np.ndarray | None = None,
+    tolerances: np.ndarray = TOLERANCES,
+) -> dict[str, np.ndarray]:
     """Errors of the detected vertices against the points of people: dict of fne, fpe and wme, each (t,) in 0..1.
 
-    detected (a,) and points (g,) are vertex ids. A point counts as found at tolerance r when a detected vertex lies
-    within r of it over the surface and no nearer to another point; a detected vertex finds one point at most.
+    detected (a,) and points (g,) are vertex ids. A point is found at tolerance r if a detected vertex lies within the
+    geodesic distance r of it and no nearer to another point; a detected vertex finds at most one point.
     fne = 1 - found / g; fpe = 1 - found / a; wme = 1 - weight of the found / weight of all. tolerances (t,) are shares
-    of the mesh's bounding-box diagonal. weights: how many people marked each point, (g,), or (g, t) where they are
-    counted anew at each tolerance as in the paper (`people_near`); any amount serves, equal without.
+    of the bounding-box diagonal. weights: the number of people who marked each point, (g,), or (g, t) if it is counted
+    at each tolerance as in the paper (`annotators_near`). Any other amount can be used; None weights all equally.
 
-    Of two points at the same distance the heavier has the vertex. Without detections nothing is wrong but all is
-    missed: fpe 0, fne 1, wme 1. Raises ValueError for no points, a point twice, ids outside the mesh, bad weights.
+    If two points are equally near, the heavier one gets the vertex. Without detections fpe is 0, fne 1 and wme 1.
+    Raises ValueError for no points, a repeated point, ids outside the mesh, or bad weights.
     """
     points, tolerances = _vertex_ids(mesh, points, "points"), _checked_tolerances(tolerances)
     if len(points) == 0 or len(np.unique(points)) < len(points):
-        raise ValueError(f"points must be different vertices, at least one, got {points.tolist()}: merge those at one")
+        raise ValueError(f"points must be at least one vertex, without repetitions, got {points.tolist()}")
     weights = _checked_weights(weights, len(points), len(tolerances))
     detected = np.unique(_vertex_ids(mesh, detected, "detected"))
-    distances = geodesics(mesh).distances(points, _reach(mesh, tolerances).max())[:, detected]
-    found = _distance_found(distances, weights)[:, None] <= _reach(mesh, tolerances)
+    distances = geodesics(mesh).distances(points, _distance_limits(mesh, tolerances).max())[:, detected]
+    found = _nearest_detection(distances, weights)[:, None] <= _distance_limits(mesh, tolerances)
     count = found.sum(axis=0)
     return {
         "fne": 1 - count / len(points),
@@ -38,28 +48,30 @@ def interest_point_errors(mesh, detected, points, weights=None, tolerances=TOLER
     }
 
 
-def people_near(mesh, points, marks, tolerances=TOLERANCES):
-    """(g, t) how many people marked a vertex within each tolerance of each of points (g,): the paper's weights.
+def annotators_near(
+    mesh: Mesh, points: np.ndarray, marks: Sequence[np.ndarray], tolerances: np.ndarray = TOLERANCES
+) -> np.ndarray:
+    """(g, t) the number of people who marked a vertex within each tolerance of each of points (g,).
 
-    marks: the marked vertex ids of each person, a list of arrays. tolerances (t,) are shares of the diagonal. Raises
-    ValueError for ids outside the mesh.
+    The weights of the paper. marks: the marked vertex ids of each person, a list of arrays. tolerances (t,) are shares
+    of the diagonal. Raises ValueError for ids outside the mesh.
     """
-    points, reach = _vertex_ids(mesh, points, "points"), _reach(mesh, _checked_tolerances(tolerances))
-    distances = geodesics(mesh).distances(points, reach.max())
+    points, limits = _vertex_ids(mesh, points, "points"), _distance_limits(mesh, _checked_tolerances(tolerances))
+    distances = geodesics(mesh).distances(points, limits.max())
     nearest = [distances[:, _vertex_ids(mesh, mark, "marks")].min(axis=1, initial=np.inf) for mark in marks]
-    return sum((one[:, None] <= reach for one in nearest), np.zeros((len(points), len(reach)), dtype=np.int64))
+    return sum((one[:, None] <= limits for one in nearest), np.zeros((len(points), len(limits)), dtype=np.int64))
 
 
-def _distance_found(distances, weights):
-    """(g,) from each point to the nearest detected vertex that has no nearer point, infinite where there is none."""
+def _nearest_detection(distances, weights):
+    """(g,) distance of each point to the nearest detected vertex without a nearer point; infinite if there is none."""
     heavy = np.argsort(-weights.sum(axis=1), kind="stable")
     owner = heavy[np.argmin(distances[heavy], axis=0)]
     owned = owner == np.arange(len(distances))[:, None]
     return np.where(owned, distances, np.inf).min(axis=1, initial=np.inf)
 
 
-def _reach(mesh, tolerances):
-    """(t,) tolerances in units of the mesh; a little more, so that rounding decides nothing at whole edges."""
+def _distance_limits(mesh, tolerances):
+    """(t,) tolerances in units of the mesh; slightly more, so that rounding does not matter at multiples of an edge."""
     return tolerances * mesh.diagonal * (1 + 1e-9)
 
 

@@ -1,15 +1,17 @@
-"""Normalised scanpath saliency: how far above the surface's average the prediction stands where people looked."""
+"""Normalised scanpath saliency: the standardised prediction at the fixations."""
 
-from .truth import checked, standardised
+import numpy as np
+
+from .ground_truth import GroundTruth, checked_saliency, standardised
 
 
-def nss(saliency, truth):
+def nss(saliency: np.ndarray, truth: GroundTruth) -> float:
     """Mean over the fixations of saliency (n,) in standard deviations above its mean over the area.
 
-    A fixation weighs its amount (seconds of gaze or counts). 0 is chance and what a constant saliency gets; there is
+    Fixations are weighted by their amount (seconds of gaze or counts). Chance, and a constant saliency, is 0; there is
     no upper bound. Source: Peters, Iyer, Itti and Koch, Components of bottom-up gaze allocation in natural images,
     Vision Research 2005; Bylinskii et al., PAMI 2019, section 4.1. Raises ValueError for a saliency of another shape or
     with NaN.
     """
-    predicted = standardised(checked(saliency, truth), truth.shares)
+    predicted = standardised(checked_saliency(saliency, truth), truth.shares)
     return float(truth.amounts @ predicted / truth.amounts.sum())

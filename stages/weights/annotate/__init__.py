@@ -1,4 +1,4 @@
-"""A small local web page on which a person marks the points of a mesh that matter, and the files of such marks."""
+"""A local web page on which a person marks interest points of a mesh, and the files of these marks."""
 
 from .marks import MarksChanged, MarksError, check_on_mesh, read_marks, write_marks
 from .server import open_server

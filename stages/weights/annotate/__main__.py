@@ -10,8 +10,11 @@ import sys
 import webbrowser
 from pathlib import Path
 
+from stages.kit import Mesh
+from stages.kit.command import errors_in_one_line
 from stages.kit.files import read_mesh
-from stages.kit.run import DATA, errors_in_one_line, object_names
+from stages.kit.run import object_names
+from stages.kit.workspace import Workspace
 from stages.meshes import MeshError, load, normalise
 
 from .server import HOST, open_server
@@ -19,13 +22,13 @@ from .server import HOST, open_server
 PORT = 8062
 
 
-def find_mesh(text):
-    """(name, normalised mesh) of a mesh file or of an object in data/meshes; ValueError names the objects there are."""
-    known, path = object_names(), Path(text)
+def find_mesh(text: str, workspace: Workspace) -> tuple[str, Mesh]:
+    """(name, normalised mesh) of a mesh file or of an object of a data set; ValueError names the objects there are."""
+    known, path, meshes = object_names(workspace), Path(text), workspace.data / "meshes"
     if text in known:
-        return text, read_mesh(DATA / "meshes" / f"{text}.npz")
+        return text, read_mesh(meshes / f"{text}.npz")
     if not path.is_file():
-        there = ", ".join(known) or f"none; `dvc repro meshes` fills {DATA / 'meshes'}"
+        there = ", ".join(known) or f"none; `dvc repro meshes@{workspace.dataset}` fills {meshes}"
         raise ValueError(f"{text!r} is neither a mesh file nor an object; objects: {there}")
     try:
         return path.stem, normalise(load(path))
@@ -33,19 +36,21 @@ def find_mesh(text):
         raise ValueError(f"{path}: {error}") from None
 
 
-def main():
-    first, _, rest = __doc__.partition("\n")
+def main() -> None:
+    """Serves the page of the mesh that the command line names."""
+    first, _, rest = (__doc__ or "").partition("\n")
     form = argparse.RawDescriptionHelpFormatter
     parser = argparse.ArgumentParser(
         "python -m stages.weights.annotate", description=first, epilog=rest, formatter_class=form
     )
-    parser.add_argument("mesh", metavar="MESH", help="a mesh file, or the name of an object in data/meshes")
+    parser.add_argument("dataset", metavar="SET", help="the data set of the object")
+    parser.add_argument("mesh", metavar="MESH", help="the name of an object in data/SET/meshes, or a mesh file")
     parser.add_argument("--annotator", metavar="NAME", default="", help="who marks (default: the page asks)")
     parser.add_argument("--port", type=int, default=PORT, help=f"default {PORT}; 0 takes any free one")
-    parser.add_argument("--folder", default=DATA / "annotations", help="where the points go (default: %(default)s)")
+    parser.add_argument("--folder", default="data/annotations", help="where the points go (default: %(default)s)")
     chosen = parser.parse_args()
     errors_in_one_line("annotate")
-    name, mesh = find_mesh(chosen.mesh)
+    name, mesh = find_mesh(chosen.mesh, Workspace(Path("."), chosen.dataset))
     server = open_server(name, mesh, chosen.folder, chosen.annotator, chosen.port)
     address = f"http://{HOST}:{server.server_port}/"
     try:

@@ -50,13 +50,13 @@ function change(next, text) {
 }
 
 function mark(left, top) {
-  view.settle();
+  view.paintPending();
   const near = dots.findIndex((dot) => !dot.hidden && Math.hypot(dot.left - left, dot.top - top) < ON_DOT);
   if (near >= 0) return choose(near);
   const vertex = view.pick(left, top);
   if (vertex < 0) return say("No point there: click on the object.");
-  const known = marks.findIndex((one) => one.vertex === vertex);
-  if (known >= 0) return choose(known);
+  const marked = marks.findIndex((one) => one.vertex === vertex);
+  if (marked >= 0) return choose(marked);
   change([...marks, { time: new Date().toISOString(), vertex }], `Point ${marks.length + 1} marked.`);
   scrollTo(marks.length - 1);
 }

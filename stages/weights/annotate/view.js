@@ -85,8 +85,8 @@ export class View {
     requestAnimationFrame(() => { this.waiting = false; this.paint(); });
   }
 
-  // Draws at once what waits for its turn, so that a click meets the picture that the camera stands for.
-  settle() {
+  // Draws a pending frame now, so that a click is evaluated on the current view.
+  paintPending() {
     if (this.waiting) this.paint();
   }
 

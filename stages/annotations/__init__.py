@@ -1,0 +1,1 @@
+"""How well marks of salient places agree with each other and with human gaze."""

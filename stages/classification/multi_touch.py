@@ -1,0 +1,102 @@
+"""Several touches as one sample: the trials of T table 4.6, and variants that may explain it (T4.2.3.5)."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from stages.kit import Stopwatch
+from stages.kit.split import Split
+
+from .protocol import random_holdout, region_holdout
+from .touches import TouchMap, concatenate_touches, draw_combinations
+from .trials import NO_DISTANT_TOUCH, TouchSet, Trial
+
+# Of combining the touches of one side of a split, see trials.py.
+VARIANTS = ("_unplaced", "_ordered", "_disjoint", "_many")
+
+MANY_FACTOR = 5  # times as many combinations in the variant `_many`
+QUADRATIC_TIME = ("svm",)  # in the number of samples: not run on many
+
+
+@dataclass(frozen=True)
+class MultiTouchTrials:
+    """Trials of several touches. counts: of touches; draws_per_imprint: combinations that start with an imprint."""
+
+    counts: tuple[int, ...]
+    draws_per_imprint: int
+    all_variants: bool
+
+    def trials(self, touched: TouchSet, random_state: int) -> Iterator[Trial]:
+        """The trials of one repetition: random hold-out, with the VARIANTS if all_variants, and one side held out."""
+        variants = VARIANTS if self.all_variants else ()
+        parts = random_holdout(touched.truth, random_state)
+        yield from self._split_trials(touched, parts, random_state, Split.RANDOM, ("", *variants))
+        parts = region_holdout(touched.truth, touched.places, touched.width, random_state, side=True)
+        if parts is None:
+            yield Trial("touches_1", Split.REGIONS, note=NO_DISTANT_TOUCH)
+        else:
+            yield from self._split_trials(touched, parts, random_state, Split.REGIONS, ("",))
+        if self.all_variants:
+            yield from self._mixed_trials("touches_{}_mixed", touched, random_state)
+            yield from self._mixed_trials("first_15_touches_{}_mixed", touched.first_of_each(), random_state)
+
+    def _split_trials(self, touched, parts, random_state, split, variants):
+        """Combinations within each side of a split; the map is fitted to the training side."""
+        numbers, seconds = _map_and_positions(touched, parts[0], random_state)
+        for variant in variants:
+            for count in self.counts:
+                random = np.random.default_rng([random_state, count])
+                fewest = min(np.bincount(touched.truth[side]).min() for side in parts)
+                if fewest < count:
+                    note = f"an object has {fewest} touches on one side of the split: no combination of {count}"
+                    yield Trial(f"touches_{count}{variant}", split, note=note)
+                    continue
+                sides = [self._combine(touched, side, count, variant, random) for side in parts]
+                columns = numbers[:, :2] if variant == "_unplaced" else numbers
+                skipped = QUADRATIC_TIME if variant == "_many" else ()
+                yield _trial(f"touches_{count}{variant}", split, columns, touched.truth, sides, seconds, skipped)
+
+    def _combine(self, touched, side, count, variant, random):
+        """(m, count) indices of the imprints of one side."""
+        if variant == "_disjoint":
+            return side[_disjoint(touched.truth[side], count, random)]
+        draws_per_imprint = self.draws_per_imprint * (MANY_FACTOR if variant == "_many" else 1)
+        drawn = [side[draw_combinations(touched.truth[side], count, random)] for _ in range(draws_per_imprint)]
+        combinations = np.concatenate(drawn)
+        if variant == "_ordered":
+            combinations = np.take_along_axis(combinations, touched.places[combinations, 2].argsort(axis=1), axis=1)
+        return combinations
+
+    def _mixed_trials(self, name, touched, random_state):
+        """Combinations of all imprints, split afterwards: imprints of test combinations also occur in training."""
+        everything = np.arange(len(touched.truth))
+        numbers, seconds = _map_and_positions(touched, everything, random_state)
+        for count in self.counts:
+            combinations = self._combine(touched, everything, count, "", np.random.default_rng([random_state, count]))
+            sides = [combinations[side] for side in random_holdout(touched.truth[combinations[:, 0]], random_state)]
+            yield _trial(name.format(count), Split.RANDOM, numbers, touched.truth, sides, seconds)
+
+
+def _map_and_positions(touched, train, random_state):
+    """((k, 5): two coordinates on the map and the position of each imprint, seconds)."""
+    with Stopwatch() as watch:
+        map_positions = TouchMap(random_state).fit(touched.samples[train]).transform(touched.samples)
+    return np.hstack([map_positions, touched.places]), watch.seconds
+
+
+def _disjoint(truth, count, random):
+    """(m, count) indices of combinations that share no imprint."""
+    combinations = []
+    for one in np.unique(truth):
+        own = random.permutation(np.flatnonzero(truth == one))
+        combinations.append(own[: len(own) // count * count].reshape(-1, count))
+    return np.concatenate(combinations)
+
+
+def _trial(variant, split, numbers, truth, sides, seconds, skipped=()):
+    train, test = sides
+    combinations = np.concatenate(sides)
+    parts = (np.arange(len(train)), len(train) + np.arange(len(test)))
+    samples, labels = concatenate_touches(numbers, combinations), truth[combinations[:, 0]]
+    return Trial(variant, split, samples, labels, parts, "reduced", seconds, skipped)

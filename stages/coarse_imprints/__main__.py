@@ -1,0 +1,62 @@
+"""Finds why frozen filters are at chance on a 16 x 16 array in T table 5.3.
+
+Reads data/SET/meshes and data/SET/salient_points of classes of objects. Trains the head of a frozen MobileNetV2 on
+imprints of variants that differ in one thing at a time: the array, the colour channel, how cells become pixels, the
+statistics of the normalisation layers, the learning rate, the number of touches, a real sensor's faults. A quarter of
+the touches, drawn at random, is tested. Writes data/SET/coarse_imprints/NAME.npz (the imprints of an object) and
+reports/measurements/SET/coarse_imprints.csv.gz.
+"""
+
+import dataclasses
+import functools
+
+import numpy as np
+
+from stages.kit.command import workspace_of_arguments
+from stages.kit.run import Rows, StageRun
+from stages.kit.workspace import Workspace
+from stages.meshes.classes import read_classes
+from stages.networks.weights import imagenet_state
+
+from . import press, trial
+from .schema import COLUMNS, Params
+from .variants import VARIANTS
+
+
+def run(workspace: Workspace) -> None:
+    """Runs the stage on the data set of a workspace."""
+    settings = workspace.settings(Params)
+    unknown = sorted(set(settings.variants) - set(VARIANTS))
+    if unknown:
+        raise ValueError(f"coarse_imprints.variants: {unknown[0]} is not one of {', '.join(VARIANTS)}")
+    chosen = [VARIANTS[name] for name in settings.variants]
+    if any(variant.weights == "imagenet" for variant in chosen):
+        imagenet_state("mobilenet_v2")  # before the work starts, not in each worker
+    with StageRun(workspace, "coarse_imprints", COLUMNS, inputs=("meshes", "salient_points")) as stage:
+        members = read_classes(workspace.data / "meshes")
+        each = dataclasses.replace(settings, variants=[])  # what an object or a variant depends on
+        arrays = sorted({variant.cells for variant in chosen})
+        work = functools.partial(press.process, data=workspace.data, settings=each, arrays=arrays, seed=stage.seed)
+        objects = [name for names in members.values() for name in names]
+        stage.each(work, objects, reads=("meshes/{}.npz", "salient_points/{}.npz"))
+        train = functools.partial(trial.process, made=stage.folder, members=members, settings=each, seed=stage.seed)
+        stage.each(train, settings.variants)
+        stage.metrics(summary(stage.rows))
+    print(f"coarse_imprints: {workspace.dataset}, {len(members)} classes, {len(chosen)} variants")
+
+
+def summary(rows: Rows) -> dict[str, float]:
+    """{variant: the mean accuracy}."""
+    found: dict[str, list[float]] = {}
+    for row in rows:
+        found.setdefault(row["setting"], []).append(row["value"])
+    return {name: round(float(np.mean(values)), 6) for name, values in found.items()}
+
+
+def main() -> None:
+    """Runs the stage on the data set that the command line names."""
+    run(workspace_of_arguments(__doc__, "coarse_imprints"))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,36 @@
+"""Writes build/code/STAGE for each stage: the files that it imports and a digest of each, what DVC's stages depend on.
+
+A changed comment, docstring or type annotation changes none of them; see stages.kit.code.
+"""
+
+import argparse
+from pathlib import Path
+
+from stages.kit.code import PACKAGE, ROOT, stage_digests
+from stages.kit.files import write_text
+
+
+def stage_names() -> list[str]:
+    """The stages of this repository: the packages that can be run and have settings, in alphabetical order."""
+    return sorted(path.parent.name for path in (ROOT / PACKAGE).glob("*/__main__.py"))
+
+
+def write_digests(folder: Path) -> None:
+    """Writes folder/STAGE for each stage; files of stages that are gone are removed."""
+    names = stage_names()
+    for name in names:
+        write_text(folder / name, "\n".join(f"{digest}  {path}" for path, digest in stage_digests(name).items()))
+    for path in folder.iterdir():
+        if path.name not in names:
+            path.unlink()
+
+
+def main() -> None:
+    """Writes the digests below the current folder."""
+    parser = argparse.ArgumentParser(prog="python -m stages.code", description=__doc__)
+    parser.parse_args()
+    write_digests(Path("build/code"))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,175 @@
+"""The planes and axes of symmetry of a shape, exact or approximate."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import KDTree
+
+from stages.kit import Mesh
+from stages.kit.mesh import unit
+
+DENSE, SPARSE = 8000, 600  # points that represent the surface, and points that are mirrored onto it
+SEARCH = 120  # of the sparse points, enough to rank the directions before refinement
+DIRECTIONS = 200  # over the half sphere, 10 degrees apart: close enough for the refinement to converge
+STARTS = 10  # best directions that are refined
+STEPS = 12  # of the refinement, enough to converge
+SEPARATION = np.cos(np.radians(25))  # planes closer than this are duplicates
+TOLERANCE = 0.015  # of the diagonal: distance (rms) of mirrored points from the surface at which the score is 1 / e
+MIN_SCORE = 0.7  # of a symmetry that people see
+MIN_GAIN = 0.1  # of a plane over the body of revolution around its axis: a cup's plane through the handle
+ORDERS = (3, 4, 5, 6)  # of rotational symmetry; order two is not perceived as radial
+GENERIC = (50.0, 95.0, 222.5)  # degrees, of no low order: only a body of revolution is symmetric under all of them
+
+
+@dataclass(frozen=True)
+class Symmetries:
+    """centre (3,) of the surface; planes [(unit normal (3,), offset, score)]; axes [(unit axis (3,), score, revolves)].
+
+    Axes run through the centre. Scores in 0..1; `revolves`: the shape is a body of revolution around this axis.
+    """
+
+    centre: np.ndarray
+    planes: tuple
+    axes: tuple
+
+
+def shape_symmetries(mesh: Mesh) -> Symmetries:
+    """The Symmetries of a mesh: planes of bilateral and axes of radial symmetry that score at least MIN_SCORE.
+
+    Candidate planes go through the centre of the surface. Their normals are the principal axes and directions spread
+    over the half sphere, the best of which are refined (`_refine`); after Podolak et al., A planar-reflective symmetry
+    transform for 3D shapes, SIGGRAPH 2006, with points instead of a grid. The score is exp(-(d / tolerance)^2), where d
+    is the distance (rms) of mirrored points to the surface, so that a spout or handle without a counterpart lowers it.
+    An axis of order three or more is a principal axis, or lies in several mirror planes. A shape that is symmetric in
+    every direction (a sphere) has no distinct symmetry, so that none is returned; nor is any for a mesh without area.
+    """
+    if not mesh.face_areas.sum() > 0:
+        return Symmetries(np.zeros(3), (), ())
+    dense = sample_surface(mesh, DENSE)
+    surface = SampledSurface(dense, mesh.diagonal, sample_surface(mesh, SPARSE))
+    principal = np.linalg.eigh(_products(dense, dense))[1].T
+    planes = _mirror_planes(surface, principal)
+    axes = _axes(surface, principal, planes)
+    revolution = [(axis, score) for axis, score, revolves in axes if revolves]
+    if len(revolution) > 1:
+        return Symmetries(surface.centre, (), ())
+    distinct = [p for p in planes if not any(_through_axis(p, *axis) for axis in revolution)]
+    return Symmetries(surface.centre, tuple(distinct), tuple(axes))
+
+
+def _through_axis(plane, axis, score):
+    """Whether a plane is one of the many through the axis of a body of revolution, none of which is distinct."""
+    return abs(plane[0] @ axis) < 0.1 and plane[2] < score + MIN_GAIN
+
+
+class SampledSurface:
+    """Points that represent a surface, and the distance of other points from it."""
+
+    def __init__(self, dense: np.ndarray, diagonal: float, sparse: np.ndarray) -> None:
+        self.tree, self.dense, self.sparse = KDTree(dense), dense, sparse
+        self.centre = dense.mean(axis=0)
+        self.tolerance = TOLERANCE * diagonal
+        self.floor = self.error(sparse)  # the distance of points that lie on the surface
+
+    def score(self, moved: np.ndarray) -> float:
+        """exp(-(d / tolerance)^2) of moved points (k, 3), d the root of their mean squared distance."""
+        return float(np.exp(-max(self.error(moved) - self.floor, 0) / self.tolerance**2))
+
+    def error(self, moved: np.ndarray) -> np.ndarray:
+        """Mean squared distance of moved points (..., k, 3): (...)."""
+        return (self.tree.query(moved)[0] ** 2).mean(axis=-1)
+
+
+def sample_surface(mesh: Mesh, count: int) -> np.ndarray:
+    """Points (count, 3) spread evenly over the surface by area, the same at every call.
+
+    Stratified over the cumulative area of the faces; within the faces the points follow the R2 sequence (Roberts 2018).
+    """
+    passed = np.cumsum(mesh.face_areas)
+    faces = np.searchsorted(passed, (np.arange(count) + 0.5) / count * passed[-1])
+    u, v = (0.5 + np.outer([0.7548776662466927, 0.5698402909980532], np.arange(count))) % 1
+    over = u + v > 1
+    u, v = np.where(over, 1 - u, u), np.where(over, 1 - v, v)
+    a, b, c = mesh.vertices[mesh.faces[faces]].transpose(1, 0, 2)
+    return a + u[:, None] * (b - a) + v[:, None] * (c - a)
+
+
+def mirror(points: np.ndarray, normal: np.ndarray, offset: float) -> np.ndarray:
+    """Points (k, 3) mirrored at the plane normal @ x = offset."""
+    return points - 2 * (points @ normal - offset)[:, None] * normal
+
+
+def rotate(points: np.ndarray, axis: np.ndarray, angle: float, centre: np.ndarray) -> np.ndarray:
+    """Points (k, 3) rotated by an angle in degrees about an axis through the centre (Rodrigues)."""
+    away = points - centre
+    cosine, sine = np.cos(np.radians(angle)), np.sin(np.radians(angle))
+    along = (away @ axis)[:, None] * axis
+    return centre + along + cosine * (away - along) + sine * np.cross(axis, away)
+
+
+def _mirror_planes(surface, principal):
+    directions = np.concatenate([principal, _half_sphere(DIRECTIONS)])
+    few = surface.sparse[:: max(len(surface.sparse) // SEARCH, 1)]
+    errors = surface.error(np.stack([mirror(few, n, n @ surface.centre) for n in directions]))
+    starts = _distinct(directions[np.argsort(errors, kind="stable")])[:STARTS]
+    found = [_refine(surface, few, normal) for normal in [*principal, *starts]]
+    scores = [surface.score(mirror(surface.sparse, n, d)) for n, d in found]
+    ranked = [(*found[k], scores[k]) for k in np.argsort(scores, kind="stable")[::-1] if scores[k] >= MIN_SCORE]
+    chosen = _distinct([n for n, _, _ in ranked], positions=True)
+    return [ranked[k] for k in chosen]
+
+
+def _refine(surface, points, normal):
+    """(normal, offset) of the plane near an initial normal that best mirrors the points onto the surface.
+
+    Iterative closest points: with q the surface point nearest to the mirrored p, the best normal minimises n'pq'n over
+    the centred pairs, which is an eigenvector, and the plane lies half-way between the two means.
+    """
+    offset = normal @ surface.centre
+    for _ in range(STEPS):
+        nearest = surface.dense[surface.tree.query(mirror(points, normal, offset))[1]]
+        values = _products(points, nearest)
+        normal = np.linalg.eigh(values + values.T)[1][:, 0]
+        offset = normal @ (points.mean(axis=0) + nearest.mean(axis=0)) / 2
+    return normal, offset
+
+
+def _products(p, q):
+    """(3, 3) sum of outer products of two centred point sets (k, 3). Not by BLAS, whose sums depend on its threads."""
+    return ((p - p.mean(axis=0))[:, :, None] * (q - q.mean(axis=0))[:, None, :]).sum(axis=0)
+
+
+def _axes(surface, principal, planes):
+    crossings = [np.cross(a[0], b[0]) for i, a in enumerate(planes) for b in planes[:i]]
+    candidates = _distinct([*principal, *(unit(c) for c in crossings if np.linalg.norm(c) > 0.2)])
+    found = []
+    for axis in candidates:
+        score = min(_rotation_score(surface, axis, angle) for angle in GENERIC)
+        revolves = score >= MIN_SCORE
+        if not revolves:
+            score = max(_rotation_score(surface, axis, 360 / n) for n in ORDERS)
+        if score >= MIN_SCORE:
+            found.append((axis, score, revolves))
+    return found
+
+
+def _rotation_score(surface, axis, angle):
+    return surface.score(rotate(surface.sparse, axis, angle, surface.centre))
+
+
+def _distinct(directions, positions=False):
+    """The directions (or their positions) that are not near an earlier one, up to sign."""
+    kept = []
+    for k, direction in enumerate(directions):
+        if all(abs(direction @ directions[other]) < SEPARATION for other in kept):
+            kept.append(k)
+    return kept if positions else [directions[k] for k in kept]
+
+
+def _half_sphere(count):
+    """(count, 3) unit directions spread evenly over the half sphere z > 0 (Fibonacci lattice)."""
+    k = np.arange(count)
+    z = (k + 0.5) / count
+    angle = k * np.pi * (3 - np.sqrt(5))
+    r = np.sqrt(1 - z * z)
+    return np.stack([r * np.cos(angle), r * np.sin(angle), z], axis=1)

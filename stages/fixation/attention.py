@@ -1,0 +1,150 @@
+"""The attention of the networks on one object, compared with human fixations, rivals and controls."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from stages.conspicuity import facing
+from stages.kit import Mesh, Stopwatch, Viewpoint
+from stages.kit.files import read_arrays, read_mesh, write_arrays
+from stages.kit.rng import rng
+from stages.salient_points import read_saliency
+
+from .agreement import ALL_VIEWS, agreement_rows, task_correlations
+from .backbone import read_maps
+from .cam import grad_cam, resize_cams
+from .controls import centre_prior, random_saliency
+from .fusion import entropy, fuse, highest_level
+from .heads import read_head, scores
+from .options import Method
+from .pictures import read_pictures
+from .schema import Params
+from .tasks import FUSED_TASKS, TASKS
+from .vertices import mean_over_views, project_to_vertices
+from .viewpoints import evaluated_views, viewpoint_sphere
+
+MODELS = {
+    "ewigc": fuse,  # T eq. 3.24
+    "ewigc_l4": lambda pictures: fuse(highest_level(pictures)),  # T eq. 3.25
+    "average": lambda pictures: pictures.mean(axis=0),  # the baseline without weighting by entropy
+}
+RIVALS = ("mesh_saliency", "enhanced", "thesis_ssim", "height")  # of stages.salient_points
+
+
+def measure_attention(
+    name: str,
+    folder: Path,
+    data: Path,
+    made: Path,
+    settings: Params,
+    methods: Sequence[Method],
+    tasks: Mapping[str, Mapping[str, str]],
+    seed: int,
+) -> list[dict]:
+    """Writes the attention of all methods on one object to NAME.npz, and returns its rows.
+
+    made: the folder of the pictures, maps and heads. Rows of the rivals (from stages.salient_points), of the centre
+    prior and of random saliency are included.
+    """
+    mesh = read_mesh(data / "meshes" / f"{name}.npz")
+    viewpoints = viewpoint_sphere(settings.parallels, settings.azimuths)
+    seen, evaluated = facing(mesh, viewpoints) > 0, evaluated_views(settings.parallels, settings.azimuths)
+    ground_truth = GroundTruth(data, name, mesh, seen, evaluated)
+    stored, rows = {"seen": seen.any(axis=0), "visible": seen[evaluated]}, []
+    rendering_seconds = read_pictures(made, name)[1]
+    for method in methods:
+        with Stopwatch() as watch:
+            cams, network_seconds = object_cams(made, method, name, tasks)
+            values, bits = project_maps(cams, mesh, viewpoints, seen, settings.size, method.network)
+            whole = mean_over_views(values, seen)
+        names = [*cams, *(MODELS if set(FUSED_TASKS) & set(cams) else ())]
+        seconds = rendering_seconds + network_seconds + watch.seconds
+        for k, task in enumerate(names):
+            stored[f"{method.name}.{task}"] = whole[k].astype(np.float16)
+            stored[f"{method.name}.{task}.views"] = values[evaluated, k].astype(np.float16)
+            rows += ground_truth.rows(method.name, task, values[evaluated, k], whole[k], seconds)
+        stored[f"{method.name}.maps"] = np.stack([cam[evaluated] for cam in cams.values()], axis=1).astype(np.float16)
+        row = {"item": name, "method": method.name}
+        rows += [row | one for one in task_correlations(values[:, : len(cams)], seen, list(cams))]
+        rows += [
+            row | {"task": task, "view": ALL_VIEWS, "metric": "entropy", "value": bit} for task, bit in bits.items()
+        ]
+    write_arrays(folder / f"{name}.npz", **stored)
+    return rows + baseline_rows(ground_truth, data, viewpoints, settings.size, seed)
+
+
+def object_cams(folder: Path, method: Method, name: str, tasks: Iterable[str]) -> tuple[dict[str, np.ndarray], float]:
+    """(dict task -> (v, i, j) f4 Grad-CAM map of the predicted class, seconds of the network)."""
+    if method.mode == "finetuned":
+        stored = read_arrays(folder / ".cams" / method.name / f"{name}.npz")
+        return {task: stored[task] for task in tasks}, float(stored["seconds"])
+    maps, seconds = read_maps(folder, method.name, name)
+    maps = maps.astype(np.float32)
+    pooled, found = maps.mean(axis=(2, 3)), {}
+    for task in tasks:
+        weights, bias, _ = read_head(folder, method.name, task)
+        found[task] = grad_cam(maps, weights, scores(pooled, weights, bias).argmax(axis=1))
+    return found, seconds
+
+
+def project_maps(
+    cams: Mapping[str, np.ndarray],
+    mesh: Mesh,
+    viewpoints: Sequence[Viewpoint],
+    seen: np.ndarray,
+    size: int,
+    network: str,
+) -> tuple[np.ndarray, dict[str, float]]:
+    """((v, tasks and models, n) f4 at the vertices in each view, dict task -> mean entropy of its maps in bits)."""
+    fused = [k for k, task in enumerate(cams) if task in FUSED_TASKS]
+    values, bits = [], []
+    for view, viewpoint in enumerate(viewpoints):
+        pictures = resize_cams(np.stack([cam[view] for cam in cams.values()]), size, network)
+        models = [model(pictures[fused]) for model in MODELS.values()] if fused else []
+        values.append(
+            project_to_vertices(np.stack([*pictures, *models]), mesh, viewpoint, seen[view]).astype(np.float32)
+        )
+        bits.append([entropy(picture) for picture in pictures])
+    return np.stack(values), dict(zip(cams, np.mean(bits, axis=0).tolist(), strict=True))
+
+
+def baseline_rows(
+    ground_truth: "GroundTruth", data: Path, viewpoints: Sequence[Viewpoint], size: int, seed: int
+) -> list[dict]:
+    """Rows of the rivals and controls, compared with the ground truth in the same way."""
+    mesh = ground_truth.mesh
+    prior = [project_to_vertices(centre_prior(size)[None], mesh, viewpoint, seen)
+             for viewpoint, seen in zip(viewpoints, ground_truth.seen, strict=True)]  # fmt: skip
+    prior = np.stack(prior)
+    rows = ground_truth.rows(
+        "control", "centre_prior", prior[ground_truth.evaluated, 0], mean_over_views(prior, ground_truth.seen)[0], None
+    )
+    found = {"random": random_saliency(len(mesh.vertices), rng(seed, f"{ground_truth.name} noise"))}
+    saliency = read_saliency(data / "salient_points" / f"{ground_truth.name}.npz")
+    found |= {rival: saliency[rival].astype(np.float64) for rival in RIVALS if rival in saliency}
+    for rival, values in found.items():
+        method = "control" if rival == "random" else "rival"
+        rows += ground_truth.rows(method, rival, np.stack([values] * len(ground_truth.evaluated)), values, None)
+    return rows
+
+
+class GroundTruth:
+    """The human fixations on one object, where there are any.
+
+    seen (v, n) boolean: the vertices visible in each view; evaluated: the numbers of the views that are compared.
+    """
+
+    def __init__(self, data: Path, name: str, mesh: Mesh, seen: np.ndarray, evaluated: Sequence[int]) -> None:
+        self.name, self.mesh, self.seen, self.evaluated = name, mesh, seen, evaluated
+        path = data / "weights" / "ground_truth" / f"{name}.npz"
+        self.fixations = read_arrays(path) if path.exists() else None
+
+    def rows(self, method: str, task: str, by_view: np.ndarray, whole: np.ndarray, seconds: float | None) -> list[dict]:
+        """Rows of a saliency, (3, n) in the evaluated views and (n,) in all; none where there are no fixations."""
+        if self.fixations is None:
+            return []
+        row = {"item": self.name, "method": method, "task": task, "seconds": seconds}
+        visible = self.seen[self.evaluated]
+        found = agreement_rows(self.mesh, self.fixations, visible, by_view, whole, distances=task not in TASKS)
+        return [row | one for one in found]

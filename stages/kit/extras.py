@@ -1,0 +1,32 @@
+"""What a core install leaves out, and the extra of this package that brings it."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+MODULES = {
+    "pipeline": (
+        "diskcache", "dvc", "filelock", "hydra", "joblib", "matplotlib", "minisom", "omegaconf", "pandas",
+        "point_cloud_utils", "pymeshlab", "pyrender", "pywt", "robust_laplacian", "rtree", "skimage", "sklearn",
+        "threadpoolctl", "tqdm", "yaml",
+    ),
+    "deep": ("kornia", "onnx", "onnxruntime", "onnxscript", "torch", "torchvision"),
+    "cluster": ("distributed",),
+}  # fmt: skip
+EXTRAS = {module: extra for extra, modules in MODULES.items() for module in modules}
+
+
+class MissingExtra(ModuleNotFoundError):
+    """A package that one of our extras brings is not installed; the message is one line and names the extra."""
+
+
+@contextmanager
+def from_extra() -> Iterator[None]:
+    """Around the import of what a core install leaves out: raises MissingExtra where it is not installed."""
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        module = (error.name or "").partition(".")[0]
+        if module not in EXTRAS:
+            raise
+        remedy = f"pip install 'haptic-glance[{EXTRAS[module]}]'"
+        raise MissingExtra(f"{module} is not installed: {remedy}", name=error.name) from None

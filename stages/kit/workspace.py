@@ -1,0 +1,89 @@
+"""Where a run works: the repository root, its settings, and the data set that a stage runs on."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any, TypeVar
+
+from .params import FILE, ParamsError, check_common, check_section, load_params, section_of
+
+Settings = TypeVar("Settings")
+
+
+@dataclass(frozen=True)
+class Workspace:
+    """Everything that a stage reads or writes lies below `root`; what belongs to a data set lies below its name.
+
+    root: the folder that holds params.yaml. dataset: a set that params.yaml names, empty for what is about all sets.
+    """
+
+    root: Path
+    dataset: str = ""
+
+    @property
+    def data(self) -> Path:
+        """data/SET: a folder for each stage."""
+        return self.root / "data" / self.dataset
+
+    @property
+    def reports(self) -> Path:
+        """The folder of tables, figures, measurements and metrics."""
+        return self.root / "reports"
+
+    @property
+    def measurements(self) -> Path:
+        """reports/measurements/SET: a table of rows for each stage."""
+        return self.reports / "measurements" / self.dataset
+
+    @property
+    def metrics(self) -> Path:
+        """reports/metrics/SET: a file of a few numbers for each stage."""
+        return self.reports / "metrics" / self.dataset
+
+    @property
+    def build(self) -> Path:
+        """What may be deleted at any time: digests of code, the cache of objects, unfinished runs."""
+        return self.root / "build"
+
+    @cached_property
+    def params(self) -> dict[str, Any]:
+        """The whole params.yaml; ParamsError where there is none or it is of an older layout."""
+        path = self.root / FILE
+        if not path.exists():
+            raise ParamsError(f"there is no {path}: change to the repository root, or run `python -m stages.compose`")
+        values = load_params(path)
+        check_common(values)
+        return values
+
+    @property
+    def seed(self) -> int:
+        """The seed of all random numbers; an item's name joins it."""
+        return self.params["seed"]
+
+    @property
+    def parallel(self) -> dict[str, Any]:
+        """How items run side by side: backend and workers."""
+        return self.params.get("parallel", {})
+
+    @property
+    def sets(self) -> list[str]:
+        """The data sets that are switched on, in order."""
+        return list(self.params["sets"])
+
+    def on(self, dataset: str) -> "Workspace":
+        """The same root, another data set."""
+        return Workspace(self.root, dataset)
+
+    def settings(self, schema: type[Settings]) -> Settings:
+        """The settings of one stage as an instance of its schema: `workspace.settings(stages.lod.schema.Params)`.
+
+        Raises ParamsError for a section that is absent, a key that the schema does not have, or a wrong type.
+        """
+        section = section_of(schema)
+        if self.dataset and self.dataset not in self.sets:
+            raise ParamsError(f"{self.dataset} is not switched on; {FILE} names {', '.join(self.sets)}")
+        values = self.params.get(self.dataset, {}) if self.dataset else self.params
+        if section not in values:
+            where = f"{self.dataset}.{section}" if self.dataset else section
+            raise ParamsError(f"{self.root / FILE} has no section {where}: run `python -m stages.compose` anew")
+        return check_section(schema, values[section])

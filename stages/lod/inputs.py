@@ -1,0 +1,25 @@
+"""What the comparison needs of one object."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from stages.kit import Mesh
+
+
+@dataclass(frozen=True)
+class ObjectInputs:
+    """What all cells of one object share.
+
+    Its mesh; the points and the saliency (n,) by method; its own pictures (views, rows, columns), or None where they
+    are not compared; human gaze spread over the surface (n,), or None; and a cache of its simplified meshes, since many
+    methods keep the same faces, above all where nothing can be kept.
+    """
+
+    name: str
+    mesh: Mesh
+    points: dict[str, np.ndarray]
+    saliency: dict[str, np.ndarray]
+    pictures: np.ndarray | None = None
+    gaze: np.ndarray | None = None
+    cache: dict = field(default_factory=dict, repr=False)

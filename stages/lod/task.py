@@ -1,0 +1,160 @@
+"""A mesh from a file prepared for simplification, and the result brought back to its coordinates."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from stages.kit import Mesh
+from stages.meshes import clean, normalise, rotate_to_z_up
+from stages.meshes.materials import merge_equal_rows
+from stages.meshes.normalise import RADIUS, centre_and_radius
+
+from .attributes import carry
+from .borders import close_borders, cut_borders
+from .export import bake_texture
+from .feasibility import InfeasibleTarget, smallest_feasible
+from .simplify import simplify
+from .topology import half_edges
+
+
+@dataclass(frozen=True)
+class SimplificationTask:
+    """A mesh and what simplification must preserve of it.
+
+    given: the Mesh in its own units. up: its axis that points up. saliency (n,) f8 in 0..1. points (k,) vertex ids to
+    keep, most salient first, rings (k,) around each. weights: (n,) for the soft variant or None. shrink: whether the
+    neighbourhoods may shrink where the target needs it.
+    """
+
+    given: Mesh
+    up: str
+    saliency: np.ndarray
+    points: np.ndarray
+    rings: np.ndarray
+    weights: np.ndarray | None
+    backend: str
+    shrink: bool
+
+    @cached_property
+    def mesh(self) -> Mesh:
+        """The mesh centred and scaled, its axes unchanged."""
+        return normalise(self.given)
+
+    @cached_property
+    def cut(self) -> tuple[Mesh, np.ndarray]:
+        """(Mesh, ids): `mesh` cut open at the borders between materials, see `cut_borders`."""
+        return cut_borders(self.mesh)
+
+    @cached_property
+    def smallest(self) -> int:
+        """The smallest feasible face count with the points kept."""
+        return smallest_feasible(self.mesh, self.points, self.rings)
+
+    @cached_property
+    def smallest_with_borders(self) -> int:
+        """The same with the borders between materials preserved too."""
+        cut, ids = self.cut
+        return smallest_feasible(cut, *self._on_cut(ids))
+
+    @cached_property
+    def border(self) -> np.ndarray:
+        """(e, 2) vertex ids of the edges to preserve: boundary, non-manifold, and those between two materials."""
+        cut, ids = self.cut
+        return _unpaired_edges(ids[cut.faces], half_edges(cut.faces)[1])
+
+    @cached_property
+    def boundary(self) -> np.ndarray:
+        """(e, 2) the same without those between two materials, which are given up where the faces are too few."""
+        return _unpaired_edges(self.mesh.faces, half_edges(self.mesh.faces)[1])
+
+    def border_edges_kept(self, mesh: Mesh) -> int:
+        """How many edges of `border` are edges of a simplified mesh, bit for bit."""
+        n = len(self.mesh.vertices)
+        place = np.unique(np.concatenate([self.mesh.vertices, mesh.vertices]), axis=0, return_inverse=True)[1].ravel()
+        ends = np.stack([mesh.faces.ravel(), np.roll(mesh.faces, -1, axis=1).ravel()], axis=1)
+        present, required = (np.sort(rows, axis=1) @ [len(place), 1] for rows in (place[n + ends], place[self.border]))
+        return int(np.isin(required, present).sum())
+
+    @property
+    def lowest_target(self) -> int:
+        """The lowest face count to ask for: less than `smallest` where neighbourhoods may shrink."""
+        return smallest_feasible(self.mesh) if self.shrink else self.smallest
+
+    def simplified(self, faces: int) -> Mesh:
+        """The Mesh of at most `faces` faces, in the frame of `mesh`, with its attributes.
+
+        Borders between materials are preserved where that is feasible. Raises as `simplify` does.
+        """
+        try:
+            return self._simplify(*self.cut, faces)
+        except InfeasibleTarget:
+            if len(self.cut[0].vertices) == len(self.mesh.vertices):
+                raise
+        return self._simplify(self.mesh, np.arange(len(self.mesh.vertices)), faces)
+
+    def plain(self, faces: int) -> Mesh:
+        """As `simplified`, by plain quadric edge collapse: no points, no weights."""
+        nothing = np.zeros(0, dtype=np.int64)
+        other = SimplificationTask(self.given, self.up, self.saliency, nothing, nothing, None, self.backend, False)
+        return other.simplified(faces)
+
+    def points_kept(self, mesh: Mesh) -> np.ndarray:
+        """(k,) boolean: the points that are vertices of a simplified mesh, bit for bit."""
+        positions = set(map(bytes, mesh.vertices))
+        return np.array([bytes(self.mesh.vertices[point]) in positions for point in self.points], dtype=bool)
+
+    def upright(self, mesh: Mesh) -> Mesh:
+        """A mesh in the frame of `mesh` as it is rendered: +z up, its texture baked into vertex colours."""
+        return bake_texture(rotate_to_z_up(mesh, self.up))
+
+    def restored(self, mesh: Mesh) -> Mesh:
+        """A mesh in the frame of `mesh` in the units of `given`; unmoved vertices have their original coordinates."""
+        centre, radius = centre_and_radius(self.given)
+        vertices = mesh.vertices * (radius / RADIUS) + centre
+        n = len(self.mesh.vertices)
+        _, place = np.unique(np.concatenate([self.mesh.vertices, mesh.vertices]), axis=0, return_inverse=True)
+        place = place.ravel()
+        owner = np.full(place.max() + 1, -1)
+        owner[place[:n]] = np.arange(n)
+        own = owner[place[n:]]
+        vertices[own >= 0] = self.given.vertices[own[own >= 0]]
+        return Mesh(vertices, mesh.faces, mesh.colors, mesh.texture)
+
+    def _simplify(self, mesh, ids, faces):
+        keep, rings = self._on_cut(ids)
+        weights = None if self.weights is None else self.weights[ids]
+        bare = Mesh(mesh.vertices, mesh.faces)  # colours and texture are transferred once, at the end
+        found = simplify(bare, faces, keep, rings, self.backend, self.shrink, weights=weights)
+        return self.mesh if found is bare else carry(self.mesh, close_borders(found, mesh, ids))
+
+    def _on_cut(self, ids):
+        """(vertex ids, rings): the points on the cut mesh, whose vertices have the old ids `ids`; with all copies."""
+        order = np.argsort(ids, kind="stable")
+        first, last = (np.searchsorted(ids[order], self.points, side) for side in ("left", "right"))
+        copies = np.repeat(np.arange(len(self.points)), last - first)
+        offset = np.arange(len(copies)) - np.repeat(np.cumsum(last - first) - (last - first), last - first)
+        return order[first[copies] + offset], self.rings[copies]
+
+
+def _unpaired_edges(faces, other):
+    alone = other < 0
+    ends = np.stack([faces.ravel()[alone], np.roll(faces, -1, axis=1).ravel()[alone]], axis=1)
+    return np.unique(np.sort(ends, axis=1), axis=0)
+
+
+def repaired(mesh: Mesh) -> tuple[Mesh, list[str]]:
+    """(Mesh, notes): `stages.meshes.clean` of the mesh, coincident vertices merged where that closes the boundary.
+
+    Files that store corners (a triangle soup, one patch per texture) have a boundary around each of them, and
+    boundaries are preserved, so nothing could be collapsed. Raises MeshError as `clean` does.
+    """
+    found, notes = clean(mesh)
+    if (half_edges(found.faces)[1] >= 0).all():
+        return found, notes
+    first, ids = merge_equal_rows(mesh.vertices)
+    colors = None if mesh.colors is None else mesh.colors[first]
+    joined, others = clean(Mesh(mesh.vertices[first], ids[mesh.faces], colors, mesh.texture))
+    if (half_edges(joined.faces)[1] < 0).sum() >= (half_edges(found.faces)[1] < 0).sum():
+        return found, notes
+    return joined, [f"{len(ids) - len(first):,} coincident vertices merged", *others]

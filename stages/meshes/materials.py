@@ -1,0 +1,87 @@
+"""Joins meshes that a file splits by material and duplicates at texture seams: OBJ with materials, and GLB."""
+
+import numpy as np
+import trimesh
+from trimesh.visual import ColorVisuals
+
+from stages.kit import Mesh
+from stages.kit.texture import Texture
+
+
+def join_parts(loaded: trimesh.parent.Geometry, order: np.ndarray | None = None) -> Mesh | None:
+    """One Mesh of a loaded Trimesh or Scene; vertices with equal position and colour are merged. None without faces.
+
+    Texture coordinates stay per face corner. order: (n, 3) vertices in the order of the file, whose ids the merged
+    vertices take; None numbers them by first appearance.
+    """
+    parts = loaded.dump() if isinstance(loaded, trimesh.Scene) else [loaded]
+    parts = [part for part in parts if isinstance(part, trimesh.Trimesh) and len(part.faces)]
+    if not parts:
+        return None
+    starts = np.cumsum([0, *(len(part.vertices) for part in parts)])
+    faces = np.concatenate([part.faces + start for part, start in zip(parts, starts, strict=False)])
+    vertices = np.concatenate([part.vertices for part in parts])
+    colored = [part_colors for part in parts if (part_colors := vertex_colors(part)) is not None]
+    colors = np.concatenate(colored) if len(colored) == len(parts) else None
+    texture = _texture(parts)
+    if order is not None and colors is None:
+        first, ids = merge_equal_rows(np.concatenate([order, vertices]))
+        if first.max() < len(order):
+            return Mesh(order, first[ids[len(order) :]][faces], None, texture)
+    first, ids = merge_equal_rows(vertices if colors is None else np.column_stack([vertices, colors]))
+    return Mesh(vertices[first], ids[faces], None if colors is None else colors[first], texture)
+
+
+def vertex_colors(part: trimesh.Trimesh) -> np.ndarray | None:
+    """(n, 3) u1, or None when the colours are not per vertex."""
+    visual = part.visual
+    return visual.vertex_colors[:, :3] if isinstance(visual, ColorVisuals) and visual.kind == "vertex" else None
+
+
+def obj_vertices(content: bytes) -> np.ndarray:
+    """(n, 3) f8: the vertices of an OBJ file's bytes, in the order of the `v` lines."""
+    lines = (line.split() for line in content.splitlines())
+    return np.array([line[1:4] for line in lines if line[:1] == [b"v"]]).astype(np.float64).reshape(-1, 3)
+
+
+def merge_equal_rows(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Merges bit-equal rows (n, d) in the order of first appearance: first (k,) and ids (n,)."""
+    _, first, inverse = np.unique(rows, axis=0, return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    rank = np.empty_like(order)
+    rank[order] = np.arange(len(order))
+    return first[order], rank[inverse.ravel()]
+
+
+def _texture(parts):
+    """The Texture of all parts, or None when there is neither an image nor a second plain colour."""
+    images = [_image(part) for part in parts]
+    plain = {one.tobytes() for one in images if one.shape[:2] == (1, 1)}
+    if all(part.visual.kind != "texture" for part in parts):
+        return None
+    if len(plain) <= 1 and all(one.shape[:2] == (1, 1) for one in images):
+        return None
+    uv = [_corners(part) for part in parts]
+    sizes = [len(part.faces) for part in parts]
+    names = {}
+    numbers = [names.setdefault((one.shape, one.tobytes()), len(names)) for one in images]
+    distinct = [images[numbers.index(number)] for number in range(len(names))]
+    return Texture(np.concatenate(uv), np.repeat(numbers, sizes), tuple(distinct))
+
+
+def _image(part):
+    """The image of a part's material, (h, w, 4) u1; one pixel for a plain colour."""
+    material = getattr(part.visual, "material", None)
+    image = getattr(material, "baseColorTexture", None) or getattr(material, "image", None)
+    if image is not None and getattr(part.visual, "uv", None) is not None:
+        return np.asarray(image.convert("RGBA"))
+    color = getattr(material, "main_color", None)
+    return np.asarray([204, 204, 204, 255] if color is None else color, dtype=np.uint8).reshape(1, 1, 4)
+
+
+def _corners(part):
+    """(m, 3, 2) texture coordinates of a part's face corners."""
+    uv = getattr(part.visual, "uv", None)
+    if uv is None or len(uv) != len(part.vertices):
+        return np.zeros((len(part.faces), 3, 2))
+    return np.nan_to_num(np.asarray(uv, dtype=np.float64)[:, :2])[part.faces]

@@ -1,0 +1,40 @@
+"""Recognises touches that others recorded: by the thesis's protocol, and where it flatters (T4.2.4, table 4.4).
+
+Reads the archive that recorded.folder names. Writes reports/measurements/SET/recorded.csv.gz: what was measured, never
+the recordings. A data set is one kind of recording, recorded.kind: images of a pressure array, or grasps of a hand.
+"""
+
+from stages.classification.recorded import read_grasps, read_pressure_images
+from stages.kit.command import workspace_of_arguments
+from stages.kit.run import StageRun
+from stages.kit.workspace import Workspace
+
+from . import biotac_grasps, pressure_images
+from .schema import COLUMNS, Params
+
+KINDS = {  # kind: how it is read, and what measures it
+    "pressure_images": (read_pressure_images, pressure_images),
+    "biotac_grasps": (read_grasps, biotac_grasps),
+}
+
+
+def run(workspace: Workspace) -> None:
+    """Runs the stage on the data set of a workspace."""
+    settings = workspace.settings(Params)
+    if settings.kind not in KINDS:
+        raise ValueError(f"recorded.kind={settings.kind!r} is not one of {', '.join(KINDS)}")
+    read, kind = KINDS[settings.kind]
+    recording = read(settings.path(workspace.root))
+    with StageRun(workspace, "recorded", COLUMNS) as stage:
+        kind.measure(stage, recording, settings.repetitions)
+        stage.metrics(kind.summary(stage.rows))
+    print(f"recorded: {workspace.dataset}, {len(stage.rows):,} rows")
+
+
+def main() -> None:
+    """Runs the stage on the data set that the command line names."""
+    run(workspace_of_arguments(__doc__, "recorded"))
+
+
+if __name__ == "__main__":
+    main()

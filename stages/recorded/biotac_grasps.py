@@ -1,0 +1,155 @@
+"""Grasps by BioTac SP fingertips: does the object slip, when it was never grasped before; and which object is it."""
+
+import functools
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from sklearn.decomposition import PCA
+from sklearn.dummy import DummyClassifier
+from sklearn.pipeline import make_pipeline
+from sklearn.preprocessing import StandardScaler
+from threadpoolctl import threadpool_limits
+
+from stages.classification import CLASSIFIERS
+from stages.classification.classifiers import COMPONENTS
+from stages.classification.recorded import PALMS, Grasps
+from stages.kit import Stopwatch
+from stages.kit.rng import rng
+from stages.kit.run import Rows, StageRun
+from stages.kit.split import Split
+
+from .splits import SPLITS, split_number
+
+GROUPS = 8  # of about five objects, left out in turn
+DRAWN = 200  # draws of training objects: how far a mean moves by the objects alone
+MAJORITY = "majority"
+
+
+@dataclass(frozen=True)
+class Model:
+    """A classifier of readings, after a reduction to principal components or, without `components`, of all of them."""
+
+    classifier: str
+    components: int | None
+
+    def answers(
+        self, grasps: Grasps, train: np.ndarray, test: np.ndarray, number: int, target: str
+    ) -> tuple[np.ndarray, float]:
+        """(answers on the test part, seconds); target: what is asked, a field of Grasps."""
+        steps = [StandardScaler()] + ([PCA(self.components, svd_solver="full")] if self.components else [])
+        last = DummyClassifier() if self.classifier == MAJORITY else CLASSIFIERS[self.classifier](number)
+        with Stopwatch() as watch:
+            model = make_pipeline(*steps, last).fit(grasps.electrodes[train], getattr(grasps, target)[train])
+            answers = model.predict(grasps.electrodes[test])
+        return answers, watch.seconds
+
+
+def measure(run: StageRun, grasps: Grasps, repetitions: int) -> None:
+    """Adds rows of the accuracy of each classifier on the grasps of each object, and of the drift between recordings.
+
+    scaled: by the mean and deviation of the training part, or each part by its own: the fingertips drift between
+    recordings, and a hand may average its readings over its own last grasps without knowing how they ended.
+    """
+    models = {
+        f"{name} {components}": Model(name, components)
+        for components in (COMPONENTS, None)
+        for name in (*CLASSIFIERS, MAJORITY)
+    }
+    run.each(functools.partial(process, grasps=grasps, repetitions=repetitions, seed=run.seed), models)
+    run.rows += drift_rows(grasps, run.seed)
+
+
+def process(model: Model, folder: Path, grasps: Grasps, repetitions: int, seed: int) -> Rows:
+    """Rows of one classifier: slip of unseen objects, slip of objects left out, recognition of objects."""
+    common = {"components": model.components or grasps.electrodes.shape[1], "classifier": model.classifier}
+    common |= {"scaled": "training", "metric": "accuracy"}
+    own = Grasps(**vars(grasps) | {"electrodes": _scaled_apart(grasps)})
+    with threadpool_limits(1):  # equal sums on any number of cores
+        return [
+            *(common | row for row in publisher_split_rows(model, grasps)),
+            *(common | row for row in _left_out_rows(model, grasps)),
+            *(common | row for row in recognition_rows(model, grasps, repetitions, seed)),
+            *(common | {"scaled": "own"} | row for row in publisher_split_rows(model, own)),
+        ]
+
+
+def drift_rows(grasps: Grasps, seed: int) -> Iterator[dict]:
+    """Rows: how far the mean reading of the test part is from that of training, in deviations of the objects' means.
+
+    drift_drawn: the same of as many training objects, drawn at random, from the others: the largest of 200 draws.
+    """
+    for palm in PALMS:
+        here, random = grasps.palms == palm, rng(seed, f"drift {palm}")
+        train, test = grasps.electrodes[here & ~grasps.test], grasps.electrodes[here & grasps.test]
+        names, count = grasps.objects[here & ~grasps.test], len(np.unique(grasps.objects[here & grasps.test]))
+        drawn = [np.isin(names, random.choice(np.unique(names), count, replace=False)) for _ in range(DRAWN)]
+        common = {"task": "slip", "split": Split.TEST_OBJECTS, "palm": palm, "count": len(test)}
+        yield common | {"metric": "drift", "value": _distance(train, names, test)}
+        largest = max(_distance(train[~out], names[~out], train[out]) for out in drawn)
+        yield common | {"metric": "drift_drawn", "value": largest}
+
+
+def publisher_split_rows(model: Model, grasps: Grasps) -> Iterator[dict]:
+    """Slip, trained on the 41 objects, tested on the ten that the publisher keeps; all palms, and each alone."""
+    for palm in ("all", *PALMS):
+        here = np.isin(grasps.palms, PALMS if palm == "all" else [palm])
+        train, test = np.flatnonzero(here & ~grasps.test), np.flatnonzero(here & grasps.test)
+        yield from _slip_rows(model, grasps, train, test, {"split": Split.TEST_OBJECTS, "palm": palm})
+
+
+def recognition_rows(model: Model, grasps: Grasps, repetitions: int, seed: int) -> Iterator[dict]:
+    """Which of all the objects: a quarter held out, at random, or as a run of neighbours in the file."""
+    order = np.lexsort((np.arange(len(grasps.objects)), grasps.palms, grasps.objects))
+    labels = grasps.objects[order]
+    for split, draw in SPLITS.items():
+        for repetition in range(repetitions):
+            number = split_number(seed, repetition)
+            train, test = (order[part] for part in draw(labels, number))
+            answers, seconds = model.answers(grasps, train, test, number, "objects")
+            row = {"task": "recognition", "split": split, "palm": "all", "repetition": repetition}
+            value = float((answers == grasps.objects[test]).mean())
+            yield {**row, "value": value, "count": len(test), "seconds": seconds}
+
+
+def summary(rows: Rows) -> dict[str, float]:
+    """{metric: number} of a run: the mean accuracy of kNN on all electrodes by task and split."""
+    found: dict[str, list[float]] = {}
+    most = max(row["components"] for row in rows if "components" in row)
+    for row in rows:
+        if row.get("classifier") == "knn" and row["components"] == most and row["scaled"] == "training":
+            found.setdefault(f"{row['task']}_{row['split']}", []).append(row["value"])
+    return {name: round(float(np.mean(values)), 6) for name, values in found.items()}
+
+
+def _left_out_rows(model: Model, grasps: Grasps) -> Iterator[dict]:
+    """Slip within the 41 objects: each is left out of training once, in groups."""
+    own = np.unique(grasps.objects[~grasps.test])
+    for k in range(GROUPS):
+        out = np.isin(grasps.objects, own[k::GROUPS])
+        train, test = np.flatnonzero(~grasps.test & ~out), np.flatnonzero(out)
+        yield from _slip_rows(model, grasps, train, test, {"split": Split.OBJECTS, "palm": "all"})
+
+
+def _slip_rows(model: Model, grasps: Grasps, train: np.ndarray, test: np.ndarray, about: dict) -> Iterator[dict]:
+    """A row per object of the test part."""
+    answers, seconds = model.answers(grasps, train, test, 0, "slipped")
+    for name in np.unique(grasps.objects[test]):
+        own = grasps.objects[test] == name
+        row = {"item": str(name), "value": float((answers[own] == grasps.slipped[test][own]).mean())}
+        yield {"task": "slip", **about, **row, "count": int(own.sum()), "seconds": seconds}
+
+
+def _distance(train: np.ndarray, names: np.ndarray, test: np.ndarray) -> float:
+    means = np.stack([train[names == name].mean(axis=0) for name in np.unique(names)])
+    return float(np.abs((test.mean(axis=0) - train.mean(axis=0)) / means.std(axis=0)).mean())
+
+
+def _scaled_apart(grasps: Grasps) -> np.ndarray:
+    scaled = np.empty_like(grasps.electrodes)
+    for palm in PALMS:
+        for test in (False, True):
+            own = (grasps.palms == palm) & (grasps.test == test)
+            scaled[own] = StandardScaler().fit_transform(grasps.electrodes[own])
+    return scaled

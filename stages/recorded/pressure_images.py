@@ -1,0 +1,154 @@
+"""Recognition of real touches by the thesis's protocol, and what its random hold-out and its selection flatter."""
+
+import functools
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from sklearn.model_selection import StratifiedKFold, cross_val_score
+from threadpoolctl import threadpool_limits
+
+from stages.classification import CLASSIFIERS, classifier, features
+from stages.classification.protocol import FOLDS, MIN_IMPRINTS
+from stages.classification.similarity import confusable, similarity
+from stages.kit import Stopwatch
+from stages.kit.rng import rng
+from stages.kit.run import Rows, StageRun
+from stages.kit.split import Split
+
+from .splits import SPLITS, random_split, split_number
+
+COUNTS = {"six": 6, "four": 4}  # the first by the alphabet; as many at random; and those most alike
+
+
+@dataclass(frozen=True)
+class Touches:
+    """Features (k, 41), class (k,) and similarity to each other (k, k) of k touches, in order of their numbers."""
+
+    samples: np.ndarray
+    labels: np.ndarray
+    alike: np.ndarray
+
+    def of(self, own: np.ndarray) -> "Touches":
+        """Those that the ids or the mask `own` names."""
+        return Touches(self.samples[own], self.labels[own], self.alike[own][:, own])
+
+
+@dataclass(frozen=True)
+class ClassSet:
+    """A set of classes that is recognised in some repetitions; folds: also by cross-validation."""
+
+    group: str
+    classes: tuple[str, ...]
+    repetitions: tuple[int, ...]
+    folds: bool
+
+
+def measure(run: StageRun, images: dict[str, np.ndarray], repetitions: int) -> None:
+    """Adds rows of the five classifiers on {class: (k, rows, cols)}: all classes, the first six and four, and others.
+
+    method: all touches; selected: without those that resemble a touch of another class of the set, taken out before
+    the split as in the thesis; selected_training: taken out of the training part alone, tested on all others.
+    metric: accuracy by split (folds: within the training part of the random split), share_similar (touches that
+    resemble one of another class). Groups: `six_drawn` and `four_drawn` are drawn anew in each repetition; `six_alike`
+    and `four_alike` are the classes with the largest share of touches that resemble one of any other class.
+    """
+    with threadpool_limits(1):  # equal sums on any number of cores
+        touches = describe(images)
+        sets = class_sets(touches, repetitions, run.seed)
+    work = functools.partial(process, touches=touches, seed=run.seed)
+    run.each(work, sets, made_of={name: repr(one) for name, one in sets.items()})
+    run.rows += neighbour_rows(images)
+
+
+def describe(images: dict[str, np.ndarray]) -> Touches:
+    """The Touches of {class: (k, rows, cols)}, by class in alphabetical order."""
+    names = sorted(images)
+    labels = np.repeat(names, [len(images[name]) for name in names])
+    samples = np.concatenate([features(images[name]) for name in names])
+    return Touches(samples, labels, similarity(np.concatenate([images[name] for name in names])))
+
+
+def class_sets(touches: Touches, repetitions: int, seed: int) -> dict[str, ClassSet]:
+    """{name: ClassSet} of all sets; a drawn set has one repetition, the other sets have all."""
+    names, every = [str(name) for name in np.unique(touches.labels)], tuple(range(repetitions))
+    resembling = confusable(touches.alike, touches.labels)
+    shares = {name: resembling[touches.labels == name].mean() for name in names}
+    ranked = sorted(names, key=lambda name: -shares[name])
+    found = {"all": ClassSet("all", tuple(names), every, True)}
+    for name, count in COUNTS.items():
+        if count > len(names):
+            continue
+        found[name] = ClassSet(name, tuple(names[:count]), every, True)
+        found[f"{name}_alike"] = ClassSet(f"{name}_alike", tuple(ranked[:count]), every, True)
+        for k in every:
+            drawn = tuple(str(one) for one in rng(seed, f"{name} {k}").choice(names, count, replace=False))
+            found[f"{name}_drawn {k}"] = ClassSet(f"{name}_drawn", drawn, (k,), False)
+    return found
+
+
+def process(one: ClassSet, folder: Path, touches: Touches, seed: int) -> Rows:
+    """Rows of one set: without selection, selected before the split, and in the training part alone."""
+    with threadpool_limits(1):
+        return list(_set_rows(one, touches.of(np.isin(touches.labels, one.classes)), seed))
+
+
+def neighbour_rows(images: dict[str, np.ndarray]) -> Iterator[dict]:
+    """Rows: per class the mean correlation of touches with neighbouring numbers, and of any two of its touches."""
+    for name, touches in images.items():
+        found = np.corrcoef(touches.reshape(len(touches), -1))
+        pairs = {"neighbour_correlation": np.diag(found, 1), "pair_correlation": found[np.triu_indices(len(found), 1)]}
+        yield from ({"group": name, "metric": metric, "value": float(np.mean(v))} for metric, v in pairs.items())
+
+
+def summary(rows: Rows) -> dict[str, float]:
+    """{metric: number} of a run: the mean accuracy of kNN on all classes by split, and the share of similar touches."""
+    whole = [row for row in rows if row["group"] == "all" and row["method"] == "all" and row.get("value") is not None]
+    found = {"share_similar": whole[0]["value"]}
+    for split in (*SPLITS, Split.FOLDS):
+        own = [row["value"] for row in whole if row.get("split") == split and row["classifier"] == "knn"]
+        found[f"accuracy_{split}"] = round(float(np.mean(own)), 6)
+    return found
+
+
+def _set_rows(one: ClassSet, touches: Touches, seed: int) -> Iterator[dict]:
+    common, chosen = {"group": one.group, "classes": len(one.classes)}, " ".join(sorted(one.classes))
+    kept = np.flatnonzero(~confusable(touches.alike, touches.labels))
+    share = {"metric": "share_similar", "value": 1 - len(kept) / len(touches.labels)}
+    yield {**common, "chosen": chosen, "method": "all", **share, "repetition": one.repetitions[0]}
+    for method, own in (("all", touches), ("selected", touches.of(kept)), ("selected_training", touches)):
+        counts = {name: int((own.labels == name).sum()) for name in sorted(one.classes)}
+        poorest = min(counts, key=lambda name: counts[name])
+        if counts[poorest] < MIN_IMPRINTS:
+            row = {**common, "method": method, "split": Split.RANDOM, "metric": "accuracy"}
+            note = f"{poorest} keeps {counts[poorest]} touches, {MIN_IMPRINTS} are needed"
+            yield {**row, "repetition": one.repetitions[0], "note": note}
+            continue
+        for repetition in one.repetitions:
+            number = split_number(seed, repetition)
+            rows = _split_rows(own, method == "selected_training", number, one.folds)
+            yield from ({**common, "method": method, "repetition": repetition, **row} for row in rows)
+
+
+def _split_rows(touches: Touches, selected: bool, number: int, folds: bool) -> Iterator[dict]:
+    samples, labels = touches.samples, touches.labels
+    for split, draw in SPLITS.items():
+        train, test = draw(labels, number)
+        if selected:
+            train = train[~confusable(touches.alike[np.ix_(train, train)], labels[train])]
+        for name in CLASSIFIERS:
+            with Stopwatch() as watch:
+                answers = classifier(name, number).fit(samples[train], labels[train]).predict(samples[test])
+            row = {"split": split, "metric": "accuracy", "value": float((answers == labels[test]).mean())}
+            yield {"classifier": name, **row, "seconds": watch.seconds, "train": len(train), "test": len(test)}
+    if folds and not selected:
+        for name in CLASSIFIERS:
+            value = _cross_validated(name, samples, labels, number)
+            yield {"classifier": name, "split": Split.FOLDS, "metric": "accuracy", "value": value}
+
+
+def _cross_validated(name: str, samples: np.ndarray, labels: np.ndarray, number: int) -> float:
+    train, _ = random_split(labels, number)
+    folds = StratifiedKFold(FOLDS, shuffle=True, random_state=number)
+    return float(cross_val_score(classifier(name, number), samples[train], labels[train], cv=folds).mean())

@@ -1,0 +1,34 @@
+"""Random splits of recorded touches, and splits that keep neighbours in time together."""
+
+import numpy as np
+from sklearn.model_selection import train_test_split
+
+from stages.classification.protocol import HOLDOUT
+from stages.kit.rng import rng
+from stages.kit.split import Split
+
+
+def split_number(seed: int, repetition: int) -> int:
+    """The seed of one repetition's split: all stages on recorded touches split the same way."""
+    return int(rng(seed, f"repetition {repetition}").integers(2**31))
+
+
+def random_split(labels: np.ndarray, number: int) -> tuple[np.ndarray, np.ndarray]:
+    """(train, test): a random quarter of each class, as stages.classification draws it."""
+    parts = train_test_split(np.arange(len(labels)), test_size=HOLDOUT, stratify=labels, random_state=number)
+    return np.asarray(parts[0]), np.asarray(parts[1])
+
+
+def block_split(labels: np.ndarray, number: int) -> tuple[np.ndarray, np.ndarray]:
+    """(train, test): of each class a run of neighbours, a quarter of its touches; the labels in order of recording."""
+    random, train, test = np.random.default_rng(number), [], []
+    for one in np.unique(labels):
+        own = np.flatnonzero(labels == one)
+        length = round(HOLDOUT * len(own))
+        start = random.integers(len(own) - length + 1)
+        test.append(own[start : start + length])
+        train.append(np.delete(own, np.arange(start, start + length)))
+    return np.concatenate(train), np.concatenate(test)
+
+
+SPLITS = {Split.RANDOM: random_split, Split.BLOCKS: block_split}

@@ -1,0 +1,1 @@
+"""Networks for photographs on recorded touches (T5.4)."""

@@ -1,0 +1,86 @@
+"""Trains networks for photographs on recorded touches, from ImageNet's weights and from random ones (T5.4).
+
+Reads the recordings that recorded.folder names. Each network is frozen or fine-tuned as the settings say, on random
+splits and on splits that keep neighbours, objects or recordings together. Writes
+reports/measurements/SET/recorded_networks.csv.gz: every training, the k nearest neighbours of stage `recorded` on the
+same splits, and a row with a note for each network whose weights are not at hand.
+"""
+
+import dataclasses
+import functools
+import sys
+import warnings
+
+import numpy as np
+
+from stages.kit.command import workspace_of_arguments
+from stages.kit.fetch import FetchError
+from stages.kit.run import Rows, StageRun
+from stages.kit.workspace import Workspace
+from stages.networks.weights import imagenet_state
+from stages.recorded.schema import Params as RecordedParams
+
+from .neighbours import neighbour_rows
+from .schema import COLUMNS, Params
+from .sources import SOURCES
+from .trial import Trial, process, trials
+
+
+def run(workspace: Workspace) -> None:
+    """Runs the stage on the data set of a workspace."""
+    settings, recorded = workspace.settings(Params), workspace.settings(RecordedParams)
+    if recorded.kind not in SOURCES:
+        raise ValueError(f"recorded.kind={recorded.kind!r} is not one of {', '.join(SOURCES)}")
+    # Torch's caches make a worker grow; joblib then renews it between two items, loses none, and warns.
+    warnings.filterwarnings("ignore", message="A worker stopped while some jobs")
+    recordings = SOURCES[recorded.kind](recorded.path(workspace.root))
+    with StageRun(workspace, "recorded_networks", COLUMNS) as stage:
+        absent = {method: why for method in settings.networks if (why := why_absent(method, settings))}
+        wanted = trials(recordings, settings)
+        possible = {one.name: one for one in wanted if one.weights == "random" or one.method not in absent}
+        for method, why in absent.items():
+            print(f"recorded_networks: {method}: {why}", file=sys.stderr)
+        each = dataclasses.replace(settings, networks={}, weights=[], repetitions={})  # a trial itself says these
+        work = functools.partial(process, recordings=recordings, settings=each, seed=stage.seed)
+        stage.each(work, possible, made_of={name: repr(one) for name, one in possible.items()})
+        stage.metrics(summary(stage.rows))
+        stage.rows += absent_rows([one for one in wanted if one.name not in possible])
+        stage.rows += neighbour_rows(recorded.kind, recorded.path(workspace.root), recorded.repetitions, stage.seed)
+    print(f"recorded_networks: {workspace.dataset}, {len(possible)} of {len(wanted)} trials")
+
+
+def why_absent(method: str, settings: Params) -> str:
+    """Why ImageNet's weights of a network are not at hand; empty where they are, or are not wanted."""
+    try:
+        if "imagenet" in settings.weights:
+            imagenet_state(method, settings.source)  # fetched before the work starts, not in each worker
+    except FetchError as error:
+        return str(error)
+    return ""
+
+
+def absent_rows(left_out: list[Trial]) -> Rows:
+    """A row without a value per network, mode and what it was to recognise."""
+    columns = ("method", "weights", "mode", "data")
+    about = dict.fromkeys((one.method, one.weights, one.mode, run.data) for one in left_out for run in one.runs)
+    note = {"metric": "accuracy", "value": None, "note": "not run: weights not at hand"}
+    return [dict(zip(columns, values, strict=True)) | note for values in about]
+
+
+def summary(rows: Rows) -> dict[str, float]:
+    """{data.split.method.mode.weights: the mean accuracy}."""
+    found: dict[str, list[float]] = {}
+    for row in rows:
+        if row["metric"] == "accuracy" and "item" not in row:
+            name = ".".join(row[column] for column in ("data", "split", "method", "mode", "weights"))
+            found.setdefault(name, []).append(row["value"])
+    return {name: round(float(np.mean(values)), 6) for name, values in found.items()}
+
+
+def main() -> None:
+    """Runs the stage on the data set that the command line names."""
+    run(workspace_of_arguments(__doc__, "recorded_networks"))
+
+
+if __name__ == "__main__":
+    main()

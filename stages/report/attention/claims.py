@@ -1,0 +1,52 @@
+"""Claims of chapter 3 on where people look: weights, SVMs and models against human gaze."""
+
+from functools import partial
+
+from stages.report.claims import POINTS, Claim, highest_of
+
+from .rows import CLASSICAL, HUMAN, OURS, PER_OBJECT, SAME
+
+ENHANCED = "thesis_ssim"  # the thesis's own: the average weighted with its SSIM weights
+PHRASES = {
+    ("method", OURS): "our model of gaze", ("method", "VisAttAll"): "VisAttAll",
+    ("method", highest_of(but=(HUMAN, *SAME, *PER_OBJECT, "*_seen"))): "the best other that has not seen the mesh",
+    ("area", "image"): "random pixels of the whole image", ("area", "object"): "the object's pixels",
+    ("training", "one_per_object"): "an object's own SVM", ("training", "one_for_all"): "the one for all",
+    ("validation", "pixels"): "", ("validation", "views"): "on whole views left out",
+    ("validation", "objects"): "on whole objects left out",
+}  # fmt: skip
+on_gaze = partial(Claim, dataset="gaze", over=("item",), phrases=PHRASES)
+
+
+def closer_to_gaze(key, section, sentence, first, second):
+    """A claim that the NSS of one method is higher than that of another."""
+    return on_gaze(key=key, section=section, sentence=sentence, stage="salient_points", where={"metric": "nss"},
+                   first={"method": first}, second={"method": second}, scale=1, unit="NSS")  # fmt: skip
+
+
+def svm_per_object(key, sentence, area, own, others):
+    """A claim that an object's own SVM is more accurate than the one for all; own, others: how each was validated."""
+    return on_gaze(key=key, section="T3.2.3", sentence=sentence, stage="weights", unit=POINTS, mean_of="second",
+                   where={"metric": "accuracy", "area": area},
+                   first={"training": "one_per_object", "validation": own},
+                   second={"training": "one_for_all", "validation": others})  # fmt: skip
+
+
+CLAIMS = [
+    closer_to_gaze("equal_over_itti_gaze", "T3.2.2", "All channels with equal weights (VisAttAll) beat the classical "
+                   "model.", "VisAttAll", CLASSICAL),
+    closer_to_gaze("guided_ed_gaze", "T3.2.2", "Weights learned by Euclidean distance predict attention better than "
+                   "equal ones.", "guided_ed", "equal"),
+    closer_to_gaze("guided_ssim_gaze", "T3.2.2", "Weights learned by similarity predict attention better than equal "
+                   "ones.", "guided_ssim", "equal"),
+    closer_to_gaze("svm_gaze", "T3.2.3", "An SVM on the channels predicts attention better than equal weights.",
+                   "svm", "equal"),
+    svm_per_object("svm_per_object", "One SVM for each object is more accurate than one for all.",
+                   "image", "pixels", "pixels"),
+    svm_per_object("svm_per_object_unseen", "One SVM for each object is more accurate on what it has not seen, too.",
+                   "object", "views", "objects"),
+    closer_to_gaze("ours_over_best_gaze", "ours", "Our model of gaze predicts where people look better than its best "
+                   "rival.", OURS, highest_of(but=(HUMAN, *SAME, *PER_OBJECT, "*_seen"))),
+    closer_to_gaze("ours_over_enhanced_gaze", "ours", "Our model predicts where people look better than the enhanced "
+                   "model.", OURS, ENHANCED),
+]  # fmt: skip

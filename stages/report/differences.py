@@ -1,0 +1,149 @@
+"""The paired differences of a claim, from its rows: one registry of statistics."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from fnmatch import fnmatch
+
+import numpy as np
+import pandas as pd
+
+from .claims import Claim, Pick, Side
+from .results import NotRun, Results
+
+STATISTICS: dict[str, Callable[[Results, Claim], pd.Series]] = {}
+
+
+def statistic(name: str) -> Callable:
+    """Registers a function(results, claim) -> Series of differences over the claim's units, before scaling."""
+
+    def register(function: Callable[[Results, Claim], pd.Series]) -> Callable[[Results, Claim], pd.Series]:
+        STATISTICS[name] = function
+        return function
+
+    return register
+
+
+def differences(results: Results, claim: Claim) -> pd.Series:
+    """The differences of a claim in its unit, indexed by its `over`; NotRun where nothing can be paired."""
+    found = STATISTICS[claim.statistic](results, claim).dropna()
+    if found.empty:
+        raise NotRun(f"no pairs for {claim.key}", claim.stage, runnable=False)
+    return claim.scale * found + claim.margin
+
+
+@statistic("difference")
+def difference(results: Results, claim: Claim) -> pd.Series:
+    """First side minus second, with all that the fields of a Claim say."""
+    if claim.contrast is None:
+        return _difference(results, claim, {})
+    one, other = (_difference(results, claim, where) for where in claim.contrast)
+    return one - other
+
+
+@statistic("beyond_chance")
+def beyond_chance(results: Results, claim: Claim) -> pd.Series:
+    """First side minus second, both scaled so that guessing is 0 and certainty 1; their groups tell the chance."""
+    scores = []
+    for one, other in ((claim.first, claim.second), (claim.second, claim.first)):
+        guess = 1 / results.classes(str({**claim.where, **one}["group"]), claim.dataset)
+        scores.append((side(results, claim, one, other) - guess) / (1 - guess))
+    return scores[0] - scores[1]
+
+
+def side(results: Results, claim: Claim, own: Side, other: Side | float | None, extra: Side | None = None) -> pd.Series:
+    """Values of one side, indexed by over and within; of several named values the mean, where all were measured.
+
+    other: the other side, whose values a Pick leaves out. extra: further columns that both sides have in common.
+    """
+    where = {**claim.where, **(extra or {}), **own}
+    rows = results.measured(claim.stage, claim.dataset, **{k: v for k, v in where.items() if _plain(v)})
+    for column, wanted in where.items():
+        if _pattern(wanted):
+            rows = rows[[fnmatch(str(name), str(wanted)) for name in rows[column]]]
+            _not_empty(rows, claim, f"{column} like {wanted}")
+    for column, wanted in where.items():
+        if isinstance(wanted, Pick):
+            rows = rows[rows[column] == _picked(rows, claim, column, wanted, other)]
+    several = [column for column, wanted in where.items() if isinstance(wanted, tuple) or _pattern(wanted)]
+    keys = [*claim.over, *claim.within]
+    if not keys:
+        return rows["value"]
+    several = [column for column in several if column not in keys]
+    if not several:
+        return rows.groupby(keys, sort=False)["value"].mean()
+    table = rows.pivot_table(index=keys, columns=several, values="value", sort=False)
+    return table.dropna().mean(axis=1)
+
+
+def _difference(results: Results, claim: Claim, extra: Side) -> pd.Series:
+    second = claim.second
+    if isinstance(second, int | float):
+        found = side(results, claim, claim.first, None, extra) - second
+    else:
+        if second is None:
+            raise ValueError(f"claim {claim.key} has no second side")
+        pooled = replace(claim, over=(), within=())  # all rows of a side, also those about no unit
+        first, other = (
+            side(results, pooled if claim.mean_of == name else claim, own, other, extra)
+            for name, own, other in (("first", claim.first, second), ("second", second, claim.first))
+        )
+        if claim.mean_of:
+            found = first.mean() - other if claim.mean_of == "first" else first - other.mean()
+        else:
+            sides = {"first": first, "second": other}
+            joined = pd.concat(sides, axis=1, join="inner").dropna()
+            if joined.empty:
+                names = " and ".join(" ".join(map(_said, one.values())) for one in (claim.first, second))
+                raise NotRun(f"no pairs of {names}", claim.stage, runnable=False)
+            found = joined["first"] - joined["second"]
+            if claim.relative:
+                middle = (joined["first"] + joined["second"]) / 2
+                found /= middle.where(middle > 0, 1.0)  # two errors of zero are equal
+    return found.groupby(level=list(range(len(claim.over))), sort=False).mean() if claim.within else found
+
+
+def _picked(rows: pd.DataFrame, claim: Claim, column: str, pick: Pick, other: Side | float | None) -> object:
+    taken = other.get(column) if isinstance(other, dict) else None
+    out = [*pick.but, *_listed(taken)]
+    rows = rows[[not any(fnmatch(str(name), str(one)) for one in out) for name in rows[column]]]
+    rows = rows[rows[column].isin(pick.names)] if pick.names else rows
+    _not_empty(rows, claim, f"other {column} than {' or '.join(map(str, out))}" if out else column)
+    table = rows.pivot_table(index=[*claim.over, *claim.within], columns=column, values="value", sort=False)
+    found = (table if table.dropna().empty else table.dropna()).mean()  # over the pairs that all of them have
+    return found.idxmin() if pick.lowest else found.idxmax()
+
+
+def _not_empty(rows: pd.DataFrame, claim: Claim, what: str) -> None:
+    if rows.empty:
+        raise NotRun(f"no {what} is among those that {claim.stage} measured", claim.stage, runnable=False)
+
+
+def _plain(value: object) -> bool:
+    return not isinstance(value, Pick) and not _pattern(value)
+
+
+def _pattern(value: object) -> bool:
+    return isinstance(value, str) and "*" in value
+
+
+def _listed(value: object) -> Sequence:
+    return [] if value is None else list(value) if isinstance(value, tuple | list) else [value]
+
+
+def _said(value: object) -> str:
+    return " or ".join(map(str, value)) if isinstance(value, tuple) else str(value)
+
+
+def rounded(values: pd.Series) -> np.ndarray:
+    """(k,) values with the six significant digits of a CSV, so that what is judged is what is written."""
+    return np.array([float(f"{value:.6g}") for value in values], dtype=np.float64)
+
+
+def paired(results: Results, stage: str, over: list[str], first: Side, second: Side, **where: object) -> pd.Series:
+    """Value of `first` minus value of `second`, matched on the columns `over`. For FunctionClaim alone."""
+    sides = [results.measured(stage, **where, **one).groupby(over)["value"].mean() for one in (first, second)]
+    joined = pd.concat(sides, axis=1, join="inner").dropna()
+    if joined.empty:
+        names = " and ".join(" ".join(map(str, one.values())) for one in (first, second))
+        raise NotRun(f"no pairs of {names}", stage, runnable=False)
+    return joined.iloc[:, 0] - joined.iloc[:, 1]

@@ -1,0 +1,65 @@
+"""What table, charts and claims of the exploration have in common."""
+
+import numpy as np
+import pandas as pd
+
+from stages.kit.split import Split, shared_by
+from stages.kit.stats import interval
+
+STAGE, GROUP = "exploration", "six"
+WAYS = {
+    "gain": "where the belief gains most",
+    "saliency": "most salient first",
+    "random": "in random order",
+}
+TINTS = {"gain": "#0072B2", "saliency": "#009E73", "random": "#E69F00"}
+LIKELIHOODS = {
+    "imprint": "by imprints",
+    "imprint_place": "by imprints and places",
+    "imprint_product": "by imprints, as if independent",
+}
+HELD_OUT = {Split.RANDOM: "at random", Split.REGIONS: "unseen regions"}
+HEADLINE = 0.95  # belief at which the table and the claims stop
+
+
+def points(rows: pd.DataFrame, by: list[str]) -> pd.DataFrame:
+    """Accuracy with its interval, mean touches and stated belief, one row for each combination of columns `by`."""
+    found = []
+    for key, group in rows.groupby(by, sort=False):
+        mean, low, high = interval(group["value"], shared_by(group["split"].iloc[0]))
+        cell = {"touches": group["touches"].mean(), "stated": group["belief"].mean(), "accuracy": mean}
+        cell |= {"low": np.maximum(low, 0.0), "high": np.minimum(high, 1.0)}
+        found.append(dict(zip(by, key, strict=True)) | cell)
+    return pd.DataFrame(found)
+
+
+def curves(rows: pd.DataFrame) -> pd.DataFrame:
+    """Frame indexed by (repetition, touches): accuracy after a fixed number of touches."""
+    fixed = rows[(rows["stop"] == "fixed") & (rows["metric"] == "accuracy")]
+    return fixed.pivot(index="repetition", columns="level", values="value")
+
+
+def fixed_at(rows: pd.DataFrame, touches: pd.Series) -> pd.Series:
+    """Accuracy of a fixed number of touches by repetition, interpolated at the repetition's `touches`."""
+    curve = curves(rows)
+    levels = curve.columns.to_numpy(dtype=float)
+    return pd.Series({one: np.interp(touches[one], levels, curve.loc[one]) for one in touches.index})
+
+
+def at_confidence(rows: pd.DataFrame, level: float) -> pd.DataFrame:
+    """Rows of the accuracy by repetition that stopped at a confidence."""
+    found = rows[(rows["stop"] == "confidence") & np.isclose(rows["level"], level) & (rows["metric"] == "accuracy")]
+    return found.set_index("repetition")
+
+
+def needed(rows: pd.DataFrame, accuracy: float) -> float:
+    """Touches after which the mean accuracy of a fixed number reaches `accuracy`, interpolated; NaN if never."""
+    curve = curves(rows).mean()
+    reached = np.flatnonzero(curve.to_numpy() >= accuracy)
+    if len(reached) == 0:
+        return np.nan
+    last = reached[0]
+    if last == 0:
+        return float(curve.index[0])
+    low, high = curve.iloc[last - 1], curve.iloc[last]
+    return float(curve.index[last - 1] + (accuracy - low) / (high - low))

@@ -1,0 +1,69 @@
+"""From rows of measurements to cells of `mean [low, high]`, and from cells to a grid with the thesis's figures."""
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+import pandas as pd
+
+from stages.kit.stats import interval
+
+from .markdown import with_interval
+
+
+def means(frame: pd.DataFrame, by: Sequence[str], shared: float = 0.0, top: float = np.inf) -> list[dict]:
+    """Mean, low, high, count and seconds of column `value`, one row for each combination of the columns `by`.
+
+    For values within 0..top, such as rates and errors: the interval is cut there. Seconds are the median, since the
+    first piece of work of a process also loads its libraries.
+    """
+    rows = []
+    for key, group in frame.dropna(subset=["value"]).groupby(list(by), sort=False):
+        mean, low, high = interval(group["value"], shared)
+        found = {"mean": mean, "low": np.maximum(low, 0.0), "high": np.minimum(high, top), "values": len(group)}
+        rows.append(dict(zip(by, key, strict=True)) | found | {"seconds": group["seconds"].median()})
+    return rows
+
+
+def grid(
+    cells: pd.DataFrame,
+    down: str | Sequence[str],
+    across: str,
+    value: str = "accuracy",
+    beside: Sequence[str] = ("thesis",),
+    names: Mapping[str, Callable[[object], str]] | None = None,
+    head: Callable[[object], str] = str,
+    places: int = 0,
+    gap: str | None = "–",
+) -> pd.DataFrame:
+    """Cells pivoted for a reader: `62 [57, 67] · 50 · 51`, shares in per cent, in the order of the cells.
+
+    cells: one row each, with the columns `down` and `across`, the column `value` with `low` and `high`, and further
+    columns `beside`, whose numbers follow it. names: how a value of a column `down` is said; head: how one of `across`
+    is. gap: what stands for an unknown number beside; None leaves it out. A cell that is absent is "not run".
+    """
+    down = [down] if isinstance(down, str) else list(down)
+    text = [cell_text(row, value, beside, places, gap) for _, row in cells.iterrows()]
+    wide = cells.assign(text=text).pivot(index=down, columns=across, values="text")
+    order = list(dict.fromkeys(cells[down].itertuples(index=False, name=None)))
+    wide = wide.loc[order if len(down) > 1 else [key[0] for key in order], list(dict.fromkeys(cells[across]))]
+    wide = wide.fillna("not run").rename(columns=head).reset_index()
+    wide.columns.name = None
+    return wide.assign(**{column: wide[column].map(say) for column, say in (names or {}).items()})
+
+
+def cell_text(
+    cell: pd.Series,
+    value: str = "accuracy",
+    beside: Sequence[str] = ("thesis",),
+    places: int = 0,
+    gap: str | None = "–",
+) -> str:
+    """One cell of `grid`."""
+    parts = [with_interval(cell[value], cell["low"], cell["high"], 100, places)]
+    parts += [percent(cell[column], places, gap or "") for column in beside]
+    return " · ".join(part for part in parts if part)
+
+
+def percent(share: float, places: int = 0, gap: str = "–") -> str:
+    """A share in per cent, `gap` where it is unknown."""
+    return f"{100 * share:.{places}f}" if share == share else gap

@@ -1,0 +1,63 @@
+"""Claims of T5.5 and 5.6: one network for vision and touch, and what two senses are worth together."""
+
+from stages.report.claims import Claim
+from stages.report.networks import both, on_their_classes
+
+from .rows import MIDDLE, SENSES, WHOLE
+from .section_5_5 import POINT
+
+DARK = {"perturbation": "picture_darkness", "severity": 0.95}  # the harshest that was measured
+PHRASES = {
+    ("data", "hybrid"): "", ("mode", MIDDLE): f"layers {MIDDLE} shared", ("sense", "both"): "",
+    ("sense", "vision"): "by sight", ("sense", "touch"): "by touch", ("perturbation", WHOLE): "",
+    ("perturbation", None): "", ("perturbation", "picture_darkness"): "hardly any light", ("severity", 0.95): "",
+    ("method", "vision"): "network for sight", ("method", "touch"): "network for touch",
+    ("method", "better_sense"): "better sense alone", ("method", "fusion_entropy"): "both heads by certainty",
+    ("method", "fusion_entropy_raw"): "both heads by certainty without temperatures",
+    ("method", "sum_mean"): "streams summed", ("method", "hybrid_int8"): "hybrid of 8 bits",
+}  # fmt: skip
+
+
+def claims(key, section, sentence, first, second, margin=0.0, **where):
+    """The claim of one way to recognise over another, on both splits."""
+    common = {"data": "hybrid", "mode": MIDDLE, "metric": "accuracy"} | where
+    one = Claim(
+        key=key, section=section, sentence=sentence, stage="transfer", first=first, second=second, where=common,
+        margin=margin, phrases=PHRASES,
+    )  # fmt: skip
+    return list(both(one, items="items", done="met"))
+
+
+def joined(key, section, sentence, first, second, where=None):
+    """A claim on both senses: one way of joining them, or one sense alone, over another."""
+    where = {"sense": "both"} | (where or {"perturbation": WHOLE})
+    return claims(key, section, sentence, {"method": first}, {"method": second}, **where)
+
+
+THESIS = [
+    *claims("sight_over_touch", "T5.5", "The hybrid network recognises better by sight than by touch.",
+            {"method": "vision", "sense": "vision"}, {"method": "touch", "sense": "touch"}, perturbation=None),
+    *joined("touch_in_the_dark", "T5.5", "Where sight fails, touch helps.", "fusion_entropy", "vision", DARK),
+]  # fmt: skip
+CLAIMS = [
+    *THESIS,
+    *(
+        claim
+        for sense, word in SENSES.items()
+        # Not of the hybrid of 32 bits: its answers are those of the two networks, so that no difference has a spread.
+        for claim in claims(
+            f"eight_bits_{word}", "ours", f"With weights of 8 bits the hybrid recognises as well by {word} as one "
+            "network, but for one point.", {"method": "hybrid_int8"}, {"method": sense}, POINT, sense=sense,
+            perturbation=None,
+        )
+    ),
+    *joined("both_over_better", "ours", "Both senses together recognise more than the better one alone.",
+            "fusion_entropy", "better_sense"),
+    *joined("apart_over_sum", "ours", "Fed both senses, two answers joined beat the summed streams of the thesis.",
+            "fusion_entropy", "sum_mean"),
+    *joined("harmless_in_the_dark", "ours", "Where sight fails, having it does no harm to touch.",
+            "fusion_entropy", "touch", DARK),
+    *joined("temperatures_help", "ours", "In the dark temperatures make the certainty a better guide.",
+            "fusion_entropy", "fusion_entropy_raw", DARK),
+    *on_their_classes(THESIS),
+]  # fmt: skip

@@ -1,0 +1,87 @@
+"""What several topics read of trainings of networks on imprints (chapter 5)."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import pandas as pd
+
+from stages.kit.split import shared_by
+from stages.kit.stats import interval
+
+from .claims import Claim
+from .results import NotRun, Results
+
+PRINTED = {
+    "alexnet": "AlexNet",
+    "googlenet": "GoogLeNet",
+    "vgg16": "VGG16",
+    "resnet50": "ResNet50",
+    "mobilenet_v2": "MobileNetV2",
+}  # as the thesis calls them, in its order
+FINE, COARSE = "imprints128", "imprints16"
+SPLITS = {"random": "touches at random", "objects": "unseen objects"}
+THEIRS = "princeton_six"  # the set of the thesis's classes
+OF_CLASS = {THEIRS: 5}  # objects of each class; of the other sets three
+STARTS, MODES = ("imagenet", "random"), ("finetuned", "frozen")
+PRETRAINED = {"complete": "", "convolutions": "its convolutions", "converted": "converted from Keras"}
+NETWORK = "mobilenet_v2"
+GUESS = 7.6  # points over chance that frozen filters have in T table 5.3, which calls that around a random guess
+
+
+def measured(results: Results, dataset: str | None = None) -> pd.DataFrame:
+    """Accuracies on one set; NotRun where there is none."""
+    return results.measured("transfer", dataset, metric="accuracy")
+
+
+def shared(split: str, dataset: str | None = None) -> float:
+    """Test over training share of a split of a data set: of each class one object is left out."""
+    return shared_by(split, OF_CLASS.get(dataset or "", 3))
+
+
+def everywhere(results: Results) -> dict[str, pd.DataFrame]:
+    """{set: accuracies}: of all sets that have them; NotRun where none has."""
+    found = {}
+    for dataset in results.datasets("transfer"):
+        try:
+            found[dataset] = measured(results, dataset)
+        except NotRun as missing:
+            absent = missing
+    if not found:
+        raise absent if results.datasets("transfer") else NotRun("no measurements of transfer", "transfer")
+    return found
+
+
+def accuracy(rows: pd.DataFrame, split: str) -> tuple[float, float, float, int]:
+    """(mean, low, high, values) of the rows of one setting on one set."""
+    mine = rows[rows["split"] == split]
+    return *mean(mine["value"], split, next(iter(mine["dataset"]), None)), len(mine)
+
+
+def mean(values: pd.Series, split: str, dataset: str | None = None) -> tuple[float, float, float]:
+    """(mean, low, high) of shares over the repetitions: splits of the same items, or folds of objects left out."""
+    middle, low, high = interval(values, shared(split, dataset))
+    return middle, max(low, 0.0), min(high, 1.0)
+
+
+def both(claim: Claim, *, items: str = "touches", done: str = "touched") -> Iterator[Claim]:
+    """The claim with items drawn at random, as in the thesis, and on objects left out, whose folds are the pairs.
+
+    items, done: what was drawn, and what was never done to the objects.
+    """
+    for split in SPLITS:
+        unseen = split == "objects"
+        said = f"{claim.sentence[:-1]}, on objects never {done} too." if unseen else claim.sentence
+        words = {("split", split): SPLITS[split].replace("touches", items)}
+        words |= {("over", "repetition"): "folds"} if unseen else {}
+        yield replace(
+            claim, key=f"{claim.key}_{split}", sentence=said, where={**claim.where, "split": split},
+            shared=shared(split, claim.dataset), phrases={**claim.phrases, **words},
+        )  # fmt: skip
+
+
+def on_their_classes(claims: list[Claim]) -> list[Claim]:
+    """Claims of `both` on the thesis's own classes."""
+    return [
+        replace(claim, key=f"{claim.key}_psb", dataset=THEIRS, shared=shared(str(claim.where["split"]), THEIRS))
+        for claim in claims
+    ]

@@ -1,0 +1,72 @@
+"""What a claim is tested on, written from its fields."""
+
+from stages.kit.split import Split
+
+from .claims import Claim, Pick, Side
+from .markdown import number
+from .results import Results
+from .style import label
+
+METRICS = {  # "" where the claim's unit says it
+    "accuracy": "", "recall": "mean of the objects' rates", "nss": "NSS", "auc": "AUC", "pcc": "PCC",
+}  # fmt: skip
+DATASETS = {
+    "gaze": "meshes with human gaze", "princeton": "psb", "princeton_eight": "psb, the thesis's 8 classes",
+    "princeton_six": "psb, the thesis's 6 classes", "pressure_images": "recorded pressure array",
+    "biotac_grasps": "recorded fingertips",
+}  # fmt: skip
+NAMED = ("method", "classifier", "network")  # columns whose values have a label
+
+
+def dataset_text(name: str) -> str:
+    """A data set in words."""
+    return DATASETS.get(name, name)
+
+
+def tested_on(claim: Claim, results: Results) -> str:
+    """`household: kNN, six objects, first minus second`: set, what both sides share, the sides, and the note."""
+    dataset = claim.dataset or next(iter(results.datasets(claim.stage)), "")
+    shared = [_phrase(claim, results, column, value) for column, value in claim.where.items()]
+    parts = [dataset_text(dataset), *shared, _sides(claim, results), claim.note]
+    return ", ".join(part for part in parts if part)
+
+
+def _sides(claim: Claim, results: Results) -> str:
+    said = _side(claim, results, claim.first)
+    if isinstance(claim.second, int | float):
+        said += f" minus {number(claim.scale * claim.second)}"
+    elif claim.second is not None:
+        said += f" minus {_side(claim, results, claim.second)}"
+    if claim.contrast:
+        one, other = (_side(claim, results, where) for where in claim.contrast)
+        said = f"{said}: {one} minus {other}"
+    return said + (f", {claim.margin:+g} {claim.unit}" if claim.margin else "")
+
+
+def _side(claim: Claim, results: Results, side: Side) -> str:
+    return " ".join(filter(None, (_phrase(claim, results, column, value) for column, value in side.items())))
+
+
+def _phrase(claim: Claim, results: Results, column: str, value: object) -> str:
+    """One column and its value in words; the topic's own words first."""
+    if isinstance(value, Pick):
+        rank = "lowest" if value.lowest else "highest"
+        names = ", ".join(_phrase(claim, results, column, name) for name in value.names)
+        return f"the {rank} of {names}" if names else f"the {rank} of the others"
+    if isinstance(value, tuple):
+        if (column, value) in claim.phrases:
+            return claim.phrases[column, value]
+        return f"mean of {', '.join(_phrase(claim, results, column, one) for one in value)}"
+    if (column, value) in claim.phrases:
+        return claim.phrases[column, value]
+    if value is None:
+        return ""
+    if column == "group":
+        return results.group_text(str(value), claim.dataset)
+    if column == "split":
+        return Split(str(value)).words
+    if column == "metric":
+        return METRICS.get(str(value), str(value).replace("_", " "))
+    if column in NAMED:
+        return label(value)
+    return f"{column} {value}"

@@ -1,0 +1,1 @@
+"""How far simulated imprints help to recognise real touches."""

@@ -1,0 +1,95 @@
+"""The ground truth of an object of any collection."""
+
+import hashlib
+import sys
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+import numpy as np
+
+from stages.kit import Mesh
+from stages.meshes.load import parse
+from stages.meshes.sources import GAZE, INTEREST_POINTS, collection_files, match_files
+
+from .annotations import annotations_on_vertices
+from .gaze import gaze_on_vertices, match_rows, read_gaze
+from .interest_points import read_interest_points
+
+PUBLISHED = ("gaze", "interest_points")  # the sources whose collection holds ground truth
+
+Files = list[tuple[str, Callable[[], bytes]]]  # (path, function that reads the bytes) of each
+
+
+def ground_truth_amounts(name: str, source: str, mesh: Mesh, folder: str | Path) -> np.ndarray | None:
+    """(n,) f8 amounts at the vertices of the normalised mesh of an object, or None if it has no ground truth.
+
+    name, source: the object, and the setting meshes.source that it was read with. folder: meshes.folder for a source
+    of PUBLISHED, for any other the folder of annotations. The amounts are seconds of gaze (source gaze), marks of the
+    users (interest_points), or the number of annotators who marked a vertex (any other source, from NAME.csv).
+    `spread_on_surface` turns them into a density. Raises ValueError when the ground truth does not fit the mesh,
+    FetchError when the collection is missing.
+    """
+    files, path = _published_files(source, folder).get(name), Path(folder) / f"{name}.csv"
+    if files:
+        amounts = _gaze(files) if source == "gaze" else _interest_points(files, len(mesh.vertices))
+    elif source not in PUBLISHED and path.exists():
+        amounts = annotations_on_vertices(mesh, path)
+    else:
+        return None
+    if len(amounts) != len(mesh.vertices):
+        raise ValueError(f"{name}: the published mesh has {len(amounts)} vertices, this one {len(mesh.vertices)}")
+    return amounts
+
+
+def ground_truth_digests(names: Iterable[str], source: str, folder: str | Path) -> dict[str, str]:
+    """{object: hash of the published files that its ground truth comes from} of those that have ground truth.
+
+    source, folder: as for ground_truth_amounts. The hash is empty for annotations, one file per object in `folder`.
+    """
+    if source not in PUBLISHED:
+        return {name: "" for name in names if (Path(folder) / f"{name}.csv").exists()}
+    files = _published_files(source, folder)
+    return {name: _digest(files[name]) for name in names if name in files}
+
+
+def _digest(files: Files) -> str:
+    return hashlib.sha256(b"".join(hashlib.sha256(read()).digest() for _, read in files)).hexdigest()
+
+
+def _published_files(source: str, folder: str | Path) -> dict[str, Files]:
+    """{object: the published files that its ground truth comes from}; {} for a source that has none."""
+    if source not in PUBLISHED:
+        return {}
+    if source == "interest_points":
+        points = match_files(collection_files(folder, *INTEREST_POINTS), r"GROUND_TRUTH_B/([^/]+)\.mat")
+        return {name: [file] for name, file in points.items()}
+    files = collection_files(folder, *GAZE)
+    tables, models = match_files(files, r"dataset_[^/]+/([^/]+)\.txt"), match_files(files, r"Models_3D/([^/]+)\.obj")
+    return {name: [tables[name], models[name]] for name in tables if name in models}
+
+
+def _gaze(files):
+    (path, table), (_, model) = files
+    # Coordinates agree exactly only with the mesh as published; normalising keeps the order of the vertices.
+    mesh = parse(model(), ".obj")
+    positions, _, seconds = read_gaze(table())
+    vertex, distance = match_rows(mesh, positions)
+    unmatched = np.flatnonzero(vertex < 0)
+    amounts = gaze_on_vertices(mesh, positions, seconds)
+    if len(unmatched):
+        off, lines = distance[unmatched] / mesh.diagonal, ", ".join(str(row + 1) for row in unmatched[:3])
+        print(
+            f"{path}: {len(unmatched)} of {len(positions)} rows match no vertex and are left out, with"
+            f" {seconds[unmatched].sum():.0f} of {seconds.sum():.0f} s of gaze; they are {off.min():.2%} to"
+            f" {off.max():.2%} of the diagonal off; lines {lines}{', ...' if len(unmatched) > 3 else ''}",
+            file=sys.stderr,
+        )
+    return amounts
+
+
+def _interest_points(files, count):
+    ((path, content),) = files
+    vertices, marks = read_interest_points(content())
+    if vertices.max(initial=-1) >= count:
+        raise ValueError(f"{path} names vertex {vertices.max()}, the mesh has {count}")
+    return np.bincount(vertices, marks, minlength=count)

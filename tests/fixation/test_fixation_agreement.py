@@ -1,0 +1,153 @@
+"""Centres of fixation, their distance, and what is judged."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from stages.fixation import centre_distance, subtractive_clusters
+from stages.fixation.agreement import agreement_rows, task_correlations
+from stages.fixation.centres import centres
+from stages.fixation.controls import centre_prior
+from stages.fixation.summary import summary, verdicts
+
+
+@pytest.fixture(scope="module")
+def blobs():
+    """(90, 2) points of three groups of equal spread: 45, 30 and 15 points."""
+    draw = np.random.default_rng(0)
+    return np.concatenate([m + 0.02 * draw.normal(size=(k, 2)) for m, k in (((0, 0), 45), ((1, 0), 30), ((0, 1), 15))])
+
+
+def test_each_group_has_its_centre_the_largest_first(blobs):
+    found = blobs[subtractive_clusters(blobs)]
+    assert np.allclose(found, [[0, 0], [1, 0], [0, 1]], atol=0.05)
+
+
+def test_clusters_ignore_scale_and_order(blobs):
+    order = np.random.default_rng(1).permutation(len(blobs))
+    stretched = (blobs * [3, 50] - 7)[order]
+    assert np.allclose(stretched[subtractive_clusters(stretched)], (blobs * [3, 50] - 7)[subtractive_clusters(blobs)])
+
+
+def test_one_place_is_one_cluster():
+    assert subtractive_clusters(np.ones((5, 3))).tolist() == [0]
+    assert subtractive_clusters(np.ones((1, 3))).tolist() == [0]
+
+
+def test_potentials_are_those_of_the_paper():
+    points = np.array([[0.0], [0.25], [1.0]])
+    first = int(np.exp(-4 * (points - points.T) ** 2 / 0.25).sum(axis=1).argmax())
+    assert subtractive_clusters(points)[0] == first == 0 or first == 1
+
+
+@pytest.mark.parametrize(("points", "radius"), [(np.zeros((0, 3)), 0.5), ([[np.nan, 0]], 0.5), ([[0.0, 0]], 0)])
+def test_bad_points_are_refused(points, radius):
+    with pytest.raises(ValueError):
+        subtractive_clusters(points, radius)
+
+
+def bump(mesh, *places):
+    return sum(np.exp(-((mesh.vertices - place) ** 2).sum(axis=1) / 0.01) for place in np.array(places, dtype=float))
+
+
+def test_distance_of_a_saliency_to_itself_is_zero(shapes):
+    ball, seen = shapes["ball"], np.ones(len(shapes["ball"].vertices), dtype=bool)
+    values = bump(ball, [0.5, 0, 0], [0, 0.5, 0])
+    assert len(centres(ball.vertices, values, seen)) == 2
+    assert centre_distance(ball.vertices, values, values, seen) == (0, 0)
+
+
+def test_distance_is_that_between_the_bumps_and_each_is_used_once(shapes):
+    ball, seen = shapes["ball"], np.ones(len(shapes["ball"].vertices), dtype=bool)
+    one, two = bump(ball, [0.5, 0, 0]), bump(ball, [0, 0.5, 0])
+    least, mean = centre_distance(ball.vertices, one, two, seen)
+    assert least == pytest.approx(np.sqrt(0.5), abs=0.06) and mean == least
+    least, mean = centre_distance(ball.vertices, one + two, two, seen)  # the first centre may take the only answer
+    assert least == mean
+
+
+def test_only_what_is_seen_counts(shapes):
+    ball = shapes["ball"]
+    seen = ball.vertices[:, 0] < 0.2
+    hidden = bump(ball, [0.5, 0, 0]) * 5 + bump(ball, [0, 0.5, 0])
+    assert centre_distance(ball.vertices, bump(ball, [0, 0.5, 0]), hidden, seen)[0] < 0.1
+
+
+def test_a_constant_map_has_no_centre(shapes):
+    ball, seen = shapes["ball"], np.ones(len(shapes["ball"].vertices), dtype=bool)
+    for even in (np.zeros(len(seen)), np.ones(len(seen))):
+        assert np.isnan(centre_distance(ball.vertices, bump(ball, [0.5, 0, 0]), even, seen)).all()
+
+
+@pytest.fixture
+def lesson(shapes):
+    ball = shapes["ball"]
+    density = bump(ball, [0.5, 0, 0], [-0.3, 0.4, 0])
+    return {"amounts": np.where(density > 0.5, 1.0, 0), "density": density, "areas": ball.vertex_areas}
+
+
+def found(rows, metric, view):
+    return next(row["value"] for row in rows if row["metric"] == metric and row["view"] == view)
+
+
+def test_the_truth_agrees_with_itself_and_noise_does_not(shapes, lesson):
+    ball, seen = shapes["ball"], np.stack([shapes["ball"].vertices[:, k] > 0 for k in range(3)])
+    same = agreement_rows(ball, lesson, seen, np.stack([lesson["density"]] * 3), lesson["density"])
+    values = np.random.default_rng(0).random(len(ball.vertices))
+    noise = agreement_rows(ball, lesson, seen, np.stack([values] * 3), values)
+    for view in range(3):
+        assert found(same, "pcc", view) == pytest.approx(1) and found(same, "distance", view) == 0
+        assert abs(found(noise, "pcc", view)) < 0.1
+    assert found(same, "auc", "all") > 0.95 > 0.6 > found(noise, "auc", "all")
+    assert found(same, "nss", "all") > 3 > abs(found(noise, "nss", "all"))
+
+
+def test_knowing_what_is_visible_passes_for_agreement_where_the_hidden_count(shapes, lesson):
+    ball = shapes["ball"]
+    seen = np.stack([ball.vertices[:, 0] > 0] * 3)
+    even = np.random.default_rng(0).uniform(0.99, 1, (3, len(ball.vertices)))
+    rows = agreement_rows(ball, lesson, seen, even, even[0])
+    assert abs(found(rows, "pcc", 0)) < 0.1 < found(rows, "pcc_masked", 0)
+
+
+def test_a_view_where_nobody_looked_is_left_out(shapes, lesson):
+    lesson = lesson | {"amounts": np.where(shapes["ball"].vertices[:, 0] > 0, lesson["amounts"], 0)}
+    seen = np.stack(
+        [shapes["ball"].vertices[:, 0] > 0, shapes["ball"].vertices[:, 0] < -0.1, np.ones(len(lesson["areas"]), bool)]
+    )
+    rows = agreement_rows(shapes["ball"], lesson, seen, np.stack([lesson["density"]] * 3), lesson["density"])
+    assert {row["view"] for row in rows} == {0, 2, "all"}
+
+
+def test_tasks_correlate_where_they_are_seen_and_constant_maps_with_nothing():
+    values = np.random.default_rng(0).random((2, 3, 50))
+    values[:, 1] = values[:, 0] * 2 + 1
+    values[0, 2] = 0.5
+    seen = np.ones((2, 50), dtype=bool)
+    rows = {row["task"]: row["value"] for row in task_correlations(values, seen, ["a", "b", "c"])}
+    assert rows["a~b"] == pytest.approx(1)
+    assert rows["a~c"] == pytest.approx(np.corrcoef(values[1, 0], values[1, 2])[0, 1])
+    assert {row["value"] for row in task_correlations(np.ones((1, 2, 5)), seen[:1, :5], ["a", "b"])} == {None}
+
+
+def test_the_centre_prior_is_highest_in_the_middle():
+    prior = centre_prior(9)
+    assert np.unravel_index(prior.argmax(), prior.shape) == (4, 4) and prior[4, 4] == 1 and (prior == prior.T).all()
+
+
+def test_it_is_said_who_loses():
+    rows = [
+        {"item": k, "method": method, "task": task, "view": view, "metric": "pcc", "value": base + slope * k}
+        for k in range(6)
+        for view in range(3)
+        for method, task, base, slope in (  # equal differences would have no interval
+            ("net-frozen", "ewigc", 0.4, 0.01), ("net-random", "ewigc", 0.1, 0.02),
+            ("control", "centre_prior", 0.7, 0.02), ("other-random", "ewigc", 0.0, 0.01),
+        )
+    ]  # fmt: skip
+    said = verdicts(pd.DataFrame(rows), 0)
+    assert len(said) == 2
+    assert any(line.startswith("net-random loses against net-frozen") for line in said)
+    assert any(line.startswith("centre_prior wins against net-frozen") for line in said)
+    numbers = summary(rows, {"level_1": 2}, 0)
+    assert numbers["pcc"]["net-frozen"]["value"] == pytest.approx(0.425) and numbers["classes"] == {"level_1": 2}

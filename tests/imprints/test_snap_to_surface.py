@@ -1,0 +1,156 @@
+"""Places on the surface, arrays there, and what makes none."""
+
+import numpy as np
+import pytest
+import trimesh
+
+from stages.imprints import (
+    Surface,
+    distances,
+    distances_at,
+    press_at,
+    press_many,
+    sensor_axes,
+    sensor_normals,
+    snap_to_surface,
+)
+from stages.kit import Mesh
+
+
+def ball():
+    made = trimesh.creation.icosphere(subdivisions=2, radius=0.5)
+    return Mesh(made.vertices, made.faces)
+
+
+def dome(open_at=0.0):
+    """The part of a ball above z = open_at, an open mesh."""
+    mesh = ball()
+    return Mesh(mesh.vertices, mesh.faces[mesh.vertices[mesh.faces][..., 2].min(axis=1) > open_at])
+
+
+def test_a_place_in_a_face_has_its_normal():
+    mesh = ball()
+    middles = mesh.vertices[mesh.faces].mean(axis=1)
+    positions, normals = snap_to_surface(Surface(mesh), middles + 0.002 * mesh.face_normals)
+    assert np.allclose(positions, middles, atol=1e-12) and np.allclose(normals, mesh.face_normals, atol=1e-12)
+
+
+def test_a_place_on_an_edge_has_the_average_of_both_faces():
+    corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 9.0]])
+    mesh = Mesh(corners, [[0, 1, 2], [0, 2, 3]])  # normals +z and +x meet along the y axis
+    _, normals = snap_to_surface(mesh, [[0, 0.3, 0]])
+    assert np.allclose(normals, np.sqrt([[0.5, 0, 0.5]]))
+
+
+def test_a_place_at_a_vertex_is_touched_as_the_vertex_is():
+    mesh = ball()
+    positions, normals = snap_to_surface(mesh, mesh.vertices[:7] * 1.001)
+    assert np.allclose(positions, mesh.vertices[:7], atol=1e-14)
+    assert np.allclose(normals, sensor_normals(mesh, np.arange(7)), atol=1e-14)
+    assert np.allclose(press_at(mesh, positions, sensor_axes(normals)), press_many(mesh, np.arange(7)), atol=1e-6)
+
+
+def test_one_place_and_none():
+    mesh = ball()
+    assert np.allclose(snap_to_surface(mesh, [[0.0, 0, 0.5]])[0], [[0, 0, 0.5]])
+    assert snap_to_surface(mesh, np.zeros((0, 3)))[0].shape == (0, 3)
+
+
+@pytest.mark.parametrize(
+    "points, words",
+    [
+        ([[0, 0, 0.6]], r"point \[0.0, 0.0, 0.6\] is off the mesh: its surface is 0.1 away"),
+        ([[0.0, np.nan, 0]], "finite"),
+        ([0.0, 0, 0.5], "shape"),
+    ],
+)
+def test_a_point_that_is_no_place_is_named(points, words):
+    with pytest.raises(ValueError, match=words):
+        snap_to_surface(ball(), points)
+
+
+@pytest.mark.parametrize("wrong", [np.nan, -1.0])
+def test_a_tolerance_that_is_none_is_named(wrong):
+    with pytest.raises(ValueError, match="tolerance must be"):
+        snap_to_surface(ball(), [[0, 0, 0.6]], tolerance=wrong)
+
+
+def test_a_larger_tolerance_takes_points_farther_off():
+    assert np.allclose(snap_to_surface(ball(), [[0, 0, 0.6]], tolerance=0.2)[0], [[0, 0, 0.5]])
+
+
+def test_faces_that_cancel_out_have_no_normal():
+    mesh = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, -1, 0]], [[0, 1, 2], [1, 3, 0][::-1]])
+    twice = Mesh(mesh.vertices, [[0, 1, 2], [0, 1, 2][::-1]])
+    with pytest.raises(ValueError, match="cancel out"):
+        snap_to_surface(twice, [[0.5, 0, 0]])
+
+
+def test_an_array_has_its_own_pitch_and_max_distance():
+    mesh = ball()
+    centres, axes = mesh.vertices[:3], sensor_axes(sensor_normals(mesh, [0, 1, 2]))
+    pitches, max_distances = np.array([0.01, 0.02, 0.05]), np.array([0.1, 0.2, 0.03])
+    together = distances_at(Surface(mesh), centres, axes, (9, 7), pitches, max_distances)
+    for k in range(3):
+        alone = distances_at(mesh, centres[k : k + 1], axes[k : k + 1], (9, 7), pitches[k], max_distances[k])
+        assert np.array_equal(together[k], alone[0])
+    assert together[2].max() == 0.03
+    images = press_at(mesh, centres, axes, (9, 7), pitches, max_distances)
+    assert images.min() == 0 and images.max() == 1
+
+
+@pytest.mark.parametrize(
+    "change, words",
+    [
+        ({"centres": [[0.0, 0]]}, "centres must be"),
+        ({"centres": [[0.0, 0, np.inf]]}, "centres must be"),
+        ({"pitch": [0.1, 0.2]}, "pitch must be a number or have shape"),
+        ({"pitch": [-0.1]}, "pitch must be a positive"),
+        ({"max_distance": [0.0]}, "max_distance must be a positive"),
+        ({"cells": (0, 3)}, "cells must be"),
+        ({"axes": np.zeros((2, 3, 3))}, "axes must have shape"),
+    ],
+)
+def test_what_makes_no_array_is_named(change, words):
+    with pytest.raises(ValueError, match=words):
+        distances_at(ball(), **{"centres": [[0, 0, 0.5]], "axes": np.eye(3)[None], **change})
+
+
+def test_an_array_larger_than_the_object_feels_what_is_there():
+    found = distances_at(ball(), [[0, 0, 0.5]], np.eye(3)[None], (8, 8), 3.0)
+    assert (found == 24).all()
+    found = distances_at(ball(), [[0, 0, 0.5]], np.eye(3)[None], (7, 7), 3.0)[0]
+    assert found[3, 3] == pytest.approx(0) and (np.delete(found.ravel(), 24) == 21).all()
+
+
+def test_a_closed_object_touched_from_its_inside_is_inside_in_every_cell():
+    inwards = np.diag([1.0, -1, -1])[None]  # looks up at the inner side of the top, 0.2 away; the way out is 0.8 down
+    found = distances_at(ball(), [[0, 0, 0.3]], inwards, (8, 8), 0.02, max_distance=0.4)
+    assert (found == -0.4).all()
+
+
+def test_an_open_object_touched_from_its_inside_is_felt_as_far_as_it_is_there():
+    mesh, inwards = dome(), np.diag([1.0, -1, -1])[None]
+    tangent = distances_at(mesh, [[0, 0, 0.5]], inwards, (8, 8), 0.02, max_distance=0.3)
+    assert (tangent == 0.3).all()  # a hollow bends away over the plane: nothing is below it
+    rigid = distances_at(mesh, [[0, 0, 0.5]], inwards, (8, 8), 0.02, max_distance=0.3, contact="rigid")[0]
+    assert rigid[0, 0] == 0 and rigid[4, 4] == rigid.max() > 0  # a rigid array rests on the hollow with its corners
+    rim = distances_at(mesh, [[0.45, 0, 0.0]], np.eye(3)[None], (1, 1), 0.02, max_distance=0.3)
+    assert (rim == 0.3).all()  # below the rim there is nothing
+
+
+def test_a_mesh_without_faces_or_area_is_nowhere_felt():
+    for mesh in (Mesh(np.zeros((3, 3)), np.zeros((0, 3), int)), Mesh([[0, 0, 0], [1, 0, 0], [2, 0, 0]], [[0, 1, 2]])):
+        assert (distances_at(mesh, [[0.0, 0, 0]], np.eye(3)[None], (4, 4), 0.1) == 0.4).all()
+        with pytest.raises(ValueError, match="no normal"):
+            distances(mesh, [0])
+
+
+def test_the_caller_s_arrays_are_left_alone():
+    mesh = ball()
+    centres, axes = mesh.vertices[:2].copy(), sensor_axes(sensor_normals(mesh, [0, 1]))
+    before = centres.copy(), axes.copy()
+    centres.flags.writeable = axes.flags.writeable = False
+    for contact in ("tangent", "rigid"):
+        distances_at(mesh, centres, axes, contact=contact)
+    assert np.array_equal(centres, before[0]) and np.array_equal(axes, before[1])

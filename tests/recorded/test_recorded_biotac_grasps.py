@@ -1,0 +1,49 @@
+"""Slip and recognition of grasps: unseen objects, and drift between recordings."""
+
+import pandas as pd
+import pytest
+
+from stages.recorded import biotac_grasps
+from stages.recorded.biotac_grasps import Model, drift_rows, process
+
+
+@pytest.fixture
+def measured(monkeypatch, tmp_path, recordings):
+    """A function from a drift of the test part to the rows of the nearest neighbours."""
+    monkeypatch.setattr(biotac_grasps, "GROUPS", 2)
+    return lambda shift=0.0: pd.DataFrame(
+        process(Model("knn", None), tmp_path, recordings.grasps(shift), repetitions=1, seed=0)
+    )
+
+
+def test_slip_of_unseen_objects_is_learned_and_scaling_each_part_undoes_a_drift(measured):
+    steady, drifted = measured(), measured(40)
+
+    def unseen(rows, scaled):
+        chosen = (rows["split"] == "test_objects") & (rows["palm"] == "all")
+        return rows[chosen & (rows["scaled"] == scaled)]
+
+    assert unseen(steady, "training")["value"].mean() > 0.9
+    assert set(unseen(steady, "own")["item"]) == {"o08", "o09", "o10", "o11"}
+    assert unseen(drifted, "training")["value"].mean() < 0.7 < 0.9 < unseen(drifted, "own")["value"].mean()
+    left_out = steady[steady["split"] == "objects"]
+    assert set(left_out["item"]) == {f"o{k:02}" for k in range(8)} and left_out["value"].mean() > 0.9
+
+
+def test_recognition_is_of_all_objects_on_both_splits(measured):
+    rows = measured()
+    rows = rows[rows["task"] == "recognition"]
+    assert set(rows["split"]) == {"random", "blocks"} and rows["item"].isna().all() and (rows["count"] > 80).all()
+
+
+@pytest.mark.parametrize("shift, beyond", [(0.0, False), (40.0, True)])
+def test_a_drift_between_recordings_is_beyond_what_other_objects_bring(shift, beyond, recordings):
+    rows = pd.DataFrame(drift_rows(recordings.grasps(shift), seed=0))
+    rows = rows.pivot(index="palm", columns="metric", values="value")
+    assert ((rows["drift"] > 3 * rows["drift_drawn"]) == beyond).all()
+
+
+def test_drift_is_measured_in_deviations_of_the_objects(recordings):
+    rows = [pd.DataFrame(drift_rows(recordings.grasps(shift), seed=0)) for shift in (0, 40)]
+    shares = [one.loc[one["metric"] == "drift", "value"].min() for one in rows]
+    assert shares[0] < 3 < 30 < shares[1]

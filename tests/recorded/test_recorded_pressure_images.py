@@ -1,0 +1,60 @@
+"""Recognition of real touches: what is held out, what is selected, and what neighbours have in common."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from stages.recorded import pressure_images
+from stages.recorded.pressure_images import class_sets, describe, neighbour_rows, process
+
+
+@pytest.fixture
+def recognised(monkeypatch, tmp_path):
+    """A function from images to the rows of all sets, two repetitions of one classifier."""
+    monkeypatch.setattr(pressure_images, "CLASSIFIERS", ["knn"])
+
+    def rows(images):
+        touches = describe(images)
+        sets = class_sets(touches, repetitions=2, seed=0)
+        return pd.DataFrame([row for one in sets.values() for row in process(one, tmp_path, touches, seed=0)])
+
+    return rows
+
+
+def test_bars_at_places_of_their_own_are_recognised_and_none_is_left_out(recognised, recordings):
+    rows = recognised(recordings.touches(noise=0.01))
+    accuracy = rows[rows["metric"] == "accuracy"]
+    assert accuracy.loc[accuracy["split"] == "random", "value"].min() > 0.5  # chance is a quarter at most
+    assert (rows.loc[rows["metric"] == "share_similar", "value"] == 0).all()
+    assert set(rows["group"]) == {"all", *(f"{n}{end}" for n in ("six", "four") for end in ("", "_alike", "_drawn"))}
+    assert rows.loc[rows["group"] == "four", "chosen"].dropna().tolist() == ["a b c d"]
+    assert set(accuracy["split"]) == {"random", "blocks", "folds"}
+    assert set(accuracy.loc[accuracy["group"] == "six_drawn", "split"]) == {"random", "blocks"}
+
+
+def test_touches_that_resemble_another_class_leave_training_or_the_whole_set(recognised, recordings):
+    images = recordings.touches(noise=0.1, count=24)
+    images["a"][::2], images["b"][::2] = images["a"][::2].transpose(0, 2, 1), images["a"][1::2].transpose(0, 2, 1)
+    rows = recognised(images)
+    whole = rows[(rows["group"] == "all") & (rows["metric"] == "accuracy") & (rows["split"] == "random")]
+    whole = whole.set_index("method")
+    assert whole.loc["selected", "test"].max() < whole.loc["all", "test"].min()  # the test part shrinks as well
+    assert set(whole.loc["selected_training", "test"]) == set(whole.loc["all", "test"])
+    assert whole.loc["selected_training", "train"].max() < whole.loc["all", "train"].min()
+    similar = rows[(rows["group"] == "four_alike") & (rows["metric"] == "share_similar")]
+    assert similar["chosen"].str.startswith("a b").all() and similar["value"].item() > 0.2
+
+
+def test_a_set_of_which_too_little_is_left_says_so(recognised, recordings):
+    images = recordings.touches()
+    images["b"] = images["a"]
+    rows = recognised(images)
+    selected = rows[(rows["group"] == "all") & (rows["method"] == "selected")]
+    assert selected["value"].isna().all() and selected["note"].tolist() == ["a keeps 0 touches, 10 are needed"]
+
+
+def test_repeated_poses_show_as_correlation_of_neighbours():
+    random = np.random.default_rng(0)
+    slow = np.repeat(random.random((6, 16, 16)), 4, axis=0)
+    rows = pd.DataFrame(neighbour_rows({"a": slow})).set_index("metric")["value"]
+    assert rows["neighbour_correlation"] > rows["pair_correlation"] + 0.3

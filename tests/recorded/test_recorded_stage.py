@@ -1,0 +1,52 @@
+"""The recorded stage on an archive of each kind."""
+
+import pandas as pd
+import pytest
+
+from stages.classification.recorded import ELECTRODES, PALMS
+from stages.kit.files import read_json
+from stages.kit.rows import read_rows
+from stages.recorded.__main__ import run
+
+
+def settings(kind, folder):
+    return {"recorded": {"kind": kind, "folder": str(folder), "repetitions": 1}}
+
+
+@pytest.mark.slow
+def test_pressure_images(make_workspace, recordings, tmp_path):
+    recordings.write_archive(tmp_path / "archive", recordings.touches(noise=0.01))
+    workspace = make_workspace(settings("pressure_images", "archive"))
+    run(workspace)
+    rows = read_rows(workspace.measurements / "recorded.csv.gz")
+    assert set(rows.loc[rows["metric"] == "accuracy", "split"]) == {"random", "blocks", "folds"}
+    assert set(rows.loc[rows["metric"] == "pair_correlation", "group"]) == set("abcdefg")
+    metrics = read_json(workspace.metrics / "recorded.json")
+    assert set(metrics) == {"share_similar", "accuracy_random", "accuracy_blocks", "accuracy_folds"}
+
+
+@pytest.mark.slow
+def test_biotac_grasps(make_workspace, recordings, tmp_path, monkeypatch):
+    grasps = recordings.grasps()
+    (tmp_path / "archive").mkdir()
+    for palm in PALMS:
+        for test in (False, True):
+            own = (grasps.palms == palm) & (grasps.test == test)
+            table = pd.DataFrame(grasps.electrodes[own], columns=ELECTRODES)
+            table = table.assign(object=grasps.objects[own], slipped=grasps.slipped[own].astype(int))
+            table.to_csv(tmp_path / f"archive/bts3v2_palm_{palm}{'_test' if test else ''}.csv", index=False)
+    workspace = make_workspace(settings("biotac_grasps", tmp_path / "archive"))
+    run(workspace)
+    rows = read_rows(workspace.measurements / "recorded.csv.gz")
+    assert set(rows["metric"]) == {"accuracy", "drift", "drift_drawn"} and set(rows["components"].dropna()) == {12, 72}
+    metrics = read_json(workspace.metrics / "recorded.json")
+    assert set(metrics) == {"slip_test_objects", "slip_objects", "recognition_random", "recognition_blocks"}
+
+
+@pytest.mark.parametrize(
+    ("kind", "fault"),
+    [("photographs", "recorded.kind='photographs' is not one of"), ("pressure_images", "gone does not exist")],
+)
+def test_a_strange_kind_and_an_absent_archive_are_named(kind, fault, make_workspace):
+    with pytest.raises(ValueError, match=fault):
+        run(make_workspace(settings(kind, "gone")))

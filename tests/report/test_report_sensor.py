@@ -1,0 +1,82 @@
+"""The pressure array in the report: its table, its chart and its claims, on rows with a known truth."""
+
+import numpy as np
+import pandas as pd
+import pytest
+from matplotlib import pyplot as plt
+
+from stages.kit.files import write_table
+from stages.report.results import NotRun
+from stages.report.sensor import claims, figure_4_11
+from stages.report.sensor import sensor_size as chart
+from stages.report.style import plot_style
+from stages.report.verdict import judge
+
+
+def pressed():
+    """Rows in which 32 x 32 cells and larger sensels are better by ten points each, kNN by five."""
+    random, rows = np.random.default_rng(0), []
+    for cells in (16, 32):
+        for pitch in (0.002, 0.01, 0.02):
+            common = {"dataset": "furniture", "method": "enhanced", "cells": cells, "pitch": pitch, "touches": 60}
+            seconds = 1e-4 * cells / 16 * (6 if pitch == 0.002 else 1)
+            rows.append(common | {"metric": "seconds_a_touch", "value": seconds, "seconds": 1.0})
+            for k, one in enumerate(("chair", "chair", "vase", "vase")):
+                for name, better in (("knn", 0.05), ("svm", 0.0)):
+                    value = 0.4 + 0.1 * (cells == 32) + 0.1 * (pitch > 0.002) + better + 0.01 * random.normal()
+                    row = {"classifier": name, "group": one, "item": f"o{k}", "fold": k % 2, "metric": "accuracy"}
+                    row |= {"seconds": 0.1}
+                    rows.append(common | row | {"split": "objects", "value": value})
+                    rows.append(common | row | {"split": "random", "value": value + 0.2 + 0.01 * random.normal()})
+    return pd.DataFrame(rows)
+
+
+@pytest.fixture
+def sensed(root, results, small):
+    small.write(root, "sensor_size", pressed())
+    smallest = pd.DataFrame([{"classifier": "knn", "cells": 32, "pitch": 0.01, "accuracy": 0.65, "again": 0.46}])
+    write_table(root / "data/furniture/sensor_size/smallest.csv", smallest)
+    return results
+
+
+def test_the_table_tells_guessing_and_how_often_the_smallest_array_is_chosen_again(sensed):
+    table = figure_4_11.build(sensed)
+    notes = " ".join(table.notes)
+    assert "guessing 50.0 %" in notes and "kNN 32 x 32 at 0.01 (46 %)" in notes
+    assert len(table.shown) == 12 and "· 95" in table.shown.query("cells == '32 x 32'")["kNN, %"].iloc[1]
+    assert table.shown["objects"].tolist() == ["unseen"] * 6 + ["known, other touches"] * 6
+
+
+def test_the_chart_is_drawn_and_its_ratios_are_plain_numbers(sensed):
+    with plot_style():
+        assert chart.build(sensed).paths[0].exists()
+        figure, axes = plt.subplots()
+        costs = pressed().query("metric == 'seconds_a_touch'").set_index(["cells", "pitch"])["value"]
+        chart._costs(axes, costs, [0.002, 0.01, 0.02])
+        figure.canvas.draw()
+        labels = [tick.get_text() for tick in axes.get_ymajorticklabels() + axes.get_yminorticklabels()]
+        plt.close(figure)
+    assert {"1", "2", "5", "10"} <= set(labels) and not any("10^" in text for text in labels)
+
+
+def test_claims_know_the_truth_of_the_rows(sensed):
+    judged = judge(claims.CLAIMS, sensed).set_index("key")
+    words = judged["verdict"]
+    better = [
+        "more_cells_help_all",
+        "larger_pitch_helps_16",
+        "larger_pitch_helps_32",
+        "more_cells_help",
+        "knn_best_sensor",
+        "known_objects_easier",
+    ]
+    assert (words[better] == "supported").all() and words["finer_sensor_enough"] == "contradicted"
+    assert judged.loc["known_objects_easier", "effect"] == pytest.approx(20, abs=1)
+    assert judged.loc["knn_best_sensor", "effect"] == pytest.approx(5, abs=1)
+
+
+def test_nothing_pressed_is_said_and_not_crashed_on(results):
+    assert set(judge(claims.CLAIMS, results)["verdict"]) == {"open"}
+    for module in (figure_4_11, chart):
+        with pytest.raises(NotRun):
+            module.build(results)

@@ -1,0 +1,188 @@
+"""The report on one touch and several: tables 4.3, 4.5, 4.6, the shares, figure 4.4, claims and the chart."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from stages.imprints import Imprints, write_imprints
+from stages.kit.files import write_arrays
+from stages.report.results import NotRun
+from stages.report.topics import CLAIMS
+from stages.report.touch import claims, costs, figure_4_4
+from stages.report.touch.one_touch import figure_4_1, table_4_1, table_4_5
+from stages.report.touch.similar import section_4_2_4, table_4_3
+from stages.report.touch.table_4_6 import table_4_6
+from stages.report.verdict import judge
+
+GLANCE = {
+    "plain": 0.6, "first_15": 0.5, "locations": 0.8, "first_15_locations": 0.7, "locations_turned": 0.4,
+    "selected": 0.7, "selected_train": 0.5, "first_15_selected": 0.6, "first_15_selected_train": 0.4,
+    "touches_1": 0.6, "touches_2": 0.7, "touches_3": 0.8, "touches_5": 0.99, "touches_5_mixed": 1.0,
+    "touches_3_disjoint": 0.6, "touches_5_disjoint": 0.3, "first_15_touches_2_mixed": 0.9,
+    "image_features": 0.4, "pixels": 0.55, "wavelet_features": 0.5,
+}  # fmt: skip
+MEASURED = [  # claims that the small run has the rows of
+    "enhanced_over_itti", "itti_over_blind", "enhanced_over_blind", "enhanced_over_blind_four",
+    "enhanced_over_blind_all", "ours_over_blind", "ours_over_enhanced", "knn_best", "network_poor", "four_easier",
+    "four_easier_beyond_chance",
+]  # fmt: skip
+SHARES = {"random": 0.6, "itti": 0.5, "thesis_ssim": 0.3}
+
+
+def rows():
+    """Accuracies as in GLANCE at every sampling of SHARES, with the least noise; shares as in SHARES."""
+    random, found = np.random.default_rng(0), []
+    for objects in ("six", "four"):
+        for method, share in SHARES.items():
+            common = {"group": objects, "method": method, "note": None}
+            for variant, accuracy in GLANCE.items():
+                for classifier in ("knn", "deep_learning", "naive_bayes"):
+                    for repetition in range(6):
+                        row = common | {"variant": variant, "classifier": classifier, "repetition": repetition}
+                        row |= {"imprints": 360, "seconds": 0.01}
+                        value = min(accuracy + 0.002 * random.normal(), 1.0)
+                        right = row | {"metric": "accuracy"}
+                        found += [right | {"split": "random", "value": value}]
+                        regions = right | {"split": "regions"}
+                        if variant in ("plain", "selected"):
+                            found += [regions | {"value": value - 0.2}]
+                            found += [row | {"metric": "recall", "split": "random", "value": value - 0.01}]
+                        else:
+                            found += [regions | {"value": value - 0.1}]
+                        if variant == "plain":
+                            found += [regions | {"variant": "plain_side", "value": value - 0.1}]
+            for variant in ("plain", "first_15"):
+                for k, of in enumerate((None, "cup", "duck", "hand")):
+                    found.append(common | {"variant": variant, "item": of, "metric": "similar_share", "imprints": 60})
+                    found[-1]["value"] = share + 0.1 * k * share + (0 if variant == "plain" else 0.1)
+            for variant in ("plain", "image_features", "wavelet_features"):
+                found.append(common | {"variant": variant, "metric": "features", "value": 41, "seconds": 0.02})
+    return pd.DataFrame(found).assign(dataset="test", seed=0)
+
+
+@pytest.fixture
+def glance(root, small):
+    """Results with all variants."""
+    small.write(root, "classification", rows())
+    return small.results(root)
+
+
+def verdicts(results):
+    return judge(claims.CLAIMS, results).set_index("key")
+
+
+def test_twin_shows_the_regions_and_the_first_fifteen(glance):
+    shown = table_4_1(glance).shown.set_index("sampling")
+    (knn,) = [column for column in shown if column.startswith("kNN")]
+    assert (
+        shown.loc["enhanced visual attention", knn].startswith("60 [")
+        and "· 40 · 73" in shown.loc["enhanced visual attention", knn]
+    )
+    assert shown.loc["blind touch, 15 imprints", knn].startswith("50 [")
+
+
+def test_positions_stand_beside_the_thesis_with_the_side_held_out(glance):
+    table = table_4_5(glance)
+    cell = table.frame.set_index(["sampling", "classifier"]).loc[("enhanced_visual_attention", "knn")]
+    assert cell["accuracy"] == pytest.approx(0.8, abs=0.01) and cell["thesis"] == 0.85
+    assert cell["accuracy_regions"] == pytest.approx(0.7, abs=0.01) and "one side" in table.notes[1]
+
+
+def test_selection_has_a_column_for_each_group_and_way(glance):
+    table = table_4_3(glance)
+    cells = table.frame.set_index(["classifier", "objects", "selection"])
+    assert cells.loc[("knn", "six", "selected"), "thesis"] == 0.76
+    assert cells.loc[("knn", "four", "plain"), "thesis"] == 0.78
+    assert np.isnan(cells.loc[("knn", "six", "selected_train"), "thesis"])
+    assert cells.loc[("knn", "six", "selected"), "recall"] == pytest.approx(0.69, abs=0.01)
+    assert cells.loc[("knn, 15 imprints", "six", "selected"), "accuracy"] == pytest.approx(0.6, abs=0.01)
+    assert table.shown.shape[1] == 7 and "kNN, 15 imprints" in set(table.shown["classifier"])
+
+
+def test_selection_that_was_not_run_says_why(root, small):
+    frame = rows()
+    note = {
+        "dataset": "test",
+        "group": "six",
+        "method": "thesis_ssim",
+        "variant": "selected",
+        "note": "an object keeps too few",
+    }
+    frame = pd.concat([frame[frame["variant"] != "selected"], pd.DataFrame([note])])
+    small.write(root, "classification", frame)
+    with pytest.raises(NotRun, match="an object keeps too few"):
+        table_4_3(small.results(root))
+
+
+def test_shares_stand_beside_those_of_the_thesis_by_sampling_and_by_object(glance):
+    frame = section_4_2_4(glance).frame.set_index("name")
+    assert frame.loc["blind_touch", ["all", "thesis"]].tolist() == pytest.approx([0.6, 0.5889])
+    assert frame.loc["enhanced_visual_attention", "first_15"] == pytest.approx(0.4)
+    assert frame.loc["duck", "thesis"] == 0.4 and frame.loc["duck", "all"] == pytest.approx(0.36)
+
+
+def test_table_of_touches_holds_the_thesis_and_the_other_ways(glance):
+    table = table_4_6(glance)
+    cells = table.frame.set_index(["sampling", "way", "classifier", "touches"])
+    assert cells.loc[("thesis_ssim", "", "knn", 2), "thesis"] == 0.96
+    assert np.isnan(cells.loc[("random", "", "knn", 2), "thesis"])
+    assert cells.loc[("thesis_ssim", "first_15_mixed", "knn", 2), "accuracy"] == pytest.approx(0.9, abs=0.01)
+    shown = table.shown.set_index("classifier")
+    assert "kNN, combinations drawn before the split" in shown.index
+    assert "kNN, combinations drawn before the split, blind touch" in shown.index
+    assert shown.loc["deep learning: ours · unseen regions · thesis", "5 touches, %"].endswith("46")
+
+
+def test_table_of_touches_without_touches_is_not_run(results):
+    with pytest.raises(NotRun):
+        table_4_6(results)
+
+
+def test_claims_follow_the_measurements(glance):
+    words = verdicts(glance)["verdict"]
+    supported = ("selection_helps", "locations_help", "more_touches", "certain_at_five", "network_dips_disjoint",
+                 "dissimilar_random", "dissimilar_itti_first_15")  # fmt: skip
+    assert all(words[key] == "supported" for key in supported)
+    assert words["selection_helps_train"] == words["locations_help_turned"] == words["network_dips"] == "contradicted"
+    assert verdicts(glance).loc["more_touches", "effect"] == pytest.approx(39, abs=1)
+
+
+def test_claims_have_keys_of_their_own_and_are_open_without_measurements(results):
+    keys = [claim.key for claim in CLAIMS]
+    assert len(set(keys)) == len(keys)
+    further = verdicts(results).drop(MEASURED)
+    assert (further["verdict"] == "open").all() and (further["pairs"] == 0).all()
+
+
+def test_chart_counts_the_making_of_the_features(glance):
+    frame = pd.read_csv(costs.by_features(glance).paths[1]).set_index("name")
+    assert frame.loc["kNN, 41 features", "seconds"] == pytest.approx(0.03)
+    assert frame.loc["kNN, pixels", "seconds"] == pytest.approx(0.01)
+    assert frame.loc["kNN, 5 touches, map and position", "cost_ratio"] == pytest.approx(1)
+
+
+def test_correlations_are_drawn_for_every_pair(root, small):
+    random = np.random.default_rng(0)
+    write_arrays(root / "data/test/classification/six.random.npz", objects=np.array(["ball", "cube"]))
+    write_arrays(root / "data/test/classification/six.enhanced.npz", objects=np.array(["ball", "cube"]))
+    for name in ("ball", "cube"):
+        imprints = Imprints(random.random((5, 8, 8)), np.arange(5), random.random((5, 3)), 0.01)
+        write_imprints(root / f"data/test/imprints/{name}.npz", {"random": imprints, "thesis_ssim": imprints})
+    figure = figure_4_4.build(small.results(root))
+    assert figure.paths[0].stat().st_size > 5000
+
+
+def test_correlations_of_imprints_that_are_absent_are_not_run(results):
+    with pytest.raises(NotRun):
+        figure_4_4.build(results)
+
+
+def test_line_of_chance_follows_the_objects_that_the_group_held(root, results, small, monkeypatch):
+    drawn = {}
+    draw = lambda axes, *_, chance: drawn.update(chance=chance, axes=axes) or {}  # noqa: E731
+    monkeypatch.setattr("stages.report.touch.one_touch.draw_bars", draw)
+    small.write_set(root, "six", 4)
+    figure_4_1(results)
+    assert drawn["chance"] == 1 / 4
+    title = drawn["axes"].get_title(loc="left") + drawn["axes"].get_title()
+    assert title == "Recognising 4 objects (group six) by one touch"

@@ -1,0 +1,117 @@
+"""Imprint rates: what the table and the chart say of a bench with a known truth, and the picture of one mesh."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from stages.kit.files import write_table
+from stages.report.results import NotRun
+from stages.report.touch import imprint_rates, touch_one_mesh
+
+RATES = {"ours": 4000.0, "trimesh_embree": 2000.0, "depth_picture": 1000.0, "tacto_32x32": 50.0, "tacto_160x120": 20.0}
+ERRORS = {"ours": 1e-16, "trimesh_embree": 1e-15, "depth_picture": 2e-3, "tacto_32x32": 1e-3, "tacto_160x120": 2e-4}
+NO_TACTO = "not run: no --tacto PYTHON was given"
+
+
+def benched(ours=4000.0, tacto=True):
+    """Rows of three meshes, on the last of which every rate is a tenth higher; ours is four times as fast at 16."""
+    rows = []
+    for k, faces in enumerate((2000, 10_000, 50_000)):
+        for cells in (16, 32):
+            for pitch in (0.002, 0.01):
+                for method, rate in (RATES | {"ours": ours * (4 if cells == 16 else 1)}).items():
+                    run = tacto or method in ("ours", "trimesh_embree")
+                    value = rate * (1.1 if k == 2 else 1) if run else np.nan
+                    row = {"what": "rate", "mesh": f"m{k}", "source": "psb", "faces": faces, "cells": cells}
+                    row |= {"pitch": pitch, "touches": 40, "method": method, "value": value, "seconds": 1 / value}
+                    ratio = value / (20 * (1.1 if k == 2 else 1)) if tacto else np.nan
+                    rows.append(row | {"ratio": ratio, "note": "" if run else NO_TACTO})
+    for shape in ("plane", "sphere"):
+        for method, error in ERRORS.items():
+            if tacto or method in ("ours", "trimesh_embree"):
+                row = {"what": "error", "mesh": shape, "source": "analytic", "faces": 9, "cells": 31, "pitch": 0.01}
+                own = error * (0.5 if shape == "plane" else 1)
+                rows.append(row | {"touches": 1, "method": method, "value": 1.0, "to_mesh": own, "note": ""})
+    return pd.DataFrame(rows)
+
+
+@pytest.fixture
+def bench(bare, small):
+    def written(rows):
+        write_table(bare / "reports/bench/imprints.csv", rows)
+        return small.results(bare)
+
+    return written
+
+
+def test_rates_ratios_and_errors_are_those_of_the_bench(bench):
+    frame = imprint_rates.table(bench(benched())).frame
+    row = frame[(frame["method"] == "ours") & (frame["cells"] == 32)].iloc[0]
+    assert row["rate"] == pytest.approx(4000 * 1.1 ** (1 / 3), rel=1e-4) and row["rate_least"] == pytest.approx(4000)
+    assert row["rate_low"] < row["rate"] < row["rate_high"] and row["meshes"] == 3
+    assert row["ratio"] == pytest.approx(200) and row["error"] == pytest.approx(1e-16)
+    assert frame.loc[frame["method"] == "tacto_160x120", "error"].tolist() == pytest.approx([2e-4, 2e-4])
+    assert len(frame) == 10 and list(frame["cells"]) == [16] * 5 + [32] * 5
+
+
+def test_targets_are_judged_in_words(bench):
+    notes = imprint_rates.table(bench(benched())).notes
+    assert "3,000 is met" in notes[1] and "50 times is met" in notes[1] and "3,000" not in notes[0]
+    assert "3,000 is missed" in imprint_rates.table(bench(benched(ours=900.0))).notes[1]
+
+
+def test_low_ratio_is_missed(bench):
+    notes = imprint_rates.table(bench(benched(ours=500.0))).notes
+    assert "50 times is missed" in notes[1]
+
+
+def test_shown_table_names_the_methods_and_hides_rounding(bench, tmp_path):
+    table = imprint_rates.table(bench(benched()))
+    table.name = "imprint_rates"
+    text = table.write(tmp_path)[1].read_text()
+    assert "TACTO, its 160 x 120 pixels" in text and "< 1e-6" in text and "| 20 |" in text
+    assert "m0 (psb, 2,000 faces)" in text
+
+
+def test_peers_that_did_not_run_are_said_and_leave_the_rest(bench):
+    results = bench(benched(tacto=False))
+    table = imprint_rates.table(results)
+    assert any(NO_TACTO in note for note in table.notes) and "TACTO was not run" in table.notes[0]
+    assert table.frame.loc[table.frame["method"] == "ours", "rate"].notna().all()
+    assert imprint_rates.chart(results).paths[0].exists()
+
+
+def test_chart_puts_ours_alone_on_the_front(bench):
+    figure = imprint_rates.chart(bench(benched()))
+    written = pd.read_csv(figure.paths[1])
+    assert written.loc[written["on_front"], "method"].tolist() == ["ours"]
+    assert figure.paths[0].exists() and "TACTO" in figure.alt
+
+
+def test_chart_counts_rounding_as_equal(bench):
+    rows = benched()
+    rows.loc[(rows["method"] == "trimesh_embree") & (rows["what"] == "rate"), "value"] = 9000.0
+    written = pd.read_csv(imprint_rates.chart(bench(rows)).paths[1])
+    assert written.loc[written["on_front"], "method"].tolist() == ["trimesh_embree"]
+
+
+def test_without_a_bench_nothing_is_run(bare, small):
+    for build in (imprint_rates.table, imprint_rates.chart):
+        with pytest.raises(NotRun, match="make bench"):
+            build(small.results(bare))
+
+
+def test_half_a_bench_is_not_run(bench):
+    rows = benched()
+    with pytest.raises(NotRun, match="not whole"):
+        imprint_rates.table(bench(rows[rows["what"] == "rate"].drop(columns="to_mesh")))
+
+
+def test_bench_without_a_rate_is_not_run(bench):
+    with pytest.raises(NotRun, match="not whole"):
+        imprint_rates.table(bench(benched().assign(value=np.nan)))
+
+
+def test_picture_of_one_mesh_is_of_the_hero(results):
+    figure = touch_one_mesh.build(results)
+    assert figure.paths[0].exists() and "ball" in figure.alt and "3 numbered places" in figure.alt

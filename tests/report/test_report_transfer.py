@@ -1,0 +1,210 @@
+"""The tables, figures, chart and claims of chapter 5, on trainings whose truth is known."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from stages.kit.files import write_table
+from stages.report import networks as _transfer
+from stages.report.differences import differences
+from stages.report.recorded import network_sizes, table_5_1, table_5_5
+from stages.report.results import NotRun
+from stages.report.transfer import claims as chapter_5
+from stages.report.transfer import coarse_imprints, figure_5_3, figure_5_4, table_5_3, table_5_4, table_5_6
+from stages.report.transfer import networks_chart as chart
+from stages.report.verdict import judge
+
+MEANS = {  # (data, weights, mode) -> accuracy
+    ("imprints128", "imagenet", "finetuned"): 0.9,
+    ("imprints128", "imagenet", "frozen"): 0.6,
+    ("imprints128", "imagenet", "18:139"): 0.85,
+    ("imprints128", "random", "finetuned"): 0.5,
+    ("imprints128", "random", "frozen"): 0.3,
+    ("imprints16", "imagenet", "finetuned"): 0.7,
+    ("imprints16", "imagenet", "frozen"): 0.4,
+}
+LAYERS = {"conv1": "Conv1", "b2": "block_2", "b9": "block_9", "b15": "block_15", "last": "Conv_1"}
+
+
+def rows(dataset="furniture", unseen=-0.2, repetitions=4):
+    """Trainings: unseen objects are harder by a margin, fine-tuning and ImageNet help by margins."""
+    random, found = np.random.default_rng(0), []
+    for (data, weights, mode), mean in MEANS.items():
+        for split, loss in (("random", 0.0), ("objects", unseen)):
+            for number in range(repetitions):
+                common = {"dataset": dataset, "data": data, "method": "mobilenet_v2", "weights": weights, "mode": mode}
+                common |= {
+                    "pretrained": "complete" if weights == "imagenet" else None,
+                    "split": split,
+                    "repetition": number,
+                }
+                values = {"accuracy": mean + loss + 0.005 * random.normal(), "chance": 0.125}
+                seconds = 10.0 if mode == "frozen" else 60.0
+                found += [common | {"metric": key, "value": v, "seconds": seconds} for key, v in values.items()]
+    return pd.DataFrame(found).assign(seed=0, note=None)
+
+
+def changes():
+    """Changes that fall with depth, of two trainings."""
+    found = []
+    for number in range(2):
+        trial = f"imprints128.mobilenet_v2.imagenet.finetuned.random.{number}"
+        for depth, (layer, part) in enumerate(LAYERS.items()):
+            found.append({"trial": trial, "layer": layer, "part": part, "value": 0.1 ** (depth + 0.1 * number)})
+    return pd.DataFrame(found)
+
+
+@pytest.fixture
+def run(bare, small):
+    """Results of a run that has trained MobileNetV2."""
+    small.write(bare, "transfer", rows())
+    write_table(bare / "data/furniture/transfer/weight_change.csv", changes())
+    return small.results(bare)
+
+
+def only(frame, **where):
+    """The one row of a frame."""
+    for column, value in where.items():
+        frame = frame[frame[column] == value]
+    assert len(frame) == 1
+    return frame.iloc[0]
+
+
+def test_twin_of_table_5_4_stands_beside_the_thesis_s_figures(run):
+    table = table_5_4.build(run)
+    found = only(table.frame, network="mobilenet_v2", weights="imagenet", mode="frozen", split="random")
+    assert found["accuracy"] == pytest.approx(0.6, abs=0.01) and found["thesis"] == 0.4381
+    assert found["above_chance"] == pytest.approx(found["accuracy"] - 0.125)
+    line = only(table.shown, network="MobileNetV2", filters="frozen", **{"starts from": "ImageNet"})
+    assert line["furniture, touches at random (chance 12.5), %"].startswith("59.7 [") and line["thesis, %"] == "43.8"
+
+
+def test_the_coarse_table_holds_the_coarse_array_alone(run):
+    frame = table_5_3.build(run).frame
+    found = only(frame, network="mobilenet_v2", weights="imagenet", mode="frozen", split="random")
+    assert found["accuracy"] == pytest.approx(0.4, abs=0.01) and found["thesis"] == 0.2048
+
+
+def test_networks_of_the_thesis_that_were_not_run_say_so(run):
+    shown = table_5_4.build(run).shown
+    line = only(shown, network="ResNet50", filters="frozen")
+    assert line["furniture, unseen objects (chance 12.5), %"] == "not run" and line["thesis, %"] == "52.4"
+
+
+def test_frozen_layers_go_by_the_thesis_s_numbers(run):
+    frame = table_5_6.build(run).frame
+    assert only(frame, frozen_layers="18:139", split="random")["accuracy"] == pytest.approx(0.85, abs=0.01)
+    assert only(frame, frozen_layers="none", split="random")["accuracy"] == pytest.approx(0.9, abs=0.01)
+    assert np.isnan(only(frame, frozen_layers="1:150", split="random")["accuracy"])
+
+
+def test_rows_on_the_thesis_s_classes_stand_beside_the_run_s(bare, run, small):
+    small.write(bare, "transfer", rows("princeton_six"))
+    shown = table_5_4.build(small.results(bare)).shown
+    assert "psb, the thesis's 6 classes, touches at random (chance 12.5), %" in shown
+
+
+@pytest.mark.parametrize("figure", [figure_5_3, figure_5_4])
+def test_figures_are_drawn(run, figure):
+    made = figure.build(run)
+    assert made.paths[0].stat().st_size > 10_000
+
+
+def test_gain_of_fine_tuning_is_paired(run):
+    measured = _transfer.everywhere(run)["furniture"]
+    mean, low, high = figure_5_3._gains(measured)["mobilenet_v2", "random", "imprints128"]
+    assert mean == pytest.approx(30, abs=1) and low < mean < high
+
+
+def test_chart_costs_are_seconds_of_training(run):
+    chart.build(run)
+    frame = pd.read_csv(run.reports / "tradeoff/networks.csv").set_index("name")
+    assert frame.loc["MobileNetV2, ImageNet, fine-tuned", "cost_ratio"] == pytest.approx(6)
+
+
+VERDICTS = {
+    "tuned_over_frozen_random": "supported",
+    "tuned_over_frozen_objects": "supported",
+    "frozen_over_chance_random": "supported",
+    "seen_over_random_tuned_random": "supported",
+    "fine_over_coarse_frozen_random": "supported",
+    "early_and_late_random": "supported",
+    "frozen_coarse_by_chance_random": "contradicted",
+}
+
+
+@pytest.mark.parametrize(("key", "word"), VERDICTS.items())
+def test_claims_say_what_the_rows_hold(run, key, word):
+    judged = judge(chapter_5.CLAIMS, run).set_index("key")
+    assert judged.loc[key, "verdict"] == word
+
+
+def test_a_claim_turns_with_the_rows(bare, small):
+    frame = rows()
+    frame["mode"] = frame["mode"].map({"frozen": "finetuned", "finetuned": "frozen"}).fillna(frame["mode"])
+    small.write(bare, "transfer", frame)
+    judged = judge(chapter_5.CLAIMS, small.results(bare)).set_index("key")
+    assert judged.loc["tuned_over_frozen_random", "verdict"] == "contradicted"
+
+
+def test_depth_is_compared_with_change(run):
+    depth = next(one for one in chapter_5.CLAIMS if one.statistic == "later_convolutions_change_less")
+    assert differences(run, depth).to_numpy() == pytest.approx([1, 1])
+
+
+def test_without_trainings_nothing_is_made_up(bare, small):
+    empty = small.results(bare)
+    for module in (table_5_3, table_5_4, table_5_6, figure_5_3, figure_5_4, chart):
+        with pytest.raises(NotRun, match="transfer"):
+            module.build(empty)
+
+
+def recorded():
+    """Recorded touches: a frozen network and the classical features, and a data set that is not at hand."""
+    one = {"dataset": "pressure_images", "data": "pressure", "split": "random", "metric": "accuracy"}
+    seen = {"method": "mobilenet_v2", "weights": "imagenet", "pretrained": "complete", "mode": "frozen", "size": 96}
+    found = [one | seen | {"repetition": k, "value": 0.9 + 0.01 * k} for k in range(3)]
+    found.append(one | {"method": "features_knn", "repetition": 0, "value": 0.6})
+    missing = {
+        "dataset": "vt60",
+        "data": "vt60",
+        "method": "alexnet",
+        "weights": "imagenet",
+        "mode": "frozen",
+        "metric": "accuracy",
+    }
+    return pd.DataFrame([*found, missing | {"note": "not run: data set not at hand"}])
+
+
+@pytest.mark.parametrize(("table", "figure"), [(table_5_1, "83.0"), (table_5_5, "85.2")])
+def test_a_data_set_that_is_not_at_hand_is_named(bare, small, table, figure):
+    small.write(bare, "recorded_networks", recorded())
+    made = table.build(small.results(bare))
+    line = only(made.shown, network="AlexNet")
+    assert line["fine-tuned: ours, %"] == "not run" and line["fine-tuned: thesis, %"] == figure
+    assert "Not run" in made.notes[0]
+
+
+def test_the_coarse_array_is_told_one_change_at_a_time(bare, small):
+    base = {"cells": 16, "weights": "imagenet", "size": 80, "chance": 0.125, "metric": "accuracy"}
+    levels = {"rate_of_table_5_3": 0.2, "plain": 0.6}
+    found = [base | {"setting": s, "repetition": k, "value": v + 0.01 * k} for s, v in levels.items() for k in range(3)]
+    small.write(bare, "coarse_imprints", pd.DataFrame(found), "furniture")
+    shown = coarse_imprints.build(small.results(bare)).shown
+    assert list(shown["what differs"]) == [coarse_imprints.SETTINGS[name] for name in ("plain", "rate_of_table_5_3")]
+    assert shown["accuracy, %"][0].startswith("61.0 [")
+
+
+def test_the_smallest_network_that_is_enough_is_named(bare, small):
+    found = [
+        {"data": "pressure", "item": None, "method": name, "weights": "imagenet", "mode": "frozen", "split": "blocks"}
+        | {"pretrained": "complete", "size": 96, "repetition": k, "metric": "accuracy", "value": level + 0.001 * k}
+        for name, level in (("mobilenet_v2", 0.9), ("vgg16", 0.91), ("alexnet", 0.7)) for k in range(3)
+    ]  # fmt: skip
+    sizes = {"mobilenet_v2": 2e6, "vgg16": 15e6, "alexnet": 1e6}
+    costs = [
+        {"network": n, "size": 96, "parameters": s, "operations": s, "milliseconds": 1.0} for n, s in sizes.items()
+    ]
+    small.write(bare, "recorded_networks", pd.DataFrame(found), "pressure_images")
+    write_table(bare / "reports/bench/networks.csv", pd.DataFrame(costs))
+    assert "best on average is MobileNetV2." in network_sizes.build(small.results(bare)).caption

@@ -1,0 +1,62 @@
+"""The simulated_to_real stage on two objects, whose other imprints stand for the real touches."""
+
+import numpy as np
+import pandas as pd
+import pytest
+import trimesh
+from PIL import Image
+
+from stages.kit import Mesh
+from stages.kit.files import read_arrays, write_mesh, write_table
+from stages.kit.rows import read_rows
+from stages.simulated_to_real.__main__ import run, shares
+from stages.simulated_to_real.simulations import simulate
+
+SOLIDS = {"sphere": trimesh.creation.icosphere(2, radius=0.5), "cube": trimesh.creation.box((0.5, 0.5, 0.5))}
+MEMBERS = {"ball": "sphere", "box": "cube"}
+SIZES = {"sphere": 0.04, "cube": 0.03}
+SETTINGS = {"simulations": ["resting"], "simulated": 24, "real": [0, 7], "repetitions": 2}
+
+
+@pytest.fixture
+def workspace(make_workspace, tmp_path):
+    """Meshes of two classes, and an archive of 24 imprints of each."""
+    recorded = {"kind": "pressure_images", "folder": "archive", "repetitions": 1}
+    workspace = make_workspace({"simulated_to_real": SETTINGS, "recorded": recorded})
+    meshes = workspace.data / "meshes"
+    for name, object_name in MEMBERS.items():
+        solid = SOLIDS[object_name]
+        mesh = Mesh(np.array(solid.vertices), np.array(solid.faces))
+        write_mesh(meshes / f"{object_name}.npz", mesh)
+        pressed = simulate("resting", mesh, 24, (28, 50), SIZES[object_name], np.random.default_rng(1))
+        (tmp_path / "archive/Images" / name).mkdir(parents=True)
+        for k, picture in enumerate(pressed):
+            path = tmp_path / f"archive/Images/{name}/{name}{k}.jpg"
+            Image.fromarray(np.round(255 * picture).astype(np.uint8)).save(path, quality=95)
+    write_table(meshes / "manifest.csv", pd.DataFrame({"object": list(SIZES), "size": list(SIZES.values())}))
+    write_table(meshes / "classes.csv", pd.DataFrame({"class": list(MEMBERS), "object": list(MEMBERS.values())}))
+    return workspace
+
+
+@pytest.mark.slow
+def test_simulation_of_the_same_objects_helps_and_alignment_is_said(workspace):
+    run(workspace)
+    rows = read_rows(workspace.measurements / "simulated_to_real.csv.gz")
+    knn = rows[(rows["classifier"] == "knn") & (rows["group"] == "all")]
+    assert knn.loc[knn["training"] == "simulated", "value"].min() > 0.9
+    assert set(knn["training"]) == {"real", "simulated", "both"} and set(knn["aligned"].dropna()) == {True, False}
+    assert set(rows["group"]) == {"all", "ball", "box"} and set(rows["split"]) == {"blocks"}
+    pressed = read_arrays(workspace.data / "simulated_to_real/cube.npz")
+    assert {kind: images.shape for kind, images in pressed.items()} == {"resting": (24, 28, 50)}
+
+
+def test_a_class_that_nobody_recorded_is_named(workspace):
+    table = pd.DataFrame({"class": ["ball", "shoe"], "object": ["sphere", "cube"]})
+    write_table(workspace.data / "meshes/classes.csv", table)
+    with pytest.raises(ValueError, match="meshes.classes: shoe is not a class of the pressure images"):
+        run(workspace)
+
+
+def test_the_objects_of_a_class_share_its_imprints():
+    assert shares({"ball": ["a", "b", "c"], "box": ["d"]}, 48) == {"a": 16, "b": 16, "c": 16, "d": 48}
+    assert sum(shares({"ball": ["a", "b", "c"]}, 10).values()) == 10

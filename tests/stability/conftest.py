@@ -1,0 +1,53 @@
+"""The stage on one small object, and the simplifications of a few broken balls: run for all tests of the stage."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import trimesh
+
+from stages.kit import Mesh
+from stages.kit.files import write_mesh, write_table
+from stages.meshes import normalise
+from stages.stability.__main__ import process
+from stages.stability.schema import Params
+from stages.stability.simplification import simplification_rows
+from stages.weights.table import weight_table
+
+SEVERITIES = {"vertex_order": [1.0], "noise": [0.001, 0.02], "light": [60.0], "missing_faces": [0.9, 1.0]}
+
+
+@pytest.fixture(scope="session")
+def settings():
+    return Params(
+        broken=[], objects=["pear"], most=1, methods=["itti", "harris", "random"], count=8, size=[120, 160],
+        perturbations=list(SEVERITIES), severities=SEVERITIES,
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="session")
+def pear():
+    """A bumpy ball."""
+    ball = trimesh.creation.icosphere(subdivisions=3)
+    tops = trimesh.util.unitize(np.array([[1.0, 0.2, 0.1], [-0.3, 1, 0.4], [0.1, -0.6, -1]]))
+    height = np.exp(-(2 - 2 * ball.vertices @ tops.T) / (2 * np.array([0.2, 0.25, 0.3]) ** 2)) @ [0.5, 0.4, 0.6]
+    return normalise(Mesh(ball.vertices * (1 + height[:, None]), ball.faces))
+
+
+@pytest.fixture(scope="session")
+def disturbed(tmp_path_factory, pear, settings):
+    """root: its folder, with the inputs and the file of the pear below data/test; rows: of the pear."""
+    root = tmp_path_factory.mktemp("stability")
+    data = root / "data/test"
+    write_mesh(data / "meshes/pear.npz", pear)
+    write_table(data / "weights/weights.csv", weight_table({}, "gaze"))
+    return SimpleNamespace(root=root, rows=process("pear", data / "stability", data, settings, 0))
+
+
+@pytest.fixture(scope="session")
+def simplified():
+    """The rows of three kinds of damage to a ball, simplified by one backend."""
+    ball = trimesh.creation.icosphere(subdivisions=3)
+    return simplification_rows(
+        Mesh(ball.vertices * [0.3, 0.4, 0.5], ball.faces), "ball", 0, ("sound", "pin_holes", "soup"), ("pymeshlab",)
+    )

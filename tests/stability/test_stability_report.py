@@ -1,0 +1,62 @@
+"""What the report makes of the stage."""
+
+import pandas as pd
+import pytest
+
+from stages.kit.files import write_text
+from stages.kit.rows import write_rows
+from stages.kit.workspace import Workspace
+from stages.report.results import NotRun, Results
+from stages.report.schema import Params
+from stages.report.stability import failures, points, points_figure, simplification, simplification_figure
+from stages.report.style import label, plot_style
+from stages.stability.schema import COLUMNS
+
+SETTINGS = Params(
+    hero_object="pear", figure_objects=["pear"], viewer_objects=[], viewer_count=0, viewer_faces=0,
+    viewer_lod_methods=[], viewer_kilobytes=0,
+)  # fmt: skip
+
+
+def results(root, rows):
+    """The Results of a root with the rows of a set `test`, or without any."""
+    write_text(root / "params.yaml", "sets: [test]\ngraph: {}\ntest: {}")
+    workspace = Workspace(root, "test")
+    if rows:
+        write_rows(workspace.measurements / "stability.csv.gz", rows, COLUMNS, "test", 0)
+    return Results(workspace.on(""), SETTINGS)
+
+
+def test_report_shows_the_table_and_the_pictures(disturbed):
+    found = results(disturbed.root, disturbed.rows)
+    built = points.build(found)
+    shown = built.shown.set_index("perturbation")
+    assert shown.loc["vertex order", label("harris")] == "> 1" and float(shown.loc["noise", label("harris")]) < 0.02
+    assert label("random") not in shown and any("no surface" in note for note in built.notes)
+    with plot_style():
+        figures = [module.build(found) for module in (points_figure, failures)]
+    assert all(path.stat().st_size > 5000 for figure in figures for path in figure.paths)
+    assert "missing faces" in figures[1].caption and label("harris") in figures[0].alt
+
+
+def test_report_shows_the_simplified_meshes(tmp_path, simplified):
+    found = results(tmp_path, simplified)
+    built = simplification.build(found)
+    shown = built.shown.set_index("damage")
+    assert pd.isna(shown.loc["soup", "least, pymeshlab"])  # feasible at no count but the one that a refusal names
+    assert shown.loc["sound", "least, pymeshlab"] <= 64 and list(shown.index)[-1] == "all"
+    with plot_style():
+        figure = simplification_figure.build(found)
+    assert figure.paths[0].stat().st_size > 5000 and "ball" in figure.caption
+
+
+def test_the_least_count_is_the_one_above_which_all_is_valid():
+    rows = [("4", 4, "valid"), ("64", 64, "ruined"), ("50%", 500, "valid"), ("90%", 900, "valid")]
+    cases = pd.DataFrame(rows, columns=["budget", "severity", "outcome"]).assign(kept="none", soft=None)
+    assert simplification.least_valid(cases) == 500
+
+
+@pytest.mark.parametrize("module", [points, points_figure, failures, simplification, simplification_figure])
+def test_report_says_which_stage_to_run(tmp_path, module):
+    with pytest.raises(NotRun, match="dvc repro stability"):
+        module.build(results(tmp_path, []))

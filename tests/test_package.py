@@ -1,0 +1,231 @@
+"""The package that people install: light where they have a mesh of their own, whole where they run the pipeline."""
+
+import ast
+import os
+import re
+import subprocess
+import sys
+import tomllib
+import types
+import zipfile
+from importlib.metadata import packages_distributions
+from pathlib import Path
+
+import pytest
+
+import haptic_glance
+from haptic_glance import __main__ as command
+from stages.kit.conf import conf_folder
+from stages.kit.extras import EXTRAS, MODULES, MissingExtra, from_extra
+
+ROOT = Path(__file__).parents[1]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+BROUGHT = {"omegaconf": "hydra-core", "yaml": "hydra-core"}  # by a package that we list
+# What a core install is: none of the modules that the extras bring can be imported.
+CORE = f"""
+import sys
+
+class Missing:
+    def find_spec(self, name, path=None, target=None):
+        if name.partition(".")[0] in {sorted(EXTRAS)}:
+            raise ModuleNotFoundError(f"No module named {{name!r}}", name=name)
+
+sys.meta_path.insert(0, Missing())
+"""
+SIX = """
+import numpy as np
+from haptic_glance import Camera, Placed, Scene, budget, find_points, follow, load, press, saliency, simplify
+
+mesh = load(sys.argv[1])
+assert saliency(mesh).shape == (len(mesh.vertices),)
+points = find_points(mesh, count=5)
+assert len(points) == 5
+assert len(simplify(mesh, 200, keep=points[:2]).faces) <= 200
+assert press(mesh, points[0]).shape == (16, 16)
+plane = np.stack([mesh.vertices.mean(axis=0), *mesh.vertices[points[:2]]])
+assert len(follow(mesh, plane, frames=4).images) == 4
+cameras = tuple(Camera((-far, 0.0, 0.5), (0.0, 0.0, 0.5), 40.0, (60, 80)) for far in (2.0, 4.0))
+for kind, tolerance in (("pixels", 1.0), ("ssim", 0.2)):
+    scene = Scene((Placed("one", (0.0, 0.0, 0.0), 0.0, 1.0),), cameras, tolerance=tolerance, kind=kind)
+    assert budget({"one": mesh}, scene).faces.max() <= len(mesh.faces)
+"""
+
+
+def python(code, *arguments, **options):
+    """The finished process of a fresh interpreter that runs the code in the repository's root."""
+    options = {"cwd": ROOT, "capture_output": True, "text": True} | options
+    return subprocess.run([sys.executable, "-c", code, *map(str, arguments)], **options)
+
+
+def run_command(*arguments, before=""):
+    return python(f"{before}\nfrom haptic_glance.__main__ import main\nmain()", *arguments)
+
+
+def distributions(requirements):
+    """Their names as packages_distributions() has them, in lower case with dashes."""
+    return {normalised(re.split(r"[^\w.-]", text)[0]) for text in requirements}
+
+
+def normalised(name):
+    return re.sub(r"[-_.]+", "-", name).lower()
+
+
+def third_party():
+    """{top-level module that the stages import and Python does not have: one file that does}."""
+    found = {}
+    for path in sorted([*ROOT.glob("stages/**/*.py"), *ROOT.glob("haptic_glance/*.py")]):
+        for node in ast.walk(ast.parse(path.read_bytes())):
+            if isinstance(node, ast.Import):
+                names = [alias.name for alias in node.names]
+            elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+                names = [node.module]
+            else:
+                continue
+            found |= {name.partition(".")[0]: str(path) for name in names}
+    return {name: path for name, path in found.items() if name not in sys.stdlib_module_names | {"stages"}}
+
+
+@pytest.fixture
+def ball(tmp_path):
+    """The file of a bent ellipsoid."""
+    import trimesh
+
+    ball = trimesh.creation.icosphere(subdivisions=3)
+    ball.vertices *= [1.0, 0.7, 0.5]
+    ball.vertices[:, 2] += 0.2 * ball.vertices[:, 0] ** 2
+    ball.export(tmp_path / "ball.stl")
+    return tmp_path / "ball.stl"
+
+
+def test_what_a_mesh_of_ones_own_needs_runs_in_a_core_install(ball):
+    done = python(CORE + SIX, ball)
+    assert done.returncode == 0, done.stderr
+
+
+def test_one_mesh_is_simplified_in_a_core_install(ball):
+    done = run_command("lod", ball, "--faces", 200, "--out", ball.with_suffix(".ply"), before=CORE)
+    assert done.returncode == 0 and ball.with_suffix(".ply").exists(), done.stderr
+
+
+def test_a_stage_names_the_extra_that_a_core_install_lacks():
+    (line,) = run_command("lod", "household", before=CORE).stderr.splitlines()
+    assert line.startswith("haptic-glance lod: ") and line.endswith("pip install 'haptic-glance[pipeline]'")
+
+
+def test_the_core_has_few_dependencies():
+    core = distributions(PROJECT["dependencies"])
+    assert len(core) <= 12
+    assert not core & {"torch", "dvc", "hydra-core", "kornia", "pandas", "pymeshlab"}
+
+
+@pytest.mark.parametrize("module", sorted(third_party()))
+def test_every_import_belongs_to_the_core_or_to_one_extra(module):
+    extra = EXTRAS.get(module)
+    listed = PROJECT["optional-dependencies"][extra] if extra else PROJECT["dependencies"]
+    brought = BROUGHT.get(module) or packages_distributions().get(module, [module])[0]
+    assert normalised(brought) in distributions(listed), f"{third_party()[module]} imports {module}"
+
+
+def test_every_extra_is_one_of_the_package():
+    assert set(MODULES) <= set(PROJECT["optional-dependencies"])
+    assert f"haptic-glance[{','.join(MODULES)}]" in PROJECT["optional-dependencies"]["all"]
+
+
+def test_every_package_that_we_list_is_pinned():
+    pins = dict(line.split("==") for line in (ROOT / "constraints.txt").read_text().split())
+    lists = [PROJECT["dependencies"], *PROJECT["optional-dependencies"].values()]
+    listed = set().union(*map(distributions, lists)) - {"haptic-glance"}
+    assert listed <= set(map(normalised, pins))
+
+
+def test_the_names_of_the_package_are_those_that_a_type_checker_sees():
+    tree = ast.parse(Path(haptic_glance.__file__).read_text())
+    (block,) = (node for node in tree.body if isinstance(node, ast.If))
+    seen = {alias.name: node.module for node in block.body if isinstance(node, ast.ImportFrom) for alias in node.names}
+    assert seen == {name: f"stages.{stage}" for name, stage in haptic_glance._STAGES.items()}
+    assert sorted(seen) == sorted(haptic_glance.__all__) == sorted(dir(haptic_glance))
+    assert all(getattr(haptic_glance, name) is not None for name in seen)
+    with pytest.raises(AttributeError, match="no attribute 'salience'"):
+        haptic_glance.__getattr__("salience")
+
+
+def test_the_list_of_commands_imports_no_stage():
+    done = run_command("--help", before="import atexit, sys; atexit.register(lambda: print(sorted(sys.modules)))")
+    assert done.returncode == 0
+    for name in ("meshes", "weights.annotate", "compose", "sweep", "gate", "repro"):
+        assert re.search(rf"^  {re.escape(name)} +[A-Z]", done.stdout, re.M)
+    loaded = ast.literal_eval(done.stdout.splitlines()[-1])
+    assert not [name for name in loaded if name.startswith("stages.") or name in ("numpy", "torch", *EXTRAS)]
+
+
+def test_a_command_is_the_module_of_its_name():
+    done = run_command("gate", "--help")
+    assert done.returncode == 0 and "--update" in done.stdout
+
+
+def test_an_unknown_command_is_named():
+    done = run_command("salience")
+    assert done.returncode == 2 and "'salience'" in done.stderr and "Traceback" not in done.stderr
+
+
+@pytest.mark.parametrize(("name", "extra"), [("fixation", "deep"), ("repro", "pipeline")])
+def test_a_missing_extra_ends_in_one_line_that_names_it(name, extra):
+    without = CORE.replace(str(sorted(EXTRAS)), str(sorted(MODULES[extra])))
+    done = run_command(name, before=without)
+    assert done.returncode == 1
+    (line,) = done.stderr.splitlines()
+    assert line.startswith(f"haptic-glance {name}: ") and line.endswith(f"pip install 'haptic-glance[{extra}]'")
+
+
+def test_a_missing_module_of_nobodys_is_left_as_it_is():
+    with pytest.raises(ModuleNotFoundError) as raised, from_extra():
+        import no_such_module  # noqa: F401  # pyright: ignore[reportMissingImports]
+    assert not isinstance(raised.value, MissingExtra)
+
+
+def test_repro_hands_its_arguments_to_dvc_and_its_own_python_to_the_stages(monkeypatch):
+    given = []
+    monkeypatch.setitem(sys.modules, "dvc.cli", types.SimpleNamespace(main=lambda argv: given.append(argv) or 3))
+    monkeypatch.setattr(sys, "argv", ["haptic-glance", "repro", "lod", "--dry"])
+    monkeypatch.setenv("PATH", "/somewhere")
+    with pytest.raises(SystemExit) as raised:
+        command.main()
+    assert raised.value.code == 3 and given == [["repro", "lod", "--dry"]]
+    assert os.environ["PATH"].split(os.pathsep) == [str(Path(sys.executable).parent), "/somewhere"]
+
+
+def test_a_checkout_has_its_settings_at_the_top():
+    assert conf_folder() == ROOT / "conf" and (conf_folder() / "config.yaml").is_file()
+
+
+@pytest.fixture(scope="module")
+def installed(tmp_path_factory):
+    """A folder that holds what the wheel does."""
+    pytest.importorskip("hatchling")
+    folder = tmp_path_factory.mktemp("wheel")
+    build = [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", folder]
+    subprocess.run(build, cwd=ROOT, check=True, capture_output=True)
+    (wheel,) = folder.glob("*.whl")
+    zipfile.ZipFile(wheel).extractall(folder / "site")
+    return folder / "site"
+
+
+def test_the_wheel_holds_the_settings_and_all_files_of_the_stages(installed):
+    wanted = {f"stages/conf/{path.relative_to(ROOT / 'conf')}" for path in ROOT.glob("conf/**/*.yaml")}
+    for package in ("stages", "haptic_glance"):
+        wanted |= {str(path.relative_to(ROOT)) for path in ROOT.glob(f"{package}/**/*.*") if path.is_file()}
+    held = {str(path.relative_to(installed)) for path in installed.rglob("*.*")}
+    assert {name for name in wanted if "__pycache__" not in name} - held == set()
+    assert {name.split("/")[0] for name in held} <= {
+        "stages",
+        "haptic_glance",
+        *(p.name for p in installed.glob("*-info")),
+    }
+
+
+def test_an_installed_compose_writes_params_in_an_empty_folder(installed, tmp_path):
+    environment = os.environ | {"PYTHONPATH": str(installed)}
+    code = "from haptic_glance.__main__ import main\nmain()"
+    done = python(code, "compose", "profile=smoke", cwd=tmp_path, env=environment)
+    assert done.returncode == 0, done.stderr
+    assert "profile: smoke" in (tmp_path / "params.yaml").read_text()

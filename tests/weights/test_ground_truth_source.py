@@ -1,0 +1,120 @@
+"""The truth of an object by its collection, and our own marks checked against the mesh."""
+
+import io
+import zipfile
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import trimesh
+from scipy.io import savemat
+
+from stages.kit import Mesh
+from stages.kit.fetch import FetchError
+from stages.meshes import clean, normalise
+from stages.meshes.load import parse
+from stages.meshes.normalise import rotate_to_z_up
+from stages.meshes.sources import SOURCES
+from stages.weights.ground_truth import ground_truth_amounts, ground_truth_digests
+
+BALL = trimesh.creation.icosphere(2)
+MESH = normalise(Mesh(BALL.vertices, BALL.faces))
+
+
+def marks(path, rows, shift=0.0):
+    lines = ["annotator,time,vertex,x,y,z"]
+    for annotator, vertex in rows:
+        place = MESH.vertices[vertex] + (shift, 0, 0)
+        lines.append(f"{annotator},2026-11-20T10:00:00.000Z,{vertex}," + ",".join(f"{x:.6f}" for x in place))
+    path.write_text("\n".join(lines) + "\n")
+
+
+def test_marks_count_the_annotators_at_each_vertex(tmp_path):
+    marks(tmp_path / "ball.csv", [("a", 3), ("b", 3), ("c", 70)])
+    amounts = ground_truth_amounts("ball", "household", MESH, tmp_path)
+    assert amounts.dtype == np.float64 and np.flatnonzero(amounts).tolist() == [3, 70]
+    assert amounts[3] == 2 and amounts[70] == 1
+
+
+def test_an_object_without_marks_has_no_truth(tmp_path):
+    assert ground_truth_amounts("cube", "household", MESH, tmp_path) is None
+
+
+def test_marks_off_the_mesh_are_named_with_file_rows_and_distances(tmp_path):
+    marks(tmp_path / "ball.csv", [("a", 3), ("b", 3)], shift=0.01 * MESH.diagonal - 1e-4)
+    assert ground_truth_amounts("ball", "household", MESH, tmp_path).sum() == 2
+    marks(tmp_path / "ball.csv", [("a", 3), ("b", 3)], shift=0.02 * MESH.diagonal)
+    with pytest.raises(ValueError, match=r"ball\.csv: 2 of 2 marks are off .* row 1: 2\.00%, row 2: 2\.00%"):
+        ground_truth_amounts("ball", "household", MESH, tmp_path)
+    half = Mesh(MESH.vertices[:50], [(0, 1, 2)])
+    marks(tmp_path / "ball.csv", [("a", 3), ("a", 70)])
+    with pytest.raises(ValueError, match=r"ball\.csv, row 2: vertex 70 is not in 0\.\.49"):
+        ground_truth_amounts("ball", "household", half, tmp_path)
+
+
+def gaze_archive(path, names=("ball",)):
+    """A zip in the published layout: a mesh standing with +y up, its rows shuffled, one made-up row."""
+    turned = MESH.vertices[:, [1, 2, 0]].round(6)
+    rows = np.c_[turned, turned, np.arange(162), np.zeros(162)]
+    rows = np.r_[np.random.default_rng(0).permutation(rows), [[*turned[:2].mean(axis=0), 0, 0, 0, 50, 0]]]
+    with zipfile.ZipFile(path, "w") as archive:
+        for name in names:
+            archive.writestr(f"Models_3D/{name}.obj", trimesh.Trimesh(turned, MESH.faces).export(file_type="obj"))
+            archive.writestr(f"dataset_train/{name}.txt", "\n".join(" ".join(f"{x:.18e}" for x in row) for row in rows))
+        archive.writestr("Models_3D/unseen.obj", archive.read("Models_3D/ball.obj"))
+    return path
+
+
+def test_gaze_follows_the_vertices_of_the_mesh_that_the_source_gives(tmp_path, capsys):
+    archive = gaze_archive(tmp_path / "gaze.zip")
+    items = {x.name: x for x in SOURCES["gaze"](SimpleNamespace(folder=str(archive), objects=["ball"], up="z"))}
+    mesh = normalise(rotate_to_z_up(clean(parse(items["ball"].content(), items["ball"].suffix))[0], items["ball"].up))
+    np.testing.assert_allclose(mesh.vertices, MESH.vertices, atol=1e-5)  # the same vertices, turned to +z up
+    assert ground_truth_amounts("ball", "gaze", mesh, archive).tolist() == list(range(162))
+    assert "1 of 163 rows match no vertex and are left out, with 50 of 13091 s" in capsys.readouterr().err
+    assert ground_truth_amounts("unseen", "gaze", mesh, archive) is None
+    with pytest.raises(ValueError, match="162 vertices, this one 3"):
+        ground_truth_amounts("ball", "gaze", Mesh(np.eye(3), [(0, 1, 2)]), archive)
+
+
+def test_interest_points_weigh_as_many_users_as_marked_them(tmp_path):
+    cells, clusters = np.empty((10, 15, 2), dtype=object), np.empty((1, 2), dtype=object)
+    clusters[0] = ["5  5  6", "9  9  9  9"]
+    for radius in range(10):
+        for users in range(15):
+            cells[radius, users] = np.array([[6.0, 10.0]]), clusters
+    stream = io.BytesIO()
+    savemat(stream, {"GT_MODEL": cells})
+    folder = tmp_path / "IP_BENCHMARK/OUTPUT_DATA/GROUND_TRUTH_B"
+    folder.mkdir(parents=True)
+    (folder / "ant.mat").write_bytes(stream.getvalue())
+    amounts = ground_truth_amounts("ant", "interest_points", MESH, tmp_path)
+    assert np.flatnonzero(amounts).tolist() == [5, 9] and amounts[[5, 9]].tolist() == [3, 4]
+    assert ground_truth_amounts("cup", "interest_points", MESH, tmp_path) is None
+    with pytest.raises(ValueError, match=r"GROUND_TRUTH_B/ant.mat names vertex 9, the mesh has 3"):
+        ground_truth_amounts("ant", "interest_points", Mesh(np.eye(3), [(0, 1, 2)]), tmp_path)
+
+
+def test_an_absent_archive_ends_in_one_line_with_the_remedy(tmp_path):
+    for source, place in (("gaze", "GitHub: FandosA/"), ("interest_points", "https://www.itl.nist")):
+        with pytest.raises(
+            FetchError, match=rf"does not hold the {source} data: get .* from {place}.*meshes\.folder"
+        ) as error:
+            ground_truth_amounts("ball", source, MESH, tmp_path / "gone.zip")
+        assert "\n" not in str(error.value)
+
+
+def test_a_digest_stands_for_the_gaze_and_the_mesh_of_an_object(tmp_path):
+    before = ground_truth_digests(["ball", "unseen", "cube"], "gaze", gaze_archive(tmp_path / "a.zip"))
+    assert list(before) == ["ball"]
+    assert before == ground_truth_digests(["ball"], "gaze", gaze_archive(tmp_path / "b.zip", ["ball", "other"]))
+    for file in ("Models_3D/ball.obj", "dataset_train/ball.txt"):
+        with zipfile.ZipFile(tmp_path / "a.zip") as whole, zipfile.ZipFile(tmp_path / "c.zip", "w") as changed:
+            for name in whole.namelist():
+                changed.writestr(name, whole.read(name) + (b"\n" if name == file else b""))
+        assert before != ground_truth_digests(["ball"], "gaze", tmp_path / "c.zip")
+
+
+def test_objects_with_marks_have_ground_truth(tmp_path):
+    marks(tmp_path / "ball.csv", [("a", 3)])
+    assert ground_truth_digests(["ball", "cube"], "household", tmp_path) == {"ball": ""}

@@ -1,0 +1,146 @@
+"""The stage on small objects with marks: what it writes, and which objects are trained again."""
+
+import numpy as np
+import pytest
+
+from stages.kit import Mesh
+from stages.kit.files import read_arrays, read_json, read_table, write_arrays, write_mesh, write_text
+from stages.kit.rows import read_rows
+from stages.views import FOUR
+from stages.weights import METHODS, read_learned_weights
+from stages.weights import __main__ as stage
+
+SECTIONS = {
+    "weights": {"method": "fixations"},
+    "meshes": {"source": "folder", "folder": "", "up": "z", "unit": "m", "objects": [], "strict": False, "classes": {}},
+}
+CHANNELS = ["edge", "symmetry"]
+
+
+@pytest.fixture
+def workspace(make_workspace):
+    return make_workspace(SECTIONS)
+
+
+@pytest.fixture
+def add_object(workspace, ball, spot, make_maps):
+    """A function that writes the mesh and the maps of an ellipsoid, and marks at the given vertices."""
+
+    def add(name, height, vertices=()):
+        mesh = Mesh(ball.vertices * (1, 1, height), ball.faces)
+        write_mesh(workspace.data / "meshes" / f"{name}.npz", mesh)
+        maps = make_maps(mesh, spot * (1, 1, height), FOUR, channels=CHANNELS)
+        arrays = {"maps": np.stack([maps[channel] for channel in CHANNELS], axis=1).astype(np.float16)}
+        arrays |= {"mask": arrays["maps"].max(axis=1) > 0, "viewpoints": [viewpoint.name for viewpoint in FOUR]}
+        write_arrays(workspace.data / "conspicuity" / f"{name}.npz", **arrays, channels=CHANNELS)
+        mark(name, mesh, vertices)
+
+    def mark(name, mesh, vertices):
+        lines = [
+            f"ann,2026-11-20T10:00:00.000Z,{vertex},{','.join(f'{x:.6f}' for x in mesh.vertices[vertex])}"
+            for vertex in vertices
+        ]
+        if lines:
+            path = workspace.root / "data/annotations" / f"{name}.csv"
+            write_text(path, "\n".join(["annotator,time,vertex,x,y,z", *lines]))
+
+    return add
+
+
+@pytest.fixture
+def objects(add_object, ball, spot):
+    near = np.argsort(np.linalg.norm(ball.vertices - spot, axis=1))
+    add_object("ball", 1, near[:6])
+    add_object("egg", 0.8, near[2:9])
+    add_object("plain", 0.6)
+    return near
+
+
+def run(workspace, monkeypatch):
+    """Runs the stage; returns the names that training data was collected for, and those that were trained."""
+    collected, trained = [], []
+    collect, fit = stage.collect_training_data, stage.train_object
+
+    def noted_collect(name, *rest):
+        collected.append(name)
+        return collect(name, *rest)
+
+    def noted_train(name, folder, made, seed):
+        trained.append(name)
+        return fit(name, folder, made, seed)
+
+    noted_train.__module__, noted_train.__qualname__ = fit.__module__, fit.__qualname__
+    with monkeypatch.context() as patch:
+        patch.setattr(stage, "collect_training_data", noted_collect)
+        patch.setattr(stage, "train_object", noted_train)
+        stage.run(workspace)
+    return collected, trained
+
+
+def test_the_stage_writes_weights_ground_truth_and_svms(workspace, objects, capsys):
+    stage.run(workspace)
+    assert "2 of 3 objects have ground truth; enhanced takes fixations" in capsys.readouterr().out
+    folder = workspace.data / "weights"
+    files = {str(path.relative_to(folder)) for path in folder.rglob("*.*")}
+    names = {f"{part}/{name}.npz" for part in ("ground_truth", "svm") for name in ("ball", "egg")}
+    assert files == {"weights.csv", "convexity.csv", "svm.npz", *names}
+    assert set(read_arrays(folder / "ground_truth/ball.npz")["points"]) == set(objects[:6])
+    assert list(read_table(folder / "convexity.csv").object) == ["ball", "egg"]
+    found = read_learned_weights(folder, "plain", Mesh(np.eye(3), [(0, 1, 2)]))
+    assert "fixations" in found.weights and "svm" in found.svms
+
+
+def test_rows_hold_points_weights_and_accuracies(workspace, objects):
+    stage.run(workspace)
+    rows = read_rows(workspace.measurements / "weights.csv.gz").fillna({"item": ""})
+    assert rows[rows.metric == "points"].set_index("item").value.to_dict() == {"ball": 6, "egg": 7}
+    weights = rows[rows.metric == "weight"]
+    table = read_table(workspace.data / "weights" / "weights.csv").fillna({"left_out": ""})
+    assert (
+        table[["left_out", "method", "channel"]].values.tolist()
+        == weights[["item", "method", "channel"]].values.tolist()
+    )
+    assert weights.value.tolist() == pytest.approx(table.weight.tolist())
+    assert set(weights[weights.method == "fixations"].item) == {"", "ball", "egg"}
+    accuracies = rows[rows.metric == "accuracy"]
+    assert {"", "ball", "egg"} == set(accuracies.item) and accuracies[
+        ["area", "training", "validation"]
+    ].notna().all().all()
+    assert set(accuracies[accuracies.item == ""].training) == {"one_for_all"}
+    metrics = read_json(workspace.metrics / "weights.json")
+    assert metrics["objects"] == 2
+    means = accuracies.groupby(["area", "training", "validation"]).value.mean()
+    assert {".".join(("svm", *key)): value for key, value in means.items()} == pytest.approx(
+        {key: value for key, value in metrics.items() if key != "objects"}, abs=1e-5
+    )
+
+
+def test_only_objects_whose_training_data_changed_are_trained_again(workspace, objects, add_object, monkeypatch):
+    assert run(workspace, monkeypatch) == (["ball", "egg"], ["ball", "egg"])
+    before = (workspace.data / "weights" / "weights.csv").read_bytes()
+    add_object("another", 0.9)
+    assert run(workspace, monkeypatch) == ([], [])
+    assert (workspace.data / "weights" / "weights.csv").read_bytes() == before
+    add_object("another", 0.9, objects[:5])
+    assert run(workspace, monkeypatch) == (["another"], ["another", "ball", "egg"])
+
+
+def test_marks_of_another_mesh_leave_the_object_out_with_a_note(workspace, objects, add_object, capsys):
+    path = workspace.root / "data/annotations/egg.csv"
+    write_text(path, path.read_text().replace("0.", "0.9"))
+    stage.run(workspace)
+    assert "weights: egg is left out: " in capsys.readouterr().err
+    rows = read_rows(workspace.measurements / "weights.csv.gz")
+    points = rows[rows.metric == "points"].set_index("item")
+    assert points.value["ball"] == 6 and np.isnan(points.value["egg"]) and "off the mesh" in points.note["egg"]
+    assert not (workspace.data / "weights/svm/egg.npz").exists()
+
+
+def test_without_ground_truth_only_the_published_weights_are_written(add_object, make_workspace):
+    add_object("plain", 0.6)
+    workspace = make_workspace(SECTIONS | {"weights": {"method": "gaze"}})
+    stage.run(workspace)
+    assert [path.name for path in (workspace.data / "weights").iterdir()] == ["weights.csv"]
+    rows = read_rows(workspace.measurements / "weights.csv.gz")
+    assert set(rows.metric) == {"weight"} and set(rows.method) == {*METHODS, "enhanced"} and rows.item.isna().all()
+    assert read_json(workspace.metrics / "weights.json") == {"objects": 0}
