@@ -130,7 +130,7 @@ def test_the_khronos_validator_finds_no_fault(painted, chains, meshes, make_scen
     scene = make_scene()
     write_glb(tmp_path / "level.glb", [to_gltf(painted[0].mesh)], ["level"])
     write_lod(tmp_path / "lod.glb", painted, rows_of(painted, scene), 60)
-    plan = pd.DataFrame([{"item": k, "faces": 1, "level": 2, "in_view": True} for k in range(3)])
+    plan = pd.DataFrame([{"place": k, "faces": 1, "level": 2, "in_view": True} for k in range(3)])
     write_scene(tmp_path / "scene.glb", scene, meshes, chains, plan)
     for path in sorted(tmp_path.glob("*.glb")):
         done = subprocess.run(["node", "-e", VALIDATE, path], capture_output=True, text=True, check=True,
