@@ -41,8 +41,8 @@ def write_report(results: Results) -> None:
     """Builds and writes everything, and prints what could not be."""
     out = results.reports
     built = {kind: build_all(kind, results) for kind in KINDS}
+    remove_older(built, out)
     not_run = {f"{kind}/{name}": why for kind, found in built.items() for name, why in found.not_run.items()}
-    write_tables_and_tidy(built, out)
     claims, differences = judged(CLAIMS, results)
     write_claims(claims, differences, out)
     meshes = packed_or_none(results, not_run)
@@ -60,12 +60,11 @@ def write_report(results: Results) -> None:
     )
 
 
-def write_tables_and_tidy(built: dict[str, Built], out: Path) -> None:
-    """Writes the tables, and removes results of an earlier run that this one did not make, so that none looks new."""
-    written = {path for kind in ("figures", "tradeoff") for item in built[kind].items for path in item.paths}
-    written |= {path for table in built["tables"].items for path in table.write(out / "tables")}
-    for kind in built:
+def remove_older(built: dict[str, Built], out: Path) -> None:
+    """Removes results of an earlier run that this one did not make, so that none looks new."""
+    for kind, found in built.items():
         (out / kind).mkdir(parents=True, exist_ok=True)
+        written = {path for item in found.items for path in item.paths}
         for path in set((out / kind).glob("*.*")) - written:
             path.unlink()
 

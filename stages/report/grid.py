@@ -24,6 +24,12 @@ def means(frame: pd.DataFrame, by: Sequence[str], shared: float = 0.0, top: floa
     return rows
 
 
+def within(values: Sequence[float], shared: float = 0.0, least: float = 0.0, top: float = 1.0) -> tuple:
+    """(mean, low, high) with the interval cut at what the values can be: rates unless told otherwise."""
+    mean, low, high = interval(values, shared)
+    return mean, float(np.maximum(low, least)), float(np.minimum(high, top))
+
+
 def grid(
     cells: pd.DataFrame,
     down: str | Sequence[str],

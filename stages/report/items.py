@@ -1,43 +1,62 @@
-"""What the report is made of: tables and figures."""
+"""What the report is made of: tables, and figures or charts. Their words stand in TOPIC/prose.md."""
 
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
+from matplotlib.figure import Figure as Drawing
 
 from stages.kit.files import write_table, write_text
 
 from .markdown import as_text, markdown_table
+from .style import save
 
 
 @dataclass
 class Table:
-    """frame: tidy numbers, for the CSV; shown: what a person reads, the same or pivoted; notes: sentences below it."""
+    """frame: tidy numbers, for the CSV; shown: what a person reads, the same or pivoted; words: for its prose."""
 
-    title: str
     frame: pd.DataFrame
-    notes: list[str]
     shown: pd.DataFrame | None = None
+    words: dict[str, Any] = field(default_factory=dict)
     name: str = ""
+    title: str = ""
+    notes: list[str] = field(default_factory=list)
+    paths: list[Path] = field(default_factory=list)
 
-    def write(self, folder: Path) -> list[Path]:
-        """Writes NAME.csv and NAME.md; returns the paths."""
+    def write(self, folder: Path) -> None:
+        """Writes NAME.csv and NAME.md."""
         self.shown = as_text(self.frame if self.shown is None else self.shown)
-        write_table(folder / f"{self.name}.csv", self.frame)
+        self.paths = [folder / f"{self.name}.csv", folder / f"{self.name}.md"]
+        write_table(self.paths[0], self.frame)
         notes = "\n".join(f"- {note}" for note in self.notes)
-        write_text(folder / f"{self.name}.md", f"# {self.title}\n\n{markdown_table(self.shown)}\n\n{notes}")
-        return [folder / f"{self.name}.csv", folder / f"{self.name}.md"]
+        write_text(self.paths[1], f"# {self.title}\n\n{markdown_table(self.shown)}\n\n{notes}")
 
 
 @dataclass
 class Figure:
-    """A written picture: title, alt (what a blind reader needs), caption, and the files (the PNG first)."""
+    """drawing: as matplotlib has it; words: for its prose; frame: the numbers of a chart, for a CSV beside it.
 
-    title: str
-    alt: str
-    caption: str
-    paths: list[Path]
+    alt: what a blind reader needs. paths: the files, the PNG first.
+    """
+
+    drawing: Drawing
+    words: dict[str, Any] = field(default_factory=dict)
+    frame: pd.DataFrame | None = None
+    dpi: int = 130
     name: str = ""
+    title: str = ""
+    alt: str = ""
+    caption: str = ""
+    paths: list[Path] = field(default_factory=list)
+
+    def write(self, folder: Path) -> None:
+        """Writes NAME.png and, with a frame, NAME.csv; the drawing is closed."""
+        self.paths = [save(self.drawing, folder / f"{self.name}.png", self.dpi)]
+        if self.frame is not None:
+            self.paths.append(folder / f"{self.name}.csv")
+            write_table(self.paths[1], self.frame)
 
 
 @dataclass

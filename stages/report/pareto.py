@@ -1,15 +1,15 @@
 """Accuracy against cost: one chart for every stage, with the Pareto front drawn."""
 
+from collections.abc import Mapping
 from itertools import pairwise
 
 import numpy as np
+import pandas as pd
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
-
-from stages.kit.files import write_table
 
 from .items import Figure
 from .names import place_names
-from .style import INK, MARKERS, colours, plot_style, plt, save
+from .style import INK, MARKERS, colours, plot_style, plt
 from .style import label as spoken
 
 LISTED = 8  # names of the front that a caption lists at most
@@ -32,22 +32,20 @@ def pareto_front(cost, quality, better="high"):
 
 
 def pareto_chart(
-    frame,
-    cost,
-    quality,
-    label,
+    frame: pd.DataFrame,
+    quality: str,
     *,
-    name,
-    title,
-    reference,
-    quality_label,
-    folder,
-    better="high",
-    colour=None,
-    marker=None,
-    tints=None,
-):
-    """Draws quality against cost and its Pareto front; writes FOLDER/NAME.png and NAME.csv; returns a Figure.
+    title: str,
+    reference: str,
+    quality_label: str,
+    cost: str = "seconds",
+    label: str = "name",
+    better: str = "high",
+    colour: str | None = None,
+    marker: str | None = None,
+    tints: Mapping[str, str] | None = None,
+) -> Figure:
+    """Quality against cost with the Pareto front; its words are title, alt and caption.
 
     frame: one row a choice; cost: its column of seconds; quality: its column, with `low` and `high` beside it where
     there is an interval; label: its column of names. reference: the name whose cost, timed in the same run, is the
@@ -64,20 +62,16 @@ def pareto_chart(
         )
     rows["cost_ratio"] = rows[cost] / unit.iloc[0]
     rows["on_front"] = pareto_front(rows["cost_ratio"], rows[quality], better)
-    folder.mkdir(parents=True, exist_ok=True)
-    write_table(folder / f"{name}.csv", rows)
     with plot_style():
-        _draw(rows, quality, label, title, reference, quality_label, better, colour, marker, tints,
-              folder / f"{name}.png")  # fmt: skip
+        drawing = _draw(rows, quality, label, title, reference, quality_label, better, colour, marker, tints)
     front = _listed(list(rows.loc[rows["on_front"]].sort_values("cost_ratio")[label]))
-    arrow = "Up" if better == "high" else "Down"
-    return Figure(
-        title=title,
-        alt=f"{quality_label} against cost as a ratio to {reference}; the Pareto front is {front}.",
-        caption=f"{arrow} and left is better. Nothing beats the choices on the line: {front}. "
-        f"Cost 1 is {reference}, {unit.iloc[0]:.3g} s in the median case of this run. Bars: 95 % intervals.",
-        paths=[folder / f"{name}.png", folder / f"{name}.csv"],
-    )
+    words = {
+        "title": title,
+        "alt": f"{quality_label} against cost as a ratio to {reference}; the Pareto front is {front}.",
+        "caption": f"{'Up' if better == 'high' else 'Down'} and left is better. Nothing beats the choices on the line: "
+        f"{front}. Cost 1 is {reference}, {unit.iloc[0]:.3g} s in the median case of this run. Bars: 95 % intervals.",
+    }
+    return Figure(drawing, words, rows)
 
 
 def _listed(names):
@@ -85,7 +79,7 @@ def _listed(names):
     return "; ".join(names) if len(names) <= LISTED else f"{len(names)} choices, from {names[0]} to {names[-1]}"
 
 
-def _draw(rows, quality, label, title, reference, quality_label, better, colour, marker, tints, path):
+def _draw(rows, quality, label, title, reference, quality_label, better, colour, marker, tints):
     figure, axes = plt.subplots(figsize=(7.2, 4.6))
     axes.set_xscale("log")
     axes.grid(True)
@@ -116,7 +110,7 @@ def _draw(rows, quality, label, title, reference, quality_label, better, colour,
         axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=9)
     if not tints:
         place_names(axes, *_with_names(rows, front if colour else rows, front, quality, label, better))
-    save(figure, path)
+    return figure
 
 
 def ticks(span):

@@ -112,6 +112,10 @@ class Results:
                 frame = frame[_accepted(frame[column], wanted) | frame[column].isna()]
         return list(dict.fromkeys(frame["note"]))
 
+    def left_out(self, stage: str, dataset: str | None = None, **where: object) -> str:
+        """`notes` as sentences for a table's prose, a line each."""
+        return "\n".join(f"Not run: {note}." for note in self.notes(stage, dataset, **where))
+
     def _read(self, stage: str, dataset: str | None) -> pd.DataFrame:
         known = self.datasets(stage)
         if dataset is None and not known:

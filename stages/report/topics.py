@@ -1,5 +1,6 @@
 """The topics of the report, in reading order, and what each has to say."""
 
+from collections.abc import Iterable
 from types import ModuleType
 
 from . import (
@@ -16,7 +17,8 @@ from . import (
     touch,
     transfer,
 )
-from .items import Built
+from .items import Built, Figure, Table
+from .prose import add_words
 from .results import NotRun, Results
 from .style import plot_style
 
@@ -27,17 +29,22 @@ KINDS = {"tables": "TABLES", "figures": "FIGURES", "tradeoff": "CHARTS"}  # fold
 CLAIMS = [claim for topic in TOPICS for claim in topic.CLAIMS]
 
 
-def build_all(kind: str, results: Results) -> Built:
-    """Builds all of one kind (a key of KINDS), topic by topic; what lacks its measurement is noted as not run."""
+def build_all(kind: str, results: Results, topics: Iterable[ModuleType] = TOPICS) -> Built:
+    """Builds and writes all of one kind (a key of KINDS), topic by topic; what lacks its measurement is noted."""
     built = Built()
-    for topic in TOPICS:
-        for name, build in getattr(topic, KINDS[kind]).items():
+    for topic in topics:
+        for name in getattr(topic, KINDS[kind]):
             try:
-                with plot_style():
-                    item = build(results)
+                built.items.append(build_one(topic, kind, name, results))
             except NotRun as missing:
                 built.not_run[name] = str(missing)
-                continue
-            item.name = name
-            built.items.append(item)
     return built
+
+
+def build_one(topic: ModuleType, kind: str, name: str, results: Results) -> Table | Figure:
+    """One table, figure or chart, with its words, written to reports/KIND; NotRun where it lacks its measurement."""
+    with plot_style():
+        item = getattr(topic, KINDS[kind])[name](results)
+        add_words(item, topic, kind, name)
+        item.write(results.reports / kind)
+    return item

@@ -3,7 +3,7 @@
 from stages.kit.split import Split
 from stages.report.items import Figure
 from stages.report.results import Results
-from stages.report.style import GREY, colours, label, plt, save
+from stages.report.style import GREY, colours, label, plt
 
 from .rows import GROUP, LIKELIHOODS, STAGE, points
 
@@ -30,17 +30,7 @@ def build(results: Results) -> Figure:
     grid[0].set_ylabel("rate of right answers")
     grid[-1].legend(loc="center left", bbox_to_anchor=(1.02, 0.5), fontsize=9)
     figure.tight_layout()
-    most = int(rows["level"].max())
-    return Figure(
-        "How far the stated belief is to be believed",
-        "Accuracy against stated belief, with the diagonal of perfect calibration: of the corrected belief and of the "
-        "product of likelihoods, with touches held out at random and of unseen regions.",
-        f"Each line goes from one touch to {most}, in random order; {results.group_text(GROUP)}; "
-        "bars are 95 % intervals. "
-        "On the grey line a stated 95 % means 95 %; below it the robot is too sure, above it too careful. Solid: with "
-        "the exponent fitted on training touches; dotted: likelihoods multiplied as if touches were independent.",
-        [save(figure, results.reports / "figures/exploration_calibration.png")],
-    )
+    return Figure(figure, {"most": int(rows["level"].max()), "group": results.group_text(GROUP)})
 
 
 def _draw(axes, panel, likelihood, methods):

@@ -13,23 +13,6 @@ from stages.report.style import label
 from .rows import HEADLINE, HELD_OUT, LIKELIHOODS, STAGE, WAYS, at_confidence, needed
 
 KEYS = ["group", "split", "likelihood", "method", "way"]
-NOTES = [
-    "The robot knows three quarters of each object's touches, touches one of the other places after another, and stops "
-    f"when it believes in one object by {100 * HEADLINE:.0f} %, or at the most touches. By the way in which it chooses "
-    "the next place: mean number of touches, and how often it is right in the end.",
-    "A fixed number: how many touches in random order it takes to be right as often without looking at the belief; "
-    "`never` where even the most touches are not right as often. Stated and decided are of the random order too: the "
-    "mean belief at the end, which is to equal the accuracy, and the share that reached the belief.",
-    "At random: held-out touches may overlap known ones. Unseen regions: all held-out touches of an object are from "
-    "one region, a sensor's width from all known touches. By imprints and places is not run there: of the right object "
-    "alone there is no known touch near the places, so that the split would be measured.",
-    "The next place: in random order, the most salient first, or where the belief is expected to gain most "
-    "(Lindley 1956), given the places that the robot sees and what each object feels like near them.",
-    "The belief is calibrated on hold-outs of the training touches; compare `stated` with the rates of right answers: "
-    "on unseen regions it is not calibrated. `As if independent` multiplies the likelihoods of touches instead.",
-    "The 95 % intervals run over repeated splits of the same imprints, widened for what they share (Nadeau and Bengio "
-    "2003); they do not carry over to other objects.",
-]
 
 
 def build(results: Results) -> Table:
@@ -37,8 +20,10 @@ def build(results: Results) -> Table:
     rows = results.measured(STAGE, metric=["accuracy", "accuracy_decided"])
     frame = pd.DataFrame([_line(key, group) for key, group in rows.groupby(KEYS, sort=False)])
     most = ", ".join(f"{value}" for value in sorted(set(frame["most"])))
-    notes = [*NOTES, f"The most touches: {most}.", *(f"Not run: {note}." for note in results.notes(STAGE))]
-    return Table("No more touches than needed", frame, notes, _wide(frame, results))
+    not_run = "\n".join(f"Not run: {note}." for note in results.notes(STAGE))
+    return Table(
+        frame, _wide(frame, results), {"headline": f"{100 * HEADLINE:.0f} %", "most": most, "not_run": not_run}
+    )
 
 
 def _line(key, rows):

@@ -2,11 +2,10 @@
 
 import numpy as np
 
-from stages.kit.files import write_table
 from stages.kit.split import Split
 from stages.report.items import Figure
 from stages.report.results import Results
-from stages.report.style import label, plt, save
+from stages.report.style import label, plt
 
 from .rows import GROUP, HEADLINE, HELD_OUT, LIKELIHOODS, STAGE, TINTS, WAYS, points
 
@@ -37,21 +36,9 @@ def build(results: Results) -> Figure:
     handles, names = grid[0, 0].get_legend_handles_labels()
     figure.legend(handles, names, loc="lower center", ncol=3, bbox_to_anchor=(0.5, -0.06), fontsize=9)
     figure.tight_layout()
-    folder = results.reports / "tradeoff"
-    write_table(folder / "exploration.csv", frame)
-    levels = ", ".join(
-        f"{100 * level:.0f} %" for level in sorted(frame.loc[frame["stop"] == "confidence", "level"].unique())
-    )
-    return Figure(
-        f"Touches needed to recognise one of {results.group_text(GROUP)}",
-        "Line charts of accuracy against the mean number of touches, for three ways to choose the next place: a fixed "
-        "number of touches, and stopping at a confidence.",
-        f"Up and left is better. Solid: touching stops at a belief of {levels} (dots, from the left). Dashed: after a "
-        "fixed number of touches. Columns: who chose the points. Bars at 95 %: 95 % intervals over repeated splits. "
-        "At random: held-out touches may overlap known ones; unseen regions: they are all from one region of each "
-        "object that was never touched.",
-        [save(figure, folder / "exploration.png"), folder / "exploration.csv"],
-    )
+    levels = sorted(frame.loc[frame["stop"] == "confidence", "level"].unique())
+    words = {"group": results.group_text(GROUP), "levels": ", ".join(f"{100 * level:.0f} %" for level in levels)}
+    return Figure(figure, words, frame)
 
 
 def _draw(axes, panel, method):

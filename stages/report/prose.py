@@ -1,0 +1,46 @@
+"""The words of the report: titles, notes and captions, kept as Markdown beside the code of each topic.
+
+TOPIC/prose.md has a section for each item, `# KIND/NAME: title`, where KIND is a folder of reports/. A table's section
+is a list of notes; that of a figure or chart is `Alt: what a blind reader needs`, then the caption. `{word}` is filled
+in by the code. A note that comes out empty is left out, and one of several lines becomes as many notes.
+"""
+
+import re
+from functools import cache
+from importlib import resources
+from types import ModuleType
+
+from .items import Figure, Table
+
+SECTION = re.compile(r"^# (\S+): (.+)$", re.MULTILINE)
+
+
+def add_words(item: Table | Figure, topic: ModuleType, kind: str, name: str) -> None:
+    """Fills in name, title and notes of a table, or name, title, alt and caption of a figure.
+
+    Raises KeyError where prose.md lacks the section or the item lacks a word.
+    """
+    title, text = _sections(topic.__name__)[f"{kind}/{name}"]
+    item.name, item.title = name, title.format_map(item.words)
+    if isinstance(item, Table):
+        notes = (_joined(note).format_map(item.words) for note in re.split(r"^- ", text, flags=re.MULTILINE)[1:])
+        item.notes = [line for note in notes for line in note.splitlines() if line]
+    else:
+        alt, _, caption = text.removeprefix("Alt: ").partition("\n\n")
+        item.alt, item.caption = (_joined(part).format_map(item.words) for part in (alt, caption))
+
+
+def findings(topic: ModuleType) -> str:
+    """What the topic found, in Markdown: TOPIC/findings.md."""
+    return resources.files(topic.__name__).joinpath("findings.md").read_text(encoding="utf-8")
+
+
+@cache
+def _sections(package: str) -> dict[str, tuple[str, str]]:
+    """{KIND/NAME: (title, text below it)} of a topic's prose.md."""
+    parts = SECTION.split(resources.files(package).joinpath("prose.md").read_text(encoding="utf-8"))
+    return {name: (title, text.strip()) for name, title, text in zip(*(parts[k::3] for k in (1, 2, 3)), strict=True)}
+
+
+def _joined(lines: str) -> str:
+    return " ".join(lines.split())
