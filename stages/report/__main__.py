@@ -46,7 +46,7 @@ def write_report(results: Results) -> None:
     claims, differences = judged(CLAIMS, results)
     write_claims(claims, differences, out)
     meshes = packed_or_none(results, not_run)
-    parts = {**built, "claims": claims, "not_run": not_run}
+    parts = {**built, "claims": claims, "not_run": not_run, "sets": results.sets}
     write_text(out / "index.html", build_page(out / "index.html", parts, meshes, dataset_line(results)))
     counts = {word: int((claims["verdict"] == word).sum()) for word in WORDS}
     made = {kind: len(found.items) for kind, found in built.items()}
