@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from stages.kit.self_organising_map import NEURONS, SelfOrganisingMap
 from stages.sequences.classifiers import CONVENTIONAL, MAP_DIMENSIONS, choose_dimensions, classifier
 from stages.sequences.reduction import MostInformative
-from stages.sequences.som import NEURONS, SelfOrganisingMap
 
 
 def blobs(count=40, classes=3, width=8, apart=6.0, seed=0):

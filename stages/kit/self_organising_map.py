@@ -1,4 +1,4 @@
-"""A self-organising map of one to eight dimensions, which reduces samples to a position on a grid (T4.4.9)."""
+"""A self-organising map of one to eight dimensions: samples become positions on a grid (T4.2.3.5, T4.4.9)."""
 
 import numpy as np
 from sklearn.base import BaseEstimator, TransformerMixin
@@ -16,15 +16,17 @@ class SelfOrganisingMap(TransformerMixin, BaseEstimator):
     on the plane of the first principal components, and each pass uses all samples at once. So the map needs no random
     numbers and does not depend on the order of the samples. The maintained packages have maps of two dimensions only.
     The thesis tries output sizes of 2 to 6, which are dimensions of the map in RapidMiner, the tool of T4.2.
+    neurons: how many, approximately; each side has the same whole number of them.
     """
 
-    def __init__(self, dimensions: int = 2) -> None:
+    def __init__(self, dimensions: int = 2, neurons: int = NEURONS) -> None:
         self.dimensions = dimensions
+        self.neurons = neurons
 
     def fit(self, samples: np.ndarray, labels: np.ndarray | None = None) -> "SelfOrganisingMap":
         """Fits to samples (k, d), finite, with d at least the number of dimensions; labels are ignored."""
         samples = self._check(samples)
-        side = max(2, round(NEURONS ** (1 / self.dimensions)))
+        side = max(2, round(self.neurons ** (1 / self.dimensions)))
         axis_positions = np.linspace(0, 1, side)
         grid = np.stack(np.meshgrid(*[axis_positions] * self.dimensions, indexing="ij"), axis=-1)
         self.positions_ = grid.reshape(-1, self.dimensions)
@@ -42,7 +44,7 @@ class SelfOrganisingMap(TransformerMixin, BaseEstimator):
         """(k, dimensions): the grid position of the neuron nearest to each sample."""
         return self.positions_[self._nearest(np.asarray(samples, dtype=np.float64))]
 
-    def _check(self, samples):
+    def _check(self, samples: np.ndarray) -> np.ndarray:
         samples = np.asarray(samples, dtype=np.float64)
         if not 1 <= self.dimensions <= MAX_DIMENSIONS:
             raise ValueError(f"a map has 1 to {MAX_DIMENSIONS} dimensions, got {self.dimensions}")
@@ -52,7 +54,7 @@ class SelfOrganisingMap(TransformerMixin, BaseEstimator):
             raise ValueError("samples hold NaN or infinite values")
         return samples
 
-    def _nearest(self, samples):
+    def _nearest(self, samples: np.ndarray) -> np.ndarray:
         """(k,) index of the neuron nearest to each sample, the first of equals."""
         neurons = self.neurons_
         return np.concatenate(
