@@ -5,7 +5,7 @@ import html
 import io
 import json
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from importlib import resources
 from pathlib import Path
 from string import Template
@@ -18,7 +18,6 @@ from PIL import Image
 from .items import Figure, Table
 from .markdown import is_numeric, number
 from .prose import findings
-from .topics import TOPICS
 from .verdict import counted
 
 WIDEST = 900  # pixels of a picture on the page
@@ -26,11 +25,16 @@ LONG = 30  # rows after which a table scrolls in its own box
 WORDS = {"supported": "yes", "contradicted": "no", "open": "open"}  # word -> class in the style sheet
 
 
-def build_page(path: Path, parts: dict[str, Any], meshes: dict | None, dataset: str) -> str:
-    """The text of the page at `path`. parts: tables, figures, tradeoff (Built), claims (frame), not_run, sets."""
+def build_page(
+    path: Path, modules: Sequence[ModuleType], parts: dict[str, Any], meshes: dict | None, dataset: str
+) -> str:
+    """The text of the page at `path`. modules: the topics in reading order.
+
+    parts: tables, figures, tradeoff (Built), claims (frame), not_run, and sets, those that are switched on.
+    """
     items = [item for kind in ("tables", "tradeoff", "figures") for item in parts[kind].items]
     first = [item for item in items if item.name == "pipeline"]
-    topics = [Topic(module, parts, [item for item in items if item not in first]) for module in TOPICS]
+    topics = [Topic(module, parts, [item for item in items if item not in first]) for module in modules]
     words = {
         "style": part("page.css"),
         "script": part("viewer.js"),
