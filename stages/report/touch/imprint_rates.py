@@ -1,5 +1,7 @@
 """Imprints per second and how exact they are, beside camera-based simulators, timed in one run of `make bench`."""
 
+from typing import Any
+
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -22,12 +24,13 @@ STYLES = {method: (CYCLE[k], MARKERS[k]) for k, method in enumerate(NAMES)}
 RATE, RATIO = 3000, 50  # wanted: imprints of WIDE x WIDE cells a second; times TACTO's rate
 WIDE = 32
 MANY = 100  # rates from here on are shown as whole numbers
+LOGARITHMIC = {"xscale": "log", "yscale": "log"}
 ROUNDING = 1e-9  # of a cell: errors below are those of double precision, and drawn here
 
 
 def table(results: Results) -> Table:
     """Imprints per second and how exact they are, beside camera-based simulators."""
-    rates, frame = _rates(results), _summarised(results)
+    rates, frame = _read(results)
     meshes = rates.dropna(subset=["value"]).drop_duplicates("mesh")
     absent = rates[rates["value"].isna()].dropna(subset=["note"])
     why = absent["method"].map(NAMES).fillna(absent["source"]) + ": " + absent["note"] + "."
@@ -46,13 +49,9 @@ def table(results: Results) -> Table:
     return Table(frame, shown.assign(**{"version and renderer": frame["note"]}), words)
 
 
-def _rates(results: Results) -> pd.DataFrame:
-    return results.bench("imprints").query("what == 'rate'")
-
-
-def _summarised(results: Results) -> pd.DataFrame:
-    """One row per method and number of cells: rates, ratios, error (units) and pitch (units) of that, note."""
-    rates, errors = _rates(results), results.bench("imprints").query("what == 'error'")
+def _read(results: Results) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """(rows of rates; one row per method and number of cells: rates, ratios, error and its pitch in units, note)."""
+    rates, errors = (results.bench("imprints").query(f"what == '{what}'") for what in ("rate", "error"))
     if rates["value"].notna().sum() == 0 or len(errors) == 0:
         raise NotRun("bench/imprints.csv is not whole: `make bench` writes it anew", "imprints", runnable=False)
     largest = errors.groupby("method")[["to_mesh", "pitch"]].max().rename(columns={"to_mesh": "error"})
@@ -66,10 +65,10 @@ def _summarised(results: Results) -> pd.DataFrame:
         found.append(line)
     notes = groups["note"].first().fillna("")
     frame = pd.DataFrame(found).join(largest, on="method").join(notes, on=["method", "cells"])
-    return frame.sort_values(["cells", "rate"], ascending=[True, False], ignore_index=True)
+    return rates, frame.sort_values(["cells", "rate"], ascending=[True, False], ignore_index=True)
 
 
-def _said(row) -> str:
+def _said(row: Any) -> str:
     """The targets of ours, and whether they were met."""
     rate, ratio = (row.rate, row.rate_low, row.rate_high), (row.ratio, row.ratio_low, row.ratio_high)
     said = f"Ours, {row.cells} x {row.cells} cells: {_whole(*rate)} imprints a second on one core"
@@ -90,15 +89,15 @@ def _rounded(value: float) -> float:
 
 def chart(results: Results) -> Figure:
     """Exactness against time, and imprints per second against the faces of the mesh, beside camera-based peers."""
-    frame = _summarised(results)
-    rows = _rates(results).dropna(subset=["value"])
-    methods = [method for method in NAMES if method in set(rows["method"])]
-    wide = frame[(frame["cells"] == WIDE) & frame["rate"].notna()].reset_index(drop=True)
+    rates, frame = _read(results)
+    rates = rates.dropna(subset=["value"])
+    methods = [method for method in NAMES if method in set(rates["method"])]
+    wide = frame[(frame["cells"] == WIDE) & frame["rate"].notna()]
     wide = wide.assign(seconds=1 / wide["rate"], cell_error=wide["error"] / wide["pitch"])
     wide["on_front"] = pareto_front(wide["seconds"], np.maximum(wide["cell_error"], ROUNDING), "low")
     figure, (left, right) = plt.subplots(1, 2, figsize=(11.4, 4.4), gridspec_kw={"wspace": 0.28})
     _draw_exactness(left, wide)
-    _draw_growth(right, rows, methods)
+    _draw_growth(right, rates, methods)
     words = {"wide": WIDE, "names": ", ".join(NAMES[method] for method in methods), "rounding": f"{ROUNDING:g}"}
     return Figure(figure, words | {"rate": RATE, "ratio": RATIO}, wide, dpi=110)
 
@@ -116,8 +115,8 @@ def _draw_exactness(axes: Axes, wide: pd.DataFrame) -> None:
         if np.isfinite([row.rate_low, row.rate_high]).all():
             lines.append(((1 / row.rate_high, row.shown), (1 / row.rate_low, row.shown)))
             axes.plot(*zip(*lines[-1], strict=True), color=tint, lw=1.4, alpha=0.6)
-    axes.set(xscale="log", yscale="log", xlabel="seconds an imprint, one core", ylabel="largest error, in cells")
-    axes.set(title="exactness and time")
+    axes.set(**LOGARITHMIC, xlabel="seconds an imprint, one core", ylabel="largest error, in cells")
+    axes.set_title("exactness and time")
     axes.grid(True)
     axes.margins(x=0.28, y=0.2)
     place_names(axes, names, wide[["seconds", "shown"]].to_numpy(), lines)
@@ -136,8 +135,7 @@ def _draw_growth(axes: Axes, rows: pd.DataFrame, methods: list[str]) -> None:
     if {OURS, REFERENCE} <= set(methods):
         beside = np.exp(np.log(rows.loc[rows["method"] == REFERENCE, "value"]).mean())
         axes.axhline(RATIO * beside, color=GREY, lw=0.9, ls="--")
-    axes.set(xscale="log", yscale="log", xlabel="faces of the mesh", ylabel="imprints a second")
-    axes.set_title("rate and size of the mesh")
+    axes.set(**LOGARITHMIC, xlabel="faces of the mesh", ylabel="imprints a second", title="rate and size of the mesh")
     plain_logarithm(axes.xaxis)
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter(lambda value, _: f"{value:,g}")

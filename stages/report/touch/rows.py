@@ -8,14 +8,10 @@ from stages.report.results import Results
 from stages.report.style import label
 
 STAGE = "classification"
-OURS = {
-    "blind_touch": "random",
-    "hks": "heat_kernel",
-    "salient_points": "salient_points",
-    "mesh_saliency": "mesh_saliency",
-    "visual_attention": "itti",
-    "enhanced_visual_attention": "thesis_ssim",
-}
+OURS = {  # sampling of the thesis: method of ours
+    "blind_touch": "random", "hks": "heat_kernel", "salient_points": "salient_points",
+    "mesh_saliency": "mesh_saliency", "visual_attention": "itti", "enhanced_visual_attention": "thesis_ssim",
+}  # fmt: skip
 ENHANCED = OURS["enhanced_visual_attention"]  # the thesis's own: the average weighted with its SSIM weights
 MODEL = "enhanced"  # this project's model of gaze
 

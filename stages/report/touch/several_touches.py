@@ -30,30 +30,22 @@ def table_4_6(results: Results) -> Table:
     ways, touches = parts["few"].fillna("") + parts["suffix"].fillna(""), parts["touches"].astype(int)
     groups = rows.loc[parts.index].assign(sampling=rows["method"], way=ways, touches=touches).groupby(KEYS)
     frame = pd.DataFrame([dict(zip(KEYS, key, strict=True)) | accuracies(group) for key, group in groups])
-    thesis = results.thesis("table_4_6_number_of_imprints").set_index("classifier").stack()
-    printed = [thesis.get((cell.classifier, str(cell.touches))) for cell in frame.itertuples()]
-    frame["thesis"] = pd.Series(printed, dtype=float).where(_is_plain(frame))
     samplings = [ENHANCED, *sorted({*frame["sampling"]} - {ENHANCED})]
     orders = {"way": list(WAYS), "sampling": samplings, "classifier": CLASSIFIERS}
     frame = frame.sort_values(list(orders), key=lambda column: column.map(orders[column.name].index), ignore_index=True)
-    return Table(frame, _wide(frame), {"group": results.group_text("six")})
-
-
-def _is_plain(frame: pd.DataFrame) -> pd.Series:
-    """Which cells the thesis has too."""
-    return (frame["sampling"] == ENHANCED) & (frame["way"] == "")
-
-
-def _wide(frame: pd.DataFrame) -> pd.DataFrame:
-    """The cells that the thesis has too beside its figures, then the further rows."""
-    plain, further = _is_plain(frame), frame["classifier"].isin(FURTHER)
-    frame = frame.assign(name=[_name(cell) for _, cell in frame.iterrows()])
-    parts = [
+    thesis = results.thesis("table_4_6_number_of_imprints").set_index("classifier").stack()
+    printed = [thesis.get((cell.classifier, str(cell.touches))) for cell in frame.itertuples()]
+    plain = (frame["sampling"] == ENHANCED) & (frame["way"] == "")  # as the thesis has it
+    frame["thesis"] = pd.Series(printed, dtype=float).where(plain)
+    named = frame.assign(name=[_name(cell) for _, cell in frame.iterrows()])
+    parts = (named[plain], ("accuracy_regions", "thesis")), (named[~plain & frame["classifier"].isin(FURTHER)], ())
+    shown = [
         grid(cells, "name", "touches", beside=beside, head=lambda n: f"{n} touch{'es' if n > 1 else ''}, %")
-        for cells, beside in ((frame[plain], ("accuracy_regions", "thesis")), (frame[~plain & further], ()))
+        for cells, beside in parts
         if not cells.empty
     ]
-    return pd.concat(parts).fillna("not run").rename(columns={"name": "classifier"})
+    wide = pd.concat(shown).fillna("not run").rename(columns={"name": "classifier"})
+    return Table(frame, wide, {"group": results.group_text("six")})
 
 
 def _name(cell: pd.Series) -> str:

@@ -1,6 +1,4 @@
-"""Imprints that another object has too: their shares (section 4.2.4), what removing them brings (table 4.3), and
-their correlations, for every pair of objects (figure 4.4).
-"""
+"""Imprints that another object has too: their shares, what removing them brings, and how objects correlate (T4.2.4)."""
 
 from itertools import combinations, product
 
@@ -74,14 +72,11 @@ def figure_4_4(results: Results) -> Figure:
     """Correlations of the imprints of each two objects, for blind touch and enhanced attention."""
     pairs = list(combinations(_objects(results), 2))
     images = {name: results.imprints(name) for pair in pairs for name in pair}
-    found = {
-        method: {(one, two): similarity(images[one][method], images[two][method]) for one, two in pairs}
-        for method in SAMPLINGS
-    }
-    pairs.sort(key=lambda pair: np.median(found[ENHANCED][pair]))
+    found = {way: [similarity(images[one][way], images[two][way]) for one, two in pairs] for way in SAMPLINGS}
+    order = np.argsort([np.median(values) for values in found[ENHANCED]], kind="stable")
     figure, axes = plt.subplots(figsize=(7.6, 0.42 * len(pairs) + 1.2))
     for offset, (method, words) in zip((0.18, -0.18), SAMPLINGS.items(), strict=True):
-        tint, correlations = METHOD_COLOURS[method], [found[method][pair] for pair in pairs]
+        tint, correlations = METHOD_COLOURS[method], [found[method][k] for k in order]
         axes.boxplot(
             [values.ravel() for values in correlations], positions=np.arange(len(pairs)) + offset, widths=0.3,
             orientation="horizontal", whis=(5, 95), showfliers=False, patch_artist=True,
@@ -93,7 +88,7 @@ def figure_4_4(results: Results) -> Figure:
             axes.text(1.03, k + offset, f"{100 * share:.0f} %", va="center", fontsize=8, color=INK)
     axes.axvline(SIMILARITY_THRESHOLD, color=GREY, lw=1, ls="--")
     axes.text(1.03, len(pairs) - 0.35, "share", fontsize=8, color=INK)
-    axes.set_yticks(range(len(pairs)), [" – ".join(pair) for pair in pairs])
+    axes.set_yticks(range(len(pairs)), [" – ".join(pairs[k]) for k in order])
     axes.set(xlim=(-1, 1), xlabel="normalised cross-correlation of two imprints")
     axes.tick_params(axis="y", length=0)
     axes.set_title("How alike the imprints of two objects are", pad=26)
