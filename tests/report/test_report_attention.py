@@ -33,7 +33,6 @@ from stages.report.results import NotRun
 from stages.report.stability import time_spent
 from stages.report.style import colours
 from stages.report.topics import CLAIMS, TOPICS, build_all
-from stages.report.touch import one_touch, pipeline
 from stages.report.verdict import judge
 from stages.report.viewer import pack_viewer
 
@@ -314,17 +313,3 @@ def test_long_front_is_told_by_its_ends(tmp_path):
         frame, "seconds", "mean", "name", name="chart", title="T", reference="n3", quality_label="q", folder=tmp_path
     )
     assert "12 choices, from n0 to n11" in figure.caption and "n5" not in figure.caption
-
-
-def test_bars_are_those_of_the_samplings_that_ran(root, small):
-    rows = small.classification()
-    small.write(root, "classification", rows[rows["method"] != "thesis_ssim"])
-    results = small.results(root)
-    places = {}
-    with pytest.MonkeyPatch.context() as patch:
-        draw = one_touch.draw_bars
-        patch.setattr(one_touch, "draw_bars", lambda *args, **kw: places.update(draw(*args, **kw)) or places)
-        one_touch.figure_4_1(results)
-    assert list(places) == ["random", "itti", "enhanced"]
-    assert sum(places.values()) == pytest.approx(0)
-    assert set(pipeline.NEEDED) <= set(places)

@@ -5,17 +5,18 @@ import pandas as pd
 import pytest
 
 from stages.kit.files import write_arrays
-from stages.report.exploration import calibration as exploration_calibration
-from stages.report.exploration import claims, exploration
-from stages.report.exploration import exploration_chart as chart
-from stages.report.exploration import rows as _exploration
+from stages.report import exploration
+from stages.report.exploration import claims
+from stages.report.exploration.rows import needed
 from stages.report.results import NotRun
 from stages.report.stability import touch as touch_stability
 from stages.report.stability import touch_figure as degradation
 from stages.report.stability import touch_imprints as touch_stability_imprints
 from stages.report.stability.rows import breaking, curve, harmless
+from stages.report.topics import build_one
 from stages.report.verdict import judge
 
+CHARTS = [("tradeoff", "exploration"), ("figures", "exploration_calibration")]
 CURVE = {1: 0.6, 2: 0.8, 3: 0.9, 4: 0.95, 5: 0.98}
 SAVED = {"gain": 2.0, "saliency": 3.5, "random": 3.0}  # touches until 95 %, at an accuracy of 97 %
 
@@ -55,7 +56,7 @@ def explorer(root, results, small):
 
 
 def test_table_tells_how_many_touches_a_fixed_number_takes(explorer):
-    frame = exploration.build(explorer).frame
+    frame = build_one(exploration, "tables", "exploration", explorer).frame
     row = frame[(frame["way"] == "gain") & (frame["likelihood"] == "imprint")].iloc[0]
     assert row["touches"] == pytest.approx(2, abs=0.01)
     assert row["fixed"] == pytest.approx(4.67, abs=0.05)
@@ -63,13 +64,13 @@ def test_table_tells_how_many_touches_a_fixed_number_takes(explorer):
 
 def test_accuracy_beyond_the_curve_is_never_reached():
     rows = explored().query("split == 'random' and likelihood == 'imprint' and way == 'gain'")
-    assert np.isnan(_exploration.needed(rows, 0.999))
-    assert _exploration.needed(rows, 0.1) == 1
+    assert np.isnan(needed(rows, 0.999))
+    assert needed(rows, 0.1) == 1
 
 
-@pytest.mark.parametrize("module", [chart, exploration_calibration])
-def test_charts_are_drawn(explorer, module):
-    assert all(path.exists() for path in module.build(explorer).paths)
+@pytest.mark.parametrize(("kind", "name"), CHARTS)
+def test_charts_are_drawn(explorer, kind, name):
+    assert all(path.exists() for path in build_one(exploration, kind, name, explorer).paths)
 
 
 def test_claims_know_the_truth_of_the_rows(explorer):
@@ -90,7 +91,10 @@ def test_claims_have_names_of_their_own():
 
 def test_nothing_explored_is_said_and_not_crashed_on(results):
     assert set(judge(claims.CLAIMS, results)["verdict"]) == {"open"}
-    for module in (exploration, chart, exploration_calibration, touch_stability, degradation, touch_stability_imprints):
+    for kind, name in (("tables", "exploration"), *CHARTS):
+        with pytest.raises(NotRun):
+            build_one(exploration, kind, name, results)
+    for module in (touch_stability, degradation, touch_stability_imprints):
         with pytest.raises(NotRun):
             module.build(results)
 
