@@ -46,7 +46,9 @@ def write_report(results: Results) -> None:
     claims, differences = judged(CLAIMS, results)
     write_claims(claims, differences, out)
     meshes = packed_or_none(results, not_run)
-    parts = {**built, "claims": claims, "not_run": not_run, "sets": results.sets}
+    own = results.own_meshes
+    parts = {**built, "claims": claims, "not_run": not_run, "sets": results.sets, "own": own}
+    parts["first"] = ["touch_one_mesh"] if own else ["pipeline"]
     write_text(out / "index.html", build_page(out / "index.html", TOPICS, parts, meshes, dataset_line(results)))
     counts = {word: int((claims["verdict"] == word).sum()) for word in WORDS}
     made = {kind: len(found.items) for kind, found in built.items()}

@@ -18,8 +18,5 @@ def draw_matrix(axes: Axes, rows: pd.DataFrame, classes: Sequence[str]) -> None:
     for i, j in np.argwhere(shares >= 1):
         tint = "white" if shares[i, j] >= DARK else "black"
         axes.text(j, i, f"{shares[i, j]:.0f}", ha="center", va="center", fontsize=6.5, color=tint)
-    axes.set_xticks([])
-    axes.set_yticks([])
-    axes.tick_params(length=0)
-    for spine in axes.spines.values():
-        spine.set(visible=True, linewidth=0.6)
+    axes.set(xticks=[], yticks=[])
+    axes.spines[:].set(visible=True, linewidth=0.6)

@@ -30,10 +30,11 @@ def build_page(
 ) -> str:
     """The text of the page at `path`. modules: the topics in reading order.
 
-    parts: tables, figures, tradeoff (Built), claims (frame), not_run, and sets, those that are switched on.
+    parts: tables, figures, tradeoff (Built), claims (frame), not_run, sets (that are switched on), and first, the names
+    of the figures that stand before all topics; own: whether these show a person's own meshes.
     """
     items = [item for kind in ("tables", "tradeoff", "figures") for item in parts[kind].items]
-    first = [item for item in items if item.name == "pipeline"]
+    first = [item for item in items if item.name in parts["first"]]
     topics = [Topic(module, parts, [item for item in items if item not in first]) for module in modules]
     words = {
         "style": part("page.css"),
@@ -41,7 +42,8 @@ def build_page(
         "meshes": script_json(meshes) if meshes else "null",
         "viewer": part("viewer.html") if meshes else no_meshes(parts["not_run"].get("viewer", "")),
         "dataset": html.escape(dataset),
-        "pipeline": "".join(figure_html(item, path) for item in first),
+        "heading": "Your meshes" if parts["own"] else "The pipeline on one object",
+        "first": "".join(figure_html(item, path) for item in first),
         "contents": " ".join(f'<a href="#{topic.name}">{topic.name.capitalize()}</a>' for topic in topics),
         "counts": counts_html(parts["claims"]),
         "counted": html.escape(counted(parts["claims"])),

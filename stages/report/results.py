@@ -178,6 +178,12 @@ class Results:
             raise NotRun(f"no {stage}/{name}", stage)
         return pd.read_csv(path)
 
+    @property
+    def own_meshes(self) -> bool:
+        """Whether the first set that is switched on is a folder of a person's own meshes."""
+        meshes = self.workspace.params.get(self.sets[0], {}).get("meshes", {}) if self.sets else {}
+        return meshes.get("source") == "folder"
+
     @cached_property
     def objects(self) -> list[str]:
         """Names of all objects with a mesh in the first set that has meshes, in alphabetical order."""

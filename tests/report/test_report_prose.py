@@ -67,5 +67,6 @@ def test_a_word_or_section_that_is_missing_is_an_error(topic):
 def test_each_item_has_its_section_and_each_section_its_item(topic):
     text = (Path(topic.__file__).parent / "prose.md").read_text()
     items = {f"{kind}/{name}" for kind, attribute in topics.KINDS.items() for name in getattr(topic, attribute)}
-    assert sorted(re.findall(r"^# (\S+):", text, re.MULTILINE)) == sorted(items)
+    sections = [name for name in re.findall(r"^# (\S+):", text, re.MULTILINE) if not name.startswith("shared/")]
+    assert sorted(sections) == sorted(items)
     assert len(findings(topic)) > 100

@@ -25,6 +25,8 @@ CELLS, PITCH = (16, 16), 0.01  # as the command has them by default
 
 def pipeline(results: Results) -> Figure:
     """The whole pipeline on one object, for the README."""
+    if results.own_meshes:
+        raise NotRun("a folder of one's own has no recognition by touch", "classification", runnable=False)
     name = results.choose([results.settings.hero_object], 1, stage="imprints")[0]
     mesh, (_, coarse) = results.mesh(name), results.lods(name, "enhanced-soft")[-1]
     accuracy, classes = _accuracy(results)
@@ -98,13 +100,17 @@ def _draw_imprint(axes: Axes, image: np.ndarray | None) -> None:
 
 
 def touch_one_mesh(results: Results) -> Figure:
-    """What `python -m stages.imprints MESH --at salient` shows, for the README."""
-    name = results.choose([results.settings.hero_object], 1)[0]
-    mesh, points = results.mesh(name), results.points(name)[MODEL]
-    points = points[touchable(mesh, points)][:TOUCHES]
-    raw = distances(Surface(mesh), points, CELLS, PITCH)
-    figure = plt.figure(figsize=(12, 5.4))
-    axes = sensor_axes(sensor_normals(mesh, points))
-    draw(figure, mesh, mesh.vertices[points], axes, normalise(raw, PITCH), np.ptp(raw, axis=(1, 2)), PITCH)
-    words = {"name": name, "count": len(points), "rows": CELLS[0], "columns": CELLS[1], "pitch": PITCH}
+    """What `python -m stages.imprints MESH --at salient` shows: of one object, of a folder of one's own of each."""
+    own, settings = results.own_meshes, results.settings
+    names = results.choose(() if own else [settings.hero_object], settings.viewer_count if own else 1)
+    figure = plt.figure(figsize=(12, 5.4 * len(names)))
+    for part, name in zip(figure.subfigures(len(names), 1, squeeze=False).flat, names, strict=True):
+        mesh, points = results.mesh(name), results.points(name)[MODEL]
+        points = points[touchable(mesh, points)][:TOUCHES]
+        raw = distances(Surface(mesh), points, CELLS, PITCH)
+        axes = sensor_axes(sensor_normals(mesh, points))
+        draw(part, mesh, mesh.vertices[points], axes, normalise(raw, PITCH), np.ptp(raw, axis=(1, 2)), PITCH)
+        if own:
+            part.suptitle(name, fontweight="bold", y=0.995)
+    words = {"name": ", ".join(names), "count": TOUCHES, "rows": CELLS[0], "columns": CELLS[1], "pitch": PITCH}
     return Figure(figure, words, dpi=110)
