@@ -1,7 +1,6 @@
 """Where networks look, against where people look: T figures 3.35 and 3.36 as numbers, and what they cost."""
 
 from collections.abc import Iterator
-from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -15,7 +14,7 @@ from stages.report.pareto import pareto_chart
 from stages.report.results import NotRun, Results
 
 from .detectors import FUSED, LEE, PRIOR, Detector, network_text, with_random_weights
-from .rows import detectors, gap, networks, no_people, scores, sources
+from .rows import detectors, networks, no_people, scores, sources
 
 METRICS = {"pcc": "PCC", "pcc_masked": "PCC, the thesis's way", "nss": "NSS", "auc": "AUC",
            "distance": "distance, %", "distance_mean": "distance, mean of pairs, %"}  # fmt: skip
@@ -70,9 +69,8 @@ def _gains(table: pd.DataFrame, name: Detector) -> dict[str, float]:
         others["weights"] = Detector(with_random_weights(name.method), name.task)
     found = {}
     for key, other in others.items():
-        if other != name:
-            with suppress(NotRun):
-                found |= dict(zip(_over(key), interval(gap(table, name, other)), strict=True))
+        if other in table and other != name:
+            found |= dict(zip(_over(key), interval(table[name] - table[other]), strict=True))
     return found
 
 
@@ -139,8 +137,8 @@ def _saved(table: pd.DataFrame, methods: list[str]) -> str:
     """What training every layer changes, paired over the objects."""
     said = []
     for method in methods:
-        frozen = f"{method.removesuffix('-finetuned')}-frozen"
-        if method.endswith("-finetuned") and frozen in methods:
-            difference = signed(*interval(gap(table, Detector(method, FUSED), Detector(frozen, FUSED))), places=3)
-            said.append(f"{network_text(method)} minus frozen: PCC {difference}")
+        frozen = method.replace("-finetuned", "-frozen")
+        if frozen != method and frozen in methods:
+            gain = signed(*interval(table[method, FUSED] - table[frozen, FUSED]), places=3)
+            said.append(f"{network_text(method)} minus frozen: PCC {gain}")
     return f"{'; '.join(said)}." if said else "No network was fine-tuned here."

@@ -10,7 +10,7 @@ from stages.report.claims import Claim
 from stages.report.style import label
 
 from .detectors import FUSED, LEE, MODELS, NARROWED, NOISE, OURS, PRIOR, network_text, with_random_weights
-from .places import nearer_than_chance, nearer_than_middle
+from .places import TASK
 
 # The thesis's, but that ResNet101's weights come with no package; and a small one.
 NETWORKS = VGG, RESNET, _ = ("vgg16-frozen", "resnet50-frozen", "mobilenet_v2-frozen")
@@ -64,12 +64,11 @@ def least(task: str) -> Claim:
     return agrees(f"{task}_least", sentence, (FROZEN, FUSED_TASKS), (FROZEN, task), "T3.3.3", within=("method",))
 
 
-def same_place(nearer: Callable, sentence: str, note: str) -> Claim:
-    """The claim that the maxima of two views lie nearer to each other than other places."""
-    name = nearer.__name__
-    return Claim(key=f"same_place_over_{name.rpartition('_')[2]}", section="T3.3.3", sentence=sentence, statistic=name,
-                 stage="fixation", over=("item",), unit=DIAMETER,
-                 note=f"level 3, frozen networks: distance of {note} minus that of their maxima")  # fmt: skip
+def same_place(other: str, words: str, note: str) -> Claim:
+    """The claim that the maxima of two views lie nearer to each other than other places: "chance" or "middle"."""
+    return Claim(key=f"same_place_over_{other}", section="T3.3.3", statistic=f"nearer_than_{other}", stage="fixation",
+                 sentence=f"Changing the viewpoint moves the most salient place less than {words}.", over=("item",),
+                 unit=DIAMETER, note=f"{label(TASK)}, frozen networks: distance of {note} minus that of their maxima")  # fmt: skip
 
 
 CLAIMS = [
@@ -86,10 +85,8 @@ CLAIMS = [
     claim(key="resnet_more_alike", section="T3.3.3", where={"metric": "pcc_tasks"},
           sentence="The tasks' maps of ResNet are more alike than those of VGG16.",
           first={"method": RESNET}, second={"method": VGG}),
-    same_place(nearer_than_chance, "Changing the viewpoint moves the most salient place less than chance would.",
-               "random places that two views see"),
-    same_place(nearer_than_middle, "Changing the viewpoint moves the most salient place less than the middle of the "
-               "picture.", "what two views show in the middle"),
+    same_place("chance", "chance would", "random places that two views see"),
+    same_place("middle", "the middle of the picture", "what two views show in the middle"),
     agrees("entropy_over_average", "Weighing maps by their entropy beats averaging them.", EWIGC, (FROZEN, AVERAGE),
            "T3.3.4", within=("method",)),
     agrees("resnet_over_vgg", "Fused Grad-CAM of ResNet predicts gaze better than that of VGG16.", *BOTH),

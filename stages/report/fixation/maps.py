@@ -1,10 +1,10 @@
 """T figures 3.29, 3.30 and 3.34: where networks look, on this run's objects and on meshes with human gaze."""
 
 import sys
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import cv2
 import numpy as np
@@ -31,7 +31,6 @@ SMALL = 260
 VEIL = 0.72  # of a map's colour over the picture
 RIVALS = ("enhanced", "mesh_saliency")  # of stages.salient_points
 COUNT = 4  # objects of figure 3.34
-Build = Callable[..., Figure]  # of (results, dataset=None)
 
 
 class Kept(Figure):
@@ -46,7 +45,7 @@ class Kept(Figure):
         self.paths = [words.with_suffix(".png"), words]
 
 
-def on_gaze(build: Build) -> Callable[[Results], Figure]:
+def on_gaze(build: Callable[..., Figure]) -> Callable[[Results], Figure]:
     """The builder of the figure on the meshes with human gaze; without their data, as it was drawn last time."""
     name = build.__name__
 
@@ -77,7 +76,7 @@ def figure_3_29(results: Results, dataset: str | None = None) -> Figure:
         for method, views in maps.items()
     }
     figure = _panels(images, [], 1.9, (8.5, 9.5), [0.93, 0.15, 0.014, 0.7], "over its maximum")
-    words = {"name": look.name, "task": label(ITSELF), "networks": "; ".join(images), "sizes": look.sizes(maps)}
+    words = {"name": look.name, "task": label(ITSELF), "networks": "; ".join(images), "sizes": look.sizes}
     return Figure(figure, words)
 
 
@@ -86,7 +85,7 @@ def figure_3_30(results: Results, dataset: str | None = None) -> Figure:
     look = _look(results, dataset)
     if not look.maps:
         raise NotRun(f"no network looked at {look.name}", "fixation", runnable=False)
-    view = int((look.arrays["visible"] @ look.mesh.vertex_areas).argmax())  # what shows most of the object
+    view = int((look.visible @ look.mesh.vertex_areas).argmax())  # what shows most of the object
     render = picture(look.mesh, viewpoint=VIEWPOINTS[view], rows=ROWS)
     images = {}
     for method, views in look.maps.items():
@@ -96,12 +95,16 @@ def figure_3_30(results: Results, dataset: str | None = None) -> Figure:
     box = [0.945, 0.15, 0.012, 0.7]
     figure = _panels(images, list(layers), 1.6, (8.5, 9.5), box, "Grad-CAM over its maximum")
     words = {"name": look.name, "tasks": ", ".join(list(layers)[:-1]), "networks": "; ".join(images)}
-    return Figure(figure, words | {"sizes": look.sizes(look.maps)})
+    return Figure(figure, words | {"sizes": look.sizes})
 
 
 def figure_3_34(results: Results, dataset: str | None = None) -> Figure:
     """The fused attention of networks on the surface, beside people and other models."""
-    names, truth = _with_truth(results, dataset)
+    names, marked = _ready(results, dataset), {}
+    for name in names:
+        with suppress(NotRun):
+            marked[name] = results.ground_truth(name, dataset)["density"]
+    names = list(marked or names)[:COUNT]
     files = {name: stored(results, name, dataset) for name in names}
     methods = [each for each in stored_networks(files[names[0]]) if f"{each}.{NARROWED}" in files[names[0]]]
     if not methods:
@@ -109,46 +112,43 @@ def figure_3_34(results: Results, dataset: str | None = None) -> Figure:
     rivals, images = results.saliency(names[0], dataset).those_of(RIVALS), {}
     for name in names:
         mesh, saliency = results.mesh(name, dataset), results.saliency(name, dataset)
-        values = [results.ground_truth(name, dataset)["density"]] if truth else []
+        values = [marked[name]] if marked else []
         values += [files[name][f"{method}.{NARROWED}"] for method in methods] + [saliency[rival] for rival in rivals]
         pictures = (picture(mesh, vivid(one.astype(float)), rows=SMALL) for one in values)
         images[name] = [squared(image)[0] for image in pictures]
-    titles = [truth] if truth else []
+    truth = "human gaze" if results.folder("fixation", dataset).parent.name == "gaze" else "marks"
+    titles = [truth] if marked else []
     titles += [f"{MODELS[NARROWED]}\n{network_text(each)}" for each in methods] + list(map(label, rivals))
     figure = _panels(images, titles, 1.6, (10, 9), [0.945, 0.2, 0.012, 0.6], "over the 98 % quantile")
     words = {
         "names": ", ".join(names),
         "columns": ", ".join(title.replace("\n", " ").replace(", ", " ") for title in titles),
         "control": " Random weights: a control." if any(map(untrained, methods)) else "",
-        "marks": " Marks: by a vision model, no human subjects; spread along the surface." if truth == "marks" else "",
+        "marks": " Marks: by a vision model, no human subjects; spread along the surface." if "marks" in titles else "",
     }
     return Figure(figure, words, dpi=115)
 
 
-@dataclass
-class Look:
-    """What networks saw of one object: maps: {method: for each view {task: (ROWS, ROWS) map}}."""
+class Look(NamedTuple):
+    """What networks saw of one object."""
 
     name: str
     mesh: Mesh
-    arrays: dict[str, np.ndarray]
-    maps: dict[str, list[dict[str, np.ndarray]]]
-
-    def sizes(self, methods: Iterable[str]) -> str:
-        """The sizes of the networks' maps in words: `7 x 7 or 14 x 14`."""
-        shapes = {self.arrays[f"{method}.maps"].shape[2:] for method in methods}
-        return " or ".join(f"{rows} x {columns}" for rows, columns in sorted(shapes))
+    visible: np.ndarray  # (3, n): the vertices that each view sees
+    maps: dict[str, list[dict[str, np.ndarray]]]  # {method: for each view {task: (ROWS, ROWS) map}}
+    sizes: str  # of the maps as the networks gave them: `7 x 7 or 14 x 14`
 
 
 def _look(results: Results, dataset: str | None) -> Look:
-    """Of the first object of a set."""
+    """At the first object of a set."""
     name = _ready(results, dataset)[0]
     arrays, tasks = stored(results, name, dataset), results.rows("fixation", dataset, metric="class")["task"].unique()
+    cams = {method: arrays[f"{method}.maps"] for method in stored_networks(arrays)}
     maps = {
-        method: [dict(zip(tasks, large(cams, method), strict=True)) for cams in arrays[f"{method}.maps"]]
-        for method in stored_networks(arrays)
+        method: [dict(zip(tasks, large(view, method), strict=True)) for view in own] for method, own in cams.items()
     }
-    return Look(name, results.mesh(name, dataset), arrays, maps)
+    sizes = " or ".join(f"{rows} x {columns}" for rows, columns in sorted({own.shape[2:] for own in cams.values()}))
+    return Look(name, results.mesh(name, dataset), arrays["visible"], maps, sizes)
 
 
 def _ready(results: Results, dataset: str | None) -> list[str]:
@@ -158,17 +158,6 @@ def _ready(results: Results, dataset: str | None) -> list[str]:
         raise NotRun("no objects in fixation", "fixation")
     first = [name for name in results.settings.figure_objects if name in found]
     return list(dict.fromkeys([*first, *found]))
-
-
-def _with_truth(results: Results, dataset: str | None) -> tuple[list[str], str | None]:
-    """(up to COUNT names, what their truth is called): those with people's attention; without any, None."""
-    names, marked = _ready(results, dataset), []
-    for name in names:
-        with suppress(NotRun):
-            results.ground_truth(name, dataset)
-            marked.append(name)
-    truth = "human gaze" if results.folder("fixation", dataset).parent.name == "gaze" else "marks"
-    return (marked[:COUNT], truth) if marked else (names[:COUNT], None)
 
 
 def large(cams: np.ndarray, method: str) -> np.ndarray:

@@ -1,6 +1,6 @@
 """T figures 3.32, 3.35 and 3.36: how much tasks' maps and detectors agree with people, and how far centres lie."""
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from itertools import product
 from typing import Any
 
@@ -13,7 +13,7 @@ from matplotlib.ticker import FuncFormatter, NullFormatter
 from stages.kit.stats import interval
 from stages.report.items import Figure
 from stages.report.results import Results
-from stages.report.style import CYCLE, GREY, INK, PALE, label, plt
+from stages.report.style import GREY, INK, PALE, colours, label, plt
 
 from .detectors import FUSED, KINDS, MODELS, TASKS, Detector, network_text, untrained
 from .rows import detectors, networks, no_people, scores, sources
@@ -21,16 +21,17 @@ from .rows import detectors, networks, no_people, scores, sources
 LINES = (*TASKS, FUSED)
 SPREAD = 0.72  # of a row that its networks fill
 FLOOR = 0.1  # %: a centre nearer than this is on the spot, and the axis begins there
+Pair = tuple[pd.DataFrame, pd.DataFrame]
+Draw = Callable[[Axes, pd.Series, int, str], None]  # (axes, values, y, colour)
 DIAMOND: dict[str, Any] = {"marker": "D", "ls": "", "color": "white", "ms": 4.5}
-VIEW = ("item", "view")
 
 
 def figure_3_32(results: Results) -> Figure:
     """Correlation of each task's map with people, a row a task, a colour a network."""
     found = sources(results)
     methods = sorted(dict.fromkeys(method for rows in found.values() for method in networks(rows)), key=untrained)
-    bases = list(dict.fromkeys(method.rpartition("-")[0] for method in methods))
-    tints = {method: CYCLE[bases.index(method.rpartition("-")[0]) % len(CYCLE)] for method in methods}
+    bases = {method: method.rpartition("-")[0] for method in methods}
+    paint = colours(list(dict.fromkeys(bases.values())))
     places = (np.arange(len(methods)) - (len(methods) - 1) / 2) * SPREAD / max(len(methods), 3)
     size = (4.0 * len(found) + 2.6, 1.2 + len(LINES) * max(0.42, 0.14 * len(methods)))
     names = [MODELS.get(task, label(task)) for task in LINES]
@@ -39,12 +40,12 @@ def figure_3_32(results: Results) -> Figure:
         table = scores(rows, "pcc")
         for (y, task), (down, method) in product(enumerate(LINES), zip(places, methods, strict=True)):
             if (method, task) in table:
-                _span(axes, table[method, task], y + down, tints[method], 1.5, **_mark(method))
-        axes.axvline(0, color=INK, lw=0.8)
+                _span(axes, table[method, task], y + down, paint[bases[method]], 1.5, **_mark(method))
+        _zero(axes)
         axes.axhline(len(TASKS) - 0.5, color=GREY, lw=0.6)
         axes.hlines(np.arange(len(TASKS) - 1) + 0.5, 0, 1, transform=axes.get_yaxis_transform(), color=PALE, lw=0.5)
     for method in methods:
-        grid[-1].plot([], [], color=tints[method], label=network_text(method), **_mark(method))
+        grid[-1].plot([], [], color=paint[bases[method]], label=network_text(method), **_mark(method))
     _legend(figure, grid)
     return Figure(figure, {"sources": " and with ".join(found), "no_people": no_people(found)})
 
@@ -53,43 +54,23 @@ def figure_3_35(results: Results) -> Figure:
     """Correlation of detectors with people, best mean first."""
     found = sources(results)
     tables = [(scores(rows, "pcc"), scores(rows, "pcc_masked")) for rows in found.values()]
-    means = [own[detectors(own)].mean() for own, _ in tables]
-    names, figure, grid = _ranking(found, means, "Pearson's correlation with people", best_first=True)
-    for axes, (own, masked) in zip(grid, tables, strict=True):
-        for y, name in enumerate(names):
-            if name in masked:
-                axes.plot(masked[name].mean(), y, mec=name.tint, mew=1.1, **DIAMOND)
-            if name in own:
-                _span(axes, own[name], y, name.tint, 1.6, marker="o", ls="", ms=5, mec="white", mew=0.5)
-        axes.axvline(0, color=INK, lw=0.8)
+    figure, grid = _ranked(found, tables, "mean", "Pearson's correlation with people", _dot, _zero, zorder=1.9)
     for words, tint in KINDS.values():
         grid[-1].plot([], [], "o", color=tint, ms=5, label=words)
-    grid[-1].plot([], [], mec=INK, label="hidden vertices as zeros\n(the thesis's way)", **DIAMOND)
-    _legend(figure, grid)
+    _legend(figure, grid, "hidden vertices as zeros\n(the thesis's way)")
     return Figure(figure, {"sources": " and with ".join(found), "no_people": no_people(found)})
 
 
 def figure_3_36(results: Results) -> Figure:
     """Distance between centres of fixation of detectors and of people, least median first."""
-    found = sources(results, "distance")
-    tables = [(scores(rows, "distance", VIEW), scores(rows, "distance_mean", VIEW)) for rows in found.values()]
-    medians = [nearest[detectors(nearest)].median() for nearest, _ in tables]
+    found, views = sources(results, "distance"), ("item", "view")
+    tables = [(scores(rows, "distance", views), scores(rows, "distance_mean", views)) for rows in found.values()]
+    tables = [(nearest, pairs.clip(lower=FLOOR)) for nearest, pairs in tables]
     axis = "distance, % of the diameter\nof the bounding sphere"
-    names, figure, grid = _ranking(found, medians, axis, best_first=False)
-    for axes, (nearest, pairs) in zip(grid, tables, strict=True):
-        for y, name in enumerate(names):
-            if name in nearest:
-                _box(axes, nearest[name], y, name.tint)
-            if name in pairs:
-                axes.plot(max(pairs[name].median(), FLOOR), y, mec=name.tint, mew=1.1, **DIAMOND)
-        axes.set_xscale("log")
-        axes.set_xlim(left=FLOOR)
-        axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-        axes.xaxis.set_minor_formatter(NullFormatter())
+    figure, grid = _ranked(found, tables, "median", axis, _box, _logarithmic)
     for words, tint in KINDS.values():
         grid[-1].barh([np.nan], [1], color=tint, alpha=0.45, label=words)
-    grid[-1].plot([], [], mec=INK, label="median of the mean\nover all pairs", **DIAMOND)
-    _legend(figure, grid)
+    _legend(figure, grid, "median of the mean\nover all pairs")
     return Figure(figure, {"sources": " and of ".join(found), "floor": FLOOR, "no_people": no_people(found)})
 
 
@@ -108,24 +89,33 @@ def _panels(
     return figure, grid[0]
 
 
-def _ranking(
-    found: Collection[str], ranks: list[pd.Series], axis: str, best_first: bool
-) -> tuple[list[Detector], Drawing, np.ndarray]:
-    """(detectors, figure, axes): panels with a row a detector, in the order of the first truth that has it.
+def _ranked(
+    found: Collection[str], tables: list[Pair], middle: str, axis: str, draw: Draw, finish: Callable, zorder: float = 2
+) -> tuple[Drawing, np.ndarray]:
+    """(figure, axes): panels with a row a detector, in the order of the first truth that has it.
 
-    ranks: by detector, one Series a truth; best_first: the highest first.
+    tables: for each truth the scores that are drawn, and those whose middle, "mean" or "median", is a diamond. finish:
+    draws what further is in a panel.
     """
-    order = pd.concat(ranks)
-    order = order[~order.index.duplicated()].sort_values(ascending=not best_first, kind="stable")
+    order = pd.concat([own[detectors(own)].agg(middle) for own, _ in tables])
+    order = order[~order.index.duplicated()].sort_values(ascending=middle == "median", kind="stable")
     names = [Detector(*name) for name in order.index]
     size = (3.9 * len(found) + 3.6, 1.0 + 0.26 * len(names))
     figure, grid = _panels(found, [name.text for name in names], axis, size, 8.5)
-    for axes in grid:
+    for axes, (own, beside) in zip(grid, tables, strict=True):
         axes.hlines(range(len(names)), 0, 1, transform=axes.get_yaxis_transform(), color=PALE, lw=0.4, zorder=0)
-    return names, figure, grid
+        for y, name in enumerate(names):
+            if name in own:
+                draw(axes, own[name], y, name.tint)
+            if name in beside:
+                axes.plot(beside[name].agg(middle), y, mec=name.tint, mew=1.1, zorder=zorder, **DIAMOND)
+        finish(axes)
+    return figure, grid
 
 
-def _legend(figure: Drawing, grid: np.ndarray) -> None:
+def _legend(figure: Drawing, grid: np.ndarray, diamond: str = "") -> None:
+    if diamond:
+        grid[-1].plot([], [], mec=INK, label=diamond, **DIAMOND)
     grid[-1].legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=8.5)
     figure.tight_layout()
 
@@ -141,6 +131,20 @@ def _span(axes: Axes, values: pd.Series, y: float, tint: str, width: float, **ma
     mean, low, high = interval(values)
     axes.plot([low, high], [y, y], color=tint, lw=width, alpha=0.5)
     axes.plot(mean, y, color=tint, **mark)
+
+
+def _zero(axes: Axes) -> None:
+    axes.axvline(0, color=INK, lw=0.8)
+
+
+def _logarithmic(axes: Axes) -> None:
+    axes.set(xscale="log", xlim=(FLOOR, None))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.xaxis.set_minor_formatter(NullFormatter())
+
+
+def _dot(axes: Axes, values: pd.Series, y: int, tint: str) -> None:
+    _span(axes, values, y, tint, 1.6, marker="o", ls="", ms=5, mec="white", mew=0.5)
 
 
 def _box(axes: Axes, values: pd.Series, y: int, tint: str) -> None:

@@ -1,6 +1,7 @@
 """Whether the most salient place is the same from all sides (T figure 3.29)."""
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from itertools import combinations
 
 import numpy as np
@@ -20,20 +21,11 @@ PLACES = 2000  # random places of a view; their mean distance is then known to o
 Control = Callable[[Mesh, np.ndarray, Viewpoint], np.ndarray]  # (mesh, seen (n,), viewpoint) -> (k, 3) other places
 
 
-@statistic("nearer_than_chance")
-def nearer_than_chance(results: Results, claim: Claim) -> pd.Series:
-    """How much nearer the maxima of two views lie than random places that they see, per object, in units."""
-    return _nearer(results, _anywhere)
+def nearer(control: Control, results: Results, claim: Claim | None = None) -> pd.Series:
+    """How much nearer the maxima of two views lie than other places, by object, in units.
 
-
-@statistic("nearer_than_middle")
-def nearer_than_middle(results: Results, claim: Claim) -> pd.Series:
-    """How much nearer the maxima of two views lie than what they show in the middle, per object, in units."""
-    return _nearer(results, _middle)
-
-
-def _nearer(results: Results, control: Control) -> pd.Series:
-    """By object: level 3 of each frozen network, the mean over the pairs of views that see any surface."""
+    Of level 3 of each frozen network, the mean over the pairs of views that see any surface.
+    """
     names = results.choose([], len(results.objects), "fixation")
     gains = pd.Series({name: _gain(stored(results, name), results.mesh(name), control) for name in names})
     if gains.isna().all():
@@ -59,13 +51,13 @@ def _top(mesh: Mesh, seen: np.ndarray, values: np.ndarray) -> np.ndarray:
     return mesh.vertices[masked == masked.max()].mean(axis=0, keepdims=True)  # half precision has ties
 
 
-def _anywhere(mesh: Mesh, seen: np.ndarray, viewpoint: Viewpoint) -> np.ndarray:
+def anywhere(mesh: Mesh, seen: np.ndarray, viewpoint: Viewpoint) -> np.ndarray:
     """(PLACES, 3): random places on the surface that a view sees."""
     shares = np.where(seen, mesh.vertex_areas, 0)
     return mesh.vertices[rng(0, viewpoint.name).choice(len(seen), PLACES, p=shares / shares.sum())]
 
 
-def _middle(mesh: Mesh, seen: np.ndarray, viewpoint: Viewpoint) -> np.ndarray:
+def middle(mesh: Mesh, seen: np.ndarray, viewpoint: Viewpoint) -> np.ndarray:
     """(1, 3): what a view shows in the middle of the picture."""
     aside = np.linalg.norm(mesh.vertices @ viewpoint.axes[:2].T, axis=1)
     return mesh.vertices[[np.where(seen, aside, np.inf).argmin()]]
@@ -74,3 +66,7 @@ def _middle(mesh: Mesh, seen: np.ndarray, viewpoint: Viewpoint) -> np.ndarray:
 def _apart(places: Sequence[np.ndarray]) -> float:
     """The mean distance between the places (k, 3) of two views, over the pairs of views."""
     return float(np.mean([np.linalg.norm(a - b, axis=1).mean() for a, b in combinations(places, 2)]))
+
+
+statistic("nearer_than_chance")(partial(nearer, anywhere))
+statistic("nearer_than_middle")(partial(nearer, middle))

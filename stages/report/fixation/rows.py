@@ -63,15 +63,6 @@ def scores(rows: pd.DataFrame, metric: str, by: Sequence[str] = ("item",)) -> pd
     return 100 * table if metric.startswith("distance") else table
 
 
-def gap(table: pd.DataFrame, first: Detector, second: Detector) -> pd.Series:
-    """First minus second an object, both of a frame of scores; NotRun where one is absent."""
-    missing = [name.text for name in (first, second) if name not in table]
-    found = pd.Series(dtype=float) if missing else (table[first] - table[second]).dropna()
-    if found.empty:
-        raise NotRun(f"{' and '.join(missing) or 'a pair'} not judged against people", "fixation", runnable=False)
-    return found
-
-
 def detectors(table: pd.DataFrame) -> list[Detector]:
     """Those of a frame of scores that answer for a whole object: fused maps, rivals, controls; in this order."""
     found = (Detector(*name) for name in table)
