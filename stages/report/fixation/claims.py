@@ -66,9 +66,10 @@ def least(task: str) -> Claim:
 
 def same_place(other: str, words: str, note: str) -> Claim:
     """The claim that the maxima of two views lie nearer to each other than other places: "chance" or "middle"."""
-    return Claim(key=f"same_place_over_{other}", section="T3.3.3", statistic=f"nearer_than_{other}", stage="fixation",
-                 sentence=f"Changing the viewpoint moves the most salient place less than {words}.", over=("item",),
-                 unit=DIAMETER, note=f"{label(TASK)}, frozen networks: distance of {note} minus that of their maxima")  # fmt: skip
+    sentence = f"Changing the viewpoint moves the most salient place less than {words}."
+    note = f"{label(TASK)}, frozen networks: distance of {note} minus that of their maxima"
+    return Claim(key=f"same_place_over_{other}", section="T3.3.3", sentence=sentence, stage="fixation", over=("item",),
+                 unit=DIAMETER, statistic=f"nearer_than_{other}", note=note)  # fmt: skip
 
 
 CLAIMS = [

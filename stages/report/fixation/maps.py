@@ -31,6 +31,7 @@ SMALL = 260
 VEIL = 0.72  # of a map's colour over the picture
 RIVALS = ("enhanced", "mesh_saliency")  # of stages.salient_points
 COUNT = 4  # objects of figure 3.34
+Images = Mapping[str, Sequence[np.ndarray]]
 
 
 class Kept(Figure):
@@ -75,7 +76,7 @@ def figure_3_29(results: Results, dataset: str | None = None) -> Figure:
         network_text(method): [_veiled(render, seen[ITSELF]) for render, seen in zip(renders, views, strict=True)]
         for method, views in maps.items()
     }
-    figure = _panels(images, [], 1.9, (8.5, 9.5), [0.93, 0.15, 0.014, 0.7], "over its maximum")
+    figure = _panels(images, 1.9, [0.93, 0.15, 0.014, 0.7], "over its maximum")
     words = {"name": look.name, "task": label(ITSELF), "networks": "; ".join(images), "sizes": look.sizes}
     return Figure(figure, words)
 
@@ -92,8 +93,7 @@ def figure_3_30(results: Results, dataset: str | None = None) -> Figure:
         layers = {label(task): views[view][task] for task in TASKS if task in views[view]}
         layers["fused (EWIGC)"] = _fused(views[view])
         images[network_text(method)] = [_veiled(render, layer) for layer in layers.values()]
-    box = [0.945, 0.15, 0.012, 0.7]
-    figure = _panels(images, list(layers), 1.6, (8.5, 9.5), box, "Grad-CAM over its maximum")
+    figure = _panels(images, 1.6, [0.945, 0.15, 0.012, 0.7], "Grad-CAM over its maximum", list(layers))
     words = {"name": look.name, "tasks": ", ".join(list(layers)[:-1]), "networks": "; ".join(images)}
     return Figure(figure, words | {"sizes": look.sizes})
 
@@ -119,7 +119,7 @@ def figure_3_34(results: Results, dataset: str | None = None) -> Figure:
     truth = "human gaze" if results.folder("fixation", dataset).parent.name == "gaze" else "marks"
     titles = [truth] if marked else []
     titles += [f"{MODELS[NARROWED]}\n{network_text(each)}" for each in methods] + list(map(label, rivals))
-    figure = _panels(images, titles, 1.6, (10, 9), [0.945, 0.2, 0.012, 0.6], "over the 98 % quantile")
+    figure = _panels(images, 1.6, [0.945, 0.2, 0.012, 0.6], "over the 98 % quantile", titles, (10, 9))
     words = {
         "names": ", ".join(names),
         "columns": ", ".join(title.replace("\n", " ").replace(", ", " ") for title in titles),
@@ -144,9 +144,7 @@ def _look(results: Results, dataset: str | None) -> Look:
     name = _ready(results, dataset)[0]
     arrays, tasks = stored(results, name, dataset), results.rows("fixation", dataset, metric="class")["task"].unique()
     cams = {method: arrays[f"{method}.maps"] for method in stored_networks(arrays)}
-    maps = {
-        method: [dict(zip(tasks, large(view, method), strict=True)) for view in own] for method, own in cams.items()
-    }
+    maps = {name: [dict(zip(tasks, large(view, name), strict=True)) for view in own] for name, own in cams.items()}
     sizes = " or ".join(f"{rows} x {columns}" for rows, columns in sorted({own.shape[2:] for own in cams.values()}))
     return Look(name, results.mesh(name, dataset), arrays["visible"], maps, sizes)
 
@@ -182,12 +180,7 @@ def _veiled(render: np.ndarray, values: np.ndarray) -> np.ndarray:
 
 
 def _panels(
-    images: Mapping[str, Sequence[np.ndarray]],
-    titles: Sequence[str],
-    side: float,
-    letters: tuple[float, float],
-    box: list[float],
-    scale: str,
+    images: Images, side: float, box: list[float], scale: str, titles: Sequence[str] = (), letters: tuple = (8.5, 9.5)
 ) -> Drawing:
     """A row of images by name, with titles above; letters: of names and of titles; box: of the bar of colours."""
     figure, grid = square_grid(len(images), len(next(iter(images.values()))), side=side, right=0.9)

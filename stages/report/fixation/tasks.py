@@ -27,24 +27,22 @@ LIGHT = 0.62  # from this correlation on the cell is bright and its number dark
 def figure_3_28(results: Results) -> Figure:
     """The elbow of k-means in the sums of squares, by task of shape and data set."""
     found = _curves(results)
-    tasks = [task for task in SHAPE_MEASURES if any((rows["task"] == task).any() for rows in found.values())]
+    tasks = [task for task in SHAPE_MEASURES if any(task in set(rows["task"]) for rows in found.values())]
     figure, grid = plt.subplots(1, len(tasks), figsize=(3.5 * len(tasks), 3.0), squeeze=False)
     for axes, task in zip(grid[0], tasks, strict=True):
         for (tint, beside), (source, rows) in zip(LINES, found.items(), strict=False):
-            if (rows["task"] == task).any():
+            if task in set(rows["task"]):
                 _elbow(axes, rows[rows["task"] == task].sort_values("clusters"), source, tint, beside)
         axes.plot([], [], "o", mfc="none", mec=INK, mew=1.8, ms=10, label="chosen")
-        axes.set_title(label(task))
-        axes.set_xlabel("clusters")
+        axes.set(title=label(task), xlabel="clusters", ylim=(0, 1.15))
         axes.xaxis.set_major_locator(MaxNLocator(integer=True))
-        axes.set_ylim(0, 1.15)
         axes.grid(axis="y")
     grid[0, 0].set_ylabel("sum of squared distances,\nover that of the fewest clusters")
     grid[0, -1].legend(fontsize=8.5)
     figure.tight_layout()
-    chosen = {source: rows[rows["chosen"]].itertuples() for source, rows in found.items()}
-    said = {source: ", ".join(f"{label(row.task)} {row.clusters:g}" for row in best) for source, best in chosen.items()}
-    return Figure(figure, {"chosen": "; ".join(f"{source}: {words}" for source, words in said.items())})
+    said = [f"{source}: {', '.join(f'{label(row.task)} {row.clusters:g}' for row in rows[rows['chosen']].itertuples())}"
+            for source, rows in found.items()]  # fmt: skip
+    return Figure(figure, {"chosen": "; ".join(said)})
 
 
 def _curves(results: Results) -> dict[str, pd.DataFrame]:
@@ -62,9 +60,8 @@ def _curves(results: Results) -> dict[str, pd.DataFrame]:
 def _elbow(axes: Axes, rows: pd.DataFrame, source: str, tint: str, beside: tuple[int, int]) -> None:
     share = rows["value"] / rows["value"].iloc[0]
     axes.plot(rows["clusters"], share, "-o", color=tint, ms=4, lw=1.3, label=source)
-    best = rows["chosen"]
-    axes.plot(rows["clusters"][best], share[best], "o", mfc="none", mec=INK, mew=1.8, ms=10)
-    for k, y in zip(rows["clusters"][best], share[best], strict=True):
+    for k, y in zip(rows["clusters"][rows["chosen"]], share[rows["chosen"]], strict=True):
+        axes.plot(k, y, "o", mfc="none", mec=INK, mew=1.8, ms=10)
         axes.annotate(f"{k:g}", (k, y), beside, textcoords="offset points", color=INK, fontsize=9)
 
 
