@@ -372,7 +372,7 @@ def test_a_picture_on_gaze_is_kept_with_its_words_where_the_meshes_are_absent(ba
         axes.plot([0, 1])
         return Figure(drawing, {"names": dataset, "columns": "marks", "control": "", "marks": ""})
 
-    monkeypatch.setitem(topic.FIGURES, "figure_3_34_gaze", maps.on_gaze(figure_3_34))
+    monkeypatch.setitem(topic.FIGURES, "figure_3_34_gaze", partial(maps.on_gaze, figure_3_34))
     results = small.results(bare)
     (bare / "data/gaze/fixation").mkdir(parents=True)
     drawn = figure(results, "figure_3_34_gaze")

@@ -115,18 +115,19 @@ def chart(results: Results) -> Figure:
     methods = [method for method in networks(rows) if (method, FUSED) in table]
     if REFERENCE not in methods:
         raise NotRun(f"the reference {network_text(REFERENCE)} is not measured", "fixation", runnable=False)
-    looking, paid = _looking(rows), rows.dropna(subset=["seconds"])
+    paid = rows.dropna(subset=["seconds"])
     lessons = paid[paid["metric"] == "accuracy"].drop_duplicates(["method", "task", "seconds"])
-    lines = []
-    for method in methods:
-        mean, low, high = interval(table[method, FUSED])
-        teaching = lessons.loc[lessons["method"] == method, "seconds"].sum()
-        objects = paid.loc[(paid["metric"] == "views") & (paid["method"] == method), "item"].nunique()
-        line = {"name": network_text(method), "mean": mean, "low": low, "high": high, "objects": objects}
-        line |= {"teaching": teaching, "looking": looking.get(method, np.nan)}
-        lines.append(line | {"seconds": teaching + objects * line["looking"]})
+    costs = {
+        "objects": paid[paid["metric"] == "views"].groupby("method")["item"].nunique(),
+        "teaching": lessons.groupby("method")["seconds"].sum(),
+        "looking": _looking(rows),
+    }
+    frame = pd.DataFrame([interval(table[method, FUSED]) for method in methods], methods, ["mean", "low", "high"])
+    frame = frame.assign(**costs).fillna({"objects": 0, "teaching": 0})
+    frame["seconds"] = frame["teaching"] + frame["objects"] * frame["looking"]
+    frame.insert(0, "name", [network_text(method) for method in methods])
     figure = pareto_chart(
-        pd.DataFrame(lines), "mean", title="Where networks look: what training costs",
+        frame, "mean", title="Where networks look: what training costs",
         reference=network_text(REFERENCE), quality_label=f"PCC, {source}",
     )  # fmt: skip
     figure.words |= {"source": source, "saved": _saved(table, methods)}

@@ -46,23 +46,19 @@ class Kept(Figure):
         self.paths = [words.with_suffix(".png"), words]
 
 
-def on_gaze(build: Callable[..., Figure]) -> Callable[[Results], Figure]:
-    """The builder of the figure on the meshes with human gaze; without their data, as it was drawn last time."""
+def on_gaze(build: Callable[..., Figure], results: Results) -> Kept:
+    """The figure on the meshes with human gaze; without their data, as it was drawn last time."""
     name = build.__name__
-
-    def kept(results: Results) -> Figure:
-        if (results.data / "gaze/fixation").is_dir():
-            figure = build(results, "gaze")
-            add_words(figure, sys.modules[__package__ or ""], "figures", name)
-            title = f"{figure.title}, on meshes with human gaze"
-            return Kept(figure.drawing, {"title": title, "alt": figure.alt, "caption": figure.caption}, dpi=figure.dpi)
-        words = results.reports / f"figures/{name}_gaze.json"
-        if not words.exists() or not words.with_suffix(".png").exists():
-            why = f"no figures/{name}_gaze.png: run the stage fixation where the data set gaze is"
-            raise NotRun(why, "fixation", runnable=False)
-        return Kept(Drawing(), read_json(words))
-
-    return kept
+    if (results.data / "gaze/fixation").is_dir():
+        figure = build(results, "gaze")
+        add_words(figure, sys.modules[__package__ or ""], "figures", name)
+        title = f"{figure.title}, on meshes with human gaze"
+        return Kept(figure.drawing, {"title": title, "alt": figure.alt, "caption": figure.caption}, dpi=figure.dpi)
+    words = results.reports / f"figures/{name}_gaze.json"
+    if not words.exists() or not words.with_suffix(".png").exists():
+        why = f"no figures/{name}_gaze.png: run the stage fixation where the data set gaze is"
+        raise NotRun(why, "fixation", runnable=False)
+    return Kept(Drawing(), read_json(words))
 
 
 def figure_3_29(results: Results, dataset: str | None = None) -> Figure:
