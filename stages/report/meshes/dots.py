@@ -1,12 +1,27 @@
 """Methods as rows of dots: the mean over objects, with the interval of the paired difference from one of them."""
 
+from collections.abc import Iterable, Sequence
+
+import pandas as pd
+from matplotlib.axes import Axes
+
 from stages.kit.stats import interval
 from stages.report.style import GREY, INK, METHOD_COLOURS, PALE
 
-HELD = {"enhanced": METHOD_COLOURS["enhanced"], "qem": GREY}  # colours of names
+from .methods import OURS, PLAIN, short
+
+HELD = {OURS: METHOD_COLOURS[OURS], PLAIN: GREY}  # colours of names
 
 
-def draw_dots(axes, table, methods, tint, base=None, name=None, down=0.0):
+def draw_dots(
+    axes: Axes,
+    table: pd.DataFrame,
+    methods: Sequence[str],
+    tint: str,
+    base: str | None = None,
+    name: str = "",
+    down: float = 0.0,
+) -> None:
     """Draws the means of a frame objects x methods as dots, the first method on top.
 
     base: the method that the others are compared with: a line about each dot is the 95 % interval of the paired
@@ -24,7 +39,7 @@ def draw_dots(axes, table, methods, tint, base=None, name=None, down=0.0):
         axes.plot([], [], "o", color=tint, ms=4, label=name)
 
 
-def dress(panels, titles, names, methods, pad=6):
+def dress(panels: Sequence[Axes], titles: Iterable[str], methods: Sequence[str], pad: float = 6) -> None:
     """Titles above the panels of one row, names of the methods at the left, ours and plain QEM in their colours."""
     for axes, title in zip(panels, titles, strict=True):
         axes.set_title(title, fontsize=9.5, fontweight="normal", pad=pad)
@@ -33,8 +48,13 @@ def dress(panels, titles, names, methods, pad=6):
         axes.tick_params(axis="y", length=0)
         axes.tick_params(axis="x", labelsize=8)
         axes.spines["left"].set_visible(False)
-    panels[0].set_yticks(range(len(methods)), names, fontsize=8.5)
-    panels[0].set_ylim(len(methods) - 0.4, -0.6)
-    for text, method in zip(panels[0].get_yticklabels(), methods, strict=True):
-        text.set_color(HELD.get(method, INK))
-    panels[0].figure.subplots_adjust(wspace=0.12)
+    name_rows(panels[0], methods, [HELD.get(method, INK) for method in methods], 8.5)
+    panels[0].get_figure().subplots_adjust(wspace=0.12)
+
+
+def name_rows(axes: Axes, methods: Sequence[str], tints: Sequence[str], size: float) -> None:
+    """Short names of the methods at the left of their rows, the first on top, each in its colour."""
+    axes.set_yticks(range(len(methods)), [short(method) for method in methods], fontsize=size)
+    axes.set_ylim(len(methods) - 0.4, -0.6)
+    for text, tint in zip(axes.get_yticklabels(), tints, strict=True):
+        text.set_color(tint)

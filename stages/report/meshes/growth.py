@@ -1,5 +1,6 @@
 """How the time of a backend grows with the mesh: a power of n, or of n log n, with its interval."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -7,7 +8,9 @@ import pandas as pd
 
 FITTED = 10_000  # faces from which the growth is fitted: below, the fixed cost of a call counts
 RESAMPLES = 1000
-POWERS = {"linear": ("n^p", lambda n: n), "loglinear": ("(n log n)^p", lambda n: n * np.log(n))}
+POWERS: dict[str, tuple[str, Callable]] = {
+    "linear": ("n^p", lambda n: n), "loglinear": ("(n log n)^p", lambda n: n * np.log(n)),
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -22,13 +25,13 @@ class Growth:
     high: float
     span: tuple[float, float]
 
-    def __call__(self, n, power=None):
+    def __call__(self, n: np.ndarray | float, power: float | None = None) -> np.ndarray | float:
         """Seconds at n faces; power: another than the fitted, through the same middle."""
         shape = POWERS[self.shape][1]
         return self.level * (shape(n) / shape(self.middle)) ** (self.power if power is None else power)
 
 
-def growth(rows, shape="loglinear"):
+def growth(rows: pd.DataFrame, shape: str = "loglinear") -> Growth | None:
     """The Growth of the column `seconds` over `full`, or None for fewer than three sizes of FITTED faces or more.
 
     rows: of one backend, with `mesh`, `target` and `with_points`. A least-squares line through the logarithms, with a
@@ -50,7 +53,7 @@ def growth(rows, shape="loglinear"):
     return Growth(shape, np.exp(offset), middle, power, low, high, (n.min(), n.max()))
 
 
-def _slope(x, y, level, weight):
+def _slope(x: np.ndarray, y: np.ndarray, level: np.ndarray, weight: np.ndarray) -> float:
     """Weighted least-squares slope with an intercept for each level; NaN where no level has two places."""
     total = np.maximum(np.bincount(level, weight), 1e-9)
     x, y = (values - (np.bincount(level, weight * values) / total)[level] for values in (x, y))
