@@ -3,11 +3,9 @@
 from . import (
     backends,
     backends_chart,
-    boxes,
-    claims,
-    combinations,
     dataset,
     detectors,
+    dots,
     error_measures,
     figure_3_8,
     lod_claims,
@@ -15,24 +13,25 @@ from . import (
     simplification,
     table_3_2,
 )
+from .claims import CLAIMS as CLAIMS
 
 TABLES = {
     "dataset": dataset.build,
-    "table_3_1_5_combinations": combinations.table,
-    "lod_detectors": detectors.table,
-    "table_3_2": table_3_2.build,
+    "table_3_1_5_combinations": detectors.combinations,
+    "lod_detectors": detectors.detectors,
+    "table_3_2": table_3_2.table,
     "lod_claims": lod_claims.build,
     "backends": backends.build,
 }
 FIGURES = {
-    "figure_3_4": combinations.figure,
-    "figure_3_5": detectors.figure,
+    "figure_3_4": dots.figure_3_4,
+    "figure_3_5": dots.figure_3_5,
     "figure_3_6": pictures.figure_3_6,
     "figure_3_7": pictures.figure_3_7,
     "figure_3_8": figure_3_8.build,
     "figure_3_21": pictures.figure_3_21,
     "figure_3_22": pictures.figure_3_22,
-    "figure_3_23": boxes.build,
+    "figure_3_23": table_3_2.figure,
 }
 CHARTS = {
     "simplification": simplification.build,
@@ -40,4 +39,3 @@ CHARTS = {
     "error_samples": error_measures.samples,
     "error_views": error_measures.views,
 }
-CLAIMS = claims.CLAIMS

@@ -6,6 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import NullFormatter
 
 from stages.report.items import Figure
+from stages.report.markdown import with_interval
 from stages.report.names import place_names
 from stages.report.pareto import pareto_front
 from stages.report.results import NotRun, Results
@@ -36,7 +37,9 @@ def build(results: Results) -> Figure:
         axes.set_title(title)
     fits = {name: growth(paired[paired["backend"] == name]) for name in dict.fromkeys(rows["backend"])}
     _growing(panels[2], paired, fits, tints)
-    powers = "; ".join(f"{label(name)} {_power(fit)}" for name, fit in fits.items() if fit)
+    powers = "; ".join(
+        f"{label(name)} {with_interval(fit.power, fit.low, fit.high, places=2)}" for name, fit in fits.items() if fit
+    )
     words = {
         "reference": REFERENCE, "backends": ", ".join(map(label, tints)), "wanted": WANTED, "fitted": FITTED,
         "powers": f"p = 1 is n log n: {powers}." if powers else "",
@@ -54,9 +57,8 @@ def _against(axes: Axes, frame: pd.DataFrame, kind: str, tints: dict[str, str]) 
     ends = []
     for row in known.itertuples():
         form, tint = KEPT[row.with_points][0], tints[row.backend]
-        for pair in (
-            ((row.time_low, row.ratio), (row.time_high, row.ratio)), ((row.time_ratio, row.low), (row.time_ratio, row.high)),
-        ):  # fmt: skip
+        across = ((row.time_low, row.ratio), (row.time_high, row.ratio))
+        for pair in (across, ((row.time_ratio, row.low), (row.time_ratio, row.high))):
             axes.plot(*zip(*pair, strict=True), color=tint, lw=1.2, alpha=0.55)
             ends += [pair] if np.isfinite(pair).all() else []
         axes.plot(row.time_ratio, row.ratio, form, color=tint, ms=7, mec="white", mew=0.8, zorder=3)
@@ -84,7 +86,7 @@ def _growing(axes: Axes, rows: pd.DataFrame, fits: dict[str, Growth | None], tin
         here, fit, power = rows[rows["backend"] == backend], fits[backend], ""
         axes.plot(here["full"], here["seconds"], ".", color=tint, ms=4, alpha=0.4, mew=0)
         if fit:
-            n, power = np.geomspace(*fit.span, 30), f", p = {_power(fit)}"
+            n, power = np.geomspace(*fit.span, 30), f", p = {with_interval(fit.power, fit.low, fit.high, places=2)}"
             axes.plot(n, fit(n), color=tint, lw=1.4)
             axes.fill_between(n, *np.sort([fit(n, fit.low), fit(n, fit.high)], axis=0), color=tint, alpha=0.15, lw=0)
             axes.plot(n, fit(n, 1.0), color=INK, lw=0.9, ls="--")
@@ -97,7 +99,3 @@ def _growing(axes: Axes, rows: pd.DataFrame, fits: dict[str, Growth | None], tin
         axis.set_minor_formatter(NullFormatter())
     axes.grid(True)
     axes.legend(loc="upper left", fontsize=8)
-
-
-def _power(fit: Growth) -> str:
-    return f"{fit.power:.2f} [{fit.low:.2f}, {fit.high:.2f}]"

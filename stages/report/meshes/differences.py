@@ -6,9 +6,9 @@ from stages.kit.stats import interval
 from stages.report.claims import Claim
 from stages.report.differences import statistic
 from stages.report.results import NotRun, Results
-from stages.report.style import WAYS
 
-from .rows import CELL, PLAIN
+from .methods import PLAIN, fixed
+from .rows import CELL
 
 MANY = 5  # methods that a rank correlation needs
 
@@ -58,11 +58,8 @@ def ranks_agree(results: Results, claim: Claim) -> pd.Series:
     Methods with a way behind their name keep the same points in another way and are left out.
     """
     metric = str(claim.first["metric"])
-    tables = [_by_method(results, claim, metric, "value")]
-    if isinstance(claim.second, dict):
-        tables.append(_by_method(results, claim, str(claim.second["metric"]), "value"))
-    else:
-        tables.append(_by_method(results, claim, metric, "points"))
+    other = (str(claim.second["metric"]), "value") if isinstance(claim.second, dict) else (metric, "points")
+    tables = [_by_method(results, claim, *which) for which in ((metric, "value"), other)]
     tables = [table[table.nunique(axis=1) > 1] for table in tables]  # equal values have no ranks
     if tables[0].empty or tables[0].shape[1] < MANY:
         raise NotRun(f"fewer than {MANY} methods to rank", claim.stage, runnable=False)
@@ -81,6 +78,6 @@ def _errors(results: Results, claim: Claim, methods: tuple[str, ...], **where: o
 def _by_method(results: Results, claim: Claim, metric: str, column: str) -> pd.DataFrame:
     """Frame objects x methods of a column, mean over the targets that all methods reach."""
     rows = results.measured(claim.stage, claim.dataset, **claim.where, metric=metric)
-    rows = rows[[name != PLAIN and name.rpartition("-")[2] not in WAYS for name in rows["method"]]]
+    rows = rows[[name != PLAIN and fixed(name) for name in rows["method"]]]
     reached = rows.groupby(CELL)["method"].transform("nunique")
     return rows[reached == rows["method"].nunique()].pivot_table(index="item", columns="method", values=column)

@@ -17,6 +17,7 @@ ERRORS = {  # metric -> (name, factor to the unit in which it is shown)
     "ssim_error": ("1 − SSIM, %", 100), "dlap": ("DLap", 1), "dnor": ("Dnor", 1),
     "salient_error": ("error where our model looks, %", 100), "gaze_error": ("error where people look, %", 100),
 }  # fmt: skip
+METRICS = ("metro_mean", "ssim_error")  # those of the thesis's figures
 FEWEST = 3  # objects that a mean over objects needs to be shown
 
 
@@ -27,12 +28,9 @@ def data_sets(results: Results) -> list[str]:
 
 
 def paired_cells(
-    results: Results,
-    metrics: Iterable[str] = ERRORS,
-    methods: Iterable[str] | None = None,
-    dataset: str | None = None,
-    whole: bool = False,
-) -> pd.DataFrame:
+    results: Results, metrics: Iterable[str] = ERRORS, methods: Iterable[str] | None = None,
+    dataset: str | None = None, whole: bool = False,
+) -> pd.DataFrame:  # fmt: skip
     """Rows of these errors and methods (None: of all), only where all methods that were run reach the object's target.
 
     `seconds` is the simplification's; `plain` the value of plain QEM for the same object, target and metric. whole:

@@ -11,20 +11,20 @@ from stages.report.results import NotRun, Results
 from stages.report.style import INK, MARKERS, colours, label, plain_logarithm, plt
 
 from .methods import CLASSICAL, ENHANCED, HKS, OURS, PLAIN, fixed
-from .rows import ERRORS, paired_cells, size
+from .rows import ERRORS, METRICS, STAGE, paired_cells, size
 
 METHODS = [  # as many as have a colour of their own; the other methods are in figures 3.4 and 3.5
     PLAIN, OURS, f"{OURS}-soft", CLASSICAL, ENHANCED, f"{ENHANCED}-adaptive", "random", HKS,
 ]  # fmt: skip
-METRICS = ("metro_mean", "ssim_error", "salient_error")
+DRAWN = (*METRICS, "salient_error")
 
 
 def build(results: Results) -> Figure:
     """Three errors against cost as a ratio to plain QEM, with a front for each share of the faces."""
-    rows = paired_cells(results, METRICS, METHODS)
+    rows = paired_cells(results, DRAWN, METHODS)
     rows = rows[rows["target"].str.endswith("%")]
     if PLAIN not in set(rows["method"]):
-        raise NotRun("no share of the faces that plain QEM and all methods reach on the same object", "lod")
+        raise NotRun("no share of the faces that plain QEM and all methods reach on the same object", STAGE)
     frame = _costed(rows, attention_seconds(results))
     targets = sorted(set(frame["target"]), key=size)
     objects = rows.groupby("target")["item"].nunique()
@@ -44,14 +44,12 @@ def _costed(rows: pd.DataFrame, search: dict[str, float]) -> pd.DataFrame:
     """
     frame = pd.DataFrame(means(rows, ["metric", "method", "target"]))
     base = frame["method"].map(lambda method: method if fixed(method) else method.rpartition("-")[0])
-    frame["looked"] = base.map({**search, PLAIN: 0.0})
-    frame = frame.dropna(subset=["looked"])
-    plain = frame[frame["method"] == PLAIN].set_index(["metric", "target"])["seconds"].rename("plain")
+    frame = frame.assign(looked=base.map({**search, PLAIN: 0.0})).dropna(subset=["looked"])
+    plain = frame["seconds"].where(frame["method"] == PLAIN).groupby([frame["metric"], frame["target"]])
     frame["seconds"] += frame["looked"]
-    frame = frame.join(plain, on=["metric", "target"])
-    frame["cost_ratio"] = frame["seconds"] / frame.pop("plain")
-    factor = frame["metric"].map(lambda metric: ERRORS[metric][1])
-    frame[["mean", "low", "high"]] = frame[["mean", "low", "high"]].mul(factor, axis=0)
+    frame["cost_ratio"] = frame["seconds"] / plain.transform("first")
+    ends, factor = ["mean", "low", "high"], frame["metric"].map(lambda metric: ERRORS[metric][1])
+    frame[ends] = frame[ends].mul(factor, axis=0)
     for _, group in frame.groupby(["metric", "target"]):
         frame.loc[group.index, "on_front"] = pareto_front(group["cost_ratio"], group["mean"], "low")
     return frame.astype({"on_front": bool})
@@ -60,7 +58,7 @@ def _costed(rows: pd.DataFrame, search: dict[str, float]) -> pd.DataFrame:
 def _draw(frame: pd.DataFrame, targets: list[str]) -> Drawing:
     tints = colours([method for method in METHODS if method in set(frame["method"])])
     forms = dict(zip(targets, MARKERS, strict=False))
-    known = [metric for metric in METRICS if metric in set(frame["metric"])]
+    known = [metric for metric in DRAWN if metric in set(frame["metric"])]
     drawing, panels = plt.subplots(1, len(known), figsize=(4.0 * len(known), 4.2), squeeze=False)
     for axes, metric in zip(panels[0], known, strict=True):
         here = frame[frame["metric"] == metric]

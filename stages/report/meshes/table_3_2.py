@@ -1,33 +1,42 @@
-"""T table 3.2: errors of the simplified meshes, on every data set."""
+"""T table 3.2 and figures 3.23 to 3.26: errors of the simplified meshes by face count, on every data set."""
 
 from collections.abc import Iterator
+from itertools import product
 
+import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.ticker import LogLocator, NullFormatter
 
 from stages.kit.stats import interval
 from stages.report.grid import means
-from stages.report.items import Table
+from stages.report.items import Figure, Table
 from stages.report.markdown import number
 from stages.report.results import NotRun, Results
-from stages.report.style import label
+from stages.report.style import GREY, INK, METHOD_COLOURS, PALE, label, plt
 from stages.report.words import dataset_text
 
-from .methods import ENHANCED, FIXED_ADAPTIVE, HKS, OURS, PLAIN
-from .rows import ERRORS, FEWEST, data_sets, face_counts, marked, paired_cells, said, size, wide
+from .dots import name_rows
+from .methods import ENHANCED, FIXED_ADAPTIVE, HKS, OURS, PLAIN, RIVALS, short
+from .rows import ERRORS, FEWEST, METRICS, STAGE, data_sets, face_counts, marked, paired_cells, said, size, wide
 
 METHODS = [*FIXED_ADAPTIVE, "thesis_ed", "thesis_ed-adaptive", ENHANCED, f"{ENHANCED}-adaptive", "VisAttAll", HKS,
            OURS, PLAIN]  # fmt: skip
 PRINTED = {"guided_ed": "ed", "thesis_ed": "ed", "guided_ssim": "ssim", ENHANCED: "ssim", "svm": "svm"}
-METRICS = ["metro_mean", "ssim_error"]
 BLOCK = ["target", "nothing_shrunk"]
 KEY = ["data", "nothing_shrunk", "target", "method", "metric"]
+DRAWN = [*FIXED_ADAPTIVE, OURS, f"{OURS}-adaptive", f"{OURS}-soft", "VisAttAll", HKS, *RIVALS, PLAIN]
+TINTS = dict.fromkeys(DRAWN, GREY) | dict.fromkeys(FIXED_ADAPTIVE, "#D55E00")  # the methods of T3.2; below: ours
+TINTS |= {method: METHOD_COLOURS[OURS] for method in DRAWN if method.startswith(OURS)}
+TARGETS = ("1500", "3000")
+FLOOR = 1e-3  # of plain QEM's median: an axis begins there, since some meshes are exact
 
 
-def build(results: Results) -> Table:
+def table(results: Results) -> Table:
     """Errors by method and face count, on all objects and where nothing shrank, beside the thesis's."""
     parts = list(_parts(results))
     if not parts:
-        raise NotRun("no face count that all methods of the table reach", "lod", runnable=False)
+        raise NotRun("no face count that all methods of the table reach", STAGE, runnable=False)
     frame = pd.concat(parts, ignore_index=True)
     thesis = results.thesis("table_3_2_lod_errors").melt(["method", "faces"], METRICS, "metric", "thesis")
     thesis = thesis.rename(columns={"method": "printed", "faces": "target"}).astype({"target": str})
@@ -81,3 +90,48 @@ def _rank(column: pd.Series) -> pd.Series:
     if column.name == "target":
         orders["target"] = sorted(set(column), key=size)
     return column.map(orders[column.name].index) if column.name in orders else column
+
+
+def figure(results: Results) -> Figure:
+    """A row of panels for each data set, a panel for each error and face count, a box for each method."""
+    shown = {}
+    for dataset in data_sets(results):
+        rows = paired_cells(results, METRICS, DRAWN, dataset)
+        rows = rows[rows["target"].isin(set(TARGETS).intersection(face_counts(rows)))]
+        shown |= {dataset_text(dataset): rows} if len(rows) else {}
+    if not shown:
+        raise NotRun("no data set with enough objects that all methods take to 1,500 or 3,000 faces", STAGE, False)
+    known = pd.concat(shown)["method"].unique()
+    methods = [method for method in DRAWN if method in known]
+    height = 0.5 + 0.17 * len(methods)
+    drawing, grid = plt.subplots(len(shown), 4, figsize=(10.4, 0.4 + height * len(shown)), squeeze=False, sharey=True)
+    for row, (name, rows) in zip(grid, shown.items(), strict=True):
+        for axes, (metric, target) in zip(row, product(METRICS, TARGETS), strict=True):
+            here = rows[(rows["metric"] == metric) & (rows["target"] == target)]
+            _boxes(axes, here.assign(value=ERRORS[metric][1] * here["value"]), methods)
+            title = f"{ERRORS[metric][0]}, {said(target)}\n{name}, {here['item'].nunique()} objects"
+            axes.set_title(title, fontsize=8.5, fontweight="normal", pad=4)
+        name_rows(row[0], methods, [TINTS[method] for method in methods], 8)
+    drawing.subplots_adjust(wspace=0.08, hspace=0.34)
+    return Figure(drawing, {"methods": ", ".join(map(short, methods)), "sets": " and ".join(shown)}, dpi=95)
+
+
+def _boxes(axes: Axes, rows: pd.DataFrame, methods: list[str]) -> None:
+    floor = FLOOR * rows.loc[rows["method"] == PLAIN, "value"].median()
+    for y, method in enumerate(methods):
+        values = np.maximum(rows.loc[rows["method"] == method, "value"].to_numpy(), floor)
+        if len(values) == 0 or not floor > 0:
+            continue
+        low, left, middle, right, high = np.quantile(values, [0.05, 0.25, 0.5, 0.75, 0.95])
+        axes.plot([low, high], [y, y], color=TINTS[method], lw=0.9)
+        axes.barh(y, right - left, 0.62, left, color=TINTS[method], alpha=0.45)
+        axes.plot([middle] * 2, [y - 0.31, y + 0.31], color=INK, lw=1.3)
+        if method == PLAIN:
+            axes.axvline(middle, color=GREY, lw=0.9, ls="--", zorder=0)
+    axes.set_xscale("log")
+    axes.set_xlim(left=floor if floor > 0 else None)
+    axes.xaxis.set_major_locator(LogLocator(numticks=6))
+    axes.xaxis.set_minor_formatter(NullFormatter())
+    axes.tick_params(axis="x", labelsize=8, which="both")
+    axes.tick_params(axis="y", length=0)
+    axes.grid(axis="x", color=PALE, lw=0.5)
