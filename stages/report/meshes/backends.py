@@ -13,7 +13,7 @@ from stages.report.results import NotRun, Results
 from stages.report.style import label
 from stages.report.target import on_target
 
-from .growth import FITTED, POWERS, growth
+from .growth import FITTED, growth
 
 REFERENCE, OURS = "pymeshlab", "fast"
 WANTED = 20  # times faster than the reference, at an error no larger, in a time that grows no faster than n log n,
@@ -24,6 +24,7 @@ RATIOS = {  # part of a column's name -> (column of the bench, title)
     "colours": ("colours_ratio", "with colours"),
     "error": ("error_ratio", "Metro ratio"), "seen": ("seen_ratio", "1 − SSIM ratio"),
 }  # fmt: skip
+GROWTHS = {"linear": "n^p", "loglinear": "(n log n)^p"}
 
 
 def build(results: Results) -> Table:
@@ -31,7 +32,7 @@ def build(results: Results) -> Table:
     rows = tried(results)
     frame, paired = summarised(rows), common(rows)
     parts = [paired[(paired[TASK] == key).all(axis=1)] for key in frame[TASK].itertuples(index=False, name=None)]
-    for shape in POWERS:
+    for shape in GROWTHS:
         fits = [growth(part, shape) for part in parts]
         for name in ("power", "low", "high"):
             frame[f"{shape}_{name}"] = [getattr(fit, name, np.nan) for fit in fits]
@@ -54,9 +55,8 @@ def tried(results: Results) -> pd.DataFrame:
     if "outcome" not in rows:
         raise NotRun("bench/simplification.csv has no outcomes: `make bench` writes it anew", "lod", runnable=False)
     rows = rows.assign(with_points=rows["kept_points"] > 0)
-    base = rows[rows["backend"] == REFERENCE].set_index(CELL)["ssim_error"]
-    base = rows.join(base.rename("base"), on=CELL)["base"]
-    return rows.assign(seen_ratio=rows["ssim_error"] / base.where(base > 0))
+    rows["base"] = rows["ssim_error"].where((rows["backend"] == REFERENCE) & (rows["ssim_error"] > 0))
+    return rows.assign(seen_ratio=rows["ssim_error"] / rows.groupby(CELL)["base"].transform("first"))
 
 
 def common(rows: pd.DataFrame) -> pd.DataFrame:
@@ -116,6 +116,6 @@ def _wide(frame: pd.DataFrame) -> pd.DataFrame:
         "cells compared": frame["cells"],
         **{title: texts(_columns(name)) for name, (_, title) in RATIOS.items()},
         "slowest": frame["slowest"], **shares.replace("– %", "–"),
-        **{f"growth: p of {title}": texts(_columns(shape, "power"), 2) for shape, (title, _) in POWERS.items()},
+        **{f"growth: p of {title}": texts(_columns(shape, "power"), 2) for shape, title in GROWTHS.items()},
         "meshes": frame["meshes"],
     })  # fmt: skip

@@ -6,7 +6,6 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import NullFormatter
 
 from stages.report.items import Figure
-from stages.report.markdown import with_interval
 from stages.report.names import place_names
 from stages.report.pareto import pareto_front
 from stages.report.results import NotRun, Results
@@ -37,9 +36,7 @@ def build(results: Results) -> Figure:
         axes.set_title(title)
     fits = {name: growth(paired[paired["backend"] == name]) for name in dict.fromkeys(rows["backend"])}
     _growing(panels[2], paired, fits, tints)
-    powers = "; ".join(
-        f"{label(name)} {with_interval(fit.power, fit.low, fit.high, places=2)}" for name, fit in fits.items() if fit
-    )
+    powers = "; ".join(f"{label(name)} {fit.said}" for name, fit in fits.items() if fit)
     words = {
         "reference": REFERENCE, "backends": ", ".join(map(label, tints)), "wanted": WANTED, "fitted": FITTED,
         "powers": f"p = 1 is n log n: {powers}." if powers else "",
@@ -86,7 +83,7 @@ def _growing(axes: Axes, rows: pd.DataFrame, fits: dict[str, Growth | None], tin
         here, fit, power = rows[rows["backend"] == backend], fits[backend], ""
         axes.plot(here["full"], here["seconds"], ".", color=tint, ms=4, alpha=0.4, mew=0)
         if fit:
-            n, power = np.geomspace(*fit.span, 30), f", p = {with_interval(fit.power, fit.low, fit.high, places=2)}"
+            n, power = np.geomspace(*fit.span, 30), f", p = {fit.said}"
             axes.plot(n, fit(n), color=tint, lw=1.4)
             axes.fill_between(n, *np.sort([fit(n, fit.low), fit(n, fit.high)], axis=0), color=tint, alpha=0.15, lw=0)
             axes.plot(n, fit(n, 1.0), color=INK, lw=0.9, ls="--")

@@ -1,15 +1,15 @@
 """Claims on simplified meshes: channels and detectors (T3.1.5), kept points, learned weights, neighbourhoods (T3.2).
 
 Each is judged on the first data set, those on the error weighted by human gaze on the meshes that have it;
-tables/lod_claims has them on every set.
+tables/lod_claims has them on every set. Statistics of their own: lod_claims.py.
 """
 
 from functools import partial
+from typing import Any
 
 from stages.report.claims import Claim, Pick, highest_of, lowest_of
 from stages.report.style import label
 
-from .differences import falls_with_faces, ranks_agree, room, spread
 from .methods import ADAPTIVE, CLASSICAL, COMBINATIONS, ENHANCED, HKS, OURS, PLAIN, PROPOSED, RIVALS, SYMMETRIES
 from .rows import STAGE
 
@@ -20,9 +20,8 @@ BOTH = {"target": (LOW, HIGH)}
 FEW_MINUS_MANY = ({"target": LOW}, {"target": HIGH})
 METRO, SEEN = "metro_mean", "ssim_error"
 ERROR = {"metric": METRO}
-PERCENT, DIAGONAL, RANKS = "% of the error", "% of the diagonal", "rank correlation"
+DIAGONAL, RANKS = "% of the diagonal", "rank correlation"
 ALL_COUNTS = "mean over the face counts"
-LARGEST = "the largest difference either way, from the margin"
 MARGIN = 0.0002  # T3.1.5: "within a difference of 0.0002"; read as a share of the diagonal
 SYMMETRY_MARGIN = 0.1  # T3.1.5: "within a 0.1 difference", of the perceptual errors
 PHRASES = {
@@ -41,29 +40,28 @@ claim = partial(Claim, stage=STAGE, over=("item",), scale=1.0, phrases=PHRASES)
 
 
 def lower(
-    section: str, metric: str, key: str, sentence: str, worse: Methods, better: Methods, target: str = "",
-    dataset: str | None = None,
-) -> Claim:  # fmt: skip
+    section: str, metric: str, key: str, sentence: str, worse: Methods, better: Methods, target: str = "", **fields: Any
+) -> Claim:
     """A claim that `better` has the lower error, in % of the mean of the two: small and large errors weigh the same."""
     return claim(
         key=key, section=section, sentence=sentence, where={"metric": metric} | ({"target": target} if target else {}),
-        first={"method": worse}, second={"method": better}, dataset=dataset, within=("target",), relative=True,
-        scale=100.0, unit=PERCENT, note="" if target else ALL_COUNTS,
+        first={"method": worse}, second={"method": better}, within=("target",), relative=True, scale=100.0,
+        unit="% of the error", note="" if target else ALL_COUNTS, **fields,
     )  # fmt: skip
 
 
 channels = partial(claim, section="T3.1.5")
-same = partial(channels, statistic=room.__name__, note=LARGEST)
+same = partial(channels, statistic="room", note="the largest difference either way, from the margin")
 metro, seen = partial(lower, "T3.1.5", METRO), partial(lower, "T3.1.5", SEEN)
 CHANNELS = [  # T3.1.5, in its order
     metro("curvature_points", "Added curvature points (VisAttCurvP) have the highest error of the variants.",
           "VisAttCurvP", highest_of(CLASSICAL, "Curv", "VisAttCurv"), LOW),
     seen("curvature_ssim", "Curvature in the map is slightly better as seen (VisAttCurv).", CLASSICAL, "VisAttCurv"),
     channels(key="more_faces", sentence="The error falls with more faces.", where=ERROR, first={"method": ENHANCED},
-             statistic=falls_with_faces.__name__, scale=100.0, unit=DIAGONAL,
+             statistic="falls_with_faces", scale=100.0, unit=DIAGONAL,
              note="at the fewest faces minus at the largest number"),
     channels(key="wider_apart", sentence="Methods differ more at lower resolutions.", where=ERROR,
-             first={"method": COMBINATIONS}, contrast=FEW_MINUS_MANY, statistic=spread.__name__, scale=100.0,
+             first={"method": COMBINATIONS}, contrast=FEW_MINUS_MANY, statistic="spread", scale=100.0,
              unit=DIAGONAL, note="their standard deviation"),
     seen("symmetry_alone", "Symmetry alone (SymLat, SymRad, 2Sym) is slightly better than VisAtt.",
          CLASSICAL, SYMMETRIES),
@@ -91,7 +89,7 @@ DETECTORS = [
           RIVALS, COMBINATIONS),
     metro("attention_hks", "HKS is the exception: its error is lower than that of attention.", COMBINATIONS, HKS),
     channels(key="points_errors", sentence="More points go with larger errors.", first=ERROR,
-             statistic=ranks_agree.__name__, unit=RANKS,
+             statistic="ranks_agree", unit=RANKS,
              note=f"with the number of points, over the methods, {ALL_COUNTS}"),
     metro("curvature_salient_points", "VisAttCurvP has smaller errors than SP with about as many points.",
           "salient_points", "VisAttCurvP"),
@@ -146,7 +144,7 @@ WEIGHTS = [  # T3.2.9
     metro("hks_high", "All methods based on attention beat HKS at 3,000 faces.",
           HKS, highest_of(*PROPOSED, *ADAPTIVE), HIGH),
     claim(key="seen_confirms", section="T3.2.9.2", sentence="The error as seen confirms the Metro error.",
-          first=ERROR, second={"metric": SEEN}, statistic=ranks_agree.__name__, unit=RANKS,
+          first=ERROR, second={"metric": SEEN}, statistic="ranks_agree", unit=RANKS,
           note=f"over the methods, {ALL_COUNTS}"),
     seen("hks_seen", "HKS is better as seen than attention.", PROPOSED, HKS),
     seen("ssim_over_all", "Weights by similarity beat equal weights (VisAttAll) as seen.", "VisAttAll", "guided_ssim"),

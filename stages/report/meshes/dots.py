@@ -68,13 +68,7 @@ def figure_3_5(results: Results) -> Figure:
 
 
 def _draw(
-    axes: Axes,
-    table: pd.DataFrame,
-    methods: Sequence[str],
-    tint: str,
-    base: str = "",
-    name: str = "",
-    down: float = 0.0,
+    axes: Axes, table: pd.DataFrame, methods: Sequence[str], tint: str, base: str = "", name: str = "", down: float = 0
 ) -> None:
     """Draws the means of a frame objects x methods as dots, the first method on top.
 

@@ -1,5 +1,7 @@
 """T figure 3.8: an object, its points, levels of detail, and where each level is wrong."""
 
+from itertools import product
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
@@ -56,11 +58,10 @@ def build(results: Results) -> Figure:
 def _shown(results: Results) -> tuple[str, str]:
     """(object, method): the first figure object with levels of one of the methods and of plain QEM."""
     names = results.choose(results.settings.figure_objects, len(results.objects), stage="lod")
-    for method in METHODS:
-        for name in names:
-            folder = results.folder("lod") / name
-            if all(any(folder.glob(f"{one}_*.npz")) for one in (method, PLAIN)):
-                return name, method
+    for method, name in product(METHODS, names):
+        folder = results.folder("lod") / name
+        if all(any(folder.glob(f"{one}_*.npz")) for one in (method, PLAIN)):
+            return name, method
     raise NotRun(f"no levels of detail of {' or '.join(METHODS)} beside plain QEM", "lod", runnable=False)
 
 
@@ -72,8 +73,7 @@ def errors(mesh: Mesh, level: Mesh) -> np.ndarray:
 def _show_coloured(axes: Axes, mesh: Mesh, values: np.ndarray) -> None:
     """The mesh in colours of values (n,) in 0..1, under the head light."""
     colours = np.rint(255 * COLOURS(np.clip(values, 0, 1))[:, :3]).astype(np.uint8)
-    shape = (ROWS * 2, ROWS * 2)
-    image = render(Mesh(mesh.vertices, mesh.faces, colours), VIEWPOINT, shape, "raycast", background="white").rgb
-    image = image.reshape(ROWS, 2, ROWS, 2, 3).mean(axis=(1, 3)) / 255
-    axes.imshow(squared(image)[0])
+    mesh = Mesh(mesh.vertices, mesh.faces, colours)
+    image = render(mesh, VIEWPOINT, (2 * ROWS, 2 * ROWS), "raycast", background="white").rgb
+    axes.imshow(squared(image.reshape(ROWS, 2, ROWS, 2, 3).mean(axis=(1, 3)) / 255)[0])
     axes.set_axis_off()

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
+from stages.report.markdown import with_interval
+
 FITTED = 10_000  # faces from which the growth is fitted: below, the fixed cost of a call counts
 RESAMPLES = 1000
-POWERS: dict[str, tuple[str, Callable]] = {
-    "linear": ("n^p", lambda n: n), "loglinear": ("(n log n)^p", lambda n: n * np.log(n)),
-}  # fmt: skip
+POWERS: dict[str, Callable] = {"linear": lambda n: n, "loglinear": lambda n: n * np.log(n)}
 
 
 @dataclass(frozen=True)
@@ -27,8 +27,13 @@ class Growth:
 
     def __call__(self, n: np.ndarray | float, power: float | None = None) -> np.ndarray | float:
         """Seconds at n faces; power: another than the fitted, through the same middle."""
-        shape = POWERS[self.shape][1]
+        shape = POWERS[self.shape]
         return self.level * (shape(n) / shape(self.middle)) ** (self.power if power is None else power)
+
+    @property
+    def said(self) -> str:
+        """`1.04 [0.90, 1.11]`: the power with its interval."""
+        return with_interval(self.power, self.low, self.high, places=2)
 
 
 def growth(rows: pd.DataFrame, shape: str = "loglinear") -> Growth | None:
@@ -42,14 +47,14 @@ def growth(rows: pd.DataFrame, shape: str = "loglinear") -> Growth | None:
     if rows["full"].nunique() < 3:
         return None
     n = rows["full"].to_numpy(dtype=float)
-    x, y = np.log(POWERS[shape][1](n)), np.log(rows["seconds"].to_numpy(dtype=float))
+    x, y = np.log(POWERS[shape](n)), np.log(rows["seconds"].to_numpy(dtype=float))
     level = pd.factorize(pd.MultiIndex.from_arrays([(rows["target"] / n).round(2), rows["with_points"]]))[0]
     mesh, names = pd.factorize(rows["mesh"])
     random = np.random.default_rng(0)
     picks = (random.multinomial(len(names), np.full(len(names), 1 / len(names))) for _ in range(RESAMPLES))
     low, high = np.nanquantile([_slope(x, y, level, times[mesh]) for times in picks], [0.025, 0.975])
     power, middle = _slope(x, y, level, np.ones(len(x))), np.exp(np.log(n).mean())
-    offset = (y - power * (x - np.log(POWERS[shape][1](middle)))).mean()
+    offset = (y - power * (x - np.log(POWERS[shape](middle)))).mean()
     return Growth(shape, np.exp(offset), middle, power, low, high, (n.min(), n.max()))
 
 

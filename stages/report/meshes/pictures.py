@@ -21,6 +21,7 @@ FACES = 1500  # the thesis's lower count; the nearest target that all methods re
 NEAR = 1.3  # times FACES, either way
 ENOUGH = 2.0  # times as many points, from step to step: then the first object of the settings is taken
 LEVELS = 3  # of figure 3.21: the thesis shows 3,000, 1,500 and 500 faces
+BEYOND = "out of reach:\nthe kept neighbourhoods\nleave too few faces"
 OBJECTS = 2  # of figure 3.22
 ROWS = {"figure_3_7": 330, "figure_3_21": 300, "figure_3_22": 220}  # of pixels
 
@@ -90,8 +91,7 @@ def figure_3_21(results: Results) -> Figure:
                 show(axes, meshes[target], wires=True, rows=rows)
             else:
                 axes.set_axis_off()
-                words = "out of reach:\nthe kept neighbourhoods\nleave too few faces"
-                axes.text(0.5, 0.5, words, ha="center", va="center", color=GREY, transform=axes.transAxes)
+                axes.text(0.5, 0.5, BEYOND, ha="center", va="center", color=GREY, transform=axes.transAxes)
     return Figure(drawing, {"name": name, "count": len(targets)}, dpi=85)
 
 
@@ -114,7 +114,7 @@ def figure_3_22(results: Results) -> Figure:
 def _simplified(
     results: Results, methods: Sequence[str], preferred: Sequence[str]
 ) -> Iterator[tuple[str, str, dict[str, Mesh]]]:
-    """(object, target, dict method -> Mesh) of all objects that the methods took to one target, the nearest to FACES."""
+    """(object, target, {method: Mesh}) of the objects that all methods took to one target, the nearest to FACES."""
     for name in results.choose(preferred, len(results.objects), stage="lod"):
         with suppress(NotRun):
             levels = {method: dict(results.lods(name, method)) for method in methods}

@@ -37,32 +37,29 @@ def table(results: Results) -> Table:
     parts = list(_parts(results))
     if not parts:
         raise NotRun("no face count that all methods of the table reach", STAGE, runnable=False)
-    frame = pd.concat(parts, ignore_index=True)
+    rows = pd.concat(parts)
+    frame = pd.DataFrame(means(rows, KEY)).rename(columns={"values": "objects"}).drop(columns="seconds")
+    gains = rows.assign(gain=rows["value"] - rows["plain"]).groupby(KEY, sort=False)["gain"]
+    frame[["over_plain", "over_plain_low", "over_plain_high"]] = [interval(gain) for _, gain in gains]
     thesis = results.thesis("table_3_2_lod_errors").melt(["method", "faces"], METRICS, "metric", "thesis")
     thesis = thesis.rename(columns={"method": "printed", "faces": "target"}).astype({"target": str})
     frame = frame.assign(printed=frame["method"].map(PRINTED)).merge(thesis, "left").drop(columns="printed")
-    blocks = [said(row.target) + ", nothing shrunk" * row.nothing_shrunk for row in frame.itertuples()]
-    cells = frame.assign(block=blocks)
+    orders = {"target": sorted(set(frame["target"]), key=size), "method": METHODS, "metric": list(METRICS)}
+    cells = frame.assign(**{name: pd.Categorical(frame[name], order) for name, order in orders.items()})
+    cells["block"] = [said(row.target) + ", nothing shrunk" * row.nothing_shrunk for row in cells.itertuples()]
     return Table(frame, _wide(cells), {"objects": _counted(cells), "fewest": FEWEST})
 
 
 def _parts(results: Results) -> Iterator[pd.DataFrame]:
-    """Frames of each data set, with all cells and, where they are fewer, with those in which nothing shrank."""
+    """Rows of each data set, with all cells and, where they are fewer, with those in which nothing shrank."""
     for name in data_sets(results):
         every = None
         for whole in (False, True):
             rows = paired_cells(results, METRICS, METHODS, name, whole)
             rows = rows[rows["target"].isin(face_counts(rows))]
             if len(rows) and (every is None or len(rows) < len(every)):
-                yield _means(rows.assign(data=dataset_text(name), nothing_shrunk=whole))
+                yield rows.assign(data=dataset_text(name), nothing_shrunk=whole)
             every = rows
-
-
-def _means(rows: pd.DataFrame) -> pd.DataFrame:
-    found = pd.DataFrame(means(rows, KEY)).rename(columns={"values": "objects"}).drop(columns="seconds").set_index(KEY)
-    gain = rows.assign(gain=rows["value"] - rows["plain"]).groupby(KEY, sort=False)["gain"]
-    found[["over_plain", "over_plain_low", "over_plain_high"]] = [interval(gain.get_group(key)) for key in found.index]
-    return found.reset_index()
 
 
 def _wide(cells: pd.DataFrame) -> pd.DataFrame:
@@ -70,26 +67,17 @@ def _wide(cells: pd.DataFrame) -> pd.DataFrame:
     printed = cells.drop_duplicates([*BLOCK, "method", "metric"]).assign(data="thesis")
     printed["text"] = [number(ERRORS[row.metric][1] * row.thesis) for row in printed.itertuples()]
     cells = pd.concat([cells.assign(text=[marked(row) for row in cells.itertuples()]), printed])
-    cells = cells.sort_values([*BLOCK, "method", "metric"], key=_rank, kind="stable")
-    heads = [f"{ERRORS[metric][0]}, {data}" for metric, data in zip(cells["metric"], cells["data"], strict=True)]
-    cells = cells.assign(head=heads, target=cells["block"], **{"kept points": cells["method"].map(label)})
-    return wide(cells, ["target", "kept points"], "head").reset_index()
+    cells = cells.sort_values([*BLOCK, "method", "metric"], ignore_index=True)
+    cells["head"] = [f"{ERRORS[row.metric][0]}, {row.data}" for row in cells.itertuples()]
+    cells["kept points"] = [label(method) for method in cells["method"]]
+    return wide(cells, ["block", "kept points"], "head").reset_index(names=["target", "kept points"])
 
 
 def _counted(cells: pd.DataFrame) -> str:
     """How many objects each block is over."""
-    counts = cells.drop_duplicates(["data", *BLOCK]).sort_values(BLOCK, key=_rank, kind="stable")
-    counts["objects"] = counts["objects"].astype(str) + " " + counts["data"]
-    objects = counts.groupby("block", sort=False)["objects"].agg(", ".join)
-    return "; ".join(f"{block}: {said}" for block, said in objects.items())
-
-
-def _rank(column: pd.Series) -> pd.Series:
-    """Places in the order of the table: most faces first, methods and metrics as they are listed."""
-    orders = {"method": METHODS, "metric": METRICS}
-    if column.name == "target":
-        orders["target"] = sorted(set(column), key=size)
-    return column.map(orders[column.name].index) if column.name in orders else column
+    counts = cells.drop_duplicates(["data", *BLOCK]).sort_values(BLOCK)
+    objects = (counts["objects"].astype(str) + " " + counts["data"]).groupby(counts["block"], sort=False)
+    return "; ".join(f"{block}: {said}" for block, said in objects.agg(", ".join).items())
 
 
 def figure(results: Results) -> Figure:
