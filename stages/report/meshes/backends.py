@@ -1,7 +1,5 @@
 """Who simplifies: time and error of each backend as ratios to pymeshlab's QEM, timed in one run of `make bench`."""
 
-from collections.abc import Sequence
-
 import numpy as np
 import pandas as pd
 
@@ -77,17 +75,13 @@ def summarised(rows: pd.DataFrame) -> pd.DataFrame:
         line |= {name: outcomes.get(name, 0) for name in ("refused", "missed")}
         for name, (column, _) in RATIOS.items():
             logs = np.log(own[column].where(own[column] > 0)).groupby(own["mesh"]).mean()
-            line |= dict(zip(_columns(name), np.exp(interval(logs)), strict=True))
+            line |= dict(zip((f"{name}_ratio", f"{name}_low", f"{name}_high"), np.exp(interval(logs)), strict=True))
         line |= {"slowest": own["ratio"].max(), "seconds": own["seconds"].median()}
         made = group[group["outcome"] == "reached"]
         for name in ("kept", "valid"):  # empty ones do not count
             line[name] = (made[name].dropna().astype(str).str.lower() == "true").mean()
         found.append(line if line["with_points"] else line | {"kept": np.nan})
     return pd.DataFrame(found).sort_values(["with_points", "time_ratio"], ascending=[True, False], ignore_index=True)
-
-
-def _columns(name: str, middle: str = "ratio") -> list[str]:
-    return [f"{name}_{part}" for part in (middle, "low", "high")]
 
 
 def _target(row) -> str:
@@ -105,8 +99,8 @@ def _target(row) -> str:
 
 
 def _wide(frame: pd.DataFrame) -> pd.DataFrame:
-    def texts(columns: Sequence[str], places: int | None = None) -> list[str]:
-        rows = frame[columns].itertuples(index=False)
+    def texts(name: str, middle: str = "ratio", places: int | None = None) -> list[str]:
+        rows = frame[[f"{name}_{middle}", f"{name}_low", f"{name}_high"]].itertuples(index=False)
         return [with_interval(*row, places=places).replace("not run", "–") for row in rows]
 
     counts, shares = frame.astype(str), frame[["kept", "valid"]].map(lambda share: f"{percent(share)} %")
@@ -114,8 +108,8 @@ def _wide(frame: pd.DataFrame) -> pd.DataFrame:
         "backend": frame["backend"].map(label), "points kept": np.where(frame["with_points"], "yes", "no"),
         **{name: counts[name] + " of " + counts["tried"] for name in ("refused", "missed")},
         "cells compared": frame["cells"],
-        **{title: texts(_columns(name)) for name, (_, title) in RATIOS.items()},
+        **{title: texts(name) for name, (_, title) in RATIOS.items()},
         "slowest": frame["slowest"], **shares.replace("– %", "–"),
-        **{f"growth: p of {title}": texts(_columns(shape, "power"), 2) for shape, title in GROWTHS.items()},
+        **{f"growth: p of {title}": texts(shape, "power", 2) for shape, title in GROWTHS.items()},
         "meshes": frame["meshes"],
     })  # fmt: skip

@@ -20,7 +20,7 @@ BOTH = {"target": (LOW, HIGH)}
 FEW_MINUS_MANY = ({"target": LOW}, {"target": HIGH})
 METRO, SEEN = "metro_mean", "ssim_error"
 ERROR = {"metric": METRO}
-DIAGONAL, RANKS = "% of the diagonal", "rank correlation"
+SHARE: dict[str, Any] = {"where": ERROR, "scale": 100.0, "unit": "% of the diagonal"}
 ALL_COUNTS = "mean over the face counts"
 MARGIN = 0.0002  # T3.1.5: "within a difference of 0.0002"; read as a share of the diagonal
 SYMMETRY_MARGIN = 0.1  # T3.1.5: "within a 0.1 difference", of the perceptual errors
@@ -50,32 +50,29 @@ def lower(
     )  # fmt: skip
 
 
-channels = partial(claim, section="T3.1.5")
-same = partial(channels, statistic="room", note="the largest difference either way, from the margin")
+ranks = partial(claim, statistic="ranks_agree", unit="rank correlation")
+same = partial(claim, section="T3.1.5", where=ERROR | BOTH, statistic="room", margin=MARGIN, unit="of the diagonal",
+               note="the largest difference either way, from the margin")  # fmt: skip
 metro, seen = partial(lower, "T3.1.5", METRO), partial(lower, "T3.1.5", SEEN)
 CHANNELS = [  # T3.1.5, in its order
     metro("curvature_points", "Added curvature points (VisAttCurvP) have the highest error of the variants.",
           "VisAttCurvP", highest_of(CLASSICAL, "Curv", "VisAttCurv"), LOW),
     seen("curvature_ssim", "Curvature in the map is slightly better as seen (VisAttCurv).", CLASSICAL, "VisAttCurv"),
-    channels(key="more_faces", sentence="The error falls with more faces.", where=ERROR, first={"method": ENHANCED},
-             statistic="falls_with_faces", scale=100.0, unit=DIAGONAL,
-             note="at the fewest faces minus at the largest number"),
-    channels(key="wider_apart", sentence="Methods differ more at lower resolutions.", where=ERROR,
-             first={"method": COMBINATIONS}, contrast=FEW_MINUS_MANY, statistic="spread", scale=100.0,
-             unit=DIAGONAL, note="their standard deviation"),
+    claim(key="more_faces", section="T3.1.5", sentence="The error falls with more faces.", first={"method": ENHANCED},
+          statistic="falls_with_faces", note="at the fewest faces minus at the largest number", **SHARE),
+    claim(key="wider_apart", section="T3.1.5", sentence="Methods differ more at lower resolutions.", **SHARE,
+          first={"method": COMBINATIONS}, contrast=FEW_MINUS_MANY, statistic="spread", note="their standard deviation"),
     seen("symmetry_alone", "Symmetry alone (SymLat, SymRad, 2Sym) is slightly better than VisAtt.",
          CLASSICAL, SYMMETRIES),
     same(key="symmetry_same", sentence="The symmetry channels alone lead to roughly the same errors.",
-         where=ERROR | BOTH, first={"method": ("SymRad", "2Sym")}, second={"method": "SymLat"},
-         margin=MARGIN, unit="of the diagonal"),
+         first={"method": ("SymRad", "2Sym")}, second={"method": "SymLat"}),
     seen("symmetry_in", "Symmetry in the map (VisAttSym) is slightly worse as seen than the classical model.",
          "VisAttSym", CLASSICAL),
     same(key="symmetry_within", sentence="VisAttSym stays within 0.1 of the classical model's perceptual errors.",
          where={"metric": (SEEN, "dlap", "dnor")} | BOTH, first={"method": ("VisAttSym",)},
          second={"method": CLASSICAL}, margin=SYMMETRY_MARGIN, unit="of the error"),
     same(key="combinations_same", sentence="All combinations but VisAttAll stay within 0.0002 of the classical model.",
-         where=ERROR | BOTH, first={"method": OTHERS}, second={"method": CLASSICAL},
-         margin=MARGIN, unit="of the diagonal"),
+         first={"method": OTHERS}, second={"method": CLASSICAL}),
     metro("all_channels", "All channels with equal weights are slightly worse (VisAttAll).", "VisAttAll", CLASSICAL),
     metro("entropy", "Entropy makes the error higher on objects without texture (VisAttEnt).",
           "VisAttEnt", CLASSICAL),
@@ -88,9 +85,8 @@ DETECTORS = [
     metro("attention_rivals", "Attention, in all combinations, leads to a lower error than the detectors.",
           RIVALS, COMBINATIONS),
     metro("attention_hks", "HKS is the exception: its error is lower than that of attention.", COMBINATIONS, HKS),
-    channels(key="points_errors", sentence="More points go with larger errors.", first=ERROR,
-             statistic="ranks_agree", unit=RANKS,
-             note=f"with the number of points, over the methods, {ALL_COUNTS}"),
+    ranks(key="points_errors", section="T3.1.5", sentence="More points go with larger errors.", first=ERROR,
+          note=f"with the number of points, over the methods, {ALL_COUNTS}"),
     metro("curvature_salient_points", "VisAttCurvP has smaller errors than SP with about as many points.",
           "salient_points", "VisAttCurvP"),
     lower("T3.1.5", "metro_max", "many_points_distort",
@@ -126,8 +122,8 @@ metro, seen = partial(lower, "T3.2.9.1", METRO), partial(lower, "T3.2.9.2", SEEN
 WEIGHTS = [  # T3.2.9
     metro("rivals_metro", "Attention distorts less than the detectors of the literature do.", RIVALS, ENHANCED),
     metro("proposed_rivals", "ED, SSIM and SVM have a lower Metro error than the detectors.", RIVALS, PROPOSED),
-    claim(key="rivals_low", section="T3.2.9.1", sentence="More so at low resolution.", where=ERROR,
-          first={"method": RIVALS}, second={"method": PROPOSED}, contrast=FEW_MINUS_MANY, scale=100.0, unit=DIAGONAL),
+    claim(key="rivals_low", section="T3.2.9.1", sentence="More so at low resolution.",
+          first={"method": RIVALS}, second={"method": PROPOSED}, contrast=FEW_MINUS_MANY, **SHARE),
     *(
         claimed(f"adaptive_{name}_{short}", f"Adaptive neighbourhoods lower the error of {label(name)} ({how}).",
                 name, f"{name}-adaptive")
@@ -143,9 +139,8 @@ WEIGHTS = [  # T3.2.9
           HKS, ADAPTIVE, LOW),
     metro("hks_high", "All methods based on attention beat HKS at 3,000 faces.",
           HKS, highest_of(*PROPOSED, *ADAPTIVE), HIGH),
-    claim(key="seen_confirms", section="T3.2.9.2", sentence="The error as seen confirms the Metro error.",
-          first=ERROR, second={"metric": SEEN}, statistic="ranks_agree", unit=RANKS,
-          note=f"over the methods, {ALL_COUNTS}"),
+    ranks(key="seen_confirms", section="T3.2.9.2", sentence="The error as seen confirms the Metro error.",
+          first=ERROR, second={"metric": SEEN}, note=f"over the methods, {ALL_COUNTS}"),
     seen("hks_seen", "HKS is better as seen than attention.", PROPOSED, HKS),
     seen("ssim_over_all", "Weights by similarity beat equal weights (VisAttAll) as seen.", "VisAttAll", "guided_ssim"),
     seen("ed_over_all", "Weights by Euclidean distance beat equal weights (VisAttAll) as seen.",

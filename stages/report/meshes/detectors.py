@@ -37,7 +37,7 @@ def combinations(results: Results) -> Table:
     return Table(frame, shown)
 
 
-def detectors(results: Results) -> Table:
+def every_detector(results: Results) -> Table:
     """Errors and numbers of points of every method, on every data set."""
     found = {dataset_text(name): _per_object(results, name) for name in data_sets(results)}
     found = {data: table for data, table in found.items() if PLAIN in table.index.unique("method")}

@@ -35,7 +35,7 @@ def samples(results: Results) -> Figure:
         "million": theirs.loc[MOST, "seconds"] / ours.loc[MOST, "seconds"],
     }  # fmt: skip
     drawing, axes = plt.subplots(figsize=(7.2, 4.6))
-    axes.set(xscale="log", yscale="log")
+    axes.set(xscale="log", yscale="log", ylabel="error of the mean, %")
     axes.grid(True)
     for method, (name, colour, marker) in METRO.items():
         line = frame[frame["method"] == method].sort_values("samples")
@@ -46,7 +46,7 @@ def samples(results: Results) -> Figure:
         for row in line[line["samples"].isin(NAMED)].itertuples():
             axes.annotate(f"{row.samples:,}", (row.cost_ratio, 100 * row.value), xytext=side[:2], ha=side[2],
                           va=side[3], textcoords="offset points", fontsize=8.5, color=INK)  # fmt: skip
-    axes.set(xlabel=f"time, as a ratio to pymeshlab with {USUAL:,} samples", ylabel="error of the mean, %")
+    axes.set_xlabel(f"time, as a ratio to pymeshlab with {USUAL:,} samples")
     axes.set_title(SAMPLES, pad=12)
     axes.margins(x=0.1, y=0.1)
     axes.legend(title="samples each way")
@@ -61,10 +61,8 @@ def _typical_samples(rows: pd.DataFrame) -> pd.DataFrame:
     low, high: the error of the best and of the worst of the few meshes.
     """
     logs = rows.assign(value=np.log(rows["value"]), seconds=np.log(rows["seconds"])).groupby(["method", "samples"])
-    frame = logs.agg(
-        value=("value", "mean"), seconds=("seconds", "mean"), low=("value", "min"), high=("value", "max")
-    )  # fmt: skip
-    frame = np.exp(frame).reset_index().astype({"samples": int})
+    frame = np.exp(logs[["value", "seconds"]].mean().assign(low=logs["value"].min(), high=logs["value"].max()))
+    frame = frame.reset_index().astype({"samples": int})
     usual = frame.loc[(frame["method"] == "pymeshlab") & (frame["samples"] == USUAL), "seconds"]
     return frame.assign(cost_ratio=frame["seconds"] / (usual.iloc[0] if len(usual) else np.nan))
 

@@ -28,7 +28,7 @@ def build(results: Results) -> Figure:
     frame = _costed(rows, attention_seconds(results))
     targets = sorted(set(frame["target"]), key=size)
     objects = rows.groupby("target")["item"].nunique()
-    plain = frame.loc[(frame["method"] == PLAIN) & (frame["target"] == targets[0]), "seconds"].iloc[0]
+    plain = frame.query("method == @PLAIN and target == @targets[0]")["seconds"].iloc[0]
     words = {
         "methods": ", ".join(map(label, frame["method"].unique())), "targets": ", ".join(targets),
         "milliseconds": 1000 * plain, "first": targets[0],
