@@ -57,7 +57,8 @@ def _against(axes: Axes, frame: pd.DataFrame, kind: str, tints: dict[str, str]) 
         across = ((row.time_low, row.ratio), (row.time_high, row.ratio))
         for pair in (across, ((row.time_ratio, row.low), (row.time_ratio, row.high))):
             axes.plot(*zip(*pair, strict=True), color=tint, lw=1.2, alpha=0.55)
-            ends += [pair] if np.isfinite(pair).all() else []
+            if np.isfinite(pair).all():
+                ends.append(pair)
         axes.plot(row.time_ratio, row.ratio, form, color=tint, ms=7, mec="white", mew=0.8, zorder=3)
         if row.backend != REFERENCE:
             axes.plot(row.whole_ratio, row.ratio, form, color=tint, mfc="none", ms=7, mew=1.1, zorder=2)

@@ -23,8 +23,7 @@ def samples(results: Results) -> Figure:
     """Error of the mean against time, a line for ours and one for pymeshlab."""
     rows = _rows(results, "samples")
     frame = _typical_samples(rows)
-    found = {method: group.set_index("samples") for method, group in frame.groupby("method")}
-    ours, theirs = found["metro"], found["pymeshlab"]
+    ours, theirs = (frame[frame["method"] == method].set_index("samples") for method in METRO)
     speed = results.bench("errors").query("what == 'speed'").pivot_table("seconds", ["mesh", "left"], "method")
     plain, whole = (speed[peer] / speed["metro"] for peer in ("pymeshlab", "pymeshlab, with vertices"))
     words = {
@@ -116,8 +115,7 @@ def _typical_views(rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def _rows(results: Results, what: str) -> pd.DataFrame:
-    rows = results.bench("errors")
-    rows = rows[rows["what"] == what]
+    rows = results.bench("errors").query("what == @what")
     if rows.empty:
         raise NotRun(f"bench/errors.csv has no rows of {what}", "lod", runnable=False)
     return rows

@@ -77,7 +77,7 @@ def _counted(cells: pd.DataFrame) -> str:
     """How many objects each block is over."""
     counts = cells.drop_duplicates(["data", *BLOCK]).sort_values(BLOCK)
     objects = (counts["objects"].astype(str) + " " + counts["data"]).groupby(counts["block"], sort=False)
-    return "; ".join(f"{block}: {said}" for block, said in objects.agg(", ".join).items())
+    return "; ".join(f"{block}: {sets}" for block, sets in objects.agg(", ".join).items())
 
 
 def figure(results: Results) -> Figure:
@@ -86,7 +86,8 @@ def figure(results: Results) -> Figure:
     for dataset in data_sets(results):
         rows = paired_cells(results, METRICS, DRAWN, dataset)
         rows = rows[rows["target"].isin(set(TARGETS).intersection(face_counts(rows)))]
-        shown |= {dataset_text(dataset): rows} if len(rows) else {}
+        if len(rows):
+            shown[dataset_text(dataset)] = rows
     if not shown:
         raise NotRun("no data set with enough objects that all methods take to 1,500 or 3,000 faces", STAGE, False)
     known = pd.concat(shown)["method"].unique()
@@ -116,8 +117,7 @@ def _boxes(axes: Axes, rows: pd.DataFrame, methods: list[str]) -> None:
         axes.plot([middle] * 2, [y - 0.31, y + 0.31], color=INK, lw=1.3)
         if method == PLAIN:
             axes.axvline(middle, color=GREY, lw=0.9, ls="--", zorder=0)
-    axes.set_xscale("log")
-    axes.set_xlim(left=floor if floor > 0 else None)
+    axes.set(xscale="log", xlim=(floor if floor > 0 else None, None))
     axes.xaxis.set_major_locator(LogLocator(numticks=6))
     axes.xaxis.set_minor_formatter(NullFormatter())
     axes.tick_params(axis="x", labelsize=8, which="both")
