@@ -19,4 +19,5 @@ def draw_matrix(axes: Axes, rows: pd.DataFrame, classes: Sequence[str]) -> None:
         tint = "white" if shares[i, j] >= DARK else "black"
         axes.text(j, i, f"{shares[i, j]:.0f}", ha="center", va="center", fontsize=6.5, color=tint)
     axes.set(xticks=[], yticks=[])
+    axes.tick_params(length=0)
     axes.spines[:].set(visible=True, linewidth=0.6)
