@@ -55,7 +55,7 @@ def shared(split: str, dataset: str | None = None) -> float:
 
 def mean(values: pd.Series, split: str, dataset: str | None = None) -> tuple[float, float, float]:
     """(mean, low, high) of shares over the repetitions: splits of the same items, or folds of objects left out."""
-    return within(values, shared(split, dataset))
+    return within(list(values), shared(split, dataset))
 
 
 def accuracy(rows: pd.DataFrame, split: str) -> dict[str, float]:

@@ -13,8 +13,8 @@ from .section_5_5 import ITEMS, MIDDLE, SENSES
 def build(results: Results) -> Figure:
     """Confusion matrices, senses in columns and splits in rows."""
     frame = results.table("transfer", "hybrid/confusion.csv")
-    frame[["middle", "split"]] = frame["trial"].str.split(".", expand=True)[[1, 2]]
-    frame = frame[frame["middle"] == MIDDLE.replace(":", "-")]
+    trials = frame["trial"].str.split(".")
+    frame = frame.assign(split=trials.str[2])[trials.str[1] == MIDDLE.replace(":", "-")]
     splits = [split for split in ITEMS if split in set(frame["split"])]
     if not splits:
         raise NotRun("no confusion matrices of the hybrid network", "transfer")

@@ -49,8 +49,8 @@ def _draw(axes: Axes, frame: pd.DataFrame) -> None:
         ends = 100 * frame[[f"{sense}_low", f"{sense}_high"]].to_numpy().T
         axes.plot(frame[["megabytes"] * 2].to_numpy().T, ends, color=tint, lw=1.2, alpha=0.5)
     axes.set_xscale("log")
-    for row in frame.itertuples():
-        _name(axes, row.megabytes, METHODS[row.network].replace("hybrid, weights of ", ""))
+    for size, network in zip(frame["megabytes"], frame["network"], strict=True):
+        _name(axes, size, METHODS[network].replace("hybrid, weights of ", ""))
     axes.set_ylim(0, 102)
     axes.set_xlabel("size of the file, MB")
     axes.grid(axis="y")

@@ -35,8 +35,8 @@ def build(results: Results) -> Table:
             cell = accuracy(part[part["method"] == method], "random")
             lines.append({"damage": damage, "severity": severity, "method": method} | cell)
     frame = pd.DataFrame(lines).drop(columns="values")
-    heads = [spoken(row.damage, row.severity) for row in frame.itertuples()]
-    wide = grid(frame.assign(head=heads), "method", "head", beside=(), names={"method": lambda name: METHODS[name]})
+    heads = [spoken(*damage) for damage in zip(frame["damage"], frame["severity"], strict=True)]
+    wide = grid(frame.assign(head=heads), "method", "head", beside=(), names={"method": lambda way: METHODS[str(way)]})
     return Table(frame, wide.rename(columns={"method": "answers"}))
 
 

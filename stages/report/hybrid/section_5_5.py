@@ -1,6 +1,7 @@
 """T5.5: the hybrid network beside the two that it is made of, and smaller kinds of it."""
 
 from itertools import product
+from typing import Any
 
 import pandas as pd
 
@@ -21,7 +22,6 @@ METHODS = {
     "hybrid_int8": "hybrid, weights of 8 bits",
 }
 POINT, RATIO = 1.0, 1.43  # aims: points of accuracy that may be lost, and how much smaller the hybrid is
-SPAN = ["mean", "min", "max"]
 NOTE = (
     "{objects}, layers {middle} shared: in every network, scores of the hybrid differ from those of the two networks "
     "by {worst} at most, accuracy by {lost:.2f} points at most; the aim of {point:g} point or less is {kept}. Size "
@@ -48,7 +48,7 @@ def build(results: Results) -> Table:
     return Table(frame, _shown(frame), words | {"ratio": thesis["compression_ratio"], "notes": "\n".join(notes)})
 
 
-def _line(rows: pd.DataFrame, first: pd.DataFrame, network: str, split: str) -> dict[str, object]:
+def _line(rows: pd.DataFrame, first: pd.DataFrame, network: str, split: str) -> dict[str, Any]:
     """One network in one split. first: rows of the middle that was repeated, which `rows` may be."""
     source = rows["dataset"].iloc[0]
     line = {"objects": dataset_text(source), "shared_layers": rows["mode"].iloc[0], "network": network, "split": split}
@@ -73,9 +73,9 @@ def _shown(frame: pd.DataFrame) -> pd.DataFrame:
     """One line per network: accuracies side by side, size the mean over the splits, which differ by a few bytes."""
     shown = []
     for (objects, layers, network), group in frame.groupby(["objects", "shared_layers", "network"], sort=False):
-        line = {"objects": objects, "shared layers": layers, "network": METHODS[network]}
+        line = {"objects": objects, "shared layers": layers, "network": METHODS[str(network)]}
         for (_, row), (sense, word) in product(group.iterrows(), SENSES.items()):
-            text = with_interval(*row[[sense, f"{sense}_low", f"{sense}_high"]], 100, 1)
+            text = with_interval(*row[[sense, f"{sense}_low", f"{sense}_high"]], scale=100, places=1)
             gain = "" if layers == frame["shared_layers"].iloc[0] else f" · {row[f'{sense}_gain']:+.1f}"
             line[f"by {word}, {ITEMS[row['split']]}, %"] = text + gain
         line |= {"file, MB": f"{group['megabytes'].mean():.2f}", "size ratio": f"{group['size_ratio'].mean():.3f}"}
@@ -85,13 +85,13 @@ def _shown(frame: pd.DataFrame) -> pd.DataFrame:
 
 def _note(rows: pd.DataFrame, theirs: float) -> str:
     """Sentences on one middle; every network holds what they say, so that all values stand for an interval."""
-    hybrid = rows[rows["network"] == "hybrid"].groupby("metric")["value"].agg(SPAN)
-    lost = 100 * (_accuracies(rows, "apart") - _accuracies(rows, "hybrid")).abs()
-    ratio, span = hybrid.loc["size_ratio"], lost.agg(SPAN)
+    hybrid = rows[rows["network"] == "hybrid"].groupby("metric")["value"].agg(["mean", "min", "max"])
+    lost = 100 * abs(_accuracies(rows, "apart") - _accuracies(rows, "hybrid"))
+    ratio, span = hybrid.loc["size_ratio"].to_numpy(), lost.agg(["mean", "min", "max"])
     note = NOTE.format(
         objects=dataset_text(rows["dataset"].iloc[0]), middle=rows["mode"].iloc[0], point=POINT, aim=RATIO,
         worst=number(hybrid.loc["max_difference", "max"]), lost=lost.max(), kept=on_target(*span, at_most=POINT),
-        ratio=ratio["mean"], theirs=on_target(*ratio, at_least=theirs), ours=on_target(*ratio, at_least=RATIO),
+        ratio=ratio[0], theirs=on_target(*ratio, at_least=theirs), ours=on_target(*ratio, at_least=RATIO),
     )  # fmt: skip
     onnx = rows[rows["network"] == "hybrid_onnx"].groupby("metric")["value"].max()
     if onnx.empty:

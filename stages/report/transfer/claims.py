@@ -37,7 +37,7 @@ def claim(
 def later_change_less(results: Results, claim: Claim) -> pd.Series:
     """Minus the rank correlation of a convolution's depth with its change, per training."""
     changes = layer_changes(results, **claim.where).groupby("trial", sort=False)["value"]
-    return -changes.agg(lambda one: spearmanr(np.arange(len(one)), one).statistic)
+    return -changes.agg(lambda one: spearmanr(np.arange(len(one)), one)[0])
 
 
 OWN = both(

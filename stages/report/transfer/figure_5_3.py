@@ -47,7 +47,7 @@ def gains(rows: pd.DataFrame) -> pd.DataFrame:
         sides = group.pivot_table(index="repetition", columns="mode", values="value")
         gain = 100 * (sides["finetuned"] - sides["frozen"]).dropna() if {"finetuned", "frozen"} <= set(sides) else ()
         if len(gain):
-            found.append((network, split, data, *interval(gain, shared(split, group["dataset"].iloc[0]))))
+            found.append((network, split, data, *interval(gain, shared(str(split), group["dataset"].iloc[0]))))
     return pd.DataFrame(found, columns=["network", "split", "data", "mean", "low", "high"])
 
 

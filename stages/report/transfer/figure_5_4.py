@@ -36,8 +36,8 @@ def build(results: Results) -> Figure:
     axes.grid(axis="y")
     axes.legend(fontsize=8.5, loc="lower left", bbox_to_anchor=(0, 1), ncols=3)
     tuned = layer_changes(results, split="random", mode="finetuned")
-    means = tuned[tuned["data"] == FINE].groupby(["network", "weights"], sort=False)["value"].mean()
-    said = [f"{label(network)} from {start(weights)} {mean:.2g}" for (network, weights), mean in means.items()]
+    kinds = tuned[tuned["data"] == FINE].groupby(["network", "weights"], sort=False)["value"]
+    said = [f"{label(network)} from {start(str(weights))} {one.mean():.2g}" for (network, weights), one in kinds]
     return Figure(figure, {"means": "; ".join(said)})
 
 
@@ -45,10 +45,10 @@ def layer_changes(results: Results, **where: str) -> pd.DataFrame:
     """Rows of data/transfer/weight_change.csv with what each trial was, the columns TRIAL, filtered by these."""
     frame = results.table("transfer", "weight_change.csv")
     parts = pd.DataFrame([trial.split(".") for trial in frame["trial"]], columns=TRIAL, index=frame.index)
-    frame = frame.join(parts)[(parts[list(where)] == pd.Series(where)).all(axis=1)]
-    if frame.empty:
-        raise NotRun("MobileNetV2 was not fine-tuned", "transfer")
-    return frame
+    found = frame.join(parts)[(parts[list(where)] == pd.Series(where)).all(axis=1)]
+    if found.empty:
+        raise NotRun(f"{'no network was' if frame.empty else 'MobileNetV2 was not'} fine-tuned", "transfer")
+    return found
 
 
 def _blocks(axes: Axes, parts: list[str]) -> None:

@@ -19,7 +19,7 @@ def build(results: Results) -> Figure:
     rows = rows[(rows["data"] == FINE) & (rows["split"] == "random")]
     frame = pd.DataFrame(means(rows, ["method", "weights", "mode"], shared_by("random"), top=1.0))
     frame = frame.dropna(subset=["seconds"])
-    frame["name"] = [f"{label(row.method)}, {start(row.weights)}, {label(row.mode)}" for row in frame.itertuples()]
+    frame["name"] = frame["method"].map(label) + ", " + frame["weights"].map(start) + ", " + frame["mode"].map(label)
     if REFERENCE not in set(frame["name"]):
         raise NotRun(f"the reference {REFERENCE} is not measured", "transfer")
     return pareto_chart(
