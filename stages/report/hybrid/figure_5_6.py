@@ -25,6 +25,7 @@ def build(results: Results) -> Figure:
     )
     for axes, (split, sense) in zip(grid.flat, product(splits, SENSES), strict=True):
         draw_matrix(axes, frame[(frame["split"] == split) & (frame["sense"] == sense)], classes)
+        axes.tick_params(length=0)
     for axes, split in zip(grid[:, 0], splits, strict=True):
         axes.set_yticks(range(count), [f"{one} {k + 1}" for k, one in enumerate(classes)], fontsize=7.5)
         axes.set_ylabel(ITEMS[split], fontsize=9)

@@ -53,18 +53,17 @@ def _line(rows: pd.DataFrame, first: pd.DataFrame, network: str, split: str) -> 
     source = rows["dataset"].iloc[0]
     line = {"objects": dataset_text(source), "shared_layers": rows["mode"].iloc[0], "network": network, "split": split}
     for sense in SENSES:
-        values, before = (_accuracies(frame, network, split=split, sense=sense) for frame in (rows, first))
+        values, before = (_values(frame, network, split=split, sense=sense) for frame in (rows, first))
         line |= dict(zip((sense, f"{sense}_low", f"{sense}_high"), mean(values, split, source), strict=True))
         line[f"{sense}_gain"] = 100 * (values - before).mean()
-    mine = rows[(rows["network"] == network) & (rows["split"] == split)]
-    sizes = mine[mine["metric"] == "size_bytes"].groupby("method")["value"].mean()
-    ratio = 1.0 if network == "apart" else mine.loc[mine["metric"] == "size_ratio", "value"].mean()
+    sizes = _values(rows, network, "size_bytes", split=split).groupby("sense", dropna=False).mean()  # of each file
+    ratio = 1.0 if network == "apart" else _values(rows, network, "size_ratio", split=split).mean()
     return line | {"megabytes": sizes.sum(min_count=1) / 1e6, "size_ratio": ratio}
 
 
-def _accuracies(rows: pd.DataFrame, network: str, **where: str) -> pd.Series:
-    """Accuracies of a network, indexed by what tells its trainings and senses apart."""
-    for column, value in {"metric": "accuracy", "network": network, **where}.items():
+def _values(rows: pd.DataFrame, network: str, metric: str = "accuracy", **where: str) -> pd.Series:
+    """What was measured of a network, indexed by what tells its trainings and senses apart."""
+    for column, value in {"metric": metric, "network": network, **where}.items():
         rows = rows[rows[column] == value]
     return rows.set_index(["sense", "split", "repetition"])["value"]
 
@@ -85,13 +84,13 @@ def _shown(frame: pd.DataFrame) -> pd.DataFrame:
 
 def _note(rows: pd.DataFrame, theirs: float) -> str:
     """Sentences on one middle; every network holds what they say, so that all values stand for an interval."""
-    hybrid = rows[rows["network"] == "hybrid"].groupby("metric")["value"].agg(["mean", "min", "max"])
-    lost = 100 * abs(_accuracies(rows, "apart") - _accuracies(rows, "hybrid"))
-    ratio, span = hybrid.loc["size_ratio"].to_numpy(), lost.agg(["mean", "min", "max"])
+    ratios, lost = _values(rows, "hybrid", "size_ratio"), 100 * abs(_values(rows, "apart") - _values(rows, "hybrid"))
+    ratio, span = ((one.mean(), one.min(), one.max()) for one in (ratios, lost))
     note = NOTE.format(
         objects=dataset_text(rows["dataset"].iloc[0]), middle=rows["mode"].iloc[0], point=POINT, aim=RATIO,
-        worst=number(hybrid.loc["max_difference", "max"]), lost=lost.max(), kept=on_target(*span, at_most=POINT),
-        ratio=ratio[0], theirs=on_target(*ratio, at_least=theirs), ours=on_target(*ratio, at_least=RATIO),
+        worst=number(_values(rows, "hybrid", "max_difference").max()), lost=lost.max(), ratio=ratios.mean(),
+        kept=on_target(*span, at_most=POINT), theirs=on_target(*ratio, at_least=theirs),
+        ours=on_target(*ratio, at_least=RATIO),
     )  # fmt: skip
     onnx = rows[rows["network"] == "hybrid_onnx"].groupby("metric")["value"].max()
     if onnx.empty:
