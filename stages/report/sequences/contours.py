@@ -100,9 +100,8 @@ class Canvas:
 
 def _draw_imprints(panels: Sequence[Axes], sequences: Sequences) -> None:
     """Imprints at equal steps along the first contour."""
-    for axes, frame in zip(
-        panels, np.linspace(0, len(sequences.images[0]) - 1, FRAMES).round().astype(int), strict=True
-    ):
+    frames = np.linspace(0, len(sequences.images[0]) - 1, len(panels)).round().astype(int)
+    for axes, frame in zip(panels, frames, strict=True):
         axes.imshow(sequences.images[0, frame], cmap="gray", vmin=0, vmax=255)
         axes.set(xticks=[], yticks=[])
         axes.spines[:].set(visible=True, color=PALE)
@@ -119,15 +118,14 @@ def _draw_normals(axes: Axes, mesh: Mesh, sequences: Sequences) -> None:
     axes.plot([across, right], [down, bottom], color=INK, lw=1.1, solid_capstyle="round")
     axes.plot(across, down, "o", color=CYCLE[0], ms=3.2)
     axes.plot(across[0], down[0], "o", mfc="white", mec=CYCLE[0], mew=1.6, ms=7)
-    (left, end), (low, high) = axes.get_xlim(), axes.get_ylim()
-    axes.set(
-        xlim=(min(left, right.min()), max(end, right.max())), ylim=(max(low, bottom.max()), min(high, bottom.min()))
-    )
+    wide, tall = np.r_[axes.get_xlim(), right], np.r_[axes.get_ylim(), bottom]
+    axes.set(xlim=(wide.min(), wide.max()), ylim=(tall.max(), tall.min()))
 
 
 def _facing(positions: np.ndarray) -> Viewpoint:
     """The Viewpoint that looks at a contour's plane, from above where it is level or slanted."""
-    x, y, z = (normal := np.linalg.svd(positions - positions.mean(axis=0))[2][2]) * (1 if normal[2] >= 0 else -1)
+    normal = np.linalg.svd(positions - positions.mean(axis=0))[2][2]
+    x, y, z = normal if normal[2] >= 0 else -normal
     return Viewpoint(np.degrees(np.arctan2(y, x)) % 360, np.degrees(np.arcsin(np.clip(z, -1, 1))))
 
 
