@@ -10,6 +10,7 @@ from stages.kit.stats import interval
 
 from .claims import Claim
 from .results import NotRun, Results
+from .style import start
 
 PRINTED = {
     "alexnet": "AlexNet",
@@ -61,6 +62,12 @@ def mean(values: pd.Series, split: str, dataset: str | None = None) -> tuple[flo
     """(mean, low, high) of shares over the repetitions: splits of the same items, or folds of objects left out."""
     middle, low, high = interval(values, shared(split, dataset))
     return middle, max(low, 0.0), min(high, 1.0)
+
+
+def origin(weights: str, pretrained: str | None) -> str:
+    """What a network starts from, and which of ImageNet's weights it has of these."""
+    said = PRETRAINED.get(pretrained or "", "") if weights == "imagenet" else ""
+    return f"{start(weights)} ({said})" if said else start(weights)
 
 
 def both(claim: Claim, *, items: str = "touches", done: str = "touched") -> Iterator[Claim]:
