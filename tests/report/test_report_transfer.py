@@ -6,9 +6,10 @@ import pytest
 
 from stages.kit.files import write_table
 from stages.report import networks as _transfer
+from stages.report import recorded as recorded_topic
 from stages.report.differences import differences
-from stages.report.recorded import network_sizes, table_5_1, table_5_5
 from stages.report.results import NotRun
+from stages.report.topics import build_one
 from stages.report.transfer import claims as chapter_5
 from stages.report.transfer import coarse_imprints, figure_5_3, figure_5_4, table_5_3, table_5_4, table_5_6
 from stages.report.transfer import networks_chart as chart
@@ -161,7 +162,7 @@ def test_without_trainings_nothing_is_made_up(bare, small):
 
 def recorded():
     """Recorded touches: a frozen network and the classical features, and a data set that is not at hand."""
-    one = {"dataset": "pressure_images", "data": "pressure", "split": "random", "metric": "accuracy"}
+    one = {"dataset": "pressure_images", "data": "pressure", "item": None, "split": "random", "metric": "accuracy"}
     seen = {"method": "mobilenet_v2", "weights": "imagenet", "pretrained": "complete", "mode": "frozen", "size": 96}
     found = [one | seen | {"repetition": k, "value": 0.9 + 0.01 * k} for k in range(3)]
     found.append(one | {"method": "features_knn", "repetition": 0, "value": 0.6})
@@ -176,10 +177,10 @@ def recorded():
     return pd.DataFrame([*found, missing | {"note": "not run: data set not at hand"}])
 
 
-@pytest.mark.parametrize(("table", "figure"), [(table_5_1, "83.0"), (table_5_5, "85.2")])
+@pytest.mark.parametrize(("table", "figure"), [("table_5_1", "83.0"), ("table_5_5", "85.2")])
 def test_a_data_set_that_is_not_at_hand_is_named(bare, small, table, figure):
     small.write(bare, "recorded_networks", recorded())
-    made = table.build(small.results(bare))
+    made = build_one(recorded_topic, "tables", table, small.results(bare))
     line = only(made.shown, network="AlexNet")
     assert line["fine-tuned: ours, %"] == "not run" and line["fine-tuned: thesis, %"] == figure
     assert "Not run" in made.notes[0]
@@ -207,4 +208,5 @@ def test_the_smallest_network_that_is_enough_is_named(bare, small):
     ]
     small.write(bare, "recorded_networks", pd.DataFrame(found), "pressure_images")
     write_table(bare / "reports/bench/networks.csv", pd.DataFrame(costs))
-    assert "best on average is MobileNetV2." in network_sizes.build(small.results(bare)).caption
+    made = build_one(recorded_topic, "tradeoff", "network_sizes", small.results(bare))
+    assert "best on average is MobileNetV2." in made.caption
