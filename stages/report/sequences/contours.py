@@ -24,30 +24,29 @@ CLEAR = 2e-3  # units along the view to come off the surface, before asking what
 
 def build_contours(results: Results) -> Figure:
     """The first contours of each strategy on pictures of some objects."""
-    found = _sequences(results, OBJECTS)
-    strategies = _strategies(found)
+    found = _chosen(results, OBJECTS)
+    strategies = _strategies(next(iter(found.values()))[1])
     size = (2.7 * len(found), 2.9 * len(strategies))
     figure, grid = plt.subplots(len(strategies), len(found), figsize=size, squeeze=False)
-    for column, name in zip(grid.T, found, strict=True):
-        mesh = _mesh(results, name)
+    for column, (name, (mesh, contours)) in zip(grid.T, found.items(), strict=True):
         column[0].set_title(name.replace("_", " "), loc="center")
         for axes, strategy in zip(column, strategies, strict=True):
-            canvas, sequences = Canvas(axes, mesh), found[name][strategy]
+            canvas, sequences = Canvas(axes, mesh), contours[strategy]
             for pair, start, tint in zip(sequences.planes[:PATHS], sequences.positions[:, 0], CYCLE, strict=False):
                 canvas.follow(mesh, pair, tint)
                 axes.plot(*canvas.pixels(start[None]), "o", mfc="white", mec=tint, mew=1.6, ms=5)
     for axes, strategy in zip(grid[:, 0], strategies, strict=True):
         axes.text(-0.04, 0.5, label(strategy), rotation=90, ha="right", va="center", transform=axes.transAxes)
     figure.subplots_adjust(wspace=0.03, hspace=0.03)
-    strategy_names = " and ".join(map(label, strategies))
-    return Figure(figure, {"names": ", ".join(found), "count": PATHS, "strategies": strategy_names})
+    words = {"names": ", ".join(found), "count": PATHS, "strategies": " and ".join(map(label, strategies))}
+    return Figure(figure, words)
 
 
 def build_felt(results: Results) -> Figure:
     """Imprints along the first contour of an object, the contour with the normals of the array, and their parts."""
-    found = _sequences(results, 1)
-    name, strategy = next(iter(found)), _strategies(found)[-1]
-    sequences, mesh = found[name][strategy], _mesh(results, name)
+    ((name, (mesh, contours)),) = _chosen(results, 1).items()
+    strategy = _strategies(contours)[-1]
+    sequences = contours[strategy]
     figure = plt.figure(figsize=(9.6, 5.4))
     grid = figure.add_gridspec(2, FRAMES, height_ratios=[1, 2.4], hspace=0.22, wspace=0.08)
     _draw_imprints([figure.add_subplot(grid[0, column]) for column in range(FRAMES)], sequences)
@@ -129,8 +128,8 @@ def _facing(positions: np.ndarray) -> Viewpoint:
     return Viewpoint(np.degrees(np.arctan2(y, x)) % 360, np.degrees(np.arcsin(np.clip(z, -1, 1))))
 
 
-def _sequences(results: Results, count: int) -> dict[str, dict[str, Sequences]]:
-    """{object: {strategy: Sequences}} of some objects: the preferred, then evenly by the alphabet, so by class."""
+def _chosen(results: Results, count: int) -> dict[str, tuple[Mesh, dict[str, Sequences]]]:
+    """{name: (Mesh, {strategy: Sequences})}: the preferred objects, then evenly by the alphabet, so by class."""
     folder = results.folder("contours")
     names = sorted(path.stem for path in folder.glob("*.npz"))
     if not names:
@@ -139,15 +138,13 @@ def _sequences(results: Results, count: int) -> dict[str, dict[str, Sequences]]:
     others = [name for name in names if name not in first]
     places = np.linspace(0, len(others) - 1, OBJECTS).round().astype(int) if others else []
     chosen = [*first, *dict.fromkeys(others[place] for place in places)]
-    return {name: read_sequences(folder / f"{name}.npz") for name in chosen[:count]}
+    return {
+        name: (results.mesh(name, folder.parent.name), read_sequences(folder / f"{name}.npz"))
+        for name in chosen[:count]
+    }
 
 
-def _strategies(found: dict[str, dict[str, Sequences]]) -> list[str]:
+def _strategies(contours: dict[str, Sequences]) -> list[str]:
     """Blind contours and, where there is one, the thesis's guided strategy or else another."""
-    here = next(iter(found.values()))
-    guided = sorted(set(here) - {BLIND}, key=lambda method: (method != GUIDED, method))
-    return [one for one in (BLIND, *guided[:1]) if one in here]
-
-
-def _mesh(results: Results, name: str) -> Mesh:
-    return results.mesh(name, results.folder("contours").parent.name)
+    guided = sorted(set(contours) - {BLIND}, key=lambda method: (method != GUIDED, method))
+    return [one for one in (BLIND, *guided[:1]) if one in contours]
