@@ -170,7 +170,7 @@ def test_without_trainings_nothing_is_made_up(bare, small):
 
 def recorded():
     """Recorded touches: a frozen network and the classical features, and a data set that is not at hand."""
-    one = {"dataset": "pressure_images", "data": "pressure", "split": "random", "metric": "accuracy"}
+    one = {"dataset": "pressure_images", "data": "pressure", "item": None, "split": "random", "metric": "accuracy"}
     seen = {"method": "mobilenet_v2", "weights": "imagenet", "pretrained": "complete", "mode": "frozen", "size": 96}
     found = [one | seen | {"repetition": k, "value": 0.9 + 0.01 * k} for k in range(3)]
     found.append(one | {"method": "features_knn", "repetition": 0, "value": 0.6})
