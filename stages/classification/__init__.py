@@ -1,19 +1,18 @@
 """Recognition by touch: features of an imprint and five classifiers, by the thesis's protocol (T4.2).
 
 Public names: classifier, concatenate_touches, confusable, draw_combinations, evaluate, evaluate_features, features,
-random_holdout, region_holdout, similarity, TouchMap, CLASSIFIERS, FEATURES.
+random_holdout, region_holdout, similarity, touch_map, CLASSIFIERS, FEATURES.
 """
 
 from .classifiers import CLASSIFIERS, classifier
 from .features import FEATURES, features
 from .protocol import evaluate, evaluate_features, random_holdout, region_holdout
 from .similarity import confusable, similarity
-from .touches import TouchMap, concatenate_touches, draw_combinations
+from .touches import concatenate_touches, draw_combinations, touch_map
 
 __all__ = [
     "CLASSIFIERS",
     "FEATURES",
-    "TouchMap",
     "classifier",
     "concatenate_touches",
     "confusable",
@@ -24,4 +23,5 @@ __all__ = [
     "random_holdout",
     "region_holdout",
     "similarity",
+    "touch_map",
 ]

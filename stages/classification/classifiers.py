@@ -67,7 +67,7 @@ def classifier(name: str, seed: int = 0, kind: str = "features") -> "Pipeline":
     kind: of the samples. "features": those of `features`, at least 12 samples. "located": the same with the
     position of the touch in three more columns, the last ones. They are standardised too and appended to the principal
     components, since the PCA would spread them over all components. "reduced": numbers that need no further
-    reduction, such as the two of a TouchMap; they are only standardised.
+    reduction, such as the two of `touch_map`; they are only standardised.
     The thesis standardises the entire data beforehand (T4.2.4). Here the z-transform and the components are fitted to
     the samples that `fit` is given, so that nothing of the hold-out leaks into training.
     Raises ValueError for a name that is not in CLASSIFIERS, or another kind.

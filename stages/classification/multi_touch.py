@@ -9,7 +9,7 @@ from stages.kit import Stopwatch
 from stages.kit.split import Split
 
 from .protocol import random_holdout, region_holdout
-from .touches import TouchMap, concatenate_touches, draw_combinations
+from .touches import concatenate_touches, draw_combinations, touch_map
 from .trials import NO_DISTANT_TOUCH, TouchSet, Trial
 
 # Of combining the touches of one side of a split, see trials.py.
@@ -43,7 +43,7 @@ class MultiTouchTrials:
 
     def _split_trials(self, touched, parts, random_state, split, variants):
         """Combinations within each side of a split; the map is fitted to the training side."""
-        numbers, seconds = _map_and_positions(touched, parts[0], random_state)
+        numbers, seconds = _map_and_positions(touched, parts[0])
         for variant in variants:
             for count in self.counts:
                 random = np.random.default_rng([random_state, count])
@@ -71,17 +71,17 @@ class MultiTouchTrials:
     def _mixed_trials(self, name, touched, random_state):
         """Combinations of all imprints, split afterwards: imprints of test combinations also occur in training."""
         everything = np.arange(len(touched.truth))
-        numbers, seconds = _map_and_positions(touched, everything, random_state)
+        numbers, seconds = _map_and_positions(touched, everything)
         for count in self.counts:
             combinations = self._combine(touched, everything, count, "", np.random.default_rng([random_state, count]))
             sides = [combinations[side] for side in random_holdout(touched.truth[combinations[:, 0]], random_state)]
             yield _trial(name.format(count), Split.RANDOM, numbers, touched.truth, sides, seconds)
 
 
-def _map_and_positions(touched, train, random_state):
+def _map_and_positions(touched, train):
     """((k, 5): two coordinates on the map and the position of each imprint, seconds)."""
     with Stopwatch() as watch:
-        map_positions = TouchMap(random_state).fit(touched.samples[train]).transform(touched.samples)
+        map_positions = touch_map().fit(touched.samples[train]).transform(touched.samples)
     return np.hstack([map_positions, touched.places]), watch.seconds
 
 

@@ -4,55 +4,20 @@ from typing import Any
 
 import numpy as np
 
-# The thesis's software was RapidMiner; these are the defaults of its self-organising map.
-SIDE = 10  # neurons along each edge of the map
-PASSES = 30  # passes over the imprints
-RATES = (0.8, 0.01)  # learning rate in the first and the last pass
-RADII = (10.0, 1.0)  # width of the neighbourhood in the first and the last pass, in neurons
+NEURONS = 100  # of the self-organising map: 10 x 10, the default of RapidMiner, the thesis's software
 
 
-class TouchMap:
-    """A self-organising map of 10 x 10 neurons that reduces an imprint's features to two numbers (Kohonen 1990).
+def touch_map() -> Any:
+    """Reduces the features (k, d) of imprints to two numbers: their position on a map of 10 x 10 neurons.
 
-    Features are standardised by those that `fit` is given. Radius and rate fall geometrically from pass to pass, as in
-    Ritter and Schulten 1988. The library is MiniSom, whose random numbers are determined by `seed`.
+    Features are standardised by those that `fit` is given.
     """
+    from sklearn.pipeline import make_pipeline
+    from sklearn.preprocessing import StandardScaler
 
-    def __init__(self, seed: int = 0) -> None:
-        self.seed = seed
+    from stages.kit.self_organising_map import SelfOrganisingMap
 
-    def fit(self, samples: np.ndarray) -> "TouchMap":
-        """Fits the map to features (k, d)."""
-        from minisom import MiniSom
-        from sklearn.preprocessing import StandardScaler
-
-        self._scaler = StandardScaler().fit(samples)
-        scaled = np.asarray(self._scaler.transform(samples))
-        settings: dict[str, Any] = {  # the stub infers types from the defaults
-            "sigma": RADII[0], "learning_rate": RATES[0], "decay_function": _geometric_decay(RATES),
-            "sigma_decay_function": "asymptotic_decay", "random_seed": self.seed,
-        }  # fmt: skip
-        self._map = MiniSom(SIDE, SIDE, scaled.shape[1], **settings)
-        self._map._sigma_decay_function = _geometric_decay(RADII)
-        self._map.random_weights_init(scaled)
-        self._map.train(scaled, PASSES, random_order=True, use_epochs=True)
-        return self
-
-    def transform(self, samples: np.ndarray) -> np.ndarray:
-        """(k, 2): row and column of the neuron nearest to each sample, 0..9."""
-        weights = np.asarray(self._map.get_weights()).reshape(SIDE * SIDE, -1)
-        scaled = np.asarray(self._scaler.transform(samples))
-        distances = (weights**2).sum(axis=1) - 2 * scaled @ weights.T
-        return np.stack(np.divmod(distances.argmin(axis=1), SIDE), axis=1).astype(np.float64)
-
-
-def _geometric_decay(first_and_last):
-    """A function (start, pass, passes) that falls from the first to the last value by an equal factor per pass."""
-
-    def decay(start, t, passes):
-        return start * (first_and_last[1] / first_and_last[0]) ** (t / max(passes - 1, 1))
-
-    return decay
+    return make_pipeline(StandardScaler(), SelfOrganisingMap(2, NEURONS))
 
 
 def draw_combinations(truth: np.ndarray, count: int, random: np.random.Generator) -> np.ndarray:

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.backends.registry import BackendFilter, backend_registry
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, FigureBase
 
 from stages.kit import Mesh, RayScene, Viewpoint
 from stages.kit.camera import project
@@ -40,7 +40,7 @@ def write_picture(
 
 
 def draw(
-    figure: Figure,
+    figure: FigureBase,
     mesh: Mesh,
     positions: np.ndarray,
     axes: np.ndarray,

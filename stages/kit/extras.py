@@ -5,7 +5,7 @@ from contextlib import contextmanager
 
 MODULES = {
     "pipeline": (
-        "diskcache", "dvc", "filelock", "hydra", "joblib", "matplotlib", "minisom", "omegaconf", "pandas",
+        "diskcache", "dvc", "filelock", "hydra", "joblib", "matplotlib", "omegaconf", "pandas",
         "point_cloud_utils", "pymeshlab", "pyrender", "pywt", "robust_laplacian", "rtree", "skimage", "sklearn",
         "threadpoolctl", "tqdm", "yaml",
     ),

@@ -18,7 +18,7 @@ from .markdown import as_text, markdown_table
 from .page import build_page, claims_shown
 from .results import NotRun, Results
 from .schema import Params
-from .topics import CLAIMS, KINDS, build_all
+from .topics import CLAIMS, KINDS, TOPICS, build_all
 from .verdict import WORDS, counted, judged
 from .viewer import pack_viewer
 
@@ -46,8 +46,10 @@ def write_report(results: Results) -> None:
     claims, differences = judged(CLAIMS, results)
     write_claims(claims, differences, out)
     meshes = packed_or_none(results, not_run)
-    parts = {**built, "claims": claims, "not_run": not_run}
-    write_text(out / "index.html", build_page(out / "index.html", parts, meshes, dataset_line(results)))
+    own = results.own_meshes
+    parts = {**built, "claims": claims, "not_run": not_run, "sets": results.sets, "own": own}
+    parts["first"] = ["touch_one_mesh"] if own else ["pipeline"]
+    write_text(out / "index.html", build_page(out / "index.html", TOPICS, parts, meshes, dataset_line(results)))
     counts = {word: int((claims["verdict"] == word).sum()) for word in WORDS}
     made = {kind: len(found.items) for kind, found in built.items()}
     write_json(out / "metrics/report.json", {"claims": counts, **made, "not_run": len(not_run)})

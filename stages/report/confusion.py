@@ -1,11 +1,15 @@
 """Confusion matrices, in per cent of the true class."""
 
+from collections.abc import Sequence
+
 import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
 
 DARK = 55  # per cent from which a number is written in white
 
 
-def draw_matrix(axes, rows, classes):
+def draw_matrix(axes: Axes, rows: pd.DataFrame, classes: Sequence[str]) -> None:
     """Draws one matrix in per cent of its rows. rows: a frame of true and predicted classes with their counts."""
     counts = rows.pivot_table(index="true", columns="predicted", values="count", aggfunc="sum", fill_value=0)
     counts = counts.reindex(index=classes, columns=classes, fill_value=0).to_numpy(dtype=float)
@@ -14,8 +18,6 @@ def draw_matrix(axes, rows, classes):
     for i, j in np.argwhere(shares >= 1):
         tint = "white" if shares[i, j] >= DARK else "black"
         axes.text(j, i, f"{shares[i, j]:.0f}", ha="center", va="center", fontsize=6.5, color=tint)
-    axes.set_xticks([])
-    axes.set_yticks([])
+    axes.set(xticks=[], yticks=[])
     axes.tick_params(length=0)
-    for spine in axes.spines.values():
-        spine.set(visible=True, linewidth=0.6)
+    axes.spines[:].set(visible=True, linewidth=0.6)

@@ -64,6 +64,9 @@ def side(results: Results, claim: Claim, own: Side, other: Side | float | None, 
     for column, wanted in where.items():
         if isinstance(wanted, Pick):
             rows = rows[rows[column] == _picked(rows, claim, column, wanted, other)]
+    for column, wanted in where.items():
+        for name in wanted if isinstance(wanted, tuple) else ():
+            _not_empty(rows[rows[column] == name], claim, f"{column} {name}")
     several = [column for column, wanted in where.items() if isinstance(wanted, tuple) or _pattern(wanted)]
     keys = [*claim.over, *claim.within]
     if not keys:
@@ -137,13 +140,3 @@ def _said(value: object) -> str:
 def rounded(values: pd.Series) -> np.ndarray:
     """(k,) values with the six significant digits of a CSV, so that what is judged is what is written."""
     return np.array([float(f"{value:.6g}") for value in values], dtype=np.float64)
-
-
-def paired(results: Results, stage: str, over: list[str], first: Side, second: Side, **where: object) -> pd.Series:
-    """Value of `first` minus value of `second`, matched on the columns `over`. For FunctionClaim alone."""
-    sides = [results.measured(stage, **where, **one).groupby(over)["value"].mean() for one in (first, second)]
-    joined = pd.concat(sides, axis=1, join="inner").dropna()
-    if joined.empty:
-        names = " and ".join(" ".join(map(str, one.values())) for one in (first, second))
-        raise NotRun(f"no pairs of {names}", stage, runnable=False)
-    return joined.iloc[:, 0] - joined.iloc[:, 1]

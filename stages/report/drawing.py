@@ -1,11 +1,15 @@
 """Pictures of meshes on a white page: lit surface, colour a vertex, wires and points, drawn by rays."""
 
+from collections.abc import Sequence
+
 import matplotlib
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
 
-from stages.kit import RayScene, Viewpoint
+from stages.kit import Mesh, RayScene, Viewpoint
 from stages.kit.camera import pixel_rays, pixels_per_unit, project
 from stages.kit.mesh import unit
 from stages.kit.rays import barycentric
@@ -21,7 +25,14 @@ THIN = 0.25  # of its square: an object that fills less is no good for wires
 LIGHT = unit(np.array([-0.35, 0.55, 0.75]))  # right, up, towards the viewer
 
 
-def picture(mesh, values=None, wires=False, viewpoint=VIEWPOINT, rows=420, smoothing=2):
+def picture(
+    mesh: Mesh,
+    values: np.ndarray | None = None,
+    wires: bool = False,
+    viewpoint: Viewpoint = VIEWPOINT,
+    rows: int = 420,
+    smoothing: int = 2,
+) -> np.ndarray:
     """(rows, rows, 3) f8 in 0..1: the mesh on white. values (n,) in 0..1 colour the vertices; wires draws the edges."""
     size = (rows * smoothing, rows * smoothing)
     grid = np.mgrid[: size[0], : size[1]].reshape(2, -1)
@@ -41,13 +52,15 @@ def picture(mesh, values=None, wires=False, viewpoint=VIEWPOINT, rows=420, smoot
     return image.reshape(rows, smoothing, rows, smoothing, 3).mean(axis=(1, 3))
 
 
-def vivid(values):
+def vivid(values: np.ndarray) -> np.ndarray:
     """Values (n,) over their 98 % quantile, at most 1: a map with a few high peaks would be dark everywhere else."""
     top = np.quantile(values, BRIGHT) or values.max() or 1.0
     return np.clip(values / top, 0, 1)
 
 
-def visible(mesh, vertices, viewpoint=VIEWPOINT, rows=420):
+def visible(
+    mesh: Mesh, vertices: np.ndarray, viewpoint: Viewpoint = VIEWPOINT, rows: int = 420
+) -> tuple[np.ndarray, np.ndarray]:
     """(rows (k',), columns (k',)) in the picture of those of the vertices (k,) that the viewer sees."""
     points = mesh.vertices[vertices]
     back = viewpoint.axes[2]
@@ -58,12 +71,12 @@ def visible(mesh, vertices, viewpoint=VIEWPOINT, rows=420):
     return down, across
 
 
-def filled(mesh):
+def filled(mesh: Mesh) -> float:
     """The share of its square that an object fills: of a thin one the wires cannot be told apart."""
     return float((squared(picture(mesh, rows=60, smoothing=1), margin=0)[0] < 1).any(axis=2).mean())
 
 
-def squared(image, margin=6):
+def squared(image: np.ndarray, margin: int = 6) -> tuple[np.ndarray, tuple[int, int]]:
     """(image, (top, left)): the smallest square round the object."""
     there = (image < 1).any(axis=2)
     down, across = np.flatnonzero(there.any(axis=1)), np.flatnonzero(there.any(axis=0))
@@ -74,14 +87,24 @@ def squared(image, margin=6):
     return image[top : top + side, left : left + side], (top, left)
 
 
-def square_grid(rows, columns, side, right=0.0, gap=0.0):
+def square_grid(
+    rows: int, columns: int, side: float, right: float = 0.0, gap: float = 0.0
+) -> tuple[Figure, np.ndarray]:
     """(figure, axes (rows, columns)): square panels of `side` inches, `right` inches free beside, `gap` between."""
     width, height = columns * side + right, rows * side + (rows - 1) * gap
     frame = {"left": 0, "right": columns * side / width, "bottom": 0, "top": 1, "wspace": 0, "hspace": gap / side}
     return plt.subplots(rows, columns, figsize=(width, height), gridspec_kw=frame, squeeze=False)
 
 
-def show(axes, mesh, values=None, wires=False, points=None, viewpoint=VIEWPOINT, rows=420):
+def show(
+    axes: Axes,
+    mesh: Mesh,
+    values: np.ndarray | None = None,
+    wires: bool = False,
+    points: np.ndarray | None = None,
+    viewpoint: Viewpoint = VIEWPOINT,
+    rows: int = 420,
+) -> None:
     """Draws a mesh into matplotlib axes, square and without frame; points (k,) vertex ids become red dots."""
     image, (top, left) = squared(picture(mesh, values, wires, viewpoint, rows))
     axes.imshow(image)
@@ -91,19 +114,19 @@ def show(axes, mesh, values=None, wires=False, points=None, viewpoint=VIEWPOINT,
     axes.set_axis_off()
 
 
-def colour_bar(figure, box, text):
+def colour_bar(figure: Figure, box: Sequence[float], text: str) -> None:
     """A bar of the maps' colours from 0 to 1 in box [left, bottom, width, height] of the figure, and what it is of."""
     bar = figure.colorbar(ScalarMappable(Normalize(0, 1), MAP), cax=figure.add_axes(box))
     bar.set_label(text, fontsize=9)
     bar.outline.set_edgecolor(GREY)
 
 
-def colour_map(values):
+def colour_map(values: np.ndarray) -> np.ndarray:
     """(k, 3) RGB of values (k,) in 0..1."""
     return matplotlib.colormaps[MAP](np.clip(values, 0, 1))[:, :3]
 
 
-def _light(mesh, face, weights, viewpoint):
+def _light(mesh: Mesh, face: np.ndarray, weights: np.ndarray, viewpoint: Viewpoint) -> np.ndarray:
     """Head light and a soft key light; normals are smooth but for sharp edges."""
     flat = mesh.face_normals[face]
     smooth = unit(np.einsum("ij,ijk->ik", weights, mesh.vertex_normals[mesh.faces[face]]))
@@ -112,7 +135,7 @@ def _light(mesh, face, weights, viewpoint):
     return 0.42 + 0.3 * normal[:, 2] + 0.38 * np.clip(normal @ LIGHT, 0, 1)
 
 
-def _edge_distance(mesh, face, weights):
+def _edge_distance(mesh: Mesh, face: np.ndarray, weights: np.ndarray) -> np.ndarray:
     """(k,) distance of a point in its face to the nearest edge, in units."""
     corners = mesh.vertices[mesh.faces[face]]
     opposite = np.linalg.norm(np.roll(corners, -1, axis=1) - np.roll(corners, 1, axis=1), axis=2)

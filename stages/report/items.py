@@ -15,12 +15,17 @@ from .style import save
 
 @dataclass
 class Table:
-    """frame: tidy numbers, for the CSV; shown: what a person reads, the same or pivoted; words: for its prose."""
+    """frame: tidy numbers, for the CSV; shown: what a person reads, the same or pivoted; words: for its prose.
+
+    sets: the data sets that it was read from.
+    """
 
     frame: pd.DataFrame
     shown: pd.DataFrame | None = None
     words: dict[str, Any] = field(default_factory=dict)
     name: str = ""
+    topic: str = ""
+    sets: list[str] = field(default_factory=list)
     title: str = ""
     notes: list[str] = field(default_factory=list)
     paths: list[Path] = field(default_factory=list)
@@ -38,7 +43,7 @@ class Table:
 class Figure:
     """drawing: as matplotlib has it; words: for its prose; frame: the numbers of a chart, for a CSV beside it.
 
-    alt: what a blind reader needs. paths: the files, the PNG first.
+    sets: the data sets that it was read from. alt: what a blind reader needs. paths: the files, the PNG first.
     """
 
     drawing: Drawing
@@ -46,6 +51,8 @@ class Figure:
     frame: pd.DataFrame | None = None
     dpi: int = 130
     name: str = ""
+    topic: str = ""
+    sets: list[str] = field(default_factory=list)
     title: str = ""
     alt: str = ""
     caption: str = ""

@@ -3,11 +3,14 @@
 import math
 import numbers
 import re
+from typing import Any
+
+import pandas as pd
 
 WORDS = ("not run", "infeasible", "")  # that stand in columns of numbers
 
 
-def number(value, digits=3):
+def number(value: Any, digits: int = 3) -> str:
     """A number to `digits` significant digits without exponent clutter; a dash for NaN; other things as they are."""
     if value is None or value != value:
         return "–"
@@ -21,7 +24,7 @@ def number(value, digits=3):
     return f"{value:.{places}f}"
 
 
-def with_interval(mean, low, high, scale=1, places=None):
+def with_interval(mean: float, low: float, high: float, scale: float = 1, places: int | None = None) -> str:
     """`mean [low, high]`, or the mean alone where the interval is unknown; "not run" without a mean."""
     if mean != mean:
         return "not run"
@@ -29,19 +32,19 @@ def with_interval(mean, low, high, scale=1, places=None):
     return show(mean) if low != low else f"{show(mean)} [{show(low)}, {show(high)}]"
 
 
-def signed(mean, low, high, places=2):
+def signed(mean: float, low: float, high: float, places: int = 2) -> str:
     """`+0.83 [0.61, 1.05]`."""
     mean, low, high = (round(value, places) + 0.0 for value in (mean, low, high))  # no minus before a zero
     span = f" [{low:.{places}f}, {high:.{places}f}]" if low == low else ""
     return f"{mean:+.{places}f}{span}"
 
 
-def as_text(frame):
+def as_text(frame: pd.DataFrame) -> pd.DataFrame:
     """A frame of strings, numbers rounded to three significant digits."""
     return frame.map(number)
 
 
-def markdown_table(frame):
+def markdown_table(frame: pd.DataFrame) -> str:
     """A GitHub table of a frame of strings; columns of numbers stand to the right."""
     rows = [[str(cell).replace("|", r"\|") for cell in row] for row in frame.itertuples(index=False)]
     rules = ["---:" if is_numeric(frame[column]) else "---" for column in frame.columns]
@@ -49,6 +52,6 @@ def markdown_table(frame):
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 
-def is_numeric(column):
+def is_numeric(column: pd.Series) -> bool:
     """True for a column of strings that hold numbers alone: signs, intervals, a dash or a few words are let through."""
     return all(cell in WORDS or re.fullmatch(r"[-+–±\d.,:e\[\]· ]*", str(cell)) for cell in column)

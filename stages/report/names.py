@@ -1,6 +1,10 @@
 """Names beside the points of a chart, where they cover neither each other nor a point."""
 
+from collections.abc import Iterable, Sequence
+
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.text import Annotation
 from matplotlib.transforms import Bbox
 
 from .style import GREY, INK
@@ -12,7 +16,12 @@ CROSSING = 15  # a crossed line is as bad as so much more of a gap
 SIZE, RADIUS = 8.5, 5.5  # of the letters and of a point with its rim, in typographic points
 
 
-def place_names(axes, names, points, lines):
+Spot = tuple[float, float]
+
+
+def place_names(
+    axes: Axes, names: Iterable[tuple[str, Spot]], points: np.ndarray, lines: Iterable[Sequence[Spot]]
+) -> list[Annotation]:
     """Writes each name at the nearest free place around its point; returns the texts.
 
     names: list of (text, (x, y)); points (k, 2): all that no name may cover; lines: list of two ends each, which names
@@ -24,14 +33,14 @@ def place_names(axes, names, points, lines):
     to_pixels = axes.transData.transform
     taken = [_around(spot[None], RADIUS * scale) for spot in to_pixels(points)]
     strokes = [_around(to_pixels(ends), scale) for ends in lines]
-    written, spoken = [], []
+    written, boxes = [], []
     for text, point in names:
         spot = to_pixels(point)
-        found = _nearest(axes, _extent(axes, text), spot, (taken, spoken, strokes), scale)
+        found = _nearest(axes, _extent(axes, text), spot, (taken, boxes, strokes), scale)
         if found is None:
             continue
         gap, box = found
-        spoken.append(box)
+        boxes.append(box)
         if gap >= FAR:
             taken += _leader(spot, box, scale)
         place = {"xytext": ((box.x0 - spot[0]) / scale, (box.y0 - spot[1]) / scale), "textcoords": "offset points"}
@@ -41,28 +50,30 @@ def place_names(axes, names, points, lines):
     return written
 
 
-def _nearest(axes, extent, spot, others, scale):
+def _nearest(
+    axes: Axes, extent: Spot, spot: np.ndarray, others: tuple[list[Bbox], list[Bbox], list[Bbox]], scale: float
+) -> tuple[float, Bbox] | None:
     """(gap, box) of the best free place, or None. others: boxes that no name may cover, of names, of lines."""
-    window, free, (taken, spoken, strokes) = axes.get_window_extent(), [], others
+    window, free, (taken, names, strokes) = axes.get_window_extent(), [], others
     for gap in GAPS:
         for side in SIDES:
             box = _beside(spot, extent, side, gap * scale)
             inside = window.x0 <= box.x0 and box.x1 <= window.x1 and window.y0 <= box.y0 and box.y1 <= window.y1
             led = _leader(spot, box, scale) if gap >= FAR else []
-            crossed = any(part.count_overlaps(taken + spoken) for part in led)  # its line would belong to others
-            if inside and not crossed and not box.count_overlaps(taken + spoken):
+            crossed = any(part.count_overlaps(taken + names) for part in led)  # its line would belong to others
+            if inside and not crossed and not box.count_overlaps(taken + names):
                 free.append((gap + CROSSING * box.count_overlaps(strokes), len(free), gap, box))
     return min(free)[2:] if free else None
 
 
-def _leader(spot, box, scale):
+def _leader(spot: np.ndarray, box: Bbox, scale: float) -> list[Bbox]:
     """Small boxes along the thin line to a name, from a little way off its point."""
     middle = np.array([(box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2])
     near = min(1.0, 2 * RADIUS * scale / np.linalg.norm(middle - spot))
     return [_around((spot + share * (middle - spot))[None], scale) for share in np.linspace(near, 1, 30)]
 
 
-def _beside(spot, extent, side, gap):
+def _beside(spot: np.ndarray, extent: Spot, side: tuple[int, int], gap: float) -> Bbox:
     """The box of a text of this extent at one side of a spot, in pixels."""
     (x, y), (width, height), (across, up) = spot, extent, side
     step = gap if across == 0 or up == 0 else 0.7 * gap  # at a corner both ways count
@@ -71,7 +82,7 @@ def _beside(spot, extent, side, gap):
     return Bbox.from_extents(x0, y0, x0 + width, y0 + height)
 
 
-def _extent(axes, text):
+def _extent(axes: Axes, text: str) -> Spot:
     """(width, height) of a text in pixels."""
     probe = axes.text(0, 0, text, fontsize=SIZE)
     box = probe.get_window_extent(axes.figure.canvas.get_renderer())
@@ -79,6 +90,6 @@ def _extent(axes, text):
     return box.width, box.height
 
 
-def _around(spots, margin):
+def _around(spots: np.ndarray, margin: float) -> Bbox:
     """The box around spots (k, 2) with a margin: around one point, or the ends of an upright or level line."""
     return Bbox([spots.min(axis=0) - margin, spots.max(axis=0) + margin])

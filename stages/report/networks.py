@@ -1,15 +1,16 @@
 """What several topics read of trainings of networks on imprints (chapter 5)."""
 
-from collections.abc import Iterator
 from dataclasses import replace
+from itertools import product
 
 import pandas as pd
 
 from stages.kit.split import shared_by
-from stages.kit.stats import interval
 
 from .claims import Claim
+from .grid import within
 from .results import NotRun, Results
+from .style import start
 
 PRINTED = {
     "alexnet": "AlexNet",
@@ -19,6 +20,7 @@ PRINTED = {
     "mobilenet_v2": "MobileNetV2",
 }  # as the thesis calls them, in its order
 FINE, COARSE = "imprints128", "imprints16"
+THESIS = {FINE: "table_5_4_simulated_fsr_128x128", COARSE: "table_5_3_fsr_16x16"}  # its tables of them
 SPLITS = {"random": "touches at random", "objects": "unseen objects"}
 THEIRS = "princeton_six"  # the set of the thesis's classes
 OF_CLASS = {THEIRS: 5}  # objects of each class; of the other sets three
@@ -28,9 +30,22 @@ NETWORK = "mobilenet_v2"
 GUESS = 7.6  # points over chance that frozen filters have in T table 5.3, which calls that around a random guess
 
 
-def measured(results: Results, dataset: str | None = None) -> pd.DataFrame:
+def measured(results: Results, dataset: str | None = None, **where: object) -> pd.DataFrame:
     """Accuracies on one set; NotRun where there is none."""
-    return results.measured("transfer", dataset, metric="accuracy")
+    return results.measured("transfer", dataset, metric="accuracy", **where)
+
+
+def everywhere(results: Results, **where: object) -> dict[str, pd.DataFrame]:
+    """{set: accuracies}: of all sets that have them; NotRun where none has."""
+    found, absent = {}, NotRun("no measurements of transfer", "transfer")
+    for dataset in results.datasets("transfer"):
+        try:
+            found[dataset] = measured(results, dataset, **where)
+        except NotRun as missing:
+            absent = missing
+    if not found:
+        raise absent
+    return found
 
 
 def shared(split: str, dataset: str | None = None) -> float:
@@ -38,45 +53,40 @@ def shared(split: str, dataset: str | None = None) -> float:
     return shared_by(split, OF_CLASS.get(dataset or "", 3))
 
 
-def everywhere(results: Results) -> dict[str, pd.DataFrame]:
-    """{set: accuracies}: of all sets that have them; NotRun where none has."""
-    found = {}
-    for dataset in results.datasets("transfer"):
-        try:
-            found[dataset] = measured(results, dataset)
-        except NotRun as missing:
-            absent = missing
-    if not found:
-        raise absent if results.datasets("transfer") else NotRun("no measurements of transfer", "transfer")
-    return found
-
-
-def accuracy(rows: pd.DataFrame, split: str) -> tuple[float, float, float, int]:
-    """(mean, low, high, values) of the rows of one setting on one set."""
-    mine = rows[rows["split"] == split]
-    return *mean(mine["value"], split, next(iter(mine["dataset"]), None)), len(mine)
-
-
 def mean(values: pd.Series, split: str, dataset: str | None = None) -> tuple[float, float, float]:
     """(mean, low, high) of shares over the repetitions: splits of the same items, or folds of objects left out."""
-    middle, low, high = interval(values, shared(split, dataset))
-    return middle, max(low, 0.0), min(high, 1.0)
+    return within(list(values), shared(split, dataset))
 
 
-def both(claim: Claim, *, items: str = "touches", done: str = "touched") -> Iterator[Claim]:
-    """The claim with items drawn at random, as in the thesis, and on objects left out, whose folds are the pairs.
+def accuracy(rows: pd.DataFrame, split: str) -> dict[str, float]:
+    """{accuracy, low, high, values} of the rows of one setting on one set."""
+    mine = rows[rows["split"] == split]
+    ends = mean(mine["value"], split, next(iter(mine["dataset"]), None))
+    return dict(zip(("accuracy", "low", "high"), ends, strict=True)) | {"values": len(mine)}
+
+
+def origin(weights: str, pretrained: str | None) -> str:
+    """What a network starts from, and which of ImageNet's weights it has of these."""
+    said = PRETRAINED.get(pretrained or "", "") if weights == "imagenet" else ""
+    return f"{start(weights)} ({said})" if said else start(weights)
+
+
+def both(*claims: Claim, items: str = "touches", done: str = "touched") -> list[Claim]:
+    """Each claim with items drawn at random, as in the thesis, and on objects left out, whose folds are the pairs.
 
     items, done: what was drawn, and what was never done to the objects.
     """
-    for split in SPLITS:
+    found = []
+    for claim, split in product(claims, SPLITS):
         unseen = split == "objects"
-        said = f"{claim.sentence[:-1]}, on objects never {done} too." if unseen else claim.sentence
         words = {("split", split): SPLITS[split].replace("touches", items)}
         words |= {("over", "repetition"): "folds"} if unseen else {}
-        yield replace(
-            claim, key=f"{claim.key}_{split}", sentence=said, where={**claim.where, "split": split},
+        found.append(replace(
+            claim, key=f"{claim.key}_{split}", where={**claim.where, "split": split},
+            sentence=f"{claim.sentence[:-1]}, on objects never {done} too." if unseen else claim.sentence,
             shared=shared(split, claim.dataset), phrases={**claim.phrases, **words},
-        )  # fmt: skip
+        ))  # fmt: skip
+    return found
 
 
 def on_their_classes(claims: list[Claim]) -> list[Claim]:

@@ -4,6 +4,7 @@ import base64
 import zlib
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from stages.kit import Mesh
 
@@ -15,44 +16,44 @@ CELLS = 1024  # a side of the grid whose Morton order puts neighbours next to ea
 class Store:
     """Collects arrays; each `put_...` returns the [offset, count] by which the page's script finds its array again."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         self._bytes = bytearray()
 
-    def put_words(self, values):
+    def put_words(self, values: ArrayLike) -> list[int]:
         """16-bit values (k,) or (k, d) as differences along the first axis; low bytes first, then high bytes."""
         values = np.asarray(values).astype(np.int64)
         return self._planes(np.diff(values, axis=0, prepend=np.zeros_like(values[:1])))
 
-    def put_shades(self, values):
+    def put_shades(self, values: ArrayLike) -> list[int]:
         """Values (k,) in 0..1 as differences of shades."""
         steps = ((SHADES - 1) * np.clip(values, 0, 1)).round().astype(np.int64)
         return self._add(np.diff(steps, prepend=0).astype(np.uint8), len(steps))
 
-    def put_positions(self, vertices):
+    def put_positions(self, vertices: np.ndarray) -> list[int]:
         """Vertices (n, 3) within -0.5..0.5, of a mesh from `ordered`."""
         return self.put_words((2 * STEPS * np.clip(vertices, -0.5, 0.5)).round())
 
-    def put_triangles(self, faces):
+    def put_triangles(self, faces: np.ndarray) -> list[int]:
         """Faces (m, 3) of a mesh from `ordered`: how far below the next new vertex each id lies, 0 for the new one."""
         ids = faces.ravel().astype(np.int64)
         following = np.maximum.accumulate(np.r_[-1, ids])[:-1] + 1
         return self._planes(following - ids)
 
-    def text(self):
+    def text(self) -> str:
         """All of it, deflated, in base64."""
         return base64.b64encode(zlib.compress(bytes(self._bytes), 9)).decode("ascii")
 
-    def _planes(self, words):
+    def _planes(self, words: np.ndarray) -> list[int]:
         words = (words.ravel() % 65536).astype(np.uint16)
         return self._add(np.r_[words & 255, words >> 8].astype(np.uint8), len(words))
 
-    def _add(self, octets, count):
+    def _add(self, octets: np.ndarray, count: int) -> list[int]:
         offset = len(self._bytes)
         self._bytes += octets.tobytes()
         return [offset, count]
 
 
-def ordered(mesh):
+def ordered(mesh: Mesh) -> tuple[Mesh, np.ndarray]:
     """(mesh, ids): faces along a Morton curve, vertices by first use, unused ones left out; ids: their old numbers."""
     faces = mesh.faces[np.argsort(_morton(mesh.vertices[mesh.faces].mean(axis=1)), kind="stable")]
     used, first, inverse = np.unique(faces, return_index=True, return_inverse=True)
@@ -63,7 +64,7 @@ def ordered(mesh):
     return Mesh(mesh.vertices[ids], rank[inverse].reshape(-1, 3)), ids
 
 
-def _morton(points):
+def _morton(points: np.ndarray) -> np.ndarray:
     """Place of points (k, 3) within -0.5..0.5 on the Morton curve."""
     cells = (np.clip(points + 0.5, 0, 1) * (CELLS - 1)).astype(np.int64)
     place = np.zeros(len(points), dtype=np.int64)

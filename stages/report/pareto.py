@@ -5,7 +5,9 @@ from itertools import pairwise
 
 import numpy as np
 import pandas as pd
-from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
+from matplotlib.figure import Figure as Drawing
+from matplotlib.ticker import FuncFormatter, Locator, LogLocator, MaxNLocator, NullFormatter
+from numpy.typing import ArrayLike
 
 from .items import Figure
 from .names import place_names
@@ -15,7 +17,7 @@ from .style import label as spoken
 LISTED = 8  # names of the front that a caption lists at most
 
 
-def pareto_front(cost, quality, better="high"):
+def pareto_front(cost: ArrayLike, quality: ArrayLike, better: str = "high") -> np.ndarray:
     """(k,) boolean: the choices that no other beats, that is, none is as good in both and better in one.
 
     cost (k,) lower is better; quality (k,) higher is better, or lower with better="low" (errors). A choice with a NaN
@@ -74,12 +76,23 @@ def pareto_chart(
     return Figure(drawing, words, rows)
 
 
-def _listed(names):
+def _listed(names: list[str]) -> str:
     """The names of the front from the cheapest to the best; of a long front its ends."""
     return "; ".join(names) if len(names) <= LISTED else f"{len(names)} choices, from {names[0]} to {names[-1]}"
 
 
-def _draw(rows, quality, label, title, reference, quality_label, better, colour, marker, tints):
+def _draw(
+    rows: pd.DataFrame,
+    quality: str,
+    label: str,
+    title: str,
+    reference: str,
+    quality_label: str,
+    better: str,
+    colour: str | None,
+    marker: str | None,
+    tints: Mapping[str, str] | None,
+) -> Drawing:
     figure, axes = plt.subplots(figsize=(7.2, 4.6))
     axes.set_xscale("log")
     axes.grid(True)
@@ -113,7 +126,7 @@ def _draw(rows, quality, label, title, reference, quality_label, better, colour,
     return figure
 
 
-def ticks(span):
+def ticks(span: float) -> Locator:
     """What finds the numbers of a logarithmic axis whose dearest choice costs `span` times the cheapest.
 
     The narrower it is, the closer they must be, or the axis would be almost without any.
@@ -123,7 +136,9 @@ def ticks(span):
     return LogLocator(subs=(1.0, 2.0, 5.0) if span < 100 else (1.0,))
 
 
-def _with_names(rows, named, front, quality, label, better):
+def _with_names(
+    rows: pd.DataFrame, named: pd.DataFrame, front: pd.DataFrame, quality: str, label: str, better: str
+) -> tuple[list, np.ndarray, list]:
     """What place_names wants: names with their points, all points, and the lines, in the data's units."""
     # The front, the reference and the best come first: who comes late may find no room.
     first = named["on_front"] | (named["cost_ratio"] == 1)

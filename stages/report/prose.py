@@ -30,6 +30,12 @@ def add_words(item: Table | Figure, topic: ModuleType, kind: str, name: str) -> 
         item.alt, item.caption = (_joined(part).format_map(item.words) for part in (alt, caption))
 
 
+def shared_notes(package: str, name: str) -> str:
+    """Notes that several tables of a topic share, a line each, to be a word of theirs: the section `# shared/NAME`."""
+    _, text = _sections(package)[f"shared/{name}"]
+    return "\n".join(_joined(note) for note in re.split(r"^- ", text, flags=re.MULTILINE)[1:])
+
+
 def findings(topic: ModuleType) -> str:
     """What the topic found, in Markdown: TOPIC/findings.md."""
     return resources.files(topic.__name__).joinpath("findings.md").read_text(encoding="utf-8")

@@ -55,6 +55,7 @@ class Results:
     def __init__(self, workspace: Workspace, settings: Params) -> None:
         self.workspace, self.settings = workspace, settings
         self.data, self.reports = workspace.root / "data", workspace.reports
+        self.read: set[str] = set()  # the data sets that were read since somebody cleared this
         self._tables: dict[Path, pd.DataFrame] = {}
 
     @property
@@ -65,7 +66,7 @@ class Results:
     def datasets(self, stage: str) -> list[str]:
         """The sets that have rows of a stage: those that are switched on first, then the others by the alphabet."""
         found = {path.parent.name for path in (self.reports / "measurements").glob(f"*/{stage}{SUFFIX}")}
-        return self._in_order(found)
+        return self.in_order(found)
 
     @property
     def stages(self) -> list[str]:
@@ -121,6 +122,7 @@ class Results:
         if dataset is None and not known:
             raise NotRun(f"no measurements of {stage}", stage)
         dataset = dataset or known[0]
+        self.read.add(dataset)
         path = self.reports / "measurements" / dataset / f"{stage}{SUFFIX}"
         return self._table(path, f"no measurements of {stage} on {dataset}", stage, dataset in self.sets)
 
@@ -163,9 +165,10 @@ class Results:
 
     def folder(self, stage: str, dataset: str | None = None) -> Path:
         """data/SET/STAGE; NotRun when it is not there. dataset: None for the first set that has it."""
-        found = self._in_order({path.parent.name for path in self.data.glob(f"*/{stage}") if path.is_dir()})
+        found = self.in_order({path.parent.name for path in self.data.glob(f"*/{stage}") if path.is_dir()})
         if dataset not in found and (dataset or not found):
             raise NotRun(f"no data/{dataset or 'SET'}/{stage}", stage)
+        self.read.add(dataset or found[0])
         return self.data / (dataset or found[0]) / stage
 
     def table(self, stage: str, name: str, dataset: str | None = None) -> pd.DataFrame:
@@ -174,6 +177,12 @@ class Results:
         if not path.exists():
             raise NotRun(f"no {stage}/{name}", stage)
         return pd.read_csv(path)
+
+    @property
+    def own_meshes(self) -> bool:
+        """Whether the first set that is switched on is a folder of a person's own meshes."""
+        meshes = self.workspace.params.get(self.sets[0], {}).get("meshes", {}) if self.sets else {}
+        return meshes.get("source") == "folder"
 
     @cached_property
     def objects(self) -> list[str]:
@@ -260,7 +269,8 @@ class Results:
             raise NotRun(f"no lod/{name}/{method}_*.npz", "lod")
         return sorted(found, key=lambda item: (-len(item[1].faces), item[0]))
 
-    def _in_order(self, names: set[str]) -> list[str]:
+    def in_order(self, names: set[str]) -> list[str]:
+        """Names of data sets: those that are switched on first, then the others by the alphabet."""
         return [name for name in self.sets if name in names] + sorted(names - set(self.sets))
 
     def _path(self, stage: str, name: str, dataset: str | None) -> Path:

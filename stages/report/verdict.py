@@ -1,7 +1,6 @@
 """The one word that a measurement says to each claim, with the differences that it rests on."""
 
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable
 
 import numpy as np
 import pandas as pd
@@ -18,20 +17,6 @@ WORDS = ("supported", "contradicted", "open")
 COLUMNS = [
     "section", "claim", "verdict", "effect", "low", "high", "unit", "pairs", "over", "shared", "tested_on", "key",
 ]  # fmt: skip
-
-
-@dataclass(frozen=True)
-class FunctionClaim:
-    """A claim whose differences a function computes, with its words by hand. To be replaced by Claim."""
-
-    key: str
-    section: str
-    sentence: str
-    tested_on: str
-    unit: str
-    pairs: str
-    differences: Callable[[Results], np.ndarray | pd.Series]
-    share: float = 0.0
 
 
 def verdict(low: float, high: float) -> str:
@@ -52,12 +37,12 @@ def counted(claims: pd.DataFrame) -> str:
     )
 
 
-def judge(claims: Iterable[Claim | FunctionClaim], results: Results) -> pd.DataFrame:
+def judge(claims: Iterable[Claim], results: Results) -> pd.DataFrame:
     """A frame with one row per claim: effect with its interval and the word; unmeasured ones are open and say why."""
     return judged(claims, results)[0]
 
 
-def judged(claims: Iterable[Claim | FunctionClaim], results: Results) -> tuple[pd.DataFrame, pd.DataFrame]:
+def judged(claims: Iterable[Claim], results: Results) -> tuple[pd.DataFrame, pd.DataFrame]:
     """(the frame of `judge`, the differences behind it: columns key, pair, difference in the claim's unit).
 
     A verdict follows from its differences and `shared` alone: `verdict(*interval(differences, shared)[1:])`.
@@ -72,13 +57,10 @@ def judged(claims: Iterable[Claim | FunctionClaim], results: Results) -> tuple[p
     return pd.DataFrame(rows, columns=COLUMNS), pd.concat(pairs, ignore_index=True) if pairs else empty
 
 
-def _row(claim: Claim | FunctionClaim, results: Results) -> tuple[dict, pd.Series]:
+def _row(claim: Claim, results: Results) -> tuple[dict, pd.Series]:
     said = {"section": claim.section, "claim": claim.sentence, "unit": claim.unit, "key": claim.key}
     try:
-        if isinstance(claim, Claim):
-            found, words = differences(results, claim), tested_on(claim, results)
-        else:
-            found, words = pd.Series(claim.differences(results), dtype=float), claim.tested_on
+        found, words = differences(results, claim), tested_on(claim, results)
     except NotRun as missing:
         said |= {"verdict": "open", "pairs": 0, "over": "", "tested_on": f"not run: {missing}"}
         return said, pd.Series(dtype=float)

@@ -1,15 +1,17 @@
 """The turnable meshes of the page: each object beside its simplified levels, coloured by saliency or by error."""
 
 import base64
+from typing import Any
 
 import numpy as np
 from scipy.spatial import cKDTree
 
+from stages.kit import Mesh
 from stages.lod.metro import vertex_errors
 
 from .drawing import colour_map, vivid
 from .packing import SHADES, Store, ordered
-from .results import NotRun
+from .results import NotRun, Results
 from .style import label
 
 METHODS = [  # those that the page offers, as far as they were run: each costs an object up to 5 kB
@@ -23,7 +25,7 @@ TOP = 0.99  # of the coarsest level's vertices have an error below the top of th
 ERROR_COLOURS = ((38, 70, 200), (34, 160, 74), (245, 215, 50), (214, 30, 30))
 
 
-def pack_viewer(results):
+def pack_viewer(results: Results) -> dict[str, Any]:
     """dict for the page's script: objects, colours. Raises NotRun without meshes or points.
 
     Objects are taken in the order of the settings; those that no longer fit into `viewer_kilobytes` are left out.
@@ -46,10 +48,10 @@ def pack_viewer(results):
     return {"objects": objects, "left_out": left_out, "colours": base64.b64encode(shades.tobytes()).decode("ascii")}
 
 
-def pack_object(results, name):
-    """One object: the full mesh, saliency and points by method, and ladders of simplified meshes by method.
+def pack_object(results: Results, name: str) -> dict[str, Any]:
+    """One object: the full mesh, saliency and points by method, and chains of simplified meshes by method.
 
-    A level has `error`, the distance of each vertex of the full mesh to it. All levels of all ladders share one scale,
+    A level has `error`, the distance of each vertex of the full mesh to it. All levels of all chains share one scale,
     `error_top` in % of the diagonal, so that the error is seen to grow along the slider; shades are its square root.
     """
     original, store = results.mesh(name), Store()
@@ -84,7 +86,7 @@ def pack_object(results, name):
     return packed | {"store": store.text()}
 
 
-def apart(levels):
+def apart(levels: list[Mesh]) -> list[Mesh]:
     """Those of the meshes, most faces first, that have STEP of the faces of the one kept before, or fewer."""
     kept = []
     for mesh in levels:
@@ -93,7 +95,7 @@ def apart(levels):
     return kept
 
 
-def shown_mesh(mesh, faces):
+def shown_mesh(mesh: Mesh, faces: int) -> tuple[Mesh, np.ndarray]:
     """(mesh, ids): the mesh, simplified where it has more faces; ids: the original vertex nearest to each of its."""
     small = mesh
     if len(mesh.faces) > faces or len(np.unique(mesh.faces)) > INDEX_LIMIT:
@@ -104,12 +106,12 @@ def shown_mesh(mesh, faces):
     return small, cKDTree(mesh.vertices).query(small.vertices)[1]
 
 
-def _mesh(mesh, store):
+def _mesh(mesh: Mesh, store: Store) -> dict[str, Any]:
     positions, triangles = store.put_positions(mesh.vertices), store.put_triangles(mesh.faces)
     return {"faces": len(mesh.faces), "positions": positions, "triangles": triangles}
 
 
-def _level(mesh, error, top, store):
+def _level(mesh: Mesh, error: np.ndarray, top: float, store: Store) -> dict[str, Any]:
     """A simplified mesh, with the error (n,) of the full mesh's vertices in % of the diagonal."""
     return _mesh(mesh, store) | {
         "error": store.put_shades(np.sqrt(error / (top or 1.0))),

@@ -1,6 +1,6 @@
 """Classification of objects by following a contour: networks and conventional classifiers (T4.4.7 to T4.4.10).
 
-Public names: classifier, directional_std, sequence_features, series, ImageNet, NormalNet, SelfOrganisingMap.
+Public names: classifier, directional_std, sequence_features, series, ImageNet, NormalNet.
 """
 
 from typing import TYPE_CHECKING
@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING
 from .classifiers import classifier
 from .contourlet import directional_std
 from .series import sequence_features, series
-from .som import SelfOrganisingMap
 
 if TYPE_CHECKING:
     from .networks import ImageNet, NormalNet
 
-__all__ = ["ImageNet", "NormalNet", "SelfOrganisingMap", "classifier", "directional_std", "sequence_features", "series"]
+__all__ = ["ImageNet", "NormalNet", "classifier", "directional_std", "sequence_features", "series"]
 
 
 def __getattr__(name: str) -> object:

@@ -7,8 +7,9 @@ from sklearn.pipeline import Pipeline, make_pipeline
 from sklearn.preprocessing import StandardScaler
 from sklearn.svm import SVC
 
+from stages.kit.self_organising_map import SelfOrganisingMap
+
 from .reduction import MostInformative
-from .som import SelfOrganisingMap
 
 NEIGHBOURS = 10  # T4.4.10
 MAP_DIMENSIONS = (2, 3, 4, 5, 6)  # tried as dimensions of the map, T4.4.9

@@ -10,10 +10,11 @@ from stages.kit import Mesh
 from stages.kit.files import write_mesh, write_text
 from stages.kit.rng import rng
 from stages.kit.workspace import Workspace
+from stages.report import sequences
 from stages.report.results import NotRun, Results
 from stages.report.schema import Params
-from stages.report.sequences import figure_4_14
 from stages.report.sequences.contours import followed
+from stages.report.topics import build_one
 
 SHAPE = trimesh.creation.torus(0.35, 0.15, major_sections=40, minor_sections=20)
 RING = Mesh(SHAPE.vertices, SHAPE.faces)
@@ -38,23 +39,29 @@ def write(root, names, strategies):
         write_sequences(root / f"data/furniture/contours/{name}.npz", found)
 
 
-def test_the_figure_shows_blind_and_guided_contours_and_what_is_felt(tmp_path):
+def figure(name, results):
+    return build_one(sequences, "figures", name, results)
+
+
+def test_the_figures_show_blind_and_guided_contours_and_what_is_felt(tmp_path):
     write(tmp_path, ["a", "b"], ["enhanced", "random", "thesis_ssim"])
-    found = figure_4_14.build(results(tmp_path, ["b"]))
-    assert [path.name for path in found.paths] == ["figure_4_14.png", "figure_4_15.png"]
-    assert all(path.stat().st_size > 10_000 for path in found.paths)
-    assert "b, a" in found.alt and "blind touch and enhanced attention (SSIM)" in found.alt
-    assert "first contour of b" in found.caption
+    run = results(tmp_path, ["b"])
+    contours, felt = figure("figure_4_14", run), figure("figure_4_15", run)
+    assert [one.paths[0].name for one in (contours, felt)] == ["figure_4_14.png", "figure_4_15.png"]
+    assert all(one.paths[0].stat().st_size > 10_000 for one in (contours, felt))
+    assert "b, a" in contours.alt and "blind touch and enhanced attention (SSIM)" in contours.alt
+    assert "first contour of b" in felt.caption
 
 
 def test_the_figure_does_without_guided_contours(tmp_path):
     write(tmp_path, ["a"], ["random"])
-    assert "contours each, blind touch;" in figure_4_14.build(results(tmp_path)).alt
+    assert "contours each, blind touch." in figure("figure_4_14", results(tmp_path)).alt
 
 
-def test_without_contours_the_figure_is_not_run(tmp_path):
+@pytest.mark.parametrize("name", ["figure_4_14", "figure_4_15"])
+def test_without_contours_the_figure_is_not_run(tmp_path, name):
     with pytest.raises(NotRun, match="dvc repro contours"):
-        figure_4_14.build(results(tmp_path))
+        figure(name, results(tmp_path))
 
 
 def test_the_contour_drawn_is_the_one_followed():

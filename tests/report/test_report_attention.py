@@ -13,13 +13,13 @@ from stages.report.attention.rows import agreement, difference, rivals
 from stages.report.costs import attention_seconds
 from stages.report.drawing import vivid
 from stages.report.markdown import signed
+from stages.report.meshes.methods import COMBINATIONS
+from stages.report.meshes.rows import paired_cells
 from stages.report.meshes.simplification import METHODS
-from stages.report.meshes.table_3_1_5_combinations import combined_cells
 from stages.report.pareto import pareto_chart
 from stages.report.results import NotRun
 from stages.report.style import colours
 from stages.report.topics import CLAIMS, TOPICS, build_all, build_one
-from stages.report.touch import one_touch, pipeline
 from stages.report.verdict import judge
 from stages.report.viewer import pack_viewer
 
@@ -192,7 +192,7 @@ def test_errors_of_combinations_are_over_what_all_of_them_reach(seen, root, smal
     itti, reaches_less = (rows[rows["method"] == "enhanced"].assign(method=name) for name in ("itti", "VisAttAll"))
     reaches_less.loc[reaches_less["target"] == "50%", "value"] = np.nan
     small.write(root, "lod", pd.concat([rows, itti, reaches_less]))
-    found = combined_cells(small.results(root))
+    found = paired_cells(small.results(root), methods=COMBINATIONS)
     assert set(zip(found["item"], found["target"], strict=True)) == {("ball", "25%")}
     with pytest.raises(NotRun, match="3 objects"):
         meshes.FIGURES["figure_3_4"](small.results(root))
@@ -202,7 +202,7 @@ def test_figure_of_combinations_is_drawn(seen, root, small):
     rows = pd.concat([small.lod().replace({"ball": f"ball{k}", "cube": f"cube{k}"}) for k in range(2)])
     others = [rows[rows["method"] == "enhanced"].assign(method=name) for name in ("itti", "VisAttCon")]
     small.write(root, "lod", pd.concat([rows, *others]))
-    figure = meshes.FIGURES["figure_3_4"](small.results(root))
+    figure = build_one(meshes, "figures", "figure_3_4", small.results(root))
     assert "50%: 4 objects" in figure.caption and "25%" not in figure.caption  # two objects reach it
 
 
@@ -313,17 +313,3 @@ def test_long_front_is_told_by_its_ends():
     frame = pd.DataFrame({"name": [f"n{k}" for k in range(12)], "seconds": range(1, 13), "mean": range(12)})
     caption = pareto_chart(frame, "mean", title="T", reference="n3", quality_label="q").words["caption"]
     assert "12 choices, from n0 to n11" in caption and "n5" not in caption
-
-
-def test_bars_are_those_of_the_samplings_that_ran(root, small):
-    rows = small.classification()
-    small.write(root, "classification", rows[rows["method"] != "thesis_ssim"])
-    results = small.results(root)
-    places = {}
-    with pytest.MonkeyPatch.context() as patch:
-        draw = one_touch.draw_bars
-        patch.setattr(one_touch, "draw_bars", lambda *args, **kw: places.update(draw(*args, **kw)) or places)
-        one_touch.figure_4_1(results)
-    assert list(places) == ["random", "itti", "enhanced"]
-    assert sum(places.values()) == pytest.approx(0)
-    assert set(pipeline.NEEDED) <= set(places)

@@ -5,10 +5,10 @@ import pandas as pd
 import pytest
 
 from stages.kit.files import write_table
-from stages.report.meshes import backends
-from stages.report.meshes import backends_chart as chart
+from stages.report import meshes
 from stages.report.meshes.growth import growth
 from stages.report.results import NotRun
+from stages.report.topics import build_one
 
 SIZES = [2000, 20_000, 50_000, 100_000, 400_000, 1_000_000]
 LEVELS = {0.5: 1.0, 0.1: 2.0}  # seconds of a share, beside the other's
@@ -40,8 +40,12 @@ def bench(bare, small):
     return written
 
 
+def table(results):
+    return build_one(meshes, "tables", "backends", results)
+
+
 def by_backend(results):
-    return backends.build(results).frame.set_index(["backend", "with_points"])
+    return table(results).frame.set_index(["backend", "with_points"])
 
 
 def test_backends_are_compared_as_ratios(bench):
@@ -77,11 +81,11 @@ def test_a_miss_is_counted_and_takes_its_cell_from_all(bench):
     cell = (rows["mesh"] == "m1") & (rows["kept_points"] == 0) & (rows["share"] == 0.1)
     rows.loc[cell, "ratio"] *= 100  # a cell that would change every mean
     rows.loc[cell & (rows["backend"] == "poor"), "outcome"] = "missed"
-    table = backends.build(bench(rows))
-    frame = table.frame.set_index(["backend", "with_points"])
+    built = table(bench(rows))
+    frame = built.frame.set_index(["backend", "with_points"])
     assert list(frame.loc[("poor", False), ["tried", "refused", "missed", "cells"]]) == [10, 0, 1, 9]
     assert frame["missed"].sum() == 1 and frame.loc[("fast", False), "time_ratio"] == pytest.approx(0.05)
-    assert sorted(table.shown["missed"].unique()) == ["0 of 10", "1 of 10"]
+    assert sorted(built.shown["missed"].unique()) == ["0 of 10", "1 of 10"]
 
 
 def test_what_is_to_be_reached_is_said_without_and_with_points(bench):
@@ -91,7 +95,7 @@ def test_what_is_to_be_reached_is_said_without_and_with_points(bench):
     rows["ratio"] *= 0.8
     rows.loc[poor, "ratio"] *= 0.8 * spread[poor]
     rows.loc[poor, "error_ratio"] = 1.2
-    without, with_points = backends.build(bench(rows)).notes[:2]
+    without, with_points = table(bench(rows)).notes[:2]
     assert without.startswith("fast (ours), nothing kept: 25.0 times faster than pymeshlab; 20 times is met on av")
     assert "1 or less is met on average (no interval)" in without and "n log n is missed" in without
     assert "points kept" in with_points and "1 or less is missed" in with_points
@@ -103,7 +107,7 @@ def test_what_is_surely_reached_is_said_to_be(bench):
     random = np.random.default_rng(0)
     rows["ratio"] *= 0.5 * np.exp(0.1 * random.normal(size=len(rows)))
     rows["error_ratio"] *= 0.9 * np.exp(0.01 * random.normal(size=len(rows)))
-    for said in backends.build(bench(rows)).notes[:2]:
+    for said in table(bench(rows)).notes[:2]:
         assert said.count("is met.") == 3 and "20 times is met. Its" in said
 
 
@@ -119,16 +123,16 @@ def test_growth_is_fitted_without_and_with_points_apart(bench):
 @pytest.mark.parametrize(("faces", "said"), [(1_000_000, "1,000,000 faces."), (400_000, "400,000 faces; 1,000,000")])
 def test_the_largest_mesh_is_named(bench, faces, said):
     rows = benched()
-    notes = backends.build(bench(rows[rows["full"] <= faces])).notes
+    notes = table(bench(rows[rows["full"] <= faces])).notes
     assert f"The largest mesh has {said}" in notes[2]
 
 
 def test_infeasible_targets_are_no_refusals(bench):
     rows = benched()
     rows.loc[rows["mesh"] == "m0", "outcome"] = "infeasible"
-    table = backends.build(bench(rows))
-    assert (table.frame["refused"] == 0).all() and (table.frame["tried"] == 8).all()
-    assert "4 targets are infeasible" in table.notes[2]
+    built = table(bench(rows))
+    assert (built.frame["refused"] == 0).all() and (built.frame["tried"] == 8).all()
+    assert "4 targets are infeasible" in built.notes[2]
 
 
 def test_a_backend_that_keeps_nothing_takes_no_cell_from_the_others(bench):
@@ -161,18 +165,18 @@ def test_growth_needs_large_meshes():
 
 
 def test_chart_of_backends_has_the_front(bench):
-    figure = chart.build(bench(benched()))
-    table = pd.read_csv(figure.paths[1]).set_index(["backend", "with_points"])
-    assert table.loc[("fast", True), "error_front"] and not table.loc[("pymeshlab", True), "error_front"]
+    figure = build_one(meshes, "tradeoff", "backends", bench(benched()))
+    frame = pd.read_csv(figure.paths[1]).set_index(["backend", "with_points"])
+    assert frame.loc[("fast", True), "error_front"] and not frame.loc[("pymeshlab", True), "error_front"]
     assert figure.paths[0].stat().st_size > 5000 and "1.00 [1.00, 1.00]" in figure.caption
 
 
 def test_chart_without_the_reference_is_not_run(bench):
     rows = benched()
     with pytest.raises(NotRun, match="pymeshlab"):
-        chart.build(bench(rows[rows["backend"] == "fast"]))
+        build_one(meshes, "tradeoff", "backends", bench(rows[rows["backend"] == "fast"]))
 
 
 def test_a_table_without_outcomes_is_to_be_measured_anew(bench):
     with pytest.raises(NotRun, match="make bench"):
-        backends.build(bench(benched().drop(columns="outcome")))
+        table(bench(benched().drop(columns="outcome")))

@@ -5,17 +5,17 @@ import pandas as pd
 import pytest
 
 from stages.kit.files import write_arrays
-from stages.report.exploration import calibration as exploration_calibration
-from stages.report.exploration import claims, exploration
-from stages.report.exploration import exploration_chart as chart
-from stages.report.exploration import rows as _exploration
+from stages.report import exploration, stability
+from stages.report.exploration import claims
+from stages.report.exploration.rows import needed
 from stages.report.results import NotRun
-from stages.report.stability import touch as touch_stability
-from stages.report.stability import touch_figure as degradation
-from stages.report.stability import touch_imprints as touch_stability_imprints
-from stages.report.stability.rows import breaking, curve, harmless
+from stages.report.stability.touch import breaking, curve, harmless
+from stages.report.stability.touch_imprints import severities
+from stages.report.topics import build_one
 from stages.report.verdict import judge
 
+CHARTS = [("tradeoff", "exploration"), ("figures", "exploration_calibration")]
+DEGRADED = [("tables", "touch_stability"), ("figures", "touch_stability"), ("figures", "touch_stability_imprints")]
 CURVE = {1: 0.6, 2: 0.8, 3: 0.9, 4: 0.95, 5: 0.98}
 SAVED = {"gain": 2.0, "saliency": 3.5, "random": 3.0}  # touches until 95 %, at an accuracy of 97 %
 
@@ -55,7 +55,7 @@ def explorer(root, results, small):
 
 
 def test_table_tells_how_many_touches_a_fixed_number_takes(explorer):
-    frame = exploration.build(explorer).frame
+    frame = build_one(exploration, "tables", "exploration", explorer).frame
     row = frame[(frame["way"] == "gain") & (frame["likelihood"] == "imprint")].iloc[0]
     assert row["touches"] == pytest.approx(2, abs=0.01)
     assert row["fixed"] == pytest.approx(4.67, abs=0.05)
@@ -63,13 +63,13 @@ def test_table_tells_how_many_touches_a_fixed_number_takes(explorer):
 
 def test_accuracy_beyond_the_curve_is_never_reached():
     rows = explored().query("split == 'random' and likelihood == 'imprint' and way == 'gain'")
-    assert np.isnan(_exploration.needed(rows, 0.999))
-    assert _exploration.needed(rows, 0.1) == 1
+    assert np.isnan(needed(rows, 0.999))
+    assert needed(rows, 0.1) == 1
 
 
-@pytest.mark.parametrize("module", [chart, exploration_calibration])
-def test_charts_are_drawn(explorer, module):
-    assert all(path.exists() for path in module.build(explorer).paths)
+@pytest.mark.parametrize(("kind", "name"), CHARTS)
+def test_charts_are_drawn(explorer, kind, name):
+    assert all(path.exists() for path in build_one(exploration, kind, name, explorer).paths)
 
 
 def test_claims_know_the_truth_of_the_rows(explorer):
@@ -90,9 +90,12 @@ def test_claims_have_names_of_their_own():
 
 def test_nothing_explored_is_said_and_not_crashed_on(results):
     assert set(judge(claims.CLAIMS, results)["verdict"]) == {"open"}
-    for module in (exploration, chart, exploration_calibration, touch_stability, degradation, touch_stability_imprints):
+    for kind, name in (("tables", "exploration"), *CHARTS):
         with pytest.raises(NotRun):
-            module.build(results)
+            build_one(exploration, kind, name, results)
+    for kind, name in DEGRADED:
+        with pytest.raises(NotRun):
+            build_one(stability, kind, name, results)
 
 
 def disturbed():
@@ -113,17 +116,17 @@ def test_half_of_the_lead_is_lost_where_the_rows_say_so():
     points = curve(disturbed(), "noise", ("random", "imprint", "knn"))
     at, low, high = breaking(points, "noise")
     assert at == pytest.approx(0.2, abs=0.01) and low < at < high
-    assert np.isnan(harmless(points, "noise"))
+    assert np.isnan(harmless(points))
 
 
 def test_severities_that_fall_go_from_mild_to_harsh():
     points = curve(disturbed(), "coarse_model", ("random", "imprint", "knn"))
-    assert points["severity"].tolist() == [400, 100] and harmless(points, "coarse_model") == 400
+    assert points["severity"].tolist() == [400, 100] and harmless(points) == 400
 
 
 def test_the_table_of_breaking_points_says_what_is_beyond_the_harshest(root, results, small):
     small.write(root, "touch_stability", disturbed())
-    table = touch_stability.build(results)
+    table = build_one(stability, "tables", "touch_stability", results)
     shown = table.shown.set_index("perturbation")
     assert shown.loc["coarse model", "kNN breaks at"].startswith("< 100")
     assert shown.loc["noise", "kNN breaks at"].startswith("0.2") and shown.loc["noise", "SVM breaks at"] == "–"
@@ -133,19 +136,19 @@ def test_the_table_of_breaking_points_says_what_is_beyond_the_harshest(root, res
 def test_what_is_no_better_than_guessing_has_no_breaking_point(root, results, small):
     lost = disturbed()
     small.write(root, "touch_stability", lost.assign(value=lost["value"] - 0.7))
-    assert touch_stability.build(results).frame.empty
+    assert build_one(stability, "tables", "touch_stability", results).frame.empty
 
 
 def test_the_picture_of_degradation_is_drawn(root, results, small):
     small.write(root, "touch_stability", disturbed())
-    assert degradation.build(results).paths[0].exists()
+    assert build_one(stability, "figures", "touch_stability", results).paths[0].exists()
 
 
 def test_the_picture_of_disturbed_imprints_goes_from_mild_to_harsh(root, results):
     images = np.zeros((1, 8, 8))
     keys = ("clean", "gain.0.5", "gain.0.9", "noise.0.1", "coarse_model.100")
     write_arrays(root / "data/test/touch_stability/ball.npz", **{f"shown.{key}": images for key in keys})
-    figure = touch_stability_imprints.build(results)
+    figure = build_one(stability, "figures", "touch_stability_imprints", results)
     assert figure.paths[0].exists() and "coarse" not in figure.alt
     stored = {f"shown.{key}": images for key in keys}
-    assert touch_stability_imprints._severities(stored, "gain") == ["0.9", "0.5"]
+    assert severities(stored, "gain") == ["0.9", "0.5"]

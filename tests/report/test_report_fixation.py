@@ -1,5 +1,6 @@
 """What the report says of where networks look (T3.3), on rows and maps whose truth is known."""
 
+from functools import partial
 from itertools import combinations
 
 import matplotlib.pyplot as plt
@@ -7,21 +8,20 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.fixation import tasks as stage_tasks
 from stages.fixation.agreement import ALL_VIEWS
+from stages.fixation.tasks import SHAPE_MEASURES
 from stages.fixation.viewpoints import evaluated_views, viewpoint_sphere
 from stages.kit.files import read_arrays, write_arrays
 from stages.kit.stats import interval
+from stages.report import fixation as topic
 from stages.report.differences import differences
-from stages.report.fixation import agreement as table
 from stages.report.fixation import claims as chapter_3_fixation
-from stages.report.fixation import detectors, figure_3_28, figure_3_31, figure_3_32, maps
-from stages.report.fixation import fixation_chart as chart
+from stages.report.fixation import maps
 from stages.report.fixation import rows as _fixation
-from stages.report.fixation.places import nearer_than_chance, nearer_than_middle
+from stages.report.fixation.places import anywhere, middle, nearer
 from stages.report.items import Figure
 from stages.report.results import NotRun
-from stages.report.topics import CLAIMS
+from stages.report.topics import CLAIMS, build_one
 from stages.report.verdict import judge
 
 NETWORKS = ["mobilenet_v2-frozen", "mobilenet_v2-finetuned", "vgg16-frozen", "resnet50-frozen", "mobilenet_v2-random",
@@ -33,11 +33,17 @@ OTHERS = {("rival", "mesh_saliency"): 0.15, ("rival", "enhanced"): 0.6, ("contro
 DISTANCES = {"ewigc": 0.1, "ewigc_l4": 0.15, "mesh_saliency": 0.2, "enhanced": 0.08, "centre_prior": 0.2,
              "random": 0.05}  # fmt: skip
 ALIKE = {"vgg16-frozen": 0.5, "resnet50-frozen": 0.7}  # mean correlation of two tasks' maps; 0.4 for others
-FIGURES = [
-    figure_3_28.build, figure_3_31.build, figure_3_32.build, detectors.figure_3_35, detectors.figure_3_36,
-]  # fmt: skip
-VIEWED = [maps.figure_3_29, maps.figure_3_30, maps.figure_3_34]
-ON_GAZE = [maps.on_gaze(build, f"{build.__name__}_gaze") for build in VIEWED]
+FIGURES = ["figure_3_28", "figure_3_31", "figure_3_32", "figure_3_35", "figure_3_36"]
+VIEWED = ["figure_3_29", "figure_3_30", "figure_3_34"]
+nearer_than_chance, nearer_than_middle = partial(nearer, anywhere), partial(nearer, middle)
+
+
+def table(results):
+    return build_one(topic, "tables", "fixation", results)
+
+
+def figure(results, name):
+    return build_one(topic, "figures", name, results)
 
 
 def rows(dataset="gaze", count=6, resnet=0.0, **means):
@@ -91,7 +97,7 @@ def elbow():
     ssd = {2: 10.0, 3: 6.0, 4: 2.0, 5: 1.8, 6: 1.6}
     return pd.DataFrame(
         {"method": task, "task": task, "clusters": k, "metric": "ssd", "value": value, "chosen": k == 4}
-        for task in _fixation.SHAPE
+        for task in SHAPE_MEASURES
         for k, value in ssd.items()
     )
 
@@ -123,10 +129,7 @@ def line(frame, **where):
     return frame.iloc[0]
 
 
-def test_names_are_those_of_the_stage():
-    assert stage_tasks.FUSED_TASKS == _fixation.CHOSEN
-    assert set(stage_tasks.TASKS) == set(_fixation.TASKS)
-    assert ALL_VIEWS == _fixation.ALL_VIEWS
+def test_views_are_those_of_the_stage():
     assert [viewpoint_sphere(9, 24)[view] for view in evaluated_views(9, 24)] == list(_fixation.VIEWPOINTS)
 
 
@@ -147,7 +150,6 @@ def test_views_are_told_apart_whether_they_are_read_as_words_or_as_numbers():
 
 def test_truths_are_named_and_gaze_comes_first(gaze):
     assert list(_fixation.sources(gaze)) == ["human gaze, 6 meshes", "marks, 4 objects"]
-    assert _fixation.best_source(gaze)[0] == "human gaze, 6 meshes"
     assert list(_fixation.sources(gaze, "pcc_tasks")) == ["human gaze, 6 meshes", "household, 4 objects"]
 
 
@@ -155,13 +157,13 @@ def test_a_run_without_anyones_attention_still_says_how_alike_tasks_are(bare, sm
     frame = rows("furniture")
     small.write(bare, "fixation", frame[frame["metric"] != "pcc"])
     results = small.results(bare)
-    assert figure_3_31.build(results).paths[0].exists()
+    assert figure(results, "figure_3_31").paths[0].exists()
     with pytest.raises(NotRun, match="ground truth"):
-        table.build(results)
+        table(results)
 
 
 def test_gain_over_a_control_is_paired_so_that_hard_objects_do_not_widen_it(gaze):
-    frame = table.build(gaze).frame
+    frame = table(gaze).frame
     row = line(frame, truth="human gaze, 6 meshes", method="vgg16-frozen", task="ewigc", metric="pcc")
     assert row["mean"] == pytest.approx(0.4, abs=0.01)
     assert row["over_weights"] == pytest.approx(0.3, abs=0.01) and row["over_prior"] == pytest.approx(0.2, abs=0.01)
@@ -170,13 +172,13 @@ def test_gain_over_a_control_is_paired_so_that_hard_objects_do_not_widen_it(gaze
 
 
 def test_distances_are_told_in_per_cent_of_the_diameter(gaze):
-    frame = table.build(gaze).frame
+    frame = table(gaze).frame
     row = line(frame, truth="human gaze, 6 meshes", method="vgg16-frozen", task="ewigc", metric="distance")
     assert row["mean"] == pytest.approx(12, abs=0.2) and row["over_lee"] == pytest.approx(-10, abs=0.2)
 
 
 def test_detectors_stand_in_the_order_of_their_correlation(gaze):
-    made = table.build(gaze)
+    made = table(gaze)
     for _, group in made.frame[made.frame["metric"] == "pcc"].groupby("truth"):
         assert group["mean"].is_monotonic_decreasing
     assert made.shown["detector"].iloc[0] == "ours (gaze model)"
@@ -184,11 +186,11 @@ def test_detectors_stand_in_the_order_of_their_correlation(gaze):
 
 
 def test_marks_are_said_to_be_no_human_gaze_only_where_they_are_the_truth(gaze):
-    assert any("no human subjects" in note for note in table.build(gaze).notes)
-    assert "no human subjects" in detectors.figure_3_35(gaze).caption
+    assert any("no human subjects" in note for note in table(gaze).notes)
+    assert "no human subjects" in figure(gaze, "figure_3_35").caption
     (gaze.reports / "measurements/household/fixation.csv.gz").unlink()
-    assert not any("no human subjects" in note for note in table.build(gaze).notes)
-    assert "no human subjects" not in detectors.figure_3_35(gaze).caption
+    assert not any("no human subjects" in note for note in table(gaze).notes)
+    assert "no human subjects" not in figure(gaze, "figure_3_35").caption
 
 
 def test_networks_that_are_not_available_are_named_once(gaze, small):
@@ -196,7 +198,7 @@ def test_networks_that_are_not_available_are_named_once(gaze, small):
     missing = {"dataset": "household", "method": "googlenet-frozen", "metric": "accuracy", "note": "no weights"}
     alone = {"dataset": "household", "method": "vgg16-frozen", "task": "level_3", "metric": "accuracy", "note": "alone"}
     small.write(gaze.data.parent, "fixation", pd.concat([frame, pd.DataFrame([missing, alone])]))
-    notes = [note for note in table.build(small.results(gaze.data.parent)).notes if "Not run" in note]
+    notes = [note for note in table(small.results(gaze.data.parent)).notes if "Not run" in note]
     assert notes == ["Not run here: GoogLeNet, frozen: no weights."]
 
 
@@ -267,22 +269,28 @@ def test_claims_of_t_3_3_stand_between_those_of_attention_and_of_meshes():
     assert len(set(sections)) == len(sections)
 
 
-@pytest.mark.parametrize("figure", FIGURES)
-def test_figures_are_drawn_of_both_truths(gaze, figure):
-    assert figure(gaze).paths[0].stat().st_size > 10_000
+@pytest.mark.parametrize("name", FIGURES)
+def test_figures_are_drawn_of_both_truths(gaze, name):
+    assert figure(gaze, name).paths[0].stat().st_size > 10_000
 
 
-def test_no_interval_of_a_correlation_leaves_its_range():
+def test_no_interval_of_a_correlation_leaves_its_range(gaze, small):
     wild = np.array([1.0, 1.0, 1.0, -0.5])
-    assert interval(wild)[2] > 1 >= figure_3_31.span(wild)[2]
+    assert interval(wild)[2] > 1
+    frame = rows(count=4)
+    alike = frame["metric"] == "pcc_tasks"
+    frame.loc[alike, "value"] = frame.loc[alike, "item"].map(dict(zip("abcd", wild, strict=True)))
+    drawn = topic.tasks.figure_3_31(again(gaze, small, frame)).drawing
+    assert drawn.axes[0].get_title().endswith(", 1.00]")
+    plt.close(drawn)
 
 
 def test_number_of_classes_is_told(gaze):
-    assert "convexity 4, curvature 4, eccentricity 4" in figure_3_28.build(gaze).caption
+    assert "convexity 4, curvature 4, eccentricity 4" in figure(gaze, "figure_3_28").caption
 
 
 def test_cost_is_teaching_once_and_looking_at_every_object(gaze):
-    made = chart.build(gaze)
+    made = build_one(topic, "tradeoff", "fixation", gaze)
     frame = pd.read_csv(gaze.reports / "tradeoff/fixation.csv").set_index("name")
     assert frame.loc["MobileNetV2, frozen", "seconds"] == pytest.approx(2 * 1 + 6 * 2)
     assert frame.loc["MobileNetV2, fine-tuned", "cost_ratio"] == pytest.approx((2 * 100 + 6 * 2) / 14, rel=1e-5)
@@ -313,41 +321,41 @@ def write_look(root, name, mesh, peak):
     write_arrays(root / f"data/test/fixation/{name}.npz", **arrays)
 
 
-@pytest.mark.parametrize("figure", VIEWED)
-def test_maps_are_drawn_on_the_object(looked, figure):
-    made = figure(looked)
+@pytest.mark.parametrize("name", VIEWED)
+def test_maps_are_drawn_on_the_object(looked, name):
+    made = figure(looked, name)
     assert made.paths[0].stat().st_size > 10_000
     assert "MobileNetV2" in made.alt
-    assert ("random weights" in made.alt) == (figure is not maps.figure_3_29)  # which shows no controls
+    assert ("random weights" in made.alt) == (name != "figure_3_29")  # which shows no controls
 
 
 def test_a_map_is_drawn_where_it_is_high():
     cam = np.zeros((7, 7), dtype=np.float16)
     cam[1, 5] = 3
-    found = maps.large(cam[None], "mobilenet_v2")[0]  # whose cells lie on pixels 0, 32, 64, ... of 224
+    found = maps.large(cam[None], "mobilenet_v2-frozen")[0]  # whose cells lie on pixels 0, 32, 64, ... of 224
     place = (60, 300)
     assert np.unravel_index(found.argmax(), found.shape) == pytest.approx(place, abs=3) and found.max() > 0.98
-    assert not maps.large(np.zeros((1, 7, 7)), "mobilenet_v2").any()
+    assert not maps.large(np.zeros((1, 7, 7)), "mobilenet_v2-frozen").any()
 
 
 def test_fused_attention_stands_beside_models_where_nobody_marked_anything(looked):
     for path in (looked.data / "test/weights/ground_truth").glob("*.npz"):
         path.unlink()
-    made = maps.figure_3_34(looked)
+    made = figure(looked, "figure_3_34")
     assert "marks" not in made.alt.lower() and "mesh saliency" not in made.alt and "ours" in made.alt
 
 
 def test_one_place_seen_from_all_sides_is_told_from_chance_and_from_the_middle(looked):
-    for nearer in (nearer_than_chance, nearer_than_middle):
-        found = nearer(looked, None)
+    for gain in (nearer_than_chance, nearer_than_middle):
+        found = gain(looked)
         assert len(found) == 2 and (found > 0.4).all()  # all views look at the pole
 
 
 def test_looking_at_the_middle_of_each_picture_is_no_place_of_the_object(looked, small):
     for name in ("ball", "cube"):
         write_look(looked.data.parent, name, small.ball(), None)
-    assert (nearer_than_chance(looked, None) < -0.05).all()
-    assert nearer_than_middle(looked, None).to_numpy() == pytest.approx([0, 0], abs=0.01)
+    assert (nearer_than_chance(looked) < -0.05).all()
+    assert nearer_than_middle(looked).to_numpy() == pytest.approx([0, 0], abs=0.01)
 
 
 def test_a_view_that_sees_nothing_has_no_place(looked, root):
@@ -355,31 +363,36 @@ def test_a_view_that_sees_nothing_has_no_place(looked, root):
     arrays = read_arrays(path)
     arrays["visible"][1:] = False
     write_arrays(path, **arrays)
-    assert len(nearer_than_chance(looked, None).dropna()) == 1  # one view of the ball is left
+    assert len(nearer_than_chance(looked).dropna()) == 1  # one view of the ball is left
 
 
-def test_a_picture_on_gaze_is_kept_with_its_words_where_the_meshes_are_absent(bare, small):
-    def draw(results, dataset):
-        path = maps.path_of(results, "3_34", dataset)
-        path.parent.mkdir(parents=True, exist_ok=True)
-        plt.imsave(path, np.zeros((4, 4)))
-        return Figure("Figure 3.34: fused", "an alt", "a caption", [path])
+def test_a_picture_on_gaze_is_kept_with_its_words_where_the_meshes_are_absent(bare, small, monkeypatch):
+    def figure_3_34(results, dataset=None):
+        drawing, axes = plt.subplots()
+        axes.plot([0, 1])
+        return Figure(drawing, {"names": dataset, "columns": "marks", "control": "", "marks": ""})
 
-    build, results = maps.on_gaze(draw, "figure_3_34_gaze"), small.results(bare)
+    monkeypatch.setitem(topic.FIGURES, "figure_3_34_gaze", partial(maps.on_gaze, figure_3_34))
+    results = small.results(bare)
     (bare / "data/gaze/fixation").mkdir(parents=True)
-    drawn = build(results)
+    drawn = figure(results, "figure_3_34_gaze")
+    content = drawn.paths[0].read_bytes()
     (bare / "data/gaze/fixation").rmdir()
-    assert build(results) == drawn
-    assert drawn.title == "Figure 3.34: fused, on meshes with human gaze" and drawn.caption == "a caption"
-    assert {path.name for path in drawn.paths} == {"figure_3_34_gaze.png", "figure_3_34_gaze.json"}
-    drawn.paths[0].unlink()
+    kept = figure(results, "figure_3_34_gaze")
+    for one in (drawn, kept):
+        assert one.title == "Figure 3.34: fused attention on the surface, on meshes with human gaze"
+        assert one.alt == "Meshes of gaze, coloured from dark (low) to yellow (high): marks."
+        assert one.caption.startswith("EWIGC_L4: the highest") and one.caption.endswith("98 % quantile.")
+    assert [path.name for path in kept.paths] == ["figure_3_34_gaze.png", "figure_3_34_gaze.json"]
+    assert kept.paths == drawn.paths and kept.paths[0].read_bytes() == content
+    kept.paths[0].unlink()
     with pytest.raises(NotRun, match="figure_3_34_gaze.png"):
-        build(results)
+        figure(results, "figure_3_34_gaze")
 
 
 def test_without_any_attention_nothing_is_made_up(bare, small):
     empty = small.results(bare)
-    for build in (*FIGURES, *VIEWED, *ON_GAZE, table.build, chart.build):
+    for build in (*topic.FIGURES.values(), *topic.TABLES.values(), *topic.CHARTS.values()):
         with pytest.raises(NotRun, match="fixation"):
             build(empty)
     judged = judge(chapter_3_fixation.CLAIMS, empty)

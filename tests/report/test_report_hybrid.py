@@ -8,14 +8,12 @@ import pytest
 
 from stages.kit.files import write_table
 from stages.kit.rows import write_rows
+from stages.report import hybrid, stability
 from stages.report.differences import differences
 from stages.report.hybrid import claims as chapter_5_hybrid
-from stages.report.hybrid import figure_5_6, hybrid_senses, section_5_5
-from stages.report.hybrid import hybrid_chart as chart
-from stages.report.hybrid.rows import BOTH
+from stages.report.hybrid.hybrid_senses import METHODS as BOTH
 from stages.report.results import NotRun
-from stages.report.stability import transfer as breaking
-from stages.report.stability import transfer_figure as transfer_stability
+from stages.report.topics import build_one
 from stages.report.verdict import judge
 from stages.transfer.schema import COLUMNS
 
@@ -97,7 +95,7 @@ def run(bare, small):
 
 
 def test_the_hybrid_stands_beside_the_two_networks(run):
-    table = section_5_5.build(run)
+    table = build_one(hybrid, "tables", "section_5_5", run)
     frame = table.frame.set_index(["network", "split"])
     assert frame.loc[("hybrid", "random"), "touch"] == frame.loc[("apart", "random"), "touch"]
     assert frame.loc[("hybrid", "random"), "size_ratio"] == pytest.approx(17 / 11.9, rel=1e-4)
@@ -112,7 +110,7 @@ def test_a_hybrid_that_loses_accuracy_says_so(bare, small):
     worse = (frame["method"] == "hybrid") & (frame["metric"] == "accuracy") & (frame["sense"] == "touch")
     frame.loc[worse, "value"] -= 0.03
     write(bare, frame)
-    notes = " ".join(section_5_5.build(small.results(bare)).notes)
+    notes = " ".join(build_one(hybrid, "tables", "section_5_5", small.results(bare)).notes)
     assert "accuracy by 3.00 points at most; the aim of 1 point or less is missed on average" in notes
 
 
@@ -126,13 +124,18 @@ def two_middles(bare, run, small):
 
 def test_networks_of_another_middle_change_no_claim_and_no_table_of_the_first(run, two_middles):
     pd.testing.assert_frame_equal(judge(chapter_5_hybrid.CLAIMS, two_middles), judge(chapter_5_hybrid.CLAIMS, run))
-    pd.testing.assert_frame_equal(hybrid_senses.build(two_middles).frame, hybrid_senses.build(run).frame)
-    both = section_5_5.build(two_middles).frame
-    pd.testing.assert_frame_equal(both[both["shared_layers"] == FIRST], section_5_5.build(run).frame)
+    pd.testing.assert_frame_equal(
+        build_one(hybrid, "tables", "hybrid_senses", two_middles).frame,
+        build_one(hybrid, "tables", "hybrid_senses", run).frame,
+    )
+    both = build_one(hybrid, "tables", "section_5_5", two_middles).frame
+    pd.testing.assert_frame_equal(
+        both[both["shared_layers"] == FIRST], build_one(hybrid, "tables", "section_5_5", run).frame
+    )
 
 
 def test_a_longer_middle_is_held_against_the_first_on_the_same_items(two_middles):
-    table = section_5_5.build(two_middles)
+    table = build_one(hybrid, "tables", "section_5_5", two_middles)
     frame = table.frame.set_index(["shared_layers", "network", "split"])
     found = frame.loc[(LONGER, "hybrid", "objects")]
     assert found["touch_gain"] == pytest.approx(-10) and found["size_ratio"] == pytest.approx(1.68, rel=1e-4)
@@ -143,19 +146,19 @@ def test_a_longer_middle_is_held_against_the_first_on_the_same_items(two_middles
 
 
 def test_a_longer_middle_is_drawn_as_far_from_the_first_as_it_was(two_middles):
-    made = chart.build(two_middles)
+    made = build_one(hybrid, "tradeoff", "hybrid", two_middles)
     assert "layers 18:147 shared instead of 18:139" in made.caption
     kept = pd.read_csv(two_middles.reports / "tradeoff/hybrid.csv")
     assert list(kept.loc[kept["shared_layers"] == LONGER, "network"].unique()) == ["hybrid"]
 
 
 def test_one_middle_needs_no_word_on_another(run):
-    assert "Hollow" not in chart.build(run).caption
+    assert "Hollow" not in build_one(hybrid, "tradeoff", "hybrid", run).caption
 
 
 def test_hybrids_on_the_thesis_s_classes_stand_beside_the_run_s(bare, run, small):
     write(bare, rows(both=-0.5), "princeton_six")
-    frame = section_5_5.build(small.results(bare)).frame
+    frame = build_one(hybrid, "tables", "section_5_5", small.results(bare)).frame
     assert list(frame["objects"].unique()) == ["furniture", "psb, the thesis's 6 classes"]
     own, theirs = (
         frame[(frame["objects"] == name) & (frame["network"] == "hybrid") & (frame["split"] == "objects")].iloc[0]
@@ -168,7 +171,7 @@ def test_hybrids_on_the_thesis_s_classes_stand_beside_the_run_s(bare, run, small
 
 def test_hybrids_on_the_thesis_s_classes_alone_are_told_too(bare, small):
     write(bare, rows(), "princeton_six")
-    frame = section_5_5.build(small.results(bare)).frame
+    frame = build_one(hybrid, "tables", "section_5_5", small.results(bare)).frame
     assert list(frame["objects"].unique()) == ["psb, the thesis's 6 classes"]
 
 
@@ -176,34 +179,40 @@ def test_a_first_set_without_hybrids_hides_none_of_the_second(bare, small):
     frame = rows()
     write(bare, frame[frame["data"] != "hybrid"])
     write(bare, frame, "princeton_six")
-    table = section_5_5.build(small.results(bare))
+    table = build_one(hybrid, "tables", "section_5_5", small.results(bare))
     assert list(table.frame["objects"].unique()) == ["psb, the thesis's 6 classes"]
 
 
 def test_damage_is_told_at_its_harshest(run):
-    shown = hybrid_senses.build(run).shown.set_index("answers")
+    shown = build_one(hybrid, "tables", "hybrid_senses", run).shown.set_index("answers")
     assert list(shown) == ["both whole, %", "picture: darkness 0.95, %"]
     assert shown.loc["sight alone", "picture: darkness 0.95, %"].startswith("10")
 
 
-@pytest.mark.parametrize(("module", "size"), [(figure_5_6, 5000), (transfer_stability, 10_000), (chart, 10_000)])
-def test_pictures_are_drawn(run, module, size):
-    assert module.build(run).paths[0].stat().st_size > size
+PICTURES = [(hybrid, "figures", "figure_5_6"), (hybrid, "tradeoff", "hybrid"),
+            (stability, "figures", "transfer_stability")]  # fmt: skip
+TABLES = [(hybrid, "tables", "section_5_5"), (hybrid, "tables", "hybrid_senses"),
+          (stability, "tables", "transfer_stability")]  # fmt: skip
 
 
-def test_confusions_of_each_split_and_sense_are_in_per_cent(run, monkeypatch):
-    drawn = []
-    monkeypatch.setattr(figure_5_6, "save", lambda figure, path: drawn.append(figure) or path)
-    figure_5_6.build(run)
-    found = [[text.get_text() for text in axes.texts] for axes in drawn[0].axes]
+@pytest.mark.parametrize(("topic", "kind", "name"), PICTURES)
+def test_pictures_are_drawn(run, topic, kind, name):
+    assert build_one(topic, kind, name, run).paths[0].stat().st_size > (5000 if name == "figure_5_6" else 10_000)
+
+
+def test_confusions_of_each_split_and_sense_are_in_per_cent(run):
+    made = build_one(hybrid, "figures", "figure_5_6", run)
+    assert "2 classes (car, vase)" in made.alt and "items at random, unseen objects in rows" in made.alt
+    found = [[text.get_text() for text in axes.texts] for axes in made.drawing.axes]
     assert found == 4 * [["80", "20", "20", "80"]]
 
 
 def test_a_network_breaks_where_half_of_its_lead_is_lost(run):
-    row = breaking.build(run).frame.set_index("perturbation").loc["noise"]
+    table = build_one(stability, "tables", "transfer_stability", run)
+    row = table.frame.set_index("perturbation").loc["noise"]
     assert row["breaking_point"] == pytest.approx(0.1775)  # 0.39 at 0.1, 0.29 at 0.2; half way from 0.5 to 0.125
     assert row["low"] < row["breaking_point"] < row["high"] or np.isnan(row["high"])
-    assert breaking.build(run).shown["unit"].tolist() == ["sigma, share of full scale"]
+    assert table.shown["unit"].tolist() == ["sigma, share of full scale"]
 
 
 VERDICTS = {
@@ -266,6 +275,6 @@ def test_claims_on_the_thesis_s_classes_read_those_alone(bare, run, small):
 
 def test_without_a_hybrid_nothing_is_made_up(bare, small):
     empty = small.results(bare)
-    for module in (section_5_5, hybrid_senses, figure_5_6, transfer_stability, breaking, chart):
+    for topic, kind, name in [*PICTURES, *TABLES]:
         with pytest.raises(NotRun, match="transfer"):
-            module.build(empty)
+            build_one(topic, kind, name, empty)

@@ -6,29 +6,16 @@ import pytest
 
 from stages.kit.files import write_arrays, write_mesh
 from stages.kit.stats import interval
-from stages.report import judge
+from stages.report import judge, meshes
 from stages.report.claims import highest_of, lowest_of
 from stages.report.differences import differences
-from stages.report.meshes import (
-    figure_3_4,
-    figure_3_5,
-    figure_3_7,
-    figure_3_8,
-    figure_3_21,
-    figure_3_22,
-    figure_3_23,
-    lod_claims,
-    lod_detectors,
-    simplification,
-    table_3_1_5_combinations,
-    table_3_2,
-)
-from stages.report.meshes.groups import BOTH, FEW_MINUS_MANY, claim, lod_claim
-from stages.report.meshes.lod_claims import CLAIMS
+from stages.report.meshes import figure_3_8, pictures, simplification, table_3_2
+from stages.report.meshes.claims import BOTH, CLAIMS, FEW_MINUS_MANY, claim, lower
+from stages.report.meshes.methods import ordered, short
 from stages.report.meshes.rows import data_sets, face_counts, paired_cells
 from stages.report.results import NotRun
 from stages.report.style import label
-from stages.report.topics import KINDS, build_all
+from stages.report.topics import KINDS, build_all, build_one
 
 OBJECTS = ["a", "b", "c", "d"]
 POINTS = {"heat_kernel": 3, "SymRad": 4, "itti": 15, "guided_ssim": 16, "guided_ed": 17, "svm": 18, "harris": 50,
@@ -72,6 +59,14 @@ def run(bare, small):
     return written
 
 
+def table(results, name):
+    return build_one(meshes, "tables", name, results)
+
+
+def figure(results, name):
+    return build_one(meshes, "figures", name, results)
+
+
 def without(rows, value=np.nan, **where):
     """The rows with another value in the cells of `where`."""
     chosen = np.logical_and.reduce([rows[column] == wanted for column, wanted in where.items()])
@@ -112,7 +107,7 @@ def test_face_counts_come_before_shares_and_need_objects(run):
 
 def test_table_3_2_compares_all_methods_on_the_same_objects(run):
     rows = without(measured(), item="d", target="1500", method="guided_ed", metric="ssim_error")
-    frame = table_3_2.build(run(rows)).frame
+    frame = table(run(rows), "table_3_2").frame
     counts = frame.groupby(["target", "metric"])["objects"].unique().map(list).to_dict()
     assert counts["1500", "ssim_error"] == [3] and counts["1500", "metro_mean"] == [4]
     same = frame[(frame["target"] == "3000") & (frame["metric"] == "metro_mean")].set_index("method")
@@ -121,7 +116,7 @@ def test_table_3_2_compares_all_methods_on_the_same_objects(run):
 
 
 def test_table_3_2_shows_the_thesis_and_every_data_set(run):
-    shown = table_3_2.build(run(measured(), gaze=measured("gaze", 2))).shown.set_index(["target", "kept points"])
+    shown = table(run(measured(), gaze=measured("gaze", 2)), "table_3_2").shown.set_index(["target", "kept points"])
     row = shown.loc[("3,000 faces", "guided by SSIM")]
     assert row["Metro mean, %, thesis"] == "0.180"
     assert row["Metro mean, %, test"].endswith("+") and "[" in row["Metro mean, %, meshes with human gaze"]
@@ -130,14 +125,14 @@ def test_table_3_2_shows_the_thesis_and_every_data_set(run):
 
 def test_table_3_2_repeats_what_nothing_shrank_only_where_it_differs(run):
     rows = measured()
-    assert not table_3_2.build(run(rows)).frame["nothing_shrunk"].any()
+    assert not table(run(rows), "table_3_2").frame["nothing_shrunk"].any()
     rows.loc[(rows["method"] == "svm") & (rows["item"] == "a"), "shrunk"] = True
-    found = table_3_2.build(run(rows)).frame.groupby("nothing_shrunk")["objects"].max()
+    found = table(run(rows), "table_3_2").frame.groupby("nothing_shrunk")["objects"].max()
     assert found.to_dict() == {False: 4, True: 3}
 
 
 def test_every_detector_has_all_errors_in_the_thesis_order(run):
-    frame = lod_detectors.build(run(measured())).frame
+    frame = table(run(measured()), "lod_detectors").frame
     assert frame["method"].iloc[0] == "harris" and frame["method"].iloc[-1] == "qem"
     assert set(frame["metric"]) >= {"metro_rms", "dlap", "dnor", "salient_error", "points", "kept"}
     means = frame[frame["metric"] == "metro_mean"].set_index("method")["mean"]
@@ -149,18 +144,23 @@ def test_every_detector_has_all_errors_in_the_thesis_order(run):
 def test_a_way_is_said_behind_the_method():
     assert label("guided_ssim-adaptive") == "guided by SSIM, adaptive"
     assert label("enhanced-soft") == "ours (gaze model), soft"
-    assert lod_detectors.short("heat_kernel-area") == "HKS, area"
+    assert short("heat_kernel-area") == "HKS, area"
+
+
+def test_methods_stand_in_the_thesis_order_before_ways_and_others():
+    names = ["harris", "random", "enhanced-soft", "a", "b", "qem"]
+    assert ordered(sorted(names)) == names
 
 
 def test_combinations_without_errors_are_not_run(run):
-    shown = table_3_1_5_combinations.build(run(measured())).shown.set_index("combination")
+    shown = table(run(measured()), "table_3_1_5_combinations").shown.set_index("combination")
     assert shown.loc["VisAttEnt", "Metro mean, %"] == "not run"
     assert float(shown.loc["VisAtt", "Metro mean, %"]) > 0
 
 
-def higher(results, worse, better, target=None):
+def higher(results, worse, better, target=""):
     """How much higher the Metro mean error of `worse` is than that of `better`, in % of the mean of the two."""
-    return differences(results, lod_claim("k", "s", "Sentence.", worse, better, "metro_mean", target))
+    return differences(results, lower("s", "metro_mean", "k", "Sentence.", worse, better, target))
 
 
 def stated(results, statistic, **fields):
@@ -256,9 +256,9 @@ def test_ranks_agree_where_the_error_grows_with_the_points(run):
 
 def test_every_claim_on_meshes_is_judged_on_every_set(run):
     results = run(measured(), princeton=measured("princeton", 1))
-    table = lod_claims.build(results)
-    assert len(table.shown) == len(CLAIMS)
-    words = table.frame.set_index(["key", "data"])["verdict"]
+    built = table(results, "lod_claims")
+    assert len(built.shown) == len(CLAIMS)
+    words = built.frame.set_index(["key", "data"])["verdict"]
     for data in ("test", "psb"):
         assert words["many_points_distort", data] == "supported"
         assert words["adaptive_svm_metro", data] == "supported"
@@ -283,27 +283,27 @@ def test_where_people_look_is_judged_on_the_meshes_with_gaze(run, own):
     assert found.loc["ours_keep_gaze", "verdict"] == "supported"
     assert found.loc["ours_keep_gaze", "tested_on"].startswith("meshes with human gaze, error weighted by human gaze")
     assert found.loc["ours_keep_salient", "verdict"] == "contradicted"  # the model and people differ
-    table = lod_claims.build(results).frame.set_index(["key", "data"])["verdict"]
-    assert table["ours_keep_gaze", "meshes with human gaze"] == "supported"
-    assert own or table["ours_keep_gaze", "test"] == "open"
+    found = table(results, "lod_claims").frame.set_index(["key", "data"])["verdict"]
+    assert found["ours_keep_gaze", "meshes with human gaze"] == "supported"
+    assert own or found["ours_keep_gaze", "test"] == "open"
 
 
 @pytest.mark.parametrize("own", [True, False])
 def test_tables_show_the_error_by_gaze_where_it_was_measured(run, own):
     results = run(with_people()) if own else run(measured(), gaze=with_people())
-    shown = lod_detectors.build(results).shown
+    shown = table(results, "lod_detectors").shown
     assert ("error where people look, %" + ("" if own else ", meshes with human gaze")) in shown
-    assert ("error where people look, %" in table_3_1_5_combinations.build(results).shown) == own
+    assert ("error where people look, %" in table(results, "table_3_1_5_combinations").shown) == own
 
 
 def test_not_run_claims_say_so(run):
     rows = measured()
-    table = lod_claims.build(run(rows[rows["method"].isin(["qem", "itti"])]))
-    assert (table.frame["verdict"] == "open").all() and (table.frame["objects"] == 0).all()
+    frame = table(run(rows[rows["method"].isin(["qem", "itti"])]), "lod_claims").frame
+    assert (frame["verdict"] == "open").all() and (frame["objects"] == 0).all()
 
 
 @pytest.fixture
-def meshes(run, small):
+def simplified(run, small):
     """A run with points, and simplified meshes of two objects on the disk."""
     results = run(measured())
     root, mesh = results.data / "test", small.ball()
@@ -319,40 +319,40 @@ def meshes(run, small):
     return results
 
 
-@pytest.mark.parametrize("module", [figure_3_4, figure_3_5, figure_3_23])
-def test_charts_of_errors_are_drawn(run, module):
-    figure = module.build(run(measured(), princeton=measured("princeton", 1)))
-    assert figure.paths[0].stat().st_size > 5000
-    assert "4 " in figure.caption or "objects" in figure.caption
+@pytest.mark.parametrize("name", ["figure_3_4", "figure_3_5", "figure_3_23"])
+def test_charts_of_errors_are_drawn(run, name):
+    found = figure(run(measured(), princeton=measured("princeton", 1)), name)
+    assert found.paths[0].stat().st_size > 5000
+    assert "4 " in found.caption or "objects" in found.caption
 
 
-@pytest.mark.parametrize("module", [figure_3_7, figure_3_8, figure_3_21, figure_3_22])
-def test_pictures_of_meshes_are_drawn(meshes, module, monkeypatch):
-    monkeypatch.setattr(module, "ROWS", 60, raising=False)
-    figure = module.build(meshes)
-    assert figure.paths[0].stat().st_size > 5000
+@pytest.mark.parametrize("name", ["figure_3_7", "figure_3_8", "figure_3_21", "figure_3_22"])
+def test_pictures_of_meshes_are_drawn(simplified, name, monkeypatch):
+    monkeypatch.setattr(pictures, "ROWS", dict.fromkeys(pictures.ROWS, 60))
+    monkeypatch.setattr(figure_3_8, "ROWS", 60)
+    assert figure(simplified, name).paths[0].stat().st_size > 5000
 
 
-def test_pictures_take_the_same_target_of_all_methods(meshes):
-    for path in (meshes.data / "test/lod/a").glob("corners_1500.npz"):
+def test_pictures_take_the_same_target_of_all_methods(simplified):
+    for path in (simplified.data / "test/lod/a").glob("corners_1500.npz"):
         path.unlink()
-    assert "a at 3,000 faces" in figure_3_7.build(meshes).caption
+    assert "a at 3,000 faces" in figure(simplified, "figure_3_7").caption
 
 
-def test_picture_of_many_and_few_points_takes_the_object_where_they_differ(meshes):
-    path = meshes.data / "test/salient_points/b.npz"
+def test_picture_of_many_and_few_points_takes_the_object_where_they_differ(simplified):
+    path = simplified.data / "test/salient_points/b.npz"
     arrays = {f"{method}.points": np.arange(60) for method in POINTS}
     counts = {"corners": 60, "VisAttCurvSymCon": 14}
     write_arrays(path, **arrays | {f"{method}.strong": np.int64(counts.get(method, 3)) for method in POINTS})
-    assert figure_3_7.build(meshes).caption.startswith("b at ")
+    assert figure(simplified, "figure_3_7").caption.startswith("b at ")
 
 
 def test_boxes_hold_the_objects_without_error(run, monkeypatch):
     rows, drawn = measured(), []
     exact = (rows["item"] == "a") & (rows["metric"] == "metro_mean")
     rows.loc[exact, "value"] = 0.0
-    monkeypatch.setattr(figure_3_23.np, "quantile", lambda values, _: drawn.append(values) or [1e-9, 1, 2, 3, 4])
-    figure_3_23.build(run(rows))
+    monkeypatch.setattr(table_3_2.np, "quantile", lambda values, _: drawn.append(values) or [1e-9, 1, 2, 3, 4])
+    figure(run(rows), "figure_3_23")
     assert {len(values) for values in drawn} == {4} and min(values.min() for values in drawn) > 0
 
 
@@ -360,8 +360,8 @@ def test_chart_of_costs_has_a_front_for_each_share(run, monkeypatch):
     rows = measured()
     more = rows[rows["target"] == "25%"].assign(target="50%", value=lambda half: half["value"] / 2)
     monkeypatch.setattr(simplification, "attention_seconds", lambda _: dict.fromkeys(POINTS, 0.9))
-    figure = simplification.build(run(pd.concat([rows, more])))
-    found = pd.read_csv(figure.paths[1]).set_index(["metric", "target", "method"])
+    chart = build_one(meshes, "tradeoff", "simplification", run(pd.concat([rows, more])))
+    found = pd.read_csv(chart.paths[1]).set_index(["metric", "target", "method"])
     plain = found.xs("qem", level="method")
     assert plain["on_front"].all() and (plain["cost_ratio"] == 1).all() and len(plain) == 6
     assert found.loc[("metro_mean", "25%", "itti"), "cost_ratio"] == pytest.approx(10)
@@ -371,7 +371,7 @@ def test_chart_of_costs_has_a_front_for_each_share(run, monkeypatch):
 def test_colours_of_the_error_are_those_of_the_distance(small):
     inner = small.ball()
     inner = type(inner)(0.9 * inner.vertices, inner.faces)
-    found = figure_3_8._error(small.ball(24), inner)
+    found = figure_3_8.errors(small.ball(24), inner)
     assert found.mean() == pytest.approx(0.05 / np.sqrt(3), rel=0.1)
 
 

@@ -6,10 +6,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.report.recorded import grasps, real_touches, simulated_to_real, table_4_4
+from stages.report import recorded as topic
 from stages.report.recorded.claims_touches import CLAIMS
+from stages.report.recorded.grasps import TASKS
+from stages.report.recorded.simulated_to_real import PANELS
+from stages.report.recorded.table_4_4 import SETS
 from stages.report.results import NotRun
-from stages.report.style import plot_style
+from stages.report.topics import build_one
 from stages.report.verdict import judge
 
 CLASSIFIERS = {"knn": 0.7, "svm": 0.4, "decision_tree": 0.5, "naive_bayes": 0.6, "deep_learning": 0.65}
@@ -20,7 +23,7 @@ LOSS = {"random": 0.0, "blocks": 0.1, "folds": 0.02}
 def recorded():
     """Rows in which the selection gains 5 points, in training alone loses 5; blocks lose 10."""
     random, rows = np.random.default_rng(0), []
-    for name in table_4_4.SETS:
+    for name in SETS:
         share = {"group": name, "method": "all", "metric": "share_similar", "value": 0.2, "repetition": 0}
         rows.append(share | {"chosen": "can pen"})
         for repetition in range(6):
@@ -43,7 +46,7 @@ def recorded():
 def grasped():
     """Rows in which the answers are right on 8 of 10 grasps of the objects, and one drift a palm."""
     random, rows = np.random.default_rng(1), []
-    for (task, split), components in zip(grasps.TASKS, (12, 72, 12, 72), strict=True):
+    for (task, split), components in zip(TASKS, (12, 72, 12, 72), strict=True):
         for classifier in (*CLASSIFIERS, "majority"):
             common = {"task": task, "split": split, "palm": "all", "scaled": "training", "components": components}
             common |= {"classifier": classifier, "metric": "accuracy", "seconds": 0.1}
@@ -65,7 +68,7 @@ def grasped():
 def transferred(help=0.1):
     """Rows in which simulated imprints besides real ones raise the accuracy by `help`."""
     random, rows = np.random.default_rng(2), []
-    for classifier in real_touches.PANELS:
+    for classifier in PANELS:
         for repetition in range(5):
             for touches in (0, 1, 5, 20):
                 mean = 0.2 + 0.02 * touches + 0.01 * random.normal()
@@ -99,19 +102,23 @@ def measured(bare, small):
     return write
 
 
+def table(name, results):
+    return build_one(topic, "tables", name, results)
+
+
 def judged(results):
     return judge(CLAIMS, results).set_index("key")
 
 
 def test_table_4_4_stands_beside_the_thesis(measured):
-    table = table_4_4.build(measured(real=recorded()))
-    rows = table.frame.set_index(["set", "selection", "classifier"])
+    made = table("table_4_4", measured(real=recorded()))
+    rows = made.frame.set_index(["set", "selection", "classifier"])
     assert rows.loc[("six", "selected", "knn"), "accuracy"] == pytest.approx(0.75, abs=0.01)
     assert rows.loc[("six", "selected", "knn"), "thesis"] == 0.59 and rows.loc[("four", "all", "svm"), "thesis"] == 0.48
     assert rows.loc[("six", "selected_training", "knn"), "thesis"] != rows.loc[("six", "selected", "knn"), "thesis"]
-    assert len(table.shown) == len(table_4_4.SETS) * 3 and table.shown.iloc[0, 0] == "first four classes"
-    assert "· 62" in table.shown["kNN: ours · thesis, %"].iloc[0]
-    notes = " ".join(table.notes)
+    assert len(made.shown) == len(SETS) * 3 and made.shown.iloc[0, 0] == "first four classes"
+    assert "· 62" in made.shown["kNN: ours · thesis, %"].iloc[0]
+    notes = " ".join(made.notes)
     assert "Gandarias" in notes and re.search(r"lowers kNN on all classes by (9\.9|10\.[01]) points", notes)
     assert "first four classes 20.0 %" in notes and "Most alike: can, pen; four: can, pen" in notes
 
@@ -119,38 +126,37 @@ def test_table_4_4_stands_beside_the_thesis(measured):
 def test_a_set_without_a_selection_is_not_run_in_its_cells(measured):
     rows = recorded()
     rows = rows[~((rows["group"] == "six") & (rows["method"] == "selected"))]
-    shown = table_4_4.build(measured(real=rows)).shown
+    shown = table("table_4_4", measured(real=rows)).shown
     cell = shown[(shown["set"] == "first six classes") & (shown["selection"] == "selection")]
     assert cell["SVM: ours · thesis, %"].item().startswith("not run")
 
 
 def test_grasps_are_told_by_task_with_their_drift(measured):
-    table = grasps.build(measured(grasps=grasped()))
-    shown = table.shown[table.shown["palm"] == "all"]
-    assert shown["task"].tolist() == list(grasps.TASKS.values())
-    assert table.frame.loc[table.frame["palm"] == "all", "accuracy"].to_numpy() == pytest.approx(0.8, abs=0.02)
+    made = table("grasps", measured(grasps=grasped()))
+    shown = made.shown[made.shown["palm"] == "all"]
+    assert shown["task"].tolist() == list(TASKS.values())
+    assert made.frame.loc[made.frame["palm"] == "all", "accuracy"].to_numpy() == pytest.approx(0.8, abs=0.02)
     assert shown["values"].tolist() == ["12 components", "electrodes"] * 2
-    assert any("palm 45 0.5, palm down 3.0" in note for note in table.notes)
+    assert any("palm 45 0.5, palm down 3.0" in note for note in made.notes)
 
 
 def test_the_note_on_drift_says_no_more_than_the_rows(measured):
-    notes = " ".join(grasps.build(measured(grasps=grasped())).notes)
+    notes = " ".join(table("grasps", measured(grasps=grasped())).notes)
     assert "drawn at random, by palm 45 0.4, palm down 1.2 at most" in notes
     assert "by palm and scale: palm down, each part by its own 1 of 2." in notes
 
 
 def test_simulation_is_compared_by_the_number_of_real_touches(measured):
-    table = simulated_to_real.build(measured(simulated_to_real=transferred()))
-    assert table.shown["simulated imprints"].iloc[0] == "none"
-    assert table.shown.iloc[0, 1] == "–" and table.shown.iloc[1, 1].startswith("30 [")
-    rows = table.frame.set_index(["training", "touches", "classifier"])
+    made = table("simulated_to_real", measured(simulated_to_real=transferred()))
+    assert made.shown["simulated imprints"].iloc[0] == "none"
+    assert made.shown.iloc[0, 1] == "–" and made.shown.iloc[1, 1].startswith("30 [")
+    rows = made.frame.set_index(["training", "touches", "classifier"])
     assert rows.loc[("real", 5, "knn"), "accuracy"].item() == pytest.approx(0.3, abs=0.02)
-    assert any("aligned, the best" in note and "ball 60" in note for note in table.notes)
+    assert any("aligned, the best" in note and "ball 60" in note for note in made.notes)
 
 
 def test_the_picture_of_simulated_and_real_touches_is_drawn(measured):
-    with plot_style():
-        figure = real_touches.build(measured(simulated_to_real=transferred()))
+    figure = build_one(topic, "figures", "real_touches", measured(simulated_to_real=transferred()))
     assert figure.paths[0].stat().st_size > 10_000
 
 
@@ -169,10 +175,10 @@ def test_selection_and_the_best_classifier_are_judged_on_real_touches(measured):
     assert found.loc["real_blocked", "verdict"] == "supported"
 
 
-@pytest.mark.parametrize("build", [table_4_4.build, grasps.build, simulated_to_real.build, real_touches.build])
-def test_without_recorded_touches_nothing_is_run_and_the_remedy_is_told(build, measured):
+@pytest.mark.parametrize("name", ["table_4_4", "grasps", "simulated_to_real", "real_touches"])
+def test_without_recorded_touches_nothing_is_run_and_the_remedy_is_told(name, measured):
     with pytest.raises(NotRun, match="no measurements of"):
-        build(measured())
+        (topic.TABLES | topic.FIGURES)[name](measured())
 
 
 def test_claims_without_recorded_touches_are_open(measured):

@@ -6,9 +6,10 @@ import pytest
 
 from stages.kit.split import shared_by
 from stages.kit.stats import interval
-from stages.report.recorded import network_sizes, real_networks
+from stages.report import recorded as topic
 from stages.report.recorded.claims_networks import CLAIMS, SETTINGS
 from stages.report.results import NotRun
+from stages.report.topics import build_one
 from stages.report.verdict import judge
 
 LEVELS = {  # (network, weights, mode) -> accuracy; the gain of each way is exact, the splits differ by far more
@@ -95,8 +96,12 @@ def only(frame, **where):
     return frame.iloc[0]
 
 
+def real_networks(results):
+    return build_one(topic, "tables", "real_networks", results)
+
+
 def line(results, data="pressure", split="random", method="mobilenet_v2", weights="imagenet", mode="frozen"):
-    frame = real_networks.build(results).frame
+    frame = real_networks(results).frame
     return only(frame, data=data, split=split, method=method, weights=weights, mode=mode)
 
 
@@ -139,7 +144,7 @@ def test_a_network_is_compared_at_its_own_size_and_mode(measured):
     frame = touches()
     mine = frame[(frame["method"] == "mobilenet_v2") & (frame["mode"] == "frozen") & (frame["weights"] == "imagenet")]
     larger = mine.assign(size=224, value=mine["value"] + 0.1)
-    made = real_networks.build(measured(pd.concat([frame, larger])))
+    made = real_networks(measured(pd.concat([frame, larger])))
     shown = only(made.shown, data="pressure array, 22 objects", split="touches at random", filters="frozen, 224 px")
     assert shown["over random weights"] == "–" and shown["over features and kNN"].startswith("+20")
     assert line(measured(frame), mode="finetuned")["over_random"] == pytest.approx(0.3, abs=0.003)
@@ -158,7 +163,7 @@ def test_guessing_of_kept_objects_is_of_each_object(measured):
 
 
 def test_classical_features_lead_each_split_and_have_no_gains(measured):
-    shown = real_networks.build(measured(touches())).shown
+    shown = real_networks(measured(touches())).shown
     first = shown.drop_duplicates(["data", "split"])
     assert set(first["network"]) == {"features and kNN"} and len(first) == len(SETTINGS)
     assert set(first["over features and kNN"]) == set(first["over random weights"]) == {"–"}
@@ -167,7 +172,7 @@ def test_classical_features_lead_each_split_and_have_no_gains(measured):
 
 def test_a_table_of_classical_features_alone_has_no_guesses(measured):
     frame = touches(levels={})
-    shown = real_networks.build(measured(frame[frame["data"] == "pressure"])).shown
+    shown = real_networks(measured(frame[frame["data"] == "pressure"])).shown
     assert list(shown["guessing, %"]) == ["–", "–"] and list(shown["starts from"]) == ["–", "–"]
 
 
@@ -184,15 +189,15 @@ def test_data_sets_that_are_not_at_hand_are_left_out(measured):
         "mode": "frozen",
         "metric": "accuracy",
     }
-    shown = real_networks.build(measured(pd.concat([touches(), pd.DataFrame([absent])]))).shown
+    shown = real_networks(measured(pd.concat([touches(), pd.DataFrame([absent])]))).shown
     assert "VT-60 (BathTip)" not in set(shown["data"])
 
 
-@pytest.mark.parametrize("piece", [real_networks, network_sizes])
-def test_without_accuracies_the_pieces_are_not_run(measured, piece):
+@pytest.mark.parametrize("build", [*topic.CHARTS.values(), topic.TABLES["real_networks"], topic.TABLES["table_5_1"]])
+def test_without_accuracies_the_pieces_are_not_run(measured, build):
     frame = touches()
     with pytest.raises(NotRun, match="no accuracy"):
-        piece.build(measured(frame.assign(value=np.nan)))
+        build(measured(frame.assign(value=np.nan)))
 
 
 def verdicts(results, start=""):
@@ -255,18 +260,20 @@ def test_a_claim_names_the_training_that_it_lacks(measured):
     levels = {way: level for way, level in LEVELS.items() if way[2] == "frozen"}
     judged = verdicts(measured(touches(levels)))
     found = judged.loc["recorded_tuned_over_frozen_pressure_random"]
-    assert found["verdict"] == "open" and "no MobileNetV2, fine-tuned, from ImageNet, 64 pixels" in found["tested_on"]
-    assert "dvc repro recorded_networks" in found["tested_on"]
+    assert found["verdict"] == "open"
+    assert found["tested_on"] == "not run: mode finetuned is not among those that recorded_networks measured"
     assert judged.loc["recorded_frozen_over_features_pressure_random", "verdict"] == "supported"
 
 
 def test_a_network_alone_is_not_the_best(measured):
     levels = {way: level for way, level in LEVELS.items() if way[0] == "resnet50"}
     found = verdicts(measured(touches(levels)), "resnet").loc["recorded_resnet_best_pressure_random"]
-    assert found["verdict"] == "open" and "only one network" in found["tested_on"]
+    assert found["verdict"] == "open" and "no other method than resnet50" in found["tested_on"]
 
 
-def test_without_recorded_touches_all_claims_are_open(bare, small):
+def test_without_recorded_touches_all_claims_are_open_and_say_what_to_run(bare, small):
+    path = bare / "params.yaml"
+    path.write_text(path.read_text().replace("sets: [", "sets: [pressure_images, biotac_grasps, "))
     judged = verdicts(small.results(bare))
     assert set(judged["verdict"]) == {"open"} and judged["tested_on"].str.contains("dvc repro recorded_networks").all()
 

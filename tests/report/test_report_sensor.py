@@ -3,13 +3,12 @@
 import numpy as np
 import pandas as pd
 import pytest
-from matplotlib import pyplot as plt
 
 from stages.kit.files import write_table
+from stages.report import sensor
 from stages.report.results import NotRun
-from stages.report.sensor import claims, figure_4_11
-from stages.report.sensor import sensor_size as chart
-from stages.report.style import plot_style
+from stages.report.sensor import claims
+from stages.report.topics import build_one
 from stages.report.verdict import judge
 
 
@@ -40,7 +39,7 @@ def sensed(root, results, small):
 
 
 def test_the_table_tells_guessing_and_how_often_the_smallest_array_is_chosen_again(sensed):
-    table = figure_4_11.build(sensed)
+    table = build_one(sensor, "tables", "figure_4_11", sensed)
     notes = " ".join(table.notes)
     assert "guessing 50.0 %" in notes and "kNN 32 x 32 at 0.01 (46 %)" in notes
     assert len(table.shown) == 12 and "· 95" in table.shown.query("cells == '32 x 32'")["kNN, %"].iloc[1]
@@ -48,14 +47,10 @@ def test_the_table_tells_guessing_and_how_often_the_smallest_array_is_chosen_aga
 
 
 def test_the_chart_is_drawn_and_its_ratios_are_plain_numbers(sensed):
-    with plot_style():
-        assert chart.build(sensed).paths[0].exists()
-        figure, axes = plt.subplots()
-        costs = pressed().query("metric == 'seconds_a_touch'").set_index(["cells", "pitch"])["value"]
-        chart._costs(axes, costs, [0.002, 0.01, 0.02])
-        figure.canvas.draw()
-        labels = [tick.get_text() for tick in axes.get_ymajorticklabels() + axes.get_yminorticklabels()]
-        plt.close(figure)
+    figure = build_one(sensor, "tradeoff", "sensor_size", sensed)
+    assert figure.paths[0].exists()
+    axes = figure.drawing.axes[-1]
+    labels = [tick.get_text() for tick in axes.get_ymajorticklabels() + axes.get_yminorticklabels()]
     assert {"1", "2", "5", "10"} <= set(labels) and not any("10^" in text for text in labels)
 
 
@@ -77,6 +72,6 @@ def test_claims_know_the_truth_of_the_rows(sensed):
 
 def test_nothing_pressed_is_said_and_not_crashed_on(results):
     assert set(judge(claims.CLAIMS, results)["verdict"]) == {"open"}
-    for module in (figure_4_11, chart):
+    for kind, name in (("tables", "figure_4_11"), ("tradeoff", "sensor_size")):
         with pytest.raises(NotRun):
-            module.build(results)
+            build_one(sensor, kind, name, results)

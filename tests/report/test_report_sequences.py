@@ -4,11 +4,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from stages.report import sequences
 from stages.report.results import NotRun
-from stages.report.sequences import claims as chapter_4_sequences
-from stages.report.sequences import figure_4_19, table_4_7, table_4_9
-from stages.report.sequences import rows as _sequences
-from stages.report.sequences import sequences_chart as chart
+from stages.report.sequences.rows import SPLITS
+from stages.report.sequences.sequences_chart import SHOWN
+from stages.report.sequences.table_4_7 import SAID
+from stages.report.topics import build_one
 from stages.report.verdict import judge
 
 CLASSES = ("car", "chair", "vase")
@@ -61,6 +62,10 @@ def run(bare, small):
     return small.results(bare)
 
 
+def table_4_9(results):
+    return build_one(sequences, "tables", "table_4_9", results)
+
+
 def cell(frame, **where):
     """The one row of a frame."""
     for column, value in where.items():
@@ -70,7 +75,7 @@ def cell(frame, **where):
 
 
 def test_twin_stands_beside_the_thesis_s_figures(run):
-    table = table_4_9.build(run)
+    table = table_4_9(run)
     row = cell(table.frame, split="random", classifier="cnn", strategy="thesis_ssim")
     assert row["accuracy"] == pytest.approx(0.98, abs=0.01) and row["thesis"] == 0.9897
     assert cell(table.frame, split="random", classifier="svm", strategy="random")["thesis"] == 0.7721
@@ -81,19 +86,19 @@ def test_twin_stands_beside_the_thesis_s_figures(run):
 
 
 def test_interval_of_unseen_objects_is_over_the_objects(run):
-    frame = table_4_9.build(run).frame
+    frame = table_4_9(run).frame
     assert cell(frame, split="objects", classifier="cnn", strategy="random")["values"] == 9
     assert cell(frame, split="random", classifier="cnn", strategy="random")["values"] == 3
 
 
 def test_smaller_films_are_not_in_the_table(run):
-    assert len(table_4_9.build(run).frame) == 2 * 3 * len(MEANS)
+    assert len(table_4_9(run).frame) == 2 * 3 * len(MEANS)
 
 
 def test_larger_run_stands_below_where_there_is_one(bare, small):
     small.write(bare, "sequences", rows())
     small.write(bare, "sequences", rows(dataset="princeton_eight"))
-    table = table_4_9.build(small.results(bare))
+    table = table_4_9(small.results(bare))
     assert list(dict.fromkeys(table.frame["objects"])) == ["furniture", "princeton_eight"]
     assert list(dict.fromkeys(table.shown["objects"])) == ["furniture", "psb, the thesis's 8 classes"]
 
@@ -101,25 +106,25 @@ def test_larger_run_stands_below_where_there_is_one(bare, small):
 def test_what_was_left_out_is_a_note(bare, small):
     note = {"dataset": "furniture", "metric": "accuracy", "value": None, "note": "class far: no sequences of away"}
     small.write(bare, "sequences", pd.concat([rows(), pd.DataFrame([note])], ignore_index=True))
-    assert "Not run: class far: no sequences of away." in table_4_9.build(small.results(bare)).notes
+    assert "Not run: class far: no sequences of away." in table_4_9(small.results(bare)).notes
 
 
 def test_without_objects_left_out_the_table_has_one_half(bare, small):
     small.write(bare, "sequences", rows(splits=("random",)))
-    frame = table_4_9.build(small.results(bare)).frame
+    frame = table_4_9(small.results(bare)).frame
     assert set(frame["split"]) == {"random"}
 
 
-@pytest.mark.parametrize("piece", [table_4_9, table_4_7, figure_4_19, chart])
-def test_unmeasured_is_not_run(bare, small, piece):
+@pytest.mark.parametrize("build", [*sequences.TABLES.values(), *sequences.FIGURES.values(), *sequences.CHARTS.values()])
+def test_unmeasured_is_not_run(bare, small, build):
     with pytest.raises(NotRun):
-        piece.build(small.results(bare))
+        build(small.results(bare))
 
 
 def test_chart_charges_each_choice_its_seconds(run):
-    figure = chart.build(run)
+    figure = build_one(sequences, "tradeoff", "sequences", run)
     frame = pd.read_csv(figure.paths[1]).set_index("name")
-    assert len(frame) == 3 * len(chart.SHOWN) - 1  # the normals do not change with the cells
+    assert len(frame) == 3 * len(SHOWN) - 1  # the normals do not change with the cells
     assert frame.loc["kNN, 25 x 32 x 32", "cost_ratio"] == 1
     assert frame.loc["CNNs, 25 x 32 x 32", "cost_ratio"] == pytest.approx(12)
     assert frame.loc["CNNs, 25 x 32 x 32", "mean"] == pytest.approx(0.78, abs=0.01)
@@ -136,25 +141,25 @@ def test_confusions_are_drawn_for_every_strategy_of_the_thesis(run, bare):
             "count": 9 * (one == other) + 1,
         }
         for method in ("random", "thesis_ssim", "enhanced")
-        for split in _sequences.SPLITS
+        for split in SPLITS
         for name in MEANS
         for one in CLASSES
         for other in CLASSES
     ]
     (bare / "data/furniture/sequences").mkdir(parents=True)
     pd.DataFrame(found).to_csv(bare / "data/furniture/sequences/confusion.csv", index=False)
-    figure = figure_4_19.build(run)
+    figure = build_one(sequences, "figures", "figure_4_19", run)
     assert figure.paths[0].exists() and "car, chair, vase" in figure.alt
 
 
 def test_layers_stand_beside_the_printed_ones(run, bare):
     layers = [
         {"network": network, "layer": layer, "kind": "Conv3d", "output": "8x5", "parameters": 7}
-        for network, layer in table_4_7.SAID
+        for network, layer in SAID
     ]
     (bare / "data/furniture/sequences").mkdir(parents=True)
     pd.DataFrame(layers).to_csv(bare / "data/furniture/sequences/layers.csv", index=False)
-    table = table_4_7.build(run)
+    table = build_one(sequences, "tables", "table_4_7", run)
     assert (table.frame["thesis"] != "").all() and "3D 42; 1D 42" in table.notes[-1]
 
 
@@ -162,7 +167,7 @@ def verdicts(bare, small, frame):
     """dict key -> verdict, and the frame of all, of the claims on these rows, in this run and on the other data set."""
     small.write(bare, "sequences", frame)
     small.write(bare, "sequences", frame, "princeton_eight")
-    found = judge(chapter_4_sequences.CLAIMS, small.results(bare)).set_index("key")
+    found = judge(sequences.CLAIMS, small.results(bare)).set_index("key")
     return found["verdict"].to_dict(), found
 
 
@@ -191,5 +196,5 @@ def test_claims_without_their_strategy_are_open_and_say_so(bare, small):
 
 
 def test_keys_of_claims_differ():
-    keys = [claim.key for claim in chapter_4_sequences.CLAIMS]
+    keys = [claim.key for claim in sequences.CLAIMS]
     assert len(keys) == len(set(keys))

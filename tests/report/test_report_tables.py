@@ -4,13 +4,17 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from stages.report import touch
 from stages.report.grid import grid, means
 from stages.report.items import Table
 from stages.report.markdown import as_text, is_numeric, markdown_table, number, with_interval
 from stages.report.meshes.rows import paired_cells
 from stages.report.results import NotRun
-from stages.report.topics import build_all
-from stages.report.touch.one_touch import table_4_1
+from stages.report.topics import build_all, build_one
+
+
+def table_4_1(results):
+    return build_one(touch, "tables", "table_4_1", results)
 
 
 def test_table_holds_every_cell_of_the_thesis(results):
@@ -44,7 +48,7 @@ def test_title_tells_the_objects_that_the_group_held(root, results, small):
 def test_left_out_sampling_is_a_note_of_its_table(root, small):
     frame = small.left_out(small.classification(), "too few touches", group="six", method="itti")
     small.write(root, "classification", small.left_out(frame, "no cup", group="four"))
-    built = build_all("tables", small.results(root))
+    built = build_all("tables", small.results(root), [touch])
     table = next(table for table in built.items if table.name == "table_4_1")
     assert "Not run: too few touches." in table.notes
     assert np.isnan(table.frame.set_index(["sampling", "classifier"]).loc[("visual_attention", "knn"), "accuracy"])
@@ -76,7 +80,7 @@ def test_missing_column_is_not_run(results):
 
 
 def test_table_is_written_as_numbers_and_as_text(tmp_path):
-    table = Table("Title", pd.DataFrame({"a|b": [0.123456, np.nan]}), ["a note"], name="t")
+    table = Table(pd.DataFrame({"a|b": [0.123456, np.nan]}), name="t", title="Title", notes=["a note"])
     table.write(tmp_path)
     text = (tmp_path / "t.md").read_text()
     assert "0.123" in text and "–" in text and "- a note" in text

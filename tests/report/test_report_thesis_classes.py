@@ -6,9 +6,11 @@ import pytest
 
 from stages.kit.split import shared_by
 from stages.report import networks as _transfer
+from stages.report import transfer
 from stages.report.results import NotRun
+from stages.report.topics import build_one
 from stages.report.transfer import claims as chapter_5
-from stages.report.transfer import figure_5_3, table_5_4
+from stages.report.transfer import figure_5_3
 from stages.report.verdict import judge
 
 FINE, COARSE = "imprints128", "imprints16"
@@ -100,15 +102,15 @@ def test_one_object_of_five_says_more_than_one_of_three():
     assert _transfer.shared("random", "princeton_six") == shared_by("random")
     frames = (rows(source) for source in ("furniture", "princeton_six"))
     one = (frame[(frame["metric"] == "accuracy") & (frame["mode"] == "1:134")] for frame in frames)
-    width = [high - low for _, low, high, _ in (_transfer.accuracy(frame, "objects") for frame in one)]
+    width = [cell["high"] - cell["low"] for cell in (_transfer.accuracy(frame, "objects") for frame in one)]
     assert width[1] / width[0] == pytest.approx(np.sqrt((1 + 5 / 4) / (1 + 5 / 2)))
 
 
 def test_claims_and_figure_widen_intervals_alike(both):
     found = words(both).loc["tuned_over_frozen_objects_psb"]
     own = _transfer.everywhere(both)["princeton_six"]
-    drawn = figure_5_3._gains(own)["mobilenet_v2", "objects", FINE]
-    assert drawn == pytest.approx((found["effect"], found["low"], found["high"]))
+    drawn = figure_5_3.gains(own).set_index(["network", "split", "data"]).loc[("mobilenet_v2", "objects", FINE)]
+    assert list(drawn) == pytest.approx([found["effect"], found["low"], found["high"]])
 
 
 def test_other_rows_are_not_run_where_they_are_absent(bare, small):
@@ -122,7 +124,9 @@ def test_other_networks_on_their_classes_stand_beside_and_change_no_claim(both, 
     frame = pd.concat([both.rows("transfer", "princeton_six"), other[other["mode"] == "frozen"]], ignore_index=True)
     small.write(both.workspace.root, "transfer", frame)
     again = small.results(both.workspace.root)
-    shown = table_5_4.build(again).frame.set_index(["objects", "network", "mode", "weights", "split"])
+    shown = build_one(transfer, "tables", "table_5_4", again).frame.set_index(
+        ["objects", "network", "mode", "weights", "split"]
+    )
     where = ("princeton_six", "resnet50", "frozen", "imagenet", "objects")
     assert shown.loc[where, "accuracy"] == pytest.approx(0.9, abs=0.01) and shown.loc[where, "values"] == 5
     assert words(again)["effect"].equals(before["effect"])

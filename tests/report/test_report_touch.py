@@ -6,12 +6,10 @@ import pytest
 
 from stages.imprints import Imprints, write_imprints
 from stages.kit.files import write_arrays
+from stages.report import touch
 from stages.report.results import NotRun
-from stages.report.topics import CLAIMS
-from stages.report.touch import claims, costs, figure_4_4
-from stages.report.touch.one_touch import figure_4_1, table_4_1, table_4_5
-from stages.report.touch.similar import section_4_2_4, table_4_3
-from stages.report.touch.table_4_6 import table_4_6
+from stages.report.topics import CLAIMS, build_one
+from stages.report.touch import claims, one_touch, pictures
 from stages.report.verdict import judge
 
 GLANCE = {
@@ -67,12 +65,16 @@ def glance(root, small):
     return small.results(root)
 
 
+def table(name, results):
+    return build_one(touch, "tables", name, results)
+
+
 def verdicts(results):
     return judge(claims.CLAIMS, results).set_index("key")
 
 
 def test_twin_shows_the_regions_and_the_first_fifteen(glance):
-    shown = table_4_1(glance).shown.set_index("sampling")
+    shown = table("table_4_1", glance).shown.set_index("sampling")
     (knn,) = [column for column in shown if column.startswith("kNN")]
     assert (
         shown.loc["enhanced visual attention", knn].startswith("60 [")
@@ -82,21 +84,21 @@ def test_twin_shows_the_regions_and_the_first_fifteen(glance):
 
 
 def test_positions_stand_beside_the_thesis_with_the_side_held_out(glance):
-    table = table_4_5(glance)
-    cell = table.frame.set_index(["sampling", "classifier"]).loc[("enhanced_visual_attention", "knn")]
+    built = table("table_4_5", glance)
+    cell = built.frame.set_index(["sampling", "classifier"]).loc[("enhanced_visual_attention", "knn")]
     assert cell["accuracy"] == pytest.approx(0.8, abs=0.01) and cell["thesis"] == 0.85
-    assert cell["accuracy_regions"] == pytest.approx(0.7, abs=0.01) and "one side" in table.notes[1]
+    assert cell["accuracy_regions"] == pytest.approx(0.7, abs=0.01) and "one side" in built.notes[1]
 
 
 def test_selection_has_a_column_for_each_group_and_way(glance):
-    table = table_4_3(glance)
-    cells = table.frame.set_index(["classifier", "objects", "selection"])
+    built = table("table_4_3", glance)
+    cells = built.frame.set_index(["classifier", "objects", "selection"])
     assert cells.loc[("knn", "six", "selected"), "thesis"] == 0.76
     assert cells.loc[("knn", "four", "plain"), "thesis"] == 0.78
     assert np.isnan(cells.loc[("knn", "six", "selected_train"), "thesis"])
     assert cells.loc[("knn", "six", "selected"), "recall"] == pytest.approx(0.69, abs=0.01)
     assert cells.loc[("knn, 15 imprints", "six", "selected"), "accuracy"] == pytest.approx(0.6, abs=0.01)
-    assert table.shown.shape[1] == 7 and "kNN, 15 imprints" in set(table.shown["classifier"])
+    assert built.shown.shape[1] == 7 and "kNN, 15 imprints" in set(built.shown["classifier"])
 
 
 def test_selection_that_was_not_run_says_why(root, small):
@@ -111,23 +113,23 @@ def test_selection_that_was_not_run_says_why(root, small):
     frame = pd.concat([frame[frame["variant"] != "selected"], pd.DataFrame([note])])
     small.write(root, "classification", frame)
     with pytest.raises(NotRun, match="an object keeps too few"):
-        table_4_3(small.results(root))
+        table("table_4_3", small.results(root))
 
 
 def test_shares_stand_beside_those_of_the_thesis_by_sampling_and_by_object(glance):
-    frame = section_4_2_4(glance).frame.set_index("name")
+    frame = table("section_4_2_4", glance).frame.set_index("name")
     assert frame.loc["blind_touch", ["all", "thesis"]].tolist() == pytest.approx([0.6, 0.5889])
     assert frame.loc["enhanced_visual_attention", "first_15"] == pytest.approx(0.4)
     assert frame.loc["duck", "thesis"] == 0.4 and frame.loc["duck", "all"] == pytest.approx(0.36)
 
 
 def test_table_of_touches_holds_the_thesis_and_the_other_ways(glance):
-    table = table_4_6(glance)
-    cells = table.frame.set_index(["sampling", "way", "classifier", "touches"])
+    built = table("table_4_6", glance)
+    cells = built.frame.set_index(["sampling", "way", "classifier", "touches"])
     assert cells.loc[("thesis_ssim", "", "knn", 2), "thesis"] == 0.96
     assert np.isnan(cells.loc[("random", "", "knn", 2), "thesis"])
     assert cells.loc[("thesis_ssim", "first_15_mixed", "knn", 2), "accuracy"] == pytest.approx(0.9, abs=0.01)
-    shown = table.shown.set_index("classifier")
+    shown = built.shown.set_index("classifier")
     assert "kNN, combinations drawn before the split" in shown.index
     assert "kNN, combinations drawn before the split, blind touch" in shown.index
     assert shown.loc["deep learning: ours · unseen regions · thesis", "5 touches, %"].endswith("46")
@@ -135,7 +137,7 @@ def test_table_of_touches_holds_the_thesis_and_the_other_ways(glance):
 
 def test_table_of_touches_without_touches_is_not_run(results):
     with pytest.raises(NotRun):
-        table_4_6(results)
+        table("table_4_6", results)
 
 
 def test_claims_follow_the_measurements(glance):
@@ -155,7 +157,7 @@ def test_claims_have_keys_of_their_own_and_are_open_without_measurements(results
 
 
 def test_chart_counts_the_making_of_the_features(glance):
-    frame = pd.read_csv(costs.by_features(glance).paths[1]).set_index("name")
+    frame = pd.read_csv(build_one(touch, "tradeoff", "touches", glance).paths[1]).set_index("name")
     assert frame.loc["kNN, 41 features", "seconds"] == pytest.approx(0.03)
     assert frame.loc["kNN, pixels", "seconds"] == pytest.approx(0.01)
     assert frame.loc["kNN, 5 touches, map and position", "cost_ratio"] == pytest.approx(1)
@@ -168,13 +170,13 @@ def test_correlations_are_drawn_for_every_pair(root, small):
     for name in ("ball", "cube"):
         imprints = Imprints(random.random((5, 8, 8)), np.arange(5), random.random((5, 3)), 0.01)
         write_imprints(root / f"data/test/imprints/{name}.npz", {"random": imprints, "thesis_ssim": imprints})
-    figure = figure_4_4.build(small.results(root))
+    figure = build_one(touch, "figures", "figure_4_4", small.results(root))
     assert figure.paths[0].stat().st_size > 5000
 
 
 def test_correlations_of_imprints_that_are_absent_are_not_run(results):
     with pytest.raises(NotRun):
-        figure_4_4.build(results)
+        build_one(touch, "figures", "figure_4_4", results)
 
 
 def test_line_of_chance_follows_the_objects_that_the_group_held(root, results, small, monkeypatch):
@@ -182,7 +184,21 @@ def test_line_of_chance_follows_the_objects_that_the_group_held(root, results, s
     draw = lambda axes, *_, chance: drawn.update(chance=chance, axes=axes) or {}  # noqa: E731
     monkeypatch.setattr("stages.report.touch.one_touch.draw_bars", draw)
     small.write_set(root, "six", 4)
-    figure_4_1(results)
+    build_one(touch, "figures", "table_4_1", results)
     assert drawn["chance"] == 1 / 4
     title = drawn["axes"].get_title(loc="left") + drawn["axes"].get_title()
     assert title == "Recognising 4 objects (group six) by one touch"
+
+
+def test_bars_are_those_of_the_samplings_that_ran(root, small):
+    rows = small.classification()
+    small.write(root, "classification", rows[rows["method"] != "thesis_ssim"])
+    results = small.results(root)
+    places = {}
+    with pytest.MonkeyPatch.context() as patch:
+        draw = one_touch.draw_bars
+        patch.setattr(one_touch, "draw_bars", lambda *args, **kw: places.update(draw(*args, **kw)) or places)
+        build_one(touch, "figures", "table_4_1", results)
+    assert list(places) == ["random", "itti", "enhanced"]
+    assert sum(places.values()) == pytest.approx(0)
+    assert set(pictures.NEEDED) <= set(places)

@@ -5,8 +5,9 @@ import pandas as pd
 import pytest
 
 from stages.kit.files import write_table
+from stages.report import touch
 from stages.report.results import NotRun
-from stages.report.touch import imprint_rates, touch_one_mesh
+from stages.report.topics import build_one
 
 RATES = {"ours": 4000.0, "trimesh_embree": 2000.0, "depth_picture": 1000.0, "tacto_32x32": 50.0, "tacto_160x120": 20.0}
 ERRORS = {"ours": 1e-16, "trimesh_embree": 1e-15, "depth_picture": 2e-3, "tacto_32x32": 1e-3, "tacto_160x120": 2e-4}
@@ -35,6 +36,14 @@ def benched(ours=4000.0, tacto=True):
     return pd.DataFrame(rows)
 
 
+def table(results):
+    return build_one(touch, "tables", "imprint_rates", results)
+
+
+def chart(results):
+    return build_one(touch, "tradeoff", "imprints", results)
+
+
 @pytest.fixture
 def bench(bare, small):
     def written(rows):
@@ -45,7 +54,7 @@ def bench(bare, small):
 
 
 def test_rates_ratios_and_errors_are_those_of_the_bench(bench):
-    frame = imprint_rates.table(bench(benched())).frame
+    frame = table(bench(benched())).frame
     row = frame[(frame["method"] == "ours") & (frame["cells"] == 32)].iloc[0]
     assert row["rate"] == pytest.approx(4000 * 1.1 ** (1 / 3), rel=1e-4) and row["rate_least"] == pytest.approx(4000)
     assert row["rate_low"] < row["rate"] < row["rate_high"] and row["meshes"] == 3
@@ -55,34 +64,32 @@ def test_rates_ratios_and_errors_are_those_of_the_bench(bench):
 
 
 def test_targets_are_judged_in_words(bench):
-    notes = imprint_rates.table(bench(benched())).notes
+    notes = table(bench(benched())).notes
     assert "3,000 is met" in notes[1] and "50 times is met" in notes[1] and "3,000" not in notes[0]
-    assert "3,000 is missed" in imprint_rates.table(bench(benched(ours=900.0))).notes[1]
+    assert "3,000 is missed" in table(bench(benched(ours=900.0))).notes[1]
 
 
 def test_low_ratio_is_missed(bench):
-    notes = imprint_rates.table(bench(benched(ours=500.0))).notes
+    notes = table(bench(benched(ours=500.0))).notes
     assert "50 times is missed" in notes[1]
 
 
-def test_shown_table_names_the_methods_and_hides_rounding(bench, tmp_path):
-    table = imprint_rates.table(bench(benched()))
-    table.name = "imprint_rates"
-    text = table.write(tmp_path)[1].read_text()
+def test_shown_table_names_the_methods_and_hides_rounding(bench):
+    text = table(bench(benched())).paths[1].read_text()
     assert "TACTO, its 160 x 120 pixels" in text and "< 1e-6" in text and "| 20 |" in text
     assert "m0 (psb, 2,000 faces)" in text
 
 
 def test_peers_that_did_not_run_are_said_and_leave_the_rest(bench):
     results = bench(benched(tacto=False))
-    table = imprint_rates.table(results)
-    assert any(NO_TACTO in note for note in table.notes) and "TACTO was not run" in table.notes[0]
-    assert table.frame.loc[table.frame["method"] == "ours", "rate"].notna().all()
-    assert imprint_rates.chart(results).paths[0].exists()
+    built = table(results)
+    assert any(NO_TACTO in note for note in built.notes) and "TACTO was not run" in built.notes[0]
+    assert built.frame.loc[built.frame["method"] == "ours", "rate"].notna().all()
+    assert chart(results).paths[0].exists()
 
 
 def test_chart_puts_ours_alone_on_the_front(bench):
-    figure = imprint_rates.chart(bench(benched()))
+    figure = chart(bench(benched()))
     written = pd.read_csv(figure.paths[1])
     assert written.loc[written["on_front"], "method"].tolist() == ["ours"]
     assert figure.paths[0].exists() and "TACTO" in figure.alt
@@ -91,12 +98,12 @@ def test_chart_puts_ours_alone_on_the_front(bench):
 def test_chart_counts_rounding_as_equal(bench):
     rows = benched()
     rows.loc[(rows["method"] == "trimesh_embree") & (rows["what"] == "rate"), "value"] = 9000.0
-    written = pd.read_csv(imprint_rates.chart(bench(rows)).paths[1])
+    written = pd.read_csv(chart(bench(rows)).paths[1])
     assert written.loc[written["on_front"], "method"].tolist() == ["trimesh_embree"]
 
 
 def test_without_a_bench_nothing_is_run(bare, small):
-    for build in (imprint_rates.table, imprint_rates.chart):
+    for build in (table, chart):
         with pytest.raises(NotRun, match="make bench"):
             build(small.results(bare))
 
@@ -104,14 +111,14 @@ def test_without_a_bench_nothing_is_run(bare, small):
 def test_half_a_bench_is_not_run(bench):
     rows = benched()
     with pytest.raises(NotRun, match="not whole"):
-        imprint_rates.table(bench(rows[rows["what"] == "rate"].drop(columns="to_mesh")))
+        table(bench(rows[rows["what"] == "rate"].drop(columns="to_mesh")))
 
 
 def test_bench_without_a_rate_is_not_run(bench):
     with pytest.raises(NotRun, match="not whole"):
-        imprint_rates.table(bench(benched().assign(value=np.nan)))
+        table(bench(benched().assign(value=np.nan)))
 
 
 def test_picture_of_one_mesh_is_of_the_hero(results):
-    figure = touch_one_mesh.build(results)
+    figure = build_one(touch, "figures", "touch_one_mesh", results)
     assert figure.paths[0].exists() and "ball" in figure.alt and "3 numbered places" in figure.alt

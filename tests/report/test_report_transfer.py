@@ -6,12 +6,13 @@ import pytest
 
 from stages.kit.files import write_table
 from stages.report import networks as _transfer
+from stages.report import recorded as recorded_topic
+from stages.report import transfer
 from stages.report.differences import differences
-from stages.report.recorded import network_sizes, table_5_1, table_5_5
 from stages.report.results import NotRun
+from stages.report.topics import KINDS, build_one
 from stages.report.transfer import claims as chapter_5
-from stages.report.transfer import coarse_imprints, figure_5_3, figure_5_4, table_5_3, table_5_4, table_5_6
-from stages.report.transfer import networks_chart as chart
+from stages.report.transfer import coarse_imprints, figure_5_3
 from stages.report.verdict import judge
 
 MEANS = {  # (data, weights, mode) -> accuracy
@@ -71,7 +72,7 @@ def only(frame, **where):
 
 
 def test_twin_of_table_5_4_stands_beside_the_thesis_s_figures(run):
-    table = table_5_4.build(run)
+    table = build_one(transfer, "tables", "table_5_4", run)
     found = only(table.frame, network="mobilenet_v2", weights="imagenet", mode="frozen", split="random")
     assert found["accuracy"] == pytest.approx(0.6, abs=0.01) and found["thesis"] == 0.4381
     assert found["above_chance"] == pytest.approx(found["accuracy"] - 0.125)
@@ -80,19 +81,19 @@ def test_twin_of_table_5_4_stands_beside_the_thesis_s_figures(run):
 
 
 def test_the_coarse_table_holds_the_coarse_array_alone(run):
-    frame = table_5_3.build(run).frame
+    frame = build_one(transfer, "tables", "table_5_3", run).frame
     found = only(frame, network="mobilenet_v2", weights="imagenet", mode="frozen", split="random")
     assert found["accuracy"] == pytest.approx(0.4, abs=0.01) and found["thesis"] == 0.2048
 
 
 def test_networks_of_the_thesis_that_were_not_run_say_so(run):
-    shown = table_5_4.build(run).shown
+    shown = build_one(transfer, "tables", "table_5_4", run).shown
     line = only(shown, network="ResNet50", filters="frozen")
     assert line["furniture, unseen objects (chance 12.5), %"] == "not run" and line["thesis, %"] == "52.4"
 
 
 def test_frozen_layers_go_by_the_thesis_s_numbers(run):
-    frame = table_5_6.build(run).frame
+    frame = build_one(transfer, "tables", "table_5_6", run).frame
     assert only(frame, frozen_layers="18:139", split="random")["accuracy"] == pytest.approx(0.85, abs=0.01)
     assert only(frame, frozen_layers="none", split="random")["accuracy"] == pytest.approx(0.9, abs=0.01)
     assert np.isnan(only(frame, frozen_layers="1:150", split="random")["accuracy"])
@@ -100,24 +101,31 @@ def test_frozen_layers_go_by_the_thesis_s_numbers(run):
 
 def test_rows_on_the_thesis_s_classes_stand_beside_the_run_s(bare, run, small):
     small.write(bare, "transfer", rows("princeton_six"))
-    shown = table_5_4.build(small.results(bare)).shown
+    shown = build_one(transfer, "tables", "table_5_4", small.results(bare)).shown
     assert "psb, the thesis's 6 classes, touches at random (chance 12.5), %" in shown
 
 
-@pytest.mark.parametrize("figure", [figure_5_3, figure_5_4])
+@pytest.mark.parametrize("figure", transfer.FIGURES)
 def test_figures_are_drawn(run, figure):
-    made = figure.build(run)
+    made = build_one(transfer, "figures", figure, run)
     assert made.paths[0].stat().st_size > 10_000
+
+
+def test_a_figure_tells_the_mean_change_of_each_network(run):
+    assert (
+        "Mean over the convolutions of a network: MobileNetV2 from ImageNet 0."
+        in build_one(transfer, "figures", "figure_5_4", run).caption
+    )
 
 
 def test_gain_of_fine_tuning_is_paired(run):
     measured = _transfer.everywhere(run)["furniture"]
-    mean, low, high = figure_5_3._gains(measured)["mobilenet_v2", "random", "imprints128"]
-    assert mean == pytest.approx(30, abs=1) and low < mean < high
+    gain = only(figure_5_3.gains(measured), network="mobilenet_v2", split="random", data="imprints128")
+    assert gain["mean"] == pytest.approx(30, abs=1) and gain["low"] < gain["mean"] < gain["high"]
 
 
 def test_chart_costs_are_seconds_of_training(run):
-    chart.build(run)
+    build_one(transfer, "tradeoff", "networks", run)
     frame = pd.read_csv(run.reports / "tradeoff/networks.csv").set_index("name")
     assert frame.loc["MobileNetV2, ImageNet, fine-tuned", "cost_ratio"] == pytest.approx(6)
 
@@ -154,14 +162,15 @@ def test_depth_is_compared_with_change(run):
 
 def test_without_trainings_nothing_is_made_up(bare, small):
     empty = small.results(bare)
-    for module in (table_5_3, table_5_4, table_5_6, figure_5_3, figure_5_4, chart):
-        with pytest.raises(NotRun, match="transfer"):
-            module.build(empty)
+    for kind, builders in KINDS.items():
+        for name in set(getattr(transfer, builders)) - {"coarse_imprints"}:
+            with pytest.raises(NotRun, match="transfer"):
+                build_one(transfer, kind, name, empty)
 
 
 def recorded():
     """Recorded touches: a frozen network and the classical features, and a data set that is not at hand."""
-    one = {"dataset": "pressure_images", "data": "pressure", "split": "random", "metric": "accuracy"}
+    one = {"dataset": "pressure_images", "data": "pressure", "item": None, "split": "random", "metric": "accuracy"}
     seen = {"method": "mobilenet_v2", "weights": "imagenet", "pretrained": "complete", "mode": "frozen", "size": 96}
     found = [one | seen | {"repetition": k, "value": 0.9 + 0.01 * k} for k in range(3)]
     found.append(one | {"method": "features_knn", "repetition": 0, "value": 0.6})
@@ -176,10 +185,10 @@ def recorded():
     return pd.DataFrame([*found, missing | {"note": "not run: data set not at hand"}])
 
 
-@pytest.mark.parametrize(("table", "figure"), [(table_5_1, "83.0"), (table_5_5, "85.2")])
+@pytest.mark.parametrize(("table", "figure"), [("table_5_1", "83.0"), ("table_5_5", "85.2")])
 def test_a_data_set_that_is_not_at_hand_is_named(bare, small, table, figure):
     small.write(bare, "recorded_networks", recorded())
-    made = table.build(small.results(bare))
+    made = build_one(recorded_topic, "tables", table, small.results(bare))
     line = only(made.shown, network="AlexNet")
     assert line["fine-tuned: ours, %"] == "not run" and line["fine-tuned: thesis, %"] == figure
     assert "Not run" in made.notes[0]
@@ -190,7 +199,7 @@ def test_the_coarse_array_is_told_one_change_at_a_time(bare, small):
     levels = {"rate_of_table_5_3": 0.2, "plain": 0.6}
     found = [base | {"setting": s, "repetition": k, "value": v + 0.01 * k} for s, v in levels.items() for k in range(3)]
     small.write(bare, "coarse_imprints", pd.DataFrame(found), "furniture")
-    shown = coarse_imprints.build(small.results(bare)).shown
+    shown = build_one(transfer, "tables", "coarse_imprints", small.results(bare)).shown
     assert list(shown["what differs"]) == [coarse_imprints.SETTINGS[name] for name in ("plain", "rate_of_table_5_3")]
     assert shown["accuracy, %"][0].startswith("61.0 [")
 
@@ -207,4 +216,5 @@ def test_the_smallest_network_that_is_enough_is_named(bare, small):
     ]
     small.write(bare, "recorded_networks", pd.DataFrame(found), "pressure_images")
     write_table(bare / "reports/bench/networks.csv", pd.DataFrame(costs))
-    assert "best on average is MobileNetV2." in network_sizes.build(small.results(bare)).caption
+    made = build_one(recorded_topic, "tradeoff", "network_sizes", small.results(bare))
+    assert "best on average is MobileNetV2." in made.caption

@@ -5,9 +5,10 @@ import pytest
 
 from stages.kit.files import write_table, write_text
 from stages.kit.workspace import Workspace
+from stages.report import scene
 from stages.report.results import NotRun, Results
-from stages.report.scene import face_counts as table
-from stages.report.scene import face_counts_figure as figure
+from stages.report.scene import counts as table
+from stages.report.topics import build_one
 
 
 def rows():
@@ -50,10 +51,17 @@ def test_metric_that_was_not_measured_is_a_dash(written):
     assert set(shown.loc["objects of flat sides", "excess error, %"]) == {"–"}
 
 
+def test_cost_is_told_beside_the_lookup(written):
+    made = build_one(scene, "tables", "face_counts", written(rows()))
+    assert "the thesis's networks 1 and 1; linear in logarithms 2 and 2" in made.notes[0]
+
+
 def test_figure_is_drawn_with_and_without_all_conditions(written):
-    assert figure.build(written(rows())).paths[0].stat().st_size > 10_000
+    made = build_one(scene, "figures", "face_counts", written(rows()))
+    assert made.paths[0].stat().st_size > 10_000
     frame = rows()
-    assert figure.build(written(frame[frame["condition"].isin(["left_out", "larger"])])).paths[0].exists()
+    frame = frame[frame["condition"].isin(["left_out", "larger"])]
+    assert build_one(scene, "figures", "face_counts", written(frame)).paths[0].exists()
 
 
 def test_without_a_judgement_it_is_not_run(written):

@@ -9,11 +9,13 @@ import pandas as pd
 from stages.kit.stats import interval
 from stages.report.items import Table
 from stages.report.markdown import number, signed, with_interval
+from stages.report.prose import shared_notes
 from stages.report.results import NotRun, Results
 from stages.report.style import label
 
 from .rows import CLASSICAL, GAIN, GAINS, HUMAN, MEAN, OURS, THESIS, agreement, difference, method_text, rivals, scores
 
+PACKAGE = str(__package__)
 ALONE = {"nss": "NSS", "auc": "AUC"}  # shown with their interval
 COUNTED = "points_strong"
 MEANS = {
@@ -23,10 +25,6 @@ NAMED = 5  # methods that a sentence names at most
 PEEKED = {"enhanced": "fixations_seen", "guided_ssim": "guided_ssim_seen", "guided_ed": "guided_ed_seen",
           "svm": "svm_object"}  # fmt: skip
 MARKED = "household"  # the data set whose marks come with the project
-MARKS = (
-    "The truth here is no gaze: marks of three passes over rendered views by a vision model (data/annotations). No "
-    "human subjects took part. A bunny is among these objects and among the meshes with gaze."
-)
 
 
 def against_gaze(results: Results) -> Table:
@@ -39,7 +37,8 @@ def against_marks(results: Results) -> Table:
     """The marks on this run's own objects."""
     rows = results.measured("salient_points")
     dataset, count = rows["dataset"].iloc[0], rows.loc[rows["metric"] == "nss", "item"].nunique()
-    truth = MARKS if dataset == MARKED else f"The truth is what comes with the data set {dataset}."
+    other = f"The truth is what comes with the data set {dataset}."
+    truth = shared_notes(PACKAGE, "marks") if dataset == MARKED else other
     return _table(rows, [COUNTED, "fne@0.05", "fpe@0.05"], {"count": count, "truth": truth})
 
 
@@ -50,18 +49,18 @@ def _table(rows: pd.DataFrame, beside: Sequence[str], words: dict) -> Table:
     cost = timed.groupby("method")["seconds"].median().map(number)
     lines = []
     for method, group in frame.groupby("method", sort=False):
-        cell = group.set_index("metric").reindex(columns=[*MEAN, *GAIN])
+        cells = group.set_index("metric").reindex(columns=[*MEAN, *GAIN]).T.to_dict("list")
         line = {"method": method_text(str(method))}
-        line |= {name: with_interval(*cell.loc[metric, MEAN], places=2) for metric, name in ALONE.items()}
+        line |= {name: with_interval(*cells[metric][:3], places=2) for metric, name in ALONE.items()}
         for metric in GAINS:
-            over = cell.loc[metric, GAIN]
-            line[f"ours − it, {ALONE[metric]}"] = signed(*over) if over.notna().any() else "–"
+            over = cells[metric][3:]
+            line[f"ours − it, {ALONE[metric]}"] = signed(*over) if over[0] == over[0] else "–"
         for metric in beside:
-            mean = float(cell["mean"].to_dict().get(metric, np.nan))
+            mean = cells.get(metric, [np.nan])[0]
             line[MEANS[metric]] = f"{mean:.{1 if metric == COUNTED else 2}f}" if mean == mean else "–"
         lines.append(line | {"seconds": cost.get(method, "–")})
     said = "\n".join([*_ours_and_rivals(rows), *_learned(rows), *_peeking(rows)])
-    return Table(frame, pd.DataFrame(lines), words | {"said": said})
+    return Table(frame, pd.DataFrame(lines), words | {"said": said, "reading": shared_notes(PACKAGE, "reading")})
 
 
 def _ours_and_rivals(rows: pd.DataFrame) -> Iterator[str]:

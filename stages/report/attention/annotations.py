@@ -29,7 +29,7 @@ def build(results: Results) -> Table:
         table, other = group.pivot(index="item", columns="method", values="value"), BESIDE[metric]
         cells = {
             method: dict(zip(MEAN, interval(table[method]), strict=True)) | gain(table, method, other)
-            for method in table
+            for method in map(str, table)
         }
         about = {"dataset": dataset, "metric": metric}
         found += [about | {"method": name, "objects": len(table)} | cell for name, cell in cells.items()]
@@ -55,7 +55,7 @@ def _extremes(rows: pd.DataFrame) -> str:
     passes = rows[(rows["metric"] == "found") & (rows["method"] == "passes")].set_index("item")["value"]
     if passes.empty:
         return ""
-    low = passes.idxmin()
+    low = str(passes.idxmin())
     return (
         f"The passes agree least on {low} ({100 * passes[low]:.0f} %); on {(passes == 1).sum()} of {len(passes)} "
         "objects each mark was found again by every other pass."

@@ -53,8 +53,8 @@ def by_setting(results: Results) -> Figure:
     )  # fmt: skip
     full = frame.loc[frame["name"] == best, "seconds"].iloc[0]
     named = "; ".join(
-        f"{row.name} ({full / row.seconds:.1f} times as fast, {signed(row.gain, row.low, row.high, 3)})"
-        for row in frame.loc[frame["loses_nothing"]].sort_values("seconds")[:NAMED].itertuples()
+        f"{row['name']} ({full / row['seconds']:.1f} times as fast, {signed(row['gain'], row['low'], row['high'], 3)})"
+        for row in frame.loc[frame["loses_nothing"]].sort_values("seconds")[:NAMED].to_dict("records")
     )
     chart.words |= {"objects": len(tables[best]), "best": best, "loss": LOSS, "named": named}
     return chart

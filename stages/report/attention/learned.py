@@ -34,7 +34,7 @@ def table_3_1(results: Results) -> Table:
         raise NotRun("no weights learned from ground truth", "weights")
     frame = pd.DataFrame(found)
     thesis = results.thesis("table_3_1_channel_weights").set_index("channel")
-    printed = {(method, channel): thesis.at[channel, PRINTED[method]] for method in PRINTED for channel in thesis.index}
+    printed = {(method, channel): value for method in PRINTED for channel, value in thesis[PRINTED[method]].items()}
     frame["thesis"] = [printed.get(key, np.nan) for key in zip(frame["method"], frame["channel"], strict=True)]
     cells = {
         (row["method"], row["channel"], row["dataset"]): with_interval(row["mean"], row["low"], row["high"], places=2)
@@ -81,7 +81,7 @@ def _ranks(frame: pd.DataFrame) -> str:
     said = []
     for (dataset, method), group in grouped(frame.dropna(subset=["thesis"]), ["dataset", "method"]):
         rank = np.corrcoef(group["mean"].rank(), group["thesis"].rank())[0, 1]  # Spearman's
-        best = group.loc[group["mean"].idxmax(), "channel"]
+        best = group.sort_values("mean")["channel"].iloc[-1]
         said.append(f"{KINDS[method]}, {dataset}: {best} comes first, rank correlation {rank:.2f}")
     return "; ".join(said)
 

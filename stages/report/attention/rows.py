@@ -13,7 +13,7 @@ PER_OBJECT = ("svm_object", "svm_viewpoint")  # T3.2.3: an SVM for the object it
 SAME = {"VisAtt": CLASSICAL}  # the classical model under the thesis's name
 NAMES = {"random": "random points"}  # nobody touches here
 GAINS = ("nss", "auc")  # metrics in which ours is compared with each other method
-MEAN, GAIN = ("mean", "low", "high"), ("gain", "gain_low", "gain_high")  # columns: of a method, and over another
+MEAN, GAIN = ["mean", "low", "high"], ["gain", "gain_low", "gain_high"]  # columns: of a method, and over another
 
 
 def has_seen(method: str) -> bool:

@@ -1,19 +1,8 @@
 """Several touches: how many it takes, where to touch next, and whether a stated belief is right."""
 
-from . import (
-    calibration,
-    claims,
-    exploration,
-    exploration_chart,
-)
+from . import charts, claims, exploration
 
-TABLES = {
-    "exploration": exploration.build,
-}
-FIGURES = {
-    "exploration_calibration": calibration.build,
-}
-CHARTS = {
-    "exploration": exploration_chart.build,
-}
+TABLES = {"exploration": exploration.build}
+FIGURES = {"exploration_calibration": charts.calibration}
+CHARTS = {"exploration": charts.exploration}
 CLAIMS = claims.CLAIMS

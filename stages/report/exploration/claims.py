@@ -34,14 +34,14 @@ touches = partial(claim, where=AT_RANDOM | SURE, scale=1.0, unit="touches", stat
 @statistic("touches_saved")
 def touches_saved(results: Results, claim: Claim) -> pd.Series:
     """Touches that the second side takes minus those of the first."""
-    return _column(results, claim, claim.second, "touches") - _column(results, claim, claim.first, "touches")
+    return _touches(results, claim, claim.second) - _touches(results, claim, claim.first)
 
 
 @statistic("over_as_many_touches")
 def over_as_many_touches(results: Results, claim: Claim) -> pd.Series:
     """Accuracy of the first side minus that of a fixed number of touches, interpolated at as many."""
     fixed = results.measured(STAGE, claim.dataset, **claim.where, stop="fixed")
-    return side(results, claim, claim.first, None) - fixed_at(fixed, _column(results, claim, claim.first, "touches"))
+    return side(results, claim, claim.first, None) - fixed_at(fixed, _touches(results, claim, claim.first))
 
 
 @statistic("overconfidence")
@@ -52,10 +52,10 @@ def overconfidence(results: Results, claim: Claim) -> pd.Series:
     return last["belief"] - last["value"]
 
 
-def _column(results: Results, claim: Claim, own: Side | float | None, column: str) -> pd.Series:
+def _touches(results: Results, claim: Claim, own: Side | float | None) -> pd.Series:
     if not isinstance(own, dict):
         raise ValueError(f"claim {claim.key} needs two sides")
-    return results.measured(STAGE, claim.dataset, **claim.where, **own).set_index("repetition")[column]
+    return results.measured(STAGE, claim.dataset, **claim.where, **own).set_index("repetition")["touches"]
 
 
 CLAIMS = [

@@ -4,15 +4,10 @@ import numpy as np
 import pandas as pd
 
 from stages.kit.split import Split, shared_by
-from stages.kit.stats import interval
+from stages.report.grid import within
 
 STAGE, GROUP = "exploration", "six"
-WAYS = {
-    "gain": "where the belief gains most",
-    "saliency": "most salient first",
-    "random": "in random order",
-}
-TINTS = {"gain": "#0072B2", "saliency": "#009E73", "random": "#E69F00"}
+WAYS = {"gain": "where the belief gains most", "saliency": "most salient first", "random": "in random order"}
 LIKELIHOODS = {
     "imprint": "by imprints",
     "imprint_place": "by imprints and places",
@@ -26,9 +21,9 @@ def points(rows: pd.DataFrame, by: list[str]) -> pd.DataFrame:
     """Accuracy with its interval, mean touches and stated belief, one row for each combination of columns `by`."""
     found = []
     for key, group in rows.groupby(by, sort=False):
-        mean, low, high = interval(group["value"], shared_by(group["split"].iloc[0]))
-        cell = {"touches": group["touches"].mean(), "stated": group["belief"].mean(), "accuracy": mean}
-        cell |= {"low": np.maximum(low, 0.0), "high": np.minimum(high, 1.0)}
+        cell = {"touches": group["touches"].mean(), "stated": group["belief"].mean()}
+        accuracy = within(group["value"], shared_by(group["split"].iloc[0]))
+        cell |= zip(("accuracy", "low", "high"), accuracy, strict=True)
         found.append(dict(zip(by, key, strict=True)) | cell)
     return pd.DataFrame(found)
 
@@ -46,20 +41,11 @@ def fixed_at(rows: pd.DataFrame, touches: pd.Series) -> pd.Series:
     return pd.Series({one: np.interp(touches[one], levels, curve.loc[one]) for one in touches.index})
 
 
-def at_confidence(rows: pd.DataFrame, level: float) -> pd.DataFrame:
-    """Rows of the accuracy by repetition that stopped at a confidence."""
-    found = rows[(rows["stop"] == "confidence") & np.isclose(rows["level"], level) & (rows["metric"] == "accuracy")]
-    return found.set_index("repetition")
-
-
 def needed(rows: pd.DataFrame, accuracy: float) -> float:
     """Touches after which the mean accuracy of a fixed number reaches `accuracy`, interpolated; NaN if never."""
     curve = curves(rows).mean()
-    reached = np.flatnonzero(curve.to_numpy() >= accuracy)
+    reached = np.flatnonzero(curve >= accuracy)
     if len(reached) == 0:
         return np.nan
-    last = reached[0]
-    if last == 0:
-        return float(curve.index[0])
-    low, high = curve.iloc[last - 1], curve.iloc[last]
-    return float(curve.index[last - 1] + (accuracy - low) / (high - low))
+    last = curve.iloc[max(reached[0] - 1, 0) : reached[0] + 1]  # the step that reaches it, or the first touch
+    return float(np.interp(accuracy, last, last.index))

@@ -1,29 +1,25 @@
 """Claims of T3.3: where networks look, against where people look."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
+from stages.fixation.tasks import FUSED_TASKS
 from stages.report.claims import Claim
 from stages.report.style import label
 
-from .places import nearer_than_chance, nearer_than_middle
-from .rows import (
-    CHOSEN,
-    FUSED,
-    LEE,
-    MODELS,
-    NARROWED,
-    NOISE,
-    OURS,
-    PRIOR,
-    network_text,
-    with_random_weights,
-)  # fmt: skip
+from .detectors import FUSED, LEE, MODELS, NARROWED, NOISE, OURS, PRIOR, network_text, with_random_weights
+from .places import TASK
 
 # The thesis's, but that ResNet101's weights come with no package; and a small one.
 NETWORKS = VGG, RESNET, _ = ("vgg16-frozen", "resnet50-frozen", "mobilenet_v2-frozen")
 FROZEN = "*-frozen"
+EWIGC, EWIGC_L4 = (FROZEN, FUSED), (FROZEN, NARROWED)
+BOTH = (RESNET, FUSED), (VGG, FUSED)
+NAMED = {"level_3": "the object itself", "convexity": "the convexity"}  # tasks that are not fused
 AVERAGE = "average"  # the same four maps with equal weights
+Pair = tuple[str, str | tuple[str, ...]]  # method and task, or tasks
 DIAMETER = "% of the bounding sphere's diameter"
 VIEWS = ("0", "1", "2")  # the three views of which an object's score is the mean
 PHRASES = {
@@ -31,45 +27,49 @@ PHRASES = {
     ("view", VIEWS): "", ("metric", "pcc_masked"): "PCC the thesis's way, hidden vertices as zeros",
     ("metric", "pcc_tasks"): "PCC between tasks", ("metric", "distance"): "distance (nearest, which favours many "
     "centres)", ("metric", "distance_mean"): "distance (mean of all pairs)",
-    ("task", CHOSEN): "mean of the four tasks that are fused,", ("task", OURS[1]): "ours, learned on the other meshes,",
-    ("task", AVERAGE): "equal weights,", ("task", NOISE[1]): "noise",
+    ("task", FUSED_TASKS): "mean of the four tasks that are fused,", ("task", AVERAGE): "equal weights,",
+    ("task", OURS.task): "ours, learned on the other meshes,", ("task", NOISE.task): "noise",
     **{("task", one): f"{name}," for one, name in MODELS.items()},
-    **{("task", one): f"{label(one)}," for one in ("level_3", "convexity")},
-    **{("task", one): label(one) for one in (LEE[1], PRIOR[1])},
+    **{("task", one): f"{label(one)}," for one in NAMED},
+    **{("task", one): label(one) for one in (LEE.task, PRIOR.task)},
     **{("method", each): network_text(each) for one in NETWORKS for each in (one, with_random_weights(one))},
 }  # fmt: skip
 claim = partial(Claim, stage="fixation", dataset="gaze", over=("item",), scale=1, unit="PCC", phrases=PHRASES)
 
 
-def of(method, task):
-    """The side of a claim that is one detector."""
-    return {"task": task, "method": method}
+def agrees(
+    key: str, said: str, first: Pair, second: Pair, section: str = "T3.3.6", metric: str = "pcc", **more: Any
+) -> Claim:
+    """A claim that the correlation of one (method, task) with people is higher than that of another."""
+    one, other = ({"task": task, "method": method} for method, task in (first, second))
+    return claim(key=key, section=section, sentence=said, where={"metric": metric, "view": VIEWS}, first=one,
+                 second=other, **more)  # fmt: skip
 
 
-def agrees(key, sentence, first, second, section="T3.3.6", metric="pcc", **further):
-    """A claim that one detector's correlation with people is higher than another's."""
-    return claim(key=key, section=section, sentence=sentence, where={"metric": metric, "view": VIEWS},
-                 first=of(*first), second=of(*second), **further)  # fmt: skip
-
-
-def each_network(key, sentence, other):
-    """The claim for each of NETWORKS. other(method): the (method, task) that it is compared with."""
+def each_network(key: str, sentence: str, other: Callable[[str], Pair]) -> list[Claim]:
+    """The claim for each of NETWORKS. other: of a method, what it is compared with."""
     return [agrees(f"{key}_{one.partition('-')[0]}", sentence, (one, FUSED), other(one)) for one in NETWORKS]
 
 
-def nearer(key, sentence, near, far):
+def nearer(key: str, sentence: str, near: Pair, far: Pair) -> list[Claim]:
     """The claim that the centres of `near` are nearer: the mean of all pairs, and the nearest, the thesis's measure."""
     pairs = agrees(key, sentence, far, near, metric="distance_mean", scale=100, unit=DIAMETER)
-    said, where = f"{sentence[:-1]}, each by its nearest.", pairs.where | {"metric": "distance"}
+    said, where = f"{sentence[:-1]}, each by its nearest.", {**pairs.where, "metric": "distance"}
     return [pairs, replace(pairs, key=f"{key}_least", sentence=said, where=where)]
 
 
-def same_place(nearer, sentence, note):
-    """The claim that the maxima of two views lie nearer to each other than other places."""
-    key = f"same_place_over_{nearer.__name__.rpartition('_')[2]}"
-    return Claim(key=key, section="T3.3.3", sentence=sentence, stage="fixation",
-                 over=("item",), unit=DIAMETER, statistic=nearer.__name__,
-                 note=f"level 3, frozen networks: distance of {note} minus that of their maxima")  # fmt: skip
+def least(task: str) -> Claim:
+    """The claim that the maps of a task agree less with people than those that are fused."""
+    sentence = f"Attention is less like people's where a network names {NAMED[task]} than in the tasks that are fused."
+    return agrees(f"{task}_least", sentence, (FROZEN, FUSED_TASKS), (FROZEN, task), "T3.3.3", within=("method",))
+
+
+def same_place(other: str, words: str, note: str) -> Claim:
+    """The claim that the maxima of two views lie nearer to each other than other places: "chance" or "middle"."""
+    sentence = f"Changing the viewpoint moves the most salient place less than {words}."
+    note = f"{label(TASK)}, frozen networks: distance of {note} minus that of their maxima"
+    return Claim(key=f"same_place_over_{other}", section="T3.3.3", sentence=sentence, stage="fixation", over=("item",),
+                 unit=DIAMETER, statistic=f"nearer_than_{other}", note=note)  # fmt: skip
 
 
 CLAIMS = [
@@ -79,34 +79,28 @@ CLAIMS = [
     *each_network("ewigc_over_centre", "Fused Grad-CAM predicts gaze better than the middle of the picture.",
                   lambda _: PRIOR),
     *nearer("ewigc_nearer_than_lee", "Fused Grad-CAM finds centres nearer to fixations than mesh saliency does.",
-            (FROZEN, FUSED), LEE),
+            EWIGC, LEE),
     *nearer("ewigc_nearer_than_noise", "Fused Grad-CAM finds centres nearer to fixations than noise does.",
-            (FROZEN, FUSED), NOISE),
-    agrees("level_3_least", "Attention is less like people's where a network names the object itself than in the tasks "
-           "that are fused.", (FROZEN, CHOSEN), (FROZEN, "level_3"), "T3.3.3", within=("method",)),
-    agrees("convexity_least", "Attention is less like people's where a network names the convexity than in the tasks "
-           "that are fused.", (FROZEN, CHOSEN), (FROZEN, "convexity"), "T3.3.3", within=("method",)),
+            EWIGC, NOISE),
+    *map(least, NAMED),
     claim(key="resnet_more_alike", section="T3.3.3", where={"metric": "pcc_tasks"},
           sentence="The tasks' maps of ResNet are more alike than those of VGG16.",
           first={"method": RESNET}, second={"method": VGG}),
-    same_place(nearer_than_chance, "Changing the viewpoint moves the most salient place less than chance would.",
-               "random places that two views see"),
-    same_place(nearer_than_middle, "Changing the viewpoint moves the most salient place less than the middle of the "
-               "picture.", "what two views show in the middle"),
-    agrees("entropy_over_average", "Weighing maps by their entropy beats averaging them.",
-           (FROZEN, FUSED), (FROZEN, AVERAGE), "T3.3.4", within=("method",)),
-    agrees("resnet_over_vgg", "Fused Grad-CAM of ResNet predicts gaze better than that of VGG16.",
-           (RESNET, FUSED), (VGG, FUSED)),
+    same_place("chance", "chance would", "random places that two views see"),
+    same_place("middle", "the middle of the picture", "what two views show in the middle"),
+    agrees("entropy_over_average", "Weighing maps by their entropy beats averaging them.", EWIGC, (FROZEN, AVERAGE),
+           "T3.3.4", within=("method",)),
+    agrees("resnet_over_vgg", "Fused Grad-CAM of ResNet predicts gaze better than that of VGG16.", *BOTH),
     *nearer("resnet_nearer_than_vgg", "Fused Grad-CAM of ResNet finds centres nearer to fixations than that of VGG16.",
-            (RESNET, FUSED), (VGG, FUSED)),
+            *BOTH),
     agrees("fused_over_narrowed", "The whole map correlates more with gaze than its highest levels alone.",
-           (FROZEN, FUSED), (FROZEN, NARROWED), within=("method",)),
+           EWIGC, EWIGC_L4, within=("method",)),
     *nearer("fused_nearer_than_narrowed", "The whole map's centres lie nearer than those of its highest levels.",
-            (FROZEN, FUSED), (FROZEN, NARROWED)),
+            EWIGC, EWIGC_L4),
     agrees("fused_over_narrowed_masked", "The whole map correlates more with gaze than its highest levels, hidden "
-           "vertices counted as zero.", (FROZEN, FUSED), (FROZEN, NARROWED), metric="pcc_masked", within=("method",)),
+           "vertices counted as zero.", EWIGC, EWIGC_L4, metric="pcc_masked", within=("method",)),
     agrees("ewigc_over_lee_masked", "Fused Grad-CAM predicts gaze better than Lee's mesh saliency, hidden vertices "
-           "counted as zero.", (FROZEN, FUSED), LEE, metric="pcc_masked"),
-    agrees("ours_over_ewigc", "Our model of gaze predicts where people look better than fused Grad-CAM.",
-           OURS, (FROZEN, FUSED), "ours"),
+           "counted as zero.", EWIGC, LEE, metric="pcc_masked"),
+    agrees("ours_over_ewigc", "Our model of gaze predicts where people look better than fused Grad-CAM.", OURS, EWIGC,
+           "ours"),
 ]  # fmt: skip

@@ -1,11 +1,14 @@
 """Claims of T5.5 and 5.6: one network for vision and touch, and what two senses are worth together."""
 
-from stages.report.claims import Claim
+from functools import partial
+
+from stages.report.claims import Claim, Side
 from stages.report.networks import both, on_their_classes
 
-from .rows import MIDDLE, SENSES, WHOLE
-from .section_5_5 import POINT
+from .hybrid_senses import WHOLE
+from .section_5_5 import MIDDLE, POINT, SENSES
 
+UNHARMED = {"perturbation": WHOLE}
 DARK = {"perturbation": "picture_darkness", "severity": 0.95}  # the harshest that was measured
 PHRASES = {
     ("data", "hybrid"): "", ("mode", MIDDLE): f"layers {MIDDLE} shared", ("sense", "both"): "",
@@ -18,46 +21,39 @@ PHRASES = {
 }  # fmt: skip
 
 
-def claims(key, section, sentence, first, second, margin=0.0, **where):
-    """The claim of one way to recognise over another, on both splits."""
-    common = {"data": "hybrid", "mode": MIDDLE, "metric": "accuracy"} | where
-    one = Claim(
-        key=key, section=section, sentence=sentence, stage="transfer", first=first, second=second, where=common,
-        margin=margin, phrases=PHRASES,
+def claim(key: str, section: str, sentence: str, first: Side, second: Side, where: Side, margin: float = 0.0) -> Claim:
+    """The claim of one way to recognise over another. where: what both have in common."""
+    return Claim(
+        key=key, section=section, sentence=sentence, stage="transfer", first=first, second=second, margin=margin,
+        where={"data": "hybrid", "mode": MIDDLE, "metric": "accuracy", **where}, phrases=PHRASES,
     )  # fmt: skip
-    return list(both(one, items="items", done="met"))
 
 
-def joined(key, section, sentence, first, second, where=None):
+def joined(key: str, section: str, sentence: str, first: str, second: str, damage: Side = UNHARMED) -> Claim:
     """A claim on both senses: one way of joining them, or one sense alone, over another."""
-    where = {"sense": "both"} | (where or {"perturbation": WHOLE})
-    return claims(key, section, sentence, {"method": first}, {"method": second}, **where)
+    return claim(key, section, sentence, {"method": first}, {"method": second}, {"sense": "both", **damage})
 
 
-THESIS = [
-    *claims("sight_over_touch", "T5.5", "The hybrid network recognises better by sight than by touch.",
-            {"method": "vision", "sense": "vision"}, {"method": "touch", "sense": "touch"}, perturbation=None),
-    *joined("touch_in_the_dark", "T5.5", "Where sight fails, touch helps.", "fusion_entropy", "vision", DARK),
-]  # fmt: skip
-CLAIMS = [
-    *THESIS,
-    *(
-        claim
+on_both_splits = partial(both, items="items", done="met")
+THESIS = on_both_splits(
+    claim("sight_over_touch", "T5.5", "The hybrid network recognises better by sight than by touch.",
+          {"method": "vision", "sense": "vision"}, {"method": "touch", "sense": "touch"}, {"perturbation": None}),
+    joined("touch_in_the_dark", "T5.5", "Where sight fails, touch helps.", "fusion_entropy", "vision", DARK),
+)  # fmt: skip
+OURS = on_both_splits(
+    *(  # not of the hybrid of 32 bits: its answers are those of the two networks, so that no difference has a spread
+        claim(f"eight_bits_{word}", "ours", f"With weights of 8 bits the hybrid recognises as well by {word} as one "
+              "network, but for one point.", {"method": "hybrid_int8"}, {"method": sense},
+              {"sense": sense, "perturbation": None}, POINT)
         for sense, word in SENSES.items()
-        # Not of the hybrid of 32 bits: its answers are those of the two networks, so that no difference has a spread.
-        for claim in claims(
-            f"eight_bits_{word}", "ours", f"With weights of 8 bits the hybrid recognises as well by {word} as one "
-            "network, but for one point.", {"method": "hybrid_int8"}, {"method": sense}, POINT, sense=sense,
-            perturbation=None,
-        )
     ),
-    *joined("both_over_better", "ours", "Both senses together recognise more than the better one alone.",
-            "fusion_entropy", "better_sense"),
-    *joined("apart_over_sum", "ours", "Fed both senses, two answers joined beat the summed streams of the thesis.",
-            "fusion_entropy", "sum_mean"),
-    *joined("harmless_in_the_dark", "ours", "Where sight fails, having it does no harm to touch.",
-            "fusion_entropy", "touch", DARK),
-    *joined("temperatures_help", "ours", "In the dark temperatures make the certainty a better guide.",
-            "fusion_entropy", "fusion_entropy_raw", DARK),
-    *on_their_classes(THESIS),
-]  # fmt: skip
+    joined("both_over_better", "ours", "Both senses together recognise more than the better one alone.",
+           "fusion_entropy", "better_sense"),
+    joined("apart_over_sum", "ours", "Fed both senses, two answers joined beat the summed streams of the thesis.",
+           "fusion_entropy", "sum_mean"),
+    joined("harmless_in_the_dark", "ours", "Where sight fails, having it does no harm to touch.",
+           "fusion_entropy", "touch", DARK),
+    joined("temperatures_help", "ours", "In the dark temperatures make the certainty a better guide.",
+           "fusion_entropy", "fusion_entropy_raw", DARK),
+)  # fmt: skip
+CLAIMS = [*THESIS, *OURS, *on_their_classes(THESIS)]

@@ -2,53 +2,46 @@
 
 import pandas as pd
 
+from stages.report.grid import grid
 from stages.report.items import Table
-from stages.report.markdown import with_interval
-from stages.report.networks import mean
-from stages.report.results import NotRun
+from stages.report.networks import accuracy, measured
+from stages.report.results import Results
 
-from .rows import BOTH, WHOLE, rows
+from .section_5_5 import MIDDLE
 
-NOTES = [
-    "Accuracy in per cent [95 % interval over repeated splits]: each test touch with a picture of the same object, "
-    "items at random. Damage is done to one sense alone; its severity is the highest measured. A sense that is missing "
-    "says nothing, which counts as wrong: below guessing.",
-    "The better sense: that which was right more often on whole items that neither learned from; it does not know of "
-    "the damage. By certainty: each head "
-    "counts by one minus the entropy of its answer, after its temperature was set on such items. The streams summed: "
-    "what the thesis's own network does when it is fed both, which the thesis never did.",
-]
+METHODS = {
+    "better_sense": "the better sense alone",
+    "vision": "sight alone",
+    "touch": "touch alone",
+    "sum_mean": "the streams summed, both heads",
+    "sum_vision": "the streams summed, sight's head",
+    "sum_touch": "the streams summed, touch's head",
+    "fusion_mean": "both heads, mean",
+    "fusion_product": "both heads, product",
+    "fusion_entropy": "both heads, by certainty",
+    "fusion_entropy_raw": "both heads, by certainty, no temperatures",
+    "fusion_surest": "the surer head",
+}
+WHOLE = "none"  # the perturbation of senses that are as they should be
 
 
-def build(results):
-    found = rows(results, metric="accuracy", split="random", sense="both")
-    if found.empty:
-        raise NotRun("no accuracies with both senses", "transfer")
-    harshest = found.groupby("perturbation")["severity"].transform("max")
-    found = found[found["severity"] == harshest]
+def build(results: Results) -> Table:
+    """Accuracy of each way to join the senses under the harshest of each damage, on items at random."""
+    found = measured(results, data="hybrid", mode=MIDDLE, split="random", sense="both")
+    found = found[found["severity"] == found.groupby("perturbation")["severity"].transform("max")]
     lines = []
-    for (perturbation, severity), part in found.groupby(["perturbation", "severity"], sort=False):
-        for method in BOTH:
-            values = part.loc[part["method"] == method, "value"]
-            triple = dict(zip(("accuracy", "low", "high"), mean(values, "random"), strict=True))
-            lines.append({"damage": perturbation, "severity": severity, "method": method} | triple)
-    frame = pd.DataFrame(lines)
-    return Table("Sight and touch at once", frame, NOTES, _wide(frame))
+    for (damage, severity), part in found.groupby(["perturbation", "severity"], sort=False):
+        for method in METHODS:
+            cell = accuracy(part[part["method"] == method], "random")
+            lines.append({"damage": damage, "severity": severity, "method": method} | cell)
+    frame = pd.DataFrame(lines).drop(columns="values")
+    heads = [spoken(*damage) for damage in zip(frame["damage"], frame["severity"], strict=True)]
+    wide = grid(frame.assign(head=heads), "method", "head", beside=(), names={"method": lambda way: METHODS[str(way)]})
+    return Table(frame, wide.rename(columns={"method": "answers"}))
 
 
-def spoken(perturbation):
-    """A damage as a person says it."""
-    if perturbation == WHOLE:
-        return "both whole"
+def spoken(perturbation: str, severity: float) -> str:
+    """A damage as a person says it, as the head of a column of per cents."""
     sense, _, what = perturbation.partition("_")
-    return f"{sense}: {what.replace('_', ' ')}"
-
-
-def _wide(frame):
-    text = [with_interval(row.accuracy, row.low, row.high, 100, 0) for row in frame.itertuples()]
-    head = [
-        spoken(row.damage) + (f" {row.severity:g}" if row.severity not in (0, 1) else "") for row in frame.itertuples()
-    ]
-    wide = frame.assign(text=text, head=head).pivot(index="method", columns="head", values="text")
-    wide = wide.loc[[name for name in BOTH if name in wide.index]][list(dict.fromkeys(head))]
-    return wide.rename(index=BOTH, columns=lambda name: f"{name}, %").reset_index(names="answers")
+    said = "both whole" if perturbation == WHOLE else f"{sense}: {what.replace('_', ' ')}"
+    return said + (f" {severity:g}, %" if severity not in (0, 1) else ", %")

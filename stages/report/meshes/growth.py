@@ -1,13 +1,16 @@
 """How the time of a backend grows with the mesh: a power of n, or of n log n, with its interval."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
 
+from stages.report.markdown import with_interval
+
 FITTED = 10_000  # faces from which the growth is fitted: below, the fixed cost of a call counts
 RESAMPLES = 1000
-POWERS = {"linear": ("n^p", lambda n: n), "loglinear": ("(n log n)^p", lambda n: n * np.log(n))}
+POWERS: dict[str, Callable] = {"linear": lambda n: n, "loglinear": lambda n: n * np.log(n)}
 
 
 @dataclass(frozen=True)
@@ -22,13 +25,18 @@ class Growth:
     high: float
     span: tuple[float, float]
 
-    def __call__(self, n, power=None):
+    def __call__(self, n: np.ndarray | float, power: float | None = None) -> np.ndarray | float:
         """Seconds at n faces; power: another than the fitted, through the same middle."""
-        shape = POWERS[self.shape][1]
+        shape = POWERS[self.shape]
         return self.level * (shape(n) / shape(self.middle)) ** (self.power if power is None else power)
 
+    @property
+    def said(self) -> str:
+        """`1.04 [0.90, 1.11]`: the power with its interval."""
+        return with_interval(self.power, self.low, self.high, places=2)
 
-def growth(rows, shape="loglinear"):
+
+def growth(rows: pd.DataFrame, shape: str = "loglinear") -> Growth | None:
     """The Growth of the column `seconds` over `full`, or None for fewer than three sizes of FITTED faces or more.
 
     rows: of one backend, with `mesh`, `target` and `with_points`. A least-squares line through the logarithms, with a
@@ -39,18 +47,18 @@ def growth(rows, shape="loglinear"):
     if rows["full"].nunique() < 3:
         return None
     n = rows["full"].to_numpy(dtype=float)
-    x, y = np.log(POWERS[shape][1](n)), np.log(rows["seconds"].to_numpy(dtype=float))
+    x, y = np.log(POWERS[shape](n)), np.log(rows["seconds"].to_numpy(dtype=float))
     level = pd.factorize(pd.MultiIndex.from_arrays([(rows["target"] / n).round(2), rows["with_points"]]))[0]
     mesh, names = pd.factorize(rows["mesh"])
     random = np.random.default_rng(0)
     picks = (random.multinomial(len(names), np.full(len(names), 1 / len(names))) for _ in range(RESAMPLES))
     low, high = np.nanquantile([_slope(x, y, level, times[mesh]) for times in picks], [0.025, 0.975])
     power, middle = _slope(x, y, level, np.ones(len(x))), np.exp(np.log(n).mean())
-    offset = (y - power * (x - np.log(POWERS[shape][1](middle)))).mean()
+    offset = (y - power * (x - np.log(POWERS[shape](middle)))).mean()
     return Growth(shape, np.exp(offset), middle, power, low, high, (n.min(), n.max()))
 
 
-def _slope(x, y, level, weight):
+def _slope(x: np.ndarray, y: np.ndarray, level: np.ndarray, weight: np.ndarray) -> float:
     """Weighted least-squares slope with an intercept for each level; NaN where no level has two places."""
     total = np.maximum(np.bincount(level, weight), 1e-9)
     x, y = (values - (np.bincount(level, weight * values) / total)[level] for values in (x, y))

@@ -1,55 +1,121 @@
-"""The claims on simplified meshes, judged on every data set beside each other."""
+"""The claims on simplified meshes: their own statistics, and the table of all claims on every data set."""
 
 from dataclasses import replace
+from typing import Any
 
 import pandas as pd
 
+from stages.kit.stats import interval
 from stages.report.claims import Claim
+from stages.report.differences import statistic
 from stages.report.items import Table
 from stages.report.markdown import signed
-from stages.report.results import Results
+from stages.report.results import NotRun, Results
 from stages.report.verdict import judge
 from stages.report.words import dataset_text
 
-from . import claims_channels, claims_weights
-from .rows import data_sets
+from .claims import CLAIMS
+from .methods import PLAIN, fixed
+from .rows import CELL, data_sets
 
-CLAIMS = [*claims_channels.CLAIMS, *claims_weights.CLAIMS]
 WORDS = {"supported": "yes", "contradicted": "no", "open": "open"}
-NOTES = [
-    "Each cell: the word (yes: the 95 % interval over the objects lies wholly on the claimed side; no: on the other; "
-    "open: it covers zero), the mean, the interval and the number of objects. What is compared: claims.md.",
-    "Nothing shrunk: only face counts at which none of the compared methods had to shrink its neighbourhoods; that is "
-    "the thesis's own algorithm.",
-    "The meshes of psb have up to 55,644 faces, those with gaze about 40,000, as the thesis's benchmark has: there "
-    "3,000 and 1,500 faces are deeper cuts than on the household objects.",
-]
+MANY = 5  # methods that a rank correlation needs
 
 
 def build(results: Results) -> Table:
     """One row per claim, one column per data set, and the first set again where nothing shrank."""
     sets = data_sets(results)
-    parts = {dataset_text(name): _judged(results, name, {}) for name in sets}
-    parts[f"{dataset_text(sets[0])}, nothing shrunk"] = _judged(results, sets[0], {"shrunk": False})
-    shown = pd.DataFrame({"section": [one.section for one in CLAIMS], "claim": [one.sentence for one in CLAIMS]})
-    for head, part in parts.items():
-        shown[head] = [_cell(row) for row in part.itertuples()]
-    shown["unit"] = [one.unit for one in CLAIMS]
+    wanted = {dataset_text(name): (name, {}) for name in sets}
+    wanted[f"{dataset_text(sets[0])}, nothing shrunk"] = sets[0], {"shrunk": False}
+    parts = {
+        head: judge([replace(claim, dataset=name, where={**claim.where, **where}) for claim in CLAIMS], results)
+        for head, (name, where) in wanted.items()
+    }
+    shown = pd.DataFrame({
+        "section": [claim.section for claim in CLAIMS], "claim": [claim.sentence for claim in CLAIMS],
+        **{head: [_cell(row) for row in part.itertuples()] for head, part in parts.items()},
+        "unit": [claim.unit for claim in CLAIMS],
+    })  # fmt: skip
     frame = pd.concat([part.assign(data=head) for head, part in parts.items()])
     frame = frame.rename(columns={"pairs": "objects"})
     frame = frame[["key", "data", "verdict", "effect", "low", "high", "objects"]].sort_values("key", kind="stable")
-    return Table("Claims on simplified meshes, by data set", frame, NOTES, shown)
+    return Table(frame, shown)
 
 
-def _judged(results: Results, dataset: str, where: dict) -> pd.DataFrame:
-    own: list[Claim] = [replace(claim, dataset=dataset, where={**claim.where, **where}) for claim in CLAIMS]
-    return judge(own, results)
-
-
-def _cell(row) -> str:
+def _cell(row: Any) -> str:
     """`yes: +0.83 [0.61, 1.05] (50)`: the effect with sign to three digits."""
     if not row.pairs:
         return "not run"
     mean = row.effect
     places = max(0, 2 - int(f"{mean:e}".split("e")[1])) if mean and mean == mean else 2
     return f"{WORDS[row.verdict]}: {signed(mean, row.low, row.high, min(places, 7))} ({row.pairs})"
+
+
+@statistic("spread")
+def spread(results: Results, claim: Claim) -> pd.Series:
+    """Standard deviation over the methods of the first side, under the first selection minus under the second."""
+    one, other = (
+        _errors(results, claim, claim.first["method"], **where).std(axis=1).droplevel("target")
+        for where in claim.contrast or ()
+    )
+    return one - other
+
+
+@statistic("falls_with_faces")
+def falls_with_faces(results: Results, claim: Claim) -> pd.Series:
+    """Error at the fewest faces minus error at the largest number, of objects with several counts."""
+    rows = results.measured(claim.stage, claim.dataset, **claim.where, **claim.first).sort_values("faces")
+    rows = rows[rows.groupby("item")["faces"].transform("nunique") > 1].groupby("item")["value"]
+    if not len(rows):
+        raise NotRun("no object that is taken to two face counts", claim.stage, runnable=False)
+    return rows.first() - rows.last()
+
+
+@statistic("room")
+def room(results: Results, claim: Claim) -> pd.Series:
+    """Minus the difference from the second side of the method and metric whose interval leaves the least room.
+
+    With the claim's margin, an equivalence test by the interval: above zero where the whole interval of the difference
+    lies within the margin (Schuirmann 1987, with the 95 % interval instead of 90 %: stricter).
+    """
+    if not isinstance(claim.second, dict):
+        raise ValueError(f"claim {claim.key} has no second side")
+    base, gaps, metrics = claim.second["method"], [], claim.where["metric"]
+    for metric in (metrics,) if isinstance(metrics, str) else metrics:
+        table = _errors(results, claim, (base, *claim.first["method"]), metric=metric)
+        if base not in table or table.shape[1] < 2:
+            raise NotRun(f"lod did not run {base} beside another", claim.stage, runnable=False)
+        gaps += [(table[name] - table[base]).groupby("item").mean() for name in table if name != base]
+    return min((side * gap for gap in gaps for side in (-1, 1)), key=lambda found: interval(found)[1])
+
+
+@statistic("ranks_agree")
+def ranks_agree(results: Results, claim: Claim) -> pd.Series:
+    """Rank correlation over the methods, per object, of the metrics of both sides; of the points without a second.
+
+    Methods with a way behind their name keep the same points in another way and are left out.
+    """
+    metric = str(claim.first["metric"])
+    other = (str(claim.second["metric"]), "value") if isinstance(claim.second, dict) else (metric, "points")
+    tables = [_by_method(results, claim, *which) for which in ((metric, "value"), other)]
+    tables = [table[table.nunique(axis=1) > 1] for table in tables]  # equal values have no ranks
+    if tables[0].empty or tables[0].shape[1] < MANY:
+        raise NotRun(f"fewer than {MANY} methods to rank", claim.stage, runnable=False)
+    return tables[0].corrwith(tables[1], axis=1, method="spearman")
+
+
+def _errors(results: Results, claim: Claim, methods: tuple[str, ...], **where: object) -> pd.DataFrame:
+    """Frame (object, target) x methods, where all of the methods that were run reach the target."""
+    rows = results.measured(claim.stage, claim.dataset, **{**claim.where, **where}, method=methods)
+    table = rows.pivot(index=CELL, columns="method", values="value").dropna()
+    if table.empty:
+        raise NotRun(f"no target that all of {', '.join(methods)} reach", claim.stage, runnable=False)
+    return table
+
+
+def _by_method(results: Results, claim: Claim, metric: str, column: str) -> pd.DataFrame:
+    """Frame objects x methods of a column, mean over the targets that all methods reach."""
+    rows = results.measured(claim.stage, claim.dataset, **claim.where, metric=metric)
+    rows = rows[[name != PLAIN and fixed(name) for name in rows["method"]]]
+    reached = rows.groupby(CELL)["method"].transform("nunique")
+    return rows[reached == rows["method"].nunique()].pivot_table(index="item", columns="method", values=column)

@@ -1,6 +1,6 @@
 """The errors of simplified meshes, compared on the same objects and targets only."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from typing import Any
 
 import pandas as pd
@@ -8,14 +8,16 @@ import pandas as pd
 from stages.report.markdown import with_interval
 from stages.report.results import Results
 
+from .methods import PLAIN
+
 STAGE = "lod"
 CELL = ["item", "target"]
-PLAIN, OURS = "qem", "enhanced"
 ERRORS = {  # metric -> (name, factor to the unit in which it is shown)
     "metro_mean": ("Metro mean, %", 100), "metro_rms": ("Metro rms, %", 100), "metro_max": ("Metro max, %", 100),
     "ssim_error": ("1 − SSIM, %", 100), "dlap": ("DLap", 1), "dnor": ("Dnor", 1),
     "salient_error": ("error where our model looks, %", 100), "gaze_error": ("error where people look, %", 100),
 }  # fmt: skip
+METRICS = ("metro_mean", "ssim_error")  # those of the thesis's figures
 FEWEST = 3  # objects that a mean over objects needs to be shown
 
 
@@ -25,39 +27,30 @@ def data_sets(results: Results) -> list[str]:
     return results.datasets(STAGE)
 
 
-def cells(
-    results: Results, metrics: Sequence[str], dataset: str | None = None, methods: Iterable[str] | None = None
-) -> pd.DataFrame:
-    """Measured rows of the lod stage with these metrics; methods: of these alone (None: of all).
+def paired_cells(
+    results: Results, metrics: Iterable[str] = ERRORS, methods: Iterable[str] | None = None,
+    dataset: str | None = None, whole: bool = False,
+) -> pd.DataFrame:  # fmt: skip
+    """Rows of these errors and methods (None: of all), only where all methods that were run reach the object's target.
 
-    `seconds` is the simplification's; `plain` the value of plain QEM for the same object, target and metric.
+    `seconds` is the simplification's; `plain` the value of plain QEM for the same object, target and metric. whole:
+    only where, moreover, no method had to shrink its neighbourhoods: the thesis's own algorithm.
     """
     rows = results.rows(STAGE, dataset, metric=[*metrics, "faces"]).dropna(subset=["value"]).astype({"target": str})
-    rows = rows if methods is None else rows[rows["method"].isin([PLAIN, *methods])]
     made = rows.loc[rows["metric"] == "faces", [*CELL, "method", "seconds"]]
-    rows = rows[rows["metric"].isin(metrics)].drop(columns="seconds")
-    plain = rows.loc[rows["method"] == PLAIN, [*CELL, "metric", "value"]].rename(columns={"value": "plain"})
-    rows = rows if methods is None else rows[rows["method"].isin(methods)]
-    return rows.merge(made, on=[*CELL, "method"]).merge(plain, on=[*CELL, "metric"], how="left")
+    rows = rows[rows["metric"] != "faces"].drop(columns="seconds")
+    plain = rows[rows["method"] == PLAIN].rename(columns={"value": "plain"})[[*CELL, "metric", "plain"]]
+    rows = rows if methods is None else rows[rows["method"].isin(list(methods))]
+    rows = rows.merge(made, on=[*CELL, "method"]).merge(plain, on=[*CELL, "metric"], how="left")
+    counted = rows["method"].mask(rows["shrunk"].fillna(False).astype(bool)) if whole else rows["method"]
+    reached = rows.assign(method=counted).groupby([*CELL, "metric"])["method"].transform("nunique")
+    return rows[reached == rows["method"].nunique()]
 
 
-def paired_cells(
-    results: Results,
-    metrics: Sequence[str],
-    methods: Iterable[str],
-    dataset: str | None = None,
-    whole: bool = False,
-) -> pd.DataFrame:
-    """As `cells`, of those of the methods that were run, only where all of them reach the target of the object.
-
-    whole: only where, moreover, none of them had to shrink its neighbourhoods: the thesis's own algorithm.
-    """
-    rows = cells(results, metrics, dataset, methods)
-    counted = rows[~rows["shrunk"].fillna(False).astype(bool)] if whole else rows
-    key = [*CELL, "metric"]
-    reached = counted.groupby(key)["method"].nunique()
-    everywhere = reached.index[reached == rows["method"].nunique()]
-    return rows[pd.MultiIndex.from_frame(rows[key]).isin(everywhere)]
+def by_object(rows: pd.DataFrame, metric: str, target: str | None = None) -> pd.DataFrame:
+    """Frame objects x methods of one error in its unit; target: at this one alone, or the mean over all."""
+    rows = rows[(rows["metric"] == metric) & (rows["target"].eq(target) if target else True)]
+    return ERRORS[metric][1] * rows.pivot_table(index="item", columns="method", values="value")
 
 
 def face_counts(rows: pd.DataFrame) -> list[str]:
@@ -67,10 +60,16 @@ def face_counts(rows: pd.DataFrame) -> list[str]:
     return [target for target in enough if target.isdigit()] or enough
 
 
-def marked(row: Any, factor: float) -> str:
-    """`1.2 [1.1, 1.3] +`: a mean with its interval, + or – where it differs from plain QEM beyond chance."""
+def wide(cells: pd.DataFrame, down: str | list[str], across: str) -> pd.DataFrame:
+    """Column `text` pivoted, rows and columns in the order of the cells; `–` where there is none."""
+    found = cells.pivot(index=down, columns=across, values="text").rename_axis(columns=None)
+    return found.loc[cells.set_index(down).index.unique(), cells[across].unique()].fillna("–")
+
+
+def marked(row: Any) -> str:
+    """`1.2 [1.1, 1.3] +`: an error with its interval, + or – where it differs from plain QEM beyond chance."""
     mark = " +" if row.over_plain_low > 0 else " –" if row.over_plain_high < 0 else ""
-    return with_interval(row.mean, row.low, row.high, factor) + mark
+    return with_interval(row.mean, row.low, row.high, ERRORS[row.metric][1]) + mark
 
 
 def size(target: str) -> tuple[bool, float]:

@@ -1,108 +1,125 @@
-"""T table 3.2: errors of the simplified meshes, on every data set."""
+"""T table 3.2 and figures 3.23 to 3.26: errors of the simplified meshes by face count, on every data set."""
+
+from collections.abc import Iterator
+from itertools import product
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.ticker import LogLocator, NullFormatter
 
 from stages.kit.stats import interval
 from stages.report.grid import means
-from stages.report.items import Table
+from stages.report.items import Figure, Table
 from stages.report.markdown import number
 from stages.report.results import NotRun, Results
-from stages.report.style import label
+from stages.report.style import GREY, INK, METHOD_COLOURS, PALE, label, plt
 from stages.report.words import dataset_text
 
-from .rows import ERRORS, FEWEST, PLAIN, data_sets, face_counts, marked, paired_cells, said, size
+from .dots import name_rows
+from .methods import ENHANCED, FIXED_ADAPTIVE, HKS, OURS, PLAIN, RIVALS, short
+from .rows import ERRORS, FEWEST, METRICS, STAGE, data_sets, face_counts, marked, paired_cells, said, size, wide
 
-PROPOSED = ["guided_ed", "guided_ssim", "svm", "thesis_ed", "thesis_ssim"]
-METHODS = [each for name in PROPOSED for each in (name, f"{name}-adaptive")]
-METHODS += ["VisAttAll", "heat_kernel", "enhanced", PLAIN]
-PRINTED = {"guided_ed": "ed", "thesis_ed": "ed", "guided_ssim": "ssim", "thesis_ssim": "ssim", "svm": "svm"}
-METRICS = ["metro_mean", "ssim_error"]
+METHODS = [*FIXED_ADAPTIVE, "thesis_ed", "thesis_ed-adaptive", ENHANCED, f"{ENHANCED}-adaptive", "VisAttAll", HKS,
+           OURS, PLAIN]  # fmt: skip
+PRINTED = {"guided_ed": "ed", "thesis_ed": "ed", "guided_ssim": "ssim", ENHANCED: "ssim", "svm": "svm"}
+BLOCK = ["target", "nothing_shrunk"]
 KEY = ["data", "nothing_shrunk", "target", "method", "metric"]
-NOTES = [
-    "Metro mean: mean distance between the two surfaces, in % of the bounding-box diagonal; 1 − SSIM: of renders from "
-    "the viewpoints, in %. Each figure: mean over the objects [95 % interval over the objects].",
-    "For one data set and face count all methods are compared on the same objects. + and – behind a figure: higher or "
-    "lower than plain QEM on the same objects, beyond chance (95 % interval of the paired difference, in the CSV).",
-    "Where the kept neighbourhoods leave too few faces for a target, they shrink from the least salient point on. "
-    "Blocks `nothing shrunk` hold the objects on which no method had to: the thesis's own algorithm. A set with fewer "
-    f"than {FEWEST} such objects is left out.",
-    "Guided: weights learned from our own marked objects, never from the object itself; of table 3.1: the weights that "
-    "the thesis published. The thesis's figures (43 models of the 3D interest point benchmark, the unit of its Metro "
-    "error is not stated; here read as a share of the diagonal) stand beside both.",
-]
+DRAWN = [*FIXED_ADAPTIVE, OURS, f"{OURS}-adaptive", f"{OURS}-soft", "VisAttAll", HKS, *RIVALS, PLAIN]
+TINTS = dict.fromkeys(DRAWN, GREY) | dict.fromkeys(FIXED_ADAPTIVE, "#D55E00")  # the methods of T3.2; below: ours
+TINTS |= {method: METHOD_COLOURS[OURS] for method in DRAWN if method.startswith(OURS)}
+TARGETS = ("1500", "3000")
+FLOOR = 1e-3  # of plain QEM's median: an axis begins there, since some meshes are exact
 
 
-def build(results: Results) -> Table:
-    frame = pd.concat(_blocks(results, data_sets(results)), ignore_index=True)
-    if frame.empty:
-        raise NotRun("no face count that all methods of the table reach", "lod", runnable=False)
-    thesis = results.thesis("table_3_2_lod_errors").set_index(["method", "faces"])
-    frame["thesis"] = [_printed(thesis, row) for row in frame.itertuples()]
-    title = "Table 3.2: errors of simplified meshes, beside the thesis"
-    return Table(title, frame, [_counted(frame), *NOTES], _wide(frame))
+def table(results: Results) -> Table:
+    """Errors by method and face count, on all objects and where nothing shrank, beside the thesis's."""
+    parts = list(_parts(results))
+    if not parts:
+        raise NotRun("no face count that all methods of the table reach", STAGE, runnable=False)
+    rows = pd.concat(parts)
+    frame = pd.DataFrame(means(rows, KEY)).rename(columns={"values": "objects"}).drop(columns="seconds")
+    gains = rows.assign(gain=rows["value"] - rows["plain"]).groupby(KEY, sort=False)["gain"]
+    frame[["over_plain", "over_plain_low", "over_plain_high"]] = [interval(gain) for _, gain in gains]
+    thesis = results.thesis("table_3_2_lod_errors").melt(["method", "faces"], METRICS, "metric", "thesis")
+    thesis = thesis.rename(columns={"method": "printed", "faces": "target"}).astype({"target": str})
+    frame = frame.assign(printed=frame["method"].map(PRINTED)).merge(thesis, "left").drop(columns="printed")
+    orders = {"target": sorted(set(frame["target"]), key=size), "method": METHODS, "metric": list(METRICS)}
+    cells = frame.assign(**{name: pd.Categorical(frame[name], order) for name, order in orders.items()})
+    cells["block"] = [said(row.target) + ", nothing shrunk" * row.nothing_shrunk for row in cells.itertuples()]
+    return Table(frame, _wide(cells), {"objects": _counted(cells), "fewest": FEWEST})
 
 
-def _blocks(results, names):
-    """Frames of each data set, with all cells and with those in which nothing shrank."""
-    yield pd.DataFrame(columns=KEY)
-    for name in names:
+def _parts(results: Results) -> Iterator[pd.DataFrame]:
+    """Rows of each data set, with all cells and, where they are fewer, with those in which nothing shrank."""
+    for name in data_sets(results):
         every = None
         for whole in (False, True):
             rows = paired_cells(results, METRICS, METHODS, name, whole)
             rows = rows[rows["target"].isin(face_counts(rows))]
             if len(rows) and (every is None or len(rows) < len(every)):
-                yield _means(rows.assign(data=dataset_text(name), nothing_shrunk=whole))
+                yield rows.assign(data=dataset_text(name), nothing_shrunk=whole)
             every = rows
 
 
-def _means(rows):
-    found = pd.DataFrame(means(rows, KEY)).rename(columns={"values": "objects"}).drop(columns="seconds")
-    gain = rows.assign(gain=rows["value"] - rows["plain"]).groupby(KEY, sort=False)["gain"]
-    found = found.set_index(KEY)
-    found[["over_plain", "over_plain_low", "over_plain_high"]] = [interval(gain.get_group(key)) for key in found.index]
-    return found.reset_index()
+def _wide(cells: pd.DataFrame) -> pd.DataFrame:
+    """A row a block and method, most faces first; for each metric a column a data set, and the thesis's."""
+    printed = cells.drop_duplicates([*BLOCK, "method", "metric"]).assign(data="thesis")
+    printed["text"] = [number(ERRORS[row.metric][1] * row.thesis) for row in printed.itertuples()]
+    cells = pd.concat([cells.assign(text=[marked(row) for row in cells.itertuples()]), printed])
+    cells = cells.sort_values([*BLOCK, "method", "metric"], ignore_index=True)
+    cells["head"] = [f"{ERRORS[row.metric][0]}, {row.data}" for row in cells.itertuples()]
+    cells["kept points"] = [label(method) for method in cells["method"]]
+    return wide(cells, ["block", "kept points"], "head").reset_index(names=["target", "kept points"])
 
 
-def _printed(thesis, row):
-    """The thesis's figure, beside its methods in their fixed form."""
-    key = (PRINTED.get(row.method), int(row.target) if row.target.isdigit() else 0)
-    return thesis.loc[key, row.metric] if key in thesis.index else np.nan
+def _counted(cells: pd.DataFrame) -> str:
+    """How many objects each block is over."""
+    counts = cells.drop_duplicates(["data", *BLOCK]).sort_values(BLOCK)
+    objects = (counts["objects"].astype(str) + " " + counts["data"]).groupby(counts["block"], sort=False)
+    return "; ".join(f"{block}: {sets}" for block, sets in objects.agg(", ".join).items())
 
 
-def _wide(frame):
-    lines = []
-    for target, whole in _keys(frame):
-        block = frame[(frame["target"] == target) & (frame["nothing_shrunk"] == whole)]
-        name = said(target) + (", nothing shrunk" if whole else "")
-        for method in [method for method in METHODS if method in set(block["method"])]:
-            lines.append({"target": name, "kept points": label(method)} | _figures(block[block["method"] == method]))
-    return pd.DataFrame(lines).fillna("–")
+def figure(results: Results) -> Figure:
+    """A row of panels for each data set, a panel for each error and face count, a box for each method."""
+    shown = {}
+    for dataset in data_sets(results):
+        rows = paired_cells(results, METRICS, DRAWN, dataset)
+        rows = rows[rows["target"].isin(set(TARGETS).intersection(face_counts(rows)))]
+        if len(rows):
+            shown[dataset_text(dataset)] = rows
+    if not shown:
+        raise NotRun("no data set with enough objects that all methods take to 1,500 or 3,000 faces", STAGE, False)
+    known = pd.concat(shown)["method"].unique()
+    methods = [method for method in DRAWN if method in known]
+    height = 0.5 + 0.17 * len(methods)
+    drawing, grid = plt.subplots(len(shown), 4, figsize=(10.4, 0.4 + height * len(shown)), squeeze=False, sharey=True)
+    for row, (name, rows) in zip(grid, shown.items(), strict=True):
+        for axes, (metric, target) in zip(row, product(METRICS, TARGETS), strict=True):
+            here = rows[(rows["metric"] == metric) & (rows["target"] == target)]
+            _boxes(axes, here.assign(value=ERRORS[metric][1] * here["value"]), methods)
+            title = f"{ERRORS[metric][0]}, {said(target)}\n{name}, {here['item'].nunique()} objects"
+            axes.set_title(title, fontsize=8.5, fontweight="normal", pad=4)
+        name_rows(row[0], methods, [TINTS[method] for method in methods], 8)
+    drawing.subplots_adjust(wspace=0.08, hspace=0.34)
+    return Figure(drawing, {"methods": ", ".join(map(short, methods)), "sets": " and ".join(shown)}, dpi=95)
 
 
-def _keys(frame):
-    """(target, nothing shrunk) of the blocks, most faces first."""
-    keys = frame[["target", "nothing_shrunk"]].drop_duplicates().itertuples(index=False, name=None)
-    return sorted(keys, key=lambda key: (size(key[0]), key[1]))
-
-
-def _counted(frame):
-    """How many objects each block is over, as a note."""
-    counts = frame.drop_duplicates(["data", "target", "nothing_shrunk"]).set_index(["target", "nothing_shrunk"])
-    parts = [
-        f"{said(key[0])}{', nothing shrunk' if key[1] else ''}: "
-        + ", ".join(f"{row.objects:.0f} {row.data}" for row in counts.loc[[key]].itertuples())
-        for key in _keys(frame)
-    ]
-    return f"Objects: {'; '.join(parts)}."
-
-
-def _figures(rows):
-    line = {}
-    for metric in METRICS:
-        name, factor = ERRORS[metric]
-        here = rows[rows["metric"] == metric]
-        for row in here.itertuples():
-            line[f"{name}, {row.data}"] = marked(row, factor)
-        line[f"{name}, thesis"] = number(factor * here["thesis"].iloc[0])
-    return line
+def _boxes(axes: Axes, rows: pd.DataFrame, methods: list[str]) -> None:
+    floor = FLOOR * rows.loc[rows["method"] == PLAIN, "value"].median()
+    for y, method in enumerate(methods):
+        values = np.maximum(rows.loc[rows["method"] == method, "value"].to_numpy(), floor)
+        if len(values) == 0 or not floor > 0:
+            continue
+        low, left, middle, right, high = np.quantile(values, [0.05, 0.25, 0.5, 0.75, 0.95])
+        axes.plot([low, high], [y, y], color=TINTS[method], lw=0.9)
+        axes.barh(y, right - left, 0.62, left, color=TINTS[method], alpha=0.45)
+        axes.plot([middle] * 2, [y - 0.31, y + 0.31], color=INK, lw=1.3)
+        if method == PLAIN:
+            axes.axvline(middle, color=GREY, lw=0.9, ls="--", zorder=0)
+    axes.set(xscale="log", xlim=(floor if floor > 0 else None, None))
+    axes.xaxis.set_major_locator(LogLocator(numticks=6))
+    axes.xaxis.set_minor_formatter(NullFormatter())
+    axes.tick_params(axis="x", labelsize=8, which="both")
+    axes.tick_params(axis="y", length=0)
+    axes.grid(axis="x", color=PALE, lw=0.5)

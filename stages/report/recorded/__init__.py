@@ -1,32 +1,18 @@
 """Recorded touches: selection, networks and simulation on sensors of others (T4.2.4, T5.4)."""
 
-from . import (
-    claims_networks,
-    claims_touches,
-    grasps,
-    network_sizes,
-    real_networks,
-    real_touches,
-    simulated_to_real,
-    table_4_4,
-    table_5_1,
-    table_5_2,
-    table_5_5,
-)
+from functools import partial
+
+from . import claims_networks, claims_touches, grasps, network_sizes, real_networks, simulated_to_real, table_4_4
 
 TABLES = {
     "table_4_4": table_4_4.build,
     "grasps": grasps.build,
-    "simulated_to_real": simulated_to_real.build,
+    "simulated_to_real": simulated_to_real.build_table,
     "real_networks": real_networks.build,
-    "table_5_1": table_5_1.build,
-    "table_5_2": table_5_2.build,
-    "table_5_5": table_5_5.build,
+    "table_5_1": partial(real_networks.printed, "vt60", "table_5_1_vt60_bathtip"),
+    "table_5_2": partial(real_networks.printed, "vitac", "table_5_2_vitac_gelsight"),
+    "table_5_5": partial(real_networks.printed, "bigs", "table_5_5_bigs_barrett"),
 }
-FIGURES = {
-    "real_touches": real_touches.build,
-}
-CHARTS = {
-    "network_sizes": network_sizes.build,
-}
+FIGURES = {"real_touches": simulated_to_real.build_figure}
+CHARTS = {"network_sizes": network_sizes.build}
 CLAIMS = [*claims_touches.CLAIMS, *claims_networks.CLAIMS]

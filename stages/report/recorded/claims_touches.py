@@ -1,120 +1,60 @@
 """Claims of T4.2.4 on the real sensor (table 4.4), on the touches that others recorded; and ours on simulation."""
 
-import numpy as np
+from functools import partial
+from typing import Any
 
 from stages.kit.split import Split, shared_by
-from stages.report.claims import POINTS
-from stages.report.results import NotRun
-from stages.report.verdict import FunctionClaim as Claim
+from stages.report.claims import Claim, highest_of
 
-METRIC = "accuracy"
+from .table_4_4 import SELECTIONS, SETS
+
+ARRAY = "pressure_images"
 SIMULATED = "resting_skin"  # the simulation that was meant to be the closest, before any result was seen
+ALL = {"metric": "accuracy", "split": Split.RANDOM}  # the mean of all classifiers
+KNN = {"group": "all", "classifier": "knn", "metric": "accuracy"}
+PHRASES = {
+    **{("group", name): words for name, words in SETS.items()},
+    **{("method", name): words for name, words in SELECTIONS.items()},
+    ("method", "selected"): "selection before the split, as in the thesis,",
+}  # fmt: skip
+OF_TEN = {
+    ("group", "all"): "ten classes",
+    ("training", "both"): "real touches and", ("training", "real"): "real touches alone",
+    ("simulation", SIMULATED): "resting imprints with skin", ("aligned", False): "",
+    **{("touches", count): f"{count} real of each class" for count in (1, 5, 20)},
+}  # fmt: skip
+touches = partial(Claim, section="T4.2.4", stage="recorded", dataset=ARRAY)
 
 
-def _scores(results, over="repetition", split=Split.RANDOM, **where):
-    """Series of the accuracies of recorded pressure images, indexed by `over`; NotRun without any."""
-    rows = results.rows("recorded", "pressure_images", split=split)
-    for column, wanted in where.items():
-        rows = rows[rows[column] == wanted]
-    found = rows.dropna(subset=["value"]).groupby(over)["value"].mean()
-    if found.empty:
-        raise NotRun(f"recorded holds no {' '.join(map(str, where.values()))}", "recorded", runnable=False)
-    return found
-
-
-def selection(name, method="selected", metric=METRIC, classifier=None):
-    """differences(results): accuracy with the selection minus without, one classifier or the mean of all."""
-
-    def differences(results):
-        where = {"group": name, "metric": metric} | ({"classifier": classifier} if classifier else {})
-        gain = _scores(results, method=method, **where) - _scores(results, method="all", **where)
-        return 100 * gain.dropna().to_numpy()
-
-    return differences
-
-
-def knn_best(name):
-    """differences(results): kNN minus the best of the others by their means, without selection."""
-
-    def differences(results):
-        where = {"group": name, "metric": METRIC, "method": "all"}
-        means = _scores(results, "classifier", **where).drop("knn", errors="ignore")
-        if means.empty:
-            raise NotRun("only one classifier measured", "recorded", runnable=False)
-        best = _scores(results, classifier=means.idxmax(), **where)
-        return 100 * (_scores(results, classifier="knn", **where) - best).dropna().to_numpy()
-
-    return differences
-
-
-def blocked_below(results):
-    """Random hold-out minus hold-out of neighbouring numbers, kNN, all classes."""
-    where = {"group": "all", "classifier": "knn", "method": "all"}
-    gap = _scores(results, metric=METRIC, **where) - _scores(results, split=Split.BLOCKS, metric=METRIC, **where)
-    return 100 * gap.dropna().to_numpy()
-
-
-def simulation_helps(touches):
-    """differences(results): kNN with simulated imprints besides `touches` real ones a class, minus the latter alone."""
-
-    def differences(results):
-        rows = results.rows("simulated_to_real")
-        rows = rows[(rows["group"] == "all") & (rows["classifier"] == "knn") & (rows["touches"] == touches)]
-        aligned = rows["aligned"].fillna(False).astype(bool)
-        both = rows[(rows["training"] == "both") & (rows["simulation"] == SIMULATED) & ~aligned]
-        alone = rows[rows["training"] == "real"]
-        gain = both.set_index("repetition")["value"] - alone.set_index("repetition")["value"]
-        if gain.dropna().empty:
-            raise NotRun(f"no {SIMULATED} with {touches} real touches", "recorded", runnable=False)
-        return 100 * np.asarray(gain.dropna())
-
-    return differences
-
-
-AT_RANDOM = shared_by("random")
-
-
-def _claim(key, section, sentence, tested_on, differences, over="repetitions", shared=AT_RANDOM):
-    return Claim(key, section, sentence, tested_on, POINTS, over, differences, shared)
+def on_set(group: str, **fields: Any) -> Claim:
+    """A claim on one set of classes; of those that are drawn each repetition has its own."""
+    drawn = group.endswith("drawn")
+    phrases = PHRASES | ({("over", "repetition"): "sets of classes"} if drawn else {})
+    where = {"group": group} | ALL | fields.pop("where", {})
+    return touches(where=where, shared=0.0 if drawn else None, phrases=phrases, **fields)
 
 
 CLAIMS = [
     *(
-        _claim(
-            f"real_selection_{name}", "T4.2.4", "The selection of dissimilar imprints helps with real touches too.",
-            f"real touches, mean of the five classifiers, {text}, selected before the split as in the thesis",
-            selection(name),
-            **({"over": "sets of classes", "shared": 0.0} if name.endswith("drawn") else {}),
-        )
-        for name, text in (
-            ("four_drawn", "four classes at random"), ("six_drawn", "six classes at random"),
-            ("four_alike", "the four most alike"), ("six_alike", "the six most alike"), ("all", "all 22 classes"),
-        )
+        on_set(group, key=f"real_selection_{group}", first={"method": "selected"}, second={"method": "all"},
+               sentence="The selection of dissimilar imprints helps with real touches too.",
+               note="mean of all classifiers")
+        for group in ("four_drawn", "six_drawn", "four_alike", "six_alike", "all")
     ),
-    _claim(
-        "real_selection_training", "T4.2.4", "The selection helps with the test touches left as they are.",
-        "real touches, mean of the five classifiers, the six most alike, selected in the training part alone",
-        selection("six_alike", "selected_training"),
-    ),
-    _claim(
-        "real_knn_best_six", "T4.2.4", "kNN is the best classifier with real touches.",
-        "real touches, six classes at random, kNN minus the best of the others", knn_best("six_drawn"),
-        "sets of classes", 0.0,
-    ),
-    _claim(
-        "real_knn_best_all", "T4.2.4", "kNN is the best classifier with real touches.",
-        "real touches, all 22 classes, kNN minus the best of the others", knn_best("all"),
-    ),
-    _claim(
-        "real_blocked", "ours", "A random hold-out of real touches flatters.",
-        "real touches, all 22 classes, kNN, random quarter minus a run of neighbouring numbers", blocked_below,
-    ),
+    on_set("six_alike", key="real_selection_training", first={"method": "selected_training"}, second={"method": "all"},
+           sentence="The selection helps with the test touches left as they are.", note="mean of all classifiers"),
     *(
-        _claim(
-            f"simulation_helps_{touches}", "ours", "Simulated imprints help to recognise real touches.",
-            f"kNN, ten classes, {touches} real of each class, resting imprints with skin added minus without",
-            simulation_helps(touches),
-        )
-        for touches in (1, 5, 20)
+        on_set(group, key=key, sentence="kNN is the best classifier with real touches.", where={"method": "all"},
+               first={"classifier": "knn"}, second={"classifier": highest_of()})
+        for key, group in (("real_knn_best_six", "six_drawn"), ("real_knn_best_all", "all"))
+    ),
+    touches(key="real_blocked", section="ours", sentence="A random hold-out of real touches flatters.", phrases=PHRASES,
+            where=KNN | {"method": "all"}, first={"split": Split.RANDOM}, second={"split": Split.BLOCKS}),
+    *(
+        touches(key=f"simulation_helps_{count}", section="ours", stage="simulated_to_real", phrases=OF_TEN,
+                sentence="Simulated imprints help to recognise real touches.", shared=shared_by(Split.BLOCKS),
+                where=KNN | {"touches": count}, second={"training": "real"},
+                first={"training": "both", "simulation": SIMULATED, "aligned": False})
+        for count in (1, 5, 20)
     ),
 ]  # fmt: skip

@@ -1,60 +1,64 @@
-"""Networks for photographs on recorded touches: a pressure array and a hand of fingertips."""
+"""Networks for photographs on recorded touches: those at hand, and T tables 5.1, 5.2 and 5.5 of those that are not."""
 
+from functools import partial
+
+import pandas as pd
+
+from stages.kit.split import Split, shared_by
+from stages.kit.stats import interval
+from stages.report.grid import percent
 from stages.report.items import Table
 from stages.report.markdown import signed, with_interval
+from stages.report.networks import MODES, PRINTED, STARTS, origin
+from stages.report.results import Results
 from stages.report.style import label
 
-from .pairs import OVER
-from .rows import DATA, SPLITS, measured_lines, origin
+from .rows import CLASSICAL, DATA, OVER, SPLITS, measured, measured_lines
 
-NOTES = [
-    "Accuracy in per cent [95 % interval]: over repeated splits, widened for what they share; with objects kept for "
-    "the test, over those objects. px: pixels a side that a network sees. Guessing: any class, or always the commonest "
-    "of the training part, whichever is right more often.",
-    "Gains in points of accuracy [95 % interval], paired: each split, or object, minus the same one. Over features and "
-    "kNN: what table 4.4 recognises the same touches with, of fingertips the readings of their electrodes. Over "
-    "random weights: the same network that did not learn by sight, one draw of its weights, so that the interval holds "
-    "for that draw. Untrained, one architecture is a much better start than another: compare what each alone gains.",
-    "Pressure images: Gandarias, García-Cerezo and Gómez-de-Gabriel 2019, 28 x 50 cells. Fingertips: BTS3 v2, 24 "
-    "electrodes a finger at their published places, one finger a channel.",
-]
+ABSENT = (
+    "Not run: the data set is not at hand. Its reader is tested on files in its layout; "
+    "`experiment=recorded_touches` says how to switch it on."
+)
 
 
-def build(results):
+def build(results: Results) -> Table:
+    """Accuracy of each network, start and mode on each recording and split, with its gains over the controls."""
     frame = measured_lines(results)
-    shown = frame.assign(
-        data=frame["data"].map(lambda name: DATA.get(name, name)),
-        split=frame["split"].map(lambda name: SPLITS.get(name, name)),
-        network=frame["method"].map(lambda name: "features and kNN" if name == "features_knn" else label(name)),
-    )
-    shown["starts from"] = [origin(*pair) for pair in zip(frame["weights"], frame["pretrained"], strict=True)]
-    shown["filters"] = [_filters(*pair) for pair in zip(frame["mode"], frame["size"], strict=True)]
-    triples = zip(frame["accuracy"], frame["low"], frame["high"], strict=True)
-    shown["accuracy, %"] = [with_interval(*triple, 100, 1) for triple in triples]
-    shown["guessing, %"] = [_share(value) for value in frame["guess"]]
-    shown["over features and kNN"] = _gains(frame, "over_features")
-    shown["over random weights"] = _gains(frame, "over_random")
-    shown["over"] = [_units(*pair) for pair in zip(frame["split"], frame["values"], strict=True)]
-    columns = ["data", "split", "network", "starts from", "filters", *shown.columns[-5:]]
-    return Table("Networks that learned by sight, on recorded touches", frame, NOTES, shown[columns])
+    shown = [
+        {
+            "data": DATA.get(row.data, row.data),
+            "split": SPLITS.get(row.split, row.split),
+            "network": "features and kNN" if row.method == CLASSICAL[0] else label(row.method),
+            "starts from": origin(row.weights, row.pretrained) if row.weights in STARTS else "–",
+            "filters": f"{label(row.mode)}, {row.size} px" if row.mode else "–",
+            "accuracy, %": with_interval(row.accuracy, row.low, row.high, 100, 1),
+            "guessing, %": percent(row.guess, 1),
+            "over features and kNN": _gain(row.over_features, row.over_features_low, row.over_features_high),
+            "over random weights": _gain(row.over_random, row.over_random_low, row.over_random_high),
+            "over": f"{row.values} {'objects' if row.split in OVER else 'splits'}",
+        }
+        for row in frame.itertuples()
+    ]
+    return Table(frame, pd.DataFrame(shown))
 
 
-def _filters(mode, size):
-    """How a network was trained, and the pixels it saw."""
-    return f"{label(mode)}, {size} px" if mode else "–"
+def _gain(*points: float) -> str:
+    """Points gained [interval]; a dash where there is nothing to compare with."""
+    return signed(*(100 * value for value in points), 1) if points[0] == points[0] else "–"
 
 
-def _share(value):
-    """A share in per cent; a dash where it is unknown."""
-    return f"{100 * value:.1f}" if value == value else "–"
-
-
-def _gains(frame, name):
-    """Gains in points as text; a dash where there is nothing to compare with."""
-    triples = zip(frame[name], frame[f"{name}_low"], frame[f"{name}_high"], strict=True)
-    return [signed(*(100 * value for value in triple), 1) if triple[0] == triple[0] else "–" for triple in triples]
-
-
-def _units(split, count):
-    """What an interval runs over."""
-    return f"{count} {'objects' if split in OVER else 'splits'}"
+def printed(data: str, thesis: str, results: Results) -> Table:
+    """Networks on one of the thesis's data sets: its own table, and ours where the data were at hand."""
+    figures = results.thesis(thesis).set_index("network")
+    rows = measured(results, "accuracy")
+    mine = rows[(rows["data"] == data) & (rows["split"] == Split.RANDOM) & (rows["weights"] == "imagenet")]
+    frame = pd.DataFrame({"network": list(PRINTED)})
+    shown = pd.DataFrame({"network": [label(network) for network in PRINTED]})
+    for mode in MODES:
+        own = {network: mine[(mine["method"] == network) & (mine["mode"] == mode)]["value"] for network in PRINTED}
+        found = [interval(values, shared_by(Split.RANDOM)) for values in own.values()]
+        frame[[mode, f"{mode}_low", f"{mode}_high"]] = found
+        frame[f"{mode}_thesis"] = [figures.loc[name, f"acc_{mode}"] for name in PRINTED.values()]
+        shown[f"{label(mode)}: ours, %"] = [with_interval(*ends, 100, 1) for ends in found]
+        shown[f"{label(mode)}: thesis, %"] = frame[f"{mode}_thesis"].map(partial(percent, places=1))
+    return Table(frame, shown, {"absent": "" if len(mine) else ABSENT})

@@ -1,24 +1,8 @@
 """How many faces each object of a scene needs (T3.1.3)."""
 
-from . import (
-    face_counts,
-    face_counts_figure,
-    scene,
-    scene_chart,
-    scene_figure,
-    scenes,
-)
+from . import counts, frames, scene, scenes
 
-TABLES = {
-    "face_counts": face_counts.build,
-    "scene": scene.build,
-    "scenes": scenes.build,
-}
-FIGURES = {
-    "face_counts": face_counts_figure.build,
-    "scene": scene_figure.build,
-}
-CHARTS = {
-    "scene": scene_chart.build,
-}
+TABLES = {"face_counts": counts.build, "scene": scene.build, "scenes": scenes.build}
+FIGURES = {"face_counts": counts.figure, "scene": frames.build}
+CHARTS = {"scene": scene.chart}
 CLAIMS = []

@@ -1,8 +1,10 @@
 """The measurements of the scene stage, how its methods are called, and what the comparison of them leaves open."""
 
 import numpy as np
+import pandas as pd
 
-from stages.report.results import NotRun
+from stages.report.markdown import with_interval
+from stages.report.results import NotRun, Results
 
 NAMES = {
     "full": "full models",
@@ -22,22 +24,17 @@ OURS = "ours"
 UNIFORM = ("uniform", "uniform_size")
 
 
-def scene_rows(results, **where):
+def scene_rows(results: Results, **where: object) -> pd.DataFrame:
     """Rows of the scene stage with a value; an empty `matched` reads as such. NotRun where there are none."""
-    return results.measured("scene", **where).assign(matched=lambda rows: rows["matched"].fillna(""))
+    return results.measured("scene", **where).fillna({"matched": ""})
 
 
-def at_tolerance(rows):
-    """Rows at the scene's own tolerance, of plans that are equal to ours in the mean error or stand for themselves."""
-    return rows[(rows["factor"] == 1) & rows["matched"].isin(["", "error"])]
-
-
-def amount(value, unit):
+def amount(value: float, unit: str) -> str:
     """A tolerance in words: 1 pixel, 0.5 pixels."""
     return f"{value:g} {unit.removesuffix('s') if value == 1 else unit}"
 
 
-def of_scene(rows):
+def of_scene(rows: pd.DataFrame) -> tuple[str, float, str]:
     """(name of the scene, its tolerance, the tolerance's unit in words)."""
     known = rows[rows["factor"] == 1].dropna(subset=["tolerance"])
     if known.empty:
@@ -46,38 +43,30 @@ def of_scene(rows):
     return first["group"], float(first["tolerance"]), UNITS[first["kind"]]
 
 
-def limits_of(saved):
-    """Sentences on what a saving at an equal error leaves open.
+def savings(rows: pd.DataFrame) -> pd.DataFrame:
+    """The rows on the share of the faces that ours saves: value, low, high, the `rival`, and in per cent as `text`."""
+    found = rows[rows["metric"].str.startswith("saved_")].dropna(subset=["kind", "value"])
+    text = [with_interval(row.value, row.low, row.high, 100, 0) for row in found.itertuples()]
+    return found.assign(rival=found["metric"].str.removeprefix("saved_"), text=text)
 
-    saved: dict (rival, matched) -> shares of the faces that ours saves, one a scene.
+
+def left_of(saved: pd.DataFrame) -> str:
+    """How much of a saving at an equal error is left at an equal displacement; empty where that is not measured.
+
+    saved: of `savings`, of one scene or of several.
     """
-    pairs = {name: (saved[name, "error"], saved[name, "displacement"]) for name in UNIFORM
-             if (name, "error") in saved and (name, "displacement") in saved}  # fmt: skip
-    planned = (
-        "The error made equal, that of each frame's worst object (the 99 % quantile of its displacement, or its mean "
-        "1 − SSIM), is the one that ours plans by, and no rival does."
-    )
-    if pairs:
-        parts = [f"{_range(spread)} instead of {_range(equal)} against {NAMES[name]}"
-                 for name, (equal, spread) in pairs.items()]  # fmt: skip
-        planned += f" At an equal mean displacement of all pixels {_left(pairs)}: {'; '.join(parts)}."
-    return [
-        planned,
-        "Each rival has one number for the whole path, its factor. Ours sees the rendered error of every object in "
-        "every frame, what its neighbours hide there, and the whole path ahead, which has to be known beforehand.",
-        "The intervals resample the objects, while the rival's factor stays as it was tuned on the whole scene: how it "
-        "would change with other objects is not in them.",
-    ]
+    shares = {key: list(values) for key, values in saved.groupby(["rival", "matched"])["value"]}
+    pairs = {name: (shares[name, "error"], shares[name, "displacement"]) for name in UNIFORM
+             if {(name, "error"), (name, "displacement")} <= set(shares)}  # fmt: skip
+    if not pairs:
+        return ""
+    equal, spread = (np.mean(np.concatenate(each)) for each in zip(*pairs.values(), strict=True))
+    part = "most" if spread < equal / 2 else "part"
+    left = "the saving is no smaller" if spread >= equal else f"{part} of the saving vanishes"
+    said = [f"{_range(each)} instead of {_range(own)} against {NAMES[name]}" for name, (own, each) in pairs.items()]
+    return f" At an equal mean displacement of all pixels {left}: {'; '.join(said)}."
 
 
-def _left(pairs):
-    """How much of the saving at an equal error is left at an equal displacement, in words."""
-    equal, spread = (np.mean(np.concatenate(shares)) for shares in zip(*pairs.values(), strict=True))
-    if spread >= equal:
-        return "the saving is no smaller"
-    return "most of the saving vanishes" if spread < equal / 2 else "part of the saving vanishes"
-
-
-def _range(shares):
+def _range(shares: list[float]) -> str:
     """Shares as percent: 12 %, or 3 to 40 %."""
     return " to ".join(dict.fromkeys(f"{round(100 * share):d}" for share in (min(shares), max(shares)))) + " %"

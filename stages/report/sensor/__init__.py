@@ -1,16 +1,8 @@
 """What the pressure array's size and the distance of its sensels do to recognition (T4.3.2)."""
 
-from . import (
-    claims,
-    figure_4_11,
-    sensor_size,
-)
+from . import arrays, claims
 
-TABLES = {
-    "figure_4_11": figure_4_11.build,
-}
+TABLES = {"figure_4_11": arrays.table}
 FIGURES = {}
-CHARTS = {
-    "sensor_size": sensor_size.build,
-}
+CHARTS = {"sensor_size": arrays.chart}
 CLAIMS = claims.CLAIMS

@@ -1,122 +1,81 @@
 """Claims of T4.4: what a whole contour tells, guided or blind, to networks and to conventional classifiers."""
 
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from functools import partial
+
+import pandas as pd
+
 from stages.kit.split import Split
-from stages.report.results import NotRun
-from stages.report.verdict import FunctionClaim as Claim
+from stages.report import claims as data
+from stages.report.claims import highest_of
+from stages.report.differences import difference, statistic
+from stages.report.results import Results
 
-from .rows import BLIND, GUIDED, PRINTED, RANDOM_SPLIT, measured, on_princeton
+from .rows import BLIND, CLASSIFIERS, GUIDED, METRICS, PRINTED, SHARED, SIZE, SPLITS, STAGE, THESIS_SET
 
-POINTS = "points of accuracy"
-OVER = {Split.OBJECTS: (["group", "repetition"], "accuracy_object"), Split.RANDOM: (["repetition"], "accuracy")}
-
-
-def scores(rows, split, classifiers, method):
-    """Series of accuracies in per cent, an object left out or a random split; of several classifiers the mean."""
-    over, metric = OVER[split]
-    for column, wanted in (("split", [split]), ("metric", [metric]), ("method", [method]), ("classifier", classifiers)):
-        rows = rows[rows[column].isin(wanted)]
-        if not set(wanted) <= set(rows[column]):
-            raise NotRun(
-                f"{column} {' or '.join(wanted)} is not among those that sequences measured", "sequences", False
-            )
-    return 100 * rows.groupby(over)["value"].mean()
-
-
-def between(split, read, first, second):
-    """differences(results): accuracy of `first` minus of `second`, each (classifiers, strategy)."""
-
-    def differences(results):
-        one, other = (scores(read(results), split, *side) for side in (first, second))
-        return (one - other).dropna().to_numpy()
-
-    return differences
+RANDOM, UNSEEN = ({"split": split, "metric": METRICS[split]} for split in (Split.RANDOM, Split.OBJECTS))
+OBJECTS = {"over": ("group", "repetition"), "shared": SHARED[Split.OBJECTS]}  # the pairs: one of each class left out
+WITH_MAP, NO_MAP = ("knn", "svm"), ("knn_no_som", "svm_no_som")
+PHRASES = {
+    **{("classifier", name): words for name, words in CLASSIFIERS.items()},
+    **{("split", split): words for split, words in SPLITS.items()},
+    **{("metric", metric): "" for metric in METRICS.values()},
+    ("classifier", WITH_MAP): "mean of kNN and SVM with the map",
+    ("classifier", NO_MAP): "mean of both without the map", ("over", "group"): "objects, by classes",
+}  # fmt: skip
+claim = partial(data.Claim, section="T4.4.10", stage=STAGE, statistic="whole_sequences", phrases=PHRASES)
 
 
-def best_rival(split, read):
-    """differences(results): the networks minus the better of kNN and SVM (by mean accuracy), guided."""
-
-    def differences(results):
-        networks, *rivals = (scores(read(results), split, [name], GUIDED) for name in PRINTED)
-        best = max(rivals, key=lambda rival: rival.mean())
-        return (networks - best).dropna().to_numpy()
-
-    return differences
+@statistic("whole_sequences")
+def whole_sequences(results: Results, claim: data.Claim) -> pd.Series:
+    """First side minus second, of the sequences with all their frames and cells."""
+    size = results.measured(STAGE, claim.dataset)[SIZE].max()
+    return difference(results, replace(claim, where={**claim.where, **size})).sort_index()
 
 
-def flattered(results):
-    """Mean accuracy at random splits minus that on each object left out, networks, guided."""
-    rows = measured(results)
-    return (
-        scores(rows, Split.RANDOM, ["cnn"], GUIDED).mean() - scores(rows, Split.OBJECTS, ["cnn"], GUIDED)
-    ).to_numpy()
+def both(claims: Iterable[data.Claim]) -> Iterator[data.Claim]:
+    """Each claim with sequences drawn at random, as in the thesis, and with unseen objects."""
+    for one in claims:
+        at_random, unseen = ({**one.where, **where} for where in (RANDOM, UNSEEN))
+        said = f"{one.sentence[:-1]}, on objects never touched too."
+        yield replace(one, key=f"{one.key}_random", where=at_random, shared=SHARED[Split.RANDOM])
+        yield replace(one, key=f"{one.key}_unseen", sentence=said, where=unseen, **OBJECTS)
 
 
-def both(key, section, sentence, tested_on, differences, read=measured):
-    """The claim with sequences drawn at random, as in the thesis, and with unseen objects. read: rows of Results."""
-    unseen = f"{sentence[:-1]}, on objects never touched too."
-    return [
-        Claim(f"{key}_random", section, sentence, f"{tested_on}, sequences drawn at random", POINTS, "repetitions",
-              differences(Split.RANDOM, read), RANDOM_SPLIT),
-        Claim(f"{key}_unseen", section, unseen, f"{tested_on}, unseen objects", POINTS, "objects",
-              differences(Split.OBJECTS, read)),
-    ]  # fmt: skip
+def at_full_size(claims: Iterable[data.Claim], keys: Iterable[str]) -> Iterator[data.Claim]:
+    """The claims with these keys, on the thesis's own data set and number of sequences."""
+    for one in claims:
+        if one.key in keys:
+            said = f"{one.sentence[:-1]}, with 22,800 sequences."
+            yield replace(one, key=f"{one.key}_princeton", sentence=said, dataset=THESIS_SET)
 
 
-def compared(first, second):
-    """(split, read) -> differences(results) of two (classifiers, strategy)."""
-    return lambda split, read: between(split, read, first, second)
-
-
-def at_full_size(key, sentence, tested_on, differences):
-    """The claim on the thesis's own data set and number of sequences."""
-    sentence = f"{sentence[:-1]}, with 22,800 sequences."
-    return both(f"{key}_princeton", "T4.4.10", sentence, f"psb, {tested_on}", differences, on_princeton)
-
-
+OWN = [
+    claim(key="contours_guided",
+          sentence="Contours through visually interesting points are better than blind ones.",
+          where={"classifier": "cnn"}, first={"method": GUIDED}, second={"method": BLIND}),
+    claim(key="contours_guided_all", sentence="Guided contours are better, averaged over the classifiers.",
+          where={"classifier": PRINTED}, first={"method": GUIDED}, second={"method": BLIND}),
+    claim(key="contours_ours", section="ours",
+          sentence="Contours through points of our model of gaze are better than blind ones.",
+          where={"classifier": "cnn"}, first={"method": "enhanced"}, second={"method": BLIND}),
+    claim(key="contours_cnn_best", sentence="Networks lead on sequences.",
+          where={"method": GUIDED}, first={"classifier": "cnn"}, second={"classifier": highest_of("knn", "svm")}),
+    *(
+        claim(key=f"contours_both_over_{alone}", section="T4.4.8",
+              sentence=f"Images and normals together beat the {alone} alone.",
+              where={"method": GUIDED}, first={"classifier": "cnn"}, second={"classifier": f"cnn_{alone}"})
+        for alone in ("images", "normals")
+    ),
+    claim(key="contours_map_helps", section="T4.4.9",
+          sentence="Reducing the features by a self-organising map helps.",
+          where={"method": GUIDED}, first={"classifier": WITH_MAP}, second={"classifier": NO_MAP}),
+]  # fmt: skip
 CLAIMS = [
-    *both(
-        "contours_guided", "T4.4.10", "Contours through visually interesting points are better than blind ones.",
-        "CNNs, enhanced minus blind", compared((["cnn"], GUIDED), (["cnn"], BLIND)),
-    ),
-    *both(
-        "contours_guided_all", "T4.4.10", "Guided contours are better, averaged over the classifiers.",
-        "mean of CNNs, kNN and SVM, enhanced minus blind", compared((list(PRINTED), GUIDED), (list(PRINTED), BLIND)),
-    ),
-    *both(
-        "contours_ours", "ours", "Contours through points of our model of gaze are better than blind ones.",
-        "CNNs, ours minus blind", compared((["cnn"], "enhanced"), (["cnn"], BLIND)),
-    ),
-    *both(
-        "contours_cnn_best", "T4.4.10", "Networks lead on sequences.",
-        "enhanced, CNNs minus the better of kNN and SVM", best_rival,
-    ),
-    *both(
-        "contours_both_over_images", "T4.4.8", "Images and normals together beat the images alone.",
-        "enhanced, both networks minus that of the images", compared((["cnn"], GUIDED), (["cnn_images"], GUIDED)),
-    ),
-    *both(
-        "contours_both_over_normals", "T4.4.8", "Images and normals together beat the normals alone.",
-        "enhanced, both networks minus that of the normals", compared((["cnn"], GUIDED), (["cnn_normals"], GUIDED)),
-    ),
-    *both(
-        "contours_map_helps", "T4.4.9", "Reducing the features by a self-organising map helps.",
-        "enhanced, mean of kNN and SVM with the map minus without",
-        compared((["knn", "svm"], GUIDED), (["knn_no_som", "svm_no_som"], GUIDED)),
-    ),
-    *at_full_size(
-        "contours_guided", "Contours through visually interesting points are better than blind ones.",
-        "CNNs, enhanced minus blind", compared((["cnn"], GUIDED), (["cnn"], BLIND)),
-    ),
-    *at_full_size(
-        "contours_guided_all", "Guided contours are better, averaged over the classifiers.",
-        "mean of CNNs, kNN and SVM, enhanced minus blind", compared((list(PRINTED), GUIDED), (list(PRINTED), BLIND)),
-    ),
-    *at_full_size(
-        "contours_cnn_best", "Networks lead on sequences.",
-        "enhanced, CNNs minus the better of kNN and SVM", best_rival,
-    ),
-    Claim(
-        "contours_random_flatters", "ours", "Drawing test sequences at random flatters: the same objects are known.",
-        "enhanced, CNNs, sequences drawn at random minus unseen objects", POINTS, "objects", flattered,
-    ),
+    *both(OWN),
+    *both(at_full_size(OWN, ["contours_guided", "contours_guided_all", "contours_cnn_best"])),
+    claim(key="contours_random_flatters", section="ours",
+          sentence="Drawing test sequences at random flatters: the same objects are known.",
+          where={"method": GUIDED, "classifier": "cnn"}, first=RANDOM, second=UNSEEN, mean_of="first", **OBJECTS),
 ]  # fmt: skip

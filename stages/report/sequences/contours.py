@@ -1,41 +1,91 @@
-"""Contours drawn on the picture of an object: what the viewer sees in full, what is behind faintly."""
+"""T figures 4.14 and 4.15: contours on objects, blind and guided, and what is felt along one."""
+
+from collections.abc import Sequence
 
 import numpy as np
+from matplotlib.axes import Axes
 
-from stages.imprints import contour
-from stages.kit import RayScene
+from stages.contours import Sequences, read_sequences
+from stages.imprints import SectionCurve, contour
+from stages.kit import Mesh, RayScene, Viewpoint
 from stages.kit.camera import project
 from stages.report.drawing import VIEWPOINT, picture, squared
+from stages.report.items import Figure
+from stages.report.results import NotRun, Results
+from stages.report.style import CYCLE, INK, PALE, label, plt
 
+from .rows import BLIND, GUIDED
+
+OBJECTS, PATHS, FRAMES = 4, 3, 6
+REACH = 0.09  # units that a normal is drawn long
 ROWS = 420
 CLEAR = 2e-3  # units along the view to come off the surface, before asking what hides a point
 
 
-class Canvas:
-    """Axes with an object's picture, on which places on the object can be drawn."""
+def build_contours(results: Results) -> Figure:
+    """The first contours of each strategy on pictures of some objects."""
+    found = _chosen(results, OBJECTS)
+    strategies = _strategies(next(iter(found.values()))[1])
+    size = (2.7 * len(found), 2.9 * len(strategies))
+    figure, grid = plt.subplots(len(strategies), len(found), figsize=size, squeeze=False)
+    for column, (name, (mesh, contours)) in zip(grid.T, found.items(), strict=True):
+        column[0].set_title(name.replace("_", " "), loc="center")
+        for axes, strategy in zip(column, strategies, strict=True):
+            canvas, sequences = Canvas(axes, mesh), contours[strategy]
+            for pair, start, tint in zip(sequences.planes[:PATHS], sequences.positions[:, 0], CYCLE, strict=False):
+                canvas.follow(mesh, pair, tint)
+                axes.plot(*canvas.pixels(start[None]), "o", mfc="white", mec=tint, mew=1.6, ms=5)
+    for axes, strategy in zip(grid[:, 0], strategies, strict=True):
+        axes.text(-0.04, 0.5, label(strategy), rotation=90, ha="right", va="center", transform=axes.transAxes)
+    figure.subplots_adjust(wspace=0.03, hspace=0.03)
+    words = {"names": ", ".join(found), "count": PATHS, "strategies": " and ".join(map(label, strategies))}
+    return Figure(figure, words)
 
-    def __init__(self, axes, mesh, viewpoint=VIEWPOINT):
+
+def build_felt(results: Results) -> Figure:
+    """Imprints along the first contour of an object, the contour with the normals of the array, and their parts."""
+    ((name, (mesh, contours)),) = _chosen(results, 1).items()
+    strategy = _strategies(contours)[-1]
+    sequences = contours[strategy]
+    figure = plt.figure(figsize=(9.6, 5.4))
+    grid = figure.add_gridspec(2, FRAMES, height_ratios=[1, 2.4], hspace=0.22, wspace=0.08)
+    _draw_imprints([figure.add_subplot(grid[0, column]) for column in range(FRAMES)], sequences)
+    _draw_normals(figure.add_subplot(grid[1, :3]), mesh, sequences)
+    axes, normals = figure.add_subplot(grid[1, 3:]), sequences.normals[0]
+    for part, tint, letter in zip(normals.T, CYCLE, "xyz", strict=False):
+        axes.plot(np.arange(1, len(normals) + 1), part, "o-", color=tint, ms=3.5, lw=1.4, label=letter)
+    axes.set(xlabel="frame", ylim=(-1.08, 1.08), yticks=[-1, 0, 1])
+    axes.grid(axis="y")
+    axes.set_ylabel("normal", labelpad=0)
+    axes.legend(ncols=3, loc="lower center", bbox_to_anchor=(0.5, 0.98))
+    words = {"name": name, "strategy": label(strategy), "count": FRAMES, "frames": len(normals)}
+    return Figure(figure, words)
+
+
+def followed(mesh: Mesh, pair: np.ndarray) -> SectionCurve:
+    """What was followed on the plane through the object's centre and a pair (2,) of vertices."""
+    used = mesh.vertices[np.unique(mesh.faces)]
+    return contour(mesh, [(used.min(axis=0) + used.max(axis=0)) / 2, *mesh.vertices[pair]])
+
+
+class Canvas:
+    """Axes with an object's picture, on which contours can be drawn: behind the object faintly."""
+
+    def __init__(self, axes: Axes, mesh: Mesh, viewpoint: Viewpoint = VIEWPOINT) -> None:
         image, (self.top, self.left) = squared(picture(mesh, viewpoint=viewpoint, rows=ROWS), margin=24)
         axes.imshow(image)
         axes.set_axis_off()
         self.axes, self.viewpoint, self.scene = axes, viewpoint, RayScene(mesh)
 
-    def pixels(self, points):
+    def pixels(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(columns, rows) of points (k, 3) in the axes."""
         down, across, _ = project(points, self.viewpoint, (ROWS, ROWS))
         return across - self.left, down - self.top
 
-    def widen(self, across, down):
-        """Makes room for pixels (k,), (k,) beside the picture."""
-        for values, low, high, limit in (
-            (across, *self.axes.get_xlim(), lambda low, high: self.axes.set_xlim(low, high)),
-            (down, *self.axes.get_ylim()[::-1], lambda low, high: self.axes.set_ylim(high, low)),
-        ):
-            limit(min(low, values.min()), max(high, values.max()))
-
-    def line(self, points, colour, closed=True):
-        """A line through points (k, 3) on the surface."""
-        points = np.vstack([points, points[:1]]) if closed else points
+    def follow(self, mesh: Mesh, pair: np.ndarray, colour: str) -> None:
+        """Draws the contour of a pair (2,) of vertices."""
+        curve = followed(mesh, pair)
+        points = np.vstack([curve.points, curve.points[:1]]) if curve.closed else curve.points
         back = self.viewpoint.axes[2]
         middles = (points[:-1] + points[1:]) / 2 + CLEAR * back
         hidden = self.scene.cast(middles, np.broadcast_to(back, middles.shape)).hit
@@ -47,7 +97,54 @@ class Canvas:
                 self.axes.plot(across[start : stop + 1], down[start : stop + 1], color=colour, **style)
 
 
-def followed(mesh, pair):
-    """The Loop that was followed on the plane through the object's centre and a pair of vertices."""
-    used = mesh.vertices[np.unique(mesh.faces)]
-    return contour(mesh, [(used.min(axis=0) + used.max(axis=0)) / 2, *mesh.vertices[pair]])
+def _draw_imprints(panels: Sequence[Axes], sequences: Sequences) -> None:
+    """Imprints at equal steps along the first contour."""
+    frames = np.linspace(0, len(sequences.images[0]) - 1, len(panels)).round().astype(int)
+    for axes, frame in zip(panels, frames, strict=True):
+        axes.imshow(sequences.images[0, frame], cmap="gray", vmin=0, vmax=255)
+        axes.set(xticks=[], yticks=[])
+        axes.spines[:].set(visible=True, color=PALE)
+        share = sequences.pitches[0, frame] / sequences.pitches.max()
+        axes.set_title(f"{frame + 1}" + (f", {share:.0%} size" if share < 0.995 else ""), fontsize=9, loc="center")
+
+
+def _draw_normals(axes: Axes, mesh: Mesh, sequences: Sequences) -> None:
+    """The first contour and the normals of its frames, seen as its plane is seen in full."""
+    positions = sequences.positions[0]
+    canvas = Canvas(axes, mesh, _facing(positions))
+    canvas.follow(mesh, sequences.planes[0], CYCLE[0])
+    (across, down), (right, bottom) = canvas.pixels(positions), canvas.pixels(positions + REACH * sequences.normals[0])
+    axes.plot([across, right], [down, bottom], color=INK, lw=1.1, solid_capstyle="round")
+    axes.plot(across, down, "o", color=CYCLE[0], ms=3.2)
+    axes.plot(across[0], down[0], "o", mfc="white", mec=CYCLE[0], mew=1.6, ms=7)
+    wide, tall = np.r_[axes.get_xlim(), right], np.r_[axes.get_ylim(), bottom]
+    axes.set(xlim=(wide.min(), wide.max()), ylim=(tall.max(), tall.min()))
+
+
+def _facing(positions: np.ndarray) -> Viewpoint:
+    """The Viewpoint that looks at a contour's plane, from above where it is level or slanted."""
+    normal = np.linalg.svd(positions - positions.mean(axis=0))[2][2]
+    x, y, z = normal if normal[2] >= 0 else -normal
+    return Viewpoint(np.degrees(np.arctan2(y, x)) % 360, np.degrees(np.arcsin(np.clip(z, -1, 1))))
+
+
+def _chosen(results: Results, count: int) -> dict[str, tuple[Mesh, dict[str, Sequences]]]:
+    """{name: (Mesh, {strategy: Sequences})}: the preferred objects, then evenly by the alphabet, so by class."""
+    folder = results.folder("contours")
+    names = sorted(path.stem for path in folder.glob("*.npz"))
+    if not names:
+        raise NotRun("no data/contours", "contours")
+    first = [name for name in results.settings.figure_objects if name in names]
+    others = [name for name in names if name not in first]
+    places = np.linspace(0, len(others) - 1, OBJECTS).round().astype(int) if others else []
+    chosen = [*first, *dict.fromkeys(others[place] for place in places)]
+    return {
+        name: (results.mesh(name, folder.parent.name), read_sequences(folder / f"{name}.npz"))
+        for name in chosen[:count]
+    }
+
+
+def _strategies(contours: dict[str, Sequences]) -> list[str]:
+    """Blind contours and, where there is one, the thesis's guided strategy or else another."""
+    guided = sorted(set(contours) - {BLIND}, key=lambda method: (method != GUIDED, method))
+    return [one for one in (BLIND, *guided[:1]) if one in contours]

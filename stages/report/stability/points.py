@@ -33,7 +33,7 @@ def table(results: Results) -> Table:
         middle = middle_severity(severities)
         here = own.loc[(own["method"] == method) & (own["severity"] == middle)]
         values = {metric: here.loc[here["metric"] == metric, "value"] for metric in ("repeatability", "drift")}
-        mean, low, high = within(values["repeatability"])
+        mean, low, high = within(list(values["repeatability"]))
         found.append({
             "perturbation": perturbation, "unit": PERTURBATIONS[perturbation].unit, "method": method,
             "severity": middle, "repeatability": mean, "low": low, "high": high, "drift": values["drift"].mean(),

@@ -115,7 +115,7 @@ def _squares(axes: Axes, cases: pd.DataFrame, column: str, lines: Sequence[str],
     """Coloured squares, a row a damage or kept set, a column a budget; the worst over the objects."""
     rank = cases.assign(rank=cases["outcome"].map(OUTCOMES.index))
     worst = rank.pivot_table(index=column, columns="budget", values="rank", aggfunc="max")
-    worst = worst.reindex(lines, columns=budgets)
+    worst = worst.reindex(list(lines), columns=list(budgets))
     axes.imshow(worst, cmap=ListedColormap([COLOURS[name] for name in OUTCOMES]), vmin=0, vmax=3, aspect="auto")
     for (down, across), value in np.ndenumerate(worst.to_numpy()):
         if value == value:

@@ -22,7 +22,8 @@ def build(results: Results) -> Table:
     if timed.empty:
         raise NotRun("nothing was timed", "meshes")
     groups = timed.groupby(["stage", "method"], sort=False)["seconds"]
-    frame = groups.agg(**{"pieces of work": "size", "seconds each": "mean", "seconds": "sum"}).reset_index()
+    frame = groups.agg(["size", "mean", "sum"]).reset_index()
+    frame.columns = ["stage", "method", "pieces of work", "seconds each", "seconds"]
     frame["share, %"] = 100 * frame["seconds"] / (frame["seconds"].sum() or 1.0)
     frame = frame.sort_values("seconds", ascending=False, kind="stable")
     return Table(frame, words={"sets": ", ".join(results.sets)})

@@ -35,7 +35,7 @@ def curve(rows: pd.DataFrame, perturbation: str, line: Sequence[str]) -> pd.Data
 
     left: what is left of the lead over guessing. The intervals are over the repetitions, widened for what they share.
     """
-    mine = rows.loc[rows[KEYS].eq(line).all(axis=1)].set_index("repetition")
+    mine = rows.loc[rows[KEYS].eq(list(line)).all(axis=1)].set_index("repetition")
     clean, mine = (mine.loc[mine["perturbation"] == name] for name in (CLEAN, perturbation))
     found = []
     for (severity,), group in grouped(mine, ["severity"]) if len(clean) else ():

@@ -69,10 +69,9 @@ def figure(results: Results) -> Figure:
                 draw_line(axes, np.vstack([clean[weights, mode], points[ENDS]]), tint, "o")
         finish(axes, name, UNITS[name], steps)
         axes.axhline(100 * chance, color=GREY, lw=1.2, ls=":")
-    names = {f"{start(weights)}, {label(mode)}": tint for (weights, mode), tint in TINTS.items()}
-    add_legend(
-        drawing, legend, {name: {"color": tint, "marker": "o", "ms": 4, "lw": 1.4} for name, tint in names.items()}
-    )
+    mark = {"marker": "o", "ms": 4, "lw": 1.4}
+    lines = {f"{start(weights)}, {label(mode)}": mark | {"color": tint} for (weights, mode), tint in TINTS.items()}
+    add_legend(drawing, legend, lines)
     return Figure(drawing, {"perturbations": len(found)})
 
 

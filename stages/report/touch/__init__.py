@@ -1,33 +1,22 @@
 """One glance by touch: which points, classifiers and imprints make simulated touch recognisable (T4.2)."""
 
-from . import (
-    claims,
-    costs,
-    figure_4_4,
-    imprint_rates,
-    imprints,
-    one_touch,
-    pipeline,
-    similar,
-    table_4_6,
-    touch_one_mesh,
-)
+from . import claims, costs, imprint_rates, one_touch, pictures, several_touches, similar
 
 TABLES = {
     "table_4_1": one_touch.table_4_1,
     "table_4_2": one_touch.table_4_2,
     "table_4_3": similar.table_4_3,
     "table_4_5": one_touch.table_4_5,
-    "table_4_6": table_4_6.table_4_6,
+    "table_4_6": several_touches.table_4_6,
     "section_4_2_4": similar.section_4_2_4,
     "imprint_rates": imprint_rates.table,
 }
 FIGURES = {
-    "pipeline": pipeline.build,
-    "touch_one_mesh": touch_one_mesh.build,
-    "imprints": imprints.build,
+    "pipeline": pictures.pipeline,
+    "touch_one_mesh": pictures.touch_one_mesh,
+    "imprints": pictures.imprints,
     "table_4_1": one_touch.figure_4_1,
-    "figure_4_4": figure_4_4.build,
+    "figure_4_4": similar.figure_4_4,
 }
 CHARTS = {
     "touch": costs.by_classifier,

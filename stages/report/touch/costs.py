@@ -2,7 +2,7 @@
 
 import pandas as pd
 
-from stages.kit.split import shared_by
+from stages.kit.split import Split, shared_by
 from stages.report.costs import attention_seconds
 from stages.report.grid import means
 from stages.report.items import Figure
@@ -23,13 +23,12 @@ MADE_OF = {"locations": "plain", **{f"touches_{count}": "plain" for count in COU
 
 def by_classifier(results: Results) -> Figure:
     """Accuracy against the seconds to fit and ask a classifier; the reference is the thesis's best, blind."""
-    at_random(results, group="six", variant="plain", classifier="knn", method="random")
-    rows = at_random(results, group="six", variant="plain", method=[*OURS.values(), MODEL])
-    frame = _timed(rows, ["classifier", "method"])
-    frame["name"] = frame["classifier"].map(label) + ", " + frame["method"].map(label)
+    where = {"group": "six", "variant": "plain"}
+    at_random(results, **where, classifier="knn", method="random")
+    frame = _timed(at_random(results, **where, method=[*OURS.values(), MODEL]), ["classifier", "method"])
     title = f"Recognising {results.group_text('six')} by one touch"
     reference = f"{label('knn')}, {label('random')}"
-    return _chart(results, frame, "touch", title, reference, colour="classifier", marker="method")
+    return _chart(frame, title, ["classifier", "method"], reference, colour="classifier", marker="method")
 
 
 def by_features(results: Results) -> Figure:
@@ -37,11 +36,10 @@ def by_features(results: Results) -> Figure:
     where = {"group": "six", "method": ENHANCED}
     frame = _timed(at_random(results, **where, variant=list(KINDS)), ["variant", "classifier"])
     making = results.measured(STAGE, **where, metric="features").set_index("variant")["seconds"]
-    frame["seconds"] += [making.get(MADE_OF.get(variant, variant), 0.0) for variant in frame["variant"]]
+    frame["seconds"] += frame["variant"].replace(MADE_OF).map(making).fillna(0.0)
     frame["samples"] = frame["variant"].map(KINDS)
-    frame["name"] = frame["classifier"].map(label) + ", " + frame["samples"]
     title = f"Recognising {results.group_text('six')} by one touch and more"
-    return _chart(results, frame, "touches", title, "kNN, 41 features", colour="samples", marker="classifier")
+    return _chart(frame, title, ["classifier", "samples"], "kNN, 41 features", colour="samples", marker="classifier")
 
 
 def by_saliency(results: Results) -> Figure:
@@ -50,19 +48,17 @@ def by_saliency(results: Results) -> Figure:
     at_random(results, **where, method="itti")
     frame = _timed(at_random(results, **where), ["method"])
     frame["seconds"] = frame["method"].map(attention_seconds(results))
-    frame["name"] = frame["method"].map(label)
     title = f"Looking before touching: {results.group_text('six')}, kNN"
-    return _chart(results, frame.dropna(subset=["seconds"]), "saliency", title, label("itti"))
+    return _chart(frame, title, ["method"], label("itti"))
 
 
-def _timed(rows, by):
-    return pd.DataFrame(means(rows, by, shared_by("random"), top=1.0)).dropna(subset=["seconds"])
+def _timed(rows: pd.DataFrame, by: list[str]) -> pd.DataFrame:
+    return pd.DataFrame(means(rows, by, shared_by(Split.RANDOM), top=1.0))
 
 
-def _chart(results, frame, name, title, reference, **style):
+def _chart(frame: pd.DataFrame, title: str, named: list[str], reference: str, **style: str) -> Figure:
+    """named: columns that make up the name of a choice."""
+    frame = frame.assign(name=frame[named].map(label).agg(", ".join, axis=1)).dropna(subset=["seconds"])
     if reference not in set(frame["name"]):
         raise NotRun(f"the reference {reference} is not measured", STAGE)
-    return pareto_chart(
-        frame, "seconds", "mean", "name", name=name, title=title, reference=reference,
-        quality_label="hold-out accuracy", folder=results.reports / "tradeoff", **style,
-    )  # fmt: skip
+    return pareto_chart(frame, "mean", title=title, reference=reference, quality_label="hold-out accuracy", **style)

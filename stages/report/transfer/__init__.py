@@ -1,20 +1,15 @@
 """From vision to touch: what networks trained on photographs are worth on imprints (T5.4, T5.5)."""
 
-from . import (
-    claims,
-    coarse_imprints,
-    figure_5_3,
-    figure_5_4,
-    networks_chart,
-    table_5_3,
-    table_5_4,
-    table_5_6,
-)
+from functools import partial
+
+from stages.report.networks import COARSE, FINE
+
+from . import claims, coarse_imprints, figure_5_3, figure_5_4, network_tables, networks_chart
 
 TABLES = {
-    "table_5_3": table_5_3.build,
-    "table_5_4": table_5_4.build,
-    "table_5_6": table_5_6.build,
+    "table_5_3": partial(network_tables.networks, data=COARSE),
+    "table_5_4": partial(network_tables.networks, data=FINE),
+    "table_5_6": network_tables.frozen_layers,
     "coarse_imprints": coarse_imprints.build,
 }
 FIGURES = {

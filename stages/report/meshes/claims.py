@@ -1,0 +1,151 @@
+"""Claims on simplified meshes: channels and detectors (T3.1.5), kept points, learned weights, neighbourhoods (T3.2).
+
+Each is judged on the first data set, those on the error weighted by human gaze on the meshes that have it;
+tables/lod_claims has them on every set. Statistics of their own: lod_claims.py.
+"""
+
+from functools import partial
+from typing import Any
+
+from stages.report.claims import Claim, Pick, highest_of, lowest_of
+from stages.report.style import label
+
+from .methods import ADAPTIVE, CLASSICAL, COMBINATIONS, ENHANCED, HKS, OURS, PLAIN, PROPOSED, RIVALS, SYMMETRIES
+from .rows import STAGE
+
+REST = tuple(name for name in COMBINATIONS if name not in ("VisAttCurvSymCon", "VisAttCon"))
+OTHERS = tuple(name for name in COMBINATIONS if name not in (CLASSICAL, "VisAttAll", *SYMMETRIES, "Curv"))
+LOW, HIGH = "1500", "3000"  # the thesis's two face counts
+BOTH = {"target": (LOW, HIGH)}
+FEW_MINUS_MANY = ({"target": LOW}, {"target": HIGH})
+METRO, SEEN = "metro_mean", "ssim_error"
+ERROR = {"metric": METRO}
+SHARE: dict[str, Any] = {"where": ERROR, "scale": 100.0, "unit": "% of the diagonal"}
+ALL_COUNTS = "mean over the face counts"
+MARGIN = 0.0002  # T3.1.5: "within a difference of 0.0002"; read as a share of the diagonal
+SYMMETRY_MARGIN = 0.1  # T3.1.5: "within a 0.1 difference", of the perceptual errors
+PHRASES = {
+    ("metric", METRO): "Metro mean error", ("metric", "metro_max"): "Metro max",
+    ("metric", SEEN): "SSIM error", ("metric", "dlap"): "DLap", ("metric", "dnor"): "Dnor",
+    ("metric", "salient_error"): "error weighted by our own model of gaze",
+    ("metric", "gaze_error"): "error weighted by human gaze",
+    ("metric", (SEEN, "dlap", "dnor")): "SSIM error, DLap and Dnor",
+    ("method", RIVALS): "mean of the literature's detectors but HKS",
+    ("method", COMBINATIONS): "mean of the combinations",
+    ("method", REST): "mean of the other combinations",
+    ("target", LOW): "1,500 faces", ("target", HIGH): "3,000 faces", ("target", (LOW, HIGH)): "1,500 and 3,000 faces",
+}  # fmt: skip
+Methods = str | tuple[str, ...] | Pick
+claim = partial(Claim, stage=STAGE, over=("item",), scale=1.0, phrases=PHRASES)
+
+
+def lower(
+    section: str, metric: str, key: str, sentence: str, worse: Methods, better: Methods, target: str = "", **fields: Any
+) -> Claim:
+    """A claim that `better` has the lower error, in % of the mean of the two: small and large errors weigh the same."""
+    return claim(
+        key=key, section=section, sentence=sentence, where={"metric": metric} | ({"target": target} if target else {}),
+        first={"method": worse}, second={"method": better}, within=("target",), relative=True, scale=100.0,
+        unit="% of the error", note="" if target else ALL_COUNTS, **fields,
+    )  # fmt: skip
+
+
+ranks = partial(claim, statistic="ranks_agree", unit="rank correlation")
+same = partial(claim, section="T3.1.5", where=ERROR | BOTH, statistic="room", margin=MARGIN, unit="of the diagonal",
+               note="the largest difference either way, from the margin")  # fmt: skip
+metro, seen = partial(lower, "T3.1.5", METRO), partial(lower, "T3.1.5", SEEN)
+CHANNELS = [  # T3.1.5, in its order
+    metro("curvature_points", "Added curvature points (VisAttCurvP) have the highest error of the variants.",
+          "VisAttCurvP", highest_of(CLASSICAL, "Curv", "VisAttCurv"), LOW),
+    seen("curvature_ssim", "Curvature in the map is slightly better as seen (VisAttCurv).", CLASSICAL, "VisAttCurv"),
+    claim(key="more_faces", section="T3.1.5", sentence="The error falls with more faces.", first={"method": ENHANCED},
+          statistic="falls_with_faces", note="at the fewest faces minus at the largest number", **SHARE),
+    claim(key="wider_apart", section="T3.1.5", sentence="Methods differ more at lower resolutions.", **SHARE,
+          first={"method": COMBINATIONS}, contrast=FEW_MINUS_MANY, statistic="spread", note="their standard deviation"),
+    seen("symmetry_alone", "Symmetry alone (SymLat, SymRad, 2Sym) is slightly better than VisAtt.",
+         CLASSICAL, SYMMETRIES),
+    same(key="symmetry_same", sentence="The symmetry channels alone lead to roughly the same errors.",
+         first={"method": ("SymRad", "2Sym")}, second={"method": "SymLat"}),
+    seen("symmetry_in", "Symmetry in the map (VisAttSym) is slightly worse as seen than the classical model.",
+         "VisAttSym", CLASSICAL),
+    same(key="symmetry_within", sentence="VisAttSym stays within 0.1 of the classical model's perceptual errors.",
+         where={"metric": (SEEN, "dlap", "dnor")} | BOTH, first={"method": ("VisAttSym",)},
+         second={"method": CLASSICAL}, margin=SYMMETRY_MARGIN, unit="of the error"),
+    same(key="combinations_same", sentence="All combinations but VisAttAll stay within 0.0002 of the classical model.",
+         first={"method": OTHERS}, second={"method": CLASSICAL}),
+    metro("all_channels", "All channels with equal weights are slightly worse (VisAttAll).", "VisAttAll", CLASSICAL),
+    metro("entropy", "Entropy makes the error higher on objects without texture (VisAttEnt).",
+          "VisAttEnt", CLASSICAL),
+    metro("contrast", "Adding contrast (VisAttCon) gives the best quality of the combinations of channels.",
+          REST, "VisAttCon"),
+    metro("contrast_curvature_symmetry", "VisAttCurvSymCon gives the best quality, too.", REST, "VisAttCurvSymCon"),
+]  # fmt: skip
+
+DETECTORS = [
+    metro("attention_rivals", "Attention, in all combinations, leads to a lower error than the detectors.",
+          RIVALS, COMBINATIONS),
+    metro("attention_hks", "HKS is the exception: its error is lower than that of attention.", COMBINATIONS, HKS),
+    ranks(key="points_errors", section="T3.1.5", sentence="More points go with larger errors.", first=ERROR,
+          note=f"with the number of points, over the methods, {ALL_COUNTS}"),
+    metro("curvature_salient_points", "VisAttCurvP has smaller errors than SP with about as many points.",
+          "salient_points", "VisAttCurvP"),
+    lower("T3.1.5", "metro_max", "many_points_distort",
+          "Methods with many points (SDC, 3DH) distort at low resolution.", ("corners", "harris"), COMBINATIONS, LOW),
+]  # fmt: skip
+
+WAYS = (
+    ("keep", "T3.1, T3.2.8", "Keeping what draws the eye", ENHANCED),
+    ("ours_keep", "ours", "Keeping what our model finds", OURS),
+    ("ours_soft", "ours", "Weighing by what our model finds, keeping nothing whole,", f"{OURS}-soft"),
+)
+BETTER = (
+    ("metro", METRO, "distance", None), ("ssim", SEEN, "as seen", None), ("dlap", "dlap", "Laplacian distance", None),
+    ("dnor", "dnor", "normalised Laplacian distance", None),
+    ("salient", "salient_error", "where our own model looks", None),
+    ("gaze", "gaze_error", "where people look", "gaze"),
+)  # fmt: skip
+KEPT = [
+    lower(section, metric, f"{start}_{short}", f"{who} gives a better simplified model than plain QEM ({how}).",
+          PLAIN, method, dataset=dataset)
+    for start, section, who, method in WAYS
+    for short, metric, how, dataset in BETTER
+]  # fmt: skip
+
+BLIND = [
+    metro("blind_metro", "Attention places the kept points better than chance does (distance).", "random", ENHANCED),
+    seen("blind_ssim", "Attention places the kept points better than chance does (as seen).", "random", ENHANCED),
+    lower("ours", SEEN, "ours_blind_ssim",
+          "Our model of gaze places the kept points better than chance does (as seen).", "random", OURS),
+]  # fmt: skip
+
+metro, seen = partial(lower, "T3.2.9.1", METRO), partial(lower, "T3.2.9.2", SEEN)
+WEIGHTS = [  # T3.2.9
+    metro("rivals_metro", "Attention distorts less than the detectors of the literature do.", RIVALS, ENHANCED),
+    metro("proposed_rivals", "ED, SSIM and SVM have a lower Metro error than the detectors.", RIVALS, PROPOSED),
+    claim(key="rivals_low", section="T3.2.9.1", sentence="More so at low resolution.",
+          first={"method": RIVALS}, second={"method": PROPOSED}, contrast=FEW_MINUS_MANY, **SHARE),
+    *(
+        claimed(f"adaptive_{name}_{short}", f"Adaptive neighbourhoods lower the error of {label(name)} ({how}).",
+                name, f"{name}-adaptive")
+        for claimed, short, how in ((metro, "metro", "a little, distance"), (seen, "ssim", "as seen"))
+        for name in PROPOSED
+    ),
+    metro("ssim_over_ed", "Weights by similarity are slightly better than by Euclidean distance (distance).",
+          "guided_ed", "guided_ssim"),
+    seen("ssim_over_ed_seen", "Weights by similarity are better than by Euclidean distance (as seen).",
+         "guided_ed", "guided_ssim"),
+    metro("svm_promising", "The SVM gives the most promising results.", lowest_of(*PROPOSED[:2]), "svm"),
+    metro("hks_low", "Adaptive ED, SSIM and SVM have a slightly lower error than HKS at 1,500 faces.",
+          HKS, ADAPTIVE, LOW),
+    metro("hks_high", "All methods based on attention beat HKS at 3,000 faces.",
+          HKS, highest_of(*PROPOSED, *ADAPTIVE), HIGH),
+    ranks(key="seen_confirms", section="T3.2.9.2", sentence="The error as seen confirms the Metro error.",
+          first=ERROR, second={"metric": SEEN}, note=f"over the methods, {ALL_COUNTS}"),
+    seen("hks_seen", "HKS is better as seen than attention.", PROPOSED, HKS),
+    seen("ssim_over_all", "Weights by similarity beat equal weights (VisAttAll) as seen.", "VisAttAll", "guided_ssim"),
+    seen("ed_over_all", "Weights by Euclidean distance beat equal weights (VisAttAll) as seen.",
+         "VisAttAll", "guided_ed"),
+    seen("learned_weights", "Weights learned from ground truth beat equal weights.", "VisAttAll", ENHANCED),
+]  # fmt: skip
+
+CLAIMS = [*CHANNELS, *DETECTORS, *KEPT, *BLIND, *WEIGHTS]

@@ -1,0 +1,100 @@
+"""T figure 4.11: accuracy of the classifiers for each size of the pressure array, as a table and a chart."""
+
+from contextlib import suppress
+
+import numpy as np
+import pandas as pd
+
+from stages.kit.split import Split
+from stages.report.grid import grid, means
+from stages.report.items import Figure, Table
+from stages.report.results import NotRun, Results
+from stages.report.style import CYCLE, GREY, MARKERS, label, plain_logarithm, plt
+from stages.report.words import dataset_text
+
+from .claims import STAGE, UNSEEN
+
+CELLS, PITCH = 32, 0.01  # the array of T figure 4.11 whose accuracies the text gives
+SPLITS = {Split.OBJECTS: "unseen", Split.RANDOM: "known, other touches"}
+
+
+def table(results: Results) -> Table:
+    """One row per array, data set and split; the sets that are switched on first."""
+    sets = [results.measured(STAGE, name, metric="accuracy") for name in results.datasets(STAGE) or [None]]
+    rows = pd.concat([rows.sort_values("split", kind="stable") for rows in sets])
+    thesis = results.thesis("figure_4_11_sensor_32x32_sensel_0_01").set_index("classifier")["accuracy"]
+    frame = _cells(rows, ["dataset", "split", "cells", "pitch", "classifier"])
+    frame["thesis"] = frame["classifier"].map(thesis).where((frame["cells"] == CELLS) & (frame["pitch"] == PITCH))
+    shown = grid(
+        frame.assign(width=(frame["cells"] * frame["pitch"]).map("{:.2f}".format)),
+        ["dataset", "split", "cells", "pitch", "width"], "classifier", gap=None,
+        names={"dataset": dataset_text, "split": SPLITS.get, "cells": lambda count: f"{count} x {count}"},
+        head=lambda name: f"{label(name)}, %",
+    ).rename(columns={"split": "objects", "pitch": "pitch, units", "width": "width, units"})  # fmt: skip
+    return Table(frame, shown, {"classes": _classes(rows), "smallest": _smallest(results)})
+
+
+def _cells(rows: pd.DataFrame, by: list[str]) -> pd.DataFrame:
+    """Mean accuracy and interval over the tested objects, one row for each combination of the columns `by`."""
+    seconds = rows.groupby(by, sort=False)["seconds"].median().to_numpy()
+    objects = rows.groupby([*by, "item"], sort=False)[["value", "seconds"]].mean().reset_index()
+    found = pd.DataFrame(means(objects, by, top=1.0)).rename(columns={"mean": "accuracy"}).drop(columns="values")
+    return found.assign(seconds=seconds)
+
+
+def _classes(rows: pd.DataFrame) -> str:
+    """What each set holds, in words."""
+    return "; ".join(
+        f"{dataset_text(str(name))}: {', '.join(sorted(set(own['group'])))}, {own['item'].nunique()} objects, "
+        f"{int(own['touches'].iloc[0])} touches each, guessing {100 / own['group'].nunique():.1f} %"
+        for name, own in rows.groupby("dataset", sort=False)
+    )
+
+
+def _smallest(results: Results) -> str:
+    """The smallest array of each set whose folder is at hand, a line each."""
+    lines = []
+    for name in results.datasets(STAGE):
+        with suppress(NotRun):
+            arrays = [
+                f"{label(row.classifier)} {row.cells} x {row.cells} at {row.pitch:g} ({100 * row.again:.0f} %)"
+                for row in results.table(STAGE, "smallest.csv", name).itertuples()
+            ]
+            lines.append(f"The smallest array that is enough, {dataset_text(name)}: {'; '.join(arrays)}.")
+    return "\n".join(lines)
+
+
+def chart(results: Results) -> Figure:
+    """Accuracy on unseen objects against the number of sensels, for each distance, and the cost of a touch."""
+    rows = results.measured(STAGE, **UNSEEN)
+    found = _cells(rows, ["cells", "pitch", "classifier"])
+    costs = results.measured(STAGE, metric="seconds_a_touch").set_index(["cells", "pitch"])["value"].sort_index()
+    ratios = costs / costs.min()
+    names = list(dict.fromkeys(found["classifier"]))
+    pitches, sizes = sorted(set(found["pitch"])), sorted(set(found["cells"]))
+    figure, panels = plt.subplots(1, len(names) + 1, figsize=(1.95 * (len(names) + 1), 3.4))
+    accuracies, cost = dict(zip(names, panels, strict=False)), panels[-1]
+    for k, pitch in enumerate(pitches):
+        style = {"color": CYCLE[k], "marker": MARKERS[k], "ms": 5, "lw": 1.3}
+        for name, axes in accuracies.items():
+            own = found[(found["classifier"] == name) & (found["pitch"] == pitch)].sort_values("cells")
+            x = own["cells"] * 1.03 ** (k - (len(pitches) - 1) / 2)  # apart, so that no interval hides another
+            axes.vlines(x, 100 * own["low"], 100 * own["high"], color=CYCLE[k], lw=1, alpha=0.5)
+            axes.plot(x, 100 * own["accuracy"], label=f"{pitch:g} apart", **style)
+        cost.plot(ratios.xs(pitch, level="pitch"), **style)
+    for name, axes in accuracies.items():
+        axes.axhline(100 / rows["group"].nunique(), color=GREY, lw=0.8, ls=":")
+        axes.set(title=label(name), ylim=(0, min(100 * found["high"].fillna(found["accuracy"]).max() + 5, 100)))
+        axes.tick_params(labelleft=axes is panels[0])
+    cost.set(title="cost of a touch", yscale="log", ylim=(None, 1.2 * np.ceil(ratios.max())))
+    plain_logarithm(cost.yaxis)
+    for axes in panels:
+        axes.set_xscale("log", base=2)
+        axes.set_xticks(sizes, [f"{size}²" for size in sizes])
+        axes.set_xticks([], minor=True)
+        axes.grid(axis="y")
+    panels[0].set_ylabel("accuracy on unseen objects, %")
+    figure.supxlabel("sensels", fontsize=10, y=0.09)
+    figure.tight_layout(w_pad=1.2, rect=(0, 0.09, 1, 1))
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="lower center", ncol=len(pitches), fontsize=9)
+    return Figure(figure)

@@ -1,0 +1,116 @@
+"""Pictures of touch: the whole pipeline, the imprints at each method's points, and those of one mesh."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+
+from stages.imprints import Surface, distances, normalise, sensor_axes, sensor_normals, touchable
+from stages.imprints.pictures import draw
+from stages.report.drawing import show, vivid
+from stages.report.items import Figure
+from stages.report.results import NotRun, Results
+from stages.report.style import GREY, INK, PALE, label, plt
+
+from .one_touch import draw_bars, table_4_1, table_4_2
+from .rows import MODEL, at_random
+
+STEPS = ["1  See it", "2  Find what stands out", "3  Spend the faces there", "4  Touch it there", "5  Know what it is"]
+NEEDED = ["random", "itti", MODEL]  # bars
+LEFT = [0.0, 0.2, 0.41, 0.63, 0.84]  # of the panels, as parts of the figure's width
+WIDTH, SIDE, SIZE = 0.17, 3, (16, 3.9)  # of a panel; imprints a side; of the figure in inches
+METHODS = ("random", MODEL)
+COUNT, TOUCHES = 4, 6
+CELLS, PITCH = (16, 16), 0.01  # as the command has them by default
+
+
+def pipeline(results: Results) -> Figure:
+    """The whole pipeline on one object, for the README."""
+    if results.own_meshes:
+        raise NotRun("a folder of one's own has no recognition by touch", "classification", runnable=False)
+    name = results.choose([results.settings.hero_object], 1, stage="imprints")[0]
+    mesh, (_, coarse) = results.mesh(name), results.lods(name, "enhanced-soft")[-1]
+    accuracy, classes = _accuracy(results)
+    points = results.strong_points(name)[MODEL]
+    figure = plt.figure(figsize=SIZE)
+    words = [
+        name,
+        "saliency, and where to touch",
+        f"{len(mesh.faces):,} faces become {len(coarse.faces):,}",
+        "what a pressure array feels (black: first)",
+        "",
+    ]
+    for left, step, said in zip(LEFT, STEPS, words, strict=True):
+        figure.text(left, 0.92, step, fontsize=13, fontweight="bold", color=INK)
+        figure.text(left, 0.03, said, fontsize=10, color=GREY)
+    panels = [figure.add_axes((left, 0.12, WIDTH, WIDTH * SIZE[0] / SIZE[1])) for left in LEFT]
+    show(panels[0], mesh, rows=800)
+    show(panels[1], mesh, vivid(results.saliency(name)[MODEL]), points=points, rows=800)
+    show(panels[2], coarse, wires=True, rows=800)
+    panels[3].set_axis_off()
+    for place, image in enumerate(results.imprints(name)[MODEL][: SIDE * SIDE]):
+        down, across = divmod(place, SIDE)
+        _draw_imprint(panels[3].inset_axes((across / SIDE, 1 - (down + 1) / SIDE, 0.94 / SIDE, 0.94 / SIDE)), image)
+    places = draw_bars(panels[4], accuracy, ["knn"], chance=1 / classes)
+    names = [label(method).partition(" (")[0].replace(" ", "\n") for method in places]
+    panels[4].set_xticks(list(places.values()), names, fontsize=9)
+    panels[4].set_title(f"kNN, one touch, {classes} objects", fontsize=9.5, fontweight="normal", color=GREY, pad=4)
+    return Figure(figure, {"name": name, "classes": classes}, dpi=120)
+
+
+def _accuracy(results: Results) -> tuple[pd.DataFrame, int]:
+    """(tidy table, number of objects): of the group six, or of four where there is no six."""
+    try:
+        name, frame = "six", table_4_1(results).frame
+    except NotRun:
+        name, frame = "four", table_4_2(results).frame
+    for method in NEEDED:  # a picture of only some of them would mislead
+        at_random(results, group=name, classifier="knn", variant="plain", method=method)
+    return frame, results.classes(name)
+
+
+def imprints(results: Results) -> Figure:
+    """What the sensor feels at the points of each method, an object a row."""
+    names = results.choose(results.settings.figure_objects, COUNT, stage="imprints")
+    methods = results.imprints(names[0]).those_of(METHODS)
+    width = len(methods) * TOUCHES
+    figure, grid = plt.subplots(len(names), width, figsize=(0.82 * width + 0.6, 0.92 * len(names) + 0.3), squeeze=False)
+    figure.subplots_adjust(wspace=0.06, hspace=0.06)
+    blocks = dict(zip(methods, np.split(grid, len(methods), axis=1), strict=True))
+    for k, (method, block) in enumerate(blocks.items()):
+        for row, name in zip(block, names, strict=True):
+            images = results.imprints(name)[method]
+            for touch, axes in enumerate(row):
+                _draw_imprint(axes, images[touch] if touch < len(images) else None)
+                box = axes.get_position()
+                axes.set_position([box.x0 + 0.012 * (k > 0), box.y0, box.width, box.height])
+        block[0, 0].set_title(f"{label(method)}, first {TOUCHES} points", pad=6)
+    for axes, name in zip(grid[:, 0], names, strict=True):
+        axes.set_ylabel(name, rotation=0, ha="right", va="center", labelpad=8)
+    rows, columns = results.imprints(names[0])[methods[0]].shape[1:]
+    words = {"names": ", ".join(names), "methods": " beside ".join(map(label, methods))}
+    return Figure(figure, words | {"rows": rows, "columns": columns})
+
+
+def _draw_imprint(axes: Axes, image: np.ndarray | None) -> None:
+    """An imprint (rows, columns) in 0..1 in grey, framed; None: an empty frame."""
+    if image is not None:
+        axes.imshow(image, cmap="gray", vmin=0, vmax=1)
+    axes.set(xticks=[], yticks=[])
+    axes.spines[:].set(visible=True, color=PALE, linewidth=0.6)
+
+
+def touch_one_mesh(results: Results) -> Figure:
+    """What `python -m stages.imprints MESH --at salient` shows: of one object, of a folder of one's own of each."""
+    own, settings = results.own_meshes, results.settings
+    names = results.choose(() if own else [settings.hero_object], settings.viewer_count if own else 1)
+    figure = plt.figure(figsize=(12, 5.4 * len(names)))
+    for part, name in zip(figure.subfigures(len(names), 1, squeeze=False).flat, names, strict=True):
+        mesh, points = results.mesh(name), results.points(name)[MODEL]
+        points = points[touchable(mesh, points)][:TOUCHES]
+        raw = distances(Surface(mesh), points, CELLS, PITCH)
+        axes = sensor_axes(sensor_normals(mesh, points))
+        draw(part, mesh, mesh.vertices[points], axes, normalise(raw, PITCH), np.ptp(raw, axis=(1, 2)), PITCH)
+        if own:
+            part.suptitle(name, fontweight="bold", y=0.995)
+    words = {"name": ", ".join(names), "count": TOUCHES, "rows": CELLS[0], "columns": CELLS[1], "pitch": PITCH}
+    return Figure(figure, words, dpi=110)

@@ -1,0 +1,91 @@
+"""T tables 5.3, 5.4 and 5.6: networks that learned by sight on imprints, whole or with some layers frozen."""
+
+from collections.abc import Callable, Mapping
+from itertools import product
+
+import numpy as np
+import pandas as pd
+
+from stages.report.grid import grid, percent
+from stages.report.items import Table
+from stages.report.networks import (
+    FINE,
+    MODES,
+    NETWORK,
+    PRINTED,
+    SPLITS,
+    STARTS,
+    THESIS,
+    accuracy,
+    everywhere,
+    origin,
+)
+from stages.report.prose import shared_notes
+from stages.report.results import NotRun, Results
+from stages.report.style import label
+from stages.report.words import dataset_text
+
+MODE_OF = {"all": "frozen", "none": "finetuned"}  # what the stage calls these rows of the thesis's table 5.6
+
+
+def networks(results: Results, data: str) -> Table:
+    """Accuracies of all networks on one kind of imprints, on every set, beside the thesis's."""
+    thesis = results.thesis(THESIS[data]).set_index("network")
+    sources = list(everywhere(results))
+    every = pd.concat([results.rows("transfer", source) for source in sources])
+    chance = every[every["metric"] == "chance"].groupby(["dataset", "split"])["value"].mean()
+    rows = every[(every["metric"] == "accuracy") & (every["data"] == data)].dropna(subset=["value"])
+    if rows.empty:
+        raise NotRun(f"no accuracies on {data}", "transfer")
+    groups = dict(iter(rows.groupby(["dataset", "method", "weights", "mode", "split"])))
+    ran, lines = {key[1:4] for key in groups}, []
+    settings = product(dict.fromkeys([*PRINTED, *rows["method"]]), STARTS, MODES)
+    kept = [one for one in settings if one in ran or (one[0] in PRINTED and one[1] == "imagenet")]
+    for source, (network, weights, mode), split in product(sources, kept, SPLITS):
+        mine = groups.get((source, network, weights, mode, split), rows[:0])
+        cell, guess = accuracy(mine, split), chance.get((source, split), np.nan)
+        printed = weights == "imagenet" and split == "random" and network in PRINTED
+        lines.append({
+            "objects": source, "network": network, "weights": weights,
+            "pretrained": next(iter(mine["pretrained"].dropna()), None), "mode": mode, "split": split, **cell,
+            "chance": guess, "above_chance": cell["accuracy"] - guess,
+            "thesis": thesis.loc[PRINTED[network], f"acc_{mode}"] if printed else np.nan,
+            "seconds": mine["seconds"].median(),
+        })  # fmt: skip
+    frame = pd.DataFrame(lines)
+    starts = zip(frame["weights"], frame.groupby("network")["pretrained"].transform("first"), strict=True)
+    cells = frame.assign(**{"starts from": [origin(*pair) for pair in starts], "filters": frame["mode"].map(label)})
+    down, guesses = ["network", "starts from", "filters"], (100 * frame["chance"]).map(" (chance {:.1f})".format)
+    notes = [f"Not run on {name}: {note}." for name in sources for note in results.notes("transfer", name)]
+    words = {"networks": shared_notes(str(__package__), "networks"), "not_run": "\n".join(notes)}
+    return Table(frame, _beside_thesis(cells, down, guesses, {"network": label}), words)
+
+
+def frozen_layers(results: Results) -> Table:
+    """Accuracies of MobileNetV2 by the layers that stay as sight left them, on every set, beside the thesis's."""
+    thesis = results.thesis("table_5_6_frozen_layers_mobilenetv2").set_index("frozen_layers")["accuracy"]
+    lines = []
+    for source, rows in everywhere(results).items():
+        mine = rows[(rows["method"] == NETWORK) & (rows["weights"] == "imagenet") & (rows["data"] == FINE)]
+        for (layers, printed), split in product(thesis.items(), SPLITS):
+            cell = accuracy(mine[mine["mode"] == MODE_OF.get(str(layers), layers)], split)
+            known = {"objects": source, "frozen_layers": layers, "split": split, "values": cell["values"]}
+            lines.append(known | cell | {"thesis": printed})
+    frame = pd.DataFrame(lines)
+    if not frame["values"].any():
+        raise NotRun("no accuracies of MobileNetV2 with frozen layers", "transfer")
+    shown = _beside_thesis(frame, ["frozen_layers"])
+    return Table(frame, shown.rename(columns={"frozen_layers": "frozen layers"}))
+
+
+def _beside_thesis(
+    cells: pd.DataFrame,
+    down: list[str],
+    guesses: pd.Series | str = "",
+    names: Mapping[str, Callable[[object], str]] | None = None,
+) -> pd.DataFrame:
+    """Accuracies in per cent, a column for each set and split, whose head ends with `guesses`, then the thesis's."""
+    head = cells["objects"].map(dataset_text) + ", " + cells["split"].map(SPLITS) + guesses + ", %"
+    wide = grid(cells.assign(head=head), down, "head", beside=(), names=names, places=1)
+    thesis = cells.groupby(down, sort=False)["thesis"].max()  # printed beside touches at random alone
+    return wide.assign(**{"thesis, %": [percent(share, 1) for share in thesis]})
