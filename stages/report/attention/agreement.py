@@ -49,7 +49,7 @@ def _table(rows: pd.DataFrame, beside: Sequence[str], words: dict) -> Table:
     cost = timed.groupby("method")["seconds"].median().map(number)
     lines = []
     for method, group in frame.groupby("method", sort=False):
-        cells = group.set_index("metric").reindex(columns=[*MEAN, *GAIN]).T.to_dict("list")
+        cells = group.set_index("metric").reindex(columns=[*MEAN, *GAIN]).T.to_dict("list")  # of MEAN, then GAIN
         line = {"method": method_text(str(method))}
         line |= {name: with_interval(*cells[metric][:3], places=2) for metric, name in ALONE.items()}
         for metric in GAINS:
