@@ -1,6 +1,7 @@
 """From rows of measurements to cells of `mean [low, high]`, and from cells to a grid with the thesis's figures."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any, cast
 
 import numpy as np
 import pandas as pd
@@ -22,6 +23,12 @@ def means(frame: pd.DataFrame, by: Sequence[str], shared: float = 0.0, top: floa
         found = {"mean": mean, "low": np.maximum(low, 0.0), "high": np.minimum(high, top), "values": len(group)}
         rows.append(dict(zip(by, key, strict=True)) | found | {"seconds": group["seconds"].median()})
     return rows
+
+
+def grouped(frame: pd.DataFrame, by: Sequence[str]) -> Iterator[tuple[tuple[Any, ...], pd.DataFrame]]:
+    """(values of the columns `by`, rows) of each of their combinations, in the order of the rows; no empty cells."""
+    for key, group in frame.groupby(list(by), sort=False):
+        yield cast(tuple[Any, ...], key), group
 
 
 def within(values: Sequence[float], shared: float = 0.0, least: float = 0.0, top: float = 1.0) -> tuple:

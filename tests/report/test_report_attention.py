@@ -8,21 +8,8 @@ import pytest
 
 from stages.kit.files import read_arrays, write_arrays
 from stages.kit.stats import interval
-from stages.report import meshes
-from stages.report.attention import (
-    agreement,
-    annotations,
-    charts,
-    figure_3_3,
-    figure_3_10,
-    figure_3_13,
-    section_3_2_3,
-    surfaces,
-    table_3_1,
-    views_seen,
-)  # fmt: skip
-from stages.report.attention import rows as judged_rows
-from stages.report.attention.rows import best_rival, difference
+from stages.report import attention, meshes, stability
+from stages.report.attention.rows import agreement, difference, rivals
 from stages.report.costs import attention_seconds
 from stages.report.drawing import vivid
 from stages.report.markdown import signed
@@ -31,7 +18,6 @@ from stages.report.meshes.rows import paired_cells
 from stages.report.meshes.simplification import METHODS
 from stages.report.pareto import pareto_chart
 from stages.report.results import NotRun
-from stages.report.stability import time_spent
 from stages.report.style import colours
 from stages.report.topics import CLAIMS, TOPICS, build_all, build_one
 from stages.report.verdict import judge
@@ -53,12 +39,28 @@ def again(results, small, stage, frame):
     return small.results(results.data.parent)
 
 
+def table_of(results, name):
+    return build_one(attention, "tables", name, results)
+
+
+def figure_of(results, name):
+    return build_one(attention, "figures", name, results)
+
+
+def settings_chart(results):
+    return build_one(attention, "tradeoff", "attention_settings", results)
+
+
+def time_spent(results):
+    return build_one(stability, "tables", "time_spent", results).frame.set_index(["stage", "method"])
+
+
 def judged_claim(results, key):
     return judge([claim for claim in CLAIMS if claim.key == key], results).iloc[0]
 
 
 def test_rows_stand_in_the_order_of_nss_below_the_ceiling(seen):
-    frame = agreement.against_gaze(seen).frame
+    frame = table_of(seen, "attention_gaze").frame
     order = frame[frame["metric"] == "nss"]
     assert order["method"].iloc[0] == "human"
     assert order["mean"].iloc[1:].is_monotonic_decreasing
@@ -66,23 +68,23 @@ def test_rows_stand_in_the_order_of_nss_below_the_ceiling(seen):
 
 
 def test_gain_is_paired_so_that_hard_meshes_do_not_widen_it(seen):
-    frame = judged_rows.agreement(seen.rows("salient_points", "gaze"), ["nss"]).set_index("method")
+    frame = agreement(seen.rows("salient_points", "gaze"), ["nss"]).set_index("method")
     row = frame.loc["itti"]
     assert row["gain"] == pytest.approx(1.3, abs=0.02)
     assert row["gain_high"] - row["gain_low"] < 0.1 < row["high"] - row["low"]
 
 
 def test_methods_that_have_seen_the_object_are_starred_and_are_no_rivals(seen):
-    table = agreement.against_gaze(seen)
+    table = table_of(seen, "attention_gaze")
     assert "SVM of the object *" in set(table.shown["method"])
-    assert best_rival(seen.rows("salient_points", "gaze")) == "facing_viewer"
+    assert rivals(seen.rows("salient_points", "gaze"), "nss")[0] == "facing_viewer"
     assert any("facing viewer: ours − it NSS +0.8" in note for note in table.notes)
 
 
 def test_sentences_follow_from_the_numbers(seen, small):
-    assert any("higher than 7 of the 7 others" in note for note in agreement.against_gaze(seen).notes)
+    assert any("higher than 7 of the 7 others" in note for note in table_of(seen, "attention_gaze").notes)
     worse = again(seen, small, "salient_points", small.judged({"enhanced": 0.25}))
-    notes = " ".join(agreement.against_gaze(worse).notes)
+    notes = " ".join(table_of(worse, "attention_gaze").notes)
     assert "In NSS ours is higher than 3 of the 7 others" in notes
     assert "not than facing viewer" in notes
     for pair, word in (
@@ -94,18 +96,17 @@ def test_sentences_follow_from_the_numbers(seen, small):
 
 def test_table_of_gaze_stands_without_our_method_or_the_ceiling(seen, small):
     rows = small.judged()
-    table = agreement.against_gaze(
-        again(seen, small, "salient_points", rows[~rows["method"].isin(["enhanced", "human"])])
-    )
+    others = rows[~rows["method"].isin(["enhanced", "human"])]
+    table = table_of(again(seen, small, "salient_points", others), "attention_gaze")
     assert table.frame["method"].iloc[0] == "svm_object"
     assert (table.shown["ours − it, NSS"] == "–").all()
 
 
 def test_marks_are_said_to_be_no_human_gaze(seen, root, small):
-    assert any("No human subjects" in note for note in agreement.against_marks(seen).notes)
+    assert any("No human subjects" in note for note in table_of(seen, "attention_marks").notes)
     (root / "reports/measurements/household/salient_points.csv.gz").unlink()
     small.write(root, "salient_points", small.judged(), "furniture")
-    notes = agreement.against_marks(small.results(root)).notes
+    notes = table_of(small.results(root), "attention_marks").notes
     assert not any("vision model" in note for note in notes)
     assert any("data set furniture" in note for note in notes)
 
@@ -114,12 +115,12 @@ def test_run_without_ground_truth_has_no_table_of_marks(seen, root, small):
     rows = small.judged()
     small.write(root, "salient_points", rows[rows["metric"] == "points_strong"], "household")
     with pytest.raises(NotRun, match="ground truth"):
-        agreement.against_marks(small.results(root))
+        table_of(small.results(root), "attention_marks")
 
 
 def test_intervals_of_learned_weights_are_those_of_the_objects(seen, small):
     _, own = small.learned_weights()
-    frame = table_3_1.build(seen).frame.set_index(["dataset", "method", "channel"])
+    frame = table_of(seen, "table_3_1").frame.set_index(["dataset", "method", "channel"])
     thesis = seen.thesis("table_3_1_channel_weights").set_index("channel")
     row = frame.loc[("gaze", "guided_ssim", "color")]
     assert row[["mean", "low", "high"]].tolist() == pytest.approx(interval(own[:, 0]), abs=1e-5)
@@ -129,23 +130,23 @@ def test_intervals_of_learned_weights_are_those_of_the_objects(seen, small):
 
 
 def test_learned_weights_of_all_sets_make_the_table_and_gaze_comes_first(seen, root, small):
-    assert set(table_3_1.build(seen).frame["dataset"]) == {"gaze"}
+    assert set(table_of(seen, "table_3_1").frame["dataset"]) == {"gaze"}
     small.write(root, "weights", seen.rows("weights", "gaze"), "household")
-    assert list(dict.fromkeys(table_3_1.build(small.results(root)).frame["dataset"])) == ["gaze", "household"]
+    assert list(dict.fromkeys(table_of(small.results(root), "table_3_1").frame["dataset"])) == ["gaze", "household"]
 
 
 def test_accuracy_of_the_thesis_stands_beside_its_own_way_only(seen):
-    frame = section_3_2_3.build(seen).frame
+    frame = table_of(seen, "section_3_2_3").frame
     beside = frame.dropna(subset=["thesis_accuracy"])
     assert set(beside["area"]) == {"image"} and set(beside["validation"]) == {"pixels"}
     assert dict(zip(beside["training"], beside["thesis_accuracy"], strict=True)) == {
         "one_for_all": 0.8608, "one_per_object": 0.9318,
     }  # fmt: skip
-    assert any("86.0 %; the background alone gives 85.0 %" in note for note in section_3_2_3.build(seen).notes)
+    assert any("86.0 %; the background alone gives 85.0 %" in note for note in table_of(seen, "section_3_2_3").notes)
 
 
 def test_marks_are_compared_with_chance_and_the_least_agreed_object_is_named(seen):
-    table = annotations.build(seen)
+    table = table_of(seen, "annotations")
     row = table.frame.set_index(["metric", "method"]).loc[("found", "passes")]
     assert row["gain"] == pytest.approx(0.7)
     assert "least on cup (80 %)" in table.notes[0] and "on 1 of 3 objects" in table.notes[0]
@@ -153,10 +154,10 @@ def test_marks_are_compared_with_chance_and_the_least_agreed_object_is_named(see
 
 @pytest.mark.parametrize("name", FIGURES)
 def test_figure_is_drawn_and_says_what_it_shows(seen, name):
-    build = {name: build for topic in TOPICS for name, build in topic.FIGURES.items()}[name]
-    figure = build(seen)
-    assert figure.paths[0].name == f"{name}.png" and figure.paths[0].exists()
-    assert len(figure.alt) > 20 and len(figure.caption) > 20
+    topic = next(topic for topic in TOPICS if name in topic.FIGURES)
+    drawn = build_one(topic, "figures", name, seen)
+    assert drawn.paths[0].name == f"{name}.png" and drawn.paths[0].exists()
+    assert len(drawn.alt) > 20 and len(drawn.caption) > 20
 
 
 @pytest.mark.parametrize(
@@ -173,17 +174,17 @@ def test_object_without_ground_truth_is_passed_over(seen, root):
     assert seen.with_ground_truth(["ball"], 2) == ["cube"]
     (root / "data/test/weights/ground_truth/cube.npz").unlink()
     with pytest.raises(NotRun, match="ground truth"):
-        surfaces.figure_3_12(seen)
+        figure_of(seen, "figure_3_12")
 
 
 def test_maps_without_a_channel_are_not_run_but_no_crash(seen, root):
     for path in (root / "data/test/conspicuity").glob("*.npz"):
         stored = read_arrays(path)
         write_arrays(path, **stored | {"channels": stored["channels"][:3], "maps": stored["maps"][:, :3]})
-    for figure in (figure_3_3, figure_3_13):
+    for name in ("figure_3_3", "figure_3_13"):
         with pytest.raises(NotRun, match="dkl"):
-            figure.build(seen)
-    assert "color, contrast, curvature" in figure_3_10.build(seen).alt
+            figure_of(seen, name)
+    assert "color, contrast, curvature" in figure_of(seen, "figure_3_10").alt
 
 
 def test_errors_of_combinations_are_over_what_all_of_them_reach(seen, root, small):
@@ -206,7 +207,7 @@ def test_figure_of_combinations_is_drawn(seen, root, small):
 
 
 def test_views_count_once_in_the_time_spent(seen):
-    frame = time_spent.build(seen).frame.set_index(["stage", "method"])
+    frame = time_spent(seen)
     assert frame.loc[("views", "greedy"), "seconds"].sum() == 14  # seven for each of two objects
 
 
@@ -215,12 +216,12 @@ def test_a_piece_of_work_counts_once_whatever_it_was_judged_in(seen, root, small
     rows = [work | {"task": task, "view": view}
             for task in ("level_1", "ewigc") for view in ("0", "all")]  # fmt: skip
     small.write(root, "fixation", pd.DataFrame(rows))
-    frame = time_spent.build(small.results(root)).frame.set_index(["stage", "method"])
+    frame = time_spent(small.results(root))
     assert frame.loc[("fixation", "net"), "seconds"] == 5
 
 
 def test_views_figure_tells_the_fewest(seen):
-    assert "3 for the median object" in views_seen.build(seen).caption
+    assert "3 for the median object" in figure_of(seen, "views_seen").caption
 
 
 def test_cost_counts_views_channels_and_points(seen):
@@ -230,7 +231,7 @@ def test_cost_counts_views_channels_and_points(seen):
 
 
 def test_chart_of_attention_leaves_out_those_that_have_seen_the_mesh(seen):
-    chart = build_all("tradeoff", seen)
+    chart = build_all("tradeoff", seen, [attention])
     assert "attention" in [item.name for item in chart.items]
     rows = pd.read_csv(seen.reports / "tradeoff/attention.csv").set_index("method")
     assert not {"svm_object", "human"} & set(rows.index)
@@ -239,7 +240,7 @@ def test_chart_of_attention_leaves_out_those_that_have_seen_the_mesh(seen):
 
 
 def test_smallest_setting_that_loses_nothing_is_named(seen):
-    chart = charts.by_setting(seen)
+    chart = settings_chart(seen)
     assert "four, 450 rows, symmetry (10.0 times as fast" in chart.caption
     assert "one, 450 rows, none (" not in chart.caption
     rows = pd.read_csv(seen.reports / "tradeoff/attention_settings.csv").set_index("name")
@@ -253,14 +254,14 @@ def test_a_setting_that_loses_in_auc_alone_is_not_named(seen, small):
     loss = rows["item"].map(dict(zip("abcdef", np.linspace(0.04, 0.06, 6), strict=True)))
     loss *= (rows["views"] == "four") & (rows["metric"] == "auc")
     worse = again(seen, small, "attention_settings", rows.assign(value=rows["value"] - loss))
-    assert "four, 450 rows" not in charts.by_setting(worse).caption.split("Smallest")[1]
+    assert "four, 450 rows" not in settings_chart(worse).caption.split("Smallest")[1]
 
 
 def test_one_setting_alone_is_not_run(seen, small):
     rows = seen.rows("attention_settings")
     less = again(seen, small, "attention_settings", rows[rows["views"] == "four"])
     with pytest.raises(NotRun, match="fewer than two settings"):
-        charts.by_setting(less)
+        settings_chart(less)
 
 
 @pytest.mark.parametrize(
@@ -308,9 +309,7 @@ def test_each_method_of_the_chart_of_simplification_has_its_own_colour():
     assert len(set(tints.values())) == len(tints) == 8
 
 
-def test_long_front_is_told_by_its_ends(tmp_path):
+def test_long_front_is_told_by_its_ends():
     frame = pd.DataFrame({"name": [f"n{k}" for k in range(12)], "seconds": range(1, 13), "mean": range(12)})
-    figure = pareto_chart(
-        frame, "seconds", "mean", "name", name="chart", title="T", reference="n3", quality_label="q", folder=tmp_path
-    )
-    assert "12 choices, from n0 to n11" in figure.caption and "n5" not in figure.caption
+    caption = pareto_chart(frame, "mean", title="T", reference="n3", quality_label="q").words["caption"]
+    assert "12 choices, from n0 to n11" in caption and "n5" not in caption

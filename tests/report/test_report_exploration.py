@@ -5,18 +5,17 @@ import pandas as pd
 import pytest
 
 from stages.kit.files import write_arrays
-from stages.report import exploration
+from stages.report import exploration, stability
 from stages.report.exploration import claims
 from stages.report.exploration.rows import needed
 from stages.report.results import NotRun
-from stages.report.stability import touch as touch_stability
-from stages.report.stability import touch_figure as degradation
-from stages.report.stability import touch_imprints as touch_stability_imprints
-from stages.report.stability.rows import breaking, curve, harmless
+from stages.report.stability.touch import breaking, curve, harmless
+from stages.report.stability.touch_imprints import severities
 from stages.report.topics import build_one
 from stages.report.verdict import judge
 
 CHARTS = [("tradeoff", "exploration"), ("figures", "exploration_calibration")]
+DEGRADED = [("tables", "touch_stability"), ("figures", "touch_stability"), ("figures", "touch_stability_imprints")]
 CURVE = {1: 0.6, 2: 0.8, 3: 0.9, 4: 0.95, 5: 0.98}
 SAVED = {"gain": 2.0, "saliency": 3.5, "random": 3.0}  # touches until 95 %, at an accuracy of 97 %
 
@@ -94,9 +93,9 @@ def test_nothing_explored_is_said_and_not_crashed_on(results):
     for kind, name in (("tables", "exploration"), *CHARTS):
         with pytest.raises(NotRun):
             build_one(exploration, kind, name, results)
-    for module in (touch_stability, degradation, touch_stability_imprints):
+    for kind, name in DEGRADED:
         with pytest.raises(NotRun):
-            module.build(results)
+            build_one(stability, kind, name, results)
 
 
 def disturbed():
@@ -117,17 +116,17 @@ def test_half_of_the_lead_is_lost_where_the_rows_say_so():
     points = curve(disturbed(), "noise", ("random", "imprint", "knn"))
     at, low, high = breaking(points, "noise")
     assert at == pytest.approx(0.2, abs=0.01) and low < at < high
-    assert np.isnan(harmless(points, "noise"))
+    assert np.isnan(harmless(points))
 
 
 def test_severities_that_fall_go_from_mild_to_harsh():
     points = curve(disturbed(), "coarse_model", ("random", "imprint", "knn"))
-    assert points["severity"].tolist() == [400, 100] and harmless(points, "coarse_model") == 400
+    assert points["severity"].tolist() == [400, 100] and harmless(points) == 400
 
 
 def test_the_table_of_breaking_points_says_what_is_beyond_the_harshest(root, results, small):
     small.write(root, "touch_stability", disturbed())
-    table = touch_stability.build(results)
+    table = build_one(stability, "tables", "touch_stability", results)
     shown = table.shown.set_index("perturbation")
     assert shown.loc["coarse model", "kNN breaks at"].startswith("< 100")
     assert shown.loc["noise", "kNN breaks at"].startswith("0.2") and shown.loc["noise", "SVM breaks at"] == "–"
@@ -137,19 +136,19 @@ def test_the_table_of_breaking_points_says_what_is_beyond_the_harshest(root, res
 def test_what_is_no_better_than_guessing_has_no_breaking_point(root, results, small):
     lost = disturbed()
     small.write(root, "touch_stability", lost.assign(value=lost["value"] - 0.7))
-    assert touch_stability.build(results).frame.empty
+    assert build_one(stability, "tables", "touch_stability", results).frame.empty
 
 
 def test_the_picture_of_degradation_is_drawn(root, results, small):
     small.write(root, "touch_stability", disturbed())
-    assert degradation.build(results).paths[0].exists()
+    assert build_one(stability, "figures", "touch_stability", results).paths[0].exists()
 
 
 def test_the_picture_of_disturbed_imprints_goes_from_mild_to_harsh(root, results):
     images = np.zeros((1, 8, 8))
     keys = ("clean", "gain.0.5", "gain.0.9", "noise.0.1", "coarse_model.100")
     write_arrays(root / "data/test/touch_stability/ball.npz", **{f"shown.{key}": images for key in keys})
-    figure = touch_stability_imprints.build(results)
+    figure = build_one(stability, "figures", "touch_stability_imprints", results)
     assert figure.paths[0].exists() and "coarse" not in figure.alt
     stored = {f"shown.{key}": images for key in keys}
-    assert touch_stability_imprints._severities(stored, "gain") == ["0.9", "0.5"]
+    assert severities(stored, "gain") == ["0.9", "0.5"]

@@ -6,10 +6,12 @@ import pytest
 from stages.kit.files import write_text
 from stages.kit.rows import write_rows
 from stages.kit.workspace import Workspace
+from stages.report import stability
 from stages.report.results import NotRun, Results
 from stages.report.schema import Params
-from stages.report.stability import failures, points, points_figure, simplification, simplification_figure
-from stages.report.style import label, plot_style
+from stages.report.stability import simplification
+from stages.report.style import label
+from stages.report.topics import build_one
 from stages.stability.schema import COLUMNS
 
 SETTINGS = Params(
@@ -29,24 +31,22 @@ def results(root, rows):
 
 def test_report_shows_the_table_and_the_pictures(disturbed):
     found = results(disturbed.root, disturbed.rows)
-    built = points.build(found)
+    built = build_one(stability, "tables", "stability", found)
     shown = built.shown.set_index("perturbation")
     assert shown.loc["vertex order", label("harris")] == "> 1" and float(shown.loc["noise", label("harris")]) < 0.02
     assert label("random") not in shown and any("no surface" in note for note in built.notes)
-    with plot_style():
-        figures = [module.build(found) for module in (points_figure, failures)]
+    figures = [build_one(stability, "figures", name, found) for name in ("stability", "stability_failures")]
     assert all(path.stat().st_size > 5000 for figure in figures for path in figure.paths)
     assert "missing faces" in figures[1].caption and label("harris") in figures[0].alt
 
 
 def test_report_shows_the_simplified_meshes(tmp_path, simplified):
     found = results(tmp_path, simplified)
-    built = simplification.build(found)
+    built = build_one(stability, "tables", "stability_simplification", found)
     shown = built.shown.set_index("damage")
-    assert pd.isna(shown.loc["soup", "least, pymeshlab"])  # feasible at no count but the one that a refusal names
-    assert shown.loc["sound", "least, pymeshlab"] <= 64 and list(shown.index)[-1] == "all"
-    with plot_style():
-        figure = simplification_figure.build(found)
+    assert shown.loc["soup", "least, pymeshlab"] == "–"  # feasible at no count but the one that a refusal names
+    assert int(shown.loc["sound", "least, pymeshlab"]) <= 64 and list(shown.index)[-1] == "all"
+    figure = build_one(stability, "figures", "stability_simplification", found)
     assert figure.paths[0].stat().st_size > 5000 and "ball" in figure.caption
 
 
@@ -56,7 +56,11 @@ def test_the_least_count_is_the_one_above_which_all_is_valid():
     assert simplification.least_valid(cases) == 500
 
 
-@pytest.mark.parametrize("module", [points, points_figure, failures, simplification, simplification_figure])
-def test_report_says_which_stage_to_run(tmp_path, module):
+@pytest.mark.parametrize(
+    ("kind", "name"),
+    [("tables", "stability"), ("tables", "stability_simplification"), ("figures", "stability"),
+     ("figures", "stability_failures"), ("figures", "stability_simplification")],
+)  # fmt: skip
+def test_report_says_which_stage_to_run(tmp_path, kind, name):
     with pytest.raises(NotRun, match="dvc repro stability"):
-        module.build(results(tmp_path, []))
+        build_one(stability, kind, name, results(tmp_path, []))

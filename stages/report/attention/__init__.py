@@ -1,31 +1,19 @@
 """Where people look: models of attention against human gaze and marks (T3.1, T3.2)."""
 
-from . import (
-    agreement,
-    annotations,
-    charts,
-    claims,
-    figure_3_3,
-    figure_3_10,
-    figure_3_13,
-    section_3_2_3,
-    surfaces,
-    table_3_1,
-    views_seen,
-)  # fmt: skip
+from . import agreement, annotations, charts, claims, learned, maps, surfaces, views_seen
 
 TABLES = {
     "attention_gaze": agreement.against_gaze,
     "attention_marks": agreement.against_marks,
     "annotations": annotations.build,
-    "table_3_1": table_3_1.build,
-    "section_3_2_3": section_3_2_3.build,
+    "table_3_1": learned.table_3_1,
+    "section_3_2_3": learned.section_3_2_3,
 }
 FIGURES = {
-    "figure_3_3": figure_3_3.build,
-    "figure_3_10": figure_3_10.build,
+    "figure_3_3": maps.figure_3_3,
+    "figure_3_10": maps.figure_3_10,
     "figure_3_12": surfaces.figure_3_12,
-    "figure_3_13": figure_3_13.build,
+    "figure_3_13": maps.figure_3_13,
     "saliency": surfaces.saliency,
     "views_seen": views_seen.build,
 }

@@ -2,14 +2,15 @@
 
 from functools import partial
 
-from stages.report.claims import POINTS, Claim, highest_of
+from stages.report.claims import POINTS, Claim, Pick, highest_of
 
 from .rows import CLASSICAL, HUMAN, OURS, PER_OBJECT, SAME
 
 ENHANCED = "thesis_ssim"  # the thesis's own: the average weighted with its SSIM weights
+BEST_RIVAL = highest_of(but=(HUMAN, *SAME, *PER_OBJECT, "*_seen"))
 PHRASES = {
     ("method", OURS): "our model of gaze", ("method", "VisAttAll"): "VisAttAll",
-    ("method", highest_of(but=(HUMAN, *SAME, *PER_OBJECT, "*_seen"))): "the best other that has not seen the mesh",
+    ("method", BEST_RIVAL): "the best other that has not seen the mesh",
     ("area", "image"): "random pixels of the whole image", ("area", "object"): "the object's pixels",
     ("training", "one_per_object"): "an object's own SVM", ("training", "one_for_all"): "the one for all",
     ("validation", "pixels"): "", ("validation", "views"): "on whole views left out",
@@ -18,13 +19,13 @@ PHRASES = {
 on_gaze = partial(Claim, dataset="gaze", over=("item",), phrases=PHRASES)
 
 
-def closer_to_gaze(key, section, sentence, first, second):
+def closer_to_gaze(key: str, section: str, sentence: str, first: str, second: str | Pick) -> Claim:
     """A claim that the NSS of one method is higher than that of another."""
     return on_gaze(key=key, section=section, sentence=sentence, stage="salient_points", where={"metric": "nss"},
                    first={"method": first}, second={"method": second}, scale=1, unit="NSS")  # fmt: skip
 
 
-def svm_per_object(key, sentence, area, own, others):
+def svm_per_object(key: str, sentence: str, area: str, own: str, others: str) -> Claim:
     """A claim that an object's own SVM is more accurate than the one for all; own, others: how each was validated."""
     return on_gaze(key=key, section="T3.2.3", sentence=sentence, stage="weights", unit=POINTS, mean_of="second",
                    where={"metric": "accuracy", "area": area},
@@ -46,7 +47,7 @@ CLAIMS = [
     svm_per_object("svm_per_object_unseen", "One SVM for each object is more accurate on what it has not seen, too.",
                    "object", "views", "objects"),
     closer_to_gaze("ours_over_best_gaze", "ours", "Our model of gaze predicts where people look better than its best "
-                   "rival.", OURS, highest_of(but=(HUMAN, *SAME, *PER_OBJECT, "*_seen"))),
+                   "rival.", OURS, BEST_RIVAL),
     closer_to_gaze("ours_over_enhanced_gaze", "ours", "Our model predicts where people look better than the enhanced "
                    "model.", OURS, ENHANCED),
 ]  # fmt: skip

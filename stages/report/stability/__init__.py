@@ -1,33 +1,21 @@
 """Where methods break: under which perturbation, and how much of it; and where the time went."""
 
-from . import (
-    failures,
-    points,
-    points_figure,
-    simplification,
-    simplification_figure,
-    time_spent,
-    touch,
-    touch_figure,
-    touch_imprints,
-    transfer,
-    transfer_figure,
-)
+from . import points, simplification, time_spent, touch, touch_imprints, transfer
 
 TABLES = {
-    "stability": points.build,
-    "stability_simplification": simplification.build,
-    "touch_stability": touch.build,
-    "transfer_stability": transfer.build,
+    "stability": points.table,
+    "stability_simplification": simplification.table,
+    "touch_stability": touch.table,
+    "transfer_stability": transfer.table,
     "time_spent": time_spent.build,
 }
 FIGURES = {
-    "stability": points_figure.build,
-    "stability_failures": failures.build,
-    "stability_simplification": simplification_figure.build,
-    "touch_stability": touch_figure.build,
+    "stability": points.figure,
+    "stability_failures": points.failures,
+    "stability_simplification": simplification.figure,
+    "touch_stability": touch.figure,
     "touch_stability_imprints": touch_imprints.build,
-    "transfer_stability": transfer_figure.build,
+    "transfer_stability": transfer.figure,
 }
 CHARTS = {}
 CLAIMS = []

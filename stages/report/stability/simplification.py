@@ -1,37 +1,52 @@
-"""What becomes of broken meshes when they are simplified: valid, refused, ruined or crash, a line a kind of damage."""
+"""What becomes of broken meshes when they are simplified: valid, refused, ruined or crash, and how the error grows."""
+
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
-from stages.report.items import Table
+from stages.report.grid import grouped
+from stages.report.items import Figure, Table
 from stages.report.results import NotRun, Results
-from stages.report.style import label
-from stages.stability.simplification import OUTCOMES, SMALLEST
-from stages.stability.specimen import LARGEST_ERROR, RUIN
+from stages.report.style import CYCLE, INK, PALE, label, plt
+from stages.stability.qem_error_curve import LEAST_ERROR
+from stages.stability.simplification import BUDGETS, KEPT_BUDGETS, OUTCOMES, SMALLEST
+from stages.stability.specimen import KEPT, LARGEST_ERROR, RUIN
 
 STAGE = "stability"
-NOTES = [
-    f"Cases by outcome: {' / '.join(OUTCOMES)}. Valid: a mesh came back whose count, kept vertices and faces, "
-    "boundary, pieces and error are as they must be, with no fold, flat face, crowded edge or pinch more than before, "
-    "asked of trimesh and numpy and not of the simplifier. Refused: an error said why. Ruined: a mesh came back that "
-    "is not so.",
-    f"The error is a ruin beyond {RUIN:g} times that of plain QEM of the sound object with as many faces as are free, "
-    f"or {100 * LARGEST_ERROR:g} % of the diagonal.",
-    "Least: the fewest faces asked for, nothing kept, from which on every object gave a valid mesh. Smallest had: of "
-    "the face counts that a refusal names, those that could then be had. Why the worst case failed is in the CSV.",
-]
+COLOURS = {"valid": "#9CD3C0", "refused": PALE, "ruined": "#D55E00", "crash": "#000000"}
+STYLES = ("-", "--", ":")  # of the backends
+LETTERS = {"valid": "", "refused": "–", "ruined": "×", "crash": "!"}
+SHOWN = ("sound", "wide_holes", "fins", "needles", "islands", "noise_0.01", "snapped", "far")  # lines of the chart
 
 
-def build(results: Results) -> Table:
-    cases = simplified(results)
-    groups = cases.groupby(["perturbation", "method"], sort=False)
-    frame = pd.DataFrame([_line(*key, group) for key, group in groups])
+def table(results: Results) -> Table:
+    """Cases by outcome, a line a kind of damage; the fewest faces, and seconds of each backend."""
+    cases = _simplified(results)
+    frame = pd.DataFrame([
+        {"damage": damage, "backend": backend, **_outcomes(group)}
+        for (damage, backend), group in grouped(cases, ["perturbation", "method"])
+    ])  # fmt: skip
+    counted = [*OUTCOMES, "smallest_named", "smallest_had"]
+    total = frame.pivot_table(index="backend", values=counted, aggfunc="sum", sort=False).reset_index()
+    shown = []
+    for (damage,), group in grouped(pd.concat([frame, total.assign(damage="all", least=np.nan)]), ["damage"]):
+        line = {"damage": label(damage)}
+        for row in group.to_dict("records"):
+            line[row["backend"]] = " / ".join(str(row[outcome]) for outcome in OUTCOMES)
+            line[f"least, {row['backend']}"] = row["least"]
+            line[f"smallest had, {row['backend']}"] = f"{row['smallest_had']} of {row['smallest_named']}"
+        shown.append(line)
     objects = ", ".join(dict.fromkeys(cases["item"]))
-    notes = [*NOTES, f"Seconds to a valid mesh, mean over the cases: {_times(cases)}. Objects: {objects}."]
-    return Table("Broken meshes, simplified", frame, notes, _wide(frame))
+    words = {"outcomes": " / ".join(OUTCOMES), "ruin": RUIN, "largest": 100 * LARGEST_ERROR, "objects": objects}
+    return Table(frame, pd.DataFrame(shown), words | {"times": _times(cases)})
 
 
-def simplified(results):
+def _simplified(results: Results) -> pd.DataFrame:
     """The rows about simplification, one per case; NotRun where there is none."""
     rows = results.measured(STAGE, metric="faces")
     if "outcome" not in rows:
@@ -39,46 +54,96 @@ def simplified(results):
     return rows
 
 
-def least_valid(cases):
-    """The fewest faces, nothing kept, from which on every object gave a valid mesh at every count; or NaN."""
-    plain = cases[(cases["kept"] == "none") & cases["soft"].isna() & (cases["budget"] != SMALLEST)]
-    counts = plain.groupby("budget")["severity"].max().sort_values(ascending=False)
-    valid = plain["outcome"].eq("valid").groupby(plain["budget"]).all()[counts.index]
-    return counts[valid.cummin()].min()
-
-
-def _line(damage, backend, cases):
+def _outcomes(cases: pd.DataFrame) -> dict[str, int | float | str]:
+    """Of one damage and backend: cases by outcome, fewest faces, median seconds, and why the worst case failed."""
     counts = {outcome: int((cases["outcome"] == outcome).sum()) for outcome in OUTCOMES}
     had = cases.loc[cases["budget"] == SMALLEST, "outcome"] == "valid"
-    bad = cases.loc[cases["outcome"].isin(OUTCOMES[1:]), ["outcome", "note"]].sort_values("outcome", ascending=False)
+    bad = cases.loc[cases["outcome"].isin(OUTCOMES[1:])].sort_values("outcome", ascending=False)
     return {
-        "damage": damage, "backend": backend, **counts, "least": least_valid(cases),
-        "smallest_named": len(had), "smallest_had": int(had.sum()), "seconds": cases["seconds"].median(),
-        "worst": "" if bad.empty else bad["note"].iloc[0],
+        **counts, "least": least_valid(cases), "smallest_named": len(had), "smallest_had": sum(had),
+        "seconds": float(cases["seconds"].agg("median")), "worst": next(iter(bad["note"]), ""),
     }  # fmt: skip
 
 
-def _wide(frame):
-    lines = []
-    for damage, group in frame.groupby("damage", sort=False):
-        line = {"damage": label(damage)}
-        for row in group.to_dict("records"):
-            line[row["backend"]] = " / ".join(str(row[outcome]) for outcome in OUTCOMES)
-            line[f"least, {row['backend']}"] = row["least"]
-            line[f"smallest had, {row['backend']}"] = f"{row['smallest_had']} of {row['smallest_named']}"
-        lines.append(line)
-    total = {"damage": "all"}
-    for backend, group in frame.groupby("backend", sort=False):
-        total[backend] = " / ".join(str(group[outcome].sum()) for outcome in OUTCOMES)
-        total[f"least, {backend}"] = np.nan
-        total[f"smallest had, {backend}"] = f"{group['smallest_had'].sum()} of {group['smallest_named'].sum()}"
-    return pd.DataFrame([*lines, total])
+def least_valid(cases: pd.DataFrame) -> float:
+    """The fewest faces, nothing kept, from which on every object gave a valid mesh at every count; or NaN."""
+    plain = cases.loc[(cases["kept"] == "none") & cases["soft"].isna() & (cases["budget"] != SMALLEST)]
+    counts = plain.assign(valid=plain["outcome"] == "valid").groupby("budget").agg({"severity": "max", "valid": "all"})
+    counts = counts.sort_values("severity", ascending=False)
+    return min(counts.loc[counts["valid"].cummin(), "severity"], default=np.nan)
 
 
-def _times(cases):
+def _times(cases: pd.DataFrame) -> str:
     """Mean seconds of each backend, and how many times those of the first, over the cases valid with all of them."""
     keys = ["item", "perturbation", "budget", "kept", "soft"]
-    valid = cases[(cases["outcome"] == "valid") & (cases["budget"] != SMALLEST)].fillna({"soft": ""})
-    means = valid.pivot_table(index=keys, columns="method", values="seconds", sort=False).dropna().mean()
-    means = means[list(dict.fromkeys(cases["method"]))]
-    return ", ".join(f"{label(name)} {mean:.4f} ({mean / means.iloc[0]:.2g} times)" for name, mean in means.items())
+    valid = cases.loc[(cases["outcome"] == "valid") & (cases["budget"] != SMALLEST)].fillna({"soft": ""})
+    means = valid.pivot_table(index=keys, columns="method", values="seconds", sort=False).dropna().mean().to_dict()
+    backends = list(dict.fromkeys(cases["method"]))
+    return ", ".join(f"{label(one)} {means[one]:.4f} ({means[one] / means[backends[0]]:.2g} times)" for one in backends)
+
+
+def figure(results: Results) -> Figure:
+    """Which broken meshes can be simplified to how few faces, by which backend, and the error until it breaks."""
+    cases, errors = _simplified(results), results.rows(STAGE, metric="error")
+    backends, damages = (list(dict.fromkeys(cases[column])) for column in ("method", "perturbation"))
+    height = 0.235 * len(damages)
+    drawing, grid = plt.subplots(
+        2, len(backends) + 1, figsize=(5.2 * len(backends) + 4.6, height + 3.4), squeeze=False,
+        gridspec_kw={"height_ratios": [height, 1.8], "hspace": 0.16, "wspace": 0.34},
+    )  # fmt: skip
+    for backend, (upper, lower) in zip(backends, grid.T, strict=False):
+        mine = cases.loc[cases["method"] == backend]
+        plain = mine.loc[(mine["kept"] == "none") & mine["soft"].isna()]
+        _squares(upper, plain, "perturbation", damages, [*BUDGETS, SMALLEST])
+        upper.set_title(label(backend))
+        kept = mine.loc[(mine["kept"] != "none") & (mine["perturbation"] == "sound")]
+        _squares(lower, kept, "kept", list(KEPT)[1:], [*KEPT_BUDGETS, SMALLEST])
+        lower.set(ylabel="vertices kept,\nsound object", xlabel="faces asked for")
+    curves, legend = grid[:, -1]
+    styles = dict(zip(backends, STYLES, strict=False))
+    _curves(curves, errors.loc[(errors["kept"] == "none") & errors["soft"].isna()], styles)
+    legend.set_axis_off()
+    handles = [Patch(color=COLOURS[name], label=f"{name} {LETTERS[name]}") for name in OUTCOMES]
+    lines = [Line2D([], [], color=INK, ls=style, label=label(name)) for name, style in styles.items()]
+    legend.add_artist(legend.legend(handles=[*handles, *lines], loc="upper left", fontsize=8))
+    legend.legend(*curves.get_legend_handles_labels(), loc="upper right", fontsize=8)
+    words = {"damages": len(damages), "backends": ", ".join(map(label, backends))}
+    return Figure(drawing, words | {"objects": ", ".join(dict.fromkeys(cases["item"]))})
+
+
+def _squares(axes: Axes, cases: pd.DataFrame, column: str, lines: Sequence[str], budgets: Sequence[str]) -> None:
+    """Coloured squares, a row a damage or kept set, a column a budget; the worst over the objects."""
+    rank = cases.assign(rank=cases["outcome"].map(OUTCOMES.index))
+    worst = rank.pivot_table(index=column, columns="budget", values="rank", aggfunc="max")
+    worst = worst.reindex(list(lines), columns=list(budgets))
+    axes.imshow(worst, cmap=ListedColormap([COLOURS[name] for name in OUTCOMES]), vmin=0, vmax=3, aspect="auto")
+    for (down, across), value in np.ndenumerate(worst.to_numpy()):
+        if value == value:
+            name = OUTCOMES[int(value)]
+            paint = "white" if name == "crash" else INK
+            axes.text(across, down, LETTERS[name], ha="center", va="center", fontsize=9, color=paint)
+    words = [f"{int(budget):,}" if budget.isdigit() else budget for budget in budgets]
+    axes.set_xticks(range(len(budgets)), words, fontsize=8, rotation=30)
+    axes.set_yticks(range(len(lines)), [label(line) for line in lines], fontsize=8)
+    axes.set_xticks(np.arange(len(budgets) - 1) + 0.5, minor=True)
+    axes.set_yticks(np.arange(len(lines) - 1) + 0.5, minor=True)
+    axes.grid(which="minor", color="white", lw=1)
+    axes.tick_params(which="both", length=0)
+    axes.spines[:].set_visible(False)
+
+
+def _curves(axes: Axes, errors: pd.DataFrame, styles: Mapping[str, str]) -> None:
+    """Mean error over the objects against the faces, a colour a damage and a style a backend."""
+    for damage, colour in zip(SHOWN, CYCLE, strict=True):
+        for backend, style in styles.items():
+            here = errors.loc[(errors["perturbation"] == damage) & (errors["method"] == backend)]
+            here = here.loc[here["budget"] != SMALLEST]
+            here = here.assign(percent=100 * np.maximum(here["value"], LEAST_ERROR))
+            means = here.groupby("budget").agg({"severity": "mean", "percent": "mean"}).sort_values("severity")
+            axes.plot(means["severity"], means["percent"], ls=style, marker=".", color=colour, lw=1.2)
+            bad = here.loc[here["outcome"] == "ruined"]
+            axes.plot(bad["severity"], bad["percent"], "x", color=colour, ms=8, mew=1.6)
+        axes.plot([], [], color=colour, label=label(damage))
+    axes.set(xscale="log", yscale="log", xlabel="faces asked for", ylabel="mean error, % of the diagonal")
+    axes.set_title("error until it breaks")
+    axes.grid(True)

@@ -1,0 +1,150 @@
+"""Maps of one view of an object, beside its picture: T figures 3.3, 3.10 and 3.13."""
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from stages.conspicuity import CHANNELS
+from stages.kit import Mesh, Viewpoint
+from stages.report.drawing import VIEWPOINT, picture
+from stages.report.items import Figure
+from stages.report.results import NotRun, Results
+from stages.report.style import MAP, label, plt
+from stages.salient_points import COMBINATIONS, fuse
+from stages.weights.ground_truth import gts_map, visible_points
+from stages.weights.svm_pixels import SALIENT_LEVEL
+
+COLOUR = ("color", "dkl")  # the thesis's RGB and DKL features
+KEPT = 0.3  # of the object's pixels: the thesis retains 30 % of the highest values (T3.1.1)
+COUNT, FADED = 4, 0.78
+TITLES = ["", "without colour", "regions", "with colour", "regions"]
+FAINT = 0.02  # conspicuity below which a map shows nothing
+MACHINES = ("svm_object", "svm")  # the thesis's, one for the object itself; and one that has not seen it
+SALIENT, OBJECT, BACKGROUND = 0.1, 0.85, 1.0  # greys of the binary picture
+MANY = 0.6  # of the most points that a view shows: such views are good enough to choose from
+MARGIN = 4  # pixels kept round the object
+RED = "#D81B1B"
+
+
+def figure_3_3(results: Results) -> Figure:
+    """Saliency and regions of interest, without and with the colour channels."""
+    names = results.choose(results.settings.figure_objects, COUNT, stage="conspicuity")
+    figure, grid = plt.subplots(len(names), 5, figsize=(9.2, 1.9 * len(names)), squeeze=False)
+    shares = [f"{name} {100 * _regions(results, name, row):.0f} %" for name, row in zip(names, grid, strict=True)]
+    for axes, title in zip(grid[0], TITLES, strict=True):
+        axes.set_title(title, fontsize=10, fontweight="normal", loc="center")
+    for axes in grid.flat:
+        axes.set(xticks=[], yticks=[])
+        axes.spines[:].set_visible(False)
+    figure.subplots_adjust(wspace=0.04, hspace=0.04)
+    return Figure(figure, {"objects": ", ".join(names), "colour": " and ".join(COLOUR), "shares": ", ".join(shares)})
+
+
+def _regions(results: Results, name: str, row: Sequence[Axes]) -> float:
+    """Draws one object; returns the share of the regions without colour that stay regions with it."""
+    maps, masks, viewpoints, channels = results.maps(name, COMBINATIONS["VisAttAll"])
+    view = _nearest(viewpoints, range(len(viewpoints)))
+    mask, part = masks[view], _window(masks[view], square=True)
+    render = _render(results.mesh(name), viewpoints[view], mask)[part]
+    row[0].imshow(render)
+    row[0].set_ylabel(name)
+    regions = []
+    for left, right, left_out in ((row[1], row[2], COLOUR), (row[3], row[4], ())):
+        used = zip(channels, maps[view], strict=True)
+        saliency = fuse({channel: values for channel, values in used if channel not in left_out})
+        region = mask & (saliency > np.quantile(saliency[mask], 1 - KEPT))
+        left.imshow(np.where(mask, saliency, np.nan)[part], cmap=MAP, vmin=0, vmax=saliency[mask].max())
+        right.imshow(np.where(region[part][..., None], render, FADED + (1 - FADED) * render))
+        right.contour(region[part], [0.5], colors=[RED], linewidths=0.9)
+        regions.append(region)
+    return (regions[0] & regions[1]).sum() / max(regions[0].sum(), 1)
+
+
+def figure_3_10(results: Results) -> Figure:
+    """The nine conspicuity maps of one object beside its render, in the view in which most channels answer."""
+    name = results.choose(results.settings.figure_objects, 1, stage="conspicuity")[0]
+    maps, masks, viewpoints, stored = results.maps(name)
+    channels = [channel for channel in CHANNELS if channel in stored]
+    answers = (maps.max(axis=(2, 3)) > FAINT).sum(axis=1)
+    view = _nearest(viewpoints, np.flatnonzero(answers == answers.max()))
+    viewpoint, mask, part = viewpoints[view], masks[view], _window(masks[view])
+    figure, grid = plt.subplots(2, 5, figsize=(9.6, 4.6))
+    grid[0, 0].imshow(_render(results.mesh(name), viewpoint, mask)[part])
+    grid[0, 0].set_title(name, fontsize=10, loc="center")
+    for axes, channel in zip(grid.flat[1:], channels, strict=False):
+        values = maps[view, stored.index(channel)]
+        top = float(values[mask].max())
+        axes.imshow(np.where(mask, values / (top or 1.0), np.nan)[part], cmap=MAP, vmin=0, vmax=1)
+        axes.set_title(f"{channel}\nup to {top:.2f}", fontsize=9, fontweight="normal", loc="center")
+    for axes in grid.flat:
+        axes.set_axis_off()
+    figure.subplots_adjust(wspace=0.04, hspace=0.12)
+    bar = figure.colorbar(grid[0, 1].images[0], ax=grid, shrink=0.75, pad=0.02, aspect=30)
+    bar.set_label("conspicuity, over the map's largest")
+    where = {"azimuth": viewpoint.azimuth, "elevation": viewpoint.elevation}
+    return Figure(figure, {"name": name, "channels": ", ".join(channels), **where})
+
+
+def figure_3_13(results: Results) -> Figure:
+    """The binarised ground truth of a view, and what the SVM makes of its nine maps."""
+    name = results.with_ground_truth(results.settings.figure_objects, 1)[0]
+    mesh, ground_truth = results.mesh(name), results.ground_truth(name)
+    maps, masks, viewpoints, _ = results.maps(name, list(ground_truth["channels"]))
+    svms = results.learned(name, mesh).svms
+    machines = [machine for machine in MACHINES if machine in svms]
+    if not machines:
+        raise NotRun(f"no SVM was trained for {name}", "weights", runnable=False)
+    seen = [visible_points(mesh, ground_truth["points"], viewpoint, masks.shape[1:])[:2] for viewpoint in viewpoints]
+    counts = np.array([len(rows) for rows, _ in seen])
+    view = _nearest(viewpoints, np.flatnonzero(counts >= MANY * counts.max()))
+    mask, part = masks[view], _window(masks[view])
+    truth = gts_map(*seen[view], mask) > SALIENT_LEVEL
+    figure, grid = plt.subplots(1, 2 + len(machines), figsize=(2.7 * (2 + len(machines)), 2.7))
+    grid[0].imshow(_render(mesh, viewpoints[view], mask)[part])
+    down, across = (places - kept.start for places, kept in zip(seen[view], part, strict=True))
+    grid[0].plot(across, down, "o", color=RED, ms=4.2, mec="white", mew=0.8)
+    binary = np.where(mask, np.where(truth, SALIENT, OBJECT), BACKGROUND)
+    grid[1].imshow(binary[part], cmap="gray", vmin=0, vmax=1)
+    right = []
+    for axes, machine in zip(grid[2:], machines, strict=True):
+        answer = np.full(mask.shape, np.nan)
+        answer[mask] = next(iter(svms[machine].values())).predict(maps[view][:, mask].T)
+        axes.imshow(answer[part], cmap=MAP, vmin=0, vmax=1)
+        axes.contour(np.nan_to_num(answer)[part], [0.5], colors=[RED], linewidths=0.9)
+        told = (answer > 0.5) == truth
+        share = np.mean([told[mask & (truth == kind)].mean() for kind in (True, False)])
+        right.append(f"{label(machine)} {100 * share:.0f} %")
+    titles = [f"{name}, {len(down)} points", "binarised ground truth", *map(label, machines)]
+    for axes, title in zip(grid, titles, strict=True):
+        axes.set_title(title, fontsize=10, fontweight="normal", loc="center")
+        axes.set_axis_off()
+    bar = figure.colorbar(grid[2].images[0], ax=grid, shrink=0.8, pad=0.015, aspect=18)
+    bar.set_label("the SVM's answer")
+    return Figure(figure, {"name": name, "right": "; ".join(right)})
+
+
+def _nearest(viewpoints: Sequence[Viewpoint], among: Iterable[int]) -> int:
+    """Of the view numbers `among` the one nearest to the other figures' viewpoint."""
+    return max(among, key=lambda view: viewpoints[view].axes[2] @ VIEWPOINT.axes[2])
+
+
+def _render(mesh: Mesh, viewpoint: Viewpoint, mask: np.ndarray) -> np.ndarray:
+    """(h, w, 3) f8 in 0..1: the object as a map with the mask (h, w) shows it, on white."""
+    height, width = mask.shape
+    side = (width - height) // 2
+    render = picture(mesh, viewpoint=viewpoint, rows=height)
+    return np.pad(render, ((0, 0), (side, width - height - side), (0, 0)), constant_values=1.0)
+
+
+def _window(mask: np.ndarray, square: bool = False) -> tuple[slice, slice]:
+    """The rows and columns that hold the object (mask (h, w) boolean), square where the map is large enough."""
+    places = [np.flatnonzero(mask.any(axis=axis)) for axis in (1, 0)]
+    parts = [slice(max(ids[0] - MARGIN, 0), ids[-1] + MARGIN + 1) for ids in places]
+    if square:
+        side = max(part.stop - part.start for part in parts)
+        limits = [max(length - side, 0) for length in mask.shape]
+        middles = [part.start + part.stop for part in parts]
+        starts = [np.clip((middle - side) // 2, 0, limit) for middle, limit in zip(middles, limits, strict=True)]
+        parts = [slice(start, start + side) for start in starts]
+    return parts[0], parts[1]
