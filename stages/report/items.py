@@ -13,7 +13,7 @@ from .markdown import as_text, markdown_table
 from .style import save
 
 
-@dataclass
+@dataclass(eq=False)
 class Table:
     """frame: tidy numbers, for the CSV; shown: what a person reads, the same or pivoted; words: for its prose.
 
@@ -39,7 +39,7 @@ class Table:
         write_text(self.paths[1], f"# {self.title}\n\n{markdown_table(self.shown)}\n\n{notes}")
 
 
-@dataclass
+@dataclass(eq=False)
 class Figure:
     """drawing: as matplotlib has it; words: for its prose; frame: the numbers of a chart, for a CSV beside it.
 

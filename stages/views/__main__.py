@@ -32,7 +32,7 @@ def process(name: str, folder: Path, data: Path, settings: Params, renderer: str
         write_view(folder / name / f"{viewpoint.name}.npz", view)
         row = {"item": name, "method": renderer, "viewpoint": viewpoint.name, "metric": "coverage"}
         rows.append(row | {"value": float(view.mask.mean()), "seconds": watch.seconds})
-    return rows + seen_rows(name, mesh)
+    return rows + (seen_rows(name, mesh) if settings.compare_sets else [])
 
 
 def seen_rows(name: str, mesh: Mesh) -> Rows:
@@ -65,7 +65,7 @@ def run(workspace: Workspace) -> None:
         fewest = [row["value"] for row in rows if row["metric"] == "fewest_views"]
         coverage = float(np.mean(shown)) if shown else 0.0
         metrics = {"views": len(shown), "coverage": round(coverage, 6)}
-        stage.metrics(metrics | {"fewest_views": round(float(np.mean(fewest or [0])), 6)})
+        stage.metrics(metrics | ({"fewest_views": round(float(np.mean(fewest)), 6)} if fewest else {}))
     count = f"{len(stage.objects)} objects, {len(shown)} views"
     print(f"views: {count} by {renderer}, {coverage:.1%} of the pixels on objects")
 

@@ -13,3 +13,4 @@ class Params:
     size: list[int]  # rows, columns of an image; the object spans 858.7 of 900 rows
     renderer: str  # raycast (everywhere the same bytes), pyrender (needs EGL) or auto
     background: str  # black (as in the thesis), grey or white
+    compare_sets: bool  # also measure how much of the surface the views see, and the fewest that see nearly all

@@ -11,7 +11,8 @@ from stages.kit.rows import read_rows
 from stages.views import FOUR, read_view
 from stages.views import __main__ as stage
 
-SECTION = {"viewpoints": "four", "size": [90, 120], "renderer": "raycast", "background": "black"}
+SECTION = {"viewpoints": "four", "size": [90, 120], "renderer": "raycast", "background": "black",
+           "compare_sets": True}  # fmt: skip
 
 
 @pytest.fixture
@@ -72,3 +73,9 @@ def test_mesh_that_leaves_the_frame_is_named(workspace, shapes, make_workspace):
     with pytest.raises(ValueError, match="huge: .*normalise"):
         stage.run(make_workspace({"views": SECTION}, parallel={"backend": "loky", "workers": 2}))
     assert not (workspace.data / "views").exists()
+
+
+def test_sets_of_views_need_not_be_compared(workspace, make_workspace):
+    stage.run(make_workspace({"views": SECTION | {"compare_sets": False}}))
+    assert set(read_rows(workspace.measurements / "views.csv.gz").metric) == {"coverage"}
+    assert "fewest_views" not in read_json(workspace.metrics / "views.json")
