@@ -36,6 +36,7 @@ def build_page(
     items = [item for kind in ("tables", "tradeoff", "figures") for item in parts[kind].items]
     first = [item for item in items if item.name in parts["first"]]
     topics = [Topic(module, parts, [item for item in items if item not in first]) for module in modules]
+    topics = [topic for topic in topics if topic.own or topic.others or len(topic.claims)]
     words = {
         "style": part("page.css"),
         "script": part("viewer.js"),
@@ -62,12 +63,13 @@ class Topic:
         mine = [item for item in items if item.topic == self.name]
         self.own = [item for item in mine if not item.sets or set(item.sets) & set(parts["sets"])]
         self.others = [item for item in mine if item not in self.own]
+        self.findings = "" if parts["own"] else findings(module)  # which are about other data sets
 
 
 def topic_html(topic: Topic, page: Path) -> str:
     """A section: what the project found, the claims, and the items; those of other sets can be unfolded."""
     lead = (topic.module.__doc__ or "").strip()
-    found = "".join(f"<p>{html.escape(text)}</p>" for text in findings(topic.module).strip().split("\n\n"))
+    found = "".join(f"<p>{html.escape(text)}</p>" for text in topic.findings.strip().split("\n\n") if text)
     claims, others = "", ""
     if len(topic.claims):
         said = f"{len(topic.claims)} claims: {counts_html(topic.claims)}"

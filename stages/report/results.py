@@ -64,7 +64,10 @@ class Results:
         return self.workspace.sets
 
     def datasets(self, stage: str) -> list[str]:
-        """The sets that have rows of a stage: those that are switched on first, then the others by the alphabet."""
+        """The sets that have rows of a stage: those that are switched on first, then the others by the alphabet.
+
+        A report on a folder of one's own reads the sets that are switched on alone.
+        """
         found = {path.parent.name for path in (self.reports / "measurements").glob(f"*/{stage}{SUFFIX}")}
         return self.in_order(found)
 
@@ -122,6 +125,8 @@ class Results:
         if dataset is None and not known:
             raise NotRun(f"no measurements of {stage}", stage)
         dataset = dataset or known[0]
+        if self.own_meshes and dataset not in self.sets:
+            raise NotRun(f"{dataset} is not switched on", stage, runnable=False)
         self.read.add(dataset)
         path = self.reports / "measurements" / dataset / f"{stage}{SUFFIX}"
         return self._table(path, f"no measurements of {stage} on {dataset}", stage, dataset in self.sets)
@@ -135,6 +140,8 @@ class Results:
 
     def bench(self, name: str) -> pd.DataFrame:
         """Rows of reports/bench/NAME.csv: what `make bench` measured; times are ratios to a named peer."""
+        if self.own_meshes:
+            raise NotRun("benchmarks are not about a folder of one's own", "bench", runnable=False)
         path = self.reports / "bench" / f"{name}.csv"
         return self._table(path, f"no bench/{name}.csv: `make bench` writes it", "bench", runnable=False)
 
@@ -271,7 +278,8 @@ class Results:
 
     def in_order(self, names: set[str]) -> list[str]:
         """Names of data sets: those that are switched on first, then the others by the alphabet."""
-        return [name for name in self.sets if name in names] + sorted(names - set(self.sets))
+        others = set() if self.own_meshes else names - set(self.sets)
+        return [name for name in self.sets if name in names] + sorted(others)
 
     def _path(self, stage: str, name: str, dataset: str | None) -> Path:
         path = self.folder(stage, dataset) / f"{name}.npz"

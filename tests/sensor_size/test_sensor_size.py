@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import trimesh
+from sklearn.exceptions import ConvergenceWarning
 
 from stages.kit import Mesh
 from stages.kit.files import write_arrays, write_mesh, write_table
@@ -154,3 +155,11 @@ def test_the_stage_tests_each_object_of_the_classes(make_workspace):
         zip(table["object"], table["class"], strict=True)
     )
     assert (workspace.data / "sensor_size/smallest.csv").exists() and len(rows) == 1 + 4 + 4
+
+
+def test_the_svm_stops_where_its_steps_run_in_a_circle(monkeypatch):
+    monkeypatch.setattr("stages.sensor_size.classifiers.ITERATIONS", 3)
+    random = np.random.default_rng(0)
+    with pytest.warns(ConvergenceWarning):
+        model = classifier("svm").fit(random.normal(size=(60, 4)), random.integers(3, size=60))
+    assert model.n_iter_.max() == 3
