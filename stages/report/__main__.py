@@ -22,6 +22,7 @@ from .topics import CLAIMS, KINDS, TOPICS, build_all
 from .verdict import WORDS, counted, judged
 from .viewer import pack_viewer
 
+OWN_NOTE = "this page is about a folder alone; `python -m stages.compose` switches the project's own data sets on"
 CLAIMS_NOTE = """Each effect is a paired difference, positive on the side that the thesis claims, with its 95 %
 interval. *supported*: the interval lies wholly on the claimed side; *contradicted*: wholly on the other; *open*: it
 covers zero, is unknown (equal differences show no spread), or nothing was measured. Over objects it is a bootstrap
@@ -46,7 +47,7 @@ def write_report(results: Results) -> None:
     claims, differences = judged(CLAIMS, results)
     own = results.own_meshes
     if own:  # what would need other data sets is left out
-        claims, not_run = claims[claims["pairs"] > 0], {}
+        claims, not_run = claims[claims["pairs"] > 0], {"what needs other data sets": OWN_NOTE}
     write_claims(claims, differences, out)
     meshes = packed_or_none(results, not_run)
     parts = {**built, "claims": claims, "not_run": not_run, "sets": results.sets, "own": own}

@@ -37,6 +37,9 @@ def build_page(
     first = [item for item in items if item.name in parts["first"]]
     topics = [Topic(module, parts, [item for item in items if item not in first]) for module in modules]
     topics = [topic for topic in topics if topic.own or topic.others or len(topic.claims)]
+    claims = Template(part("claims.html")).substitute(counted=html.escape(counted(parts["claims"])))
+    claims = claims if len(parts["claims"]) else ""
+    sections = [*(["claims"] if claims else []), *(topic.name for topic in topics)]
     words = {
         "style": part("page.css"),
         "script": part("viewer.js"),
@@ -45,9 +48,8 @@ def build_page(
         "dataset": html.escape(dataset),
         "heading": "Your meshes" if parts["own"] else "The pipeline on one object",
         "first": "".join(figure_html(item, path) for item in first),
-        "contents": " ".join(f'<a href="#{topic.name}">{topic.name.capitalize()}</a>' for topic in topics),
-        "counts": counts_html(parts["claims"]),
-        "counted": html.escape(counted(parts["claims"])),
+        "contents": " ".join(f'<a href="#{name}">{name.capitalize()}</a>' for name in sections),
+        "claims": claims,
         "topics": "".join(topic_html(topic, path) for topic in topics),
         "not_run": not_run_html(parts["not_run"]),
     }
@@ -147,7 +149,7 @@ def small_picture(path: Path) -> str:
     with Image.open(path) as image:
         whole = image.convert("RGB")
     shown = whole.copy()
-    shown.thumbnail((WIDEST, WIDEST), Image.Resampling.LANCZOS)
+    shown.thumbnail((WIDEST, max(WIDEST, whole.height)), Image.Resampling.LANCZOS)
     flat = whole.quantize(32, dither=Image.Dither.NONE).convert("RGB")
     packed = [_webp(shown, quality=55), _webp(flat, lossless=True, quality=60)]
     return base64.b64encode(min(packed, key=len)).decode("ascii")

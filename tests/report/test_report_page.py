@@ -13,6 +13,7 @@ from stages.kit.files import write_arrays, write_mesh
 from stages.report.__main__ import dataset_line, write_report
 from stages.report.drawing import VIEWPOINT, picture, visible
 from stages.report.packing import SHADES, STEPS, Store, ordered
+from stages.report.results import NotRun
 from stages.report.viewer import pack_viewer
 
 
@@ -177,3 +178,29 @@ def test_method_that_was_not_run_is_no_crash(root, small):
 def test_the_head_of_the_page_names_the_data_set_of_the_meshes(root, small):
     write_mesh(root / "data/furniture/meshes/chair.npz", small.ball())
     assert dataset_line(small.results(root)).endswith("2 objects of the data set test")  # the first that is switched on
+
+
+def test_a_folder_of_ones_own_has_a_page_about_it_alone(root, small):
+    text = (root / "params.yaml").read_text() + "test: {meshes: {source: folder}}\n"
+    (root / "params.yaml").write_text(text)
+    small.write(root, "lod", small.lod(), "elsewhere")
+    results = small.results(root)
+    assert results.own_meshes and results.datasets("lod") == ["test"]
+    with pytest.raises(NotRun, match="not switched on"):
+        results.rows("lod", "elsewhere")
+    write_report(results)
+    page = (root / "reports/index.html").read_text()
+    assert "Your meshes" in page and "this page is about a folder alone" in page
+    assert pd.read_csv(root / "reports/claims.csv")["pairs"].gt(0).all()
+
+
+def test_what_was_measured_on_sets_that_are_off_is_folded(root, small):
+    for path in (root / "reports/measurements").glob("*/lod.csv.gz"):
+        path.unlink()
+    small.write(root, "lod", small.lod(), "elsewhere")
+    write_report(small.results(root))
+    page = (root / "reports/index.html").read_text()
+    folded = re.findall(
+        r"<summary>\d+ more, measured on data sets that are not part of this run: (.*?)</summary>", page
+    )
+    assert "elsewhere" in folded

@@ -112,5 +112,13 @@ def touch_one_mesh(results: Results) -> Figure:
         draw(part, mesh, mesh.vertices[points], axes, normalise(raw, PITCH), np.ptp(raw, axis=(1, 2)), PITCH)
         if own:
             part.suptitle(name, fontweight="bold", y=0.995)
-    words = {"name": ", ".join(names), "count": TOUCHES, "rows": CELLS[0], "columns": CELLS[1], "pitch": PITCH}
+    title = "Where to touch, and what is felt there" if own else "Touching one mesh"
+    words = {
+        "title": title,
+        "name": ", ".join(names),
+        "count": TOUCHES,
+        "rows": CELLS[0],
+        "columns": CELLS[1],
+        "pitch": PITCH,
+    }
     return Figure(figure, words, dpi=110)
