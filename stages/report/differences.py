@@ -43,8 +43,8 @@ def difference(results: Results, claim: Claim) -> pd.Series:
 @statistic("beyond_chance")
 def beyond_chance(results: Results, claim: Claim) -> pd.Series:
     """First side minus second, both scaled so that guessing is 0 and certainty 1; their groups tell the chance."""
-    scores = []
-    for one, other in ((claim.first, claim.second), (claim.second, claim.first)):
+    scores, sides = [], (claim.first, _second(claim))
+    for one, other in (sides, sides[::-1]):
         guess = 1 / results.classes(str({**claim.where, **one}["group"]), claim.dataset)
         scores.append((side(results, claim, one, other) - guess) / (1 - guess))
     return scores[0] - scores[1]
@@ -83,8 +83,7 @@ def _difference(results: Results, claim: Claim, extra: Side) -> pd.Series:
     if isinstance(second, int | float):
         found = side(results, claim, claim.first, None, extra) - second
     else:
-        if second is None:
-            raise ValueError(f"claim {claim.key} has no second side")
+        second = _second(claim)
         pooled = replace(claim, over=(), within=())  # all rows of a side, also those about no unit
         first, other = (
             side(results, pooled if claim.mean_of == name else claim, own, other, extra)
@@ -103,6 +102,12 @@ def _difference(results: Results, claim: Claim, extra: Side) -> pd.Series:
                 middle = (joined["first"] + joined["second"]) / 2
                 found /= middle.where(middle > 0, 1.0)  # two errors of zero are equal
     return found.groupby(level=list(range(len(claim.over))), sort=False).mean() if claim.within else found
+
+
+def _second(claim: Claim) -> Side:
+    if claim.second is None or isinstance(claim.second, int | float):
+        raise ValueError(f"claim {claim.key} has no second side")
+    return claim.second
 
 
 def _picked(rows: pd.DataFrame, claim: Claim, column: str, pick: Pick, other: Side | float | None) -> object:

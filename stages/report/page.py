@@ -91,7 +91,7 @@ def item_html(item: Table | Figure, page: Path) -> str:
 
 def part(name: str) -> str:
     """A file of the package's page folder."""
-    return resources.files(__package__).joinpath("page", name).read_text(encoding="utf-8")
+    return resources.files(__package__ or "").joinpath("page", name).read_text(encoding="utf-8")
 
 
 def script_json(value: object) -> str:
@@ -103,19 +103,19 @@ def table_html(item: Table) -> str:
     """A section with a table, its notes and its CSV."""
     notes = "".join(f"<li>{html.escape(note)}</li>" for note in item.notes)
     link = f'<p><a href="tables/{item.name}.csv" download>{item.name}.csv</a></p>'
-    body = frame_html(item.shown, item.title)
+    body = frame_html(item.text, item.title)
     return (
         f'<section id="tables-{item.name}"><h3>{html.escape(item.title)}</h3>{body}<ul>{notes}</ul>{link}</section>\n'
     )
 
 
-def frame_html(frame: pd.DataFrame, title: str, classes: Mapping[str, Callable[[str], str]] | None = None) -> str:
+def frame_html(frame: pd.DataFrame, title: str, classes: Mapping[str, Callable[[str], str]] = {}) -> str:
     """A table that scrolls sideways in its own box, reachable by the keyboard; classes: dict column -> function."""
     right = {column: ' class="number"' for column in frame.columns if is_numeric(frame[column])}
     head = "".join(f'<th scope="col"{right.get(c, "")}>{html.escape(str(c))}</th>' for c in frame.columns)
 
-    def cell(column: str, text: object) -> str:
-        kind = classes[column](text) if column in (classes or {}) else right.get(column, "")
+    def cell(column: Any, text: Any) -> str:
+        kind = classes[column](text) if column in classes else right.get(column, "")
         return f"<td{kind}>{html.escape(str(text))}</td>"
 
     rows = ("".join(cell(*item) for item in row.items()) for row in frame.to_dict("records"))
