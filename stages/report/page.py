@@ -36,11 +36,12 @@ def build_page(
     items = [item for kind in ("tables", "tradeoff", "figures") for item in parts[kind].items]
     first = [item for item in items if item.name in parts["first"]]
     topics = [Topic(module, parts, [item for item in items if item not in first]) for module in modules]
+    without = html.escape(parts["not_run"].get("viewer", ""))
     words = {
         "style": part("page.css"),
         "script": part("viewer.js"),
         "meshes": script_json(meshes) if meshes else "null",
-        "viewer": part("viewer.html") if meshes else no_meshes(parts["not_run"].get("viewer", "")),
+        "viewer": part("viewer.html") if meshes else f"<p>not run: {without}</p>",
         "dataset": html.escape(dataset),
         "heading": "Your meshes" if parts["own"] else "The pipeline on one object",
         "first": "".join(figure_html(item, path) for item in first),
@@ -159,9 +160,7 @@ def _webp(image: Image.Image, **how: Any) -> bytes:
 
 def claims_html(claims: pd.DataFrame) -> str:
     """The claims as a table; the word is coloured and written, never coloured alone."""
-    shown = claims_shown(claims)
-    word = {"verdict": lambda cell: f' class="word {WORDS[cell]}"'}
-    return frame_html(shown, "Claims", word)
+    return frame_html(claims_shown(claims), "Claims", {"verdict": lambda cell: f' class="word {WORDS[cell]}"'})
 
 
 def claims_shown(claims: pd.DataFrame) -> pd.DataFrame:
@@ -194,8 +193,3 @@ def not_run_html(not_run: Mapping[str, str]) -> str:
         return "<p>Everything that this report knows was measured.</p>"
     lines = "".join(f"<li><code>{html.escape(k)}</code>: {html.escape(v)}</li>" for k, v in not_run.items())
     return f"<ul>{lines}</ul>"
-
-
-def no_meshes(reason: str) -> str:
-    """What stands in place of the viewer."""
-    return f"<p>not run: {html.escape(reason)}</p>"

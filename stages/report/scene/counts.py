@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
+from matplotlib.ticker import FixedLocator, NullLocator
 
 from stages.report.grid import records
 from stages.report.items import Figure, Table
@@ -106,7 +106,7 @@ def _failures(axes: Axes, rows: pd.DataFrame) -> None:
     axes.axhline(1, color=INK, lw=0.8, ls=":")
     axes.set_yscale("log")
     axes.yaxis.set_major_locator(FixedLocator(FACTORS))
-    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
     axes.yaxis.set_minor_locator(NullLocator())
     axes.set_xticks(range(len(shown)), [PLACES[condition] for condition in shown], fontsize=8.5)
     axes.tick_params(axis="x", length=0)
