@@ -73,6 +73,13 @@ class Claim:
     note: str = ""
 
     @property
+    def other(self) -> Side:
+        """The second side; ValueError where that is a number, or none."""
+        if self.second is None or isinstance(self.second, int | float):
+            raise ValueError(f"claim {self.key} has no second side")
+        return self.second
+
+    @property
     def share(self) -> float:
         """Test over training share of the pairs, for the interval."""
         if self.shared is not None:

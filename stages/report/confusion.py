@@ -1,7 +1,5 @@
 """Confusion matrices, in per cent of the true class."""
 
-from collections.abc import Sequence
-
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -9,7 +7,7 @@ from matplotlib.axes import Axes
 DARK = 55  # per cent from which a number is written in white
 
 
-def draw_matrix(axes: Axes, rows: pd.DataFrame, classes: Sequence[str]) -> None:
+def draw_matrix(axes: Axes, rows: pd.DataFrame, classes: list[str]) -> None:
     """Draws one matrix in per cent of its rows. rows: a frame of true and predicted classes with their counts."""
     counts = rows.pivot_table(index="true", columns="predicted", values="count", aggfunc="sum", fill_value=0)
     counts = counts.reindex(index=classes, columns=classes, fill_value=0).to_numpy(dtype=float)

@@ -43,8 +43,8 @@ def difference(results: Results, claim: Claim) -> pd.Series:
 @statistic("beyond_chance")
 def beyond_chance(results: Results, claim: Claim) -> pd.Series:
     """First side minus second, both scaled so that guessing is 0 and certainty 1; their groups tell the chance."""
-    scores = []
-    for one, other in ((claim.first, claim.second), (claim.second, claim.first)):
+    scores, sides = [], (claim.first, claim.other)
+    for one, other in (sides, sides[::-1]):
         guess = 1 / results.classes(str({**claim.where, **one}["group"]), claim.dataset)
         scores.append((side(results, claim, one, other) - guess) / (1 - guess))
     return scores[0] - scores[1]
@@ -56,7 +56,8 @@ def side(results: Results, claim: Claim, own: Side, other: Side | float | None, 
     other: the other side, whose values a Pick leaves out. extra: further columns that both sides have in common.
     """
     where = {**claim.where, **(extra or {}), **own}
-    rows = results.measured(claim.stage, claim.dataset, **{k: v for k, v in where.items() if _plain(v)})
+    plain = {k: v for k, v in where.items() if not isinstance(v, Pick) and not _pattern(v)}
+    rows = results.measured(claim.stage, claim.dataset, **plain)
     for column, wanted in where.items():
         if _pattern(wanted):
             rows = rows[[fnmatch(str(name), str(wanted)) for name in rows[column]]]
@@ -67,11 +68,10 @@ def side(results: Results, claim: Claim, own: Side, other: Side | float | None, 
     for column, wanted in where.items():
         for name in wanted if isinstance(wanted, tuple) else ():
             _not_empty(rows[rows[column] == name], claim, f"{column} {name}")
-    several = [column for column, wanted in where.items() if isinstance(wanted, tuple) or _pattern(wanted)]
     keys = [*claim.over, *claim.within]
     if not keys:
         return rows["value"]
-    several = [column for column in several if column not in keys]
+    several = [k for k, v in where.items() if k not in keys and (isinstance(v, tuple) or _pattern(v))]
     if not several:
         return rows.groupby(keys, sort=False)["value"].mean()
     table = rows.pivot_table(index=keys, columns=several, values="value", sort=False)
@@ -79,16 +79,13 @@ def side(results: Results, claim: Claim, own: Side, other: Side | float | None, 
 
 
 def _difference(results: Results, claim: Claim, extra: Side) -> pd.Series:
-    second = claim.second
-    if isinstance(second, int | float):
-        found = side(results, claim, claim.first, None, extra) - second
+    if isinstance(claim.second, int | float):
+        found = side(results, claim, claim.first, None, extra) - claim.second
     else:
-        if second is None:
-            raise ValueError(f"claim {claim.key} has no second side")
         pooled = replace(claim, over=(), within=())  # all rows of a side, also those about no unit
         first, other = (
             side(results, pooled if claim.mean_of == name else claim, own, other, extra)
-            for name, own, other in (("first", claim.first, second), ("second", second, claim.first))
+            for name, own, other in (("first", claim.first, claim.other), ("second", claim.other, claim.first))
         )
         if claim.mean_of:
             found = first.mean() - other if claim.mean_of == "first" else first - other.mean()
@@ -96,7 +93,7 @@ def _difference(results: Results, claim: Claim, extra: Side) -> pd.Series:
             sides = {"first": first, "second": other}
             joined = pd.concat(sides, axis=1, join="inner").dropna()
             if joined.empty:
-                names = " and ".join(" ".join(map(_said, one.values())) for one in (claim.first, second))
+                names = " and ".join(" ".join(map(_said, one.values())) for one in (claim.first, claim.other))
                 raise NotRun(f"no pairs of {names}", claim.stage, runnable=False)
             found = joined["first"] - joined["second"]
             if claim.relative:
@@ -119,10 +116,6 @@ def _picked(rows: pd.DataFrame, claim: Claim, column: str, pick: Pick, other: Si
 def _not_empty(rows: pd.DataFrame, claim: Claim, what: str) -> None:
     if rows.empty:
         raise NotRun(f"no {what} is among those that {claim.stage} measured", claim.stage, runnable=False)
-
-
-def _plain(value: object) -> bool:
-    return not isinstance(value, Pick) and not _pattern(value)
 
 
 def _pattern(value: object) -> bool:

@@ -35,8 +35,8 @@ def picture(
 ) -> np.ndarray:
     """(rows, rows, 3) f8 in 0..1: the mesh on white. values (n,) in 0..1 colour the vertices; wires draws the edges."""
     size = (rows * smoothing, rows * smoothing)
-    grid = np.mgrid[: size[0], : size[1]].reshape(2, -1)
-    origins, directions = pixel_rays(*grid, viewpoint, size)
+    down, across = np.mgrid[: size[0], : size[1]].reshape(2, -1)
+    origins, directions = pixel_rays(down, across, viewpoint, size)
     hits = RayScene(mesh).cast(origins, directions)
     seen = np.flatnonzero(hits.hit)
     face = hits.face[seen]
@@ -78,12 +78,11 @@ def filled(mesh: Mesh) -> float:
 
 def squared(image: np.ndarray, margin: int = 6) -> tuple[np.ndarray, tuple[int, int]]:
     """(image, (top, left)): the smallest square round the object."""
-    there = (image < 1).any(axis=2)
-    down, across = np.flatnonzero(there.any(axis=1)), np.flatnonzero(there.any(axis=0))
+    down, across = np.nonzero((image < 1).any(axis=2))
     if not len(down):
         return image, (0, 0)
     side = min(max(np.ptp(down), np.ptp(across)) + 2 * margin, len(image))
-    top, left = (int(np.clip((ids[0] + ids[-1] - side) // 2, 0, len(image) - side)) for ids in (down, across))
+    top, left = (int(np.clip((ids.min() + ids.max() - side) // 2, 0, len(image) - side)) for ids in (down, across))
     return image[top : top + side, left : left + side], (top, left)
 
 
@@ -116,7 +115,9 @@ def show(
 
 def colour_bar(figure: Figure, box: Sequence[float], text: str) -> None:
     """A bar of the maps' colours from 0 to 1 in box [left, bottom, width, height] of the figure, and what it is of."""
-    bar = figure.colorbar(ScalarMappable(Normalize(0, 1), MAP), cax=figure.add_axes(box))
+    left, bottom, width, height = box
+    place = figure.add_axes((left, bottom, width, height))
+    bar = figure.colorbar(ScalarMappable(Normalize(0, 1), MAP), cax=place)
     bar.set_label(text, fontsize=9)
     bar.outline.set_edgecolor(GREY)
 

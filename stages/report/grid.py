@@ -1,10 +1,11 @@
 """From rows of measurements to cells of `mean [low, high]`, and from cells to a grid with the thesis's figures."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any, cast
 
 import numpy as np
 import pandas as pd
+from numpy.typing import ArrayLike
 
 from stages.kit.stats import interval
 
@@ -31,7 +32,12 @@ def grouped(frame: pd.DataFrame, by: Sequence[str]) -> Iterator[tuple[tuple[Any,
         yield cast(tuple[Any, ...], key), group
 
 
-def within(values: Sequence[float], shared: float = 0.0, least: float = 0.0, top: float = 1.0) -> tuple:
+def records(frame: pd.DataFrame) -> Iterable[Any]:
+    """The rows of a frame as `itertuples` gives them, of whose values no type is known."""
+    return frame.itertuples()
+
+
+def within(values: ArrayLike, shared: float = 0.0, least: float = 0.0, top: float = 1.0) -> tuple[float, float, float]:
     """(mean, low, high) with the interval cut at what the values can be: rates unless told otherwise."""
     mean, low, high = interval(values, shared)
     return mean, float(np.maximum(low, least)), float(np.minimum(high, top))
@@ -43,8 +49,8 @@ def grid(
     across: str,
     value: str = "accuracy",
     beside: Sequence[str] = ("thesis",),
-    names: Mapping[str, Callable[[object], str]] | None = None,
-    head: Callable[[object], str] = str,
+    names: Mapping[str, Callable[[Any], Any]] = {},
+    head: Callable[[Any], str] = str,
     places: int = 0,
     gap: str | None = "–",
 ) -> pd.DataFrame:
@@ -61,7 +67,7 @@ def grid(
     wide = wide.loc[order if len(down) > 1 else [key[0] for key in order], list(dict.fromkeys(cells[across]))]
     wide = wide.fillna("not run").rename(columns=head).reset_index()
     wide.columns.name = None
-    return wide.assign(**{column: wide[column].map(say) for column, say in (names or {}).items()})
+    return wide.assign(**{column: wide[column].map(say) for column, say in names.items()})
 
 
 def cell_text(

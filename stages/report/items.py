@@ -30,9 +30,14 @@ class Table:
     notes: list[str] = field(default_factory=list)
     paths: list[Path] = field(default_factory=list)
 
+    @property
+    def text(self) -> pd.DataFrame:
+        """What a person reads, as strings."""
+        return as_text(self.frame if self.shown is None else self.shown)
+
     def write(self, folder: Path) -> None:
         """Writes NAME.csv and NAME.md."""
-        self.shown = as_text(self.frame if self.shown is None else self.shown)
+        self.shown = self.text
         self.paths = [folder / f"{self.name}.csv", folder / f"{self.name}.md"]
         write_table(self.paths[0], self.frame)
         notes = "\n".join(f"- {note}" for note in self.notes)

@@ -16,7 +16,8 @@ def number(value: Any, digits: int = 3) -> str:
         return "–"
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
         return str(value)
-    if float(value).is_integer() and abs(value) < 1e7:
+    value = float(value)
+    if value.is_integer() and abs(value) < 1e7:
         return f"{int(value):,}"
     if 0 < abs(value) < 1e-4:
         return f"{value:.{digits - 1}e}"

@@ -1,6 +1,7 @@
 """Names beside the points of a chart, where they cover neither each other nor a point."""
 
 from collections.abc import Iterable, Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -28,8 +29,9 @@ def place_names(
     avoid where they can. All in the data's units. To be called last, when nothing moves the limits of the
     axes any more. A name that finds no free place is left out.
     """
-    axes.figure.draw_without_rendering()  # limits are settled only by drawing
-    scale = axes.figure.dpi / 72
+    figure: Any = axes.figure  # whole, no part of one
+    figure.draw_without_rendering()  # limits are settled only by drawing
+    scale = figure.dpi / 72
     to_pixels = axes.transData.transform
     taken = [_around(spot[None], RADIUS * scale) for spot in to_pixels(points)]
     strokes = [_around(to_pixels(ends), scale) for ends in lines]
@@ -85,7 +87,7 @@ def _beside(spot: np.ndarray, extent: Spot, side: tuple[int, int], gap: float) -
 def _extent(axes: Axes, text: str) -> Spot:
     """(width, height) of a text in pixels."""
     probe = axes.text(0, 0, text, fontsize=SIZE)
-    box = probe.get_window_extent(axes.figure.canvas.get_renderer())
+    box = probe.get_window_extent()
     probe.remove()
     return box.width, box.height
 

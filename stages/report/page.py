@@ -40,11 +40,12 @@ def build_page(
     claims = Template(part("claims.html")).substitute(counted=html.escape(counted(parts["claims"])))
     claims = claims if len(parts["claims"]) else ""
     sections = [*(["claims"] if claims else []), *(topic.name for topic in topics)]
+    without = html.escape(parts["not_run"].get("viewer", ""))
     words = {
         "style": part("page.css"),
         "script": part("viewer.js"),
         "meshes": script_json(meshes) if meshes else "null",
-        "viewer": part("viewer.html") if meshes else no_meshes(parts["not_run"].get("viewer", "")),
+        "viewer": part("viewer.html") if meshes else f"<p>not run: {without}</p>",
         "dataset": html.escape(dataset),
         "heading": "Your meshes" if parts["own"] else "The pipeline on one object",
         "first": "".join(figure_html(item, path) for item in first),
@@ -95,7 +96,7 @@ def item_html(item: Table | Figure, page: Path) -> str:
 
 def part(name: str) -> str:
     """A file of the package's page folder."""
-    return resources.files(__package__).joinpath("page", name).read_text(encoding="utf-8")
+    return resources.files(__package__ or "").joinpath("page", name).read_text(encoding="utf-8")
 
 
 def script_json(value: object) -> str:
@@ -107,19 +108,19 @@ def table_html(item: Table) -> str:
     """A section with a table, its notes and its CSV."""
     notes = "".join(f"<li>{html.escape(note)}</li>" for note in item.notes)
     link = f'<p><a href="tables/{item.name}.csv" download>{item.name}.csv</a></p>'
-    body = frame_html(item.shown, item.title)
+    body = frame_html(item.text, item.title)
     return (
         f'<section id="tables-{item.name}"><h3>{html.escape(item.title)}</h3>{body}<ul>{notes}</ul>{link}</section>\n'
     )
 
 
-def frame_html(frame: pd.DataFrame, title: str, classes: Mapping[str, Callable[[str], str]] | None = None) -> str:
+def frame_html(frame: pd.DataFrame, title: str, classes: Mapping[str, Callable[[str], str]] = {}) -> str:
     """A table that scrolls sideways in its own box, reachable by the keyboard; classes: dict column -> function."""
     right = {column: ' class="number"' for column in frame.columns if is_numeric(frame[column])}
     head = "".join(f'<th scope="col"{right.get(c, "")}>{html.escape(str(c))}</th>' for c in frame.columns)
 
-    def cell(column: str, text: object) -> str:
-        kind = classes[column](text) if column in (classes or {}) else right.get(column, "")
+    def cell(column: Any, text: Any) -> str:
+        kind = classes[column](text) if column in classes else right.get(column, "")
         return f"<td{kind}>{html.escape(str(text))}</td>"
 
     rows = ("".join(cell(*item) for item in row.items()) for row in frame.to_dict("records"))
@@ -163,9 +164,7 @@ def _webp(image: Image.Image, **how: Any) -> bytes:
 
 def claims_html(claims: pd.DataFrame) -> str:
     """The claims as a table; the word is coloured and written, never coloured alone."""
-    shown = claims_shown(claims)
-    word = {"verdict": lambda cell: f' class="word {WORDS[cell]}"'}
-    return frame_html(shown, "Claims", word)
+    return frame_html(claims_shown(claims), "Claims", {"verdict": lambda cell: f' class="word {WORDS[cell]}"'})
 
 
 def claims_shown(claims: pd.DataFrame) -> pd.DataFrame:
@@ -198,8 +197,3 @@ def not_run_html(not_run: Mapping[str, str]) -> str:
         return "<p>Everything that this report knows was measured.</p>"
     lines = "".join(f"<li><code>{html.escape(k)}</code>: {html.escape(v)}</li>" for k, v in not_run.items())
     return f"<ul>{lines}</ul>"
-
-
-def no_meshes(reason: str) -> str:
-    """What stands in place of the viewer."""
-    return f"<p>not run: {html.escape(reason)}</p>"

@@ -6,12 +6,12 @@ from itertools import pairwise
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure as Drawing
-from matplotlib.ticker import FuncFormatter, Locator, LogLocator, MaxNLocator, NullFormatter
+from matplotlib.ticker import Locator, LogLocator, MaxNLocator
 from numpy.typing import ArrayLike
 
 from .items import Figure
 from .names import place_names
-from .style import INK, MARKERS, colours, plot_style, plt
+from .style import INK, MARKERS, colours, plain_logarithm, plot_style, plt
 from .style import label as spoken
 
 LISTED = 8  # names of the front that a caption lists at most
@@ -116,9 +116,8 @@ def _draw(
         axes.plot([], [], "o", color=tint, ms=6, label=spoken(value))
     for value, form in shape.items():
         axes.plot([], [], form, color="none", mec=INK, ms=6, label=spoken(value))
+    plain_logarithm(axes.xaxis)
     axes.xaxis.set_major_locator(ticks(rows["cost_ratio"].max() / rows["cost_ratio"].min()))
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axes.xaxis.set_minor_formatter(NullFormatter())
     if colour:
         axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=9)
     if not tints:

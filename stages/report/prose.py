@@ -30,9 +30,9 @@ def add_words(item: Table | Figure, topic: ModuleType, kind: str, name: str) -> 
         item.alt, item.caption = (_joined(part).format_map(item.words) for part in (alt, caption))
 
 
-def shared_notes(package: str, name: str) -> str:
+def shared_notes(package: str | None, name: str) -> str:
     """Notes that several tables of a topic share, a line each, to be a word of theirs: the section `# shared/NAME`."""
-    _, text = _sections(package)[f"shared/{name}"]
+    _, text = _sections(package or "")[f"shared/{name}"]
     return "\n".join(_joined(note) for note in re.split(r"^- ", text, flags=re.MULTILINE)[1:])
 
 

@@ -4,6 +4,7 @@ import io
 from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 from PIL import Image
@@ -74,7 +75,7 @@ METHOD_COLOURS = {
 }
 MARKERS = "osD^vPX*"
 PALETTE = 256  # colours of a picture: a third of the bytes, and the shading of meshes still looks smooth
-SETTINGS = {
+SETTINGS: dict[Any, Any] = {
     "figure.facecolor": "white",
     "savefig.facecolor": "white",
     "font.family": "DejaVu Sans",  # comes with matplotlib: the same letters on every machine
@@ -97,8 +98,9 @@ SETTINGS = {
 
 def label(name: object) -> str:
     """A method's name in words, with its way of keeping neighbourhoods where there is one."""
-    base, _, way = str(name).rpartition("-")
-    return f"{label(base)}, {way}" if way in WAYS else LABELS.get(name, str(name).replace("_", " "))
+    text = str(name)
+    base, _, way = text.rpartition("-")
+    return f"{label(base)}, {way}" if way in WAYS else LABELS.get(text, text.replace("_", " "))
 
 
 def start(weights: str) -> str:

@@ -1,5 +1,6 @@
 """Whether a target was met: the word goes by the interval, not by the mean alone."""
 
+import math
 from collections.abc import Callable
 
 from .markdown import number
@@ -9,8 +10,8 @@ def on_target(
     value: float,
     low: float,
     high: float,
-    at_least: float | None = None,
-    at_most: float | None = None,
+    at_least: float = -math.inf,
+    at_most: float = math.inf,
     show: Callable[[float], str] = number,
 ) -> str:
     """The word: met, met on average (interval from x), missed on average (interval to x), or missed.
@@ -21,10 +22,10 @@ def on_target(
     if value != value:
         return "not measured"
     ends = {"from": low, "to": high}
-    good, sides = (value >= at_least, ("from", "to")) if at_most is None else (value <= at_most, ("to", "from"))
-    side = sides[0] if good else sides[1]  # the end that decides: the one nearer to the other word
+    good = at_least <= value <= at_most
+    side = "from" if good == (at_most == math.inf) else "to"  # the end that decides: the one nearer to the other word
     end = ends[side]
-    if end == end and (end >= at_least if at_most is None else end <= at_most) == good:
+    if end == end and (at_least <= end <= at_most) == good:
         return "met" if good else "missed"
     rest = f"interval {side} {show(end)}" if end == end else "no interval"
     return f"{'met' if good else 'missed'} on average ({rest})"

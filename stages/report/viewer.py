@@ -4,7 +4,7 @@ import base64
 from typing import Any
 
 import numpy as np
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 
 from stages.kit import Mesh
 from stages.lod.metro import vertex_errors
@@ -56,7 +56,7 @@ def pack_object(results: Results, name: str) -> dict[str, Any]:
     """
     original, store = results.mesh(name), Store()
     full, nearest = shown_mesh(original, results.settings.viewer_faces)
-    place = cKDTree(full.vertices)
+    place = KDTree(full.vertices)
     found = results.points(name)
     shown = [method for method in METHODS if method in found] or list(found)
     saliency = {
@@ -103,7 +103,7 @@ def shown_mesh(mesh: Mesh, faces: int) -> tuple[Mesh, np.ndarray]:
 
         small = simplify(mesh, faces)
     small = ordered(small)[0]
-    return small, cKDTree(mesh.vertices).query(small.vertices)[1]
+    return small, np.asarray(KDTree(mesh.vertices).query(small.vertices)[1])
 
 
 def _mesh(mesh: Mesh, store: Store) -> dict[str, Any]:

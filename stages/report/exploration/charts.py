@@ -5,6 +5,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 
 from stages.kit.split import Split
+from stages.report.grid import records
 from stages.report.items import Figure
 from stages.report.results import Results
 from stages.report.style import GREY, colours, label, plt
@@ -48,7 +49,7 @@ def _draw_touches(axes: Axes, panel: pd.DataFrame) -> None:
     for way, words in WAYS.items():
         own = panel[panel["way"] == way].sort_values("level")
         sure, fixed = own[own["stop"] == "confidence"], own[own["stop"] == "fixed"]
-        for row in sure[np.isclose(sure["level"], HEADLINE)].itertuples():
+        for row in records(sure[np.isclose(sure["level"], HEADLINE)]):
             axes.plot([row.touches] * 2, [row.low, row.high], color=TINTS[way], lw=1, alpha=0.55)
         for line, how, style in (
             (sure, "stops when sure", {"ls": "-", "marker": "o", "lw": 1.5, "zorder": 3}),

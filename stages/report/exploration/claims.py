@@ -34,7 +34,7 @@ touches = partial(claim, where=AT_RANDOM | SURE, scale=1.0, unit="touches", stat
 @statistic("touches_saved")
 def touches_saved(results: Results, claim: Claim) -> pd.Series:
     """Touches that the second side takes minus those of the first."""
-    return _touches(results, claim, claim.second) - _touches(results, claim, claim.first)
+    return _touches(results, claim, claim.other) - _touches(results, claim, claim.first)
 
 
 @statistic("over_as_many_touches")
@@ -52,9 +52,7 @@ def overconfidence(results: Results, claim: Claim) -> pd.Series:
     return last["belief"] - last["value"]
 
 
-def _touches(results: Results, claim: Claim, own: Side | float | None) -> pd.Series:
-    if not isinstance(own, dict):
-        raise ValueError(f"claim {claim.key} needs two sides")
+def _touches(results: Results, claim: Claim, own: Side) -> pd.Series:
     return results.measured(STAGE, claim.dataset, **claim.where, **own).set_index("repetition")["touches"]
 
 

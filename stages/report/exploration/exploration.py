@@ -1,12 +1,12 @@
 """How many touches it takes to be sure: stopping at a confidence beside a fixed number of touches."""
 
-from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from stages.kit.split import shared_by
-from stages.report.grid import within
+from stages.report.grid import records, within
 from stages.report.items import Table
 from stages.report.markdown import number, with_interval
 from stages.report.results import Results
@@ -26,9 +26,10 @@ def build(results: Results) -> Table:
     return Table(frame, _wide(frame, results), words)
 
 
-def _line(key: Sequence[str], rows: pd.DataFrame) -> dict:
+def _line(key: Any, rows: pd.DataFrame) -> dict[str, Any]:
     """The tidy row of one way of exploring."""
-    line, most = dict(zip(KEYS, key, strict=True)), int(rows.loc[rows["stop"] == "fixed", "level"].max())
+    line: dict[str, Any] = dict(zip(KEYS, key, strict=True))
+    most = int(rows.loc[rows["stop"] == "fixed", "level"].max())
     right = rows["metric"] == "accuracy"
     stopped = rows[right & (rows["stop"] == "confidence") & np.isclose(rows["level"], HEADLINE)]
     for name, column in (("accuracy", "value"), ("touches", "touches"), ("stated", "belief"), ("decided", "decided")):
@@ -40,17 +41,19 @@ def _line(key: Sequence[str], rows: pd.DataFrame) -> dict:
 
 def _wide(frame: pd.DataFrame, results: Results) -> pd.DataFrame:
     lines = []
-    for (objects, split, likelihood, method), group in frame.groupby(KEYS[:-1], sort=False):
-        ways = group.set_index("way").to_dict("index")
-        line = {"objects": results.group_text(objects), "held out": HELD_OUT[split], "belief": LIKELIHOODS[likelihood]}
-        cells = {words: _cell(ways[way]) if way in ways else "–" for way, words in WAYS.items()}
+    for _, group in frame.groupby(KEYS[:-1], sort=False):
+        ways = {row.way: row for row in records(group)}
         plain = ways["random"]
-        cells["a fixed number, in random order"] = "never" if np.isnan(plain["fixed"]) else number(plain["fixed"], 2)
-        cells |= {name: f"{100 * plain[name]:.0f} %" for name in ("stated", "decided")}
-        lines.append(line | {"touched": label(method)} | cells)
+        lines.append({
+            "objects": results.group_text(plain.group), "held out": HELD_OUT[plain.split],
+            "belief": LIKELIHOODS[plain.likelihood], "touched": label(plain.method),
+            **{words: _cell(ways[way]) if way in ways else "–" for way, words in WAYS.items()},
+            "a fixed number, in random order": "never" if np.isnan(plain.fixed) else number(plain.fixed, 2),
+            "stated": f"{100 * plain.stated:.0f} %", "decided": f"{100 * plain.decided:.0f} %",
+        })  # fmt: skip
     return pd.DataFrame(lines)
 
 
-def _cell(row: dict[str, float]) -> str:
-    touches = with_interval(row["touches"], row["touches_low"], row["touches_high"], places=1)
-    return f"{touches}: {with_interval(row['accuracy'], row['accuracy_low'], row['accuracy_high'], 100, 0)} %"
+def _cell(row: Any) -> str:
+    touches = with_interval(row.touches, row.touches_low, row.touches_high, places=1)
+    return f"{touches}: {with_interval(row.accuracy, row.accuracy_low, row.accuracy_high, 100, 0)} %"

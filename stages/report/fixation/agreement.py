@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 
 from stages.kit.stats import interval
-from stages.report.grid import within
+from stages.report.grid import records, within
 from stages.report.items import Figure, Table
 from stages.report.markdown import number, signed, with_interval
 from stages.report.pareto import pareto_chart
@@ -64,13 +64,11 @@ def _over(key: str) -> list[str]:
 
 def _gains(table: pd.DataFrame, name: Detector) -> dict[str, float]:
     """How much more the detector has than each opponent, paired over the objects; empty where that is not measured."""
-    others = {"prior": PRIOR, "lee": LEE}
-    if name.kind == "fused":
-        others["weights"] = Detector(with_random_weights(name.method), name.task)
+    untaught = {"weights": Detector(with_random_weights(name.method), name.task)} if name.kind == "fused" else {}
     found = {}
-    for key, other in others.items():
+    for key, other in ({"prior": PRIOR, "lee": LEE} | untaught).items():
         if other in table and other != name:
-            found |= dict(zip(_over(key), interval(table[name] - table[other]), strict=True))
+            found |= zip(_over(key), interval(table[name] - table[other]), strict=True)
     return found
 
 
@@ -92,12 +90,12 @@ def _not_run(results: Results) -> str:
     """Networks that this run asked for and could not have, and why."""
     rows = results.rows("fixation").reindex(columns=["method", "task", "value", "note"])
     rows = rows[rows["value"].isna() & rows["task"].isna()].dropna(subset=["note"])
-    return "\n".join(f"Not run here: {network_text(row.method)}: {row.note}." for row in rows.itertuples())
+    return "\n".join(f"Not run here: {network_text(row.method)}: {row.note}." for row in records(rows))
 
 
 def _wide(frame: pd.DataFrame) -> pd.DataFrame:
     text = [with_interval(row.mean, row.low, row.high, places=1 if row.metric.startswith("distance") else 2)
-            for row in frame[["metric", "mean", "low", "high"]].itertuples()]  # fmt: skip
+            for row in records(frame[["metric", "mean", "low", "high"]])]  # fmt: skip
     wide = frame.assign(text=text).pivot(index=["truth", "detector"], columns="metric", values="text")
     wide = wide.reindex(columns=list(METRICS)).fillna("–").rename(columns=METRICS).rename_axis(columns=None)
     best_first = frame[frame["metric"] == "pcc"].set_index(["truth", "detector"])

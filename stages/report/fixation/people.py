@@ -1,6 +1,7 @@
 """T figures 3.32, 3.35 and 3.36: how much tasks' maps and detectors agree with people, and how far centres lie."""
 
 from collections.abc import Callable, Collection
+from functools import partial
 from itertools import product
 from typing import Any
 
@@ -8,12 +9,11 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
-from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from stages.kit.stats import interval
 from stages.report.items import Figure
 from stages.report.results import Results
-from stages.report.style import GREY, INK, PALE, colours, label, plt
+from stages.report.style import GREY, INK, PALE, colours, label, plain_logarithm, plt
 
 from .detectors import FUSED, KINDS, MODELS, TASKS, Detector, network_text, untrained
 from .rows import detectors, networks, no_people, scores, sources
@@ -139,12 +139,10 @@ def _zero(axes: Axes) -> None:
 
 def _logarithmic(axes: Axes) -> None:
     axes.set(xscale="log", xlim=(FLOOR, None))
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axes.xaxis.set_minor_formatter(NullFormatter())
+    plain_logarithm(axes.xaxis, (1.0,))
 
 
-def _dot(axes: Axes, values: pd.Series, y: int, tint: str) -> None:
-    _span(axes, values, y, tint, 1.6, marker="o", ls="", ms=5, mec="white", mew=0.5)
+_dot = partial(_span, width=1.6, marker="o", ls="", ms=5, mec="white", mew=0.5)
 
 
 def _box(axes: Axes, values: pd.Series, y: int, tint: str) -> None:

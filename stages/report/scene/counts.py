@@ -3,8 +3,9 @@
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.ticker import FuncFormatter, NullLocator
+from matplotlib.ticker import FixedLocator, NullLocator
 
+from stages.report.grid import records
 from stages.report.items import Figure, Table
 from stages.report.markdown import number, with_interval
 from stages.report.results import Results
@@ -46,14 +47,14 @@ def build(results: Results) -> Table:
     """A line for each condition and model, and what the models cost beside the lookup."""
     rows = results.measured("scene", condition=[*CONDITIONS, "cost"], method=list(MODELS))
     costs = rows[rows["condition"] == "cost"].pivot(index="method", columns="metric", values="value")
-    costs = costs.reindex(list(MODELS), columns=["fit", "ask"]).dropna().itertuples()
-    said = [f"{MODELS[row.Index]} {number(row.fit)} and {number(row.ask)}" for row in costs]
+    costs = costs.reindex(list(MODELS), columns=["fit", "ask"]).dropna()
+    said = [f"{MODELS[row.Index]} {number(row.fit)} and {number(row.ask)}" for row in records(costs)]
     return Table(rows, _shown(rows[rows["metric"].isin(METRICS)]), {"costs": "; ".join(said) or "not measured"})
 
 
 def _shown(rows: pd.DataFrame) -> pd.DataFrame:
     keys = ["condition", "method"]
-    text = [with_interval(row.value, row.low, row.high, *METRICS[row.metric][1:]) for row in rows.itertuples()]
+    text = [with_interval(row.value, row.low, row.high, *METRICS[row.metric][1:]) for row in records(rows)]
     wide = rows.assign(text=text).pivot(index=keys, columns="metric", values="text").reindex(columns=list(METRICS))
     wide = wide.fillna("–").rename(columns={metric: head for metric, (head, *_) in METRICS.items()})
     wide = wide.join(rows.groupby(keys)[["cases", "objects"]].max().astype(int))
@@ -85,7 +86,7 @@ def _of(rows: pd.DataFrame, condition: str, metric: str) -> pd.DataFrame:
 def _waste(axes: Axes, rows: pd.DataFrame) -> None:
     ends = [(100 * _of(rows, name, "within"), 100 * _of(rows, name, "waste")) for name in ("left_out", "equal_rate")]
     for method, (tint, marker) in LOOKS.items():
-        x, y = ([end[k].loc[method, "value"] for end in ends] for k in (0, 1))
+        x, y = ([end[k]["value"][method] for end in ends] for k in (0, 1))
         axes.plot(x, y, color=tint, lw=1, alpha=0.6)
         for across, up, (_, waste), fill in zip(x, y, ends, ("white", tint), strict=True):
             axes.plot([across] * 2, waste.loc[method, ["low", "high"]], color=tint, lw=1, alpha=0.6)
@@ -104,8 +105,8 @@ def _failures(axes: Axes, rows: pd.DataFrame) -> None:
         axes.plot(x, own["value"], marker, color=tint, ms=6, label=MODELS[method])
     axes.axhline(1, color=INK, lw=0.8, ls=":")
     axes.set_yscale("log")
-    axes.yaxis.set_major_locator(plt.FixedLocator(FACTORS))
-    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.yaxis.set_major_locator(FixedLocator(FACTORS))
+    axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
     axes.yaxis.set_minor_locator(NullLocator())
     axes.set_xticks(range(len(shown)), [PLACES[condition] for condition in shown], fontsize=8.5)
     axes.tick_params(axis="x", length=0)
@@ -119,7 +120,7 @@ def _training(axes: Axes, rows: pd.DataFrame) -> None:
         own = trained[trained["method"] == method]
         axes.plot(own["setting"], own["value"], color=tint, marker=marker, ms=5.5, lw=1.4)
         axes.fill_between(own["setting"], own["low"], own["high"], color=tint, alpha=0.1, lw=0)
-    own = _of(rows, "left_out", "factor_90").loc["lookup", "value"]
+    own = _of(rows, "left_out", "factor_90")["value"]["lookup"]
     axes.axhline(own, color=LOOKS["lookup"][0], lw=1.4, ls="--")
     axes.set(xlabel="objects trained on (the lookup needs none)", title="few objects to learn from")
     _from_one(axes)
@@ -128,8 +129,8 @@ def _training(axes: Axes, rows: pd.DataFrame) -> None:
 def _costs(axes: Axes, rows: pd.DataFrame) -> None:
     cost, error = _of(rows, "cost", "fit")["value"], _of(rows, "left_out", "factor_90")
     for method, (tint, marker) in LOOKS.items():
-        axes.vlines(cost[method], error.loc[method, "low"], error.loc[method, "high"], color=tint, lw=1.2, alpha=0.6)
-        axes.plot(cost[method], error.loc[method, "value"], marker, color=tint, ms=7)
+        axes.vlines(cost[method], error["low"][method], error["high"][method], color=tint, lw=1.2, alpha=0.6)
+        axes.plot(cost[method], error["value"][method], marker, color=tint, ms=7)
     axes.axvline(1, color=GREY, lw=0.6)
     axes.set_xscale("log")
     plain_logarithm(axes.xaxis)

@@ -32,7 +32,7 @@ def build(results: Results) -> Figure:
     methods, frames = [str(method) for method in stored["methods"]], stored["frames"]
     brightest = tolerance if unit == "pixels" else 1.0  # displacement in pixels
     figure = plt.figure(figsize=(12, ROW * len(frames) + CHART))
-    pictures, charts = figure.subfigures(2, 1, height_ratios=[ROW * len(frames), CHART])
+    pictures, charts = figure.subfigures(2, 1, squeeze=False, height_ratios=[ROW * len(frames), CHART]).flat
     grid = pictures.subplots(len(frames), 2 * len(methods) - 1, squeeze=False, gridspec_kw=GRID)
     for line, frame, rgb, displacement in zip(grid, frames, stored["rgb"], stored["displacement"], strict=True):
         said = rows[rows["frame"] == frame].pivot_table(index="method", columns="metric", values="value")
@@ -57,14 +57,13 @@ def build(results: Results) -> Figure:
 def _box(picture: np.ndarray) -> tuple[slice, slice]:
     """Rows and columns round what the full frame shows, in the shape of the screen."""
     h, w, _ = picture.shape
-    filled = (picture > 0).any(axis=2)
-    down, across = np.flatnonzero(filled.any(axis=1)), np.flatnonzero(filled.any(axis=0))
+    down, across = np.nonzero((picture > 0).any(axis=2))
     if not len(down):
         return slice(None), slice(None)
     tall = min(max(np.ptp(down) + 2 * MARGIN, (np.ptp(across) + 2 * MARGIN) * h / w), h)
     wide = int(tall * w / h)
-    top = int(np.clip((down[0] + down[-1] - tall) // 2, 0, h - tall))
-    left = int(np.clip((across[0] + across[-1] - wide) // 2, 0, w - wide))
+    top = int(np.clip((down.min() + down.max() - tall) // 2, 0, h - tall))
+    left = int(np.clip((across.min() + across.max() - wide) // 2, 0, w - wide))
     return slice(top, top + int(tall)), slice(left, left + wide)
 
 

@@ -1,8 +1,11 @@
 """The measurements of the scene stage, how its methods are called, and what the comparison of them leaves open."""
 
+from typing import Any
+
 import numpy as np
 import pandas as pd
 
+from stages.report.grid import records
 from stages.report.markdown import with_interval
 from stages.report.results import NotRun, Results
 
@@ -24,7 +27,7 @@ OURS = "ours"
 UNIFORM = ("uniform", "uniform_size")
 
 
-def scene_rows(results: Results, **where: object) -> pd.DataFrame:
+def scene_rows(results: Results, **where: Any) -> pd.DataFrame:
     """Rows of the scene stage with a value; an empty `matched` reads as such. NotRun where there are none."""
     return results.measured("scene", **where).fillna({"matched": ""})
 
@@ -46,7 +49,7 @@ def of_scene(rows: pd.DataFrame) -> tuple[str, float, str]:
 def savings(rows: pd.DataFrame) -> pd.DataFrame:
     """The rows on the share of the faces that ours saves: value, low, high, the `rival`, and in per cent as `text`."""
     found = rows[rows["metric"].str.startswith("saved_")].dropna(subset=["kind", "value"])
-    text = [with_interval(row.value, row.low, row.high, 100, 0) for row in found.itertuples()]
+    text = [with_interval(row.value, row.low, row.high, 100, 0) for row in records(found)]
     return found.assign(rival=found["metric"].str.removeprefix("saved_"), text=text)
 
 

@@ -1,8 +1,11 @@
 """A scene along a camera path: faces and errors of every way to choose the levels of its objects."""
 
+from collections.abc import Mapping
+from typing import Any
+
 import pandas as pd
 
-from stages.report.grid import percent
+from stages.report.grid import percent, records
 from stages.report.items import Figure, Table
 from stages.report.markdown import number
 from stages.report.pareto import pareto_chart
@@ -33,7 +36,7 @@ def build(results: Results) -> Table:
     wide = rows.pivot_table(index=["method", "matched"], columns="metric", values="value", sort=False)
     wide["seconds"] = rows.groupby(["method", "matched"])["seconds"].max()
     wide, saved = wide[wide["faces"].notna()].reset_index(), savings(rows)
-    text = dict(zip(zip(saved["rival"], saved["matched"], strict=True), saved["text"], strict=True))
+    text = {(row.rival, row.matched): row.text for row in records(saved)}
     found = [f"{text[key]} % against {NAMES[key[0]]} ({MATCHED[key[1]]})" for key in SAID if key in text]
     words = {
         "scene": scene,
@@ -48,10 +51,10 @@ def build(results: Results) -> Table:
 def _noted(results: Results) -> str:
     """What the rows say beside their values, or instead of them."""
     rows = results.rows("scene", frame="all", factor=1).dropna(subset=["note"]).drop_duplicates(["method", "note"])
-    return "\n".join(f"{NAMES.get(row.method, row.method)}: {row.note}." for row in rows.itertuples())
+    return "\n".join(f"{NAMES.get(row.method, row.method)}: {row.note}." for row in records(rows))
 
 
-def _shown(wide: pd.DataFrame, saved: dict[tuple[str, str], str]) -> pd.DataFrame:
+def _shown(wide: pd.DataFrame, saved: Mapping[Any, str]) -> pd.DataFrame:
     shown = wide.reindex(columns=list(COLUMNS)).assign(faces=wide["faces"].round())
     shown = shown.assign(held=shown["held"].map(percent)).map(number).rename(columns=COLUMNS)
     shown.insert(0, "levels chosen by", wide["method"].replace(SPOKEN))

@@ -2,6 +2,7 @@
 
 import pandas as pd
 
+from stages.report.grid import records
 from stages.report.items import Table
 from stages.report.markdown import number
 from stages.report.results import Results
@@ -35,24 +36,20 @@ def _said(rows: pd.DataFrame) -> str:
 
     The limits are said by the table's lines.
     """
-    there = rows.dropna(subset=["value"]).iloc[0]
-    text = f"Scene {there['scene']}, tolerance {amount(there['tolerance'], UNITS[there['kind']])}: "
-    text += f"{there['objects']:.0f} objects ({there['shapes']:.0f} different), {there['frames']:.0f} frames."
+    there = next(iter(records(rows.dropna(subset=["value"]))))
+    text = f"Scene {there.scene}, tolerance {amount(there.tolerance, UNITS[there.kind])}: "
+    text += f"{there.objects:.0f} objects ({there.shapes:.0f} different), {there.frames:.0f} frames."
     held = (rows[["method", "matched", "metric"]] == [OURS, "", "held"]).all(axis=1) & (rows["value"] == 1)
-    saved = savings(rows).set_index(["rival", "matched"])
+    saved = {(row.rival, row.matched): row for row in records(savings(rows))}
     for rival in UNIFORM:
-        if (rival, "error") in saved.index:
-            own = saved.loc[(rival, "error")]
-            word = on_target(own["value"], own["low"], own["high"], at_least=TARGET, show=_share)
-            text += (
-                f" Against {NAMES[rival]} ours saves {own['text']} %; {100 * TARGET:.0f} %, with every frame within "
-            )
-            text += f"the tolerance, is {word if held.any() else 'missed'}."
-        if (rival, "displacement") in saved.index:
-            spread = saved.loc[(rival, "displacement"), "text"]
-            text += f" At an equal mean displacement of all pixels it saves {spread} %."
+        if own := saved.get((rival, "error")):
+            word = on_target(own.value, own.low, own.high, at_least=TARGET, show=_share) if held.any() else "missed"
+            text += f" Against {NAMES[rival]} ours saves {own.text} %; {100 * TARGET:.0f} %, with every frame within "
+            text += f"the tolerance, is {word}."
+        if own := saved.get((rival, "displacement")):
+            text += f" At an equal mean displacement of all pixels it saves {own.text} %."
     noted = rows[rows["matched"] != "limit"].dropna(subset=["note"]).drop_duplicates(["method", "note"])
-    return text + "".join(f" {NAMES[row.method].capitalize()}: {row.note}." for row in noted.itertuples())
+    return text + "".join(f" {NAMES[row.method].capitalize()}: {row.note}." for row in records(noted))
 
 
 def _share(share: float) -> str:
@@ -63,7 +60,7 @@ def _shown(frame: pd.DataFrame) -> pd.DataFrame:
     limited = (frame["matched"] == "limit") & (frame["method"] == OURS)
     columns = {
         "scene": frame["scene"],
-        "tolerance": [amount(row.tolerance, UNITS[row.kind]) for row in frame.itertuples()],
+        "tolerance": [amount(row.tolerance, UNITS[row.kind]) for row in records(frame)],
         "levels chosen by": frame["method"].map(NAMES) + limited.map({True: ", limited", False: ""}),
         "faces a frame": frame["faces"].round(),
         "frame error, mean": frame["error"],

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from stages.kit.split import Split
-from stages.report.grid import grid, means
+from stages.report.grid import grid, means, records
 from stages.report.items import Figure, Table
 from stages.report.results import NotRun, Results
 from stages.report.style import CYCLE, GREY, MARKERS, label, plain_logarithm, plt
@@ -58,7 +58,7 @@ def _smallest(results: Results) -> str:
         with suppress(NotRun):
             arrays = [
                 f"{label(row.classifier)} {row.cells} x {row.cells} at {row.pitch:g} ({100 * row.again:.0f} %)"
-                for row in results.table(STAGE, "smallest.csv", name).itertuples()
+                for row in records(results.table(STAGE, "smallest.csv", name))
             ]
             lines.append(f"The smallest array that is enough, {dataset_text(name)}: {'; '.join(arrays)}.")
     return "\n".join(lines)

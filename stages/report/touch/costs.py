@@ -1,5 +1,7 @@
 """Charts of accuracy by touch against seconds: classifiers, features and touches, and the search for the points."""
 
+from typing import Any
+
 import pandas as pd
 
 from stages.kit.split import Split, shared_by
@@ -56,7 +58,7 @@ def _timed(rows: pd.DataFrame, by: list[str]) -> pd.DataFrame:
     return pd.DataFrame(means(rows, by, shared_by(Split.RANDOM), top=1.0))
 
 
-def _chart(frame: pd.DataFrame, title: str, named: list[str], reference: str, **style: str) -> Figure:
+def _chart(frame: pd.DataFrame, title: str, named: list[str], reference: str, **style: Any) -> Figure:
     """named: columns that make up the name of a choice."""
     frame = frame.assign(name=frame[named].map(label).agg(", ".join, axis=1)).dropna(subset=["seconds"])
     if reference not in set(frame["name"]):

@@ -7,6 +7,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 
 from stages.kit.stats import interval
+from stages.report.grid import records
 from stages.report.items import Figure, Table
 from stages.report.markdown import with_interval
 from stages.report.names import place_names
@@ -35,8 +36,8 @@ def table(results: Results) -> Table:
     absent = rates[rates["value"].isna()].dropna(subset=["note"])
     why = absent["method"].map(NAMES).fillna(absent["source"]) + ": " + absent["note"] + "."
     words = {
-        "said": "\n".join(_said(row) for row in frame[frame["method"] == OURS].itertuples()),
-        "meshes": ", ".join(f"{row.mesh} ({row.source}, {int(row.faces):,} faces)" for row in meshes.itertuples()),
+        "said": "\n".join(_said(row) for row in records(frame[frame["method"] == OURS])),
+        "meshes": ", ".join(f"{row.mesh} ({row.source}, {int(row.faces):,} faces)" for row in records(meshes)),
         "absent": " ".join(why.unique()),
     }
     shown = pd.DataFrame({"method": frame["method"].map(NAMES), "cells": frame["cells"]})
@@ -52,19 +53,19 @@ def table(results: Results) -> Table:
 def _read(results: Results) -> tuple[pd.DataFrame, pd.DataFrame]:
     """(rows of rates; one row per method and number of cells: rates, ratios, error and its pitch in units, note)."""
     rates, errors = (results.bench("imprints").query(f"what == '{what}'") for what in ("rate", "error"))
-    if rates["value"].notna().sum() == 0 or len(errors) == 0:
+    if rates["value"].isna().all() or errors.empty:
         raise NotRun("bench/imprints.csv is not whole: `make bench` writes it anew", "imprints", runnable=False)
     largest = errors.groupby("method")[["to_mesh", "pitch"]].max().rename(columns={"to_mesh": "error"})
-    found, groups = [], rates.groupby(["method", "cells"], sort=False)
-    for (method, cells), group in groups:
-        line = {"method": method, "cells": int(cells), "meshes": group.dropna(subset=["value"])["mesh"].nunique()}
+    lines, groups = [], rates.groupby(["method", "cells"], sort=False)
+    for _, group in groups:
+        line = {"meshes": group.dropna(subset=["value"])["mesh"].nunique()}
         for name, column in (("rate", "value"), ("ratio", "ratio")):
-            logs = np.log(group[column].astype(float)).groupby(group["mesh"]).mean()
+            logs = group[column].astype(float).transform(np.log).groupby(group["mesh"]).mean()
             line |= zip((name, f"{name}_low", f"{name}_high"), np.exp(interval(logs)), strict=True)
             line[f"{name}_least"] = group[column].min()
-        found.append(line)
+        lines.append(line)
     notes = groups["note"].first().fillna("")
-    frame = pd.DataFrame(found).join(largest, on="method").join(notes, on=["method", "cells"])
+    frame = pd.DataFrame(lines, notes.index).join(largest, on="method").join(notes).reset_index()
     return rates, frame.sort_values(["cells", "rate"], ascending=[True, False], ignore_index=True)
 
 
@@ -78,9 +79,9 @@ def _said(row: Any) -> str:
     return said + f"{_whole(*ratio)} times TACTO's rate; {RATIO} times is {on_target(*ratio, at_least=RATIO)}."
 
 
-def _whole(*ends: float) -> str:
+def _whole(mean: float, low: float, high: float) -> str:
     """A mean with its interval, large ones as whole numbers."""
-    return with_interval(*map(_rounded, ends))
+    return with_interval(_rounded(mean), _rounded(low), _rounded(high))
 
 
 def _rounded(value: float) -> float:
@@ -108,7 +109,7 @@ def _draw_exactness(axes: Axes, wide: pd.DataFrame) -> None:
     front = wide[wide["on_front"]].sort_values("seconds")
     axes.step(front["seconds"], front["shown"], where="post", color=INK, lw=1, zorder=1)
     names, lines = [], []
-    for row in wide.itertuples():
+    for row in records(wide):
         tint, form = STYLES[row.method]
         axes.plot(row.seconds, row.shown, form, color=tint, ms=8, mec="white", mew=0.8, zorder=3)
         names.append((NAMES[row.method], (row.seconds, row.shown)))
@@ -127,7 +128,7 @@ def _draw_growth(axes: Axes, rows: pd.DataFrame, methods: list[str]) -> None:
     for method in methods:
         tint, form = STYLES[method]
         for cells, group in rows[rows["method"] == method].groupby("cells"):
-            rates = np.exp(np.log(group["value"]).groupby(group["faces"]).mean())
+            rates = np.exp(group["value"].transform(np.log).groupby(group["faces"]).mean())
             line, fill, rim = ("-", tint, "white") if cells == WIDE else (":", "white", tint)
             axes.plot(rates, form + line, color=tint, ms=6, lw=1.2, mew=0.9, mfc=fill, mec=rim)
         axes.plot([], [], form, color=tint, ms=6, label=NAMES[method])

@@ -1,5 +1,7 @@
 """The rows of the stage classification that this topic reads, and how its samplings are called."""
 
+from typing import Any
+
 import pandas as pd
 
 from stages.kit.split import Split, shared_by
@@ -20,13 +22,13 @@ def accuracies(rows: pd.DataFrame) -> dict[str, float]:
     """accuracy, low, high, repetitions at random, and mean accuracy on the other splits; NaN where not measured."""
     values = rows[rows["metric"] == "accuracy"].dropna(subset=["value"]).set_index("split")["value"]
     at_random = values[values.index == Split.RANDOM]
-    found = dict(zip(("accuracy", "low", "high"), within(at_random, shared_by(Split.RANDOM)), strict=True))
-    found["repetitions"] = len(at_random)
+    ends = zip(("accuracy", "low", "high"), within(at_random, shared_by(Split.RANDOM)), strict=True)
     others = (Split.FOLDS, Split.REGIONS, Split.RANDOM_FEWER)
-    return found | {f"accuracy_{one}": values[values.index == one].mean() for one in others}
+    means = {f"accuracy_{one}": values[values.index == one].mean() for one in others}
+    return {**dict(ends), "repetitions": len(at_random), **means}
 
 
-def at_random(results: Results, **where: object) -> pd.DataFrame:
+def at_random(results: Results, **where: Any) -> pd.DataFrame:
     """Accuracies on touches drawn at random; NotRun where there is none."""
     return results.measured(STAGE, metric="accuracy", split=Split.RANDOM, **where)
 

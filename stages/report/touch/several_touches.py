@@ -1,5 +1,7 @@
 """T table 4.6: recognition by one to five touches."""
 
+from typing import Any
+
 import pandas as pd
 
 from stages.report.grid import grid
@@ -31,7 +33,7 @@ def table_4_6(results: Results) -> Table:
     groups = rows.loc[parts.index].assign(sampling=rows["method"], way=ways, touches=touches).groupby(KEYS)
     frame = pd.DataFrame([dict(zip(KEYS, key, strict=True)) | accuracies(group) for key, group in groups])
     samplings = [ENHANCED, *sorted({*frame["sampling"]} - {ENHANCED})]
-    orders = {"way": list(WAYS), "sampling": samplings, "classifier": CLASSIFIERS}
+    orders: dict[Any, list[str]] = {"way": list(WAYS), "sampling": samplings, "classifier": CLASSIFIERS}
     frame = frame.sort_values(list(orders), key=lambda column: column.map(orders[column.name].index), ignore_index=True)
     thesis = results.thesis("table_4_6_number_of_imprints").set_index("classifier").stack()
     printed = [thesis.get((cell.classifier, str(cell.touches))) for cell in frame.itertuples()]

@@ -57,7 +57,7 @@ def networks(results: Results, data: str) -> Table:
     cells = frame.assign(**{"starts from": [origin(*pair) for pair in starts], "filters": frame["mode"].map(label)})
     down, guesses = ["network", "starts from", "filters"], (100 * frame["chance"]).map(" (chance {:.1f})".format)
     notes = [f"Not run on {name}: {note}." for name in sources for note in results.notes("transfer", name)]
-    words = {"networks": shared_notes(str(__package__), "networks"), "not_run": "\n".join(notes)}
+    words = {"networks": shared_notes(__package__, "networks"), "not_run": "\n".join(notes)}
     return Table(frame, _beside_thesis(cells, down, guesses, {"network": label}), words)
 
 
