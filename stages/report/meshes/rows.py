@@ -49,7 +49,7 @@ def paired_cells(
 
 def by_object(rows: pd.DataFrame, metric: str, target: str | None = None) -> pd.DataFrame:
     """Frame objects x methods of one error in its unit; target: at this one alone, or the mean over all."""
-    rows = rows[(rows["metric"] == metric) & (rows["target"].eq(target) if target else True)]
+    rows = rows[(rows["metric"] == metric) & ((rows["target"] == target) | (not target))]
     return ERRORS[metric][1] * rows.pivot_table(index="item", columns="method", values="value")
 
 
