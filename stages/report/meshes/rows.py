@@ -49,7 +49,7 @@ def paired_cells(
 
 def by_object(rows: pd.DataFrame, metric: str, target: str | None = None) -> pd.DataFrame:
     """Frame objects x methods of one error in its unit; target: at this one alone, or the mean over all."""
-    rows = rows[(rows["metric"] == metric) & ((rows["target"] == target) | (not target))]
+    rows = rows[(rows["metric"] == metric) & (rows["target"].eq(target) if target else True)]
     return ERRORS[metric][1] * rows.pivot_table(index="item", columns="method", values="value")
 
 
@@ -63,7 +63,7 @@ def face_counts(rows: pd.DataFrame) -> list[str]:
 def wide(cells: pd.DataFrame, down: str | list[str], across: str) -> pd.DataFrame:
     """Column `text` pivoted, rows and columns in the order of the cells; `–` where there is none."""
     found = cells.pivot(index=down, columns=across, values="text").rename_axis(columns=None)
-    return found.loc[cells.set_index(down).index.unique(), cells[across].unique()].fillna("–")
+    return found.reindex(cells.set_index(down).index.unique(), columns=cells[across].unique()).fillna("–")
 
 
 def marked(row: Any) -> str:
