@@ -120,7 +120,7 @@ def _table(file, path):
     if missing:
         raise ValueError(f"{file} has no column {missing[0]}; expected {GRASPS}")
     numbers = pd.DataFrame({name: pd.to_numeric(rows[name], errors="coerce") for name in ("slipped", *ELECTRODES)})
-    bad = np.flatnonzero(~np.isfinite(numbers.to_numpy(dtype=np.float64)).all(axis=1) | rows["object"].isna())
+    bad = np.flatnonzero(~np.isfinite(numbers.to_numpy(dtype=np.float64)).all(axis=1) | rows["object"].isna())  # type: ignore[operator]
     if len(bad):
         raise ValueError(
             f"{file}, line {bad[0] + 2}: an empty cell or not a number: correct it, or download the archive again"

@@ -62,7 +62,7 @@ def semantic_classes(dataset: str, objects: Sequence[str], path: str | Path) -> 
     """
     table = read_table(path)
     if list(table) != ["dataset", "object", "living", "category"]:
-        raise ValueError(f"{path} must have the columns dataset, object, living, category, got {', '.join(table)}")
+        raise ValueError(f"{path} must have the columns dataset, object, living, category, got {', '.join(table)}")  # type: ignore[arg-type]
     own = table[table["dataset"] == dataset].set_index("object")
     if own.index.has_duplicates:
         raise ValueError(f"{path}: {own.index[own.index.duplicated()][0]} appears twice in {dataset}: remove one row")

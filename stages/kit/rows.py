@@ -38,7 +38,7 @@ def write_rows(
     """
     frame = pd.DataFrame([dict(row) for row in rows])
     frame["dataset"], frame["seed"] = dataset, seed
-    unknown = sorted(set(frame) - set(COMMON) - set(columns))
+    unknown = sorted(set(frame) - set(COMMON) - set(columns))  # type: ignore[type-var]  # of texts
     if unknown:
         raise ValueError(f"{path.name}: columns {', '.join(unknown)} are not declared in the stage's schema.py")
     frame = frame.reindex(columns=[*FIRST, *columns, *LAST])

@@ -32,7 +32,8 @@ def process(name: str, folder: Path, data: Path, counts: dict[str, int], cells: 
     mesh = read_mesh(data / "meshes" / f"{name}.npz")
     size = read_table(data / "meshes/manifest.csv").set_index("object").loc[name, "size"]
     pressed = {
-        kind: simulate(kind, mesh, counts[name], cells, size, rng(seed, f"{kind} {name}")) for kind in simulations
+        kind: simulate(kind, mesh, counts[name], cells, size, rng(seed, f"{kind} {name}"))  # type: ignore[arg-type]
+        for kind in simulations  # the size is a number
     }
     write_arrays(folder / f"{name}.npz", **pressed)
     return []

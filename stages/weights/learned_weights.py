@@ -64,9 +64,10 @@ def _svms(folder, name, mesh):
     others = {other: value for other, value in convexities.items() if other != name}
     found = {"svm": read_models(own, "without") if own.exists() else read_models(folder / "svm.npz", "all")}
     found["svm_seen"] = read_models(folder / "svm.npz", "all")
-    if others:
+    if others:  # their names are texts, which pandas does not tell
         found["svm_nearest"] = read_models(
-            folder / "svm" / f"{nearest_convexity(convexity(mesh), others)}.npz", "object"
+            folder / "svm" / f"{nearest_convexity(convexity(mesh), others)}.npz",  # pyright: ignore[reportArgumentType]
+            "object",
         )
     found["svm_object"] = read_models(own, "object")
     found["svm_viewpoint"] = read_models(own, "view")

@@ -34,4 +34,4 @@ def weight_table(training_data: dict[str, dict[str, np.ndarray]], chosen: str) -
 def weight_rows(table: pd.DataFrame) -> Rows:
     """The table as measurements: `item` is the object left out, empty where the weights are of all objects."""
     renamed = table.rename(columns={"left_out": "item", "weight": "value"})
-    return renamed.assign(metric="weight").to_dict("records")
+    return renamed.assign(metric="weight").to_dict("records")  # type: ignore[return-value]  # names of columns are texts

@@ -74,7 +74,7 @@ def summarised(rows: pd.DataFrame) -> pd.DataFrame:
         line["tried"] = len(group) - outcomes.get("infeasible", 0)
         line |= {name: outcomes.get(name, 0) for name in ("refused", "missed")}
         for name, (column, _) in RATIOS.items():
-            logs = np.log(own[column].where(own[column] > 0)).groupby(own["mesh"]).mean()
+            logs = own[column].where(own[column] > 0).apply(np.log).groupby(own["mesh"]).mean()
             line |= dict(zip((f"{name}_ratio", f"{name}_low", f"{name}_high"), np.exp(interval(logs)), strict=True))
         line |= {"slowest": own["ratio"].max(), "seconds": own["seconds"].median()}
         made = group[group["outcome"] == "reached"]

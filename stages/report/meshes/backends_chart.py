@@ -1,12 +1,15 @@
 """Who simplifies: error against time as ratios to pymeshlab's QEM, and how the time grows with the mesh."""
 
+from collections.abc import Iterator
+from typing import Any
+
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.ticker import NullFormatter
 
 from stages.report.items import Figure
-from stages.report.names import place_names
+from stages.report.names import Spot, place_names
 from stages.report.pareto import pareto_front
 from stages.report.results import NotRun, Results
 from stages.report.style import GREY, INK, colours, label, plain_logarithm, plt
@@ -51,17 +54,7 @@ def _against(axes: Axes, frame: pd.DataFrame, kind: str, tints: dict[str, str]) 
     for with_points, group in known[known["front"]].sort_values("time_ratio").groupby("with_points"):
         style = "-" if with_points else ":"
         axes.step(group["time_ratio"], group["ratio"], where="post", color=INK, lw=1, ls=style, zorder=1)
-    ends = []
-    for row in known.itertuples():
-        form, tint = KEPT[row.with_points][0], tints[row.backend]
-        across = ((row.time_low, row.ratio), (row.time_high, row.ratio))
-        for pair in (across, ((row.time_ratio, row.low), (row.time_ratio, row.high))):
-            axes.plot(*zip(*pair, strict=True), color=tint, lw=1.2, alpha=0.55)
-            if np.isfinite(pair).all():
-                ends.append(pair)
-        axes.plot(row.time_ratio, row.ratio, form, color=tint, ms=7, mec="white", mew=0.8, zorder=3)
-        if row.backend != REFERENCE:
-            axes.plot(row.whole_ratio, row.ratio, form, color=tint, mfc="none", ms=7, mew=1.1, zorder=2)
+    ends = [pair for row in known.itertuples() for pair in _mark(axes, row, tints)]
     for form, name in KEPT.values():
         axes.plot([], [], form, color="none", mec=INK, ms=6, label=name)
     axes.set(xscale="log", yscale="log", xlabel=f"seconds, ratio to {REFERENCE}")
@@ -73,9 +66,22 @@ def _against(axes: Axes, frame: pd.DataFrame, kind: str, tints: dict[str, str]) 
         plain_logarithm(axis)
     axes.legend(loc="upper right", fontsize=8)
     first = known.drop_duplicates("backend")
-    names = [(label(row.backend), (row.time_ratio, row.ratio)) for row in first.itertuples()]
+    spots = zip(first["time_ratio"], first["ratio"], strict=True)
     points = np.concatenate([known[["time_ratio", "ratio"]], known[["whole_ratio", "ratio"]].dropna()])
-    place_names(axes, names, points, ends)
+    place_names(axes, zip(first["backend"].map(label), spots, strict=True), points, ends)
+
+
+def _mark(axes: Axes, row: Any, tints: dict[str, str]) -> Iterator[list[Spot]]:
+    """Draws a backend's point with its intervals, hollow for all of simplify; the ends of those that are known."""
+    form, tint = KEPT[row.with_points][0], tints[row.backend]
+    across = [(row.time_low, row.ratio), (row.time_high, row.ratio)]
+    for pair in (across, [(row.time_ratio, row.low), (row.time_ratio, row.high)]):
+        axes.plot(*zip(*pair, strict=True), color=tint, lw=1.2, alpha=0.55)
+        if np.isfinite(pair).all():
+            yield pair
+    axes.plot(row.time_ratio, row.ratio, form, color=tint, ms=7, mec="white", mew=0.8, zorder=3)
+    if row.backend != REFERENCE:
+        axes.plot(row.whole_ratio, row.ratio, form, color=tint, mfc="none", ms=7, mew=1.1, zorder=2)
 
 
 def _growing(axes: Axes, rows: pd.DataFrame, fits: dict[str, Growth | None], tints: dict[str, str]) -> None:

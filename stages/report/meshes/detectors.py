@@ -60,7 +60,7 @@ def _means(table: pd.DataFrame) -> pd.DataFrame:
     lines, plain = [], table.xs(PLAIN, level="method")
     for method in ordered(table.index.unique("method")):
         mine = table.xs(method, level="method")
-        for metric in table:
+        for metric in table.columns:
             gain = interval(mine[metric] - plain[metric].reindex(mine.index)) if metric in ERRORS else [np.nan] * 3
             lines.append([method, metric, mine[metric].count(), *interval(mine[metric]), *gain])
     over = [f"over_plain{end}" for end in ("", "_low", "_high")]

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Sequence
 
 import pandas as pd
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure as Drawing
 
 from stages.kit.stats import interval
 from stages.report.items import Figure
@@ -30,7 +31,7 @@ def figure_3_4(results: Results) -> Figure:
     drawing, panels = plt.subplots(1, len(cells), figsize=size, sharey=True, squeeze=False)
     for axes, (metric, target) in zip(panels[0], cells, strict=True):
         _draw(axes, by_object(rows, metric, target), methods, CYCLE[METRICS.index(metric)], CLASSICAL)
-    _dress(panels[0], [f"{ERRORS[metric][0]}\n{said(target)}" for metric, target in cells], methods)
+    _dress(drawing, [f"{ERRORS[metric][0]}\n{said(target)}" for metric, target in cells], methods)
     objects = rows.groupby("target")["item"].nunique()
     over = ", ".join(f"{said(target)}: {objects[target]} objects" for target in targets)
     words = {"methods": ", ".join(map(short, methods)), "counts": len(targets), "classical": short(CLASSICAL)}
@@ -60,7 +61,7 @@ def figure_3_5(results: Results) -> Figure:
         if axes.get_legend_handles_labels()[0]:
             axes.legend(loc="lower center", bbox_to_anchor=(0.5, 0.99), ncols=3, fontsize=8, handletextpad=0,
                         columnspacing=0.6, borderpad=0.2)  # fmt: skip
-    _dress(panels, TITLES, methods, pad=20)
+    _dress(drawing, TITLES, methods, pad=20)
     objects = rows.groupby("target")["item"].nunique()
     over = ", ".join(f"{objects[target]} at {said(target)}" for target in targets)
     words = {"methods": ", ".join(map(short, methods)), "objects": rows["item"].nunique(), "over": over}
@@ -87,17 +88,17 @@ def _draw(
         axes.plot([], [], "o", color=tint, ms=4, label=name)
 
 
-def _dress(panels: Sequence[Axes], titles: Iterable[str], methods: Sequence[str], pad: float = 6) -> None:
-    """Titles above the panels of one row, names of the methods at the left, ours and plain QEM in their colours."""
-    for axes, title in zip(panels, titles, strict=True):
+def _dress(drawing: Drawing, titles: Iterable[str], methods: Sequence[str], pad: float = 6) -> None:
+    """Titles above the panels of a row, names of the methods at the left, ours and plain QEM in their colours."""
+    for axes, title in zip(drawing.axes, titles, strict=True):
         axes.set_title(title, fontsize=9.5, fontweight="normal", pad=pad)
         axes.grid(axis="x")
         axes.hlines(range(len(methods)), 0, 1, transform=axes.get_yaxis_transform(), color=PALE, lw=0.4, zorder=0)
         axes.tick_params(axis="y", length=0)
         axes.tick_params(axis="x", labelsize=8)
         axes.spines["left"].set_visible(False)
-    name_rows(panels[0], methods, [HELD.get(method, INK) for method in methods], 8.5)
-    panels[0].get_figure().subplots_adjust(wspace=0.12)
+    name_rows(drawing.axes[0], methods, [HELD.get(method, INK) for method in methods], 8.5)
+    drawing.subplots_adjust(wspace=0.12)
 
 
 def name_rows(axes: Axes, methods: Sequence[str], tints: Sequence[str], size: float) -> None:

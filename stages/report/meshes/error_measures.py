@@ -28,10 +28,10 @@ def samples(results: Results) -> Figure:
     plain, whole = (speed[peer] / speed["metro"] for peer in ("pymeshlab", "pymeshlab, with vertices"))
     words = {
         "title": SAMPLES, "meshes": rows["mesh"].nunique(), "usual": USUAL,
-        "ours": 100 * ours.loc[USUAL, "value"], "theirs": 100 * theirs.loc[USUAL, "value"],
-        "same": ours.index[ours["value"] <= theirs.loc[USUAL, "value"]].min(), "pairs": len(speed),
+        "ours": 100 * ours["value"][USUAL], "theirs": 100 * theirs["value"][USUAL],
+        "same": ours.index[ours["value"] <= theirs["value"][USUAL]].min(), "pairs": len(speed),
         "plain": plain.median(), "least": plain.min(), "most": plain.max(), "whole": whole.median(),
-        "million": theirs.loc[MOST, "seconds"] / ours.loc[MOST, "seconds"],
+        "million": theirs["seconds"][MOST] / ours["seconds"][MOST],
     }  # fmt: skip
     drawing, axes = plt.subplots(figsize=(7.2, 4.6))
     axes.set(xscale="log", yscale="log", ylabel="error of the mean, %")
@@ -42,9 +42,10 @@ def samples(results: Results) -> Figure:
         axes.plot(line["cost_ratio"], 100 * line["value"], marker=marker, color=colour, mec="white", ms=7, label=name)
         # Ours lies below and left of the other line: its numbers stand on the free side.
         side = (-8, -4, "right", "top") if method == "metro" else (8, 4, "left", "bottom")
-        for row in line[line["samples"].isin(NAMED)].itertuples():
-            axes.annotate(f"{row.samples:,}", (row.cost_ratio, 100 * row.value), xytext=side[:2], ha=side[2],
-                          va=side[3], textcoords="offset points", fontsize=8.5, color=INK)  # fmt: skip
+        named = line.loc[line["samples"].isin(NAMED), ["samples", "cost_ratio", "value"]]
+        for count, cost, value in named.itertuples(index=False):
+            axes.annotate(f"{count:,}", (cost, 100 * value), xytext=side[:2], ha=side[2], va=side[3],
+                          textcoords="offset points", fontsize=8.5, color=INK)  # fmt: skip
     axes.set_xlabel(f"time, as a ratio to pymeshlab with {USUAL:,} samples")
     axes.set_title(SAMPLES, pad=12)
     axes.margins(x=0.1, y=0.1)
@@ -60,8 +61,8 @@ def _typical_samples(rows: pd.DataFrame) -> pd.DataFrame:
     low, high: the error of the best and of the worst of the few meshes.
     """
     logs = rows.assign(value=np.log(rows["value"]), seconds=np.log(rows["seconds"])).groupby(["method", "samples"])
-    frame = np.exp(logs[["value", "seconds"]].mean().assign(low=logs["value"].min(), high=logs["value"].max()))
-    frame = frame.reset_index().astype({"samples": int})
+    frame = logs[["value", "seconds"]].mean().assign(low=logs["value"].min(), high=logs["value"].max())
+    frame = frame.apply(np.exp).reset_index().astype({"samples": int})
     usual = frame.loc[(frame["method"] == "pymeshlab") & (frame["samples"] == USUAL), "seconds"]
     return frame.assign(cost_ratio=frame["seconds"] / (usual.iloc[0] if len(usual) else np.nan))
 

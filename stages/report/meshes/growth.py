@@ -25,7 +25,7 @@ class Growth:
     high: float
     span: tuple[float, float]
 
-    def __call__(self, n: np.ndarray | float, power: float | None = None) -> np.ndarray | float:
+    def __call__(self, n: np.ndarray, power: float | None = None) -> np.ndarray:
         """Seconds at n faces; power: another than the fitted, through the same middle."""
         shape = POWERS[self.shape]
         return self.level * (shape(n) / shape(self.middle)) ** (self.power if power is None else power)

@@ -63,7 +63,7 @@ def face_counts(rows: pd.DataFrame) -> list[str]:
 def wide(cells: pd.DataFrame, down: str | list[str], across: str) -> pd.DataFrame:
     """Column `text` pivoted, rows and columns in the order of the cells; `–` where there is none."""
     found = cells.pivot(index=down, columns=across, values="text").rename_axis(columns=None)
-    return found.loc[cells.set_index(down).index.unique(), cells[across].unique()].fillna("–")
+    return found.reindex(cells.set_index(down).index.unique(), columns=cells[across].unique()).fillna("–")
 
 
 def marked(row: Any) -> str:

@@ -8,9 +8,9 @@ from stages.report.grid import means
 from stages.report.items import Figure
 from stages.report.pareto import pareto_front
 from stages.report.results import NotRun, Results
-from stages.report.style import INK, MARKERS, colours, label, plain_logarithm, plt
+from stages.report.style import INK, MARKERS, WAYS, colours, label, plain_logarithm, plt
 
-from .methods import CLASSICAL, ENHANCED, HKS, OURS, PLAIN, fixed
+from .methods import CLASSICAL, ENHANCED, HKS, OURS, PLAIN
 from .rows import ERRORS, METRICS, STAGE, paired_cells, size
 
 METHODS = [  # as many as have a colour of their own; the other methods are in figures 3.4 and 3.5
@@ -43,12 +43,12 @@ def _costed(rows: pd.DataFrame, search: dict[str, float]) -> pd.DataFrame:
     search: seconds to find a method's points. Plain QEM looks for none.
     """
     frame = pd.DataFrame(means(rows, ["metric", "method", "target"]))
-    base = frame["method"].map(lambda method: method if fixed(method) else method.rpartition("-")[0])
+    base = frame["method"].str.replace(f"-({'|'.join(WAYS)})$", "", regex=True)
     frame = frame.assign(looked=base.map({**search, PLAIN: 0.0})).dropna(subset=["looked"])
     plain = frame["seconds"].where(frame["method"] == PLAIN).groupby([frame["metric"], frame["target"]])
     frame["seconds"] += frame["looked"]
     frame["cost_ratio"] = frame["seconds"] / plain.transform("first")
-    ends, factor = ["mean", "low", "high"], frame["metric"].map(lambda metric: ERRORS[metric][1])
+    ends, factor = ["mean", "low", "high"], frame["metric"].map({name: unit for name, (_, unit) in ERRORS.items()})
     frame[ends] = frame[ends].mul(factor, axis=0)
     for _, group in frame.groupby(["metric", "target"]):
         frame.loc[group.index, "on_front"] = pareto_front(group["cost_ratio"], group["mean"], "low")
@@ -65,10 +65,10 @@ def _draw(frame: pd.DataFrame, targets: list[str]) -> Drawing:
         for _, group in here[here["on_front"]].sort_values("cost_ratio").groupby("target"):
             ends = [*group["cost_ratio"], here["cost_ratio"].max()]
             axes.step(ends, [*group["mean"], group["mean"].iloc[-1]], where="post", color=INK, lw=0.9, zorder=1)
-        for row in here.itertuples():
-            tint = tints[row.method]
-            axes.plot([row.cost_ratio] * 2, [row.low, row.high], color=tint, lw=1.2, alpha=0.5, zorder=2)
-            axes.plot(row.cost_ratio, row.mean, forms[row.target], color=tint, ms=7, mec="white", mew=0.8, zorder=3)
+        columns = here[["method", "target", "cost_ratio", "mean", "low", "high"]]
+        for method, target, cost, mean, *ends in columns.itertuples(index=False):
+            axes.plot([cost] * 2, ends, color=tints[method], lw=1.2, alpha=0.5, zorder=2)
+            axes.plot(cost, mean, forms[target], color=tints[method], ms=7, mec="white", mew=0.8, zorder=3)
         unit = "%" if metric == "ssim_error" else "% of the diagonal"
         axes.set(xscale="log", yscale="log", xlabel=f"cost, as a ratio to {label(PLAIN)}", ylabel=unit)
         axes.grid(True)

@@ -46,7 +46,8 @@ def table(results: Results) -> Table:
     frame = frame.assign(printed=frame["method"].map(PRINTED)).merge(thesis, "left").drop(columns="printed")
     orders = {"target": sorted(set(frame["target"]), key=size), "method": METHODS, "metric": list(METRICS)}
     cells = frame.assign(**{name: pd.Categorical(frame[name], order) for name, order in orders.items()})
-    cells["block"] = [said(row.target) + ", nothing shrunk" * row.nothing_shrunk for row in cells.itertuples()]
+    blocks = cells[BLOCK].itertuples(index=False)
+    cells["block"] = [said(target) + ", nothing shrunk" * whole for target, whole in blocks]
     return Table(frame, _wide(cells), {"objects": _counted(cells), "fewest": FEWEST})
 
 
@@ -65,10 +66,12 @@ def _parts(results: Results) -> Iterator[pd.DataFrame]:
 def _wide(cells: pd.DataFrame) -> pd.DataFrame:
     """A row a block and method, most faces first; for each metric a column a data set, and the thesis's."""
     printed = cells.drop_duplicates([*BLOCK, "method", "metric"]).assign(data="thesis")
-    printed["text"] = [number(ERRORS[row.metric][1] * row.thesis) for row in printed.itertuples()]
+    thesis = printed[["metric", "thesis"]].itertuples(index=False)
+    printed["text"] = [number(ERRORS[metric][1] * value) for metric, value in thesis]
     cells = pd.concat([cells.assign(text=[marked(row) for row in cells.itertuples()]), printed])
     cells = cells.sort_values([*BLOCK, "method", "metric"], ignore_index=True)
-    cells["head"] = [f"{ERRORS[row.metric][0]}, {row.data}" for row in cells.itertuples()]
+    heads = cells[["metric", "data"]].itertuples(index=False)
+    cells["head"] = [f"{ERRORS[metric][0]}, {data}" for metric, data in heads]
     cells["kept points"] = [label(method) for method in cells["method"]]
     return wide(cells, ["block", "kept points"], "head").reset_index(names=["target", "kept points"])
 

@@ -42,9 +42,8 @@ def _better(frame: pd.DataFrame) -> str:
     common = mine.loc[mine["classifier"] == "majority", "accuracy"]
     others = mine[mine["classifier"] != "majority"]
     counts = (others["low"] > common.reindex(others.index)).groupby(["palm", "scaled"]).agg(["sum", "size"])
-    return "; ".join(
-        f"palm {palm}, {SCALED[way]} {one['sum']} of {one['size']}" for (palm, way), one in counts.iterrows()
-    )
+    rows = counts.reset_index().itertuples(index=False)
+    return "; ".join(f"palm {palm}, {SCALED[way]} {better} of {count}" for palm, way, better, count in rows)
 
 
 def _wide(frame: pd.DataFrame) -> pd.DataFrame:

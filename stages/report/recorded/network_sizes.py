@@ -55,15 +55,15 @@ def _draw(axes: Axes, frame: pd.DataFrame) -> None:
     lines = []
     for (left, before), (right, after) in pairwise(zip(front["cost"], front["accuracy"], strict=True)):
         lines += [((left, before), (right, before)), ((right, before), (right, after))]
-    for row in frame.itertuples():
-        if np.isfinite(row.low):
-            lines.append(((row.cost, row.low), (row.cost, row.high)))
-            axes.plot([row.cost] * 2, [row.low, row.high], color="#0072B2", lw=1.2, alpha=0.5)
-        axes.plot(row.cost, row.accuracy, "o", color="#0072B2", ms=6, mec="white")
+    for cost, middle, low, high in frame[["cost", "accuracy", "low", "high"]].itertuples(index=False):
+        if np.isfinite(low):
+            lines.append(((cost, low), (cost, high)))
+            axes.plot([cost] * 2, [low, high], color="#0072B2", lw=1.2, alpha=0.5)
+        axes.plot(cost, middle, "o", color="#0072B2", ms=6, mec="white")
     axes.margins(x=0.2)
     axes.grid(True)
     axes.xaxis.set_major_locator(ticks(frame["cost"].max() / frame["cost"].min()))
     axes.xaxis.set_major_formatter("{x:g}")
     axes.xaxis.set_minor_formatter(NullFormatter())
-    points = frame[["cost", "accuracy"]].to_numpy()
-    place_names(axes, list(zip(frame["name"], points, strict=True)), points, lines)
+    points = list(zip(frame["cost"], frame["accuracy"], strict=True))
+    place_names(axes, zip(frame["name"], points, strict=True), np.array(points), lines)

@@ -1,6 +1,7 @@
 """Networks for photographs on recorded touches: those at hand, and T tables 5.1, 5.2 and 5.5 of those that are not."""
 
 from functools import partial
+from typing import Any
 
 import pandas as pd
 
@@ -24,27 +25,28 @@ ABSENT = (
 def build(results: Results) -> Table:
     """Accuracy of each network, start and mode on each recording and split, with its gains over the controls."""
     frame = measured_lines(results)
-    shown = [
-        {
-            "data": DATA.get(row.data, row.data),
-            "split": SPLITS.get(row.split, row.split),
-            "network": "features and kNN" if row.method == CLASSICAL[0] else label(row.method),
-            "starts from": origin(row.weights, row.pretrained) if row.weights in STARTS else "–",
-            "filters": f"{label(row.mode)}, {row.size} px" if row.mode else "–",
-            "accuracy, %": with_interval(row.accuracy, row.low, row.high, 100, 1),
-            "guessing, %": percent(row.guess, 1),
-            "over features and kNN": _gain(row.over_features, row.over_features_low, row.over_features_high),
-            "over random weights": _gain(row.over_random, row.over_random_low, row.over_random_high),
-            "over": f"{row.values} {'objects' if row.split in OVER else 'splits'}",
-        }
-        for row in frame.itertuples()
-    ]
-    return Table(frame, pd.DataFrame(shown))
+    return Table(frame, pd.DataFrame([_shown(row) for row in frame.itertuples()]))
+
+
+def _shown(row: Any) -> dict[str, Any]:
+    """A row of `measured_lines` for a reader."""
+    return {
+        "data": DATA.get(row.data, row.data),
+        "split": SPLITS.get(row.split, row.split),
+        "network": "features and kNN" if row.method == CLASSICAL[0] else label(row.method),
+        "starts from": origin(row.weights, row.pretrained) if row.weights in STARTS else "–",
+        "filters": f"{label(row.mode)}, {row.size} px" if row.mode else "–",
+        "accuracy, %": with_interval(row.accuracy, row.low, row.high, 100, 1),
+        "guessing, %": percent(row.guess, 1),
+        "over features and kNN": _gain(row.over_features, row.over_features_low, row.over_features_high),
+        "over random weights": _gain(row.over_random, row.over_random_low, row.over_random_high),
+        "over": f"{row.values} {'objects' if row.split in OVER else 'splits'}",
+    }
 
 
 def _gain(*points: float) -> str:
     """Points gained [interval]; a dash where there is nothing to compare with."""
-    return signed(*(100 * value for value in points), 1) if points[0] == points[0] else "–"
+    return signed(*(100 * value for value in points), places=1) if points[0] == points[0] else "–"
 
 
 def printed(data: str, thesis: str, results: Results) -> Table:
@@ -58,7 +60,7 @@ def printed(data: str, thesis: str, results: Results) -> Table:
         own = {network: mine[(mine["method"] == network) & (mine["mode"] == mode)]["value"] for network in PRINTED}
         found = [interval(values, shared_by(Split.RANDOM)) for values in own.values()]
         frame[[mode, f"{mode}_low", f"{mode}_high"]] = found
-        frame[f"{mode}_thesis"] = [figures.loc[name, f"acc_{mode}"] for name in PRINTED.values()]
+        frame[f"{mode}_thesis"] = figures.loc[[*PRINTED.values()], f"acc_{mode}"].to_numpy()
         shown[f"{label(mode)}: ours, %"] = [with_interval(*ends, 100, 1) for ends in found]
         shown[f"{label(mode)}: thesis, %"] = frame[f"{mode}_thesis"].map(partial(percent, places=1))
     return Table(frame, shown, {"absent": "" if len(mine) else ABSENT})

@@ -1,5 +1,7 @@
 """How far simulated imprints help to recognise real touches: a table, and a figure of two classifiers."""
 
+from typing import Any
+
 import pandas as pd
 
 from stages.kit.split import Split, shared_by
@@ -22,9 +24,9 @@ def build_table(results: Results) -> Table:
     """Accuracy of kNN by kind of simulated imprints and number of real touches."""
     frame, rows = accuracies(results), _rows(results)
     alone = rows[(rows["group"] != "all") & (rows["training"] == "simulated")]
-    by_class = alone.groupby(["simulation", "aligned", "group"])["value"].mean()
-    best = by_class.groupby(level=[0, 1]).mean().idxmax()
-    shares = by_class.loc[best].sort_values(ascending=False)
+    ways = [(way, own.groupby("group")["value"].mean()) for way, own in alone.groupby(["simulation", "aligned"])]
+    best, shares = max(ways, key=lambda way: way[1].mean())
+    shares = shares.sort_values(ascending=False)
     words = {"way": _way(*best), "shares": ", ".join(f"{name} {100 * share:.0f}" for name, share in shares.items())}
     return Table(frame, _wide(frame), words | {"best": _best(frame)})
 
@@ -73,18 +75,17 @@ def _rows(results: Results) -> pd.DataFrame:
     return rows.assign(simulation=rows["simulation"].fillna("none"), aligned=rows["aligned"].fillna(False).astype(bool))
 
 
-def _way(simulation: str, aligned: bool) -> str:
+def _way(simulation: Any, aligned: Any) -> str:
     return SIMULATIONS[simulation] + (", aligned" if aligned else "")
 
 
 def _best(frame: pd.DataFrame) -> str:
     """The best of all classifiers by the number of real touches, with and without simulated imprints."""
     top = frame.loc[frame.groupby(["training", "touches"])["accuracy"].idxmax()]
-    said = {
-        (row.training, row.touches): f"{100 * row.accuracy:.0f} ({label(row.classifier)}"
-        + (f", {_way(row.simulation, row.aligned)})" if row.training == "both" else ")")
-        for row in top.itertuples()
-    }
+    said = {}
+    for training, simulation, aligned, touches, classifier, share, *_ in top.itertuples(index=False):
+        way = f", {_way(simulation, aligned)}" if training == "both" else ""
+        said[training, touches] = f"{100 * share:.0f} ({label(classifier)}{way})"
     counts = sorted(set(frame["touches"]) - {0})
     return "; ".join(f"{count}: {said['real', count]} without, {said['both', count]} with" for count in counts)
 

@@ -1,6 +1,7 @@
 """T table 4.4: real touches of four and six objects, with and without the selection of dissimilar ones."""
 
 from itertools import product
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -34,7 +35,7 @@ def build(results: Results) -> Table:
     return Table(frame, shown, _words(rows, frame))
 
 
-def _line(scores: dict[tuple, np.ndarray], thesis: pd.DataFrame, *key: str) -> dict[str, object]:
+def _line(scores: dict[tuple, np.ndarray], thesis: pd.DataFrame, *key: str) -> dict[str, Any]:
     """A row of one set, selection and classifier."""
     name, selection, classifier = key
     shared = 0.0 if name.endswith("drawn") else shared_by(Split.RANDOM)  # drawn: another set each time
@@ -49,7 +50,7 @@ def _line(scores: dict[tuple, np.ndarray], thesis: pd.DataFrame, *key: str) -> d
 def _words(rows: pd.DataFrame, frame: pd.DataFrame) -> dict[str, object]:
     """What was removed, and what the random hold-out flatters."""
     by_metric = dict(list(rows.groupby("metric")))
-    removed = by_metric["share_similar"].groupby("set")["value"].mean().reindex(list(SETS))
+    removed = by_metric["share_similar"].groupby("set")["value"].mean()
     chosen = {
         name: " ".join(rows.loc[rows["set"] == f"{name}_alike", "chosen"].dropna().unique()).split()
         for name in ("four", "six")
@@ -58,7 +59,7 @@ def _words(rows: pd.DataFrame, frame: pd.DataFrame) -> dict[str, object]:
     whole = frame[(frame["set"] == "all") & (frame["selection"] == "all")].set_index("classifier")
     lost = 100 * (whole["accuracy"] - whole["accuracy_blocks"])
     return {
-        "removed": ", ".join(f"{SETS[name]} {100 * share:.1f} %" for name, share in removed.items()),
+        "removed": ", ".join(f"{said} {100 * removed.get(name, np.nan):.1f} %" for name, said in SETS.items()),
         **{name: ", ".join(classes) for name, classes in chosen.items()},
         "near": with_interval(*near, places=2), "far": with_interval(*far, places=2),
         "knn": lost["knn"], "least": lost.min(), "most": lost.max(),

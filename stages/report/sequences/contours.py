@@ -1,6 +1,7 @@
 """T figures 4.14 and 4.15: contours on objects, blind and guided, and what is felt along one."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -19,6 +20,7 @@ from .rows import BLIND, GUIDED
 OBJECTS, PATHS, FRAMES = 4, 3, 6
 REACH = 0.09  # units that a normal is drawn long
 ROWS = 420
+STROKES: list[dict[str, Any]] = [{"lw": 0.8, "alpha": 0.45, "ls": (0, (2, 2))}, {"lw": 2.0}]  # hidden, seen
 CLEAR = 2e-3  # units along the view to come off the surface, before asking what hides a point
 
 
@@ -90,7 +92,7 @@ class Canvas:
         middles = (points[:-1] + points[1:]) / 2 + CLEAR * back
         hidden = self.scene.cast(middles, np.broadcast_to(back, middles.shape)).hit
         across, down = self.pixels(points)
-        for mask, style in ((hidden, {"lw": 0.8, "alpha": 0.45, "ls": (0, (2, 2))}), (~hidden, {"lw": 2.0})):
+        for mask, style in zip((hidden, ~hidden), STROKES, strict=True):
             # One stroke a run of segments that are alike, so that dashes do not start anew at each.
             bounds = np.flatnonzero(np.diff(np.r_[False, mask, False].astype(int)))
             for start, stop in bounds.reshape(-1, 2):

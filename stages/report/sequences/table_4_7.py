@@ -29,4 +29,5 @@ def build(results: Results) -> Table:
     frame = frame[["network", "layer", "thesis", "kind", "output", "parameters"]]
     shown = frame.assign(network=frame["network"].map(NETWORKS))
     shown = shown.rename(columns={"kind": "ours", "output": "output of ours"})
-    return Table(frame, shown, frame.groupby("network")["parameters"].sum().to_dict())
+    totals = frame.groupby("network")["parameters"].sum()
+    return Table(frame, shown, {name: totals[name] for name in NETWORKS})

@@ -1,5 +1,7 @@
 """T table 4.9: which class of objects is it, by following contours."""
 
+from functools import partial
+
 import numpy as np
 import pandas as pd
 
@@ -30,7 +32,7 @@ def build(results: Results) -> Table:
         ]  # fmt: skip
     frame = pd.DataFrame(lines)
     counts = frame.groupby("objects", sort=False)["sequences"].max()
-    counted = ", ".join(f"{int(count):,} ({dataset_text(source)})" for source, count in counts.items())
+    counted = ", ".join(f"{int(count):,} ({dataset_text(str(source))})" for source, count in counts.items())
     return Table(frame, _wide(frame), {"not_run": results.left_out(STAGE), "counted": counted})
 
 
@@ -52,7 +54,7 @@ def _wide(frame: pd.DataFrame) -> pd.DataFrame:
     cells = frame.assign(text=[cell_text(row, places=1, gap=None) for _, row in frame.iterrows()])
     shown = cells.pivot_table(index=KEYS, columns="strategy", values="text", aggfunc="first", sort=False)
     shown = shown.rename(columns=lambda name: f"{label(name)}, %")
-    shown["chance"] = frame.groupby(KEYS, sort=False)["chance"].first().map(lambda share: percent(share, 1))
+    shown["chance"] = frame.groupby(KEYS, sort=False)["chance"].first().map(partial(percent, places=1))
     shown = shown.reset_index()
     return shown.assign(
         objects=shown["objects"].map(dataset_text), split=shown["split"].map(SPLITS),
