@@ -49,7 +49,7 @@ def grid(
     across: str,
     value: str = "accuracy",
     beside: Sequence[str] = ("thesis",),
-    names: Mapping[str, Callable[[Any], Any]] = {},
+    names: Mapping[str, Callable[[Any], Any]] | None = None,
     head: Callable[[Any], str] = str,
     places: int = 0,
     gap: str | None = "–",
@@ -67,7 +67,7 @@ def grid(
     wide = wide.loc[order if len(down) > 1 else [key[0] for key in order], list(dict.fromkeys(cells[across]))]
     wide = wide.fillna("not run").rename(columns=head).reset_index()
     wide.columns.name = None
-    return wide.assign(**{column: wide[column].map(say) for column, say in names.items()})
+    return wide.assign(**{column: wide[column].map(say) for column, say in (names or {}).items()})
 
 
 def cell_text(
