@@ -35,8 +35,7 @@ def build(results: Results) -> Figure:
         for _, group in frame.groupby("with_points"):  # the task without points to keep is another than the one with
             frame.loc[group.index, f"{kind}_front"] = pareto_front(group["time_ratio"], group[f"{kind}_ratio"], "low")
         _against(axes, frame, kind, tints)
-        axes.set_ylabel(f"{name}, ratio to {REFERENCE}")
-        axes.set_title(title)
+        axes.set(ylabel=f"{name}, ratio to {REFERENCE}", title=title)
     fits = {name: growth(paired[paired["backend"] == name]) for name in dict.fromkeys(rows["backend"])}
     _growing(panels[2], paired, fits, tints)
     powers = "; ".join(f"{label(name)} {fit.said}" for name, fit in fits.items() if fit)

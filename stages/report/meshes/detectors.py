@@ -14,7 +14,7 @@ from stages.report.words import dataset_text
 from stages.salient_points import METHODS
 
 from .methods import COMBINATIONS, PLAIN, ordered, short
-from .rows import ERRORS, METRICS, STAGE, data_sets, marked, paired_cells, wide
+from .rows import ERRORS, METRICS, STAGE, UNITS, data_sets, marked, paired_cells, wide
 
 MAIN = (*METRICS, "gaze_error")  # shown for the data sets after the first
 
@@ -32,8 +32,7 @@ def combinations(results: Results) -> Table:
     frame[metrics] = errors.reindex(COMBINATIONS, columns=metrics).to_numpy(dtype=float)
     shown = frame[["combination", "channels"]].copy()
     for metric in metrics:
-        name, factor = ERRORS[metric]
-        shown[name] = (factor * frame[metric]).map(number).replace("–", "not run")
+        shown[ERRORS[metric]] = (UNITS[metric] * frame[metric]).map(number).replace("–", "not run")
     return Table(frame, shown)
 
 
@@ -71,7 +70,7 @@ def _wide(frame: pd.DataFrame) -> pd.DataFrame:
     own, texts, heads = frame["data"].iloc[0], [], []
     cells = frame[(frame["data"] == own) | frame["metric"].isin(MAIN)]
     for row in cells.itertuples():
-        name = ERRORS[row.metric][0] if row.metric in ERRORS else row.metric
+        name = ERRORS.get(row.metric, row.metric)
         heads.append(name if row.data == own else f"{name}, {row.data}")
         texts.append(marked(row) if row.metric in ERRORS else f"{row.mean:.1f}")
     found = wide(cells.assign(text=texts, head=heads), "method", "head")

@@ -31,7 +31,7 @@ def figure_3_4(results: Results) -> Figure:
     drawing, panels = plt.subplots(1, len(cells), figsize=size, sharey=True, squeeze=False)
     for axes, (metric, target) in zip(panels[0], cells, strict=True):
         _draw(axes, by_object(rows, metric, target), methods, CYCLE[METRICS.index(metric)], CLASSICAL)
-    _dress(drawing, [f"{ERRORS[metric][0]}\n{said(target)}" for metric, target in cells], methods)
+    _dress(drawing, [f"{ERRORS[metric]}\n{said(target)}" for metric, target in cells], methods)
     objects = rows.groupby("target")["item"].nunique()
     over = ", ".join(f"{said(target)}: {objects[target]} objects" for target in targets)
     words = {"methods": ", ".join(map(short, methods)), "counts": len(targets), "classical": short(CLASSICAL)}

@@ -51,7 +51,7 @@ def samples(results: Results) -> Figure:
     axes.margins(x=0.1, y=0.1)
     axes.legend(title="samples each way")
     for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_formatter(lambda value, _: f"{value:g}")
+        axis.set_major_formatter("{x:g}")
     return Figure(drawing, words, frame)
 
 
@@ -71,7 +71,7 @@ def views(results: Results) -> Figure:
     """Deviation from the error over all 62 viewpoints against the number of viewpoints, a line a metric."""
     frame = _typical_views(_rows(results, "views"))
     drawing, axes = plt.subplots(figsize=(7.2, 4.6))
-    axes.set_xscale("log")
+    axes.set(xscale="log", xlabel="viewpoints (lines: chosen by chance among 62)", ylabel="deviation from all 62, %")
     axes.grid(True)
     for (metric, (name, colour)), aside in zip(SEEN.items(), ASIDE, strict=True):
         points = frame[frame["metric"] == metric]
@@ -89,7 +89,6 @@ def views(results: Results) -> Figure:
     axes.set_xticks(ticks, [f"{tick:.0f}" for tick in ticks])
     axes.minorticks_off()
     axes.set_ylim(bottom=0)
-    axes.set(xlabel="viewpoints (lines: chosen by chance among 62)", ylabel="deviation from all 62, %")
     axes.set_title(VIEWS, pad=12)
     axes.legend(fontsize=9)
     miss, known = 100 * frame.set_index(["method", "views", "metric"])["value"], set(frame["metric"])

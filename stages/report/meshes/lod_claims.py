@@ -36,8 +36,7 @@ def build(results: Results) -> Table:
         **{head: [_cell(row) for row in part.itertuples()] for head, part in parts.items()},
         "unit": [claim.unit for claim in CLAIMS],
     })  # fmt: skip
-    frame = pd.concat([part.assign(data=head) for head, part in parts.items()])
-    frame = frame.rename(columns={"pairs": "objects"})
+    frame = pd.concat([part.assign(data=head, objects=part["pairs"]) for head, part in parts.items()])
     frame = frame[["key", "data", "verdict", "effect", "low", "high", "objects"]].sort_values("key", kind="stable")
     return Table(frame, shown)
 

@@ -12,11 +12,12 @@ from .methods import PLAIN
 
 STAGE = "lod"
 CELL = ["item", "target"]
-ERRORS = {  # metric -> (name, factor to the unit in which it is shown)
-    "metro_mean": ("Metro mean, %", 100), "metro_rms": ("Metro rms, %", 100), "metro_max": ("Metro max, %", 100),
-    "ssim_error": ("1 − SSIM, %", 100), "dlap": ("DLap", 1), "dnor": ("Dnor", 1),
-    "salient_error": ("error where our model looks, %", 100), "gaze_error": ("error where people look, %", 100),
+ERRORS = {  # metric -> name, with its unit
+    "metro_mean": "Metro mean, %", "metro_rms": "Metro rms, %", "metro_max": "Metro max, %",
+    "ssim_error": "1 − SSIM, %", "dlap": "DLap", "dnor": "Dnor",
+    "salient_error": "error where our model looks, %", "gaze_error": "error where people look, %",
 }  # fmt: skip
+UNITS = {metric: 100 if name.endswith("%") else 1 for metric, name in ERRORS.items()}  # factors to the unit
 METRICS = ("metro_mean", "ssim_error")  # those of the thesis's figures
 FEWEST = 3  # objects that a mean over objects needs to be shown
 
@@ -50,7 +51,7 @@ def paired_cells(
 def by_object(rows: pd.DataFrame, metric: str, target: str | None = None) -> pd.DataFrame:
     """Frame objects x methods of one error in its unit; target: at this one alone, or the mean over all."""
     rows = rows[(rows["metric"] == metric) & (rows["target"].eq(target) if target else True)]
-    return ERRORS[metric][1] * rows.pivot_table(index="item", columns="method", values="value")
+    return UNITS[metric] * rows.pivot_table(index="item", columns="method", values="value")
 
 
 def face_counts(rows: pd.DataFrame) -> list[str]:
@@ -69,7 +70,7 @@ def wide(cells: pd.DataFrame, down: str | list[str], across: str) -> pd.DataFram
 def marked(row: Any) -> str:
     """`1.2 [1.1, 1.3] +`: an error with its interval, + or – where it differs from plain QEM beyond chance."""
     mark = " +" if row.over_plain_low > 0 else " –" if row.over_plain_high < 0 else ""
-    return with_interval(row.mean, row.low, row.high, ERRORS[row.metric][1]) + mark
+    return with_interval(row.mean, row.low, row.high, UNITS[row.metric]) + mark
 
 
 def size(target: str) -> tuple[bool, float]:

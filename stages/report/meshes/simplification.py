@@ -11,7 +11,7 @@ from stages.report.results import NotRun, Results
 from stages.report.style import INK, MARKERS, WAYS, colours, label, plain_logarithm, plt
 
 from .methods import CLASSICAL, ENHANCED, HKS, OURS, PLAIN
-from .rows import ERRORS, METRICS, STAGE, paired_cells, size
+from .rows import ERRORS, METRICS, STAGE, UNITS, paired_cells, size
 
 METHODS = [  # as many as have a colour of their own; the other methods are in figures 3.4 and 3.5
     PLAIN, OURS, f"{OURS}-soft", CLASSICAL, ENHANCED, f"{ENHANCED}-adaptive", "random", HKS,
@@ -48,7 +48,7 @@ def _costed(rows: pd.DataFrame, search: dict[str, float]) -> pd.DataFrame:
     plain = frame["seconds"].where(frame["method"] == PLAIN).groupby([frame["metric"], frame["target"]])
     frame["seconds"] += frame["looked"]
     frame["cost_ratio"] = frame["seconds"] / plain.transform("first")
-    ends, factor = ["mean", "low", "high"], frame["metric"].map({name: unit for name, (_, unit) in ERRORS.items()})
+    ends, factor = ["mean", "low", "high"], frame["metric"].map(UNITS)
     frame[ends] = frame[ends].mul(factor, axis=0)
     for _, group in frame.groupby(["metric", "target"]):
         frame.loc[group.index, "on_front"] = pareto_front(group["cost_ratio"], group["mean"], "low")
@@ -75,7 +75,7 @@ def _draw(frame: pd.DataFrame, targets: list[str]) -> Drawing:
         axes.margins(x=0.1)
         plain_logarithm(axes.xaxis, (1.0,))
         plain_logarithm(axes.yaxis)
-        axes.set_title(ERRORS[metric][0].removesuffix(", %"), fontsize=10)
+        axes.set_title(ERRORS[metric].removesuffix(", %"), fontsize=10)
     for method, tint in tints.items():
         axes.plot([], [], "o", color=tint, ms=6, label=label(method))
     for target, form in forms.items():

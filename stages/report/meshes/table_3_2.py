@@ -18,7 +18,7 @@ from stages.report.words import dataset_text
 
 from .dots import name_rows
 from .methods import ENHANCED, FIXED_ADAPTIVE, HKS, OURS, PLAIN, RIVALS, short
-from .rows import ERRORS, FEWEST, METRICS, STAGE, data_sets, face_counts, marked, paired_cells, said, size, wide
+from .rows import ERRORS, FEWEST, METRICS, STAGE, UNITS, data_sets, face_counts, marked, paired_cells, said, size, wide
 
 METHODS = [*FIXED_ADAPTIVE, "thesis_ed", "thesis_ed-adaptive", ENHANCED, f"{ENHANCED}-adaptive", "VisAttAll", HKS,
            OURS, PLAIN]  # fmt: skip
@@ -45,9 +45,8 @@ def table(results: Results) -> Table:
     thesis = thesis.rename(columns={"method": "printed", "faces": "target"}).astype({"target": str})
     frame = frame.assign(printed=frame["method"].map(PRINTED)).merge(thesis, "left").drop(columns="printed")
     orders = {"target": sorted(set(frame["target"]), key=size), "method": METHODS, "metric": list(METRICS)}
-    cells = frame.assign(**{name: pd.Categorical(frame[name], order) for name, order in orders.items()})
-    blocks = cells[BLOCK].itertuples(index=False)
-    cells["block"] = [said(target) + ", nothing shrunk" * whole for target, whole in blocks]
+    cells = frame.assign(block=frame["target"].map(said) + np.where(frame["nothing_shrunk"], ", nothing shrunk", ""))
+    cells = cells.assign(**{name: pd.Categorical(frame[name], order) for name, order in orders.items()})
     return Table(frame, _wide(cells), {"objects": _counted(cells), "fewest": FEWEST})
 
 
@@ -66,13 +65,11 @@ def _parts(results: Results) -> Iterator[pd.DataFrame]:
 def _wide(cells: pd.DataFrame) -> pd.DataFrame:
     """A row a block and method, most faces first; for each metric a column a data set, and the thesis's."""
     printed = cells.drop_duplicates([*BLOCK, "method", "metric"]).assign(data="thesis")
-    thesis = printed[["metric", "thesis"]].itertuples(index=False)
-    printed["text"] = [number(ERRORS[metric][1] * value) for metric, value in thesis]
+    printed["text"] = (printed["metric"].map(UNITS).astype(float) * printed["thesis"]).map(number)
     cells = pd.concat([cells.assign(text=[marked(row) for row in cells.itertuples()]), printed])
     cells = cells.sort_values([*BLOCK, "method", "metric"], ignore_index=True)
-    heads = cells[["metric", "data"]].itertuples(index=False)
-    cells["head"] = [f"{ERRORS[metric][0]}, {data}" for metric, data in heads]
-    cells["kept points"] = [label(method) for method in cells["method"]]
+    cells["head"] = cells["metric"].map(ERRORS).astype(str) + ", " + cells["data"]
+    cells["kept points"] = cells["method"].map(label)
     return wide(cells, ["block", "kept points"], "head").reset_index(names=["target", "kept points"])
 
 
@@ -100,8 +97,8 @@ def figure(results: Results) -> Figure:
     for row, (name, rows) in zip(grid, shown.items(), strict=True):
         for axes, (metric, target) in zip(row, product(METRICS, TARGETS), strict=True):
             here = rows[(rows["metric"] == metric) & (rows["target"] == target)]
-            _boxes(axes, here.assign(value=ERRORS[metric][1] * here["value"]), methods)
-            title = f"{ERRORS[metric][0]}, {said(target)}\n{name}, {here['item'].nunique()} objects"
+            _boxes(axes, here.assign(value=UNITS[metric] * here["value"]), methods)
+            title = f"{ERRORS[metric]}, {said(target)}\n{name}, {here['item'].nunique()} objects"
             axes.set_title(title, fontsize=8.5, fontweight="normal", pad=4)
         name_rows(row[0], methods, [TINTS[method] for method in methods], 8)
     drawing.subplots_adjust(wspace=0.08, hspace=0.34)

@@ -80,9 +80,8 @@ def _line(found: dict[tuple, pd.Series], key: tuple) -> dict[str, object]:
     controls = {"features": (data, split, *CLASSICAL), "random": (data, split, method, "random", mode, size)}
     for name, control in controls.items():
         gains = (found[key] - found[control]).dropna() if control in found and control != key else found[key][:0]
-        mean, low, high = interval(gains, shared)
-        over = f"over_{name}"
-        line |= {over: mean, f"{over}_low": low, f"{over}_high": high, f"{over}_pairs": len(gains)}
+        ends = zip(("", "_low", "_high", "_pairs"), (*interval(gains, shared), len(gains)), strict=True)
+        line |= {f"over_{name}{end}": value for end, value in ends}
     return line
 
 

@@ -139,11 +139,9 @@ def _chosen(results: Results, count: int) -> dict[str, tuple[Mesh, dict[str, Seq
     first = [name for name in results.settings.figure_objects if name in names]
     others = [name for name in names if name not in first]
     places = np.linspace(0, len(others) - 1, OBJECTS).round().astype(int) if others else []
-    chosen = [*first, *dict.fromkeys(others[place] for place in places)]
-    return {
-        name: (results.mesh(name, folder.parent.name), read_sequences(folder / f"{name}.npz"))
-        for name in chosen[:count]
-    }
+    chosen = [*first, *dict.fromkeys(others[place] for place in places)][:count]
+    source = folder.parent.name
+    return {name: (results.mesh(name, source), read_sequences(folder / f"{name}.npz")) for name in chosen}
 
 
 def _strategies(contours: dict[str, Sequences]) -> list[str]:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from itertools import product
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -82,7 +83,7 @@ def _beside_thesis(
     cells: pd.DataFrame,
     down: list[str],
     guesses: pd.Series | str = "",
-    names: Mapping[str, Callable[[object], str]] | None = None,
+    names: Mapping[str, Callable[[Any], str]] = {},
 ) -> pd.DataFrame:
     """Accuracies in per cent, a column for each set and split, whose head ends with `guesses`, then the thesis's."""
     head = cells["objects"].map(dataset_text) + ", " + cells["split"].map(SPLITS) + guesses + ", %"
