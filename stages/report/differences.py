@@ -51,7 +51,7 @@ def beyond_chance(results: Results, claim: Claim) -> pd.Series:
 
 
 def side(results: Results, claim: Claim, own: Side, other: Side | float | None, extra: Side | None = None) -> pd.Series:
-    """Values of one side, indexed by over and within; of several named values the mean, where all were measured.
+    """Values of one side, indexed by over and within; of several named values the mean of those measured.
 
     other: the other side, whose values a Pick leaves out. extra: further columns that both sides have in common.
     """
@@ -65,9 +65,6 @@ def side(results: Results, claim: Claim, own: Side, other: Side | float | None, 
     for column, wanted in where.items():
         if isinstance(wanted, Pick):
             rows = rows[rows[column] == _picked(rows, claim, column, wanted, other)]
-    for column, wanted in where.items():
-        for name in wanted if isinstance(wanted, tuple) else ():
-            _not_empty(rows[rows[column] == name], claim, f"{column} {name}")
     keys = [*claim.over, *claim.within]
     if not keys:
         return rows["value"]

@@ -40,7 +40,7 @@ def _line(scores: dict[tuple, np.ndarray], thesis: pd.DataFrame, *key: str) -> d
     name, selection, classifier = key
     shared = 0.0 if name.endswith("drawn") else shared_by(Split.RANDOM)  # drawn: another set each time
     mean, low, high = within(scores.get((*key, Split.RANDOM), []), shared)
-    line = dict(zip(KEYS, key, strict=True)) | {"accuracy": mean, "low": low, "high": high}
+    line: dict[str, Any] = dict(zip(KEYS, key, strict=True)) | {"accuracy": mean, "low": low, "high": high}
     column = f"{name}_{selection}"
     line["thesis"] = thesis.loc[classifier, column] if column in thesis else np.nan
     others = {f"accuracy_{split}": interval(scores.get((*key, split), []))[0] for split in (Split.FOLDS, Split.BLOCKS)}
