@@ -7,7 +7,7 @@ from sklearn.pipeline import Pipeline, make_pipeline
 from sklearn.preprocessing import StandardScaler
 from sklearn.svm import SVC
 
-from stages.kit.self_organising_map import SelfOrganisingMap
+from stages.kit.self_organising_map import NEURONS, SelfOrganisingMap
 
 from .reduction import MostInformative
 
@@ -82,4 +82,4 @@ def _after_selection(name, dimensions):
     estimator = ESTIMATORS[name.removesuffix("_no_som")](dimensions is not None)
     if dimensions is None:
         return estimator
-    return make_pipeline(SelfOrganisingMap(dimensions), StandardScaler(), estimator)
+    return make_pipeline(SelfOrganisingMap(dimensions, NEURONS), StandardScaler(), estimator)

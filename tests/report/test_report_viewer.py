@@ -113,10 +113,10 @@ def browser():
 @pytest.fixture(params=[1400, 390])
 def shown(request, browser, levels, tmp_path):
     """The viewer of two objects, opened at a width."""
-    names = ("dataset", "counts", "counted", "pipeline", "claims", "tables", "charts", "figures", "not_run")
-    parts = dict.fromkeys(names, "") | {"style": part("page.css"), "script": part("viewer.js")}
+    template = Template(part("page.html"))
+    parts = dict.fromkeys(template.get_identifiers(), "") | {"style": part("page.css"), "script": part("viewer.js")}
     parts |= {"meshes": script_json(pack_viewer(levels)), "viewer": part("viewer.html")}
-    (tmp_path / "page.html").write_text(Template(part("page.html")).substitute(parts), encoding="utf-8")
+    (tmp_path / "page.html").write_text(template.substitute(parts), encoding="utf-8")
     page = browser.new_page(viewport={"width": request.param, "height": 900})
     found = Page(page)
     page.goto((tmp_path / "page.html").as_uri())

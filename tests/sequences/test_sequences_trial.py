@@ -44,7 +44,7 @@ def contours(tmp_path, monkeypatch):
         for k, name in enumerate(objects):
             found = {strategy: sequences(level, seed=k) for strategy in ("guided", "random")}
             write_sequences(tmp_path / "data/toys/contours" / f"{name}.npz", found)
-    monkeypatch.setattr("stages.sequences.som.NEURONS", 30)  # quicker; few samples need no more
+    monkeypatch.setattr("stages.sequences.classifiers.NEURONS", 30)  # quicker; few samples need no more
     return tmp_path / "data/toys/contours"
 
 

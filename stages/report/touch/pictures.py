@@ -104,9 +104,11 @@ def touch_one_mesh(results: Results) -> Figure:
     own, settings = results.own_meshes, results.settings
     names = results.choose(() if own else [settings.hero_object], settings.viewer_count if own else 1)
     figure = plt.figure(figsize=(12, 5.4 * len(names)))
+    most = 0
     for part, name in zip(figure.subfigures(len(names), 1, squeeze=False).flat, names, strict=True):
         mesh, points = results.mesh(name), results.points(name)[MODEL]
         points = points[touchable(mesh, points)][:TOUCHES]
+        most = max(most, len(points))
         raw = distances(Surface(mesh), points, CELLS, PITCH)
         axes = sensor_axes(sensor_normals(mesh, points))
         draw(part, mesh, mesh.vertices[points], axes, normalise(raw, PITCH), np.ptp(raw, axis=(1, 2)), PITCH)
@@ -116,7 +118,7 @@ def touch_one_mesh(results: Results) -> Figure:
     words = {
         "title": title,
         "name": ", ".join(names),
-        "count": TOUCHES,
+        "count": most,
         "rows": CELLS[0],
         "columns": CELLS[1],
         "pitch": PITCH,
