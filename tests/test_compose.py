@@ -17,10 +17,12 @@ KIND = {}  # of sets that do not begin with meshes: the stage that does
 OPTIONS = [(path.parent.name, path.stem) for path in sorted(CONF.glob("*/*.yaml"))]
 
 
+@pytest.mark.slow
 def test_params_yaml_is_the_composed_default():
     assert (ROOT / "params.yaml").read_text() == OmegaConf.to_yaml(OmegaConf.create(compose()))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("group", "option"), OPTIONS)
 def test_every_option_composes_and_fits_the_schemas(group, option):
     chosen = [f"sets=[{option}]"] if group == "data" else [f"{group}={option}"]
@@ -30,18 +32,21 @@ def test_every_option_composes_and_fits_the_schemas(group, option):
     assert (compose(chosen) == compose()) == ((group, option) in defaults and group != "data")
 
 
+@pytest.mark.slow
 def test_a_set_runs_only_its_stages():
     values = compose(["sets=[folder]", "meshes.folder=scans"])
     assert values["sets"] == ["folder"] and "transfer" not in values["folder"]
     assert values["graph"]["meshes"] == {"folder": "scans"} and values["graph"]["transfer"] == []
 
 
+@pytest.mark.slow
 def test_a_setting_holds_for_all_sets_or_for_the_one_that_it_names():
     values = compose(["sets=[household,princeton]", "lod.rings=2", "princeton.lod.samples=7"])
     assert [values[name]["lod"]["rings"] for name in values["sets"]] == [2, 2]
     assert [values[name]["lod"]["samples"] for name in values["sets"]] == [10000, 7]
 
 
+@pytest.mark.slow
 def test_a_set_whose_files_are_absent_is_named_and_left_out(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr("stages.compose.FILE", tmp_path / "params.yaml")
     monkeypatch.setattr("sys.argv", ["compose", "sets=[household,gaze]", "gaze.meshes.folder=/nowhere/gaze.zip"])
@@ -51,6 +56,7 @@ def test_a_set_whose_files_are_absent_is_named_and_left_out(tmp_path, monkeypatc
     assert values["sets"] == ["household"] and "gaze" not in values and list(values["graph"]["meshes"]) == ["household"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("override", "hint"),
     [
@@ -71,6 +77,7 @@ def test_a_mistyped_setting_names_the_nearest_right_one(override, hint):
     assert hint in str(error.value)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("folder", ["scans", "/data/my scäns", 'a "b" c', "x=y,z"])
 def test_any_path_can_be_given_as_it_is(folder):
     values = compose(["sets=[folder]", f"meshes.folder={folder}"])

@@ -97,16 +97,19 @@ def ball(tmp_path):
     return tmp_path / "ball.stl"
 
 
+@pytest.mark.slow
 def test_what_a_mesh_of_ones_own_needs_runs_in_a_core_install(ball):
     done = python(CORE + SIX, ball)
     assert done.returncode == 0, done.stderr
 
 
+@pytest.mark.slow
 def test_one_mesh_is_simplified_in_a_core_install(ball):
     done = run_command("lod", ball, "--faces", 200, "--out", ball.with_suffix(".ply"), before=CORE)
     assert done.returncode == 0 and ball.with_suffix(".ply").exists(), done.stderr
 
 
+@pytest.mark.slow
 def test_a_stage_names_the_extra_that_a_core_install_lacks():
     (line,) = run_command("lod", "household", before=CORE).stderr.splitlines()
     assert line.startswith("haptic-glance lod: ") and line.endswith("pip install 'haptic-glance[pipeline]'")
@@ -118,6 +121,7 @@ def test_the_core_has_few_dependencies():
     assert not core & {"torch", "dvc", "hydra-core", "kornia", "pandas", "pymeshlab"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("module", sorted(third_party()))
 def test_every_import_belongs_to_the_core_or_to_one_extra(module):
     extra = EXTRAS.get(module)
@@ -168,6 +172,7 @@ def test_an_unknown_command_is_named():
     assert done.returncode == 2 and "'salience'" in done.stderr and "Traceback" not in done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "extra"), [("fixation", "deep"), ("repro", "pipeline")])
 def test_a_missing_extra_ends_in_one_line_that_names_it(name, extra):
     without = CORE.replace(str(sorted(EXTRAS)), str(sorted(MODULES[extra])))
@@ -223,6 +228,7 @@ def test_the_wheel_holds_the_settings_and_all_files_of_the_stages(installed):
     }
 
 
+@pytest.mark.slow
 def test_an_installed_compose_writes_params_in_an_empty_folder(installed, tmp_path):
     environment = os.environ | {"PYTHONPATH": str(installed)}
     code = "from haptic_glance.__main__ import main\nmain()"

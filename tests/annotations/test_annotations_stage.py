@@ -52,6 +52,7 @@ def values(workspace):
     return rows.set_index(["metric", "method"])["value"]
 
 
+@pytest.mark.slow
 def test_equal_passes_find_each_other_and_random_vertices_do_not(measured, ball):
     rows = values(measured("household", [top(ball), top(ball)]))
     assert rows["found", "passes"] == 1 and rows["found", "random"] < 0.3

@@ -130,6 +130,7 @@ def test_a_missing_column_is_named(stored):
         read_grasps(stored(grasps(**{"45": table().drop(columns="mf_biotac_3")})))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "change, said",
     [

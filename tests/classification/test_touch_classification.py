@@ -62,6 +62,7 @@ def test_sampling_with_too_few_imprints_is_left_out_with_its_reason(imprints, tm
     assert row["value"] is None and row["note"] == planned["three.itti"]
 
 
+@pytest.mark.slow
 def test_stage_agrees_with_evaluate_and_writes_equal_bytes(imprints, tmp_path, bumps):
     planned = plan(settings().sets, imprints)
     rows = process("three.random", tmp_path / "a", imprints.parent, planned, settings(), 7)
@@ -75,6 +76,7 @@ def test_stage_agrees_with_evaluate_and_writes_equal_bytes(imprints, tmp_path, b
     assert stored["objects"].tolist() == list(NAMES) and stored["knn.confusion"].sum() == 2 * 9
 
 
+@pytest.mark.slow
 def test_a_failing_classifier_does_not_lose_the_others(imprints, tmp_path, monkeypatch):
     monkeypatch.setitem(CLASSIFIERS, "broken", lambda seed: 1 / 0)
     chosen = settings(classifiers=["broken", "knn"])
@@ -97,6 +99,7 @@ def test_summary_holds_mean_and_interval_of_the_repetitions():
     assert alone["three"]["itti"]["knn"]["accuracy_holdout"] == {"mean": 0.5}
 
 
+@pytest.mark.slow
 def test_several_touches_are_of_the_first_set_and_the_closer_samplings_alone(imprints, tmp_path):
     chosen = settings(sets={"three": list(NAMES), "two": ["hand", "cup"]}, closer=["random"], repetitions=1)
     planned = plan(chosen.sets, imprints)
@@ -110,6 +113,7 @@ def test_several_touches_are_of_the_first_set_and_the_closer_samplings_alone(imp
     assert variants["three.itti"] == {"plain", "first_15", "first_15_locations", *one_touch, "plain_side"}
 
 
+@pytest.mark.slow
 def test_shares_are_told_of_all_objects_and_of_each(imprints, tmp_path):
     planned = plan(settings().sets, imprints)
     rows = process("three.random", tmp_path, imprints.parent, planned, settings(), 0)
@@ -118,6 +122,7 @@ def test_shares_are_told_of_all_objects_and_of_each(imprints, tmp_path):
     assert shares[0]["value"] == pytest.approx(np.mean([row["value"] for row in shares[1:]]))
 
 
+@pytest.mark.slow
 def test_the_stage_writes_rows_by_split_and_metrics_by_their_names(imprints, make_workspace):
     workspace = make_workspace({"classification": vars(settings(closer=["random"], repetitions=1))})
     run(workspace)

@@ -11,6 +11,7 @@ LABELS = np.repeat(["cup", "duck", "hand"], 40)
 SAMPLES = RANDOM.normal(size=(120, 5)) + 3 * np.repeat(np.eye(3, 5), 40, axis=0)
 
 
+@pytest.mark.slow
 def test_agrees_with_torch_autograd_and_its_adadelta():
     ours = FeedForward(hidden=(7, 4), epochs=0, seed=3).fit(SAMPLES, LABELS)
     reference = torch.nn.Sequential(

@@ -10,6 +10,7 @@ def mean(rows, split):
     return np.mean([row["value"] for row in rows if (row["metric"], row["split"]) == ("accuracy", split)])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["knn", "svm", "decision_tree", "naive_bayes", "deep_learning"])
 def test_every_classifier_beats_chance_on_what_is_easy_and_not_on_noise(bumps, name):
     easy = bumps(count=24)

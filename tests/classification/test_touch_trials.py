@@ -37,6 +37,7 @@ def test_locations_are_the_last_three_columns_and_turn_about_the_vertical_in_the
     assert not np.allclose(turned.samples[test, -3:], data.places[test])
 
 
+@pytest.mark.slow
 def test_selection_removes_before_the_split_or_from_training_alone(bumps):
     data = touched(bumps, jitter=2.5)
     trials = by_name(selection_trials(data, 3))
@@ -60,6 +61,7 @@ def test_selection_that_leaves_too_little_says_so_once(bumps):
     assert len(rows) == 1 and rows[0]["value"] is None and "fewer than 4 of its 48" in rows[0]["note"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("way", ["", "_unplaced", "_ordered", "_disjoint", "_many"])
 def test_no_touch_is_on_both_sides(bumps, way):
     data = touched(bumps)
@@ -89,6 +91,7 @@ def test_more_touches_than_one_side_has_are_left_out_with_the_reason(bumps):
     assert {split for _, split in trials} == {"random", "regions"}
 
 
+@pytest.mark.slow
 def test_rows_are_the_same_from_run_to_run(bumps):
     def run():
         rows = evaluate_variants(

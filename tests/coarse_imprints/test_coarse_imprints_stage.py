@@ -40,6 +40,7 @@ def test_each_variant_differs_from_the_plain_one():
     assert len(set(map(repr, VARIANTS.values()))) == len(VARIANTS) and VARIANTS["plain"].skin == Skin()
 
 
+@pytest.mark.slow
 def test_the_settings_name_all_variants():
     assert compose(["experiment=coarse_imprints"])["furniture"]["coarse_imprints"]["variants"] == list(VARIANTS)
 

@@ -71,6 +71,7 @@ def check(mesh, views, size=None, device="cpu"):
     return found
 
 
+@pytest.mark.slow
 @on_each_device
 @pytest.mark.parametrize("kind", ["grey", "colour", "noise"])
 def test_the_nine_maps_are_those_of_opencv(at_once, kind, device):
@@ -285,6 +286,7 @@ def test_a_missing_gpu_is_named():
         conspicuity_batch(bumpy(), looks(bumpy(), (60, 80)), device="cuda")
 
 
+@pytest.mark.slow
 def test_the_nine_channels_alone_do_not_load_torch():
     code = "import sys, stages.conspicuity; sys.exit('torch' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], cwd=Path(__file__).parents[2]).returncode == 0

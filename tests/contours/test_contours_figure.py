@@ -43,6 +43,7 @@ def figure(name, results):
     return build_one(sequences, "figures", name, results)
 
 
+@pytest.mark.slow
 def test_the_figures_show_blind_and_guided_contours_and_what_is_felt(tmp_path):
     write(tmp_path, ["a", "b"], ["enhanced", "random", "thesis_ssim"])
     run = results(tmp_path, ["b"])
@@ -53,6 +54,7 @@ def test_the_figures_show_blind_and_guided_contours_and_what_is_felt(tmp_path):
     assert "first contour of b" in felt.caption
 
 
+@pytest.mark.slow
 def test_the_figure_does_without_guided_contours(tmp_path):
     write(tmp_path, ["a"], ["random"])
     assert "contours each, blind touch." in figure("figure_4_14", results(tmp_path)).alt

@@ -121,6 +121,7 @@ stage.run(Workspace(Path("."), "toys"))
 SIZES = {"a": (0.4, 0.6, 0.2), "b": (0.3, 0.3, 0.5), "c": (0.2, 0.2, 0.7)}
 
 
+@pytest.mark.slow
 def test_a_killed_run_goes_on_and_ends_with_the_same_bytes(make_workspace):
     settings = {"strategies": ["random", "thesis_ssim"], "count": 3, "frames": 4, "cells": [5, 5], "pitch": 0.02}
     workspace = make_workspace({"contours": settings})

@@ -16,6 +16,8 @@ from stages.kit import Viewpoint
 from stages.kit.camera import project
 from stages.networks import build, recalibrate
 
+pytestmark = pytest.mark.slow
+
 SIZE = 96
 
 

@@ -54,6 +54,7 @@ def rows_of(workspace):
     return read_rows(workspace.measurements / "fixation.csv.gz")
 
 
+@pytest.mark.slow
 def test_stage_writes_the_contract_the_same_bytes_twice(run, shapes):
     workspace = run()
     folder = workspace.data / "fixation"
@@ -84,6 +85,7 @@ def test_stage_writes_the_contract_the_same_bytes_twice(run, shapes):
     assert before == {path.relative_to(folder): sha256(path) for path in folder.rglob("*") if path.is_file()}
 
 
+@pytest.mark.slow
 def test_stage_judges_models_rivals_and_controls_where_people_looked(run, capsys):
     rows = rows_of(run())
     judged = rows[rows["metric"] == "pcc"]
@@ -98,6 +100,7 @@ def test_stage_judges_models_rivals_and_controls_where_people_looked(run, capsys
     assert "4 objects, 5 views" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_finetuning_runs_beside_the_frozen_way(run, monkeypatch):
     monkeypatch.setitem(options.MODES, "finetuned", "random")  # from scratch: no weights are fetched here
     rows = rows_of(run(methods=["mobilenet_v2-finetuned"]))
@@ -105,6 +108,7 @@ def test_finetuning_runs_beside_the_frozen_way(run, monkeypatch):
     assert {"accuracy", "chance", "views", "entropy", "pcc"} <= set(own["metric"])
 
 
+@pytest.mark.slow
 def test_a_network_without_weights_is_left_out_with_the_reason(run, monkeypatch, capsys):
     def missing(name, *_):
         if name == "resnet101":

@@ -90,6 +90,7 @@ def test_files_keep_methods_images_and_places(tmp_path):
     assert (tmp_path / "a.npz").read_bytes() == (tmp_path / "b.npz").read_bytes()
 
 
+@pytest.mark.slow
 def test_stage_presses_every_method_and_counts_what_it_refuses(shapes, make_workspace):
     settings = {"methods": ["itti", "random", "enhanced"], "cells": [15, 15], "pitch": 0.01, "contact": "tangent"}
     workspace = make_workspace({"imprints": settings})

@@ -56,6 +56,7 @@ def touched(file, tmp_path, capsys):
     return work
 
 
+@pytest.mark.slow
 def test_vertices_feel_what_press_feels(touched, file):
     arrays, table, _, _ = touched("--at", 3, 200, "--cells", 8, 10, "--pitch", 0.02)
     mesh = normalise(load(file))
@@ -64,6 +65,7 @@ def test_vertices_feel_what_press_feels(touched, file):
     assert np.allclose(table[["x", "y", "z"]], load(file).vertices[[3, 200]], atol=1e-4)
 
 
+@pytest.mark.slow
 def test_places_far_from_the_origin_are_told_apart(tmp_path, touched):
     shape = trimesh.creation.icosphere(subdivisions=2)
     trimesh.Trimesh(shape.vertices + 1e6, shape.faces, process=False).export(tmp_path / "far.obj", digits=12)
@@ -75,6 +77,7 @@ def test_places_far_from_the_origin_are_told_apart(tmp_path, touched):
     touched("--at", str(raised.value).rpartition("--at ")[2], source=tmp_path / "far.obj")
 
 
+@pytest.mark.slow
 def test_relief_is_in_units_and_in_the_files(touched, file):
     arrays, table, said, _ = touched("--at", 0)
     relief = np.ptp(arrays["distances"][0])
@@ -86,6 +89,7 @@ def test_relief_is_in_units_and_in_the_files(touched, file):
     assert f"1 unit is {arrays['unit']:.4g}" in said
 
 
+@pytest.mark.slow
 def test_position_of_a_vertex_feels_as_the_vertex(touched, file):
     vertex = load(file).vertices[77]
     at_point, table, _, _ = touched("--at", ",".join(f"{value:.9g}" for value in vertex))
@@ -94,6 +98,7 @@ def test_position_of_a_vertex_feels_as_the_vertex(touched, file):
     assert table["vertex"].isna().all() and np.allclose(table[["x", "y", "z"]], vertex, atol=1e-4)
 
 
+@pytest.mark.slow
 def test_positions_may_be_negative_and_stand_beside_vertices(touched, file):
     z_low = load(file).vertices[load(file).vertices[:, 1].argmin()]
     _, table, _, _ = touched("--at", 5, ",".join(f"{value:.9g}" for value in z_low))
@@ -101,6 +106,7 @@ def test_positions_may_be_negative_and_stand_beside_vertices(touched, file):
     assert POINT.fullmatch("-.5,1,-2e-3") and not POINT.fullmatch("-5") and not POINT.fullmatch("--at")
 
 
+@pytest.mark.slow
 def test_normals_and_axes_are_those_of_the_file(touched, file):
     arrays, table, _, _ = touched("--at", 10, 300, "--up", "y")
     away = load(file).vertices[[10, 300]] - PLACE
@@ -118,6 +124,7 @@ def test_coordinates_come_back_from_the_meshs_frame(up):
     assert np.allclose(own.mesh.vertices, normalise(rotate_to_z_up(given, up)).vertices)
 
 
+@pytest.mark.slow
 def test_random_places_depend_on_the_seed_alone(touched):
     first, table, _, _ = touched("--at", "random", "--count", 5)
     again, _, _, _ = touched("--at", "random", "--count", 5)
@@ -126,18 +133,21 @@ def test_random_places_depend_on_the_seed_alone(touched):
     assert not np.array_equal(first["vertices"], other["vertices"])
 
 
+@pytest.mark.slow
 def test_salient_places_are_those_of_the_method(touched, file):
     arrays, _, _, said = touched("--at", "salient", "--count", 3, "--method", "height")
     assert len(arrays["images"]) == 3 and load(file).vertices[arrays["vertices"], 2].max() > PLACE[2] + 0.9 * SIZE
     assert "twelve sides" in said
 
 
+@pytest.mark.slow
 def test_fewer_places_than_wanted_are_said(tmp_path, touched):
     trimesh.creation.box().export(tmp_path / "box.stl")
     _, table, _, said = touched("--at", "random", "--count", 50, source=tmp_path / "box.stl")
     assert len(table) == 8 and "8 of 50 places: the mesh has no more" in said
 
 
+@pytest.mark.slow
 def test_places_without_a_normal_are_left_out(tmp_path, touched):
     half = trimesh.creation.box()
     both = trimesh.util.concatenate([half, trimesh.Trimesh([[2, 0, 0], [3, 0, 0], [2, 1, 0]], [[0, 1, 2], [0, 2, 1]])])
@@ -146,6 +156,7 @@ def test_places_without_a_normal_are_left_out(tmp_path, touched):
     assert len(table) == 8 and "8 of 11 places: the others have no normal" in said
 
 
+@pytest.mark.slow
 def test_skin_and_depth_change_the_images_and_not_the_distances(touched):
     plain, _, _, _ = touched("--at", 0, 50)
     worn, _, _, _ = touched("--at", 0, 50, "--depth", 0.01, "--skin", "blur=1,noise=0.05,dead=0.1")
@@ -160,6 +171,7 @@ def test_skin_is_read_by_name():
     assert parse_skin(None, 3) is None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("suffix", [".stl", ".obj", ".ply", ".off", ".glb"])
 def test_every_format_is_touched(suffix, tmp_path, touched):
     bumpy().export(tmp_path / f"ball{suffix}")
@@ -167,6 +179,7 @@ def test_every_format_is_touched(suffix, tmp_path, touched):
     assert arrays["images"].shape == (1, 16, 16) and ("y up" if suffix == ".glb" else "z up") in said
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("count", [1, 2, 7, 24, 30])
 def test_picture_is_drawn_for_any_number(count, tmp_path):
     mesh = normalise(Mesh(bumpy().vertices, bumpy().faces))
@@ -279,6 +292,7 @@ def test_window_without_a_display_is_refused_before_any_work(file, tmp_path, mon
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 def test_array_larger_than_the_object_and_flat_imprints_are_said(touched):
     _, _, _, said = touched("--at", 0, "--cells", 40, 4, "--pitch", 0.1)
     assert "most cells will miss it" in said
@@ -290,6 +304,7 @@ def test_folder_is_named_after_the_mesh(file):
     assert parse_options("about", [str(file), "--at", "0"]).out == Path("ball_imprints")
 
 
+@pytest.mark.slow
 def test_command_runs_and_says_errors_in_one_line(file, tmp_path):
     root = Path(__file__).parents[2]
     command = [sys.executable, "-m", "stages.imprints", str(file), "--at", "99999"]

@@ -18,6 +18,7 @@ def test_pixels_per_unit_is_the_thesis_s():
     assert pixels_per_unit(900) == pytest.approx(858.7, abs=0.05)  # T eq. 3.11 at distance 10, 6 degrees
 
 
+@pytest.mark.slow
 @given(angles)
 @settings(max_examples=50, deadline=None)
 def test_camera_axes_are_a_rotation(viewpoint):

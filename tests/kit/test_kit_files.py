@@ -48,6 +48,7 @@ def test_archive_members_cannot_escape_and_missing_ones_are_named(tmp_path):
             list(fetch.read_members(archive, [name]))
 
 
+@pytest.mark.slow
 def test_without_a_network_the_message_says_what_to_put_where(tmp_path, monkeypatch):
     monkeypatch.setenv("HAPTIC_GLANCE_CACHE", str(tmp_path))
     monkeypatch.setenv("PIP_NO_INDEX", "1")
@@ -58,6 +59,7 @@ def test_without_a_network_the_message_says_what_to_put_where(tmp_path, monkeypa
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 def test_a_cached_file_of_another_hash_is_not_used(tmp_path, monkeypatch):
     monkeypatch.setenv("HAPTIC_GLANCE_CACHE", str(tmp_path))
     monkeypatch.setenv("PIP_NO_INDEX", "1")

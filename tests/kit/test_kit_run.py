@@ -26,6 +26,7 @@ def noisy(name):
     return rng(3, name).normal()
 
 
+@pytest.mark.slow
 def test_result_does_not_depend_on_workers_or_order():
     names = [f"item {i}" for i in range(8)]
     one = parallel_map(noisy, names, "one", "sequential", 1)
@@ -34,6 +35,7 @@ def test_result_does_not_depend_on_workers_or_order():
     assert one == two == turned[::-1] and len(set(one)) == 8
 
 
+@pytest.mark.slow
 def test_dask_gives_the_same_result():
     pytest.importorskip("distributed", reason="the cluster extra is not installed")
     assert parallel_map(noisy, ["a", "b", "c"], "dask", "dask", 2) == [noisy(name) for name in "abc"]
@@ -190,6 +192,7 @@ def test_missing_input_names_the_stage_to_run(workspace):
         pass
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("raised", "lines", "code"),
     [
@@ -226,6 +229,7 @@ with StageRun(Workspace(Path("."), "toys"), "views") as run:
 """
 
 
+@pytest.mark.slow
 def test_killed_run_leaves_nothing_in_place_and_the_next_gives_the_same_bytes(workspace):
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     command = [sys.executable, "-c", KILLED]

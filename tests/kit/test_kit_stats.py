@@ -8,6 +8,7 @@ from stages.kit.split import Split, shared_by
 from stages.kit.stats import interval, interval_metrics
 
 
+@pytest.mark.slow
 def test_interval_covers_as_often_as_it_says():
     rng = np.random.default_rng(0)
     for count in (4, 15, 19):
@@ -59,6 +60,7 @@ def test_values_of_another_shape_are_refused():
         interval([[1.0, 2.0]])
 
 
+@pytest.mark.slow
 def test_splitting_the_same_data_more_often_does_not_shrink_the_interval_to_nothing():
     values = np.random.default_rng(0).normal(size=4000)
     width = {n: np.subtract(*interval(values[:n], shared_by(Split.RANDOM))[:0:-1]) for n in (100, 4000)}

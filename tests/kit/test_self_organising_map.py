@@ -15,6 +15,7 @@ def blobs(count=40, classes=3, width=8, apart=6.0, seed=0):
     return apart * random.normal(size=(classes, width))[labels] + random.normal(size=(len(labels), width)), labels
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("dimensions", MAP_DIMENSIONS)
 def test_places_lie_in_the_cube_of_the_size(dimensions):
     samples, _ = blobs()

@@ -62,6 +62,7 @@ def test_onto_itself_nothing_changes(make):
     assert mesh.colors is None or (found.colors == mesh.colors).all()
 
 
+@pytest.mark.slow
 def test_texture_follows_the_surface():
     mesh = sheet()
     found = carry(mesh, simplify(bare(mesh), 300))

@@ -61,6 +61,7 @@ def rows(table):
     return {line[:32].strip(): line[32:].split() for line in table.splitlines()}
 
 
+@pytest.mark.slow
 def test_result_has_the_faces_and_stands_where_the_mesh_stood(simplified):
     found, said, _ = simplified("--faces", 500, "--neighbourhood", "fixed", "--keep", 3)
     assert len(found.faces) == 500
@@ -71,6 +72,7 @@ def test_result_has_the_faces_and_stands_where_the_mesh_stood(simplified):
     assert all(value != "-" for value in rows(said)["1 - SSIM of the pictures"][1:])
 
 
+@pytest.mark.slow
 def test_kept_neighbourhoods_come_through(simplified):
     mesh = bumpy()
     found, _, _ = simplified("--faces", "40%", "--neighbourhood", "fixed", "--keep", 1, "--rings", 2)
@@ -79,6 +81,7 @@ def test_kept_neighbourhoods_come_through(simplified):
     assert away.max() < 1e-7 * SIZE
 
 
+@pytest.mark.slow
 def test_tolerance_gives_a_small_mesh_within_it(simplified):
     found, _, said = simplified("--tolerance", "0.5%")
     assert metro(bumpy(), found)["mean"] <= 0.005
@@ -86,6 +89,7 @@ def test_tolerance_gives_a_small_mesh_within_it(simplified):
     assert "faces: " in said
 
 
+@pytest.mark.slow
 def test_colours_go_along(simplified, tmp_path):
     mesh = bumpy()
     height = (mesh.vertices[:, 2] - PLACE[2]) / SIZE
@@ -105,6 +109,7 @@ def textured():
     return Mesh(mesh.vertices, mesh.faces, None, Texture(uv, np.zeros(len(mesh.faces)), (picture,)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("out", ["out.glb", "out.obj"])
 def test_pictures_go_along(simplified, tmp_path, out):
     mesh = textured()
@@ -116,12 +121,14 @@ def test_pictures_go_along(simplified, tmp_path, out):
     assert np.abs(found.texture.uv - want).max() < 0.02
 
 
+@pytest.mark.slow
 def test_format_without_colours_says_so(simplified, tmp_path):
     write_any(tmp_path / "wrapped.obj", textured())
     _, _, said = simplified("--faces", 500, source=tmp_path / "wrapped.obj", out="out.stl")
     assert ".stl files have no colours" in said
 
 
+@pytest.mark.slow
 def test_picture_shows_before_and_after(simplified, tmp_path):
     simplified("--faces", 300, "--picture", tmp_path / "seen.png")
     image = np.asarray(Image.open(tmp_path / "seen.png").convert("RGB")).astype(int)
@@ -132,12 +139,14 @@ def test_picture_shows_before_and_after(simplified, tmp_path):
     assert coloured[0] > 2 * max(coloured[1:])
 
 
+@pytest.mark.slow
 def test_equal_commands_give_equal_bytes(simplified, tmp_path):
     for out in ("a.glb", "b.glb"):
         simplified("--faces", 300, out=out)
     assert (tmp_path / "a.glb").read_bytes() == (tmp_path / "b.glb").read_bytes()
 
 
+@pytest.mark.slow
 def test_without_options_the_saliency_weighs_and_nothing_is_frozen(simplified, monkeypatch):
     weights = []
 
@@ -152,6 +161,7 @@ def test_without_options_the_saliency_weighs_and_nothing_is_frozen(simplified, m
     assert "height-soft" in said and "points kept" not in said
 
 
+@pytest.mark.slow
 def test_plain_has_no_plain_beside_it(simplified):
     _, said, _ = simplified("--faces", 300, "--method", "qem")
     assert "plain QEM" not in said
@@ -164,6 +174,7 @@ def bowl():
     return mesh, int((mesh.edge_counts[1] == 1).sum())
 
 
+@pytest.mark.slow
 def test_open_borders_that_stay_are_counted_with_what_they_allow(simplified, tmp_path):
     mesh, edges = bowl()
     write_any(tmp_path / "bowl.ply", mesh)
@@ -175,11 +186,13 @@ def test_open_borders_that_stay_are_counted_with_what_they_allow(simplified, tmp
         simplified("--faces", least - 1, source=tmp_path / "bowl.ply")
 
 
+@pytest.mark.slow
 def test_the_axis_taken_as_up_is_reported(simplified):
     assert "z up (if another axis points up: --up)" in simplified("--faces", 300)[2]
     assert "x up\n" in simplified("--faces", 300, "--up", "x")[2]
 
 
+@pytest.mark.slow
 def test_a_first_run_that_compiles_says_so(simplified, tmp_path, monkeypatch):
     simplify(bumpy(), 300)
     assert "compiles" not in simplified("--faces", 300)[2]
@@ -187,10 +200,12 @@ def test_a_first_run_that_compiles_says_so(simplified, tmp_path, monkeypatch):
     assert "compiles" in simplified("--faces", 300)[2].splitlines()[0]
 
 
+@pytest.mark.slow
 def test_closed_mesh_says_nothing_of_borders(simplified):
     assert "border" not in simplified("--faces", 300)[1]
 
 
+@pytest.mark.slow
 def test_borders_between_materials_that_are_given_up_are_counted(simplified, tmp_path):
     mesh = textured()
     plain = np.full((1, 1, 4), 255, dtype=np.uint8)
@@ -211,6 +226,7 @@ def soup(mesh):
     return Mesh(corners, np.arange(len(corners)).reshape(-1, 3))
 
 
+@pytest.mark.slow
 def test_a_soup_of_doubled_faces_is_joined_and_simplified(simplified, tmp_path):
     mesh = bumpy()
     write_any(tmp_path / "soup.ply", soup(mesh))
@@ -240,6 +256,7 @@ def test_components_that_share_nothing_are_refused_with_what_to_do(simplified, t
         simplified("--faces", 50, source=tmp_path / "shards.ply")
 
 
+@pytest.mark.slow
 def test_picture_of_a_mesh_that_reaches_beyond_its_original(tmp_path):
     mesh = Mesh(0.5 * (bumpy().vertices - PLACE) / SIZE / 1.4, bumpy().faces)
     write_picture(tmp_path / "x.png", mesh, Mesh(1.5 * mesh.vertices, mesh.faces), mesh.vertices[:, 2] + 0.5, [3])
@@ -248,6 +265,7 @@ def test_picture_of_a_mesh_that_reaches_beyond_its_original(tmp_path):
     assert last > 1.5 * first  # both smaller by the same
 
 
+@pytest.mark.slow
 def test_a_tolerance_that_nothing_meets_gives_the_mesh_itself_and_says_so(simplified):
     found, said, told = simplified("--tolerance", "1e-9")
     assert len(found.faces) == 1280 and rows(said)["faces"][1] == "1,280"
@@ -356,6 +374,7 @@ def test_a_mesh_too_small_for_its_digits_is_refused_with_the_reason(tmp_path):
         run([str(tmp_path / "tiny.obj"), "--faces", "9", "--out", str(tmp_path / "x.glb")])
 
 
+@pytest.mark.slow
 def test_a_small_ball_with_all_its_digits_is_simplified(simplified, tmp_path):
     write_any(tmp_path / "tiny.ply", Mesh(1e-30 * (bumpy().vertices - PLACE), bumpy().faces))
     assert len(simplified("--faces", 300, source=tmp_path / "tiny.ply", out="out.ply")[0].faces) == 300
@@ -366,6 +385,7 @@ def smooth():
     return Mesh(SIZE * ball.vertices, ball.faces)
 
 
+@pytest.mark.slow
 def test_pictures_of_a_mesh_beyond_the_frame_are_compared_smaller_and_that_is_said(simplified, tmp_path):
     write_any(tmp_path / "smooth.ply", smooth())
     _, said, told = simplified("--faces", 60, source=tmp_path / "smooth.ply")
@@ -426,6 +446,7 @@ def test_a_word_without_a_suffix_is_a_data_set(monkeypatch, words):
     assert ran == ["lod"]
 
 
+@pytest.mark.slow
 def test_interrupted_it_says_one_line_and_leaves_nothing(file, tmp_path):
     before = sorted(tmp_path.iterdir())
     words = [str(file), "--faces", "300", "--out", "x.glb", "--picture", "x.png"]
@@ -456,6 +477,7 @@ def test_interrupted_writing_leaves_no_part_of_the_files(tmp_path, monkeypatch):
     assert len(written) == 2 and not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 def test_smaller_neighbourhoods_make_the_target_feasible(simplified):
     found, said, _ = simplified("--faces", 90, *HARD, "--keep", 9, "--shrink")
     assert len(found.faces) <= 90
@@ -497,6 +519,7 @@ def test_help_shows_how(capsys):
     assert "python -m stages.lod bunny.stl --faces 1500 --out small.glb" in said
 
 
+@pytest.mark.slow
 def test_fewest_faces_are_found_to_two_per_cent():
     mesh, errors = bumpy(), {}
 

@@ -128,6 +128,7 @@ def plane(*normal, d):
     return np.array([x * x, x * y, x * z, y * y, y * z, z * z, x * d, y * d, z * d, d * d])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("meet", "taken"), [(1.2, True), (12.0, False), (1e6, False)])
 def test_a_vertex_never_goes_further_than_the_reach_of_its_edge(meet, taken):
     # The planes meet `meet` lengths from the middle of the edge; almost parallel ones do so anywhere.

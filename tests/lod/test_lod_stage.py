@@ -135,6 +135,7 @@ def workspace(make_workspace):
     return make
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("source", "measured"), [("gaze", True), ("household", False)])
 def test_only_recorded_gaze_is_human_gaze(workspace, source, measured):
     workspace = workspace(source)
@@ -148,6 +149,7 @@ def test_without_a_file_there_is_no_gaze(tmp_path):
     assert data_set.human_gaze(tmp_path / "cube.npz") is None
 
 
+@pytest.mark.slow
 def test_curve_has_the_rows_without_what_differs_from_run_to_run(workspace):
     workspace = workspace("household")
     work = functools.partial(data_set.process, data=workspace.data, settings=SHRINKING, seed=0, gaze=False)

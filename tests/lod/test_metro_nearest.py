@@ -102,6 +102,7 @@ def test_flat_meshes_and_meshes_far_from_the_origin_are_measured():
     assert SurfaceIndex(moved).nearest([[1e4, 0, 0.2]])[0] == pytest.approx([0.2], rel=1e-6)
 
 
+@pytest.mark.slow
 def test_long_slanted_faces_do_not_fill_the_grid():
     # Each side of a thin slanted column lies in the boxes of thousands of cells, were the cells as small as elsewhere.
     column = trimesh.creation.cylinder(0.5, 20.0, sections=3000)

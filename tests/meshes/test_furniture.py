@@ -140,6 +140,7 @@ def test_every_listed_piece_has_a_licence_and_the_classes_name_listed_pieces():
     assert all(name in furniture.FURNITURE for objects in classes.values() for name in objects)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not list(cache_folder().glob("furniture-*.zip")), reason="the furniture was never fetched here")
 def test_the_real_pieces_are_upright_outward_and_of_the_promised_size():
     for item in items():

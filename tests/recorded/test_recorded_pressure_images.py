@@ -21,6 +21,7 @@ def recognised(monkeypatch, tmp_path):
     return rows
 
 
+@pytest.mark.slow
 def test_bars_at_places_of_their_own_are_recognised_and_none_is_left_out(recognised, recordings):
     rows = recognised(recordings.touches(noise=0.01))
     accuracy = rows[rows["metric"] == "accuracy"]
@@ -32,6 +33,7 @@ def test_bars_at_places_of_their_own_are_recognised_and_none_is_left_out(recogni
     assert set(accuracy.loc[accuracy["group"] == "six_drawn", "split"]) == {"random", "blocks"}
 
 
+@pytest.mark.slow
 def test_touches_that_resemble_another_class_leave_training_or_the_whole_set(recognised, recordings):
     images = recordings.touches(noise=0.1, count=24)
     images["a"][::2], images["b"][::2] = images["a"][::2].transpose(0, 2, 1), images["a"][1::2].transpose(0, 2, 1)
@@ -45,6 +47,7 @@ def test_touches_that_resemble_another_class_leave_training_or_the_whole_set(rec
     assert similar["chosen"].str.startswith("a b").all() and similar["value"].item() > 0.2
 
 
+@pytest.mark.slow
 def test_a_set_of_which_too_little_is_left_says_so(recognised, recordings):
     images = recordings.touches()
     images["b"] = images["a"]

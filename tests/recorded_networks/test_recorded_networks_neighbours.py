@@ -34,6 +34,7 @@ def values(rows, **where):
     return frame["value"].tolist()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("split", ["random", "blocks"])
 def test_pressure_images(images, split, monkeypatch, tmp_path):
     monkeypatch.setattr(neighbours, "read_pressure_images", lambda path: images)

@@ -110,6 +110,7 @@ def test_fine_tuning_trains_every_parameter(tmp_path):
     assert {name for name, _ in found} == {"", "0/1", "1/1"}
 
 
+@pytest.mark.slow
 def test_passes_over_many_touches_are_fewer():
     settings = check_section(Params, default("pressure_images"))
     assert passes("finetuned", 825, settings) == 10 and passes("finetuned", 4373, settings) == 2
@@ -169,6 +170,7 @@ def test_weights_that_are_not_at_hand_are_named_and_the_control_runs(workspace, 
     assert "googlenet: no package registry has" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_grasps_are_not_tuned_where_nobody_asks():
     assert default("biotac_grasps")["networks"]["mobilenet_v2"] == ["frozen"]
     assert set(default("biotac_grasps")["networks"]) == set(default("pressure_images")["networks"])

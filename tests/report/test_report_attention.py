@@ -81,6 +81,7 @@ def test_methods_that_have_seen_the_object_are_starred_and_are_no_rivals(seen):
     assert any("facing viewer: ours − it NSS +0.8" in note for note in table.notes)
 
 
+@pytest.mark.slow
 def test_sentences_follow_from_the_numbers(seen, small):
     assert any("higher than 7 of the 7 others" in note for note in table_of(seen, "attention_gaze").notes)
     worse = again(seen, small, "salient_points", small.judged({"enhanced": 0.25}))
@@ -102,6 +103,7 @@ def test_table_of_gaze_stands_without_our_method_or_the_ceiling(seen, small):
     assert (table.shown["ours − it, NSS"] == "–").all()
 
 
+@pytest.mark.slow
 def test_marks_are_said_to_be_no_human_gaze(seen, root, small):
     assert any("No human subjects" in note for note in table_of(seen, "attention_marks").notes)
     (root / "reports/measurements/household/salient_points.csv.gz").unlink()
@@ -152,6 +154,7 @@ def test_marks_are_compared_with_chance_and_the_least_agreed_object_is_named(see
     assert "least on cup (80 %)" in table.notes[0] and "on 1 of 3 objects" in table.notes[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", FIGURES)
 def test_figure_is_drawn_and_says_what_it_shows(seen, name):
     topic = next(topic for topic in TOPICS if name in topic.FIGURES)
@@ -230,6 +233,7 @@ def test_cost_counts_views_channels_and_points(seen):
     assert cost["facing_viewer"] == pytest.approx(0.5)
 
 
+@pytest.mark.slow
 def test_chart_of_attention_leaves_out_those_that_have_seen_the_mesh(seen):
     chart = build_all("tradeoff", seen, [attention])
     assert "attention" in [item.name for item in chart.items]
@@ -309,6 +313,7 @@ def test_each_method_of_the_chart_of_simplification_has_its_own_colour():
     assert len(set(tints.values())) == len(tints) == 8
 
 
+@pytest.mark.slow
 def test_long_front_is_told_by_its_ends():
     frame = pd.DataFrame({"name": [f"n{k}" for k in range(12)], "seconds": range(1, 13), "mean": range(12)})
     caption = pareto_chart(frame, "mean", title="T", reference="n3", quality_label="q").words["caption"]

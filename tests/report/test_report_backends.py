@@ -48,6 +48,7 @@ def by_backend(results):
     return table(results).frame.set_index(["backend", "with_points"])
 
 
+@pytest.mark.slow
 def test_backends_are_compared_as_ratios(bench):
     frame = by_backend(bench(benched()))
     row = frame.loc["fast", True]
@@ -120,6 +121,7 @@ def test_growth_is_fitted_without_and_with_points_apart(bench):
     assert frame.loc[("fast", True), "loglinear_power"] == pytest.approx(2)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("faces", "said"), [(1_000_000, "1,000,000 faces."), (400_000, "400,000 faces; 1,000,000")])
 def test_the_largest_mesh_is_named(bench, faces, said):
     rows = benched()
@@ -127,6 +129,7 @@ def test_the_largest_mesh_is_named(bench, faces, said):
     assert f"The largest mesh has {said}" in notes[2]
 
 
+@pytest.mark.slow
 def test_infeasible_targets_are_no_refusals(bench):
     rows = benched()
     rows.loc[rows["mesh"] == "m0", "outcome"] = "infeasible"
@@ -164,6 +167,7 @@ def test_growth_needs_large_meshes():
     assert growth(rows[rows["full"] <= 20_000]) is None
 
 
+@pytest.mark.slow
 def test_chart_of_backends_has_the_front(bench):
     figure = build_one(meshes, "tradeoff", "backends", bench(benched()))
     frame = pd.read_csv(figure.paths[1]).set_index(["backend", "with_points"])

@@ -223,6 +223,7 @@ def test_absent_group_is_called_a_group(root, small):
     assert of(small.results(root), "knn_best")["tested_on"].startswith("not run: group six is not among")
 
 
+@pytest.mark.slow
 def test_transfer_that_was_left_out_hands_on_its_note(root, small):
     row = {"dataset": "test", "method": None, "metric": "accuracy", "value": None, "seconds": None, "note": "no cup"}
     small.write(root, "transfer", pd.DataFrame([row]))
@@ -241,6 +242,7 @@ def test_verdicts_are_counted_beside_what_chance_alone_would_give():
     assert "any of the 80 that have an interval, chance alone would call about 2 of them supported" in said
 
 
+@pytest.mark.slow
 def test_chance_calls_as_many_verdicts_as_is_said(root, small):
     noise = np.random.default_rng(0).normal(size=(800, 20))
     frame = pd.DataFrame({"dataset": "test", "method": np.repeat([f"m{k}" for k in range(800)], 20)})

@@ -67,6 +67,7 @@ def test_accuracy_beyond_the_curve_is_never_reached():
     assert needed(rows, 0.1) == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "name"), CHARTS)
 def test_charts_are_drawn(explorer, kind, name):
     assert all(path.exists() for path in build_one(exploration, kind, name, explorer).paths)

@@ -153,6 +153,7 @@ def test_truths_are_named_and_gaze_comes_first(gaze):
     assert list(_fixation.sources(gaze, "pcc_tasks")) == ["human gaze, 6 meshes", "household, 4 objects"]
 
 
+@pytest.mark.slow
 def test_a_run_without_anyones_attention_still_says_how_alike_tasks_are(bare, small):
     frame = rows("furniture")
     small.write(bare, "fixation", frame[frame["metric"] != "pcc"])
@@ -185,6 +186,7 @@ def test_detectors_stand_in_the_order_of_their_correlation(gaze):
     assert line(made.shown, truth="marks, 4 objects", detector="noise")["it − random weights, PCC"] == "–"
 
 
+@pytest.mark.slow
 def test_marks_are_said_to_be_no_human_gaze_only_where_they_are_the_truth(gaze):
     assert any("no human subjects" in note for note in table(gaze).notes)
     assert "no human subjects" in figure(gaze, "figure_3_35").caption
@@ -269,6 +271,7 @@ def test_claims_of_t_3_3_stand_between_those_of_attention_and_of_meshes():
     assert len(set(sections)) == len(sections)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", FIGURES)
 def test_figures_are_drawn_of_both_truths(gaze, name):
     assert figure(gaze, name).paths[0].stat().st_size > 10_000
@@ -285,10 +288,12 @@ def test_no_interval_of_a_correlation_leaves_its_range(gaze, small):
     plt.close(drawn)
 
 
+@pytest.mark.slow
 def test_number_of_classes_is_told(gaze):
     assert "convexity 4, curvature 4, eccentricity 4" in figure(gaze, "figure_3_28").caption
 
 
+@pytest.mark.slow
 def test_cost_is_teaching_once_and_looking_at_every_object(gaze):
     made = build_one(topic, "tradeoff", "fixation", gaze)
     frame = pd.read_csv(gaze.reports / "tradeoff/fixation.csv").set_index("name")
@@ -321,6 +326,7 @@ def write_look(root, name, mesh, peak):
     write_arrays(root / f"data/test/fixation/{name}.npz", **arrays)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", VIEWED)
 def test_maps_are_drawn_on_the_object(looked, name):
     made = figure(looked, name)
@@ -338,6 +344,7 @@ def test_a_map_is_drawn_where_it_is_high():
     assert not maps.large(np.zeros((1, 7, 7)), "mobilenet_v2-frozen").any()
 
 
+@pytest.mark.slow
 def test_fused_attention_stands_beside_models_where_nobody_marked_anything(looked):
     for path in (looked.data / "test/weights/ground_truth").glob("*.npz"):
         path.unlink()

@@ -122,6 +122,7 @@ def two_middles(bare, run, small):
     return small.results(bare)
 
 
+@pytest.mark.slow
 def test_networks_of_another_middle_change_no_claim_and_no_table_of_the_first(run, two_middles):
     pd.testing.assert_frame_equal(judge(chapter_5_hybrid.CLAIMS, two_middles), judge(chapter_5_hybrid.CLAIMS, run))
     pd.testing.assert_frame_equal(
@@ -145,6 +146,7 @@ def test_a_longer_middle_is_held_against_the_first_on_the_same_items(two_middles
     assert "Size ratio 1.6800: the thesis's is met, the aim of 1.43 is met." in " ".join(table.notes)
 
 
+@pytest.mark.slow
 def test_a_longer_middle_is_drawn_as_far_from_the_first_as_it_was(two_middles):
     made = build_one(hybrid, "tradeoff", "hybrid", two_middles)
     assert "layers 18:147 shared instead of 18:139" in made.caption
@@ -195,6 +197,7 @@ TABLES = [(hybrid, "tables", "section_5_5"), (hybrid, "tables", "hybrid_senses")
           (stability, "tables", "transfer_stability")]  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("topic", "kind", "name"), PICTURES)
 def test_pictures_are_drawn(run, topic, kind, name):
     assert build_one(topic, kind, name, run).paths[0].stat().st_size > (5000 if name == "figure_5_6" else 10_000)

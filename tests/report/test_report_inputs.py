@@ -3,6 +3,7 @@
 import sys
 from pathlib import Path
 
+import pytest
 import yaml
 
 from stages.report.__main__ import write_report
@@ -18,6 +19,7 @@ def note(event, arguments):
 sys.addaudithook(note)
 
 
+@pytest.mark.slow
 def test_dvc_knows_every_file_that_the_report_opens(root, small, monkeypatch):
     small.write_attention(root)
     monkeypatch.chdir(root)

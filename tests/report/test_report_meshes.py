@@ -123,6 +123,7 @@ def test_table_3_2_shows_the_thesis_and_every_data_set(run):
     assert not shown.loc[("3,000 faces", "plain QEM"), "Metro mean, %, test"].endswith(("+", "–"))
 
 
+@pytest.mark.slow
 def test_table_3_2_repeats_what_nothing_shrank_only_where_it_differs(run):
     rows = measured()
     assert not table(run(rows), "table_3_2").frame["nothing_shrunk"].any()
@@ -131,6 +132,7 @@ def test_table_3_2_repeats_what_nothing_shrank_only_where_it_differs(run):
     assert found.to_dict() == {False: 4, True: 3}
 
 
+@pytest.mark.slow
 def test_every_detector_has_all_errors_in_the_thesis_order(run):
     frame = table(run(measured()), "lod_detectors").frame
     assert frame["method"].iloc[0] == "harris" and frame["method"].iloc[-1] == "qem"
@@ -254,6 +256,7 @@ def test_ranks_agree_where_the_error_grows_with_the_points(run):
     assert stated(results, "ranks_agree", first=ERROR, second={"metric": "dlap"}).min() > 0.98
 
 
+@pytest.mark.slow
 def test_every_claim_on_meshes_is_judged_on_every_set(run):
     results = run(measured(), princeton=measured("princeton", 1))
     built = table(results, "lod_claims")
@@ -276,6 +279,7 @@ def with_people():
     return pd.concat([rows, people])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("own", [True, False])
 def test_where_people_look_is_judged_on_the_meshes_with_gaze(run, own):
     results = run(with_people()) if own else run(measured(), gaze=with_people())
@@ -288,6 +292,7 @@ def test_where_people_look_is_judged_on_the_meshes_with_gaze(run, own):
     assert own or found["ours_keep_gaze", "test"] == "open"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("own", [True, False])
 def test_tables_show_the_error_by_gaze_where_it_was_measured(run, own):
     results = run(with_people()) if own else run(measured(), gaze=with_people())
@@ -296,6 +301,7 @@ def test_tables_show_the_error_by_gaze_where_it_was_measured(run, own):
     assert ("error where people look, %" in table(results, "table_3_1_5_combinations").shown) == own
 
 
+@pytest.mark.slow
 def test_not_run_claims_say_so(run):
     rows = measured()
     frame = table(run(rows[rows["method"].isin(["qem", "itti"])]), "lod_claims").frame
@@ -319,6 +325,7 @@ def simplified(run, small):
     return results
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["figure_3_4", "figure_3_5", "figure_3_23"])
 def test_charts_of_errors_are_drawn(run, name):
     found = figure(run(measured(), princeton=measured("princeton", 1)), name)
@@ -326,6 +333,7 @@ def test_charts_of_errors_are_drawn(run, name):
     assert "4 " in found.caption or "objects" in found.caption
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["figure_3_7", "figure_3_8", "figure_3_21", "figure_3_22"])
 def test_pictures_of_meshes_are_drawn(simplified, name, monkeypatch):
     monkeypatch.setattr(pictures, "ROWS", dict.fromkeys(pictures.ROWS, 60))
@@ -333,12 +341,14 @@ def test_pictures_of_meshes_are_drawn(simplified, name, monkeypatch):
     assert figure(simplified, name).paths[0].stat().st_size > 5000
 
 
+@pytest.mark.slow
 def test_pictures_take_the_same_target_of_all_methods(simplified):
     for path in (simplified.data / "test/lod/a").glob("corners_1500.npz"):
         path.unlink()
     assert "a at 3,000 faces" in figure(simplified, "figure_3_7").caption
 
 
+@pytest.mark.slow
 def test_picture_of_many_and_few_points_takes_the_object_where_they_differ(simplified):
     path = simplified.data / "test/salient_points/b.npz"
     arrays = {f"{method}.points": np.arange(60) for method in POINTS}
@@ -347,6 +357,7 @@ def test_picture_of_many_and_few_points_takes_the_object_where_they_differ(simpl
     assert figure(simplified, "figure_3_7").caption.startswith("b at ")
 
 
+@pytest.mark.slow
 def test_boxes_hold_the_objects_without_error(run, monkeypatch):
     rows, drawn = measured(), []
     exact = (rows["item"] == "a") & (rows["metric"] == "metro_mean")
@@ -356,6 +367,7 @@ def test_boxes_hold_the_objects_without_error(run, monkeypatch):
     assert {len(values) for values in drawn} == {4} and min(values.min() for values in drawn) > 0
 
 
+@pytest.mark.slow
 def test_chart_of_costs_has_a_front_for_each_share(run, monkeypatch):
     rows = measured()
     more = rows[rows["target"] == "25%"].assign(target="50%", value=lambda half: half["value"] / 2)

@@ -16,6 +16,8 @@ from stages.report.packing import SHADES, STEPS, Store, ordered
 from stages.report.results import NotRun
 from stages.report.viewer import pack_viewer
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture
 def page(root, small):

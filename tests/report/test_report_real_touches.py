@@ -155,6 +155,7 @@ def test_simulation_is_compared_by_the_number_of_real_touches(measured):
     assert any("aligned, the best" in note and "ball 60" in note for note in made.notes)
 
 
+@pytest.mark.slow
 def test_the_picture_of_simulated_and_real_touches_is_drawn(measured):
     figure = build_one(topic, "figures", "real_touches", measured(simulated_to_real=transferred()))
     assert figure.paths[0].stat().st_size > 10_000

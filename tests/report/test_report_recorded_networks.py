@@ -105,6 +105,7 @@ def line(results, data="pressure", split="random", method="mobilenet_v2", weight
     return only(frame, data=data, split=split, method=method, weights=weights, mode=mode)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("data", "split"), SETTINGS.values())
 def test_gains_are_paired_so_that_hard_splits_and_objects_cancel(measured, data, split):
     found = line(measured(touches()), data, split)
@@ -140,6 +141,7 @@ def test_intervals_are_widened_for_repeated_splits_and_not_for_objects(measured,
     assert (found["accuracy"], found["low"], found["high"]) == pytest.approx((mean, low, high))
 
 
+@pytest.mark.slow
 def test_a_network_is_compared_at_its_own_size_and_mode(measured):
     frame = touches()
     mine = frame[(frame["method"] == "mobilenet_v2") & (frame["mode"] == "frozen") & (frame["weights"] == "imagenet")]

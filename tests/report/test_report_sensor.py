@@ -46,6 +46,7 @@ def test_the_table_tells_guessing_and_how_often_the_smallest_array_is_chosen_aga
     assert table.shown["objects"].tolist() == ["unseen"] * 6 + ["known, other touches"] * 6
 
 
+@pytest.mark.slow
 def test_the_chart_is_drawn_and_its_ratios_are_plain_numbers(sensed):
     figure = build_one(sensor, "tradeoff", "sensor_size", sensed)
     assert figure.paths[0].exists()

@@ -121,6 +121,7 @@ def test_unmeasured_is_not_run(bare, small, build):
         build(small.results(bare))
 
 
+@pytest.mark.slow
 def test_chart_charges_each_choice_its_seconds(run):
     figure = build_one(sequences, "tradeoff", "sequences", run)
     frame = pd.read_csv(figure.paths[1]).set_index("name")

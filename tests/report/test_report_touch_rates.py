@@ -88,6 +88,7 @@ def test_peers_that_did_not_run_are_said_and_leave_the_rest(bench):
     assert chart(results).paths[0].exists()
 
 
+@pytest.mark.slow
 def test_chart_puts_ours_alone_on_the_front(bench):
     figure = chart(bench(benched()))
     written = pd.read_csv(figure.paths[1])
@@ -95,6 +96,7 @@ def test_chart_puts_ours_alone_on_the_front(bench):
     assert figure.paths[0].exists() and "TACTO" in figure.alt
 
 
+@pytest.mark.slow
 def test_chart_counts_rounding_as_equal(bench):
     rows = benched()
     rows.loc[(rows["method"] == "trimesh_embree") & (rows["what"] == "rate"), "value"] = 9000.0
@@ -119,6 +121,7 @@ def test_bench_without_a_rate_is_not_run(bench):
         table(bench(benched().assign(value=np.nan)))
 
 
+@pytest.mark.slow
 def test_picture_of_one_mesh_is_of_the_hero(results):
     figure = build_one(touch, "figures", "touch_one_mesh", results)
     assert figure.paths[0].exists() and "ball" in figure.alt and "3 numbered places" in figure.alt

@@ -111,6 +111,7 @@ def test_figures_are_drawn(run, figure):
     assert made.paths[0].stat().st_size > 10_000
 
 
+@pytest.mark.slow
 def test_a_figure_tells_the_mean_change_of_each_network(run):
     assert (
         "Mean over the convolutions of a network: MobileNetV2 from ImageNet 0."
@@ -204,6 +205,7 @@ def test_the_coarse_array_is_told_one_change_at_a_time(bare, small):
     assert shown["accuracy, %"][0].startswith("61.0 [")
 
 
+@pytest.mark.slow
 def test_the_smallest_network_that_is_enough_is_named(bare, small):
     found = [
         {"data": "pressure", "item": None, "method": name, "weights": "imagenet", "mode": "frozen", "split": "blocks"}

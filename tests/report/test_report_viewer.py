@@ -130,6 +130,7 @@ def halves(image):
     return (image[: h // 2], image[h // 2 :]) if h > 1.1 * w else (image[:, : w // 2], image[:, w // 2 :])
 
 
+@pytest.mark.slow
 def test_original_and_level_stand_side_by_side_and_turn_together(shown):
     before = halves(shown.canvas())
     assert all((half < 250).any(axis=2).mean() > 0.1 for half in before)

@@ -51,6 +51,7 @@ def test_a_peak_on_the_maps_gives_the_vertex_there(method, sight, ball, spot):
     assert np.linalg.norm(ball.vertices[found.saliency.argmax()] - spot) < 0.04
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", RUNS)
 @pytest.mark.parametrize("count", [1, 25, 200])
 def test_count_is_honoured_without_duplicates(method, count, sight, ball):
@@ -58,6 +59,7 @@ def test_count_is_honoured_without_duplicates(method, count, sight, ball):
     assert len(points) == len(set(points)) == count
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", RUNS)
 def test_a_mesh_with_too_few_vertices_gives_all_of_them(method, make_maps):
     box = trimesh.creation.box(extents=[0.5, 0.5, 0.5])
@@ -131,6 +133,7 @@ def test_equally_salient_vertices_do_not_go_by_their_number(ball):
     assert (continue_on_surface(ball, none, flat, 0.1, 20) == old[points]).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("selection", ["suppression", "centroid"])
 def test_points_do_not_depend_on_the_order_of_the_vertices(selection, ball, spot, make_maps):
     other, old = shuffled(ball)
@@ -144,6 +147,7 @@ def test_points_do_not_depend_on_the_order_of_the_vertices(selection, ball, spot
     assert np.allclose(found[0]["thesis_ssim"].saliency[old], found[1]["thesis_ssim"].saliency, atol=1e-5)
 
 
+@pytest.mark.slow
 def test_points_and_saliency_from_a_bare_mesh_do_not_depend_on_its_place_and_size(ball):
     nose = trimesh.creation.icosphere(subdivisions=2, radius=0.12)
     mesh = Mesh(
@@ -158,6 +162,7 @@ def test_points_and_saliency_from_a_bare_mesh_do_not_depend_on_its_place_and_siz
     assert first[0] >= len(ball.vertices)  # on the nose
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", ["enhanced", "height"])
 def test_the_axis_that_points_up_may_be_named(method):
     profile = [[0, -0.4], [0.3, -0.3], [0.1, 0.4], [0, 0.45]]
@@ -171,6 +176,7 @@ def test_the_axis_that_points_up_may_be_named(method):
         saliency(lying, method, up="w")
 
 
+@pytest.mark.slow
 def test_random_points_are_uniform_over_the_area():
     # A square whose left half is one large square, its right half 50 x 50 small ones; 3 in 4 of the area on the left.
     line = np.linspace(0.75, 1, 51)
@@ -189,6 +195,7 @@ def test_more_random_points_than_vertices_are_all_vertices(ball):
     assert sorted(find_points(ball, "random", 10**7)) == list(range(len(ball.vertices)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", ["enhanced", "mesh_saliency", "salient_points", "harris"])
 def test_a_vertex_in_no_face_changes_nothing(method, ball):
     nose = trimesh.creation.icosphere(subdivisions=2, radius=0.12)
@@ -229,6 +236,7 @@ def test_a_viewpoint_comes_back_from_its_name(viewpoint):
     assert parse_viewpoint(turned.name) == turned
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("call", "message"),
     [

@@ -61,6 +61,7 @@ def test_bending_hardly_changes_it(grid):
     assert flat.std() > 0.2 and np.abs(bent - flat).max() < 0.01
 
 
+@pytest.mark.slow
 def test_each_piece_keeps_its_own_heat(sphere):
     """A small ball beside an ellipsoid is even and near one, wherever it lies, and adds no point."""
     ball = sphere(4)

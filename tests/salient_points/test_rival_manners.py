@@ -65,6 +65,7 @@ def values(rival, bumpy, saliency_of):
     return saliency_of(rival, bumpy)
 
 
+@pytest.mark.slow
 def test_answers_in_the_agreed_form(held, bumpy, values):
     points = held.rival.points(bumpy)
     assert values.shape == (len(bumpy.vertices),) and values.dtype == np.float64
@@ -74,6 +75,7 @@ def test_answers_in_the_agreed_form(held, bumpy, values):
     assert np.array_equal(points, held.rival.points(bumpy, values))
 
 
+@pytest.mark.slow
 def test_does_not_depend_on_size_and_vertex_order(held, bumpy, values):
     order = np.random.default_rng(5).permutation(len(bumpy.vertices))
     place = np.argsort(order)
@@ -83,6 +85,7 @@ def test_does_not_depend_on_size_and_vertex_order(held, bumpy, values):
     assert np.array_equal(order[held.rival.points(shuffled, moved)], held.rival.points(bumpy, values))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [1e-5, 1e5])
 @over(harris, corners, heat_kernel)
 def test_does_not_depend_on_scale_turn_and_place(rival, bumpy, saliency_of, size):
@@ -93,6 +96,7 @@ def test_does_not_depend_on_scale_turn_and_place(rival, bumpy, saliency_of, size
     assert set(rival.points(moved)) == set(rival.points(bumpy))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("rival", "largest", "correlation", "apart"),
     [(mesh_saliency, 0.05, 0.99, 0), (salient_points, 0.05, 0.99, 0), (sift, 1, 0.95, 0.05)],  # sift: within a voxel
@@ -108,6 +112,7 @@ def test_a_turned_mesh_keeps_its_map_and_first_point(rival, largest, correlation
     assert np.linalg.norm(first[0] - first[1]) <= apart
 
 
+@pytest.mark.slow
 def test_does_not_depend_on_which_side_is_out(rival, bumpy, values):
     inward = Mesh(bumpy.vertices, bumpy.faces[:, ::-1])
     assert np.allclose(rival.saliency(inward), values, atol=1e-4)
@@ -146,6 +151,7 @@ BAD = [
 ]  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("name", BAD)
 def test_bad_meshes_give_finite_values_and_points_on_the_surface(rival, bad_meshes, name):
@@ -156,6 +162,7 @@ def test_bad_meshes_give_finite_values_and_points_on_the_surface(rival, bad_mesh
     assert points.dtype == np.int64 and np.isin(points, mesh.faces).all()
 
 
+@pytest.mark.slow
 def test_a_vertex_in_no_face_is_not_salient(rival, bumpy):
     """It lies in the tip of the highest bump."""
     top = bumpy.vertices[np.linalg.norm(bumpy.vertices, axis=1).argmax()]
@@ -170,6 +177,7 @@ def test_values_of_another_mesh_are_refused(rival, bumpy):
         rival.points(bumpy, np.ones(7))
 
 
+@pytest.mark.slow
 @over(mesh_saliency, salient_points, sift)
 def test_a_sphere_and_a_plane_have_neither_saliency_nor_points(rival, sphere, grid):
     for mesh in sphere(4), Mesh(*grid(9, 9)):
@@ -178,6 +186,7 @@ def test_a_sphere_and_a_plane_have_neither_saliency_nor_points(rival, sphere, gr
         assert len(rival.points(mesh, values)) == 0
 
 
+@pytest.mark.slow
 @over(mesh_saliency, salient_points)
 def test_a_bump_far_below_the_scales_counts_less_than_one_of_the_right_size(rival, sphere, raised):
     """The small bump, one vertex wide, is as steep as the other."""
@@ -187,12 +196,14 @@ def test_a_bump_far_below_the_scales_counts_less_than_one_of_the_right_size(riva
     assert values[fine] < 0.5 * values[right]
 
 
+@pytest.mark.slow
 @over(mesh_saliency, salient_points)
 def test_the_ends_of_an_ellipsoid_come_first(rival, sphere):
     ellipsoid = Mesh(sphere(4).vertices * [1, 0.3, 0.3], sphere(4).faces)
     np.testing.assert_allclose(np.abs(ellipsoid.vertices[rival.points(ellipsoid)[:2]]), [X, X], atol=0.02)
 
 
+@pytest.mark.slow
 @over(mesh_saliency, salient_points)
 def test_the_corners_of_a_cube_come_first(rival, cube):
     mesh = cube(5)

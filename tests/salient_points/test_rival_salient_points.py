@@ -1,6 +1,7 @@
 """Salient points (Castellani 2008) on shapes whose salient places are known."""
 
 import numpy as np
+import pytest
 
 from stages.salient_points.rivals import salient_points
 
@@ -15,6 +16,7 @@ def test_a_bump_of_the_right_size_is_the_first_point_and_a_wide_swell_is_none(bu
     assert swell not in found
 
 
+@pytest.mark.slow
 def test_points_exceed_three_tenths_of_the_maximum(raised):
     mesh = raised(np.eye(3), [0.08, 0.08, 0.08], [0.06, 0.006, 0.04])
     values = salient_points.saliency(mesh)

@@ -1,6 +1,7 @@
 """3D-SIFT (Godil 2011) on shapes whose keypoints are known."""
 
 import numpy as np
+import pytest
 from scipy.special import erf
 
 from stages.kit import Mesh
@@ -19,10 +20,12 @@ def test_a_bump_of_the_right_size_is_the_only_point_and_a_wide_swell_has_no_sali
     assert values[sphere(5).vertices[:, 0].argmin()] == 0
 
 
+@pytest.mark.slow
 def test_a_bump_below_a_voxel_has_no_saliency(sphere, raised):
     assert sift.saliency(raised(sphere(5).vertices[[1]], [0.013], [0.01])).max() == 0
 
 
+@pytest.mark.slow
 def test_a_small_ball_is_a_keypoint_of_its_own_size(sphere):
     """The difference of Gaussians answers a ball of radius r most at its centre, at sigma = r / sqrt(3)."""
     large, small = sphere(5), 0.12 * sphere(2).vertices + [0, 0, 1.5]
@@ -48,6 +51,7 @@ def test_the_scale_space_is_that_of_the_solid_ball(sphere):
     np.testing.assert_allclose([dog[tuple(voxel)] for dog in dogs], np.diff(held), atol=0.01)
 
 
+@pytest.mark.slow
 def test_a_dent_counts_like_a_bump_and_a_hole_elsewhere_does_not_matter(raised):
     dent = raised([X], [0.08], [-0.06])
     bump = raised([X], [0.08], [0.06])

@@ -16,6 +16,8 @@ from stages.scene.counts import (
     tolerated_error,
 )
 
+pytestmark = pytest.mark.slow
+
 COMBINATIONS = ("itti", "VisAttCon")
 SHARES = np.array([0.05, 0.1, 0.2, 0.4, 0.7])
 

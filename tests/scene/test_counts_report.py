@@ -56,6 +56,7 @@ def test_cost_is_told_beside_the_lookup(written):
     assert "the thesis's networks 1 and 1; linear in logarithms 2 and 2" in made.notes[0]
 
 
+@pytest.mark.slow
 def test_figure_is_drawn_with_and_without_all_conditions(written):
     made = build_one(scene, "figures", "face_counts", written(rows()))
     assert made.paths[0].stat().st_size > 10_000

@@ -21,6 +21,8 @@ from stages.scene.read import report_missing, scene_of
 from stages.scene.rows import summary
 from stages.scene.schema import Params
 
+pytestmark = pytest.mark.slow
+
 SCENES = sorted((Path(__file__).parents[2] / "conf/scene").glob("*.yaml"))
 COMMON = {"limit": 0, "hold": 2, "method": "enhanced-soft", "factors": [1.0], "msft_lod": True}
 

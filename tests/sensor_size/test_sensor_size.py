@@ -34,12 +34,14 @@ def plain():
             for i, (one, level) in enumerate((("low", -1.0), ("even", 0.0), ("high", 1.0)))}  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CLASSIFIERS)
 def test_every_classifier_tells_plain_classes_of_unseen_objects(plain, name):
     rows = unseen(plain, name)
     assert len(rows) == 9 and np.mean([row["value"] for row in rows]) > 0.95
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CLASSIFIERS)
 def test_noise_alone_is_told_by_chance(name):
     noise = {one: [np.random.default_rng([i, j]).normal(size=(40, 8, 8)) for j in range(3)]

@@ -27,6 +27,7 @@ def test_an_object_lies_on_the_array_at_its_true_size(monkeypatch):
     assert np.median((smaller > 0.5).sum(axis=(1, 2))) == pytest.approx(shrunk, rel=0.15)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", SIMULATIONS)
 def test_simulated_touches_are_pressures_and_the_same_in_every_run(kind):
     ball = mesh_of(trimesh.creation.icosphere(2, radius=0.5))

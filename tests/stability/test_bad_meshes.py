@@ -53,6 +53,7 @@ def seen(name):
     return mesh, maps_under_conditions(mesh, CHANNELS, Conditions(), SIZE)
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("method", RUNNING)
 @pytest.mark.parametrize("name", ODD)

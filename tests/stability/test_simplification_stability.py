@@ -23,6 +23,8 @@ COARSE = trimesh.creation.icosphere(subdivisions=2)
 FEWER = Mesh(
     COARSE.vertices * [0.3, 0.4, 0.5], COARSE.faces
 )  # the icosphere's coarse vertices are vertices of the fine
+
+pytestmark = pytest.mark.slow
 NONE = np.zeros(0, dtype=int), np.zeros((0, 3), dtype=int)
 
 

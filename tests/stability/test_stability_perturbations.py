@@ -179,6 +179,7 @@ def test_light_brightens_the_side_it_comes_from(pear):
     assert (rgb[~view.mask] == view.rgb[~view.mask, 0]).all()
 
 
+@pytest.mark.slow
 def test_a_background_that_is_kept_out_changes_no_map(pear):
     plain, white = (
         maps_under_conditions(pear, tuple(CHANNELS), Conditions(background=b), SIZE).maps for b in (0.0, 1.0)

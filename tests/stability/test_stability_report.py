@@ -29,6 +29,7 @@ def results(root, rows):
     return Results(workspace.on(""), SETTINGS)
 
 
+@pytest.mark.slow
 def test_report_shows_the_table_and_the_pictures(disturbed):
     found = results(disturbed.root, disturbed.rows)
     built = build_one(stability, "tables", "stability", found)
@@ -40,6 +41,7 @@ def test_report_shows_the_table_and_the_pictures(disturbed):
     assert "missing faces" in figures[1].caption and label("harris") in figures[0].alt
 
 
+@pytest.mark.slow
 def test_report_shows_the_simplified_meshes(tmp_path, simplified):
     found = results(tmp_path, simplified)
     built = build_one(stability, "tables", "stability_simplification", found)

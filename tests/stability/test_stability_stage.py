@@ -67,6 +67,7 @@ def test_rows_are_complete(disturbed, settings):
     assert all(row["seconds"] > 0 for row in disturbed.rows if row["value"] is not None)
 
 
+@pytest.mark.slow
 def test_files_hold_the_worst_case_and_are_the_same_twice(disturbed, settings, tmp_path):
     data = disturbed.root / "data/test"
     stored = read_arrays(data / "stability/pear.npz")

@@ -72,6 +72,7 @@ def test_entropy_measures_texture(name):
     assert bits[1] > bits[0] + 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("radii", [(0.45, 0.45, 0.45), (0.45, 0.44, 0.43)])
 def test_symmetry_says_nothing_on_a_compact_shape(radii):
     """T3.2.3: where the extremes deviate little from the centre, the feature's information gain is zero."""
@@ -100,6 +101,7 @@ def symmetry_at_the_ends(mesh):
     return gains, maps
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SMOOTH)
 def test_a_black_background_left_in_draws_the_maps_to_the_contour_least(name):
     """T3.1.5 chose black before grey and white by the error of the simplified meshes; here by the maps themselves."""

@@ -167,6 +167,7 @@ def test_other_architectures_and_middles_are_refused(pair):
         HybridNet(*pair, middle=(0, 17))
 
 
+@pytest.mark.slow
 def test_training_the_originals_later_does_not_reach_the_hybrid(base, images):
     pair = tuned(base, 1), tuned(base, 2)
     hybrid = HybridNet(*pair)

@@ -37,6 +37,7 @@ def images():
     return join_senses(pictures, imprints)
 
 
+@pytest.mark.slow
 def test_a_saved_network_comes_back_bit_for_bit(hybrid, images, tmp_path):
     save(tmp_path / "net.npz", hybrid, NAMES)
     found, names = load(tmp_path / "net.npz")
@@ -51,6 +52,7 @@ def test_equal_networks_give_equal_bytes(hybrid, stored, tmp_path):
     assert sha256(tmp_path / "again.npz") == sha256(stored)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "ratio", "off"), [("float16", 1.9, 0.2), ("int8", 3.4, 0.8)])
 def test_smaller_kinds_are_smaller_and_nearly_the_same(hybrid, images, tmp_path, kind, ratio, off):
     save(tmp_path / "small.npz", hybrid, NAMES, kind)
@@ -93,6 +95,7 @@ def stored(hybrid, tmp_path_factory):
     return path
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("other", "said"),
     [
@@ -124,6 +127,7 @@ def test_damaged_and_strange_files_are_refused(stored, tmp_path):
         load(tmp_path / "nowhere.npz")
 
 
+@pytest.mark.slow
 def test_onnx_says_the_same_for_any_batch_and_any_absence(hybrid, images, tmp_path):
     export_onnx(tmp_path / "net.onnx", hybrid, SIZE)
     for part in (images, images[:1], torch.cat([images] * 3)):

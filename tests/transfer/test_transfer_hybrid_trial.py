@@ -11,6 +11,8 @@ from stages.transfer import hybrid_compared, hybrid_trial
 from stages.transfer.hybrid_file import load
 from stages.transfer.middle import middle_of
 
+pytestmark = pytest.mark.slow
+
 MEMBERS = {"cup": ["mug", "glass"], "dog": ["poodle", "pug"]}
 SETTINGS = {
     "size": 32, "cells": 32, "coarse_cells": [], "splits": ["random", "objects"], "train_share": 0.75,

@@ -54,6 +54,7 @@ def test_a_run_writes_what_the_report_reads(run):
     assert set(metrics) == {"chance", "imprints32"}
 
 
+@pytest.mark.slow
 def test_one_training_more_repeats_no_other(run, monkeypatch):
     """Nor does one that was killed after its learning rate was found."""
     trained, train_model = [], trial.train_model

@@ -23,6 +23,7 @@ def workspace(shapes, make_workspace):
     return workspace
 
 
+@pytest.mark.slow
 def test_stage_writes_every_view_and_its_measurement_the_same_for_any_workers(workspace, make_workspace, capsys):
     stored = []
     for parallel in ({"backend": "sequential"}, {"backend": "loky", "workers": 2}):
@@ -45,6 +46,7 @@ def test_stage_writes_every_view_and_its_measurement_the_same_for_any_workers(wo
     assert metrics["views"] == 8 and metrics["coverage"] == pytest.approx(rows.value.mean(), abs=1e-6)
 
 
+@pytest.mark.slow
 def test_one_mesh_more_costs_one_mesh(workspace, shapes, monkeypatch):
     rendered = []
     render = stage.render

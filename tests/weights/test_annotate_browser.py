@@ -123,6 +123,7 @@ def opened(browser, sphere, tmp_path):
     assert not [fault for fault in faults if not fault.startswith("data:")]
 
 
+@pytest.mark.slow
 def test_points_land_on_the_vertices_under_the_pointer_before_and_after_turning(opened, sphere, tmp_path):
     begun = datetime.now(UTC)
     hand = opened()
@@ -144,6 +145,7 @@ def test_points_land_on_the_vertices_under_the_pointer_before_and_after_turning(
     assert begun.replace(microsecond=0) <= times[0] < times[1] < times[2] <= datetime.now(UTC)
 
 
+@pytest.mark.slow
 def test_numbered_dots_lie_where_their_vertices_are_and_fade_behind(opened):
     hand = opened()
     vertex = hand.facing(1)[0]
@@ -158,6 +160,7 @@ def test_numbered_dots_lie_where_their_vertices_are_and_fade_behind(opened):
     assert "hidden" in hand.page.locator("#dots span").get_attribute("class")
 
 
+@pytest.mark.slow
 def test_clicks_beside_the_object_and_on_known_points_add_nothing(opened):
     hand = opened()
     vertex = hand.facing(1)[0]
@@ -170,6 +173,7 @@ def test_clicks_beside_the_object_and_on_known_points_add_nothing(opened):
     assert hand.listed == [vertex]
 
 
+@pytest.mark.slow
 def test_a_single_point_is_removed_and_undo_brings_it_back(opened, tmp_path):
     hand = opened()
     first, second, third = hand.facing(7)[::3]
@@ -190,6 +194,7 @@ def test_a_single_point_is_removed_and_undo_brings_it_back(opened, tmp_path):
     assert list(found.vertex) == [first, second, third] and list(found.time) == sorted(found.time)
 
 
+@pytest.mark.slow
 def test_leaving_asks_while_points_are_unsaved_and_reopening_loads_the_saved_ones(opened):
     hand = opened()
     asked = []
@@ -209,6 +214,7 @@ def test_leaving_asks_while_points_are_unsaved_and_reopening_loads_the_saved_one
     assert hand.listed == [kept] and asked == ["beforeunload"]
 
 
+@pytest.mark.slow
 def test_the_page_asks_for_a_name_and_keeps_points_placed_before_it_is_given(opened, tmp_path):
     hand = opened("ann")
     first, second = hand.facing(4)[::3]
@@ -225,6 +231,7 @@ def test_the_page_asks_for_a_name_and_keeps_points_placed_before_it_is_given(ope
     assert list(read_marks(tmp_path / "marks" / "ball.csv").vertex) == [first, second]
 
 
+@pytest.mark.slow
 def test_a_second_person_starts_afresh_and_leaves_the_first_ones_points(opened, tmp_path):
     hand = opened("ann")
     first, second = hand.facing(4)[::3]
@@ -244,6 +251,7 @@ def test_a_second_person_starts_afresh_and_leaves_the_first_ones_points(opened, 
     assert list(zip(found.annotator, found.vertex, strict=True)) == [("ann", first), ("bob", second)]
 
 
+@pytest.mark.slow
 def test_two_windows_under_one_name_lose_nothing(opened, tmp_path):
     one = opened()
     other = opened(server=one.server)
@@ -260,6 +268,7 @@ def test_two_windows_under_one_name_lose_nothing(opened, tmp_path):
     assert list(read_marks(tmp_path / "marks" / "ball.csv").vertex) == [first, second]
 
 
+@pytest.mark.slow
 def test_a_folder_that_cannot_be_written_is_shown_and_the_points_stay(opened, tmp_path):
     (tmp_path / "marks").write_text("a file where the folder should be")
     hand = opened()
@@ -276,6 +285,7 @@ def test_a_folder_that_cannot_be_written_is_shown_and_the_points_stay(opened, tm
     assert hand.page.locator("#error").inner_text() == ""
 
 
+@pytest.mark.slow
 def test_a_damaged_file_is_shown_with_its_line_and_stays(opened, tmp_path):
     hand = opened()
     (tmp_path / "marks").mkdir()
@@ -286,6 +296,7 @@ def test_a_damaged_file_is_shown_with_its_line_and_stays(opened, tmp_path):
     assert len(hand.listed) == 1 and (tmp_path / "marks" / "ball.csv").read_text().endswith("zoe,now")
 
 
+@pytest.mark.slow
 def test_points_stay_when_the_server_has_ended(opened):
     hand = opened()
     hand.click(hand.facing(1)[0])
@@ -296,6 +307,7 @@ def test_points_stay_when_the_server_has_ended(opened):
     assert len(hand.listed) == 1
 
 
+@pytest.mark.slow
 def test_the_wheel_zooms_about_the_pointer_and_reset_goes_back(opened):
     hand = opened()
     near, far = hand.facing(12)[::11]
@@ -312,6 +324,7 @@ def test_the_wheel_zooms_about_the_pointer_and_reset_goes_back(opened):
     assert np.abs(hand.dot(1) - before[1]).max() < 1
 
 
+@pytest.mark.slow
 def test_fingers_pinch_and_tap(opened):
     hand = opened(viewport=NARROW, has_touch=True, is_mobile=True)
     near, far = hand.facing(12)[::11]
@@ -328,6 +341,7 @@ def test_fingers_pinch_and_tap(opened):
     assert hand.listed == [near, far]
 
 
+@pytest.mark.slow
 def test_keys_alone_turn_mark_and_save(opened, tmp_path):
     hand = opened()
     hand.page.locator("#canvas").focus()
@@ -342,6 +356,7 @@ def test_keys_alone_turn_mark_and_save(opened, tmp_path):
     assert list(read_marks(tmp_path / "marks" / "ball.csv").vertex) == hand.facing(1)
 
 
+@pytest.mark.slow
 def test_a_narrow_window_shows_everything_without_scrolling_sideways(opened):
     hand = opened(viewport=NARROW)
     for vertex in hand.facing(12):
@@ -353,6 +368,7 @@ def test_a_narrow_window_shows_everything_without_scrolling_sideways(opened):
         assert box["x"] >= 0 and box["x"] + box["width"] <= NARROW["width"] and box["height"] >= 24
 
 
+@pytest.mark.slow
 def test_every_control_has_a_name(opened):
     hand = opened()
     hand.click(hand.facing(1)[0])

@@ -186,6 +186,7 @@ def test_meshes_are_found_by_file_and_by_name(cube, tmp_path):
         find_mesh(str(tmp_path / "torn.off"), workspace)
 
 
+@pytest.mark.slow
 def test_the_command_serves_until_it_is_interrupted(tmp_path):
     trimesh.creation.box().export(tmp_path / "brick.off")
     command = [sys.executable, "-m", "stages.weights.annotate", "toys", str(tmp_path / "brick.off")]

@@ -77,6 +77,7 @@ def run(workspace, monkeypatch):
     return collected, trained
 
 
+@pytest.mark.slow
 def test_the_stage_writes_weights_ground_truth_and_svms(workspace, objects, capsys):
     stage.run(workspace)
     assert "2 of 3 objects have ground truth; enhanced takes fixations" in capsys.readouterr().out
@@ -90,6 +91,7 @@ def test_the_stage_writes_weights_ground_truth_and_svms(workspace, objects, caps
     assert "fixations" in found.weights and "svm" in found.svms
 
 
+@pytest.mark.slow
 def test_rows_hold_points_weights_and_accuracies(workspace, objects):
     stage.run(workspace)
     rows = read_rows(workspace.measurements / "weights.csv.gz").fillna({"item": ""})
@@ -115,6 +117,7 @@ def test_rows_hold_points_weights_and_accuracies(workspace, objects):
     )
 
 
+@pytest.mark.slow
 def test_only_objects_whose_training_data_changed_are_trained_again(workspace, objects, add_object, monkeypatch):
     assert run(workspace, monkeypatch) == (["ball", "egg"], ["ball", "egg"])
     before = (workspace.data / "weights" / "weights.csv").read_bytes()
