@@ -8,8 +8,8 @@ DARK = 55  # per cent from which a number is written in white
 
 
 def draw_matrix(axes: Axes, rows: pd.DataFrame, classes: list[str]) -> None:
-    """Draws one matrix in per cent of its rows. rows: a frame of true and predicted classes with their counts."""
-    counts = rows.pivot_table(index="true", columns="predicted", values="count", aggfunc="sum", fill_value=0)
+    """Draws one matrix in per cent of its rows. rows: `value` items of the class `group`, taken for `predicted`."""
+    counts = rows.pivot_table(index="group", columns="predicted", values="value", aggfunc="sum", fill_value=0)
     counts = counts.reindex(index=classes, columns=classes, fill_value=0).to_numpy(dtype=float)
     shares = 100 * counts / np.maximum(counts.sum(axis=1, keepdims=True), 1)
     axes.imshow(shares, cmap="Blues", vmin=0, vmax=100)

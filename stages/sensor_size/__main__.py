@@ -2,9 +2,8 @@
 
 Reads data/SET/meshes and data/SET/salient_points, presses arrays of every number of cells and every pitch at the
 salient points of each object, and tests each classifier on objects that it was not trained on. Writes
-data/SET/sensor_size/smallest.csv (one row per classifier: the smallest array that is sufficient, and how often the same
-one is chosen when the objects are drawn anew) and reports/measurements/SET/sensor_size.csv.gz: one row per array,
-classifier, split and tested object.
+reports/measurements/SET/sensor_size.csv.gz: one row per array, classifier, split and tested object, and one per
+classifier: the smallest array that is sufficient, and how often the same one is chosen when the objects are drawn anew.
 """
 
 import functools
@@ -14,13 +13,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pandas as pd
 from threadpoolctl import threadpool_limits
 
 from stages.imprints import press_many, touchable, warm_up
 from stages.kit import Stopwatch
 from stages.kit.command import workspace_of_arguments
-from stages.kit.files import read_mesh, write_table
+from stages.kit.files import read_mesh
 from stages.kit.run import Rows, StageRun
 from stages.kit.split import Split
 from stages.kit.stats import interval_metrics
@@ -96,6 +94,12 @@ def summary(rows: Rows, slack: float, seed: int) -> dict[str, Any]:
     return tree
 
 
+def smallest_row(classifier: str, cells: int, pitch: float, accuracy: float, again: float) -> dict[str, Any]:
+    """The row of the smallest array that is sufficient."""
+    about = {"classifier": classifier, "cells": cells, "pitch": pitch}
+    return about | {"metric": "smallest_chosen_again", "value": again}
+
+
 def run(workspace: Workspace) -> None:
     """Runs the stage on the data set of a workspace."""
     settings = workspace.settings(Params)
@@ -107,7 +111,7 @@ def run(workspace: Workspace) -> None:
         found = summary(rows, settings.slack, stage.seed)
         stage.metrics({name: one["arrays"] for name, one in found.items()})  # the smallest one is a choice, often luck
         smallest = [{"classifier": name} | one["smallest"] for name, one in found.items()]
-        write_table(stage.folder / "smallest.csv", pd.DataFrame(smallest))
+        stage.rows += [smallest_row(**one) for one in smallest]
     for one in smallest:
         print("sensor_size: {classifier} needs {cells} x {cells} cells, {pitch} apart: {accuracy:.3f}".format(**one))
 

@@ -2,8 +2,8 @@
 
 Reads data/SET/contours/NAME.npz and the classes of data/SET/meshes. Two networks and the sum of their probabilities,
 kNN and SVM, each with sequences drawn at random for testing, as in the thesis, and with whole objects held out. Writes
-data/SET/sequences/confusion.csv, layers.csv and predictions/TRIAL.npz, and
-reports/measurements/SET/sequences.csv.gz: one row per trial and classifier, of unseen objects also one per class.
+data/SET/sequences/predictions/TRIAL.npz, and reports/measurements/SET/sequences.csv.gz: one row per trial and
+classifier, of unseen objects also one per class; what is taken for what, and the layers of both networks.
 """
 
 import functools
@@ -14,11 +14,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pandas as pd
 import torch
 
 from stages.kit.command import workspace_of_arguments
-from stages.kit.files import read_arrays, write_table
+from stages.kit.files import read_arrays
 from stages.kit.run import Rows, StageRun
 from stages.kit.stats import interval_metrics
 from stages.kit.workspace import Workspace
@@ -30,8 +29,8 @@ from .schema import COLUMNS, Params
 from .trial import SPLITS, Trial, process
 
 
-def confusion(folder: Path, trials: list[Trial], classes: list[str]) -> pd.DataFrame:
-    """Tidy frame of the confusion matrices: method, split, classifier, true, predicted, count over all rounds.
+def confusion_rows(folder: Path, trials: list[Trial], classes: list[str]) -> Rows:
+    """Rows of how many sequences of `group` were taken for `predicted` over all rounds (T figure 4.19).
 
     Of the trials with whole sequences alone, the size that the first of them has.
     """
@@ -42,24 +41,23 @@ def confusion(folder: Path, trials: list[Trial], classes: list[str]) -> pd.DataF
         stored = read_arrays(folder / "predictions" / f"{trial.name}.npz")
         for name in set(stored) - {"test", "true"}:
             np.add.at(counts[trial.strategy, trial.split, name], (stored["true"], stored[name]), 1)
-    rows = [
-        {"method": method, "split": split, "classifier": name, "true": classes[i], "predicted": classes[j]}
-        | {"count": counts[method, split, name][i, j]}
+    return [
+        {"method": method, "split": split, "classifier": name, "group": classes[i], "predicted": classes[j]}
+        | {"metric": "confusion", "value": int(counts[method, split, name][i, j])}
         for method, split, name in sorted(counts)
-        for i, j in np.ndindex(len(classes), len(classes))
+        for i, j in np.argwhere(counts[method, split, name])
     ]
-    return pd.DataFrame(rows)
 
 
-def network_layers(trials: list[Trial], classes: int) -> pd.DataFrame:
-    """Tidy frame: network, layer, kind, output, parameters, of networks for whole sequences."""
+def layer_rows(trials: list[Trial], classes: int) -> Rows:
+    """Rows of the parameters of each layer of the networks for whole sequences (T tables 4.7 and 4.8)."""
     frames, cells = trials[0].frames_and_cells
     films, normals = torch.zeros((1, frames, cells, cells)), torch.zeros((1, frames, 3))
     both = {
-        "images": (ImageNet(frames, (cells, cells), classes), films),
-        "normals": (NormalNet(frames, classes), normals),
+        "cnn_images": (ImageNet(frames, (cells, cells), classes), films),
+        "cnn_normals": (NormalNet(frames, classes), normals),
     }
-    return pd.concat([layers(*one).assign(network=name) for name, one in both.items()])
+    return [{"classifier": name, "metric": "parameters"} | row for name, one in both.items() for row in layers(*one)]
 
 
 def summary(rows: Rows, seed: int) -> dict[str, Any]:
@@ -87,8 +85,8 @@ def run(workspace: Workspace) -> None:
         stage.rows += [{"metric": "accuracy", "value": None, "note": note} for note in planned.notes]
         stage.metrics(summary(rows, stage.seed))
         if planned.trials:
-            write_table(stage.folder / "confusion.csv", confusion(stage.folder, planned.trials, list(planned.members)))
-            write_table(stage.folder / "layers.csv", network_layers(planned.trials, len(planned.members)))
+            stage.rows += confusion_rows(stage.folder, planned.trials, list(planned.members))
+            stage.rows += layer_rows(planned.trials, len(planned.members))
     for note in planned.notes:
         print(f"sequences: {note}", file=sys.stderr)
     classes, trials = len(planned.members), len(planned.trials)

@@ -7,7 +7,6 @@ channel, not per cell. In table 4.8 kernels of 3 x 3 on one remaining row are 3 
 as 2. Dropout in the tables is the share that is kept, as in mdCNN.
 """
 
-import pandas as pd
 import torch
 
 KEPT_HIDDEN = 0.8  # tables 4.7 and 4.8, first fully connected layer
@@ -75,18 +74,18 @@ def _output_length(count, kernel, stride, padding):
 
 
 @torch.no_grad()
-def layers(network: torch.nn.Module, *inputs: torch.Tensor) -> pd.DataFrame:
-    """Tidy frame of a network's layers in order of execution: layer, kind, output (shape per sample), parameters."""
+def layers(network: torch.nn.Module, *inputs: torch.Tensor) -> list[dict]:
+    """Rows of a network's layers in order of execution: layer, kind, output (shape per sample), parameters as value."""
     rows, hooks = [], []
     for name, layer in network.named_children():
 
         def record(layer, _, values, name=name):
             shape = "x".join(map(str, values.shape[1:]))
             count = sum(p.numel() for p in layer.parameters())
-            rows.append({"layer": name, "kind": type(layer).__name__, "output": shape, "parameters": count})
+            rows.append({"layer": name, "kind": type(layer).__name__, "output": shape, "value": count})
 
         hooks.append(layer.register_forward_hook(record))
     network.eval()(*inputs)
     for hook in hooks:
         hook.remove()
-    return pd.DataFrame(rows)
+    return rows

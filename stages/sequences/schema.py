@@ -9,6 +9,10 @@ COLUMNS = {
     "cells": "sensels along each side of an imprint",
     "classes": "number of classes",
     "sequences": "number of sequences, to train and to test",
+    "predicted": "the class that `value` sequences of the class `group` were taken for",
+    "layer": "a layer of a network, which has `value` parameters",
+    "kind": "what it is: Conv3d, ...",
+    "output": "the shape of what it gives",
 }
 
 

@@ -3,9 +3,9 @@
 Reads data/SET/meshes and data/SET/salient_points of classes of objects. Presses the touches of every object with a
 fine and a coarse array, then trains transfer.networks from each of transfer.weights, with touches drawn at random for
 testing and with whole objects left out. Writes data/SET/transfer: imprints/NAME.npz, networks/TRIAL.npz (what was
-trained, of the first repetition), predictions/TRIAL.npz, confusion.csv, weight_change.csv (of each convolution) and
-stability.csv (disturbed touches). Stitches hybrid networks for sight and touch (T5.5) of networks that share their
-middle, to data/SET/transfer/hybrid. The rows are in reports/measurements/SET/transfer.csv.gz.
+trained, of the first repetition) and predictions/TRIAL.npz. Stitches hybrid networks for sight and touch (T5.5) of
+networks that share their middle, to data/SET/transfer/hybrid. The rows are in reports/measurements/SET/transfer.csv.gz:
+accuracies, the same on disturbed touches, the change of each convolution, what the hybrid takes for what.
 """
 
 import dataclasses
@@ -16,7 +16,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from stages.kit.command import workspace_of_arguments
-from stages.kit.files import read_mesh, write_table
+from stages.kit.files import read_mesh
 from stages.kit.run import Rows, StageRun
 from stages.kit.workspace import Workspace
 from stages.meshes.classes import read_classes
@@ -25,7 +25,7 @@ from stages.networks.weights import imagenet_state
 from . import hybrid_data, hybrid_trial, touches, trial
 from .plan import Plan, check, plan
 from .schema import COLUMNS, Params
-from .tables import confusion, sort_rows, summary
+from .tables import summary, trial_row
 from .touches import count_touchable_vertices
 
 
@@ -38,7 +38,7 @@ def train(
 
 
 def train_all(stage: StageRun, planned: Plan, settings: Params) -> dict[str, dict]:
-    """Presses, trains and stitches what is planned; writes the tables and returns the metrics."""
+    """Presses, trains and stitches what is planned; returns the metrics."""
     members, data = planned.members, stage.workspace.data
     objects = [name for names in members["random"].values() for name in names]
     # What says only which trainings there are is left out: one training more repeats no other.
@@ -53,15 +53,11 @@ def train_all(stage: StageRun, planned: Plan, settings: Params) -> dict[str, dic
         stage.each(take, objects, reads=("meshes/{}.npz",))
     work = functools.partial(train, made=stage.folder, members=members, settings=each, seed=stage.seed)
     rows = stage.each(work, [*(one.name for one in planned.trials), *hybrids])
-    plain, disturbed, layers = sort_rows([row for row in rows if "trial" in row], planned.pretrained)
+    trained = [trial_row(row, planned.pretrained) for row in rows if "trial" in row]
     stitched = [row for row in rows if "trial" not in row]
-    stage.rows = plain + stitched
-    write_table(stage.folder / "stability.csv", disturbed)
-    write_table(stage.folder / "weight_change.csv", layers)
-    write_table(stage.folder / "confusion.csv", confusion(stage.folder, planned.trials, members))
-    metrics = summary(plain, stage.seed)
+    stage.rows = trained + stitched
+    metrics = summary(trained, stage.seed)
     if hybrids:
-        write_table(stage.folder / "hybrid" / "confusion.csv", hybrid_trial.confusion(stage.folder, hybrids, members))
         metrics["hybrid"] = hybrid_trial.summary(stitched, settings, stage.seed)
     return metrics
 

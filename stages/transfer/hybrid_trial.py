@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import NamedTuple, Self
 
 import numpy as np
-import pandas as pd
 import torch
 
 from stages.kit import Stopwatch
@@ -93,6 +92,7 @@ def process(
         found = [fit_temperature(scores, sense.labels[sense.validation]) for scores, sense in pairs]
         hybrid.temperature.copy_(torch.tensor(found))
         rows = [*comparison_rows(hybrid, networks, senses, seconds, name, folder, classes)]
+        rows += confusion_rows(folder / "hybrid" / "predictions" / f"{name}.npz", classes)
         if first:
             rows += fused_rows(hybrid, senses, settings, rng(seed, f"pairs {trial.split} {trial.repetition}"), seed)
         if first and trial.repetition == 0 and trial.split == "random" and settings.hybrid_onnx:
@@ -172,21 +172,19 @@ def summary(rows: list[dict], settings: Params, seed: int) -> dict[str, dict]:
     return tree
 
 
-def confusion(folder: Path, names: Sequence[str], members: Mapping[str, Mapping[str, Sequence[str]]]) -> pd.DataFrame:
-    """Tidy frame of the confusion matrices (T figure 5.6): trial, sense, true class, predicted class, count.
+def confusion_rows(predictions: Path, classes: Sequence[str]) -> list[dict]:
+    """Rows of the confusion matrix of each sense (T figure 5.6): how many items of `group` were taken for `predicted`.
 
     A touch without contact has no prediction and is not counted.
     """
-    rows = []
-    for name in names:
-        classes = list(members[HybridTrial.parse(name).split])
-        stored = read_arrays(folder / "hybrid" / "predictions" / f"{name}.npz")
-        for sense in SENSES:
-            scores, counts = stored[f"{sense}_scores"], np.zeros((len(classes), len(classes)), dtype=int)
-            answered = np.isfinite(scores).all(axis=1)
-            np.add.at(counts, (stored[f"{sense}_true"][answered], scores[answered].argmax(axis=1)), 1)
-            rows += [
-                {"trial": name, "sense": sense, "true": classes[i], "predicted": classes[j], "count": counts[i, j]}
-                for i, j in np.ndindex(counts.shape)
-            ]
-    return pd.DataFrame(rows)
+    stored, rows = read_arrays(predictions), []
+    for sense in SENSES:
+        scores, counts = stored[f"{sense}_scores"], np.zeros((len(classes), len(classes)), dtype=int)
+        answered = np.isfinite(scores).all(axis=1)
+        np.add.at(counts, (stored[f"{sense}_true"][answered], scores[answered].argmax(axis=1)), 1)
+        about = {"method": "hybrid", "sense": sense, "metric": "confusion"}
+        rows += [
+            about | {"group": classes[i], "predicted": classes[j], "value": int(counts[i, j])}
+            for i, j in np.argwhere(counts)
+        ]
+    return rows

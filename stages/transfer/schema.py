@@ -9,8 +9,11 @@ COLUMNS = {
     "mode": "what learns: frozen, finetuned, or all layers but a range",
     "repetition": "the number of the split and of its random numbers",
     "sense": "of a hybrid network: vision, touch or both",
-    "perturbation": "what was disturbed in the input of a hybrid network",
+    "perturbation": "what was disturbed in the input",
     "severity": "how much, in the perturbation's unit",
+    "layer": "a convolution, whose weights changed by `value` (T5.4)",
+    "part": "the block of the network that it belongs to",
+    "predicted": "the class that `value` test items of the class `group` were taken for",
 }
 
 

@@ -33,8 +33,7 @@ def process(
 
     made: the folder of the touches; members: {split: {class: its objects}}. The split, the head's initial weights and
     the random numbers of the training depend on split and repetition alone, so that weights, modes and arrays are
-    compared on the same touches. Returns rows; those with a `perturbation` are of disturbed test touches, those with a
-    `layer` of the change of a convolution. `seconds` covers features, search and training, without the test.
+    compared on the same touches. Returns rows; `seconds` covers features, search and training, without the test.
     """
     trial = Trial.parse(name)
     touches = read_touches(made, members[trial.split], trial.data)
@@ -156,7 +155,7 @@ def change_rows(network: torch.nn.Module, model: torch.nn.Module) -> Iterator[di
     """Rows of the change of the weights of each convolution."""
     belongs = network_parts(network)
     for layer, value in weight_changes(network, model).items():
-        yield {"layer": layer, "part": belongs[layer], "metric": "weight_change", "value": value}
+        yield {"layer": layer, "part": belongs[layer], "metric": "layer_weight_change", "value": value}
 
 
 def _settings(settings, epochs, seed):
@@ -164,4 +163,4 @@ def _settings(settings, epochs, seed):
 
 
 def _row(perturbation, severity, value):
-    return {"perturbation": perturbation, "severity": severity, "metric": "accuracy", "value": value}
+    return {"perturbation": perturbation, "severity": severity, "metric": "disturbed_accuracy", "value": value}

@@ -6,7 +6,6 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.kit.files import write_table
 from stages.kit.rows import write_rows
 from stages.report import hybrid, stability
 from stages.report.differences import differences
@@ -78,19 +77,19 @@ def longer(frame, lost=0.1):
 @pytest.fixture
 def run(bare, small):
     """Results of a run that has stitched hybrid networks."""
-    write(bare, rows())
     pairs = [(a, b) for a in ("car", "vase") for b in ("car", "vase")]
     counts = [
-        {"trial": f"hybrid.18-139.{split}.0", "sense": sense, "true": a, "predicted": b, "count": 8 if a == b else 2}
+        {"data": "hybrid", "method": "hybrid", "mode": "18:139", "split": split, "sense": sense, "repetition": 0}
+        | {"metric": "confusion", "group": a, "predicted": b, "value": 8 if a == b else 2}
         for split in ("random", "objects") for sense in LEVELS for a, b in pairs
     ]  # fmt: skip
-    write_table(bare / "data/furniture/transfer/hybrid/confusion.csv", pd.DataFrame(counts))
     noisy = [
         {"data": "imprints128", "method": "mobilenet_v2", "weights": "imagenet", "mode": "frozen", "split": "random"}
-        | {"repetition": k, "perturbation": "noise", "severity": s, "metric": "accuracy", "value": 0.5 - s - 0.01 * k}
+        | {"metric": "disturbed_accuracy", "perturbation": "noise", "severity": s}
+        | {"repetition": k, "value": 0.5 - s - 0.01 * k}
         for s in (0.1, 0.2) for k in range(3)
     ]  # fmt: skip
-    write_table(bare / "data/furniture/transfer/stability.csv", pd.DataFrame(noisy))
+    write(bare, pd.concat([rows(), pd.DataFrame(counts), pd.DataFrame(noisy)]))
     return small.results(bare)
 
 

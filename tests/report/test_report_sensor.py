@@ -4,7 +4,6 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.kit.files import write_table
 from stages.report import sensor
 from stages.report.results import NotRun
 from stages.report.sensor import claims
@@ -32,9 +31,15 @@ def pressed():
 
 @pytest.fixture
 def sensed(root, results, small):
-    small.write(root, "sensor_size", pressed())
-    smallest = pd.DataFrame([{"classifier": "knn", "cells": 32, "pitch": 0.01, "accuracy": 0.65, "again": 0.46}])
-    write_table(root / "data/furniture/sensor_size/smallest.csv", smallest)
+    again = {
+        "dataset": "furniture",
+        "classifier": "knn",
+        "cells": 32,
+        "pitch": 0.01,
+        "metric": "smallest_chosen_again",
+        "value": 0.46,
+    }
+    small.write(root, "sensor_size", pd.concat([pressed(), pd.DataFrame([again])]))
     return results
 
 

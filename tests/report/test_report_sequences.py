@@ -131,15 +131,16 @@ def test_chart_charges_each_choice_its_seconds(run):
     assert frame.loc["CNNs, 25 x 32 x 32", "mean"] == pytest.approx(0.78, abs=0.01)
 
 
-def test_confusions_are_drawn_for_every_strategy_of_the_thesis(run, bare):
+def test_confusions_are_drawn_for_every_strategy_of_the_thesis(bare, small):
     found = [
         {
             "method": method,
             "split": split,
             "classifier": name,
-            "true": one,
+            "group": one,
             "predicted": other,
-            "count": 9 * (one == other) + 1,
+            "metric": "confusion",
+            "value": 9 * (one == other) + 1,
         }
         for method in ("random", "thesis_ssim", "enhanced")
         for split in SPLITS
@@ -147,20 +148,18 @@ def test_confusions_are_drawn_for_every_strategy_of_the_thesis(run, bare):
         for one in CLASSES
         for other in CLASSES
     ]
-    (bare / "data/furniture/sequences").mkdir(parents=True)
-    pd.DataFrame(found).to_csv(bare / "data/furniture/sequences/confusion.csv", index=False)
-    figure = build_one(sequences, "figures", "figure_4_19", run)
+    small.write(bare, "sequences", pd.DataFrame(found), "furniture")
+    figure = build_one(sequences, "figures", "figure_4_19", small.results(bare))
     assert figure.paths[0].exists() and "car, chair, vase" in figure.alt
 
 
-def test_layers_stand_beside_the_printed_ones(run, bare):
+def test_layers_stand_beside_the_printed_ones(bare, small):
     layers = [
-        {"network": network, "layer": layer, "kind": "Conv3d", "output": "8x5", "parameters": 7}
+        {"classifier": network, "layer": layer, "kind": "Conv3d", "output": "8x5", "metric": "parameters", "value": 7}
         for network, layer in SAID
     ]
-    (bare / "data/furniture/sequences").mkdir(parents=True)
-    pd.DataFrame(layers).to_csv(bare / "data/furniture/sequences/layers.csv", index=False)
-    table = build_one(sequences, "tables", "table_4_7", run)
+    small.write(bare, "sequences", pd.DataFrame(layers), "furniture")
+    table = build_one(sequences, "tables", "table_4_7", small.results(bare))
     assert (table.frame["thesis"] != "").all() and "3D 42; 1D 42" in table.notes[-1]
 
 

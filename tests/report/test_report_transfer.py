@@ -49,17 +49,17 @@ def changes():
     """Changes that fall with depth, of two trainings."""
     found = []
     for number in range(2):
-        trial = f"imprints128.mobilenet_v2.imagenet.finetuned.random.{number}"
+        about = {"data": "imprints128", "method": "mobilenet_v2", "weights": "imagenet", "mode": "finetuned"}
+        about |= {"dataset": "furniture", "split": "random", "repetition": number, "metric": "layer_weight_change"}
         for depth, (layer, part) in enumerate(LAYERS.items()):
-            found.append({"trial": trial, "layer": layer, "part": part, "value": 0.1 ** (depth + 0.1 * number)})
+            found.append(about | {"layer": layer, "part": part, "value": 0.1 ** (depth + 0.1 * number)})
     return pd.DataFrame(found)
 
 
 @pytest.fixture
 def run(bare, small):
     """Results of a run that has trained MobileNetV2."""
-    small.write(bare, "transfer", rows())
-    write_table(bare / "data/furniture/transfer/weight_change.csv", changes())
+    small.write(bare, "transfer", pd.concat([rows(), changes()]))
     return small.results(bare)
 
 

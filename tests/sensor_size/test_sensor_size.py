@@ -156,7 +156,7 @@ def test_the_stage_tests_each_object_of_the_classes(make_workspace):
     assert dict(zip(tested["item"], tested["group"], strict=True)) == dict(
         zip(table["object"], table["class"], strict=True)
     )
-    assert (workspace.data / "sensor_size/smallest.csv").exists() and len(rows) == 1 + 4 + 4
+    assert (rows["metric"] == "smallest_chosen_again").sum() == 1 and len(rows) == 1 + 4 + 4 + 1
 
 
 def test_the_svm_stops_where_its_steps_run_in_a_circle(monkeypatch):

@@ -20,8 +20,7 @@ def films(count=60, frames=8, cells=8, classes=3, seed=0):
 
 def outputs(network, *inputs):
     """dict layer -> shape of its output for one sample."""
-    found = layers(network, *inputs)
-    return dict(zip(found["layer"], found["output"], strict=True))
+    return {row["layer"]: row["output"] for row in layers(network, *inputs)}
 
 
 def test_3d_network_has_the_shapes_of_table_4_7():
@@ -48,9 +47,8 @@ def test_settings_are_those_of_the_tables():
 
 def test_table_of_layers_counts_all_parameters():
     network = ImageNet(25, (32, 32), 8)
-    assert layers(network, torch.zeros(1, 25, 32, 32))["parameters"].sum() == sum(
-        p.numel() for p in network.parameters()
-    )
+    counts = [row["value"] for row in layers(network, torch.zeros(1, 25, 32, 32))]
+    assert sum(counts) == sum(p.numel() for p in network.parameters())
 
 
 @pytest.mark.parametrize(("frames", "cells"), [(13, 32), (25, 16), (25, 8), (13, 8), (8, 5), (1, 5)])

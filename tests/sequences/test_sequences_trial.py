@@ -9,7 +9,7 @@ import pytest
 
 from stages.contours import Sequences, write_sequences
 from stages.sequences import trial as trials
-from stages.sequences.__main__ import confusion, network_layers, summary
+from stages.sequences.__main__ import confusion_rows, layer_rows, summary
 from stages.sequences.classifiers import CONVENTIONAL
 from stages.sequences.dataset import count_sequences, downsample, read_sequence_data
 from stages.sequences.plan import plan
@@ -158,16 +158,15 @@ def test_trial_is_the_same_when_repeated(contours, tmp_path):
         assert [row["value"] for row in first] == [row["value"] for row in again]
 
 
-def test_side_tables_hold_every_answer_and_layer(contours, tmp_path, monkeypatch):
+def test_rows_hold_every_answer_and_layer(contours, tmp_path, monkeypatch):
     monkeypatch.setattr(trials, "CONVENTIONAL", ("knn_no_som", "svm_no_som"))
     planned = plan(CLASSES, contours, SETTINGS)
     done = [one for one in planned.trials if one.strategy == "guided" and one.kind == "conventional"]
     rows = [row for one in done for row in process(one.name, tmp_path, contours.parent, CLASSES, SETTINGS, seed=0)]
-    counts = confusion(tmp_path, done, ["flat", "round"])
-    each = counts.groupby(["split", "classifier"])["count"].sum()
-    assert (each["objects"] == 40).all() and (each["random"] == 8).all()
-    assert len(counts) == 2 * 2 * 4
+    counts = pd.DataFrame(confusion_rows(tmp_path, done, ["flat", "round"]))
+    each = counts.groupby(["split", "classifier"])["value"].sum()
+    assert len(each) == 2 * 2 and (each["objects"] == 40).all() and (each["random"] == 8).all()
     tree = summary(rows, seed=0)
     assert tree["chance"] == 0.5 and tree["guided"]["objects"]["svm_no_som"]["mean"] > 0.6
-    table = network_layers(planned.trials, 2)
-    assert set(table["network"]) == {"images", "normals"} and table["parameters"].sum() > 1000
+    table = pd.DataFrame(layer_rows(planned.trials, 2))
+    assert set(table["classifier"]) == {"cnn_images", "cnn_normals"} and table["value"].sum() > 1000

@@ -3,6 +3,7 @@
 from types import SimpleNamespace
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from stages.kit.files import read_arrays, write_arrays
@@ -91,17 +92,18 @@ def test_files_hold_the_network_and_its_answers(run):
 
 
 def test_confusion_counts_every_test_item_once(run):
-    frame = hybrid_trial.confusion(run[0], ["hybrid.18-139.objects.0"], members())
-    assert frame.groupby(["sense", "true"])["count"].sum().tolist() == [8] * 4
+    frame = pd.DataFrame([row for row in run[1] if row["metric"] == "confusion"])
+    assert frame.groupby(["sense", "group"])["value"].sum().tolist() == [8] * 4
 
 
 def test_confusion_leaves_out_a_touch_that_felt_nothing(tmp_path):
     scores, true = np.array([[0.0, 1.0], [np.nan, np.nan], [1.0, 0.0]]), np.array([0, 0, 1])
     stored = {f"{sense}_{part}": value for sense in ("vision", "touch") for part, value in
               (("scores", scores), ("true", true))}  # fmt: skip
-    write_arrays(tmp_path / "hybrid" / "predictions" / "hybrid.18-139.random.0.npz", **stored)
-    frame = hybrid_trial.confusion(tmp_path, ["hybrid.18-139.random.0"], members())
-    assert frame.loc[frame["sense"] == "touch", "count"].tolist() == [0, 1, 1, 0]
+    write_arrays(tmp_path / "predictions.npz", **stored)
+    found = hybrid_trial.confusion_rows(tmp_path / "predictions.npz", ["a", "b"])
+    touch = [(row["group"], row["predicted"], row["value"]) for row in found if row["sense"] == "touch"]
+    assert touch == [("a", "b", 1), ("b", "a", 1)]
 
 
 def test_an_answer_where_the_other_has_none_is_no_equality(monkeypatch, tmp_path):

@@ -4,7 +4,7 @@ from itertools import product
 
 from stages.report.confusion import draw_matrix
 from stages.report.items import Figure
-from stages.report.results import NotRun, Results
+from stages.report.results import Results
 from stages.report.style import plt
 
 from .section_5_5 import ITEMS, MIDDLE, SENSES
@@ -12,13 +12,9 @@ from .section_5_5 import ITEMS, MIDDLE, SENSES
 
 def build(results: Results) -> Figure:
     """Confusion matrices, senses in columns and splits in rows."""
-    frame = results.table("transfer", "hybrid/confusion.csv")
-    trials = frame["trial"].str.split(".")
-    frame = frame.assign(split=trials.str[2])[trials.str[1] == MIDDLE.replace(":", "-")]
+    frame = results.measured("transfer", method="hybrid", metric="confusion", mode=MIDDLE)
     splits = [split for split in ITEMS if split in set(frame["split"])]
-    if not splits:
-        raise NotRun("no confusion matrices of the hybrid network", "transfer")
-    classes = list(dict.fromkeys(frame["true"]))
+    classes = list(dict.fromkeys(frame["group"]))
     side, count = 0.3 * len(classes) + 0.5, len(classes)
     figure, grid = plt.subplots(
         len(splits), len(SENSES), figsize=(side * len(SENSES) + 1.4, side * len(splits) + 0.8), squeeze=False

@@ -52,13 +52,13 @@ def _classes(rows: pd.DataFrame) -> str:
 
 
 def _smallest(results: Results) -> str:
-    """The smallest array of each set whose folder is at hand, a line each."""
+    """The smallest array of each set, a line each."""
     lines = []
     for name in results.datasets(STAGE):
         with suppress(NotRun):
             arrays = [
-                f"{label(row.classifier)} {row.cells} x {row.cells} at {row.pitch:g} ({100 * row.again:.0f} %)"
-                for row in records(results.table(STAGE, "smallest.csv", name))
+                f"{label(row.classifier)} {row.cells:.0f} x {row.cells:.0f} at {row.pitch:g} ({100 * row.value:.0f} %)"
+                for row in records(results.measured(STAGE, name, metric="smallest_chosen_again"))
             ]
             lines.append(f"The smallest array that is enough, {dataset_text(name)}: {'; '.join(arrays)}.")
     return "\n".join(lines)

@@ -10,8 +10,8 @@ from .rows import BLIND, CLASSIFIERS, GUIDED, PRINTED, SPLITS, STAGE
 
 def build(results: Results) -> Figure:
     """Confusion matrices: a row for each split and strategy, a column for each classifier of the thesis."""
-    frame = results.table(STAGE, "confusion.csv")
-    classes, here = list(dict.fromkeys(frame["true"])), set(zip(frame["split"], frame["method"], strict=True))
+    frame = results.measured(STAGE, metric="confusion")
+    classes, here = list(dict.fromkeys(frame["group"])), set(zip(frame["split"], frame["method"], strict=True))
     lines = [(split, method) for split in SPLITS for method in (BLIND, GUIDED) if (split, method) in here]
     names = [name for name in PRINTED if name in set(frame["classifier"])]
     side = 0.3 * len(classes) + 0.5

@@ -6,25 +6,26 @@ from stages.report.results import Results
 from .rows import STAGE
 
 SAID = {
-    ("images", "conv1"): "kernel 5, 5, 5; padding 2, 2, 2; stride 2, 2, 5; 8 filters",
-    ("images", "norm"): "batch normalisation",
-    ("images", "conv2"): "kernel 5, 5, 3; padding 1, 1, 0; stride 1, 1, 1; tanh; 16 filters",
-    ("images", "fc1"): "tanh; dropout 0.8",
-    ("images", "fc2"): "tanh",
-    ("images", "scores"): "softmax",
-    ("normals", "conv1"): "kernel 1, 3, 5; ReLU; padding 0; stride 1; 32 filters",
-    ("normals", "norm"): "batch normalisation",
-    ("normals", "conv2"): "kernel 1, 3, 3; ReLU; padding 0; max pooling 1, 1, 0.2; dropout 0.5; 32 filters",
-    ("normals", "fc1"): "ReLU; dropout 0.8",
-    ("normals", "fc2"): "ReLU",
-    ("normals", "scores"): "softmax",
+    ("cnn_images", "conv1"): "kernel 5, 5, 5; padding 2, 2, 2; stride 2, 2, 5; 8 filters",
+    ("cnn_images", "norm"): "batch normalisation",
+    ("cnn_images", "conv2"): "kernel 5, 5, 3; padding 1, 1, 0; stride 1, 1, 1; tanh; 16 filters",
+    ("cnn_images", "fc1"): "tanh; dropout 0.8",
+    ("cnn_images", "fc2"): "tanh",
+    ("cnn_images", "scores"): "softmax",
+    ("cnn_normals", "conv1"): "kernel 1, 3, 5; ReLU; padding 0; stride 1; 32 filters",
+    ("cnn_normals", "norm"): "batch normalisation",
+    ("cnn_normals", "conv2"): "kernel 1, 3, 3; ReLU; padding 0; max pooling 1, 1, 0.2; dropout 0.5; 32 filters",
+    ("cnn_normals", "fc1"): "ReLU; dropout 0.8",
+    ("cnn_normals", "fc2"): "ReLU",
+    ("cnn_normals", "scores"): "softmax",
 }
-NETWORKS = {"images": "3D, images (4.7)", "normals": "1D, normals (4.8)"}
+NETWORKS = {"cnn_images": "3D, images (4.7)", "cnn_normals": "1D, normals (4.8)"}
 
 
 def build(results: Results) -> Table:
     """The layers of both networks, without dropout, beside what the thesis prints of each."""
-    frame = results.table(STAGE, "layers.csv").query("kind != 'Dropout'").reset_index(drop=True)
+    rows = results.measured(STAGE, metric="parameters").query("kind != 'Dropout'").reset_index(drop=True)
+    frame = rows.rename(columns={"classifier": "network", "value": "parameters"}).astype({"parameters": int})
     frame["thesis"] = [SAID.get(key, "") for key in zip(frame["network"], frame["layer"], strict=True)]
     frame = frame[["network", "layer", "thesis", "kind", "output", "parameters"]]
     shown = frame.assign(network=frame["network"].map(NETWORKS))

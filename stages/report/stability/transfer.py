@@ -77,10 +77,7 @@ def figure(results: Results) -> Figure:
 
 def _accuracies(results: Results) -> tuple[pd.DataFrame, dict[tuple[str, str], tuple[float, float, float]], float]:
     """(rows of disturbed imprints, {(weights, mode): mean, low, high of clean ones}, accuracy of guessing)."""
-    rows = results.table("transfer", "stability.csv")
-    rows = rows.loc[(rows["method"] == NETWORK) & (rows["metric"] == "accuracy")]
-    if not set(UNITS) & set(rows["perturbation"]):
-        raise NotRun("no disturbed imprints", "transfer")
+    rows = results.measured("transfer", method=NETWORK, metric="disturbed_accuracy", perturbation=list(UNITS))
     clean = measured(results)
     clean = clean.loc[(clean["method"] == NETWORK) & (clean["data"] == FINE) & (clean["split"] == "random")]
     values = {kind: group["value"] for kind, group in grouped(clean, ["weights", "mode"]) if kind in TINTS}

@@ -10,8 +10,6 @@ from stages.report.differences import statistic
 from stages.report.networks import COARSE, FINE, GUESS, NETWORK, both, on_their_classes
 from stages.report.results import Results
 
-from .figure_5_4 import layer_changes
-
 PHRASES = {
     ("data", FINE): "imprints of 128 x 128", ("data", COARSE): "imprints of 16 x 16",
     ("weights", "imagenet"): "ImageNet's weights", ("weights", "random"): "random weights",
@@ -36,8 +34,8 @@ def claim(
 @statistic("later_convolutions_change_less")
 def later_change_less(results: Results, claim: Claim) -> pd.Series:
     """Minus the rank correlation of a convolution's depth with its change, per training."""
-    changes = layer_changes(results, **claim.where).groupby("trial", sort=False)["value"]
-    return -changes.agg(lambda one: spearmanr(np.arange(len(one)), one)[0])
+    changes = results.measured("transfer", metric="layer_weight_change", **claim.where)
+    return -changes.groupby("repetition")["value"].agg(lambda one: spearmanr(np.arange(len(one)), one)[0])
 
 
 OWN = both(
@@ -67,7 +65,7 @@ EARLY = both(  # by layers that the default run does not freeze
 CHANGES = Claim(
     key="earlier_change_more", section="T5.4", stage="transfer", phrases=PHRASES, scale=1.0, shared=shared_by("random"),
     sentence="Earlier convolutions are altered more for touch than later ones.", unit="rank correlation",
-    where={"network": NETWORK, "mode": "finetuned", "split": "random", "data": FINE, "weights": "imagenet"},
+    where={"method": NETWORK, "mode": "finetuned", "split": "random", "data": FINE, "weights": "imagenet"},
     statistic="later_convolutions_change_less", note="minus the rank correlation of depth and change",
 )  # fmt: skip
 CLAIMS = [*OWN, CHANGES, *on_their_classes([*OWN, *EARLY])]

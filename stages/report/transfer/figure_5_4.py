@@ -1,6 +1,5 @@
 """T figure 5.4: how far training on touch moves the weights, layer by layer of MobileNetV2."""
 
-import pandas as pd
 from matplotlib.axes import Axes
 
 from stages.report.items import Figure
@@ -15,12 +14,14 @@ LINES = {
 }
 SHORT = {"Conv1": "c1", "expanded_conv": "b0", "Conv_1": "c2"}  # of the first and the last parts
 SHARED = ("block_2", "block_15")  # the middle that the hybrid network shares
-TRIAL = ["data", "network", "weights", "mode", "split", "repetition"]  # the parts of its name
 
 
 def build(results: Results) -> Figure:
     """Change of each convolution of MobileNetV2, by the array and the weights that it started from."""
-    mine = layer_changes(results, split="random", mode="finetuned", network=NETWORK)
+    tuned = results.measured("transfer", metric="layer_weight_change", split="random", mode="finetuned")
+    mine = tuned[tuned["method"] == NETWORK]
+    if mine.empty:
+        raise NotRun("MobileNetV2 was not fine-tuned", "transfer")
     layers = mine.groupby("layer", sort=False)["part"].first()
     figure, axes = plt.subplots(figsize=(9.2, 3.8))
     for (data, weights), (words, tint) in LINES.items():
@@ -35,20 +36,9 @@ def build(results: Results) -> Figure:
     axes.set_xlabel("convolutions of MobileNetV2, from the image to the classes")
     axes.grid(axis="y")
     axes.legend(fontsize=8.5, loc="lower left", bbox_to_anchor=(0, 1), ncols=3)
-    tuned = layer_changes(results, split="random", mode="finetuned")
-    kinds = tuned[tuned["data"] == FINE].groupby(["network", "weights"], sort=False)["value"]
+    kinds = tuned[tuned["data"] == FINE].groupby(["method", "weights"], sort=False)["value"]
     said = [f"{label(network)} from {start(str(weights))} {one.mean():.2g}" for (network, weights), one in kinds]
     return Figure(figure, {"means": "; ".join(said)})
-
-
-def layer_changes(results: Results, **where: str) -> pd.DataFrame:
-    """Rows of data/transfer/weight_change.csv with what each trial was, the columns TRIAL, filtered by these."""
-    frame = results.table("transfer", "weight_change.csv")
-    parts = pd.DataFrame([trial.split(".") for trial in frame["trial"]], columns=TRIAL, index=frame.index)
-    found = frame.join(parts)[(parts[list(where)] == pd.Series(where)).all(axis=1)]
-    if found.empty:
-        raise NotRun(f"{'no network was' if frame.empty else 'MobileNetV2 was not'} fine-tuned", "transfer")
-    return found
 
 
 def _blocks(axes: Axes, parts: list[str]) -> None:
