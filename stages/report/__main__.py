@@ -19,7 +19,7 @@ from .page import build_page, claims_shown
 from .results import NotRun, Results
 from .schema import Params
 from .topics import CLAIMS, KINDS, TOPICS, build_all
-from .verdict import WORDS, counted, judged
+from .verdict import counted, counts, judged
 from .viewer import pack_viewer
 
 OWN_NOTE = "this page is about a folder alone; `python -m stages.compose` switches the project's own data sets on"
@@ -40,28 +40,28 @@ def main() -> None:
 
 def write_report(results: Results) -> None:
     """Builds and writes everything, and prints what could not be."""
-    out = results.reports
+    out, own = results.reports, results.own_meshes
     built = {kind: build_all(kind, results) for kind in KINDS}
     remove_older(built, out)
     not_run = {f"{kind}/{name}": why for kind, found in built.items() for name, why in found.not_run.items()}
     claims, differences = judged(CLAIMS, results)
-    own = results.own_meshes
     if own:  # what would need other data sets is left out
         claims, not_run = claims[claims["pairs"] > 0], {"what needs other data sets": OWN_NOTE}
     write_claims(claims, differences, out)
-    meshes = packed_or_none(results, not_run)
-    parts = {**built, "claims": claims, "not_run": not_run, "sets": results.sets, "own": own}
-    parts["first"] = ["touch_one_mesh"] if own else ["pipeline"]
-    write_text(out / "index.html", build_page(out / "index.html", TOPICS, parts, meshes, dataset_line(results)))
-    counts = {word: int((claims["verdict"] == word).sum()) for word in WORDS}
+    parts = {**built, "claims": claims, "not_run": not_run, "sets": results.sets, "own": own, "meshes": None}
+    parts |= {"first": ["touch_one_mesh" if own else "pipeline"], "dataset": dataset_line(results)}
+    try:
+        parts["meshes"] = pack_viewer(results)
+    except NotRun as missing:
+        not_run["viewer"] = str(missing)
+    write_text(out / "index.html", build_page(TOPICS, parts))
     made = {kind: len(found.items) for kind, found in built.items()}
-    write_json(out / "metrics/report.json", {"claims": counts, **made, "not_run": len(not_run)})
+    write_json(out / "metrics/report.json", {"claims": counts(claims), **made, "not_run": len(not_run)})
     for name, why in not_run.items():
         print(f"report: {name} not run, {why}")
     print(
         f"report: {made['tables']} tables, {made['figures']} figures, {made['tradeoff']} charts; claims: "
-        + ", ".join(f"{count} {word}" for word, count in counts.items())
-        + f"; open {out / 'index.html'}"
+        f"{', '.join(f'{count} {word}' for word, count in counts(claims).items())}; open {out / 'index.html'}"
     )
 
 
@@ -69,8 +69,7 @@ def remove_older(built: dict[str, Built], out: Path) -> None:
     """Removes results of an earlier run that this one did not make, so that none looks new."""
     for kind, found in built.items():
         (out / kind).mkdir(parents=True, exist_ok=True)
-        written = {path for item in found.items for path in item.paths}
-        for path in set((out / kind).glob("*.*")) - written:
+        for path in set((out / kind).glob("*.*")).difference(*(item.paths for item in found.items)):
             path.unlink()
 
 
@@ -80,15 +79,6 @@ def write_claims(claims: pd.DataFrame, differences: pd.DataFrame, out: Path) -> 
     write_table(out / "claims/differences.csv.gz", differences)
     text = markdown_table(as_text(claims_shown(claims)))
     write_text(out / "claims.md", f"# Claims of the thesis, tested\n\n{CLAIMS_NOTE}\n\n{counted(claims)}\n\n{text}")
-
-
-def packed_or_none(results: Results, not_run: dict[str, str]) -> dict | None:
-    """The viewer's meshes, or None with the reason among what was not run."""
-    try:
-        return pack_viewer(results)
-    except NotRun as missing:
-        not_run["viewer"] = str(missing)
-        return None
 
 
 def dataset_line(results: Results) -> str:

@@ -15,10 +15,9 @@ OVER = {"repetition": "repetitions", "item": "objects", "fold": "folds", "method
 
 @dataclass(frozen=True)
 class Pick:
-    """The one of several values of a column that has the highest (or lowest) mean over the pairs that
-    all of them have; no names: of all but `but`.
+    """The one of several values of a column with the highest (or lowest) mean over the pairs that all of them have.
 
-    The values of the other side are never picked. `but` may hold patterns, such as `*_seen`.
+    names: the values, none for all but those of `but`, such as `*_seen`, and those of the other side.
     """
 
     names: tuple[str, ...] = ()

@@ -1,43 +1,33 @@
 """The paired differences of a claim, from its rows: one registry of statistics."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from fnmatch import fnmatch
 
-import numpy as np
 import pandas as pd
 
 from .claims import Claim, Pick, Side
-from .results import NotRun, Results
+from .results import Results, either, listed, some
 
 STATISTICS: dict[str, Callable[[Results, Claim], pd.Series]] = {}
 
 
 def statistic(name: str) -> Callable:
     """Registers a function(results, claim) -> Series of differences over the claim's units, before scaling."""
-
-    def register(function: Callable[[Results, Claim], pd.Series]) -> Callable[[Results, Claim], pd.Series]:
-        STATISTICS[name] = function
-        return function
-
-    return register
+    return lambda function: STATISTICS.setdefault(name, function)
 
 
 def differences(results: Results, claim: Claim) -> pd.Series:
     """The differences of a claim in its unit, indexed by its `over`; NotRun where nothing can be paired."""
     found = STATISTICS[claim.statistic](results, claim).dropna()
-    if found.empty:
-        raise NotRun(f"no pairs for {claim.key}", claim.stage, runnable=False)
-    return claim.scale * found + claim.margin
+    return claim.scale * some(found, f"no pairs for {claim.key}", claim.stage, runnable=False) + claim.margin
 
 
 @statistic("difference")
 def difference(results: Results, claim: Claim) -> pd.Series:
     """First side minus second, with all that the fields of a Claim say."""
-    if claim.contrast is None:
-        return _difference(results, claim, {})
-    one, other = (_difference(results, claim, where) for where in claim.contrast)
-    return one - other
+    found = [_difference(results, claim, where) for where in claim.contrast or ({},)]
+    return found[0] - found[1] if claim.contrast else found[0]
 
 
 @statistic("beyond_chance")
@@ -56,19 +46,18 @@ def side(results: Results, claim: Claim, own: Side, other: Side | float | None, 
     other: the other side, whose values a Pick leaves out. extra: further columns that both sides have in common.
     """
     where = {**claim.where, **(extra or {}), **own}
-    plain = {k: v for k, v in where.items() if not isinstance(v, Pick) and not _pattern(v)}
+    picks = {column: wanted for column, wanted in where.items() if isinstance(wanted, Pick)}
+    patterns = {column: wanted for column, wanted in where.items() if isinstance(wanted, str) and "*" in wanted}
+    plain = {column: wanted for column, wanted in where.items() if column not in picks | patterns}
     rows = results.measured(claim.stage, claim.dataset, **plain)
-    for column, wanted in where.items():
-        if _pattern(wanted):
-            rows = rows[[fnmatch(str(name), str(wanted)) for name in rows[column]]]
-            _not_empty(rows, claim, f"{column} like {wanted}")
-    for column, wanted in where.items():
-        if isinstance(wanted, Pick):
-            rows = rows[rows[column] == _picked(rows, claim, column, wanted, other)]
+    for column, wanted in patterns.items():
+        rows = _some(rows[[fnmatch(str(name), wanted) for name in rows[column]]], claim, f"{column} like {wanted}")
+    for column, wanted in picks.items():
+        rows = rows[rows[column] == _picked(rows, claim, column, wanted, other)]
     keys = [*claim.over, *claim.within]
     if not keys:
         return rows["value"]
-    several = [k for k, v in where.items() if k not in keys and (isinstance(v, tuple) or _pattern(v))]
+    several = [k for k, v in where.items() if k not in keys and (isinstance(v, tuple) or k in patterns)]
     if not several:
         return rows.groupby(keys, sort=False)["value"].mean()
     table = rows.pivot_table(index=keys, columns=several, values="value", sort=False)
@@ -80,18 +69,16 @@ def _difference(results: Results, claim: Claim, extra: Side) -> pd.Series:
         found = side(results, claim, claim.first, None, extra) - claim.second
     else:
         pooled = replace(claim, over=(), within=())  # all rows of a side, also those about no unit
-        first, other = (
+        first, second = (
             side(results, pooled if claim.mean_of == name else claim, own, other, extra)
             for name, own, other in (("first", claim.first, claim.other), ("second", claim.other, claim.first))
         )
         if claim.mean_of:
-            found = first.mean() - other if claim.mean_of == "first" else first - other.mean()
+            found = first.mean() - second if claim.mean_of == "first" else first - second.mean()
         else:
-            sides = {"first": first, "second": other}
-            joined = pd.concat(sides, axis=1, join="inner").dropna()
-            if joined.empty:
-                names = " and ".join(" ".join(map(_said, one.values())) for one in (claim.first, claim.other))
-                raise NotRun(f"no pairs of {names}", claim.stage, runnable=False)
+            joined = pd.concat({"first": first, "second": second}, axis=1, join="inner").dropna()
+            names = " and ".join(" ".join(map(either, one.values())) for one in (claim.first, claim.other))
+            some(joined, f"no pairs of {names}", claim.stage, runnable=False)
             found = joined["first"] - joined["second"]
             if claim.relative:
                 middle = (joined["first"] + joined["second"]) / 2
@@ -101,32 +88,14 @@ def _difference(results: Results, claim: Claim, extra: Side) -> pd.Series:
 
 def _picked(rows: pd.DataFrame, claim: Claim, column: str, pick: Pick, other: Side | float | None) -> object:
     taken = other.get(column) if isinstance(other, dict) else None
-    out = [*pick.but, *_listed(taken)]
+    out = [*pick.but, *listed(taken or ())]
     rows = rows[[not any(fnmatch(str(name), str(one)) for one in out) for name in rows[column]]]
     rows = rows[rows[column].isin(pick.names)] if pick.names else rows
-    _not_empty(rows, claim, f"other {column} than {' or '.join(map(str, out))}" if out else column)
+    _some(rows, claim, f"other {column} than {either(out)}" if out else column)
     table = rows.pivot_table(index=[*claim.over, *claim.within], columns=column, values="value", sort=False)
     found = (table if table.dropna().empty else table.dropna()).mean()  # over the pairs that all of them have
     return found.idxmin() if pick.lowest else found.idxmax()
 
 
-def _not_empty(rows: pd.DataFrame, claim: Claim, what: str) -> None:
-    if rows.empty:
-        raise NotRun(f"no {what} is among those that {claim.stage} measured", claim.stage, runnable=False)
-
-
-def _pattern(value: object) -> bool:
-    return isinstance(value, str) and "*" in value
-
-
-def _listed(value: object) -> Sequence:
-    return [] if value is None else list(value) if isinstance(value, tuple | list) else [value]
-
-
-def _said(value: object) -> str:
-    return " or ".join(map(str, value)) if isinstance(value, tuple) else str(value)
-
-
-def rounded(values: pd.Series) -> np.ndarray:
-    """(k,) values with the six significant digits of a CSV, so that what is judged is what is written."""
-    return np.array([float(f"{value:.6g}") for value in values], dtype=np.float64)
+def _some(rows: pd.DataFrame, claim: Claim, what: str) -> pd.DataFrame:
+    return some(rows, f"no {what} is among those that {claim.stage} measured", claim.stage, runnable=False)

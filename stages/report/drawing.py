@@ -1,6 +1,6 @@
 """Pictures of meshes on a white page: lit surface, colour a vertex, wires and points, drawn by rays."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import matplotlib
 import numpy as np
@@ -62,13 +62,10 @@ def visible(
     mesh: Mesh, vertices: np.ndarray, viewpoint: Viewpoint = VIEWPOINT, rows: int = 420
 ) -> tuple[np.ndarray, np.ndarray]:
     """(rows (k',), columns (k',)) in the picture of those of the vertices (k,) that the viewer sees."""
-    points = mesh.vertices[vertices]
-    back = viewpoint.axes[2]
-    start = points + 1e-3 * mesh.vertex_normals[vertices]  # off the surface, or each point would hide itself
+    points, normals, back = mesh.vertices[vertices], mesh.vertex_normals[vertices], viewpoint.axes[2]
+    start = points + 1e-3 * normals  # off the surface, or each point would hide itself
     hidden = RayScene(mesh).cast(start, np.broadcast_to(back, points.shape)).hit
-    facing = mesh.vertex_normals[vertices] @ back > 0
-    down, across, _ = project(points[~hidden & facing], viewpoint, (rows, rows))
-    return down, across
+    return project(points[~hidden & (normals @ back > 0)], viewpoint, (rows, rows))[:2]
 
 
 def filled(mesh: Mesh) -> float:
@@ -116,15 +113,14 @@ def show(
 def colour_bar(figure: Figure, box: Sequence[float], text: str) -> None:
     """A bar of the maps' colours from 0 to 1 in box [left, bottom, width, height] of the figure, and what it is of."""
     left, bottom, width, height = box
-    place = figure.add_axes((left, bottom, width, height))
-    bar = figure.colorbar(ScalarMappable(Normalize(0, 1), MAP), cax=place)
+    bar = figure.colorbar(ScalarMappable(Normalize(0, 1), MAP), cax=figure.add_axes((left, bottom, width, height)))
     bar.set_label(text, fontsize=9)
     bar.outline.set_edgecolor(GREY)
 
 
 def colour_map(values: np.ndarray) -> np.ndarray:
-    """(k, 3) RGB of values (k,) in 0..1."""
-    return matplotlib.colormaps[MAP](np.clip(values, 0, 1))[:, :3]
+    """(..., 3) RGB of values (...) in 0..1."""
+    return matplotlib.colormaps[MAP](np.clip(values, 0, 1))[..., :3]
 
 
 def _light(mesh: Mesh, face: np.ndarray, weights: np.ndarray, viewpoint: Viewpoint) -> np.ndarray:
@@ -142,3 +138,18 @@ def _edge_distance(mesh: Mesh, face: np.ndarray, weights: np.ndarray) -> np.ndar
     opposite = np.linalg.norm(np.roll(corners, -1, axis=1) - np.roll(corners, 1, axis=1), axis=2)
     heights = 2 * mesh.face_areas[face, None] / np.maximum(opposite, 1e-12)
     return (weights * heights).min(axis=1)
+
+
+def name_panels(
+    grid: np.ndarray,
+    above: Iterable[str] = (),
+    beside: Iterable[str] = (),
+    letters: tuple = (10, 10),
+    away: float = 0.04,
+) -> None:
+    """Words over each column of axes (rows, columns) and, upright, before each row; letters: sizes of both."""
+    for axes, words in zip(grid[0], above, strict=False):
+        axes.set_title(words, fontsize=letters[0], fontweight="normal", loc="center")
+    for axes, words in zip(grid[:, 0], beside, strict=False):
+        axes.text(-away, 0.5, words, rotation=90, va="center", ha="right", fontsize=letters[1],
+                  transform=axes.transAxes)  # fmt: skip

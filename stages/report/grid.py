@@ -1,6 +1,7 @@
 """From rows of measurements to cells of `mean [low, high]`, and from cells to a grid with the thesis's figures."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from typing import Any, cast
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import ArrayLike
 from stages.kit.stats import interval
 
 from .markdown import with_interval
+from .results import NotRun, Results, some
 
 
 def means(frame: pd.DataFrame, by: Sequence[str], shared: float = 0.0, top: float = np.inf) -> list[dict]:
@@ -18,12 +20,11 @@ def means(frame: pd.DataFrame, by: Sequence[str], shared: float = 0.0, top: floa
     For values within 0..top, such as rates and errors: the interval is cut there. Seconds are the median, since the
     first piece of work of a process also loads its libraries.
     """
-    rows = []
-    for key, group in frame.dropna(subset=["value"]).groupby(list(by), sort=False):
-        mean, low, high = interval(group["value"], shared)
-        found = {"mean": mean, "low": np.maximum(low, 0.0), "high": np.minimum(high, top), "values": len(group)}
-        rows.append(dict(zip(by, key, strict=True)) | found | {"seconds": group["seconds"].median()})
-    return rows
+    found, names = [], (*by, "mean", "low", "high", "values", "seconds")
+    for key, rows in grouped(frame.dropna(subset=["value"]), by):
+        numbers = (*within(rows["value"], shared, top=top), len(rows), rows["seconds"].median())
+        found.append(dict(zip(names, (*key, *numbers), strict=True)))
+    return found
 
 
 def grouped(frame: pd.DataFrame, by: Sequence[str]) -> Iterator[tuple[tuple[Any, ...], pd.DataFrame]]:
@@ -47,7 +48,6 @@ def grid(
     cells: pd.DataFrame,
     down: str | Sequence[str],
     across: str,
-    value: str = "accuracy",
     beside: Sequence[str] = ("thesis",),
     names: Mapping[str, Callable[[Any], Any]] | None = None,
     head: Callable[[Any], str] = str,
@@ -56,29 +56,21 @@ def grid(
 ) -> pd.DataFrame:
     """Cells pivoted for a reader: `62 [57, 67] · 50 · 51`, shares in per cent, in the order of the cells.
 
-    cells: one row each, with the columns `down` and `across`, the column `value` with `low` and `high`, and further
+    cells: one row each, with the columns `down` and `across`, `accuracy` with `low` and `high`, and further
     columns `beside`, whose numbers follow it. names: how a value of a column `down` is said; head: how one of `across`
     is. gap: what stands for an unknown number beside; None leaves it out. A cell that is absent is "not run".
     """
     down = [down] if isinstance(down, str) else list(down)
-    text = [cell_text(row, value, beside, places, gap) for _, row in cells.iterrows()]
+    text = [cell_text(row, beside, places, gap) for _, row in cells.iterrows()]
     wide = cells.assign(text=text).pivot(index=down, columns=across, values="text")
-    order = list(dict.fromkeys(cells[down].itertuples(index=False, name=None)))
-    wide = wide.loc[order if len(down) > 1 else [key[0] for key in order], list(dict.fromkeys(cells[across]))]
-    wide = wide.fillna("not run").rename(columns=head).reset_index()
-    wide.columns.name = None
+    wide = wide.reindex(index=cells.set_index(down).index.unique(), columns=cells[across].unique())
+    wide = wide.fillna("not run").rename(columns=head).rename_axis(columns=None).reset_index()
     return wide.assign(**{column: wide[column].map(say) for column, say in (names or {}).items()})
 
 
-def cell_text(
-    cell: pd.Series,
-    value: str = "accuracy",
-    beside: Sequence[str] = ("thesis",),
-    places: int = 0,
-    gap: str | None = "–",
-) -> str:
+def cell_text(cell: pd.Series, beside: Sequence[str] = ("thesis",), places: int = 0, gap: str | None = "–") -> str:
     """One cell of `grid`."""
-    parts = [with_interval(cell[value], cell["low"], cell["high"], 100, places)]
+    parts = [with_interval(cell["accuracy"], cell["low"], cell["high"], 100, places)]
     parts += [percent(cell[column], places, gap or "") for column in beside]
     return " · ".join(part for part in parts if part)
 
@@ -86,3 +78,12 @@ def cell_text(
 def percent(share: float, places: int = 0, gap: str = "–") -> str:
     """A share in per cent, `gap` where it is unknown."""
     return f"{100 * share:.{places}f}" if share == share else gap
+
+
+def everywhere(results: Results, stage: str, what: str, **where: object) -> dict[str, pd.DataFrame]:
+    """{set: its rows as `Results.measured` reads them}: of all sets that have such; NotRun of `what` where none has."""
+    found = {}
+    for dataset in results.datasets(stage):
+        with suppress(NotRun):
+            found[dataset] = results.measured(stage, dataset, **where)
+    return some(found, what, stage)

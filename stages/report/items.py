@@ -13,22 +13,25 @@ from .markdown import as_text, markdown_table
 from .style import save
 
 
-@dataclass(eq=False)
-class Table:
-    """frame: tidy numbers, for the CSV; shown: what a person reads, the same or pivoted; words: for its prose.
+@dataclass(eq=False, kw_only=True)
+class Item:
+    """What tables and figures have in common. sets: the data sets that it was read from; paths: its files."""
 
-    sets: the data sets that it was read from.
-    """
+    name: str = ""
+    topic: str = ""
+    title: str = ""
+    sets: list[str] = field(default_factory=list)
+    paths: list[Path] = field(default_factory=list)
+
+
+@dataclass(eq=False)
+class Table(Item):
+    """frame: tidy numbers, for the CSV; shown: what a person reads, the same or pivoted; words: for its prose."""
 
     frame: pd.DataFrame
     shown: pd.DataFrame | None = None
     words: dict[str, Any] = field(default_factory=dict)
-    name: str = ""
-    topic: str = ""
-    sets: list[str] = field(default_factory=list)
-    title: str = ""
     notes: list[str] = field(default_factory=list)
-    paths: list[Path] = field(default_factory=list)
 
     @property
     def text(self) -> pd.DataFrame:
@@ -45,23 +48,18 @@ class Table:
 
 
 @dataclass(eq=False)
-class Figure:
-    """drawing: as matplotlib has it; words: for its prose; frame: the numbers of a chart, for a CSV beside it.
+class Figure(Item):
+    """drawing: as matplotlib has it; words: for its prose; frame: the numbers of a chart, for a CSV beside the PNG.
 
-    sets: the data sets that it was read from. alt: what a blind reader needs. paths: the files, the PNG first.
+    alt: what a blind reader needs.
     """
 
     drawing: Drawing
     words: dict[str, Any] = field(default_factory=dict)
     frame: pd.DataFrame | None = None
     dpi: int = 130
-    name: str = ""
-    topic: str = ""
-    sets: list[str] = field(default_factory=list)
-    title: str = ""
     alt: str = ""
     caption: str = ""
-    paths: list[Path] = field(default_factory=list)
 
     def write(self, folder: Path) -> None:
         """Writes NAME.png and, with a frame, NAME.csv; the drawing is closed."""

@@ -1,6 +1,7 @@
 """Names beside the points of a chart, where they cover neither each other nor a point."""
 
 from collections.abc import Iterable, Sequence
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -35,36 +36,35 @@ def place_names(
     to_pixels = axes.transData.transform
     taken = [_around(spot[None], RADIUS * scale) for spot in to_pixels(points)]
     strokes = [_around(to_pixels(ends), scale) for ends in lines]
-    written, boxes = [], []
+    written = []
     for text, point in names:
-        spot = to_pixels(point)
-        found = _nearest(axes, _extent(axes, text), spot, (taken, boxes, strokes), scale)
+        probe, spot = axes.text(0, 0, text, fontsize=SIZE), to_pixels(point)
+        extent = probe.get_window_extent()
+        probe.remove()
+        found = _nearest(axes, (extent.width, extent.height), spot, taken, strokes, scale)
         if found is None:
             continue
         gap, box = found
-        boxes.append(box)
-        if gap >= FAR:
-            taken += _leader(spot, box, scale)
+        taken.append(box)
         place = {"xytext": ((box.x0 - spot[0]) / scale, (box.y0 - spot[1]) / scale), "textcoords": "offset points"}
         if gap >= FAR:
+            taken += _leader(spot, box, scale)
             place["arrowprops"] = {"arrowstyle": "-", "color": GREY, "lw": 0.6, "shrinkA": 0, "shrinkB": 4}
         written.append(axes.annotate(text, point, ha="left", va="bottom", fontsize=SIZE, color=INK, zorder=4, **place))
     return written
 
 
 def _nearest(
-    axes: Axes, extent: Spot, spot: np.ndarray, others: tuple[list[Bbox], list[Bbox], list[Bbox]], scale: float
+    axes: Axes, extent: Spot, spot: np.ndarray, taken: list[Bbox], strokes: list[Bbox], scale: float
 ) -> tuple[float, Bbox] | None:
-    """(gap, box) of the best free place, or None. others: boxes that no name may cover, of names, of lines."""
-    window, free, (taken, names, strokes) = axes.get_window_extent(), [], others
-    for gap in GAPS:
-        for side in SIDES:
-            box = _beside(spot, extent, side, gap * scale)
-            inside = window.x0 <= box.x0 and box.x1 <= window.x1 and window.y0 <= box.y0 and box.y1 <= window.y1
-            led = _leader(spot, box, scale) if gap >= FAR else []
-            crossed = any(part.count_overlaps(taken + names) for part in led)  # its line would belong to others
-            if inside and not crossed and not box.count_overlaps(taken + names):
-                free.append((gap + CROSSING * box.count_overlaps(strokes), len(free), gap, box))
+    """(gap, box) of the best free place, or None. taken: what no name may cover; strokes: what it better does not."""
+    window, free = axes.get_window_extent(), []
+    for gap, side in product(GAPS, SIDES):
+        box = _beside(spot, extent, side, gap * scale)
+        inside = window.x0 <= box.x0 and box.x1 <= window.x1 and window.y0 <= box.y0 and box.y1 <= window.y1
+        led = _leader(spot, box, scale) if gap >= FAR else []  # its line would belong to others where it crosses them
+        if inside and not any(part.count_overlaps(taken) for part in [box, *led]):
+            free.append((gap + CROSSING * box.count_overlaps(strokes), len(free), gap, box))
     return min(free)[2:] if free else None
 
 
@@ -82,14 +82,6 @@ def _beside(spot: np.ndarray, extent: Spot, side: tuple[int, int], gap: float) -
     x0 = x - width / 2 + across * (width / 2 + step)
     y0 = y - height / 2 + up * (height / 2 + step)
     return Bbox.from_extents(x0, y0, x0 + width, y0 + height)
-
-
-def _extent(axes: Axes, text: str) -> Spot:
-    """(width, height) of a text in pixels."""
-    probe = axes.text(0, 0, text, fontsize=SIZE)
-    box = probe.get_window_extent()
-    probe.remove()
-    return box.width, box.height
 
 
 def _around(spots: np.ndarray, margin: float) -> Bbox:

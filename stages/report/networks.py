@@ -10,15 +10,10 @@ from stages.kit.split import shared_by
 from .claims import Claim
 from .grid import within
 from .results import NotRun, Results
-from .style import start
+from .style import label, start
 
-PRINTED = {
-    "alexnet": "AlexNet",
-    "googlenet": "GoogLeNet",
-    "vgg16": "VGG16",
-    "resnet50": "ResNet50",
-    "mobilenet_v2": "MobileNetV2",
-}  # as the thesis calls them, in its order
+# As the thesis calls them, in its order.
+PRINTED = {name: label(name) for name in ("alexnet", "googlenet", "vgg16", "resnet50", "mobilenet_v2")}
 FINE, COARSE = "imprints128", "imprints16"
 THESIS = {FINE: "table_5_4_simulated_fsr_128x128", COARSE: "table_5_3_fsr_16x16"}  # its tables of them
 SPLITS = {"random": "touches at random", "objects": "unseen objects"}
@@ -62,7 +57,7 @@ def accuracy(rows: pd.DataFrame, split: str) -> dict[str, float]:
     """{accuracy, low, high, values} of the rows of one setting on one set."""
     mine = rows[rows["split"] == split]
     ends = mean(mine["value"], split, next(iter(mine["dataset"]), None))
-    return dict(zip(("accuracy", "low", "high"), ends, strict=True)) | {"values": len(mine)}
+    return dict(zip(("accuracy", "low", "high", "values"), (*ends, len(mine)), strict=True))
 
 
 def origin(weights: str, pretrained: str | None) -> str:

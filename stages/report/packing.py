@@ -4,6 +4,7 @@ import base64
 import zlib
 
 import numpy as np
+import pandas as pd
 from numpy.typing import ArrayLike
 
 from stages.kit import Mesh
@@ -56,19 +57,12 @@ class Store:
 def ordered(mesh: Mesh) -> tuple[Mesh, np.ndarray]:
     """(mesh, ids): faces along a Morton curve, vertices by first use, unused ones left out; ids: their old numbers."""
     faces = mesh.faces[np.argsort(_morton(mesh.vertices[mesh.faces].mean(axis=1)), kind="stable")]
-    used, first, inverse = np.unique(faces, return_index=True, return_inverse=True)
-    order = np.argsort(first)
-    rank = np.empty(len(order), dtype=np.int64)
-    rank[order] = np.arange(len(order))
-    ids = used[order]
-    return Mesh(mesh.vertices[ids], rank[inverse].reshape(-1, 3)), ids
+    corners, ids = pd.factorize(faces.ravel())
+    return Mesh(mesh.vertices[ids], corners.reshape(-1, 3)), ids
 
 
 def _morton(points: np.ndarray) -> np.ndarray:
     """Place of points (k, 3) within -0.5..0.5 on the Morton curve."""
     cells = (np.clip(points + 0.5, 0, 1) * (CELLS - 1)).astype(np.int64)
-    place = np.zeros(len(points), dtype=np.int64)
-    for bit in range(10):
-        for axis in range(3):
-            place |= ((cells[:, axis] >> bit) & 1) << (3 * bit + axis)
-    return place
+    bits, axes = np.arange(10), np.arange(3)[:, None]
+    return (((cells[:, :, None] >> bits) & 1) << (3 * bits + axes)).sum(axis=(1, 2))

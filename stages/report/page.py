@@ -1,11 +1,10 @@
 """The web page: one file that works offline, assembled from the templates in page/."""
 
 import base64
-import html
 import io
 import json
-import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
+from html import escape
 from importlib import resources
 from pathlib import Path
 from string import Template
@@ -16,82 +15,78 @@ import pandas as pd
 from PIL import Image
 
 from .items import Figure, Table
-from .markdown import is_numeric, number
+from .markdown import is_numeric, with_interval
 from .prose import findings
-from .verdict import counted
+from .verdict import counted, counts
 
 WIDEST = 900  # pixels of a picture on the page
 LONG = 30  # rows after which a table scrolls in its own box
 WORDS = {"supported": "yes", "contradicted": "no", "open": "open"}  # word -> class in the style sheet
 
 
-def build_page(
-    path: Path, modules: Sequence[ModuleType], parts: dict[str, Any], meshes: dict | None, dataset: str
-) -> str:
-    """The text of the page at `path`. modules: the topics in reading order.
+def build_page(modules: Sequence[ModuleType], parts: dict[str, Any]) -> str:
+    """The text of the page. modules: the topics in reading order.
 
     parts: tables, figures, tradeoff (Built), claims (frame), not_run, sets (that are switched on), and first, the names
-    of the figures that stand before all topics; own: whether these show a person's own meshes.
+    of the figures that stand before all topics; own: whether these show a person's own meshes; meshes: those that can
+    be turned, or None; dataset: what was measured, in words.
     """
     items = [item for kind in ("tables", "tradeoff", "figures") for item in parts[kind].items]
     first = [item for item in items if item.name in parts["first"]]
-    topics = [Topic(module, parts, [item for item in items if item not in first]) for module in modules]
-    topics = [topic for topic in topics if topic.own or topic.others or len(topic.claims)]
-    claims = Template(part("claims.html")).substitute(counted=html.escape(counted(parts["claims"])))
-    claims = claims if len(parts["claims"]) else ""
-    sections = [*(["claims"] if claims else []), *(topic.name for topic in topics)]
-    without = html.escape(parts["not_run"].get("viewer", ""))
+    rest = [item for item in items if item not in first]
+    judged, not_run, meshes = parts["claims"], parts["not_run"], parts["meshes"]
+    claims = Template(part("claims.html")).substitute(counted=escape(counted(judged))) if len(judged) else ""
+    topics = {module.__name__.rpartition(".")[2]: topic_html(module, parts, rest) for module in modules}
+    sections = [name for name, text in {"claims": claims, **topics}.items() if text]
+    missing = "".join(f"<li><code>{escape(name)}</code>: {escape(why)}</li>" for name, why in not_run.items())
     words = {
         "style": part("page.css"),
         "script": part("viewer.js"),
         "meshes": script_json(meshes) if meshes else "null",
-        "viewer": part("viewer.html") if meshes else f"<p>not run: {without}</p>",
-        "dataset": html.escape(dataset),
+        "viewer": part("viewer.html") if meshes else f"<p>not run: {escape(not_run.get('viewer', ''))}</p>",
+        "dataset": escape(parts["dataset"]),
         "heading": "Your meshes" if parts["own"] else "The pipeline on one object",
-        "first": "".join(figure_html(item, path) for item in first),
+        "first": "".join(map(item_html, first)),
         "contents": " ".join(f'<a href="#{name}">{name.capitalize()}</a>' for name in sections),
         "claims": claims,
-        "topics": "".join(topic_html(topic, path) for topic in topics),
-        "not_run": not_run_html(parts["not_run"]),
+        "topics": "".join(topics.values()),
+        "not_run": f"<ul>{missing}</ul>" if missing else "<p>Everything that this report knows was measured.</p>",
     }
     return Template(part("page.html")).substitute(words)
 
 
-class Topic:
-    """What the page shows of a topic: its claims, and its items, those of the sets that are switched on first."""
-
-    def __init__(self, module: ModuleType, parts: dict[str, Any], items: list[Table | Figure]) -> None:
-        self.module, self.name = module, module.__name__.rpartition(".")[2]
-        self.claims = parts["claims"][parts["claims"]["key"].isin([claim.key for claim in module.CLAIMS])]
-        mine = [item for item in items if item.topic == self.name]
-        self.own = [item for item in mine if not item.sets or set(item.sets) & set(parts["sets"])]
-        self.others = [item for item in mine if item not in self.own]
-        self.findings = "" if parts["own"] else findings(module)  # which are about other data sets
-
-
-def topic_html(topic: Topic, page: Path) -> str:
-    """A section: what the project found, the claims, and the items; those of other sets can be unfolded."""
-    lead = (topic.module.__doc__ or "").strip()
-    found = "".join(f"<p>{html.escape(text)}</p>" for text in topic.findings.strip().split("\n\n") if text)
-    claims, others = "", ""
-    if len(topic.claims):
-        said = f"{len(topic.claims)} claims: {counts_html(topic.claims)}"
-        claims = f"<details><summary>{said}</summary>{claims_html(topic.claims)}</details>"
-    if topic.others:
-        sets = ", ".join(dict.fromkeys(name for item in topic.others for name in item.sets))
-        said = f"{len(topic.others)} more, measured on data sets that are not part of this run: {sets}"
-        body = "".join(item_html(item, page) for item in topic.others)
-        others = f"<details><summary>{html.escape(said)}</summary>{body}</details>"
-    own = "".join(item_html(item, page) for item in topic.own)
-    return (
-        f'<section id="{topic.name}"><h2>{topic.name.capitalize()}</h2><p class="lead">{html.escape(lead)}</p>'
-        f"{found}{claims}{own}{others}</section>\n"
-    )
+def topic_html(module: ModuleType, parts: dict[str, Any], items: list[Table | Figure]) -> str:
+    """A section: what the project found, the claims, and the items; those of sets that are off can be unfolded."""
+    name, lead = module.__name__.rpartition(".")[2], escape((module.__doc__ or "").strip())
+    claims = parts["claims"][parts["claims"]["key"].isin([claim.key for claim in module.CLAIMS])]
+    mine = [item for item in items if item.topic == name]
+    others = [item for item in mine if item.sets and not set(item.sets) & set(parts["sets"])]
+    if not mine and claims.empty:
+        return ""
+    found = "" if parts["own"] else findings(module)  # which are about other data sets
+    text = "".join(f"<p>{escape(paragraph)}</p>" for paragraph in found.strip().split("\n\n") if paragraph)
+    if len(claims):
+        said = ", ".join(f"<strong>{count}</strong> {word}" for word, count in counts(claims).items())
+        text += _folded(f"{len(claims)} claims: {said}", frame_html(claims_shown(claims), "Claims", "verdict"))
+    text += "".join(item_html(item) for item in mine if item not in others)
+    if others:
+        sets = ", ".join(dict.fromkeys(name for item in others for name in item.sets))
+        said = f"{len(others)} more, measured on data sets that are not part of this run: {sets}"
+        text += _folded(escape(said), "".join(map(item_html, others)))
+    return f'<section id="{name}"><h2>{name.capitalize()}</h2><p class="lead">{lead}</p>{text}</section>\n'
 
 
-def item_html(item: Table | Figure, page: Path) -> str:
-    """A table, a figure or a chart."""
-    return table_html(item) if isinstance(item, Table) else figure_html(item, page)
+def item_html(item: Table | Figure) -> str:
+    """A section: a table with its notes, or a picture with its caption, and links to its files."""
+    if isinstance(item, Table):
+        notes = "".join(f"<li>{escape(note)}</li>" for note in item.notes)
+        body = f"{frame_html(item.text, item.title)}<ul>{notes}</ul><p>{_link(item.paths[0])}</p>"
+    else:
+        picture = small_picture(item.paths[0])
+        image = f'<img src="data:image/webp;base64,{picture}" alt="{escape(item.alt)}">'
+        caption = f"{escape(item.caption)} {' '.join(map(_link, item.paths))}"
+        body = f"<figure>{_box('wide', item.title, image)}<figcaption>{caption}</figcaption></figure>"
+    return f'<section id="{item.paths[0].parent.name}-{item.name}"><h3>{escape(item.title)}</h3>{body}</section>\n'
 
 
 def part(name: str) -> str:
@@ -104,42 +99,32 @@ def script_json(value: object) -> str:
     return json.dumps(value, separators=(",", ":")).replace("</", "<\\/")
 
 
-def table_html(item: Table) -> str:
-    """A section with a table, its notes and its CSV."""
-    notes = "".join(f"<li>{html.escape(note)}</li>" for note in item.notes)
-    link = f'<p><a href="tables/{item.name}.csv" download>{item.name}.csv</a></p>'
-    body = frame_html(item.text, item.title)
-    return (
-        f'<section id="tables-{item.name}"><h3>{html.escape(item.title)}</h3>{body}<ul>{notes}</ul>{link}</section>\n'
-    )
+def _link(path: Path) -> str:
+    return f'<a href="{path.parent.name}/{path.name}" download>{path.name}</a>'
 
 
-def frame_html(frame: pd.DataFrame, title: str, classes: Mapping[str, Callable[[str], str]] = {}) -> str:
-    """A table that scrolls sideways in its own box, reachable by the keyboard; classes: dict column -> function."""
+def _folded(summary: str, body: str) -> str:
+    return f"<details><summary>{summary}</summary>{body}</details>"
+
+
+def _box(classes: str, title: str, body: str) -> str:
+    """What scrolls sideways, reachable by the keyboard."""
+    return f'<div class="{classes}" tabindex="0" role="region" aria-label="{escape(title)}">{body}</div>'
+
+
+def frame_html(frame: pd.DataFrame, title: str, words: str = "") -> str:
+    """A table in its own box; words: the column of WORDS, which are coloured and written, never coloured alone."""
     right = {column: ' class="number"' for column in frame.columns if is_numeric(frame[column])}
-    head = "".join(f'<th scope="col"{right.get(c, "")}>{html.escape(str(c))}</th>' for c in frame.columns)
+    head = "".join(f'<th scope="col"{right.get(c, "")}>{escape(str(c))}</th>' for c in frame.columns)
 
     def cell(column: Any, text: Any) -> str:
-        kind = classes[column](text) if column in classes else right.get(column, "")
-        return f"<td{kind}>{html.escape(str(text))}</td>"
+        kind = f' class="word {WORDS[text]}"' if column == words else right.get(column, "")
+        return f"<td{kind}>{escape(str(text))}</td>"
 
     rows = ("".join(cell(*item) for item in row.items()) for row in frame.to_dict("records"))
     body = "".join(f"<tr>{row}</tr>" for row in rows)
-    tall = " tall" if len(frame) > LONG else ""
-    box = f'<div class="scroll{tall}" tabindex="0" role="region" aria-label="{html.escape(title, quote=True)}">'
-    return f"{box}<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>"
-
-
-def figure_html(item: Figure, page: Path) -> str:
-    """A picture inside the page, with links to its files."""
-    picture = small_picture(item.paths[0])
-    links = " ".join(f'<a href="{os.path.relpath(path, page.parent)}" download>{path.name}</a>' for path in item.paths)
-    return (
-        f'<section id="{item.paths[0].parent.name}-{item.name}"><h3>{html.escape(item.title)}</h3><figure>'
-        f'<div class="wide" tabindex="0" role="region" aria-label="{html.escape(item.title, quote=True)}">'
-        f'<img src="data:image/webp;base64,{picture}" alt="{html.escape(item.alt, quote=True)}"></div>'
-        f"<figcaption>{html.escape(item.caption)} {links}</figcaption></figure></section>\n"
-    )
+    table = f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+    return _box("scroll tall" if len(frame) > LONG else "scroll", title, table)
 
 
 def small_picture(path: Path) -> str:
@@ -162,11 +147,6 @@ def _webp(image: Image.Image, **how: Any) -> bytes:
     return packed.getvalue()
 
 
-def claims_html(claims: pd.DataFrame) -> str:
-    """The claims as a table; the word is coloured and written, never coloured alone."""
-    return frame_html(claims_shown(claims), "Claims", {"verdict": lambda cell: f' class="word {WORDS[cell]}"'})
-
-
 def claims_shown(claims: pd.DataFrame) -> pd.DataFrame:
     """The frame of claims as a person reads it: section, verdict, claim, effect, tested on, over."""
     shown = claims[["section", "verdict", "claim"]].copy()
@@ -180,20 +160,4 @@ def effect(row: Any) -> str:
     """`+3.1 [1.0, 5.2] points`, or a dash; no brackets where the interval is unknown."""
     if row.effect != row.effect:
         return "–"
-    sign = "+" if row.effect > 0 else ""
-    span = f" [{number(row.low)}, {number(row.high)}]" if row.low == row.low else ""
-    return f"{sign}{number(row.effect)}{span} {row.unit}"
-
-
-def counts_html(claims: pd.DataFrame) -> str:
-    """One sentence of counts."""
-    counts = claims["verdict"].value_counts()
-    return ", ".join(f"<strong>{counts.get(word, 0)}</strong> {word}" for word in WORDS)
-
-
-def not_run_html(not_run: Mapping[str, str]) -> str:
-    """The list of what lacks its measurement."""
-    if not not_run:
-        return "<p>Everything that this report knows was measured.</p>"
-    lines = "".join(f"<li><code>{html.escape(k)}</code>: {html.escape(v)}</li>" for k, v in not_run.items())
-    return f"<ul>{lines}</ul>"
+    return f"{'+' if row.effect > 0 else ''}{with_interval(row.effect, row.low, row.high)} {row.unit}"

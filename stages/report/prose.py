@@ -12,8 +12,6 @@ from types import ModuleType
 
 from .items import Figure, Table
 
-SECTION = re.compile(r"^# (\S+): (.+)$", re.MULTILINE)
-
 
 def add_words(item: Table | Figure, topic: ModuleType, kind: str, name: str) -> None:
     """Fills in name, title and notes of a table, or name, title, alt and caption of a figure.
@@ -44,7 +42,8 @@ def findings(topic: ModuleType) -> str:
 @cache
 def _sections(package: str) -> dict[str, tuple[str, str]]:
     """{KIND/NAME: (title, text below it)} of a topic's prose.md."""
-    parts = SECTION.split(resources.files(package).joinpath("prose.md").read_text(encoding="utf-8"))
+    text = resources.files(package).joinpath("prose.md").read_text(encoding="utf-8")
+    parts = re.split(r"^# (\S+): (.+)$", text, flags=re.MULTILINE)
     return {name: (title, text.strip()) for name, title, text in zip(*(parts[k::3] for k in (1, 2, 3)), strict=True)}
 
 

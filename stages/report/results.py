@@ -1,8 +1,9 @@
 """What was measured, set by set, beside what the thesis says; a missing measurement is NotRun, never a crash."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Sequence, Sized
 from functools import cached_property
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 import pandas as pd
@@ -18,6 +19,7 @@ from stages.weights import read_learned_weights
 
 from .schema import Params
 
+Found = TypeVar("Found", bound=Sized)
 NUMBERS = {"four": 4, "six": 6}  # names of groups that tell how many objects they hold
 
 
@@ -26,7 +28,20 @@ class NotRun(Exception):
 
     def __init__(self, what: str, stage: str, runnable: bool = True) -> None:
         super().__init__(f"{what}: run `dvc repro {stage}`" if runnable else what)
-        self.stage = stage
+
+
+def some(found: Found, what: str, stage: str, runnable: bool = True) -> Found:
+    """What was found; NotRun of `what` where that is nothing."""
+    if not len(found):
+        raise NotRun(what, stage, runnable)
+    return found
+
+
+def there(path: Path, what: str, stage: str, runnable: bool = True) -> Path:
+    """The path of a file; NotRun of `what` where it is not there."""
+    if not path.exists():
+        raise NotRun(what, stage, runnable)
+    return path
 
 
 class ByMethod(dict):
@@ -55,21 +70,13 @@ class Results:
     def __init__(self, workspace: Workspace, settings: Params) -> None:
         self.workspace, self.settings = workspace, settings
         self.data, self.reports = workspace.root / "data", workspace.reports
+        self.sets = workspace.sets  # the names of the data sets that are switched on, in order
         self.read: set[str] = set()  # the data sets that were read since somebody cleared this
         self._tables: dict[Path, pd.DataFrame] = {}
 
-    @property
-    def sets(self) -> list[str]:
-        """Names of the data sets that are switched on, in order."""
-        return self.workspace.sets
-
     def datasets(self, stage: str) -> list[str]:
-        """The sets that have rows of a stage: those that are switched on first, then the others by the alphabet.
-
-        A report on a folder of one's own reads the sets that are switched on alone.
-        """
-        found = {path.parent.name for path in (self.reports / "measurements").glob(f"*/{stage}{SUFFIX}")}
-        return self.in_order(found)
+        """The sets that have rows of a stage, `in_order`."""
+        return self.in_order({path.parent.name for path in (self.reports / "measurements").glob(f"*/{stage}{SUFFIX}")})
 
     @property
     def stages(self) -> list[str]:
@@ -93,8 +100,7 @@ class Results:
                 raise NotRun("; ".join(notes[:2]), stage, runnable=False)
             if column not in frame:
                 raise NotRun(f"no column {column} in the rows of {stage}", stage)
-            what = f"{column} {' or '.join(map(str, _listed(wanted)))} is not among those that {stage} measured"
-            raise NotRun(what, stage, runnable=False)
+            raise NotRun(f"{column} {either(wanted)} is not among those that {stage} measured", stage, runnable=False)
         return frame
 
     def measured(self, stage: str, dataset: str | None = None, **where: object) -> pd.DataFrame:
@@ -121,20 +127,15 @@ class Results:
         return "\n".join(f"Not run: {note}." for note in self.notes(stage, dataset, **where))
 
     def _read(self, stage: str, dataset: str | None) -> pd.DataFrame:
-        known = self.datasets(stage)
-        if dataset is None and not known:
-            raise NotRun(f"no measurements of {stage}", stage)
-        dataset = dataset or known[0]
+        dataset = dataset or some(self.datasets(stage), f"no measurements of {stage}", stage)[0]
         if self.own_meshes and dataset not in self.sets:
             raise NotRun(f"{dataset} is not switched on", stage, runnable=False)
         self.read.add(dataset)
         path = self.reports / "measurements" / dataset / f"{stage}{SUFFIX}"
-        return self._table(path, f"no measurements of {stage} on {dataset}", stage, dataset in self.sets)
+        return self._table(there(path, f"no measurements of {stage} on {dataset}", stage, dataset in self.sets))
 
-    def _table(self, path: Path, why: str, stage: str, runnable: bool) -> pd.DataFrame:
+    def _table(self, path: Path) -> pd.DataFrame:
         if path not in self._tables:
-            if not path.exists():
-                raise NotRun(why, stage, runnable)
             self._tables[path] = read_rows(path) if path.name.endswith(SUFFIX) else read_table(path)
         return self._tables[path]
 
@@ -142,22 +143,18 @@ class Results:
         """Rows of reports/bench/NAME.csv: what `make bench` measured; times are ratios to a named peer."""
         if self.own_meshes:
             raise NotRun("benchmarks are not about a folder of one's own", "bench", runnable=False)
-        path = self.reports / "bench" / f"{name}.csv"
-        return self._table(path, f"no bench/{name}.csv: `make bench` writes it", "bench", runnable=False)
+        what = f"no bench/{name}.csv: `make bench` writes it"
+        return self._table(there(self.reports / "bench" / f"{name}.csv", what, "bench", runnable=False))
 
     def thesis(self, name: str) -> pd.DataFrame:
         """One of the thesis's own tables, data/reference/thesis/NAME.csv."""
-        path = self.data / "reference/thesis" / f"{name}.csv"
-        if not path.exists():
-            raise FileNotFoundError(f"{path} is part of the repository: restore it with `git checkout {path}`")
-        return read_table(path)
+        return read_table(self.data / "reference/thesis" / f"{name}.csv")
 
     def classes(self, group: str, dataset: str | None = None) -> int:
         """How many objects a group of the classification held."""
         paths = sorted(self.folder("classification", dataset).glob(f"{group}.*.npz"))
-        if not paths:
-            raise NotRun(f"no {group}.*.npz in data/classification", "classification")
-        return len(read_arrays(paths[0])["objects"])
+        first = some(paths, f"no {group}.*.npz in data/classification", "classification")[0]
+        return len(read_arrays(first)["objects"])
 
     def group_text(self, group: str, dataset: str | None = None) -> str:
         """A group in words: "six objects", or "4 objects (group six)" where the name does not tell the number.
@@ -180,10 +177,7 @@ class Results:
 
     def table(self, stage: str, name: str, dataset: str | None = None) -> pd.DataFrame:
         """A side table of a stage, data/SET/STAGE/NAME."""
-        path = self.folder(stage, dataset) / name
-        if not path.exists():
-            raise NotRun(f"no {stage}/{name}", stage)
-        return pd.read_csv(path)
+        return pd.read_csv(there(self.folder(stage, dataset) / name, f"no {stage}/{name}", stage))
 
     @property
     def own_meshes(self) -> bool:
@@ -194,19 +188,14 @@ class Results:
     @cached_property
     def objects(self) -> list[str]:
         """Names of all objects with a mesh in the first set that has meshes, in alphabetical order."""
-        names = sorted(path.stem for path in self.folder("meshes").glob("*.npz"))
-        if not names:
-            raise NotRun("no meshes", "meshes")
-        return names
+        return some(sorted(path.stem for path in self.folder("meshes").glob("*.npz")), "no meshes", "meshes")
 
     def choose(self, preferred: Sequence[str], count: int, stage: str = "salient_points") -> list[str]:
         """Up to `count` objects that `stage` has data for: the preferred ones first, then by the alphabet."""
         folder = self.folder(stage)
         ready = [name for name in self.objects if (folder / f"{name}.npz").exists() or (folder / name).is_dir()]
-        if not ready:
-            raise NotRun(f"no objects in {stage}", stage)
-        first = [name for name in preferred if name in ready]
-        return (first + [name for name in ready if name not in first])[:count]
+        some(ready, f"no objects in {stage}", stage)
+        return sorted(ready, key=lambda name: [*preferred, name].index(name))[:count]
 
     def mesh(self, name: str, dataset: str | None = None) -> Mesh:
         """The original mesh of an object."""
@@ -247,50 +236,47 @@ class Results:
     def ground_truth(self, name: str, dataset: str | None = None) -> dict[str, np.ndarray]:
         """Arrays of data/SET/weights/ground_truth/NAME.npz: density, points and more (stages.weights.training_data)."""
         path = self.folder("weights", dataset) / "ground_truth" / f"{name}.npz"
-        if not path.exists():
-            raise NotRun(f"no weights/ground_truth/{name}.npz: no ground truth of {name}, or not run", "weights")
-        return read_arrays(path)
+        what = f"no weights/ground_truth/{name}.npz: no ground truth of {name}, or not run"
+        return read_arrays(there(path, what, "weights"))
 
     def learned(self, name: str, mesh: Mesh, dataset: str | None = None):
         """What the weights stage learned, as it may be applied to this object: a stages.weights.LearnedWeights."""
-        folder = self.folder("weights", dataset)
-        if not (folder / "weights.csv").exists():
-            raise NotRun("no weights/weights.csv", "weights")
-        return read_learned_weights(folder, name, mesh)
+        path = self.folder("weights", dataset) / "weights.csv"
+        return read_learned_weights(there(path, "no weights/weights.csv", "weights").parent, name, mesh)
 
     def with_ground_truth(self, preferred: Sequence[str], count: int) -> list[str]:
         """Up to `count` objects that have ground truth and salient points: the preferred ones first."""
         ready = {path.stem for path in (self.folder("weights") / "ground_truth").glob("*.npz")}
-        if not ready:
-            raise NotRun("no object has ground truth", "weights")
+        some(ready, "no object has ground truth", "weights")
         found = [name for name in self.choose(preferred, len(self.objects)) if name in ready]
-        if not found:
-            raise NotRun("no object with ground truth has salient points", "salient_points")
-        return found[:count]
+        return some(found, "no object with ground truth has salient points", "salient_points")[:count]
 
     def lods(self, name: str, method: str, dataset: str | None = None) -> list[tuple[str, Mesh]]:
         """Simplified meshes of one method, most faces first: list of (target, Mesh)."""
-        paths = (self.folder("lod", dataset) / name).glob(f"{method}_*.npz")
+        paths = list((self.folder("lod", dataset) / name).glob(f"{method}_*.npz"))
+        some(paths, f"no lod/{name}/{method}_*.npz", "lod")
         found = [(path.stem.removeprefix(f"{method}_").replace("pct", "%"), read_mesh(path)) for path in paths]
-        if not found:
-            raise NotRun(f"no lod/{name}/{method}_*.npz", "lod")
         return sorted(found, key=lambda item: (-len(item[1].faces), item[0]))
 
     def in_order(self, names: set[str]) -> list[str]:
-        """Names of data sets: those that are switched on first, then the others by the alphabet."""
+        """Names of data sets: those that are switched on, then the others by the alphabet, but for one's own meshes."""
         others = set() if self.own_meshes else names - set(self.sets)
         return [name for name in self.sets if name in names] + sorted(others)
 
     def _path(self, stage: str, name: str, dataset: str | None) -> Path:
         path = self.folder(stage, dataset) / f"{name}.npz"
-        if not path.exists():
-            raise NotRun(f"no {path.name} in data/{path.parent.parent.name}/{stage}", stage)
-        return path
+        return there(path, f"no {path.name} in data/{path.parent.parent.name}/{stage}", stage)
+
+
+def listed(wanted: object) -> list:
+    """One value or several, as a list."""
+    return list(wanted) if isinstance(wanted, list | tuple | set | frozenset) else [wanted]
+
+
+def either(wanted: object) -> str:
+    """One value or several, in words: `knn or svm`."""
+    return " or ".join(map(str, listed(wanted)))
 
 
 def _accepted(column: pd.Series, wanted: object) -> pd.Series:
-    return column.isna() if wanted is None else column.isin(_listed(wanted))
-
-
-def _listed(wanted: object) -> list:
-    return list(wanted) if isinstance(wanted, list | tuple | set | frozenset) else [wanted]
+    return column.isna() if wanted is None else column.isin(listed(wanted))

@@ -2,7 +2,7 @@
 
 import io
 from collections.abc import Sequence
-from contextlib import AbstractContextManager
+from itertools import cycle
 from pathlib import Path
 from typing import Any
 
@@ -31,10 +31,7 @@ LABELS = {
     "human": "the truth itself",
     "guided_ssim": "guided by SSIM",
     "guided_ed": "guided by ED",
-    "guided_ssim_seen": "guided by SSIM",
-    "guided_ed_seen": "guided by ED",
     "equal": "equal weights",
-    "svm_seen": "SVM",
     "svm_nearest": "SVM, nearest object's",
     "svm_object": "SVM of the object",
     "svm_viewpoint": "SVM of each view",
@@ -48,12 +45,8 @@ LABELS = {
     "qem": "plain QEM",
     "knn": "kNN",
     "svm": "SVM",
-    "decision_tree": "decision tree",
     "naive_bayes": "naive Bayes",
-    "deep_learning": "deep learning",
     "heat_kernel": "heat kernel signature",
-    "salient_points": "salient points",
-    "mesh_saliency": "mesh saliency",
     "alexnet": "AlexNet",
     "googlenet": "GoogLeNet",
     "vgg16": "VGG16",
@@ -66,13 +59,7 @@ LABELS = {
     "fast_simplification": "fast-simplification",
 }
 WAYS = ("adaptive", "area", "soft")  # of keeping a neighbourhood; behind a method's name
-METHOD_COLOURS = {
-    "random": "#E69F00",
-    "itti": "#56B4E9",
-    "thesis_ssim": "#009E73",
-    "enhanced": "#0072B2",
-    "qem": "#767676",
-}
+METHOD_COLOURS = {"random": "#E69F00", "itti": "#56B4E9", "thesis_ssim": "#009E73", "enhanced": "#0072B2", "qem": GREY}
 MARKERS = "osD^vPX*"
 PALETTE = 256  # colours of a picture: a third of the bytes, and the shading of meshes still looks smooth
 SETTINGS: dict[Any, Any] = {
@@ -97,10 +84,11 @@ SETTINGS: dict[Any, Any] = {
 
 
 def label(name: object) -> str:
-    """A method's name in words, with its way of keeping neighbourhoods where there is one."""
+    """A method's name in words, with its way of keeping neighbourhoods where there is one, but without `_seen`."""
     text = str(name)
     base, _, way = text.rpartition("-")
-    return f"{label(base)}, {way}" if way in WAYS else LABELS.get(text, text.replace("_", " "))
+    said = LABELS.get(text) or LABELS.get(text.removesuffix("_seen")) or text.replace("_", " ")
+    return f"{label(base)}, {way}" if way in WAYS else said
 
 
 def start(weights: str) -> str:
@@ -110,14 +98,9 @@ def start(weights: str) -> str:
 
 def colours(names: Sequence[str]) -> dict[str, str]:
     """dict name -> colour: fixed for the known methods, the cycle for others."""
-    free = [colour for colour in CYCLE if colour not in [METHOD_COLOURS.get(name) for name in names]]
-    unknown = [name for name in names if name not in METHOD_COLOURS]
-    return {name: METHOD_COLOURS.get(name) or free[unknown.index(name) % len(free)] for name in names}
-
-
-def plot_style() -> AbstractContextManager[None]:
-    """A context (or decorator) in which matplotlib draws in this style."""
-    return plt.rc_context(SETTINGS)
+    known = {name: METHOD_COLOURS[name] for name in names if name in METHOD_COLOURS}
+    free = cycle(colour for colour in CYCLE if colour not in known.values())
+    return {name: known.get(name) or next(free) for name in names}
 
 
 def plain_logarithm(axis: Axis, subs: Sequence[float] = (1.0, 2.0, 5.0)) -> None:

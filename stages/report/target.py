@@ -21,10 +21,8 @@ def on_target(
     """
     if value != value:
         return "not measured"
-    ends = {"from": low, "to": high}
     good = at_least <= value <= at_most
-    side = "from" if good == (at_most == math.inf) else "to"  # the end that decides: the one nearer to the other word
-    end = ends[side]
+    side, end = ("from", low) if good == (at_most == math.inf) else ("to", high)  # the end nearer to the other word
     if end == end and (at_least <= end <= at_most) == good:
         return "met" if good else "missed"
     rest = f"interval {side} {show(end)}" if end == end else "no interval"

@@ -20,7 +20,7 @@ from . import (
 from .items import Built, Figure, Table
 from .prose import add_words
 from .results import NotRun, Results
-from .style import plot_style
+from .style import SETTINGS, plt
 
 TOPICS: tuple[ModuleType, ...] = (
     attention, fixation, meshes, scene, touch, exploration, sensor, sequences, transfer, hybrid, recorded, stability,
@@ -44,7 +44,7 @@ def build_all(kind: str, results: Results, topics: Iterable[ModuleType] = TOPICS
 def build_one(topic: ModuleType, kind: str, name: str, results: Results) -> Table | Figure:
     """One table, figure or chart, with its words, written to reports/KIND; NotRun where it lacks its measurement."""
     results.read.clear()
-    with plot_style():
+    with plt.rc_context(SETTINGS):
         item = getattr(topic, KINDS[kind])[name](results)
         add_words(item, topic, kind, name)
         item.write(results.reports / kind)

@@ -8,8 +8,8 @@ import pandas as pd
 from stages.kit.stats import interval
 
 from .claims import Claim
-from .differences import differences, rounded
-from .results import NotRun, Results
+from .differences import differences
+from .results import NotRun, Results, listed
 from .words import tested_on
 
 BY_CHANCE = 0.025  # how often a 95 % interval lies wholly on one side of zero where the truth is zero
@@ -26,14 +26,18 @@ def verdict(low: float, high: float) -> str:
     return "contradicted" if high < 0 else "open"
 
 
+def counts(claims: pd.DataFrame) -> dict[str, int]:
+    """{word: how many there are of it} in a frame of `judge`."""
+    return {word: list(claims["verdict"]).count(word) for word in WORDS}
+
+
 def counted(claims: pd.DataFrame) -> str:
     """Two sentences on a frame of `judge`: how many there are of each word, and how many chance alone would give."""
-    words = {word: list(claims["verdict"]).count(word) for word in WORDS}
     judged = np.isfinite(claims["low"].to_numpy(dtype=float)).sum()
     return (
-        f"{len(claims)} verdicts: {', '.join(f'{count} {word}' for word, count in words.items())}. Were there no "
-        f"effect in any of the {judged} that have an interval, chance alone would call about {BY_CHANCE * judged:.0f} "
-        f"of them supported and as many contradicted: {100 * BY_CHANCE:g} % each."
+        f"{len(claims)} verdicts: {', '.join(f'{count} {word}' for word, count in counts(claims).items())}. Were there "
+        f"no effect in any of the {judged} that have an interval, chance alone would call about "
+        f"{BY_CHANCE * judged:.0f} of them supported and as many contradicted: {100 * BY_CHANCE:g} % each."
     )
 
 
@@ -49,30 +53,18 @@ def judged(claims: Iterable[Claim], results: Results) -> tuple[pd.DataFrame, pd.
     """
     rows, pairs = [], []
     for claim in claims:
-        row, found = _row(claim, results)
-        rows.append(row)
-        names = ["/".join(map(str, one)) if isinstance(one, tuple) else str(one) for one in found.index]
-        pairs.append(pd.DataFrame({"key": claim.key, "pair": names, "difference": found.to_numpy()}))
-    empty = pd.DataFrame({"key": [], "pair": [], "difference": []})
-    return pd.DataFrame(rows, columns=COLUMNS), pd.concat(pairs, ignore_index=True) if pairs else empty
-
-
-def _row(claim: Claim, results: Results) -> tuple[dict, pd.Series]:
-    said = {"section": claim.section, "claim": claim.sentence, "unit": claim.unit, "key": claim.key}
-    try:
-        found, words = differences(results, claim), tested_on(claim, results)
-    except NotRun as missing:
-        said |= {"verdict": "open", "pairs": 0, "over": "", "tested_on": f"not run: {missing}"}
-        return said, pd.Series(dtype=float)
-    found = pd.Series(rounded(found), index=found.index)
-    mean, low, high = interval(found, claim.share)
-    numbers = {"verdict": verdict(low, high), "effect": mean, "low": low, "high": high}
-    numbers |= {"pairs": len(found), "over": claim.pairs, "shared": claim.share}
-    return said | numbers | {"tested_on": words + _unknown(low, len(found))}, found
-
-
-def _unknown(low: float, pairs: int) -> str:
-    """Why there is no interval, where there is none."""
-    if low == low:
-        return ""
-    return "; no interval: " + (f"all {pairs} differences are equal" if pairs > 1 else "fewer than two differences")
+        said = {"section": claim.section, "claim": claim.sentence, "unit": claim.unit, "key": claim.key}
+        try:
+            found, words = differences(results, claim), tested_on(claim, results)
+        except NotRun as missing:
+            rows.append(said | {"verdict": "open", "pairs": 0, "over": "", "tested_on": f"not run: {missing}"})
+            continue
+        found = found.map(lambda value: float(f"{value:.6g}"))  # as in a CSV: what is judged is what is written
+        mean, low, high = interval(found, claim.share)
+        if low != low:
+            why = f"all {len(found)} differences are equal" if len(found) > 1 else "fewer than two differences"
+            words += f"; no interval: {why}"
+        numbers = {"verdict": verdict(low, high), "effect": mean, "low": low, "high": high, "shared": claim.share}
+        rows.append(said | numbers | {"pairs": len(found), "over": claim.pairs, "tested_on": words})
+        pairs += [(claim.key, "/".join(map(str, listed(pair))), value) for pair, value in found.items()]
+    return pd.DataFrame(rows, columns=COLUMNS), pd.DataFrame(pairs, columns=["key", "pair", "difference"])

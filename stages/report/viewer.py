@@ -1,17 +1,18 @@
 """The turnable meshes of the page: each object beside its simplified levels, coloured by saliency or by error."""
 
 import base64
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
 from scipy.spatial import KDTree
 
 from stages.kit import Mesh
-from stages.lod.metro import vertex_errors
+from stages.lod import simplify, vertex_errors
 
 from .drawing import colour_map, vivid
 from .packing import SHADES, Store, ordered
-from .results import NotRun, Results
+from .results import NotRun, Results, some
 from .style import label
 
 METHODS = [  # those that the page offers, as far as they were run: each costs an object up to 5 kB
@@ -36,13 +37,11 @@ def pack_viewer(results: Results) -> dict[str, Any]:
         packed = pack_object(results, name)
         if len(packed["store"]) > room:
             left_out.append(name)
-            continue
-        room -= len(packed["store"])
-        objects.append(packed)
-    if not objects:
-        raise NotRun(f"no mesh fits into report.viewer_kilobytes={settings.viewer_kilobytes}; raise it", "report")
-    place = np.linspace(0, 1, SHADES)
-    stops = np.linspace(0, 1, len(ERROR_COLOURS))
+        else:
+            room -= len(packed["store"])
+            objects.append(packed)
+    some(objects, f"no mesh fits into report.viewer_kilobytes={settings.viewer_kilobytes}; raise it", "report")
+    place, stops = (np.linspace(0, 1, count) for count in (SHADES, len(ERROR_COLOURS)))
     errors = np.stack([np.interp(place, stops, channel) for channel in np.transpose(ERROR_COLOURS)], axis=1)
     shades = np.concatenate([255 * colour_map(place), errors]).round().astype(np.uint8)
     return {"objects": objects, "left_out": left_out, "colours": base64.b64encode(shades.tobytes()).decode("ascii")}
@@ -54,10 +53,9 @@ def pack_object(results: Results, name: str) -> dict[str, Any]:
     A level has `error`, the distance of each vertex of the full mesh to it. All levels of all chains share one scale,
     `error_top` in % of the diagonal, so that the error is seen to grow along the slider; shades are its square root.
     """
-    original, store = results.mesh(name), Store()
+    original, found, store = results.mesh(name), results.points(name), Store()
     full, nearest = shown_mesh(original, results.settings.viewer_faces)
     place = KDTree(full.vertices)
-    found = results.points(name)
     shown = [method for method in METHODS if method in found] or list(found)
     saliency = {
         method: {"label": label(method), "values": store.put_shades(vivid(values)[nearest])}
@@ -71,12 +69,10 @@ def pack_object(results: Results, name: str) -> dict[str, Any]:
     }
     ladders = {}
     for method in results.settings.viewer_lod_methods:
-        try:
+        with suppress(NotRun):
             found = [ordered(mesh)[0] for _, mesh in results.lods(name, method)]
-        except NotRun:
-            continue
-        levels = apart([mesh for mesh in found if len(mesh.faces) <= FINEST * len(full.faces)])
-        ladders[method] = [(mesh, 100 * vertex_errors(mesh, full) / full.diagonal) for mesh in levels]
+            levels = apart([mesh for mesh in found if len(mesh.faces) <= FINEST * len(full.faces)])
+            ladders[method] = [(mesh, 100 * vertex_errors(mesh, full) / full.diagonal) for mesh in levels]
     top = max((float(np.quantile(error, TOP)) for levels in ladders.values() for _, error in levels), default=0.0)
     packed = {"name": name, "full": _mesh(full, store), "saliency": saliency, "points": points, "error_top": top}
     packed["ladders"] = {
@@ -97,12 +93,8 @@ def apart(levels: list[Mesh]) -> list[Mesh]:
 
 def shown_mesh(mesh: Mesh, faces: int) -> tuple[Mesh, np.ndarray]:
     """(mesh, ids): the mesh, simplified where it has more faces; ids: the original vertex nearest to each of its."""
-    small = mesh
-    if len(mesh.faces) > faces or len(np.unique(mesh.faces)) > INDEX_LIMIT:
-        from stages.lod import simplify  # MeshLab takes a second to load, and few data sets need it
-
-        small = simplify(mesh, faces)
-    small = ordered(small)[0]
+    large = len(mesh.faces) > faces or len(np.unique(mesh.faces)) > INDEX_LIMIT
+    small = ordered(simplify(mesh, faces) if large else mesh)[0]
     return small, np.asarray(KDTree(mesh.vertices).query(small.vertices)[1])
 
 

@@ -53,12 +53,10 @@ def _phrase(claim: Claim, results: Results, column: str, value: object) -> str:
         rank = "lowest" if value.lowest else "highest"
         names = ", ".join(_phrase(claim, results, column, name) for name in value.names)
         return f"the {rank} of {names}" if names else f"the {rank} of the others"
-    if isinstance(value, tuple):
-        if (column, value) in claim.phrases:
-            return claim.phrases[column, value]
-        return f"mean of {', '.join(_phrase(claim, results, column, one) for one in value)}"
     if (column, value) in claim.phrases:
         return claim.phrases[column, value]
+    if isinstance(value, tuple):
+        return f"mean of {', '.join(_phrase(claim, results, column, one) for one in value)}"
     if value is None:
         return ""
     if column == "group":
@@ -67,6 +65,4 @@ def _phrase(claim: Claim, results: Results, column: str, value: object) -> str:
         return Split(str(value)).words
     if column == "metric":
         return METRICS.get(str(value), str(value).replace("_", " "))
-    if column in NAMED:
-        return label(value)
-    return f"{column} {value}"
+    return label(value) if column in NAMED else f"{column} {value}"

@@ -7,7 +7,7 @@ import pytest
 from stages.kit.files import write_arrays
 from stages.report import exploration, stability
 from stages.report.exploration import claims
-from stages.report.exploration.rows import needed
+from stages.report.exploration.exploration import needed
 from stages.report.results import NotRun
 from stages.report.stability.touch import breaking, curve, harmless
 from stages.report.stability.touch_imprints import severities

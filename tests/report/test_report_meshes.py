@@ -1,5 +1,7 @@
 """The pieces on simplified meshes: paired cells, table 3.2, all detectors, claims, figures, and the backends."""
 
+from itertools import product
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -9,8 +11,9 @@ from stages.kit.stats import interval
 from stages.report import judge, meshes
 from stages.report.claims import highest_of, lowest_of
 from stages.report.differences import differences
-from stages.report.meshes import figure_3_8, pictures, simplification, table_3_2
+from stages.report.meshes import pictures, simplification
 from stages.report.meshes.claims import BOTH, CLAIMS, FEW_MINUS_MANY, claim, lower
+from stages.report.meshes.errors import BOXES
 from stages.report.meshes.methods import ordered, short
 from stages.report.meshes.rows import data_sets, face_counts, paired_cells
 from stages.report.results import NotRun
@@ -337,7 +340,6 @@ def test_charts_of_errors_are_drawn(run, name):
 @pytest.mark.parametrize("name", ["figure_3_7", "figure_3_8", "figure_3_21", "figure_3_22"])
 def test_pictures_of_meshes_are_drawn(simplified, name, monkeypatch):
     monkeypatch.setattr(pictures, "ROWS", dict.fromkeys(pictures.ROWS, 60))
-    monkeypatch.setattr(figure_3_8, "ROWS", 60)
     assert figure(simplified, name).paths[0].stat().st_size > 5000
 
 
@@ -358,13 +360,17 @@ def test_picture_of_many_and_few_points_takes_the_object_where_they_differ(simpl
 
 
 @pytest.mark.slow
-def test_boxes_hold_the_objects_without_error(run, monkeypatch):
-    rows, drawn = measured(), []
-    exact = (rows["item"] == "a") & (rows["metric"] == "metro_mean")
-    rows.loc[exact, "value"] = 0.0
-    monkeypatch.setattr(table_3_2.np, "quantile", lambda values, _: drawn.append(values) or [1e-9, 1, 2, 3, 4])
-    figure(run(rows), "figure_3_23")
-    assert {len(values) for values in drawn} == {4} and min(values.min() for values in drawn) > 0
+def test_boxes_hold_the_objects_without_error(run):
+    rows = without(measured(), 0.0, item="a", metric="metro_mean")
+    drawing, panels = figure(run(rows), "figure_3_23").drawing, product(["metro_mean", "ssim_error"], ["1500", "3000"])
+    methods = [method for method in BOXES if method in set(rows["method"])]
+    for axes, (metric, target) in zip(drawing.axes, panels, strict=True):
+        here = rows[(rows["metric"] == metric) & (rows["target"] == target)].set_index("method")["value"]
+        whiskers = np.array(axes.collections[0].get_segments())[:, :, 0]
+        for method, ends in zip(methods, whiskers, strict=True):
+            values = 100 * np.maximum(here[method], 1e-3 * here["qem"].median())
+            assert len(values) == 4 and (values > 0).all()
+            assert tuple(ends) == pytest.approx(tuple(np.quantile(values, [0.05, 0.95])), rel=1e-4)
 
 
 @pytest.mark.slow
@@ -383,7 +389,7 @@ def test_chart_of_costs_has_a_front_for_each_share(run, monkeypatch):
 def test_colours_of_the_error_are_those_of_the_distance(small):
     inner = small.ball()
     inner = type(inner)(0.9 * inner.vertices, inner.faces)
-    found = figure_3_8.errors(small.ball(24), inner)
+    found = pictures.errors(small.ball(24), inner)
     assert found.mean() == pytest.approx(0.05 / np.sqrt(3), rel=0.1)
 
 

@@ -6,9 +6,9 @@ import pytest
 
 from stages.report import sequences
 from stages.report.results import NotRun
+from stages.report.sequences.charts import SHOWN
 from stages.report.sequences.rows import SPLITS
-from stages.report.sequences.sequences_chart import SHOWN
-from stages.report.sequences.table_4_7 import SAID
+from stages.report.sequences.tables import SAID
 from stages.report.topics import build_one
 from stages.report.verdict import judge
 

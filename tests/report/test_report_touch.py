@@ -9,7 +9,7 @@ from stages.kit.files import write_arrays
 from stages.report import touch
 from stages.report.results import NotRun
 from stages.report.topics import CLAIMS, build_one
-from stages.report.touch import claims, one_touch, pictures
+from stages.report.touch import claims, pictures, touches
 from stages.report.verdict import judge
 
 GLANCE = {
@@ -181,8 +181,8 @@ def test_correlations_of_imprints_that_are_absent_are_not_run(results):
 
 def test_line_of_chance_follows_the_objects_that_the_group_held(root, results, small, monkeypatch):
     drawn = {}
-    draw = lambda axes, *_, chance: drawn.update(chance=chance, axes=axes) or {}  # noqa: E731
-    monkeypatch.setattr("stages.report.touch.one_touch.draw_bars", draw)
+    draw = lambda axes, *_, chance, **_other: drawn.update(chance=chance, axes=axes) or {}  # noqa: E731
+    monkeypatch.setattr("stages.report.touch.touches.draw_bars", draw)
     small.write_set(root, "six", 4)
     build_one(touch, "figures", "table_4_1", results)
     assert drawn["chance"] == 1 / 4
@@ -196,8 +196,8 @@ def test_bars_are_those_of_the_samplings_that_ran(root, small):
     results = small.results(root)
     places = {}
     with pytest.MonkeyPatch.context() as patch:
-        draw = one_touch.draw_bars
-        patch.setattr(one_touch, "draw_bars", lambda *args, **kw: places.update(draw(*args, **kw)) or places)
+        draw = touches.draw_bars
+        patch.setattr(touches, "draw_bars", lambda *args, **kw: places.update(draw(*args, **kw)) or places)
         build_one(touch, "figures", "table_4_1", results)
     assert list(places) == ["random", "itti", "enhanced"]
     assert sum(places.values()) == pytest.approx(0)

@@ -1,6 +1,6 @@
 """Where people look: models of attention against human gaze and marks (T3.1, T3.2)."""
 
-from . import agreement, annotations, charts, claims, learned, maps, surfaces, views_seen
+from . import agreement, annotations, charts, claims, learned, maps, views_seen
 
 TABLES = {
     "attention_gaze": agreement.against_gaze,
@@ -12,9 +12,9 @@ TABLES = {
 FIGURES = {
     "figure_3_3": maps.figure_3_3,
     "figure_3_10": maps.figure_3_10,
-    "figure_3_12": surfaces.figure_3_12,
+    "figure_3_12": maps.figure_3_12,
     "figure_3_13": maps.figure_3_13,
-    "saliency": surfaces.saliency,
+    "saliency": maps.saliency,
     "views_seen": views_seen.build,
 }
 CHARTS = {"attention": charts.by_method, "attention_settings": charts.by_setting}

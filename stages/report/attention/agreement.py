@@ -3,20 +3,18 @@
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 
-import numpy as np
 import pandas as pd
 
 from stages.kit.stats import interval
+from stages.report.grid import records
 from stages.report.items import Table
 from stages.report.markdown import number, signed, with_interval
 from stages.report.prose import shared_notes
 from stages.report.results import NotRun, Results
 from stages.report.style import label
 
-from .rows import CLASSICAL, GAIN, GAINS, HUMAN, MEAN, OURS, THESIS, agreement, difference, method_text, rivals, scores
+from .rows import ALONE, CLASSICAL, GAIN, HUMAN, OURS, THESIS, agreement, difference, method_text, rivals, scores
 
-PACKAGE = str(__package__)
-ALONE = {"nss": "NSS", "auc": "AUC"}  # shown with their interval
 COUNTED = "points_strong"
 MEANS = {
     "cc": "CC", "sim": "SIM", "kl": "KL", COUNTED: "points", "fne@0.05": "FNE", "fpe@0.05": "FPE", "wme@0.05": "WME",
@@ -38,7 +36,7 @@ def against_marks(results: Results) -> Table:
     rows = results.measured("salient_points")
     dataset, count = rows["dataset"].iloc[0], rows.loc[rows["metric"] == "nss", "item"].nunique()
     other = f"The truth is what comes with the data set {dataset}."
-    truth = shared_notes(PACKAGE, "marks") if dataset == MARKED else other
+    truth = shared_notes(__package__, "marks") if dataset == MARKED else other
     return _table(rows, [COUNTED, "fne@0.05", "fpe@0.05"], {"count": count, "truth": truth})
 
 
@@ -47,20 +45,20 @@ def _table(rows: pd.DataFrame, beside: Sequence[str], words: dict) -> Table:
     frame = agreement(rows, [*ALONE, *beside])
     timed = rows.dropna(subset=["seconds"]).drop_duplicates(["item", "method", "seconds"])
     cost = timed.groupby("method")["seconds"].median().map(number)
-    lines = []
-    for method, group in frame.groupby("method", sort=False):
-        cells = group.set_index("metric").reindex(columns=[*MEAN, *GAIN]).T.to_dict("list")  # of MEAN, then GAIN
-        line = {"method": method_text(str(method))}
-        line |= {name: with_interval(*cells[metric][:3], places=2) for metric, name in ALONE.items()}
-        for metric in GAINS:
-            over = cells[metric][3:]
-            line[f"ours − it, {ALONE[metric]}"] = signed(*over) if over[0] == over[0] else "–"
-        for metric in beside:
-            mean = cells.get(metric, [np.nan])[0]
-            line[MEANS[metric]] = f"{mean:.{1 if metric == COUNTED else 2}f}" if mean == mean else "–"
-        lines.append(line | {"seconds": cost.get(method, "–")})
+    names, lines = list(ALONE.values()), {}
+    columns = ["method", *names, *(f"ours − it, {name}" for name in names), *map(MEANS.get, beside), "seconds"]
+    for row in records(frame.reindex(columns=frame.columns.union(GAIN))):
+        line = lines.setdefault(row.method, dict.fromkeys(columns, "–"))
+        line |= {"method": method_text(row.method), "seconds": cost.get(row.method, "–")}
+        if row.metric in ALONE:
+            line[ALONE[row.metric]] = with_interval(row.mean, row.low, row.high, places=2)
+        elif row.mean == row.mean:
+            line[MEANS[row.metric]] = f"{row.mean:.{1 if row.metric == COUNTED else 2}f}"
+        if row.gain == row.gain:
+            line[f"ours − it, {ALONE[row.metric]}"] = signed(row.gain, row.gain_low, row.gain_high)
     said = "\n".join([*_ours_and_rivals(rows), *_learned(rows), *_peeking(rows)])
-    return Table(frame, pd.DataFrame(lines), words | {"said": said, "reading": shared_notes(PACKAGE, "reading")})
+    words = words | {"said": said, "reading": shared_notes(__package__, "reading")}
+    return Table(frame, pd.DataFrame(lines.values()), words)
 
 
 def _ours_and_rivals(rows: pd.DataFrame) -> Iterator[str]:
@@ -72,21 +70,19 @@ def _ours_and_rivals(rows: pd.DataFrame) -> Iterator[str]:
     if HUMAN in table:
         first += f"; {label(HUMAN)}, spread as smoothly, has {table[HUMAN].mean():.2f}"
     yield f"{first}."
-    others = rivals(rows, "nss")
-    if others:
-        gains = [f"{name} {signed(*interval(difference(rows, key, OURS, others[0])))}" for key, name in ALONE.items()]
-        yield f"The best other method that has not seen the object is {label(others[0])}: ours − it {_and(gains)}."
-        yield from (_beaten(rows, key) for key in GAINS)
-
-
-def _beaten(rows: pd.DataFrame, metric: str) -> str:
-    others = rivals(rows, metric)
-    left = [label(name) for name in others if not interval(difference(rows, metric, OURS, name))[1] > 0]
-    named = left if len(left) <= NAMED else [*left[:NAMED], f"{len(left) - NAMED} more"]
-    return (
-        f"In {ALONE[metric]} ours is higher than {len(others) - len(left)} of the {len(others)} others that have not "
-        "seen the object, with an interval that excludes zero" + (f"; not than {_and(named)}." if left else ".")
-    )
+    best = next(iter(rivals(rows, "nss")), None)
+    if best is None:
+        return
+    gains = [f"{name} {signed(*interval(difference(rows, metric, OURS, best)))}" for metric, name in ALONE.items()]
+    yield f"The best other method that has not seen the object is {label(best)}: ours − it {_and(gains)}."
+    for metric, name in ALONE.items():
+        others = rivals(rows, metric)
+        left = [label(other) for other in others if not interval(difference(rows, metric, OURS, other))[1] > 0]
+        named = left if len(left) <= NAMED else [*left[:NAMED], f"{len(left) - NAMED} more"]
+        yield (
+            f"In {name} ours is higher than {len(others) - len(left)} of the {len(others)} others that have not seen "
+            "the object, with an interval that excludes zero" + (f"; not than {_and(named)}." if left else ".")
+        )
 
 
 def _learned(rows: pd.DataFrame) -> Iterator[str]:

@@ -14,10 +14,8 @@ from stages.report.words import dataset_text
 
 from .rows import GAIN, MEAN, gain
 
-WHERE = {"household": "household objects"}
 METRICS = {"found": "marks found again by another pass, %", "nss": "NSS against gaze", "auc": "AUC against gaze"}
-BESIDE = {"found": "random", "nss": "height", "auc": "height"}
-NAMES = {"random": "as many random points", "height": "height alone"}
+BESIDE = {"random": "as many random points", "height": "height alone"}
 
 
 def build(results: Results) -> Table:
@@ -26,28 +24,29 @@ def build(results: Results) -> Table:
     rows = pd.concat([results.rows("annotations", dataset) for dataset in sets])
     found, shown = [], []
     for (dataset, metric), group in grouped(rows, ["dataset", "metric"]):
-        table, other = group.pivot(index="item", columns="method", values="value"), BESIDE[metric]
+        table = group.pivot(index="item", columns="method", values="value")
+        other = "random" if metric == "found" else "height"
         cells = {
-            method: dict(zip(MEAN, interval(table[method]), strict=True)) | gain(table, method, other)
-            for method in map(str, table)
+            name: dict(zip(MEAN, interval(table[name]), strict=True)) | gain(table, name, other)
+            for name in map(str, table)
         }
         about = {"dataset": dataset, "metric": metric}
         found += [about | {"method": name, "objects": len(table)} | cell for name, cell in cells.items()]
         shown.append({
-            "objects": f"{len(table)} {WHERE.get(dataset, dataset_text(dataset))}",
+            "objects": f"{len(table)} {'household objects' if dataset == 'household' else dataset_text(dataset)}",
             "measure": METRICS[metric],
-            "three passes": _text(cells.get("passes"), metric),
+            "three passes": _text(cells.get("passes", {}), metric),
             "one pass alone": _text(cells["one"], metric) if "one" in cells else "–",
-            "beside": NAMES[other],
-            "gets": _text(cells.get(other), metric),
-            "passes − that": _text(cells.get("passes"), metric, GAIN),
+            "beside": BESIDE[other],
+            "gets": _text(cells.get(other, {}), metric),
+            "passes − that": _text(cells.get("passes", {}), metric, GAIN),
         })  # fmt: skip
     return Table(pd.DataFrame(found), pd.DataFrame(shown), {"extremes": _extremes(rows)})
 
 
-def _text(cell: dict[str, float] | None, metric: str, names: Sequence[str] = MEAN) -> str:
+def _text(cell: dict[str, float], metric: str, names: Sequence[str] = MEAN) -> str:
     scale, places = (100, 0) if metric == "found" else (1, 2)
-    return with_interval(*((cell or {}).get(name, np.nan) for name in names), scale=scale, places=places)
+    return with_interval(*(cell.get(name, np.nan) for name in names), scale=scale, places=places)
 
 
 def _extremes(rows: pd.DataFrame) -> str:

@@ -1,11 +1,10 @@
 """Agreement with gaze against the seconds of looking: of every method, and of our model by its settings."""
 
-import numpy as np
 import pandas as pd
 
 from stages.kit.stats import interval
 from stages.report.costs import attention_seconds
-from stages.report.grid import grouped
+from stages.report.grid import grouped, records
 from stages.report.items import Figure
 from stages.report.markdown import signed
 from stages.report.pareto import pareto_chart
@@ -15,9 +14,7 @@ from stages.report.style import label
 from .rows import CLASSICAL, HUMAN, agreement, method_text
 
 SETTING = ["views", "rows", "channels"]
-MODEL = "fixations"
 LOSS = 0.02  # of NSS: a mean loss under this is nothing, if it is not beyond chance, nor that of AUC
-NAMED = 3  # smallest settings that the caption names
 
 
 def by_method(results: Results) -> Figure:
@@ -36,8 +33,7 @@ def by_method(results: Results) -> Figure:
 
 def by_setting(results: Results) -> Figure:
     """How little looking our model needs: NSS against cost over views, image size and channels."""
-    rows = results.rows("attention_settings")
-    rows = rows[rows["method"] == MODEL]
+    rows = results.rows("attention_settings", method="fixations")
     wide = rows.pivot_table(index=[*SETTING, "item", "seconds"], columns="metric", values="value", sort=False)
     tables = {
         f"{views}, {height} rows, {channels}": group.set_index("item")
@@ -46,26 +42,25 @@ def by_setting(results: Results) -> Figure:
     if len(tables) < 2:
         raise NotRun("fewer than two settings were measured", "settings", runnable=False)
     best = max(tables, key=lambda name: tables[name]["nss"].mean())
-    frame = pd.DataFrame([_line(name, table, tables[best], name == best) for name, table in tables.items()])
+    frame = pd.DataFrame([_line(name, table, tables[best]) for name, table in tables.items()])
     chart = pareto_chart(
         frame, "gain", title="How little looking the model of gaze needs", reference=best,
         quality_label="NSS on gaze, minus that of the best setting", colour="views", marker="rows",
     )  # fmt: skip
     full = frame.loc[frame["name"] == best, "seconds"].iloc[0]
     named = "; ".join(
-        f"{row['name']} ({full / row['seconds']:.1f} times as fast, {signed(row['gain'], row['low'], row['high'], 3)})"
-        for row in frame.loc[frame["loses_nothing"]].sort_values("seconds")[:NAMED].to_dict("records")
+        f"{row.name} ({full / row.seconds:.1f} times as fast, {signed(row.gain, row.low, row.high, 3)})"
+        for row in records(frame[frame["loses_nothing"]].sort_values("seconds")[:3])
     )
     chart.words |= {"objects": len(tables[best]), "best": best, "loss": LOSS, "named": named}
     return chart
 
 
-def _line(name: str, table: pd.DataFrame, best: pd.DataFrame, itself: bool) -> dict:
+def _line(name: str, table: pd.DataFrame, best: pd.DataFrame) -> dict:
     """A setting with its paired gain over the best, which is a loss; of the best itself nothing."""
     both = table.join(best[["nss", "auc"]].add_prefix("best_")).dropna(subset=["nss", "best_nss"])
-    gain, low, high = (0.0, np.nan, np.nan) if itself else interval(both["nss"] - both["best_nss"])
-    auc_high = 0.0 if itself else interval(both["auc"] - both["best_auc"])[2]
+    gain, low, high = interval(both["nss"] - both["best_nss"])
+    nothing = not (high < 0 or interval(both["auc"] - both["best_auc"])[2] < 0) and gain > -LOSS
     found = {"gain": gain, "low": low, "high": high, "nss": both["nss"].mean(), "auc": both["auc"].mean()}
-    found |= {"seconds": both["seconds"].median(), "objects": len(both)}
-    nothing = not (high < 0 or auc_high < 0) and gain > -LOSS
-    return table[SETTING].iloc[0].to_dict() | {"name": name} | found | {"loses_nothing": nothing}
+    found |= {"seconds": both["seconds"].median(), "objects": len(both), "loses_nothing": nothing}
+    return table[SETTING].iloc[0].to_dict() | {"name": name} | found

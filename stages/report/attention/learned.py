@@ -1,19 +1,19 @@
 """What was learned from the ground truth, beside the thesis: weights of channels (T table 3.1) and SVMs (T3.2.3)."""
 
-from contextlib import suppress
 from typing import Any
 
-import numpy as np
 import pandas as pd
 
 from stages.kit.stats import interval
-from stages.report.grid import grouped, percent
+from stages.report.grid import everywhere, grouped, percent, records
 from stages.report.items import Table
 from stages.report.markdown import number, with_interval
-from stages.report.results import NotRun, Results
+from stages.report.results import Results, some
+
+from .rows import MEAN
 
 KINDS = {"guided_ssim": "SSIM", "guided_ed": "1 − ED", "guided_ssim_object": "SSIM, object"}
-PRINTED = {"guided_ssim": "ssim", "guided_ed": "one_minus_ed"}  # columns of the thesis's weights
+PRINTED = {"ssim": "guided_ssim", "one_minus_ed": "guided_ed"}  # columns of the thesis's weights
 TRAINING = {"one_for_all": "one for all", "one_per_object": "one per object", "one_per_viewpoint": "one per viewpoint"}
 VALIDATION = {"pixels": "random pixels", "views": "whole views", "objects": "whole objects"}
 AREA = {"image": "whole image", "object": "the object"}
@@ -24,53 +24,38 @@ ORDER = {name: place for place, name in enumerate([*AREA, *TRAINING, *VALIDATION
 
 def table_3_1(results: Results) -> Table:
     """How like each channel's map is to the ground truth's, and how near its brightest places are."""
-    rows = _everywhere(results, "weight", "no weights learned from ground truth")
-    found = [
+    rows = _gaze_first(results, "weight", "no weights learned from ground truth")
+    rows = some(rows[rows["method"].isin(KINDS)], "no weights learned from ground truth", "weights")
+    frame = pd.DataFrame([
         {"method": method, "channel": channel, **_over_objects(group), "dataset": dataset}
         for (dataset, method, channel), group in grouped(rows, ["dataset", "method", "channel"])
-        if method in KINDS
-    ]
-    if not found:
-        raise NotRun("no weights learned from ground truth", "weights")
-    frame = pd.DataFrame(found)
-    thesis = results.thesis("table_3_1_channel_weights").set_index("channel")
-    printed = {(method, channel): value for method in PRINTED for channel, value in thesis[PRINTED[method]].items()}
-    frame["thesis"] = [printed.get(key, np.nan) for key in zip(frame["method"], frame["channel"], strict=True)]
-    cells = {
-        (row["method"], row["channel"], row["dataset"]): with_interval(row["mean"], row["low"], row["high"], places=2)
-        for row in frame.to_dict("records")
-    }
-    shown = pd.DataFrame({"channel": thesis.index})
+    ])  # fmt: skip
+    thesis = results.thesis("table_3_1_channel_weights").set_index("channel").rename(columns=PRINTED)
+    thesis = thesis[list(PRINTED.values())]
+    frame = frame.merge(thesis.reset_index().melt("channel", var_name="method", value_name="thesis"), how="left")
+    text = [with_interval(*mean, places=2) for mean in frame[MEAN].itertuples(index=False)]
+    wide = frame.assign(text=text).pivot(index="channel", columns=["method", "dataset"], values="text")
+    wide = wide.reindex(thesis.index).fillna("not run")
+    shown = pd.DataFrame(index=thesis.index)
     for method, kind in KINDS.items():
-        if method in PRINTED:
-            shown[f"{kind}: thesis"] = thesis[PRINTED[method]].map(number).to_list()
-        for dataset in sorted(set(frame["dataset"])):
-            objects = frame.loc[frame["dataset"] == dataset, "objects"].max()
-            shown[f"{kind}: {dataset} ({objects})"] = [
-                cells.get((method, channel, dataset), "not run") for channel in thesis.index
-            ]
-    tops = ", ".join(f"{thesis[column].idxmax()} in {KINDS[method]}" for method, column in PRINTED.items())
-    return Table(frame, shown, {"tops": tops, "ranks": _ranks(frame)})
+        if method in thesis:
+            shown[f"{kind}: thesis"] = thesis[method].map(number)
+        for dataset, objects in frame.groupby("dataset")["objects"].max().items():
+            shown[f"{kind}: {dataset} ({objects})"] = wide.get((method, dataset), "not run")
+    tops = ", ".join(f"{channel} in {KINDS[str(method)]}" for method, channel in thesis.idxmax().items())
+    return Table(frame, shown.reset_index(), {"tops": tops, "ranks": _ranks(frame)})
 
 
-def _everywhere(results: Results, metric: str, missing: str) -> pd.DataFrame:
+def _gaze_first(results: Results, metric: str, missing: str) -> pd.DataFrame:
     """Measured rows of the weights of all sets that have them, those of the people's gaze first."""
-    found = []
-    for dataset in sorted(results.datasets("weights"), key=lambda name: name != "gaze"):
-        with suppress(NotRun):
-            found.append(results.measured("weights", dataset, metric=metric))
-    if not found:
-        raise NotRun(missing, "weights")
-    return pd.concat(found)
+    rows = pd.concat(everywhere(results, "weights", missing, metric=metric).values())
+    return rows.sort_values("dataset", key=lambda names: names != "gaze", kind="stable")
 
 
 def _over_objects(group: pd.DataFrame) -> dict[str, float]:
-    """One learned weight from all objects, with its interval over the objects.
-
-    A mean over n objects and the means without each of them tell each object's own value: n m - (n - 1) m_without.
-    """
-    mean = group.loc[group["item"].isna(), "value"].iloc[0]
-    without = group.loc[group["item"].notna(), "value"].to_numpy()
+    """One learned weight from all objects, with its interval over the objects' own values, n m - (n - 1) m_without."""
+    of_all = group["item"].isna()
+    mean, without = group.loc[of_all, "value"].iloc[0], group.loc[~of_all, "value"].to_numpy()
     n = len(without)
     _, low, high = interval(n * mean - (n - 1) * without)
     return {"mean": mean, "low": low, "high": high, "objects": max(n, 1)}
@@ -80,30 +65,30 @@ def _ranks(frame: pd.DataFrame) -> str:
     """How alike the channels' order is to the thesis's, in words."""
     said = []
     for (dataset, method), group in grouped(frame.dropna(subset=["thesis"]), ["dataset", "method"]):
-        rank = np.corrcoef(group["mean"].rank(), group["thesis"].rank())[0, 1]  # Spearman's
-        best = group.sort_values("mean")["channel"].iloc[-1]
+        rank = group["mean"].corr(group["thesis"], method="spearman")
+        best = group.set_index("channel")["mean"].idxmax()
         said.append(f"{KINDS[method]}, {dataset}: {best} comes first, rank correlation {rank:.2f}")
     return "; ".join(said)
 
 
 def section_3_2_3(results: Results) -> Table:
     """How often the SVM is right about a pixel, and what the background alone would give."""
+    rows = _gaze_first(results, "accuracy", "no SVM was trained")
     frame = pd.DataFrame([
         dict(zip([*KEYS, "accuracy", "low", "high"], (*key, *interval(group["value"])), strict=True))
         | {"svms": len(group), **group[["deviation", "background_alone"]].mean().to_dict()}
-        for key, group in grouped(_everywhere(results, "accuracy", "no SVM was trained"), KEYS)
+        for key, group in grouped(rows, KEYS)
     ])  # fmt: skip
     frame = frame.sort_values(KEYS[1:], key=lambda column: column.map(ORDER), kind="stable").reset_index(drop=True)
-    thesis = results.thesis("section_3_2_3_svm_accuracy").set_index("training").rename(index=THESIS)
-    thesis = thesis[["accuracy", "std"]].add_prefix("thesis_")
-    frame = frame.join(thesis, on="training")
-    frame.loc[(frame["area"] != "image") | (frame["validation"] != "pixels"), list(thesis)] = np.nan
+    thesis = results.thesis("section_3_2_3_svm_accuracy").replace({"training": THESIS})
+    thesis = thesis.assign(area="image", validation="pixels").set_index(KEYS[1:])  # its way
+    frame = frame.join(thesis[["accuracy", "std"]].add_prefix("thesis_"), on=KEYS[1:])
     said = [
-        f"{row['dataset']}, {TRAINING[row['training']]}, the thesis's way: {100 * row['accuracy']:.1f} %; the "
-        f"background alone gives {100 * row['background_alone']:.1f} %."
-        for row in frame.dropna(subset=["thesis_accuracy"]).to_dict("records")
+        f"{row.dataset}, {TRAINING[row.training]}, the thesis's way: {100 * row.accuracy:.1f} %; the background alone "
+        f"gives {100 * row.background_alone:.1f} %."
+        for row in records(frame.dropna(subset=["thesis_accuracy"]))
     ]
-    return Table(frame, pd.DataFrame(map(_shown, frame.itertuples())), {"said": "\n".join(said)})
+    return Table(frame, pd.DataFrame(map(_shown, records(frame))), {"said": "\n".join(said)})
 
 
 def _shown(row: Any) -> dict[str, str | int]:

@@ -1,4 +1,4 @@
-"""Maps of one view of an object, beside its picture: T figures 3.3, 3.10 and 3.13."""
+"""Maps of a view beside its picture (T figures 3.3, 3.10, 3.13), and meshes coloured by saliency (T figure 3.12)."""
 
 from collections.abc import Iterable, Sequence
 
@@ -7,9 +7,9 @@ from matplotlib.axes import Axes
 
 from stages.conspicuity import CHANNELS
 from stages.kit import Mesh, Viewpoint
-from stages.report.drawing import VIEWPOINT, picture
+from stages.report.drawing import VIEWPOINT, colour_bar, name_panels, picture, show, square_grid, vivid
 from stages.report.items import Figure
-from stages.report.results import NotRun, Results
+from stages.report.results import Results, some
 from stages.report.style import MAP, label, plt
 from stages.salient_points import COMBINATIONS, fuse
 from stages.weights.ground_truth import gts_map, visible_points
@@ -17,23 +17,18 @@ from stages.weights.svm_pixels import SALIENT_LEVEL
 
 COLOUR = ("color", "dkl")  # the thesis's RGB and DKL features
 KEPT = 0.3  # of the object's pixels: the thesis retains 30 % of the highest values (T3.1.1)
-COUNT, FADED = 4, 0.78
-TITLES = ["", "without colour", "regions", "with colour", "regions"]
-FAINT = 0.02  # conspicuity below which a map shows nothing
+FADED = 0.78  # of what lies outside of the regions
 MACHINES = ("svm_object", "svm")  # the thesis's, one for the object itself; and one that has not seen it
-SALIENT, OBJECT, BACKGROUND = 0.1, 0.85, 1.0  # greys of the binary picture
-MANY = 0.6  # of the most points that a view shows: such views are good enough to choose from
 MARGIN = 4  # pixels kept round the object
 RED = "#D81B1B"
 
 
 def figure_3_3(results: Results) -> Figure:
     """Saliency and regions of interest, without and with the colour channels."""
-    names = results.choose(results.settings.figure_objects, COUNT, stage="conspicuity")
+    names = results.choose(results.settings.figure_objects, 4, stage="conspicuity")
     figure, grid = plt.subplots(len(names), 5, figsize=(9.2, 1.9 * len(names)), squeeze=False)
     shares = [f"{name} {100 * _regions(results, name, row):.0f} %" for name, row in zip(names, grid, strict=True)]
-    for axes, title in zip(grid[0], TITLES, strict=True):
-        axes.set_title(title, fontsize=10, fontweight="normal", loc="center")
+    name_panels(grid, ["", "without colour", "regions", "with colour", "regions"])
     for axes in grid.flat:
         axes.set(xticks=[], yticks=[])
         axes.spines[:].set_visible(False)
@@ -66,7 +61,7 @@ def figure_3_10(results: Results) -> Figure:
     name = results.choose(results.settings.figure_objects, 1, stage="conspicuity")[0]
     maps, masks, viewpoints, stored = results.maps(name)
     channels = [channel for channel in CHANNELS if channel in stored]
-    answers = (maps.max(axis=(2, 3)) > FAINT).sum(axis=1)
+    answers = (maps.max(axis=(2, 3)) > 0.02).sum(axis=1)  # below it a map shows nothing
     view = _nearest(viewpoints, np.flatnonzero(answers == answers.max()))
     viewpoint, mask, part = viewpoints[view], masks[view], _window(masks[view])
     figure, grid = plt.subplots(2, 5, figsize=(9.6, 4.6))
@@ -86,6 +81,21 @@ def figure_3_10(results: Results) -> Figure:
     return Figure(figure, {"name": name, "channels": ", ".join(channels), **where})
 
 
+def figure_3_12(results: Results) -> Figure:
+    """Saliency by the classical model, by equal and learned weights, and by our model, beside the truth."""
+    names = results.with_ground_truth(results.settings.figure_objects, 4)
+    methods = results.saliency(names[0]).those_of(["itti", "VisAttAll", "guided_ed", "guided_ssim", "enhanced"])
+    figure, grid = square_grid(len(names), len(methods) + 1, side=1.7, right=0.9)
+    for row, name in zip(grid, names, strict=True):
+        mesh, ground_truth, found = results.mesh(name), results.ground_truth(name), results.saliency(name)
+        for axes, method in zip(row, methods, strict=False):
+            show(axes, mesh, vivid(found[method]))
+        show(row[-1], mesh, vivid(ground_truth["density"]), points=ground_truth["points"])
+    name_panels(grid, [*map(label, methods), "ground truth"], names)
+    colour_bar(figure, [0.945, 0.2, 0.012, 0.6], "over the 98 % quantile")
+    return Figure(figure, {"objects": ", ".join(names), "methods": ", ".join(map(label, methods))})
+
+
 def figure_3_13(results: Results) -> Figure:
     """The binarised ground truth of a view, and what the SVM makes of its nine maps."""
     name = results.with_ground_truth(results.settings.figure_objects, 1)[0]
@@ -93,18 +103,17 @@ def figure_3_13(results: Results) -> Figure:
     maps, masks, viewpoints, _ = results.maps(name, list(ground_truth["channels"]))
     svms = results.learned(name, mesh).svms
     machines = [machine for machine in MACHINES if machine in svms]
-    if not machines:
-        raise NotRun(f"no SVM was trained for {name}", "weights", runnable=False)
+    some(machines, f"no SVM was trained for {name}", "weights", runnable=False)
     seen = [visible_points(mesh, ground_truth["points"], viewpoint, masks.shape[1:])[:2] for viewpoint in viewpoints]
     counts = np.array([len(rows) for rows, _ in seen])
-    view = _nearest(viewpoints, np.flatnonzero(counts >= MANY * counts.max()))
+    view = _nearest(viewpoints, np.flatnonzero(counts >= 0.6 * counts.max()))  # such views show points enough
     mask, part = masks[view], _window(masks[view])
     truth = gts_map(*seen[view], mask) > SALIENT_LEVEL
     figure, grid = plt.subplots(1, 2 + len(machines), figsize=(2.7 * (2 + len(machines)), 2.7))
     grid[0].imshow(_render(mesh, viewpoints[view], mask)[part])
     down, across = (places - kept.start for places, kept in zip(seen[view], part, strict=True))
     grid[0].plot(across, down, "o", color=RED, ms=4.2, mec="white", mew=0.8)
-    binary = np.where(mask, np.where(truth, SALIENT, OBJECT), BACKGROUND)
+    binary = np.where(mask, np.where(truth, 0.1, 0.85), 1.0)  # greys: salient, the rest of the object, background
     grid[1].imshow(binary[part], cmap="gray", vmin=0, vmax=1)
     right = []
     for axes, machine in zip(grid[2:], machines, strict=True):
@@ -115,13 +124,25 @@ def figure_3_13(results: Results) -> Figure:
         told = (answer > 0.5) == truth
         share = np.mean([told[mask & (truth == kind)].mean() for kind in (True, False)])
         right.append(f"{label(machine)} {100 * share:.0f} %")
-    titles = [f"{name}, {len(down)} points", "binarised ground truth", *map(label, machines)]
-    for axes, title in zip(grid, titles, strict=True):
-        axes.set_title(title, fontsize=10, fontweight="normal", loc="center")
+    name_panels(grid[None], [f"{name}, {len(down)} points", "binarised ground truth", *map(label, machines)])
+    for axes in grid:
         axes.set_axis_off()
-    bar = figure.colorbar(grid[2].images[0], ax=grid, shrink=0.8, pad=0.015, aspect=18)
-    bar.set_label("the SVM's answer")
+    figure.colorbar(grid[2].images[0], ax=grid, shrink=0.8, pad=0.015, aspect=18).set_label("the SVM's answer")
     return Figure(figure, {"name": name, "right": "; ".join(right)})
+
+
+def saliency(results: Results) -> Figure:
+    """Saliency and the strongest points."""
+    names = results.choose(results.settings.figure_objects, 6)
+    methods = results.saliency(names[0]).those_of(["itti", "enhanced"])
+    figure, grid = square_grid(len(methods), len(names), side=1.7, right=0.9)
+    for column, name in zip(grid.T, names, strict=True):
+        mesh, found, points = results.mesh(name), results.saliency(name), results.strong_points(name)
+        for axes, method in zip(column, methods, strict=True):
+            show(axes, mesh, vivid(found[method]), points=points[method])
+    name_panels(grid, names, map(label, methods))
+    colour_bar(figure, [0.945, 0.15, 0.012, 0.7], "saliency over its 98 % quantile")
+    return Figure(figure, {"objects": ", ".join(names), "methods": " above ".join(map(label, methods))})
 
 
 def _nearest(viewpoints: Sequence[Viewpoint], among: Iterable[int]) -> int:
@@ -140,11 +161,9 @@ def _render(mesh: Mesh, viewpoint: Viewpoint, mask: np.ndarray) -> np.ndarray:
 def _window(mask: np.ndarray, square: bool = False) -> tuple[slice, slice]:
     """The rows and columns that hold the object (mask (h, w) boolean), square where the map is large enough."""
     places = [np.flatnonzero(mask.any(axis=axis)) for axis in (1, 0)]
-    parts = [slice(max(ids[0] - MARGIN, 0), ids[-1] + MARGIN + 1) for ids in places]
+    starts, stops = np.transpose([(max(ids[0] - MARGIN, 0), ids[-1] + MARGIN + 1) for ids in places])
     if square:
-        side = max(part.stop - part.start for part in parts)
-        limits = [max(length - side, 0) for length in mask.shape]
-        middles = [part.start + part.stop for part in parts]
-        starts = [np.clip((middle - side) // 2, 0, limit) for middle, limit in zip(middles, limits, strict=True)]
-        parts = [slice(start, start + side) for start in starts]
-    return parts[0], parts[1]
+        side = (stops - starts).max()
+        starts = np.clip((starts + stops - side) // 2, 0, np.maximum(np.array(mask.shape) - side, 0))
+        stops = starts + side
+    return slice(starts[0], stops[0]), slice(starts[1], stops[1])

@@ -5,14 +5,13 @@ from collections.abc import Sequence
 import pandas as pd
 
 from stages.kit.stats import interval
-from stages.report.results import NotRun
+from stages.report.results import NotRun, some
 from stages.report.style import label
 
 OURS, HUMAN, CLASSICAL, THESIS = "enhanced", "human", "itti", "VisAttAll"
 PER_OBJECT = ("svm_object", "svm_viewpoint")  # T3.2.3: an SVM for the object itself
-SAME = {"VisAtt": CLASSICAL}  # the classical model under the thesis's name
-NAMES = {"random": "random points"}  # nobody touches here
-GAINS = ("nss", "auc")  # metrics in which ours is compared with each other method
+SAME = ("VisAtt",)  # the classical model under the thesis's name
+ALONE = {"nss": "NSS", "auc": "AUC"}  # shown with their interval, and in which ours is compared with each other method
 MEAN, GAIN = ["mean", "low", "high"], ["gain", "gain_low", "gain_high"]  # columns: of a method, and over another
 
 
@@ -23,16 +22,15 @@ def has_seen(method: str) -> bool:
 
 def method_text(method: str) -> str:
     """A method's name as a person says it, with a star where it has seen the object."""
-    return NAMES.get(method, label(method)) + (" *" if has_seen(method) else "")
+    name = "random points" if method == "random" else label(method)  # nobody touches here
+    return f"{name} *" if has_seen(method) else name
 
 
 def scores(rows: pd.DataFrame, metric: str) -> pd.DataFrame:
     """Frame objects x methods of one metric; NotRun where it was not measured."""
-    found = rows.loc[rows["metric"] == metric]
-    if found["value"].isna().all():
-        raise NotRun(f"no {metric}: no object has ground truth", "salient_points", runnable=False)
-    found = found.loc[~found["method"].isin(list(SAME))]
-    return found.pivot_table(index="item", columns="method", values="value", sort=False)
+    found = rows[rows["metric"] == metric].dropna(subset=["value"])
+    some(found, f"no {metric}: no object has ground truth", "salient_points", runnable=False)
+    return found[~found["method"].isin(SAME)].pivot_table(index="item", columns="method", values="value", sort=False)
 
 
 def difference(rows: pd.DataFrame, metric: str, first: str, second: str) -> pd.Series:
@@ -41,7 +39,7 @@ def difference(rows: pd.DataFrame, metric: str, first: str, second: str) -> pd.S
     missing = [method for method in (first, second) if method not in table]
     if missing:
         raise NotRun(f"{' and '.join(missing)} not judged on objects with ground truth", "salient_points", False)
-    return pd.Series(table[first] - table[second]).dropna()
+    return pd.Series(table[first] - table[second])
 
 
 def rivals(rows: pd.DataFrame, metric: str) -> list[str]:
@@ -58,10 +56,9 @@ def gain(table: pd.DataFrame, first: str, second: str) -> dict[str, float]:
 
 
 def agreement(rows: pd.DataFrame, metrics: Sequence[str]) -> pd.DataFrame:
-    """Tidy frame: method, has_seen, metric, objects, mean, low, high, and gain, gain_low, gain_high.
+    """Tidy frame: method, has_seen, metric, objects, MEAN and, for ALONE, GAIN: of ours over the method.
 
-    The gain is that of ours over the method, paired over objects, for GAINS. 95 % intervals over objects. In order of
-    NSS, the human ceiling first.
+    95 % intervals over the objects. In order of NSS, the human ceiling first.
     """
     tables, found = {metric: scores(rows, metric) for metric in metrics}, []
     order = map(str, tables["nss"].mean().sort_values(ascending=False).index)
@@ -70,5 +67,5 @@ def agreement(rows: pd.DataFrame, metrics: Sequence[str]) -> pd.DataFrame:
             if method in table:
                 line = {"method": method, "has_seen": has_seen(method), "metric": metric}
                 line |= {"objects": table[method].count(), **dict(zip(MEAN, interval(table[method]), strict=True))}
-                found.append(line | (gain(table, OURS, method) if metric in GAINS and method != HUMAN else {}))
+                found.append(line | (gain(table, OURS, method) if metric in ALONE and method != HUMAN else {}))
     return pd.DataFrame(found)

@@ -2,6 +2,7 @@
 
 from functools import partial
 
+import numpy as np
 import pandas as pd
 
 from stages.kit.split import Split
@@ -9,7 +10,7 @@ from stages.report.claims import Claim, Side
 from stages.report.differences import side, statistic
 from stages.report.results import Results
 
-from .rows import HEADLINE, LIKELIHOODS, STAGE, WAYS, fixed_at
+from .exploration import HEADLINE, LIKELIHOODS, STAGE, WAYS, curves
 
 PERFECT = 0.99  # what "up to 100 %" of T table 4.6 is taken to mean
 AT_RANDOM = {
@@ -28,6 +29,7 @@ PHRASES = {
     ("stop", "confidence"): "stopping", ("stop", "fixed"): "a fixed number of touches",
 }  # fmt: skip
 claim = partial(Claim, section="ours", stage=STAGE, phrases=PHRASES)
+five = partial(claim, where=AT_RANDOM | FIXED, first=FIVE)
 touches = partial(claim, where=AT_RANDOM | SURE, scale=1.0, unit="touches", statistic="touches_saved")
 
 
@@ -40,8 +42,10 @@ def touches_saved(results: Results, claim: Claim) -> pd.Series:
 @statistic("over_as_many_touches")
 def over_as_many_touches(results: Results, claim: Claim) -> pd.Series:
     """Accuracy of the first side minus that of a fixed number of touches, interpolated at as many."""
-    fixed = results.measured(STAGE, claim.dataset, **claim.where, stop="fixed")
-    return side(results, claim, claim.first, None) - fixed_at(fixed, _touches(results, claim, claim.first))
+    curve = curves(results.measured(STAGE, claim.dataset, **claim.where, stop="fixed"))
+    touches = _touches(results, claim, claim.first)
+    fixed = {one: np.interp(touches[one], curve.columns, curve.loc[one]) for one in touches.index}
+    return side(results, claim, claim.first, None) - pd.Series(fixed)
 
 
 @statistic("overconfidence")
@@ -57,14 +61,11 @@ def _touches(results: Results, claim: Claim, own: Side) -> pd.Series:
 
 
 CLAIMS = [
-    claim(key="five_touches_over_one", sentence="Adding up beliefs over touches is better than one touch.",
-          where=AT_RANDOM | FIXED, first=FIVE, second=ONE),
-    claim(key="five_touches_perfect",
-          sentence="Beliefs added up over five touches and their places come up to 99 %.",
-          where=PLACES | FIXED, first=FIVE, second=PERFECT),
-    claim(key="five_touches_perfect_by_imprints",
-          sentence="Beliefs added up over five touches come up to 99 % by imprints alone.",
-          where=AT_RANDOM | FIXED, first=FIVE, second=PERFECT),
+    five(key="five_touches_over_one", second=ONE, sentence="Adding up beliefs over touches is better than one touch."),
+    five(key="five_touches_perfect", where=PLACES | FIXED, second=PERFECT,
+         sentence="Beliefs added up over five touches and their places come up to 99 %."),
+    five(key="five_touches_perfect_by_imprints", second=PERFECT,
+         sentence="Beliefs added up over five touches come up to 99 % by imprints alone."),
     *(
         claim(key=f"adaptive_over_fixed{key}", sentence=f"Stopping when sure beats a fixed number{words}.",
               where=where | {"way": "random"}, first=SURE, statistic="over_as_many_touches",

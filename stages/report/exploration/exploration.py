@@ -5,38 +5,43 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from stages.kit.split import shared_by
-from stages.report.grid import records, within
+from stages.kit.split import Split, shared_by
+from stages.report.grid import grouped, records, within
 from stages.report.items import Table
 from stages.report.markdown import number, with_interval
 from stages.report.results import Results
 from stages.report.style import label
 
-from .rows import HEADLINE, HELD_OUT, LIKELIHOODS, STAGE, WAYS, needed
-
+STAGE, GROUP = "exploration", "six"
+WAYS = {"gain": "where the belief gains most", "saliency": "most salient first", "random": "in random order"}
+LIKELIHOODS = {
+    "imprint": "by imprints",
+    "imprint_place": "by imprints and places",
+    "imprint_product": "by imprints, as if independent",
+}
+HELD_OUT = {Split.RANDOM: "at random", Split.REGIONS: "unseen regions"}
+HEADLINE = 0.95  # belief at which the table and the claims stop
+COLUMNS = {"accuracy": "value", "touches": "touches", "stated": "belief", "decided": "decided"}
 KEYS = ["group", "split", "likelihood", "method", "way"]
 
 
 def build(results: Results) -> Table:
     """Touches until sure, and how often that is right, by the way to choose the next place."""
-    rows = results.measured(STAGE, metric=["accuracy", "accuracy_decided"])
-    frame = pd.DataFrame([_line(key, group) for key, group in rows.groupby(KEYS, sort=False)])
-    most = ", ".join(f"{value}" for value in sorted(set(frame["most"])))
+    rows, lines = results.measured(STAGE, metric=["accuracy", "accuracy_decided"]), []
+    for key, group in grouped(rows, KEYS):
+        line: dict[str, Any] = dict(zip(KEYS, key, strict=True))
+        most = int(group.loc[group["stop"] == "fixed", "level"].max())
+        sure = (group["stop"] == "confidence") & np.isclose(group["level"], HEADLINE)
+        stopped = group[sure & (group["metric"] == "accuracy")]
+        for name, column in COLUMNS.items():
+            ends = (1.0, most) if name == "touches" else (0.0, 1.0)
+            found = within(stopped[column], shared_by(line["split"]), *ends)
+            line |= zip((name, f"{name}_low", f"{name}_high"), found, strict=True)
+        lines.append(line | {"fixed": needed(group, line["accuracy"]), "most": most, "repetitions": len(stopped)})
+    frame = pd.DataFrame(lines)
+    most = ", ".join(map(str, sorted(set(frame["most"]))))
     words = {"headline": f"{100 * HEADLINE:.0f} %", "most": most, "not_run": results.left_out(STAGE)}
     return Table(frame, _wide(frame, results), words)
-
-
-def _line(key: Any, rows: pd.DataFrame) -> dict[str, Any]:
-    """The tidy row of one way of exploring."""
-    line: dict[str, Any] = dict(zip(KEYS, key, strict=True))
-    most = int(rows.loc[rows["stop"] == "fixed", "level"].max())
-    right = rows["metric"] == "accuracy"
-    stopped = rows[right & (rows["stop"] == "confidence") & np.isclose(rows["level"], HEADLINE)]
-    for name, column in (("accuracy", "value"), ("touches", "touches"), ("stated", "belief"), ("decided", "decided")):
-        ends = (1.0, most) if name == "touches" else (0.0, 1.0)
-        found = within(stopped[column], shared_by(line["split"]), *ends)
-        line |= zip((name, f"{name}_low", f"{name}_high"), found, strict=True)
-    return line | {"fixed": needed(rows, line["accuracy"]), "most": most, "repetitions": len(stopped)}
 
 
 def _wide(frame: pd.DataFrame, results: Results) -> pd.DataFrame:
@@ -57,3 +62,19 @@ def _wide(frame: pd.DataFrame, results: Results) -> pd.DataFrame:
 def _cell(row: Any) -> str:
     touches = with_interval(row.touches, row.touches_low, row.touches_high, places=1)
     return f"{touches}: {with_interval(row.accuracy, row.accuracy_low, row.accuracy_high, 100, 0)} %"
+
+
+def curves(rows: pd.DataFrame) -> pd.DataFrame:
+    """Frame indexed by (repetition, touches): accuracy after a fixed number of touches."""
+    fixed = rows[(rows["stop"] == "fixed") & (rows["metric"] == "accuracy")]
+    return fixed.pivot(index="repetition", columns="level", values="value")
+
+
+def needed(rows: pd.DataFrame, accuracy: float) -> float:
+    """Touches after which the mean accuracy of a fixed number reaches `accuracy`, interpolated; NaN if never."""
+    curve = curves(rows).mean()
+    reached = np.flatnonzero(curve >= accuracy)
+    if len(reached) == 0:
+        return np.nan
+    last = curve.iloc[max(reached[0] - 1, 0) : reached[0] + 1]  # the step that reaches it, or the first touch
+    return float(np.interp(accuracy, last, last.index))

@@ -1,6 +1,7 @@
 """Where networks look, against where people look: T figures 3.35 and 3.36 as numbers, and what they cost."""
 
 from collections.abc import Iterator
+from itertools import starmap
 from typing import Any
 
 import numpy as np
@@ -19,20 +20,22 @@ from .rows import detectors, networks, no_people, scores, sources
 METRICS = {"pcc": "PCC", "pcc_masked": "PCC, the thesis's way", "nss": "NSS", "auc": "AUC",
            "distance": "distance, %", "distance_mean": "distance, mean of pairs, %"}  # fmt: skip
 RANGES = {"pcc": (-1, 1), "pcc_masked": (-1, 1), "nss": (-np.inf, np.inf), "auc": (0, 1)}
-COMPARED = ("pcc", "distance")  # metrics in which a detector is compared with the controls
 OPPONENTS = {"weights": "random weights", "prior": "centre prior", "lee": "mesh saliency"}
 SPLITS = {"views": "known objects", "objects": "objects never seen"}
 REFERENCE = "mobilenet_v2-frozen"
+ENDS = ("", "_low", "_high")  # of the columns of what a detector has more than an opponent
 
 
 def build(results: Results) -> Table:
     """Agreement of every detector with people in all metrics, beside what it has more than its controls."""
     found = sources(results)
     frame = pd.DataFrame([line for source, rows in found.items() for line in _lines(source, rows)])
+    rows = results.rows("fixation").reindex(columns=["method", "task", "value", "note"])
+    absent = rows[rows["value"].isna() & rows["task"].isna()].dropna(subset=["note"])  # networks as a whole
     words = {
-        "accuracy": "\n".join(filter(None, (_accuracy(source, rows) for source, rows in found.items()))),
+        "accuracy": "\n".join(filter(None, starmap(_accuracy, found.items()))),
         "no_people": no_people(found).strip(),
-        "not_run": _not_run(results),
+        "not_run": "\n".join(f"Not run here: {network_text(row.method)}: {row.note}." for row in records(absent)),
     }
     return Table(frame, _wide(frame), words)
 
@@ -42,13 +45,12 @@ def _lines(source: str, rows: pd.DataFrame) -> Iterator[dict[str, Any]]:
     seconds = _looking(rows)
     for name in sorted(detectors(tables["pcc"]), key=lambda name: -tables["pcc"][name].mean()):
         line = {"truth": source, "detector": name.text, **name._asdict(), "kind": name.kind}
-        for metric in (metric for metric in tables if name in tables[metric]):
-            values = tables[metric][name].dropna()
-            least, top = RANGES.get(metric, (0, np.inf))
-            mean, low, high = within(values, least=least, top=top)
-            measured = {"metric": metric, "objects": len(values), "mean": mean, "low": low, "high": high}
-            gains = _gains(tables[metric], name) if metric in COMPARED else {}
-            yield line | measured | {"seconds": seconds.get(name.method)} | gains
+        for metric, table in tables.items():
+            if name in table:
+                mean, low, high = within(table[name], 0, *RANGES.get(metric, (0, np.inf)))
+                measured = {"metric": metric, "objects": table[name].count(), "mean": mean, "low": low, "high": high}
+                gains = _gains(table, name) if metric in ("pcc", "distance") else {}
+                yield line | measured | {"seconds": seconds.get(name.method)} | gains
 
 
 def _looking(rows: pd.DataFrame) -> pd.Series:
@@ -57,40 +59,25 @@ def _looking(rows: pd.DataFrame) -> pd.Series:
     return paid.groupby("method")["seconds"].median()
 
 
-def _over(key: str) -> list[str]:
-    """The columns of what a detector has more than an opponent, with its interval."""
-    return [f"over_{key}", f"over_{key}_low", f"over_{key}_high"]
-
-
 def _gains(table: pd.DataFrame, name: Detector) -> dict[str, float]:
     """How much more the detector has than each opponent, paired over the objects; empty where that is not measured."""
-    untaught = {"weights": Detector(with_random_weights(name.method), name.task)} if name.kind == "fused" else {}
-    found = {}
-    for key, other in ({"prior": PRIOR, "lee": LEE} | untaught).items():
+    found, others = {}, {"prior": PRIOR, "lee": LEE, "weights": name._replace(method=with_random_weights(name.method))}
+    for key, other in others.items():
         if other in table and other != name:
-            found |= zip(_over(key), interval(table[name] - table[other]), strict=True)
+            found |= zip((f"over_{key}{end}" for end in ENDS), interval(table[name] - table[other]), strict=True)
     return found
 
 
 def _accuracy(source: str, rows: pd.DataFrame) -> str:
     """How well the heads know their tasks: of known objects from new directions, and of objects never seen."""
-    if not (rows["metric"] == "accuracy").any():
-        return ""
-    shares = 100 * rows.pivot_table(index=["method", "split"], columns="metric", values="value")
-    shares = shares.reindex(columns=["accuracy", "chance"]).dropna().to_dict("index")
+    wide = rows.pivot_table(index=["method", "split"], columns="metric", values="value")
+    shares = (100 * wide.reindex(columns=["accuracy", "chance"])).dropna().to_dict("index")
     said = []
     for method in networks(rows):
         parts = [f"{words} {found['accuracy']:.0f} (most frequent class {found['chance']:.0f})"
                  for split, words in SPLITS.items() if (found := shares.get((method, split)))]  # fmt: skip
         said += [f"{network_text(method)}: {', '.join(parts)}"] if parts else []
-    return f"Classes named right on {source}, %, mean of the tasks: {'; '.join(said)}."
-
-
-def _not_run(results: Results) -> str:
-    """Networks that this run asked for and could not have, and why."""
-    rows = results.rows("fixation").reindex(columns=["method", "task", "value", "note"])
-    rows = rows[rows["value"].isna() & rows["task"].isna()].dropna(subset=["note"])
-    return "\n".join(f"Not run here: {network_text(row.method)}: {row.note}." for row in records(rows))
+    return f"Classes named right on {source}, %, mean of the tasks: {'; '.join(said)}." if said else ""
 
 
 def _wide(frame: pd.DataFrame) -> pd.DataFrame:
@@ -101,7 +88,7 @@ def _wide(frame: pd.DataFrame) -> pd.DataFrame:
     best_first = frame[frame["metric"] == "pcc"].set_index(["truth", "detector"])
     wide = wide.loc[best_first.index]
     for key, title in OPPONENTS.items():
-        gains = best_first.reindex(columns=_over(key)).astype(float).itertuples(index=False)
+        gains = best_first.reindex(columns=[f"over_{key}{end}" for end in ENDS]).astype(float).itertuples(index=False)
         wide[f"it − {title}, PCC"] = [signed(*gain) if gain[0] == gain[0] else "–" for gain in gains]
     return wide.assign(seconds=best_first["seconds"].map(number)).reset_index()
 
@@ -110,34 +97,32 @@ def chart(results: Results) -> Figure:
     """Agreement of the fused maps with people against the seconds of training and looking."""
     source, rows = next(iter(sources(results).items()))
     table = scores(rows, "pcc")
-    methods = [method for method in networks(rows) if (method, FUSED) in table]
-    if REFERENCE not in methods:
+    maps = {method: table[method, FUSED] for method in networks(rows) if (method, FUSED) in table}
+    if REFERENCE not in maps:
         raise NotRun(f"the reference {network_text(REFERENCE)} is not measured", "fixation", runnable=False)
     paid = rows.dropna(subset=["seconds"])
+    objects = paid[paid["metric"] == "views"].groupby("method")["item"].nunique()
     lessons = paid[paid["metric"] == "accuracy"].drop_duplicates(["method", "task", "seconds"])
-    costs = {
-        "objects": paid[paid["metric"] == "views"].groupby("method")["item"].nunique(),
-        "teaching": lessons.groupby("method")["seconds"].sum(),
-        "looking": _looking(rows),
-    }
-    frame = pd.DataFrame([interval(table[method, FUSED]) for method in methods], methods, ["mean", "low", "high"])
-    frame = frame.assign(**costs).fillna({"objects": 0, "teaching": 0})
+    teaching = lessons.groupby("method")["seconds"].sum()
+    frame = pd.DataFrame(map(interval, maps.values()), list(maps), ["mean", "low", "high"])
+    frame = frame.assign(objects=objects, teaching=teaching, looking=_looking(rows))
+    frame = frame.fillna({"objects": 0, "teaching": 0})
     frame["seconds"] = frame["teaching"] + frame["objects"] * frame["looking"]
-    frame.insert(0, "name", [network_text(method) for method in methods])
+    frame.insert(0, "name", list(map(network_text, maps)))
     figure = pareto_chart(
         frame, "mean", title="Where networks look: what training costs",
         reference=network_text(REFERENCE), quality_label=f"PCC, {source}",
     )  # fmt: skip
-    figure.words |= {"source": source, "saved": _saved(table, methods)}
+    figure.words |= {"source": source, "saved": _saved(maps)}
     return figure
 
 
-def _saved(table: pd.DataFrame, methods: list[str]) -> str:
-    """What training every layer changes, paired over the objects."""
+def _saved(maps: dict[str, pd.Series]) -> str:
+    """What training every layer changes, paired over the objects; maps: {network: PCC of its fused maps}."""
     said = []
-    for method in methods:
+    for method, own in maps.items():
         frozen = method.replace("-finetuned", "-frozen")
-        if frozen != method and frozen in methods:
-            gain = signed(*interval(table[method, FUSED] - table[frozen, FUSED]), places=3)
+        if frozen != method and frozen in maps:
+            gain = signed(*interval(own - maps[frozen]), places=3)
             said.append(f"{network_text(method)} minus frozen: PCC {gain}")
     return f"{'; '.join(said)}." if said else "No network was fine-tuned here."

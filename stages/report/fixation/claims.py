@@ -7,17 +7,16 @@ from typing import Any
 
 from stages.fixation.tasks import FUSED_TASKS
 from stages.report.claims import Claim
-from stages.report.style import label
 
-from .detectors import FUSED, LEE, MODELS, NARROWED, NOISE, OURS, PRIOR, network_text, with_random_weights
-from .places import TASK
+from .detectors import FUSED, LEE, NARROWED, NOISE, OURS, PRIOR, network_text, task_text, with_random_weights
+from .places import ITSELF
 
 # The thesis's, but that ResNet101's weights come with no package; and a small one.
 NETWORKS = VGG, RESNET, _ = ("vgg16-frozen", "resnet50-frozen", "mobilenet_v2-frozen")
 FROZEN = "*-frozen"
 EWIGC, EWIGC_L4 = (FROZEN, FUSED), (FROZEN, NARROWED)
 BOTH = (RESNET, FUSED), (VGG, FUSED)
-NAMED = {"level_3": "the object itself", "convexity": "the convexity"}  # tasks that are not fused
+NAMED = {ITSELF: "the object itself", "convexity": "the convexity"}  # tasks that are not fused
 AVERAGE = "average"  # the same four maps with equal weights
 Pair = tuple[str, str | tuple[str, ...]]  # method and task, or tasks
 DIAMETER = "% of the bounding sphere's diameter"
@@ -28,10 +27,9 @@ PHRASES = {
     ("metric", "pcc_tasks"): "PCC between tasks", ("metric", "distance"): "distance (nearest, which favours many "
     "centres)", ("metric", "distance_mean"): "distance (mean of all pairs)",
     ("task", FUSED_TASKS): "mean of the four tasks that are fused,", ("task", AVERAGE): "equal weights,",
-    ("task", OURS.task): "ours, learned on the other meshes,", ("task", NOISE.task): "noise",
-    **{("task", one): f"{name}," for one, name in MODELS.items()},
-    **{("task", one): f"{label(one)}," for one in NAMED},
-    **{("task", one): label(one) for one in (LEE.task, PRIOR.task)},
+    ("task", OURS.task): "ours, learned on the other meshes,",
+    **{("task", one): f"{task_text(one)}," for one in (FUSED, NARROWED, *NAMED)},
+    **{("task", one.task): one.text for one in (LEE, PRIOR, NOISE)},
     **{("method", each): network_text(each) for one in NETWORKS for each in (one, with_random_weights(one))},
 }  # fmt: skip
 claim = partial(Claim, stage="fixation", dataset="gaze", over=("item",), scale=1, unit="PCC", phrases=PHRASES)
@@ -58,16 +56,10 @@ def nearer(key: str, sentence: str, near: Pair, far: Pair) -> list[Claim]:
     return [pairs, replace(pairs, key=f"{key}_least", sentence=said, where=where)]
 
 
-def least(task: str) -> Claim:
-    """The claim that the maps of a task agree less with people than those that are fused."""
-    sentence = f"Attention is less like people's where a network names {NAMED[task]} than in the tasks that are fused."
-    return agrees(f"{task}_least", sentence, (FROZEN, FUSED_TASKS), (FROZEN, task), "T3.3.3", within=("method",))
-
-
 def same_place(other: str, words: str, note: str) -> Claim:
     """The claim that the maxima of two views lie nearer to each other than other places: "chance" or "middle"."""
     sentence = f"Changing the viewpoint moves the most salient place less than {words}."
-    note = f"{label(TASK)}, frozen networks: distance of {note} minus that of their maxima"
+    note = f"{task_text(ITSELF)}, frozen networks: distance of {note} minus that of their maxima"
     return Claim(key=f"same_place_over_{other}", section="T3.3.3", sentence=sentence, stage="fixation", over=("item",),
                  unit=DIAMETER, statistic=f"nearer_than_{other}", note=note)  # fmt: skip
 
@@ -82,7 +74,9 @@ CLAIMS = [
             EWIGC, LEE),
     *nearer("ewigc_nearer_than_noise", "Fused Grad-CAM finds centres nearer to fixations than noise does.",
             EWIGC, NOISE),
-    *map(least, NAMED),
+    *[agrees(f"{task}_least", f"Attention is less like people's where a network names {name} than in the tasks that "
+             "are fused.", (FROZEN, FUSED_TASKS), (FROZEN, task), "T3.3.3", within=("method",))
+      for task, name in NAMED.items()],
     claim(key="resnet_more_alike", section="T3.3.3", where={"metric": "pcc_tasks"},
           sentence="The tasks' maps of ResNet are more alike than those of VGG16.",
           first={"method": RESNET}, second={"method": VGG}),

@@ -3,18 +3,13 @@
 from typing import NamedTuple
 
 from stages.fixation.tasks import LEVELS, SHAPE_MEASURES
-from stages.report.style import label
+from stages.report.style import CYCLE, GREY, label
 
 FUSED, NARROWED = "ewigc", "ewigc_l4"  # T eq. 3.24 and 3.25
-MODELS = {FUSED: "EWIGC", NARROWED: "EWIGC_L4"}
+NAMES = {FUSED: "EWIGC", NARROWED: "EWIGC_L4", "random": "noise"}
 TASKS = (*LEVELS, *SHAPE_MEASURES)  # in the order of T figure 3.30
-UNTRAINED = "-random"  # ends the name of a network that learned nothing but its heads
-NAMES = {"centre_prior": "centre prior", "random": "noise"}  # of the controls
-KINDS = {  # words, and colour
-    "fused": ("Grad-CAM of a network", "#0072B2"),
-    "rival": ("other model", "#767676"),
-    "control": ("control", "#D55E00"),
-}
+# Words, and colour.
+KINDS = {"fused": ("Grad-CAM of a network", CYCLE[0]), "rival": ("other model", GREY), "control": ("control", CYCLE[1])}
 
 
 class Detector(NamedTuple):
@@ -31,14 +26,8 @@ class Detector(NamedTuple):
     @property
     def text(self) -> str:
         """As a person says it."""
-        task = MODELS.get(self.task, label(self.task))
-        own = NAMES.get(self.task, task) if self.method == "control" else task
-        return own if self.method in KINDS else f"{task}, {network_text(self.method)}"
-
-    @property
-    def tint(self) -> str:
-        """The colour of its kind."""
-        return KINDS[self.kind][1]
+        name = task_text(self.task)
+        return name if self.method in KINDS else f"{name}, {network_text(self.method)}"
 
 
 LEE, OURS = Detector("rival", "mesh_saliency"), Detector("rival", "enhanced")
@@ -46,16 +35,21 @@ PRIOR, NOISE = Detector("control", "centre_prior"), Detector("control", "random"
 
 
 def untrained(method: str) -> bool:
-    """True for a network with random weights."""
-    return method.endswith(UNTRAINED)
+    """True for a network that learned nothing but its heads."""
+    return method.endswith("-random")
 
 
 def with_random_weights(method: str) -> str:
     """The same network with random weights."""
-    return method.rpartition("-")[0] + UNTRAINED
+    return f"{method.rpartition('-')[0]}-random"
 
 
 def network_text(method: str) -> str:
     """`VGG16, frozen`: the network of a method and what of it learned."""
     network, _, mode = method.rpartition("-")
     return f"{label(network)}, {'random weights' if mode == 'random' else label(mode)}"
+
+
+def task_text(task: str) -> str:
+    """A task or model as a person says it."""
+    return NAMES.get(task, label(task))

@@ -8,141 +8,122 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure as Drawing
 
 from stages.kit.stats import interval
 from stages.report.items import Figure
 from stages.report.results import Results
-from stages.report.style import GREY, INK, PALE, colours, label, plain_logarithm, plt
+from stages.report.style import GREY, INK, PALE, colours, plain_logarithm, plt
 
-from .detectors import FUSED, KINDS, MODELS, TASKS, Detector, network_text, untrained
+from .detectors import FUSED, KINDS, TASKS, Detector, network_text, task_text, untrained
 from .rows import detectors, networks, no_people, scores, sources
 
 LINES = (*TASKS, FUSED)
-SPREAD = 0.72  # of a row that its networks fill
 FLOOR = 0.1  # %: a centre nearer than this is on the spot, and the axis begins there
-Pair = tuple[pd.DataFrame, pd.DataFrame]
-Draw = Callable[[Axes, pd.Series, int, str], None]  # (axes, values, y, colour)
-DIAMOND: dict[str, Any] = {"marker": "D", "ls": "", "color": "white", "ms": 4.5}
+Tables = dict[str, tuple[pd.DataFrame, pd.DataFrame]]
+DOT: dict[str, Any] = {"marker": "o", "ls": "", "ms": 5}
+LOOKS = {"finetuned": {"marker": "s"}, "random": {"mfc": "white"}}
+DIAMOND = DOT | {"marker": "D", "color": "white", "ms": 4.5}
 
 
 def figure_3_32(results: Results) -> Figure:
     """Correlation of each task's map with people, a row a task, a colour a network."""
     found = sources(results)
     methods = sorted(dict.fromkeys(method for rows in found.values() for method in networks(rows)), key=untrained)
-    bases = {method: method.rpartition("-")[0] for method in methods}
-    paint = colours(list(dict.fromkeys(bases.values())))
-    places = (np.arange(len(methods)) - (len(methods) - 1) / 2) * SPREAD / max(len(methods), 3)
+    parts = {method: method.rpartition("-") for method in methods}
+    paint = colours(list(dict.fromkeys(base for base, *_ in parts.values())))
+    marks = {method: DOT | {"color": paint[base]} | LOOKS.get(mode, {}) for method, (base, _, mode) in parts.items()}
+    places = (np.arange(len(methods)) - (len(methods) - 1) / 2) * 0.72 / max(len(methods), 3)
     size = (4.0 * len(found) + 2.6, 1.2 + len(LINES) * max(0.42, 0.14 * len(methods)))
-    names = [MODELS.get(task, label(task)) for task in LINES]
-    figure, grid = _panels(found, names, "Pearson's correlation with people", size, 10)
+    grid = _panels(found, list(map(task_text, LINES)), "Pearson's correlation with people", size, 10)
     for axes, rows in zip(grid, found.values(), strict=True):
         table = scores(rows, "pcc")
         for (y, task), (down, method) in product(enumerate(LINES), zip(places, methods, strict=True)):
             if (method, task) in table:
-                _span(axes, table[method, task], y + down, paint[bases[method]], 1.5, **_mark(method))
-        _zero(axes)
+                _span(axes, table[method, task], y + down, lw=1.5, **marks[method])
+        axes.axvline(0, color=INK, lw=0.8)
         axes.axhline(len(TASKS) - 0.5, color=GREY, lw=0.6)
         axes.hlines(np.arange(len(TASKS) - 1) + 0.5, 0, 1, transform=axes.get_yaxis_transform(), color=PALE, lw=0.5)
-    for method in methods:
-        grid[-1].plot([], [], color=paint[bases[method]], label=network_text(method), **_mark(method))
-    _legend(figure, grid)
-    return Figure(figure, {"sources": " and with ".join(found), "no_people": no_people(found)})
+    for method, mark in marks.items():
+        grid[-1].plot([], [], label=network_text(method), **mark)
+    return _with_legend(grid, found)
 
 
 def figure_3_35(results: Results) -> Figure:
     """Correlation of detectors with people, best mean first."""
-    found = sources(results)
-    tables = [(scores(rows, "pcc"), scores(rows, "pcc_masked")) for rows in found.values()]
-    figure, grid = _ranked(found, tables, "mean", "Pearson's correlation with people", _dot, _zero, zorder=1.9)
+    found = {source: (scores(rows, "pcc"), scores(rows, "pcc_masked")) for source, rows in sources(results).items()}
+    draw, zero = partial(_span, lw=1.6, mec="white", mew=0.5, **DOT), partial(Axes.axvline, color=INK, lw=0.8)
+    grid = _ranked(found, "mean", "Pearson's correlation with people", draw, zero, zorder=1.9)
     for words, tint in KINDS.values():
-        grid[-1].plot([], [], "o", color=tint, ms=5, label=words)
-    _legend(figure, grid, "hidden vertices as zeros\n(the thesis's way)")
-    return Figure(figure, {"sources": " and with ".join(found), "no_people": no_people(found)})
+        grid[-1].plot([], [], color=tint, label=words, **DOT)
+    return _with_legend(grid, found, "hidden vertices as zeros\n(the thesis's way)")
 
 
 def figure_3_36(results: Results) -> Figure:
     """Distance between centres of fixation of detectors and of people, least median first."""
-    found, views = sources(results, "distance"), ("item", "view")
-    tables = [(scores(rows, "distance", views), scores(rows, "distance_mean", views)) for rows in found.values()]
-    tables = [(nearest, pairs.clip(lower=FLOOR)) for nearest, pairs in tables]
+    found: Tables = {}
+    for source, rows in sources(results, "distance").items():
+        nearest, pairs = (scores(rows, metric, ("item", "view")) for metric in ("distance", "distance_mean"))
+        found[source] = nearest, pairs.clip(lower=FLOOR)
     axis = "distance, % of the diameter\nof the bounding sphere"
-    figure, grid = _ranked(found, tables, "median", axis, _box, _logarithmic)
+    grid = _ranked(found, "median", axis, _box, _logarithmic)
     for words, tint in KINDS.values():
         grid[-1].barh([np.nan], [1], color=tint, alpha=0.45, label=words)
-    _legend(figure, grid, "median of the mean\nover all pairs")
-    return Figure(figure, {"sources": " and of ".join(found), "floor": FLOOR, "no_people": no_people(found)})
+    return _with_legend(grid, found, "median of the mean\nover all pairs", "of")
 
 
-def _panels(
-    found: Collection[str], names: list[str], axis: str, size: tuple[float, float], letters: float
-) -> tuple[Drawing, np.ndarray]:
-    """(figure, axes): a panel for each truth, one row per name."""
-    figure, grid = plt.subplots(1, len(found), figsize=size, squeeze=False, sharey=True, sharex=True)
-    grid[0, 0].set_yticks(range(len(names)), names, fontsize=letters)
-    grid[0, 0].set_ylim(len(names) - 0.4, -0.6)
-    for axes, source in zip(grid[0], found, strict=True):
+def _panels(found: Collection[str], names: list[str], axis: str, size: tuple[float, float], font: float) -> np.ndarray:
+    """Axes: a panel for each truth, one row per name."""
+    _, (grid,) = plt.subplots(1, len(found), figsize=size, squeeze=False, sharey=True, sharex=True)
+    grid[0].set_yticks(range(len(names)), names, fontsize=font)
+    grid[0].set_ylim(len(names) - 0.4, -0.6)
+    for axes, source in zip(grid, found, strict=True):
         axes.grid(axis="x")
         axes.tick_params(axis="y", length=0)
         axes.set_title(source, fontsize=10, fontweight="normal")
         axes.set_xlabel(axis)
-    return figure, grid[0]
+    return grid
 
 
 def _ranked(
-    found: Collection[str], tables: list[Pair], middle: str, axis: str, draw: Draw, finish: Callable, zorder: float = 2
-) -> tuple[Drawing, np.ndarray]:
-    """(figure, axes): panels with a row a detector, in the order of the first truth that has it.
-
-    tables: for each truth the scores that are drawn, and those whose middle, "mean" or "median", is a diamond. finish:
-    draws what further is in a panel.
-    """
-    order = pd.concat([own[detectors(own)].agg(middle) for own, _ in tables])
+    found: Tables, middle: str, axis: str, draw: Callable, finish: Callable[[Axes], object], zorder: float = 2
+) -> np.ndarray:
+    """Axes: a row a detector, in the order of the first truth that has it; diamonds: middles of its second scores."""
+    order = pd.concat([own[detectors(own)].agg(middle) for own, _ in found.values()])
     order = order[~order.index.duplicated()].sort_values(ascending=middle == "median", kind="stable")
     names = [Detector(*name) for name in order.index]
     size = (3.9 * len(found) + 3.6, 1.0 + 0.26 * len(names))
-    figure, grid = _panels(found, [name.text for name in names], axis, size, 8.5)
-    for axes, (own, beside) in zip(grid, tables, strict=True):
+    grid = _panels(found, [name.text for name in names], axis, size, 8.5)
+    for axes, (own, beside) in zip(grid, found.values(), strict=True):
         axes.hlines(range(len(names)), 0, 1, transform=axes.get_yaxis_transform(), color=PALE, lw=0.4, zorder=0)
         for y, name in enumerate(names):
+            tint = KINDS[name.kind][1]
             if name in own:
-                draw(axes, own[name], y, name.tint)
+                draw(axes, own[name], y, tint)
             if name in beside:
-                axes.plot(beside[name].agg(middle), y, mec=name.tint, mew=1.1, zorder=zorder, **DIAMOND)
+                axes.plot(beside[name].agg(middle), y, mec=tint, mew=1.1, zorder=zorder, **DIAMOND)
         finish(axes)
-    return figure, grid
+    return grid
 
 
-def _legend(figure: Drawing, grid: np.ndarray, diamond: str = "") -> None:
+def _with_legend(grid: np.ndarray, found: Collection[str], diamond: str = "", joint: str = "with") -> Figure:
     if diamond:
         grid[-1].plot([], [], mec=INK, label=diamond, **DIAMOND)
     grid[-1].legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=8.5)
-    figure.tight_layout()
+    drawing = grid[-1].figure
+    drawing.tight_layout()
+    return Figure(drawing, {"sources": f" and {joint} ".join(found), "no_people": no_people(found), "floor": FLOOR})
 
 
-def _mark(method: str) -> dict[str, Any]:
-    """How the mark of a method looks: hollow for random weights, square where every layer learned."""
-    hollow = {"mfc": "white"} if untrained(method) else {}
-    return {"marker": "s" if method.endswith("-finetuned") else "o", "ms": 5, "ls": "", **hollow}
-
-
-def _span(axes: Axes, values: pd.Series, y: float, tint: str, width: float, **mark: Any) -> None:
+def _span(axes: Axes, values: pd.Series, y: float, color: str, lw: float, **mark: Any) -> None:
     """The mean of values as a mark, and its interval as a line."""
     mean, low, high = interval(values)
-    axes.plot([low, high], [y, y], color=tint, lw=width, alpha=0.5)
-    axes.plot(mean, y, color=tint, **mark)
-
-
-def _zero(axes: Axes) -> None:
-    axes.axvline(0, color=INK, lw=0.8)
+    axes.plot([low, high], [y, y], color=color, lw=lw, alpha=0.5)
+    axes.plot(mean, y, color=color, **mark)
 
 
 def _logarithmic(axes: Axes) -> None:
     axes.set(xscale="log", xlim=(FLOOR, None))
     plain_logarithm(axes.xaxis, (1.0,))
-
-
-_dot = partial(_span, width=1.6, marker="o", ls="", ms=5, mec="white", mew=0.5)
 
 
 def _box(axes: Axes, values: pd.Series, y: int, tint: str) -> None:

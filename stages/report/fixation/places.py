@@ -11,44 +11,38 @@ from stages.kit import Mesh, Viewpoint
 from stages.kit.rng import rng
 from stages.report.claims import Claim
 from stages.report.differences import statistic
-from stages.report.results import NotRun, Results
+from stages.report.results import Results, some
 from stages.report.style import label
 
-from .rows import VIEWPOINTS, stored, stored_networks
+from .rows import VIEWPOINTS, stored
 
-TASK = "level_3"
+ITSELF = "level_3"  # the task to name the object itself
 PLACES = 2000  # random places of a view; their mean distance is then known to one per cent
 Control = Callable[[Mesh, np.ndarray, Viewpoint], np.ndarray]  # (mesh, seen (n,), viewpoint) -> (k, 3) other places
 
 
 def nearer(control: Control, results: Results, claim: Claim | None = None) -> pd.Series:
-    """How much nearer the maxima of two views lie than other places, by object, in units.
-
-    Of level 3 of each frozen network, the mean over the pairs of views that see any surface.
-    """
+    """How much nearer the maxima of level 3 in two views lie than other places, in units; by object, over the pairs."""
     names = results.choose([], len(results.objects), "fixation")
     gains = pd.Series({name: _gain(stored(results, name), results.mesh(name), control) for name in names})
-    if gains.isna().all():
-        raise NotRun(f"no maps of {label(TASK)} by a frozen network", "fixation", runnable=False)
-    return gains
+    return some(gains.dropna(), f"no maps of {label(ITSELF)} by a frozen network", "fixation", runnable=False)
 
 
 def _gain(arrays: dict[str, np.ndarray], mesh: Mesh, control: Control) -> float:
     """One object's distance of the other places minus that of the maxima; NaN without maps to compare."""
-    frozen = [f"{name}.{TASK}.views" for name in stored_networks(arrays) if name.endswith("-frozen")]
-    looks = [arrays[name] for name in frozen if name in arrays]
-    views = [view for view, seen in enumerate(arrays["visible"]) if mesh.vertex_areas[seen].any()]
+    looks = [views for key, views in arrays.items() if key.endswith(f"-frozen.{ITSELF}.views")]
+    seen = arrays["visible"]
+    views = [view for view, mask in enumerate(seen) if mesh.vertex_areas[mask].any()]
     if not looks or len(views) < 2:
         return np.nan
-    others = _apart([control(mesh, arrays["visible"][view], VIEWPOINTS[view]) for view in views])
-    tops = [[_top(mesh, arrays["visible"][view], look[view]) for view in views] for look in looks]
-    return float(others - np.mean(list(map(_apart, tops))))
+    tops = [np.vstack([_top(mesh, seen[view], look[view]) for look in looks]) for view in views]
+    return _apart([control(mesh, seen[view], VIEWPOINTS[view]) for view in views]) - _apart(tops)
 
 
 def _top(mesh: Mesh, seen: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """(1, 3): the most salient place of a view, of those that it sees."""
+    """(3,): the most salient place of a view, of those that it sees."""
     masked = np.where(seen, values.astype(float), -1)
-    return mesh.vertices[masked == masked.max()].mean(axis=0, keepdims=True)  # half precision has ties
+    return mesh.vertices[masked == masked.max()].mean(axis=0)  # half precision has ties
 
 
 def anywhere(mesh: Mesh, seen: np.ndarray, viewpoint: Viewpoint) -> np.ndarray:

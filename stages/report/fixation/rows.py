@@ -8,9 +8,9 @@ import pandas as pd
 from stages.fixation import viewpoint_sphere
 from stages.fixation.agreement import ALL_VIEWS
 from stages.kit.files import read_arrays
-from stages.report.results import NotRun, Results
+from stages.report.results import Results, some, there
 
-from .detectors import KINDS, MODELS, Detector, untrained
+from .detectors import FUSED, KINDS, NARROWED, Detector, untrained
 
 VIEWPOINTS = viewpoint_sphere(1, 3)[:3]  # the three views whose maps are stored, whatever the settings
 WHOLE = ("nss", "auc")  # of all views together; the other metrics are of each of three views
@@ -19,32 +19,15 @@ NO_PEOPLE = "The truth of the marked objects is no gaze: marks by a vision model
 
 
 def sources(results: Results, metric: str = "pcc") -> dict[str, pd.DataFrame]:
-    """{whose attention the truth is: rows with a value}: of all sets that have rows of fixation, human gaze first.
-
-    Those that have the metric; NotRun where none has. pcc: agreement with people, which needs people's attention.
-    """
-    found, missing = {}, []
+    """{whose attention the truth is: rows with a value}: of all sets that have the metric, human gaze first."""
+    found = {}
     for dataset in sorted(results.datasets("fixation") or [None], key=lambda name: name != "gaze"):
-        try:
-            rows = results.rows("fixation", dataset).dropna(subset=["value"])
-        except NotRun as absent:
-            missing.append(str(absent))
-            continue
-        if (rows["metric"] == metric).any():
-            found[_truth_text(rows, metric)] = rows
-        else:
-            missing.append("no object of this run has ground truth")
-    if not found:
-        raise NotRun("; ".join(missing), "fixation", runnable=False)
-    return found
-
-
-def _truth_text(rows: pd.DataFrame, metric: str) -> str:
-    """`human gaze, 19 meshes`: what the objects of some rows are."""
-    dataset, count = rows["dataset"].iloc[0], rows.loc[rows["metric"] == metric, "item"].nunique()
-    if dataset == "gaze":
-        return f"human gaze, {count} meshes"
-    return f"{'marks' if dataset == MARKED and metric != 'pcc_tasks' else dataset}, {count} objects"
+        rows = results.rows("fixation", dataset).dropna(subset=["value"])
+        count = rows.loc[rows["metric"] == metric, "item"].nunique()
+        name = "marks" if dataset == MARKED and metric != "pcc_tasks" else dataset
+        if count:
+            found[f"human gaze, {count} meshes" if dataset == "gaze" else f"{name}, {count} objects"] = rows
+    return some(found, "no object of this run has ground truth", "fixation", runnable=False)
 
 
 def no_people(found: Iterable[str]) -> str:
@@ -53,10 +36,7 @@ def no_people(found: Iterable[str]) -> str:
 
 
 def scores(rows: pd.DataFrame, metric: str, by: Sequence[str] = ("item",)) -> pd.DataFrame:
-    """Frame objects x (method, task) of a metric: the mean over the three views, or of all views for WHOLE.
-
-    by: ("item", "view") for each of the three views. Distances are in per cent of the bounding sphere's diameter.
-    """
+    """Frame `by` x (method, task) of a metric: means over the three views (WHOLE: of all); distances in per cent."""
     whole = rows["view"].astype(str) == ALL_VIEWS
     found = rows[(rows["metric"] == metric) & (whole == (metric in WHOLE))]
     table = found.pivot_table(index=list(by), columns=["method", "task"], values="value", sort=False)
@@ -66,7 +46,7 @@ def scores(rows: pd.DataFrame, metric: str, by: Sequence[str] = ("item",)) -> pd
 def detectors(table: pd.DataFrame) -> list[Detector]:
     """Those of a frame of scores that answer for a whole object: fused maps, rivals, controls; in this order."""
     found = (Detector(*name) for name in table.columns)
-    whole = [name for name in found if name.task in MODELS or name.method in KINDS]
+    whole = [name for name in found if name.task in (FUSED, NARROWED) or name.method in KINDS]
     return sorted(whole, key=lambda name: list(KINDS).index(name.kind))
 
 
@@ -79,11 +59,4 @@ def networks(rows: pd.DataFrame) -> list[str]:
 def stored(results: Results, name: str, dataset: str | None = None) -> dict[str, np.ndarray]:
     """Arrays of data/SET/fixation/NAME.npz, as stages.fixation.read_attention describes them."""
     path = results.folder("fixation", dataset) / f"{name}.npz"
-    if not path.exists():
-        raise NotRun(f"no fixation/{name}.npz", "fixation")
-    return read_arrays(path)
-
-
-def stored_networks(arrays: dict[str, np.ndarray]) -> list[str]:
-    """The networks whose attention a file holds, those that learned from photographs first."""
-    return sorted((key.removesuffix(".maps") for key in arrays if key.endswith(".maps")), key=untrained)
+    return read_arrays(there(path, f"no fixation/{name}.npz", "fixation"))

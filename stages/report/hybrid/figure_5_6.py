@@ -14,21 +14,18 @@ def build(results: Results) -> Figure:
     """Confusion matrices, senses in columns and splits in rows."""
     frame = results.measured("transfer", method="hybrid", metric="confusion", mode=MIDDLE)
     splits = [split for split in ITEMS if split in set(frame["split"])]
-    classes = list(dict.fromkeys(frame["group"]))
+    classes = list(frame["group"].unique())
     side, count = 0.3 * len(classes) + 0.5, len(classes)
-    figure, grid = plt.subplots(
-        len(splits), len(SENSES), figsize=(side * len(SENSES) + 1.4, side * len(splits) + 0.8), squeeze=False
-    )
+    size = (side * len(SENSES) + 1.4, side * len(splits) + 0.8)
+    figure, grid = plt.subplots(len(splits), len(SENSES), figsize=size, squeeze=False)
     for axes, (split, sense) in zip(grid.flat, product(splits, SENSES), strict=True):
         draw_matrix(axes, frame[(frame["split"] == split) & (frame["sense"] == sense)], classes)
-        axes.tick_params(length=0)
     for axes, split in zip(grid[:, 0], splits, strict=True):
         axes.set_yticks(range(count), [f"{one} {k + 1}" for k, one in enumerate(classes)], fontsize=7.5)
         axes.set_ylabel(ITEMS[split], fontsize=9)
-    for axes, word in zip(grid[0], SENSES.values(), strict=True):
-        axes.set_title(f"by {word}", pad=6)
-    for axes in grid[-1]:
-        axes.set_xticks(range(count), range(1, count + 1), fontsize=7.5)
+    for top, bottom, word in zip(grid[0], grid[-1], SENSES.values(), strict=True):
+        top.set_title(f"by {word}", pad=6)
+        bottom.set_xticks(range(count), range(1, count + 1), fontsize=7.5)
     figure.subplots_adjust(wspace=0.06, hspace=0.08)
-    words = {"classes": ", ".join(classes), "splits": ", ".join(ITEMS[split] for split in splits)}
-    return Figure(figure, {"count": count, **words})
+    said = ", ".join(ITEMS[split] for split in splits)
+    return Figure(figure, {"count": count, "classes": ", ".join(classes), "splits": said})

@@ -2,7 +2,7 @@
 
 import pandas as pd
 
-from stages.report.grid import grid
+from stages.report.grid import grid, grouped
 from stages.report.items import Table
 from stages.report.networks import accuracy, measured
 from stages.report.results import Results
@@ -29,14 +29,13 @@ def build(results: Results) -> Table:
     """Accuracy of each way to join the senses under the harshest of each damage, on items at random."""
     found = measured(results, data="hybrid", mode=MIDDLE, split="random", sense="both")
     found = found[found["severity"] == found.groupby("perturbation")["severity"].transform("max")]
-    lines = []
-    for (damage, severity), part in found.groupby(["perturbation", "severity"], sort=False):
-        for method in METHODS:
-            cell = accuracy(part[part["method"] == method], "random")
-            lines.append({"damage": damage, "severity": severity, "method": method} | cell)
-    frame = pd.DataFrame(lines).drop(columns="values")
-    heads = [spoken(*damage) for damage in zip(frame["damage"], frame["severity"], strict=True)]
-    wide = grid(frame.assign(head=heads), "method", "head", beside=(), names={"method": lambda way: METHODS[str(way)]})
+    frame = pd.DataFrame(
+        {"damage": damage, "severity": severity, "method": method} | accuracy(part[part["method"] == method], "random")
+        for (damage, severity), part in grouped(found, ["perturbation", "severity"])
+        for method in METHODS
+    ).drop(columns="values")
+    cells = frame.assign(head=[*map(spoken, frame["damage"], frame["severity"])])
+    wide = grid(cells, "method", "head", beside=(), names={"method": METHODS.get})
     return Table(frame, wide.rename(columns={"method": "answers"}))
 
 

@@ -1,14 +1,16 @@
-"""T5.5: the hybrid network beside the two that it is made of, and smaller kinds of it."""
+"""T5.5: the hybrid network beside the two that it is made of, and smaller kinds of it: table and chart."""
 
 from itertools import product
 from typing import Any
 
 import pandas as pd
+from matplotlib.axes import Axes
 
-from stages.report.items import Table
+from stages.report.items import Figure, Table
 from stages.report.markdown import number, with_interval
 from stages.report.networks import SPLITS, everywhere, mean
 from stages.report.results import Results
+from stages.report.style import INK, plt
 from stages.report.target import on_target
 from stages.report.words import dataset_text
 
@@ -21,24 +23,20 @@ METHODS = {
     "hybrid_float16": "hybrid, weights of 16 bits",
     "hybrid_int8": "hybrid, weights of 8 bits",
 }
+TINTS = {"vision": "#0072B2", "touch": "#D55E00"}
+HOLLOW = " Hollow: layers {others} shared instead of {first}, as far from the hybrid as on the same items."
 POINT, RATIO = 1.0, 1.43  # aims: points of accuracy that may be lost, and how much smaller the hybrid is
-NOTE = (
-    "{objects}, layers {middle} shared: in every network, scores of the hybrid differ from those of the two networks "
-    "by {worst} at most, accuracy by {lost:.2f} points at most; the aim of {point:g} point or less is {kept}. Size "
-    "ratio {ratio:.4f}: the thesis's is {theirs}, the aim of {aim} is {ours}."
-)
-ONNX = " As ONNX: scores differ by {worst} at most, {same:g} % of the answers are the same."
 
 
 def build(results: Results) -> Table:
     """Accuracy by each sense and size, by set, by the layers that are shared, and by what is stored."""
     thesis = results.thesis("section_5_5_hybrid").set_index("quantity")["value"]
     lines, notes = [], []
-    for dataset, accuracies in everywhere(results, data="hybrid").items():
+    for dataset in everywhere(results, data="hybrid"):
         found = results.measured("transfer", dataset, data="hybrid", perturbation=None)
         found = found.assign(network=found["method"].replace(dict.fromkeys(SENSES, "apart")))
-        repeated = accuracies.groupby("mode", sort=False)["repetition"].nunique()
-        middles = [found[found["mode"] == middle] for middle in sorted(repeated.index, key=lambda one: -repeated[one])]
+        middles = [rows for _, rows in found.groupby("mode", sort=False)]
+        middles.sort(key=lambda rows: -rows["repetition"].nunique())
         for rows in middles:
             splits = [split for split in SPLITS if split in set(rows["split"])]
             lines += [_line(rows, middles[0], *which) for which in product(METHODS, splits)]
@@ -48,13 +46,37 @@ def build(results: Results) -> Table:
     return Table(frame, _shown(frame), words | {"ratio": thesis["compression_ratio"], "notes": "\n".join(notes)})
 
 
+def chart(results: Results) -> Figure:
+    """Accuracy by each sense against megabytes, a panel for each split."""
+    frame = build(results).frame
+    frame = frame[frame["objects"] == frame["objects"].iloc[0]]  # not those of another data set in one picture
+    first = frame["shared_layers"].iloc[0]
+    frame = frame[(frame["shared_layers"] == first) | (frame["network"] == "hybrid")]
+    splits = frame["split"].unique()
+    figure, [panels] = plt.subplots(1, len(splits), figsize=(4.6 * len(splits), 3.8), squeeze=False, sharey=True)
+    for axes, split in zip(panels, splits, strict=True):
+        _draw(axes, frame[frame["split"] == split], first)
+        axes.set_title(ITEMS[split])
+    panels[0].set_ylabel("accuracy, %")
+    panels[-1].legend(fontsize=8.5, loc="upper right")
+    figure.tight_layout()
+    others = ", ".join(frame["shared_layers"].unique()[1:])
+    words = {
+        "smallest": METHODS[frame.loc[frame["megabytes"].idxmin(), "network"]],
+        "megabytes": frame["megabytes"].min(),
+        "ratio": frame["size_ratio"].max(),
+        "hollow": HOLLOW.format(others=others, first=first) if others else "",
+    }
+    return Figure(figure, words, frame)
+
+
 def _line(rows: pd.DataFrame, first: pd.DataFrame, network: str, split: str) -> dict[str, Any]:
     """One network in one split. first: rows of the middle that was repeated, which `rows` may be."""
     source = rows["dataset"].iloc[0]
     line = {"objects": dataset_text(source), "shared_layers": rows["mode"].iloc[0], "network": network, "split": split}
     for sense in SENSES:
         values, before = (_values(frame, network, split=split, sense=sense) for frame in (rows, first))
-        line |= dict(zip((sense, f"{sense}_low", f"{sense}_high"), mean(values, split, source), strict=True))
+        line[sense], line[f"{sense}_low"], line[f"{sense}_high"] = mean(values, split, source)
         line[f"{sense}_gain"] = 100 * (values - before).mean()
     sizes = _values(rows, network, "size_bytes", split=split).groupby("sense", dropna=False).mean()  # of each file
     ratio = 1.0 if network == "apart" else _values(rows, network, "size_ratio", split=split).mean()
@@ -63,9 +85,8 @@ def _line(rows: pd.DataFrame, first: pd.DataFrame, network: str, split: str) -> 
 
 def _values(rows: pd.DataFrame, network: str, metric: str = "accuracy", **where: str) -> pd.Series:
     """What was measured of a network, indexed by what tells its trainings and senses apart."""
-    for column, value in {"metric": metric, "network": network, **where}.items():
-        rows = rows[rows[column] == value]
-    return rows.set_index(["sense", "split", "repetition"])["value"]
+    wanted = pd.Series({"metric": metric, "network": network, **where})
+    return rows[(rows[wanted.index] == wanted).all(axis=1)].set_index(["sense", "split", "repetition"])["value"]
 
 
 def _shown(frame: pd.DataFrame) -> pd.DataFrame:
@@ -86,13 +107,37 @@ def _note(rows: pd.DataFrame, theirs: float) -> str:
     """Sentences on one middle; every network holds what they say, so that all values stand for an interval."""
     ratios, lost = _values(rows, "hybrid", "size_ratio"), 100 * abs(_values(rows, "apart") - _values(rows, "hybrid"))
     ratio, span = ((one.mean(), one.min(), one.max()) for one in (ratios, lost))
-    note = NOTE.format(
-        objects=dataset_text(rows["dataset"].iloc[0]), middle=rows["mode"].iloc[0], point=POINT, aim=RATIO,
-        worst=number(_values(rows, "hybrid", "max_difference").max()), lost=lost.max(), ratio=ratios.mean(),
-        kept=on_target(*span, at_most=POINT), theirs=on_target(*ratio, at_least=theirs),
-        ours=on_target(*ratio, at_least=RATIO),
-    )  # fmt: skip
+    note = (
+        f"{dataset_text(rows['dataset'].iloc[0])}, layers {rows['mode'].iloc[0]} shared: in every network, scores of "
+        f"the hybrid differ from those of the two networks by {number(_values(rows, 'hybrid', 'max_difference').max())}"
+        f" at most, accuracy by {lost.max():.2f} points at most; the aim of {POINT:g} point or less is "
+        f"{on_target(*span, at_most=POINT)}. Size ratio {ratios.mean():.4f}: the thesis's is "
+        f"{on_target(*ratio, at_least=theirs)}, the aim of {RATIO} is {on_target(*ratio, at_least=RATIO)}."
+    )
     onnx = rows[rows["network"] == "hybrid_onnx"].groupby("metric")["value"].max()
-    if onnx.empty:
-        return note
-    return note + ONNX.format(worst=number(onnx["max_difference"]), same=100 * onnx["agreement"])
+    if len(onnx):
+        note += f" As ONNX: scores differ by {number(onnx['max_difference'])} at most, "
+        note += f"{100 * onnx['agreement']:g} % of the answers are the same."
+    return note
+
+
+def _draw(axes: Axes, frame: pd.DataFrame, first: str) -> None:
+    """Networks that share the first layers, joined by lines; hollow: other hybrids, by their gain over the first."""
+    joined = frame[frame["shared_layers"] == first].sort_values("megabytes")
+    hybrids = frame[frame["network"] == "hybrid"]
+    others = hybrids[1:]
+    for sense, tint in TINTS.items():
+        said = f"by {SENSES[sense]}"
+        axes.plot(joined["megabytes"], 100 * joined[sense], "o-", color=tint, ms=6, lw=1, mec="white", label=said)
+        ends = 100 * joined[[f"{sense}_low", f"{sense}_high"]].to_numpy().T
+        axes.plot(joined[["megabytes"] * 2].to_numpy().T, ends, color=tint, lw=1.2, alpha=0.5)
+        places = 100 * hybrids[sense].iloc[0] + others[f"{sense}_gain"]
+        axes.plot(others["megabytes"], places, "o", mfc="white", mec=tint, ms=6)
+    axes.set_xscale("log")
+    names = [*joined["network"].map(METHODS).str.replace("hybrid, weights of ", ""), *others["shared_layers"]]
+    for size, name in zip([*joined["megabytes"], *others["megabytes"]], names, strict=True):
+        axes.annotate(name, (size, 2), rotation=90, fontsize=8, color=INK, ha="center", va="bottom")
+    axes.set(ylim=(0, 102), xlabel="size of the file, MB")
+    axes.grid(axis="y")
+    axes.set_xticks(frame["megabytes"], frame["megabytes"].map("{:.1f}".format), fontsize=8)
+    axes.minorticks_off()

@@ -17,10 +17,9 @@ REFERENCE, OURS = "pymeshlab", "fast"
 WANTED = 20  # times faster than the reference, at an error no larger, in a time that grows no faster than n log n,
 LARGEST = 1_000_000  # to so many faces
 CELL, TASK = ["mesh", "full", "target", "with_points"], ["backend", "with_points"]
-RATIOS = {  # part of a column's name -> (column of the bench, title)
-    "time": ("ratio", "time ratio"), "whole": ("whole_ratio", "all of simplify"),
-    "colours": ("colours_ratio", "with colours"),
-    "error": ("error_ratio", "Metro ratio"), "seen": ("seen_ratio", "1 − SSIM ratio"),
+RATIOS = {  # first part of a column's name -> title
+    "time": "time ratio", "whole": "all of simplify", "colours": "with colours",
+    "error": "Metro ratio", "seen": "1 − SSIM ratio",
 }  # fmt: skip
 GROWTHS = {"linear": "n^p", "loglinear": "(n log n)^p"}
 
@@ -28,12 +27,7 @@ GROWTHS = {"linear": "n^p", "loglinear": "(n log n)^p"}
 def build(results: Results) -> Table:
     """A row a backend, without and with points to keep."""
     rows = tried(results)
-    frame, paired = summarised(rows), common(rows)
-    parts = [paired[(paired[TASK] == key).all(axis=1)] for key in frame[TASK].itertuples(index=False, name=None)]
-    for shape in GROWTHS:
-        fits = [growth(part, shape) for part in parts]
-        for name in ("power", "low", "high"):
-            frame[f"{shape}_{name}"] = [getattr(fit, name, np.nan) for fit in fits]
+    frame = summarised(rows, fitted=True)
     cells = rows.drop_duplicates(CELL)
     sources, kept = rows.groupby("source", sort=False)["mesh"].nunique(), cells.loc[cells["with_points"], "kept_points"]
     words = {
@@ -48,8 +42,8 @@ def build(results: Results) -> Table:
 
 
 def tried(results: Results) -> pd.DataFrame:
-    """The rows of bench/simplification.csv, with the columns with_points and seen_ratio; NotRun without outcomes."""
-    rows = results.bench("simplification")
+    """The rows of bench/simplification.csv, with with_points and RATIOS' columns; NotRun without outcomes."""
+    rows = results.bench("simplification").rename(columns={"ratio": "time_ratio"})
     if "outcome" not in rows:
         raise NotRun("bench/simplification.csv has no outcomes: `make bench` writes it anew", "lod", runnable=False)
     rows = rows.assign(with_points=rows["kept_points"] > 0)
@@ -65,27 +59,29 @@ def common(rows: pd.DataFrame) -> pd.DataFrame:
     return reached[found == reached["with_points"].map(wanted)]
 
 
-def summarised(rows: pd.DataFrame) -> pd.DataFrame:
-    """A row a backend, without and with points to keep: refusals, misses, ratios of time and errors, kept, valid."""
+def summarised(rows: pd.DataFrame, fitted: bool = False) -> pd.DataFrame:
+    """A row a backend, without and with points to keep: refusals, ratios of time and errors; fitted: and growth."""
     paired, found = common(rows), []
     for key, group in rows.groupby(TASK, sort=False):
         own, outcomes = paired[(paired[TASK] == key).all(axis=1)], group["outcome"].value_counts()
         line = dict(zip(TASK, key, strict=True)) | {"meshes": own["mesh"].nunique(), "cells": len(own)}
-        line["tried"] = len(group) - outcomes.get("infeasible", 0)
+        line |= {"tried": len(group) - outcomes.get("infeasible", 0)}
         line |= {name: outcomes.get(name, 0) for name in ("refused", "missed")}
-        for name, (column, _) in RATIOS.items():
-            logs = own[column].where(own[column] > 0).apply(np.log).groupby(own["mesh"]).mean()
+        for name in RATIOS:
+            ratios = own[f"{name}_ratio"]
+            logs = ratios.where(ratios > 0).apply(np.log).groupby(own["mesh"]).mean()
             line |= dict(zip((f"{name}_ratio", f"{name}_low", f"{name}_high"), np.exp(interval(logs)), strict=True))
-        line |= {"slowest": own["ratio"].max(), "seconds": own["seconds"].median()}
+        line |= {"slowest": own["time_ratio"].max(), "seconds": own["seconds"].median()}
         made = group[group["outcome"] == "reached"]
-        for name in ("kept", "valid"):  # empty ones do not count
-            line[name] = (made[name].dropna().astype(str).str.lower() == "true").mean()
+        line |= {name: made[name].dropna().astype(bool).mean() for name in ("kept", "valid")}
+        for shape in GROWTHS if fitted else ():
+            fit = growth(own, shape)
+            line |= {f"{shape}_{name}": getattr(fit, name, np.nan) for name in ("power", "low", "high")}
         found.append(line if line["with_points"] else line | {"kept": np.nan})
     return pd.DataFrame(found).sort_values(["with_points", "time_ratio"], ascending=[True, False], ignore_index=True)
 
 
 def _target(row) -> str:
-    """The targets of ours in time, error and growth, and whether it met them, without or with points kept."""
     other, faster = label(REFERENCE), (1 / row.time_ratio, 1 / row.time_high, 1 / row.time_low)
     error = row.error_ratio, row.error_low, row.error_high
     power = row.loglinear_power, row.loglinear_low, row.loglinear_high
@@ -108,7 +104,7 @@ def _wide(frame: pd.DataFrame) -> pd.DataFrame:
         "backend": frame["backend"].map(label), "points kept": np.where(frame["with_points"], "yes", "no"),
         **{name: counts[name] + " of " + counts["tried"] for name in ("refused", "missed")},
         "cells compared": frame["cells"],
-        **{title: texts(name) for name, (_, title) in RATIOS.items()},
+        **{title: texts(name) for name, title in RATIOS.items()},
         "slowest": frame["slowest"], **shares.replace("– %", "–"),
         **{f"growth: p of {title}": texts(shape, "power", 2) for shape, title in GROWTHS.items()},
         "meshes": frame["meshes"],

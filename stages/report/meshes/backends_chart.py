@@ -48,8 +48,8 @@ def build(results: Results) -> Figure:
 
 def _against(axes: Axes, frame: pd.DataFrame, kind: str, tints: dict[str, str]) -> None:
     """One error against time, as ratios. kind: the first part of the columns' names."""
-    names = {f"{kind}_{part}": part for part in ("ratio", "low", "high", "front")}
-    known = frame.rename(columns=names).dropna(subset=["ratio"])
+    parts = {f"{kind}_{part}": part for part in ("ratio", "low", "high", "front")}
+    known = frame.rename(columns=parts).dropna(subset=["ratio"])
     for with_points, group in known[known["front"]].sort_values("time_ratio").groupby("with_points"):
         style = "-" if with_points else ":"
         axes.step(group["time_ratio"], group["ratio"], where="post", color=INK, lw=1, ls=style, zorder=1)
@@ -65,9 +65,9 @@ def _against(axes: Axes, frame: pd.DataFrame, kind: str, tints: dict[str, str]) 
         plain_logarithm(axis)
     axes.legend(loc="upper right", fontsize=8)
     first = known.drop_duplicates("backend")
-    spots = zip(first["time_ratio"], first["ratio"], strict=True)
+    names = zip(first["backend"].map(label), zip(first["time_ratio"], first["ratio"], strict=True), strict=True)
     points = np.concatenate([known[["time_ratio", "ratio"]], known[["whole_ratio", "ratio"]].dropna()])
-    place_names(axes, zip(first["backend"].map(label), spots, strict=True), points, ends)
+    place_names(axes, names, points, ends)
 
 
 def _mark(axes: Axes, row: Any, tints: dict[str, str]) -> Iterator[list[Spot]]:

@@ -9,7 +9,6 @@ import pandas as pd
 from stages.report.markdown import with_interval
 
 FITTED = 10_000  # faces from which the growth is fitted: below, the fixed cost of a call counts
-RESAMPLES = 1000
 POWERS: dict[str, Callable] = {"linear": lambda n: n, "loglinear": lambda n: n * np.log(n)}
 
 
@@ -39,9 +38,8 @@ class Growth:
 def growth(rows: pd.DataFrame, shape: str = "loglinear") -> Growth | None:
     """The Growth of the column `seconds` over `full`, or None for fewer than three sizes of FITTED faces or more.
 
-    rows: of one backend, with `mesh`, `target` and `with_points`. A least-squares line through the logarithms, with a
-    level of its own for each share of the faces that is asked for and for kept points. The interval is a bootstrap over
-    the meshes: a subdivided mesh goes with the one that it was.
+    rows: of one backend. A least-squares line through the logarithms, with a level of its own for each share of the
+    faces and for kept points. The interval is a bootstrap over the meshes: a subdivided one goes with what it was.
     """
     rows = rows[(rows["full"] >= FITTED) & (rows["seconds"] > 0)]
     if rows["full"].nunique() < 3:
@@ -51,7 +49,7 @@ def growth(rows: pd.DataFrame, shape: str = "loglinear") -> Growth | None:
     level = pd.factorize(pd.MultiIndex.from_arrays([(rows["target"] / n).round(2), rows["with_points"]]))[0]
     mesh, names = pd.factorize(rows["mesh"])
     random = np.random.default_rng(0)
-    picks = (random.multinomial(len(names), np.full(len(names), 1 / len(names))) for _ in range(RESAMPLES))
+    picks = (random.multinomial(len(names), np.full(len(names), 1 / len(names))) for _ in range(1000))
     low, high = np.nanquantile([_slope(x, y, level, times[mesh]) for times in picks], [0.025, 0.975])
     power, middle = _slope(x, y, level, np.ones(len(x))), np.exp(np.log(n).mean())
     offset = (y - power * (x - np.log(POWERS[shape](middle)))).mean()

@@ -10,7 +10,7 @@ from stages.report.claims import Claim
 from stages.report.differences import statistic
 from stages.report.items import Table
 from stages.report.markdown import signed
-from stages.report.results import NotRun, Results
+from stages.report.results import NotRun, Results, listed, some
 from stages.report.verdict import judge
 from stages.report.words import dataset_text
 
@@ -31,32 +31,26 @@ def build(results: Results) -> Table:
         head: judge([replace(claim, dataset=name, where={**claim.where, **where}) for claim in CLAIMS], results)
         for head, (name, where) in wanted.items()
     }
-    shown = pd.DataFrame({
-        "section": [claim.section for claim in CLAIMS], "claim": [claim.sentence for claim in CLAIMS],
-        **{head: [_cell(row) for row in part.itertuples()] for head, part in parts.items()},
-        "unit": [claim.unit for claim in CLAIMS],
-    })  # fmt: skip
     frame = pd.concat([part.assign(data=head, objects=part["pairs"]) for head, part in parts.items()])
+    texts = {head: [_cell(row) for row in part.itertuples()] for head, part in parts.items()}
+    shown = frame.loc[frame["data"] == dataset_text(sets[0]), ["section", "claim", "unit"]].assign(**texts)
     frame = frame[["key", "data", "verdict", "effect", "low", "high", "objects"]].sort_values("key", kind="stable")
-    return Table(frame, shown)
+    return Table(frame, shown[["section", "claim", *texts, "unit"]])
 
 
 def _cell(row: Any) -> str:
     """`yes: +0.83 [0.61, 1.05] (50)`: the effect with sign to three digits."""
     if not row.pairs:
         return "not run"
-    mean = row.effect
-    places = max(0, 2 - int(f"{mean:e}".split("e")[1])) if mean and mean == mean else 2
-    return f"{WORDS[row.verdict]}: {signed(mean, row.low, row.high, min(places, 7))} ({row.pairs})"
+    places = min(max(0, 2 - int(f"{row.effect:e}".split("e")[1])), 7)
+    return f"{WORDS[row.verdict]}: {signed(row.effect, row.low, row.high, places)} ({row.pairs})"
 
 
 @statistic("spread")
 def spread(results: Results, claim: Claim) -> pd.Series:
     """Standard deviation over the methods of the first side, under the first selection minus under the second."""
-    one, other = (
-        _errors(results, claim, claim.first["method"], **where).std(axis=1).droplevel("target")
-        for where in claim.contrast or ()
-    )
+    tables = (_errors(results, claim, claim.first["method"], **where) for where in claim.contrast or ())
+    one, other = (table.std(axis=1).droplevel("target") for table in tables)
     return one - other
 
 
@@ -64,10 +58,10 @@ def spread(results: Results, claim: Claim) -> pd.Series:
 def falls_with_faces(results: Results, claim: Claim) -> pd.Series:
     """Error at the fewest faces minus error at the largest number, of objects with several counts."""
     rows = results.measured(claim.stage, claim.dataset, **claim.where, **claim.first).sort_values("faces")
-    rows = rows[rows.groupby("item")["faces"].transform("nunique") > 1].groupby("item")["value"]
-    if not len(rows):
-        raise NotRun("no object that is taken to two face counts", claim.stage, runnable=False)
-    return rows.first() - rows.last()
+    rows = rows[rows.groupby("item")["faces"].transform("nunique") > 1]
+    some(rows, "no object that is taken to two face counts", claim.stage, runnable=False)
+    errors = rows.groupby("item")["value"]
+    return errors.first() - errors.last()
 
 
 @statistic("room")
@@ -77,10 +71,8 @@ def room(results: Results, claim: Claim) -> pd.Series:
     With the claim's margin, an equivalence test by the interval: above zero where the whole interval of the difference
     lies within the margin (Schuirmann 1987, with the 95 % interval instead of 90 %: stricter).
     """
-    if not isinstance(claim.second, dict):
-        raise ValueError(f"claim {claim.key} has no second side")
-    base, gaps, metrics = claim.second["method"], [], claim.where["metric"]
-    for metric in (metrics,) if isinstance(metrics, str) else metrics:
+    base, gaps = claim.other["method"], []
+    for metric in listed(claim.where["metric"]):
         table = _errors(results, claim, (base, *claim.first["method"]), metric=metric)
         if base not in table or table.shape[1] < 2:
             raise NotRun(f"lod did not run {base} beside another", claim.stage, runnable=False)
@@ -95,26 +87,25 @@ def ranks_agree(results: Results, claim: Claim) -> pd.Series:
     Methods with a way behind their name keep the same points in another way and are left out.
     """
     metric = str(claim.first["metric"])
-    other = (str(claim.second["metric"]), "value") if isinstance(claim.second, dict) else (metric, "points")
-    tables = [_by_method(results, claim, *which) for which in ((metric, "value"), other)]
-    tables = [table[table.nunique(axis=1) > 1] for table in tables]  # equal values have no ranks
-    if tables[0].empty or tables[0].shape[1] < MANY:
+    errors = _by_method(results, claim, metric, "value")
+    if errors.empty or errors.shape[1] < MANY:
         raise NotRun(f"fewer than {MANY} methods to rank", claim.stage, runnable=False)
-    return tables[0].corrwith(tables[1], axis=1, method="spearman")
+    other = (str(claim.other["metric"]), "value") if claim.second else (metric, "points")
+    return errors.corrwith(_by_method(results, claim, *other), axis=1, method="spearman")
 
 
 def _errors(results: Results, claim: Claim, methods: tuple[str, ...], **where: object) -> pd.DataFrame:
     """Frame (object, target) x methods, where all of the methods that were run reach the target."""
     rows = results.measured(claim.stage, claim.dataset, **{**claim.where, **where}, method=methods)
     table = rows.pivot(index=CELL, columns="method", values="value").dropna()
-    if table.empty:
-        raise NotRun(f"no target that all of {', '.join(methods)} reach", claim.stage, runnable=False)
-    return table
+    return some(table, f"no target that all of {', '.join(methods)} reach", claim.stage, runnable=False)
 
 
 def _by_method(results: Results, claim: Claim, metric: str, column: str) -> pd.DataFrame:
-    """Frame objects x methods of a column, mean over the targets that all methods reach."""
+    """Frame objects x methods of a column, mean over the targets that all methods reach; no objects without ranks."""
     rows = results.measured(claim.stage, claim.dataset, **claim.where, metric=metric)
     rows = rows[[name != PLAIN and fixed(name) for name in rows["method"]]]
     reached = rows.groupby(CELL)["method"].transform("nunique")
-    return rows[reached == rows["method"].nunique()].pivot_table(index="item", columns="method", values=column)
+    rows = rows[reached == rows["method"].nunique()]
+    table = rows.pivot_table(index="item", columns="method", values=column)
+    return table[table.nunique(axis=1) > 1]

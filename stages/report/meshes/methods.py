@@ -42,5 +42,4 @@ def short(method: str) -> str:
 def ordered(methods: Iterable[str]) -> list[str]:
     """The methods in the thesis's order (figure 3.6), then those with a way behind their name, plain QEM last."""
     order = [*NAMES, *(f"{name}-{way}" for name in NAMES for way in WAYS)]
-    ranks = {name: rank for rank, name in enumerate(order)} | {PLAIN: len(order) + 1}
-    return sorted(methods, key=lambda method: (ranks.get(method, len(order)), method))
+    return sorted(methods, key=lambda name: (name == PLAIN, order.index(name) if name in order else len(order), name))

@@ -4,15 +4,20 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from itertools import islice
 
+import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import LinearSegmentedColormap, Normalize
 
 from stages.kit import Mesh
-from stages.report.drawing import THIN, filled, show, square_grid
+from stages.lod.metro import vertex_errors
+from stages.report.drawing import THIN, VIEWPOINT, filled, name_panels, show, square_grid, squared
 from stages.report.items import Figure
-from stages.report.results import NotRun, Results
+from stages.report.results import NotRun, Results, some
 from stages.report.style import GREY, label
+from stages.views import render
 
-from .methods import FIXED_ADAPTIVE, HKS, NAMES, OURS, PLAIN, short
+from .methods import ENHANCED, FIXED_ADAPTIVE, HKS, NAMES, OURS, PLAIN, short
 from .rows import said, size
 
 COLUMNS = 7  # of figure 3.6
@@ -20,10 +25,13 @@ DIFFERING = ("corners", "VisAttCurvSymCon", HKS)  # figure 3.7, the thesis's: ma
 FACES = 1500  # the thesis's lower count; the nearest target that all methods reach
 NEAR = 1.3  # times FACES, either way
 ENOUGH = 2.0  # times as many points, from step to step: then the first object of the settings is taken
-LEVELS = 3  # of figure 3.21: the thesis shows 3,000, 1,500 and 500 faces
+KEEPING = ("VisAttCurvSymCon", ENHANCED, OURS)  # figure 3.8: the thesis's, or the next that was run
+# T figure 3.8 and CloudCompare: blue perfect, then green, yellow, red.
+COLOURS = LinearSegmentedColormap.from_list("error", ["#2c4fd8", "#35b46a", "#f2d530", "#d7261e"])
+TOP = 0.98  # quantile of all errors shown that is red
+LEVELS = 3  # of figures 3.8 and 3.21: the thesis shows 3,000, 1,500 and 500 faces
 BEYOND = "out of reach:\nthe kept neighbourhoods\nleave too few faces"
-OBJECTS = 2  # of figure 3.22
-ROWS = {"figure_3_7": 330, "figure_3_21": 300, "figure_3_22": 220}  # of pixels
+ROWS = {"figure_3_7": 330, "figure_3_8": 330, "figure_3_21": 300, "figure_3_22": 220}  # of pixels
 
 
 def figure_3_6(results: Results) -> Figure:
@@ -34,12 +42,13 @@ def figure_3_6(results: Results) -> Figure:
     drawing, grid = square_grid(-(-len(methods) // COLUMNS), COLUMNS, side=1.6, gap=0.3)
     for axes, method in zip(grid.flat, methods, strict=False):
         show(axes, mesh, points=points[method])
-        _title(axes, f"{NAMES[method]}: {len(points[method])}", 9, pad=3)
+        title = f"{NAMES[method]}: {len(points[method])}"
+        axes.set_title(title, fontsize=9, fontweight="normal", loc="center", pad=3)
     for axes in grid.flat[len(methods) :]:
         axes.set_axis_off()
-    few, many = (pick(methods, key=lambda method: len(points[method])) for pick in (min, max))
-    said_points = {"few": f"{len(points[few])} ({NAMES[few]})", "many": f"{len(points[many])} ({NAMES[many]})"}
-    return Figure(drawing, {"name": name, "count": len(methods), **said_points})
+    ends = (pick(methods, key=lambda method: len(points[method])) for pick in (min, max))
+    few, many = (f"{len(points[method])} ({NAMES[method]})" for method in ends)
+    return Figure(drawing, {"name": name, "count": len(methods), "few": few, "many": many})
 
 
 def figure_3_7(results: Results) -> Figure:
@@ -52,42 +61,69 @@ def figure_3_7(results: Results) -> Figure:
             apart = min(many / max(middle, 1), middle / max(few, 1), ENOUGH)
             near = 1 / NEAR < len(meshes[DIFFERING[0]].faces) / FACES < NEAR
             found.append(((near and filled(results.mesh(name)) > THIN, apart), name, target, meshes, points))
-    if not found:
-        raise NotRun(f"no object simplified with the points of {', '.join(DIFFERING)}", "lod", runnable=False)
+    some(found, f"no object simplified with the points of {', '.join(DIFFERING)}", "lod", runnable=False)
     _, name, target, meshes, points = max(found, key=lambda one: one[0])  # of equals the first
     drawing, grid = square_grid(1, len(DIFFERING), side=2.9, gap=0.3)
     for axes, method in zip(grid[0], DIFFERING, strict=True):
         show(axes, meshes[method], wires=True, rows=ROWS["figure_3_7"])
-        _title(axes, f"{short(method)}: {len(points[method])} points")
+    name_panels(grid, [f"{short(method)}: {len(points[method])} points" for method in DIFFERING])
     return Figure(drawing, {"name": name, "target": said(target), "methods": ", ".join(map(short, DIFFERING))}, dpi=85)
 
 
-def figure_3_21(results: Results) -> Figure:
-    """One object at falling face counts, by plain QEM above and with salient neighbourhoods kept below.
+def figure_3_8(results: Results) -> Figure:
+    """The original with its points, levels that keep them, and the original coloured by its distance to each level."""
+    objects, found = results.settings.figure_objects, []
+    for method in KEEPING:
+        found += islice(_levels(results, (method, PLAIN), objects), 1)
+    what = f"no levels of detail of {' or '.join(KEEPING)} beside plain QEM"
+    name, levels = some(found, what, "lod", runnable=False)[0]
+    (method, kept), (_, plain) = levels.items()
+    mesh, points, rows = results.mesh(name), results.strong_points(name)[method], ROWS["figure_3_8"]
+    targets = sorted(set(kept) & set(plain), key=size)[-LEVELS:]
+    fields = [[errors(mesh, level[target]) for target in targets] for level in (kept, plain)]
+    top = float(np.quantile(np.concatenate(sum(fields, [])), TOP)) or 1.0
+    drawing, grid = square_grid(3, len(targets) + 1, side=1.9, right=0.9, gap=0.25)
+    show(grid[0, 0], mesh, points=points, rows=rows)
+    for axes, target in zip(grid[0, 1:], targets, strict=True):
+        show(axes, kept[target], wires=True, rows=rows)
+    faces = [f"{len(kept[target].faces):,} faces" for target in targets]
+    name_panels(grid, [f"original: {len(mesh.faces):,} faces, {len(points)} points", *faces], letters=(9.5, 10))
+    for row, field, way in zip(grid[1:], fields, (f"{short(method)} kept", label(PLAIN)), strict=True):
+        row[0].text(0.95, 0.5, f"error,\n{way}", ha="right", va="center", transform=row[0].transAxes)
+        row[0].set_axis_off()
+        for axes, values in zip(row[1:], field, strict=True):
+            _show_coloured(axes, mesh, values / top, rows)
+    scale = ScalarMappable(Normalize(0, 100 * top), COLOURS)
+    bar = drawing.colorbar(scale, cax=drawing.add_axes((0.93, 0.1, 0.012, 0.5)), extend="max")
+    bar.set_label("distance, % of the diagonal")
+    bar.outline.set_edgecolor(GREY)
+    worst = ", ".join(f"{100 * field.max():.2g} %" for field in fields[0])
+    words = {"name": name, "levels": len(targets), "method": label(method), "top": f"{100 * TOP:.0f} %", "worst": worst}
+    return Figure(drawing, words, dpi=80)
 
-    The object has area for wires, and the most targets within reach of kept points.
-    """
+
+def figure_3_21(results: Results) -> Figure:
+    """One object at falling face counts, by plain QEM above and with salient neighbourhoods kept below."""
     found, wanted, rows = [], _preferred(results), ROWS["figure_3_21"]
-    for name in results.choose(wanted, len(wanted), stage="lod"):
-        with suppress(NotRun):
-            levels = {method: dict(results.lods(name, method)) for method in (PLAIN, OURS)}
-            counts = sorted(filter(str.isdigit, levels[PLAIN]), key=size)
-            shown = (counts if len(counts) > 1 else sorted(levels[PLAIN], key=size))[:LEVELS]
-            score = (filled(results.mesh(name)) > THIN, len(set(shown) & set(levels[OURS])))
-            found.append((score, name, shown, levels))
-    if not found:
-        raise NotRun(f"no simplified mesh with the points of {OURS} kept", "lod")
+    for name, levels in _levels(results, (PLAIN, OURS), wanted, len(wanted)):
+        counts = sorted(filter(str.isdigit, levels[PLAIN]), key=size)
+        shown = (counts if len(counts) > 1 else sorted(levels[PLAIN], key=size))[:LEVELS]
+        # Area for wires, and the most targets within reach of kept points.
+        score = (filled(results.mesh(name)) > THIN, len(set(shown) & set(levels[OURS])))
+        found.append((score, name, shown, levels))
+    some(found, f"no simplified mesh with the points of {OURS} kept", "lod")
     _, name, targets, levels = max(found, key=lambda one: one[0])
     original, points = results.mesh(name), results.strong_points(name)[OURS]
     drawing, grid = square_grid(2, len(targets) + 1, side=2.0, gap=0.3)
     show(grid[0, 0], original, rows=rows)
     show(grid[1, 0], original, points=points, rows=rows)
-    _title(grid[0, 0], f"original\n{len(original.faces):,} faces")
-    for row, (method, meshes) in zip(grid, levels.items(), strict=True):
-        row[0].text(-0.04, 0.5, label(method), rotation=90, va="center", ha="right", transform=row[0].transAxes)
-        for axes, target in zip(row[1:], targets, strict=True):
+    name_panels(grid, [f"original\n{len(original.faces):,} faces"], map(label, levels))
+    for row, meshes in zip(grid[:, 1:], levels.values(), strict=True):
+        name_panels(
+            row[None], [f"{len(meshes[target].faces):,} faces" if target in meshes else "" for target in targets]
+        )
+        for axes, target in zip(row, targets, strict=True):
             if target in meshes:
-                _title(axes, f"{len(meshes[target].faces):,} faces")
                 show(axes, meshes[target], wires=True, rows=rows)
             else:
                 axes.set_axis_off()
@@ -96,33 +132,32 @@ def figure_3_21(results: Results) -> Figure:
 
 
 def figure_3_22(results: Results) -> Figure:
-    """Objects with the points of ED, SSIM and SVM kept, with fixed and with adaptive neighbourhoods."""
-    shown = list(islice(_simplified(results, FIXED_ADAPTIVE, results.settings.figure_objects), OBJECTS))
-    if not shown:
-        raise NotRun(f"no object simplified by all of {', '.join(FIXED_ADAPTIVE)}", "lod", runnable=False)
+    """Two objects with the points of ED, SSIM and SVM kept, with fixed and with adaptive neighbourhoods."""
+    shown = list(islice(_simplified(results, FIXED_ADAPTIVE, results.settings.figure_objects), 2))
+    some(shown, f"no object simplified by all of {', '.join(FIXED_ADAPTIVE)}", "lod", runnable=False)
     drawing, grid = square_grid(len(shown), len(FIXED_ADAPTIVE), side=1.6, gap=0.15)
-    for row, (name, target, meshes) in zip(grid, shown, strict=True):
+    for row, (*_, meshes) in zip(grid, shown, strict=True):
         for axes, mesh in zip(row, meshes.values(), strict=True):
             show(axes, mesh, wires=True, rows=ROWS["figure_3_22"])
-        row[0].text(-0.02, 0.5, f"{name}\n{said(target)}", rotation=90, va="center", ha="right", fontsize=9,
-                    transform=row[0].transAxes)  # fmt: skip
-    for axes, method in zip(grid[0], FIXED_ADAPTIVE, strict=True):
-        _title(axes, label(method).replace(", ", ",\n"), 9.5)
+    above = [label(method).replace(", ", ",\n") for method in FIXED_ADAPTIVE]
+    name_panels(grid, above, [f"{name}\n{said(target)}" for name, target, _ in shown], letters=(9.5, 9), away=0.02)
     return Figure(drawing, {"names": " and ".join(name for name, *_ in shown)}, dpi=85)
 
 
-def _simplified(
-    results: Results, methods: Sequence[str], preferred: Sequence[str]
-) -> Iterator[tuple[str, str, dict[str, Mesh]]]:
+def _simplified(results: Results, methods: Sequence[str], preferred: Sequence[str]) -> Iterator[tuple]:
     """(object, target, {method: Mesh}) of the objects that all methods took to one target, the nearest to FACES."""
-    for name in results.choose(preferred, len(results.objects), stage="lod"):
+    for name, levels in _levels(results, methods, preferred):
+        common = sorted(set.intersection(*map(set, levels.values())), key=size)
+        if common:
+            target = min(common, key=lambda target: abs(len(levels[methods[0]][target].faces) - FACES))
+            yield name, target, {method: meshes[target] for method, meshes in levels.items()}
+
+
+def _levels(results: Results, methods: Sequence[str], preferred: Sequence[str], count: int = 0) -> Iterator[tuple]:
+    """(object, {method: {target: Mesh}}) of the objects, or the first `count`, that all methods simplified."""
+    for name in results.choose(preferred, count or len(results.objects), stage="lod"):
         with suppress(NotRun):
-            levels = {method: dict(results.lods(name, method)) for method in methods}
-            common = sorted(set.intersection(*map(set, levels.values())), key=size)
-            if common:
-                faces = {target: len(levels[methods[0]][target].faces) for target in common}
-                target = min(common, key=lambda target: abs(faces[target] - FACES))
-                yield name, target, {method: meshes[target] for method, meshes in levels.items()}
+            yield name, {method: dict(results.lods(name, method)) for method in methods}
 
 
 def _preferred(results: Results) -> list[str]:
@@ -130,5 +165,14 @@ def _preferred(results: Results) -> list[str]:
     return list(dict.fromkeys([settings.hero_object, *settings.figure_objects, *settings.viewer_objects]))
 
 
-def _title(axes: Axes, words: str, size: float = 10, pad: float | None = None) -> None:
-    axes.set_title(words, fontsize=size, fontweight="normal", loc="center", pad=pad)
+def errors(mesh: Mesh, level: Mesh) -> np.ndarray:
+    """(n,) distance of the original's vertices to the simplified surface, as a share of the original's diagonal."""
+    return vertex_errors(level, mesh) / mesh.diagonal
+
+
+def _show_coloured(axes: Axes, mesh: Mesh, values: np.ndarray, rows: int) -> None:
+    colours = np.rint(255 * COLOURS(np.clip(values, 0, 1))[:, :3]).astype(np.uint8)
+    mesh = Mesh(mesh.vertices, mesh.faces, colours)
+    image = render(mesh, VIEWPOINT, (2 * rows, 2 * rows), "raycast", background="white").rgb
+    axes.imshow(squared(image.reshape(rows, 2, rows, 2, 3).mean(axis=(1, 3)) / 255)[0])
+    axes.set_axis_off()

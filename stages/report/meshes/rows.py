@@ -3,14 +3,16 @@
 from collections.abc import Iterable
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
+from stages.kit.stats import interval
+from stages.report.grid import grouped, within
 from stages.report.markdown import with_interval
-from stages.report.results import Results
+from stages.report.results import Results, some
 
 from .methods import PLAIN
 
-STAGE = "lod"
 CELL = ["item", "target"]
 ERRORS = {  # metric -> name, with its unit
     "metro_mean": "Metro mean, %", "metro_rms": "Metro rms, %", "metro_max": "Metro max, %",
@@ -24,8 +26,7 @@ FEWEST = 3  # objects that a mean over objects needs to be shown
 
 def data_sets(results: Results) -> list[str]:
     """The sets with simplified meshes, those that are switched on first; NotRun where there is none."""
-    results.rows(STAGE)
-    return results.datasets(STAGE)
+    return some(results.datasets("lod"), "no measurements of lod", "lod")
 
 
 def paired_cells(
@@ -37,7 +38,7 @@ def paired_cells(
     `seconds` is the simplification's; `plain` the value of plain QEM for the same object, target and metric. whole:
     only where, moreover, no method had to shrink its neighbourhoods: the thesis's own algorithm.
     """
-    rows = results.rows(STAGE, dataset, metric=[*metrics, "faces"]).dropna(subset=["value"]).astype({"target": str})
+    rows = results.rows("lod", dataset, metric=[*metrics, "faces"]).dropna(subset=["value"]).astype({"target": str})
     made = rows.loc[rows["metric"] == "faces", [*CELL, "method", "seconds"]]
     rows = rows[rows["metric"] != "faces"].drop(columns="seconds")
     plain = rows[rows["method"] == PLAIN].rename(columns={"value": "plain"})[[*CELL, "metric", "plain"]]
@@ -48,10 +49,20 @@ def paired_cells(
     return rows[reached == rows["method"].nunique()]
 
 
-def by_object(rows: pd.DataFrame, metric: str, target: str | None = None) -> pd.DataFrame:
+def compared(rows: pd.DataFrame, by: list[str], least: float = 0.0) -> pd.DataFrame:
+    """Mean, its interval from `least` on, and mean difference from `plain`, over the objects of each value of `by`."""
+    found = []
+    for key, group in grouped(rows, by):
+        gain = interval(group["value"] - group["plain"])
+        found.append((*key, *within(group["value"], least=least, top=np.inf), group["value"].count(), *gain))
+    ends = ["mean", "low", "high", "objects", "over_plain", "over_plain_low", "over_plain_high"]
+    return pd.DataFrame(found, columns=[*by, *ends])
+
+
+def by_object(rows: pd.DataFrame, methods: list[str], metric: str, target: str | None = None) -> pd.DataFrame:
     """Frame objects x methods of one error in its unit; target: at this one alone, or the mean over all."""
     rows = rows[(rows["metric"] == metric) & (rows["target"].eq(target) if target else True)]
-    return UNITS[metric] * rows.pivot_table(index="item", columns="method", values="value")
+    return UNITS[metric] * rows.pivot_table(index="item", columns="method", values="value").reindex(columns=methods)
 
 
 def face_counts(rows: pd.DataFrame) -> list[str]:
@@ -67,7 +78,7 @@ def wide(cells: pd.DataFrame, down: str | list[str], across: str) -> pd.DataFram
     return found.reindex(cells.set_index(down).index.unique(), columns=cells[across].unique()).fillna("–")
 
 
-def marked(row: Any) -> str:
+def cell(row: Any) -> str:
     """`1.2 [1.1, 1.3] +`: an error with its interval, + or – where it differs from plain QEM beyond chance."""
     mark = " +" if row.over_plain_low > 0 else " –" if row.over_plain_high < 0 else ""
     return with_interval(row.mean, row.low, row.high, UNITS[row.metric]) + mark

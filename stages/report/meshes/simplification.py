@@ -11,11 +11,10 @@ from stages.report.results import NotRun, Results
 from stages.report.style import INK, MARKERS, WAYS, colours, label, plain_logarithm, plt
 
 from .methods import CLASSICAL, ENHANCED, HKS, OURS, PLAIN
-from .rows import ERRORS, METRICS, STAGE, UNITS, paired_cells, size
+from .rows import ERRORS, METRICS, UNITS, paired_cells, size
 
-METHODS = [  # as many as have a colour of their own; the other methods are in figures 3.4 and 3.5
-    PLAIN, OURS, f"{OURS}-soft", CLASSICAL, ENHANCED, f"{ENHANCED}-adaptive", "random", HKS,
-]  # fmt: skip
+# As many as have a colour of their own; the other methods are in figures 3.4 and 3.5.
+METHODS = [PLAIN, OURS, f"{OURS}-soft", CLASSICAL, ENHANCED, f"{ENHANCED}-adaptive", "random", HKS]
 DRAWN = (*METRICS, "salient_error")
 
 
@@ -24,7 +23,7 @@ def build(results: Results) -> Figure:
     rows = paired_cells(results, DRAWN, METHODS)
     rows = rows[rows["target"].str.endswith("%")]
     if PLAIN not in set(rows["method"]):
-        raise NotRun("no share of the faces that plain QEM and all methods reach on the same object", STAGE)
+        raise NotRun("no share of the faces that plain QEM and all methods reach on the same object", "lod")
     frame = _costed(rows, attention_seconds(results))
     targets = sorted(set(frame["target"]), key=size)
     objects = rows.groupby("target")["item"].nunique()
@@ -38,18 +37,15 @@ def build(results: Results) -> Figure:
 
 
 def _costed(rows: pd.DataFrame, search: dict[str, float]) -> pd.DataFrame:
-    """A row a metric, method and share: the mean error in its unit with its interval, the cost, and the front.
-
-    search: seconds to find a method's points. Plain QEM looks for none.
-    """
+    """A row a metric, method and share: mean error in its unit, cost with the seconds of the search, and front."""
     frame = pd.DataFrame(means(rows, ["metric", "method", "target"]))
     base = frame["method"].str.replace(f"-({'|'.join(WAYS)})$", "", regex=True)
     frame = frame.assign(looked=base.map({**search, PLAIN: 0.0})).dropna(subset=["looked"])
     plain = frame["seconds"].where(frame["method"] == PLAIN).groupby([frame["metric"], frame["target"]])
     frame["seconds"] += frame["looked"]
     frame["cost_ratio"] = frame["seconds"] / plain.transform("first")
-    ends, factor = ["mean", "low", "high"], frame["metric"].map(UNITS)
-    frame[ends] = frame[ends].mul(factor, axis=0)
+    ends = ["mean", "low", "high"]
+    frame[ends] = frame[ends].mul(frame["metric"].map(UNITS), axis=0)
     for _, group in frame.groupby(["metric", "target"]):
         frame.loc[group.index, "on_front"] = pareto_front(group["cost_ratio"], group["mean"], "low")
     return frame.astype({"on_front": bool})
@@ -71,11 +67,11 @@ def _draw(frame: pd.DataFrame, targets: list[str]) -> Drawing:
             axes.plot(cost, mean, forms[target], color=tints[method], ms=7, mec="white", mew=0.8, zorder=3)
         unit = "%" if metric == "ssim_error" else "% of the diagonal"
         axes.set(xscale="log", yscale="log", xlabel=f"cost, as a ratio to {label(PLAIN)}", ylabel=unit)
+        axes.set_title(ERRORS[metric].removesuffix(", %"), fontsize=10)
         axes.grid(True)
         axes.margins(x=0.1)
         plain_logarithm(axes.xaxis, (1.0,))
         plain_logarithm(axes.yaxis)
-        axes.set_title(ERRORS[metric].removesuffix(", %"), fontsize=10)
     for method, tint in tints.items():
         axes.plot([], [], "o", color=tint, ms=6, label=label(method))
     for target, form in forms.items():

@@ -2,7 +2,7 @@
 
 from functools import partial
 
-from . import claims_networks, claims_touches, grasps, network_sizes, real_networks, simulated_to_real, table_4_4
+from . import claims_networks, claims_touches, grasps, real_networks, simulated_to_real, table_4_4
 
 TABLES = {
     "table_4_4": table_4_4.build,
@@ -14,5 +14,5 @@ TABLES = {
     "table_5_5": partial(real_networks.printed, "bigs", "table_5_5_bigs_barrett"),
 }
 FIGURES = {"real_touches": simulated_to_real.build_figure}
-CHARTS = {"network_sizes": network_sizes.build}
+CHARTS = {"network_sizes": real_networks.chart}
 CLAIMS = [*claims_touches.CLAIMS, *claims_networks.CLAIMS]

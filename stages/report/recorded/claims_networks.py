@@ -21,7 +21,6 @@ SETTINGS = {
     "fingers_slip": ("grasps_slip", Split.TEST_OBJECTS),
 }  # name in the key of a claim -> (data, split)
 ARRAY, SLIP = ("pressure_random", "pressure_runs"), "fingers_slip"
-DATASETS = {"pressure": "pressure_images", "grasps_object": "biotac_grasps", "grasps_slip": "biotac_grasps"}
 FROZEN = {"method": NETWORK, "mode": "frozen", "weights": "imagenet", "size": 96}
 TUNED = FROZEN | {"mode": "finetuned", "size": 64}
 ANY = {"mode": "frozen", "size": 96}  # of the networks
@@ -56,9 +55,9 @@ def claims(
         common = {"data": data, "split": split, **ACCURACY, **where}
         said = {"section": "T5.4", "over": ("item",) if split in OVER else ("repetition",)} | fields
         yield Claim(
-            key=f"recorded_{key}_{name}", sentence=sentence, stage=STAGE, dataset=DATASETS[data], first=first,
-            second=second, where={column: value for column, value in common.items() if column not in first},
-            phrases=PHRASES, **said,
+            key=f"recorded_{key}_{name}", sentence=sentence, stage=STAGE, first=first, second=second, phrases=PHRASES,
+            dataset="pressure_images" if data == "pressure" else "biotac_grasps",
+            where={column: value for column, value in common.items() if column not in first}, **said,
         )  # fmt: skip
 
 

@@ -8,7 +8,6 @@ from stages.report.claims import Claim, highest_of
 
 from .table_4_4 import SELECTIONS, SETS
 
-ARRAY = "pressure_images"
 SIMULATED = "resting_skin"  # the simulation that was meant to be the closest, before any result was seen
 ALL = {"metric": "accuracy", "split": Split.RANDOM}  # the mean of all classifiers
 KNN = {"group": "all", "classifier": "knn", "metric": "accuracy"}
@@ -23,7 +22,7 @@ OF_TEN = {
     ("simulation", SIMULATED): "resting imprints with skin", ("aligned", False): "",
     **{("touches", count): f"{count} real of each class" for count in (1, 5, 20)},
 }  # fmt: skip
-touches = partial(Claim, section="T4.2.4", stage="recorded", dataset=ARRAY)
+touches = partial(Claim, section="T4.2.4", stage="recorded", dataset="pressure_images")
 
 
 def on_set(group: str, **fields: Any) -> Claim:

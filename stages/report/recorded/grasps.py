@@ -4,7 +4,7 @@ import pandas as pd
 
 from stages.kit.split import Split, shared_by
 from stages.kit.stats import interval
-from stages.report.grid import grid
+from stages.report.grid import grid, grouped, records
 from stages.report.items import Table
 from stages.report.results import Results
 from stages.report.style import label
@@ -24,15 +24,25 @@ def build(results: Results) -> Table:
     """Accuracy by task, palm direction, scaling, values and classifier, and how far the electrodes drift."""
     rows = results.rows("recorded", "biotac_grasps")
     found = []
-    for key, group in rows[rows["metric"] == "accuracy"].groupby([*BY, "classifier"], sort=False):
+    for key, group in grouped(rows[rows["metric"] == "accuracy"], [*BY, "classifier"]):
         shared = shared_by(Split.RANDOM) if group["item"].isna().all() else 0.0
         found.append((*key, *interval(group["value"], shared)))
     frame = pd.DataFrame(found, columns=[*BY, "classifier", "accuracy", "low", "high"]).astype({"components": int})
     drift = {
-        metric: ", ".join(f"palm {row.palm} {row.value:.1f}" for row in rows[rows["metric"] == metric].itertuples())
+        metric: ", ".join(f"palm {row.palm} {row.value:.1f}" for row in records(rows[rows["metric"] == metric]))
         for metric in ("drift", "drift_drawn")
     }
-    return Table(frame, _wide(frame), drift | {"better": _better(frame)})
+    tasks = [TASKS[pair] for pair in zip(frame["task"], frame["split"], strict=True)]
+    cells = frame.assign(
+        task=pd.Categorical(tasks, list(TASKS.values())), palm=pd.Categorical(frame["palm"], PALMS),
+        low=frame["low"].clip(lower=0), high=frame["high"].clip(upper=1),
+    )  # fmt: skip
+    keys = ["task", "palm", "scaled", "components"]
+    names = {"scaled": SCALED.get, "components": lambda count: "12 components" if count == 12 else "electrodes"}
+    cells = cells.sort_values(keys)
+    wide = grid(cells, keys, "classifier", beside=(), names=names, head=lambda name: f"{label(name)}, %")
+    wide = wide.rename(columns={"scaled": "scaled by", "components": "values"})
+    return Table(frame, wide, drift | {"better": _better(frame)})
 
 
 def _better(frame: pd.DataFrame) -> str:
@@ -42,19 +52,5 @@ def _better(frame: pd.DataFrame) -> str:
     common = mine.loc[mine["classifier"] == "majority", "accuracy"]
     others = mine[mine["classifier"] != "majority"]
     counts = (others["low"] > common.reindex(others.index)).groupby(["palm", "scaled"]).agg(["sum", "size"])
-    rows = counts.reset_index().itertuples(index=False)
-    return "; ".join(f"palm {palm}, {SCALED[way]} {better} of {count}" for palm, way, better, count in rows)
-
-
-def _wide(frame: pd.DataFrame) -> pd.DataFrame:
-    """Tasks and palm directions in their order; intervals are cut at 0 and 1."""
-    tasks = [TASKS[pair] for pair in zip(frame["task"], frame["split"], strict=True)]
-    cells = frame.assign(
-        task=pd.Categorical(tasks, list(TASKS.values())), palm=pd.Categorical(frame["palm"], PALMS),
-        low=frame["low"].clip(lower=0), high=frame["high"].clip(upper=1),
-    )  # fmt: skip
-    keys = ["task", "palm", "scaled", "components"]
-    names = {"scaled": SCALED.get, "components": lambda count: "12 components" if count == 12 else "electrodes"}
-    head = {"names": names, "head": lambda name: f"{label(name)}, %"}
-    wide = grid(cells.sort_values(keys), keys, "classifier", beside=(), **head)
-    return wide.rename(columns={"scaled": "scaled by", "components": "values"})
+    said = [f"palm {palm}, {SCALED[way]} {better} of {count}" for palm, way, better, count in counts.to_records()]
+    return "; ".join(said)

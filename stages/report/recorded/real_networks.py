@@ -1,18 +1,20 @@
-"""Networks for photographs on recorded touches: those at hand, and T tables 5.1, 5.2 and 5.5 of those that are not."""
+"""Networks for photographs on recorded touches: all in a table, those of T tables 5.1, 5.2 and 5.5, and their costs."""
 
-from functools import partial
-from typing import Any
+from itertools import pairwise
 
 import pandas as pd
+from matplotlib.axes import Axes
 
 from stages.kit.split import Split, shared_by
 from stages.kit.stats import interval
-from stages.report.grid import percent
-from stages.report.items import Table
+from stages.report.grid import percent, records
+from stages.report.items import Figure, Table
 from stages.report.markdown import signed, with_interval
+from stages.report.names import place_names
 from stages.report.networks import MODES, PRINTED, STARTS, origin
-from stages.report.results import Results
-from stages.report.style import label
+from stages.report.pareto import pareto_front, ticks
+from stages.report.results import Results, some
+from stages.report.style import INK, label, plain_logarithm, plt
 
 from .rows import CLASSICAL, DATA, OVER, SPLITS, measured, measured_lines
 
@@ -20,33 +22,35 @@ ABSENT = (
     "Not run: the data set is not at hand. Its reader is tested on files in its layout; "
     "`experiment=recorded_touches` says how to switch it on."
 )
+COSTS = {
+    "parameters": ("parameters, millions", 1e6),
+    "operations": ("multiply-adds an image, billions", 1e9),
+    "milliseconds": ("milliseconds an image, one thread", 1.0),
+}
+SIZE = 96  # pixels a side at which the recorded touches are seen
+SLACK = 0.02  # accuracy that the smallest network may lack of the best one's
+SETTING = {"data": "pressure", "split": Split.BLOCKS, "weights": "imagenet", "mode": "frozen", "size": SIZE}
 
 
 def build(results: Results) -> Table:
     """Accuracy of each network, start and mode on each recording and split, with its gains over the controls."""
     frame = measured_lines(results)
-    return Table(frame, pd.DataFrame([_shown(row) for row in frame.itertuples()]))
-
-
-def _shown(row: Any) -> dict[str, Any]:
-    """A row of `measured_lines` for a reader."""
-    return {
-        "data": DATA.get(row.data, row.data),
-        "split": SPLITS.get(row.split, row.split),
-        "network": "features and kNN" if row.method == CLASSICAL[0] else label(row.method),
-        "starts from": origin(row.weights, row.pretrained) if row.weights in STARTS else "–",
-        "filters": f"{label(row.mode)}, {row.size} px" if row.mode else "–",
-        "accuracy, %": with_interval(row.accuracy, row.low, row.high, 100, 1),
-        "guessing, %": percent(row.guess, 1),
-        "over features and kNN": _gain(row.over_features, row.over_features_low, row.over_features_high),
-        "over random weights": _gain(row.over_random, row.over_random_low, row.over_random_high),
-        "over": f"{row.values} {'objects' if row.split in OVER else 'splits'}",
-    }
-
-
-def _gain(*points: float) -> str:
-    """Points gained [interval]; a dash where there is nothing to compare with."""
-    return signed(*(100 * value for value in points), places=1) if points[0] == points[0] else "–"
+    shown = [
+        {
+            "data": DATA.get(row.data, row.data),
+            "split": SPLITS.get(row.split, row.split),
+            "network": "features and kNN" if row.method == CLASSICAL[0] else label(row.method),
+            "starts from": origin(row.weights, row.pretrained) if row.weights in STARTS else "–",
+            "filters": f"{label(row.mode)}, {row.size} px" if row.mode else "–",
+            "accuracy, %": with_interval(row.accuracy, row.low, row.high, 100, 1),
+            "guessing, %": percent(row.guess, 1),
+            "over features and kNN": _gain(row.over_features, row.over_features_low, row.over_features_high),
+            "over random weights": _gain(row.over_random, row.over_random_low, row.over_random_high),
+            "over": f"{row.values} {'objects' if row.split in OVER else 'splits'}",
+        }
+        for row in records(frame)
+    ]
+    return Table(frame, pd.DataFrame(shown))
 
 
 def printed(data: str, thesis: str, results: Results) -> Table:
@@ -55,12 +59,55 @@ def printed(data: str, thesis: str, results: Results) -> Table:
     rows = measured(results, "accuracy")
     mine = rows[(rows["data"] == data) & (rows["split"] == Split.RANDOM) & (rows["weights"] == "imagenet")]
     frame = pd.DataFrame({"network": list(PRINTED)})
-    shown = pd.DataFrame({"network": [label(network) for network in PRINTED]})
+    shown = pd.DataFrame({"network": list(PRINTED.values())})
     for mode in MODES:
-        own = {network: mine[(mine["method"] == network) & (mine["mode"] == mode)]["value"] for network in PRINTED}
-        found = [interval(values, shared_by(Split.RANDOM)) for values in own.values()]
+        own = mine[mine["mode"] == mode]
+        found = [interval(own[own["method"] == network]["value"], shared_by(Split.RANDOM)) for network in PRINTED]
         frame[[mode, f"{mode}_low", f"{mode}_high"]] = found
-        frame[f"{mode}_thesis"] = figures.loc[[*PRINTED.values()], f"acc_{mode}"].to_numpy()
+        frame[f"{mode}_thesis"] = figures.loc[shown["network"], f"acc_{mode}"].to_numpy()
         shown[f"{label(mode)}: ours, %"] = [with_interval(*ends, 100, 1) for ends in found]
-        shown[f"{label(mode)}: thesis, %"] = frame[f"{mode}_thesis"].map(partial(percent, places=1))
+        shown[f"{label(mode)}: thesis, %"] = [percent(share, 1) for share in frame[f"{mode}_thesis"]]
     return Table(frame, shown, {"absent": "" if len(mine) else ABSENT})
+
+
+def chart(results: Results) -> Figure:
+    """A panel for each cost, with the Pareto front; neighbouring touches are held out together."""
+    lines = measured_lines(results)
+    frame = lines[(lines[list(SETTING)] == pd.Series(SETTING)).all(axis=1)].rename(columns={"method": "network"})
+    frame = frame.merge(results.bench("networks"), on=["network", "size"])
+    some(frame, "no frozen network on the pressure images", "transfer", runnable=False)
+    enough = frame[frame["accuracy"] >= frame["accuracy"].max() - SLACK]
+    smallest = label(enough.loc[enough["parameters"].idxmin(), "network"])
+    figure, panels = plt.subplots(1, len(COSTS), figsize=(11.4, 3.8), sharey=True)
+    for axes, (words, _) in zip(panels, COSTS.values(), strict=True):
+        axes.set_xlabel(words)
+    panels[0].set_ylabel("accuracy, %")
+    figure.tight_layout()  # before names find their places
+    known = (100 * frame[["accuracy", "low", "high"]]).assign(name=frame["network"].map(label))
+    for axes, (cost, (_, unit)) in zip(panels, COSTS.items(), strict=True):
+        _draw(axes, known.assign(cost=frame[cost] / unit))
+    return Figure(figure, {"size": SIZE, "slack": 100 * SLACK, "smallest": smallest}, frame)
+
+
+def _gain(*points: float) -> str:
+    """Points gained [interval]; a dash where there is nothing to compare with."""
+    return signed(*(100 * value for value in points), places=1) if points[0] == points[0] else "–"
+
+
+def _draw(axes: Axes, frame: pd.DataFrame) -> None:
+    """frame: accuracy, low and high in per cent, cost and name."""
+    axes.set_xscale("log")
+    front = frame[pareto_front(frame["cost"], frame["accuracy"])].sort_values("cost")
+    axes.step(front["cost"], front["accuracy"], where="post", color=INK, lw=1, zorder=1)
+    across, up = front[["cost", "accuracy"]].to_numpy().repeat(2, axis=0).T
+    steps = pairwise(zip(across[1:], up[:-1], strict=True))
+    known = frame.dropna(subset=["low", "high"])
+    low, high = (zip(known["cost"], known[end], strict=True) for end in ("low", "high"))
+    axes.plot([known["cost"]] * 2, [known["low"], known["high"]], color="#0072B2", lw=1.2, alpha=0.5)
+    axes.plot(frame["cost"], frame["accuracy"], "o", color="#0072B2", ms=6, mec="white")
+    axes.margins(x=0.2)
+    axes.grid(True)
+    plain_logarithm(axes.xaxis)
+    axes.xaxis.set_major_locator(ticks(frame["cost"].max() / frame["cost"].min()))
+    names = zip(frame["name"], zip(frame["cost"], frame["accuracy"], strict=True), strict=True)
+    place_names(axes, names, frame[["cost", "accuracy"]].to_numpy(), [*zip(low, high, strict=True), *steps])

@@ -7,7 +7,7 @@ import pandas as pd
 
 from stages.kit.split import Split, shared_by
 from stages.kit.stats import interval
-from stages.report.grid import within
+from stages.report.grid import everywhere, grouped, within
 from stages.report.results import NotRun, Results
 
 STAGE = "recorded_networks"
@@ -27,25 +27,21 @@ SPLITS = {
 }
 OVER = (Split.TEST_OBJECTS,)  # splits whose values are of independent objects, not of repetitions
 KEYS = ["data", "split", "method", "weights", "mode", "size"]
+GAINS = [f"over_{control}{end}" for control in ("features", "random") for end in ("", "_low", "_high", "_pairs")]
+VALUES = ["accuracy", "low", "high", "values", *GAINS, "guess"]
 CLASSICAL = ("features_knn", "", "", "")  # the control without a network: neither weights, nor mode, nor size
 
 
 def measured(results: Results, *metrics: str) -> pd.DataFrame:
-    """Rows of some metrics that have a value, of all recorded data sets; NotRun without any.
+    """Rows of some metrics that have a value, of all recorded data sets, with "" for what they have not of KEYS.
 
-    What a row has not of KEYS, such as weights, is "". unit: the repetition, whose number is the same split for all, or
-    the object where OVER.
+    unit: the repetition, whose number is the same split for all, or the object where OVER. NotRun without any.
     """
-    found = []
-    for dataset in results.datasets(STAGE):
-        with suppress(NotRun):
-            found.append(results.measured(STAGE, dataset, metric=list(metrics)))
-    if not found:
-        raise NotRun(f"no {' or '.join(metrics)} of networks on recorded touches", STAGE)
-    rows = pd.concat(found, ignore_index=True).astype({"size": "Int64"})
-    rows = rows[rows["item"].notna() == rows["split"].isin(OVER)]
-    unit = rows["item"].astype(object).where(rows["item"].notna(), rows["repetition"])
-    return rows.assign(unit=unit, **{key: rows[key].astype(object).where(rows[key].notna(), "") for key in KEYS})
+    what = f"no {' or '.join(metrics)} of networks on recorded touches"
+    found = everywhere(results, STAGE, what, metric=list(metrics))
+    rows = pd.concat(found.values(), ignore_index=True).astype({"size": "Int64"})
+    rows = rows[rows["item"].notna() == rows["split"].isin(OVER)].astype(dict.fromkeys(["item", *KEYS], object))
+    return rows.fillna(dict.fromkeys(KEYS, "")).assign(unit=rows["item"].fillna(rows["repetition"]))
 
 
 def measured_lines(results: Results) -> pd.DataFrame:
@@ -54,15 +50,20 @@ def measured_lines(results: Results) -> pd.DataFrame:
     accuracy with low and high over so many values; guess; over_features and over_random: the gain over the classical
     features and over the same network untrained, each with _low, _high and the number of _pairs.
     """
-    rows = measured(results, "accuracy")
-    found = {key: own.groupby("unit")["value"].mean() for key, own in rows.groupby(KEYS, sort=False)}
-    lines = pd.DataFrame([_line(found, key) for key in found])
-    guess = _guesses(results)
-    lines["guess"] = [guess.get(pair, np.nan) for pair in zip(lines["data"], lines["split"], strict=True)]
-    lines = lines.join(rows.groupby(KEYS)["pretrained"].first(), on=KEYS)
+    rows, guess, lines = measured(results, "accuracy"), _guesses(results), []
+    found = {key: own.groupby("unit")["value"].mean() for key, own in grouped(rows, KEYS)}
+    for key, own in found.items():
+        data, split, method, _, mode, size = key
+        shared = 0.0 if split in OVER else shared_by(Split.RANDOM)
+        line = [*key, *within(own, shared), len(own)]
+        for control in (data, split, *CLASSICAL), (data, split, method, "random", mode, size):
+            gains = (own - found[control]).dropna() if control in found and control != key else own[:0]
+            line += [*interval(gains, shared), len(gains)]
+        lines.append([*line, guess.get((data, split), np.nan)])
+    frame = pd.DataFrame(lines, columns=[*KEYS, *VALUES]).join(rows.groupby(KEYS)["pretrained"].first(), on=KEYS)
     order = {name: k for k, name in enumerate([*DATA, *SPLITS, CLASSICAL[0]])}
     by = {"by": ["data", "split", "method"], "key": lambda names: names.map(order).fillna(len(order))}
-    return lines.sort_values(**by, kind="stable", ignore_index=True)
+    return frame.sort_values(**by, kind="stable", ignore_index=True)
 
 
 def commonest(results: Results) -> pd.Series:
@@ -72,29 +73,13 @@ def commonest(results: Results) -> pd.Series:
     return rows.groupby("item")["value"].mean()
 
 
-def _line(found: dict[tuple, pd.Series], key: tuple) -> dict[str, object]:
-    data, split, method, _, mode, size = key
-    shared = 0.0 if split in OVER else shared_by(Split.RANDOM)
-    mean, low, high = within(found[key], shared)
-    line = dict(zip(KEYS, key, strict=True)) | {"accuracy": mean, "low": low, "high": high, "values": len(found[key])}
-    controls = {"features": (data, split, *CLASSICAL), "random": (data, split, method, "random", mode, size)}
-    for name, control in controls.items():
-        gains = (found[key] - found[control]).dropna() if control in found and control != key else found[key][:0]
-        ends = zip(("", "_low", "_high", "_pairs"), (*interval(gains, shared), len(gains)), strict=True)
-        line |= {f"over_{name}{end}": value for end, value in ends}
-    return line
-
-
 def _guesses(results: Results) -> dict[tuple[str, str], float]:
-    """{(data, split): the share that guessing gets right}: any class, or always the commonest, the better on average.
-
-    Of objects kept for the test it is the latter, which the stage `recorded` has object by object.
-    """
+    """{(data, split): share that guessing gets right}: any class, or always the commonest, the better on average."""
     found = {}
     with suppress(NotRun):
         rows = measured(results, "chance", "majority")
         means = rows.groupby(["data", "split", "metric", "unit"])["value"].mean().groupby(level=[0, 1, 2]).mean()
         found |= means.groupby(level=[0, 1]).max().to_dict()
-    with suppress(NotRun):
+    with suppress(NotRun):  # which another stage has object by object
         found["grasps_slip", Split.TEST_OBJECTS] = commonest(results).mean()
     return found

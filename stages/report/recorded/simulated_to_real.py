@@ -10,7 +10,6 @@ from stages.report.items import Figure, Table
 from stages.report.results import Results
 from stages.report.style import CYCLE, GREY, INK, MARKERS, label, plt
 
-STAGE = "simulated_to_real"
 BY = ["training", "simulation", "aligned", "touches", "classifier"]
 SIMULATIONS = {
     "none": "none", "array": "the thesis's array", "resting": "resting", "resting_skin": "resting, skin",
@@ -22,29 +21,33 @@ PANELS = (SHOWN, "deep_learning")  # and the one that simulation might help to t
 
 def build_table(results: Results) -> Table:
     """Accuracy of kNN by kind of simulated imprints and number of real touches."""
-    frame, rows = accuracies(results), _rows(results)
+    frame, rows = _accuracies(results)
     alone = rows[(rows["group"] != "all") & (rows["training"] == "simulated")]
-    ways = [(way, own.groupby("group")["value"].mean()) for way, own in alone.groupby(["simulation", "aligned"])]
-    best, shares = max(ways, key=lambda way: way[1].mean())
-    shares = shares.sort_values(ascending=False)
-    words = {"way": _way(*best), "shares": ", ".join(f"{name} {100 * share:.0f}" for name, share in shares.items())}
-    return Table(frame, _wide(frame), words | {"best": _best(frame)})
+    shares = alone.groupby(["simulation", "aligned", "group"])["value"].mean()
+    way: Any = shares.groupby(level=[0, 1]).mean().idxmax()
+    said = [f"{name} {100 * share:.0f}" for name, share in shares[way].sort_values(ascending=False).items()]
+    mine = frame[frame["classifier"] == SHOWN].sort_values("touches", kind="stable")
+    mine["simulated imprints"] = [*map(_way, mine["simulation"], mine["aligned"])]
+    head = f"real touches a class, {label(SHOWN)}, %"
+    wide = grid(mine, "simulated imprints", "touches", beside=(), head=lambda count: f"{count} {head}")
+    wide = wide.replace("not run", "–")  # with neither real nor simulated touches there is nothing to run
+    wide = wide.sort_values("simulated imprints", key=lambda way: way != "none", kind="stable")
+    return Table(frame, wide, {"way": _way(*way), "shares": ", ".join(said), "best": _best(frame)})
 
 
 def build_figure(results: Results) -> Figure:
     """Accuracy against the number of real touches in training, with and without simulated imprints."""
-    frame = accuracies(results)
+    frame, _ = _accuracies(results)
     frame = frame[frame["aligned"] == (frame["simulation"] != "none")]
     kinds = [kind for kind in SIMULATIONS if kind in set(frame["simulation"])]
-    tints = {"none": INK} | dict(zip([kind for kind in kinds if kind != "none"], CYCLE, strict=False))
     ticks = sorted(set(frame["touches"]))
     figure, panels = plt.subplots(1, 2, figsize=(9.4, 4.0), sharey=True)
     for axes, classifier in zip(panels, PANELS, strict=True):
-        for kind, marker in zip(kinds, MARKERS, strict=False):
+        for kind, marker, tint in zip(kinds, MARKERS, [INK, *CYCLE], strict=False):
             mine = frame[(frame["simulation"] == kind) & (frame["classifier"] == classifier)].sort_values("touches")
             place, real = [ticks.index(count) for count in mine["touches"]], kind == "none"
             axes.plot(
-                place, 100 * mine["accuracy"], marker=marker, color=tints[kind], lw=2.2 if real else 1.3, ms=4.5,
+                place, 100 * mine["accuracy"], marker=marker, color=tint, lw=2.2 if real else 1.3, ms=4.5,
                 label="real touches alone" if real else SIMULATIONS[kind],
             )  # fmt: skip
             if real:
@@ -52,27 +55,19 @@ def build_figure(results: Results) -> Figure:
         axes.axhline(10, color=GREY, lw=0.9, ls=":")
         axes.text(1.01, 10, "chance", transform=axes.get_yaxis_transform(), va="center", fontsize=8.5)
         axes.set_xticks(range(len(ticks)), ticks)
-        axes.set_xlabel("real touches of each class in training")
-        axes.set_title(label(classifier))
+        axes.set(title=label(classifier), xlabel="real touches of each class in training", ylim=(0, 100))
         axes.grid(axis="y")
-        axes.set_ylim(0, 100)
     panels[0].set_ylabel("accuracy on real touches, %")
-    handles, names = panels[0].get_legend_handles_labels()
-    figure.legend(handles, names, loc="lower center", bbox_to_anchor=(0.5, 0.97), ncols=3, fontsize=9)
+    explained = panels[0].get_legend_handles_labels()
+    figure.legend(*explained, loc="lower center", bbox_to_anchor=(0.5, 0.97), ncols=3, fontsize=9)
     return Figure(figure)
 
 
-def accuracies(results: Results) -> pd.DataFrame:
-    """Tidy frame: training, simulation, aligned, touches, classifier, accuracy, low, high."""
-    rows = _rows(results)
+def _accuracies(results: Results) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """(accuracy, low and high by the columns BY, the rows); of real touches alone the simulation is "none"."""
+    rows = results.rows("simulated_to_real").fillna({"simulation": "none", "aligned": False}).astype({"aligned": bool})
     found = means(rows[rows["group"] == "all"], BY, shared_by(Split.RANDOM), top=1.0)
-    return pd.DataFrame(found).rename(columns={"mean": "accuracy"})[[*BY, "accuracy", "low", "high"]]
-
-
-def _rows(results: Results) -> pd.DataFrame:
-    """The rows; those of real touches alone have the simulation "none"."""
-    rows = results.rows(STAGE)
-    return rows.assign(simulation=rows["simulation"].fillna("none"), aligned=rows["aligned"].fillna(False).astype(bool))
+    return pd.DataFrame(found).rename(columns={"mean": "accuracy"})[[*BY, "accuracy", "low", "high"]], rows
 
 
 def _way(simulation: Any, aligned: Any) -> str:
@@ -88,13 +83,3 @@ def _best(frame: pd.DataFrame) -> str:
         said[training, touches] = f"{100 * share:.0f} ({label(classifier)}{way})"
     counts = sorted(set(frame["touches"]) - {0})
     return "; ".join(f"{count}: {said['real', count]} without, {said['both', count]} with" for count in counts)
-
-
-def _wide(frame: pd.DataFrame) -> pd.DataFrame:
-    """Of one classifier: ways to simulate down, numbers of real touches across."""
-    mine = frame[frame["classifier"] == SHOWN].sort_values("touches", kind="stable")
-    mine["simulated imprints"] = [_way(*pair) for pair in zip(mine["simulation"], mine["aligned"], strict=True)]
-    head = f"real touches a class, {label(SHOWN)}, %"
-    wide = grid(mine, "simulated imprints", "touches", beside=(), head=lambda count: f"{count} {head}")
-    wide = wide.replace("not run", "–")  # with neither real nor simulated touches there is nothing to run
-    return wide.sort_values("simulated imprints", key=lambda way: way != "none", kind="stable")

@@ -1,7 +1,6 @@
 """T table 4.4: real touches of four and six objects, with and without the selection of dissimilar ones."""
 
 from itertools import product
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -21,46 +20,38 @@ SETS = {
 }  # fmt: skip
 SELECTIONS = {"all": "no selection", "selected": "selection", "selected_training": "selection in training alone"}
 KEYS = ["set", "selection", "classifier"]
+VALUES = ["accuracy", "low", "high", "thesis", "accuracy_folds", "accuracy_blocks"]
 
 
 def build(results: Results) -> Table:
     """Accuracy by set of classes, selection and classifier, beside the thesis's where it has one."""
     rows = results.rows("recorded", "pressure_images").rename(columns={"group": "set", "method": "selection"})
     thesis = results.thesis("table_4_4_imprint_selection_real").set_index("classifier")
-    right = rows[rows["metric"] == "accuracy"]
-    scores = {key: own["value"].to_numpy() for key, own in right.groupby([*KEYS, "split"])}
-    frame = pd.DataFrame([_line(scores, thesis, *key) for key in product(SETS, SELECTIONS, thesis.index)])
+    scores = {key: own["value"] for key, own in rows[rows["metric"] == "accuracy"].groupby([*KEYS, "split"])}
+    lines = [_line(scores, thesis, *key) for key in product(SETS, SELECTIONS, thesis.index)]
+    frame = pd.DataFrame(lines, columns=[*KEYS, *VALUES])
     names = {"set": SETS.get, "selection": SELECTIONS.get}
     shown = grid(frame, KEYS[:2], KEYS[2], names=names, head=lambda name: f"{label(name)}: ours · thesis, %", gap=None)
-    return Table(frame, shown, _words(rows, frame))
-
-
-def _line(scores: dict[tuple, np.ndarray], thesis: pd.DataFrame, *key: str) -> dict[str, Any]:
-    """A row of one set, selection and classifier."""
-    name, selection, classifier = key
-    shared = 0.0 if name.endswith("drawn") else shared_by(Split.RANDOM)  # drawn: another set each time
-    mean, low, high = within(scores.get((*key, Split.RANDOM), []), shared)
-    line: dict[str, Any] = dict(zip(KEYS, key, strict=True)) | {"accuracy": mean, "low": low, "high": high}
-    column = f"{name}_{selection}"
-    line["thesis"] = thesis.loc[classifier, column] if column in thesis else np.nan
-    others = {f"accuracy_{split}": interval(scores.get((*key, split), []))[0] for split in (Split.FOLDS, Split.BLOCKS)}
-    return line | others
-
-
-def _words(rows: pd.DataFrame, frame: pd.DataFrame) -> dict[str, object]:
-    """What was removed, and what the random hold-out flatters."""
     by_metric = dict(list(rows.groupby("metric")))
     removed = by_metric["share_similar"].groupby("set")["value"].mean()
-    chosen = {
-        name: " ".join(rows.loc[rows["set"] == f"{name}_alike", "chosen"].dropna().unique()).split()
-        for name in ("four", "six")
-    }
+    chosen = rows.groupby("set")["chosen"].first().str.replace(" ", ", ")
     near, far = (interval(by_metric[f"{kind}_correlation"]["value"]) for kind in ("neighbour", "pair"))
     whole = frame[(frame["set"] == "all") & (frame["selection"] == "all")].set_index("classifier")
-    lost = 100 * (whole["accuracy"] - whole["accuracy_blocks"])
-    return {
+    lost = 100 * (whole["accuracy"] - whole["accuracy_blocks"])  # by which the random hold-out flatters
+    words = {
         "removed": ", ".join(f"{said} {100 * removed.get(name, np.nan):.1f} %" for name, said in SETS.items()),
-        **{name: ", ".join(classes) for name, classes in chosen.items()},
+        "four": chosen.get("four_alike", ""), "six": chosen.get("six_alike", ""),
         "near": with_interval(*near, places=2), "far": with_interval(*far, places=2),
         "knn": lost["knn"], "least": lost.min(), "most": lost.max(),
     }  # fmt: skip
+    return Table(frame, shown, words)
+
+
+def _line(scores: dict[tuple, pd.Series], thesis: pd.DataFrame, *key: str) -> tuple:
+    """Values of one set, selection and classifier, in the order of the columns."""
+    name, selection, classifier = key
+    shared = 0.0 if name.endswith("drawn") else shared_by(Split.RANDOM)  # drawn: another set each time
+    accuracies = within(scores.get((*key, Split.RANDOM), []), shared)
+    column = f"{name}_{selection}"
+    printed = thesis.loc[classifier, column] if column in thesis else np.nan
+    return (*key, *accuracies, printed, *(interval(scores.get((*key, split), []))[0] for split in ("folds", "blocks")))

@@ -49,31 +49,29 @@ def build(results: Results) -> Table:
     costs = rows[rows["condition"] == "cost"].pivot(index="method", columns="metric", values="value")
     costs = costs.reindex(list(MODELS), columns=["fit", "ask"]).dropna()
     said = [f"{MODELS[row.Index]} {number(row.fit)} and {number(row.ask)}" for row in records(costs)]
-    return Table(rows, _shown(rows[rows["metric"].isin(METRICS)]), {"costs": "; ".join(said) or "not measured"})
-
-
-def _shown(rows: pd.DataFrame) -> pd.DataFrame:
-    keys = ["condition", "method"]
-    text = [with_interval(row.value, row.low, row.high, *METRICS[row.metric][1:]) for row in records(rows)]
-    wide = rows.assign(text=text).pivot(index=keys, columns="metric", values="text").reindex(columns=list(METRICS))
+    told, keys = rows[rows["metric"].isin(METRICS)], ["condition", "method"]
+    text = [with_interval(row.value, row.low, row.high, *METRICS[row.metric][1:]) for row in records(told)]
+    wide = told.assign(text=text).pivot(index=keys, columns="metric", values="text").reindex(columns=list(METRICS))
     wide = wide.fillna("–").rename(columns={metric: head for metric, (head, *_) in METRICS.items()})
-    wide = wide.join(rows.groupby(keys)[["cases", "objects"]].max().astype(int))
+    wide = wide.join(told.groupby(keys)[["cases", "objects"]].max().astype(int))
     wide = wide.loc[[key for key in pd.MultiIndex.from_product([CONDITIONS, MODELS]) if key in wide.index]]
     wide = wide.rename(CONDITIONS, level="condition").rename(MODELS, level="method")
-    return wide.rename_axis(["asked about", "model"]).reset_index()
+    shown = wide.rename_axis(["asked about", "model"]).reset_index()
+    return Table(rows, shown, {"costs": "; ".join(said) or "not measured"})
 
 
 def figure(results: Results) -> Figure:
     """What each model of the count wastes, where it fails, how it learns, and what it costs."""
     rows = results.measured("scene", condition=[*PLACES, "equal_rate", "trained_on", "cost"], method=list(MODELS))
     drawing, panels = plt.subplots(2, 2, figsize=(9.6, 7.2))
-    _waste(panels[0, 0], rows)
-    _failures(panels[0, 1], rows)
-    _training(panels[1, 0], rows)
-    _costs(panels[1, 1], rows)
-    handles, names = panels[0, 1].get_legend_handles_labels()
+    for axes, draw in zip(panels.flat, (_waste, _failures, _training, _costs), strict=True):
+        draw(axes, rows)
+    for axes in panels[1]:  # factors, from 1 on
+        axes.set(ylabel="off by (90 % of the counts)", ylim=(1, max(axes.get_ylim()[1], 1.1)))
+        axes.grid()
     drawing.tight_layout(h_pad=2, w_pad=2.5, rect=(0, 0.05, 1, 1))
-    drawing.legend(handles, names, loc="lower center", ncol=4, fontsize=9, columnspacing=1.6)
+    explained = panels[0, 1].get_legend_handles_labels()
+    drawing.legend(*explained, loc="lower center", ncol=4, fontsize=9, columnspacing=1.6)
     return Figure(drawing)
 
 
@@ -105,9 +103,7 @@ def _failures(axes: Axes, rows: pd.DataFrame) -> None:
         axes.plot(x, own["value"], marker, color=tint, ms=6, label=MODELS[method])
     axes.axhline(1, color=INK, lw=0.8, ls=":")
     axes.set_yscale("log")
-    axes.yaxis.set_major_locator(FixedLocator(FACTORS))
-    axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
-    axes.yaxis.set_minor_locator(NullLocator())
+    axes.yaxis.set(major_locator=FixedLocator(FACTORS), major_formatter="{x:g}", minor_locator=NullLocator())
     axes.set_xticks(range(len(shown)), [PLACES[condition] for condition in shown], fontsize=8.5)
     axes.tick_params(axis="x", length=0)
     axes.set(ylabel="count / needed", title="where it fails")
@@ -123,7 +119,6 @@ def _training(axes: Axes, rows: pd.DataFrame) -> None:
     own = _of(rows, "left_out", "factor_90")["value"]["lookup"]
     axes.axhline(own, color=LOOKS["lookup"][0], lw=1.4, ls="--")
     axes.set(xlabel="objects trained on (the lookup needs none)", title="few objects to learn from")
-    _from_one(axes)
 
 
 def _costs(axes: Axes, rows: pd.DataFrame) -> None:
@@ -135,10 +130,3 @@ def _costs(axes: Axes, rows: pd.DataFrame) -> None:
     axes.set_xscale("log")
     plain_logarithm(axes.xaxis)
     axes.set(xlabel="cost before the first question / the lookup's", title="accuracy against cost")
-    _from_one(axes)
-
-
-def _from_one(axes: Axes) -> None:
-    """An axis of factors, from 1 on."""
-    axes.set(ylabel="off by (90 % of the counts)", ylim=(1, max(axes.get_ylim()[1], 1.1)))
-    axes.grid()

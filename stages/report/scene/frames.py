@@ -7,10 +7,10 @@ from matplotlib.figure import SubFigure
 from stages.kit.files import read_arrays
 from stages.report.items import Figure
 from stages.report.markdown import number
-from stages.report.results import NotRun, Results
+from stages.report.results import Results, there
 from stages.report.style import INK, plt
 
-from .rows import COLOURS, NAMES, OURS, of_scene, scene_rows
+from .rows import COLOURS, NAMES, OURS, scene_rows
 
 MARGIN = 8  # pixels round the objects
 DRAWN = ("full", "uniform", "uniform_size", "network", OURS)
@@ -21,19 +21,17 @@ SMALL = {"fontsize": 9, "fontweight": "normal", "loc": "center"}  # titles
 
 def build(results: Results) -> Figure:
     """Rendered frames with their displacement, above the faces and errors of all frames."""
-    path = results.folder("scene") / "pictures.npz"
-    if not path.exists():
-        raise NotRun("no data/scene/pictures.npz", "scene")
+    path = there(results.folder("scene") / "pictures.npz", "no data/scene/pictures.npz", "scene")
     stored = read_arrays(path)
-    rows = scene_rows(results, metric=["faces", "error"])
-    scene, tolerance, unit = of_scene(rows)
-    rows = rows[(rows["factor"] == 1) & rows["matched"].isin(["", "error"])]  # plans equal to ours, or for themselves
-    rows = rows[(rows["frame"] != "all") & rows["item"].isna()].astype({"frame": int})
+    rows, scene, tolerance, unit = scene_rows(results, metric=["faces", "error"], factor=1, item=None)
+    rows = rows[rows["matched"].isin(["", "error"])]  # plans equal to ours, or for themselves
+    rows = rows[rows["frame"] != "all"].astype({"frame": int})
     methods, frames = [str(method) for method in stored["methods"]], stored["frames"]
     brightest = tolerance if unit == "pixels" else 1.0  # displacement in pixels
     figure = plt.figure(figsize=(12, ROW * len(frames) + CHART))
     pictures, charts = figure.subfigures(2, 1, squeeze=False, height_ratios=[ROW * len(frames), CHART]).flat
-    grid = pictures.subplots(len(frames), 2 * len(methods) - 1, squeeze=False, gridspec_kw=GRID)
+    bare = {"squeeze": False, "gridspec_kw": GRID, "subplot_kw": {"xticks": [], "yticks": []}}
+    grid = pictures.subplots(len(frames), 2 * len(methods) - 1, **bare)
     for line, frame, rgb, displacement in zip(grid, frames, stored["rgb"], stored["displacement"], strict=True):
         said = rows[rows["frame"] == frame].pivot_table(index="method", columns="metric", values="value")
         box = _box(rgb[0])
@@ -46,7 +44,6 @@ def build(results: Results) -> Figure:
             axes.imshow(values[box].astype(float), cmap="inferno", vmin=0, vmax=brightest, interpolation="nearest")
             axes.set_title(f"displacement,\n{NAMES[method]}", **SMALL)
         for axes in line:
-            axes.set(xticks=[], yticks=[])
             axes.spines[:].set_visible(False)
         line[0].set_ylabel(f"frame {frame}")
     _charts(charts, rows, tolerance, unit)

@@ -7,7 +7,7 @@ import pandas as pd
 
 from stages.report.grid import records
 from stages.report.markdown import with_interval
-from stages.report.results import NotRun, Results
+from stages.report.results import Results
 
 NAMES = {
     "full": "full models",
@@ -27,23 +27,16 @@ OURS = "ours"
 UNIFORM = ("uniform", "uniform_size")
 
 
-def scene_rows(results: Results, **where: Any) -> pd.DataFrame:
-    """Rows of the scene stage with a value; an empty `matched` reads as such. NotRun where there are none."""
-    return results.measured("scene", **where).fillna({"matched": ""})
+def scene_rows(results: Results, **where: Any) -> tuple[pd.DataFrame, str, float, str]:
+    """(rows of the stage with a value and no gaps in `matched`, the scene, the first tolerance, its unit in words)."""
+    rows = results.measured("scene", **where).fillna({"matched": ""})
+    first = rows.dropna(subset=["tolerance"]).iloc[0]
+    return rows, first["group"], float(first["tolerance"]), UNITS[first["kind"]]
 
 
 def amount(value: float, unit: str) -> str:
     """A tolerance in words: 1 pixel, 0.5 pixels."""
     return f"{value:g} {unit.removesuffix('s') if value == 1 else unit}"
-
-
-def of_scene(rows: pd.DataFrame) -> tuple[str, float, str]:
-    """(name of the scene, its tolerance, the tolerance's unit in words)."""
-    known = rows[rows["factor"] == 1].dropna(subset=["tolerance"])
-    if known.empty:
-        raise NotRun("no row at the scene's own tolerance", "scene")
-    first = known.iloc[0]
-    return first["group"], float(first["tolerance"]), UNITS[first["kind"]]
 
 
 def savings(rows: pd.DataFrame) -> pd.DataFrame:
@@ -54,10 +47,7 @@ def savings(rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def left_of(saved: pd.DataFrame) -> str:
-    """How much of a saving at an equal error is left at an equal displacement; empty where that is not measured.
-
-    saved: of `savings`, of one scene or of several.
-    """
+    """How much of `savings` at an equal error is left at an equal displacement; empty where that is not measured."""
     shares = {key: list(values) for key, values in saved.groupby(["rival", "matched"])["value"]}
     pairs = {name: (shares[name, "error"], shares[name, "displacement"]) for name in UNIFORM
              if {(name, "error"), (name, "displacement")} <= set(shares)}  # fmt: skip

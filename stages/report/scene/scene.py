@@ -1,18 +1,13 @@
 """A scene along a camera path: faces and errors of every way to choose the levels of its objects."""
 
-from collections.abc import Mapping
-from typing import Any
-
-import pandas as pd
-
 from stages.report.grid import percent, records
 from stages.report.items import Figure, Table
 from stages.report.markdown import number
 from stages.report.pareto import pareto_chart
-from stages.report.results import NotRun, Results
+from stages.report.results import Results
 from stages.report.style import GREY
 
-from .rows import COLOURS, NAMES, OURS, amount, left_of, of_scene, savings, scene_rows
+from .rows import COLOURS, NAMES, OURS, amount, left_of, savings, scene_rows
 
 MATCHED = {"": "", "error": "mean frame error", "displacement": "mean displacement", "held": "every frame holds",
            "asked": "nothing: as it answers", "limit": "limit of half our faces"}  # fmt: skip
@@ -30,49 +25,34 @@ REFERENCE = "full"
 
 def build(results: Results) -> Table:
     """A line for each way to choose levels and what was made equal to ours."""
-    rows = scene_rows(results, frame="all")
-    scene, tolerance, unit = of_scene(rows)
-    rows = rows[(rows["factor"] == 1) & rows["item"].isna()]
+    rows, scene, tolerance, unit = scene_rows(results, frame="all", factor=1, item=None)
     wide = rows.pivot_table(index=["method", "matched"], columns="metric", values="value", sort=False)
     wide["seconds"] = rows.groupby(["method", "matched"])["seconds"].max()
-    wide, saved = wide[wide["faces"].notna()].reset_index(), savings(rows)
+    wide, saved = wide[wide["faces"].notna()], savings(rows)
     text = {(row.rival, row.matched): row.text for row in records(saved)}
     found = [f"{text[key]} % against {NAMES[key[0]]} ({MATCHED[key[1]]})" for key in SAID if key in text]
+    shown = wide.reindex(columns=list(COLUMNS)).assign(faces=wide["faces"].round())
+    shown = shown.assign(held=shown["held"].map(percent)).map(number).rename(columns=COLUMNS)
+    shown["faces that ours saves, %"] = [text.get(key, "–") for key in wide.index]
+    shown = shown.assign(seconds=wide["seconds"].map(number)).replace({"0.000": "0"})
+    shown = shown.rename(SPOKEN, level="method").rename(MATCHED, level="matched")
+    shown = shown.rename_axis(["levels chosen by", "equal to ours in"]).reset_index()
+    notes = results.rows("scene", frame="all", factor=1).dropna(subset=["note"]).drop_duplicates(["method", "note"])
     words = {
         "scene": scene,
         "tolerance": amount(tolerance, unit),
         "saved": f"{NAMES[OURS].capitalize()} saves {'; '.join(found)}." if found else "",
         "left": left_of(saved),
-        "noted": _noted(results),
+        "noted": "\n".join(f"{NAMES.get(row.method, row.method)}: {row.note}." for row in records(notes)),
     }
-    return Table(wide, _shown(wide, text), words)
-
-
-def _noted(results: Results) -> str:
-    """What the rows say beside their values, or instead of them."""
-    rows = results.rows("scene", frame="all", factor=1).dropna(subset=["note"]).drop_duplicates(["method", "note"])
-    return "\n".join(f"{NAMES.get(row.method, row.method)}: {row.note}." for row in records(rows))
-
-
-def _shown(wide: pd.DataFrame, saved: Mapping[Any, str]) -> pd.DataFrame:
-    shown = wide.reindex(columns=list(COLUMNS)).assign(faces=wide["faces"].round())
-    shown = shown.assign(held=shown["held"].map(percent)).map(number).rename(columns=COLUMNS)
-    shown.insert(0, "levels chosen by", wide["method"].replace(SPOKEN))
-    shown.insert(1, "equal to ours in", wide["matched"].map(MATCHED))
-    keys = zip(wide["method"], wide["matched"], strict=True)
-    shown["faces that ours saves, %"] = [saved.get(key, "–") for key in keys]
-    return shown.assign(seconds=wide["seconds"].map(number)).replace({"0.000": "0"})
+    return Table(wide.reset_index(), shown, words)
 
 
 def chart(results: Results) -> Figure:
     """The error of the rendered frames against the faces that they take, by every way to choose the levels."""
-    rows = scene_rows(results, frame="all", metric=["faces", "error"])
-    scene, _, unit = of_scene(rows)
+    rows, scene, _, unit = scene_rows(results, frame="all", metric=["faces", "error"])
     rows = rows[rows["matched"].isin(["", "error"]) & rows["method"].isin(NAMES)]
     wide = rows.pivot_table(index=["method", "tolerance"], columns="metric", values="value", sort=False).reset_index()
-    full = wide.loc[wide["method"] == REFERENCE, "faces"]
-    if full.empty:
-        raise NotRun("the full models are not measured", "scene")
     wide = wide.sort_values("tolerance", kind="stable")  # the legend's order
     wide["tolerance"] = [amount(value, unit) for value in wide["tolerance"]]
     wide["way"] = wide["method"].map(NAMES)
@@ -83,5 +63,5 @@ def chart(results: Results) -> Figure:
         marker="tolerance",
         tints={name: COLOURS.get(method, GREY) for method, name in NAMES.items() if method in set(wide["method"])},
     )  # fmt: skip
-    figure.words["full"] = full.iloc[0]
+    figure.words["full"] = wide.loc[wide["method"] == REFERENCE, "faces"].iloc[0]
     return figure

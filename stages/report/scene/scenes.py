@@ -27,38 +27,8 @@ def build(results: Results) -> Table:
     saved = savings(rows).rename(columns={"method": "ours", "rival": "method", **SAVED}).set_index(lines.names)
     frame = wide.reindex(lines).reindex(columns=VALUES).dropna(subset=["faces"]).join(saved[[*SAVED.values(), "text"]])
     frame = frame.reset_index()
-    words = {"scenes": "\n".join(map(_said, scenes.values())), "left": left_of(savings(rows))}
-    return Table(frame.drop(columns="text"), _shown(frame), words)
-
-
-def _said(rows: pd.DataFrame) -> str:
-    """What there is in a scene, whether ours meets the target there, and what else the rows say.
-
-    The limits are said by the table's lines.
-    """
-    there = next(iter(records(rows.dropna(subset=["value"]))))
-    text = f"Scene {there.scene}, tolerance {amount(there.tolerance, UNITS[there.kind])}: "
-    text += f"{there.objects:.0f} objects ({there.shapes:.0f} different), {there.frames:.0f} frames."
-    held = (rows[["method", "matched", "metric"]] == [OURS, "", "held"]).all(axis=1) & (rows["value"] == 1)
-    saved = {(row.rival, row.matched): row for row in records(savings(rows))}
-    for rival in UNIFORM:
-        if own := saved.get((rival, "error")):
-            word = on_target(own.value, own.low, own.high, at_least=TARGET, show=_share) if held.any() else "missed"
-            text += f" Against {NAMES[rival]} ours saves {own.text} %; {100 * TARGET:.0f} %, with every frame within "
-            text += f"the tolerance, is {word}."
-        if own := saved.get((rival, "displacement")):
-            text += f" At an equal mean displacement of all pixels it saves {own.text} %."
-    noted = rows[rows["matched"] != "limit"].dropna(subset=["note"]).drop_duplicates(["method", "note"])
-    return text + "".join(f" {NAMES[row.method].capitalize()}: {row.note}." for row in records(noted))
-
-
-def _share(share: float) -> str:
-    return f"{number(100 * share)} %"
-
-
-def _shown(frame: pd.DataFrame) -> pd.DataFrame:
     limited = (frame["matched"] == "limit") & (frame["method"] == OURS)
-    columns = {
+    shown = {
         "scene": frame["scene"],
         "tolerance": [amount(row.tolerance, UNITS[row.kind]) for row in records(frame)],
         "levels chosen by": frame["method"].map(NAMES) + limited.map({True: ", limited", False: ""}),
@@ -69,4 +39,23 @@ def _shown(frame: pd.DataFrame) -> pd.DataFrame:
         "worst jump": frame["step_worst"],
         "faces that ours saves, %": frame["text"].fillna("–"),
     }
-    return pd.DataFrame(columns)
+    words = {"scenes": "\n".join(map(_said, scenes.values())), "left": left_of(savings(rows))}
+    return Table(frame.drop(columns="text"), pd.DataFrame(shown), words)
+
+
+def _said(rows: pd.DataFrame) -> str:
+    """What there is in a scene, whether ours meets the target there, and the notes but for those on limits."""
+    there = next(iter(records(rows.dropna(subset=["value"]))))
+    text = f"Scene {there.scene}, tolerance {amount(there.tolerance, UNITS[there.kind])}: "
+    text += f"{there.objects:.0f} objects ({there.shapes:.0f} different), {there.frames:.0f} frames."
+    held = (rows[["method", "matched", "metric"]] == [OURS, "", "held"]).all(axis=1) & (rows["value"] == 1)
+    saved = {(row.rival, row.matched): row for row in records(savings(rows))}
+    for rival in UNIFORM:
+        if own := saved.get((rival, "error")):
+            word = on_target(own.value, own.low, own.high, at_least=TARGET, show=lambda end: f"{number(100 * end)} %")
+            text += f" Against {NAMES[rival]} ours saves {own.text} %; {100 * TARGET:.0f} %, with every frame within "
+            text += f"the tolerance, is {word if held.any() else 'missed'}."
+        if own := saved.get((rival, "displacement")):
+            text += f" At an equal mean displacement of all pixels it saves {own.text} %."
+    noted = rows[rows["matched"] != "limit"].dropna(subset=["note"]).drop_duplicates(["method", "note"])
+    return text + "".join(f" {NAMES[row.method].capitalize()}: {row.note}." for row in records(noted))

@@ -1,45 +1,42 @@
 """T figure 4.11: accuracy of the classifiers for each size of the pressure array, as a table and a chart."""
 
-from contextlib import suppress
-
 import numpy as np
 import pandas as pd
 
 from stages.kit.split import Split
-from stages.report.grid import grid, means, records
+from stages.report.grid import everywhere, grid, means, records
 from stages.report.items import Figure, Table
-from stages.report.results import NotRun, Results
+from stages.report.results import Results
 from stages.report.style import CYCLE, GREY, MARKERS, label, plain_logarithm, plt
 from stages.report.words import dataset_text
 
-from .claims import STAGE, UNSEEN
+from .claims import COARSE, LARGE, STAGE, UNSEEN
 
-CELLS, PITCH = 32, 0.01  # the array of T figure 4.11 whose accuracies the text gives
 SPLITS = {Split.OBJECTS: "unseen", Split.RANDOM: "known, other touches"}
 
 
 def table(results: Results) -> Table:
     """One row per array, data set and split; the sets that are switched on first."""
-    sets = [results.measured(STAGE, name, metric="accuracy") for name in results.datasets(STAGE) or [None]]
-    rows = pd.concat([rows.sort_values("split", kind="stable") for rows in sets])
+    found = everywhere(results, STAGE, f"no measurements of {STAGE}", metric=["accuracy", "smallest_chosen_again"])
+    rows = pd.concat([rows.sort_values("split", kind="stable") for rows in found.values()])
+    rows, smallest = (rows[rows["metric"] == metric] for metric in ("accuracy", "smallest_chosen_again"))
     thesis = results.thesis("figure_4_11_sensor_32x32_sensel_0_01").set_index("classifier")["accuracy"]
     frame = _cells(rows, ["dataset", "split", "cells", "pitch", "classifier"])
-    frame["thesis"] = frame["classifier"].map(thesis).where((frame["cells"] == CELLS) & (frame["pitch"] == PITCH))
+    frame["thesis"] = frame["classifier"].map(thesis).where((frame["cells"] == LARGE) & (frame["pitch"] == COARSE))
     shown = grid(
         frame.assign(width=(frame["cells"] * frame["pitch"]).map("{:.2f}".format)),
         ["dataset", "split", "cells", "pitch", "width"], "classifier", gap=None,
         names={"dataset": dataset_text, "split": SPLITS.get, "cells": lambda count: f"{count} x {count}"},
         head=lambda name: f"{label(name)}, %",
     ).rename(columns={"split": "objects", "pitch": "pitch, units", "width": "width, units"})  # fmt: skip
-    return Table(frame, shown, {"classes": _classes(rows), "smallest": _smallest(results)})
+    return Table(frame, shown, {"classes": _classes(rows), "smallest": _smallest(smallest)})
 
 
 def _cells(rows: pd.DataFrame, by: list[str]) -> pd.DataFrame:
     """Mean accuracy and interval over the tested objects, one row for each combination of the columns `by`."""
-    seconds = rows.groupby(by, sort=False)["seconds"].median().to_numpy()
     objects = rows.groupby([*by, "item"], sort=False)[["value", "seconds"]].mean().reset_index()
     found = pd.DataFrame(means(objects, by, top=1.0)).rename(columns={"mean": "accuracy"}).drop(columns="values")
-    return found.assign(seconds=seconds)
+    return found.assign(seconds=rows.groupby(by, sort=False)["seconds"].median().to_numpy())
 
 
 def _classes(rows: pd.DataFrame) -> str:
@@ -51,16 +48,15 @@ def _classes(rows: pd.DataFrame) -> str:
     )
 
 
-def _smallest(results: Results) -> str:
+def _smallest(rows: pd.DataFrame) -> str:
     """The smallest array of each set, a line each."""
     lines = []
-    for name in results.datasets(STAGE):
-        with suppress(NotRun):
-            arrays = [
-                f"{label(row.classifier)} {row.cells:.0f} x {row.cells:.0f} at {row.pitch:g} ({100 * row.value:.0f} %)"
-                for row in records(results.measured(STAGE, name, metric="smallest_chosen_again"))
-            ]
-            lines.append(f"The smallest array that is enough, {dataset_text(name)}: {'; '.join(arrays)}.")
+    for name, own in rows.groupby("dataset", sort=False):
+        arrays = [
+            f"{label(row.classifier)} {row.cells:.0f} x {row.cells:.0f} at {row.pitch:g} ({100 * row.value:.0f} %)"
+            for row in records(own)
+        ]
+        lines.append(f"The smallest array that is enough, {dataset_text(str(name))}: {'; '.join(arrays)}.")
     return "\n".join(lines)
 
 
@@ -91,7 +87,6 @@ def chart(results: Results) -> Figure:
     for axes in panels:
         axes.set_xscale("log", base=2)
         axes.set_xticks(sizes, [f"{size}²" for size in sizes])
-        axes.set_xticks([], minor=True)
         axes.grid(axis="y")
     panels[0].set_ylabel("accuracy on unseen objects, %")
     figure.supxlabel("sensels", fontsize=10, y=0.09)

@@ -15,6 +15,7 @@ PHRASES = {
     **{("pitch", pitch): f"{pitch:g} apart" for pitch in (FINE, COARSE, 2 * COARSE)},
 }
 claim = partial(Claim, section="T4.3.2", stage=STAGE, where=UNSEEN, over=("item",), phrases=PHRASES, note=ALL)
+larger = partial(claim, first={"cells": LARGE}, second={"cells": SMALL})
 
 CLAIMS = [
     *(
@@ -23,19 +24,16 @@ CLAIMS = [
               first={"pitch": COARSE}, second={"pitch": FINE})
         for cells in (SMALL, LARGE)
     ),
-    claim(key="more_cells_help", sentence="At equal sensel size a larger sensor is better.",
-          where=UNSEEN | {"pitch": COARSE}, first={"cells": LARGE}, second={"cells": SMALL}),
-    claim(key="more_cells_help_all", section="ours",
-          sentence="At equal sensel size a larger sensor is better, whatever the size.",
-          first={"cells": LARGE}, second={"cells": SMALL}, note=f"{ALL} and all distances of sensels"),
-    claim(key="cells_matter_less_when_fine",
-          sentence="With small sensels, more of them change less than with large ones.",
-          first={"cells": LARGE}, second={"cells": SMALL}, contrast=({"pitch": COARSE}, {"pitch": FINE})),
+    larger(key="more_cells_help", where=UNSEEN | {"pitch": COARSE},
+           sentence="At equal sensel size a larger sensor is better."),
+    larger(key="more_cells_help_all", section="ours", note=f"{ALL} and all distances of sensels",
+           sentence="At equal sensel size a larger sensor is better, whatever the size."),
+    larger(key="cells_matter_less_when_fine", contrast=({"pitch": COARSE}, {"pitch": FINE}),
+           sentence="With small sensels, more of them change less than with large ones."),
     claim(key="knn_best_sensor", sentence="kNN is the best classifier of single touches of unseen objects.",
           where=UNSEEN | BEST, first={"classifier": "knn"}, second={"classifier": highest_of()}, note=""),
-    claim(key="finer_sensor_enough", section="ours",
-          sentence="Half the cells at twice the distance are as good: the width counts, not the cells.",
-          first={"cells": SMALL, "pitch": 2 * COARSE}, second=BEST),
+    claim(key="finer_sensor_enough", section="ours", first={"cells": SMALL, "pitch": 2 * COARSE}, second=BEST,
+          sentence="Half the cells at twice the distance are as good: the width counts, not the cells."),
     claim(key="known_objects_easier", section="ours",
           sentence="Touches of known objects flatter: their class is named more often than unseen ones'.",
           where={"metric": "accuracy"} | BEST, first={"split": Split.RANDOM}, second={"split": Split.OBJECTS}),

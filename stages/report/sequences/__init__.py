@@ -1,12 +1,8 @@
 """Contours: recognising classes of objects by following them (T4.4)."""
 
-from . import claims, contours, figure_4_19, sequences_chart, table_4_7, table_4_9
+from . import charts, claims, contours, tables
 
-TABLES = {"table_4_7": table_4_7.build, "table_4_9": table_4_9.build}
-FIGURES = {
-    "figure_4_14": contours.build_contours,
-    "figure_4_15": contours.build_felt,
-    "figure_4_19": figure_4_19.build,
-}
-CHARTS = {"sequences": sequences_chart.build}
+TABLES = {"table_4_7": tables.table_4_7, "table_4_9": tables.table_4_9}
+FIGURES = {"figure_4_14": contours.figure_4_14, "figure_4_15": contours.figure_4_15, "figure_4_19": charts.figure_4_19}
+CHARTS = {"sequences": charts.chart}
 CLAIMS = claims.CLAIMS

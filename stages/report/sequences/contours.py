@@ -1,6 +1,5 @@
 """T figures 4.14 and 4.15: contours on objects, blind and guided, and what is felt along one."""
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -10,9 +9,9 @@ from stages.contours import Sequences, read_sequences
 from stages.imprints import SectionCurve, contour
 from stages.kit import Mesh, RayScene, Viewpoint
 from stages.kit.camera import project
-from stages.report.drawing import VIEWPOINT, picture, squared
+from stages.report.drawing import VIEWPOINT, name_panels, picture, squared
 from stages.report.items import Figure
-from stages.report.results import NotRun, Results
+from stages.report.results import Results, some
 from stages.report.style import CYCLE, INK, PALE, label, plt
 
 from .rows import BLIND, GUIDED
@@ -24,10 +23,10 @@ STROKES: list[dict[str, Any]] = [{"lw": 0.8, "alpha": 0.45, "ls": (0, (2, 2))}, 
 CLEAR = 2e-3  # units along the view to come off the surface, before asking what hides a point
 
 
-def build_contours(results: Results) -> Figure:
+def figure_4_14(results: Results) -> Figure:
     """The first contours of each strategy on pictures of some objects."""
     found = _chosen(results, OBJECTS)
-    strategies = _strategies(next(iter(found.values()))[1])
+    strategies = list(next(iter(found.values()))[1])
     size = (2.7 * len(found), 2.9 * len(strategies))
     figure, grid = plt.subplots(len(strategies), len(found), figsize=size, squeeze=False)
     for column, (name, (mesh, contours)) in zip(grid.T, found.items(), strict=True):
@@ -37,21 +36,26 @@ def build_contours(results: Results) -> Figure:
             for pair, start, tint in zip(sequences.planes[:PATHS], sequences.positions[:, 0], CYCLE, strict=False):
                 canvas.follow(mesh, pair, tint)
                 axes.plot(*canvas.pixels(start[None]), "o", mfc="white", mec=tint, mew=1.6, ms=5)
-    for axes, strategy in zip(grid[:, 0], strategies, strict=True):
-        axes.text(-0.04, 0.5, label(strategy), rotation=90, ha="right", va="center", transform=axes.transAxes)
+    name_panels(grid, [], map(label, strategies))
     figure.subplots_adjust(wspace=0.03, hspace=0.03)
     words = {"names": ", ".join(found), "count": PATHS, "strategies": " and ".join(map(label, strategies))}
     return Figure(figure, words)
 
 
-def build_felt(results: Results) -> Figure:
+def figure_4_15(results: Results) -> Figure:
     """Imprints along the first contour of an object, the contour with the normals of the array, and their parts."""
     ((name, (mesh, contours)),) = _chosen(results, 1).items()
-    strategy = _strategies(contours)[-1]
-    sequences = contours[strategy]
+    strategy, sequences = list(contours.items())[-1]
     figure = plt.figure(figsize=(9.6, 5.4))
     grid = figure.add_gridspec(2, FRAMES, height_ratios=[1, 2.4], hspace=0.22, wspace=0.08)
-    _draw_imprints([figure.add_subplot(grid[0, column]) for column in range(FRAMES)], sequences)
+    frames = np.linspace(0, len(sequences.images[0]) - 1, FRAMES).round().astype(int)  # at equal steps
+    for column, frame in enumerate(frames):
+        axes = figure.add_subplot(grid[0, column])
+        axes.imshow(sequences.images[0, frame], cmap="gray", vmin=0, vmax=255)
+        axes.set(xticks=[], yticks=[])
+        axes.spines[:].set(visible=True, color=PALE)
+        share = sequences.pitches[0, frame] / sequences.pitches.max()
+        axes.set_title(f"{frame + 1}" + (f", {share:.0%} size" if share < 0.995 else ""), fontsize=9, loc="center")
     _draw_normals(figure.add_subplot(grid[1, :3]), mesh, sequences)
     axes, normals = figure.add_subplot(grid[1, 3:]), sequences.normals[0]
     for part, tint, letter in zip(normals.T, CYCLE, "xyz", strict=False):
@@ -60,8 +64,7 @@ def build_felt(results: Results) -> Figure:
     axes.grid(axis="y")
     axes.set_ylabel("normal", labelpad=0)
     axes.legend(ncols=3, loc="lower center", bbox_to_anchor=(0.5, 0.98))
-    words = {"name": name, "strategy": label(strategy), "count": FRAMES, "frames": len(normals)}
-    return Figure(figure, words)
+    return Figure(figure, {"name": name, "strategy": label(strategy), "count": FRAMES, "frames": len(normals)})
 
 
 def followed(mesh: Mesh, pair: np.ndarray) -> SectionCurve:
@@ -99,17 +102,6 @@ class Canvas:
                 self.axes.plot(across[start : stop + 1], down[start : stop + 1], color=colour, **style)
 
 
-def _draw_imprints(panels: Sequence[Axes], sequences: Sequences) -> None:
-    """Imprints at equal steps along the first contour."""
-    frames = np.linspace(0, len(sequences.images[0]) - 1, len(panels)).round().astype(int)
-    for axes, frame in zip(panels, frames, strict=True):
-        axes.imshow(sequences.images[0, frame], cmap="gray", vmin=0, vmax=255)
-        axes.set(xticks=[], yticks=[])
-        axes.spines[:].set(visible=True, color=PALE)
-        share = sequences.pitches[0, frame] / sequences.pitches.max()
-        axes.set_title(f"{frame + 1}" + (f", {share:.0%} size" if share < 0.995 else ""), fontsize=9, loc="center")
-
-
 def _draw_normals(axes: Axes, mesh: Mesh, sequences: Sequences) -> None:
     """The first contour and the normals of its frames, seen as its plane is seen in full."""
     positions = sequences.positions[0]
@@ -131,20 +123,20 @@ def _facing(positions: np.ndarray) -> Viewpoint:
 
 
 def _chosen(results: Results, count: int) -> dict[str, tuple[Mesh, dict[str, Sequences]]]:
-    """{name: (Mesh, {strategy: Sequences})}: the preferred objects, then evenly by the alphabet, so by class."""
+    """{name: (Mesh, {strategy: Sequences})}: the preferred objects, then evenly by the alphabet, so by class.
+
+    Blind contours and, where there is one, the thesis's guided strategy or else another.
+    """
     folder = results.folder("contours")
-    names = sorted(path.stem for path in folder.glob("*.npz"))
-    if not names:
-        raise NotRun("no data/contours", "contours")
+    names = some(sorted(path.stem for path in folder.glob("*.npz")), "no data/contours", "contours")
     first = [name for name in results.settings.figure_objects if name in names]
     others = [name for name in names if name not in first]
     places = np.linspace(0, len(others) - 1, OBJECTS).round().astype(int) if others else []
     chosen = [*first, *dict.fromkeys(others[place] for place in places)][:count]
-    source = folder.parent.name
-    return {name: (results.mesh(name, source), read_sequences(folder / f"{name}.npz")) for name in chosen}
-
-
-def _strategies(contours: dict[str, Sequences]) -> list[str]:
-    """Blind contours and, where there is one, the thesis's guided strategy or else another."""
-    guided = sorted(set(contours) - {BLIND}, key=lambda method: (method != GUIDED, method))
-    return [one for one in (BLIND, *guided[:1]) if one in contours]
+    found = {}
+    for name in chosen:
+        stored = read_sequences(folder / f"{name}.npz")
+        guided = sorted(stored.keys() - {BLIND}, key=lambda method: (method != GUIDED, method))
+        contours = {strategy: stored[strategy] for strategy in (BLIND, *guided[:1]) if strategy in stored}
+        found[name] = results.mesh(name, folder.parent.name), contours
+    return found

@@ -18,16 +18,7 @@ BLIND, GUIDED = "random", "thesis_ssim"  # the two columns of T table 4.9
 SIZE = ["frames", "cells"]
 
 
-def whole(rows: pd.DataFrame) -> pd.DataFrame:
-    """The rows of sequences with all their frames and cells."""
-    return rows[(rows[SIZE] == rows[SIZE].max()).all(axis=1)]
-
-
-def accuracy(rows: pd.DataFrame, split: str) -> tuple[float, float, float, int]:
-    """(mean, low, high, values): over random splits of the same sequences, or over the objects that were left out.
-
-    rows: of one strategy, classifier and size.
-    """
-    split = Split(split)
+def accuracy(rows: pd.DataFrame, split: Split) -> tuple[float, float, float, int]:
+    """(mean, low, high, values) of one strategy, classifier and size: over random splits, or objects left out."""
     values = rows.loc[(rows["split"] == split) & (rows["metric"] == METRICS[split]), "value"]
     return *within(values, SHARED[split]), len(values)

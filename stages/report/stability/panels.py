@@ -1,16 +1,22 @@
-"""The charts of accuracy against severity, one panel per perturbation and one for the legend, and their words."""
+"""Where something breaks: charts against severity, a panel a perturbation and one for the legend, and tables."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
+import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
+from stages.report.grid import records
 from stages.report.markdown import number
 from stages.report.style import GREY, label, plt
 
 COLUMNS = 4
+ENDS = ("breaking_point", "low", "high")
+CLEAN, ACCURACY = ([name, f"{name}_low", f"{name}_high"] for name in ("clean", "accuracy"))
+# {perturbation: {line: frame of severity, from mild to harsh, ACCURACY and CLEAN, of which intervals may be absent}}
+Curves = dict[str, dict[tuple[str, ...], pd.DataFrame]]
 
 
 def panels(names: Sequence[str], words: str, width: float, height: float) -> tuple[Drawing, dict[str, Axes], Axes]:
@@ -33,23 +39,41 @@ def finish(axes: Axes, name: str, unit: str, severities: Sequence[float]) -> Non
     axes.grid(axis="y")
 
 
-def draw_line(axes: Axes, values: np.ndarray, tint: str, mark: str) -> None:
-    """Accuracies, low and high ends (severities + 1, 3) as a line with upright bars, which are cut to 0..100 %."""
-    axes.plot(100 * values[:, 0], color=tint, marker=mark, ms=3.5, lw=1.4)
-    for place, ends in enumerate(values[:, 1:]):
-        axes.plot([place, place], 100 * np.clip(ends, 0, 1), color=tint, lw=0.9, alpha=0.4)
+def degradation(
+    curves: Curves, units: Mapping[str, str], looks: Mapping[Any, Mapping[str, Any]], chance: float, height: float
+) -> tuple[Drawing, dict[str, Axes]]:
+    """(figure, {perturbation: axes}): accuracies against severity as lines with upright bars, cut to 0..100 %.
 
-
-def add_legend(figure: Drawing, axes: Axes, lines: Mapping[str, Mapping[str, Any]]) -> None:
-    """Explains lines, {words: matplotlib's properties}, and that of guessing, in the axes of the legend."""
-    for words, style in {**lines, "guessing": {"ls": ":", "color": GREY, "lw": 1.2}}.items():
-        axes.plot([], [], label=words, **style)
-    axes.legend(loc="center left", fontsize=9)
+    units: {perturbation: words}; looks: {line: matplotlib's properties}, also of what else the legend explains.
+    """
+    figure, grid, legend = panels(list(curves), "accuracy, %", 10.2, height)
+    for name, axes in grid.items():
+        for line, points in curves[name].items():
+            values = np.vstack([points.reindex(columns=CLEAN)[:1], points.reindex(columns=ACCURACY)])
+            axes.plot(100 * values[:, 0], **looks[line], ms=3.5, lw=1.4)
+            for place, ends in enumerate(values[:, 1:]):
+                axes.plot([place, place], 100 * np.clip(ends, 0, 1), color=looks[line]["color"], lw=0.9, alpha=0.4)
+        axes.axhline(100 * chance, color=GREY, lw=1.2, ls=":")
+        finish(axes, name, units[name], list(max(curves[name].values(), key=len)["severity"]))
+    for look in [*looks.values(), {"label": "guessing", "ls": ":", "color": GREY, "lw": 1.2}]:
+        legend.plot([], [], **{"ms": 4, "lw": 1.4, **look})
+    legend.legend(loc="center left", fontsize=9)
     figure.tight_layout(h_pad=1.2, w_pad=0.6)
+    return figure, grid
 
 
-def breaking_text(ends: Sequence[float], harshest: float, unharmed: float) -> str:
-    """`0.2 [0.1, > 0.3]`: a breaking point, and those of the interval; NaN is beyond the harshest severity: `> 0.3`."""
-    beyond = f"{'<' if harshest < unharmed else '>'} {harshest:g}"
-    at, *interval = (beyond if np.isnan(one) else number(one, 2) for one in ends)
-    return f"{at} [{', '.join(interval)}]" if {at, *interval} != {beyond} and interval else at
+def broken(
+    frame: pd.DataFrame, heads: Iterable[str], unharmed: Mapping[str, float], ends: Sequence[str] = ENDS
+) -> pd.DataFrame:
+    """A line a perturbation for a reader, with the columns `heads`, one for each row of `frame`: `0.2 [0.1, > 0.3]`.
+
+    frame: perturbation, unit, the harshest severity and those where it breaks, with the interval: the columns `ends`,
+    where NaN is beyond the harshest: `> 0.3`. unharmed: {perturbation: severity without a change}.
+    """
+    shown = {}
+    for head, row in zip(heads, records(frame), strict=True):
+        beyond = f"{'<' if row.harshest < unharmed[row.perturbation] else '>'} {row.harshest:g}"
+        at, *interval = (beyond if np.isnan(getattr(row, end)) else number(getattr(row, end), 2) for end in ends)
+        line = shown.setdefault(row.perturbation, {"perturbation": label(row.perturbation), "unit": row.unit})
+        line[head] = f"{at} [{', '.join(interval)}]" if {at, *interval} != {beyond} and interval else at
+    return pd.DataFrame(list(shown.values())).fillna("–")

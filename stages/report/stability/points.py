@@ -8,15 +8,15 @@ import pandas as pd
 from stages.kit import Mesh
 from stages.kit.breaking_point import BROKEN
 from stages.kit.files import read_arrays
-from stages.report.drawing import show, square_grid
-from stages.report.grid import grouped, percent, within
+from stages.report.drawing import name_panels, show, square_grid
+from stages.report.grid import percent, within
 from stages.report.items import Figure, Table
-from stages.report.results import NotRun, Results
+from stages.report.results import Results, some
 from stages.report.style import GREY, INK, MARKERS, colours, label
 from stages.stability import PERTURBATIONS
 from stages.stability.summary import breaking_points, mean_repeatability, middle_severity
 
-from .panels import breaking_text, finish, panels
+from .panels import broken, finish, panels
 
 STAGE = "stability"
 CHANCE = "random"  # it looks at nothing, so that it cannot break; its level is a column
@@ -29,37 +29,30 @@ def table(results: Results) -> Table:
     found = []
     for (perturbation, method), breaking in breaking_points(points).items():
         own = rows.loc[rows["perturbation"] == perturbation]
-        severities = list(dict.fromkeys(own["severity"]))
+        severities = list(own["severity"].unique())
         middle = middle_severity(severities)
         here = own.loc[(own["method"] == method) & (own["severity"] == middle)]
-        values = {metric: here.loc[here["metric"] == metric, "value"] for metric in ("repeatability", "drift")}
-        mean, low, high = within(list(values["repeatability"]))
+        mean, low, high = within(here.loc[here["metric"] == "repeatability", "value"])
         found.append({
             "perturbation": perturbation, "unit": PERTURBATIONS[perturbation].unit, "method": method,
-            "severity": middle, "repeatability": mean, "low": low, "high": high, "drift": values["drift"].mean(),
+            "severity": middle, "repeatability": mean, "low": low, "high": high,
+            "drift": here.loc[here["metric"] == "drift", "value"].mean(),
             "chance": own.loc[own["metric"] == "chance", "value"].mean(), "harshest": severities[-1],
             "breaking_point": breaking,
         })  # fmt: skip
     frame = pd.DataFrame(found)
-    shown = [
-        {"perturbation": label(name), "unit": unit}
-        | {
-            label(row["method"]): breaking_text([row["breaking_point"]], row["harshest"], PERTURBATIONS[name].unharmed)
-            for row in group.to_dict("records")
-        }
-        | {"chance, %": percent(group["chance"].iloc[0])}
-        for (name, unit), group in grouped(frame, ["perturbation", "unit"])
-    ]
+    unharmed = {name: known.unharmed for name, known in PERTURBATIONS.items()}
+    shown = broken(frame, frame["method"].map(label), unharmed, ["breaking_point"])
+    shown["chance, %"] = [percent(share) for share in frame.drop_duplicates("perturbation")["chance"]]
     words = {"objects": ", ".join(dict.fromkeys(points["item"])), "not_run": results.left_out(STAGE)}
-    return Table(frame, pd.DataFrame(shown), words)
+    return Table(frame, shown, words)
 
 
 def figure(results: Results) -> Figure:
     """Repeatability against severity: a panel a perturbation, a line a method."""
     rows = results.measured(STAGE, metric=["repeatability", "chance"])
     means = mean_repeatability(rows.loc[rows["method"] != CHANCE])
-    chances = grouped(rows.loc[rows["metric"] == "chance"], ["perturbation", "severity"])
-    chance = {key: 100 * group["value"].mean() for key, group in chances}
+    chance = 100 * rows.loc[rows["metric"] == "chance"].groupby(["perturbation", "severity"])["value"].mean()
     methods, perturbations = (list(dict.fromkeys(means[key])) for key in ("method", "perturbation"))
     drawing, grid, legend = panels(perturbations, "points found again, %", 9.6, 2.25)
     for perturbation, axes in grid.items():
@@ -71,7 +64,7 @@ def figure(results: Results) -> Figure:
                 [100, *(100 * wide[method])], color=tint, marker=MARKERS[k % len(MARKERS)], ms=4, lw=1.4,
                 label=label(method), clip_on=False,
             )  # fmt: skip
-        guessed = [np.nan, *(chance.get((perturbation, one), np.nan) for one in severities)]
+        guessed = [np.nan, *chance[perturbation].reindex(severities)]
         axes.plot(guessed, ":", color=INK, marker=".", ms=3, lw=1.2, label="chance")
         axes.axhline(100 * BROKEN, color=GREY, lw=0.6)
         axes.set_xlim(-0.15, len(severities) + 0.15)
@@ -93,25 +86,20 @@ def failures(results: Results) -> Figure:
         again = f"{100 * float(case['repeatability']):.0f} % found again"
         for axes, title in ((before, f"{label(method)}\n{case['item']}"), (after, f"{what}\n{again}")):
             axes.set_title(title, fontsize=9, fontweight="normal", loc="center")
-    for axes, text in zip(grid[:, 0], ("before", "after"), strict=True):
-        axes.text(-0.04, 0.5, text, rotation=90, va="center", ha="right", transform=axes.transAxes)
-    units = {label(case["perturbation"]): PERTURBATIONS[case["perturbation"]].unit for case in worst.values()}
-    said = "; ".join(f"{name}: {unit}" for name, unit in units.items())
-    return Figure(drawing, {"methods": ", ".join(map(label, worst)), "units": said})
+    name_panels(grid, beside=("before", "after"))
+    names = dict.fromkeys(str(case["perturbation"]) for case in worst.values())
+    units = "; ".join(f"{label(name)}: {PERTURBATIONS[name].unit}" for name in names)
+    return Figure(drawing, {"methods": ", ".join(map(label, worst)), "units": units})
 
 
 def _worst(results: Results) -> dict[str, dict[str, Any]]:
     """{method: its arrays on the object where the fewest points were found again}."""
-    found: dict[str, dict[str, Any]] = {}
+    cases: dict[str, dict[str, dict[str, Any]]] = {}
     for path in sorted(results.folder(STAGE).glob("*.npz")):
-        stored = read_arrays(path)
-        for method in dict.fromkeys(key.rpartition(".")[0] for key in stored):
-            start = f"{method}."
-            case = {key.removeprefix(start): values for key, values in stored.items() if key.startswith(start)}
-            case |= {"item": path.stem, "perturbation": str(case["perturbation"])}
-            share = np.nan_to_num(case["repeatability"])
-            if method not in found or share < np.nan_to_num(found[method]["repeatability"]):
-                found[method] = case
-    if not found:
-        raise NotRun("no data/stability", STAGE)
-    return found
+        for key, values in read_arrays(path).items():
+            method, _, name = key.rpartition(".")
+            cases.setdefault(method, {}).setdefault(path.stem, {"item": path.stem})[name] = values
+    return {
+        method: min(found.values(), key=lambda case: np.nan_to_num(case["repeatability"]))
+        for method, found in some(cases, "no data/stability", STAGE).items()
+    }

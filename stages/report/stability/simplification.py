@@ -1,6 +1,7 @@
 """What becomes of broken meshes when they are simplified: valid, refused, ruined or crash, and how the error grows."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -11,7 +12,7 @@ from matplotlib.patches import Patch
 
 from stages.report.grid import grouped
 from stages.report.items import Figure, Table
-from stages.report.results import NotRun, Results
+from stages.report.results import Results
 from stages.report.style import CYCLE, INK, PALE, label, plt
 from stages.stability.qem_error_curve import LEAST_ERROR
 from stages.stability.simplification import BUDGETS, KEPT_BUDGETS, OUTCOMES, SMALLEST
@@ -26,42 +27,36 @@ SHOWN = ("sound", "wide_holes", "fins", "needles", "islands", "noise_0.01", "sna
 
 def table(results: Results) -> Table:
     """Cases by outcome, a line a kind of damage; the fewest faces, and seconds of each backend."""
-    cases = _simplified(results)
+    cases = results.measured(STAGE, metric="faces")
     frame = pd.DataFrame([
         {"damage": damage, "backend": backend, **_outcomes(group)}
         for (damage, backend), group in grouped(cases, ["perturbation", "method"])
     ])  # fmt: skip
     counted = [*OUTCOMES, "smallest_named", "smallest_had"]
-    total = frame.pivot_table(index="backend", values=counted, aggfunc="sum", sort=False).reset_index()
-    shown = []
-    for (damage,), group in grouped(pd.concat([frame, total.assign(damage="all", least=np.nan)]), ["damage"]):
-        line = {"damage": label(damage)}
-        for row in group.to_dict("records"):
-            line[row["backend"]] = " / ".join(str(row[outcome]) for outcome in OUTCOMES)
-            line[f"least, {row['backend']}"] = row["least"]
-            line[f"smallest had, {row['backend']}"] = f"{row['smallest_had']} of {row['smallest_named']}"
-        shown.append(line)
+    total = frame.groupby("backend", sort=False)[counted].sum().reset_index().assign(damage="all", least=np.nan)
+    shown = {}
+    for row in pd.concat([frame, total]).to_dict("records"):
+        line, backend = shown.setdefault(row["damage"], {"damage": label(row["damage"])}), row["backend"]
+        line[backend] = " / ".join(str(row[outcome]) for outcome in OUTCOMES)
+        line[f"least, {backend}"] = row["least"]
+        line[f"smallest had, {backend}"] = f"{row['smallest_had']} of {row['smallest_named']}"
+    valid = cases.loc[(cases["outcome"] == "valid") & (cases["budget"] != SMALLEST)].fillna({"soft": ""})
+    keys, backends = ["item", "perturbation", "budget", "kept", "soft"], cases["method"].unique()
+    means = valid.pivot_table("seconds", index=keys, columns="method").dropna().mean()  # of what all backends can
+    times = [f"{label(one)} {means[one]:.4f} ({means[one] / means[backends[0]]:.2g} times)" for one in backends]
     objects = ", ".join(dict.fromkeys(cases["item"]))
     words = {"outcomes": " / ".join(OUTCOMES), "ruin": RUIN, "largest": 100 * LARGEST_ERROR, "objects": objects}
-    return Table(frame, pd.DataFrame(shown), words | {"times": _times(cases)})
+    return Table(frame, pd.DataFrame(list(shown.values())), words | {"times": ", ".join(times)})
 
 
-def _simplified(results: Results) -> pd.DataFrame:
-    """The rows about simplification, one per case; NotRun where there is none."""
-    rows = results.measured(STAGE, metric="faces")
-    if "outcome" not in rows:
-        raise NotRun("stability simplified no broken mesh", STAGE)
-    return rows
-
-
-def _outcomes(cases: pd.DataFrame) -> dict[str, int | float | str]:
+def _outcomes(cases: pd.DataFrame) -> dict[str, Any]:
     """Of one damage and backend: cases by outcome, fewest faces, median seconds, and why the worst case failed."""
-    counts = {outcome: int((cases["outcome"] == outcome).sum()) for outcome in OUTCOMES}
     had = cases.loc[cases["budget"] == SMALLEST, "outcome"] == "valid"
     bad = cases.loc[cases["outcome"].isin(OUTCOMES[1:])].sort_values("outcome", ascending=False)
     return {
-        **counts, "least": least_valid(cases), "smallest_named": len(had), "smallest_had": sum(had),
-        "seconds": float(cases["seconds"].agg("median")), "worst": next(iter(bad["note"]), ""),
+        **{outcome: (cases["outcome"] == outcome).sum() for outcome in OUTCOMES}, "least": least_valid(cases),
+        "smallest_named": len(had), "smallest_had": sum(had), "seconds": cases["seconds"].median(),
+        "worst": next(iter(bad["note"]), ""),
     }  # fmt: skip
 
 
@@ -73,18 +68,9 @@ def least_valid(cases: pd.DataFrame) -> float:
     return min(counts.loc[counts["valid"].cummin(), "severity"], default=np.nan)
 
 
-def _times(cases: pd.DataFrame) -> str:
-    """Mean seconds of each backend, and how many times those of the first, over the cases valid with all of them."""
-    keys = ["item", "perturbation", "budget", "kept", "soft"]
-    valid = cases.loc[(cases["outcome"] == "valid") & (cases["budget"] != SMALLEST)].fillna({"soft": ""})
-    means = valid.pivot_table(index=keys, columns="method", values="seconds", sort=False).dropna().mean().to_dict()
-    backends = list(dict.fromkeys(cases["method"]))
-    return ", ".join(f"{label(one)} {means[one]:.4f} ({means[one] / means[backends[0]]:.2g} times)" for one in backends)
-
-
 def figure(results: Results) -> Figure:
     """Which broken meshes can be simplified to how few faces, by which backend, and the error until it breaks."""
-    cases, errors = _simplified(results), results.rows(STAGE, metric="error")
+    cases, errors = results.measured(STAGE, metric="faces"), results.rows(STAGE, metric="error")
     backends, damages = (list(dict.fromkeys(cases[column])) for column in ("method", "perturbation"))
     height = 0.235 * len(damages)
     drawing, grid = plt.subplots(
@@ -111,11 +97,10 @@ def figure(results: Results) -> Figure:
     return Figure(drawing, words | {"objects": ", ".join(dict.fromkeys(cases["item"]))})
 
 
-def _squares(axes: Axes, cases: pd.DataFrame, column: str, lines: Sequence[str], budgets: Sequence[str]) -> None:
+def _squares(axes: Axes, cases: pd.DataFrame, column: str, lines: list[str], budgets: list[str]) -> None:
     """Coloured squares, a row a damage or kept set, a column a budget; the worst over the objects."""
     rank = cases.assign(rank=cases["outcome"].map(OUTCOMES.index))
-    worst = rank.pivot_table(index=column, columns="budget", values="rank", aggfunc="max")
-    worst = worst.reindex(list(lines), columns=list(budgets))
+    worst = rank.pivot_table("rank", index=column, columns="budget", aggfunc="max").reindex(lines, columns=budgets)
     axes.imshow(worst, cmap=ListedColormap([COLOURS[name] for name in OUTCOMES]), vmin=0, vmax=3, aspect="auto")
     for (down, across), value in np.ndenumerate(worst.to_numpy()):
         if value == value:
@@ -134,16 +119,16 @@ def _squares(axes: Axes, cases: pd.DataFrame, column: str, lines: Sequence[str],
 
 def _curves(axes: Axes, errors: pd.DataFrame, styles: Mapping[str, str]) -> None:
     """Mean error over the objects against the faces, a colour a damage and a style a backend."""
+    errors = errors.loc[errors["budget"] != SMALLEST]
+    errors = errors.assign(percent=100 * np.maximum(errors["value"], LEAST_ERROR))
     for damage, colour in zip(SHOWN, CYCLE, strict=True):
         for backend, style in styles.items():
             here = errors.loc[(errors["perturbation"] == damage) & (errors["method"] == backend)]
-            here = here.loc[here["budget"] != SMALLEST]
-            here = here.assign(percent=100 * np.maximum(here["value"], LEAST_ERROR))
             means = here.groupby("budget").agg({"severity": "mean", "percent": "mean"}).sort_values("severity")
             axes.plot(means["severity"], means["percent"], ls=style, marker=".", color=colour, lw=1.2)
             bad = here.loc[here["outcome"] == "ruined"]
             axes.plot(bad["severity"], bad["percent"], "x", color=colour, ms=8, mew=1.6)
         axes.plot([], [], color=colour, label=label(damage))
-    axes.set(xscale="log", yscale="log", xlabel="faces asked for", ylabel="mean error, % of the diagonal")
-    axes.set_title("error until it breaks")
+    axes.set(xscale="log", yscale="log", title="error until it breaks")
+    axes.set(xlabel="faces asked for", ylabel="mean error, % of the diagonal")
     axes.grid(True)

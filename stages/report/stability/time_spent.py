@@ -6,7 +6,7 @@ from itertools import product
 import pandas as pd
 
 from stages.report.items import Table
-from stages.report.results import NotRun, Results
+from stages.report.results import NotRun, Results, some
 
 KEYS = ["value", "metric", "note", "task", "view", "split"]  # in which rows of one piece of work differ
 SEEN = "seen_share"  # rows of the views that stand for one piece of work, the views in a row
@@ -17,20 +17,11 @@ def build(results: Results) -> Table:
     parts = []
     for stage, dataset in product(results.stages, results.sets):
         with suppress(NotRun):
-            parts.append(_timed(results.rows(stage, dataset)).assign(stage=stage))
-    timed = pd.concat(parts) if parts else pd.DataFrame()
-    if timed.empty:
-        raise NotRun("nothing was timed", "meshes")
-    groups = timed.groupby(["stage", "method"], sort=False)["seconds"]
-    frame = groups.agg(["size", "mean", "sum"]).reset_index()
-    frame.columns = ["stage", "method", "pieces of work", "seconds each", "seconds"]
-    frame["share, %"] = 100 * frame["seconds"] / (frame["seconds"].sum() or 1.0)
-    frame = frame.sort_values("seconds", ascending=False, kind="stable")
-    return Table(frame, words={"sets": ", ".join(results.sets)})
-
-
-def _timed(rows: pd.DataFrame) -> pd.DataFrame:
-    """Method and seconds of each piece of work of a stage on a set; empty where nothing was timed."""
-    rows = rows.loc[~((rows["metric"] == SEEN) & (rows.get("views") != 1))].dropna(subset=["seconds"])
-    rows = rows.drop(columns=[key for key in KEYS if key in rows]).drop_duplicates()
-    return rows.assign(method=rows["method"].fillna("")).loc[:, ["method", "seconds"]]
+            rows = results.rows(stage, dataset).dropna(subset=["seconds"])
+            rows = rows.loc[~((rows["metric"] == SEEN) & (rows.get("views") != 1))]
+            parts.append(rows.drop(columns=KEYS, errors="ignore").drop_duplicates().assign(stage=stage))
+    timed = pd.concat(some([part for part in parts if len(part)], "nothing was timed", "meshes"))
+    said = {"pieces of work": "size", "seconds each": "mean", "seconds": "sum"}
+    frame = timed.fillna({"method": ""}).groupby(["stage", "method"], sort=False)["seconds"].agg(**said).reset_index()
+    frame["share, %"] = 100 * frame["seconds"] / frame["seconds"].sum()
+    return Table(frame.sort_values("seconds", ascending=False, kind="stable"), words={"sets": ", ".join(results.sets)})

@@ -4,7 +4,6 @@ from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
 
 from stages.kit.breaking_point import breaking_point, lead_left
 from stages.kit.split import shared_by
@@ -15,7 +14,7 @@ from stages.report.results import Results
 from stages.report.style import GREY, MARKERS, label
 from stages.touch_stability import CLEAN, PERTURBATIONS
 
-from .panels import add_legend, breaking_text, draw_line, finish, panels
+from .panels import ACCURACY, Curves, broken, degradation
 
 STAGE = "touch_stability"
 KEYS = ["split", "features", "classifier"]
@@ -26,34 +25,32 @@ LINES = {  # (split, features, classifier): how a person says it
     ("random", "imprint_place", "knn"): "kNN with places",
 }
 TINTS = ("#0072B2", "#56B4E9", "#D55E00", "#009E73")
+UNITS = {name: known.unit for name, known in PERTURBATIONS.items()}
+UNHARMED = {name: known.unharmed for name, known in PERTURBATIONS.items()}
 ENOUGH = 0.02  # accuracy that may be lost before it is said to suffer
 COLUMNS = ["perturbation", "unit", *KEYS, "breaking_point", "low", "high", "harmless", "harshest", "accuracy"]
+LEFT = ["left", "left_low", "left_high"]
 
 
 def curve(rows: pd.DataFrame, perturbation: str, line: Sequence[str]) -> pd.DataFrame:
-    """Frame by severity, from mild to harsh: accuracy, left, each with low and high; empty where it was not measured.
+    """Frame by severity, from mild to harsh: clean, lost, ACCURACY and LEFT; empty where it was not measured.
 
     left: what is left of the lead over guessing. The intervals are over the repetitions, widened for what they share.
     """
     mine = rows.loc[rows[KEYS].eq(list(line)).all(axis=1)].set_index("repetition")
     clean, mine = (mine.loc[mine["perturbation"] == name] for name in (CLEAN, perturbation))
-    found = []
-    for (severity,), group in grouped(mine, ["severity"]) if len(clean) else ():
-        left = lead_left(group["value"], clean["value"].mean(), mine["chance"].iloc[0])
-        point = {"severity": severity, "clean": clean["value"].mean(), "lost": (clean["value"] - group["value"]).mean()}
-        for name, scores in (("accuracy", group["value"]), ("left", left)):
-            ends = interval(scores, shared_by(line[0]))
-            point |= dict(zip((name, f"{name}_low", f"{name}_high"), ends, strict=True))
-        found.append(point)
-    order = sorted(found, key=lambda point: abs(point["severity"] - PERTURBATIONS[perturbation].unharmed))
-    return pd.DataFrame(order)
+    found, whole, share = [], clean["value"].mean(), shared_by(line[0])
+    for (severity,), group in grouped(mine, ["severity"]):
+        lost, left = clean["value"] - group["value"], lead_left(group["value"], whole, mine["chance"].iloc[0])
+        found.append((severity, whole, lost.mean(), *interval(group["value"], share), *interval(left, share)))
+    found.sort(key=lambda point: abs(point[0] - UNHARMED[perturbation]))
+    return pd.DataFrame(found, columns=["severity", "clean", "lost", *ACCURACY, *LEFT])
 
 
 def breaking(points: pd.DataFrame, perturbation: str) -> tuple[float, ...]:
     """(severity at which half of the lead is lost, and for the low and the high end of the interval); NaN: beyond."""
-    ends = [points[name].fillna(points["left"]) for name in ("left", "left_low", "left_high")]
-    unharmed = PERTURBATIONS[perturbation].unharmed
-    return tuple(breaking_point(list(points["severity"]), list(end), unharmed) for end in ends)
+    ends = [list(points[name].fillna(points["left"])) for name in LEFT]
+    return tuple(breaking_point(list(points["severity"]), end, UNHARMED[perturbation]) for end in ends)
 
 
 def harmless(points: pd.DataFrame) -> float:
@@ -64,64 +61,48 @@ def harmless(points: pd.DataFrame) -> float:
 
 def table(results: Results) -> Table:
     """Breaking points by classifier; what was not measured, or has no lead to lose, is left out."""
-    rows, found, shown = results.measured(STAGE, metric="accuracy"), [], []
-    for name in dict.fromkeys(rows.loc[rows["perturbation"] != CLEAN, "perturbation"]):
-        known, cells, fine = PERTURBATIONS[name], {}, []
-        for line, words in LINES.items():
-            points = curve(rows, name, line)
-            if points.empty or points["left"].isna().all():
-                continue
-            ends, harshest = breaking(points, name), points["severity"].iloc[-1]
-            fine.append(harmless(points))
-            found.append((name, known.unit, *line, *ends, fine[-1], harshest, points["accuracy"].iloc[-1]))
-            cells[f"{words} breaks at"] = breaking_text(ends, harshest, known.unharmed)
-        if cells:
-            unknown = {f"{words} breaks at": "–" for words in LINES.values()}
-            harm = {"harmless to kNN": "none" if np.isnan(fine[0]) else f"{fine[0]:g}"}
-            shown.append({"perturbation": label(name), "unit": known.unit} | unknown | cells | harm)
+    (rows, curves), found = _curves(results), []
+    for name, lines in curves.items():
+        for line, points in lines.items():
+            if points["left"].notna().any():
+                ends, last = (*breaking(points, name), harmless(points)), points[["severity", "accuracy"]].iloc[-1]
+                found.append((name, UNITS[name], *line, *ends, *last))
+    frame = pd.DataFrame(found, columns=COLUMNS)
+    heads = {line: f"{words} breaks at" for line, words in LINES.items()}
+    shown = broken(frame, frame.set_index(KEYS).index.map(heads), UNHARMED)
+    shown = shown.reindex(columns=["perturbation", "unit", *heads.values()], fill_value="–")
+    first = frame.drop_duplicates("perturbation")["harmless"]
+    shown["harmless to kNN"] = ["none" if np.isnan(severity) else f"{severity:g}" for severity in first]
     clean = {key: group["value"].mean() for key, group in grouped(rows.loc[rows["perturbation"] == CLEAN], KEYS)}
     said = [f"{words} {100 * clean[line]:.0f} %" for line, words in LINES.items() if line in clean]
-    objects = results.group_text(rows["group"].iloc[0])
+    group, method = rows[["group", "method"]].iloc[0]
     words = {
-        "points": 100 * ENOUGH, "objects": objects[:1].upper() + objects[1:], "method": label(rows["method"].iloc[0]),
+        "points": 100 * ENOUGH, "objects": results.group_text(group).capitalize(), "method": label(method),
         "clean": ", ".join(said), "guessing": 100 * rows["chance"].iloc[0], "not_run": results.left_out(STAGE),
     }  # fmt: skip
-    return Table(pd.DataFrame(found, columns=COLUMNS), pd.DataFrame(shown), words)
+    return Table(frame, shown, words)
 
 
 def figure(results: Results) -> Figure:
     """Accuracy against severity: a panel a perturbation, a line a classifier, a cross where it breaks."""
-    rows = results.measured(STAGE, metric="accuracy")
-    found = [one for one in PERTURBATIONS if one in set(rows["perturbation"])]
-    chance = rows["chance"].iloc[0]
-    drawing, grid, legend = panels(found, "accuracy, %", 10.2, 2.3)
-    for perturbation, axes in grid.items():
-        ticks = []
-        for kind, tint, mark in zip(LINES, TINTS, MARKERS, strict=False):
-            points = curve(rows, perturbation, kind)
-            if len(points):
-                ticks = max(ticks, list(points["severity"]), key=len)
-                _draw(axes, points, perturbation, tint, mark)
-        axes.axhline(100 * chance, color=GREY, lw=1.2, ls=":")
-        finish(axes, perturbation, PERTURBATIONS[perturbation].unit, ticks)
-    marks = zip(LINES.values(), TINTS, MARKERS, strict=False)
-    lines = {words: {"color": tint, "marker": mark, "ms": 4, "lw": 1.4} for words, tint, mark in marks}
-    cross = {"ls": "", "marker": "x", "color": GREY, "ms": 7}
-    add_legend(drawing, legend, lines | {"half of the lead lost": cross})
-    words = {"perturbations": len(found), "classifiers": ", ".join(LINES.values())}
+    (rows, curves), marks = _curves(results), zip(LINES.items(), TINTS, MARKERS, strict=False)
+    looks: dict = {line: {"label": words, "color": tint, "marker": mark} for (line, words), tint, mark in marks}
+    looks["cross"] = {"label": "half of the lead lost", "ls": "", "marker": "x", "color": GREY, "ms": 7}
+    drawing, grid = degradation(curves, UNITS, looks, rows["chance"].iloc[0], 2.3)
+    for name, axes in grid.items():
+        for line, points in curves[name].items():
+            steps = np.array([UNHARMED[name], *points["severity"]])
+            sign, places = np.sign(steps[-1] - steps[0]), np.arange(len(steps))  # np.interp needs what rises
+            where = np.interp(sign * breaking(points, name)[0], sign * steps, places)
+            height = np.interp(where, places, [100 * points["clean"].iloc[0], *(100 * points["accuracy"])])
+            axes.plot(where, height, "x", color=looks[line]["color"], ms=7, mew=1.8, zorder=4)
+    words = {"perturbations": len(curves), "classifiers": ", ".join(LINES.values())}
     words |= {"objects": results.group_text(rows["group"].iloc[0]), "method": label(rows["method"].iloc[0])}
     return Figure(drawing, words)
 
 
-def _draw(axes: Axes, points: pd.DataFrame, perturbation: str, tint: str, mark: str) -> None:
-    """One line with its intervals and its cross."""
-    undisturbed = [points["clean"].iloc[0], np.nan, np.nan]
-    values = np.vstack([undisturbed, points[["accuracy", "accuracy_low", "accuracy_high"]]])
-    draw_line(axes, values, tint, mark)
-    at = breaking(points, perturbation)[0]
-    if np.isfinite(at):
-        steps = np.array([PERTURBATIONS[perturbation].unharmed, *points["severity"]])
-        sign, places = np.sign(steps[-1] - steps[0]), np.arange(len(steps))  # np.interp needs what rises
-        where = np.interp(sign * at, sign * steps, places)
-        height = np.interp(where, places, 100 * values[:, 0])
-        axes.plot(where, height, "x", color=tint, ms=7, mew=1.8, zorder=4)
+def _curves(results: Results) -> tuple[pd.DataFrame, Curves]:
+    """(rows, the curves of those that were measured)."""
+    rows = results.measured(STAGE, metric="accuracy")
+    names = [name for name in PERTURBATIONS if name in set(rows["perturbation"])]
+    return rows, {name: {line: found for line in LINES if len(found := curve(rows, name, line))} for name in names}

@@ -1,13 +1,13 @@
 """One glance by touch: which points, classifiers and imprints make simulated touch recognisable (T4.2)."""
 
-from . import claims, costs, imprint_rates, one_touch, pictures, several_touches, similar
+from . import claims, costs, imprint_rates, pictures, similar, touches
 
 TABLES = {
-    "table_4_1": one_touch.table_4_1,
-    "table_4_2": one_touch.table_4_2,
+    "table_4_1": touches.table_4_1,
+    "table_4_2": touches.table_4_2,
     "table_4_3": similar.table_4_3,
-    "table_4_5": one_touch.table_4_5,
-    "table_4_6": several_touches.table_4_6,
+    "table_4_5": touches.table_4_5,
+    "table_4_6": touches.table_4_6,
     "section_4_2_4": similar.section_4_2_4,
     "imprint_rates": imprint_rates.table,
 }
@@ -15,7 +15,7 @@ FIGURES = {
     "pipeline": pictures.pipeline,
     "touch_one_mesh": pictures.touch_one_mesh,
     "imprints": pictures.imprints,
-    "table_4_1": one_touch.figure_4_1,
+    "table_4_1": touches.figure_4_1,
     "figure_4_4": similar.figure_4_4,
 }
 CHARTS = {

@@ -9,10 +9,10 @@ from stages.report.costs import attention_seconds
 from stages.report.grid import means
 from stages.report.items import Figure
 from stages.report.pareto import pareto_chart
-from stages.report.results import NotRun, Results
+from stages.report.results import Results, some
 from stages.report.style import label
 
-from .rows import ENHANCED, MODEL, OURS, STAGE, at_random
+from .rows import ENHANCED, MODEL, OURS, STAGE
 
 COUNTS = (1, 2, 5)  # touches; with the five kinds of features as many as there are colours
 KINDS = {
@@ -25,19 +25,15 @@ MADE_OF = {"locations": "plain", **{f"touches_{count}": "plain" for count in COU
 
 def by_classifier(results: Results) -> Figure:
     """Accuracy against the seconds to fit and ask a classifier; the reference is the thesis's best, blind."""
-    where = {"group": "six", "variant": "plain"}
-    at_random(results, **where, classifier="knn", method="random")
-    frame = _timed(at_random(results, **where, method=[*OURS.values(), MODEL]), ["classifier", "method"])
-    title = f"Recognising {results.group_text('six')} by one touch"
-    reference = f"{label('knn')}, {label('random')}"
-    return _chart(frame, title, ["classifier", "method"], reference, colour="classifier", marker="method")
+    by, title = ["classifier", "method"], f"Recognising {results.group_text('six')} by one touch"
+    frame = _timed(results, by, variant="plain", method=[*OURS.values(), MODEL])
+    return _chart(frame, title, by, f"{label('knn')}, {label('random')}", colour="classifier", marker="method")
 
 
 def by_features(results: Results) -> Figure:
     """Accuracy against seconds over features, classifiers and the number of touches."""
-    where = {"group": "six", "method": ENHANCED}
-    frame = _timed(at_random(results, **where, variant=list(KINDS)), ["variant", "classifier"])
-    making = results.measured(STAGE, **where, metric="features").set_index("variant")["seconds"]
+    frame = _timed(results, ["variant", "classifier"], method=ENHANCED, variant=list(KINDS))
+    making = results.measured(STAGE, group="six", method=ENHANCED, metric="features").set_index("variant")["seconds"]
     frame["seconds"] += frame["variant"].replace(MADE_OF).map(making).fillna(0.0)
     frame["samples"] = frame["variant"].map(KINDS)
     title = f"Recognising {results.group_text('six')} by one touch and more"
@@ -46,21 +42,19 @@ def by_features(results: Results) -> Figure:
 
 def by_saliency(results: Results) -> Figure:
     """What a second spent on saliency is worth to the touch that follows."""
-    where = {"group": "six", "classifier": "knn", "variant": "plain"}
-    at_random(results, **where, method="itti")
-    frame = _timed(at_random(results, **where), ["method"])
+    frame = _timed(results, ["method"], classifier="knn", variant="plain")
     frame["seconds"] = frame["method"].map(attention_seconds(results))
-    title = f"Looking before touching: {results.group_text('six')}, kNN"
-    return _chart(frame, title, ["method"], label("itti"))
+    return _chart(frame, f"Looking before touching: {results.group_text('six')}, kNN", ["method"], label("itti"))
 
 
-def _timed(rows: pd.DataFrame, by: list[str]) -> pd.DataFrame:
+def _timed(results: Results, by: list[str], **where: Any) -> pd.DataFrame:
+    """Mean accuracies on touches of six objects drawn at random, and their seconds."""
+    rows = results.measured(STAGE, metric="accuracy", split=Split.RANDOM, group="six", **where)
     return pd.DataFrame(means(rows, by, shared_by(Split.RANDOM), top=1.0))
 
 
 def _chart(frame: pd.DataFrame, title: str, named: list[str], reference: str, **style: Any) -> Figure:
     """named: columns that make up the name of a choice."""
     frame = frame.assign(name=frame[named].map(label).agg(", ".join, axis=1)).dropna(subset=["seconds"])
-    if reference not in set(frame["name"]):
-        raise NotRun(f"the reference {reference} is not measured", STAGE)
+    some(frame[frame["name"] == reference], f"the reference {reference} is not measured", STAGE)
     return pareto_chart(frame, "mean", title=title, reference=reference, quality_label="hold-out accuracy", **style)

@@ -25,7 +25,7 @@ STYLES = {method: (CYCLE[k], MARKERS[k]) for k, method in enumerate(NAMES)}
 RATE, RATIO = 3000, 50  # wanted: imprints of WIDE x WIDE cells a second; times TACTO's rate
 WIDE = 32
 MANY = 100  # rates from here on are shown as whole numbers
-LOGARITHMIC = {"xscale": "log", "yscale": "log"}
+TITLES = {"rate": "imprints a second", "ratio": "ratio to TACTO"}
 ROUNDING = 1e-9  # of a cell: errors below are those of double precision, and drawn here
 
 
@@ -35,18 +35,21 @@ def table(results: Results) -> Table:
     meshes = rates.dropna(subset=["value"]).drop_duplicates("mesh")
     absent = rates[rates["value"].isna()].dropna(subset=["note"])
     why = absent["method"].map(NAMES).fillna(absent["source"]) + ": " + absent["note"] + "."
-    words = {
-        "said": "\n".join(_said(row) for row in records(frame[frame["method"] == OURS])),
-        "meshes": ", ".join(f"{row.mesh} ({row.source}, {int(row.faces):,} faces)" for row in records(meshes)),
-        "absent": " ".join(why.unique()),
-    }
     shown = pd.DataFrame({"method": frame["method"].map(NAMES), "cells": frame["cells"]})
-    for name, title in (("rate", "imprints a second"), ("ratio", "ratio to TACTO")):
-        ends = frame[[name, f"{name}_low", f"{name}_high"]].itertuples(index=False)
-        shown[title] = ["–" if mean != mean else _whole(mean, low, high) for mean, low, high in ends]
-        shown[f"lowest {name}"] = frame[f"{name}_least"].map(_rounded)
+    numbers = frame.select_dtypes("number")
+    numbers = numbers.mask(numbers >= MANY, numbers.round())
+    for name, title in TITLES.items():
+        ends = numbers[[name, f"{name}_low", f"{name}_high"]].itertuples(index=False)
+        shown[title] = [with_interval(*mean).replace("not run", "–") for mean in ends]
+        shown[f"lowest {name}"] = numbers[f"{name}_least"]
     errors = 1000 * frame["error"] / frame["pitch"]
     shown["error, thousandths of a cell"] = ["< 1e-6" if error < 1e-6 else error for error in errors]
+    texts = shown[[*TITLES.values()]].itertuples(index=False, name=None)
+    said = [_said(row, *both) for row, both in zip(records(frame), texts, strict=True) if row.method == OURS]
+    words = {
+        "said": "\n".join(said), "absent": " ".join(why.unique()),
+        "meshes": ", ".join(f"{row.mesh} ({row.source}, {int(row.faces):,} faces)" for row in records(meshes)),
+    }  # fmt: skip
     return Table(frame, shown.assign(**{"version and renderer": frame["note"]}), words)
 
 
@@ -69,23 +72,15 @@ def _read(results: Results) -> tuple[pd.DataFrame, pd.DataFrame]:
     return rates, frame.sort_values(["cells", "rate"], ascending=[True, False], ignore_index=True)
 
 
-def _said(row: Any) -> str:
+def _said(row: Any, rate: str, ratio: str) -> str:
     """The targets of ours, and whether they were met."""
-    rate, ratio = (row.rate, row.rate_low, row.rate_high), (row.ratio, row.ratio_low, row.ratio_high)
-    said = f"Ours, {row.cells} x {row.cells} cells: {_whole(*rate)} imprints a second on one core"
-    said += f"; {RATE:,} is {on_target(*rate, at_least=RATE)}. " if row.cells == WIDE else ". "
+    fast = on_target(row.rate, row.rate_low, row.rate_high, at_least=RATE)
+    said = f"Ours, {row.cells} x {row.cells} cells: {rate} imprints a second on one core"
+    said += f"; {RATE:,} is {fast}. " if row.cells == WIDE else ". "
     if row.ratio != row.ratio:
         return said + "TACTO was not run."
-    return said + f"{_whole(*ratio)} times TACTO's rate; {RATIO} times is {on_target(*ratio, at_least=RATIO)}."
-
-
-def _whole(mean: float, low: float, high: float) -> str:
-    """A mean with its interval, large ones as whole numbers."""
-    return with_interval(_rounded(mean), _rounded(low), _rounded(high))
-
-
-def _rounded(value: float) -> float:
-    return round(value) if value >= MANY else value
+    faster = on_target(row.ratio, row.ratio_low, row.ratio_high, at_least=RATIO)
+    return said + f"{ratio} times TACTO's rate; {RATIO} times is {faster}."
 
 
 def chart(results: Results) -> Figure:
@@ -104,7 +99,6 @@ def chart(results: Results) -> Figure:
 
 
 def _draw_exactness(axes: Axes, wide: pd.DataFrame) -> None:
-    """Largest error against seconds of one imprint."""
     wide = wide.assign(shown=np.maximum(wide["cell_error"], ROUNDING))
     front = wide[wide["on_front"]].sort_values("seconds")
     axes.step(front["seconds"], front["shown"], where="post", color=INK, lw=1, zorder=1)
@@ -116,15 +110,14 @@ def _draw_exactness(axes: Axes, wide: pd.DataFrame) -> None:
         if np.isfinite([row.rate_low, row.rate_high]).all():
             lines.append(((1 / row.rate_high, row.shown), (1 / row.rate_low, row.shown)))
             axes.plot(*zip(*lines[-1], strict=True), color=tint, lw=1.4, alpha=0.6)
-    axes.set(**LOGARITHMIC, xlabel="seconds an imprint, one core", ylabel="largest error, in cells")
-    axes.set_title("exactness and time")
+    axes.loglog()
+    axes.set(xlabel="seconds an imprint, one core", ylabel="largest error, in cells", title="exactness and time")
     axes.grid(True)
     axes.margins(x=0.28, y=0.2)
     place_names(axes, names, wide[["seconds", "shown"]].to_numpy(), lines)
 
 
 def _draw_growth(axes: Axes, rows: pd.DataFrame, methods: list[str]) -> None:
-    """Imprints a second against the faces of the mesh."""
     for method in methods:
         tint, form = STYLES[method]
         for cells, group in rows[rows["method"] == method].groupby("cells"):
@@ -136,7 +129,8 @@ def _draw_growth(axes: Axes, rows: pd.DataFrame, methods: list[str]) -> None:
     if {OURS, REFERENCE} <= set(methods):
         beside = np.exp(np.log(rows.loc[rows["method"] == REFERENCE, "value"]).mean())
         axes.axhline(RATIO * beside, color=GREY, lw=0.9, ls="--")
-    axes.set(**LOGARITHMIC, xlabel="faces of the mesh", ylabel="imprints a second", title="rate and size of the mesh")
+    axes.loglog()
+    axes.set(xlabel="faces of the mesh", ylabel="imprints a second", title="rate and size of the mesh")
     plain_logarithm(axes.xaxis)
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter(lambda value, _: f"{value:,g}")

@@ -1,5 +1,7 @@
 """Pictures of touch: the whole pipeline, the imprints at each method's points, and those of one mesh."""
 
+from itertools import zip_longest
+
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -11,8 +13,8 @@ from stages.report.items import Figure
 from stages.report.results import NotRun, Results
 from stages.report.style import GREY, INK, PALE, label, plt
 
-from .one_touch import draw_bars, table_4_1, table_4_2
-from .rows import MODEL, at_random
+from .rows import MODEL, STAGE
+from .touches import draw_bars, table_4_1, table_4_2
 
 STEPS = ["1  See it", "2  Find what stands out", "3  Spend the faces there", "4  Touch it there", "5  Know what it is"]
 NEEDED = ["random", "itti", MODEL]  # bars
@@ -32,14 +34,9 @@ def pipeline(results: Results) -> Figure:
     accuracy, classes = _accuracy(results)
     points = results.strong_points(name)[MODEL]
     figure = plt.figure(figsize=SIZE)
-    words = [
-        name,
-        "saliency, and where to touch",
-        f"{len(mesh.faces):,} faces become {len(coarse.faces):,}",
-        "what a pressure array feels (black: first)",
-        "",
-    ]
-    for left, step, said in zip(LEFT, STEPS, words, strict=True):
+    becomes = f"{len(mesh.faces):,} faces become {len(coarse.faces):,}"
+    below = (name, "saliency, and where to touch", becomes, "what a pressure array feels (black: first)", "")
+    for left, step, said in zip(LEFT, STEPS, below, strict=True):
         figure.text(left, 0.92, step, fontsize=13, fontweight="bold", color=INK)
         figure.text(left, 0.03, said, fontsize=10, color=GREY)
     panels = [figure.add_axes((left, 0.12, WIDTH, WIDTH * SIZE[0] / SIZE[1])) for left in LEFT]
@@ -47,8 +44,7 @@ def pipeline(results: Results) -> Figure:
     show(panels[1], mesh, vivid(results.saliency(name)[MODEL]), points=points, rows=800)
     show(panels[2], coarse, wires=True, rows=800)
     panels[3].set_axis_off()
-    for place, image in enumerate(results.imprints(name)[MODEL][: SIDE * SIDE]):
-        down, across = divmod(place, SIDE)
+    for (down, across), image in zip(np.ndindex(SIDE, SIDE), results.imprints(name)[MODEL], strict=False):
         _draw_imprint(panels[3].inset_axes((across / SIDE, 1 - (down + 1) / SIDE, 0.94 / SIDE, 0.94 / SIDE)), image)
     places = draw_bars(panels[4], accuracy, ["knn"], chance=1 / classes)
     names = [label(method).partition(" (")[0].replace(" ", "\n") for method in places]
@@ -64,7 +60,7 @@ def _accuracy(results: Results) -> tuple[pd.DataFrame, int]:
     except NotRun:
         name, frame = "four", table_4_2(results).frame
     for method in NEEDED:  # a picture of only some of them would mislead
-        at_random(results, group=name, classifier="knn", variant="plain", method=method)
+        results.measured(STAGE, group=name, classifier="knn", variant="plain", method=method, split="random")
     return frame, results.classes(name)
 
 
@@ -75,14 +71,11 @@ def imprints(results: Results) -> Figure:
     width = len(methods) * TOUCHES
     figure, grid = plt.subplots(len(names), width, figsize=(0.82 * width + 0.6, 0.92 * len(names) + 0.3), squeeze=False)
     figure.subplots_adjust(wspace=0.06, hspace=0.06)
-    blocks = dict(zip(methods, np.split(grid, len(methods), axis=1), strict=True))
-    for k, (method, block) in enumerate(blocks.items()):
+    for k, (method, block) in enumerate(zip(methods, np.split(grid, len(methods), axis=1), strict=True)):
         for row, name in zip(block, names, strict=True):
-            images = results.imprints(name)[method]
-            for touch, axes in enumerate(row):
-                _draw_imprint(axes, images[touch] if touch < len(images) else None)
-                box = axes.get_position()
-                axes.set_position([box.x0 + 0.012 * (k > 0), box.y0, box.width, box.height])
+            for axes, image in zip_longest(row, results.imprints(name)[method][:TOUCHES]):
+                _draw_imprint(axes, image)
+                axes.set_position(axes.get_position().translated(0.012 * (k > 0), 0))
         block[0, 0].set_title(f"{label(method)}, first {TOUCHES} points", pad=6)
     for axes, name in zip(grid[:, 0], names, strict=True):
         axes.set_ylabel(name, rotation=0, ha="right", va="center", labelpad=8)
@@ -115,12 +108,5 @@ def touch_one_mesh(results: Results) -> Figure:
         if own:
             part.suptitle(name, fontweight="bold", y=0.995)
     title = "Where to touch, and what is felt there" if own else "Touching one mesh"
-    words = {
-        "title": title,
-        "name": ", ".join(names),
-        "count": most,
-        "rows": CELLS[0],
-        "columns": CELLS[1],
-        "pitch": PITCH,
-    }
-    return Figure(figure, words, dpi=110)
+    words = {"title": title, "name": ", ".join(names), "count": most, "rows": CELLS[0], "columns": CELLS[1]}
+    return Figure(figure, words | {"pitch": PITCH}, dpi=110)

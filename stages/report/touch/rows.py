@@ -1,12 +1,9 @@
 """The rows of the stage classification that this topic reads, and how its samplings are called."""
 
-from typing import Any
-
 import pandas as pd
 
 from stages.kit.split import Split, shared_by
 from stages.report.grid import within
-from stages.report.results import Results
 from stages.report.style import label
 
 STAGE = "classification"
@@ -14,6 +11,7 @@ OURS = {  # sampling of the thesis: method of ours
     "blind_touch": "random", "hks": "heat_kernel", "salient_points": "salient_points",
     "mesh_saliency": "mesh_saliency", "visual_attention": "itti", "enhanced_visual_attention": "thesis_ssim",
 }  # fmt: skip
+THEIRS = {ours: theirs for theirs, ours in OURS.items()}
 ENHANCED = OURS["enhanced_visual_attention"]  # the thesis's own: the average weighted with its SSIM weights
 MODEL = "enhanced"  # this project's model of gaze
 
@@ -26,11 +24,6 @@ def accuracies(rows: pd.DataFrame) -> dict[str, float]:
     others = (Split.FOLDS, Split.REGIONS, Split.RANDOM_FEWER)
     means = {f"accuracy_{one}": values[values.index == one].mean() for one in others}
     return {**dict(ends), "repetitions": len(at_random), **means}
-
-
-def at_random(results: Results, **where: Any) -> pd.DataFrame:
-    """Accuracies on touches drawn at random; NotRun where there is none."""
-    return results.measured(STAGE, metric="accuracy", split=Split.RANDOM, **where)
 
 
 def fifteen(variant: str) -> str:

@@ -10,10 +10,10 @@ from stages.kit.files import read_arrays
 from stages.kit.split import Split
 from stages.report.grid import grid
 from stages.report.items import Figure, Table
-from stages.report.results import NotRun, Results
+from stages.report.results import Results, some
 from stages.report.style import GREY, INK, METHOD_COLOURS, plt
 
-from .rows import ENHANCED, OURS, STAGE, accuracies, fifteen, sampling_text
+from .rows import ENHANCED, STAGE, THEIRS, accuracies, fifteen, sampling_text
 
 WAYS = {"plain": "no selection", "selected": "selection", "selected_train": "selection in training alone"}
 PRINTED = {"plain": "all", "selected": "selected"}  # column of the thesis's table, behind the group
@@ -28,8 +28,8 @@ def table_4_3(results: Results) -> Table:
     """What it brings to leave out imprints that another object has too."""
     where, few = {"method": ENHANCED, "group": ["six", "four"]}, [fifteen(way) for way in WAYS]
     rows = results.measured(STAGE, **where, variant=list(WAYS))
-    if "selected" not in set(rows["variant"]):
-        raise NotRun("; ".join(results.notes(STAGE, variant="selected")) or "no selection", STAGE)
+    why = "; ".join(results.notes(STAGE, variant="selected")) or "no selection"
+    some(rows[rows["variant"] == "selected"], why, STAGE)
     rows = pd.concat([rows, results.rows(STAGE, **where, variant=few).dropna(subset=["value"])])
     thesis = results.thesis("table_4_3_imprint_selection_virtual").set_index("classifier")
     cells = []
@@ -37,9 +37,9 @@ def table_4_3(results: Results) -> Table:
         variant = fifteen(way) if suffix else way
         mine = rows[(rows["classifier"] == name) & (rows["group"] == group) & (rows["variant"] == variant)]
         recall = mine[(mine["split"] == Split.RANDOM) & (mine["metric"] == "recall")]["value"].mean()
+        printed = thesis.loc[name].get(f"{group}_{PRINTED.get(way)}", np.nan)
         cell = {"classifier": f"{name}{suffix}", "objects": group, "selection": way} | accuracies(mine)
-        cell |= {"imprints": mine["imprints"].max(), "recall": recall}
-        cells.append(cell | {"thesis": thesis.loc[name].get(f"{group}_{PRINTED.get(way)}", np.nan)})
+        cells.append(cell | {"imprints": mine["imprints"].max(), "recall": recall, "thesis": printed})
     frame = pd.DataFrame(cells)
     shown = grid(
         frame.assign(head=frame["objects"] + ", " + frame["selection"].map(WAYS)), "classifier", "head",
@@ -53,9 +53,9 @@ def section_4_2_4(results: Results) -> Table:
     rows = results.measured(STAGE, group="six", metric="similar_share")
     thesis = results.thesis("section_4_2_similar_imprints").set_index("sampling")["share_with_ncc_over_0_85"]
     rows = rows[rows["item"].isna() | (rows["method"] == ENHANCED)]
-    samplings = rows["method"].replace({ours: theirs for theirs, ours in OURS.items()})
-    of = rows["item"].isna().map({True: "sampling", False: "object"})
-    rows = rows.assign(of=of, name=rows["item"].fillna(samplings))
+    rows = rows.assign(
+        of=np.where(rows["item"].isna(), "sampling", "object"), name=rows["item"].fillna(rows["method"].replace(THEIRS))
+    )
     wide = rows.pivot_table(index=["of", "name"], columns="variant", values=["imprints", "value"], sort=False)
     columns = {"imprints": ("imprints", "plain"), "all": ("value", "plain"), "first_15": ("value", "first_15")}
     frame = wide.reindex(columns=list(columns.values())).set_axis(list(columns), axis=1).reset_index()
@@ -70,7 +70,10 @@ def section_4_2_4(results: Results) -> Table:
 
 def figure_4_4(results: Results) -> Figure:
     """Correlations of the imprints of each two objects, for blind touch and enhanced attention."""
-    pairs = list(combinations(_objects(results), 2))
+    folder = results.folder("classification")
+    groups = sorted(folder.glob("six.*.npz")) or sorted(folder.glob("four.*.npz"))
+    first = some(groups, "no groups in data/classification", "classification")[0]
+    pairs = list(combinations(map(str, read_arrays(first)["objects"]), 2))
     images = {name: results.imprints(name) for pair in pairs for name in pair}
     found = {way: [similarity(images[one][way], images[two][way]) for one, two in pairs] for way in SAMPLINGS}
     order = np.argsort([np.median(values) for values in found[ENHANCED]], kind="stable")
@@ -94,12 +97,3 @@ def figure_4_4(results: Results) -> Figure:
     axes.set_title("How alike the imprints of two objects are", pad=26)
     axes.legend(loc="lower left", bbox_to_anchor=(-0.01, 0.99), ncols=2, fontsize=9)
     return Figure(figure, {"threshold": SIMILARITY_THRESHOLD})
-
-
-def _objects(results: Results) -> list[str]:
-    """The objects of the group six, or of four where that was not run."""
-    folder = results.folder("classification")
-    paths = [path for group in ("six", "four") for path in sorted(folder.glob(f"{group}.*.npz"))]
-    if not paths:
-        raise NotRun("no groups in data/classification", "classification")
-    return [str(name) for name in read_arrays(paths[0])["objects"]]

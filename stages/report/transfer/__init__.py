@@ -12,11 +12,6 @@ TABLES = {
     "table_5_6": network_tables.frozen_layers,
     "coarse_imprints": coarse_imprints.build,
 }
-FIGURES = {
-    "figure_5_3": figure_5_3.build,
-    "figure_5_4": figure_5_4.build,
-}
-CHARTS = {
-    "networks": networks_chart.build,
-}
+FIGURES = {"figure_5_3": figure_5_3.build, "figure_5_4": figure_5_4.build}
+CHARTS = {"networks": networks_chart.build}
 CLAIMS = claims.CLAIMS

@@ -33,19 +33,16 @@ def build(results: Results) -> Table:
     """Accuracy of each setting, and what it gains over the first on the same splits."""
     rows = results.rows("coarse_imprints", metric="accuracy")
     values = rows.pivot(index="repetition", columns="setting", values="value")
-    lines = []
+    share, lines = shared_by("random"), []
     for setting in [name for name in SETTINGS if name in values]:
-        line = {"setting": setting, "values": values[setting].count()}
-        for name, of in (("accuracy", values[setting]), ("gain", values[setting] - values["plain"])):
-            ends = (name, "low", "high") if name == "accuracy" else (name, f"{name}_low", f"{name}_high")
-            line |= dict(zip(ends, interval(of, shared_by("random")), strict=True))
-        lines.append(line)
-    frame = pd.DataFrame(lines).assign(chance=rows["chance"].iloc[0])
-    gains = 100 * frame[["gain", "gain_low", "gain_high"]]
+        own, gain = values[setting], values[setting] - values["plain"]
+        lines.append((setting, own.count(), *interval(own, share), *interval(gain, share), rows["chance"].iloc[0]))
+    gains = ["gain", "gain_low", "gain_high"]
+    frame = pd.DataFrame(lines, columns=["setting", "values", "accuracy", "low", "high", *gains, "chance"])
     shown = {
         "what differs": frame["setting"].map(SETTINGS),
         "accuracy, %": frame.apply(cell_text, axis=1, beside=(), places=1),
-        "minus the first row, points": [signed(*gain, places=1) for gain in gains.to_numpy()],
-        "chance, %": [percent(share, 1) for share in frame["chance"]],
+        "minus the first row, points": [signed(*gain, places=1) for gain in 100 * frame[gains].to_numpy()],
+        "chance, %": [percent(guess, 1) for guess in frame["chance"]],
     }
     return Table(frame, pd.DataFrame(shown))

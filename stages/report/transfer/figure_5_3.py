@@ -5,9 +5,10 @@ import pandas as pd
 from matplotlib.axes import Axes
 
 from stages.kit.stats import interval
+from stages.report.grid import grouped
 from stages.report.items import Figure
-from stages.report.networks import COARSE, FINE, PRINTED, SPLITS, THESIS, everywhere, shared
-from stages.report.results import NotRun, Results
+from stages.report.networks import COARSE, FINE, MODES, PRINTED, SPLITS, THESIS, everywhere, shared
+from stages.report.results import Results, some
 from stages.report.style import GREY, INK, PALE, label, plt
 from stages.report.words import dataset_text
 
@@ -18,23 +19,20 @@ CELLS = {FINE: "128 x 128", COARSE: "16 x 16"}
 
 def build(results: Results) -> Figure:
     """Accuracy of fine-tuned minus frozen networks, a panel for each set."""
-    found = {source: gains(rows) for source, rows in everywhere(results).items()}
-    found = {source: frame for source, frame in found.items() if len(frame)}
-    if not found:
-        raise NotRun("no network was both fine-tuned and frozen", "transfer")
-    networks = list(dict.fromkeys(pd.concat(found.values())["network"]))
-    figure, grid = plt.subplots(
-        1, len(found), figsize=(4.6 * len(found) + 2.2, 1.0 * len(networks) + 1.9), squeeze=False, sharey=True
-    )
-    for axes, (source, frame) in zip(grid[0], found.items(), strict=True):
+    found = {source: frame for source, rows in everywhere(results).items() if len(frame := gains(rows))}
+    some(found, "no network was both fine-tuned and frozen", "transfer")
+    networks = list(pd.concat(found)["network"].unique())
+    size = (4.6 * len(found) + 2.2, len(networks) + 1.9)
+    figure, [panels] = plt.subplots(1, len(found), figsize=size, squeeze=False, sharey=True)
+    for axes, (source, frame) in zip(panels, found.items(), strict=True):
         _draw(axes, frame, networks, results)
         axes.set_title(dataset_text(source))
-    grid[0, 0].set_yticks(range(len(networks)), [label(name) for name in networks])
-    grid[0, 0].set_ylim(len(networks) - 0.4, -0.6)
+    panels[0].set_yticks(range(len(networks)), map(label, networks))
+    panels[0].set_ylim(len(networks) - 0.4, -0.6)
     for (split, data), tint in TINTS.items():
-        grid[0, -1].plot([], [], "o", color=tint, ms=5, label=f"{CELLS[data]}, {SPLITS[split]}")
-    grid[0, -1].plot([], [], "D", color="white", mec=GREY, ms=5, mew=1.2, label="the thesis's figure")
-    grid[0, -1].legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=8.5)
+        panels[-1].plot([], [], "o", color=tint, ms=5, label=f"{CELLS[data]}, {SPLITS[split]}")
+    panels[-1].plot([], [], "D", color="white", mec=GREY, ms=5, mew=1.2, label="the thesis's figure")
+    panels[-1].legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=8.5)
     figure.tight_layout()
     return Figure(figure)
 
@@ -43,11 +41,11 @@ def gains(rows: pd.DataFrame) -> pd.DataFrame:
     """Points that fine-tuning adds, with mean, low and high, for each network, split and data with pairs of both."""
     found = []
     seen = rows[(rows["weights"] == "imagenet") & rows["data"].isin(CELLS)]
-    for (network, split, data), group in seen.groupby(["method", "split", "data"], sort=False):
-        sides = group.pivot_table(index="repetition", columns="mode", values="value")
-        gain = 100 * (sides["finetuned"] - sides["frozen"]).dropna() if {"finetuned", "frozen"} <= set(sides) else ()
-        if len(gain):
-            found.append((network, split, data, *interval(gain, shared(str(split), group["dataset"].iloc[0]))))
+    for (network, split, data), group in grouped(seen, ["method", "split", "data"]):
+        sides = group.pivot_table(index="repetition", columns="mode", values="value").reindex(columns=MODES).dropna()
+        if len(sides):
+            ends = interval(100 * (sides["finetuned"] - sides["frozen"]), shared(split, group["dataset"].iloc[0]))
+            found.append((network, split, data, *ends))
     return pd.DataFrame(found, columns=["network", "split", "data", "mean", "low", "high"])
 
 

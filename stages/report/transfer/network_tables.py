@@ -1,28 +1,15 @@
 """T tables 5.3, 5.4 and 5.6: networks that learned by sight on imprints, whole or with some layers frozen."""
 
-from collections.abc import Callable, Mapping
 from itertools import product
-from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from stages.report.grid import grid, percent
 from stages.report.items import Table
-from stages.report.networks import (
-    FINE,
-    MODES,
-    NETWORK,
-    PRINTED,
-    SPLITS,
-    STARTS,
-    THESIS,
-    accuracy,
-    everywhere,
-    origin,
-)
+from stages.report.networks import FINE, MODES, NETWORK, PRINTED, SPLITS, STARTS, THESIS, accuracy, everywhere, origin
 from stages.report.prose import shared_notes
-from stages.report.results import NotRun, Results
+from stages.report.results import Results
 from stages.report.style import label
 from stages.report.words import dataset_text
 
@@ -35,9 +22,7 @@ def networks(results: Results, data: str) -> Table:
     sources = list(everywhere(results))
     every = pd.concat([results.rows("transfer", source) for source in sources])
     chance = every[every["metric"] == "chance"].groupby(["dataset", "split"])["value"].mean()
-    rows = every[(every["metric"] == "accuracy") & (every["data"] == data)].dropna(subset=["value"])
-    if rows.empty:
-        raise NotRun(f"no accuracies on {data}", "transfer")
+    rows = pd.concat(everywhere(results, data=data).values())
     groups = dict(iter(rows.groupby(["dataset", "method", "weights", "mode", "split"])))
     ran, lines = {key[1:4] for key in groups}, []
     settings = product(dict.fromkeys([*PRINTED, *rows["method"]]), STARTS, MODES)
@@ -55,38 +40,30 @@ def networks(results: Results, data: str) -> Table:
         })  # fmt: skip
     frame = pd.DataFrame(lines)
     starts = zip(frame["weights"], frame.groupby("network")["pretrained"].transform("first"), strict=True)
-    cells = frame.assign(**{"starts from": [origin(*pair) for pair in starts], "filters": frame["mode"].map(label)})
-    down, guesses = ["network", "starts from", "filters"], (100 * frame["chance"]).map(" (chance {:.1f})".format)
+    down = {"starts from": [origin(*pair) for pair in starts], "filters": frame["mode"].map(label)}
+    cells = frame.assign(network=frame["network"].map(label), **down)
+    guesses = (100 * frame["chance"]).map(" (chance {:.1f})".format)
     notes = [f"Not run on {name}: {note}." for name in sources for note in results.notes("transfer", name)]
     words = {"networks": shared_notes(__package__, "networks"), "not_run": "\n".join(notes)}
-    return Table(frame, _beside_thesis(cells, down, guesses, {"network": label}), words)
+    return Table(frame, _beside_thesis(cells, ["network", *down], guesses), words)
 
 
 def frozen_layers(results: Results) -> Table:
     """Accuracies of MobileNetV2 by the layers that stay as sight left them, on every set, beside the thesis's."""
     thesis = results.thesis("table_5_6_frozen_layers_mobilenetv2").set_index("frozen_layers")["accuracy"]
     lines = []
-    for source, rows in everywhere(results).items():
-        mine = rows[(rows["method"] == NETWORK) & (rows["weights"] == "imagenet") & (rows["data"] == FINE)]
+    for source, mine in everywhere(results, method=NETWORK, weights="imagenet", data=FINE).items():
         for (layers, printed), split in product(thesis.items(), SPLITS):
             cell = accuracy(mine[mine["mode"] == MODE_OF.get(str(layers), layers)], split)
             known = {"objects": source, "frozen_layers": layers, "split": split, "values": cell["values"]}
             lines.append(known | cell | {"thesis": printed})
     frame = pd.DataFrame(lines)
-    if not frame["values"].any():
-        raise NotRun("no accuracies of MobileNetV2 with frozen layers", "transfer")
-    shown = _beside_thesis(frame, ["frozen_layers"])
-    return Table(frame, shown.rename(columns={"frozen_layers": "frozen layers"}))
+    return Table(frame, _beside_thesis(frame.rename(columns={"frozen_layers": "frozen layers"}), ["frozen layers"]))
 
 
-def _beside_thesis(
-    cells: pd.DataFrame,
-    down: list[str],
-    guesses: pd.Series | str = "",
-    names: Mapping[str, Callable[[Any], str]] = {},
-) -> pd.DataFrame:
+def _beside_thesis(cells: pd.DataFrame, down: list[str], guesses: pd.Series | str = "") -> pd.DataFrame:
     """Accuracies in per cent, a column for each set and split, whose head ends with `guesses`, then the thesis's."""
     head = cells["objects"].map(dataset_text) + ", " + cells["split"].map(SPLITS) + guesses + ", %"
-    wide = grid(cells.assign(head=head), down, "head", beside=(), names=names, places=1)
+    wide = grid(cells.assign(head=head), down, "head", beside=(), places=1)
     thesis = cells.groupby(down, sort=False)["thesis"].max()  # printed beside touches at random alone
     return wide.assign(**{"thesis, %": [percent(share, 1) for share in thesis]})

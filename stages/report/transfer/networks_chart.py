@@ -7,7 +7,7 @@ from stages.report.grid import means
 from stages.report.items import Figure
 from stages.report.networks import FINE, measured
 from stages.report.pareto import pareto_chart
-from stages.report.results import NotRun, Results
+from stages.report.results import Results, some
 from stages.report.style import label, start
 
 REFERENCE = "MobileNetV2, ImageNet, frozen"
@@ -15,13 +15,11 @@ REFERENCE = "MobileNetV2, ImageNet, frozen"
 
 def build(results: Results) -> Figure:
     """Accuracy on touches at random of each network, start and mode against its seconds."""
-    rows = measured(results)
-    rows = rows[(rows["data"] == FINE) & (rows["split"] == "random")]
+    rows = measured(results, data=FINE, split="random")
     frame = pd.DataFrame(means(rows, ["method", "weights", "mode"], shared_by("random"), top=1.0))
     frame = frame.dropna(subset=["seconds"])
     frame["name"] = frame["method"].map(label) + ", " + frame["weights"].map(start) + ", " + frame["mode"].map(label)
-    if REFERENCE not in set(frame["name"]):
-        raise NotRun(f"the reference {REFERENCE} is not measured", "transfer")
+    some(frame[frame["name"] == REFERENCE], f"the reference {REFERENCE} is not measured", "transfer")
     return pareto_chart(
         frame, "mean", title="From sight to touch: what training costs", reference=REFERENCE,
         quality_label="test accuracy, touches at random",

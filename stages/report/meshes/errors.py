@@ -1,0 +1,149 @@
+"""T figures 3.4, 3.5 and 3.23: errors of channels, detectors and the methods of T3.2, as rows of dots and boxes."""
+
+from itertools import product
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure as Drawing
+from matplotlib.ticker import LogLocator, NullFormatter
+
+from stages.kit.stats import interval
+from stages.report.items import Figure
+from stages.report.results import NotRun, Results, some
+from stages.report.style import CYCLE, GREY, INK, METHOD_COLOURS, PALE, plt
+from stages.report.words import dataset_text
+
+from .methods import CLASSICAL, COMBINATIONS, FIXED_ADAPTIVE, HKS, OURS, PLAIN, RIVALS, fixed, ordered, short
+from .rows import ERRORS, FEWEST, METRICS, by_object, data_sets, face_counts, paired_cells, said
+
+SPREAD = {"metro_mean": "mean", "metro_rms": "rms", "metro_max": "max"}
+APART = (-0.24, 0.0, 0.24)  # rows between the dots of one method in one panel
+TITLES = ["(a) Metro, %", "(b) Metro mean, %", "(c) 1 − SSIM, %", "(d) DLap", "(e) Dnor", "(f) points"]
+BOXES = [*FIXED_ADAPTIVE, OURS, f"{OURS}-adaptive", f"{OURS}-soft", "VisAttAll", HKS, *RIVALS, PLAIN]
+TINTS = dict.fromkeys(BOXES, GREY) | dict.fromkeys(FIXED_ADAPTIVE, "#D55E00")  # the methods of T3.2; below: ours
+TINTS |= {method: METHOD_COLOURS[OURS] for method in BOXES if method.startswith(OURS)}
+TARGETS = ("1500", "3000")  # of the boxes
+FLOOR = 1e-3  # of plain QEM's median: an axis begins there, since some meshes are exact
+
+
+def figure_3_4(results: Results) -> Figure:
+    """Metro and SSIM error by combination of channels, a panel for each of up to three face counts."""
+    rows = paired_cells(results, methods=COMBINATIONS)
+    methods, targets = [name for name in COMBINATIONS if name in set(rows["method"])], face_counts(rows)[:3]
+    if CLASSICAL not in methods or len(methods) < 2 or not targets:
+        raise NotRun(f"no face count that all of two combinations reach on {FEWEST} objects", "lod", runnable=False)
+    cells = list(product(METRICS, targets))
+    size = (1.5 + 1.6 * len(cells), 0.8 + 0.19 * len(methods))
+    drawing, panels = plt.subplots(1, len(cells), figsize=size, sharey=True)
+    for axes, (metric, target) in zip(panels, cells, strict=True):
+        _draw_dots(axes, by_object(rows, methods, metric, target), CYCLE[METRICS.index(metric)], CLASSICAL)
+    _dress(drawing, [f"{ERRORS[metric]}\n{said(target)}" for metric, target in cells], methods)
+    objects = rows.groupby("target")["item"].nunique()
+    over = ", ".join(f"{said(target)}: {objects[target]} objects" for target in targets)
+    words = {"methods": ", ".join(map(short, methods)), "counts": len(targets), "classical": short(CLASSICAL)}
+    return Figure(drawing, words | {"over": over}, dpi=100)
+
+
+def figure_3_5(results: Results) -> Figure:
+    """Six panels, a row each method: distances, the same by face count, errors as seen, number of points."""
+    rows = paired_cells(results, methods=filter(fixed, set(results.rows("lod")["method"])))
+    methods, targets = ordered(set(rows["method"])), face_counts(rows)[:2]
+    if PLAIN not in methods or len(methods) < 3:
+        raise NotRun("no face count that plain QEM and two other methods reach", "lod", runnable=False)
+    drawing, panels = plt.subplots(1, 6, figsize=(11.4, 1.1 + 0.185 * len(methods)), sharey=True)
+    for metric, tint, down in zip(SPREAD, CYCLE, APART, strict=False):
+        _draw_dots(panels[0], by_object(rows, methods, metric), tint, PLAIN, SPREAD[metric], down)
+    for target, tint, down in zip(targets, CYCLE[3:], APART, strict=False):
+        errors = by_object(rows, methods, "metro_mean", target)
+        _draw_dots(panels[1], errors, tint, PLAIN, said(target).removesuffix(" faces"), down)
+    for axes, metric in zip(panels[2:5], ("ssim_error", "dlap", "dnor"), strict=True):
+        _draw_dots(axes, by_object(rows, methods, metric), CYCLE[0], PLAIN)
+    _draw_dots(panels[5], rows.pivot_table(index="item", columns="method", values="points")[methods], CYCLE[0])
+    panels[0].set_xscale("log")
+    panels[0].xaxis.set_major_formatter(lambda value, _: f"{value:g}")
+    _dress(drawing, TITLES, methods, pad=20)
+    objects = rows.groupby("target")["item"].nunique()
+    over = ", ".join(f"{objects[target]} at {said(target)}" for target in targets)
+    words = {"methods": ", ".join(map(short, methods)), "objects": rows["item"].nunique(), "over": over}
+    return Figure(drawing, words, dpi=100)
+
+
+def figure_3_23(results: Results) -> Figure:
+    """A row of panels for each data set, a panel for each error and face count, a box for each method."""
+    found = {dataset_text(name): paired_cells(results, METRICS, BOXES, name) for name in data_sets(results)}
+    found = {name: rows[rows["target"].isin(set(TARGETS) & set(face_counts(rows)))] for name, rows in found.items()}
+    shown = {name: rows for name, rows in found.items() if PLAIN in set(rows["method"])}
+    some(shown, "no data set with enough objects that all methods take to 1,500 or 3,000 faces", "lod", runnable=False)
+    methods = [method for method in BOXES if any(method in set(rows["method"]) for rows in shown.values())]
+    height = 0.5 + 0.17 * len(methods)
+    drawing, grid = plt.subplots(len(shown), 4, figsize=(10.4, 0.4 + height * len(shown)), squeeze=False, sharey=True)
+    for row, (name, rows) in zip(grid, shown.items(), strict=True):
+        for axes, (metric, target) in zip(row, product(METRICS, TARGETS), strict=True):
+            errors = by_object(rows, methods, metric, target)
+            _draw_boxes(axes, errors)
+            title = f"{ERRORS[metric]}, {said(target)}\n{name}, {len(errors)} objects"
+            axes.set_title(title, fontsize=8.5, fontweight="normal", pad=4)
+        _name_rows(row[0], methods, TINTS, 8)
+    drawing.subplots_adjust(wspace=0.08, hspace=0.34)
+    return Figure(drawing, {"methods": ", ".join(map(short, methods)), "sets": " and ".join(shown)}, dpi=95)
+
+
+def _draw_boxes(axes: Axes, errors: pd.DataFrame) -> None:
+    """Draws the errors objects x methods as boxes, the first method on top."""
+    tints, y, plain = [TINTS[str(method)] for method in errors], np.arange(errors.shape[1]), errors[PLAIN].median()
+    if plain > 0:  # a data set may not reach a face count
+        quantiles = errors.clip(lower=FLOOR * plain).quantile([0.05, 0.25, 0.5, 0.75, 0.95])
+        low, left, middle, right, high = quantiles.to_numpy()
+        axes.hlines(y, low, high, color=tints, lw=0.9, capstyle="projecting", zorder=2)
+        axes.barh(y, right - left, 0.62, left, color=tints, alpha=0.45)
+        axes.plot([middle, middle], [y - 0.31, y + 0.31], color=INK, lw=1.3)
+        axes.axvline(plain, color=GREY, lw=0.9, ls="--", zorder=0)
+    axes.set(xscale="log", xlim=(FLOOR * plain if plain > 0 else None, None))
+    axes.xaxis.set_major_locator(LogLocator(numticks=6))
+    axes.xaxis.set_minor_formatter(NullFormatter())
+    axes.tick_params(axis="x", labelsize=8, which="both")
+    axes.tick_params(axis="y", length=0)
+    axes.grid(axis="x", color=PALE, lw=0.5)
+
+
+def _draw_dots(axes: Axes, table: pd.DataFrame, tint: str, base: str = "", name: str = "", down: float = 0) -> None:
+    """Draws the means of a frame objects x methods as dots, the first method on top; nothing of an empty one.
+
+    base: the method, dashed, from which a line about each dot is the 95 % interval of the paired difference; "": the
+    interval of the mean itself. down: how far below the middle of its row a dot is drawn, where there are several.
+    """
+    if table.empty:
+        return
+    zero, middle = (table[base], table[base].mean()) if base else (0.0, 0.0)
+    mean, low, high = middle + np.transpose([interval(table[method] - zero) for method in table])
+    y = np.arange(len(mean)) + down
+    axes.plot([low, high], [y, y], color=tint, lw=1.6, alpha=0.5)
+    axes.plot(mean, y, "o", color=tint, ms=4.2, mec="white", mew=0.5)
+    if base:
+        axes.axvline(middle, color=tint, lw=0.9, ls="--", zorder=0)
+    if name:
+        axes.plot([], [], "o", color=tint, ms=4, label=name)
+        axes.legend(loc="lower center", bbox_to_anchor=(0.5, 0.99), ncols=3, fontsize=8, handletextpad=0,
+                    columnspacing=0.6, borderpad=0.2)  # fmt: skip
+
+
+def _dress(drawing: Drawing, titles: list[str], methods: list[str], pad: float = 6) -> None:
+    """Titles above the panels of a row, names of the methods at the left, ours and plain QEM in their colours."""
+    for axes, title in zip(drawing.axes, titles, strict=True):
+        axes.set_title(title, fontsize=9.5, fontweight="normal", pad=pad)
+        axes.grid(axis="x")
+        axes.hlines(range(len(methods)), 0, 1, transform=axes.get_yaxis_transform(), color=PALE, lw=0.4, zorder=0)
+        axes.tick_params(axis="x", labelsize=8)
+        axes.tick_params(axis="y", length=0)
+        axes.spines["left"].set_visible(False)
+    _name_rows(drawing.axes[0], methods, {OURS: METHOD_COLOURS[OURS], PLAIN: GREY}, 8.5)
+    drawing.subplots_adjust(wspace=0.12)
+
+
+def _name_rows(axes: Axes, methods: list[str], tints: dict[str, str], size: float) -> None:
+    """Short names of the methods at the left of their rows, the first on top, in these colours."""
+    axes.set_yticks(range(len(methods)), [short(method) for method in methods], fontsize=size)
+    axes.set_ylim(len(methods) - 0.4, -0.6)
+    for text, method in zip(axes.get_yticklabels(), methods, strict=True):
+        text.set_color(tints.get(method, INK))

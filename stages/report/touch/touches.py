@@ -1,0 +1,131 @@
+"""T tables 4.1, 4.2, 4.5 and 4.6: recognition by one touch and by several, beside the thesis's; 4.1 is drawn too."""
+
+from functools import partial
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+
+from stages.report.grid import grid
+from stages.report.items import Figure, Table
+from stages.report.prose import shared_notes
+from stages.report.results import NotRun, Results, some
+from stages.report.style import INK, colours, label, plt
+
+from .rows import ENHANCED, MODEL, OURS, STAGE, THEIRS, accuracies, fifteen, sampling_text
+
+DRAWN = {"random": "blind_touch", "itti": "visual_attention", ENHANCED: "enhanced_visual_attention", MODEL: MODEL}
+CLASSIFIERS = ["knn", "svm", "decision_tree", "naive_bayes", "deep_learning"]  # the thesis's order, reversed
+FURTHER = ["deep_learning", "naive_bayes", "knn"]  # shown in the further rows; all are in the CSV
+WAYS = {
+    "": "", "_unplaced": "without positions", "_ordered": "touches in the order of their height",
+    "_disjoint": "each imprint in one combination", "_many": "five times as many combinations",
+    "_mixed": "combinations drawn before the split", "first_15_mixed": "drawn before the split, 15 imprints per object",
+}  # fmt: skip
+KEYS = ["sampling", "way", "classifier", "touches"]
+
+
+def beside_thesis(results: Results, group: str, printed: str, variant: str = "plain") -> Table:
+    """The Table of one group of objects beside the thesis's, then the samplings that only this project has."""
+    rows = results.measured(STAGE, group=group, variant=variant)
+    thesis = results.thesis(printed).set_index("sampling")
+    thesis = thesis.reindex(thesis.index.union(rows["method"].replace(THEIRS).unique(), sort=False))
+    cells = _cells(rows, thesis)
+    try:
+        cells += _cells(results.measured(STAGE, group=group, variant=fifteen(variant)), thesis, ", 15 imprints")
+        few = shared_notes(__package__, "fifteen")
+    except NotRun as missing:
+        few = f"15 imprints per object: not run ({missing})."
+    frame = pd.DataFrame(cells)
+    shown = grid(
+        frame, "sampling", "classifier", beside=("accuracy_regions", "thesis"), names={"sampling": sampling_text},
+        head=lambda name: f"{label(name)}: ours · unseen regions · thesis, %",
+    )  # fmt: skip
+    words = {name: shared_notes(__package__, name) for name in ("cells", "regions")} | {"fifteen": few}
+    words |= {"group": results.group_text(group), "not_run": results.left_out(STAGE, group=group, variant=variant)}
+    return Table(frame, shown, words)
+
+
+def _cells(rows: pd.DataFrame, thesis: pd.DataFrame, few: str = "") -> list[dict]:
+    return [
+        {"sampling": f"{sampling}{few}", "classifier": classifier}
+        | accuracies(rows[(rows["method"] == OURS.get(sampling, sampling)) & (rows["classifier"] == classifier)])
+        | {"thesis": thesis.loc[sampling, classifier]}
+        for sampling in thesis.index
+        for classifier in thesis.columns
+    ]
+
+
+table_4_1 = partial(beside_thesis, group="six", printed="table_4_1_six_virtual_objects")
+table_4_2 = partial(beside_thesis, group="four", printed="table_4_2_four_virtual_objects")
+table_4_5 = partial(beside_thesis, group="six", printed="table_4_5_six_objects_with_locations", variant="locations")
+
+
+def table_4_6(results: Results) -> Table:
+    """Recognition by one to five touches, beside the thesis."""
+    rows = results.measured(STAGE, group="six")
+    touches = rows["variant"].str.extract(r"touches_(\d+)", expand=False).dropna().astype(int)
+    some(touches, "no several touches", STAGE)
+    ways = rows["variant"].str.replace(r"_?touches_\d+", "", regex=True)
+    groups = rows.loc[touches.index].assign(sampling=rows["method"], way=ways, touches=touches).groupby(KEYS)
+    frame = pd.DataFrame([dict(zip(KEYS, key, strict=True)) | accuracies(group) for key, group in groups])
+    samplings = [ENHANCED, *sorted({*frame["sampling"]} - {ENHANCED})]
+    orders: dict[Any, list[str]] = {"way": list(WAYS), "sampling": samplings, "classifier": CLASSIFIERS[::-1]}
+    frame = frame.sort_values(list(orders), key=lambda column: column.map(orders[column.name].index), ignore_index=True)
+    thesis = results.thesis("table_4_6_number_of_imprints").melt("classifier", var_name="touches", value_name="thesis")
+    plain = (frame["sampling"] == ENHANCED) & (frame["way"] == "")  # as the thesis has it
+    frame["thesis"] = frame.merge(thesis.astype({"touches": int}), how="left")["thesis"].where(plain)
+    others = frame["sampling"].map(label).mask(frame["sampling"] == ENHANCED, "")
+    words = zip(frame["classifier"].map(label), frame["way"].map(WAYS), others, strict=True)
+    names = pd.Series([", ".join(filter(None, said)) for said in words])
+    named = frame.assign(name=names.mask(plain, names + ": ours · unseen regions · thesis"))
+    parts = (named[plain], ("accuracy_regions", "thesis")), (named[~plain & frame["classifier"].isin(FURTHER)], ())
+    shown = [
+        grid(cells, "name", "touches", beside=beside, head=lambda n: f"{n} touch{'es' if n > 1 else ''}, %")
+        for cells, beside in parts
+    ]
+    wide = pd.concat(shown).fillna("not run").rename(columns={"name": "classifier"})
+    return Table(frame, wide, {"group": results.group_text("six")})
+
+
+def draw_bars(
+    axes: Axes, frame: pd.DataFrame, classifiers: list[str], chance: float, regions: bool = False
+) -> dict[str, float]:
+    """Draws the samplings of DRAWN that were run; returns dict method -> its place about the middle of a group.
+
+    frame: the tidy table 4.1 or 4.2. regions: whether accuracies on unseen regions are drawn too.
+    """
+    measured = set(frame.dropna(subset=["accuracy"])["sampling"])
+    paint = colours([method for method, sampling in DRAWN.items() if sampling in measured])
+    width = 0.8 / max(len(paint), 1)
+    places = {method: (k - (len(paint) - 1) / 2) * width for k, method in enumerate(paint)}
+    for k, (method, place) in enumerate(places.items()):
+        rows, x = frame[frame["sampling"] == DRAWN[method]].set_index("classifier"), np.arange(len(classifiers)) + place
+        cells = 100 * rows.loc[classifiers, ["accuracy", "low", "high", "accuracy_regions", "thesis"]]
+        diamonds, dashes = (None, None) if k else ("the thesis's figure", "regions not touched before")
+        axes.bar(x, cells["accuracy"], width * 0.92, color=paint[method], label=label(method))
+        axes.vlines(x, cells["low"], cells["high"], color=INK, lw=1)
+        axes.plot(x, cells["thesis"], "D", color="white", mec=INK, ms=5, mew=1.1, label=diamonds)
+        if regions:
+            axes.plot(x, cells["accuracy_regions"], "_", color=INK, ms=13, mew=2, label=dashes)
+    axes.axhline(100 * chance, color=INK, lw=0.9, ls=":")
+    axes.text(1.01, 100 * chance, "chance", transform=axes.get_yaxis_transform(), va="center", fontsize=8.5)
+    axes.set_xticks(range(len(classifiers)), [label(name) for name in classifiers])
+    axes.set(ylim=(0, 100), ylabel="accuracy, %")
+    axes.grid(axis="y")
+    axes.tick_params(axis="x", length=0)
+    return places
+
+
+def figure_4_1(results: Results) -> Figure:
+    """Table 4.1 as a picture."""
+    figure, axes = plt.subplots(figsize=(8.4, 4.2))
+    draw_bars(axes, table_4_1(results).frame, CLASSIFIERS, chance=1 / results.classes("six"), regions=True)
+    axes.set_title(f"Recognising {results.group_text('six')} by one touch", pad=42)
+    handles, names = axes.get_legend_handles_labels()
+    axes.legend(
+        handles[1:] + handles[:1], names[1:] + names[:1], loc="lower left", bbox_to_anchor=(-0.01, 0.99), ncols=3,
+        fontsize=9, columnspacing=1.4, handlelength=1.2,
+    )  # fmt: skip
+    return Figure(figure)
