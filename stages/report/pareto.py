@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from .items import Figure
 from .names import Spot, place_names
+from .results import NotRun
 from .style import CYCLE, INK, MARKERS, SETTINGS, colours, label, plain_logarithm, plt
 
 LISTED = 8  # names of the front that a caption lists at most
@@ -51,12 +52,12 @@ def pareto_chart(
     beside it where there is an interval. reference: the name whose cost, timed in the same run, is the unit of the
     logarithmic cost axis. colour, marker: columns that choose colour and shape, shown in a legend. tints: dict value
     -> colour of the column `colour`, where the charts beside it have such; the front then goes without names, which
-    the legend gives. better: "high" for accuracies, "low" for errors. Raises ValueError when the reference is missing.
+    the legend gives. better: "high" for accuracies, "low" for errors. NotRun where the reference was not measured.
     """
     rows = frame.loc[np.isfinite(frame[cost]) & np.isfinite(frame[quality])].copy()
     unit = rows.loc[rows["name"] == reference, cost]
     if len(unit) != 1 or not unit.iloc[0] > 0:
-        raise ValueError(f"the reference {reference!r} must name one row with a cost above 0, of {list(rows['name'])}")
+        raise NotRun(f"the reference {reference} is not measured", "report", runnable=False)
     rows["cost_ratio"] = rows[cost] / unit.iloc[0]
     rows["on_front"] = pareto_front(rows["cost_ratio"], rows[quality], better)
     front = rows.loc[rows["on_front"]].sort_values("cost_ratio")

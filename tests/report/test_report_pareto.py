@@ -10,6 +10,7 @@ from matplotlib.text import Text
 from stages.report import pareto_chart, pareto_front
 from stages.report.names import place_names
 from stages.report.pareto import ticks
+from stages.report.results import NotRun
 from stages.report.style import plt
 
 
@@ -122,5 +123,5 @@ def test_name_without_room_is_left_out():
 
 
 def test_unknown_reference_is_refused_by_name(tmp_path):
-    with pytest.raises(ValueError, match="nobody"):
+    with pytest.raises(NotRun, match="nobody"):
         chart(tmp_path, reference="nobody")

@@ -23,8 +23,6 @@ def by_method(results: Results) -> Figure:
     frame = frame.loc[~frame["has_seen"] & (frame["method"] != HUMAN)]
     seconds = frame["method"].map(attention_seconds(results, "gaze"))
     frame = frame.assign(seconds=seconds, name=frame["method"].map(method_text)).dropna(subset=["seconds"])
-    if CLASSICAL not in set(frame["method"]):
-        raise NotRun(f"no cost of {CLASSICAL} on the meshes with gaze", "gaze", runnable=False)
     title, unit = "Predicting where people look", label(CLASSICAL)
     chart = pareto_chart(frame, "mean", title=title, reference=unit, quality_label="NSS on human gaze")
     chart.words["objects"] = frame["objects"].max()

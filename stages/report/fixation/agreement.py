@@ -12,7 +12,7 @@ from stages.report.grid import records, within
 from stages.report.items import Figure, Table
 from stages.report.markdown import number, signed, with_interval
 from stages.report.pareto import pareto_chart
-from stages.report.results import NotRun, Results
+from stages.report.results import Results
 
 from .detectors import FUSED, LEE, PRIOR, Detector, network_text, with_random_weights
 from .rows import detectors, networks, no_people, scores, sources
@@ -98,8 +98,6 @@ def chart(results: Results) -> Figure:
     source, rows = next(iter(sources(results).items()))
     table = scores(rows, "pcc")
     maps = {method: table[method, FUSED] for method in networks(rows) if (method, FUSED) in table}
-    if REFERENCE not in maps:
-        raise NotRun(f"the reference {network_text(REFERENCE)} is not measured", "fixation", runnable=False)
     paid = rows.dropna(subset=["seconds"])
     objects = paid[paid["metric"] == "views"].groupby("method")["item"].nunique()
     lessons = paid[paid["metric"] == "accuracy"].drop_duplicates(["method", "task", "seconds"])

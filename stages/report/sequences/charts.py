@@ -3,11 +3,11 @@
 import pandas as pd
 
 from stages.kit.split import Split
-from stages.report.confusion import draw_matrix
+from stages.report.confusion import draw_matrices
 from stages.report.items import Figure
 from stages.report.pareto import pareto_chart
-from stages.report.results import Results, some
-from stages.report.style import label, plt
+from stages.report.results import Results
+from stages.report.style import label
 
 from .rows import BLIND, CLASSIFIERS, GUIDED, METRICS, PRINTED, SIZE, SPLITS, STAGE, accuracy
 
@@ -18,25 +18,13 @@ TESTED = {Split.OBJECTS: "objects never touched", Split.RANDOM: "sequences drawn
 def figure_4_19(results: Results) -> Figure:
     """Confusion matrices: a row for each split and strategy, a column for each classifier of the thesis."""
     frame = results.measured(STAGE, metric="confusion")
-    classes, here = list(dict.fromkeys(frame["group"])), set(zip(frame["split"], frame["method"], strict=True))
+    here = set(zip(frame["split"], frame["method"], strict=True))
     lines = [(split, method) for split in SPLITS for method in (BLIND, GUIDED) if (split, method) in here]
-    names = [name for name in PRINTED if name in set(frame["classifier"])]
-    side, count = 0.3 * len(classes) + 0.5, len(classes)
-    size = (side * len(names) + 1.4, side * len(lines) + 0.8)
-    figure, grid = plt.subplots(len(lines), len(names), figsize=size, squeeze=False)
-    for panels, (split, method) in zip(grid, lines, strict=True):
-        mine = frame[(frame["split"] == split) & (frame["method"] == method)]
-        for axes, name in zip(panels, names, strict=True):
-            draw_matrix(axes, mine[mine["classifier"] == name], classes)
-        panels[0].set_yticks(range(count), [f"{one} {k}" for k, one in enumerate(classes, start=1)], fontsize=7.5)
-        panels[0].set_ylabel(f"{label(method)}\n{SPLITS[split]}", fontsize=9)
-    for top, bottom, name in zip(grid[0], grid[-1], names, strict=True):
-        top.set_title(CLASSIFIERS[name], pad=6)
-        bottom.set_xticks(range(count), range(1, count + 1), fontsize=7.5)
-    figure.subplots_adjust(wspace=0.06, hspace=0.08)
-    rows = "; ".join(f"{label(method)}, {SPLITS[split]}" for split, method in lines)
-    columns = ", ".join(CLASSIFIERS[name] for name in names)
-    return Figure(figure, {"count": count, "classes": ", ".join(classes), "rows": rows, "columns": columns})
+    rows = {(split, method): f"{label(method)}\n{SPLITS[split]}" for split, method in lines}
+    names = {name: CLASSIFIERS[name] for name in PRINTED if name in set(frame["classifier"])}
+    figure, words = draw_matrices(frame, rows, names, ["split", "method"], "classifier")
+    said = {"rows": "; ".join(rows.values()).replace("\n", ", "), "columns": ", ".join(names.values())}
+    return Figure(figure, words | said)
 
 
 def chart(results: Results) -> Figure:
@@ -58,7 +46,6 @@ def chart(results: Results) -> Figure:
         })  # fmt: skip
     frame = pd.DataFrame(found).sort_values(SIZE, ascending=False, ignore_index=True)
     reference = f"{CLASSIFIERS['knn']}, {frames} x {cells} x {cells}"
-    some(frame[frame["name"] == reference], f"the reference {reference} is not measured", STAGE)
     title = f"{rows['classes'].max()} classes by following contours, {label(strategy)}; frames x cells x cells"
     return pareto_chart(
         frame, "mean", title=title, reference=reference, quality_label=f"accuracy, {TESTED[split]}", cost="cost",
