@@ -19,7 +19,7 @@ test: $(VENV)/ready ## unit and property tests, then the whole pipeline at profi
 	pytest -n auto
 	$(MAKE) smoke
 
-quick: $(VENV)/ready ## the tests that need neither stages, networks nor a browser
+quick: $(VENV)/ready ## the tests that are not marked slow, in a minute
 	pytest -n auto -m "not slow"
 
 smoke: $(VENV)/ready ## the whole pipeline on a dozen objects, in a scratch copy, held against its baseline
