@@ -92,8 +92,12 @@ class StageRun:
             read = [self.workspace.data / pattern.format(name) for pattern in reads]
             identity = f"{function.__module__}.{function.__qualname__}"
             keys[name] = key_of(code, identity, given, name, read, (made_of or {}).get(name, ""))
+        objects = Objects(self.workspace.build / "objects")
+        done = {name: objects.take(key, self.folder) for name, key in keys.items()}  # before any worker starts
+        missing = [(name, value) for name, value in values.items() if done[name] is None]
         work = functools.partial(_make, process, self.workspace, self.folder, tuple(reads), keys)
-        rows = [row for made in self.map(work, values.items()) for row in made]
+        done |= zip((name for name, _ in missing), self.map(work, missing), strict=True)
+        rows = [row for name in values for row in done[name] or ()]
         self._before = "".join([self._before, *(key[:8] for key in keys.values())])
         self.rows += rows
         return rows
@@ -135,12 +139,9 @@ def _make(
     keys: Mapping[str, str],
     named: tuple[str, Any],
 ) -> Rows:
-    """The rows of one object, whose files are then below `folder`: from the cache, or made now."""
+    """The rows of one object, which is made and kept in the cache; its files are then below `folder`."""
     name, value = named
     objects = Objects(workspace.build / "objects")
-    rows = objects.take(keys[name], folder)
-    if rows is not None:
-        return rows
     scratch = workspace.build / "scratch" / keys[name][:32]  # by what it is made of: a killed run finds it again
     scratch.mkdir(parents=True, exist_ok=True)
     try:
