@@ -56,6 +56,7 @@ def test_networks_import_the_kit_alone():
     assert imported("networks") == {"kit"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("stage", ORDER)
 def test_a_stage_imports_only_to_its_left(stage):
     assert imported(stage) - SHARED <= set(ORDER[: ORDER.index(stage)])
@@ -88,6 +89,7 @@ def test_dvc_yaml_reads_like_a_table_of_contents():
     assert len((ROOT / "dvc.yaml").read_text().splitlines()) <= 260
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("section", SECTIONS)
 def test_every_setting_is_documented_and_read(section):
     folder = ROOT / "stages" / section
@@ -100,6 +102,7 @@ def test_every_setting_is_documented_and_read(section):
         assert any(re.search(rf"\.{name}\b|\"{name}\"", text) for text in others), f"{section}.{name} is never read"
 
 
+@pytest.mark.slow
 def test_every_file_says_what_it_is_for():
     for path in [*ROOT.glob("stages/**/*.py"), *ROOT.glob("benchmarks/*.py")]:
         assert ast.get_docstring(ast.parse(path.read_text())), f"{path} has no docstring"

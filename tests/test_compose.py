@@ -84,6 +84,7 @@ def test_any_path_can_be_given_as_it_is(folder):
     assert values["folder"]["meshes"]["folder"] == folder == values["graph"]["meshes"]["folder"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("old", "new", "reason"),
     [

@@ -162,6 +162,7 @@ def test_the_list_of_commands_imports_no_stage():
     assert not [name for name in loaded if name.startswith("stages.") or name in ("numpy", "torch", *EXTRAS)]
 
 
+@pytest.mark.slow
 def test_a_command_is_the_module_of_its_name():
     done = run_command("gate", "--help")
     assert done.returncode == 0 and "--update" in done.stdout
@@ -215,6 +216,7 @@ def installed(tmp_path_factory):
     return folder / "site"
 
 
+@pytest.mark.slow
 def test_the_wheel_holds_the_settings_and_all_files_of_the_stages(installed):
     wanted = {f"stages/conf/{path.relative_to(ROOT / 'conf')}" for path in ROOT.glob("conf/**/*.yaml")}
     for package in ("stages", "haptic_glance"):

@@ -48,6 +48,7 @@ def test_the_table_has_one_line_a_job_and_classifier():
     assert lines.job.tolist() == ["a", "b"] and lines.accuracy.tolist()[1].startswith("0.250 [0.2")
 
 
+@pytest.mark.slow
 def test_missing_upstream_results_are_named(tmp_path):
     config = compose(["sets=[household_four]", "profile=smoke", "classifier=knn"])
     values = {"seed": 0} | config["household_four"]

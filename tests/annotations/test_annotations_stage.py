@@ -59,10 +59,12 @@ def test_equal_passes_find_each_other_and_random_vertices_do_not(measured, ball)
     assert set(rows.index) == {("found", "passes"), ("found", "random")}
 
 
+@pytest.mark.slow
 def test_passes_at_opposite_ends_find_nothing(measured, ball):
     assert values(measured("household", [top(ball), np.argsort(ball.vertices[:, 2])[:5]]))["found", "passes"] == 0
 
 
+@pytest.mark.slow
 def test_marks_where_people_looked_agree_with_gaze(measured, ball):
     bottom = np.argsort(ball.vertices[:, 2])[:5]
     workspace = measured("gaze", [top(ball), bottom])

@@ -150,6 +150,7 @@ def test_a_table_that_is_none_is_named(stored):
         read_grasps(stored(files))
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not (SHARED / "pressure_images.zip").exists(), reason="no pressure_images.zip in ../shared/data")
 def test_the_true_archive_of_pressure_images():
     found = read_pressure_images(SHARED / "pressure_images.zip")

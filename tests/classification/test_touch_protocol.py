@@ -32,6 +32,7 @@ def test_thesis_settings():
     assert classifier("knn")[-2].n_components == 12
 
 
+@pytest.mark.slow
 def test_rows_are_equal_from_run_to_run_but_for_the_seconds(bumps):
     def stripped(rows):
         return [{key: value for key, value in row.items() if key != "seconds"} for row in rows]
@@ -127,6 +128,7 @@ def test_apart_is_none_where_all_touches_overlap(bumps):
     assert rows[-2]["value"] is None and rows[-1]["value"] is None
 
 
+@pytest.mark.slow
 def test_overlap_is_what_apart_and_as_few_samples_at_random_differ_by():
     random = np.random.default_rng(0)
     places = random.random((400, 3))

@@ -52,6 +52,7 @@ def test_selection_removes_before_the_split_or_from_training_alone(bumps):
     assert {row["metric"] for row in rows if row["variant"] == "selected"} == {"accuracy", "recall"}
 
 
+@pytest.mark.slow
 def test_selection_that_leaves_too_little_says_so_once(bumps):
     images = bumps(names=("cup",), count=24)["cup"]
     same = TouchSet.from_images(

@@ -71,6 +71,7 @@ def test_a_run_trains_each_variant_on_every_split(workspace):
     assert {cells: images.shape for cells, images in pressed.items()} == {"16": (8, 16, 16)}
 
 
+@pytest.mark.slow
 def test_strange_names_are_named(workspace, make_workspace):
     with pytest.raises(ValueError, match="coarse_imprints.variants: coarse is not one of plain"):
         run(make_workspace({"coarse_imprints": SETTINGS | {"variants": ["coarse"]}}))

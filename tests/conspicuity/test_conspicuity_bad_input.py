@@ -26,6 +26,7 @@ ODD = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ODD)
 @pytest.mark.filterwarnings("error")
 def test_odd_meshes_give_finite_maps(name):
@@ -37,6 +38,7 @@ def test_odd_meshes_give_finite_maps(name):
                 assert not values.any() or channel == "symmetry", channel
 
 
+@pytest.mark.slow
 def test_inward_normals_change_nothing():
     outward = Mesh(BALL.vertices, BALL.faces)
     for viewpoint in (Viewpoint(0, 0), Viewpoint(40, 30)):

@@ -29,6 +29,7 @@ def workspace(make_workspace):
     return workspace
 
 
+@pytest.mark.slow
 def test_maps_of_all_views_and_their_measurements(workspace):
     stage.run(workspace)
     maps, mask, viewpoints, channels = read_maps(workspace.data / "conspicuity" / "brick.npz")

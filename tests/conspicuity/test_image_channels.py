@@ -38,6 +38,7 @@ def peak(values):
     return np.array(np.unravel_index(values.argmax(), values.shape)) * 4 + 1.5
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("channel", IMAGE_CHANNELS)
 @pytest.mark.parametrize("color", [(0, 0, 0), (120, 120, 120), (200, 40, 90), (255, 255, 255)])
 def test_one_colour_gives_nothing(channel, color):

@@ -91,6 +91,7 @@ def test_a_flat_mesh_has_no_curvature():
     assert not capped_curvature(flat).any()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("angles", [(0, 0, 0), (20, 50, -70), (111, -35, 63)])
 def test_the_mirror_plane_is_found_however_the_shape_lies(angles):
     turned = Mesh(mirrored().vertices @ rotation(*angles).T, mirrored().faces)
@@ -99,6 +100,7 @@ def test_the_mirror_plane_is_found_however_the_shape_lies(angles):
     assert abs(offset) < 0.005 and score > 0.9
 
 
+@pytest.mark.slow
 def test_a_lopsided_shape_has_no_symmetry():
     found = shape_symmetries(lopsided())
     assert not found.planes and not found.axes

@@ -89,6 +89,7 @@ def test_the_maps_of_real_objects_are_those_of_opencv(at_once, name, device):
     check(mesh, looks(mesh), device=device)
 
 
+@pytest.mark.slow
 @on_each_device
 @pytest.mark.parametrize(
     ("shape", "size"), [((301, 397), (61, 83)), ((97, 130), None), ((33, 44), (5, 9)), ((3, 5), None)]
@@ -97,6 +98,7 @@ def test_odd_sizes_are_no_matter(at_once, shape, size, device):
     check(bumpy("colour"), looks(bumpy("colour"), shape), size, device)
 
 
+@pytest.mark.slow
 @on_each_device
 def test_empty_tiny_and_uniform_views_and_colour_beside_grey(at_once, device):
     mesh = bumpy()
@@ -117,6 +119,7 @@ def test_empty_tiny_and_uniform_views_and_colour_beside_grey(at_once, device):
     assert not conspicuity_batch(mesh, views[1:2], device=device)["edge"].any()
 
 
+@pytest.mark.slow
 @on_each_device
 def test_how_many_views_go_together_does_not_matter(monkeypatch, device):
     mesh, views = bumpy("colour"), looks(bumpy("colour"), (150, 200))
@@ -129,6 +132,7 @@ def test_how_many_views_go_together_does_not_matter(monkeypatch, device):
             np.testing.assert_allclose(results[0][channel], other[channel], atol=1e-5)
 
 
+@pytest.mark.slow
 def test_channels_come_in_the_order_asked_for_and_alone_as_together():
     mesh, views = bumpy("colour"), looks(bumpy("colour"), (150, 200))
     together = conspicuity_batch(mesh, views)

@@ -69,6 +69,7 @@ def test_a_hidden_front_does_not_lend_its_value_to_the_back(ball):
     assert (values[4:] < 0.01).all()
 
 
+@pytest.mark.slow
 def test_saliency_does_not_depend_on_how_finely_a_place_is_meshed(spot, make_maps):
     coarse, fine = (trimesh.creation.icosphere(subdivisions=s, radius=0.5) for s in (3, 4))
     meshes = [Mesh(m.vertices, m.faces) for m in (coarse, fine)]

@@ -18,6 +18,7 @@ def test_all_pairs_come_once_where_there_are_no_more():
     assert {one for pair in pairs.tolist() for one in pair} == set(points.tolist())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [60, 30_000, 300_000])
 def test_pairs_are_distinct_and_of_the_points(size):
     pairs = draw_pairs(np.arange(size), 1500, rng(0, "b"))

@@ -34,6 +34,7 @@ def run(tmp_path, make_workspace):
     return call
 
 
+@pytest.mark.slow
 def test_a_run_writes_every_experiment(run):
     rows = run()
     assert set(zip(rows["split"], rows["likelihood"], strict=True)) == set(EXPERIMENTS)
@@ -49,6 +50,7 @@ def test_objects_that_nothing_has_in_common_are_told_apart(run):
     assert rows_used["value"].mean() > 0.95
 
 
+@pytest.mark.slow
 def test_equal_runs_give_equal_rows(run):
     first, second = (run().drop(columns="seconds") for _ in range(2))
     pd.testing.assert_frame_equal(first, second)

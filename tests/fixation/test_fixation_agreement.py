@@ -102,6 +102,7 @@ def test_the_truth_agrees_with_itself_and_noise_does_not(shapes, lesson):
     assert found(same, "nss", "all") > 3 > abs(found(noise, "nss", "all"))
 
 
+@pytest.mark.slow
 def test_knowing_what_is_visible_passes_for_agreement_where_the_hidden_count(shapes, lesson):
     ball = shapes["ball"]
     seen = np.stack([ball.vertices[:, 0] > 0] * 3)

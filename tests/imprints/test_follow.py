@@ -24,6 +24,7 @@ UPRIGHT = np.array([ORIGIN, [0.3, 0, 0.05], [0, 0, 0.2]])
 ROTATION = Rotation.from_euler("xyz", [0.4, -1.1, 2.0]).as_matrix()
 
 
+@pytest.mark.slow
 def test_frames_are_equally_spaced_round_a_sphere():
     found = follow(BALL, LEVEL, frames=10, cells=CELLS)
     assert found.length == pytest.approx(np.pi, rel=3e-3) and found.loops == 1 and found.share == pytest.approx(1)

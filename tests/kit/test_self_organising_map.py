@@ -92,6 +92,7 @@ def test_gain_of_a_constant_is_zero_and_does_not_change_with_a_rising_scale():
     np.testing.assert_allclose(MostInformative().fit(samples**3 * 7, labels).gains_, gains)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CONVENTIONAL)
 def test_every_classifier_tells_far_clouds_apart(name):
     samples, labels = blobs(width=30)

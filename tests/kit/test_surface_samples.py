@@ -15,6 +15,7 @@ def sampled(count, areas=None):
     return sample_surface(MESH, (np.arange(count) + random.random(count)) / count, random.random((2, count)), areas)
 
 
+@pytest.mark.slow
 def test_each_face_gets_its_share_of_the_points_to_within_one():
     _, faces, _ = sampled(1001)
     assert np.abs(np.bincount(faces) - 1001 * np.array([0.5, 0.25, 0.25])).max() < 1

@@ -53,6 +53,7 @@ def test_without_attributes_the_mesh_comes_back_itself():
     assert carry(bare(mesh), mesh) is mesh
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("make", [sheet, tube])
 def test_onto_itself_nothing_changes(make):
     mesh = make()
@@ -78,6 +79,7 @@ def test_colours_are_interpolated_where_a_vertex_has_moved():
     assert np.abs(found.colors[:, :2] - 200 * shifted[:, :2]).max() < 1.5
 
 
+@pytest.mark.slow
 def test_vertices_that_stayed_have_their_very_colours():
     mesh = sheet()
     random = np.random.default_rng(0).integers(0, 256, mesh.colors.shape)

@@ -59,6 +59,7 @@ def check_sound(mesh, found, faces, keep, rings):
     assert all(mesh.vertices[vertex].tobytes() in held for vertex in kept)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", MESHES)
 @settings(max_examples=12, deadline=None, derandomize=True)
 @given(data=st.data())

@@ -395,6 +395,7 @@ def test_pictures_of_a_mesh_beyond_the_frame_are_compared_smaller_and_that_is_sa
     assert "the pictures show" not in simplified("--faces", 600, source=tmp_path / "smooth.ply")[2]
 
 
+@pytest.mark.slow
 def test_meshes_within_the_frame_are_left_and_others_shrink_by_the_same():
     ball = Mesh(0.5 * smooth().vertices / SIZE, smooth().faces)
     fits = Mesh(1.04 * ball.vertices, ball.faces)
@@ -408,6 +409,7 @@ def test_meshes_within_the_frame_are_left_and_others_shrink_by_the_same():
         assert render(small, viewpoint, (225, 300)).mask.any()  # render refuses what the picture would crop
 
 
+@pytest.mark.slow
 def test_pictures_that_fail_leave_dashes_and_the_reason(simplified, monkeypatch):
     def fails(reference, pictures):
         raise ValueError("no light")

@@ -176,6 +176,7 @@ def test_a_result_with_new_faults_is_never_returned(monkeypatch):
         simplify(mesh, 400, backend="pymeshlab")
 
 
+@pytest.mark.slow
 def test_an_attempt_that_ruins_the_surface_is_no_way_out_of_a_fault(monkeypatch):
     mesh, small = sphere(3), sphere(2)
     folded = Mesh(small.vertices, np.r_[small.faces, small.faces[:1, ::-1]])

@@ -36,6 +36,7 @@ def soup(seed=0):
 MESHES = {"sphere": SPHERE, "waves": waves(24), "soup": soup(), "one triangle": Mesh(np.eye(3), [[0, 1, 2]])}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", MESHES)
 @pytest.mark.parametrize("spread", [1.0, 1.05, 0.0, 3.0, 100.0])
 def test_distances_agree_with_point_cloud_utils(name, spread):

@@ -22,6 +22,7 @@ def dented(side):
     return Mesh(vertices, SPHERE.faces)
 
 
+@pytest.mark.slow
 def test_equal_saliency_is_metro():
     damaged = dented(1)
     for level in (1.0, 7.0):

@@ -53,6 +53,7 @@ def test_rows_hold_the_faces_of_each_mesh_or_why_it_has_none(start):
     assert not (workspace.data / "meshes" / "classes.csv").exists()
 
 
+@pytest.mark.slow
 def test_only_a_changed_file_is_prepared_again(start, tmp_path, monkeypatch):
     prepared = []
     prepare = stage.prepare_mesh

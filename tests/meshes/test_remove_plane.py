@@ -86,6 +86,7 @@ def test_a_smooth_scan_loses_its_table_and_nothing_else(shape, bottom):
     assert kept > 0.995 and table == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shape", ["blob", "box", "lying"])
 @pytest.mark.parametrize(("noise", "least"), [(0.002, 0.95), (0.005, 0.9)])
 def test_a_rough_scan_with_holes_and_no_bottom_keeps_nine_tenths_and_more(shape, noise, least):

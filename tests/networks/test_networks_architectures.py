@@ -75,6 +75,7 @@ def test_the_seed_fixes_everything_and_the_callers_numbers_stay():
     assert not torch.equal(first["convolutions.0.weight"], other["convolutions.0.weight"])
 
 
+@pytest.mark.slow
 def test_resnet50_halves_its_maps_where_its_weights_were_trained_to():
     for source, expected in (("package", 2), ("download", 1)):
         block = build("resnet50", 2, "random", 0, source).convolutions.layer2[0]
@@ -165,6 +166,7 @@ def test_downloaded_weights_take_the_same_path(monkeypatch, tmp_path):
     )
 
 
+@pytest.mark.slow
 def test_googlenets_own_colours_move_into_its_first_layer():
     with torch.random.fork_rng(devices=[]), torch.no_grad():
         torch.manual_seed(0)

@@ -53,6 +53,7 @@ def same(one, other):
     return all(torch.equal(value, other.state_dict()[key]) for key, value in one.state_dict().items())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mode", list(MODES))
 @pytest.mark.parametrize("steps", [1, 7, 11])
 def test_a_killed_training_ends_with_the_same_weights(tmp_path, mode, steps):
@@ -114,6 +115,7 @@ def strange(kind, path):
     return None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "word"),
     [

@@ -31,6 +31,7 @@ def index(monkeypatch, tmp_path):
     return tmp_path / "index"
 
 
+@pytest.mark.slow
 def test_a_source_package_is_fetched_without_running_its_setup(index, tmp_path):
     trace = tmp_path / "it ran"
     files = {"some_thing-1.0/setup.py": f"open({str(trace)!r}, 'w')".encode(), "some_thing-1.0/PKG-INFO": b""}
@@ -41,6 +42,7 @@ def test_a_source_package_is_fetched_without_running_its_setup(index, tmp_path):
     assert os.listdir(tmp_path / "cache") == [found.name]
 
 
+@pytest.mark.slow
 def test_a_source_package_with_another_hash_is_refused_and_what_lies_there_named(index, tmp_path):
     tar(index / "some_thing-1.0.tar.gz", {"some_thing-1.0/setup.py": b""})
     damaged = tmp_path / "cache" / "some_thing-1.0.tar.gz"

@@ -53,6 +53,7 @@ def test_a_sum_stands_where_torchvision_has_a_residual_connection(network):
     assert sums == {i for i in range(1, 17) if network.convolutions[i + 1].use_res_connect}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("layer_range", "first", "last"),
     [

@@ -55,6 +55,7 @@ def test_frozen_mode_changes_no_convolution_and_no_statistic(imprints):
     assert count_parameters(model, trained=True) == 1280 * 2 + 2
 
 
+@pytest.mark.slow
 def test_finetuned_mode_changes_every_convolution(imprints):
     network, task, before, model = trained(imprints, "finetuned", 1)
     layers = {key: value for key, value in model.state_dict().items() if value.ndim == 4}

@@ -137,6 +137,7 @@ def need(network):
         pytest.skip(f"{FILES[network]} is not in the cache: stages.networks.imagenet_state({network!r}) fetches it")
 
 
+@pytest.mark.slow
 def test_the_network_gets_the_packaged_weights():
     need("mobilenet_v2")
     state = weights.imagenet_state("mobilenet_v2")

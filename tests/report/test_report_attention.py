@@ -59,6 +59,7 @@ def judged_claim(results, key):
     return judge([claim for claim in CLAIMS if claim.key == key], results).iloc[0]
 
 
+@pytest.mark.slow
 def test_rows_stand_in_the_order_of_nss_below_the_ceiling(seen):
     frame = table_of(seen, "attention_gaze").frame
     order = frame[frame["metric"] == "nss"]
@@ -74,6 +75,7 @@ def test_gain_is_paired_so_that_hard_meshes_do_not_widen_it(seen):
     assert row["gain_high"] - row["gain_low"] < 0.1 < row["high"] - row["low"]
 
 
+@pytest.mark.slow
 def test_methods_that_have_seen_the_object_are_starred_and_are_no_rivals(seen):
     table = table_of(seen, "attention_gaze")
     assert "SVM of the object *" in set(table.shown["method"])
@@ -180,6 +182,7 @@ def test_object_without_ground_truth_is_passed_over(seen, root):
         figure_of(seen, "figure_3_12")
 
 
+@pytest.mark.slow
 def test_maps_without_a_channel_are_not_run_but_no_crash(seen, root):
     for path in (root / "data/test/conspicuity").glob("*.npz"):
         stored = read_arrays(path)
@@ -201,6 +204,7 @@ def test_errors_of_combinations_are_over_what_all_of_them_reach(seen, root, smal
         meshes.FIGURES["figure_3_4"](small.results(root))
 
 
+@pytest.mark.slow
 def test_figure_of_combinations_is_drawn(seen, root, small):
     rows = pd.concat([small.lod().replace({"ball": f"ball{k}", "cube": f"cube{k}"}) for k in range(2)])
     others = [rows[rows["method"] == "enhanced"].assign(method=name) for name in ("itti", "VisAttCon")]
@@ -223,6 +227,7 @@ def test_a_piece_of_work_counts_once_whatever_it_was_judged_in(seen, root, small
     assert frame.loc[("fixation", "net"), "seconds"] == 5
 
 
+@pytest.mark.slow
 def test_views_figure_tells_the_fewest(seen):
     assert "3 for the median object" in figure_of(seen, "views_seen").caption
 
@@ -243,6 +248,7 @@ def test_chart_of_attention_leaves_out_those_that_have_seen_the_mesh(seen):
     assert rows.loc["enhanced", "on_front"] and not rows.loc["itti", "on_front"]
 
 
+@pytest.mark.slow
 def test_smallest_setting_that_loses_nothing_is_named(seen):
     chart = settings_chart(seen)
     assert "four, 450 rows, symmetry (10.0 times as fast" in chart.caption
@@ -253,6 +259,7 @@ def test_smallest_setting_that_loses_nothing_is_named(seen):
     }  # fmt: skip
 
 
+@pytest.mark.slow
 def test_a_setting_that_loses_in_auc_alone_is_not_named(seen, small):
     rows = seen.rows("attention_settings")
     loss = rows["item"].map(dict(zip("abcdef", np.linspace(0.04, 0.06, 6), strict=True)))
@@ -268,6 +275,7 @@ def test_one_setting_alone_is_not_run(seen, small):
         settings_chart(less)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("key", "word"),
     [("ours_over_best_gaze", "supported"), ("guided_ed_gaze", "supported"), ("guided_ssim_gaze", "contradicted"),

@@ -63,6 +63,7 @@ def test_lost_points_lower_the_share_that_is_kept(bench):
     assert by_backend(bench(rows)).loc[("poor", True), "kept"] == pytest.approx(9 / 10)
 
 
+@pytest.mark.slow
 def test_a_refusal_is_counted_and_takes_its_cell_from_all(bench):
     rows = benched()
     cell = (rows["mesh"] == "m1") & (rows["kept_points"] == 12) & (rows["share"] == 0.1)
@@ -112,6 +113,7 @@ def test_what_is_surely_reached_is_said_to_be(bench):
         assert said.count("is met.") == 3 and "20 times is met. Its" in said
 
 
+@pytest.mark.slow
 def test_growth_is_fitted_without_and_with_points_apart(bench):
     rows = benched()
     kept = rows["kept_points"] > 0

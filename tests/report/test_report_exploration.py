@@ -140,6 +140,7 @@ def test_what_is_no_better_than_guessing_has_no_breaking_point(root, results, sm
     assert build_one(stability, "tables", "touch_stability", results).frame.empty
 
 
+@pytest.mark.slow
 def test_the_picture_of_degradation_is_drawn(root, results, small):
     small.write(root, "touch_stability", disturbed())
     assert build_one(stability, "figures", "touch_stability", results).paths[0].exists()

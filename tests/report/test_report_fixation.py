@@ -163,6 +163,7 @@ def test_a_run_without_anyones_attention_still_says_how_alike_tasks_are(bare, sm
         table(results)
 
 
+@pytest.mark.slow
 def test_gain_over_a_control_is_paired_so_that_hard_objects_do_not_widen_it(gaze):
     frame = table(gaze).frame
     row = line(frame, truth="human gaze, 6 meshes", method="vgg16-frozen", task="ewigc", metric="pcc")
@@ -172,12 +173,14 @@ def test_gain_over_a_control_is_paired_so_that_hard_objects_do_not_widen_it(gaze
     assert row["over_lee_high"] - row["over_lee_low"] < 0.05 < row["high"] - row["low"]
 
 
+@pytest.mark.slow
 def test_distances_are_told_in_per_cent_of_the_diameter(gaze):
     frame = table(gaze).frame
     row = line(frame, truth="human gaze, 6 meshes", method="vgg16-frozen", task="ewigc", metric="distance")
     assert row["mean"] == pytest.approx(12, abs=0.2) and row["over_lee"] == pytest.approx(-10, abs=0.2)
 
 
+@pytest.mark.slow
 def test_detectors_stand_in_the_order_of_their_correlation(gaze):
     made = table(gaze)
     for _, group in made.frame[made.frame["metric"] == "pcc"].groupby("truth"):
@@ -195,6 +198,7 @@ def test_marks_are_said_to_be_no_human_gaze_only_where_they_are_the_truth(gaze):
     assert "no human subjects" not in figure(gaze, "figure_3_35").caption
 
 
+@pytest.mark.slow
 def test_networks_that_are_not_available_are_named_once(gaze, small):
     frame = rows("household", 4)
     missing = {"dataset": "household", "method": "googlenet-frozen", "metric": "accuracy", "note": "no weights"}
@@ -223,6 +227,7 @@ VERDICTS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("key", [key for key in VERDICTS if key != "resnet_more_alike"])
 def test_claims_say_what_the_rows_hold(gaze, key):
     word, effect = VERDICTS[key]
@@ -235,6 +240,7 @@ def test_resnets_tasks_are_compared_with_vggs_an_object(gaze):
     assert differences(gaze, claim).to_numpy() == pytest.approx(np.full(6, 0.2))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("gain", "word"), [(0.05, "supported"), (-0.05, "contradicted")])
 def test_resnet_is_compared_with_vgg_in_correlation_and_in_both_distances(gaze, small, gain, word):
     results = again(gaze, small, rows(resnet=gain))

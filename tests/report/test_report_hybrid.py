@@ -93,6 +93,7 @@ def run(bare, small):
     return small.results(bare)
 
 
+@pytest.mark.slow
 def test_the_hybrid_stands_beside_the_two_networks(run):
     table = build_one(hybrid, "tables", "section_5_5", run)
     frame = table.frame.set_index(["network", "split"])
@@ -134,6 +135,7 @@ def test_networks_of_another_middle_change_no_claim_and_no_table_of_the_first(ru
     )
 
 
+@pytest.mark.slow
 def test_a_longer_middle_is_held_against_the_first_on_the_same_items(two_middles):
     table = build_one(hybrid, "tables", "section_5_5", two_middles)
     frame = table.frame.set_index(["shared_layers", "network", "split"])
@@ -153,10 +155,12 @@ def test_a_longer_middle_is_drawn_as_far_from_the_first_as_it_was(two_middles):
     assert list(kept.loc[kept["shared_layers"] == LONGER, "network"].unique()) == ["hybrid"]
 
 
+@pytest.mark.slow
 def test_one_middle_needs_no_word_on_another(run):
     assert "Hollow" not in build_one(hybrid, "tradeoff", "hybrid", run).caption
 
 
+@pytest.mark.slow
 def test_hybrids_on_the_thesis_s_classes_stand_beside_the_run_s(bare, run, small):
     write(bare, rows(both=-0.5), "princeton_six")
     frame = build_one(hybrid, "tables", "section_5_5", small.results(bare)).frame
@@ -230,6 +234,7 @@ VERDICTS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("key", "word"), VERDICTS.items())
 def test_claims_say_what_the_rows_hold(run, key, word):
     assert judge(chapter_5_hybrid.CLAIMS, run).set_index("key").loc[key, "verdict"] == word
@@ -265,6 +270,7 @@ def test_the_hybrid_itself_leaves_no_difference_to_judge(run):
     assert not np.allclose(differences(run, eight_bits), 1)
 
 
+@pytest.mark.slow
 def test_claims_on_the_thesis_s_classes_read_those_alone(bare, run, small):
     frame = rows()
     frame.loc[frame["sense"] == "touch", "value"] += 0.9

@@ -78,6 +78,7 @@ def test_the_axis_of_costs_has_numbers_however_narrow_it_is(span):
     plt.close(figure)
 
 
+@pytest.mark.slow
 def test_cost_is_a_ratio_to_the_named_reference(tmp_path):
     figure = chart(tmp_path)
     table = pd.read_csv(tmp_path / "chart.csv").set_index("name")
@@ -86,6 +87,7 @@ def test_cost_is_a_ratio_to_the_named_reference(tmp_path):
     assert "fast" in figure.words["alt"] and "poor" not in figure.words["alt"]
 
 
+@pytest.mark.slow
 def test_equal_charts_have_equal_bytes(tmp_path):
     chart(tmp_path / "a")
     chart(tmp_path / "b")
@@ -101,6 +103,7 @@ def crowded():
     return figure, axes, names, points
 
 
+@pytest.mark.slow
 def test_names_cover_neither_each_other_nor_a_point_nor_the_edge():
     figure, axes, names, points = crowded()
     written = place_names(axes, names, points, [((1, 0.2), (1, 0.8))])

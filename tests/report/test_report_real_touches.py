@@ -123,6 +123,7 @@ def test_table_4_4_stands_beside_the_thesis(measured):
     assert "first four classes 20.0 %" in notes and "Most alike: can, pen; four: can, pen" in notes
 
 
+@pytest.mark.slow
 def test_a_set_without_a_selection_is_not_run_in_its_cells(measured):
     rows = recorded()
     rows = rows[~((rows["group"] == "six") & (rows["method"] == "selected"))]

@@ -128,6 +128,7 @@ def test_objects_kept_for_the_test_are_the_pairs(measured):
     assert found["values"] == found["over_features_pairs"] == len(OBJECTS)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("data", "split", "unit", "shared"),
     [("pressure", "random", "repetition", shared_by("random")), ("grasps_slip", "test_objects", "item", 0.0)],
@@ -218,12 +219,14 @@ WORDS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("key", "word"), WORDS.items())
 def test_claims_say_what_the_rows_hold_in_every_setting(measured, key, word):
     mine = verdicts(measured(touches()), key)
     assert len(mine) in (2, len(SETTINGS)) and set(mine["verdict"]) == {word}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("key", WORDS)
 def test_claims_turn_with_the_rows(measured, key):
     worse = {way: 1 - level for way, level in LEVELS.items()} | {("mobilenet_v2", "imagenet", "frozen"): 0.1}
@@ -233,6 +236,7 @@ def test_claims_turn_with_the_rows(measured, key):
     assert judged.loc[f"recorded_{key}_pressure_random", "verdict"] == turned
 
 
+@pytest.mark.slow
 def test_effects_are_points_over_repetitions_or_objects(measured):
     judged = verdicts(measured(touches()))
     assert judged.loc["recorded_tuned_over_frozen_pressure_runs", "effect"] == pytest.approx(10, abs=0.3)

@@ -95,6 +95,7 @@ def test_smaller_films_are_not_in_the_table(run):
     assert len(table_4_9(run).frame) == 2 * 3 * len(MEANS)
 
 
+@pytest.mark.slow
 def test_larger_run_stands_below_where_there_is_one(bare, small):
     small.write(bare, "sequences", rows())
     small.write(bare, "sequences", rows(dataset="princeton_eight"))
@@ -131,6 +132,7 @@ def test_chart_charges_each_choice_its_seconds(run):
     assert frame.loc["CNNs, 25 x 32 x 32", "mean"] == pytest.approx(0.78, abs=0.01)
 
 
+@pytest.mark.slow
 def test_confusions_are_drawn_for_every_strategy_of_the_thesis(bare, small):
     found = [
         {
@@ -171,6 +173,7 @@ def verdicts(bare, small, frame):
     return found["verdict"].to_dict(), found
 
 
+@pytest.mark.slow
 def test_claims_that_hold_are_supported(bare, small):
     words, found = verdicts(bare, small, rows())
     assert words.pop("contours_map_helps_random") == "contradicted"
@@ -188,6 +191,7 @@ def test_claims_that_do_not_hold_are_contradicted(bare, small):
         assert words[key] == "contradicted"
 
 
+@pytest.mark.slow
 def test_claims_without_their_strategy_are_open_and_say_so(bare, small):
     frame = rows()
     words, found = verdicts(bare, small, frame[frame["method"] != "enhanced"])

@@ -58,6 +58,7 @@ def words(results):
     return judge(chapter_5.CLAIMS, results).set_index("key")
 
 
+@pytest.mark.slow
 def test_each_data_set_is_judged_by_its_own_rows(both):
     found = words(both)
     for split in ("random", "objects"):
@@ -67,6 +68,7 @@ def test_each_data_set_is_judged_by_its_own_rows(both):
     assert both.rows("transfer")["dataset"].unique() == ["furniture"]
 
 
+@pytest.mark.slow
 def test_every_claim_on_the_thesis_s_classes_has_rows_and_says_where(both):
     found = words(both)
     theirs = found[found.index.str.endswith("_psb")]
@@ -75,6 +77,7 @@ def test_every_claim_on_the_thesis_s_classes_has_rows_and_says_where(both):
     assert theirs["tested_on"].str.startswith("psb, the thesis's 6 classes, MobileNetV2, ").all()
 
 
+@pytest.mark.slow
 def test_all_that_the_thesis_says_can_be_supported(bare, small):
     small.write(bare, "transfer", rows())
     found = words(small.results(bare))
@@ -106,6 +109,7 @@ def test_one_object_of_five_says_more_than_one_of_three():
     assert width[1] / width[0] == pytest.approx(np.sqrt((1 + 5 / 4) / (1 + 5 / 2)))
 
 
+@pytest.mark.slow
 def test_claims_and_figure_widen_intervals_alike(both):
     found = words(both).loc["tuned_over_frozen_objects_psb"]
     own = _transfer.everywhere(both)["princeton_six"]
@@ -118,6 +122,7 @@ def test_other_rows_are_not_run_where_they_are_absent(bare, small):
         _transfer.measured(small.results(bare), "princeton_six")
 
 
+@pytest.mark.slow
 def test_other_networks_on_their_classes_stand_beside_and_change_no_claim(both, small):
     before = words(both)
     other = rows(frozen=0.9).assign(method="resnet50")

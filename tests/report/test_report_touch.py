@@ -140,6 +140,7 @@ def test_table_of_touches_without_touches_is_not_run(results):
         table("table_4_6", results)
 
 
+@pytest.mark.slow
 def test_claims_follow_the_measurements(glance):
     words = verdicts(glance)["verdict"]
     supported = ("selection_helps", "locations_help", "more_touches", "certain_at_five", "network_dips_disjoint",
@@ -156,6 +157,7 @@ def test_claims_have_keys_of_their_own_and_are_open_without_measurements(results
     assert (further["verdict"] == "open").all() and (further["pairs"] == 0).all()
 
 
+@pytest.mark.slow
 def test_chart_counts_the_making_of_the_features(glance):
     frame = pd.read_csv(build_one(touch, "tradeoff", "touches", glance).paths[1]).set_index("name")
     assert frame.loc["kNN, 41 features", "seconds"] == pytest.approx(0.03)
@@ -179,6 +181,7 @@ def test_correlations_of_imprints_that_are_absent_are_not_run(results):
         build_one(touch, "figures", "figure_4_4", results)
 
 
+@pytest.mark.slow
 def test_line_of_chance_follows_the_objects_that_the_group_held(root, results, small, monkeypatch):
     drawn = {}
     draw = lambda axes, *_, chance, **_other: drawn.update(chance=chance, axes=axes) or {}  # noqa: E731
@@ -190,6 +193,7 @@ def test_line_of_chance_follows_the_objects_that_the_group_held(root, results, s
     assert title == "Recognising 4 objects (group six) by one touch"
 
 
+@pytest.mark.slow
 def test_bars_are_those_of_the_samplings_that_ran(root, small):
     rows = small.classification()
     small.write(root, "classification", rows[rows["method"] != "thesis_ssim"])

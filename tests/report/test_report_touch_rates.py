@@ -80,6 +80,7 @@ def test_shown_table_names_the_methods_and_hides_rounding(bench):
     assert "m0 (psb, 2,000 faces)" in text
 
 
+@pytest.mark.slow
 def test_peers_that_did_not_run_are_said_and_leave_the_rest(bench):
     results = bench(benched(tacto=False))
     built = table(results)

@@ -105,6 +105,7 @@ def test_rows_on_the_thesis_s_classes_stand_beside_the_run_s(bare, run, small):
     assert "psb, the thesis's 6 classes, touches at random (chance 12.5), %" in shown
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("figure", transfer.FIGURES)
 def test_figures_are_drawn(run, figure):
     made = build_one(transfer, "figures", figure, run)
@@ -125,6 +126,7 @@ def test_gain_of_fine_tuning_is_paired(run):
     assert gain["mean"] == pytest.approx(30, abs=1) and gain["low"] < gain["mean"] < gain["high"]
 
 
+@pytest.mark.slow
 def test_chart_costs_are_seconds_of_training(run):
     build_one(transfer, "tradeoff", "networks", run)
     frame = pd.read_csv(run.reports / "tradeoff/networks.csv").set_index("name")
@@ -142,6 +144,7 @@ VERDICTS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("key", "word"), VERDICTS.items())
 def test_claims_say_what_the_rows_hold(run, key, word):
     judged = judge(chapter_5.CLAIMS, run).set_index("key")

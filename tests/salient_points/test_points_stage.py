@@ -40,6 +40,7 @@ def run(workspace):
     return lambda folder: work("ball", workspace.root / folder)
 
 
+@pytest.mark.slow
 def test_one_object_more_costs_one_object(workspace, monkeypatch):
     made = []
     find_all = stage.find_all
@@ -53,6 +54,7 @@ def test_one_object_more_costs_one_object(workspace, monkeypatch):
     assert set(rows["item"]) == set(made) and set(rows["dataset"]) == {"toys"}
 
 
+@pytest.mark.slow
 def test_stage_writes_the_contract(run, tmp_path, ball):
     run("out")
     stored = read_arrays(tmp_path / "out/ball.npz")
@@ -67,6 +69,7 @@ def test_stage_writes_the_contract(run, tmp_path, ball):
     assert (read_points(tmp_path / "out/ball.npz")["itti"][: len(strong["itti"])] == strong["itti"]).all()
 
 
+@pytest.mark.slow
 def test_stage_writes_the_same_bytes_twice(run, tmp_path):
     run("one"), run("two")
     assert sha256(tmp_path / "one/ball.npz") == sha256(tmp_path / "two/ball.npz")

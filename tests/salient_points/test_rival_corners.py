@@ -7,6 +7,7 @@ from stages.kit import Mesh
 from stages.salient_points.rivals import corners
 
 
+@pytest.mark.slow
 def test_the_value_on_a_sphere_is_the_largest_scale_over_the_radius(sphere):
     ball = sphere(4, 3)
     values = corners.saliency(ball)

@@ -34,6 +34,7 @@ def test_the_spectrum_of_a_sphere_is_the_known_one(sphere):
     assert np.allclose(functions.T * areas @ functions, np.eye(heat_kernel.PAIRS), atol=1e-6)
 
 
+@pytest.mark.slow
 def test_more_eigenpairs_change_nothing(starfish, monkeypatch):
     few = heat_kernel.saliency(starfish)
     monkeypatch.setattr(heat_kernel, "PAIRS", 150)

@@ -6,6 +6,7 @@ import pytest
 from stages.salient_points.rivals import salient_points
 
 
+@pytest.mark.slow
 def test_a_bump_of_the_right_size_is_the_first_point_and_a_wide_swell_is_none(bump_and_swell, sphere, saliency_of):
     values = saliency_of(salient_points, bump_and_swell)
     found = salient_points.points(bump_and_swell, values)

@@ -10,6 +10,7 @@ from stages.salient_points.rivals import sift
 X = np.array([1.0, 0, 0])
 
 
+@pytest.mark.slow
 def test_a_bump_of_the_right_size_is_the_only_point_and_a_wide_swell_has_no_saliency(
     bump_and_swell, sphere, saliency_of
 ):

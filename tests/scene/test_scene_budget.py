@@ -206,6 +206,7 @@ def test_what_hides_an_object_counts_nothing_for_its_structure(meshes, chains, m
     assert frames.between(0, 1, chains["two"][0], chains["two"][-1]) == 0
 
 
+@pytest.mark.slow
 def test_tuning_meets_the_wanted_error_from_above(frames_of, make_scene, chains):
     scene = make_scene()
     frames = frames_of(scene)

@@ -124,6 +124,7 @@ def validator():
     return next((place for place in places if place and (Path(place) / "gltf-validator").is_dir()), None)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("node") is None, reason="no node here")
 @pytest.mark.skipif(validator() is None, reason="no gltf-validator: `npm install gltf-validator@2.0.0-dev.3.10`")
 def test_the_khronos_validator_finds_no_fault(painted, chains, meshes, make_scene, tmp_path):

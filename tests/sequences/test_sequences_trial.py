@@ -136,6 +136,7 @@ def test_mistyped_size_is_an_error(contours):
         plan(CLASSES, contours, settings)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("split", ["random", "objects"])
 def test_trials_tell_clear_classes_apart(contours, tmp_path, split):
     rows = []
@@ -151,6 +152,7 @@ def test_trials_tell_clear_classes_apart(contours, tmp_path, split):
     assert {row.get("group") for row in rows} - {None} == (set(CLASSES) if split == "objects" else set())
 
 
+@pytest.mark.slow
 def test_trial_is_the_same_when_repeated(contours, tmp_path):
     for kind in ("networks", "conventional"):
         name = f"guided.random.0.{kind}.10x8"
@@ -158,6 +160,7 @@ def test_trial_is_the_same_when_repeated(contours, tmp_path):
         assert [row["value"] for row in first] == [row["value"] for row in again]
 
 
+@pytest.mark.slow
 def test_rows_hold_every_answer_and_layer(contours, tmp_path, monkeypatch):
     monkeypatch.setattr(trials, "CONVENTIONAL", ("knn_no_som", "svm_no_som"))
     planned = plan(CLASSES, contours, SETTINGS)

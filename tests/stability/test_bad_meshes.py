@@ -68,6 +68,7 @@ def test_an_odd_mesh_has_a_defined_answer(name, method):
         assert found.saliency.min() >= 0 and found.saliency.max() <= 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("channel", ["color", "contrast", "dkl", "edge", "entropy", "intensity", "orientation"])
 def test_an_image_of_one_grey_value_has_maps_of_zeros(channel):
     _, sight = seen("an image of one grey value")

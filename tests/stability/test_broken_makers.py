@@ -44,6 +44,7 @@ def test_equal_draws_give_equal_bytes_and_the_sound_mesh_stays(name):
     assert np.array_equal(SOUND.vertices, before[0]) and np.array_equal(SOUND.faces, before[1])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", COUNTS)
 def test_the_damage_is_the_one_that_the_name_says(name):
     surface = Surface(broken(name))
@@ -70,6 +71,7 @@ def test_needles_are_as_thin_as_they_say():
     assert slimness[0] > 0 and slimness[199] < SLIVER_HEIGHT < slimness[200]
 
 
+@pytest.mark.slow
 def test_mixed_winding_cannot_be_told_inside_from_outside_and_a_moebius_strip_never():
     assert not Surface(broken("mixed_winding")).as_trimesh.is_winding_consistent
     strip = trimesh.Trimesh(*(getattr(broken("moebius"), name) for name in ("vertices", "faces")), process=False)

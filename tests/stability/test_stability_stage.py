@@ -23,6 +23,7 @@ def value(rows, method, perturbation, severity, metric):
     return found[0]
 
 
+@pytest.mark.slow
 def test_a_shuffled_mesh_gives_the_same_points_and_map(disturbed):
     for method in ("itti", "harris"):
         assert value(disturbed.rows, method, "vertex_order", 1.0, "repeatability") == 1
@@ -108,6 +109,7 @@ def test_objects_are_the_wanted_ones_or_else_the_first(settings):
     assert chosen(settings, ["ant", "bee", "cat"]) == ["ant", "bee"]
 
 
+@pytest.mark.slow
 def test_the_whole_stage_writes_rows_metrics_and_one_file_per_object(make_workspace, pear, settings):
     short = dataclasses.replace(settings, methods=["harris"], perturbations=["vertex_order"], broken=["pear"])
     workspace = make_workspace({"stability": dataclasses.asdict(short)})

@@ -51,6 +51,7 @@ def agreement(mesh, view):
     return spearmanr(maps["entropy"][inside], maps["contrast"][inside])[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("viewpoint", VIEWPOINTS, ids=lambda viewpoint: viewpoint.name)
 def test_entropy_adds_nothing_without_texture(viewpoint):
     """T3.1.5. On a smooth grey shape it repeats what contrast says already; on the same shape with a grain it does not.
@@ -63,6 +64,7 @@ def test_entropy_adds_nothing_without_texture(viewpoint):
     assert agreement(mesh, textured(view)) < 0.6
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SMOOTH)
 def test_entropy_measures_texture(name):
     """T3.1.5. The grain adds more than a bit where the shading is even, facing the light."""
@@ -81,6 +83,7 @@ def test_symmetry_says_nothing_on_a_compact_shape(radii):
     assert gains == pytest.approx([0] * len(gains), abs=1e-12)
 
 
+@pytest.mark.slow
 def test_symmetry_says_something_on_a_long_shape():
     """T3.2.3, the other side: the same feature has a gain where the extremes stand out."""
     gains, maps = symmetry_at_the_ends(stretched(0.45, 0.25, 0.12))

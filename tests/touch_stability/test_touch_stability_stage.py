@@ -51,6 +51,7 @@ def run(tmp_path, make_workspace):
     return call
 
 
+@pytest.mark.slow
 def test_a_run_measures_every_severity_by_every_split(run):
     rows = run()
     found = set(zip(rows["perturbation"], rows["severity"], strict=True))
@@ -70,6 +71,7 @@ def test_there_is_no_lead_to_lose_where_clean_touches_are_no_better_than_guessin
     assert np.isnan(lead_left([0.1, 0.3], 0.3, 0.4)).all() and np.isnan(lead_left([0.1], 0.4, 0.4)).all()
 
 
+@pytest.mark.slow
 def test_the_metrics_hold_accuracy_and_breaking_points(run, tmp_path):
     run()
     found = read_json(tmp_path / "reports/metrics/toys/touch_stability.json")
@@ -78,6 +80,7 @@ def test_the_metrics_hold_accuracy_and_breaking_points(run, tmp_path):
     assert found["accuracy"]["anywhere.imprint.knn"] > 0.9
 
 
+@pytest.mark.slow
 def test_equal_runs_give_equal_rows(run):
     first, second = (run().drop(columns="seconds") for _ in range(2))
     pd.testing.assert_frame_equal(first, second)

@@ -59,12 +59,14 @@ def differences(hybrid, pair, images):
     return [float((a - b).abs().max()) for a, b in zip(own, found, strict=True)], spread
 
 
+@pytest.mark.slow
 def test_each_head_answers_as_its_own_network(hybrid, pair, images):
     worst, spread = differences(hybrid, pair, images)
     assert max(worst) < 1e-5
     assert spread > 1e-3  # the scores depend on the image: equal ones are no accident
 
 
+@pytest.mark.slow
 def test_with_imagenets_weights_too(images):
     if not (cache_folder() / PACKAGES["mobilenet_v2"].filename).exists():
         pytest.skip("ImageNet's weights are not in the cache")
@@ -99,12 +101,14 @@ def test_rows_of_a_batch_are_absent_one_by_one(hybrid, images):
     assert torch.allclose(scores.vision[0], alone, rtol=1e-3)
 
 
+@pytest.mark.slow
 def test_both_at_once_see_the_sum_in_forward_and_not_in_apart(hybrid, images):
     both, other = join_senses(images, images.flip(0)), join_senses(images, None)
     assert torch.allclose(hybrid.separate_scores(both).vision, hybrid(other).vision, atol=1e-5)
     assert (hybrid(both).vision - hybrid(other).vision).abs().max() > 1e-3
 
 
+@pytest.mark.slow
 def test_prediction_is_by_the_surer_sense_after_its_temperature(pair, images):
     hybrid, both = HybridNet(*pair), join_senses(images, images.flip(0))
     hybrid.temperature.copy_(torch.tensor([1e-3, 1e3]))
@@ -141,6 +145,7 @@ def test_shared_layers_are_counted_once(hybrid, pair):
     assert 1.42 < 2 * count_parameters(pair[0]) / count_parameters(hybrid) < 1.43  # T5.5: 1.4284, of files
 
 
+@pytest.mark.slow
 def test_a_longer_middle_makes_a_smaller_network(base, hybrid):
     wide = HybridNet(tuned(base, 1, (3, 18)), tuned(base, 2, (3, 18)), (3, 18))
     assert count_parameters(wide) < 0.9 * count_parameters(hybrid)
@@ -153,6 +158,7 @@ def test_middles_that_differ_are_refused_by_the_name_of_the_tensor(pair):
         HybridNet(pair[0], other)
 
 
+@pytest.mark.slow
 def test_statistics_that_differ_are_refused_too(pair):
     other = copy.deepcopy(pair[1])
     other.convolutions[16].conv[3].running_var[3] *= 2

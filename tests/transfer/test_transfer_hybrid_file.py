@@ -47,6 +47,7 @@ def test_a_saved_network_comes_back_bit_for_bit(hybrid, images, tmp_path):
     assert found.temperature.tolist() == [2, 3]
 
 
+@pytest.mark.slow
 def test_equal_networks_give_equal_bytes(hybrid, stored, tmp_path):
     save(tmp_path / "again.npz", hybrid, NAMES, "int8")
     assert sha256(tmp_path / "again.npz") == sha256(stored)

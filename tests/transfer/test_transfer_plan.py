@@ -78,6 +78,7 @@ def test_a_network_without_weights_is_a_note_and_the_others_run(small, weights):
     assert {trial.network for trial in planned.trials} == {"mobilenet_v2"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("change", "reason"),
     [

@@ -39,6 +39,7 @@ def run(make_workspace, small):
     return start
 
 
+@pytest.mark.slow
 def test_a_run_writes_what_the_report_reads(run):
     workspace, table = run(CLASSES, epochs=2, search_epochs=1)
     accuracy = table[table["metric"] == "accuracy"]

@@ -44,6 +44,7 @@ def test_touches_know_their_class_and_object(folder):
     assert np.bincount(touches.objects).tolist() == [8, 8, 8, 8]
 
 
+@pytest.mark.slow
 def test_a_trial_gives_equal_files_each_time_and_tidy_rows(folder, small):
     settings, file = small.settings(), f"{FROZEN.name}.npz"
     rows = run(folder, settings)
@@ -66,6 +67,7 @@ def test_disturbed_touches_are_rows_of_their_own(folder, small):
     assert {row["split"] for row in rows} == {"random"} and {row["pretrained"] for row in rows} == {None}
 
 
+@pytest.mark.slow
 def test_a_left_out_object_is_tested_and_a_range_changes_its_other_layers(folder, small):
     one = FROZEN._replace(mode="18:139", split="objects")
     rows = run(folder, small.settings(epochs=1, search_epochs=1), one)
@@ -75,6 +77,7 @@ def test_a_left_out_object_is_tested_and_a_range_changes_its_other_layers(folder
     assert plain(rows)["weight_change"] == pytest.approx(np.mean([row["value"] for row in rows if "layer" in row]))
 
 
+@pytest.mark.slow
 def test_a_trial_killed_in_its_last_training_seeks_no_rate_again(folder, small, monkeypatch):
     settings = small.settings(severities={})
     expected = plain(run(folder, settings))

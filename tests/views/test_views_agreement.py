@@ -11,6 +11,7 @@ SIZE = (300, 400)
 FOOTPRINT = 1 / pixels_per_unit(SIZE[0])
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(bool(gl.egl_error()), reason=f"no EGL context on this machine: {gl.egl_error()}")
 @pytest.mark.parametrize("viewpoint", [Viewpoint(0, 0), Viewpoint(120, 45), Viewpoint(240, -45, 30), Viewpoint(0, 90)])
 @pytest.mark.parametrize("name", ["sphere", "torus", "cube", "bowl", "coloured"])

@@ -102,6 +102,7 @@ def test_at_most_four_views_are_added():
     assert best_viewpoints(nested, flat_level) == [*PERPENDICULAR_SETS[0], *BETWEEN[0]]
 
 
+@pytest.mark.slow
 def test_rays_meet_the_faces_that_exact_intersection_counts():
     """Against brute force: the share of rays through a torus with more than two faces, over its whole silhouette."""
     torus = as_mesh(trimesh.creation.torus(0.35, 0.15, major_sections=32, minor_sections=16))

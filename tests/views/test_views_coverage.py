@@ -51,6 +51,7 @@ def test_points_fill_a_face_evenly():
     assert abs((points[:, :2].sum(axis=1) < 0.5).mean() - 0.25) < 0.02
 
 
+@pytest.mark.slow
 def test_a_view_sees_half_of_a_sphere_and_that_is_the_half_that_faces_it(shapes):
     sphere = shapes["sphere"]
     seen = point_visibility(sphere, CANDIDATES)
@@ -67,6 +68,7 @@ def test_a_face_of_a_cube_is_a_sixth_and_a_corner_view_sees_a_half(shapes):
     np.testing.assert_allclose(shares, [1 / 6, 2 / 6, 3 / 6], atol=1e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["sphere", "cube"])
 def test_two_opposite_views_see_all_of_a_convex_body(shapes, name):
     views, shares = fewest_views(shapes[name])
@@ -79,6 +81,7 @@ def test_a_torus_is_seen_from_both_sides_of_its_hole(shapes):
     assert cumulative_coverage(shapes["torus"], [FRONT, Viewpoint(180, 0)])[-1] < 0.9
 
 
+@pytest.mark.slow
 def test_an_inner_shell_is_not_visible_and_does_not_count(shapes):
     points, _ = surface_points(shapes["shells"])
     seen = point_visibility(shapes["shells"], CANDIDATES).any(axis=0)
@@ -151,6 +154,7 @@ def test_greed_can_be_beaten():
     assert len(_greedy(seen, 1.0, 3)[0]) == 3 and sorted(_exact(seen, 1.0)) == [1, 2]
 
 
+@pytest.mark.slow
 def test_vertex_order_size_and_place_do_not_matter(shapes):
     mesh = shapes["cup"]
     order = np.random.default_rng(2).permutation(len(mesh.vertices))
@@ -169,6 +173,7 @@ def test_turning_the_mesh_and_the_camera_together_changes_nothing(shapes):
     assert (point_visibility(turned, after) == point_visibility(mesh, views)).mean() > 0.9999
 
 
+@pytest.mark.slow
 def test_inward_normals_doubled_faces_and_stray_vertices_do_not_matter(shapes):
     mesh = shapes["cup"]
     inward = Mesh(np.r_[mesh.vertices, [[9, 9, 9]]], mesh.faces[:, ::-1])
@@ -178,6 +183,7 @@ def test_inward_normals_doubled_faces_and_stray_vertices_do_not_matter(shapes):
     np.testing.assert_allclose(found, expected, atol=0.015)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mesh", [
     Mesh(np.array([[0, 0, 0], [0.5, 0, 0], [0, 0.5, 0]]), np.array([[0, 1, 2]])),
     Mesh(np.array([[0, 0, 0], [0.5, 0, 0], [0, 0.5, 0], [9, 9, 9], [9.5, 9, 9], [9, 9.5, 9]]),

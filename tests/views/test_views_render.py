@@ -34,6 +34,7 @@ def both(*meshes):
     return Mesh(np.concatenate([mesh.vertices for mesh in meshes]), np.concatenate(faces))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("viewpoint", TWELVE, ids=lambda viewpoint: viewpoint.name)
 def test_sphere_has_the_depth_and_the_limb_of_a_sphere(shapes, renderer, viewpoint):
     view = render(shapes["sphere"], viewpoint, SIZE, renderer)
@@ -128,6 +129,7 @@ def test_pixel_rays_through_seen_pixels_meet_the_surface_where_project_says(shap
     assert height.max() < 1e-4
 
 
+@pytest.mark.slow
 def test_sphere_of_the_normalised_size_fits_the_frame_of_the_thesis(shapes):
     view = render(shapes["sphere"], FRONT, renderer="raycast")
     rows = np.flatnonzero(view.mask.any(axis=1))

@@ -69,6 +69,7 @@ def test_unknown_set_of_viewpoints_is_named_with_the_known_ones(make_workspace):
         stage.run(make_workspace({"views": SECTION | {"viewpoints": "six"}}))
 
 
+@pytest.mark.slow
 def test_mesh_that_leaves_the_frame_is_named(workspace, shapes, make_workspace):
     cube = shapes["cube"]
     write_mesh(workspace.data / "meshes" / "huge.npz", Mesh(cube.vertices * 9, cube.faces))

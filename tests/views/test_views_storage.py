@@ -16,6 +16,7 @@ def assert_equal(one, other):
     assert one.viewpoint == other.viewpoint
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["sphere", "torus", "cube", "bowl", "coloured"])
 @pytest.mark.parametrize("background", ["black", "white"])
 def test_round_trip_is_exact(shapes, name, background, tmp_path):
@@ -39,6 +40,7 @@ def test_view_without_background_comes_back(tmp_path):
     assert_equal(read_view(tmp_path / "view.npz"), view)
 
 
+@pytest.mark.slow
 def test_equal_views_give_equal_bytes_and_small_ones(shapes, tmp_path):
     for name in ("a", "b"):
         write_view(tmp_path / f"{name}.npz", render(shapes["sphere"], TWELVE[5], renderer="raycast"))

@@ -89,6 +89,7 @@ def test_a_damaged_file_is_named(content, reason):
         read_gaze(content)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not ARCHIVE.exists(), reason="../shared/data/gaze.zip is not there")
 @pytest.mark.parametrize("member", ["test/jessi", "train/meca", "train/sofa", "train/bunny"])
 def test_published_files_match_their_meshes_digit_by_digit(member):

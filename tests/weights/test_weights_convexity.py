@@ -88,6 +88,7 @@ def test_two_holes_get_a_lid_each():
     assert convexity(Mesh(tube.vertices, tube.faces[sides])) == pytest.approx(1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scale", [1e-3, 1.0, 1e4])
 def test_size_place_and_turn_do_not_matter(scale):
     mesh = torus()
@@ -100,6 +101,7 @@ def test_inward_normals_do_not_matter():
     assert convexity(Mesh(mesh.vertices, mesh.faces[:, ::-1])) == pytest.approx(convexity(mesh))
 
 
+@pytest.mark.slow
 def test_vertex_order_loose_vertices_and_unmerged_corners_do_not_matter():
     mesh = torus()
     order = np.random.default_rng(0).permutation(len(mesh.vertices))

@@ -128,6 +128,7 @@ def test_only_objects_whose_training_data_changed_are_trained_again(workspace, o
     assert run(workspace, monkeypatch) == (["another"], ["another", "ball", "egg"])
 
 
+@pytest.mark.slow
 def test_marks_of_another_mesh_leave_the_object_out_with_a_note(workspace, objects, add_object, capsys):
     path = workspace.root / "data/annotations/egg.csv"
     write_text(path, path.read_text().replace("0.", "0.9"))

@@ -151,6 +151,7 @@ def view_rows(seeds):
     return np.concatenate([f for f, _ in found]), np.concatenate([label for _, label in found]), groups
 
 
+@pytest.mark.slow
 def test_folds_of_pixels_flatter_where_neighbours_are_alike():
     features, labels, groups = view_rows(range(4))  # spots lie anywhere: there is nothing to learn
     at_random = cross_validated(features, labels, seed=0)[0]
