@@ -110,7 +110,7 @@ def test_every_file_says_what_it_is_for():
 
 def test_the_code_of_a_stage_is_what_it_imports():
     files = {path.relative_to(ROOT).as_posix() for path in code.stage_files("views")}
-    assert {"stages/views/raycast.py", "stages/views/shaders/segmentation.frag", "stages/kit/run.py"} <= files
+    assert {"stages/views/raster.py", "stages/views/shaders/segmentation.frag", "stages/kit/run.py"} <= files
     assert not any(name.startswith(("stages/lod/", "stages/report/")) for name in files)
 
 

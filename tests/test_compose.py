@@ -95,7 +95,7 @@ def test_any_path_can_be_given_as_it_is(folder):
         ("parallel:", "paralel:", "did you mean parallel"),
         ("sets:", "data:", "of an older layout: run `python -m stages.compose`"),
         ("    renderer: ", "    rendrer: ", "unknown setting views.rendrer: did you mean views.renderer"),
-        ("    renderer: raycast\n", "", "views.renderer"),
+        ("    renderer: raster\n", "", "views.renderer"),
     ],
 )
 def test_a_fault_in_params_yaml_is_named(tmp_path, old, new, reason):

@@ -76,7 +76,7 @@ def photograph(mesh: Mesh, viewpoints: Sequence[Viewpoint], rows: int) -> tuple[
     found, masks = [], []
     for viewpoint in viewpoints:
         with Stopwatch() as watch:
-            view = render(mesh, viewpoint, size, "raycast")
+            view = render(mesh, viewpoint, size, "raster")
         seconds["pictures"] += watch.seconds
         maps = {}
         for channel in CHANNELS:

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -27,7 +28,7 @@ class Viewpoint:
         name = f"az{self.azimuth:g}_el{self.elevation:g}"
         return name if self.roll == 0 else f"{name}_ro{self.roll:g}"
 
-    @property
+    @cached_property
     def axes(self) -> np.ndarray:
         """(3, 3) rows right, up, back: the camera's axes in the world; back points from the origin to the camera."""
         az, el, roll = np.radians([self.azimuth, self.elevation, self.roll])

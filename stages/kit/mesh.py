@@ -94,11 +94,17 @@ class Mesh:
         return len(self.faces) > 0 and bool((self.edge_counts[1] == 2).all())
 
     @cached_property
+    def used(self) -> np.ndarray:
+        """(k,) i8 ids of the vertices that lie in a face, in order."""
+        in_a_face = np.zeros(len(self.vertices), dtype=bool)
+        in_a_face[self.faces.ravel()] = True
+        return np.flatnonzero(in_a_face)
+
+    @cached_property
     def diagonal(self) -> float:
         """Length of the bounding-box diagonal; vertices in no face do not count, but on a mesh without faces."""
-        used = np.full(len(self.vertices), len(self.faces) == 0)
-        used[self.faces.ravel()] = True
-        return float(np.linalg.norm(np.ptp(self.vertices[used], axis=0)))
+        vertices = self.vertices[self.used] if len(self.faces) else self.vertices
+        return float(np.linalg.norm(np.ptp(vertices, axis=0)))
 
     def rings(self, vertices: np.ndarray, count: int) -> np.ndarray:
         """(n,) boolean: the given vertices and all within `count` edges of them."""

@@ -1,10 +1,13 @@
 """What the comparison needs of one object."""
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
 from stages.kit import Mesh
+
+from .perceptual import Pyramid, pyramids
 
 
 @dataclass(frozen=True)
@@ -23,3 +26,8 @@ class ObjectInputs:
     pictures: np.ndarray | None = None
     gaze: np.ndarray | None = None
     cache: dict = field(default_factory=dict, repr=False)
+
+    @cached_property
+    def bands(self) -> list[Pyramid] | None:
+        """The pyramids of its own pictures."""
+        return None if self.pictures is None else pyramids(self.pictures)

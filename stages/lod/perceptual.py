@@ -2,22 +2,24 @@
 
 from collections.abc import Sequence
 
+import cv2
 import numpy as np
 
 from stages.kit import Mesh, Viewpoint
 from stages.views import TWELVE, render
 
-from .laplacian import laplacian_distance
-from .normalised_laplacian import normalised_laplacian_distance
+from .laplacian import band_distance, laplacian_pyramid
+from .normalised_laplacian import normalise
 from .similarity import WINDOW, ssim_error
 
-LUMA = (0.299, 0.587, 0.114)  # ITU-R BT.601
-MEASURES = {"ssim": ssim_error, "dlap": laplacian_distance, "dnor": normalised_laplacian_distance}
+Pyramid = tuple[list[np.ndarray], list[np.ndarray]]  # bands before and after gain control
+
+LUMA = np.array([[0.299, 0.587, 0.114]])  # ITU-R BT.601
 
 
 def perceptual(
     reference: Mesh, mesh: Mesh, viewpoints: Sequence[Viewpoint] = TWELVE, size: tuple[int, int] = (225, 300),
-    renderer: str = "raycast",
+    renderer: str = "raster",
 ) -> dict[str, float]:  # fmt: skip
     """Errors of the pictures of a mesh against those of the reference, averaged over the viewpoints.
 
@@ -35,19 +37,34 @@ def perceptual(
 
 
 def take_pictures(
-    mesh: Mesh, viewpoints: Sequence[Viewpoint] = TWELVE, size: tuple[int, int] = (225, 300), renderer: str = "raycast"
+    mesh: Mesh, viewpoints: Sequence[Viewpoint] = TWELVE, size: tuple[int, int] = (225, 300), renderer: str = "raster"
 ) -> np.ndarray:
     """(views, rows, columns) f8 luminance, 0 to 255, of a mesh; those of a reference serve many comparisons."""
     if len(viewpoints) == 0:
         raise ValueError("pictures need one viewpoint or more")
     if min(size) < WINDOW:
         raise ValueError(f"pictures of {tuple(size)} are smaller than the window of {WINDOW} pixels")
-    return np.stack([render(mesh, viewpoint, size, renderer=renderer).rgb @ np.array(LUMA) for viewpoint in viewpoints])
+    views = (render(mesh, viewpoint, size, renderer=renderer).rgb for viewpoint in viewpoints)
+    return np.stack([cv2.transform(rgb.astype(np.float64), LUMA) for rgb in views])
 
 
-def picture_errors(reference: np.ndarray, pictures: np.ndarray) -> dict[str, float]:
-    """dict(ssim, dlap, dnor) of pictures (views, rows, columns) against the reference's, averaged over the views."""
+def pyramids(pictures: np.ndarray) -> list[Pyramid]:
+    """The bands of each of pictures (views, rows, columns), before and after gain control."""
+    return [(bands, normalise(bands)) for bands in map(laplacian_pyramid, pictures)]
+
+
+def picture_errors(
+    reference: np.ndarray, pictures: np.ndarray, bands: Sequence[Pyramid] | None = None
+) -> dict[str, float]:
+    """dict(ssim, dlap, dnor) of pictures (views, rows, columns) against the reference's, averaged over the views.
+
+    bands: pyramids(reference), where the reference serves many comparisons.
+    """
     if reference.shape != pictures.shape:
         raise ValueError(f"pictures of {pictures.shape} cannot be compared with the reference's {reference.shape}")
-    pairs = list(zip(reference, pictures, strict=True))
-    return {name: float(np.mean([measure(*pair) for pair in pairs])) for name, measure in MEASURES.items()}
+    pairs = list(zip(bands or pyramids(reference), pyramids(pictures), strict=True))
+    return {
+        "ssim": float(np.mean([ssim_error(*pair) for pair in zip(reference, pictures, strict=True)])),
+        "dlap": float(np.mean([band_distance(ours[0], theirs[0]) for ours, theirs in pairs])),
+        "dnor": float(np.mean([band_distance(ours[1], theirs[1]) for ours, theirs in pairs])),
+    }

@@ -54,7 +54,7 @@ def check_picture(path: Path) -> None:
 def draw(mesh: Mesh, wires: bool = False) -> np.ndarray:
     """(ROWS, ROWS, 3) u1 picture of a mesh on white; wires: with the edges between visible faces."""
     side = ROWS * FINER
-    view = render(mesh, VIEWPOINT, (side, side), renderer="raycast", background="white")
+    view = render(mesh, VIEWPOINT, (side, side), renderer="raster", background="white")
     image = view.rgb.astype(np.float64)
     if wires:
         face = view.face
@@ -67,7 +67,7 @@ def draw(mesh: Mesh, wires: bool = False) -> np.ndarray:
 def visible_points(mesh: Mesh, vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(rows, columns) in the picture of the visible ones of the vertices."""
     size = (ROWS, ROWS)
-    depth = render(mesh, VIEWPOINT, size, renderer="raycast").depth
+    depth = render(mesh, VIEWPOINT, size, renderer="raster").depth
     rows, columns, depths = project(mesh.vertices[vertices], VIEWPOINT, size)
     r, c = (np.clip(np.rint(place).astype(int), 0, ROWS - 1) for place in (rows, columns))
     near = depths <= depth[r, c] + 0.02  # units: a point on the silhouette may miss its own surface by a pixel

@@ -70,7 +70,7 @@ def compute_maps(
 ) -> ViewMaps | None:
     """The ViewMaps of a normalised mesh: rendered from the viewpoints, with the channels' maps; None without channels.
 
-    renderer: that of stages.views.render; `raycast` gives the same bytes on every machine.
+    renderer: that of stages.views.render; `raster` gives the same bytes on every machine.
     """
     channels = tuple(channels)
     if not channels:

@@ -31,7 +31,7 @@ def maps_under_conditions(
     normals = corner_normals(mesh) if conditions.light else np.zeros((0, 3, 3))
     found, masks = [], []
     for viewpoint in TWELVE:
-        view = render(mesh, viewpoint, size, "raycast")
+        view = render(mesh, viewpoint, size, "raster")
         if conditions.light:
             view = relit(mesh, view, conditions.light, normals)
         view.rgb[~view.mask] = round(255 * conditions.background)

@@ -61,7 +61,7 @@ def hidden_surface(mesh: Mesh, viewpoints: Sequence[Viewpoint], seed: int = 0) -
 def _has_hidden_surface(scene, viewpoint, random):
     """Whether one of RAYS rays through the silhouette meets more than FACES faces."""
     right_up = viewpoint.axes[:2]
-    corners = scene.mesh.vertices[np.unique(scene.mesh.faces)] @ right_up.T
+    corners = scene.mesh.vertices[scene.mesh.used] @ right_up.T
     places = corners.min(axis=0) + random.random((DRAWS, 2)) * np.ptp(corners, axis=0)
     origins, directions, _ = sightlines(places @ right_up, viewpoint)
     on = np.flatnonzero(scene.cast(origins, directions).hit)[:RAYS]

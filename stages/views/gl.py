@@ -42,7 +42,7 @@ def render_pyrender(mesh: Mesh, viewpoint: Viewpoint, size: tuple[int, int], bac
     if egl_error():
         raise OSError(
             f"the renderer pyrender needs EGL, which is not available ({egl_error()}): install it (Debian: apt-get "
-            "install libegl1 libgl1-mesa-dri), or set renderer=raycast"
+            "install libegl1 libgl1-mesa-dri), or set renderer=raster"
         )
     view = empty_view(viewpoint, size, background)
     if pixel_box(mesh, viewpoint, size) == (0, 0, 0, 0):

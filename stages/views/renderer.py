@@ -9,10 +9,10 @@ import numpy as np
 from stages.kit import Mesh, Viewpoint
 
 from . import gl
-from .raycast import render_raycast
+from .raster import render_raster
 from .view import BACKGROUNDS, View
 
-RENDERERS = {"raycast": render_raycast, "pyrender": gl.render_pyrender}
+RENDERERS = {"raster": render_raster, "pyrender": gl.render_pyrender}
 
 
 def render(
@@ -25,7 +25,7 @@ def render(
     """Renders a mesh by the thesis's orthographic camera (T3.1.1, T3.2.6).
 
     mesh: centred and scaled by stages.meshes.normalise; its vertex colours are used if it has any. size: (rows,
-    columns); one unit of the mesh spans 0.954 of the rows. renderer: `raycast`, `pyrender` (needs EGL) or `auto`
+    columns); one unit of the mesh spans 0.954 of the rows. renderer: `raster`, `pyrender` (needs EGL) or `auto`
     (pyrender if EGL is available, else raycast, with a message on stderr). background: `black` as in the thesis,
     `grey` or `white`. A mesh without faces gives a view of the background.
 
@@ -53,5 +53,5 @@ def resolve_renderer(renderer: str) -> str:
 def _available():
     if not gl.egl_error():
         return "pyrender"
-    print(f"views: EGL is not available ({gl.egl_error()}): using the renderer raycast", file=sys.stderr)
-    return "raycast"
+    print(f"views: EGL is not available ({gl.egl_error()}): using the renderer raster", file=sys.stderr)
+    return "raster"

@@ -11,6 +11,6 @@ class Params:
 
     viewpoints: str  # named set: twelve (T figure 3.2) or four (perpendicular, all round)
     size: list[int]  # rows, columns of an image; the object spans 858.7 of 900 rows
-    renderer: str  # raycast (everywhere the same bytes), pyrender (needs EGL) or auto
+    renderer: str  # raster (everywhere the same bytes), pyrender (needs EGL) or auto
     background: str  # black (as in the thesis), grey or white
     compare_sets: bool  # also measure how much of the surface the views see, and the fewest that see nearly all

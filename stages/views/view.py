@@ -1,6 +1,7 @@
 """The View that a renderer returns, and the checks and rounding that both renderers share."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -29,7 +30,7 @@ class View:
             shapes = f"rgb {self.rgb.shape}, depth {self.depth.shape}, face {self.face.shape}"
             raise ValueError(f"a view needs rgb (h, w, 3), depth (h, w) and face (h, w), got {shapes}")
 
-    @property
+    @cached_property
     def mask(self) -> np.ndarray:
         """(h, w) boolean: the pixel is on the object."""
         return self.face >= 0
@@ -53,7 +54,7 @@ def pixel_box(mesh: Mesh, viewpoint: Viewpoint, size: tuple[int, int]) -> tuple[
     """
     if not len(mesh.faces):
         return 0, 0, 0, 0
-    rows, columns, depths = project(mesh.vertices[np.unique(mesh.faces)], viewpoint, size)
+    rows, columns, depths = project(mesh.vertices[mesh.used], viewpoint, size)
     low = np.array([rows.min(), columns.min()])
     high = np.array([rows.max(), columns.max()])
     if (low < -0.5).any() or (high > np.array(size) - 0.5).any() or depths.min() <= 0 or depths.max() >= 2 * DISTANCE:

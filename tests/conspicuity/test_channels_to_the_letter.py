@@ -226,7 +226,7 @@ def test_of_two_balls_the_smaller_stands_out_in_curvature():
     ball = trimesh.creation.icosphere(subdivisions=4)
     v, f = ball.vertices, ball.faces
     mesh = Mesh(np.r_[v * 0.2 - [0, 0.22, 0], v * 0.1 + [0, 0.3, 0]], np.r_[f, f + len(v)])
-    found = conspicuity(mesh, render(mesh, Viewpoint(0, 0), (300, 400), "raycast"), ["curvature"])["curvature"]
+    found = conspicuity(mesh, render(mesh, Viewpoint(0, 0), (300, 400), "raster"), ["curvature"])["curvature"]
     assert found[:, 60:].max() > 1.8 * found[:, :55].max() > 0
 
 

@@ -31,7 +31,7 @@ ODD = {
 @pytest.mark.filterwarnings("error")
 def test_odd_meshes_give_finite_maps(name):
     for viewpoint in (Viewpoint(0, 0), Viewpoint(40, 30)):
-        view = render(ODD[name], viewpoint, SIZE, "raycast")
+        view = render(ODD[name], viewpoint, SIZE, "raster")
         for channel, values in conspicuity(ODD[name], view).items():
             assert np.isfinite(values).all() and values.min() >= 0 and values.max() <= 1, channel
             if name in ("one triangle", "no face", "flat"):
@@ -42,8 +42,8 @@ def test_odd_meshes_give_finite_maps(name):
 def test_inward_normals_change_nothing():
     outward = Mesh(BALL.vertices, BALL.faces)
     for viewpoint in (Viewpoint(0, 0), Viewpoint(40, 30)):
-        here = conspicuity(outward, render(outward, viewpoint, SIZE, "raycast"))
-        there = conspicuity(ODD["inward normals"], render(ODD["inward normals"], viewpoint, SIZE, "raycast"))
+        here = conspicuity(outward, render(outward, viewpoint, SIZE, "raster"))
+        there = conspicuity(ODD["inward normals"], render(ODD["inward normals"], viewpoint, SIZE, "raster"))
         for channel in here:
             np.testing.assert_allclose(here[channel], there[channel], atol=0.03)
 
@@ -51,20 +51,20 @@ def test_inward_normals_change_nothing():
 def test_tiny_views_work():
     mesh = Mesh(BALL.vertices, BALL.faces)
     for size in ((9, 12), (3, 5), (40, 50)):
-        maps = conspicuity(mesh, render(mesh, Viewpoint(0, 0), size, "raycast"))
+        maps = conspicuity(mesh, render(mesh, Viewpoint(0, 0), size, "raster"))
         assert all(np.isfinite(values).all() for values in maps.values())
 
 
 def test_a_view_of_another_mesh_is_refused():
     mesh = Mesh(BALL.vertices, BALL.faces)
-    view = render(mesh, Viewpoint(0, 0), SIZE, "raycast")
+    view = render(mesh, Viewpoint(0, 0), SIZE, "raster")
     with pytest.raises(ValueError, match="render this mesh again"):
         conspicuity(ODD["one triangle"], view, ["curvature"])
 
 
 def test_unknown_channels_and_sizes_are_named():
     mesh = ODD["one triangle"]
-    view = render(mesh, Viewpoint(0, 0), SIZE, "raycast")
+    view = render(mesh, Viewpoint(0, 0), SIZE, "raster")
     with pytest.raises(ValueError, match="colour.*choose from color"):
         conspicuity(mesh, view, ["colour"])
     with pytest.raises(ValueError, match="size of the maps"):
@@ -72,7 +72,7 @@ def test_unknown_channels_and_sizes_are_named():
 
 
 def test_a_view_of_the_wrong_type_of_pixels_is_refused():
-    view = render(ODD["one triangle"], Viewpoint(0, 0), SIZE, "raycast")
+    view = render(ODD["one triangle"], Viewpoint(0, 0), SIZE, "raster")
     floats = dataclasses.replace(view, rgb=view.rgb / 255)
     assert isinstance(floats, View)
     with pytest.raises(ValueError, match="rgb"):

@@ -11,7 +11,7 @@ from stages.kit.files import read_json, write_mesh
 from stages.kit.rows import read_rows
 from stages.views.__main__ import run as run_views
 
-VIEWS = {"viewpoints": "four", "size": [90, 120], "renderer": "raycast", "background": "black",
+VIEWS = {"viewpoints": "four", "size": [90, 120], "renderer": "raster", "background": "black",
          "compare_sets": False}  # fmt: skip
 SECTION = {"channels": ["intensity", "edge"], "size": [45, 60], "compare_background": True}
 

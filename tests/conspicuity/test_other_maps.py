@@ -28,14 +28,14 @@ def test_the_nine_stay_the_nine_and_the_others_are_known_beside_them():
     assert len(CHANNELS) == 9 and not set(CHANNELS) & set(OTHERS)
     assert list(OTHERS) == ["symmetry_lateral", "symmetry_radial", "spectral_residual", "fine_grained"]
     assert check_channels(["edge", *OTHERS]) == ["edge", *OTHERS]
-    view = render(BOX, Viewpoint(30, 20), SIZE, "raycast")
+    view = render(BOX, Viewpoint(30, 20), SIZE, "raster")
     assert list(conspicuity(BOX, view, ["fine_grained", "edge"])) == ["fine_grained", "edge"]
     assert list(conspicuity(BOX, view)) == list(CHANNELS)
 
 
 @pytest.mark.parametrize("name", OTHERS)
 def test_maps_are_finite_in_0_to_1_of_the_size_asked_for_and_zero_off_the_object(name):
-    view = render(CONE, Viewpoint(30, 60), SIZE, "raycast")
+    view = render(CONE, Viewpoint(30, 60), SIZE, "raster")
     for size in ((75, 100), (30, 41)):
         found = conspicuity(CONE, view, [name], size)[name]
         assert found.shape == size and found.dtype == np.float32 and np.isfinite(found).all()
@@ -47,7 +47,7 @@ def test_maps_are_finite_in_0_to_1_of_the_size_asked_for_and_zero_off_the_object
 @pytest.mark.parametrize("name", OTHERS)
 @pytest.mark.parametrize("size", [(3, 5), (9, 12), (20, 31), (33, 44)])
 def test_tiny_and_empty_views_give_finite_maps(name, size):
-    view = render(BOX, Viewpoint(30, 20), size, "raycast")
+    view = render(BOX, Viewpoint(30, 20), size, "raster")
     assert np.isfinite(conspicuity(BOX, view, [name])[name]).all()
     nothing = dataclasses.replace(view, face=np.full_like(view.face, -1), depth=np.full_like(view.depth, np.inf))
     assert not conspicuity(BOX, nothing, [name])[name].any()
@@ -55,7 +55,7 @@ def test_tiny_and_empty_views_give_finite_maps(name, size):
 
 @pytest.mark.parametrize("name", RIVALS)
 def test_one_grey_value_gives_nothing_and_floats_are_refused(name):
-    view = render(BOX, Viewpoint(30, 20), SIZE, "raycast")
+    view = render(BOX, Viewpoint(30, 20), SIZE, "raster")
     assert not conspicuity(BOX, dataclasses.replace(view, rgb=np.full_like(view.rgb, 90)), [name])[name].any()
     with pytest.raises(ValueError, match="uint8"):
         conspicuity(BOX, dataclasses.replace(view, rgb=view.rgb / 255), [name])
@@ -63,7 +63,7 @@ def test_one_grey_value_gives_nothing_and_floats_are_refused(name):
 
 @pytest.mark.parametrize("name", RIVALS)
 def test_a_rival_sees_the_image_as_rendered(name):
-    view = render(BOX, Viewpoint(30, 20), SIZE, "raycast")
+    view = render(BOX, Viewpoint(30, 20), SIZE, "raster")
     black, white = view, dataclasses.replace(view, rgb=np.where(view.mask[..., None], view.rgb, np.uint8(255)))
     here, there = (conspicuity(BOX, each, [name])[name] for each in (black, white))
     assert np.abs(here - there).max() > 0.1
@@ -88,7 +88,7 @@ def test_both_kinds_together_are_the_stronger_of_the_two(mesh):
 
 
 def test_the_lateral_map_shows_the_plane_and_the_radial_map_the_pole():
-    view = render(CONE, Viewpoint(0, 60), SIZE, "raycast")
+    view = render(CONE, Viewpoint(0, 60), SIZE, "raster")
     found = conspicuity(CONE, view, ["symmetry_lateral", "symmetry_radial"])
     lateral, radial = found.values()
     assert (
@@ -99,7 +99,7 @@ def test_the_lateral_map_shows_the_plane_and_the_radial_map_the_pole():
 
 
 def test_a_shape_without_an_axis_has_no_radial_map():
-    view = render(BOX, Viewpoint(30, 20), SIZE, "raycast")
+    view = render(BOX, Viewpoint(30, 20), SIZE, "raster")
     found = conspicuity(BOX, view, ["symmetry", "symmetry_lateral", "symmetry_radial"])
     assert found["symmetry_lateral"].any() and not found["symmetry_radial"].any()
     np.testing.assert_array_equal(found["symmetry"], found["symmetry_lateral"])

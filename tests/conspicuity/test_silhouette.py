@@ -36,7 +36,7 @@ def test_a_lit_ring_has_a_high_share_and_an_empty_map_none():
 def test_filling_keeps_a_box_from_being_outlined():
     box = trimesh.creation.box((0.5, 0.5, 0.3))
     mesh = Mesh(box.vertices, box.faces)
-    view = render(mesh, Viewpoint(30, 20), (450, 600), "raycast")
+    view = render(mesh, Viewpoint(30, 20), (450, 600), "raster")
     _, filled = measured_maps(mesh, view, ["contrast", "edge", "orientation"], (112, 150))
     raw = background_rows(mesh, view, ["contrast", "edge", "orientation"], (112, 150))
     for with_fill, without in zip(filled, raw, strict=True):
@@ -50,7 +50,7 @@ def test_no_channel_lights_the_silhouette_of_a_real_object(name):
     mesh = read_mesh(MESHES / f"{name}.npz")
     shares = {channel: [] for channel in CHANNELS}
     for viewpoint in (Viewpoint(30, 20), Viewpoint(200, -30)):
-        view = render(mesh, viewpoint, (450, 600), "raycast")
+        view = render(mesh, viewpoint, (450, 600), "raster")
         for channel, values in conspicuity(mesh, view).items():
             shares[channel].append(silhouette_share(values, view.mask))
     for channel, found in shares.items():

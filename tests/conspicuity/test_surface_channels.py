@@ -46,7 +46,7 @@ def mirrored():
 
 @functools.cache
 def bumpy_view():
-    return render(lopsided(), Viewpoint(20, 10), SIZE, "raycast")
+    return render(lopsided(), Viewpoint(20, 10), SIZE, "raster")
 
 
 def test_curvature_of_a_sphere_is_one_over_r():
@@ -157,7 +157,7 @@ def test_maps_are_the_same_when_object_and_camera_turn_together():
     mesh = lopsided()
     turned = Mesh(mesh.vertices @ rotation(0, 0, 77).T, mesh.faces)
     here = conspicuity(mesh, bumpy_view())
-    there = conspicuity(turned, render(turned, Viewpoint(97, 10), SIZE, "raycast"))
+    there = conspicuity(turned, render(turned, Viewpoint(97, 10), SIZE, "raster"))
     for channel, values in here.items():
         assert np.abs(values - there[channel]).max() < 0.03, channel
 
@@ -167,14 +167,14 @@ def test_maps_ignore_vertex_and_face_order():
     order = rng.permutation(len(mesh.vertices))
     shuffled = Mesh(mesh.vertices[order], rng.permutation(np.argsort(order)[mesh.faces]))
     here = conspicuity(mesh, bumpy_view())
-    there = conspicuity(shuffled, render(shuffled, Viewpoint(20, 10), SIZE, "raycast"))
+    there = conspicuity(shuffled, render(shuffled, Viewpoint(20, 10), SIZE, "raster"))
     for channel, values in here.items():
         assert np.abs(values - there[channel]).max() < 0.03, channel
 
 
 def test_the_curved_tip_stands_out_in_curvature():
     mesh = lopsided()
-    view = render(mesh, Viewpoint(90, 0), SIZE, "raycast")
+    view = render(mesh, Viewpoint(90, 0), SIZE, "raster")
     found = conspicuity(mesh, view, ["curvature"])["curvature"]
     at = np.array(np.unravel_index(found.argmax(), found.shape)) * 4
     face = view.face[at[0], at[1]]

@@ -58,7 +58,7 @@ def bumpy(kind="grey"):
 
 
 def looks(mesh, size=(300, 400), viewpoints=VIEWPOINTS):
-    return [render(mesh, viewpoint, size, "raycast") for viewpoint in viewpoints]
+    return [render(mesh, viewpoint, size, "raster") for viewpoint in viewpoints]
 
 
 def check(mesh, views, size=None, device="cpu"):

@@ -195,7 +195,7 @@ def views_seen():
     ]
     rows += [{"item": name, "method": "exact", "metric": "fewest_views", "value": 3} for name in OBJECTS]
     rows += [
-        {"item": name, "method": "raycast", "metric": "coverage", "value": 0.5, "seconds": 1.0} for name in OBJECTS
+        {"item": name, "method": "raster", "metric": "coverage", "value": 0.5, "seconds": 1.0} for name in OBJECTS
     ]
     return pd.DataFrame(rows).assign(dataset="test")
 
@@ -209,7 +209,7 @@ def write_attention(root):
         "salient_points": judged(), "weights": pd.concat([svm_accuracies(), weights]),
         "attention_settings": settings_of_sight(), "annotations": agreed_marks(),
         "conspicuity": pd.DataFrame(seconds),
-        "views": pd.DataFrame([{"item": "a", "method": "raycast", "metric": "coverage", "seconds": 2.0}]),
+        "views": pd.DataFrame([{"item": "a", "method": "raster", "metric": "coverage", "seconds": 2.0}]),
     }  # fmt: skip
     for stage, frame in frames.items():
         write_measurements(root, stage, frame, "gaze")

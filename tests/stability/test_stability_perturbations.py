@@ -166,13 +166,13 @@ def test_a_severity_out_of_range_is_named(name, pear):
 
 def test_light_at_no_angle_is_the_renderers_own(pear):
     for viewpoint in (Viewpoint(0, 0), Viewpoint(120, 45)):
-        view = render(pear, viewpoint, SIZE, "raycast")
+        view = render(pear, viewpoint, SIZE, "raster")
         again = relit(pear, view, 0.0, corner_normals(pear)).rgb
         assert np.abs(again.astype(int) - view.rgb).max() <= 1
 
 
 def test_light_brightens_the_side_it_comes_from(pear):
-    view = render(pear, Viewpoint(0, 0), SIZE, "raycast")
+    view = render(pear, Viewpoint(0, 0), SIZE, "raster")
     rgb = relit(pear, view, 60.0, corner_normals(pear)).rgb[..., 0]
     rows, columns = np.nonzero(view.mask)
     assert rows[rgb[rows, columns].argmax()] < rows.mean() and columns[rgb[rows, columns].argmax()] < columns.mean()
@@ -197,7 +197,7 @@ def test_a_background_left_in_changes_the_maps(pear):
 
 def test_a_look_without_conditions_is_the_plain_one(pear):
     sight = maps_under_conditions(pear, ("edge",), Conditions(), SIZE)
-    view = render(pear, sight.viewpoints[3], SIZE, "raycast")
+    view = render(pear, sight.viewpoints[3], SIZE, "raster")
     expected = conspicuity(pear, view, ["edge"], (30, 40))["edge"]
     image, _ = sight.cropped_image(sight.maps["edge"], 3)
     assert image.max() == pytest.approx(expected.max(), abs=1e-6)

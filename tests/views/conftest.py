@@ -28,7 +28,7 @@ def shapes():
     }
 
 
-@pytest.fixture(params=["raycast", "pyrender"])
+@pytest.fixture(params=["raster", "pyrender"])
 def renderer(request):
     """Each renderer that can run here."""
     if request.param == "pyrender" and gl.egl_error():

@@ -16,7 +16,7 @@ FOOTPRINT = 1 / pixels_per_unit(SIZE[0])
 @pytest.mark.parametrize("viewpoint", [Viewpoint(0, 0), Viewpoint(120, 45), Viewpoint(240, -45, 30), Viewpoint(0, 90)])
 @pytest.mark.parametrize("name", ["sphere", "torus", "cube", "bowl", "coloured"])
 def test_renderers_agree(shapes, name, viewpoint):
-    rays, drawn = (render(shapes[name], viewpoint, SIZE, which) for which in ("raycast", "pyrender"))
+    rays, drawn = (render(shapes[name], viewpoint, SIZE, which) for which in ("raster", "pyrender"))
     on = rays.mask & drawn.mask
     assert on.sum() > 0.99 * (rays.mask | drawn.mask).sum()
     # On the pixels of an edge between a near and a far surface either may be right.
@@ -36,7 +36,7 @@ def test_auto_without_egl_takes_the_rays_and_says_so_once(shapes, monkeypatch, c
     finally:
         renderer._available.cache_clear()
     assert all(view.mask.any() for view in views)
-    assert capsys.readouterr().err.count("raycast") == 1
+    assert capsys.readouterr().err.count("raster") == 1
 
 
 def test_pyrender_without_egl_says_what_to_install(shapes, monkeypatch):

@@ -131,7 +131,7 @@ def test_pixel_rays_through_seen_pixels_meet_the_surface_where_project_says(shap
 
 @pytest.mark.slow
 def test_sphere_of_the_normalised_size_fits_the_frame_of_the_thesis(shapes):
-    view = render(shapes["sphere"], FRONT, renderer="raycast")
+    view = render(shapes["sphere"], FRONT, renderer="raster")
     rows = np.flatnonzero(view.mask.any(axis=1))
     assert len(rows) == pytest.approx(858.7, abs=2)
     assert rows[0] > 0 and rows[-1] < 899
@@ -155,7 +155,7 @@ def test_mesh_outside_the_frame_is_told_to_normalise(shapes, renderer, change):
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        ({"renderer": "blender"}, "raycast"),
+        ({"renderer": "blender"}, "raster"),
         ({"background": "pink"}, "white"),
         ({"size": (0, 10)}, "positive"),
         ({"size": (10.5, 10)}, "whole"),

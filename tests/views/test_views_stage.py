@@ -11,7 +11,7 @@ from stages.kit.rows import read_rows
 from stages.views import FOUR, read_view
 from stages.views import __main__ as stage
 
-SECTION = {"viewpoints": "four", "size": [90, 120], "renderer": "raycast", "background": "black",
+SECTION = {"viewpoints": "four", "size": [90, 120], "renderer": "raster", "background": "black",
            "compare_sets": True}  # fmt: skip
 
 
@@ -29,7 +29,7 @@ def test_stage_writes_every_view_and_its_measurement_the_same_for_any_workers(wo
     for parallel in ({"backend": "sequential"}, {"backend": "loky", "workers": 2}):
         shutil.rmtree(workspace.build, ignore_errors=True)
         stage.run(make_workspace({"views": SECTION}, parallel=parallel))
-        assert capsys.readouterr().out.startswith("views: 2 objects, 8 views by raycast")
+        assert capsys.readouterr().out.startswith("views: 2 objects, 8 views by raster")
         files = sorted((workspace.data / "views").rglob("*.*"))
         stored.append({str(path.relative_to(workspace.root)): path.read_bytes() for path in files})
     assert stored[0] == stored[1]

@@ -20,13 +20,13 @@ def assert_equal(one, other):
 @pytest.mark.parametrize("name", ["sphere", "torus", "cube", "bowl", "coloured"])
 @pytest.mark.parametrize("background", ["black", "white"])
 def test_round_trip_is_exact(shapes, name, background, tmp_path):
-    view = render(shapes[name], Viewpoint(120, 45, 10), (225, 300), "raycast", background)
+    view = render(shapes[name], Viewpoint(120, 45, 10), (225, 300), "raster", background)
     write_view(tmp_path / "view.npz", view)
     assert_equal(read_view(tmp_path / "view.npz"), view)
 
 
 def test_view_of_nothing_comes_back(tmp_path):
-    view = render(Mesh(np.zeros((0, 3)), np.zeros((0, 3))), TWELVE[0], (30, 40), "raycast", "grey")
+    view = render(Mesh(np.zeros((0, 3)), np.zeros((0, 3))), TWELVE[0], (30, 40), "raster", "grey")
     write_view(tmp_path / "view.npz", view)
     assert_equal(read_view(tmp_path / "view.npz"), view)
 
@@ -43,14 +43,14 @@ def test_view_without_background_comes_back(tmp_path):
 @pytest.mark.slow
 def test_equal_views_give_equal_bytes_and_small_ones(shapes, tmp_path):
     for name in ("a", "b"):
-        write_view(tmp_path / f"{name}.npz", render(shapes["sphere"], TWELVE[5], renderer="raycast"))
+        write_view(tmp_path / f"{name}.npz", render(shapes["sphere"], TWELVE[5], renderer="raster"))
     first, second = ((tmp_path / f"{name}.npz").read_bytes() for name in ("a", "b"))
     assert first == second
     assert len(first) < 400_000
 
 
 def test_patterned_background_is_refused(shapes, tmp_path):
-    view = render(shapes["cube"], TWELVE[0], (90, 120), "raycast")
+    view = render(shapes["cube"], TWELVE[0], (90, 120), "raster")
     view.rgb[0, 0] = 1
     with pytest.raises(ValueError, match="background"):
         write_view(tmp_path / "view.npz", view)

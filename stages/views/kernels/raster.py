@@ -1,0 +1,92 @@
+"""The nearest face at each pixel of an orthographic view, and its shade."""
+
+import numpy as np
+
+from stages.kit.jit import kernel_of
+
+kernel = kernel_of(__file__)
+
+FLAT = 1e-12  # square pixels: a face seen from its edge has no single crossing point and counts as missed
+SLACK = 1e-9  # of a face: a pixel on the edge of two faces belongs to both, whichever way rounding goes
+
+
+@kernel
+def rasterise(corners: np.ndarray, faces: np.ndarray, top: int, left: int, face: np.ndarray, depth: np.ndarray) -> None:
+    """Writes the nearest face at each pixel centre of a box, the first of equals, and its depth.
+
+    corners (n, 3) f8: row, column and depth of each vertex; faces (m, 3) i8. face (h, w) i4 and depth (h, w) f8: the
+    box whose first pixel is (top, left), filled with -1 and infinity before. Both sides of a face count.
+    """
+    height, width = face.shape
+    for f in range(len(faces)):
+        r0, c0, z0 = corners[faces[f, 0]]
+        r1, c1, z1 = corners[faces[f, 1]]
+        r2, c2, z2 = corners[faces[f, 2]]
+        area = (r1 - r0) * (c2 - c0) - (c1 - c0) * (r2 - r0)
+        if abs(area) <= FLAT:
+            continue
+        # The weights of the second and the third corner grow by these along a row and along a column.
+        second_row, second_column = (c2 - c0) / area, (r0 - r2) / area
+        third_row, third_column = (c0 - c1) / area, (r1 - r0) / area
+        first = max(int(np.ceil(min(r0, r1, r2) - SLACK)), top)
+        last = min(int(np.floor(max(r0, r1, r2) + SLACK)), top + height - 1)
+        for row in range(first, last + 1):
+            second = (row - r0) * second_row - c0 * second_column
+            third = (row - r0) * third_row - c0 * third_column
+            low, high = left, left + width - 1
+            for start, slope in (
+                (second, second_column),
+                (third, third_column),
+                (1 - second - third, -second_column - third_column),
+            ):
+                if slope > 0:
+                    low = max(low, int(np.ceil(max((-SLACK - start) / slope, left))))
+                elif slope < 0:
+                    high = min(high, int(np.floor(min((-SLACK - start) / slope, left + width))))
+                elif start < -SLACK:
+                    high = low - 1
+            z = z0 + second * (z1 - z0) + third * (z2 - z0)
+            step = second_column * (z1 - z0) + third_column * (z2 - z0)
+            for column in range(low, high + 1):
+                here = z + column * step
+                if here < depth[row - top, column - left]:
+                    depth[row - top, column - left] = here
+                    face[row - top, column - left] = f
+
+
+@kernel
+def shade_pixels(
+    corners: np.ndarray, faces: np.ndarray, crosses: np.ndarray, groups: np.ndarray, normals: np.ndarray,
+    colors: np.ndarray, grey: float, back: np.ndarray, top: int, left: int, face: np.ndarray, rgb: np.ndarray,
+) -> None:  # fmt: skip
+    """Writes the shade of each pixel of a box on the object to rgb (h, w, 3) u1.
+
+    corners, faces, face and the box as in `rasterise`. crosses (m, 3): the faces' normals, of any length. groups (m, 3)
+    and normals (g, 3): the unit normal of each corner of a face. colors (n, 3) u1, or (0, 3) for the grey of a
+    brightness in 0..255. back (3,): the direction towards the camera and its head light.
+    """
+    for i in range(face.shape[0]):
+        for j in range(face.shape[1]):
+            f = face[i, j]
+            if f < 0:
+                continue
+            a, b, c = faces[f]
+            r0, c0 = corners[a, 0], corners[a, 1]
+            br, bc, dr, dc = corners[b, 0] - r0, corners[b, 1] - c0, corners[c, 0] - r0, corners[c, 1] - c0
+            p, q = (top + i - r0) / (br * dc - bc * dr), (left + j - c0) / (br * dc - bc * dr)
+            # On an edge rounding may lead out of the face: clipped.
+            second = min(max(dc * p - dr * q, 0.0), 1.0)
+            third = min(max(br * q - bc * p, 0.0), 1.0 - second)
+            first = 1 - second - third
+            u, v, w = groups[f]
+            x = first * normals[u, 0] + second * normals[v, 0] + third * normals[w, 0]
+            y = first * normals[u, 1] + second * normals[v, 1] + third * normals[w, 1]
+            z = first * normals[u, 2] + second * normals[v, 2] + third * normals[w, 2]
+            towards = crosses[f, 0] * back[0] + crosses[f, 1] * back[1] + crosses[f, 2] * back[2]
+            cosine = (x * back[0] + y * back[1] + z * back[2]) * (-1.0 if towards < 0 else 1.0)
+            brightness = min(max(cosine / max(np.sqrt(x * x + y * y + z * z), 1e-300), 0.0), 1.0)
+            for channel in range(3):
+                value = grey
+                if len(colors):
+                    value = first * colors[a, channel] + second * colors[b, channel] + third * colors[c, channel]
+                rgb[i, j, channel] = int(np.rint(value * brightness))
