@@ -12,7 +12,7 @@ help: ## this list
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 10
 
 repro: $(VENV)/ready ## run the pipeline: every table, figure and the page, on what params.yaml says
-	dvc repro --keep-going || { dvc repro --single-item report; exit 1; }
+	python -m stages.repro || { dvc repro --single-item report; exit 1; }
 	@echo "Open reports/index.html; the tables are in reports/tables."
 
 test: $(VENV)/ready ## unit and property tests, then the whole pipeline at profile=smoke, then the gate
@@ -26,7 +26,7 @@ smoke: $(VENV)/ready ## the whole pipeline on a dozen objects, in a scratch copy
 	rm -rf $(SMOKE) && mkdir -p $(SMOKE)
 	git ls-files -z -co --exclude-standard | xargs -0 sh -c 'for f; do [ -e "$$f" ] && printf "%s\0" "$$f"; done' sh \
 	  | tar --null -T - -cf - | tar -xf - -C $(SMOKE)
-	cd $(SMOKE) && git init -q && rm -f dvc.lock && python -m stages.compose profile=smoke && dvc repro && python -m stages.gate
+	cd $(SMOKE) && git init -q && rm -f dvc.lock && python -m stages.compose profile=smoke && python -m stages.repro && python -m stages.gate
 
 lint: $(VENV)/ready ## ruff: rules and formatting; pyright: types
 	ruff check .

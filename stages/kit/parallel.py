@@ -8,6 +8,8 @@ from typing import Any, TypeVar
 from joblib import Parallel, delayed, parallel_config
 from tqdm import tqdm
 
+from .cores import core
+
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
@@ -36,7 +38,7 @@ def progress(items: Iterable[Item], desc: str, total: int | None = None) -> Iter
 
 def _results(function: Callable[[Item], Result], items: list[Item], backend: str, workers: int) -> Iterator[Any]:
     if backend == "sequential" or len(items) < 2:
-        yield from map(function, items)
+        yield from (_on_a_core(function, item) for item in items)
     elif backend == "dask":
         from distributed import Client  # an extra: `pip install haptic-glance[cluster]`
 
@@ -44,4 +46,9 @@ def _results(function: Callable[[Item], Result], items: list[Item], backend: str
             yield from Parallel()(delayed(function)(item) for item in items)
     else:
         with parallel_config(backend, n_jobs=workers):
-            yield from Parallel(return_as="generator")(delayed(function)(item) for item in items)
+            yield from Parallel(return_as="generator")(delayed(_on_a_core)(function, item) for item in items)
+
+
+def _on_a_core(function: Callable[[Item], Result], item: Item) -> Result:
+    with core():
+        return function(item)

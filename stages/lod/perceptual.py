@@ -32,8 +32,8 @@ def perceptual(
 
     Raises ValueError for meshes that exceed the frame (see stages.meshes.normalise), no viewpoint, or a size below 11.
     """
-    pictures = (take_pictures(each, viewpoints, size, renderer) for each in (reference, mesh))
-    return picture_errors(*pictures)
+    before, after = (take_pictures(each, viewpoints, size, renderer) for each in (reference, mesh))
+    return picture_errors(before, after)
 
 
 def take_pictures(

@@ -194,9 +194,7 @@ def views_seen():
         for k, share in enumerate(found, start=1)
     ]
     rows += [{"item": name, "method": "exact", "metric": "fewest_views", "value": 3} for name in OBJECTS]
-    rows += [
-        {"item": name, "method": "raster", "metric": "coverage", "value": 0.5, "seconds": 1.0} for name in OBJECTS
-    ]
+    rows += [{"item": name, "method": "raster", "metric": "coverage", "value": 0.5, "seconds": 1.0} for name in OBJECTS]
     return pd.DataFrame(rows).assign(dataset="test")
 
 

@@ -1,0 +1,149 @@
+"""Runs what changed, stages side by side: `python -m stages.repro`, what `make repro` calls
+
+`dvc repro` runs one stage at a time. Here a stage starts as soon as those that it depends on are done, through DVC, so
+that dvc.lock, its cache and what counts as changed are the same. All stages share one budget of cores, so two at once
+take no more processors than one. A stage that fails leaves out those that need it; the others go on, and the exit
+status is 1. What a stage says comes when it ends and stays in build/logs/STAGE.log.
+"""
+
+import argparse
+import logging
+import multiprocessing
+import os
+import sys
+import time
+from multiprocessing.connection import wait
+from pathlib import Path
+from typing import Any
+
+from tqdm import tqdm
+
+from stages.kit import cores
+from stages.kit.command import errors_in_one_line
+
+AT_ONCE = 2  # stages: each has a worker a core; with more, memory is needed for no time gained
+LOGS = Path("build/logs")
+REFRESH = 1.0  # seconds between two looks at the clock of what is running
+
+
+class Schedule:
+    """Which stages may start: needs, {stage: the stages whose outputs it reads}; changed, those that must run."""
+
+    def __init__(self, needs: dict[str, set[str]], changed: set[str]) -> None:
+        self.needs, self.changed = needs, set(changed)
+        self.waiting = list(needs)
+        self.ended: set[str] = set()
+        self.failed: list[str] = []
+
+    def take(self) -> str | None:
+        """The next stage that may start, in the order of the graph; what has nothing to do ends here."""
+        for name in list(self.waiting):
+            if self.needs[name] <= self.ended:
+                self.waiting.remove(name)
+                if name in self.changed:
+                    return name
+                self.ended.add(name)
+        return None
+
+    def end(self, name: str, ran: bool) -> None:
+        """A stage ended well; if it ran, those that need it must be looked at."""
+        self.ended.add(name)
+        if ran:
+            self.changed |= {other for other, needed in self.needs.items() if name in needed}
+
+    def fail(self, name: str) -> list[str]:
+        """A stage failed: returns the stages that cannot run now."""
+        lost = {name}
+        for other in self.waiting:  # in the order of the graph: what a stage needs stands before it
+            if self.needs[other] & lost:
+                lost.add(other)
+        self.failed.append(name)
+        self.waiting = [other for other in self.waiting if other not in lost]
+        return sorted(lost - {name})
+
+
+def read_graph(root: Path) -> tuple[dict[str, set[str]], set[str]]:
+    """({stage: the stages that it needs}, those that changed), in an order in which they can run."""
+    import networkx as nx
+    from dvc.repo import Repo
+
+    repo = Repo(str(root), _wait_for_lock=True)
+    graph = repo.index.graph
+    with repo.lock:
+        changed = {stage.addressing for stage in graph if stage.cmd and stage.changed()}
+    order = list(nx.dfs_postorder_nodes(graph))
+    return {stage.addressing: {one.addressing for one in graph.successors(stage)} for stage in order}, changed
+
+
+def reproduce(root: Path, name: str, log: Path, ran: Any) -> None:
+    """Runs one stage through DVC in this process, all output to `log`; sends through `ran` whether it ran."""
+    from dvc.repo import Repo
+
+    with log.open("w") as file:
+        os.dup2(file.fileno(), 1)
+        os.dup2(file.fileno(), 2)
+    logging.getLogger("dvc").setLevel(logging.WARNING)  # its advice on git, once a stage, hides what the stage says
+    try:
+        found = Repo(str(root), _wait_for_lock=True).reproduce(name, single_item=True)  # type: ignore[arg-type] (its decorators)
+    except Exception as error:
+        print(error, file=sys.stderr)
+        raise SystemExit(1) from error
+    ran.send(bool(found))
+
+
+def run(root: Path) -> list[str]:
+    """Runs all that changed below `root`; returns the stages that failed."""
+    context = multiprocessing.get_context("fork")  # DVC takes a second to load, once
+    schedule = Schedule(*read_graph(root))
+    (root / LOGS).mkdir(parents=True, exist_ok=True)
+    running: dict[str, tuple[Any, Any, float]] = {}
+    bar = tqdm(total=len(schedule.needs), desc="stages", disable=not sys.stderr.isatty(), unit="stage")
+    with cores.budget(root / "build/cores"), bar:
+        while True:
+            while len(running) < AT_ONCE and (name := schedule.take()):
+                receive, send = context.Pipe(duplex=False)
+                process = context.Process(target=reproduce, args=(root, name, _log(root, name), send))
+                process.start()
+                send.close()
+                running[name] = process, receive, time.monotonic()
+            now = time.monotonic()
+            bar.n = len(schedule.ended)
+            bar.set_postfix_str(", ".join(f"{name} {now - began:.0f} s" for name, (_, _, began) in running.items()))
+            if not running:
+                return schedule.failed
+            wait([process.sentinel for process, _, _ in running.values()], REFRESH)
+            for name in [name for name, (process, _, _) in running.items() if process.exitcode is not None]:
+                _ended(root, name, *running.pop(name)[:2], schedule)
+
+
+def _ended(root, name, process, receive, schedule):
+    """Takes note of how a stage ended, and prints what it said."""
+    said = _log(root, name).read_text(errors="replace").strip()
+    if process.exitcode:
+        lost = schedule.fail(name)
+        tqdm.write(f"{name} failed:\n{said}" + (f"\nleft out: {', '.join(lost)}" if lost else ""), file=sys.stderr)
+        return
+    ran = receive.recv()
+    schedule.end(name, ran)
+    if said:
+        tqdm.write(said)
+
+
+def _log(root, name):
+    return root / LOGS / f"{name}.log"
+
+
+def main() -> None:
+    """Runs what changed below the current folder."""
+    parser = argparse.ArgumentParser(
+        prog="python -m stages.repro", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.parse_args()
+    errors_in_one_line("repro")
+    failed = run(Path("."))
+    if failed:
+        sys.exit(f"repro: {', '.join(failed)} failed, see {LOGS}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,80 @@
+"""Stages side by side: what may start, what is left out, and the same dvc.lock as DVC itself writes."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from stages.repro import Schedule
+
+NEEDS = {"a": set(), "b": {"a"}, "c": {"a"}, "d": {"b", "c"}}
+GRAPH = """stages:
+  a: {cmd: "cat source > a; echo said a", deps: [source], outs: [a]}
+  b: {cmd: "date +%s.%N > b_began; sleep 1; cat a > b; date +%s.%N > b_ended", deps: [a], outs: [b]}
+  c: {cmd: "date +%s.%N > c_began; sleep 1; cat a > c; date +%s.%N > c_ended", deps: [a], outs: [c]}
+  d: {cmd: "cat b c > d", deps: [b, c], outs: [d]}
+"""
+
+
+def test_a_stage_waits_for_all_that_it_needs():
+    schedule = Schedule(NEEDS, {"a"})
+    assert [schedule.take(), schedule.take()] == ["a", None]
+    schedule.end("a", ran=True)
+    assert [schedule.take(), schedule.take(), schedule.take()] == ["b", "c", None]
+    schedule.end("b", ran=True)
+    assert schedule.take() is None
+    schedule.end("c", ran=True)
+    assert schedule.take() == "d"
+
+
+def test_what_did_not_change_starts_nothing():
+    schedule = Schedule(NEEDS, set())
+    assert schedule.take() is None and schedule.ended == set(NEEDS)
+    schedule = Schedule(NEEDS, {"a"})
+    assert schedule.take() == "a"
+    schedule.end("a", ran=False)
+    assert schedule.take() is None and schedule.ended == set(NEEDS)
+
+
+def test_a_failure_leaves_out_what_needs_it_and_nothing_else():
+    schedule = Schedule(NEEDS | {"e": {"c"}}, {"b", "c"})
+    assert schedule.take() == "b"
+    assert schedule.fail("b") == ["d"] and schedule.waiting == ["c", "e"]
+    assert schedule.take() == "c"
+
+
+def repro(folder: Path) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([sys.executable, "-m", "stages.repro"], cwd=folder, capture_output=True, text=True)
+
+
+@pytest.fixture
+def repository(tmp_path: Path) -> Path:
+    subprocess.run(["git", "init", "-q"], cwd=tmp_path, check=True)
+    (tmp_path / ".dvc").mkdir()
+    (tmp_path / ".dvc/config").write_text("[core]\n    analytics = false\n")
+    (tmp_path / "dvc.yaml").write_text(GRAPH)
+    (tmp_path / "source").write_text("one")
+    return tmp_path
+
+
+@pytest.mark.slow
+def test_independent_stages_overlap_and_dvc_sees_nothing_left_to_do(repository: Path):
+    found = repro(repository)
+    assert found.returncode == 0 and found.stdout.splitlines() == ["said a"], found.stderr
+    times = {name: float((repository / name).read_text()) for name in ("b_began", "b_ended", "c_began", "c_ended")}
+    assert times["b_began"] < times["c_ended"] and times["c_began"] < times["b_ended"]
+    assert (repository / "d").read_text() == "oneone"
+    status = subprocess.run([sys.executable, "-m", "dvc", "status"], cwd=repository, capture_output=True, text=True)
+    assert "up to date" in status.stdout
+    assert repro(repository).stdout == ""
+
+
+@pytest.mark.slow
+def test_a_failing_stage_is_named_with_its_words_and_the_others_go_on(repository: Path):
+    (repository / "dvc.yaml").write_text(GRAPH.replace("cat a > b;", "echo no such sensor >&2; exit 3;"))
+    found = repro(repository)
+    assert found.returncode == 1 and (repository / "c").exists() and not (repository / "d").exists()
+    assert "b failed:\nno such sensor" in found.stderr and "left out: d" in found.stderr
+    (repository / "dvc.yaml").write_text(GRAPH)
+    assert repro(repository).returncode == 0 and (repository / "d").read_text() == "oneone"
