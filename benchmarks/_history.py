@@ -87,5 +87,5 @@ def slower(history: pd.DataFrame, here: str, kernels: Collection[str], measure: 
 def _git(*arguments: str) -> str:
     done = subprocess.run(["git", *arguments], capture_output=True, text=True)
     if done.returncode:
-        raise SystemExit(f"kernels: git {arguments[0]}: {done.stderr.strip()}; the history is kept by commit: commit it")
+        raise SystemExit(f"kernels: git {arguments[0]}: {done.stderr.strip()}; commit {HISTORY} first")
     return done.stdout.rstrip("\n")

@@ -1,4 +1,4 @@
-"""Is a kernel slower than it was? `python -m benchmarks.kernels [--check]`, on one core, about a minute.
+"""Is a kernel slower than it was? `python -m benchmarks.kernels [--check]`, on one core, about a minute and a half.
 
 Times each kernel and a named peer in turns, in one process: the ratio of both is nearly the same on a busy machine.
 Appends to reports/bench/history.csv a row a kernel: commit (HEAD, or HEAD+DIGEST of changed code), its date, what,

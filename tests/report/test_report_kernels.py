@@ -44,7 +44,7 @@ def test_lines_are_those_of_the_machine_that_measured_last_by_date(results, monk
 
 def test_one_commit_is_drawn_and_said(results):
     figure = build_one(stability, "figures", "kernels", results(row("a", 1, "maps", 0.1), row("a", 1, "press", 4.0)))
-    assert figure.paths[0].exists() and "press (peer of press), maps (peer of maps)" in figure.caption
+    assert figure.paths[0].exists() and "press (peer of press), maps (peer of maps)" in figure.alt
 
 
 def test_without_the_history_it_is_not_run(bare, small):

@@ -17,7 +17,8 @@ def build(results: Results) -> Figure:
     drawing, axes = plt.subplots(figsize=(7.2, 4.8))
     last = rows.groupby("what")["ratio"].last().sort_values(ascending=False)
     for k, what in enumerate(last.index):
-        _draw(axes, rows[rows["what"] == what], CYCLE[k % len(CYCLE)], MARKERS[k % len(MARKERS)])
+        form = MARKERS[(k + k // len(CYCLE)) % len(MARKERS)]  # another where the colours start again
+        _draw(axes, rows[rows["what"] == what], CYCLE[k % len(CYCLE)], form)
     axes.axhline(1, color="black", lw=0.8, ls=":")
     axes.set_yscale("log")
     plain_logarithm(axes.yaxis)
