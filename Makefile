@@ -35,7 +35,8 @@ lint: $(VENV)/ready ## ruff: rules and formatting; pyright: types
 
 # Each is one process on one core, but the pipeline; errors and scenes read what `make repro` made. The last fetches its
 # meshes by `apt-get download`.
-bench: $(VENV)/ready ## every benchmark, to reports/bench: errors, backends, scenes, imprints (tacto=PYTHON), ... (an hour)
+bench: $(VENV)/ready ## every benchmark, to reports/bench: kernels, errors, scenes, imprints (tacto=PYTHON), ... (an hour)
+	OMP_NUM_THREADS=1 python -m benchmarks.kernels
 	OMP_NUM_THREADS=1 python -m benchmarks.errors
 	OMP_NUM_THREADS=1 python -m benchmarks.simplification $(psb)
 	python -m benchmarks.scenes

@@ -6,10 +6,11 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 import trimesh
 
-from benchmarks import imprints, simplification
+from benchmarks import _history, imprints, kernels, simplification
 from stages.kit import Mesh
 from stages.lod import SimplifyError
 
@@ -80,3 +81,81 @@ def test_a_talkative_peer_is_heard_and_a_failing_one_gives_its_reason(tmp_path):
         with pytest.raises(ValueError, match="not run: .*no GL"):
             cameras.ask("tacto_32x32", 16, "job")
     cameras.close()
+
+
+def history(*rows):
+    """Rows (commit, hour, kernel, ratio, machine) of a made-up history, with quartiles 5 % about the ratio."""
+    return pd.DataFrame([
+        {"commit": commit, "date": f"2026-11-21T{hour:02}:00:00+00:00", "what": what, "peer": "peer", "ratio": ratio,
+         "low": 0.95 * ratio, "high": 1.05 * ratio, "limit": _history.TOLERANCE * 1.05 * ratio, "seconds": 1,
+         "machine": machine}
+        for commit, hour, what, ratio, machine in rows
+    ])  # fmt: skip
+
+
+def complaints(known, here="here", **ratios):
+    """What the check says of kernels that are measured with these ratios, one after the other, the last again."""
+
+    def measure(what):
+        return {"ratio": ratios[what].pop(0) if len(ratios[what]) > 1 else ratios[what][0]}
+
+    return _history.slower(known, here, list(ratios), measure)
+
+
+def test_a_slower_kernel_is_named_and_an_equal_one_is_not():
+    known = history(("a", 1, "press", 0.5, "here"), ("a", 1, "maps", 0.1, "here"))
+    (line,) = complaints(known, press=[0.5], maps=[0.2])
+    assert line.startswith("maps is slower: 0.2 times")
+    assert complaints(known, press=[0.01], maps=[0.13]) == []
+    assert complaints(known, press=[float("nan")], maps=[0.1])
+
+
+def test_a_kernel_is_slow_only_where_each_of_three_measurements_says_so():
+    known = history(("a", 1, "press", 0.5, "here"))
+    assert complaints(known, press=[2.0, 2.0, 0.5]) == []
+    assert complaints(known, press=[2.0, 2.0, 2.0, 0.5])
+
+
+def test_a_kernel_of_the_history_that_is_no_longer_measured_is_named_and_a_new_one_passes():
+    known = history(("a", 1, "press", 0.5, "here"), ("a", 1, "maps", 0.1, "elsewhere"))
+    (line,) = complaints(known, press=[0.5], new=[9.0])
+    assert line.startswith("maps is in ") and "no longer measured" in line
+
+
+def test_the_last_commit_of_this_machine_counts_and_others_only_without_it():
+    known = history(("b", 5, "press", 0.4, "here"), ("a", 1, "press", 0.8, "here"), ("c", 9, "press", 8, "elsewhere"))
+    assert _history.limits(known, "here")["press"] == pytest.approx(1.3 * 1.05 * 0.4)
+    known = history(("a", 1, "press", 0.4, "one"), ("a", 1, "press", 0.8, "another"), ("b", 2, "press", 0.5, "another"))
+    assert _history.limits(known, "here")["press"] == pytest.approx(2 * 1.3 * 1.05 * 0.5)
+
+
+def test_rows_of_the_same_commit_and_machine_are_replaced(tmp_path, monkeypatch):
+    monkeypatch.setattr(_history, "HISTORY", tmp_path / "history.csv")
+    known = history(("a", 1, "press", 0.5, "here"), ("a", 1, "press", 0.5, "elsewhere"), ("b", 2, "press", 0.5, "here"))
+    known.to_csv(_history.HISTORY, index=False)
+    found = _history.updated(history(("b", 2, "press", 0.6, "here")).to_dict("records"))
+    assert list(found["ratio"]) == [0.5, 0.5, 0.6] and list(found.columns) == _history.COLUMNS
+
+
+def test_changed_code_has_a_name_of_its_own_and_changed_words_have_none(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for variable in ("NAME", "EMAIL"):
+        for who in ("AUTHOR", "COMMITTER"):
+            monkeypatch.setenv(f"GIT_{who}_{variable}", "someone")
+    (tmp_path / "stages").mkdir()
+    (tmp_path / "stages/one.py").write_text("work = 1\n")
+    for command in ("init -q", "add .", "commit -qm first"):
+        _history._git(*command.split())
+    clean = _history.version()["commit"]
+    (tmp_path / "notes.md").write_text("more")
+    assert _history.version()["commit"] == clean
+    (tmp_path / "stages/one.py").write_text("work = 2\n")
+    changed = _history.version()["commit"]
+    assert changed.startswith(f"{clean}+") and changed == _history.version()["commit"]
+
+
+def test_seconds_are_taken_in_pairs_with_alternating_order(monkeypatch):
+    calls = []
+    monkeypatch.setattr(kernels, "SECONDS", 0)
+    assert kernels.in_pairs(lambda: calls.append("ours"), lambda: calls.append("peer")).shape == (7, 2)
+    assert calls[4:8] == ["peer", "ours", "ours", "peer"]
