@@ -49,6 +49,8 @@ class Objects:
                 for member in archive.namelist():
                     if member != ROWS:
                         path = target / member.removeprefix(FILES)
+                        if not path.resolve().is_relative_to(target.resolve()):
+                            raise ValueError(f"{member} lies outside its folder")
                         path.parent.mkdir(parents=True, exist_ok=True)
                         path.write_bytes(archive.read(member))
                 return json.loads(archive.read(ROWS))
