@@ -160,6 +160,13 @@ def _named(archive: str | Path | IO[bytes]) -> Iterator[None]:
         raise FetchError(f"{archive} is damaged ({reason}): remove it, so that it is fetched again") from None
 
 
+@contextmanager
+def zipped(archive: str | Path | IO[bytes]) -> Iterator[zipfile.ZipFile]:
+    """An open zip archive; whatever is wrong with it inside the block is a FetchError that names it."""
+    with _named(archive), zipfile.ZipFile(archive) as stored:
+        yield stored
+
+
 def debian_files(path: str | Path) -> Iterator[tuple[str, IO[bytes]]]:
     """Yields (name, binary stream) of the files in a Debian package, in its order, which is never unpacked to disk.
 
@@ -186,7 +193,7 @@ def read_members(archive: str | Path | IO[bytes], names: Iterable[str]) -> Itera
     Raises FetchError, which names the archive, for one that is damaged or misses a member, and for a member that would
     escape a folder, is a link, or states more than LARGEST bytes.
     """
-    with _named(archive), zipfile.ZipFile(archive) as stored:
+    with zipped(archive) as stored:
         for name in names:
             try:
                 member = stored.getinfo(name)

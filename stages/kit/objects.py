@@ -18,12 +18,22 @@ from typing import Any
 
 import diskcache
 import joblib
+from diskcache.core import MODE_PICKLE
 
 from .files import PART, sha256
 
 ROWS = "rows.json"  # in the archive of an object, beside its files
 FILES = "files/"
 LIMIT = 20 * 2**30  # bytes: several whole runs of the default data
+
+
+class _Bytes(diskcache.Disk):
+    """Values as they lie on the disk; diskcache would unpickle what somebody else may have put there."""
+
+    def fetch(self, mode: int, filename: str | None, value: Any, read: bool) -> Any:
+        if mode == MODE_PICKLE:
+            raise ValueError("it is pickled")
+        return super().fetch(mode, filename, value, read)
 
 
 @dataclass(frozen=True)
@@ -69,7 +79,12 @@ class Objects:
             kept.set(key, stream.getvalue())
 
     def _open(self) -> diskcache.Cache:
-        settings = {"size_limit": LIMIT, "eviction_policy": "least-recently-used", "disk_min_file_size": 0}
+        settings = {
+            "size_limit": LIMIT,
+            "eviction_policy": "least-recently-used",
+            "disk_min_file_size": 0,
+            "disk": _Bytes,
+        }
         try:
             return diskcache.Cache(str(self.folder), **settings)
         except sqlite3.DatabaseError as error:

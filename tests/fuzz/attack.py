@@ -48,7 +48,7 @@ def fault_of(reader: Reader, folder: Path, content: bytes) -> str:
     except (ValueError, FetchError) as error:
         if CLAIMED in str(error):
             return f"memory was asked for: {error}"
-        if reader.names and path.name not in str(error):
+        if reader.names and not any(name in str(error) for name in (path.name, str(folder))):
             return f"the message does not name the file: {error}"
     except TooSlow:
         return f"not done in {SECONDS} s"
