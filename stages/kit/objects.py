@@ -79,12 +79,8 @@ class Objects:
             kept.set(key, stream.getvalue())
 
     def _open(self) -> diskcache.Cache:
-        settings = {
-            "size_limit": LIMIT,
-            "eviction_policy": "least-recently-used",
-            "disk_min_file_size": 0,
-            "disk": _Bytes,
-        }
+        settings = {"size_limit": LIMIT, "eviction_policy": "least-recently-used", "disk_min_file_size": 0}
+        settings |= {"disk": _Bytes}
         try:
             return diskcache.Cache(str(self.folder), **settings)
         except sqlite3.DatabaseError as error:

@@ -30,10 +30,11 @@ def read_mat(content: bytes, names: Sequence[str]) -> list[np.ndarray]:
     if order is None:
         raise MeshError("unreadable as a MATLAB file before version 7.3")
     try:
-        stored = dict(_variables(memoryview(content)[128:], order))
+        found = _variables(memoryview(content)[128:], order)
+        stored = {name: value for name, value in found if value is not None}
     except Exception as error:  # struct, zlib and numpy raise many types
         raise MeshError(f"unreadable as a MATLAB file before version 7.3 ({type(error).__name__}: {error})") from None
-    missing = [name for name in names if stored.get(name) is None]
+    missing = [name for name in names if name not in stored]
     if missing:
         raise MeshError(f"the MATLAB file has no variable {', '.join(missing)}")
     return [stored[name] for name in names]
