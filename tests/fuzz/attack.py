@@ -1,4 +1,4 @@
-"""Reads damaged files under limits of time and memory: `python -m tests.fuzz.attack FOLDER COUNT READER ...`
+"""Reads damaged files under limits of time and memory: `python -m tests.fuzz.attack FOLDER READER ...`
 
 Prints a line for every file that breaks the rule: it is read, or refused by a ValueError or a FetchError that names it.
 The file that is being read lies in FOLDER, so that one that kills the process is found there.
@@ -84,11 +84,11 @@ def main() -> None:
     """Attacks the readers that the command line names; the exit status tells of no fault, only of a crash."""
     warnings.simplefilter("ignore")
     logging.disable()
-    folder, count, *names = sys.argv[1:]
+    folder, *names = sys.argv[1:]
     for name in names:
         own, start, wall = Path(folder, name), time.process_time(), time.time()
         own.mkdir()
-        for fault in attack(name, own, int(count)):
+        for fault in attack(name, own, READERS[name].count):
             print(fault, flush=True)
         print(name, f"{time.process_time() - start:.1f}", f"{time.time() - wall:.1f}", file=sys.stderr)
 

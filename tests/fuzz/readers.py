@@ -41,13 +41,14 @@ COLORS = np.arange(126).reshape(42, 3)
 class Reader:
     """file: its name; seeds(folder) writes all that lies beside it and returns valid contents; read(path) reads it.
 
-    names: a refusal names the file.
+    names: a refusal names the file. count: of damaged files; fewer where one takes long.
     """
 
     file: str
     seeds: Callable[[Path], list[bytes]]
     read: Callable[[Path], object]
     names: bool = True
+    count: int = 1000
 
 
 def mesh_seeds(*kinds):
@@ -322,19 +323,19 @@ READERS = {
     "collection": Reader("a.zip", zip_seeds, lambda path: [read() for read in collection_files(path, *GAZE).values()]),
     "lod": Reader("a.glb", lod_seeds, read_lod),
     "params": Reader("params.yaml", lambda folder: [b"seed: 0\nsets: [a, b]\na: {lod: {targets: ['25%']}}\n"],
-                     load_params),
+                     load_params, count=200),
     "table": Reader("a.csv", lambda folder: [b"item,value,seconds\ncup,1,0.5\nvase,2,\n"], read_table),
     "packed table": Reader("a.csv.gz", lambda folder: [gzip.compress(b"item,value\ncup,1\n" * 20)], read_table),
     "picture": Reader("a.jpg", pictures("jpg", "png", "bmp"), lambda path: read_picture(path, 16)),
     "pressure": Reader("Images/cup/1.jpg", pressure_seeds, lambda path: read_pressure_images(path.parents[2])),
-    "grasps": Reader("bts3v2_palm_45.csv", grasp_seeds, lambda path: read_grasps(path.parent)),
-    "bigs": Reader("ball/success/1/a.csv", bigs_seeds, lambda path: read_bigs(path.parents[3])),
+    "grasps": Reader("bts3v2_palm_45.csv", grasp_seeds, lambda path: read_grasps(path.parent), count=200),
+    "bigs": Reader("ball/success/1/a.csv", bigs_seeds, lambda path: read_bigs(path.parents[3]), count=200),
     "marks": Reader("a.csv", mark_seeds, read_marks),
     "gaze": Reader("a.txt", lambda folder: [b"0 0 0 0 0 1 0.5 1\n1 0 0 0 0 1 0 0\n"], read_gaze, False),
     "fixations": Reader("FixationMaps/cup_300norm.txt", fixation_seeds,
                         lambda path: read_fixations(path.parents[1], "cup", 3)),
     "interest points": Reader("a.mat", interest_seeds, read_interest_points, False),
-    "network": Reader("a.npz", network_seeds, read_network),
+    "network": Reader("a.npz", network_seeds, read_network, count=200),
     "checkpoint": Reader("a.pt", checkpoint_seeds, read_checkpoint),
     "pickle": Reader("alexnet.ckpt", pickle_seeds, read_pickle, False),
     "torch": Reader("a.pth", checkpoint_seeds, read_torch_file),
