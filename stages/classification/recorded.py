@@ -9,7 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
-from PIL import Image
+
+from stages.kit.picture import open_picture
 
 FINGERS = ("ff", "mf", "th")  # first and middle finger, thumb
 ELECTRODES = [f"{finger}_biotac_{k}" for finger in FINGERS for k in range(1, 25)]
@@ -94,11 +95,7 @@ def _images_by_number(folder):
 
 
 def _image(file):
-    try:
-        with Image.open(io.BytesIO(_bytes(file))) as image:
-            return np.asarray(image.convert("L"), dtype=np.float64) / 255
-    except OSError:  # Pillow's error for a file that is not a picture
-        raise ValueError(f"{file} is not a readable picture: download the archive again") from None
+    return np.asarray(open_picture(_bytes(file), file).convert("L"), dtype=np.float64) / 255
 
 
 def _bytes(file):

@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from stages.kit import Mesh
-from stages.meshes import clean, load, normalise, rotate_to_z_up
+from stages.meshes import clean, normalise, rotate_to_z_up
+from stages.meshes.load import load_unnamed
 from stages.meshes.normalise import RADIUS, TO_Z_UP, centre_and_radius
 from stages.salient_points import find_points
 
@@ -122,7 +123,5 @@ class UserMesh:
 
 def read_user_mesh(path: Path, up: str | None) -> tuple[UserMesh, list[str]]:
     """(UserMesh, notes) of a file; up: its axis that points up, None for y in a GLB and z elsewhere."""
-    if not path.is_file():
-        raise ValueError("is a folder, not a mesh" if path.is_dir() else "no such file")
-    mesh, notes = clean(load(path))
+    mesh, notes = clean(load_unnamed(path))
     return UserMesh(mesh, up or ("y" if path.suffix.lower() == ".glb" else "z"), path.stem), notes

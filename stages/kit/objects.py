@@ -18,12 +18,22 @@ from typing import Any
 
 import diskcache
 import joblib
+from diskcache.core import MODE_PICKLE
 
 from .files import PART, sha256
 
 ROWS = "rows.json"  # in the archive of an object, beside its files
 FILES = "files/"
 LIMIT = 20 * 2**30  # bytes: several whole runs of the default data
+
+
+class _Bytes(diskcache.Disk):
+    """Values as they lie on the disk; diskcache would unpickle what somebody else may have put there."""
+
+    def fetch(self, mode: int, filename: str | None, value: Any, read: bool) -> Any:
+        if mode == MODE_PICKLE:
+            raise ValueError("it is pickled")
+        return super().fetch(mode, filename, value, read)
 
 
 @dataclass(frozen=True)
@@ -49,6 +59,8 @@ class Objects:
                 for member in archive.namelist():
                     if member != ROWS:
                         path = target / member.removeprefix(FILES)
+                        if not path.resolve().is_relative_to(target.resolve()):
+                            raise ValueError(f"{member} lies outside its folder")
                         path.parent.mkdir(parents=True, exist_ok=True)
                         path.write_bytes(archive.read(member))
                 return json.loads(archive.read(ROWS))
@@ -68,6 +80,7 @@ class Objects:
 
     def _open(self) -> diskcache.Cache:
         settings = {"size_limit": LIMIT, "eviction_policy": "least-recently-used", "disk_min_file_size": 0}
+        settings |= {"disk": _Bytes}
         try:
             return diskcache.Cache(str(self.folder), **settings)
         except sqlite3.DatabaseError as error:

@@ -26,7 +26,7 @@ def load_params(path: str | Path = FILE) -> dict[str, Any]:
         return {}
     try:
         values = OmegaConf.to_container(OmegaConf.load(path))
-    except (YAMLError, OmegaConfBaseException) as error:
+    except (YAMLError, OmegaConfBaseException, ValueError, RecursionError) as error:
         raise ParamsError(f"{path} is not valid YAML: {' '.join(str(error).split())}") from None
     if not isinstance(values, dict):
         raise ParamsError(f"{path} must hold sections, not a {type(values).__name__}")

@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 
 from stages.kit import Mesh, Stopwatch
-from stages.meshes import load
+from stages.meshes.load import load_unnamed
 from stages.salient_points import find_points, saliency
 
 from .error_table import NAMES, format_table, measure_meshes
@@ -64,10 +64,8 @@ def run(argv: Sequence[str]) -> None:
 
 def read(path: Path) -> Mesh:
     """The repaired mesh of a file; ValueError where it cannot be used."""
-    if not path.is_file():
-        raise ValueError("is a folder, not a mesh" if path.is_dir() else "no such file")
     report(f"reading {path.name}")
-    mesh = load(path)
+    mesh = load_unnamed(path)
     extent = np.ptp(mesh.vertices, axis=0).max()
     if extent < MIN_EXTENT:
         raise ValueError(f"its extent is {extent:g}: export it in smaller units, or with more digits")

@@ -1,7 +1,6 @@
-"""Reads one mesh file into arrays: STL, OBJ, PLY, OFF and GLB, by trimesh."""
+"""Reads one mesh file into arrays: STL, OBJ, PLY and GLB by trimesh, OFF by a reader of our own."""
 
 import io
-import struct
 from pathlib import Path
 
 import numpy as np
@@ -10,13 +9,11 @@ from trimesh.resolvers import FilePathResolver, Resolver
 
 from stages.kit import Mesh
 
+from .headers import MeshError, check_header
 from .materials import join_parts, merge_equal_rows, obj_vertices, vertex_colors
+from .off import read_off
 
 FORMATS = (".stl", ".obj", ".ply", ".off", ".glb")
-
-
-class MeshError(ValueError):
-    """A mesh that cannot be used. The message is the reason, without the name of the file."""
 
 
 def load(path: str | Path) -> Mesh:
@@ -25,11 +22,18 @@ def load(path: str | Path) -> Mesh:
     Vertices keep the order of the file, since ground truth refers to them by index. STL and GLB repeat vertices at
     face corners: equal ones are merged in the order of first appearance. Polygons are triangulated. The parts of a GLB
     scene are transformed and joined. The materials of a GLB, and those of an OBJ whose material files lie next to it,
-    become the texture of the mesh. Raises MeshError with the reason when the file holds no usable mesh.
+    become the texture of the mesh. Raises MeshError with the file and the reason when it holds no usable mesh.
     """
-    path = Path(path)
+    try:
+        return load_unnamed(Path(path))
+    except MeshError as error:
+        raise MeshError(f"{path}: {error}") from None
+
+
+def load_unnamed(path: Path) -> Mesh:
+    """As `load`; the message of a MeshError is the reason alone, for a caller that names the file in all its errors."""
     if not path.is_file():
-        raise MeshError(f"no such file: {path}")
+        raise MeshError("is a folder, not a mesh" if path.is_dir() else "no such file")
     return parse(path.read_bytes(), path.suffix.lower(), FilePathResolver(str(path)))
 
 
@@ -39,19 +43,23 @@ def parse(content: bytes, suffix: str, resolver: Resolver | None = None) -> Mesh
         raise MeshError(f"cannot read {suffix or 'a file without suffix'}: the formats are {', '.join(FORMATS)}")
     if not content:
         raise MeshError("the file is empty")
-    _refuse_truncated(content, suffix)
+    check_header(content, suffix)
     try:
+        if suffix == ".off":
+            return _checked(*read_off(content))
         if suffix == ".glb" or (suffix == ".obj" and b"usemtl" in content):
             loaded = join_parts(_open(content, suffix, resolver), obj_vertices(content) if suffix == ".obj" else None)
         else:
             loaded = _open(content, suffix, resolver, maintain_order=True, skip_materials=True)
             if isinstance(loaded, trimesh.Scene):
                 loaded = loaded.to_geometry() if loaded.geometry else None
+        return loaded if isinstance(loaded, Mesh) else _to_mesh(loaded, merge=suffix == ".stl")
+    except MeshError:
+        raise
     except MemoryError:
         raise MeshError("its header claims more data than fits in memory") from None
     except Exception as error:  # the parsers raise many types; each means that the file is unreadable
         raise MeshError(f"unreadable as {suffix[1:].upper()} ({type(error).__name__}: {_brief(error)})") from None
-    return loaded if isinstance(loaded, Mesh) else _to_mesh(loaded, merge=suffix == ".stl")
 
 
 def _open(content, suffix, resolver, **options):
@@ -65,7 +73,16 @@ def _to_mesh(loaded, merge):
         raise MeshError(f"a point cloud, or truncated before its faces: {len(loaded.vertices)} points, no faces")
     if not isinstance(loaded, trimesh.Trimesh):
         raise MeshError(f"not a triangle mesh but a {type(loaded).__name__}")
-    vertices, faces = np.asarray(loaded.vertices, dtype=np.float64), np.asarray(loaded.faces, dtype=np.int64)
+    colors = None if merge else vertex_colors(loaded)
+    mesh = _checked(np.asarray(loaded.vertices, dtype=np.float64), np.asarray(loaded.faces, dtype=np.int64), colors)
+    if not merge:
+        return mesh
+    first, ids = merge_equal_rows(mesh.vertices)
+    return Mesh(mesh.vertices[first], ids[mesh.faces])
+
+
+def _checked(vertices, faces, colors):
+    """The Mesh of arrays that a file holds; MeshError with what is wrong with them."""
     if len(faces) == 0:
         raise MeshError(f"no faces ({len(vertices)} vertices)")
     bad = int((~np.isfinite(vertices).all(axis=1)).sum())
@@ -73,38 +90,7 @@ def _to_mesh(loaded, merge):
         raise MeshError(f"{bad} of {len(vertices)} vertices have NaN or infinite coordinates")
     if faces.min() < 0 or faces.max() >= len(vertices):
         raise MeshError(f"faces name vertices that do not exist (0..{len(vertices) - 1})")
-    colors = vertex_colors(loaded)
-    if merge:
-        first, ids = merge_equal_rows(vertices)
-        vertices, faces, colors = vertices[first], ids[faces], None
     return Mesh(vertices, faces, colors)
-
-
-def _refuse_truncated(content, suffix):
-    """MeshError for a file shorter than its header states: the parsers accept it, or their message is unclear."""
-    if suffix == ".glb":
-        if content[:4] != b"glTF" or len(content) < 12:
-            raise MeshError("unreadable as GLB (no glTF header)")
-        length = struct.unpack("<I", content[8:12])[0]
-        if length > len(content):
-            raise MeshError(f"truncated: {len(content)} of {length} bytes")
-    elif suffix == ".stl" and (content.lstrip()[:5].lower() != b"solid" or b"facet" not in content):
-        if len(content) < 84:
-            raise MeshError(f"truncated: {len(content)} bytes are fewer than an STL header")
-        count = struct.unpack("<I", content[80:84])[0]
-        if 84 + 50 * count > len(content):
-            raise MeshError(
-                f"truncated or not an STL: the header states {count} faces, {(len(content) - 84) // 50} follow"
-            )
-    elif suffix == ".off":
-        lines = [line for line in content.decode("latin-1").splitlines() if line.split("#")[0].strip()]
-        words = " ".join(lines[:2]).split()
-        counts = [int(word) for word in words[1:3] if word.isdigit()]
-        body = len(lines) - (1 if lines and len(lines[0].split()) > 2 else 2)
-        if len(counts) == 2 and body < sum(counts):
-            raise MeshError(f"truncated: the header states {sum(counts)} vertices and faces, {body} lines follow")
-    elif suffix == ".stl" and b"facet" in content and b"endsolid" not in content:
-        raise MeshError("truncated: an ASCII STL without endsolid")
 
 
 def _brief(error):

@@ -1,21 +1,18 @@
 """The collections of meshes: one function per collection, each with its up axis, unit and licence."""
 
-import io
 import re
 import sys
 import zipfile
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-import numpy as np
-from scipy.io import loadmat
-
-from stages.kit.fetch import FetchError, fetch_package, read_members
+from stages.kit.fetch import FetchError, fetch_package, read_members, zipped
 
 from .furniture import FURNITURE, LICENCES, furniture_files
 from .load import FORMATS, MeshError
+from .mat import read_mat
 from .schema import Params
 
 HOUSEHOLD_WHEEL = "MyoSuite-2.2.0-py3-none-any.whl"
@@ -160,7 +157,7 @@ def collection_files(folder: str | Path, source: str, what: str, url: str) -> di
     if folder and root.is_dir():
         return {path.relative_to(root).as_posix(): path.read_bytes for path in sorted(root.rglob("*.*"))}
     if folder and zipfile.is_zipfile(root):
-        with zipfile.ZipFile(root) as archive:
+        with zipped(root) as archive:
             return {name: partial(_member, root, name) for name in sorted(archive.namelist())}
     raise FetchError(
         f"meshes.folder={str(folder)!r} does not hold the {source} data: get {what} from {url}, put it there as a"
@@ -184,18 +181,6 @@ def match_files(files: Mapping[str, Callable[[], bytes]], pattern: str) -> dict[
     if not matched:
         raise FetchError(f"none of the {len(files)} files matches {pattern}: is it the published archive?")
     return matched
-
-
-def read_mat(content: bytes, names: Sequence[str]) -> list[np.ndarray]:
-    """The variables `names` of a MATLAB file's bytes; MeshError when it is unreadable or a variable is missing."""
-    try:
-        stored = loadmat(io.BytesIO(content))
-    except Exception as error:  # scipy raises many types, and refuses version 7.3
-        raise MeshError(f"unreadable as a MATLAB file before version 7.3 ({type(error).__name__})") from None
-    missing = [name for name in names if name not in stored]
-    if missing:
-        raise MeshError(f"the MATLAB file has no variable {', '.join(missing)}")
-    return [stored[name] for name in names]
 
 
 def _off_bytes(content):

@@ -38,7 +38,7 @@ def resume(path: Path, settings: dict[str, Any], **parts: Any) -> int:
         if not reason:
             _restore(state, parts)
             return state["epoch"]
-    except (OSError, RuntimeError, EOFError, KeyError, TypeError, AttributeError, ValueError,
+    except (OSError, RuntimeError, EOFError, LookupError, TypeError, AttributeError, ValueError,
             pickle.UnpicklingError) as error:  # fmt: skip
         reason = f"it cannot be read ({' '.join(str(error).split())[:80]})"
     print(f"{path.name}: ignored, {reason}; the training starts again", file=sys.stderr)

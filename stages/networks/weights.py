@@ -148,7 +148,7 @@ def read_weights(content: bytes, digest: str, name: str) -> dict[str, torch.Tens
         )
     try:
         return torch.load(io.BytesIO(content), map_location="cpu", weights_only=True)
-    except (pickle.UnpicklingError, RuntimeError) as error:
+    except (pickle.UnpicklingError, RuntimeError, ValueError, LookupError, TypeError, AttributeError) as error:
         raise FetchError(f"{name} holds more than tensors, or is not a weight file: {error}") from None
 
 

@@ -42,8 +42,11 @@ def read_lod(path: Path) -> list[str]:
     """Names of the levels, finest first, of a GLB with MSFT_lod. Raises ValueError where it has none."""
     content = path.read_bytes()
     length = int.from_bytes(content[12:16], "little")
-    tree = json.loads(content[20 : 20 + length])
-    for k, node in enumerate(tree["nodes"]):
-        if EXTENSION in node.get("extensions", {}):
-            return [tree["nodes"][j]["name"] for j in (k, *node["extensions"][EXTENSION]["ids"])]
+    try:
+        nodes = json.loads(content[20 : 20 + length])["nodes"]
+        for k, node in enumerate(nodes):
+            if EXTENSION in node.get("extensions", {}):
+                return [nodes[j]["name"] for j in (k, *node["extensions"][EXTENSION]["ids"])]
+    except (ValueError, LookupError, TypeError, AttributeError, RecursionError) as error:
+        raise ValueError(f"{path} is damaged: {error}") from None
     raise ValueError(f"{path} has no {EXTENSION}")

@@ -1,4 +1,4 @@
-"""Every file that a person may hand in gets a right result or a reason; nothing else escapes `load` and `clean`."""
+"""Every file that a person may hand in gets a right result or the right reason; tests/fuzz has a thousand a format."""
 
 import struct
 
@@ -9,7 +9,6 @@ import trimesh
 from stages.meshes import MeshError, clean, load
 
 CUBE = trimesh.creation.box()
-RNG = np.random.default_rng(0)
 
 
 def off(vertices, faces):
@@ -33,23 +32,18 @@ REFUSED = {
     "truncated.stl": (STL[: len(STL) // 2], "truncated"),
     "truncated.glb": (GLB[: len(GLB) // 2], "truncated"),
     "truncated.ply": (PLY[: len(PLY) - 20], "unreadable|faces name|truncated"),
-    "truncated.off": (off(CUBE.vertices, CUBE.faces)[:-40], "unreadable|truncated"),
+    "truncated.off": (off(CUBE.vertices, CUBE.faces)[:-40], "truncated"),
     "truncated_ascii.stl": (CUBE.export(file_type="stl_ascii").encode()[:900], "truncated"),
-    "noise.stl": (RNG.bytes(5000), "truncated|unreadable"),
-    "noise.obj": (RNG.bytes(5000), "no geometry|no faces|unreadable"),
-    "noise.ply": (RNG.bytes(5000), "unreadable"),
-    "noise.off": (RNG.bytes(5000), "unreadable"),
-    "noise.glb": (RNG.bytes(5000), "unreadable"),
     "nan.off": (off([(0, 0, 0), (1, 0, 0), ("nan", 1, 0)], [(0, 1, 2)]), "NaN"),
     "infinite.off": (off([(0, 0, 0), (1, 0, 0), ("inf", 1, 0)], [(0, 1, 2)]), "NaN or infinite"),
     "no_area.off": (off([(0, 0, 0), (1, 0, 0), (2, 0, 0)], [(0, 1, 2)]), "no area"),
     "one_point.off": (off([(1, 1, 1)] * 3, [(0, 1, 2)]), "no area"),
     "degenerate.off": (off(TRIANGLE, [(0, 1, 1)]), "three different"),
     "cloud.ply": (ply(TRIANGLE, []), "point cloud|no faces"),
-    "cloud.off": (off(TRIANGLE, []), "no faces|point cloud|no geometry|unreadable"),
-    "missing_vertex.off": (off(TRIANGLE, [(0, 1, 7)]), "do not exist|unreadable"),
-    "negative_vertex.off": (off(TRIANGLE, [(0, 1, -2)]), "do not exist|unreadable"),
-    "claims_too_much.ply": (ply(TRIANGLE, [(0, 1, 2)], count=10**13), "unreadable|fits in memory|no faces"),
+    "cloud.off": (off(TRIANGLE, []), "no faces"),
+    "missing_vertex.off": (off(TRIANGLE, [(0, 1, 7)]), "do not exist"),
+    "negative_vertex.off": (off(TRIANGLE, [(0, 1, -2)]), "do not exist"),
+    "claims_too_much.ply": (ply(TRIANGLE, [(0, 1, 2)], count=10**13), "truncated: its header states"),
     "huge.off": (off(np.array(TRIANGLE) * 1e300, [(0, 1, 2)]), "overflow|NaN"),
     "wrong.xyz": (b"0 0 0\n", "cannot read .xyz"),
     "header_only.stl": (b"\0" * 80 + struct.pack("<I", 0), "no faces|no geometry|unreadable"),

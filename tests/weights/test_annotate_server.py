@@ -21,6 +21,7 @@ from stages.kit.workspace import Workspace
 from stages.meshes import normalise
 from stages.weights.annotate import open_server, read_marks, write_marks
 from stages.weights.annotate.__main__ import find_mesh
+from tests.fuzz.damage import damaged
 
 ROOT = Path(__file__).parents[2]
 TIME = "2026-05-06T07:08:09.123Z"
@@ -43,11 +44,11 @@ def server(cube, tmp_path):
     opened.server_close()
 
 
-def ask(server, path, method="GET", body=None, host=None):
+def ask(server, path, method="GET", body=None, host=None, **headers):
     """(status, body) of one request."""
     port = server.server_port
     connection = HTTPConnection("127.0.0.1", port, timeout=5)
-    connection.request(method, path, body, {"Host": host or f"127.0.0.1:{port}"})
+    connection.request(method, path, body, {"Host": host or f"127.0.0.1:{port}"} | headers)
     answer = connection.getresponse()
     content = answer.read()
     connection.close()
@@ -73,6 +74,51 @@ def test_a_page_from_elsewhere_can_neither_read_nor_write(server, tmp_path):
         assert ask(server, path, host="evil.example")[0] == 403
     assert ask(server, "/marks", "PUT", "{}", host="evil.example:80")[0] == 403
     assert not (tmp_path / "marks").exists()
+
+
+@pytest.mark.parametrize("origin", ["http://evil.example", "https://127.0.0.1:{}", "http://localhost:{}", "null", ""])
+def test_a_page_of_another_origin_can_neither_read_nor_write(server, tmp_path, origin):
+    origin = origin.format(server.server_port)
+    about = ask(server, "/about")[1]
+    sent = {"annotator": "ann", "mesh": about["mesh"], "marks": [{"time": TIME, "vertex": 1}], "seen": []}
+    for path, method in (("/", "GET"), ("/mesh", "GET"), ("/marks", "PUT"), ("/nothing", "GET")):
+        assert ask(server, path, method, json.dumps(sent), Origin=origin)[0] == 403
+    assert not (tmp_path / "marks").exists()
+    own = f"http://127.0.0.1:{server.server_port}"
+    assert ask(server, "/marks", "PUT", json.dumps(sent), Origin=own)[0] == 200
+
+
+def test_no_other_page_may_frame_or_embed_it(server):
+    connection = HTTPConnection("127.0.0.1", server.server_port, timeout=5)
+    connection.request("GET", "/")
+    headers = connection.getresponse().headers
+    connection.close()
+    assert "frame-ancestors 'none'" in headers["Content-Security-Policy"]
+    assert headers["Cross-Origin-Resource-Policy"] == "same-origin" and "Access-Control-Allow-Origin" not in headers
+
+
+def test_damaged_requests_leave_the_server_running(server, monkeypatch, tmp_path):
+    failures = []
+    monkeypatch.setattr(server, "handle_error", lambda *_: failures.append(sys.exc_info()[1]))
+    monkeypatch.setattr("stages.weights.annotate.server.Handler.timeout", 0.2)
+    body = json.dumps({"annotator": "ann", "mesh": "x", "marks": [{"time": TIME, "vertex": 1}], "seen": []})
+    head = f"PUT /marks HTTP/1.1\r\nHost: 127.0.0.1:{server.server_port}\r\nContent-Length: "
+    seeds = [f"{head}{len(body)}\r\n\r\n{body}".encode(), f"{head}200000\r\n\r\n{'[' * 200_000}".encode()]
+    for number in range(30):
+        with socket.create_connection(("127.0.0.1", server.server_port), timeout=5) as client:
+            client.sendall(seeds[1] if number == 0 else damaged(seeds[:1], number))
+            client.shutdown(socket.SHUT_WR)
+            while client.recv(4096):
+                pass
+    assert ask(server, "/about")[0] == 200 and not failures and not (tmp_path / "marks").exists()
+
+
+def test_a_request_that_never_ends_is_given_up(server, monkeypatch):
+    monkeypatch.setattr("stages.weights.annotate.server.Handler.timeout", 0.1)
+    with socket.create_connection(("127.0.0.1", server.server_port), timeout=5) as client:
+        head = f"PUT /marks HTTP/1.1\r\nHost: 127.0.0.1:{server.server_port}\r\nContent-Length: 100\r\n\r\n{{"
+        client.sendall(head.encode())
+        assert client.recv(4096) == b""
 
 
 def test_the_page_names_no_other_machine(server):

@@ -7,6 +7,8 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
+from stages.kit.picture import open_picture
+
 PICTURES = (".jpg", ".jpeg", ".png", ".bmp")
 SIZE = 224  # pixels a side to which camera pictures are resized: the input size of the networks
 
@@ -52,11 +54,8 @@ def collect(files: Mapping[str, Sequence[tuple[Path, str]]], size: int) -> Recor
 
 def read_picture(file: Path, size: int) -> np.ndarray:
     """(size, size, 3) u1: a picture file; raises ValueError, which names the file, where it is not a picture."""
-    try:
-        with Image.open(file) as image:
-            return np.asarray(image.convert("RGB").resize((size, size), Image.Resampling.BILINEAR))
-    except OSError:  # Pillow's error for anything that is not a picture
-        raise ValueError(f"{file} is not a readable picture: unpack the archive again") from None
+    image = open_picture(file.read_bytes(), file).convert("RGB")
+    return np.asarray(image.resize((size, size), Image.Resampling.BILINEAR))
 
 
 def existing_folder(path: str | Path, wanted: str) -> Path:

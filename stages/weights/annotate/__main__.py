@@ -15,7 +15,7 @@ from stages.kit.command import errors_in_one_line
 from stages.kit.files import read_mesh
 from stages.kit.run import object_names
 from stages.kit.workspace import Workspace
-from stages.meshes import MeshError, load, normalise
+from stages.meshes import load, normalise
 
 from .server import HOST, open_server
 
@@ -30,10 +30,7 @@ def find_mesh(text: str, workspace: Workspace) -> tuple[str, Mesh]:
     if not path.is_file():
         there = ", ".join(known) or f"none; `dvc repro meshes@{workspace.dataset}` fills {meshes}"
         raise ValueError(f"{text!r} is neither a mesh file nor an object; objects: {there}")
-    try:
-        return path.stem, normalise(load(path))
-    except MeshError as error:
-        raise ValueError(f"{path}: {error}") from None
+    return path.stem, normalise(load(path))
 
 
 def main() -> None:

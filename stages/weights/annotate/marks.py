@@ -124,7 +124,7 @@ def _row(line):
     if len(cells) != len(COLUMNS):
         raise ValueError(f"{len(cells)} values instead of {len(COLUMNS)}")
     vertex, place = int(cells[2]), [float(cell) for cell in cells[3:]]
-    if vertex < 0 or not np.isfinite(place).all():
+    if not 0 <= vertex < 2**63 or not np.isfinite(place).all():
         raise ValueError(f"vertex {cells[2]} at {', '.join(cells[3:])} is not a point of a mesh")
     return [check_annotator(cells[0]), utc(cells[1]), vertex, *place]
 

@@ -25,7 +25,15 @@ PAGES = {
     "/view.js": ("view.js", "text/javascript"),
 }
 MAX_BYTES = 4_000_000  # of one save: about 50,000 points
-POLICY = "default-src 'none'; script-src 'self'; style-src 'unsafe-inline'; connect-src 'self'; img-src data:"
+SECONDS = 30  # that a request may take to arrive
+POLICY = (
+    "default-src 'none'; script-src 'self'; style-src 'unsafe-inline'; connect-src 'self'; img-src data:;"
+    " frame-ancestors 'none'"
+)
+HEADERS = {
+    "Cache-Control": "no-store", "Content-Security-Policy": POLICY, "Cross-Origin-Resource-Policy": "same-origin",
+    "X-Content-Type-Options": "nosniff",
+}  # fmt: skip
 
 
 class AnnotationSession:
@@ -89,9 +97,25 @@ class AnnotationSession:
 class Handler(BaseHTTPRequestHandler):
     """Answers requests of the page; every error is a JSON object with a message for the user."""
 
+    timeout = SECONDS  # read by the standard library
+
     def __init__(self, session: AnnotationSession, *arguments: Any) -> None:
         self.session = session
         super().__init__(*arguments)
+
+    def parse_request(self) -> bool:
+        """False, with an answer sent, for what is no request of this page."""
+        return super().parse_request() and self._is_own()
+
+    def _is_own(self):
+        # A page of another host name that resolves to this machine must not read or write (DNS rebinding), nor may one
+        # of another origin (cross-site request forgery).
+        port = self.connection.getsockname()[1]
+        host, origin = self.headers.get("Host"), self.headers.get("Origin")
+        if host in {f"{HOST}:{port}", f"localhost:{port}"} and origin in (None, f"http://{host}"):
+            return True
+        self._send(403, {"error": f"this page is at http://{HOST}:{port}/ only"})
+        return False
 
     def do_GET(self) -> None:
         address = urlsplit(self.path)
@@ -124,15 +148,13 @@ class Handler(BaseHTTPRequestHandler):
         return sent
 
     def _answer(self, work, kind="application/json"):
-        # A page of another host name that resolves to this machine must not read or write (DNS rebinding).
-        port = self.connection.getsockname()[1]
-        if self.headers.get("Host") not in {f"{HOST}:{port}", f"localhost:{port}"}:
-            return self._send(403, {"error": f"this page is at http://{HOST}:{port}/ only"})
         try:
             self._send(200, work(), kind)
         except MarksChanged as error:
             self._send(409, {"error": str(error)})
-        except (ValueError, KeyError, TypeError) as error:
+        except TimeoutError:
+            self.close_connection = True
+        except (ValueError, LookupError, TypeError, AttributeError, RecursionError, OverflowError) as error:
             self._send(400, {"error": str(error)})
         except OSError as error:
             path = self.session.path
@@ -141,9 +163,8 @@ class Handler(BaseHTTPRequestHandler):
     def _send(self, code, content, kind="application/json"):
         body = content if isinstance(content, bytes) else json.dumps(content).encode()
         self.send_response(code)
-        for key, value in (("Content-Type", kind), ("Content-Length", len(body)), ("Cache-Control", "no-store"),
-                           ("Content-Security-Policy", POLICY), ("X-Content-Type-Options", "nosniff")):  # fmt: skip
-            self.send_header(key, str(value))
+        for key, value in ({"Content-Type": kind, "Content-Length": str(len(body))} | HEADERS).items():
+            self.send_header(key, value)
         self.end_headers()
         self.wfile.write(body)
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from stages.meshes.sources import read_mat
+from stages.meshes.mat import read_mat
 
 SIGMAS = np.arange(1, 11) / 100  # radii of a cluster, as shares of the model's diameter (Dutagaci 2012, section 4)
 SIGMA, USERS = 0.03, 8  # half of the 16 users must agree, within the radius most used in the paper

@@ -72,7 +72,7 @@ def _gaze(files):
     (path, table), (_, model) = files
     # Coordinates agree exactly only with the mesh as published; normalising keeps the order of the vertices.
     mesh = parse(model(), ".obj")
-    positions, _, seconds = read_gaze(table())
+    positions, _, seconds = _named(path, read_gaze, table())
     vertex, distance = match_rows(mesh, positions)
     unmatched = np.flatnonzero(vertex < 0)
     amounts = gaze_on_vertices(mesh, positions, seconds)
@@ -87,9 +87,17 @@ def _gaze(files):
     return amounts
 
 
+def _named(path, read, content):
+    """What `read` makes of the bytes; its ValueError gets the name of the file."""
+    try:
+        return read(content)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None
+
+
 def _interest_points(files, count):
     ((path, content),) = files
-    vertices, marks = read_interest_points(content())
+    vertices, marks = _named(path, read_interest_points, content())
     if vertices.max(initial=-1) >= count:
         raise ValueError(f"{path} names vertex {vertices.max()}, the mesh has {count}")
     return np.bincount(vertices, marks, minlength=count)

@@ -1,0 +1,60 @@
+"""Refuses a mesh file whose header states more than the file holds, before a parser allocates what it states."""
+
+import json
+import re
+import struct
+
+
+class MeshError(ValueError):
+    """A mesh that cannot be used. The message is the reason; who opened the file names it."""
+
+
+def check_header(content: bytes, suffix: str) -> None:
+    """Raises MeshError for a file shorter than its header states: parsers accept it, or their message is unclear."""
+    if suffix in CHECKS:
+        CHECKS[suffix](content)
+
+
+def _glb(content):
+    if content[:4] != b"glTF" or len(content) < 20:
+        raise MeshError("unreadable as GLB (no glTF header)")
+    length, chunk = struct.unpack("<8xII4x", content[:20])
+    if length > len(content):
+        raise MeshError(f"truncated: {len(content)} of {length} bytes")
+    try:
+        tree = json.loads(content[20 : 20 + chunk])
+        counts = [accessor["count"] for accessor in tree.get("accessors", [])]
+        stated = max((int(count) for count in counts), default=0)
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError, OverflowError) as error:
+        raise MeshError(f"unreadable as GLB ({type(error).__name__} in its JSON part)") from None
+    if stated > len(content):
+        raise MeshError(f"truncated: its header states {stated} numbers, the file has {len(content)} bytes")
+
+
+def _stl(content):
+    if content.lstrip()[:5].lower() == b"solid" and b"facet" in content:
+        if b"endsolid" not in content:
+            raise MeshError("truncated: an ASCII STL without endsolid")
+        return
+    if len(content) < 84:
+        raise MeshError(f"truncated: {len(content)} bytes are fewer than an STL header")
+    stated, follow = struct.unpack("<I", content[80:84])[0], (len(content) - 84) // 50
+    if stated > follow:
+        raise MeshError(f"truncated or not an STL: the header states {stated} faces, {follow} follow")
+
+
+def _ply(content):
+    header, _, body = content.partition(b"end_header")
+    stated = sum(int(count) for count in re.findall(rb"^\s*element\s+\S+\s+(\d{1,18})\s*$", header, re.M))
+    if stated > len(body):
+        raise MeshError(f"truncated: its header states {stated} vertices and faces, {len(body)} bytes follow")
+
+
+def _obj(content):
+    # More digits than the length of the file has: no such vertex can exist, and the parser makes a table up to it.
+    for found in re.finditer(rb"[ \t/]-?(\d{%d,})(?=[\s/]|$)" % (len(str(len(content))) + 1), content):
+        if content[content.rfind(b"\n", 0, found.start()) + 1 :].lstrip()[:1] == b"f":
+            raise MeshError(f"faces name vertices that do not exist ({found[1][:20].decode()})")
+
+
+CHECKS = {".glb": _glb, ".obj": _obj, ".stl": _stl, ".ply": _ply}
