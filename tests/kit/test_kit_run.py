@@ -12,7 +12,7 @@ import pytest
 from stages.kit.code import code_text
 from stages.kit.files import read_json, write_json, write_text
 from stages.kit.guard import UndeclaredRead
-from stages.kit.objects import Objects
+from stages.kit.objects import Objects, archive
 from stages.kit.parallel import parallel_map
 from stages.kit.rng import rng
 from stages.kit.rows import read_rows, write_rows
@@ -141,7 +141,7 @@ def test_objects_keep_files_and_rows(tmp_path):
     write_json(tmp_path / "from/x/y.json", [1])
     (tmp_path / "from/.part-half").write_text("half")
     kept = Objects(tmp_path / "cache")
-    kept.keep("k", [{"value": 1.5}], tmp_path / "from")
+    kept.keep("k", archive([{"value": 1.5}], tmp_path / "from"))
     assert kept.take("k", tmp_path / "to") == [{"value": 1.5}] and read_json(tmp_path / "to/x/y.json") == [1]
     assert not (tmp_path / "to/.part-half").exists() and kept.take("other", tmp_path / "to") is None
 
