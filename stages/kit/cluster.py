@@ -36,7 +36,7 @@ THREADS = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_
 
 
 @functools.cache
-def cluster_client(workers: int = -1) -> Client:
+def cluster_client(workers: int) -> Client:
     """The one client of this process, of the scheduler that DASK_SCHEDULER names; its dashboard is named on stderr.
 
     Without that, `workers` processes are started here, -1 for one a core. They share its cores, as those of loky do.
@@ -87,7 +87,7 @@ def finished_on_cluster(
             future.release()
             yield task, result
     finally:
-        client.cancel([future for _, future in running.values()])
+        client.cancel([*(future for _, future in running.values()), *sender.sent.values()])
 
 
 class _Sender:
@@ -98,8 +98,9 @@ class _Sender:
         self.code = (stage, stage_digest(stage) if stage else "")
         uses = Counter(digest for task in tasks for digest in set(task.files.values()))
         self.common = {digest for digest, count in uses.items() if count > 1}
-        self.sent: dict[str, Future] = {}
-        self.function = client.submit(_content, cloudpickle.dumps(function), key=f"function-{uuid.uuid4().hex}")
+        packed = cloudpickle.dumps(function)
+        self.function = client.submit(_content, packed, key=f"{desc}-function")
+        self.sent: dict[str, Future] = {"": self.function}
 
     def send(self, task: Task) -> Future:
         """The future of one task."""

@@ -5,7 +5,6 @@ import os
 import signal
 import subprocess
 import sys
-import threading
 import time
 from pathlib import Path
 
@@ -31,13 +30,21 @@ from stages.kit import cluster  # noqa: E402  # needs that extra
 
 ROOT = Path(__file__).parents[2]
 PATIENCE = 300  # seconds, on a machine that does much else
-# Ends what opens a file of the run by its own path: the workers have it from elsewhere, or not at all.
-STRANGER = """
-import os, sys
-def refuse(event, arguments):
-    if event == "open" and str(arguments[0]).startswith(os.environ["FORBIDDEN"]):
+# In each worker: ends it where it opens a file of the run by its own path, which it should have from elsewhere, and
+# kills the first worker that begins to write a file of some suffix.
+PRELOADED = """
+import os, signal, sys
+def look(event, arguments):
+    path = str(arguments[0]) if event == "open" else ""
+    if path.startswith(os.environ["FORBIDDEN"]):
         os._exit(3)
-sys.addaudithook(refuse)
+    if "/.part-" in path and path.endswith(os.environ["FATAL"]):
+        try:
+            os.mkdir(os.environ["KILLED"])
+        except FileExistsError:
+            return
+        os.kill(os.getpid(), signal.SIGKILL)
+sys.addaudithook(look)
 """
 SMALL = {
     "lod": {"methods": ["qem", "enhanced"], "targets": ["50%"], "rings": 1, "backend": "pymeshlab", "samples": 200,
@@ -57,7 +64,7 @@ def make_workspace(root, backend):
     """The Workspace of two classes of two objects below `root`."""
     smoke = compose(["sets=[household_classes]", "profile=smoke"])["household_classes"]
     sections = {name: {**smoke.get(name, {}), **values} for name, values in SMALL.items()}
-    values = {"seed": 0, "profile": "test", "parallel": {"backend": backend, "workers": 1}, "sets": ["toys"]}
+    values = {"seed": 0, "profile": "test", "parallel": {"backend": backend, "workers": -1}, "sets": ["toys"]}
     values |= {"graph": {stage: ["toys"] for stage in sections}, "toys": sections}
     write_text(root / "params.yaml", OmegaConf.to_yaml(OmegaConf.create(values)))
     data = root / "data/toys"
@@ -89,73 +96,61 @@ def until(ready):
     end = time.monotonic() + PATIENCE
     while not (found := ready()):
         assert time.monotonic() < end, "nothing happens"
-        time.sleep(0.005)
+        time.sleep(0.01)
     return found
 
 
 @pytest.fixture
-def machines(tmp_path, monkeypatch):
-    """{folder: process} of two workers in folders of their own, which this process's client knows."""
-    write_text(tmp_path / "stranger.py", STRANGER)
+def machines(tmp_path, monkeypatch, request):
+    """The processes of two workers in folders of their own; the first to write a file of some suffix is killed."""
+    write_text(tmp_path / "preloaded.py", PRELOADED)
     environment = os.environ | {
         "PYTHONPATH": str(ROOT), "HOME": str(tmp_path), "HAPTIC_GLANCE_CACHE": str(cache_folder()),
-        "FORBIDDEN": str(tmp_path / "dask"), "DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": "1",
+        "FORBIDDEN": str(tmp_path / "dask"), "FATAL": getattr(request, "param", "nothing"),
+        "KILLED": str(tmp_path / "killed"), "DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": "1",
     }  # fmt: skip
-    started = {}
+    started = []
 
     def start(name, *arguments):
         (tmp_path / name).mkdir()
         command = [sys.executable, "-m", "dask", *arguments, "--no-dashboard"]
         with open(tmp_path / f"{name}.log", "w") as log:
-            options = {"cwd": tmp_path / name, "env": environment, "stdout": log, "stderr": log}
-            started[tmp_path / name] = subprocess.Popen(command, **options)
+            started.append(subprocess.Popen(command, cwd=tmp_path / name, env=environment, stdout=log, stderr=log))
 
     try:
         file = tmp_path / "scheduler.json"
         start("scheduler", "scheduler", "--host", "127.0.0.1", "--port", "0", "--scheduler-file", str(file))
         until(file.exists)
         address = until(lambda: file.read_text().endswith("}") and json.loads(file.read_text())["address"])
-        worker = ("worker", address, "--no-nanny", "--nthreads", "1", "--preload", str(tmp_path / "stranger.py"))
+        worker = ("worker", address, "--no-nanny", "--nthreads", "1", "--preload", str(tmp_path / "preloaded.py"))
         for name in ("first", "second"):
             start(name, *worker, "--local-directory", str(tmp_path / name))
         monkeypatch.setenv(cluster.SCHEDULER, address)
-        client = cluster.cluster_client(1)
+        client = cluster.cluster_client(-1)
         client.wait_for_workers(2, timeout=PATIENCE)
-        yield {folder: process for folder, process in started.items() if folder.name != "scheduler"}
+        yield started[1:]
         client.close()
     finally:
         cluster.cluster_client.cache_clear()
-        for process in started.values():
+        for process in started:
             process.kill()
             process.wait()
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("stage", "begun"), [("lod", "meshes/*"), ("transfer", "build/partial/toys/transfer/imprints/*")]
-)
-def test_a_killed_worker_changes_no_byte(stage, begun, machines, tmp_path):
+@pytest.mark.parametrize(("stage", "machines"), [("lod", ".npz"), ("transfer", ".pt")], indirect=["machines"])
+def test_a_worker_killed_in_the_middle_changes_no_byte(stage, machines, tmp_path):
+    """In the middle of an object and of a training; no worker can see the run's folder."""
     expected = run(make_workspace(tmp_path / "alone", "sequential"), stage)
-    workspace, killed = make_workspace(tmp_path / "dask", "dask"), []
-
-    def kill():
-        busy = until(lambda: [folder for folder in machines if any(folder.rglob(begun))])
-        machines[busy[0]].send_signal(signal.SIGKILL)
-        killed.append(machines[busy[0]].wait())
-
-    killer = threading.Thread(target=kill, daemon=True)
-    killer.start()
-    found = run(workspace, stage)
-    assert killed == [-signal.SIGKILL]  # before the end of the run
-    killer.join()
-    assert sum(process.poll() is None for process in machines.values()) == 1  # the other one opened nothing here
-    assert found[0] == expected[0] and found[1] == expected[1]
+    found = run(make_workspace(tmp_path / "dask", "dask"), stage)
+    assert sorted(process.poll() or 0 for process in machines) == [-signal.SIGKILL, 0]
+    assert found == expected
 
 
 @pytest.mark.slow
 def test_an_item_that_kills_its_workers_and_other_code_are_named(machines, tmp_path, monkeypatch):
     there = list(finished(lambda task, folder: os.getpid(), [Task("cup", 0)], tmp_path, "x", "dask", stage="views"))
-    assert there[0][1] in [process.pid for process in machines.values()]
+    assert there[0][1] in [process.pid for process in machines]
     monkeypatch.setattr(cluster, "stage_digest", lambda stage: "another")
     with pytest.raises(ValueError, match=r"other code of the stage views \(\w{16}\) than this machine \(another\)"):
         list(finished(lambda task, folder: None, [Task("cup", 0)], tmp_path, "x", "dask", stage="views"))
