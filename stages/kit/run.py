@@ -89,20 +89,14 @@ class StageRun:
         function = process.func if isinstance(process, functools.partial) else process
         stage = self.stage if _is_of_stages(function) else ""
         call = key_of(stage and stage_digest(stage), f"{function.__module__}.{function.__qualname__}", given)
-        digests = functools.cache(_digest)  # many items read the same files
-        tasks, done = [], {}
-        for name, value in values.items():
-            files = {declared: (path, digests(path)) for declared, path in self._files(reads, name)}
-            contents = {declared: digest for declared, (_, digest) in files.items()}
-            below = {os.path.relpath(path, self.workspace.root): digest for path, digest in files.values()}
-            tasks.append(Task(name, value, below, item_key(call, name, contents, (made_of or {}).get(name, ""))))
-        objects = Objects(self.workspace.build / "objects")
-        for task in tasks:  # before any worker starts
-            done[task.name] = objects.take(task.key, self.folder)
-        work = functools.partial(make, process, self.workspace.root)
-        for task, content in self._finished(work, [task for task in tasks if done[task.name] is None], stage):
+        tasks = self._tasks(call, values, reads, made_of or {})
+        root, objects = self.workspace.root, Objects(self.workspace.build / "objects")
+        done = {task.name: objects.take(task.key, self.folder) for task in tasks}  # before any worker starts
+        missing, desc = [task for task in tasks if done[task.name] is None], f"{self.stage} {self.dataset}"
+        work = functools.partial(make, process, root)
+        for task, content in finished(work, missing, root, desc, stage=stage, **self.workspace.parallel):
             objects.keep(task.key, content)
-            shutil.rmtree(self.workspace.root / SCRATCH / task.key, ignore_errors=True)
+            shutil.rmtree(root / SCRATCH / task.key, ignore_errors=True)
             done[task.name] = objects.take(task.key, self.folder)
             if done[task.name] is None:
                 raise OSError(f"{objects.folder} does not keep what is written to it: is the disk full?")
@@ -118,18 +112,27 @@ class StageRun:
         """The items, with a progress bar; silent when stderr is not a terminal."""
         return progress(items, f"{self.stage} {self.dataset}")
 
-    def _finished(self, work: Callable[[Task, Path], Result], tasks: list[Task], stage: str):
-        desc = f"{self.stage} {self.dataset}"
-        return finished(work, tasks, self.workspace.root, desc, **self.workspace.parallel, stage=stage)
+    def _tasks(
+        self, call: str, values: Mapping[str, Any], reads: Sequence[str], made_of: Mapping[str, str]
+    ) -> list[Task]:
+        digest = functools.cache(lambda path: sha256(path) if path.exists() else "")  # many items read the same files
+        tasks = []
+        for name, value in values.items():
+            files = {declared: path for pattern in reads for declared, path in self._files(pattern.format(name))}
+            key = item_key(call, name, {one: digest(path) for one, path in files.items()}, made_of.get(name, ""))
+            below = {os.path.relpath(path, self.workspace.root): digest(path) for path in files.values()}
+            tasks.append(Task(name, value, below, key))
+        return tasks
 
-    def _files(self, reads: Sequence[str], name: str) -> Iterator[tuple[str, Path]]:
-        """(file as `reads` names it, its path) of all files that an item reads; absent ones, too."""
-        for pattern in reads:
-            declared = pattern.format(name)
-            stage, _, rest = declared.partition("/")
-            path = self.folder / rest if stage == self.stage else self.workspace.data / declared
-            for file in files_below(path) if path.is_dir() else [path]:
-                yield (f"{declared}/{file.relative_to(path).as_posix()}" if path.is_dir() else declared), file
+    def _files(self, declared: str) -> Iterator[tuple[str, Path]]:
+        """(name, path) of a file that an item reads, be it there or not, or of all files of a folder."""
+        stage, _, rest = declared.partition("/")
+        path = self.folder / rest if stage == self.stage else self.workspace.data / declared
+        if not path.is_dir():
+            yield declared, path
+            return
+        for file in files_below(path):
+            yield f"{declared}/{file.relative_to(path).as_posix()}", file
 
     def metrics(self, values: Mapping[str, Any]) -> None:
         """Writes the small numbers that the gate and `dvc metrics` look at."""
@@ -154,7 +157,3 @@ def object_names(workspace: Workspace) -> list[str]:
 
 def _is_of_stages(function: Callable[..., Any]) -> bool:
     return function.__module__.split(".")[0] in ("stages", "__main__")
-
-
-def _digest(path: Path) -> str:
-    return sha256(path) if path.exists() else ""

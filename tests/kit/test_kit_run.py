@@ -112,6 +112,32 @@ def test_reading_what_was_not_declared_is_an_error(workspace):
         run_items(workspace, reads=("views/{}.npz",))
 
 
+def count_letters(name, folder, made, log):
+    """Counts what an earlier call has written for an object."""
+    with open(log, "a") as stream:
+        stream.write(f"count-{name}\n")
+    return [{"item": name, "metric": "letters", "value": len((made / f"deep/{name}.txt").read_text())}]
+
+
+def run_steps(workspace, names, reads="views/deep/{}.txt"):
+    """A step that writes a file of each object, and one that reads it; returns what was run, in order."""
+    log = workspace.root / "log"
+    write_text(log, "")
+    with StageRun(workspace, "views", inputs=("meshes",)) as run:
+        run.each(functools.partial(write_item, log=log, data=workspace.data), names, reads=("meshes/{}.txt",))
+        run.each(functools.partial(count_letters, made=run.folder, log=log), names, reads=(reads,))
+    return log.read_text().split()
+
+
+def test_a_step_runs_again_where_what_it_reads_of_an_earlier_one_has_changed(workspace):
+    assert run_steps(workspace, "ab") == ["a", "b", "count-a", "count-b"]
+    assert run_steps(workspace, "abc") == ["c", "count-c"]
+    write_text(workspace.data / "meshes/b.txt", "other")
+    assert run_steps(workspace, "abc") == ["b", "count-b"]
+    with pytest.raises(UndeclaredRead, match="views/deep/a.txt is read, but not declared"):
+        run_steps(workspace, "ab", reads="meshes/{}.txt")
+
+
 def test_a_failed_run_keeps_the_old_folder_and_the_next_goes_on_where_it_stopped(workspace):
     run_items(workspace, "a")
     with pytest.raises(RuntimeError):
