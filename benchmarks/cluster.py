@@ -94,7 +94,8 @@ def line(stage, items, empty, byte):
     table = pd.DataFrame(items).mean()
     scheduler = empty + byte * (table["input"] + table["result"])
     network = max(table["input"], table["result"]) / NETWORK
-    hours = {f"hours_{n}": MODELS * max(table["seconds"] / n, scheduler, network) / 3600 for n in WORKERS}
+    least = MODELS * max(scheduler, network)
+    hours = {f"hours_{n}": max(-(-MODELS // n) * table["seconds"], least) / 3600 for n in WORKERS}
     return {
         "stage": stage, "items": len(items), "input_kib": table["input"] / 1024, "result_kib": table["result"] / 1024,
         "seconds": table["seconds"], "scheduler_ms": 1000 * scheduler, "network_ms": 1000 * network,

@@ -35,12 +35,6 @@ def test_result_does_not_depend_on_workers_or_order():
     assert one == two == turned[::-1] and len(set(one)) == 8
 
 
-@pytest.mark.slow
-def test_dask_gives_the_same_result():
-    pytest.importorskip("distributed", reason="the cluster extra is not installed")
-    assert parallel_map(noisy, ["a", "b", "c"], "dask", "dask", 2) == [noisy(name) for name in "abc"]
-
-
 def write_params(root, seed=0):
     """A params.yaml of one data set, and a folder of inputs in it."""
     common = f"seed: {seed}\nprofile: test\nparallel: {{backend: sequential}}\nsets: [toys]\ngraph: {{views: [toys]}}\n"
