@@ -33,7 +33,7 @@ lint: $(VENV)/ready ## ruff: rules and formatting; pyright: types
 	ruff format --check .
 	pyright
 
-# Each is one process on one core, but the pipeline; errors and scenes read what `make repro` made. The last fetches its
+# Each is one process on one core, but the pipeline and cluster; errors, scenes and cluster read what `make repro` made. The last fetches its
 # meshes by `apt-get download`.
 bench: $(VENV)/ready ## every benchmark, to reports/bench: kernels, errors, scenes, imprints (tacto=PYTHON), ... (an hour)
 	OMP_NUM_THREADS=1 python -m benchmarks.kernels
@@ -42,6 +42,7 @@ bench: $(VENV)/ready ## every benchmark, to reports/bench: kernels, errors, scen
 	python -m benchmarks.scenes
 	OMP_NUM_THREADS=1 python -m benchmarks.imprints $(psb) $(if $(tacto),--tacto $(tacto))
 	python -m benchmarks.networks
+	python -m benchmarks.cluster
 	python -m benchmarks.pipeline
 	OMP_NUM_THREADS=1 python -m benchmarks.broken_meshes
 

@@ -30,7 +30,7 @@ def run(workspace: Workspace) -> None:
         pictures = list(settings.pictures)
         stage.each(functools.partial(measure.process, data=workspace.data, pictures=pictures), names, ["meshes/{}.npz"])
         work = functools.partial(judge.process, data=workspace.data, made=stage.folder, names=names, choices=choices)
-        stage.each(work, pictures, reads=["weights/ground_truth"])
+        stage.each(work, pictures, reads=["weights/ground_truth", "attention_settings/{}"])
         for picture in pictures:
             shutil.rmtree(stage.folder / picture)  # large, and the cache of objects keeps it
         stage.metrics(summary(stage.rows))

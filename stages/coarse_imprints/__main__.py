@@ -40,7 +40,7 @@ def run(workspace: Workspace) -> None:
         objects = [name for names in members.values() for name in names]
         stage.each(work, objects, reads=("meshes/{}.npz", "salient_points/{}.npz"))
         train = functools.partial(trial.process, made=stage.folder, members=members, settings=each, seed=stage.seed)
-        stage.each(train, settings.variants)
+        stage.each(train, settings.variants, reads=["coarse_imprints"])
         stage.metrics(summary(stage.rows))
     print(f"coarse_imprints: {workspace.dataset}, {len(members)} classes, {len(chosen)} variants")
 

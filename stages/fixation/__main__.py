@@ -33,6 +33,8 @@ from .tasks import SEMANTICS, assign_classes
 from .viewpoints import viewpoint_sphere
 
 HIDDEN = (".pictures", ".maps", ".pooled", ".networks", ".cams")  # what one step hands to the next
+PICTURES, ALL_PICTURES = "fixation/.pictures/{}.npz", "fixation/.pictures"
+NETWORK, POOLED = "fixation/.networks/{}.npz", "fixation/.pooled"
 
 
 def measures_of(rows: Rows) -> dict[str, dict[str, float]]:
@@ -73,13 +75,23 @@ def train(
     """Trains the heads or networks of one method and computes its maps, before these are projected to the vertices."""
     given = {"made": stage.folder, "method": method, "settings": settings, "seed": stage.seed}
     if method.mode == "finetuned":
-        stage.each(functools.partial(finetune.train_network, tasks=tasks, **given), tasks.keys())
-        stage.each(functools.partial(finetune.compute_cams, tasks=tasks, **given), objects)
+        trained = [PICTURES, *(NETWORK.format(f"{method.name}-{task}") for task in tasks)]
+        stage.each(functools.partial(finetune.train_network, tasks=tasks, **given), tasks.keys(), [ALL_PICTURES])
+        stage.each(functools.partial(finetune.compute_cams, tasks=tasks, **given), objects, trained)
         return
     if method.mode == "random":
-        stage.each(functools.partial(backbone.prepare_random_network, objects=objects, **given), [method.name])
-    stage.each(functools.partial(backbone.compute_maps, **given), objects)
-    stage.each(functools.partial(heads.train_head, tasks=tasks, **given), tasks.keys())
+        prepare = functools.partial(backbone.prepare_random_network, objects=objects, **given)
+        stage.each(prepare, [method.name], [ALL_PICTURES])
+    reads = [PICTURES, NETWORK.format(method.name)]  # only a random method has one
+    stage.each(functools.partial(backbone.compute_maps, **given), objects, reads)
+    stage.each(functools.partial(heads.train_head, tasks=tasks, **given), tasks.keys(), [f"{POOLED}/{method.name}"])
+
+
+def made_by(method: Method) -> list[str]:
+    """What the attention on an object is computed from, of what `train` has made."""
+    if method.mode == "finetuned":
+        return [f"fixation/.cams/{method.name}/{{}}.npz"]
+    return [f"fixation/.maps/{method.name}/{{}}.npz", f"fixation/heads/{method.name}"]
 
 
 def run(workspace: Workspace) -> None:
@@ -106,8 +118,8 @@ def run(workspace: Workspace) -> None:
             attention.measure_attention,
             data=data, made=stage.folder, settings=each, methods=methods, tasks=tasks, seed=seed,
         )  # fmt: skip
-        reads = ("meshes/{}.npz", "salient_points/{}.npz", "weights/ground_truth/{}.npz")
-        stage.each(measure, objects, reads=reads)
+        reads = ["meshes/{}.npz", "salient_points/{}.npz", "weights/ground_truth/{}.npz", PICTURES]
+        stage.each(measure, objects, [*reads, *(path for method in methods for path in made_by(method))])
         stage.rows += [{"method": name, "metric": "accuracy", "note": reason} for name, reason in missing.items()]
         stage.metrics(summary(stage.rows, {task: len(set(known.values())) for task, known in tasks.items()}, seed))
         for line in verdicts(pd.DataFrame(stage.rows), seed):

@@ -10,7 +10,7 @@ MODULES = {
         "threadpoolctl", "tqdm", "yaml",
     ),
     "deep": ("kornia", "onnx", "onnxruntime", "onnxscript", "torch", "torchvision"),
-    "cluster": ("distributed",),
+    "cluster": ("cloudpickle", "dask", "distributed"),
 }  # fmt: skip
 EXTRAS = {module: extra for extra, modules in MODULES.items() for module in modules}
 

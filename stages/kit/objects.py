@@ -20,7 +20,7 @@ import diskcache
 import joblib
 from diskcache.core import MODE_PICKLE
 
-from .files import PART, sha256
+from .files import PART
 
 ROWS = "rows.json"  # in the archive of an object, beside its files
 FILES = "files/"
@@ -52,31 +52,26 @@ class Objects:
                 content: Any = kept.get(key)
             if content is None:
                 return None
-            with zipfile.ZipFile(io.BytesIO(content)) as archive:
-                damaged = archive.testzip()
+            with zipfile.ZipFile(io.BytesIO(content)) as stored:
+                damaged = stored.testzip()
                 if damaged:
                     raise zipfile.BadZipFile(damaged)
-                for member in archive.namelist():
+                for member in stored.namelist():
                     if member != ROWS:
                         path = target / member.removeprefix(FILES)
                         if not path.resolve().is_relative_to(target.resolve()):
                             raise ValueError(f"{member} lies outside its folder")
                         path.parent.mkdir(parents=True, exist_ok=True)
-                        path.write_bytes(archive.read(member))
-                return json.loads(archive.read(ROWS))
+                        path.write_bytes(stored.read(member))
+                return json.loads(stored.read(ROWS))
         except (zipfile.BadZipFile, OSError, ValueError, KeyError) as error:
             print(f"cache: an entry of {self.folder} is damaged ({error}); computed again", file=sys.stderr)
             return None
 
-    def keep(self, key: str, rows: Sequence[Mapping[str, Any]], source: Path) -> None:
-        """Keeps rows and all files below `source` under a key; half-written files are left out."""
-        stream = io.BytesIO()
-        with zipfile.ZipFile(stream, "w") as archive:
-            archive.writestr(ROWS, json.dumps(list(rows)))
-            for path in files_below(source):
-                archive.write(path, FILES + path.relative_to(source).as_posix())
+    def keep(self, key: str, content: bytes) -> None:
+        """Keeps what `archive` has made under a key."""
         with self._open() as kept:
-            kept.set(key, stream.getvalue())
+            kept.set(key, content)
 
     def _open(self) -> diskcache.Cache:
         settings = {"size_limit": LIMIT, "eviction_policy": "least-recently-used", "disk_min_file_size": 0}
@@ -89,22 +84,35 @@ class Objects:
             return diskcache.Cache(str(self.folder), **settings)
 
 
+def archive(rows: Sequence[Mapping[str, Any]], source: Path) -> bytes:
+    """Rows and all files below `source` as one piece; half-written files are left out."""
+    stream = io.BytesIO()
+    with zipfile.ZipFile(stream, "w") as stored:
+        stored.writestr(ROWS, json.dumps(list(rows)))
+        for path in files_below(source):
+            stored.write(path, FILES + path.relative_to(source).as_posix())
+    return stream.getvalue()
+
+
 def files_below(folder: Path) -> list[Path]:
     """All whole files below a folder, in alphabetical order."""
     return sorted(path for path in folder.rglob("*") if path.is_file() and not path.name.startswith(PART))
 
 
-def key_of(code: str, function: str, given: Mapping[str, Any], name: str, reads: Sequence[Path], made_of: str) -> str:
-    """The hash of what an object's results come from.
+def key_of(code: str, function: str, given: Mapping[str, Any]) -> str:
+    """The hash of what all items of a call have in common.
 
-    code: digest of the stage's code; function and given: what runs, with which arguments (paths among them do not
-    count: they say where, and what is read there counts by its content); reads: the files read, folders with all that
-    lies below them, absent ones as absent; made_of: what else tells the input apart, such as a hash of a source file.
+    code: digest of the stage's code; function and given: what runs, with which arguments. Paths among them do not
+    count: they say where, and what is read there counts by its content.
     """
     plain = {key: value for key, value in given.items() if not isinstance(value, Path)}
-    digest = hashlib.sha256(f"{code} {function} {joblib.hash(plain)} {name} {made_of}".encode())
-    for path in reads:
-        for file in files_below(path) if path.is_dir() else [path]:
-            content = sha256(file) if file.exists() else "absent"
-            digest.update(f"{path.name}/{file.name} {content}\n".encode())
-    return digest.hexdigest()
+    return hashlib.sha256(f"{code} {function} {joblib.hash(plain)}".encode()).hexdigest()
+
+
+def item_key(call: str, name: str, files: Mapping[str, str], made_of: str) -> str:
+    """The hash of what an item's results come from.
+
+    call: of key_of; files: {file: SHA-256, empty where it is absent} of what it reads; made_of: what else tells the
+    input apart, such as a hash of a source file. Half of SHA-256, as folders are named by it.
+    """
+    return hashlib.sha256(f"{call} {name} {made_of} {sorted(files.items())}".encode()).hexdigest()[:32]

@@ -1,8 +1,10 @@
 """One function over many items, side by side, with a progress bar; the result never depends on the workers."""
 
-import os
+import functools
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any, TypeVar
 
 from joblib import Parallel, delayed, parallel_config
@@ -14,6 +16,20 @@ Item = TypeVar("Item")
 Result = TypeVar("Result")
 
 
+@dataclass(frozen=True)
+class Task:
+    """One item of a map.
+
+    name: for messages, another one for each item. value: what the function works on. files: {path below the root:
+    SHA-256, empty where there is no such file} of all that it may read there. key: the hash of all that it comes from.
+    """
+
+    name: str
+    value: Any
+    files: Mapping[str, str] = field(default_factory=dict)
+    key: str = ""
+
+
 def parallel_map(
     function: Callable[[Item], Result],
     items: Iterable[Item],
@@ -21,14 +37,33 @@ def parallel_map(
     backend: str = "loky",
     workers: int = -1,
 ) -> list[Result]:
-    """[function(item) for item in items], side by side, in the order of the items.
+    """[function(item) for item in items], side by side, in the order of the items. backend, workers: as of `finished`.
 
-    backend: `loky` (processes here), `dask` (a cluster: DASK_SCHEDULER names its scheduler; without it one is started
-    here) or `sequential`. An exception of an item ends the map: functions that may meet bad input return the reason
-    instead. The bar is silent when stderr is not a terminal.
+    An exception of an item ends the map: functions that may meet bad input return the reason instead.
     """
-    items = list(items)
-    return list(progress(_results(function, items, backend, workers), desc, len(items)))
+    tasks = [Task(str(k), item) for k, item in enumerate(items)]
+    done = finished(functools.partial(_apply, function), tasks, Path(), desc, backend, workers)
+    found = {task.name: result for task, result in done}
+    return [found[task.name] for task in tasks]
+
+
+def finished(
+    function: Callable[[Task, Path], Result],
+    tasks: Sequence[Task],
+    root: Path,
+    desc: str,
+    backend: str = "loky",
+    workers: int = -1,
+    stage: str = "",
+) -> Iterable[tuple[Task, Result]]:
+    """(task, function(task, root)) of all tasks as they finish, in any order, with a progress bar on a terminal.
+
+    backend: `loky` (processes here), `sequential`, or `dask` (a cluster, see stages.kit.cluster). There the function
+    gets a folder that holds the files of the task and nothing else. workers: how many here, -1 for one a core. stage:
+    where the workers of a cluster must have the same code of a stage.
+    """
+    work = functools.partial(_on_a_core, function)
+    return progress(_finished(work, tasks, root, desc, backend, workers, stage), desc, len(tasks))
 
 
 def progress(items: Iterable[Item], desc: str, total: int | None = None) -> Iterable[Item]:
@@ -36,19 +71,29 @@ def progress(items: Iterable[Item], desc: str, total: int | None = None) -> Iter
     return tqdm(items, desc=desc, total=total, disable=not sys.stderr.isatty())
 
 
-def _results(function: Callable[[Item], Result], items: list[Item], backend: str, workers: int) -> Iterator[Any]:
-    if backend == "sequential" or len(items) < 2:
-        yield from (_on_a_core(function, item) for item in items)
-    elif backend == "dask":
-        from distributed import Client  # an extra: `pip install haptic-glance[cluster]`
+def _finished(function, tasks, root, desc, backend, workers, stage) -> Iterator[tuple[Task, Any]]:
+    if backend == "dask" and tasks:
+        from .cluster import cluster_client, finished_on_cluster
 
-        with Client(os.environ.get("DASK_SCHEDULER")), parallel_config("dask"):
-            yield from Parallel()(delayed(function)(item) for item in items)
+        yield from finished_on_cluster(cluster_client(workers), function, tasks, root, desc, stage)
+    elif backend == "sequential" or len(tasks) < 2:
+        yield from ((task, function(task, root)) for task in tasks)
     else:
         with parallel_config(backend, n_jobs=workers):
-            yield from Parallel(return_as="generator")(delayed(_on_a_core)(function, item) for item in items)
+            done: Any = Parallel(return_as="generator_unordered")(
+                delayed(_named)(function, task, root) for task in tasks
+            )
+            yield from done
 
 
-def _on_a_core(function: Callable[[Item], Result], item: Item) -> Result:
+def _on_a_core(function, task, root):
     with core():
-        return function(item)
+        return function(task, root)
+
+
+def _named(function, task, root):
+    return task, function(task, root)
+
+
+def _apply(function, task, root):
+    return function(task.value)

@@ -1,17 +1,18 @@
 """The run of one stage on one data set: its inputs, its rows, its objects, and the move into place at the end."""
 
 import functools
+import os
 import shutil
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import Any, TypeVar
 
 from .code import stage_digest
-from .files import write_json
-from .guard import only_reads
-from .objects import Objects, key_of
-from .parallel import parallel_map, progress
+from .files import sha256, write_json
+from .make import SCRATCH, make
+from .objects import Objects, files_below, item_key, key_of
+from .parallel import Task, finished, parallel_map, progress
 from .rows import SUFFIX, write_rows
 from .workspace import Workspace
 
@@ -48,7 +49,6 @@ class StageRun:
         self.inputs = [workspace.data / name for name in inputs]
         self.folder = workspace.build / "partial" / workspace.dataset / stage
         self.rows: Rows = []
-        self._before = ""  # what the objects of earlier calls of `each` came from: later calls may build on them
 
     def __enter__(self) -> "StageRun":
         for folder in self.inputs:
@@ -76,29 +76,31 @@ class StageRun:
         names: a mapping hands its values to `process` instead of the names; made_of must then tell the values apart.
 
         `process` is a function of a module, or a functools.partial of one. What it makes depends on nothing but the
-        code of the stage, its other arguments, the files that it reads and earlier calls of `each` in this run: what
-        agrees in all of them is taken from the cache. It writes its files below its `folder` through kit.files, and
-        may leave there what a killed run goes on from.
+        code of the stage, its other arguments and the files that it reads: what agrees in all of them is taken from the
+        cache. It writes its files below its `folder` through kit.files, and may leave there what a killed run goes on
+        from. It may run on another machine, so everything it works on is among its arguments or in these files.
 
-        reads: files or folders relative to data/SET, `{}` stands for the name; opening another file below data/ is an
-        error. made_of: for each name what else tells its input apart, such as the hash of a source file.
+        reads: files or folders relative to data/SET, `{}` stands for the name. Below the stage's own name lies what
+        earlier calls of this run have made. Opening another file of either is an error. made_of: for each name what
+        else tells its input apart, such as the hash of a source file.
         """
         values: Mapping[str, Any] = names if isinstance(names, Mapping) else {name: name for name in names}
         given = process.keywords if isinstance(process, functools.partial) else {}
         function = process.func if isinstance(process, functools.partial) else process
-        code = f"{stage_digest(self.stage)} {self._before}" if _is_of_stages(function) else self._before
-        keys = {}
-        for name in values:
-            read = [self.workspace.data / pattern.format(name) for pattern in reads]
-            identity = f"{function.__module__}.{function.__qualname__}"
-            keys[name] = key_of(code, identity, given, name, read, (made_of or {}).get(name, ""))
-        objects = Objects(self.workspace.build / "objects")
-        done = {name: objects.take(key, self.folder) for name, key in keys.items()}  # before any worker starts
-        missing = [(name, value) for name, value in values.items() if done[name] is None]
-        work = functools.partial(_make, process, self.workspace, self.folder, tuple(reads), keys)
-        done |= zip((name for name, _ in missing), self.map(work, missing), strict=True)
+        stage = self.stage if _is_of_stages(function) else ""
+        call = key_of(stage and stage_digest(stage), f"{function.__module__}.{function.__qualname__}", given)
+        tasks = self._tasks(call, values, reads, made_of or {})
+        root, objects = self.workspace.root, Objects(self.workspace.build / "objects")
+        done = {task.name: objects.take(task.key, self.folder) for task in tasks}  # before any worker starts
+        missing, desc = [task for task in tasks if done[task.name] is None], f"{self.stage} {self.dataset}"
+        work = functools.partial(make, process, root)
+        for task, content in finished(work, missing, root, desc, stage=stage, **self.workspace.parallel):
+            objects.keep(task.key, content)
+            shutil.rmtree(root / SCRATCH / task.key, ignore_errors=True)
+            done[task.name] = objects.take(task.key, self.folder)
+            if done[task.name] is None:
+                raise OSError(f"{objects.folder} does not keep what is written to it: is the disk full?")
         rows = [row for name in values for row in done[name] or ()]
-        self._before = "".join([self._before, *(key[:8] for key in keys.values())])
         self.rows += rows
         return rows
 
@@ -109,6 +111,28 @@ class StageRun:
     def progress(self, items: Iterable[Item]) -> Iterable[Item]:
         """The items, with a progress bar; silent when stderr is not a terminal."""
         return progress(items, f"{self.stage} {self.dataset}")
+
+    def _tasks(
+        self, call: str, values: Mapping[str, Any], reads: Sequence[str], made_of: Mapping[str, str]
+    ) -> list[Task]:
+        digest = functools.cache(lambda path: sha256(path) if path.exists() else "")  # many items read the same files
+        tasks = []
+        for name, value in values.items():
+            files = {declared: path for pattern in reads for declared, path in self._files(pattern.format(name))}
+            key = item_key(call, name, {one: digest(path) for one, path in files.items()}, made_of.get(name, ""))
+            below = {os.path.relpath(path, self.workspace.root): digest(path) for path in files.values()}
+            tasks.append(Task(name, value, below, key))
+        return tasks
+
+    def _files(self, declared: str) -> Iterator[tuple[str, Path]]:
+        """(name, path) of a file that an item reads, be it there or not, or of all files of a folder."""
+        stage, _, rest = declared.partition("/")
+        path = self.folder / rest if stage == self.stage else self.workspace.data / declared
+        if not path.is_dir():
+            yield declared, path
+            return
+        for file in files_below(path):
+            yield f"{declared}/{file.relative_to(path).as_posix()}", file
 
     def metrics(self, values: Mapping[str, Any]) -> None:
         """Writes the small numbers that the gate and `dvc metrics` look at."""
@@ -129,32 +153,6 @@ class StageRun:
 def object_names(workspace: Workspace) -> list[str]:
     """The names of all objects that the meshes stage accepted, in alphabetical order."""
     return sorted(path.stem for path in (workspace.data / "meshes").glob("*.npz"))
-
-
-def _make(
-    process: Callable[[Any, Path], Rows],
-    workspace: Workspace,
-    folder: Path,
-    reads: tuple[str, ...],
-    keys: Mapping[str, str],
-    named: tuple[str, Any],
-) -> Rows:
-    """The rows of one object, which is made and kept in the cache; its files are then below `folder`."""
-    name, value = named
-    objects = Objects(workspace.build / "objects")
-    scratch = workspace.build / "scratch" / keys[name][:32]  # by what it is made of: a killed run finds it again
-    scratch.mkdir(parents=True, exist_ok=True)
-    try:
-        with only_reads(workspace.root / "data", [workspace.data / pattern.format(name) for pattern in reads]):
-            made = process(value, scratch)
-    except ValueError as error:
-        raise ValueError(f"{name}: {error}") from error
-    objects.keep(keys[name], made, scratch)
-    shutil.rmtree(scratch)
-    rows = objects.take(keys[name], folder)
-    if rows is None:
-        raise OSError(f"{objects.folder} does not keep what is written to it: is the disk full?")
-    return rows
 
 
 def _is_of_stages(function: Callable[..., Any]) -> bool:

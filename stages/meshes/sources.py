@@ -30,6 +30,26 @@ HOUSEHOLD = (
 
 
 @dataclass(frozen=True)
+class Content:
+    """Reads the bytes of a file, when it is called or when it is sent to another machine: there the bytes go along."""
+
+    read: Callable[[], bytes]
+
+    def __call__(self) -> bytes:
+        return self.read()
+
+    def __reduce__(self) -> tuple[type, tuple]:
+        try:
+            return Content, (partial(bytes, self.read()),)
+        except (OSError, ValueError, RuntimeError) as error:  # said where it is called: one such file ends no run
+            return Content, (partial(_refuse, error),)
+
+
+def _refuse(error):
+    raise error
+
+
+@dataclass(frozen=True)
 class MeshFile:
     """One mesh of a source: its name and file, a function that reads the bytes of the file, and metadata.
 
@@ -55,7 +75,7 @@ def household(settings: Params) -> list[MeshFile]:
 
 def _household_file(wheel, name):
     member = f"myosuite/simhive/object_sim/{name}/{name}.stl"
-    return MeshFile(name, member, ".stl", partial(_member, wheel, member), "z", "m", "Apache-2.0")
+    return MeshFile(name, member, ".stl", Content(partial(_member, wheel, member)), "z", "m", "Apache-2.0")
 
 
 def furniture(settings: Params) -> list[MeshFile]:
@@ -68,7 +88,7 @@ def furniture(settings: Params) -> list[MeshFile]:
 
 def _furniture_file(extract, name, creator, unit):
     library, entry = FURNITURE[name]
-    content = partial(_member, extract, f"{name}.obj")
+    content = Content(partial(_member, extract, f"{name}.obj"))
     return MeshFile(name, f"{library}/{entry}.obj", ".obj", content, "y", unit, LICENCES[library], creator)
 
 
@@ -102,7 +122,7 @@ def _folder_file(root, name, path, settings):
     # glTF defines its axis and unit (version 2.0, section 3.4); the other formats define neither.
     up, unit = ("y", "m") if path.suffix.lower() == ".glb" else (settings.up, settings.unit)
     file = str(path.relative_to(root))
-    return MeshFile(name, file, path.suffix.lower(), path.read_bytes, up, unit, "unknown")
+    return MeshFile(name, file, path.suffix.lower(), Content(path.read_bytes), up, unit, "unknown")
 
 
 # What meshes.folder must hold for these sources: (source, file names, where it is published). They are not fetched
@@ -155,10 +175,10 @@ def collection_files(folder: str | Path, source: str, what: str, url: str) -> di
     """
     root = Path(folder).expanduser()
     if folder and root.is_dir():
-        return {path.relative_to(root).as_posix(): path.read_bytes for path in sorted(root.rglob("*.*"))}
+        return {path.relative_to(root).as_posix(): Content(path.read_bytes) for path in sorted(root.rglob("*.*"))}
     if folder and zipfile.is_zipfile(root):
         with zipped(root) as archive:
-            return {name: partial(_member, root, name) for name in sorted(archive.namelist())}
+            return {name: Content(partial(_member, root, name)) for name in sorted(archive.namelist())}
     raise FetchError(
         f"meshes.folder={str(folder)!r} does not hold the {source} data: get {what} from {url}, put it there as a"
         " folder or a zip archive with these names inside, or set meshes.folder to the folder or archive"

@@ -27,6 +27,8 @@ from .rows import summary
 from .schema import COLUMNS, Params
 from .storage import write_chain
 
+LEVELS, PLAN = "scene/levels", "scene/plans/{}.npz"  # what earlier items of the run have made
+
 
 def levels_of(name: str, folder: Path, data: Path, method: str, seed: int) -> Rows:
     """Builds the chains of one object; returns one row per chain, with the seconds."""
@@ -57,9 +59,9 @@ def run(workspace: Workspace) -> None:
         own = [pattern.format(name) for name in shown for pattern in (MESH, POINTS)]
         learned_from = [pattern.format(name) for name in others for pattern in (MESH, CURVE)]
         given = {"data": data, "made": stage.folder, "settings": settings, "shown": shown, "seed": stage.seed}
-        rows = stage.each(functools.partial(measure, **given), factors, own, values)
+        rows = stage.each(functools.partial(measure, **given), factors, [*own, LEVELS], values)
         network = functools.partial(measure_network, **given, others=others)
-        rows += stage.each(network, factors, [*own, *learned_from], values)
+        rows += stage.each(network, factors, [*own, *learned_from, LEVELS, PLAN], values)
         for row in stage.rows:
             row["group"] = settings.name
         stage.rows += evaluation_rows(data, stage.objects, stage.seed, stage.map)

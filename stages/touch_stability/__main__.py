@@ -99,7 +99,8 @@ def run(workspace: Workspace) -> None:
             reads = ("meshes/{}.npz", "imprints/{}.npz", "salient_points/{}.npz", "lod/{}")
             stage.each(disturb, objects, reads)
             recognise = functools.partial(trial, made=stage.folder, objects=objects, width=width, **common)
-            stage.each(recognise, [f"repetition {number}" for number in range(settings.repetitions)])
+            repetitions = [f"repetition {number}" for number in range(settings.repetitions)]
+            stage.each(recognise, repetitions, reads=["touch_stability"])
         found = summary(stage.rows)
         stage.metrics(found)
     broken = sum(value is not None for value in found["breaking_point"].values())

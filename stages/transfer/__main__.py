@@ -28,6 +28,8 @@ from .schema import COLUMNS, Params
 from .tables import summary, trial_row
 from .touches import count_touchable_vertices
 
+MADE = ("transfer/imprints", "transfer/hybrid/pictures")  # touches and pictures of all objects
+
 
 def train(
     name: str, folder: Path, made: Path, members: Mapping[str, Mapping[str, Sequence[str]]], settings: Params, seed: int
@@ -52,7 +54,7 @@ def train_all(stage: StageRun, planned: Plan, settings: Params) -> dict[str, dic
         take = functools.partial(hybrid_data.process, data=data, settings=each, seed=stage.seed)
         stage.each(take, objects, reads=("meshes/{}.npz",))
     work = functools.partial(train, made=stage.folder, members=members, settings=each, seed=stage.seed)
-    rows = stage.each(work, [*(one.name for one in planned.trials), *hybrids])
+    rows = stage.each(work, [*(one.name for one in planned.trials), *hybrids], reads=MADE)
     trained = [trial_row(row, planned.pretrained) for row in rows if "trial" in row]
     stitched = [row for row in rows if "trial" not in row]
     stage.rows = trained + stitched

@@ -22,7 +22,8 @@ from stages.kit.workspace import Workspace
 from stages.meshes.schema import Params as MeshesParams
 
 from .convexity import convexity
-from .ground_truth import PUBLISHED, ground_truth_amounts, ground_truth_digests
+from .ground_truth import PUBLISHED, ground_truth_amounts, ground_truth_digests, published_files
+from .ground_truth.source import Files
 from .schema import COLUMNS, Params
 from .table import weight_rows, weight_table
 from .train import train_all, train_object
@@ -31,12 +32,16 @@ from .training_data import collect_training_data, read_training_data
 GROUND_TRUTH = "ground_truth"  # the folder of the training data in data/SET/weights
 
 
-def process(name: str, folder: Path, data: Path, source: str, place: str | Path, seed: int) -> Rows:
-    """Writes the training data of an object with ground truth; a row with its number of points, or why it has none."""
+def process(item: tuple[str, Files], folder: Path, data: Path, source: str, marks: Path, seed: int) -> Rows:
+    """Writes the training data of an object with ground truth; a row with its number of points, or why it has none.
+
+    item: the object's name and published files; marks: the folder of annotations.
+    """
+    name, published = item
     mesh = read_mesh(data / "meshes" / f"{name}.npz")
     path = data / "conspicuity" / f"{name}.npz"
     try:
-        amounts = ground_truth_amounts(name, source, mesh, place)
+        amounts = ground_truth_amounts(name, source, mesh, published, marks)
         if amounts is None or not amounts.any():
             return []
         found = collect_training_data(name, mesh, read_view_maps(path, mesh), path, amounts, seed)
@@ -50,15 +55,18 @@ def process(name: str, folder: Path, data: Path, source: str, place: str | Path,
 def run(workspace: Workspace) -> None:
     """Runs the stage on the data set of a workspace."""
     chosen, meshes = workspace.settings(Params).method, workspace.settings(MeshesParams)
-    place = meshes.folder if meshes.source in PUBLISHED else workspace.root / "data" / "annotations"
+    marks = workspace.root / "data" / "annotations"
+    place = meshes.folder if meshes.source in PUBLISHED else marks
     with StageRun(workspace, "weights", COLUMNS, inputs=("meshes", "conspicuity")) as stage:
         # Objects without ground truth are no items: what is trained on the others does not depend on them.
         digests = ground_truth_digests(stage.objects, meshes.source, place)
+        published = published_files(meshes.source, place)
+        items = {name: (name, published.get(name, [])) for name in digests}
         collect = functools.partial(
-            process, data=workspace.data, source=meshes.source, place=place, seed=workspace.seed
+            process, data=workspace.data, source=meshes.source, marks=marks, seed=workspace.seed
         )
         reads = ("meshes/{}.npz", "conspicuity/{}.npz", "../annotations/{}.csv")
-        rows = stage.each(collect, list(digests), reads=reads, made_of=digests)
+        rows = stage.each(collect, items, reads=reads, made_of=digests)
         for row in rows:
             if "note" in row:
                 print(f"weights: {row['item']} is left out: {row['note']}", file=sys.stderr)
@@ -71,7 +79,7 @@ def run(workspace: Workspace) -> None:
             write_table(stage.folder / "convexity.csv", pd.DataFrame(convexities, columns=["object", "convexity"]))
             stage.rows += train_all(stage.folder, training_data, stage.seed)
             train = functools.partial(train_object, made=stage.folder / GROUND_TRUTH, seed=stage.seed)
-            stage.each(train, list(training_data))
+            stage.each(train, list(training_data), reads=[f"weights/{GROUND_TRUTH}"])
         stage.metrics({"objects": len(training_data)} | accuracies(stage.rows))
     count = f"{len(training_data)} of {len(stage.objects)} objects"
     print(f"weights: {count} have ground truth; enhanced takes {chosen}")

@@ -12,7 +12,7 @@ import pytest
 from stages.kit.code import code_text
 from stages.kit.files import read_json, write_json, write_text
 from stages.kit.guard import UndeclaredRead
-from stages.kit.objects import Objects
+from stages.kit.objects import Objects, archive
 from stages.kit.parallel import parallel_map
 from stages.kit.rng import rng
 from stages.kit.rows import read_rows, write_rows
@@ -33,12 +33,6 @@ def test_result_does_not_depend_on_workers_or_order():
     two = parallel_map(noisy, names, "two", "loky", 2)
     turned = parallel_map(noisy, names[::-1], "turned", "loky", 2)
     assert one == two == turned[::-1] and len(set(one)) == 8
-
-
-@pytest.mark.slow
-def test_dask_gives_the_same_result():
-    pytest.importorskip("distributed", reason="the cluster extra is not installed")
-    assert parallel_map(noisy, ["a", "b", "c"], "dask", "dask", 2) == [noisy(name) for name in "abc"]
 
 
 def write_params(root, seed=0):
@@ -112,6 +106,32 @@ def test_reading_what_was_not_declared_is_an_error(workspace):
         run_items(workspace, reads=("views/{}.npz",))
 
 
+def count_letters(name, folder, made, log):
+    """Counts what an earlier call has written for an object."""
+    with open(log, "a") as stream:
+        stream.write(f"count-{name}\n")
+    return [{"item": name, "metric": "letters", "value": len((made / f"deep/{name}.txt").read_text())}]
+
+
+def run_steps(workspace, names, reads="views/deep/{}.txt"):
+    """A step that writes a file of each object, and one that reads it; returns what was run, in order."""
+    log = workspace.root / "log"
+    write_text(log, "")
+    with StageRun(workspace, "views", inputs=("meshes",)) as run:
+        run.each(functools.partial(write_item, log=log, data=workspace.data), names, reads=("meshes/{}.txt",))
+        run.each(functools.partial(count_letters, made=run.folder, log=log), names, reads=(reads,))
+    return log.read_text().split()
+
+
+def test_a_step_runs_again_where_what_it_reads_of_an_earlier_one_has_changed(workspace):
+    assert run_steps(workspace, "ab") == ["a", "b", "count-a", "count-b"]
+    assert run_steps(workspace, "abc") == ["c", "count-c"]
+    write_text(workspace.data / "meshes/b.txt", "other")
+    assert run_steps(workspace, "abc") == ["b", "count-b"]
+    with pytest.raises(UndeclaredRead, match="views/deep/a.txt is read, but not declared"):
+        run_steps(workspace, "ab", reads="meshes/{}.txt")
+
+
 def test_a_failed_run_keeps_the_old_folder_and_the_next_goes_on_where_it_stopped(workspace):
     run_items(workspace, "a")
     with pytest.raises(RuntimeError):
@@ -141,7 +161,7 @@ def test_objects_keep_files_and_rows(tmp_path):
     write_json(tmp_path / "from/x/y.json", [1])
     (tmp_path / "from/.part-half").write_text("half")
     kept = Objects(tmp_path / "cache")
-    kept.keep("k", [{"value": 1.5}], tmp_path / "from")
+    kept.keep("k", archive([{"value": 1.5}], tmp_path / "from"))
     assert kept.take("k", tmp_path / "to") == [{"value": 1.5}] and read_json(tmp_path / "to/x/y.json") == [1]
     assert not (tmp_path / "to/.part-half").exists() and kept.take("other", tmp_path / "to") is None
 

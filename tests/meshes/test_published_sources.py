@@ -1,6 +1,7 @@
 """The published collections as sources of meshes: names, up axis, vertices as stored, a remedy where one is absent."""
 
 import io
+import pickle
 import zipfile
 from pathlib import Path
 from types import SimpleNamespace
@@ -14,7 +15,7 @@ from stages.kit.fetch import FetchError
 from stages.meshes import MeshError
 from stages.meshes.__main__ import run
 from stages.meshes.load import parse
-from stages.meshes.sources import SOURCES
+from stages.meshes.sources import SOURCES, Content
 
 ROOT = Path(__file__).parents[2]
 SHARED = ROOT / "../shared/data"
@@ -71,6 +72,18 @@ def test_matlab_models_keep_every_digit_and_duplicate_vertex(tmp_path):
     mesh = parse(item.content(), item.suffix)
     np.testing.assert_array_equal(mesh.vertices, vertices)
     assert mesh.faces.tolist() == [[0, 1, 2], [3, 4, 5]]
+
+
+def test_a_file_that_is_sent_to_another_machine_takes_its_content_along(tmp_path):
+    (tmp_path / "a.obj").write_bytes(b"v 0 0 0")
+    (tmp_path / "b.obj").write_bytes(b"gone")
+    first, second = (Content((tmp_path / name).read_bytes) for name in ("a.obj", "b.obj"))
+    (tmp_path / "b.obj").unlink()
+    sent, unreadable = pickle.loads(pickle.dumps([first, second]))
+    (tmp_path / "a.obj").unlink()
+    assert sent() == b"v 0 0 0"
+    with pytest.raises(FileNotFoundError):
+        unreadable()
 
 
 def test_a_file_that_is_no_model_is_refused_with_its_reason(tmp_path):

@@ -15,7 +15,7 @@ from stages.meshes import clean, normalise
 from stages.meshes.load import parse
 from stages.meshes.normalise import rotate_to_z_up
 from stages.meshes.sources import SOURCES
-from stages.weights.ground_truth import ground_truth_amounts, ground_truth_digests
+from stages.weights.ground_truth import ground_truth_amounts, ground_truth_digests, published_files
 
 BALL = trimesh.creation.icosphere(2)
 MESH = normalise(Mesh(BALL.vertices, BALL.faces))
@@ -29,27 +29,31 @@ def marks(path, rows, shift=0.0):
     path.write_text("\n".join(lines) + "\n")
 
 
+def amounts_of(name, source, mesh, folder):
+    return ground_truth_amounts(name, source, mesh, published_files(source, folder).get(name, []), folder)
+
+
 def test_marks_count_the_annotators_at_each_vertex(tmp_path):
     marks(tmp_path / "ball.csv", [("a", 3), ("b", 3), ("c", 70)])
-    amounts = ground_truth_amounts("ball", "household", MESH, tmp_path)
+    amounts = amounts_of("ball", "household", MESH, tmp_path)
     assert amounts.dtype == np.float64 and np.flatnonzero(amounts).tolist() == [3, 70]
     assert amounts[3] == 2 and amounts[70] == 1
 
 
 def test_an_object_without_marks_has_no_truth(tmp_path):
-    assert ground_truth_amounts("cube", "household", MESH, tmp_path) is None
+    assert amounts_of("cube", "household", MESH, tmp_path) is None
 
 
 def test_marks_off_the_mesh_are_named_with_file_rows_and_distances(tmp_path):
     marks(tmp_path / "ball.csv", [("a", 3), ("b", 3)], shift=0.01 * MESH.diagonal - 1e-4)
-    assert ground_truth_amounts("ball", "household", MESH, tmp_path).sum() == 2
+    assert amounts_of("ball", "household", MESH, tmp_path).sum() == 2
     marks(tmp_path / "ball.csv", [("a", 3), ("b", 3)], shift=0.02 * MESH.diagonal)
     with pytest.raises(ValueError, match=r"ball\.csv: 2 of 2 marks are off .* row 1: 2\.00%, row 2: 2\.00%"):
-        ground_truth_amounts("ball", "household", MESH, tmp_path)
+        amounts_of("ball", "household", MESH, tmp_path)
     half = Mesh(MESH.vertices[:50], [(0, 1, 2)])
     marks(tmp_path / "ball.csv", [("a", 3), ("a", 70)])
     with pytest.raises(ValueError, match=r"ball\.csv, row 2: vertex 70 is not in 0\.\.49"):
-        ground_truth_amounts("ball", "household", half, tmp_path)
+        amounts_of("ball", "household", half, tmp_path)
 
 
 def gaze_archive(path, names=("ball",)):
@@ -70,11 +74,11 @@ def test_gaze_follows_the_vertices_of_the_mesh_that_the_source_gives(tmp_path, c
     items = {x.name: x for x in SOURCES["gaze"](SimpleNamespace(folder=str(archive), objects=["ball"], up="z"))}
     mesh = normalise(rotate_to_z_up(clean(parse(items["ball"].content(), items["ball"].suffix))[0], items["ball"].up))
     np.testing.assert_allclose(mesh.vertices, MESH.vertices, atol=1e-5)  # the same vertices, turned to +z up
-    assert ground_truth_amounts("ball", "gaze", mesh, archive).tolist() == list(range(162))
+    assert amounts_of("ball", "gaze", mesh, archive).tolist() == list(range(162))
     assert "1 of 163 rows match no vertex and are left out, with 50 of 13091 s" in capsys.readouterr().err
-    assert ground_truth_amounts("unseen", "gaze", mesh, archive) is None
+    assert amounts_of("unseen", "gaze", mesh, archive) is None
     with pytest.raises(ValueError, match="162 vertices, this one 3"):
-        ground_truth_amounts("ball", "gaze", Mesh(np.eye(3), [(0, 1, 2)]), archive)
+        amounts_of("ball", "gaze", Mesh(np.eye(3), [(0, 1, 2)]), archive)
 
 
 def test_interest_points_weigh_as_many_users_as_marked_them(tmp_path):
@@ -88,11 +92,11 @@ def test_interest_points_weigh_as_many_users_as_marked_them(tmp_path):
     folder = tmp_path / "IP_BENCHMARK/OUTPUT_DATA/GROUND_TRUTH_B"
     folder.mkdir(parents=True)
     (folder / "ant.mat").write_bytes(stream.getvalue())
-    amounts = ground_truth_amounts("ant", "interest_points", MESH, tmp_path)
+    amounts = amounts_of("ant", "interest_points", MESH, tmp_path)
     assert np.flatnonzero(amounts).tolist() == [5, 9] and amounts[[5, 9]].tolist() == [3, 4]
-    assert ground_truth_amounts("cup", "interest_points", MESH, tmp_path) is None
+    assert amounts_of("cup", "interest_points", MESH, tmp_path) is None
     with pytest.raises(ValueError, match=r"GROUND_TRUTH_B/ant.mat names vertex 9, the mesh has 3"):
-        ground_truth_amounts("ant", "interest_points", Mesh(np.eye(3), [(0, 1, 2)]), tmp_path)
+        amounts_of("ant", "interest_points", Mesh(np.eye(3), [(0, 1, 2)]), tmp_path)
 
 
 def test_an_absent_archive_ends_in_one_line_with_the_remedy(tmp_path):
@@ -100,7 +104,7 @@ def test_an_absent_archive_ends_in_one_line_with_the_remedy(tmp_path):
         with pytest.raises(
             FetchError, match=rf"does not hold the {source} data: get .* from {place}.*meshes\.folder"
         ) as error:
-            ground_truth_amounts("ball", source, MESH, tmp_path / "gone.zip")
+            amounts_of("ball", source, MESH, tmp_path / "gone.zip")
         assert "\n" not in str(error.value)
 
 

@@ -5,7 +5,7 @@ from .fixations import read_fixations
 from .gaze import gaze_on_vertices, match_rows, read_gaze
 from .interest_points import read_interest_points
 from .maps import gts_map, visible_points
-from .source import PUBLISHED, ground_truth_amounts, ground_truth_digests
+from .source import PUBLISHED, ground_truth_amounts, ground_truth_digests, published_files
 from .spread import spread_on_surface
 
 __all__ = [
@@ -20,5 +20,6 @@ __all__ = [
     "spread_on_surface",
     "ground_truth_amounts",
     "ground_truth_digests",
+    "published_files",
     "visible_points",
 ]

@@ -20,18 +20,17 @@ PUBLISHED = ("gaze", "interest_points")  # the sources whose collection holds gr
 Files = list[tuple[str, Callable[[], bytes]]]  # (path, function that reads the bytes) of each
 
 
-def ground_truth_amounts(name: str, source: str, mesh: Mesh, folder: str | Path) -> np.ndarray | None:
+def ground_truth_amounts(name: str, source: str, mesh: Mesh, published: Files, marks: Path) -> np.ndarray | None:
     """(n,) f8 amounts at the vertices of the normalised mesh of an object, or None if it has no ground truth.
 
-    name, source: the object, and the setting meshes.source that it was read with. folder: meshes.folder for a source
-    of PUBLISHED, for any other the folder of annotations. The amounts are seconds of gaze (source gaze), marks of the
-    users (interest_points), or the number of annotators who marked a vertex (any other source, from NAME.csv).
-    `spread_on_surface` turns them into a density. Raises ValueError when the ground truth does not fit the mesh,
-    FetchError when the collection is missing.
+    name, source: the object, and the setting meshes.source that it was read with. published: its published_files;
+    marks: the folder of annotations. The amounts are seconds of gaze (source gaze), marks of the users
+    (interest_points), or the number of annotators who marked a vertex (any other source, from NAME.csv).
+    `spread_on_surface` turns them into a density. Raises ValueError when the ground truth does not fit the mesh.
     """
-    files, path = _published_files(source, folder).get(name), Path(folder) / f"{name}.csv"
-    if files:
-        amounts = _gaze(files) if source == "gaze" else _interest_points(files, len(mesh.vertices))
+    path = marks / f"{name}.csv"
+    if published:
+        amounts = _gaze(published) if source == "gaze" else _interest_points(published, len(mesh.vertices))
     elif source not in PUBLISHED and path.exists():
         amounts = annotations_on_vertices(mesh, path)
     else:
@@ -44,11 +43,12 @@ def ground_truth_amounts(name: str, source: str, mesh: Mesh, folder: str | Path)
 def ground_truth_digests(names: Iterable[str], source: str, folder: str | Path) -> dict[str, str]:
     """{object: hash of the published files that its ground truth comes from} of those that have ground truth.
 
-    source, folder: as for ground_truth_amounts. The hash is empty for annotations, one file per object in `folder`.
+    folder: meshes.folder for a source of PUBLISHED, for any other the folder of annotations, one file per object; their
+    hash is empty.
     """
     if source not in PUBLISHED:
         return {name: "" for name in names if (Path(folder) / f"{name}.csv").exists()}
-    files = _published_files(source, folder)
+    files = published_files(source, folder)
     return {name: _digest(files[name]) for name in names if name in files}
 
 
@@ -56,8 +56,11 @@ def _digest(files: Files) -> str:
     return hashlib.sha256(b"".join(hashlib.sha256(read()).digest() for _, read in files)).hexdigest()
 
 
-def _published_files(source: str, folder: str | Path) -> dict[str, Files]:
-    """{object: the published files that its ground truth comes from}; {} for a source that has none."""
+def published_files(source: str, folder: str | Path) -> dict[str, Files]:
+    """{object: the published files that its ground truth comes from}; {} for a source that has none.
+
+    folder: meshes.folder. Raises FetchError when the collection is missing.
+    """
     if source not in PUBLISHED:
         return {}
     if source == "interest_points":

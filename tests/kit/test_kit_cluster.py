@@ -1,0 +1,171 @@
+"""A cluster that shares no folder: the same bytes, also where a worker is killed in the middle."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+from omegaconf import OmegaConf
+
+from stages.compose import compose
+from stages.kit import Mesh
+from stages.kit.fetch import cache_folder
+from stages.kit.files import write_arrays, write_mesh, write_text
+from stages.kit.parallel import Task, finished, parallel_map
+from stages.kit.params import check_section
+from stages.kit.rows import read_rows
+from stages.kit.workspace import Workspace
+from stages.lod.data_set import simplify_all
+from stages.lod.schema import Params
+from stages.transfer import __main__ as transfer
+
+pytest.importorskip("distributed", reason="the cluster extra is not installed")
+from stages.kit import cluster  # noqa: E402  # needs that extra
+
+ROOT = Path(__file__).parents[2]
+PATIENCE = 300  # seconds, on a machine that does much else
+# In each worker: ends it where it opens a file of the run by its own path, which it should have from elsewhere, and
+# kills the first worker that begins to write a file of some suffix.
+PRELOADED = """
+import os, signal, sys
+def look(event, arguments):
+    path = str(arguments[0]) if event == "open" else ""
+    if path.startswith(os.environ["FORBIDDEN"]):
+        os._exit(3)
+    if "/.part-" in path and path.endswith(os.environ["FATAL"]):
+        try:
+            os.mkdir(os.environ["KILLED"])
+        except FileExistsError:
+            return
+        os.kill(os.getpid(), signal.SIGKILL)
+sys.addaudithook(look)
+"""
+SMALL = {
+    "lod": {"methods": ["qem", "enhanced"], "targets": ["50%"], "rings": 1, "backend": "pymeshlab", "samples": 200,
+            "viewpoints": "four", "size": [48, 64], "shrink": True},
+    "transfer": {"touches": 8, "detector": "enhanced", "coarse_cells": [8], "weights": ["random"], "size": 32,
+                 "networks": {"mobilenet_v2": ["frozen"]}, "splits": ["random", "objects"], "copies": 1, "epochs": 2,
+                 "search_epochs": 1, "severities": {}, "hybrid_repetitions": 0, "device": "cpu"},
+}  # fmt: skip
+SHAPES = {
+    "ball": trimesh.creation.icosphere(2), "egg": trimesh.creation.icosphere(2).apply_scale([1, 1, 1.5]),
+    "brick": trimesh.creation.box([1, 1, 0.5]).subdivide().subdivide(),
+    "plank": trimesh.creation.box([1, 0.5, 0.2]).subdivide().subdivide(),
+}  # fmt: skip
+
+
+def make_workspace(root, backend):
+    """The Workspace of two classes of two objects below `root`."""
+    smoke = compose(["sets=[household_classes]", "profile=smoke"])["household_classes"]
+    sections = {name: {**smoke.get(name, {}), **values} for name, values in SMALL.items()}
+    values = {"seed": 0, "profile": "test", "parallel": {"backend": backend, "workers": -1}, "sets": ["toys"]}
+    values |= {"graph": {stage: ["toys"] for stage in sections}, "toys": sections}
+    write_text(root / "params.yaml", OmegaConf.to_yaml(OmegaConf.create(values)))
+    data = root / "data/toys"
+    for name, shape in SHAPES.items():
+        mesh = Mesh(np.array(shape.vertices) / 3, np.array(shape.faces))
+        write_mesh(data / f"meshes/{name}.npz", mesh)
+        saliency = np.linspace(0, 1, len(mesh.vertices), dtype=np.float32)
+        found = {"points": np.arange(4), "strong": np.int64(4), "saliency": saliency}
+        write_arrays(data / f"salient_points/{name}.npz", **{f"enhanced.{key}": one for key, one in found.items()})
+    write_text(data / "meshes/classes.csv", "class,object\nround,ball\nround,egg\nsquare,brick\nsquare,plank\n")
+    write_text(data / "weights/weights.csv", "none")
+    return Workspace(root, "toys")
+
+
+def run(workspace, stage):
+    """Runs a stage; returns ({file: bytes}, its rows without seconds)."""
+    if stage == "lod":
+        simplify_all(workspace, check_section(Params, SMALL["lod"]), "household")
+    else:
+        transfer.run(workspace)
+    folder = workspace.data / stage
+    files = {path.relative_to(folder): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+    rows = read_rows(workspace.measurements / f"{stage}.csv.gz").drop(columns="seconds")
+    return files, rows.to_csv()
+
+
+def until(ready):
+    """Waits for ready() and returns what it answers."""
+    end = time.monotonic() + PATIENCE
+    while not (found := ready()):
+        assert time.monotonic() < end, "nothing happens"
+        time.sleep(0.01)
+    return found
+
+
+@pytest.fixture
+def machines(tmp_path, monkeypatch, request):
+    """The processes of two workers in folders of their own; the first to write a file of some suffix is killed."""
+    write_text(tmp_path / "preloaded.py", PRELOADED)
+    environment = os.environ | {
+        "PYTHONPATH": str(ROOT), "HOME": str(tmp_path), "HAPTIC_GLANCE_CACHE": str(cache_folder()),
+        "FORBIDDEN": str(tmp_path / "dask"), "FATAL": getattr(request, "param", "nothing"),
+        "KILLED": str(tmp_path / "killed"), "DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": "1",
+    }  # fmt: skip
+    started = []
+
+    def start(name, *arguments):
+        (tmp_path / name).mkdir()
+        command = [sys.executable, "-m", "dask", *arguments, "--no-dashboard"]
+        with open(tmp_path / f"{name}.log", "w") as log:
+            started.append(subprocess.Popen(command, cwd=tmp_path / name, env=environment, stdout=log, stderr=log))
+
+    try:
+        file = tmp_path / "scheduler.json"
+        start("scheduler", "scheduler", "--host", "127.0.0.1", "--port", "0", "--scheduler-file", str(file))
+        until(file.exists)
+        address = until(lambda: file.read_text().endswith("}") and json.loads(file.read_text())["address"])
+        worker = ("worker", address, "--no-nanny", "--nthreads", "1", "--preload", str(tmp_path / "preloaded.py"))
+        for name in ("first", "second"):
+            start(name, *worker, "--local-directory", str(tmp_path / name))
+        monkeypatch.setenv(cluster.SCHEDULER, address)
+        client = cluster.cluster_client(-1)
+        client.wait_for_workers(2, timeout=PATIENCE)
+        yield started[1:]
+        client.close()
+    finally:
+        cluster.cluster_client.cache_clear()
+        for process in started:
+            process.kill()
+            process.wait()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("stage", "machines"), [("lod", ".npz"), ("transfer", ".pt")], indirect=["machines"])
+def test_a_worker_killed_in_the_middle_changes_no_byte(stage, machines, tmp_path):
+    """In the middle of an object and of a training; no worker can see the run's folder."""
+    expected = run(make_workspace(tmp_path / "alone", "sequential"), stage)
+    found = run(make_workspace(tmp_path / "dask", "dask"), stage)
+    assert sorted(process.poll() or 0 for process in machines) == [-signal.SIGKILL, 0]
+    assert found == expected
+
+
+@pytest.mark.slow
+def test_an_item_that_kills_its_workers_and_other_code_are_named(machines, tmp_path, monkeypatch):
+    there = list(finished(lambda task, folder: os.getpid(), [Task("cup", 0)], tmp_path, "x", "dask", stage="views"))
+    assert there[0][1] in [process.pid for process in machines]
+    monkeypatch.setattr(cluster, "stage_digest", lambda stage: "another")
+    with pytest.raises(ValueError, match=r"other code of the stage views \(\w{16}\) than this machine \(another\)"):
+        list(finished(lambda task, folder: None, [Task("cup", 0)], tmp_path, "x", "dask", stage="views"))
+    with pytest.raises(OSError, match="^cup: lost 2 workers"):
+        list(finished(lambda task, folder: os._exit(1), [Task("cup", 0)], tmp_path, "x", "dask"))
+
+
+@pytest.mark.slow
+def test_a_process_starts_one_cluster_for_all_its_maps(capsys):
+    try:
+        for _ in range(2):
+            assert parallel_map(abs, [-1, 2, -3], "dask", "dask", 1) == [1, 2, 3]
+        assert capsys.readouterr().err.count("dask: dashboard http") == 1
+    finally:
+        client = cluster.cluster_client(1)
+        client.close()
+        client.cluster.close()
+        cluster.cluster_client.cache_clear()
