@@ -72,7 +72,7 @@ def finished_on_cluster(
     try:
         while waiting or running:
             threads: Any = client.nthreads()
-            room = AHEAD * sum(threads.values()) - len(running)
+            room = AHEAD * max(sum(threads.values()), 1) - len(running)  # clusters that adapt start by what waits
             for _ in range(min(room, len(waiting))):
                 task = waiting.pop()
                 future = sender.send(task)
