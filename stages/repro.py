@@ -12,6 +12,7 @@ import multiprocessing
 import os
 import sys
 import time
+from graphlib import TopologicalSorter
 from multiprocessing.connection import wait
 from pathlib import Path
 from typing import Any
@@ -64,15 +65,14 @@ class Schedule:
 
 def read_graph(root: Path) -> tuple[dict[str, set[str]], set[str]]:
     """({stage: the stages that it needs}, those that changed), in an order in which they can run."""
-    import networkx as nx
     from dvc.repo import Repo
 
     repo = Repo(str(root), _wait_for_lock=True)
     graph = repo.index.graph
     with repo.lock:
         changed = {stage.addressing for stage in graph if stage.cmd and stage.changed()}
-    order = list(nx.dfs_postorder_nodes(graph))
-    return {stage.addressing: {one.addressing for one in graph.successors(stage)} for stage in order}, changed
+    needs = {stage.addressing: {one.addressing for one in graph.successors(stage)} for stage in graph}
+    return {name: needs[name] for name in TopologicalSorter(needs).static_order()}, changed
 
 
 def reproduce(root: Path, name: str, log: Path, ran: Any) -> None:

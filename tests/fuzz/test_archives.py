@@ -135,7 +135,10 @@ def test_nothing_is_unpickled():
         if re.search(r"pickle|\bload|eval\(|exec\(|marshal|shelve", text):
             names = list(unpickling(ast.parse(text)))
             found |= {path.name: names} if names else {}
-    assert found == {"lpips_jax.py": ["_Arrays"]}  # it builds arrays alone: tests/networks/test_networks_weights.py
+    assert found == {
+        "lpips_jax.py": ["_Arrays"],  # it builds arrays alone: tests/networks/test_networks_weights.py
+        "cluster.py": ["pickle.loads", "pickle.loads"],  # a worker of dask runs what its client sends in any case
+    }
 
 
 @pytest.mark.parametrize("line", ["torch.load(p)", "torch.load(p, weights_only=False)", "np.load(p, allow_pickle=True)",
