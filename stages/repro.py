@@ -10,6 +10,7 @@ import argparse
 import logging
 import multiprocessing
 import os
+import resource
 import sys
 import time
 from graphlib import TopologicalSorter
@@ -75,8 +76,8 @@ def read_graph(root: Path) -> tuple[dict[str, set[str]], set[str]]:
     return {name: needs[name] for name in TopologicalSorter(needs).static_order()}, changed
 
 
-def reproduce(root: Path, name: str, log: Path, ran: Any) -> None:
-    """Runs one stage through DVC in this process, all output to `log`; sends through `ran` whether it ran."""
+def reproduce(root: Path, name: str, log: Path, send: Any) -> None:
+    """Runs one stage through DVC in this process, all output to `log`; sends whether it ran, and processor seconds."""
     from dvc.repo import Repo
 
     with log.open("w") as file:
@@ -88,7 +89,8 @@ def reproduce(root: Path, name: str, log: Path, ran: Any) -> None:
     except Exception as error:
         print(error, file=sys.stderr)
         raise SystemExit(1) from error
-    ran.send(bool(found))
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    send.send((bool(found), used.ru_utime + used.ru_stime))
 
 
 def run(root: Path) -> list[str]:
@@ -113,20 +115,21 @@ def run(root: Path) -> list[str]:
                 return schedule.failed
             wait([process.sentinel for process, _, _ in running.values()], REFRESH)
             for name in [name for name, (process, _, _) in running.items() if process.exitcode is not None]:
-                _ended(root, name, *running.pop(name)[:2], schedule)
+                _ended(root, name, *running.pop(name), schedule)
 
 
-def _ended(root, name, process, receive, schedule):
-    """Takes note of how a stage ended, and prints what it said."""
+def _ended(root, name, process, receive, began, schedule):
+    """Takes note of how a stage ended, and prints what it said and took."""
     said = _log(root, name).read_text(errors="replace").strip()
     if process.exitcode:
         lost = schedule.fail(name)
         tqdm.write(f"{name} failed:\n{said}" + (f"\nleft out: {', '.join(lost)}" if lost else ""), file=sys.stderr)
         return
-    ran = receive.recv()
+    ran, processor = receive.recv()
     schedule.end(name, ran)
-    if said:
-        tqdm.write(said)
+    if ran:
+        taken = f"{name}: {time.monotonic() - began:.0f} s, {processor:.0f} s of processor time"
+        tqdm.write("\n".join(filter(None, [said, taken])))
 
 
 def _log(root, name):
