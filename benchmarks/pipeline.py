@@ -1,9 +1,10 @@
 """Time and memory of the whole pipeline from a fresh copy, and of its busiest part: `python -m benchmarks.pipeline`
 
-Copies the files that git knows or would add to build/bench, runs every stage of dvc.yaml there, side by side as `make
-repro` does, and writes reports/bench/pipeline.csv: a row a measurement (what, metric, value, unit, limit, machine). `limit` is the
-figure that the project holds itself to. Results of the run stay in build/bench, to look at or to take over; those of
-the working tree are left alone. Kernels are compiled before: that takes a minute, once a folder and state of the code.
+Copies the files that git knows or would add to build/bench, runs all stages of dvc.yaml there, side by side as `make
+repro` does, and writes reports/bench/pipeline.csv: a row a measurement (what, metric, value, unit, limit, machine).
+`limit` is the figure that the project holds itself to. Results of the run stay in build/bench, to look at or to take
+over; those of the working tree are left alone. Kernels are compiled before: that takes a minute, once a folder and
+state of the code.
 """
 
 import os
