@@ -59,12 +59,21 @@ def replace_folder(source: Path, target: Path) -> None:
     except OSError as error:
         if error.errno != errno.EXDEV:
             raise
-        for path in [source, *sorted(source.rglob("*"))]:
-            copy = part / path.relative_to(source)
-            copy.mkdir() if path.is_dir() else shutil.copyfile(path, copy)
+        _copy(source, part)
         shutil.rmtree(source)
     shutil.rmtree(target, ignore_errors=True)
     part.rename(target)
+
+
+def _copy(source: Path, part: Path) -> None:
+    """Copies a folder; where that fails nothing of it stays, as the disk may be full."""
+    try:
+        for path in [source, *sorted(source.rglob("*"))]:
+            copy = part / path.relative_to(source)
+            copy.mkdir() if path.is_dir() else shutil.copyfile(path, copy)
+    except OSError:
+        shutil.rmtree(part, ignore_errors=True)
+        raise
 
 
 def write_text(path: str | Path, text: str) -> None:
