@@ -143,19 +143,26 @@ def clock(whole):
         happened = f"ran {len(done.stdout.splitlines())} stages; {said(done)}"
         year = time.gmtime(moment).tm_year
         yield "clock set back", name, f"same content, times of {year}; stages.repro", happened, lost(whole)
-    sound = own[0].read_bytes()
-    changed = sound[:-40] + bytes(40)  # faces of the same number of bytes
-    before = own[0].stat()
-    other = sound.replace(b"\x3f", b"\x3e", 1) if sound.count(b"\x3f") else changed
-    for moment, tried in ((PAST, "times of 1980"), (before.st_mtime, "the very time it had")):
-        own[0].write_bytes(other)
-        os.utime(own[0], (moment, moment))
+    yield from _other_content(own[0], whole)
+
+
+def _other_content(path, whole):
+    """Writes a file in place with as many other bytes: times before all that are known, and those that it had."""
+    sound = path.read_bytes()
+    other = sound[:-3] + sound[-4:-3] * 3  # the last corner of the last face
+    for known in (False, True):
+        before = path.stat().st_mtime_ns if known else (PAST - 86400) * 10**9
+        path.write_bytes(other)
+        os.utime(path, ns=(before, before))
         done = command("stages.repro")
         ran = len(done.stdout.splitlines())
-        own[0].write_bytes(sound)
+        path.write_bytes(sound)
         command("stages.repro").check_returncode()
-        happened = f"ran {ran} stages on it; {said(done)}"
-        yield "clock set back", "inputs", f"other content of the same size, {tried}; back again", happened, lost(whole)
+        tried = (
+            f"other content of the same size in place, {'the time it had' if known else 'times of 1979'}; back again"
+        )
+        gone = lost(whole) if ran else "nothing, but DVC sees no change until the file is touched or replaced"
+        yield "clock set back", "inputs", tried, f"ran {ran} stages on it; {said(done)}", gone
 
 
 def cut_network():
@@ -172,7 +179,8 @@ def cut_network():
         handler = functools.partial(_Index, name, content, cut := [True])
         server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler)
         threading.Thread(target=server.serve_forever, daemon=True).start()
-        asks = "from stages.kit.command import errors_in_one_line as e; from stages.kit.fetch import fetch_package; "
+        asks = "from stages.kit.command import errors_in_one_line as e; "
+        asks += "from stages.kit.fetch import fetch_package; "
         asks += f"e('fetch'); fetch_package('faults-wheel==1.0', {name!r}, {digest!r})"
         more = {
             "PIP_INDEX_URL": f"http://127.0.0.1:{server.server_port}/simple",

@@ -15,10 +15,13 @@ MOUNTS = {  # where: (mount it too small or read-only, mend it)
         "mount -o remount,size=64m data",
     ),
     "reports, a tmpfs without room": (
-        "mount -t tmpfs -o size=4k none reports && head -c 4096 /dev/zero > reports/full", "mount -o remount,size=1m reports",
+        "mount -t tmpfs -o size=4k none reports && head -c 4096 /dev/zero > reports/full",
+        "mount -o remount,size=1m reports",
     ),
     "data, read-only": ("mount --bind data data && mount -o remount,ro,bind data", "mount -o remount,rw,bind data"),
-    "build, read-only": ("mount --bind build build && mount -o remount,ro,bind build", "mount -o remount,rw,bind build"),
+    "build, read-only": (
+        "mount --bind build build && mount -o remount,ro,bind build", "mount -o remount,rw,bind build",
+    ),
     "reports, read-only": (
         "mount --bind reports reports && mount -o remount,ro,bind reports", "mount -o remount,rw,bind reports",
     ),
@@ -31,13 +34,9 @@ def cases(whole):
     for where, (spoil, mend) in MOUNTS.items():
         forget("lod")
         (ROOT / "build").mkdir(exist_ok=True)
-        result = (
-            "rm -rf kept && mkdir kept && cp -a data/SET/lod kept/ && cp -a reports/measurements/SET/lod.csv.gz kept/"
-        )
-        script = (
-            f"set -e; {spoil.format(mount='mount')}; set +e; {RUN}; echo first $?; find data reports -path '*lod*';"
-        )
-        script += f"echo; {mend} && {RUN} && " + result.replace("SET", SET)
+        keep = f"mkdir -p kept && rm -rf kept/* && cp -a data/{SET}/lod reports/measurements/{SET}/lod.csv.gz kept"
+        look = "echo first $?; find data reports -path '*lod*'; echo"
+        script = f"set -e; {spoil.format(mount='mount')}; set +e; {RUN}; {look}; {mend} && {RUN} && {keep}"
         done = in_namespace(script)
         fault = "read-only" if "read-only" in where else "disk full"
         if "first" not in done.stdout:

@@ -11,6 +11,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 import trimesh
@@ -41,7 +42,7 @@ def write_meshes():
 
 
 def prepare():
-    """A fresh folder with the tiny data set and the seven stages of dvc.yaml, nothing run; the code stays where it is."""
+    """A fresh folder with the tiny data set and the seven stages of dvc.yaml, nothing run; the code stays outside."""
     shutil.rmtree(ROOT, ignore_errors=True)
     (ROOT / ".dvc").mkdir(parents=True)
     shutil.copy2(".dvc/config", ROOT / ".dvc")
@@ -67,7 +68,7 @@ def command(module, *arguments, **more):
     return subprocess.run(whole, cwd=ROOT, env=environment() | more, capture_output=True, text=True, timeout=300)
 
 
-def started(module, *arguments):
+def started(module, *arguments) -> Any:
     """A running `python -m MODULE ...` there, the leader of its own process group."""
     whole = [sys.executable, "-m", module, *arguments]
     pipes = {"stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE, "text": True}
