@@ -44,6 +44,7 @@ bench: $(VENV)/ready ## every benchmark, to reports/bench: kernels, errors, scen
 	python -m benchmarks.networks
 	python -m benchmarks.cluster
 	python -m benchmarks.pipeline
+	python -m benchmarks.faults
 	OMP_NUM_THREADS=1 python -m benchmarks.broken_meshes
 
 lock: ## pin in constraints.txt all that pyproject.toml asks for

@@ -7,6 +7,7 @@ status is 1. What a stage says comes when it ends and stays in build/logs/STAGE.
 """
 
 import argparse
+import json
 import logging
 import multiprocessing
 import os
@@ -21,6 +22,7 @@ from typing import Any
 from tqdm import tqdm
 
 from stages.kit import cores
+from stages.kit.alone import alone
 from stages.kit.command import errors_in_one_line
 
 AT_ONCE = 2  # stages: each has a worker a core; with more, memory is needed for no time gained
@@ -118,6 +120,29 @@ def run(root: Path) -> list[str]:
                 _ended(root, name, *running.pop(name), schedule)
 
 
+def run_alone(root: Path) -> list[str]:
+    """As run, after any other `stages.repro` below `root` has ended; ValueError that names a file DVC cannot read."""
+    from dvc.exceptions import DvcException
+
+    with alone(root / "build/repro.lock", "repro"):
+        _drop_half_written(root / ".dvc/tmp/rwlock")
+        try:
+            return run(root)
+        except DvcException as error:
+            remedy = "take dvc.lock, dvc.yaml and params.yaml from git again, and run it again"
+            raise ValueError(f"{error}: {remedy}; what was computed is in the cache") from error
+
+
+def _drop_half_written(path):
+    """Removes DVC's list of what runs, where a killed process left half of it; DVC would refuse every run."""
+    try:
+        json.loads(path.read_text())
+    except FileNotFoundError:
+        pass
+    except ValueError:
+        path.unlink()
+
+
 def _ended(root, name, process, receive, began, schedule):
     """Takes note of how a stage ended, and prints what it said and took."""
     said = _log(root, name).read_text(errors="replace").strip()
@@ -143,7 +168,7 @@ def main() -> None:
     )
     parser.parse_args()
     errors_in_one_line("repro")
-    failed = run(Path("."))
+    failed = run_alone(Path("."))
     if failed:
         sys.exit(f"repro: {', '.join(failed)} failed, see {LOGS}")
 

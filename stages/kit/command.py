@@ -1,6 +1,7 @@
 """The command line that all stages share: the data set, the root, `--help`, and errors in one line."""
 
 import argparse
+import errno
 import os
 import sys
 from collections.abc import Sequence
@@ -14,6 +15,10 @@ from .fetch import FetchError
 if TYPE_CHECKING:
     from .workspace import Workspace
 
+REMEDIES = {
+    errno.ENOSPC: ": make room on that disk and run it again; it goes on where it stopped",
+    errno.EROFS: ": make that place writable and run it again",
+}
 DEBUG = "HAPTIC_GLANCE_DEBUG"  # where it is set, every error keeps its traceback
 
 
@@ -72,6 +77,7 @@ def errors_in_one_line(name: str) -> None:
     def show(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
         if os.environ.get(DEBUG) or not issubclass(kind, ValueError | FetchError | OSError | KeyboardInterrupt):
             return sys.__excepthook__(kind, error, trace)
-        print(f"{name}: {'stopped' if issubclass(kind, KeyboardInterrupt) else error}", file=sys.stderr)
+        said = "stopped" if issubclass(kind, KeyboardInterrupt) else " ".join(str(error).split())
+        print(f"{name}: {said}{REMEDIES.get(getattr(error, 'errno', None), '')}", file=sys.stderr)
 
     sys.excepthook = show

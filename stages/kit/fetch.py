@@ -136,7 +136,8 @@ def _pip(requirement, digest, folder, options, environment=None):
     done = subprocess.run(
         [*command, "-d", folder, "-r", pinned], capture_output=True, text=True, env=os.environ | (environment or {})
     )
-    return next((x for x in reversed(done.stderr.splitlines()) if x.startswith("ERROR")), "no such file")
+    reason = next((x for x in reversed(done.stderr.splitlines()) if x.startswith("ERROR")), "no such file")
+    return "half a file came, or another one: try again" if "DO NOT MATCH THE HASHES" in reason else reason
 
 
 def _apt_download(package, folder):

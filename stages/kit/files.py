@@ -1,10 +1,12 @@
 """Files that are whole or absent: every writer goes through a temporary name and moves it into place."""
 
 import csv
+import errno
 import gzip
 import hashlib
 import json
 import os
+import shutil
 import tempfile
 import zlib
 from collections.abc import Iterator
@@ -25,7 +27,10 @@ PART = ".part-"  # how the name of a file begins that is not whole yet
 
 @contextmanager
 def whole_file(path: str | Path) -> Iterator[Path]:
-    """A temporary path beside `path`, moved onto it when the block ends well and removed when it fails."""
+    """A temporary path beside `path`, moved onto it when the block ends well and removed when it fails.
+
+    An error of the disk inside the block names `path`: the system's own does not say what was being written.
+    """
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     handle, temporary = tempfile.mkstemp(prefix=PART, suffix=path.suffix, dir=path.parent)
@@ -34,8 +39,41 @@ def whole_file(path: str | Path) -> Iterator[Path]:
     try:
         yield Path(temporary)
         os.replace(temporary, path)
+    except OSError as error:
+        if error.errno and error.filename is None:
+            raise OSError(error.errno, error.strerror, str(path)) from error
+        raise
     finally:
         Path(temporary).unlink(missing_ok=True)
+
+
+def replace_folder(source: Path, target: Path) -> None:
+    """Moves a folder to where another one may lie; from another disk it is copied before it takes the place.
+
+    What a killed process leaves begins with PART, and the next one replaces it.
+    """
+    part = target.with_name(PART + target.name)
+    shutil.rmtree(part, ignore_errors=True)
+    try:
+        source.rename(part)
+    except OSError as error:
+        if error.errno != errno.EXDEV:
+            raise
+        _copy(source, part)
+        shutil.rmtree(source)
+    shutil.rmtree(target, ignore_errors=True)
+    part.rename(target)
+
+
+def _copy(source: Path, part: Path) -> None:
+    """Copies a folder; where that fails nothing of it stays, as the disk may be full."""
+    try:
+        for path in [source, *sorted(source.rglob("*"))]:
+            copy = part / path.relative_to(source)
+            copy.mkdir() if path.is_dir() else shutil.copyfile(path, copy)
+    except OSError:
+        shutil.rmtree(part, ignore_errors=True)
+        raise
 
 
 def write_text(path: str | Path, text: str) -> None:

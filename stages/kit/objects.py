@@ -4,6 +4,7 @@ A killed run goes on where it stopped, and one object more costs one object. Kep
 oldest go first when it is full, and deleting the folder loses nothing but time.
 """
 
+import errno
 import hashlib
 import io
 import json
@@ -11,7 +12,8 @@ import shutil
 import sqlite3
 import sys
 import zipfile
-from collections.abc import Mapping, Sequence
+import zlib
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -25,6 +27,14 @@ from .files import PART
 ROWS = "rows.json"  # in the archive of an object, beside its files
 FILES = "files/"
 LIMIT = 20 * 2**30  # bytes: several whole runs of the default data
+OF_THE_DISK = {  # errors of sqlite that are no damage
+    sqlite3.SQLITE_FULL: errno.ENOSPC,
+    sqlite3.SQLITE_READONLY: errno.EROFS,
+    sqlite3.SQLITE_CANTOPEN: errno.EROFS,
+    sqlite3.SQLITE_IOERR: errno.EIO,
+    sqlite3.SQLITE_BUSY: errno.EBUSY,
+    sqlite3.SQLITE_LOCKED: errno.EBUSY,
+}
 
 
 class _Bytes(diskcache.Disk):
@@ -47,41 +57,47 @@ class Objects:
 
         A damaged entry is named on the screen and dropped.
         """
+        content: Any = self._ask(lambda kept: kept.get(key))
+        if content is None:
+            return None
         try:
-            with self._open() as kept:
-                content: Any = kept.get(key)
-            if content is None:
-                return None
-            with zipfile.ZipFile(io.BytesIO(content)) as stored:
-                damaged = stored.testzip()
-                if damaged:
-                    raise zipfile.BadZipFile(damaged)
-                for member in stored.namelist():
-                    if member != ROWS:
-                        path = target / member.removeprefix(FILES)
-                        if not path.resolve().is_relative_to(target.resolve()):
-                            raise ValueError(f"{member} lies outside its folder")
-                        path.parent.mkdir(parents=True, exist_ok=True)
-                        path.write_bytes(stored.read(member))
-                return json.loads(stored.read(ROWS))
-        except (zipfile.BadZipFile, OSError, ValueError, KeyError) as error:
+            files = _unpacked(content, target)
+            rows = json.loads(files.pop(ROWS))
+        except (zipfile.BadZipFile, OSError, ValueError, KeyError, TypeError, EOFError, zlib.error) as error:
             print(f"cache: an entry of {self.folder} is damaged ({error}); computed again", file=sys.stderr)
             return None
+        for member, data in files.items():
+            path = target / member.removeprefix(FILES)
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(data)
+        return rows
 
     def keep(self, key: str, content: bytes) -> None:
         """Keeps what `archive` has made under a key."""
-        with self._open() as kept:
-            kept.set(key, content)
+        self._ask(lambda kept: kept.set(key, content))
 
-    def _open(self) -> diskcache.Cache:
+    def _ask(self, work: Callable[[diskcache.Cache], Any]) -> Any:
+        """work(cache); a damaged cache is begun anew. OSError where the disk is full or cannot be written to."""
         settings = {"size_limit": LIMIT, "eviction_policy": "least-recently-used", "disk_min_file_size": 0}
-        settings |= {"disk": _Bytes}
-        try:
-            return diskcache.Cache(str(self.folder), **settings)
-        except sqlite3.DatabaseError as error:
-            print(f"cache: {self.folder} is damaged ({error}); begun anew", file=sys.stderr)
-            shutil.rmtree(self.folder)
-            return diskcache.Cache(str(self.folder), **settings)
+        for last in (False, True):
+            try:
+                with diskcache.Cache(str(self.folder), disk=_Bytes, **settings) as kept:
+                    return work(kept)
+            except sqlite3.DatabaseError as error:
+                number = OF_THE_DISK.get(getattr(error, "sqlite_errorcode", 0) & 255)
+                if number or last:
+                    raise OSError(number or errno.EIO, str(error), str(self.folder)) from error
+                print(f"cache: {self.folder} is damaged ({error}); begun anew", file=sys.stderr)
+                shutil.rmtree(self.folder)
+
+
+def _unpacked(content, target):
+    """{member: bytes} of an archive; ValueError for a member outside `target`."""
+    with zipfile.ZipFile(io.BytesIO(content)) as stored:
+        for member in stored.namelist():
+            if not (target / member.removeprefix(FILES)).resolve().is_relative_to(target.resolve()):
+                raise ValueError(f"{member} lies outside its folder")
+        return {member: stored.read(member) for member in stored.namelist()}
 
 
 def archive(rows: Sequence[Mapping[str, Any]], source: Path) -> bytes:

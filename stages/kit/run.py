@@ -8,8 +8,9 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, TypeVar
 
+from .alone import alone
 from .code import stage_digest
-from .files import sha256, write_json
+from .files import replace_folder, sha256, write_json
 from .make import SCRATCH, make
 from .objects import Objects, files_below, item_key, key_of
 from .parallel import Task, finished, parallel_map, progress
@@ -25,7 +26,8 @@ class StageRun:
     """Where one run of a stage works, so that `data/SET/STAGE` is whole or absent and a killed run goes on.
 
     Everything is written to a scratch folder. `each` keeps what it makes of an object in a cache, and takes from there
-    what an earlier or killed run has made of the same inputs. When the block ends well, the folder becomes
+    what an earlier or killed run has made of the same inputs. A second run of the same stage and set waits for the
+    first. When the block ends well, the folder becomes
     `data/SET/STAGE`, and the rows become `reports/measurements/SET/STAGE.csv.gz`: the seconds in them differ from run
     to run, so they stay out of `data/`, whose bytes do not.
 
@@ -48,6 +50,7 @@ class StageRun:
         self.target = workspace.data / stage
         self.inputs = [workspace.data / name for name in inputs]
         self.folder = workspace.build / "partial" / workspace.dataset / stage
+        self._alone = alone(self.folder.with_name(f"{stage}.lock"), f"{stage} {workspace.dataset}")
         self.rows: Rows = []
 
     def __enter__(self) -> "StageRun":
@@ -55,6 +58,10 @@ class StageRun:
             if not folder.is_dir() or not any(folder.iterdir()):
                 stage = f"{folder.name}@{self.dataset}" if folder.parent.name == self.dataset else folder.name
                 raise ValueError(f"{folder} is not there: run `dvc repro {stage}` first")
+        self.target.parent.mkdir(parents=True, exist_ok=True)
+        if not os.access(self.target.parent, os.W_OK):  # said before hours of work, not after them
+            raise ValueError(f"{self.target.parent} cannot be written to: make it writable, or mount it so")
+        self._alone.__enter__()
         shutil.rmtree(self.folder, ignore_errors=True)
         self.folder.mkdir(parents=True)
         return self
@@ -141,13 +148,13 @@ class StageRun:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        if error is not None:
-            return
-        path = self.workspace.measurements / f"{self.stage}{SUFFIX}"
-        write_rows(path, self.rows, self.columns, self.dataset, self.seed)
-        shutil.rmtree(self.target, ignore_errors=True)
-        self.target.parent.mkdir(parents=True, exist_ok=True)
-        self.folder.rename(self.target)
+        try:
+            if error is None:
+                path = self.workspace.measurements / f"{self.stage}{SUFFIX}"
+                write_rows(path, self.rows, self.columns, self.dataset, self.seed)
+                replace_folder(self.folder, self.target)
+        finally:
+            self._alone.__exit__(None, None, None)
 
 
 def object_names(workspace: Workspace) -> list[str]:
