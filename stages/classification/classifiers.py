@@ -1,7 +1,8 @@
 """The five classifiers of T tables 4.1 and 4.2 with the thesis's settings (T4.2.4)."""
 
 import difflib
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from sklearn.base import ClassifierMixin
@@ -52,7 +53,7 @@ def deep_learning(seed: int = 0) -> "ClassifierMixin":
     return FeedForward(hidden=(50, 50), epochs=10, seed=seed)
 
 
-CLASSIFIERS = {
+CLASSIFIERS: dict[str, Callable[[int], Any]] = {
     "knn": knn,
     "svm": svm,
     "decision_tree": decision_tree,
@@ -62,31 +63,41 @@ CLASSIFIERS = {
 
 
 def classifier(name: str, seed: int = 0, kind: str = "features") -> "Pipeline":
-    """The scikit-learn pipeline of one classifier: z-transform, 12 principal components, the classifier.
+    """The scikit-learn pipeline of one classifier: the steps of `reduction`, then the classifier.
+
+    Raises ValueError for a name that is not in CLASSIFIERS, or another kind.
+    """
+    from sklearn.pipeline import make_pipeline
+
+    check_name(name)
+    return make_pipeline(*reduction(kind), CLASSIFIERS[name](seed))
+
+
+def reduction(kind: str = "features") -> "Pipeline":
+    """The scikit-learn pipeline before all classifiers: z-transform, 12 principal components.
 
     kind: of the samples. "features": those of `features`, at least 12 samples. "located": the same with the
     position of the touch in three more columns, the last ones. They are standardised too and appended to the principal
     components, since the PCA would spread them over all components. "reduced": numbers that need no further
     reduction, such as the two of `touch_map`; they are only standardised.
     The thesis standardises the entire data beforehand (T4.2.4). Here the z-transform and the components are fitted to
-    the samples that `fit` is given, so that nothing of the hold-out leaks into training.
-    Raises ValueError for a name that is not in CLASSIFIERS, or another kind.
+    the samples that `fit` is given, so that nothing of the hold-out leaks into training. Raises ValueError for another
+    kind.
     """
     from sklearn.compose import make_column_transformer
     from sklearn.decomposition import PCA
     from sklearn.pipeline import make_pipeline
     from sklearn.preprocessing import StandardScaler
 
-    check_name(name)
     if kind not in KINDS:
         raise ValueError(f"kind must be one of {', '.join(KINDS)}, got {kind!r}")
-    components = [StandardScaler(), PCA(COMPONENTS, svd_solver="full")]
     if kind == "reduced":
-        components = components[:1]
+        return make_pipeline(StandardScaler())
+    components = make_pipeline(StandardScaler(), PCA(COMPONENTS, svd_solver="full"))
     if kind == "located":
-        touch, place = (make_pipeline(*components), slice(0, -3)), (StandardScaler(), slice(-3, None))
-        components = [make_column_transformer(touch, place)]
-    return make_pipeline(*components, CLASSIFIERS[name](seed))
+        place = (StandardScaler(), slice(-3, None))
+        return make_pipeline(make_column_transformer((components, slice(0, -3)), place))
+    return components
 
 
 def check_name(name: str) -> None:
