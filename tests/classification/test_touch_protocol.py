@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from sklearn.metrics.pairwise import rbf_kernel
 
 from stages.classification import CLASSIFIERS, classifier, evaluate, evaluate_features, features, protocol
 from stages.classification.prepared import Prepared
@@ -27,7 +28,8 @@ def test_thesis_settings():
     assert (
         settings["knn"]["n_neighbors"] == 1 and settings["knn"]["metric"] == "minkowski" and settings["knn"]["p"] == 2
     )
-    assert (settings["svm"]["kernel"], settings["svm"]["gamma"], settings["svm"]["C"]) == ("rbf", 1.0, 1.5)
+    kernel = settings["svm"]["kernel"]
+    assert (kernel.func, kernel.keywords, settings["svm"]["C"]) == (rbf_kernel, {"gamma": 1.0}, 1.5)
     assert settings["svm"]["tol"] == 0.001 and settings["decision_tree"]["max_depth"] == 10
     assert settings["deep_learning"] == {"hidden": (50, 50), "epochs": 10, "seed": 5}
     assert classifier("knn")[-2].n_components == 12
