@@ -77,8 +77,8 @@ def classifier(name: str, seed: int = 0, kind: str = "features") -> "Pipeline":
     return make_pipeline(*reduction(kind), CLASSIFIERS[name](seed))
 
 
-def reduction(kind: str = "features") -> "Pipeline":
-    """The scikit-learn pipeline before all classifiers: z-transform, 12 principal components.
+def reduction(kind: str = "features") -> list[Any]:
+    """The scikit-learn transformers before all classifiers: z-transform, 12 principal components.
 
     kind: of the samples. "features": those of `features`, at least 12 samples. "located": the same with the
     position of the touch in three more columns, the last ones. They are standardised too and appended to the principal
@@ -95,13 +95,11 @@ def reduction(kind: str = "features") -> "Pipeline":
 
     if kind not in KINDS:
         raise ValueError(f"kind must be one of {', '.join(KINDS)}, got {kind!r}")
-    if kind == "reduced":
-        return make_pipeline(StandardScaler())
-    components = make_pipeline(StandardScaler(), PCA(COMPONENTS, svd_solver="full"))
+    components = [StandardScaler(), PCA(COMPONENTS, svd_solver="full")]
     if kind == "located":
-        place = (StandardScaler(), slice(-3, None))
-        return make_pipeline(make_column_transformer((components, slice(0, -3)), place))
-    return components
+        touch, place = (make_pipeline(*components), slice(0, -3)), (StandardScaler(), slice(-3, None))
+        return [make_column_transformer(touch, place)]
+    return components[:1] if kind == "reduced" else components
 
 
 def check_name(name: str) -> None:

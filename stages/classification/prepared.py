@@ -24,12 +24,11 @@ class Prepared:
         cls, samples: np.ndarray, truth: np.ndarray, parts: tuple[np.ndarray, np.ndarray], kind: str = "features"
     ) -> "Prepared":
         """Reduces samples (n, d) of a kind of `reduction`, fitted to the first of the parts (train, test) alone."""
-        train, test = parts
+        train, test = (samples[part] for part in parts)
         with Stopwatch() as watch:
-            fitted = reduction(kind)
-            train_samples = fitted.fit_transform(samples[train])
-            test_samples = fitted.transform(samples[test])
-        return cls(train_samples, truth[train], test_samples, truth[test], watch.seconds)
+            for step in reduction(kind):
+                train, test = step.fit_transform(train), step.transform(test)
+        return cls(train, truth[parts[0]], test, truth[parts[1]], watch.seconds)
 
     def predict(self, name: str, random_state: int) -> tuple[np.ndarray, float]:
         """(predictions for the test part, seconds) of one classifier, the preparation included as if it ran alone."""
