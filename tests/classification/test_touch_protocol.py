@@ -150,7 +150,9 @@ def test_located_samples_keep_the_place_behind_the_components():
     places = random.normal(size=(120, 3)) * 1e-3
     places[:, 2] += 1e-2 * labels
     located = classifier("decision_tree", 0, "located").fit(np.hstack([samples, places])[::2], labels[::2])
-    assert located[0].transform(np.hstack([samples, places])).shape == (120, 15)
+    components = located[0].transform(np.hstack([samples, places]))
+    plain = classifier("knn").fit(samples[::2], labels[::2])[:-1]
+    assert components.shape == (120, 15) and np.allclose(components[:, :12], plain.transform(samples))
     assert located.score(np.hstack([samples, places])[1::2], labels[1::2]) > 0.9
     with pytest.raises(ValueError, match="kind must be one of features, located, reduced"):
         classifier("knn", 0, "places")
