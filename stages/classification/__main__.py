@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from sklearn import config_context
 from threadpoolctl import threadpool_limits
 
 from stages.imprints import read_imprints
@@ -29,7 +30,7 @@ from stages.kit.workspace import Workspace
 from .classifiers import check_name
 from .gather import feature_cost_rows, gather, similar_share_rows
 from .multi_touch import MultiTouchTrials
-from .protocol import check_counts, evaluate_features
+from .protocol import check_counts, evaluate_prepared, prepare
 from .schema import COLUMNS, Params
 from .trials import TouchSet
 from .variants import evaluate_variants
@@ -85,26 +86,26 @@ def process(item: str, folder: Path, data: Path, planned: Mapping[str, int | str
         return [{"group": name, "method": sampling or None, "metric": "accuracy", "value": None, "note": count}]
     common = {"group": name, "method": sampling}
     touched, labels = gather(data / "imprints", settings.sets[name], sampling, count)
-    for classifier in settings.classifiers:
-        try:
-            with threadpool_limits(1):  # equal sums on any number of cores
-                found, confusion = evaluate_features(
-                    touched.samples, labels, classifier, settings.repetitions, seed, touched.places, touched.width
-                )
-        except Exception as error:  # whatever one classifier trips over, the others still count
-            found: Rows = [{"classifier": classifier, "split": Split.RANDOM, "metric": "accuracy", "value": None}]
-            found[0]["note"] = f"{classifier} failed: {error}"
-        else:
-            confusions[f"{classifier}.confusion"] = confusion
-        rows += [{**common, "variant": "plain", "imprints": len(labels), "note": None, **row} for row in found]
-    able = [key.removesuffix(".confusion") for key in confusions]
-    with threadpool_limits(1):
+    objects = np.unique(labels)
+    # One thread gives equal sums on any number of cores. Most fits are so small that checks would take half their time.
+    with threadpool_limits(1), config_context(assume_finite=True, skip_parameter_validation=True):
+        prepared = prepare(touched.samples, touched.truth, settings.repetitions, seed, touched.places, touched.width)
+        for classifier in settings.classifiers:
+            try:
+                found, confusion = evaluate_prepared(prepared, len(objects), classifier, seed)
+            except Exception as error:  # whatever one classifier trips over, the others still count
+                found: Rows = [{"classifier": classifier, "split": Split.RANDOM, "metric": "accuracy", "value": None}]
+                found[0]["note"] = f"{classifier} failed: {error}"
+            else:
+                confusions[f"{classifier}.confusion"] = confusion
+            rows += [{**common, "variant": "plain", "imprints": len(labels), "note": None, **row} for row in found]
+        able = [key.removesuffix(".confusion") for key in confusions]
         rows += [{**common, **row} for row in further(name, sampling, touched, able, settings, seed)]
     rows += [
         {**common, **row}
         for row in [*similar_share_rows(touched, sorted(settings.sets[name])), *feature_cost_rows(touched)]
     ]
-    write_arrays(folder / f"{item}.npz", objects=np.unique(labels), **confusions)
+    write_arrays(folder / f"{item}.npz", objects=objects, **confusions)
     return rows
 
 

@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from stages.kit import Stopwatch
 from stages.kit.rng import rng
 from stages.kit.split import Split
 
-from .classifiers import COMPONENTS, classifier
+from .classifiers import COMPONENTS, check_name
 from .features import features
+from .prepared import Prepared
 
 HOLDOUT = 0.25  # T4.2.4
 FOLDS = 5  # T4.2.4
@@ -22,8 +22,8 @@ def evaluate(
     images_by_object: {object: (k, rows, cols) in 0..1}, at least two objects, at least 10 imprints each; of every
     object as many are used, from the first, as the object with the fewest has. classifier: a name in CLASSIFIERS.
     A row holds classifier, repetition, split (random: the quarter held out; folds: mean over five folds of the rest),
-    metric (accuracy), value and seconds (training and prediction, without the features). Repetitions differ in their
-    random split and in the classifier's random numbers.
+    metric (accuracy), value and seconds (z-transform, components, training and prediction, without the features).
+    Repetitions differ in their random split and in the classifier's random numbers.
     Raises ValueError for too few objects or imprints, invalid images, or an unknown classifier.
     """
     names = sorted(images_by_object)
@@ -46,32 +46,48 @@ def evaluate_features(
     """The protocol on features (k, d) with labels (k,): (rows as `evaluate` gives them, confusion (n, n) i8).
 
     The confusion matrix sums the hold-outs of all repetitions, true classes in rows, both in alphabetical order.
-    places: (k, 3) positions of the imprints. With them two more splits show how optimistic the random hold-out is,
-    since arrays that overlap measure nearly the same. `regions` holds out one region of each object, see
-    `region_holdout`. It trains on fewer samples, so `random_fewer` holds out a random quarter and trains on as many of
-    the rest as `regions`. The difference of these two is the effect of overlap alone. Both are None if an object has no
-    touch far enough.
+    places: (k, 3) positions of the imprints. With them two more splits show how optimistic the random hold-out is, see
+    `draw_splits`; their values are None if an object has no touch far enough.
     """
     classes, truth = np.unique(labels, return_inverse=True)
-    confusion = np.zeros((len(classes), len(classes)), dtype=np.int64)
-    rows = []
+    prepared = prepare(samples, truth, repetitions, seed, places, min_distance)
+    return evaluate_prepared(prepared, len(classes), name, seed)
+
+
+def prepare(
+    samples: np.ndarray,
+    truth: np.ndarray,
+    repetitions: int,
+    seed: int,
+    places: np.ndarray | None = None,
+    min_distance: float = 0.0,
+) -> list[dict[Split, list[Prepared]]]:
+    """The splits of each repetition, ready for `evaluate_prepared` with any classifier; truth (k,) object numbers."""
+    prepared = []
     for repetition in range(repetitions):
+        splits = draw_splits(truth, repetition_seed(seed, repetition), places, min_distance).items()
+        prepared.append({split: [Prepared.from_split(samples, truth, one) for one in parts] for split, parts in splits})
+    return prepared
+
+
+def evaluate_prepared(
+    prepared: list[dict[Split, list[Prepared]]], classes: int, name: str, seed: int
+) -> tuple[list[dict], np.ndarray]:
+    """What `evaluate_features` returns, of the splits of that many classes that `prepare` made with the same seed."""
+    check_name(name)
+    rows, confusion = [], np.zeros((classes, classes), dtype=np.int64)
+    for repetition, splits in enumerate(prepared):
         random_state = repetition_seed(seed, repetition)
-        train, test = random_holdout(truth, random_state)
-        predicted, seconds = _fit_and_predict(name, random_state, samples, truth, train, test)
-        np.add.at(confusion, (truth[test], predicted), 1)
-        measured_by_split = {
-            Split.RANDOM: ((predicted == truth[test]).mean(), seconds),
-            Split.FOLDS: _cross_validate(name, random_state, samples, truth, train),
-        }
-        if places is not None:
-            parts = region_holdout(truth, places, min_distance, random_state)
-            measured_by_split[Split.REGIONS] = _accuracy(name, random_state, samples, truth, parts)
-            measured_by_split[Split.RANDOM_FEWER] = _accuracy(
-                name, random_state, samples, truth, parts and _equal_size_holdout(truth, parts, random_state)
-            )
-        common = {"classifier": name, "repetition": repetition}
-        rows += [_row(common, split, *measured) for split, measured in measured_by_split.items()]
+        for split, parts in splits.items():
+            row = {"classifier": name, "repetition": repetition, "split": split, "metric": "accuracy"}
+            rows.append({**row, "value": None, "seconds": None})
+            if not parts:
+                continue
+            answers, seconds = zip(*(part.predict(name, random_state) for part in parts), strict=True)
+            right = [(answer == part.test_truth).mean() for answer, part in zip(answers, parts, strict=True)]
+            rows[-1] |= {"value": float(np.mean(right)), "seconds": sum(seconds)}
+            if split == Split.RANDOM:
+                np.add.at(confusion, (parts[0].test_truth, answers[0]), 1)
     return rows, confusion
 
 
@@ -91,9 +107,26 @@ def check_counts(counts: dict[str, int]) -> None:
         )
 
 
-def _row(common, split, value, seconds):
-    value = None if value is None else float(value)
-    return {**common, "split": split, "metric": "accuracy", "value": value, "seconds": seconds}
+def draw_splits(
+    truth: np.ndarray, random_state: int, places: np.ndarray | None = None, min_distance: float = 0.0
+) -> dict[Split, list[tuple[np.ndarray, np.ndarray]]]:
+    """{split: its (train, test) indices}: a random hold-out, and five folds of what it trains on.
+
+    With places (k, 3), `regions` holds out one region of each object too, see `region_holdout`. It trains on fewer
+    samples, so `random_fewer` holds out a random quarter and trains on as many of the rest as `regions`. The difference
+    of these two is the effect of overlap alone, since arrays that overlap measure nearly the same. Both have no indices
+    if an object has no touch farther than min_distance from its region.
+    """
+    from sklearn.model_selection import StratifiedKFold
+
+    train, test = random_holdout(truth, random_state)
+    folds = StratifiedKFold(FOLDS, shuffle=True, random_state=random_state).split(train, truth[train])
+    splits = {Split.RANDOM: [(train, test)], Split.FOLDS: [(train[fit], train[check]) for fit, check in folds]}
+    if places is not None:
+        apart = region_holdout(truth, places, min_distance, random_state)
+        splits[Split.REGIONS] = [apart] if apart else []
+        splits[Split.RANDOM_FEWER] = [_equal_size_holdout(truth, apart, random_state)] if apart else []
+    return splits
 
 
 def random_holdout(truth: np.ndarray, random_state: int) -> tuple[np.ndarray, np.ndarray]:
@@ -102,25 +135,6 @@ def random_holdout(truth: np.ndarray, random_state: int) -> tuple[np.ndarray, np
 
     train, test = train_test_split(np.arange(len(truth)), test_size=HOLDOUT, stratify=truth, random_state=random_state)
     return np.asarray(train), np.asarray(test)
-
-
-def _cross_validate(name, random_state, samples, truth, train):
-    """(mean accuracy over the folds, seconds) of cross-validation within the training part."""
-    from sklearn.model_selection import StratifiedKFold
-
-    accuracies, total = [], 0.0
-    for fit, check in StratifiedKFold(FOLDS, shuffle=True, random_state=random_state).split(train, truth[train]):
-        predicted, seconds = _fit_and_predict(name, random_state, samples, truth, train[fit], train[check])
-        accuracies.append((predicted == truth[train[check]]).mean())
-        total += seconds
-    return np.mean(accuracies), total
-
-
-def _fit_and_predict(name, random_state, samples, truth, train, test):
-    """(predictions for the test part of a classifier trained on the training part, seconds)."""
-    with Stopwatch() as watch:
-        predicted = classifier(name, random_state).fit(samples[train], truth[train]).predict(samples[test])
-    return predicted, watch.seconds
 
 
 def region_holdout(
@@ -159,11 +173,3 @@ def _equal_size_holdout(truth, other, random_state):
     random = np.random.default_rng(random_state)
     kept = [random.permutation(train[truth[train] == label])[:count] for label, count in enumerate(counts)]
     return np.concatenate(kept), test
-
-
-def _accuracy(name, random_state, samples, truth, parts):
-    """(accuracy on the test part, seconds); (None, None) without parts."""
-    if parts is None:
-        return None, None
-    predicted, seconds = _fit_and_predict(name, random_state, samples, truth, *parts)
-    return (predicted == truth[parts[1]]).mean(), seconds

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from stages.kit import Stopwatch
 from stages.kit.split import Split
 
-from .classifiers import COMPONENTS, classifier
+from .classifiers import COMPONENTS
 from .multi_touch import MultiTouchTrials
+from .prepared import Prepared
 from .protocol import repetition_seed
 from .trials import TouchSet, selection_trials, single_touch_trials
 
@@ -36,8 +36,7 @@ def evaluate_variants(
                     row = {"variant": trial.variant, "classifier": None, "split": trial.split, "metric": "accuracy"}
                     rows.append({**row, "value": None, "note": note})
                 continue
-            for name in [name for name in classifiers if name not in trial.skipped]:
-                rows += [{**row, "repetition": repetition} for row in _trial_rows(trial, name, random_state)]
+            rows += [{**row, "repetition": repetition} for row in _trial_rows(trial, classifiers, random_state)]
     return rows
 
 
@@ -56,21 +55,21 @@ def _reason_to_skip(trial):
     return trial.note
 
 
-def _trial_rows(trial, name, random_state):
-    """Rows of one classifier on one trial.
+def _trial_rows(trial, classifiers, random_state):
+    """Rows of the classifiers on one trial.
 
     Selection leaves objects with unequal numbers of imprints, so that guessing the most frequent object is accurate. So
     the mean over the objects of their recall is another metric, recall.
     """
-    train, test = trial.parts
-    with Stopwatch() as watch:
-        model = classifier(name, random_state, trial.kind).fit(trial.samples[train], trial.truth[train])
-        predicted = model.predict(trial.samples[test])
-    correct = predicted == trial.truth[test]
-    common = {"variant": trial.variant, "classifier": name, "split": trial.split, "note": None}
-    common |= {"imprints": len(train) + len(test), "seconds": watch.seconds + trial.seconds}
-    rows = [{**common, "metric": "accuracy", "value": float(correct.mean())}]
-    if trial.variant.endswith("selected") and trial.split == Split.RANDOM:
-        recall = np.mean([correct[trial.truth[test] == one].mean() for one in np.unique(trial.truth[test])])
-        rows.append({**common, "metric": "recall", "value": float(recall)})
+    rows, prepared = [], Prepared.from_split(trial.samples, trial.truth, trial.parts, trial.kind)
+    truth = prepared.test_truth
+    for name in [name for name in classifiers if name not in trial.skipped]:
+        predicted, seconds = prepared.predict(name, random_state)
+        correct = predicted == truth
+        common = {"variant": trial.variant, "classifier": name, "split": trial.split, "note": None}
+        common |= {"imprints": len(prepared.train) + len(truth), "seconds": seconds + trial.seconds}
+        rows.append({**common, "metric": "accuracy", "value": float(correct.mean())})
+        if trial.variant.endswith("selected") and trial.split == Split.RANDOM:
+            recall = np.mean([correct[truth == one].mean() for one in np.unique(truth)])
+            rows.append({**common, "metric": "recall", "value": float(recall)})
     return rows

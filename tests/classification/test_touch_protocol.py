@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
+from sklearn.metrics.pairwise import rbf_kernel
 
 from stages.classification import CLASSIFIERS, classifier, evaluate, evaluate_features, features, protocol
+from stages.classification.prepared import Prepared
 
 
 def mean(rows, split):
@@ -26,7 +28,8 @@ def test_thesis_settings():
     assert (
         settings["knn"]["n_neighbors"] == 1 and settings["knn"]["metric"] == "minkowski" and settings["knn"]["p"] == 2
     )
-    assert (settings["svm"]["kernel"], settings["svm"]["gamma"], settings["svm"]["C"]) == ("rbf", 1.0, 1.5)
+    kernel = settings["svm"]["kernel"]
+    assert (kernel.func, kernel.keywords, settings["svm"]["C"]) == (rbf_kernel, {"gamma": 1.0}, 1.5)
     assert settings["svm"]["tol"] == 0.001 and settings["decision_tree"]["max_depth"] == 10
     assert settings["deep_learning"] == {"hidden": (50, 50), "epochs": 10, "seed": 5}
     assert classifier("knn")[-2].n_components == 12
@@ -53,42 +56,50 @@ def test_every_object_gives_as_many_as_the_poorest(bumps):
     assert [row["value"] for row in rows] == [row["value"] for row in cut]
 
 
-def test_hold_out_is_a_quarter_and_never_trained_on(bumps, monkeypatch):
-    seen = []
-
-    class Spy:
-        def fit(self, samples, labels):
-            seen.append((samples[:, 0], labels))
-            return self
-
-        def predict(self, samples):
-            seen[-1] += (samples[:, 0],)
-            return np.zeros(len(samples), dtype=int)
-
-    monkeypatch.setattr(protocol, "classifier", lambda name, seed: Spy())
-    samples, labels = np.arange(96.0)[:, None], np.repeat(["a", "b", "c"], 32)
-    evaluate_features(samples, labels, "spy", repetitions=1)
-    (train, train_labels, test), *folds = seen
-    assert np.array_equal(np.sort(np.r_[train, test]), samples[:, 0]) and len(test) == 24
-    assert (np.bincount(train_labels) == 24).all() and len(folds) == 5
-    for fit, _, check in folds:
+def test_hold_out_is_a_quarter_and_never_trained_on():
+    truth = np.repeat([0, 1, 2], 32)
+    splits = protocol.draw_splits(truth, 5)
+    ((train, test),), folds = splits["random"], splits["folds"]
+    assert list(splits) == ["random", "folds"] and np.array_equal(np.sort(np.r_[train, test]), np.arange(96))
+    assert (np.bincount(truth[train]) == 24).all() and len(folds) == 5
+    for fit, check in folds:
         assert not np.isin(fit, check).any() and np.array_equal(np.sort(np.r_[fit, check]), np.sort(train))
-    assert np.array_equal(np.sort(np.concatenate([check for *_, check in folds])), np.sort(train))
+    assert np.array_equal(np.sort(np.concatenate([check for _, check in folds])), np.sort(train))
 
 
-def test_splits_are_the_same_for_every_classifier_and_sampling(monkeypatch):
-    splits = []
+def test_reduction_is_fitted_to_the_training_part_alone():
+    random = np.random.default_rng(0)
+    samples, truth = random.normal(size=(60, 44)), np.repeat([0, 1], 30)
+    train, test = np.arange(0, 60, 2), np.arange(1, 60, 2)
+    for kind, width in (("features", 12), ("located", 15), ("reduced", 44)):
+        far = samples.copy()
+        far[test] += 100
+        one, other = (Prepared.from_split(those, truth, (train, test), kind) for those in (samples, far))
+        assert one.train.shape == (30, width) and np.array_equal(one.train, other.train)
+        assert not np.allclose(one.test, other.test) and np.array_equal(one.test_truth, truth[test])
 
-    def answer(name, random_state, samples, truth, train, test):
-        splits.append(np.r_[train, test])
-        return truth[test], 0.0
 
-    monkeypatch.setattr(protocol, "_fit_and_predict", answer)
-    labels = np.repeat([0, 1], 20)
-    evaluate_features(np.zeros((40, 2)), labels, "knn", repetitions=2)
-    evaluate_features(np.ones((40, 3)), labels, "svm", repetitions=2)
-    assert len(splits) == 24 and not np.array_equal(splits[0], splits[6])
-    assert all(np.array_equal(one, other) for one, other in zip(splits[:12], splits[12:], strict=True))
+@pytest.mark.parametrize("kind", ["features", "located", "reduced"])
+def test_shared_preparation_answers_as_the_pipeline_does(kind):
+    random = np.random.default_rng(0)
+    samples, truth = random.normal(size=(80, 20)), np.repeat([0, 1], 40)
+    samples[:, :6] += truth[:, None]
+    train, test = protocol.random_holdout(truth, 3)
+    prepared = Prepared.from_split(samples, truth, (train, test), kind)
+    for name in ("knn", "naive_bayes", "decision_tree"):
+        model = classifier(name, 3, kind).fit(samples[train], truth[train])
+        assert np.array_equal(prepared.predict(name, 3)[0], model.predict(samples[test]))
+
+
+def test_splits_depend_on_nothing_but_the_repetition(monkeypatch):
+    drawn = []
+    monkeypatch.setattr(
+        protocol.Prepared, "from_split", lambda samples, truth, parts: drawn.append(np.concatenate(parts))
+    )
+    for samples in (np.zeros((40, 2)), np.ones((40, 3))):
+        protocol.prepare(samples, np.repeat([0, 1], 20), 2, 0)
+    assert len(drawn) == 24 and not np.array_equal(drawn[0], drawn[6])
+    assert all(np.array_equal(one, other) for one, other in zip(drawn[:12], drawn[12:], strict=True))
 
 
 def test_confusion_counts_the_hold_outs(bumps):
@@ -99,24 +110,17 @@ def test_confusion_counts_the_hold_outs(bumps):
     assert confusion.trace() / confusion.sum() == pytest.approx(mean(rows, "random"))
 
 
-def test_apart_holds_out_a_region_far_from_all_training(monkeypatch):
-    splits = []
-
-    def answer(name, random_state, samples, truth, train, test):
-        splits.append((train, test))
-        return truth[test], 0.0
-
-    monkeypatch.setattr(protocol, "_fit_and_predict", answer)
-    places = np.tile(np.arange(16.0)[:, None] * [1, 0, 0], (3, 1))
-    rows, _ = evaluate_features(np.zeros((48, 2)), np.repeat([0, 1, 2], 16), "knn", 4, places=places, min_distance=2.5)
-    assert [row["value"] for row in rows if row["split"] == "regions"] == [1.0] * 4
-    for train, test in splits[6::8]:
+def test_apart_holds_out_a_region_far_from_all_training():
+    places, truth = np.tile(np.arange(16.0)[:, None] * [1, 0, 0], (3, 1)), np.repeat([0, 1, 2], 16)
+    for random_state in range(4):
+        splits = protocol.draw_splits(truth, random_state, places, min_distance=2.5)
+        ((train, test),), ((few, other_test),) = splits["regions"], splits["random_fewer"]
         assert len(test) == 12 and len(train) >= 3 * 8
         for first_of_each in (0, 16, 32):
             own = [part[(part >= first_of_each) & (part < first_of_each + 16)] for part in (train, test)]
             assert np.ptp(own[1]) == 3 and np.abs(own[0][:, None] - own[1]).min() == 3
-    for (far, _), (few, test) in zip(splits[6::8], splits[7::8], strict=True):
-        assert np.array_equal(np.bincount(far // 16), np.bincount(few // 16)) and not np.isin(few, test).any()
+        assert np.array_equal(np.bincount(truth[train]), np.bincount(truth[few]))
+        assert not np.isin(few, other_test).any()
 
 
 def test_apart_is_none_where_all_touches_overlap(bumps):
@@ -146,7 +150,9 @@ def test_located_samples_keep_the_place_behind_the_components():
     places = random.normal(size=(120, 3)) * 1e-3
     places[:, 2] += 1e-2 * labels
     located = classifier("decision_tree", 0, "located").fit(np.hstack([samples, places])[::2], labels[::2])
-    assert located[0].transform(np.hstack([samples, places])).shape == (120, 15)
+    components = located[0].transform(np.hstack([samples, places]))
+    plain = classifier("knn").fit(samples[::2], labels[::2])[:-1]
+    assert components.shape == (120, 15) and np.allclose(components[:, :12], plain.transform(samples))
     assert located.score(np.hstack([samples, places])[1::2], labels[1::2]) > 0.9
     with pytest.raises(ValueError, match="kind must be one of features, located, reduced"):
         classifier("knn", 0, "places")
