@@ -8,7 +8,7 @@ from benchmarks.faults import lost, said
 RUN = f"python -m stages.lod {SET}"
 MOUNTS = {  # where: (mount it too small or read-only, mend it)
     "build, a tmpfs of 64 KiB": ("mount -t tmpfs -o size=64k none build", "mount -o remount,size=64m build"),
-    "build, a tmpfs of 768 KiB": ("mount -t tmpfs -o size=768k none build", "mount -o remount,size=64m build"),
+    "build, a tmpfs of 256 KiB": ("mount -t tmpfs -o size=256k none build", "mount -o remount,size=64m build"),
     "data, a tmpfs without room": (
         "mount -t tmpfs -o size=64m none {mount} && cp -a data/. {mount} && mount --move {mount} data"
         " && mount -o remount,size=$(($(du -sk data | cut -f1) + 8))k data",

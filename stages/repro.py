@@ -19,11 +19,13 @@ from multiprocessing.connection import wait
 from pathlib import Path
 from typing import Any
 
+import yaml
 from tqdm import tqdm
 
 from stages.kit import cores
 from stages.kit.alone import alone
 from stages.kit.command import errors_in_one_line
+from stages.kit.files import write_text
 
 AT_ONCE = 2  # stages: each has a worker a core; with more, memory is needed for no time gained
 LOGS = Path("build/logs")
@@ -126,10 +128,12 @@ def run_alone(root: Path) -> list[str]:
 
     with alone(root / "build/repro.lock", "repro"):
         _drop_half_written(root / ".dvc/tmp/rwlock")
+        if (root / "dvc.lock").exists() and not _keep_lock(root):
+            _mend_lock(root)
         try:
             return run(root)
         except DvcException as error:
-            remedy = "take dvc.lock, dvc.yaml and params.yaml from git again, and run it again"
+            remedy = "take dvc.yaml and params.yaml from git again, and run it again"
             raise ValueError(f"{error}: {remedy}; what was computed is in the cache") from error
 
 
@@ -143,6 +147,30 @@ def _drop_half_written(path):
         path.unlink()
 
 
+def _keep_lock(root):
+    """Copies dvc.lock if it is sound: DVC does not write it in one piece, so a killed run may leave half of it."""
+    from dvc.dvcfile import Lockfile
+    from dvc.exceptions import DvcException
+
+    try:
+        text = (root / "dvc.lock").read_text()
+        Lockfile.validate(yaml.safe_load(text))
+    except (OSError, ValueError, yaml.YAMLError, DvcException):
+        return False
+    write_text(root / "build/dvc.lock", text)
+    return True
+
+
+def _mend_lock(root):
+    """Puts the last sound copy of dvc.lock back; without one, all stages run again and take what is in the cache."""
+    print(
+        "repro: dvc.lock is damaged; the last sound one is taken, this one lies in build/damaged.lock", file=sys.stderr
+    )
+    (root / "dvc.lock").replace(root / "build/damaged.lock")
+    if (root / "build/dvc.lock").exists():
+        write_text(root / "dvc.lock", (root / "build/dvc.lock").read_text())
+
+
 def _ended(root, name, process, receive, began, schedule):
     """Takes note of how a stage ended, and prints what it said and took."""
     said = _log(root, name).read_text(errors="replace").strip()
@@ -152,6 +180,7 @@ def _ended(root, name, process, receive, began, schedule):
         return
     ran, processor = receive.recv()
     schedule.end(name, ran)
+    _keep_lock(root)
     if ran:
         taken = f"{name}: {time.monotonic() - began:.0f} s, {processor:.0f} s of processor time"
         tqdm.write("\n".join(filter(None, [said, taken])))

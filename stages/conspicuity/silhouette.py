@@ -12,12 +12,13 @@ def silhouette_share(values: np.ndarray, mask: np.ndarray) -> float:
     """The share of a map's sum in a band along the silhouette, over the band's share of the object's area.
 
     1: in proportion to the area; well above 1: the map responds to the silhouette. values (h', w') f4, a map of
-    conspicuity(); mask (h, w) boolean of the view, of the same aspect ratio. NaN for a map of zeros.
+    conspicuity(); mask (h, w) boolean of the view, of the same aspect ratio. NaN for a map of zeros, or a view so
+    small that no pixel lies in the band.
     """
     total = float(values.sum())
-    if total <= 0:
-        return float("nan")
     within, share = _band(mask, values.shape)
+    if total <= 0 or share == 0:
+        return float("nan")
     return float((values * within).sum() / total) / share
 
 

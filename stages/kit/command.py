@@ -78,6 +78,6 @@ def errors_in_one_line(name: str) -> None:
         if os.environ.get(DEBUG) or not issubclass(kind, ValueError | FetchError | OSError | KeyboardInterrupt):
             return sys.__excepthook__(kind, error, trace)
         said = "stopped" if issubclass(kind, KeyboardInterrupt) else " ".join(str(error).split())
-        print(f"{name}: {said}{REMEDIES.get(getattr(error, 'errno', None), '')}", file=sys.stderr)
+        print(f"{name}: {said}{REMEDIES.get(getattr(error, 'errno', 0) or 0, '')}", file=sys.stderr)
 
     sys.excepthook = show

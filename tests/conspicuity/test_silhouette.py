@@ -33,6 +33,12 @@ def test_a_lit_ring_has_a_high_share_and_an_empty_map_none():
     assert np.isnan(silhouette_share(np.zeros((450, 600), np.float32), mask))
 
 
+def test_a_view_without_a_pixel_in_the_band_has_no_share():
+    mask = np.zeros((60, 80), dtype=bool)
+    mask[20:40, 30:50] = True
+    assert np.isnan(silhouette_share(np.ones((15, 20), np.float32), mask))
+
+
 def test_filling_keeps_a_box_from_being_outlined():
     box = trimesh.creation.box((0.5, 0.5, 0.3))
     mesh = Mesh(box.vertices, box.faces)

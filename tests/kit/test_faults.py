@@ -211,17 +211,33 @@ def test_half_of_dvcs_list_of_runs_is_removed_and_a_whole_one_stays(text, stays,
     _drop_half_written(tmp_path / "absent")
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["dvc.lock", "params.yaml"])
-def test_a_damaged_file_of_dvc_is_named_with_the_remedy(name, tmp_path):
+@pytest.fixture
+def repository(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)  # DVC names stages by their place from here
     subprocess.run(["git", "init", "-q"], cwd=tmp_path, check=True)
     (tmp_path / ".dvc").mkdir()
     (tmp_path / ".dvc/config").write_text("[core]\n    analytics = false\n")
     (tmp_path / "params.yaml").write_text("who: all\n")
     (tmp_path / "dvc.yaml").write_text('stages:\n  a: {cmd: "echo ${who} > a", outs: [a]}\n')
-    (tmp_path / name).write_bytes(b"\x00garbage: [")
-    with pytest.raises(ValueError, match=f"{name}.*from git again"):
-        run_alone(tmp_path)
+    return tmp_path
+
+
+@pytest.mark.slow
+def test_damaged_settings_are_named_with_the_remedy(repository):
+    (repository / "params.yaml").write_bytes(b"\x00garbage: [")
+    with pytest.raises(ValueError, match="params.yaml.*from git again"):
+        run_alone(Path("."))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("damage", [b"", b"schema: '2.0'\nstages:\n  a:\n    cm", b"\xff"])
+def test_half_a_dvc_lock_gives_way_to_the_last_sound_one(damage, repository, capfd):
+    assert run_alone(Path(".")) == []
+    sound = (repository / "dvc.lock").read_text()
+    (repository / "dvc.lock").write_bytes(damage)
+    assert run_alone(Path(".")) == [] and (repository / "dvc.lock").read_text() == sound
+    assert "dvc.lock is damaged" in capfd.readouterr().err
+    assert (repository / "build/damaged.lock").read_bytes() == damage
 
 
 class Cut(http.server.BaseHTTPRequestHandler):
