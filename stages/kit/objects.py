@@ -57,20 +57,25 @@ class Objects:
 
         A damaged entry is named on the screen and dropped.
         """
-        content: Any = self._ask(lambda kept: kept.get(key))
+        try:
+            content: Any = self._ask(lambda kept: kept.get(key))
+        except ValueError as error:  # pickled; what the disk itself says goes on
+            return self._damaged(error)
         if content is None:
             return None
         try:
             files = _unpacked(content, target)
             rows = json.loads(files.pop(ROWS))
         except (zipfile.BadZipFile, OSError, ValueError, KeyError, TypeError, EOFError, zlib.error) as error:
-            print(f"cache: an entry of {self.folder} is damaged ({error}); computed again", file=sys.stderr)
-            return None
+            return self._damaged(error)
         for member, data in files.items():
             path = target / member.removeprefix(FILES)
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_bytes(data)
         return rows
+
+    def _damaged(self, error: Exception) -> None:
+        print(f"cache: an entry of {self.folder} is damaged ({error}); computed again", file=sys.stderr)
 
     def keep(self, key: str, content: bytes) -> None:
         """Keeps what `archive` has made under a key."""
