@@ -7,7 +7,6 @@ status is 1. What a stage says comes when it ends and stays in build/logs/STAGE.
 """
 
 import argparse
-import json
 import logging
 import multiprocessing
 import os
@@ -19,13 +18,12 @@ from multiprocessing.connection import wait
 from pathlib import Path
 from typing import Any
 
-import yaml
 from tqdm import tqdm
 
 from stages.kit import cores
 from stages.kit.alone import alone
 from stages.kit.command import errors_in_one_line
-from stages.kit.files import write_text
+from stages.kit.dvc_files import keep_lock, mend_dvc_files
 
 AT_ONCE = 2  # stages: each has a worker a core; with more, memory is needed for no time gained
 LOGS = Path("build/logs")
@@ -127,48 +125,12 @@ def run_alone(root: Path) -> list[str]:
     from dvc.exceptions import DvcException
 
     with alone(root / "build/repro.lock", "repro"):
-        _drop_half_written(root / ".dvc/tmp/rwlock")
-        if (root / "dvc.lock").exists() and not _keep_lock(root):
-            _mend_lock(root)
+        mend_dvc_files(root)
         try:
             return run(root)
         except DvcException as error:
             remedy = "take dvc.yaml and params.yaml from git again, and run it again"
             raise ValueError(f"{error}: {remedy}; what was computed is in the cache") from error
-
-
-def _drop_half_written(path):
-    """Removes DVC's list of what runs, where a killed process left half of it; DVC would refuse every run."""
-    try:
-        json.loads(path.read_text())
-    except FileNotFoundError:
-        pass
-    except ValueError:
-        path.unlink()
-
-
-def _keep_lock(root):
-    """Copies dvc.lock if it is sound: DVC does not write it in one piece, so a killed run may leave half of it."""
-    from dvc.dvcfile import Lockfile
-    from dvc.exceptions import DvcException
-
-    try:
-        text = (root / "dvc.lock").read_text()
-        Lockfile.validate(yaml.safe_load(text))
-    except (OSError, ValueError, yaml.YAMLError, DvcException):
-        return False
-    write_text(root / "build/dvc.lock", text)
-    return True
-
-
-def _mend_lock(root):
-    """Puts the last sound copy of dvc.lock back; without one, all stages run again and take what is in the cache."""
-    print(
-        "repro: dvc.lock is damaged; the last sound one is taken, this one lies in build/damaged.lock", file=sys.stderr
-    )
-    (root / "dvc.lock").replace(root / "build/damaged.lock")
-    if (root / "build/dvc.lock").exists():
-        write_text(root / "dvc.lock", (root / "build/dvc.lock").read_text())
 
 
 def _ended(root, name, process, receive, began, schedule):
@@ -180,7 +142,7 @@ def _ended(root, name, process, receive, began, schedule):
         return
     ran, processor = receive.recv()
     schedule.end(name, ran)
-    _keep_lock(root)
+    keep_lock(root)
     if ran:
         taken = f"{name}: {time.monotonic() - began:.0f} s, {processor:.0f} s of processor time"
         tqdm.write("\n".join(filter(None, [said, taken])))

@@ -19,7 +19,7 @@ from .viewpoints import viewpoint_sphere
 def take_pictures(name: str, folder: Path, data: Path, settings: Params) -> list[dict]:
     """Stores the pictures of one object and measures its shape; returns one row per measure.
 
-    The ray caster renders them: at this size it is as fast as OpenGL and gives the same bytes on every machine.
+    The renderer `raster` draws them: it gives the same bytes on every machine.
     """
     mesh = read_mesh(data / "meshes" / f"{name}.npz")
     viewpoints, size = viewpoint_sphere(settings.parallels, settings.azimuths), (settings.size, settings.size)

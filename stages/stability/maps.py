@@ -21,8 +21,8 @@ def maps_under_conditions(
 ) -> ViewMaps | None:
     """The conspicuity maps of a normalised mesh from the twelve viewpoints under `conditions`; None without channels.
 
-    size: (rows, columns) of the views when conditions.rows is 1; maps have a quarter of them. Rendered by the ray
-    caster, which gives the same bytes on every machine.
+    size: (rows, columns) of the views when conditions.rows is 1; maps have a quarter of them. The renderer
+    `raster` gives the same bytes on every machine.
     """
     if not channels:
         return None

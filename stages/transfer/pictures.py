@@ -31,8 +31,8 @@ def viewpoints(count: int, generator: np.random.Generator) -> list[Viewpoint]:
 def take_pictures(mesh: Mesh, views: Sequence[Viewpoint], size: int, colour: bool = False) -> np.ndarray:
     """(k, size, size, 3) u1: the normalised mesh from k Viewpoints on a white background.
 
-    Grey unless `colour`, since colours would distinguish objects of the same shape. Rendered by the ray caster, so that
-    pictures are equal on every machine.
+    Grey unless `colour`, since colours would distinguish objects of the same shape. The renderer `raster` makes
+    them equal on every machine.
     """
     rendered = mesh if colour else Mesh(mesh.vertices, mesh.faces)
     fine = (size * SAMPLES, size * SAMPLES)

@@ -26,7 +26,7 @@ def render(
 
     mesh: centred and scaled by stages.meshes.normalise; its vertex colours are used if it has any. size: (rows,
     columns); one unit of the mesh spans 0.954 of the rows. renderer: `raster`, `pyrender` (needs EGL) or `auto`
-    (pyrender if EGL is available, else raycast, with a message on stderr). background: `black` as in the thesis,
+    (pyrender if EGL is available, else raster, with a message on stderr). background: `black` as in the thesis,
     `grey` or `white`. A mesh without faces gives a view of the background.
 
     Raises ValueError for a mesh that leaves the frame and for unknown names or sizes, OSError for `pyrender` when no
@@ -41,7 +41,7 @@ def render(
 
 
 def resolve_renderer(renderer: str) -> str:
-    """The name of the renderer on this machine: `auto` becomes pyrender or raycast. ValueError for an unknown name."""
+    """The name of the renderer on this machine: `auto` becomes pyrender or raster. ValueError for an unknown name."""
     if renderer == "auto":
         return _available()
     if renderer not in RENDERERS:
