@@ -12,20 +12,30 @@ KEPT = "build/dvc.lock"  # the last sound copy
 
 
 def mend_dvc_files(root: Path) -> None:
-    """Removes half a list of what runs, which DVC would refuse, and puts the last sound dvc.lock in place of damage."""
-    drop_half_written(root / ".dvc/tmp/rwlock")
+    """Makes DVC forget the stages of killed runs, and puts the last sound dvc.lock in the place of a damaged one.
+
+    Call it where no other run of this program can be at work.
+    """
+    forget_killed(root / ".dvc/tmp/rwlock", " ".join(sys.argv))
     if (root / "dvc.lock").exists() and not keep_lock(root):
         _mend_lock(root)
 
 
-def drop_half_written(path: Path) -> None:
-    """Removes a JSON file that is not whole."""
+def forget_killed(path: Path, program: str) -> None:
+    """Removes what a program left in DVC's list of what runs, or the list if it is not whole; DVC would refuse to run.
+
+    DVC itself drops dead processes, but not those that the system has not cleared away yet.
+    """
     try:
-        json.loads(path.read_text())
+        listed = json.loads(path.read_text())
+        reads = {name: [one for one in all_ if one["cmd"] != program] for name, all_ in listed.get("read", {}).items()}
+        writes = {name: one for name, one in listed.get("write", {}).items() if one["cmd"] != program}
     except FileNotFoundError:
-        pass
-    except ValueError:
+        return
+    except (ValueError, TypeError, KeyError, AttributeError):
         path.unlink()
+        return
+    write_text(path, json.dumps({"read": {name: left for name, left in reads.items() if left}, "write": writes}))
 
 
 def keep_lock(root: Path) -> bool:

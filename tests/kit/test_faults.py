@@ -4,6 +4,7 @@ import errno
 import functools
 import hashlib
 import http.server
+import json
 import os
 import signal
 import sqlite3
@@ -19,7 +20,7 @@ import pytest
 from stages.kit import fetch, files
 from stages.kit.alone import alone
 from stages.kit.command import errors_in_one_line
-from stages.kit.dvc_files import drop_half_written
+from stages.kit.dvc_files import forget_killed
 from stages.kit.objects import Objects, archive
 from stages.kit.run import StageRun
 from stages.repro import run_alone
@@ -28,7 +29,7 @@ ROOT = Path(__file__).parents[2]
 TWICE = """
 import sys, time
 from pathlib import Path
-from stages.kit.dvc_files import drop_half_written
+from stages.kit.dvc_files import forget_killed
 from stages.kit.files import write_text
 from stages.kit.run import StageRun
 from stages.kit.workspace import Workspace
@@ -204,13 +205,20 @@ def test_a_killed_run_leaves_the_place_free(workspace):
     assert {path.name for path in (workspace.data / "views").iterdir()} == set("abc")
 
 
-@pytest.mark.parametrize(("text", "stays"), [('{"write": {', False), ("", False), ("{}", True)])
-def test_half_of_dvcs_list_of_runs_is_removed_and_a_whole_one_stays(text, stays, tmp_path):
-    path = tmp_path / "rwlock"
-    path.write_text(text)
-    drop_half_written(path)
-    assert path.exists() == stays
-    drop_half_written(tmp_path / "absent")
+@pytest.mark.parametrize("text", ['{"write": {', "", "[]", '{"read": {"a": [{"pid": 1}]}}'])
+def test_a_damaged_list_of_dvcs_runs_is_removed(text, tmp_path):
+    (tmp_path / "rwlock").write_text(text)
+    forget_killed(tmp_path / "rwlock", "repro")
+    assert not (tmp_path / "rwlock").exists()
+    forget_killed(tmp_path / "rwlock", "repro")
+
+
+def test_dvc_forgets_the_stages_of_a_killed_run_and_no_others(tmp_path):
+    killed, other = {"pid": 1, "cmd": "repro"}, {"pid": 2, "cmd": "dvc repro"}
+    listed = {"read": {"a": [killed, other], "b": [killed]}, "write": {"c": killed, "d": other}}
+    (tmp_path / "rwlock").write_text(json.dumps(listed))
+    forget_killed(tmp_path / "rwlock", "repro")
+    assert json.loads((tmp_path / "rwlock").read_text()) == {"read": {"a": [other]}, "write": {"d": other}}
 
 
 @pytest.fixture
