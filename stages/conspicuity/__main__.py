@@ -16,6 +16,7 @@ from stages.kit.run import Rows, StageRun
 from stages.kit.workspace import Workspace
 from stages.views import read_view
 
+from .background import FILLED, check_background
 from .channels import check_channels, mask_at_size
 from .measure import background_rows, measured_maps
 from .schema import COLUMNS, Params
@@ -33,7 +34,7 @@ def process(name: str, folder: Path, data: Path, settings: Params) -> Rows:
     rows = []
     for k, viewpoint in enumerate(viewpoints):
         view = read_view(data / "views" / name / f"{viewpoint}.npz")
-        found, measured = measured_maps(mesh, view, channels, size)
+        found, measured = measured_maps(mesh, view, channels, size, settings.background == FILLED)
         maps[k] = [found[channel] for channel in channels]
         mask[k] = mask_at_size(view.mask, size)
         rows += measured
@@ -47,6 +48,7 @@ def run(workspace: Workspace) -> None:
     """Runs the stage on the data set of a workspace."""
     settings = workspace.settings(Params)
     check_channels(settings.channels)
+    check_background(settings.background)
     with StageRun(workspace, "conspicuity", COLUMNS, inputs=("meshes", "views")) as stage:
         work = functools.partial(process, data=workspace.data, settings=settings)
         rows = stage.each(work, stage.objects, reads=("meshes/{}.npz", "views/{}", "views/viewpoints.csv"))

@@ -5,7 +5,14 @@ import numpy as np
 
 from .operators import down
 
+FILLED, KEPT = BACKGROUNDS = ("filled", "kept")
 MIN_WEIGHT = 1e-3  # a coarse pixel with less known weight is unknown; far above rounding in single precision
+
+
+def check_background(name: str) -> None:
+    """Raises ValueError unless `name` is one of BACKGROUNDS."""
+    if name not in BACKGROUNDS:
+        raise ValueError(f"conspicuity.background={name!r}: choose one of {', '.join(BACKGROUNDS)}")
 
 
 def fill(image: np.ndarray, known: np.ndarray) -> np.ndarray:

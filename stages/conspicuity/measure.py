@@ -13,7 +13,7 @@ from .silhouette import silhouette_share
 
 
 def measured_maps(
-    mesh: Mesh, view: View, channels: Iterable[str], size: tuple[int, int]
+    mesh: Mesh, view: View, channels: Iterable[str], size: tuple[int, int], filled: bool = True
 ) -> tuple[dict[str, np.ndarray], list[dict]]:
     """({channel: map}, rows): the maps of a view, and one row per map with metric `silhouette_share`.
 
@@ -23,7 +23,7 @@ def measured_maps(
     maps, rows = {}, []
     for channel in channels:
         with Stopwatch() as watch:
-            maps |= conspicuity(mesh, view, [channel], size)
+            maps |= conspicuity(mesh, view, [channel], size, filled)
         rows.append(_row(channel, view, "silhouette_share", maps[channel], watch.seconds))
     return maps, rows
 

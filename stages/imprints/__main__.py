@@ -1,4 +1,4 @@
-"""Presses the virtual pressure array on every object at the points of its methods (T4.3).
+"""Presses the virtual pressure array on every object at the points of its methods (T4.2.3.1, T4.3).
 
 Reads data/SET/meshes/NAME.npz and data/SET/salient_points/NAME.npz, writes data/SET/imprints/NAME.npz and
 reports/measurements/SET/imprints.csv.gz: per object and method the number of imprints, their mean relief in units of
@@ -24,11 +24,10 @@ from stages.kit.workspace import Workspace
 from stages.salient_points import read_points
 
 from .contact import check_contact
-from .distances import check_array, distances
+from .distances import check_array
 from .files import Imprints, write_imprints
-from .frame import touchable
-from .press import normalise
 from .schema import Params
+from .sensor import SENSORS, Touched, touch
 from .surface import Surface
 from .warm_up import warm_up
 
@@ -43,32 +42,31 @@ def process(name: str, folder: Path, data: Path, settings: Params) -> Rows:
     for method in sorted(settings.methods):
         if method not in found:
             raise ValueError(f"imprints.methods: {method} is not among salient_points.methods: {', '.join(found)}")
-        points = found[method]
-        can = touchable(mesh, points)
         with Stopwatch() as watch:
-            raw = distances(surface, points[can], cells, settings.pitch, contact=settings.contact)
-            images = normalise(raw, settings.pitch)
-        imprints[method] = Imprints(images, points[can], mesh.vertices[points[can]], settings.pitch)
-        values = {"imprints": len(images), **_shape_of(raw, settings), "refused": int((~can).sum())}
+            felt = touch(surface, found[method], cells, settings.pitch, settings.contact)
+        points = found[method][felt.can]
+        imprints[method] = Imprints(felt.images, points, mesh.vertices[points], settings.pitch)
+        values = {"imprints": len(points), **_shape_of(felt), "refused": int((~felt.can).sum())}
         common = {"item": name, "method": method}
         rows += [{**common, "metric": key, "value": value, "seconds": watch.seconds} for key, value in values.items()]
     write_imprints(folder / f"{name}.npz", imprints)
     return rows
 
 
-def _shape_of(raw, settings):
+def _shape_of(felt: Touched) -> dict[str, float | None]:
     """Mean relief of the imprints in units, and the share of cells without a surface in range."""
-    if len(raw) == 0:
+    if len(felt.depths) == 0:
         return {"relief": None, "missed": None}
-    _, _, reach = check_array(settings.cells, settings.pitch)
-    return {"relief": float(np.ptp(raw, axis=(1, 2)).mean()), "missed": float((raw >= reach).mean())}
+    return {
+        "relief": float(np.ptp(felt.depths, axis=(1, 2)).mean()), "missed": float((felt.depths >= felt.reach).mean())
+    }  # fmt: skip
 
 
 def run(workspace: Workspace) -> None:
     """Runs the stage on the data set of a workspace."""
     settings = workspace.settings(Params)
     check_array(settings.cells, settings.pitch)
-    check_contact(settings.contact)
+    check_contact(settings.contact, SENSORS)
     with StageRun(workspace, "imprints", inputs=("meshes", "salient_points")) as stage:
         work = functools.partial(process, data=workspace.data, settings=settings)
         rows = stage.each(work, stage.objects, reads=("meshes/{}.npz", "salient_points/{}.npz"))

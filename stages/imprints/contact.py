@@ -5,6 +5,8 @@ interest point and the point with maximum negative distance will directly touch 
 thesis's array, which intersects the object there. `rigid` is the plate that the sentence describes.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from .surface import Surface
@@ -45,7 +47,7 @@ def contact_distances(
     return np.minimum(distances, limit, out=distances)
 
 
-def check_contact(contact: str) -> None:
-    """Raises ValueError unless `contact` is one of CONTACTS."""
-    if contact not in CONTACTS:
-        raise ValueError(f"contact must be one of {', '.join(CONTACTS)}, got {contact!r}")
+def check_contact(contact: str, known: Sequence[str] = CONTACTS) -> None:
+    """Raises ValueError unless `contact` is one of `known`."""
+    if contact not in known:
+        raise ValueError(f"contact must be one of {', '.join(known)}, got {contact!r}")

@@ -7,7 +7,7 @@ from stages.kit import Mesh
 from stages.kit.mesh import unit
 
 from .distances import check_array, distances_at
-from .frame import check_vertices, sensor_axes, sensor_normals
+from .frame import check_vertices, sensor_axes, sensor_normals, touchable
 from .surface import LIFT, Surface, as_surface
 
 DEPTH = 0.25  # of the array's longer side: how far the elastic skin yields
@@ -59,18 +59,26 @@ def quasi_tangent(mesh: Mesh, vertices: ArrayLike) -> tuple[np.ndarray, np.ndarr
     vertices = check_vertices(mesh, vertices)
     outward = sensor_normals(mesh, vertices)
     planes_found = [_plane(mesh, vertex) for vertex in vertices]
-    places, normals = (
-        np.array(part).reshape(-1, 3)
-        for part in ([plane[0] for plane in planes_found], [plane[1] for plane in planes_found])
-    )
+    if None in planes_found:
+        raise ValueError(
+            f"around vertex {vertices[planes_found.index(None)]} no three neighbours span a plane: there are fewer, or "
+            "they are collinear; use `press`"
+        )
+    places, normals = np.array(planes_found).reshape(-1, 2, 3).swapaxes(0, 1)
     normals *= np.where(np.einsum("ij,ij->i", normals, outward) < 0, -1, 1)[:, None]
     points = mesh.vertices[vertices]
     centres = points + np.einsum("ij,ij->i", places - points, normals)[:, None] * normals
     return centres, sensor_axes(normals)
 
 
+def spans_plane(mesh: Mesh, vertices: ArrayLike) -> np.ndarray:
+    """(k,) boolean: the vertices (k,) that this sensor can touch: with a normal and neighbours that span a plane."""
+    vertices = check_vertices(mesh, vertices)
+    return touchable(mesh, vertices) & np.array([_plane(mesh, vertex) is not None for vertex in vertices], dtype=bool)
+
+
 def _plane(mesh, vertex):
-    """(a point (3,), unit normal (3,)) of the plane through the three closest neighbours that span one."""
+    """(a point (3,), unit normal (3,)) of the plane through the three closest neighbours that span one, or None."""
     links, point = mesh.adjacency, mesh.vertices[vertex]
     neighbours = links.indices[links.indptr[vertex] : links.indptr[vertex + 1]]
     for ids in (neighbours, np.unique(links[neighbours].indices)):
@@ -84,6 +92,4 @@ def _plane(mesh, vertex):
         spanning = np.flatnonzero(np.linalg.norm(crosses, axis=1) > COLLINEAR * sides)
         if len(spanning):
             return point + offsets[0], unit(crosses[spanning[0]])
-    raise ValueError(
-        f"around vertex {vertex} no three neighbours span a plane: there are fewer, or they are collinear; use `press`"
-    )
+    return None

@@ -1,7 +1,6 @@
 """From rows of measurements to cells of `mean [low, high]`, and from cells to a grid with the thesis's figures."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
 from typing import Any, cast
 
 import numpy as np
@@ -11,7 +10,7 @@ from numpy.typing import ArrayLike
 from stages.kit.stats import interval
 
 from .markdown import with_interval
-from .results import NotRun, Results, some
+from .results import NotRun, Results
 
 
 def means(frame: pd.DataFrame, by: Sequence[str], shared: float = 0.0, top: float = np.inf) -> list[dict]:
@@ -80,10 +79,17 @@ def percent(share: float, places: int = 0, gap: str = "–") -> str:
     return f"{100 * share:.{places}f}" if share == share else gap
 
 
-def everywhere(results: Results, stage: str, what: str, **where: object) -> dict[str, pd.DataFrame]:
-    """{set: its rows as `Results.measured` reads them}: of all sets that have such; NotRun of `what` where none has."""
-    found = {}
+def everywhere(results: Results, stage: str, what: str = "", **where: object) -> dict[str, pd.DataFrame]:
+    """{set: its rows as `Results.measured` reads them}: of all sets that have such rows.
+
+    Raises NotRun where none has: of `what`, or as the last set that was looked at.
+    """
+    found, absent = {}, NotRun(what or f"no measurements of {stage}", stage)
     for dataset in results.datasets(stage):
-        with suppress(NotRun):
+        try:
             found[dataset] = results.measured(stage, dataset, **where)
-    return some(found, what, stage)
+        except NotRun as missing:
+            absent = absent if what else missing
+    if not found:
+        raise absent
+    return found

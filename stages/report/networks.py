@@ -7,9 +7,9 @@ import pandas as pd
 
 from stages.kit.split import shared_by
 
+from . import grid
 from .claims import Claim
-from .grid import within
-from .results import NotRun, Results
+from .results import Results
 from .style import label, start
 
 # As the thesis calls them, in its order.
@@ -32,15 +32,7 @@ def measured(results: Results, dataset: str | None = None, **where: object) -> p
 
 def everywhere(results: Results, **where: object) -> dict[str, pd.DataFrame]:
     """{set: accuracies}: of all sets that have them; NotRun where none has."""
-    found, absent = {}, NotRun("no measurements of transfer", "transfer")
-    for dataset in results.datasets("transfer"):
-        try:
-            found[dataset] = measured(results, dataset, **where)
-        except NotRun as missing:
-            absent = missing
-    if not found:
-        raise absent
-    return found
+    return grid.everywhere(results, "transfer", metric="accuracy", **where)
 
 
 def shared(split: str, dataset: str | None = None) -> float:
@@ -50,7 +42,7 @@ def shared(split: str, dataset: str | None = None) -> float:
 
 def mean(values: pd.Series, split: str, dataset: str | None = None) -> tuple[float, float, float]:
     """(mean, low, high) of shares over the repetitions: splits of the same items, or folds of objects left out."""
-    return within(list(values), shared(split, dataset))
+    return grid.within(list(values), shared(split, dataset))
 
 
 def accuracy(rows: pd.DataFrame, split: str) -> dict[str, float]:

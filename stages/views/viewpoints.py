@@ -15,9 +15,10 @@ TWELVE = tuple(
     )
     for azimuth in azimuths
 )
-FOUR = TWELVE[:4]  # around the upright object; the four principal views of the thesis (T3.1.2) are at +-z and +-y
+FOUR = TWELVE[:4]  # around the upright object
+PRINCIPAL = (*TWELVE[1:4:2], *TWELVE[10:])  # the four principal views of T3.1.2, at +-y and +-z
 
-VIEWPOINTS = {"twelve": TWELVE, "four": FOUR}
+VIEWPOINTS = {"twelve": TWELVE, "four": FOUR, "principal": PRINCIPAL}
 
 
 def viewpoint_set(name: str) -> tuple[Viewpoint, ...]:

@@ -49,7 +49,7 @@ def table_4_9(results: Results) -> Table:
     """Accuracy by data set, split, classifier and strategy, beside the thesis's two columns."""
     thesis = results.thesis("table_4_9_sequences").set_index("classifier")
     printed = thesis.rename(columns={"blind": BLIND, "guided": GUIDED}).stack().to_dict()
-    found = everywhere(results, STAGE, f"no measurements of {STAGE}", metric=list(METRICS.values()))
+    found = everywhere(results, STAGE, metric=list(METRICS.values()))
     lines = []
     for source, rows in found.items():
         rows = rows[(rows[SIZE] == rows[SIZE].max()).all(axis=1)]  # with all their frames and cells

@@ -12,7 +12,7 @@ from stages.report.pareto import pareto_chart
 from stages.report.results import Results
 from stages.report.style import label
 
-from .rows import ENHANCED, MODEL, OURS, STAGE
+from .rows import MODEL, OURS, STAGE
 
 COUNTS = (1, 2, 5)  # touches; with the five kinds of features as many as there are colours
 KINDS = {
@@ -32,8 +32,8 @@ def by_classifier(results: Results) -> Figure:
 
 def by_features(results: Results) -> Figure:
     """Accuracy against seconds over features, classifiers and the number of touches."""
-    frame = _timed(results, ["variant", "classifier"], method=ENHANCED, variant=list(KINDS))
-    making = results.measured(STAGE, group="six", method=ENHANCED, metric="features").set_index("variant")["seconds"]
+    frame = _timed(results, ["variant", "classifier"], method=MODEL, variant=list(KINDS))
+    making = results.measured(STAGE, group="six", method=MODEL, metric="features").set_index("variant")["seconds"]
     frame["seconds"] += frame["variant"].replace(MADE_OF).map(making).fillna(0.0)
     frame["samples"] = frame["variant"].map(KINDS)
     title = f"Recognising {results.group_text('six')} by one touch and more"

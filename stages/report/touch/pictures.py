@@ -17,7 +17,7 @@ from .rows import MODEL, STAGE
 from .touches import draw_bars, table_4_1, table_4_2
 
 STEPS = ["1  See it", "2  Find what stands out", "3  Spend the faces there", "4  Touch it there", "5  Know what it is"]
-NEEDED = ["random", "itti", MODEL]  # bars
+NEEDED = ["random", MODEL]  # bars
 LEFT = [0.0, 0.2, 0.41, 0.63, 0.84]  # of the panels, as parts of the figure's width
 WIDTH, SIDE, SIZE = 0.17, 3, (16, 3.9)  # of a panel; imprints a side; of the figure in inches
 METHODS = ("random", MODEL)
@@ -61,7 +61,7 @@ def _accuracy(results: Results) -> tuple[pd.DataFrame, int]:
         name, frame = "four", table_4_2(results).frame
     for method in NEEDED:  # a picture of only some of them would mislead
         results.measured(STAGE, group=name, classifier="knn", variant="plain", method=method, split="random")
-    return frame, results.classes(name)
+    return frame[frame["protocol"] == "ours"], results.classes(name)
 
 
 def imprints(results: Results) -> Figure:

@@ -1,9 +1,14 @@
-"""The rows of the stage classification that this topic reads, and how its samplings are called."""
+"""The rows of the stage classification that this topic reads, by protocol, and how its samplings are called."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
 
 import pandas as pd
 
 from stages.kit.split import Split, shared_by
-from stages.report.grid import within
+from stages.report.grid import everywhere, within
+from stages.report.results import Results
 from stages.report.style import label
 
 STAGE = "classification"
@@ -11,9 +16,38 @@ OURS = {  # sampling of the thesis: method of ours
     "blind_touch": "random", "hks": "heat_kernel", "salient_points": "salient_points",
     "mesh_saliency": "mesh_saliency", "visual_attention": "itti", "enhanced_visual_attention": "thesis_ssim",
 }  # fmt: skip
-THEIRS = {ours: theirs for theirs, ours in OURS.items()}
-ENHANCED = OURS["enhanced_visual_attention"]  # the thesis's own: the average weighted with its SSIM weights
+ENHANCED = OURS["enhanced_visual_attention"]  # the thesis's later model: the average weighted with its SSIM weights
 MODEL = "enhanced"  # this project's model of gaze
+PRINTED, PLAIN_AVERAGE = "household_4_2", "VisAttAll"  # the set whose settings are those of T4.2; the model of T3.1
+
+
+@dataclass(frozen=True)
+class Protocol:
+    """Rows of one set: of T4.2's own sensor, views and model, or of ours.
+
+    dataset: its name. rows: what was measured. name: as the tables call it. best: the model whose points are looked at
+    closer.
+    """
+
+    dataset: str
+    rows: pd.DataFrame
+    name: str
+    best: str
+
+    @property
+    def samplings(self) -> dict[str, str]:
+        """{method: sampling of the thesis}."""
+        model = self.best if self.dataset == PRINTED else ENHANCED
+        return {ours: theirs for theirs, ours in (OURS | {"enhanced_visual_attention": model}).items()}
+
+
+def protocols(results: Results, **where: Any) -> Iterator[Protocol]:
+    """The protocol as printed, where it was run, then ours on the first other set; NotRun where neither has rows."""
+    found = everywhere(results, STAGE, **where)
+    if PRINTED in found:
+        yield Protocol(PRINTED, found.pop(PRINTED), "as printed", PLAIN_AVERAGE)
+    for dataset, rows in list(found.items())[:1]:
+        yield Protocol(dataset, rows, "ours", MODEL)
 
 
 def accuracies(rows: pd.DataFrame) -> dict[str, float]:

@@ -11,13 +11,12 @@ from stages.kit.split import Split
 from stages.report.grid import grid
 from stages.report.items import Figure, Table
 from stages.report.results import Results, some
-from stages.report.style import GREY, INK, METHOD_COLOURS, plt
+from stages.report.style import GREY, INK, colours, label, plt
 
-from .rows import ENHANCED, STAGE, THEIRS, accuracies, fifteen, sampling_text
+from .rows import STAGE, Protocol, accuracies, fifteen, protocols, sampling_text
 
 WAYS = {"plain": "no selection", "selected": "selection", "selected_train": "selection in training alone"}
-PRINTED = {"plain": "all", "selected": "selected"}  # column of the thesis's table, behind the group
-SAMPLINGS = {"random": "blind touch", ENHANCED: "enhanced visual attention"}  # of the correlations
+PRINTED_WAYS = {"plain": "all", "selected": "selected"}  # column of the thesis's table, behind the group
 # T4.2.4, enhanced visual attention; of the thesis's cow, dromedary, glasses, hand, plane and cup.
 BY_OBJECT = {
     "elephant": 0.3333, "duck": 0.4, "eyeglasses": 0.0667, "hand": 0.2667, "airplane": 0.1333, "cup": 0.2,
@@ -25,61 +24,79 @@ BY_OBJECT = {
 
 
 def table_4_3(results: Results) -> Table:
-    """What it brings to leave out imprints that another object has too."""
-    where, few = {"method": ENHANCED, "group": ["six", "four"]}, [fifteen(way) for way in WAYS]
-    rows = results.measured(STAGE, **where, variant=list(WAYS))
-    why = "; ".join(results.notes(STAGE, variant="selected")) or "no selection"
-    some(rows[rows["variant"] == "selected"], why, STAGE)
-    rows = pd.concat([rows, results.rows(STAGE, **where, variant=few).dropna(subset=["value"])])
+    """What it brings to leave out imprints that another object has too, by protocol."""
+    few = [fifteen(way) for way in WAYS]
     thesis = results.thesis("table_4_3_imprint_selection_virtual").set_index("classifier")
-    cells = []
+    selected = {one.dataset for one in protocols(results, variant="selected")}
+    found = protocols(results, group=["six", "four"], variant=[*WAYS, *few])
+    frame = pd.concat([_selections(one, thesis) for one in found if one.dataset in selected], ignore_index=True)
+    shown = grid(
+        frame.assign(head=frame["objects"] + ", " + frame["selection"].map(WAYS)), ["protocol", "classifier"], "head",
+        names={"classifier": sampling_text}, head=lambda name: f"{name}: ours · thesis, %",
+    )  # fmt: skip
+    return Table(frame, shown, {"not_run": results.left_out(STAGE, variant=[*WAYS, *few])})
+
+
+def _selections(protocol: Protocol, thesis: pd.DataFrame) -> pd.DataFrame:
+    """Accuracies of one protocol at its model's points by classifier, group and way to select, with the thesis's."""
+    rows, cells = protocol.rows[protocol.rows["method"] == protocol.best], []
     for suffix, name, group, way in product(("", ", 15 imprints"), thesis.index, rows["group"].unique(), WAYS):
         variant = fifteen(way) if suffix else way
         mine = rows[(rows["classifier"] == name) & (rows["group"] == group) & (rows["variant"] == variant)]
         recall = mine[(mine["split"] == Split.RANDOM) & (mine["metric"] == "recall")]["value"].mean()
-        printed = thesis.loc[name].get(f"{group}_{PRINTED.get(way)}", np.nan)
-        cell = {"classifier": f"{name}{suffix}", "objects": group, "selection": way} | accuracies(mine)
-        cells.append(cell | {"imprints": mine["imprints"].max(), "recall": recall, "thesis": printed})
-    frame = pd.DataFrame(cells)
-    shown = grid(
-        frame.assign(head=frame["objects"] + ", " + frame["selection"].map(WAYS)), "classifier", "head",
-        names={"classifier": sampling_text}, head=lambda name: f"{name}: ours · thesis, %",
-    )  # fmt: skip
-    return Table(frame, shown, {"not_run": results.left_out(STAGE, method=ENHANCED, variant=[*WAYS, *few])})
+        printed = thesis.loc[name].get(f"{group}_{PRINTED_WAYS.get(way)}", np.nan)
+        cell = {"protocol": protocol.name, "classifier": f"{name}{suffix}", "objects": group, "selection": way}
+        cells.append(
+            cell | accuracies(mine) | {"imprints": mine["imprints"].max(), "recall": recall, "thesis": printed}
+        )
+    return pd.DataFrame(cells)
 
 
 def section_4_2_4(results: Results) -> Table:
-    """How many imprints correlate by 0.85 or more with one of another object."""
-    rows = results.measured(STAGE, group="six", metric="similar_share")
+    """How many imprints correlate by 0.85 or more with one of another object, by protocol."""
     thesis = results.thesis("section_4_2_similar_imprints").set_index("sampling")["share_with_ncc_over_0_85"]
-    rows = rows[rows["item"].isna() | (rows["method"] == ENHANCED)]
+    frame = pd.concat([
+        _shares(one, thesis) for one in protocols(results, group="six", metric="similar_share")
+    ], ignore_index=True)  # fmt: skip
+    shown = frame[["protocol", "of"]].assign(
+        name=frame["name"].where(frame["of"] == "object", frame["name"].map(sampling_text))
+    )
+    for column, head in (("all", "ours, all, %"), ("first_15", "ours, first 15, %"), ("thesis", "thesis, %")):
+        shown[head] = 100 * frame[column]
+    return Table(frame, shown)
+
+
+def _shares(protocol: Protocol, thesis: pd.Series) -> pd.DataFrame:
+    """The shares of one protocol: of each sampling, then of each object at the points of its model."""
+    rows = protocol.rows[protocol.rows["item"].isna() | (protocol.rows["method"] == protocol.best)]
     rows = rows.assign(
-        of=np.where(rows["item"].isna(), "sampling", "object"), name=rows["item"].fillna(rows["method"].replace(THEIRS))
+        of=np.where(rows["item"].isna(), "sampling", "object"),
+        name=rows["item"].fillna(rows["method"].replace(protocol.samplings)),
     )
     wide = rows.pivot_table(index=["of", "name"], columns="variant", values=["imprints", "value"], sort=False)
     columns = {"imprints": ("imprints", "plain"), "all": ("value", "plain"), "first_15": ("value", "first_15")}
     frame = wide.reindex(columns=list(columns.values())).set_axis(list(columns), axis=1).reset_index()
     frame["thesis"] = frame["name"].map(thesis.to_dict() | BY_OBJECT)
     order = {"sampling": 0, "object": 1} | {name: k for k, name in enumerate(thesis.index)}
-    frame = frame.sort_values(["of", "name"], key=lambda column: column.map(order), ignore_index=True)
-    shown = frame[["of"]].assign(name=frame["name"].where(frame["of"] == "object", frame["name"].map(sampling_text)))
-    for column, head in (("all", "ours, all, %"), ("first_15", "ours, first 15, %"), ("thesis", "thesis, %")):
-        shown[head] = 100 * frame[column]
-    return Table(frame, shown)
+    frame = frame.sort_values(["of", "name"], key=lambda column: column.map(order))
+    return frame.assign(protocol=protocol.name)
 
 
 def figure_4_4(results: Results) -> Figure:
     """Correlations of the imprints of each two objects, for blind touch and enhanced attention."""
-    folder = results.folder("classification")
+    one = next(protocols(results, group=["six", "four"]))
+    folder = results.folder("classification", one.dataset)
     groups = sorted(folder.glob("six.*.npz")) or sorted(folder.glob("four.*.npz"))
     first = some(groups, "no groups in data/classification", "classification")[0]
     pairs = list(combinations(map(str, read_arrays(first)["objects"]), 2))
-    images = {name: results.imprints(name) for pair in pairs for name in pair}
-    found = {way: [similarity(images[one][way], images[two][way]) for one, two in pairs] for way in SAMPLINGS}
-    order = np.argsort([np.median(values) for values in found[ENHANCED]], kind="stable")
+    images = {name: results.imprints(name, one.dataset) for pair in pairs for name in pair}
+    samplings = {"random": "blind touch", one.best: label(one.best)}
+    found = {way: [similarity(images[a][way], images[b][way]) for a, b in pairs] for way in samplings}
+    order = np.argsort([np.median(values) for values in found[one.best]], kind="stable")
+    paint = colours(list(samplings))
     figure, axes = plt.subplots(figsize=(7.6, 0.42 * len(pairs) + 1.2))
-    for offset, (method, words) in zip((0.18, -0.18), SAMPLINGS.items(), strict=True):
-        tint, correlations = METHOD_COLOURS[method], [found[method][k] for k in order]
+    for offset, (method, words) in zip((0.18, -0.18), samplings.items(), strict=True):
+        tint, correlations = paint[method], [found[method][k] for k in order]
         axes.boxplot(
             [values.ravel() for values in correlations], positions=np.arange(len(pairs)) + offset, widths=0.3,
             orientation="horizontal", whis=(5, 95), showfliers=False, patch_artist=True,

@@ -1,5 +1,7 @@
 """T tables 4.1, 4.2, 4.5 and 4.6: recognition by one touch and by several, beside the thesis's; 4.1 is drawn too."""
 
+from contextlib import suppress
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -13,7 +15,7 @@ from stages.report.prose import shared_notes
 from stages.report.results import NotRun, Results, some
 from stages.report.style import INK, colours, label, plt
 
-from .rows import ENHANCED, MODEL, OURS, STAGE, THEIRS, accuracies, fifteen, sampling_text
+from .rows import ENHANCED, MODEL, STAGE, Protocol, accuracies, fifteen, protocols, sampling_text
 
 DRAWN = {"random": "blind_touch", "itti": "visual_attention", ENHANCED: "enhanced_visual_attention", MODEL: MODEL}
 CLASSIFIERS = ["knn", "svm", "decision_tree", "naive_bayes", "deep_learning"]  # the thesis's order, reversed
@@ -27,34 +29,40 @@ KEYS = ["sampling", "way", "classifier", "touches"]
 
 
 def beside_thesis(results: Results, group: str, printed: str, variant: str = "plain") -> Table:
-    """The Table of one group of objects beside the thesis's, then the samplings that only this project has."""
-    rows = results.measured(STAGE, group=group, variant=variant)
+    """The Table of one group of objects beside the thesis's, by protocol; below, samplings of this project alone."""
     thesis = results.thesis(printed).set_index("sampling")
-    thesis = thesis.reindex(thesis.index.union(rows["method"].replace(THEIRS).unique(), sort=False))
-    cells = _cells(rows, thesis)
-    try:
-        cells += _cells(results.measured(STAGE, group=group, variant=fifteen(variant)), thesis, ", 15 imprints")
-        few = shared_notes(__package__, "fifteen")
-    except NotRun as missing:
-        few = f"15 imprints per object: not run ({missing})."
-    frame = pd.DataFrame(cells)
+    parts, few = [], []
+    for protocol in protocols(results, group=group, variant=variant):
+        parts.append(_cells(protocol, thesis, whole=not parts))
+        with suppress(NotRun):
+            first = results.measured(STAGE, protocol.dataset, group=group, variant=fifteen(variant))
+            few.append(_cells(replace(protocol, rows=first), thesis, ", 15 imprints"))
+    frame = pd.concat([*parts, *few]).sort_values("protocol", kind="stable", ignore_index=True)
     shown = grid(
-        frame, "sampling", "classifier", beside=("accuracy_regions", "thesis"), names={"sampling": sampling_text},
-        head=lambda name: f"{label(name)}: ours · unseen regions · thesis, %",
+        frame, ["protocol", "sampling"], "classifier", beside=("accuracy_regions", "thesis"),
+        names={"sampling": sampling_text}, head=lambda name: f"{label(name)}: ours · unseen regions · thesis, %",
     )  # fmt: skip
-    words = {name: shared_notes(__package__, name) for name in ("cells", "regions")} | {"fifteen": few}
+    words = {name: shared_notes(__package__, name) for name in ("cells", "regions")}
+    words |= {"fifteen": shared_notes(__package__, "fifteen") if few else "15 imprints per object: not run."}
     words |= {"group": results.group_text(group), "not_run": results.left_out(STAGE, group=group, variant=variant)}
     return Table(frame, shown, words)
 
 
-def _cells(rows: pd.DataFrame, thesis: pd.DataFrame, few: str = "") -> list[dict]:
-    return [
-        {"sampling": f"{sampling}{few}", "classifier": classifier}
-        | accuracies(rows[(rows["method"] == OURS.get(sampling, sampling)) & (rows["classifier"] == classifier)])
-        | {"thesis": thesis.loc[sampling, classifier]}
-        for sampling in thesis.index
-        for classifier in thesis.columns
-    ]
+def _cells(protocol: Protocol, thesis: pd.DataFrame, few: str = "", whole: bool = False) -> pd.DataFrame:
+    """whole: whether the thesis's samplings that were not run have cells too."""
+    rows = protocol.rows.replace({"method": protocol.samplings})
+    run = set(rows["method"])
+    names = [name for name in [*thesis.index, *sorted(run - {*thesis.index})] if whole or name in run]
+    thesis = thesis.reindex(names)
+    return pd.DataFrame(
+        [
+            {"protocol": protocol.name, "sampling": f"{sampling}{few}", "classifier": classifier}
+            | accuracies(rows[(rows["method"] == sampling) & (rows["classifier"] == classifier)])
+            | {"thesis": thesis.loc[sampling, classifier]}
+            for sampling in names
+            for classifier in thesis.columns
+        ]
+    )
 
 
 table_4_1 = partial(beside_thesis, group="six", printed="table_4_1_six_virtual_objects")
@@ -63,30 +71,40 @@ table_4_5 = partial(beside_thesis, group="six", printed="table_4_5_six_objects_w
 
 
 def table_4_6(results: Results) -> Table:
-    """Recognition by one to five touches, beside the thesis."""
-    rows = results.measured(STAGE, group="six")
-    touches = rows["variant"].str.extract(r"touches_(\d+)", expand=False).dropna().astype(int)
-    some(touches, "no several touches", STAGE)
-    ways = rows["variant"].str.replace(r"_?touches_\d+", "", regex=True)
-    groups = rows.loc[touches.index].assign(sampling=rows["method"], way=ways, touches=touches).groupby(KEYS)
-    frame = pd.DataFrame([dict(zip(KEYS, key, strict=True)) | accuracies(group) for key, group in groups])
-    samplings = [ENHANCED, *sorted({*frame["sampling"]} - {ENHANCED})]
-    orders: dict[Any, list[str]] = {"way": list(WAYS), "sampling": samplings, "classifier": CLASSIFIERS[::-1]}
-    frame = frame.sort_values(list(orders), key=lambda column: column.map(orders[column.name].index), ignore_index=True)
+    """Recognition by one to five touches, beside the thesis, by protocol."""
     thesis = results.thesis("table_4_6_number_of_imprints").melt("classifier", var_name="touches", value_name="thesis")
-    plain = (frame["sampling"] == ENHANCED) & (frame["way"] == "")  # as the thesis has it
-    frame["thesis"] = frame.merge(thesis.astype({"touches": int}), how="left")["thesis"].where(plain)
-    others = frame["sampling"].map(label).mask(frame["sampling"] == ENHANCED, "")
+    frame = pd.concat([_by_touches(one, thesis) for one in protocols(results, group="six")], ignore_index=True)
+    some(frame, "no several touches", STAGE)
+    plain = frame["best"] & (frame["way"] == "")
+    others = frame["sampling"].map(label).mask(frame["best"], "")
     words = zip(frame["classifier"].map(label), frame["way"].map(WAYS), others, strict=True)
     names = pd.Series([", ".join(filter(None, said)) for said in words])
     named = frame.assign(name=names.mask(plain, names + ": ours · unseen regions · thesis"))
     parts = (named[plain], ("accuracy_regions", "thesis")), (named[~plain & frame["classifier"].isin(FURTHER)], ())
     shown = [
-        grid(cells, "name", "touches", beside=beside, head=lambda n: f"{n} touch{'es' if n > 1 else ''}, %")
+        grid(
+            cells, ["protocol", "name"], "touches", beside=beside, head=lambda n: f"{n} touch{'es' if n > 1 else ''}, %"
+        )
         for cells, beside in parts
     ]
     wide = pd.concat(shown).fillna("not run").rename(columns={"name": "classifier"})
     return Table(frame, wide, {"group": results.group_text("six")})
+
+
+def _by_touches(protocol: Protocol, thesis: pd.DataFrame) -> pd.DataFrame:
+    """Accuracies of one protocol by sampling, way to join touches, classifier and their number, with the thesis's."""
+    touches = protocol.rows["variant"].str.extract(r"touches_(\d+)", expand=False).dropna().astype(int)
+    ways = protocol.rows["variant"].str.replace(r"_?touches_\d+", "", regex=True)
+    groups = protocol.rows.loc[touches.index].assign(sampling=protocol.rows["method"], way=ways, touches=touches)
+    frame = pd.DataFrame([dict(zip(KEYS, key, strict=True)) | accuracies(group) for key, group in groups.groupby(KEYS)])
+    if frame.empty:
+        return frame
+    samplings = [protocol.best, *sorted({*frame["sampling"]} - {protocol.best})]
+    orders: dict[Any, list[str]] = {"way": list(WAYS), "sampling": samplings, "classifier": CLASSIFIERS[::-1]}
+    frame = frame.sort_values(list(orders), key=lambda column: column.map(orders[column.name].index), ignore_index=True)
+    best = frame["sampling"] == protocol.best
+    printed = frame.merge(thesis.astype({"touches": int}), how="left")["thesis"].where(best & (frame["way"] == ""))
+    return frame.assign(protocol=protocol.name, best=best, thesis=printed)
 
 
 def draw_bars(
@@ -104,7 +122,7 @@ def draw_bars(
         rows, x = frame[frame["sampling"] == DRAWN[method]].set_index("classifier"), np.arange(len(classifiers)) + place
         cells = 100 * rows.loc[classifiers, ["accuracy", "low", "high", "accuracy_regions", "thesis"]]
         diamonds, dashes = (None, None) if k else ("the thesis's figure", "regions not touched before")
-        axes.bar(x, cells["accuracy"], width * 0.92, color=paint[method], label=label(method))
+        axes.bar(x, cells["accuracy"], width * 0.92, color=paint[method], label=sampling_text(DRAWN[method]))
         axes.vlines(x, cells["low"], cells["high"], color=INK, lw=1)
         axes.plot(x, cells["thesis"], "D", color="white", mec=INK, ms=5, mew=1.1, label=diamonds)
         if regions:
@@ -119,13 +137,16 @@ def draw_bars(
 
 
 def figure_4_1(results: Results) -> Figure:
-    """Table 4.1 as a picture."""
-    figure, axes = plt.subplots(figsize=(8.4, 4.2))
-    draw_bars(axes, table_4_1(results).frame, CLASSIFIERS, chance=1 / results.classes("six"), regions=True)
-    axes.set_title(f"Recognising {results.group_text('six')} by one touch", pad=42)
-    handles, names = axes.get_legend_handles_labels()
-    axes.legend(
-        handles[1:] + handles[:1], names[1:] + names[:1], loc="lower left", bbox_to_anchor=(-0.01, 0.99), ncols=3,
-        fontsize=9, columnspacing=1.4, handlelength=1.2,
-    )  # fmt: skip
+    """Table 4.1 as a picture, a panel a protocol."""
+    parts = list(table_4_1(results).frame.groupby("protocol", sort=False))
+    figure, panels = plt.subplots(len(parts), 1, figsize=(8.4, 3.6 * len(parts) + 0.6), squeeze=False)
+    figure.subplots_adjust(hspace=0.35)
+    for axes, (protocol, frame) in zip(panels[:, 0], parts, strict=True):
+        draw_bars(axes, frame, CLASSIFIERS, chance=1 / results.classes("six"), regions=True)
+        axes.set_title(f"Recognising {results.group_text('six')} by one touch, {protocol}", pad=42)
+        handles, names = axes.get_legend_handles_labels()
+        axes.legend(
+            handles[1:] + handles[:1], names[1:] + names[:1], loc="lower left", bbox_to_anchor=(-0.01, 0.99), ncols=3,
+            fontsize=9, columnspacing=1.4, handlelength=1.2,
+        )  # fmt: skip
     return Figure(figure)
