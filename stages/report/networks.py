@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from itertools import product
+from typing import Any
 
 import pandas as pd
 
@@ -30,7 +31,7 @@ def measured(results: Results, dataset: str | None = None, **where: object) -> p
     return results.measured("transfer", dataset, metric="accuracy", **where)
 
 
-def everywhere(results: Results, **where: object) -> dict[str, pd.DataFrame]:
+def everywhere(results: Results, **where: Any) -> dict[str, pd.DataFrame]:
     """{set: accuracies}: of all sets that have them; NotRun where none has."""
     return grid.everywhere(results, "transfer", metric="accuracy", **where)
 
