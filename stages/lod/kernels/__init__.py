@@ -7,9 +7,10 @@ from .faults import count_faults
 from .parts import face_components, signed_volumes, split_fans
 from .quadrics import vertex_quadrics
 from .refit import refit
+from .similarity import similarity
 from .surface import HalfEdgeMesh, compact, unit_box
 
 __all__ = [
     "HalfEdgeMesh", "compact", "count_faults", "decimate", "face_components", "fans", "graph_components", "opposites",
-    "refit", "signed_volumes", "split_fans", "unit_box", "vertex_quadrics",
+    "refit", "signed_volumes", "similarity", "split_fans", "unit_box", "vertex_quadrics",
 ]  # fmt: skip
