@@ -51,8 +51,10 @@ def take_pictures(
         raise ValueError("pictures need one viewpoint or more")
     if min(size) < WINDOW:
         raise ValueError(f"pictures of {tuple(size)} are smaller than the window of {WINDOW} pixels")
-    views = (render(mesh, viewpoint, size, renderer=renderer).rgb for viewpoint in viewpoints)
-    return np.stack([cv2.transform(rgb.astype(np.float64), LUMA) for rgb in views])
+    pictures = np.empty((len(viewpoints), *size))
+    for picture, viewpoint in zip(pictures, viewpoints, strict=True):
+        cv2.transform(render(mesh, viewpoint, size, renderer=renderer).rgb.astype(np.float64), LUMA, picture)
+    return pictures
 
 
 def analyse(pictures: np.ndarray) -> list[Analysis]:

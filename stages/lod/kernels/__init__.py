@@ -1,6 +1,5 @@
 """The inner loops of simplification and of its error measures: compiled kernels on plain arrays."""
 
-from .components import graph_components
 from .corners import fans, opposites
 from .decimate import decimate
 from .faults import count_faults
@@ -11,6 +10,6 @@ from .similarity import similarity
 from .surface import HalfEdgeMesh, compact, unit_box
 
 __all__ = [
-    "HalfEdgeMesh", "compact", "count_faults", "decimate", "face_components", "fans", "graph_components", "opposites",
+    "HalfEdgeMesh", "compact", "count_faults", "decimate", "face_components", "fans", "opposites",
     "refit", "signed_volumes", "similarity", "split_fans", "unit_box", "vertex_quadrics",
 ]  # fmt: skip
