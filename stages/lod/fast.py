@@ -1,5 +1,7 @@
 """The fast backend: compiled quadric edge collapse, then a fit of the remaining vertices to the original surface."""
 
+from functools import lru_cache
+
 import numpy as np
 
 from stages.kit import Mesh
@@ -72,14 +74,21 @@ def _half_edge_mesh(mesh, frozen, weights):
 
     A vertex at which fans of faces touch is split. Boundary vertices and corners of frozen faces are locked.
     """
+    opposite, corner, start, source, boundary, position, box, plain = _beginning(mesh)
+    locked = boundary.copy()
+    locked[corner.reshape(-1, 3)[frozen]] = True
+    quadric = plain.copy() if weights is None else vertex_quadrics(position, corner, weights[source])
+    parent = np.arange(len(source), dtype=np.int32)
+    changing = corner.copy(), opposite.copy(), start.copy(), boundary.copy(), locked, position.copy(), quadric, parent
+    return HalfEdgeMesh(*changing), source, box
+
+
+@lru_cache(maxsize=2)  # every attempt, target and kept set begins with it
+def _beginning(mesh):
+    """Of a mesh: opposite, corner, start, source, boundary, position, (middle, size) of its box, quadrics."""
     ids = mesh.faces.ravel().astype(np.int32)
     opposite = opposites(ids, len(mesh.vertices), True)[0]
     corner, start, source, boundary = fans(ids, opposite)
-    locked = boundary.copy()
-    locked[corner.reshape(-1, 3)[frozen]] = True
-    position, middle, size = unit_box(mesh.vertices, source)
-    quadric = vertex_quadrics(position, corner, np.ones(len(source)) if weights is None else weights[source])
-    surface = HalfEdgeMesh(
-        corner, opposite, start, boundary, locked, position, quadric, np.arange(len(source), dtype=np.int32)
-    )
-    return surface, source, (middle, size)
+    position, *box = unit_box(mesh.vertices, source)
+    quadric = vertex_quadrics(position, corner, np.ones(len(source)))
+    return opposite, corner, start, source, boundary, position, box, quadric
