@@ -7,7 +7,7 @@ import numpy as np
 from stages.kit import Mesh
 
 from .feasibility import InfeasibleTarget, SimplifyError
-from .kernels import HalfEdgeMesh, compact, decimate, fans, opposites, refit, unit_box, vertex_quadrics
+from .kernels import HalfEdgeMesh, compact, decimate, fans, opposites, refit, vertex_quadrics
 from .topology import NONE, faults
 
 # (least cosine by which a collapse may turn a face, least quality of a face after it), tried in this order until the
@@ -89,6 +89,9 @@ def _beginning(mesh):
     ids = mesh.faces.ravel().astype(np.int32)
     opposite = opposites(ids, len(mesh.vertices), True)[0]
     corner, start, source, boundary = fans(ids, opposite)
-    position, *box = unit_box(mesh.vertices, source)
+    used = mesh.vertices[source]
+    low, high = used.min(axis=0), used.max(axis=0)
+    middle, size = (low + high) / 2, float((high - low).max()) or 1.0
+    position = (used - middle) / size
     quadric = vertex_quadrics(position, corner, np.ones(len(source)))
-    return opposite, corner, start, source, boundary, position, box, quadric
+    return opposite, corner, start, source, boundary, position, (middle, size), quadric

@@ -38,12 +38,12 @@ def rasterise(corners: np.ndarray, faces: np.ndarray, top: int, left: int, face:
             second = (row - r0) * second_row - c0 * second_column
             third = (row - r0) * third_row - c0 * third_column
             first = 1 - second - third
-            low, high = _columns(second, second_column, over[1], left, left + width - 1)
+            low, high = _columns(second, second_column, over[1], float(left), float(left + width - 1))
             low, high = _columns(third, third_column, over[2], low, high)
             low, high = _columns(first, first_column, over[0], low, high)
             z = z0 + second * (z1 - z0) + third * (z2 - z0)
             y = np.uint64(row - top)  # unsigned: numba looks for no index from the end
-            for column in range(low, high + 1):
+            for column in range(int(np.ceil(low)), int(np.floor(high)) + 1):
                 x, here = np.uint64(column - left), z + column * step
                 if here < depth[y, x]:
                     depth[y, x], face[y, x] = here, f
@@ -51,13 +51,14 @@ def rasterise(corners: np.ndarray, faces: np.ndarray, top: int, left: int, face:
 
 @inlined
 def _columns(start, slope, over, low, high):
-    """The columns from low to high at which a weight start + column * slope is not below 0; over is 1 / slope."""
+    """The columns, between low and high, at which a weight start + column * slope is not below 0; over is 1 / slope."""
+    end = (-SLACK - start) * over
     if slope > 0:
-        low = max(low, int(np.ceil(max((-SLACK - start) * over, low))))
+        low = max(low, end)
     elif slope < 0:
-        high = min(high, int(np.floor(min((-SLACK - start) * over, high))))
+        high = min(high, end)
     elif start < -SLACK:
-        high = low - 1
+        high = -1.0
     return low, high
 
 
