@@ -25,7 +25,7 @@ def laplacian_distance(reference: np.ndarray, picture: np.ndarray) -> float:
 
 def laplacian_pyramid(picture: np.ndarray) -> list[np.ndarray]:
     """Six bands, fine to coarse, of a picture (rows, columns), 0 to 255; the last is a small picture."""
-    bands, rest = [], np.asarray(picture, dtype=np.float64) / WHITE
+    bands, rest = [], np.asarray(picture, dtype=np.float32) / np.float32(WHITE)
     for _ in range(SCALES - 1):
         small = cv2.pyrDown(rest)
         bands.append(rest - _enlarge(small, rest.shape))
@@ -41,5 +41,5 @@ def _enlarge(small, shape):
 
 def band_distance(reference: Sequence[np.ndarray], bands: Sequence[np.ndarray]) -> float:
     """Root mean square over the pixels of a band, mean over the bands (Laparra et al. 2016)."""
-    roots = [np.sqrt(np.mean((a - b) ** 2)) for a, b in zip(reference, bands, strict=True)]
+    roots = [cv2.norm(a, b) / np.sqrt(a.size) for a, b in zip(reference, bands, strict=True)]
     return float(np.mean(roots))

@@ -37,7 +37,7 @@ def normalised_laplacian_distance(reference: np.ndarray, picture: np.ndarray) ->
 def normalise(bands: Sequence[np.ndarray]) -> list[np.ndarray]:
     """The six bands after gain control."""
     return [
-        band / (constant + cv2.filter2D(np.abs(band), -1, kernel, borderType=cv2.BORDER_CONSTANT))
+        band / cv2.filter2D(np.abs(band), -1, kernel, delta=constant, borderType=cv2.BORDER_CONSTANT)
         for band, kernel, constant in zip(bands, KERNELS, CONSTANTS, strict=True)
     ]
 

@@ -43,7 +43,7 @@ def pair(kind, rows, columns):
 @pytest.mark.parametrize("case", SCORES)
 def test_distances_are_those_of_plenoptic(case):
     normalised, plain = SCORES[case]
-    assert laplacian_distance(*pair(*case)) == pytest.approx(plain, rel=1e-12)
+    assert laplacian_distance(*pair(*case)) == pytest.approx(plain, rel=1e-6)  # in single precision
     # plenoptic adds 1e-10 under the root of every band.
     assert normalised_laplacian_distance(*pair(*case)) == pytest.approx(normalised, abs=2e-6)
 
@@ -71,13 +71,13 @@ def test_bands_add_up_to_the_picture():
     for band in bands:
         rimmed = cv2.copyMakeBorder(rest, 1, 1, 1, 1, cv2.BORDER_REFLECT_101)
         rest = band + cv2.pyrUp(rimmed)[2 : 2 + band.shape[0], 2 : 2 + band.shape[1]]
-    assert 255 * rest == pytest.approx(image, abs=1e-9)
+    assert 255 * rest == pytest.approx(image, abs=1e-4)
 
 
 def test_an_even_picture_has_only_its_mean():
     *bands, rest = laplacian_pyramid(np.full((64, 96), 102.0))
-    assert max(np.abs(band).max() for band in bands) < 1e-15
-    assert rest == pytest.approx(np.full(rest.shape, 0.4))
+    assert max(np.abs(band).max() for band in bands) < 1e-7
+    assert rest == pytest.approx(np.full(rest.shape, 0.4), rel=1e-6)
 
 
 def test_plain_distance_is_linear_and_the_normalised_one_forgives_contrast():
