@@ -8,7 +8,7 @@ import trimesh
 
 from stages.kit import Mesh, Viewpoint
 from stages.views import CANDIDATES, cumulative_coverage, fewest_views, greedy_views, point_visibility
-from stages.views.coverage import POINTS, _exact, _greedy, surface_points
+from stages.views.coverage import POINTS, _fewest, _greedy, surface_points
 
 ABOVE, BELOW, FRONT = Viewpoint(0, 90), Viewpoint(0, -90), Viewpoint(0, 0)
 
@@ -135,23 +135,25 @@ def test_a_smaller_share_needs_no_more_views(shapes):
     assert numbers == sorted(numbers) and numbers[0] == 1
 
 
-def test_the_exact_number_is_that_of_trying_all_subsets():
-    rng = np.random.default_rng(5)
+@pytest.mark.parametrize(("rows", "points", "density", "share"), [(9, 40, 0.25, 0.9), (11, 400, 0.3, 0.95)])
+def test_the_fewest_number_is_that_of_trying_all_subsets(rows, points, density, share):
+    rng, greedy = np.random.default_rng(5), []
     for _ in range(10):
-        seen = rng.random((9, 40)) < 0.25
+        seen = rng.random((rows, points)) < density
         seen = seen[:, seen.any(axis=0)]
-        found = len(_exact(seen, 0.9))
-        sizes = [
-            k for k in range(1, 10) if any(seen[list(c)].any(axis=0).mean() >= 0.9 for c in combinations(range(9), k))
-        ]
-        assert found == sizes[0]
+        found, shares = _fewest(seen, share)
+        assert seen[found].any(axis=0).mean() == pytest.approx(shares[-1]) and shares[-1] >= share
+        smaller = combinations(range(rows), len(found) - 1)
+        assert not any(seen[list(subset)].any(axis=0).mean() >= share for subset in smaller)
+        greedy.append(len(_greedy(seen, share, rows)[0]) - len(found))
+    assert max(greedy) > 0  # so that the search finds what greed does not
 
 
 def test_greed_can_be_beaten():
     """The middle row takes most and leaves two ends; the two others alone cover all."""
     seen = np.zeros((3, 12), dtype=bool)
     seen[0, 2:10] = seen[1, :6] = seen[2, 6:] = True
-    assert len(_greedy(seen, 1.0, 3)[0]) == 3 and sorted(_exact(seen, 1.0)) == [1, 2]
+    assert len(_greedy(seen, 1.0, 3)[0]) == 3 and sorted(_fewest(seen, 1.0)[0]) == [1, 2]
 
 
 @pytest.mark.slow
