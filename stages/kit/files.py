@@ -105,12 +105,12 @@ def write_arrays(path: str | Path, **arrays: Any) -> None:
                 np.lib.format.write_array(stream, np.asanyarray(array), allow_pickle=False)
 
 
-def read_arrays(path: str | Path) -> dict[str, np.ndarray]:
-    """Reads an .npz to a dict of arrays; never unpickles. Raises ValueError that names a file of another kind."""
+def read_arrays(path: str | Path, prefix: str = "") -> dict[str, np.ndarray]:
+    """{name: array} of an .npz whose names begin with `prefix`; never unpickles. ValueError names any other file."""
     with open(path, "rb") as stream:
         try:
             with np.load(stream, allow_pickle=False) as stored:
-                return {name: stored[name] for name in stored.files}
+                return {name: stored[name] for name in stored.files if name.startswith(prefix)}
         except Exception as error:  # zipfile, zlib, tokenize and numpy raise many types; each means a damaged file
             raise ValueError(f"{path} is not a sound .npz file: {' '.join(str(error).split())[:120]}") from None
 

@@ -39,7 +39,7 @@ def read_sequence_data(folder: Path, members: dict[str, list[str]], strategy: st
     images, normals, labels, ranks = [], [], [], []
     for label, objects in enumerate(members.values()):
         for rank, name in enumerate(objects):
-            found = read_sequences(folder / f"{name}.npz")[strategy]
+            found = read_sequences(folder / f"{name}.npz", strategy)[strategy]
             images.append(found.images)
             normals.append(found.normals)
             labels += [label] * len(found.images)
