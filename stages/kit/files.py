@@ -18,11 +18,10 @@ import numpy as np
 
 from .extras import from_extra
 from .mesh import Mesh
+from .packs import PART, opened
 
 if TYPE_CHECKING:
     import pandas as pd
-
-PART = ".part-"  # how the name of a file begins that is not whole yet
 
 
 @contextmanager
@@ -90,7 +89,8 @@ def write_json(path: str | Path, value: Any) -> None:
 def read_json(path: str | Path) -> Any:
     """Reads a JSON file; ValueError that names it when it is not valid."""
     try:
-        return json.loads(Path(path).read_text(encoding="utf-8"))
+        with opened(path) as stream:
+            return json.loads(stream.read().decode())
     except (ValueError, RecursionError) as error:
         raise ValueError(f"{path} is not valid JSON: {error}") from None
 
@@ -103,7 +103,7 @@ def write_arrays(path: str | Path, **arrays: Any) -> None:
 
 def read_arrays(path: str | Path) -> dict[str, np.ndarray]:
     """Reads an .npz to a dict of arrays; never unpickles. Raises ValueError that names a file of another kind."""
-    with open(path, "rb") as stream:
+    with opened(path) as stream:
         try:
             with np.load(stream, allow_pickle=False) as stored:
                 return {name: stored[name] for name in stored.files}
@@ -129,14 +129,15 @@ def read_table(path: str | Path, dtype: Any = None) -> "pd.DataFrame":
         import pandas as pd
 
     try:
-        return pd.read_csv(path, dtype=dtype)
+        with opened(path) as stream:
+            return pd.read_csv(stream, dtype=dtype, compression="gzip" if Path(path).suffix == ".gz" else None)
     except (ValueError, gzip.BadGzipFile, EOFError, zlib.error) as error:
         raise ValueError(f"{path} is not a valid table: {error}") from None
 
 
 def sha256(path: str | Path) -> str:
     """The file's SHA-256, in hex."""
-    with open(path, "rb") as stream:
+    with opened(path) as stream:
         return hashlib.file_digest(stream, "sha256").hexdigest()
 
 

@@ -22,7 +22,7 @@ import diskcache
 import joblib
 from diskcache.core import MODE_PICKLE
 
-from .files import PART
+from .packs import files_below
 
 ROWS = "rows.json"  # in the archive of an object, beside its files
 FILES = "files/"
@@ -113,11 +113,6 @@ def archive(rows: Sequence[Mapping[str, Any]], source: Path) -> bytes:
         for path in files_below(source):
             stored.write(path, FILES + path.relative_to(source).as_posix())
     return stream.getvalue()
-
-
-def files_below(folder: Path) -> list[Path]:
-    """All whole files below a folder, in alphabetical order."""
-    return sorted(path for path in folder.rglob("*") if path.is_file() and not path.name.startswith(PART))
 
 
 def key_of(code: str, function: str, given: Mapping[str, Any]) -> str:

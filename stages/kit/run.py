@@ -12,7 +12,8 @@ from .alone import alone
 from .code import stage_digest
 from .files import replace_folder, sha256, write_json
 from .make import SCRATCH, make
-from .objects import Objects, files_below, item_key, key_of
+from .objects import Objects, item_key, key_of
+from .packs import files_below, is_there, object_files, pack
 from .parallel import Task, finished, parallel_map, progress
 from .rows import SUFFIX, write_rows
 from .workspace import Workspace
@@ -122,7 +123,7 @@ class StageRun:
     def _tasks(
         self, call: str, values: Mapping[str, Any], reads: Sequence[str], made_of: Mapping[str, str]
     ) -> list[Task]:
-        digest = functools.cache(lambda path: sha256(path) if path.exists() else "")  # many items read the same files
+        digest = functools.cache(lambda path: sha256(path) if is_there(path) else "")  # many items read the same files
         tasks = []
         for name, value in values.items():
             files = {declared: path for pattern in reads for declared, path in self._files(pattern.format(name))}
@@ -135,10 +136,10 @@ class StageRun:
         """(name, path) of a file that an item reads, be it there or not, or of all files of a folder."""
         stage, _, rest = declared.partition("/")
         path = self.folder / rest if stage == self.stage else self.workspace.data / declared
-        if not path.is_dir():
+        files = [] if path.is_file() else files_below(path)
+        if not files and not path.is_dir():
             yield declared, path
-            return
-        for file in files_below(path):
+        for file in files:
             yield f"{declared}/{file.relative_to(path).as_posix()}", file
 
     def metrics(self, values: Mapping[str, Any]) -> None:
@@ -152,6 +153,7 @@ class StageRun:
             if error is None:
                 path = self.workspace.measurements / f"{self.stage}{SUFFIX}"
                 write_rows(path, self.rows, self.columns, self.dataset, self.seed)
+                pack(self.folder)
                 replace_folder(self.folder, self.target)
         finally:
             self._alone.__exit__(None, None, None)
@@ -159,7 +161,7 @@ class StageRun:
 
 def object_names(workspace: Workspace) -> list[str]:
     """The names of all objects that the meshes stage accepted, in alphabetical order."""
-    return sorted(path.stem for path in (workspace.data / "meshes").glob("*.npz"))
+    return object_files(workspace.data / "meshes")
 
 
 def _is_of_stages(function: Callable[..., Any]) -> bool:
