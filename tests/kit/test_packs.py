@@ -64,6 +64,7 @@ def test_one_object_more_changes_one_archive_and_equal_files_give_equal_bytes(tm
         pack(folder)
     before, after = ({path.name: path.read_bytes() for path in folder.iterdir()} for folder in (one, more))
     assert [name for name in after if before.get(name) != after[name]] == [packs._archive_name("i.npz")]
+    assert len(after) > 5
 
 
 def test_an_archive_that_was_written_anew_is_read_anew(tmp_path):
@@ -122,8 +123,10 @@ def test_stages_read_and_write_packed_objects_and_remake_none(make_workspace, mo
     assert {path.name: opened(path).read() for path in files_below(views)} == plain
 
 
-def test_reading_a_packed_file_that_was_not_declared_is_an_error(make_workspace):
+def test_objects_are_made_of_packed_files_and_reading_an_undeclared_one_is_an_error(make_workspace):
     workspace = make_workspace({"views": {}})
     pack(filled(workspace.data / "meshes", "abcd"))
+    run_stage(workspace)
+    assert read_arrays(workspace.data / "views/b.npz")["value"] == 2 * ord("b")
     with pytest.raises(UndeclaredRead, match="meshes/b.npz is read, but not declared"):
         run_stage(workspace, other="b")
