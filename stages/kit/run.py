@@ -98,16 +98,17 @@ class StageRun:
         stage = self.stage if _is_of_stages(function) else ""
         call = key_of(stage and stage_digest(stage), f"{function.__module__}.{function.__qualname__}", given)
         tasks = self._tasks(call, values, reads, made_of or {})
-        root, objects = self.workspace.root, Objects(self.workspace.build / "objects")
-        done = {task.name: objects.take(task.key, self.folder) for task in tasks}  # before any worker starts
-        missing, desc = [task for task in tasks if done[task.name] is None], f"{self.stage} {self.dataset}"
+        root, desc = self.workspace.root, f"{self.stage} {self.dataset}"
         work = functools.partial(make, process, root)
-        for task, content in finished(work, missing, root, desc, stage=stage, **self.workspace.parallel):
-            objects.keep(task.key, content)
-            shutil.rmtree(root / SCRATCH / task.key, ignore_errors=True)
-            done[task.name] = objects.take(task.key, self.folder)
-            if done[task.name] is None:
-                raise OSError(f"{objects.folder} does not keep what is written to it: is the disk full?")
+        with Objects(self.workspace.build / "objects") as objects:
+            done = {task.name: objects.take(task.key, self.folder) for task in tasks}  # before any worker starts
+            missing = [task for task in tasks if done[task.name] is None]
+            for task, content in finished(work, missing, root, desc, stage=stage, **self.workspace.parallel):
+                objects.keep(task.key, content)
+                shutil.rmtree(root / SCRATCH / task.key, ignore_errors=True)
+                done[task.name] = objects.take(task.key, self.folder)
+                if done[task.name] is None:
+                    raise OSError(f"{objects.folder} does not keep what is written to it: is the disk full?")
         rows = [row for name in values for row in done[name] or ()]
         self.rows += rows
         return rows
