@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 from .alone import alone
 from .code import stage_digest
 from .files import replace_folder, sha256, write_json
+from .kept_rows import ItemRows, KeptRows
 from .make import SCRATCH, make
 from .objects import Objects, item_key, key_of
 from .packs import files_below, is_there, object_files, pack
@@ -18,7 +19,7 @@ from .parallel import Task, finished, parallel_map, progress
 from .rows import SUFFIX, write_rows
 from .workspace import Workspace
 
-Rows = list[dict[str, Any]]
+Rows = Sequence[dict[str, Any]]
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
@@ -52,7 +53,7 @@ class StageRun:
         self.inputs = [workspace.data / name for name in inputs]
         self.folder = workspace.build / "partial" / workspace.dataset / stage
         self._alone = alone(self.folder.with_name(f"{stage}.lock"), f"{stage} {workspace.dataset}")
-        self.rows: Rows = []
+        self.rows = KeptRows()
 
     def __enter__(self) -> "StageRun":
         for folder in self.inputs:
@@ -78,8 +79,8 @@ class StageRun:
         names: Iterable[str] | Mapping[str, Any],
         reads: Sequence[str] = (),
         made_of: Mapping[str, str] | None = None,
-    ) -> Rows:
-        """Runs process(name, folder) -> rows over the names, side by side; returns all rows in order.
+    ) -> KeptRows:
+        """Runs process(name, folder) -> rows over the names, side by side; returns all rows in order, from the disk.
 
         names: a mapping hands its values to `process` instead of the names; made_of must then tell the values apart.
 
@@ -101,15 +102,13 @@ class StageRun:
         root, desc = self.workspace.root, f"{self.stage} {self.dataset}"
         work = functools.partial(make, process, root)
         with Objects(self.workspace.build / "objects") as objects:
-            done = {task.name: objects.take(task.key, self.folder) for task in tasks}  # before any worker starts
-            missing = [task for task in tasks if done[task.name] is None]
+            rows = ItemRows(self.folder.parent, values)
+            missing = [task for task in tasks if not self._taken(task, objects, rows)]  # before any worker starts
             for task, content in finished(work, missing, root, desc, stage=stage, **self.workspace.parallel):
                 objects.keep(task.key, content)
                 shutil.rmtree(root / SCRATCH / task.key, ignore_errors=True)
-                done[task.name] = objects.take(task.key, self.folder)
-                if done[task.name] is None:
+                if not self._taken(task, objects, rows):
                     raise OSError(f"{objects.folder} does not keep what is written to it: is the disk full?")
-        rows = [row for name in values for row in done[name] or ()]
         self.rows += rows
         return rows
 
@@ -120,6 +119,13 @@ class StageRun:
     def progress(self, items: Iterable[Item]) -> Iterable[Item]:
         """The items, with a progress bar; silent when stderr is not a terminal."""
         return progress(items, f"{self.stage} {self.dataset}")
+
+    def _taken(self, task: Task, objects: Objects, rows: ItemRows) -> bool:
+        """Whether an item's files and rows are kept; then they are taken from there."""
+        found = objects.take(task.key, self.folder)
+        if found is not None:
+            rows.put(task.name, found)
+        return found is not None
 
     def _tasks(
         self, call: str, values: Mapping[str, Any], reads: Sequence[str], made_of: Mapping[str, str]

@@ -220,9 +220,10 @@ SOURCES = {
 
 
 def _select_objects(available, wanted):
-    missing = [name for name in wanted if name not in available]
+    known, chosen = set(available), set(wanted)
+    missing = [name for name in wanted if name not in known]
     if missing:
         raise MeshError(
             f"meshes.objects names {', '.join(missing)}, which the source does not have. It has {', '.join(available)}"
         )
-    return [name for name in available if not wanted or name in wanted]
+    return [name for name in available if not wanted or name in chosen]
