@@ -86,8 +86,17 @@ def furniture(settings: Params) -> list[MeshFile]:
     ]
 
 
+def catalogue(settings: Params) -> list[MeshFile]:
+    """All 820 models of the same package, named LIBRARY__ENTRY. All have +y up."""
+    extract, metadata = furniture_files(everything=True)
+    return [
+        _furniture_file(extract, name, *metadata[name]) for name in _select_objects(tuple(metadata), settings.objects)
+    ]
+
+
 def _furniture_file(extract, name, creator, unit):
-    library, entry = FURNITURE[name]
+    library, _, entry = name.partition("__")
+    library, entry = FURNITURE.get(name, (library, entry))
     content = Content(partial(_member, extract, f"{name}.obj"))
     return MeshFile(name, f"{library}/{entry}.obj", ".obj", content, "y", unit, LICENCES[library], creator)
 
@@ -214,8 +223,8 @@ def _off_bytes(content):
 
 
 SOURCES = {
-    "household": household, "furniture": furniture, "folder": folder, "gaze": gaze, "princeton": princeton,
-    "interest_points": interest_points,
+    "household": household, "furniture": furniture, "catalogue": catalogue, "folder": folder, "gaze": gaze,
+    "princeton": princeton, "interest_points": interest_points,
 }  # fmt: skip
 
 
