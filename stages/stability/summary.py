@@ -38,7 +38,7 @@ def breaking_points(rows: list[dict] | pd.DataFrame) -> dict[tuple[str, str], fl
     }
 
 
-def summarise(rows: list[dict]) -> dict[str, dict]:
+def summarise(rows: Sequence[dict]) -> dict[str, dict]:
     """Numbers for the gate: `repeatability`, of each PERTURBATION.METHOD at the middle severity; `breaking_point`."""
     means = {
         f"{perturbation}.{method}": values[severities.index(middle_severity(severities))]
@@ -48,7 +48,7 @@ def summarise(rows: list[dict]) -> dict[str, dict]:
     return {"repeatability": _rounded(means), "breaking_point": _rounded(breaks)}
 
 
-def summarise_simplification(rows: list[dict]) -> dict[str, dict]:
+def summarise_simplification(rows: Sequence[dict]) -> dict[str, dict]:
     """Numbers for the gate, per backend: the share of its cases by outcome, and of the smallest counts that were met.
 
     Crashes are counted: none is allowed on any machine.

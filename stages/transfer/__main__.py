@@ -17,6 +17,7 @@ from pathlib import Path
 
 from stages.kit.command import workspace_of_arguments
 from stages.kit.files import read_mesh
+from stages.kit.kept_rows import KeptRows
 from stages.kit.run import Rows, StageRun
 from stages.kit.workspace import Workspace
 from stages.meshes.classes import read_classes
@@ -57,7 +58,7 @@ def train_all(stage: StageRun, planned: Plan, settings: Params) -> dict[str, dic
     rows = stage.each(work, [*(one.name for one in planned.trials), *hybrids], reads=MADE)
     trained = [trial_row(row, planned.pretrained) for row in rows if "trial" in row]
     stitched = [row for row in rows if "trial" not in row]
-    stage.rows = trained + stitched
+    stage.rows = KeptRows(trained, stitched)
     metrics = summary(trained, stage.seed)
     if hybrids:
         metrics["hybrid"] = hybrid_trial.summary(stitched, settings, stage.seed)
