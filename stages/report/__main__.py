@@ -71,9 +71,9 @@ def side_by_side(results: Results) -> tuple[dict[str, Built], tuple[pd.DataFrame
     """(what was built of each kind, what `judged` says): a job for each kind of a topic, the longest jobs first."""
     parts = [(kind, topic) for kind in ("figures", "tradeoff", "tables") for topic in TOPICS]
     jobs = [partial(judged, CLAIMS, results), *(partial(build_all, kind, results, [topic]) for kind, topic in parts)]
-    where = results.workspace.parallel
+    where = dict(results.workspace.parallel)
     if where.get("backend") == "dask":  # the files that a topic reads are here alone
-        where = {"backend": "loky"}
+        where["backend"] = "loky"
     verdicts, *found = parallel_map(call, jobs, "report", **where)
     built = {kind: Built() for kind in KINDS}
     for (kind, _), one in zip(parts, found, strict=True):
