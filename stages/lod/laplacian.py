@@ -1,4 +1,13 @@
-"""The difference of two pictures without their local means, at six scales (T3.1.4, T [225])."""
+"""The difference of two pictures without their local means, at six scales (T3.1.4, T [225]).
+
+The root of the mean squared difference of each of six bands, averaged over the bands, on a scale where white is 1:
+coarse bands have the same weight as fine ones, which have more pixels. The thesis's "predicted distance in Laplacian
+domain" is the second number that the authors' own program gives, beside the normalised one.
+
+Source: Laparra, Balle, Berardino and Simoncelli, Perceptual image quality assessment using a normalized Laplacian
+pyramid, Electronic Imaging 2016 (T [225]). The filter is the binomial of Burt and Adelson 1983, as in plenoptic (Duong
+et al. 2023); the authors' program takes 0.05, 0.25, 0.4, 0.25, 0.05, within 0.025 of it per tap.
+"""
 
 from collections.abc import Sequence
 
@@ -7,20 +16,6 @@ import numpy as np
 
 SCALES = 6  # Laparra et al. 2016: five bands and the remaining small picture
 WHITE = 255.0  # the measure is defined on 0 to 1
-
-
-def laplacian_distance(reference: np.ndarray, picture: np.ndarray) -> float:
-    """The distance of two pictures (rows, columns), 0 to 255, in the Laplacian domain; 0 for equal ones.
-
-    The root of the mean squared difference of each of six bands, averaged over the bands, on a scale where white is 1:
-    coarse bands have the same weight as fine ones, which have more pixels. The thesis's "predicted distance in
-    Laplacian domain" is the second number that the authors' own program gives, beside the normalised one.
-
-    Source: Laparra, Balle, Berardino and Simoncelli, Perceptual image quality assessment using a normalized Laplacian
-    pyramid, Electronic Imaging 2016 (T [225]). The filter is the binomial of Burt and Adelson 1983, as in
-    plenoptic (Duong et al. 2023); the authors' program takes 0.05, 0.25, 0.4, 0.25, 0.05, within 0.025 of it per tap.
-    """
-    return band_distance(laplacian_pyramid(reference), laplacian_pyramid(picture))
 
 
 def laplacian_pyramid(picture: np.ndarray) -> list[np.ndarray]:

@@ -7,8 +7,6 @@ from skimage.metrics import structural_similarity
 
 from stages.kit import Mesh
 from stages.lod import perceptual, picture_errors, simplify, take_pictures
-from stages.lod.laplacian import laplacian_distance
-from stages.lod.normalised_laplacian import normalised_laplacian_distance
 from stages.lod.perceptual import analyse
 from stages.lod.similarity import local_moments, ssim_error
 from stages.views import FOUR
@@ -36,11 +34,9 @@ def test_errors_are_means_over_the_views():
     assert found == pytest.approx({name: (both[0][name] + both[1][name]) / 2 for name in found}, rel=1e-12)
 
 
-def test_errors_of_one_view_are_the_three_measures():
+def test_the_ssim_of_one_view_is_that_of_its_pictures():
     reference, other = (take_pictures(mesh, FOUR[:1], SMALL) for mesh in (RING, simplify(RING, 200)))
-    measures = {"ssim": ssim_error, "dlap": laplacian_distance, "dnor": normalised_laplacian_distance}
-    expected = {name: measure(reference[0], other[0]) for name, measure in measures.items()}
-    assert picture_errors(reference, other) == pytest.approx(expected, rel=1e-12)
+    assert picture_errors(reference, other)["ssim"] == ssim_error(reference[0], other[0]) > 0
 
 
 def test_pictures_made_once_give_the_same_error():

@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from stages.kit import Mesh, Viewpoint
 from stages.kit.files import write_arrays, write_mesh, write_text
 from stages.report.__main__ import dataset_line, write_report
 from stages.report.drawing import VIEWPOINT, picture, visible
@@ -152,9 +153,11 @@ def test_verdicts_are_counted_beside_the_claims(page, run):
     assert f"<p>{said}</p>" in page
 
 
-def test_equal_runs_give_equal_bytes(run, small):
+def test_equal_runs_give_equal_bytes_with_any_number_of_workers(run, small):
     files = sorted(path for path in (run / "reports").rglob("*") if path.is_file())
     before = [path.read_bytes() for path in files]
+    params = run / "params.yaml"
+    params.write_text(params.read_text().replace("backend: sequential", "backend: loky, workers: 2"))
     write_report(small.results(run))
     assert [path.read_bytes() for path in files] == before
 
@@ -173,6 +176,16 @@ def test_nothing_measured_is_listed_and_no_error(bare, small, capsys):
 
 def test_names_from_data_are_escaped(page):
     assert ODD not in page and "&lt;b&gt;&amp;qem&lt;/b&gt;" in page
+
+
+def test_a_mesh_drawn_again_looks_as_if_drawn_alone_and_no_ray_at_its_rim_is_left_out(small):
+    ball = small.ball()
+    mesh, values = Mesh(0.3 * ball.vertices, ball.faces), np.random.default_rng(0).random(len(ball.vertices))
+    wide = Mesh(np.vstack([mesh.vertices, [[0.4] * 3, [-0.4] * 3]]), mesh.faces)  # rays all round
+    for given in ({}, {"values": values}, {"wires": True}, {"viewpoint": Viewpoint(20, 50)}, {"smoothing": 1}, {}):
+        found = picture(mesh, rows=60, **given)
+        for other in (wide, Mesh(mesh.vertices, mesh.faces)):
+            assert np.array_equal(found, picture(other, rows=60, **given)), given
 
 
 def test_picture_is_white_off_the_object_only(small):
