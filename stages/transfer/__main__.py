@@ -11,7 +11,6 @@ accuracies, the same on disturbed touches, the change of each convolution, what 
 import dataclasses
 import functools
 import sys
-import warnings
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -69,8 +68,6 @@ def run(workspace: Workspace) -> None:
     """Runs the stage on the data set of a workspace."""
     settings = workspace.settings(Params)
     check(settings)
-    # Torch's caches make a worker grow; joblib then renews it between two items, loses none, and warns.
-    warnings.filterwarnings("ignore", message="A worker stopped while some jobs")
     with StageRun(workspace, "transfer", COLUMNS, inputs=("meshes", "salient_points")) as stage:
         classes = read_classes(workspace.data / "meshes")
         vertices = {
