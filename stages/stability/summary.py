@@ -20,14 +20,14 @@ def middle_severity(severities: Sequence[float]) -> float:
     return severities[(len(severities) - 1) // 2]
 
 
-def mean_repeatability(rows: list[dict] | pd.DataFrame) -> pd.DataFrame:
+def mean_repeatability(rows: Sequence[dict] | pd.DataFrame) -> pd.DataFrame:
     """Frame of perturbation, method, severity and value, the mean over the objects, in the order of the rows."""
     table = pd.DataFrame(rows)
     table = table.loc[table["metric"] == "repeatability", [*KEYS, "value"]].astype({"value": float})
     return table.groupby(KEYS, sort=False, as_index=False).mean()
 
 
-def breaking_points(rows: list[dict] | pd.DataFrame) -> dict[tuple[str, str], float]:
+def breaking_points(rows: Sequence[dict] | pd.DataFrame) -> dict[tuple[str, str], float]:
     """dict (perturbation, method) -> the severity at which the mean repeatability falls below one half, or NaN.
 
     Also NaN where a severity before it has no value at all.
