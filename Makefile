@@ -5,6 +5,7 @@ BIN := $(CURDIR)/$(VENV)/bin
 SMOKE := build/smoke
 psb ?= ../shared/data/psb.zip
 export PATH := $(BIN):$(PATH)
+unexport PYTHONDONTWRITEBYTECODE # or each of some hundred processes compiles the stages anew
 .DEFAULT_GOAL := help
 .PHONY: help repro test quick smoke lint bench clean lock
 
@@ -16,11 +17,11 @@ repro: $(VENV)/ready ## run the pipeline: every table, figure and the page, on w
 	@echo "Open reports/index.html; the tables are in reports/tables."
 
 test: $(VENV)/ready ## unit and property tests, then the whole pipeline at profile=smoke, then the gate
-	pytest -n auto
+	pytest -n auto --dist worksteal
 	$(MAKE) smoke
 
 quick: $(VENV)/ready ## the tests that are not marked slow, in a minute
-	pytest -n auto -m "not slow"
+	pytest -n auto --dist worksteal -m "not slow"
 
 smoke: $(VENV)/ready ## the whole pipeline on a dozen objects, in a scratch copy, held against its baseline
 	rm -rf $(SMOKE) && mkdir -p $(SMOKE)

@@ -2,7 +2,7 @@
 
 Writes reports/bench/errors.csv: a row a measurement (what, mesh, faces, method, samples, views, metric, value, sd,
 seconds, ratio). `ratio` is pymeshlab's time over this one's, for the same work in the same run; `sd` is over seeds or
-choices of views. Meshes are household objects of data/meshes and, where ../shared/data/psb.zip is, four from psb.
+choices of views. Meshes are the objects of data/household/meshes and, where ../shared/data/psb.zip is, four from psb.
 Seconds are medians of processor time of the calling thread, so that other work on the machine counts little.
 """
 
@@ -21,7 +21,7 @@ from stages.kit.files import read_mesh, write_table
 from stages.kit.rng import rng
 
 OUT = Path("reports/bench/errors.csv")
-MESHES, PSB = Path("data/meshes"), Path("../shared/data/psb.zip")
+MESHES, PSB = Path("data/household/meshes"), Path("../shared/data/psb.zip")
 HOUSEHOLD = ("spheremedium", "cup", "duck", "elephant")  # 2,000 to 10,776 faces
 FROM_PSB = ("Airplane/61", "Human/1", "Vase/361", "Armadillo/281")  # 10,796 to 50,542 faces
 SHARES = (0.5, 0.2, 0.1)

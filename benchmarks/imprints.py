@@ -1,6 +1,6 @@
 """Imprints a second, ours beside camera-based simulators: `python -m benchmarks.imprints [PSB.zip] [--tacto PYTHON]`
 
-Meshes: household objects of data/meshes and of the Princeton segmentation benchmark (psb.zip in ../shared/data, or
+Meshes: the objects of data/household/meshes and of the Princeton segmentation benchmark (psb.zip in ../shared/data, or
 the path given), the least, the middle and the most faces of each. 40 random vertices of each, the same for all
 methods; arrays of 16 and 32 cells a side, 0.002 and 0.01 units apart. Methods: `ours`, press_many on a
 Surface; `trimesh_embree`, trimesh's intersects_location on embree, one call for all cells, from above, first hits;
@@ -43,7 +43,7 @@ from stages.meshes import normalise
 from stages.meshes.load import parse
 from stages.meshes.sources import PRINCETON, collection_files
 
-OUT, MESHES, PSB = Path("reports/bench/imprints.csv"), Path("data/meshes"), "../shared/data/psb.zip"
+OUT, MESHES, PSB = Path("reports/bench/imprints.csv"), Path("data/household/meshes"), "../shared/data/psb.zip"
 CELLS, PITCHES = (16, 32), (0.002, 0.01)
 TOUCHES, ROUNDS = 40, 2
 CAMERAS = {  # name -> (kind, rows, columns); the depth picture has a pixel a cell

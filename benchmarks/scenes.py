@@ -1,10 +1,9 @@
 """Every scene of conf/scene, by every way to choose the levels of its objects: `python -m benchmarks.scenes`
 
-Reads data/ of the finished run, whose scene stage does one scene alone, and does what that stage does for each scene:
-LOD chains, plans, rendered frames, and GLB files that are loaded back. One scene is done again with a perceptual
-tolerance. Writes reports/bench/scenes.csv: a row a scene, method and metric over all frames, as the scene stage writes
-them, with how many objects (`objects`), different ones (`shapes`) and frames there are. Files of each scene are left in
-build/scenes.
+Reads data/ of the finished run, and runs its scene stage, which does one scene alone, on each. One scene is done again
+with a perceptual tolerance. Writes reports/bench/scenes.csv: a row a scene, method and metric over all frames, as the
+scene stage writes them, with how many objects (`objects`), different ones (`shapes`) and frames there are. What the
+stage writes for a scene is left in build/scenes.
 """
 
 import time
@@ -15,14 +14,15 @@ from omegaconf import OmegaConf
 
 from benchmarks import arguments
 from stages.compose import compose
-from stages.kit.files import write_table
+from stages.kit.files import write_table, write_text
 from stages.kit.parallel import progress
-from stages.kit.params import check_section, load_params
+from stages.kit.params import FILE, load_params
+from stages.kit.rows import SUFFIX, read_rows
 from stages.kit.run import object_names
-from stages.scene.__main__ import levels_of
-from stages.scene.export import export
-from stages.scene.measure import measure
-from stages.scene.read import report_missing, scene_of
+from stages.kit.workspace import Workspace
+from stages.scene.__main__ import run
+from stages.scene.read import scene_of
+from stages.scene.schema import Params
 
 OUT, FOLDER = Path("reports/bench/scenes.csv"), Path("build/scenes")
 SCENES = sorted(path.stem for path in Path("conf/scene").glob("*.yaml"))
@@ -30,33 +30,42 @@ SCENES = sorted(path.stem for path in Path("conf/scene").glob("*.yaml"))
 CASES = {name: [f"scene={name}"] for name in SCENES} | {
     "table_ssim": ["scene=table", "scene.kind=ssim", "scene.tolerance=0.05"]
 }
+INPUTS = ("meshes", "salient_points", "lod")
 COLUMNS = ["dataset", "scene", "kind", "tolerance", "objects", "shapes", "frames", "method", "matched", "metric",
            "value", "low", "high", "seconds", "note"]  # fmt: skip
 
 
-def measured(case, names, seed):
-    """(rows of a case, its Scene)."""
-    settings = check_section("scene", OmegaConf.to_container(compose(CASES[case]))["scene"])
-    scene, missing = scene_of(settings, names)
-    report_missing(settings, scene, missing)
-    shapes = sorted({placed.name for placed in scene.objects})
-    for name in shapes:
-        levels_of(name, FOLDER / case, settings, seed)
-    rows = measure(case, FOLDER / case, settings, {case: 1.0}, names, seed)
-    export(FOLDER / case, settings, names)
+def workspace_of(case, dataset, data):
+    """The Workspace of a case: its own params.yaml beside links to the inputs in data/SET."""
+    workspace = Workspace(FOLDER / case, dataset)
+    values = compose([f"sets=[{dataset}]", *CASES[case], "scene.factors=[1.0]"])
+    write_text(workspace.root / FILE, OmegaConf.to_yaml(OmegaConf.create(values)))
+    workspace.data.mkdir(parents=True, exist_ok=True)
+    for stage in INPUTS:
+        (workspace.data / stage).unlink(missing_ok=True)
+        (workspace.data / stage).symlink_to((data / stage).resolve())
+    return workspace
+
+
+def measured(workspace):
+    """The rows of a case over all frames."""
+    run(workspace)
+    rows = read_rows(workspace.measurements / f"scene{SUFFIX}")
+    rows = rows[(rows["frame"] == "all") & rows["item"].isna() & rows["group"].notna()]
+    scene, _ = scene_of(workspace.settings(Params), object_names(workspace))
+    shapes = {placed.name for placed in scene.objects}
     counts = {"objects": len(scene.objects), "shapes": len(shapes), "frames": len(scene.cameras)}
-    return [row | counts for row in rows if row["frame"] == "all" and row.get("item") is None]
+    return rows.rename(columns={"group": "scene"}).assign(**counts)
 
 
 def main():
     """Measures every case and writes the table, anew after each."""
     arguments(__doc__)
-    params, names, rows = load_params(), object_names(), []
+    dataset, found = load_params()["graph"]["scene"][0], []
     for case in progress(list(CASES), "scenes"):
         start = time.perf_counter()
-        found = measured(case, names, params["seed"])
-        rows += [{"dataset": params["meshes"]["source"]} | row for row in found]
-        write_table(OUT, pd.DataFrame(rows).reindex(columns=COLUMNS))
+        found.append(measured(workspace_of(case, dataset, Path("data") / dataset)))
+        write_table(OUT, pd.concat(found).reindex(columns=COLUMNS))
         print(f"{case}: {time.perf_counter() - start:.0f} s", flush=True)
 
 

@@ -26,6 +26,7 @@ from stages.imprints import press_many, touchable
 from stages.kit import Stopwatch
 from stages.kit.conf import conf_folder
 from stages.kit.files import read_mesh, read_table, write_table
+from stages.kit.packs import is_there
 from stages.kit.params import ParamsError, check_section, schema_of
 from stages.kit.split import Split
 from stages.kit.stats import interval
@@ -61,7 +62,7 @@ def _touch(name: str, config: dict[str, Any], chosen: dict[str, Any], data: Path
     """{method: imprints (k, rows, columns)} of one object."""
     settings = chosen["salient_points"]
     for folder, file in (("meshes", f"{name}.npz"), ("conspicuity", f"{name}.npz"), ("weights", "weights.csv")):
-        if not (data / folder / file).exists():
+        if not is_there(data / folder / file):
             sys.exit(f"sweep: {data / folder / file} is not there: run `dvc repro {folder}@{data.name}` first")
     mesh = read_mesh(data / "meshes" / f"{name}.npz")
     looking = any(method_named(method).channels for method in settings.methods)

@@ -56,7 +56,7 @@ def found(mesh: Mesh, ours: np.ndarray, theirs: np.ndarray, near: float) -> floa
     return float((distance <= near * mesh.diagonal).mean())
 
 
-def agreement_of_passes(name: str, mesh: Mesh, marked: list[np.ndarray], settings: Params, seed: int) -> Rows:
+def agreement_of_passes(name: str, mesh: Mesh, marked: list[np.ndarray], settings: Params, seed: int) -> list[dict]:
     """Rows of how well the passes agree with each other, and what chance gives."""
     pairs = list(permutations(marked, 2))
     chance = [

@@ -5,6 +5,7 @@ from sklearn.base import BaseEstimator, ClassifierMixin
 
 RHO = 0.99  # Adadelta's decay; RapidMiner's default
 PRECISION = np.float32  # as in RapidMiner's H2O
+LANES = 16  # a unit's weights and bias fill a multiple of these, so that compiled loops leave no remainder
 EPSILON = 1e-8  # Adadelta's smallest step, squared; RapidMiner's default
 
 
@@ -34,13 +35,19 @@ class FeedForward(ClassifierMixin, BaseEstimator):
         self.classes_, targets = np.unique(labels, return_inverse=True)
         random = np.random.default_rng(self.seed)
         sizes = (samples.shape[1], *self.hidden, len(self.classes_))
-        parameters, self._layers = _layers(sizes)
+        widths = [-(-(size + 1) // LANES) * LANES for size in sizes]
+        units = tuple(np.zeros(shape, PRECISION) for shape in zip(sizes[1:], widths[:-1], strict=True))
+        self._layers = [(own[:, :size].T, own[:, size]) for own, size in zip(units, sizes[:-1], strict=True)]
         for weights, _ in self._layers:
             bound = np.sqrt(6 / sum(weights.shape))  # Glorot and Bengio 2010
             weights[...] = random.uniform(-bound, bound, weights.shape)
         passes = [random.permutation(len(samples)) for _ in range(self.epochs)]
         order = np.concatenate([np.empty(0, dtype=np.int64), *passes])
-        train(parameters, np.array(sizes), samples, targets, order, PRECISION(RHO), PRECISION(EPSILON))
+        values, errors = (tuple(np.zeros(width, PRECISION) for width in widths) for _ in range(2))
+        for own, size in zip(values[:-1], sizes[:-1], strict=True):
+            own[size] = 1  # the input of the biases
+        squares, steps = (tuple(np.zeros_like(own) for own in units) for _ in range(2))
+        train(units, squares, steps, values, errors, samples, targets, order, PRECISION(RHO), PRECISION(EPSILON))
         return self
 
     def predict_proba(self, samples: np.ndarray) -> np.ndarray:
@@ -54,18 +61,6 @@ class FeedForward(ClassifierMixin, BaseEstimator):
     def predict(self, samples: np.ndarray) -> np.ndarray:
         """(k,) labels."""
         return self.classes_[self.predict_proba(samples).argmax(axis=1)]
-
-
-def _layers(sizes):
-    """(vector, [(weights, bias), ...]): the layers are views into one vector, so that one update changes all."""
-    shapes = list(zip(sizes[:-1], sizes[1:], strict=True))
-    vector = np.zeros(sum((rows + 1) * columns for rows, columns in shapes), dtype=PRECISION)
-    layers, start = [], 0
-    for rows, columns in shapes:
-        middle, end = start + rows * columns, start + (rows + 1) * columns
-        layers.append((vector[start:middle].reshape(rows, columns), vector[middle:end]))
-        start = end
-    return vector, layers
 
 
 def _softmax(values):

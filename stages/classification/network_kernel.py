@@ -4,97 +4,91 @@ import numba
 import numpy as np
 
 REAL = np.float32
+Layers = tuple[np.ndarray, ...]
 
 
 # error_model: divides as numpy does, without a branch on zero that would prevent vectorisation of Adadelta's loop.
 @numba.njit(cache=True, nogil=True, error_model="numpy")
 def train(
-    parameters: np.ndarray,
-    sizes: np.ndarray,
+    weights: Layers,
+    squares: Layers,
+    steps: Layers,
+    values: Layers,
+    errors: Layers,
     samples: np.ndarray,
     targets: np.ndarray,
     order: np.ndarray,
     rho: np.float32,
     epsilon: np.float32,
 ) -> None:
-    """Moves the parameters (n,) f4 in place, by one step of Adadelta for every sample index in `order`.
+    """Moves the weights in place, by one step of Adadelta for every sample index in `order`.
 
-    The parameters are, layer by layer, weights (rows, columns) and biases (columns,), one after another. sizes (d,) i8
-    units of each layer, inputs first; samples (k, sizes[0]) f4; targets (k,) i8; rho, epsilon f4 (Zeiler 2012,
+    weights: an array (units, width) f4 for each layer, a row has the weights of a unit's inputs, its bias, and zeros;
+    squares, steps: zeros of the same shapes. values, errors: (width,) f4 of the inputs and of each layer; in `values` 1
+    where the next layer has its biases, 0 elsewhere. samples (k, d) f4; targets (k,) i8; rho, epsilon f4 (Zeiler 2012,
     algorithm 1).
     """
-    depth, count = len(sizes) - 1, len(parameters)
-    squares, steps, gradient = np.zeros(count, REAL), np.zeros(count, REAL), np.zeros(count, REAL)
-    starts, places = np.zeros(depth + 1, np.int64), np.zeros(depth + 2, np.int64)
-    for layer in range(depth):
-        starts[layer + 1] = starts[layer] + (sizes[layer] + 1) * sizes[layer + 1]
-    for layer in range(depth + 1):
-        places[layer + 1] = places[layer] + sizes[layer]
-    values, errors = np.zeros(places[-1], REAL), np.zeros(places[-1], REAL)
+    depth, classes = len(weights), len(weights[-1])
     for i in order:
-        values[: sizes[0]] = samples[i]
-        _forward(parameters, sizes, starts, places, values)
-        _softmax_error(values[places[depth] :], targets[i], errors[places[depth] :])
-        _backward(parameters, sizes, starts, places, values, errors, gradient)
-        _adadelta(parameters, gradient, squares, steps, rho, epsilon)
+        values[0][: samples.shape[1]] = samples[i]
+        for layer in range(depth):
+            _forward(weights[layer], values[layer], values[layer + 1], layer < depth - 1)
+        _softmax_error(values[depth], classes, targets[i], errors[depth])
+        for layer in range(depth - 1, -1, -1):
+            if layer > 0:
+                _back(weights[layer], values[layer], errors[layer + 1], errors[layer])
+            _adadelta(weights[layer], squares[layer], steps[layer], values[layer], errors[layer + 1], rho, epsilon)
+
+
+# reassoc: sums are vectorised, which adds them up in another order.
+@numba.njit(error_model="numpy", fastmath={"reassoc", "contract"})
+def _forward(weights, values, out, rectified):
+    """Fills in the units of the next layer."""
+    for unit in range(len(weights)):
+        total = REAL(0)
+        for k in range(len(values)):
+            total += weights[unit, k] * values[k]
+        out[unit] = max(total, REAL(0)) if rectified else total
 
 
 @numba.njit(error_model="numpy")
-def _forward(parameters, sizes, starts, places, values):
-    """Fills in the units of all layers but the first; the last layer is not rectified."""
-    depth = len(sizes) - 1
-    for layer in range(depth):
-        rows, columns, start = sizes[layer], sizes[layer + 1], starts[layer]
-        out = values[places[layer + 1] : places[layer + 1] + columns]
-        out[:] = parameters[start + rows * columns : start + (rows + 1) * columns]
-        for row in range(rows):
-            value = values[places[layer] + row]
-            if value != 0:
-                weights = parameters[start + row * columns : start + (row + 1) * columns]
-                for column in range(columns):
-                    out[column] += value * weights[column]
-        if layer < depth - 1:
-            for column in range(columns):
-                out[column] = max(out[column], REAL(0))
-
-
-@numba.njit(error_model="numpy")
-def _softmax_error(values, target, errors):
+def _softmax_error(values, classes, target, errors):
     """The gradient of the cross-entropy with respect to the last layer's values."""
-    top, total = values.max(), REAL(0)
-    for k in range(len(values)):
+    top, total = values[:classes].max(), REAL(0)
+    for k in range(classes):
         errors[k] = np.exp(values[k] - top)
         total += errors[k]
-    for k in range(len(values)):
+    for k in range(classes):
         errors[k] /= total
     errors[target] -= REAL(1)
 
 
 @numba.njit(error_model="numpy")
-def _backward(parameters, sizes, starts, places, values, errors, gradient):
-    """Fills in the gradient of the parameters, from the errors of the last layer."""
-    for layer in range(len(sizes) - 2, -1, -1):
-        rows, columns, start = sizes[layer], sizes[layer + 1], starts[layer]
-        error = errors[places[layer + 1] : places[layer + 1] + columns]
-        gradient[start + rows * columns : start + (rows + 1) * columns] = error
-        for row in range(rows):
-            value, back = values[places[layer] + row], REAL(0)
-            weights = parameters[start + row * columns : start + (row + 1) * columns]
-            slot = gradient[start + row * columns : start + (row + 1) * columns]
-            for column in range(columns):
-                slot[column] = value * error[column]
-            if layer > 0 and value > 0:
-                for column in range(columns):
-                    back += weights[column] * error[column]
-            errors[places[layer] + row] = back
+def _back(weights, values, errors, back):
+    """Fills in the errors of a layer from those of the next one; a unit at rest has none."""
+    back[:] = 0
+    for unit in range(len(weights)):
+        error = errors[unit]
+        if error != 0:
+            for k in range(len(back)):
+                back[k] += error * weights[unit, k]
+    for k in range(len(back)):
+        back[k] = back[k] if values[k] > 0 else REAL(0)
 
 
 @numba.njit(error_model="numpy")
-def _adadelta(parameters, gradient, squares, steps, rho, epsilon):
-    """One step of Zeiler 2012, algorithm 1."""
-    for k in range(len(parameters)):
-        slope = gradient[k]
-        squares[k] = rho * squares[k] + (REAL(1) - rho) * (slope * slope)
-        change = np.sqrt((steps[k] + epsilon) / (squares[k] + epsilon)) * slope
-        parameters[k] -= change
-        steps[k] = rho * steps[k] + (REAL(1) - rho) * (change * change)
+def _adadelta(weights, squares, steps, values, errors, rho, epsilon):
+    """One step of Zeiler 2012, algorithm 1, for a layer; of a unit without an error the means decay alone."""
+    for unit in range(len(weights)):
+        error = errors[unit]
+        if error == 0:
+            for k in range(len(values)):
+                squares[unit, k] *= rho
+                steps[unit, k] *= rho
+            continue
+        for k in range(len(values)):
+            slope = error * values[k]
+            squares[unit, k] = rho * squares[unit, k] + (REAL(1) - rho) * (slope * slope)
+            change = np.sqrt((steps[unit, k] + epsilon) / (squares[unit, k] + epsilon)) * slope
+            weights[unit, k] -= change
+            steps[unit, k] = rho * steps[unit, k] + (REAL(1) - rho) * (change * change)

@@ -52,10 +52,10 @@ def run(workspace: Workspace) -> None:
     with StageRun(workspace, "conspicuity", COLUMNS, inputs=("meshes", "views")) as stage:
         work = functools.partial(process, data=workspace.data, settings=settings)
         rows = stage.each(work, stage.objects, reads=("meshes/{}.npz", "views/{}", "views/viewpoints.csv"))
-        maps = [row for row in rows if row["metric"] == "silhouette_share"]
-        share = float(np.mean([row["value"] for row in maps if row["value"] is not None] or [0]))
+        maps = [(row["value"], row["seconds"]) for row in rows if row["metric"] == "silhouette_share"]
+        share = float(np.mean([value for value, _ in maps if value is not None] or [0]))
         stage.metrics({"maps": len(maps), "silhouette_share": round(share, 6)})
-    seconds = sum(row["seconds"] for row in maps)
+    seconds = sum(seconds for _, seconds in maps)
     print(
         f"conspicuity: {len(stage.objects)} objects, {len(maps)} maps in {seconds:.0f} s of one core, "
         f"{share:.2f} of an even share along the silhouette"

@@ -20,6 +20,7 @@ from .operators import OUTPUT_SCALE
 from .orientation import orientation
 from .spectral_residual import spectral_residual
 from .symmetry import symmetry, symmetry_lateral, symmetry_radial
+from .weak_cache import weak_cache
 
 CHANNELS = {
     "color": color,
@@ -78,6 +79,7 @@ def check_channels(names: Iterable[str]) -> list[str]:
     return list(names)
 
 
+@weak_cache  # the channels of a view share its mask
 def mask_at_size(mask: np.ndarray, size: tuple[int, int]) -> np.ndarray:
     """A mask (h, w) at another size (rows, columns): boolean, at least half of the pixel's area is on the object."""
     return cv2.resize(mask.astype(np.float32), size[::-1], interpolation=cv2.INTER_AREA) >= 0.5

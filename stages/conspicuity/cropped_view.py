@@ -42,7 +42,8 @@ class CroppedView:
             return
         self.known = core(self.mask, max(round(SILHOUETTE_BAND * len(mask)), 1)) if filled else np.ones_like(self.mask)
         rgb = rgb[self.box]
-        self.grey_only = bool((rgb[self.mask][:, :1] == rgb[self.mask]).all())
+        red, green, blue = (rgb[..., k] for k in range(3))
+        self.grey_only = not (((red != green) | (red != blue)) & self.mask).any()
         planes = rgb[..., 0] if self.grey_only else rgb
         self._planes = _fill_bytes(planes, self.known) if filled else np.ascontiguousarray(planes)
 

@@ -8,6 +8,8 @@ view, since pyrDown keeps the even pixels and pyrUp restores them, so maps do no
 import cv2
 import numpy as np
 
+from .kernels import mean_of_other_maxima
+
 SCALES = 9
 CENTRES = (2, 3, 4)
 DELTAS = (3, 4)
@@ -71,21 +73,8 @@ def normalise(values: np.ndarray, cover: np.ndarray, floor: float = FLOOR) -> np
     `floor` is flat: all zero. values (h, w) f4, cover (h, w) boolean.
     """
     inside = values[cover]
-    if not len(inside) or np.ptp(inside) <= floor:
+    low, high = (inside.min(), inside.max()) if len(inside) else (0, 0)
+    if high - low <= floor:
         return np.zeros(values.shape, dtype=np.float32)
-    low, high = inside.min(), inside.max()
     scaled = np.where(cover, (values - low) / (high - low), 0).astype(np.float32)
-    return scaled * (1 - mean_of_other_maxima(scaled)) ** 2
-
-
-def mean_of_other_maxima(scaled: np.ndarray) -> float:
-    """The mean of the local maxima above a tenth of a map in 0..1, without the highest; 0 if there is no other.
-
-    A local maximum is at least as high as its eight neighbours; a plateau counts as one.
-    """
-    tops = (scaled >= cv2.dilate(scaled, np.ones((3, 3), np.uint8))) & (scaled > PEAK)
-    count, labels = cv2.connectedComponents(tops.astype(np.uint8), connectivity=8)
-    heights = np.zeros(count)
-    heights[labels[tops].astype(np.intp)] = scaled[tops]
-    others = np.sort(heights[1:])[:-1]
-    return float(others.mean()) if len(others) else 0.0
+    return scaled * (1 - mean_of_other_maxima(scaled, PEAK)) ** 2

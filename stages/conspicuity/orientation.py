@@ -1,5 +1,7 @@
 """Orientation: bars and edges whose direction differs from that of their surround."""
 
+from functools import cache
+
 import cv2
 import numpy as np
 
@@ -41,6 +43,7 @@ def energy(image: np.ndarray, angle: float) -> np.ndarray:
     return np.sqrt(even * even + odd * odd)
 
 
+@cache
 def gabor(angle: float) -> tuple[np.ndarray, np.ndarray]:
     """The even and odd Gabor kernels of an angle, of unit gain, without response to a constant or a linear slope.
 

@@ -16,8 +16,8 @@ def silhouette_share(values: np.ndarray, mask: np.ndarray) -> float:
     small that no pixel lies in the band.
     """
     total = float(values.sum())
-    within, share = _band(mask, values.shape)
-    if total <= 0 or share == 0:
+    within, share = _band(mask, values.shape) if total > 0 and mask.any() else (values, 0)
+    if share == 0:
         return float("nan")
     return float((values * within).sum() / total) / share
 
@@ -25,9 +25,12 @@ def silhouette_share(values: np.ndarray, mask: np.ndarray) -> float:
 @weak_cache  # the channels of a view share its mask
 def _band(mask, shape):
     """((h', w') the share of each pixel's object that lies in the band, the band's share of the object's area)."""
-    padded = cv2.copyMakeBorder(mask.astype(np.uint8), 1, 1, 1, 1, cv2.BORDER_CONSTANT, value=0)
+    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
+    box = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+    padded = cv2.copyMakeBorder(mask[box].astype(np.uint8), 1, 1, 1, 1, cv2.BORDER_CONSTANT, value=0)
     inward = cv2.distanceTransform(padded, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)[1:-1, 1:-1]
-    band = (inward > 0) & (inward <= BAND * len(mask))
+    band = np.zeros(mask.shape, dtype=bool)
+    band[box] = (inward > 0) & (inward <= BAND * len(mask))
     parts = (cv2.resize(each.astype(np.float32), shape[::-1], interpolation=cv2.INTER_AREA) for each in (band, mask))
     along, inside = parts
     within = np.divide(along, inside, out=np.zeros_like(along), where=inside > 0)

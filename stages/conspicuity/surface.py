@@ -5,12 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from stages.kit import Mesh
-from stages.kit.camera import pixel_rays
-from stages.kit.rays import barycentric
+from stages.kit.camera import DISTANCE, screen_position
 from stages.views import View
 
 from .background import fill
 from .cropped_view import cropped_view
+from .kernels import locate_pixels
 from .operators import OUTPUT_SCALE, centre_surround, normalise, pyramid
 from .weak_cache import weak_cache
 
@@ -44,11 +44,11 @@ def visible_surface(view: View, mesh: Mesh) -> VisibleSurface:
     known = face >= 0
     rows, columns = np.nonzero(known)
     rows, columns = rows * step + box[0].start, columns * step + box[1].start
-    origins, directions = pixel_rays(rows, columns, view.viewpoint, view.face.shape)
-    points = origins + view.depth[rows, columns, None].astype(np.float64) * directions
-    weights = barycentric(mesh, face[known], points).clip(0, 1)
-    weights /= weights.sum(axis=1, keepdims=True)
-    return VisibleSurface(known, face[known], weights, points, view.viewpoint.axes[2])
+    right, up = screen_position(rows, columns, view.face.shape)
+    heights, axes = DISTANCE - view.depth[rows, columns].astype(np.float64), view.viewpoint.axes
+    geometry = mesh.vertices, mesh.faces, mesh.face_crosses
+    points, weights = locate_pixels(right, up, heights, axes, face[known], *geometry)
+    return VisibleSurface(known, face[known], weights, points, axes[2])
 
 
 def surface_conspicuity(

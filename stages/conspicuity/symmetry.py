@@ -44,8 +44,15 @@ def _conspicuity(mesh, view, filled, kinds):
     image = cropped_view(view, filled)
     if image.empty:
         return image.zero_map()
+    response = np.max([_seen_symmetry(view, mesh, kind) for kind in kinds], axis=0)
+    return surface_conspicuity(response, mesh, view, filled)
+
+
+@weak_cache
+def _seen_symmetry(view, mesh, kind):
+    """symmetric_points of one kind at the points of visible_surface, which two channels use."""
     seen = visible_surface(view, mesh)
-    return surface_conspicuity(symmetric_points(mesh, seen.points, seen.back, kinds), mesh, view, filled)
+    return symmetric_points(mesh, seen.points, seen.back, (kind,))
 
 
 def symmetric_points(
@@ -62,8 +69,9 @@ def symmetric_points(
     for normal, offset, weight in weighted_planes(found, back) if "lateral" in kinds else ():
         np.maximum(response, weight * np.exp(-((points @ normal - offset) ** 2) / spread), out=response)
     away = points - found.centre
+    square = np.einsum("ij,ij->i", away, away)
     for axis, weight in weighted_axes(found, back) if "radial" in kinds else ():
-        distance = (away**2).sum(axis=1) - (away @ axis) ** 2
+        distance = square - (away @ axis) ** 2
         np.maximum(response, weight * np.exp(-distance / (4 * spread)), out=response)
     return response
 

@@ -37,8 +37,8 @@ def write_sequences(path: str | Path, sequences: dict[str, Sequences]) -> None:
     write_arrays(path, **arrays)
 
 
-def read_sequences(path: str | Path) -> dict[str, Sequences]:
-    """{strategy: Sequences} of one object, the strategies in alphabetical order."""
-    arrays = read_arrays(path)
+def read_sequences(path: str | Path, strategy: str | None = None) -> dict[str, Sequences]:
+    """{strategy: Sequences} of one object, the strategies in alphabetical order; or of one strategy alone."""
+    arrays = read_arrays(path, f"{strategy}." if strategy else "")
     strategies = sorted({key.rpartition(".")[0] for key in arrays})
     return {one: Sequences(*(arrays[f"{one}.{part.name}"] for part in fields(Sequences))) for one in strategies}

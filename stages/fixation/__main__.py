@@ -13,7 +13,6 @@ import dataclasses
 import functools
 import shutil
 import sys
-import warnings
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -97,8 +96,6 @@ def made_by(method: Method) -> list[str]:
 def run(workspace: Workspace) -> None:
     """Runs the stage on the data set of a workspace."""
     settings = workspace.settings(Params)
-    # Torch's caches make a worker grow; joblib then renews it between two items, loses none, and warns.
-    warnings.filterwarnings("ignore", message="A worker stopped while some jobs")
     check(settings)
     views = len(viewpoint_sphere(settings.parallels, settings.azimuths))
     methods, missing = available(settings)

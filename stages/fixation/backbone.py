@@ -1,13 +1,15 @@
 """The last feature maps of the networks, computed once per object and cached."""
 
 from collections.abc import Sequence
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
 import torch
+from torch.fx.experimental.optimization import fuse
 
 from stages.kit import Stopwatch
-from stages.kit.files import read_arrays, write_arrays
+from stages.kit.files import read_arrays, sha256, write_arrays
 from stages.kit.repeatable import repeatable
 from stages.networks import Network, build, recalibrate
 from stages.networks.device import choose_device, device_of, explain_out_of_memory, mixed_precision
@@ -44,18 +46,30 @@ def compute_maps(name: str, folder: Path, made: Path, method: Method, settings: 
     made: the folder of the pictures and, of a random method, of its network.
     """
     pictures, _ = read_pictures(made, name)
+    state = sha256(state_path(made, method.name)) if method.mode == "random" else ""
     with repeatable(seed):
-        network = build(method.network, 2, MODES[method.mode], seed, settings.source)
-        if method.mode == "random":
-            read_state(made, method.name, network)
+        network = folded_network(made, method, settings.source, seed, state).to(choose_device(settings.device))
         with Stopwatch() as watch:
-            maps = last_maps(network.to(choose_device(settings.device)), pictures)
+            maps = last_maps(network, pictures)
     pooled = maps.mean(axis=(2, 3), dtype=np.float32)
     write_arrays(folder / ".pooled" / method.name / f"{name}.npz", pooled=pooled)
     half = maps.clip(-LARGEST, LARGEST).astype(np.float16)
     write_arrays(folder / ".maps" / method.name / f"{name}.npz", maps=half, seconds=watch.seconds)
     row = {"item": name, "method": method.name, "metric": "views"}
     return [row | {"value": len(pictures), "seconds": watch.seconds}]
+
+
+@lru_cache(maxsize=1)  # a worker looks at many objects with one network
+def folded_network(made: Path, method: Method, source: str, seed: int, state: str) -> Network:
+    """The network of a frozen or random method, its normalisations folded into the convolutions before them.
+
+    state: the hash of the stored weights of a random method, else empty.
+    """
+    network = build(method.network, 2, MODES[method.mode], seed, source)
+    if state:
+        read_state(made, method.name, network)
+    network.convolutions = fuse(network.convolutions)  # type: ignore[assignment]  # a graph of the same layers
+    return network
 
 
 @torch.inference_mode()
@@ -79,13 +93,18 @@ def read_pooled(folder: Path, method: str, name: str) -> np.ndarray:
     return read_arrays(folder / ".pooled" / method / f"{name}.npz")["pooled"]
 
 
+def state_path(folder: Path, name: str) -> Path:
+    """Where the weights of a network are stored for the workers."""
+    return folder / ".networks" / f"{name}.npz"
+
+
 def write_state(folder: Path, name: str, network: Network) -> None:
     """Stores a network's weights for the workers."""
     state = {key: np.ascontiguousarray(value.cpu().numpy()) for key, value in network.state_dict().items()}
-    write_arrays(folder / ".networks" / f"{name}.npz", **state)
+    write_arrays(state_path(folder, name), **state)
 
 
 def read_state(folder: Path, name: str, network: Network) -> None:
     """Loads the stored weights into a network."""
-    stored = read_arrays(folder / ".networks" / f"{name}.npz")
+    stored = read_arrays(state_path(folder, name))
     network.load_state_dict({key: torch.as_tensor(value) for key, value in stored.items()})

@@ -1,6 +1,6 @@
 """The numbers that the gate checks, and the comparison of the models with the controls."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import cast
 
 import numpy as np
@@ -14,7 +14,7 @@ MODEL = "ewigc"
 COLUMNS = ["item", "method", "task", "view", "split", "metric", "value"]
 
 
-def summary(rows: list[dict], chosen: Mapping[str, int], seed: int) -> dict[str, dict]:
+def summary(rows: Sequence[dict], chosen: Mapping[str, int], seed: int) -> dict[str, dict]:
     """dict for the metric file: classes and mean accuracy of each task, mean agreement of the fused model and controls.
 
     chosen: dict task -> number of classes. Agreement: the Pearson correlation in the three views, averaged per object,

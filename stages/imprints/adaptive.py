@@ -30,21 +30,38 @@ def adaptive_pitch(
     shrinks the array and gives no rule. By default `min_pitch` is a fifth and `tolerance` a half of the pitch. pitch: a
     number, or (k,). Raises ValueError for invalid cells or pitches, or a `min_pitch` above the pitch.
     """
+    return adaptive_distances(surface, centres, axes, cells, pitch, min_pitch, tolerance)[0]
+
+
+def adaptive_distances(
+    surface: Mesh | Surface,
+    centres: ArrayLike,
+    axes: ArrayLike,
+    cells: tuple[int, int] = (32, 32),
+    pitch: ArrayLike = 0.01,
+    min_pitch: ArrayLike | None = None,
+    tolerance: ArrayLike | None = None,
+) -> tuple[np.ndarray, np.ndarray]:
+    """(the pitches (k,) of `adaptive_pitch`, the distances (k, rows, cols) that `distances_at` gives at them)."""
     centres, axes = np.asarray(centres, dtype=np.float64), np.asarray(axes, dtype=np.float64)
     cells, pitches, max_distances = check_arrays(cells, pitch, None, len(centres))
     min_pitches = _checked_limit("min_pitch", min_pitch, MIN_PITCH * pitches, pitches)
     tolerances = _checked_limit("tolerance", tolerance, TOLERANCE * pitches, np.inf)
     pitches, active = pitches.copy(), np.arange(len(centres))
+    distances = np.empty((len(centres), *cells))
     widths, ring = _rings(cells)
+    by_ring, starts = np.argsort(ring, kind="stable"), np.searchsorted(np.sort(ring), np.arange(len(widths)))
     while len(active):
-        distances = distances_at(surface, centres[active], axes[active], cells, pitches[active], max_distances[active])
-        clearance = np.full((len(active), len(widths)), np.inf)
-        np.minimum.at(clearance.T, ring, (distances.reshape(len(active), -1) + tolerances[active, None]).T)
+        places = centres[active], axes[active], cells, pitches[active], max_distances[active]
+        distances[active] = distances_at(surface, *places)
+        active = active[pitches[active] > min_pitches[active]]
+        by_cell = distances[active].reshape(len(active), len(ring))[:, by_ring] + tolerances[active, None]
+        clearance = np.minimum.reduceat(by_cell, starts, axis=1)
         too_large = (clearance < 0).any(axis=1)
         active, clearance = active[too_large], clearance[too_large]
         pitches[active] = np.maximum(pitches[active] * _fitting_widths(widths, clearance), min_pitches[active])
-        active = active[pitches[active] > min_pitches[active]]
-    return pitches
+    limits = check_arrays(cells, pitches, None, len(centres))[2][:, None, None]  # a smaller array senses less deep
+    return pitches, np.clip(distances, -limits, limits)
 
 
 def _rings(cells):

@@ -7,10 +7,10 @@ from numpy.typing import ArrayLike
 
 from stages.kit import Mesh
 
-from .adaptive import adaptive_pitch
+from .adaptive import adaptive_distances
 from .distances import check_array
 from .follow_path import followed_curve, walk
-from .press import press_at
+from .press import normalise
 from .section import MeshCutter, SectionCurve
 from .sequence import Sequence
 from .surface import Surface, as_surface
@@ -108,8 +108,8 @@ def _press_paths(surface, paths, cells, pitch):
     """The Sequences of some ContourPaths, all their frames pressed at once."""
     positions = np.concatenate([path.positions for path in paths])
     axes = np.concatenate([path.axes for path in paths])
-    pitches = adaptive_pitch(surface, positions, axes, cells, pitch)
-    images = press_at(surface, positions, axes, cells, pitches)
+    pitches, measured = adaptive_distances(surface, positions, axes, cells, pitch)
+    images = normalise(measured, pitches)
     found, start = [], 0
     for path in paths:
         own = slice(start, start := start + len(path.positions))

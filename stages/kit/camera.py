@@ -62,10 +62,15 @@ def pixel_rays(
     Exact where T eq. 3.12 to 3.16 turn offsets into angles and back: in an orthographic camera every ray runs parallel
     to the view axis, so the offset itself is the answer.
     """
-    h, w = size
     right, up, back = viewpoint.axes
-    scale = pixels_per_unit(h)
-    x = (np.asarray(columns, dtype=np.float64) - (w - 1) / 2) / scale
-    y = ((h - 1) / 2 - np.asarray(rows, dtype=np.float64)) / scale
+    x, y = screen_position(rows, columns, size)
     origins = DISTANCE * back + x[..., None] * right + y[..., None] * up
     return origins, np.broadcast_to(-back, origins.shape)
+
+
+def screen_position(rows: np.ndarray, columns: np.ndarray, size: Sequence[int]) -> tuple[np.ndarray, np.ndarray]:
+    """(to the right (k,), up (k,)) of the view axis, in units: where the rays of pixels meet the camera's plane."""
+    h, w = size
+    scale = pixels_per_unit(h)
+    x = (np.asarray(columns, dtype=np.float64) - (w - 1) / 2) / scale
+    return x, ((h - 1) / 2 - np.asarray(rows, dtype=np.float64)) / scale

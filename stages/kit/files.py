@@ -8,6 +8,7 @@ import json
 import os
 import shutil
 import tempfile
+import zipfile
 import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -18,11 +19,12 @@ import numpy as np
 
 from .extras import from_extra
 from .mesh import Mesh
+from .packs import PART, opened
 
 if TYPE_CHECKING:
     import pandas as pd
 
-PART = ".part-"  # how the name of a file begins that is not whole yet
+LEVEL = 3  # of zlib: views take a third of the time of its default 6 and 13 % more bytes, maps half and 3 %
 
 
 @contextmanager
@@ -90,23 +92,26 @@ def write_json(path: str | Path, value: Any) -> None:
 def read_json(path: str | Path) -> Any:
     """Reads a JSON file; ValueError that names it when it is not valid."""
     try:
-        return json.loads(Path(path).read_text(encoding="utf-8"))
+        with opened(path) as stream:
+            return json.loads(stream.read().decode())
     except (ValueError, RecursionError) as error:
         raise ValueError(f"{path} is not valid JSON: {error}") from None
 
 
 def write_arrays(path: str | Path, **arrays: Any) -> None:
     """Writes arrays to a compressed .npz; equal arrays give equal bytes."""
-    with whole_file(path) as part, open(part, "wb") as stream:
-        np.savez_compressed(stream, **arrays)
+    with whole_file(path) as part, zipfile.ZipFile(part, "w", zipfile.ZIP_DEFLATED, compresslevel=LEVEL) as archive:
+        for name, array in arrays.items():
+            with archive.open(f"{name}.npy", "w", force_zip64=True) as stream:
+                np.lib.format.write_array(stream, np.asanyarray(array), allow_pickle=False)
 
 
-def read_arrays(path: str | Path) -> dict[str, np.ndarray]:
-    """Reads an .npz to a dict of arrays; never unpickles. Raises ValueError that names a file of another kind."""
-    with open(path, "rb") as stream:
+def read_arrays(path: str | Path, prefix: str = "") -> dict[str, np.ndarray]:
+    """{name: array} of an .npz whose names begin with `prefix`; never unpickles. ValueError names any other file."""
+    with opened(path) as stream:
         try:
             with np.load(stream, allow_pickle=False) as stored:
-                return {name: stored[name] for name in stored.files}
+                return {name: stored[name] for name in stored.files if name.startswith(prefix)}
         except Exception as error:  # zipfile, zlib, tokenize and numpy raise many types; each means a damaged file
             raise ValueError(f"{path} is not a sound .npz file: {' '.join(str(error).split())[:120]}") from None
 
@@ -129,14 +134,15 @@ def read_table(path: str | Path, dtype: Any = None) -> "pd.DataFrame":
         import pandas as pd
 
     try:
-        return pd.read_csv(path, dtype=dtype)
+        with opened(path) as stream:
+            return pd.read_csv(stream, dtype=dtype, compression="gzip" if Path(path).suffix == ".gz" else None)
     except (ValueError, gzip.BadGzipFile, EOFError, zlib.error) as error:
         raise ValueError(f"{path} is not a valid table: {error}") from None
 
 
 def sha256(path: str | Path) -> str:
     """The file's SHA-256, in hex."""
-    with open(path, "rb") as stream:
+    with opened(path) as stream:
         return hashlib.file_digest(stream, "sha256").hexdigest()
 
 

@@ -6,9 +6,12 @@ from pathlib import Path
 from typing import Any
 
 import numba
+from numba.core.caching import UserProvidedCacheLocator
 
 from .fetch import cache_folder
 
+# Where a kernel is kept: by what its folder holds, or, if that is not writable, where numba itself would.
+LOCATORS = f"{__name__}.ByContent,InTreeCacheLocator,UserWideCacheLocator"
 inlined = numba.njit(inline="always", error_model="numpy")  # where a call costs as much as what it does
 
 
@@ -23,20 +26,29 @@ def kept_in(file: str) -> Path:
     return cache_folder() / "kernels" / digest
 
 
+class ByContent(UserProvidedCacheLocator):
+    """numba's locator, but for the path of the sources: another copy of them finds what one copy has compiled."""
+
+    @classmethod
+    def get_suitable_cache_subpath(cls, py_file: str) -> str:
+        return ""
+
+
 def kernel_of(file: str, **options: Any) -> Callable[[Callable[..., Any]], Any]:
     """The decorator for all kernels of the folder that a file (`__file__`) lies in; options are numba's.
 
-    error_model: divides as numpy does, with no branch on zero. Where kernels are kept is numba's setting for the whole
-    process, read when a function is decorated: it is put back.
+    error_model: divides as numpy does, with no branch on zero. Where kernels are kept is in numba's settings for the
+    whole process, read when a function is decorated: they are put back.
     """
     folder = str(kept_in(file))
 
     def kernel(function: Callable[..., Any]) -> Any:
         config: Any = getattr(numba, "config")  # noqa: B009  # numba does not declare it
-        before, config.CACHE_DIR = config.CACHE_DIR, folder
+        before = config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES
+        config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES = folder, LOCATORS
         try:
             return numba.njit(cache=True, nogil=True, error_model="numpy", **options)(function)
         finally:
-            config.CACHE_DIR = before
+            config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES = before
 
     return kernel

@@ -1,7 +1,7 @@
 """What a stage makes of one item, wherever that runs: in this process, in one beside it, or on another machine."""
 
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +12,7 @@ from .parallel import Task
 DATA, PARTIAL, SCRATCH = "data", "build/partial", "build/scratch"  # below the root
 
 
-def make(process: Callable[[Any, Path], list[dict[str, Any]]], home: Path, task: Task, root: Path) -> bytes:
+def make(process: Callable[[Any, Path], Sequence[dict[str, Any]]], home: Path, task: Task, root: Path) -> bytes:
     """The archive (stages.kit.objects) of the rows and files of process(task.value, folder).
 
     home: the root that paths among the arguments of `process` lie below; they are moved to `root`. The folder is named

@@ -14,7 +14,6 @@ import sys
 import zipfile
 import zlib
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +21,7 @@ import diskcache
 import joblib
 from diskcache.core import MODE_PICKLE
 
-from .files import PART
+from .packs import files_below
 
 ROWS = "rows.json"  # in the archive of an object, beside its files
 FILES = "files/"
@@ -46,11 +45,20 @@ class _Bytes(diskcache.Disk):
         return super().fetch(mode, filename, value, read)
 
 
-@dataclass(frozen=True)
 class Objects:
-    """The cache below one folder."""
+    """The cache below one folder; inside a block it stays open, as to open and close it takes longer than an object."""
 
-    folder: Path
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self._kept: diskcache.Cache | None = None
+
+    def __enter__(self) -> "Objects":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._kept is not None:
+            self._kept.close()
+        self._kept = None
 
     def take(self, key: str, target: Path) -> list[dict[str, Any]] | None:
         """Puts the files that are kept under a key below `target` and returns the rows; None where there are none.
@@ -83,12 +91,14 @@ class Objects:
 
     def _ask(self, work: Callable[[diskcache.Cache], Any]) -> Any:
         """work(cache); a damaged cache is begun anew. OSError where the disk is full or cannot be written to."""
-        settings = {"size_limit": LIMIT, "eviction_policy": "least-recently-used", "disk_min_file_size": 0}
+        settings: Any = {"size_limit": LIMIT, "eviction_policy": "least-recently-used", "disk_min_file_size": 0}
         for last in (False, True):
             try:
-                with diskcache.Cache(str(self.folder), disk=_Bytes, **settings) as kept:
-                    return work(kept)
+                if self._kept is None:
+                    self._kept = diskcache.Cache(str(self.folder), disk=_Bytes, **settings)
+                return work(self._kept)
             except sqlite3.DatabaseError as error:
+                self.__exit__()
                 number = OF_THE_DISK.get(getattr(error, "sqlite_errorcode", 0) & 255)
                 if number or last:
                     raise OSError(number or errno.EIO, str(error), str(self.folder)) from error
@@ -113,11 +123,6 @@ def archive(rows: Sequence[Mapping[str, Any]], source: Path) -> bytes:
         for path in files_below(source):
             stored.write(path, FILES + path.relative_to(source).as_posix())
     return stream.getvalue()
-
-
-def files_below(folder: Path) -> list[Path]:
-    """All whole files below a folder, in alphabetical order."""
-    return sorted(path for path in folder.rglob("*") if path.is_file() and not path.name.startswith(PART))
 
 
 def key_of(code: str, function: str, given: Mapping[str, Any]) -> str:

@@ -2,6 +2,7 @@
 
 import functools
 import sys
+import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -79,6 +80,8 @@ def _finished(function, tasks, root, desc, backend, workers, stage) -> Iterator[
     elif backend == "sequential" or len(tasks) < 2:
         yield from ((task, function(task, root)) for task in tasks)
     else:
+        # Caches make a worker grow; joblib then renews it between two items, loses none, and warns.
+        warnings.filterwarnings("ignore", message="A worker stopped while some jobs")
         with parallel_config(backend, n_jobs=workers):
             done: Any = Parallel(return_as="generator_unordered")(
                 delayed(_named)(function, task, root) for task in tasks

@@ -3,14 +3,19 @@
 Every row has the columns of COMMON; a stage declares the others, with a word on each, as COLUMNS in its schema.py.
 """
 
-from collections.abc import Mapping, Sequence
+import contextlib
+import csv
+import gzip
+import io
+import numbers
+import sys
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pandas as pd
 
-from .files import read_table, write_table
+from .files import read_table, whole_file
 from .split import Split
 
 COMMON = {
@@ -30,28 +35,61 @@ SUFFIX = ".csv.gz"
 
 
 def write_rows(
-    path: Path, rows: Sequence[Mapping[str, Any]], columns: Mapping[str, str], dataset: str, seed: int
+    path: Path, rows: Iterable[Mapping[str, Any]], columns: Mapping[str, str], dataset: str, seed: int
 ) -> None:
     """Writes rows as a compressed CSV: the common columns, and between them those that the stage declares.
 
+    A row is written before the next one is asked for. Keys that begin with _ are for the stage alone and not written.
     Raises ValueError that names a column which is not declared, a row without a metric, or a split which is unknown.
     """
-    frame = pd.DataFrame([dict(row) for row in rows])
-    frame["dataset"], frame["seed"] = dataset, seed
-    unknown = sorted(set(frame) - set(COMMON) - set(columns))  # type: ignore[type-var]  # of texts
+    names = [*FIRST, *columns, *LAST]
+    with contextlib.ExitStack() as stack:
+        file = stack.enter_context(open(stack.enter_context(whole_file(path)), "wb"))
+        packed = stack.enter_context(gzip.GzipFile("", "wb", fileobj=file, mtime=0))  # equal rows give equal bytes
+        table = csv.writer(stack.enter_context(io.TextIOWrapper(packed, newline="")), lineterminator="\n")
+        table.writerow(names)
+        for number, row in enumerate(rows):
+            _check(path, number, row, names)
+            known = {**row, "dataset": dataset, "seed": seed}
+            table.writerow([_cell(name, known.get(name)) for name in names])
+
+
+def _check(path, number, row, names):
+    unknown = sorted(name for name in row.keys() - names if not name.startswith("_"))
     if unknown:
         raise ValueError(f"{path.name}: columns {', '.join(unknown)} are not declared in the stage's schema.py")
-    frame = frame.reindex(columns=[*FIRST, *columns, *LAST])
-    unnamed = np.flatnonzero(frame["metric"].isna())
-    if len(unnamed):
-        raise ValueError(f"{path.name}: row {unnamed[0]} has no metric")
-    strange = sorted(set(frame["split"].dropna()) - set(Split) - {""})
-    if strange:
-        raise ValueError(f"{path.name}: split {', '.join(strange)} is not one of {', '.join(Split)}")
-    frame["value"] = pd.to_numeric(frame["value"])  # raises for a text
-    write_table(path, frame)
+    if _empty(row.get("metric")):
+        raise ValueError(f"{path.name}: row {number} has no metric")
+    split = row.get("split")
+    if not _empty(split) and split not in ("", *Split):
+        raise ValueError(f"{path.name}: split {split} is not one of {', '.join(Split)}")
+
+
+def _cell(name, value):
+    """A cell as text: six significant digits, like write_table."""
+    if _empty(value):
+        return ""
+    if name in ("value", "seconds"):
+        return f"{float(value):.6g}"  # raises for a text
+    is_float = isinstance(value, numbers.Real) and not isinstance(value, numbers.Integral)
+    return f"{value:.6g}" if is_float else str(value)
+
+
+def _empty(value):
+    return value is None or value != value  # NaN alone differs from itself
 
 
 def read_rows(path: Path) -> pd.DataFrame:
     """Reads what write_rows wrote; names stay texts even where they look like numbers."""
     return read_table(path, dtype=dict.fromkeys(("dataset", "item", "group", "method", "split", "note"), str))
+
+
+def some_rows(rows: Iterable[Mapping[str, Any]], columns: Sequence[str], metrics: Collection[str]) -> pd.DataFrame:
+    """Some columns of the rows of some metrics; no other is held in memory, and equal texts are one."""
+    found = (row for row in rows if row["metric"] in metrics)
+    cells = (tuple(_shared(row.get(name)) for name in columns) for row in found)
+    return pd.DataFrame(cells, columns=list(columns))
+
+
+def _shared(value):
+    return sys.intern(value) if isinstance(value, str) else value

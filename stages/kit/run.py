@@ -11,13 +11,15 @@ from typing import Any, TypeVar
 from .alone import alone
 from .code import stage_digest
 from .files import replace_folder, sha256, write_json
+from .kept_rows import ItemRows, KeptRows
 from .make import SCRATCH, make
-from .objects import Objects, files_below, item_key, key_of
+from .objects import Objects, item_key, key_of
+from .packs import files_below, is_there, object_files, pack
 from .parallel import Task, finished, parallel_map, progress
 from .rows import SUFFIX, write_rows
 from .workspace import Workspace
 
-Rows = list[dict[str, Any]]
+Rows = Sequence[dict[str, Any]]
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
@@ -51,7 +53,7 @@ class StageRun:
         self.inputs = [workspace.data / name for name in inputs]
         self.folder = workspace.build / "partial" / workspace.dataset / stage
         self._alone = alone(self.folder.with_name(f"{stage}.lock"), f"{stage} {workspace.dataset}")
-        self.rows: Rows = []
+        self.rows = KeptRows()
 
     def __enter__(self) -> "StageRun":
         for folder in self.inputs:
@@ -77,8 +79,8 @@ class StageRun:
         names: Iterable[str] | Mapping[str, Any],
         reads: Sequence[str] = (),
         made_of: Mapping[str, str] | None = None,
-    ) -> Rows:
-        """Runs process(name, folder) -> rows over the names, side by side; returns all rows in order.
+    ) -> KeptRows:
+        """Runs process(name, folder) -> rows over the names, side by side; returns all rows in order, from the disk.
 
         names: a mapping hands its values to `process` instead of the names; made_of must then tell the values apart.
 
@@ -97,17 +99,16 @@ class StageRun:
         stage = self.stage if _is_of_stages(function) else ""
         call = key_of(stage and stage_digest(stage), f"{function.__module__}.{function.__qualname__}", given)
         tasks = self._tasks(call, values, reads, made_of or {})
-        root, objects = self.workspace.root, Objects(self.workspace.build / "objects")
-        done = {task.name: objects.take(task.key, self.folder) for task in tasks}  # before any worker starts
-        missing, desc = [task for task in tasks if done[task.name] is None], f"{self.stage} {self.dataset}"
+        root, desc = self.workspace.root, f"{self.stage} {self.dataset}"
         work = functools.partial(make, process, root)
-        for task, content in finished(work, missing, root, desc, stage=stage, **self.workspace.parallel):
-            objects.keep(task.key, content)
-            shutil.rmtree(root / SCRATCH / task.key, ignore_errors=True)
-            done[task.name] = objects.take(task.key, self.folder)
-            if done[task.name] is None:
-                raise OSError(f"{objects.folder} does not keep what is written to it: is the disk full?")
-        rows = [row for name in values for row in done[name] or ()]
+        with Objects(self.workspace.build / "objects") as objects:
+            rows = ItemRows(self.folder.parent, values)
+            missing = [task for task in tasks if not self._taken(task, objects, rows)]  # before any worker starts
+            for task, content in finished(work, missing, root, desc, stage=stage, **self.workspace.parallel):
+                objects.keep(task.key, content)
+                shutil.rmtree(root / SCRATCH / task.key, ignore_errors=True)
+                if not self._taken(task, objects, rows):
+                    raise OSError(f"{objects.folder} does not keep what is written to it: is the disk full?")
         self.rows += rows
         return rows
 
@@ -119,10 +120,17 @@ class StageRun:
         """The items, with a progress bar; silent when stderr is not a terminal."""
         return progress(items, f"{self.stage} {self.dataset}")
 
+    def _taken(self, task: Task, objects: Objects, rows: ItemRows) -> bool:
+        """Whether an item's files and rows are kept; then they are taken from there."""
+        found = objects.take(task.key, self.folder)
+        if found is not None:
+            rows.put(task.name, found)
+        return found is not None
+
     def _tasks(
         self, call: str, values: Mapping[str, Any], reads: Sequence[str], made_of: Mapping[str, str]
     ) -> list[Task]:
-        digest = functools.cache(lambda path: sha256(path) if path.exists() else "")  # many items read the same files
+        digest = functools.cache(lambda path: sha256(path) if is_there(path) else "")  # many items read the same files
         tasks = []
         for name, value in values.items():
             files = {declared: path for pattern in reads for declared, path in self._files(pattern.format(name))}
@@ -135,10 +143,10 @@ class StageRun:
         """(name, path) of a file that an item reads, be it there or not, or of all files of a folder."""
         stage, _, rest = declared.partition("/")
         path = self.folder / rest if stage == self.stage else self.workspace.data / declared
-        if not path.is_dir():
+        files = [] if path.is_file() else files_below(path)
+        if not files and not path.is_dir():
             yield declared, path
-            return
-        for file in files_below(path):
+        for file in files:
             yield f"{declared}/{file.relative_to(path).as_posix()}", file
 
     def metrics(self, values: Mapping[str, Any]) -> None:
@@ -152,6 +160,7 @@ class StageRun:
             if error is None:
                 path = self.workspace.measurements / f"{self.stage}{SUFFIX}"
                 write_rows(path, self.rows, self.columns, self.dataset, self.seed)
+                pack(self.folder)
                 replace_folder(self.folder, self.target)
         finally:
             self._alone.__exit__(None, None, None)
@@ -159,7 +168,7 @@ class StageRun:
 
 def object_names(workspace: Workspace) -> list[str]:
     """The names of all objects that the meshes stage accepted, in alphabetical order."""
-    return sorted(path.stem for path in (workspace.data / "meshes").glob("*.npz"))
+    return object_files(workspace.data / "meshes")
 
 
 def _is_of_stages(function: Callable[..., Any]) -> bool:

@@ -33,7 +33,7 @@ def _surface(inputs, mesh, settings, seed):
 def _pictures(inputs, mesh, settings, _):
     try:
         pictures = take_pictures(mesh, viewpoint_set(settings.viewpoints), tuple(settings.size))
-        errors = picture_errors(inputs.pictures, pictures, inputs.bands)
+        errors = picture_errors(inputs.pictures, pictures, inputs.analyses)
     except ValueError as error:  # a mesh that leaves the frame
         return {"ssim_error": None}, str(error)
     return {"ssim_error" if name == "ssim" else name: value for name, value in errors.items()}, ""

@@ -1,11 +1,13 @@
 """The fast backend: compiled quadric edge collapse, then a fit of the remaining vertices to the original surface."""
 
+from functools import lru_cache
+
 import numpy as np
 
 from stages.kit import Mesh
 
 from .feasibility import InfeasibleTarget, SimplifyError
-from .kernels import HalfEdgeMesh, compact, decimate, fans, opposites, refit, unit_box, vertex_quadrics
+from .kernels import HalfEdgeMesh, compact, decimate, fans, opposites, refit, vertex_quadrics
 from .topology import NONE, faults
 
 # (least cosine by which a collapse may turn a face, least quality of a face after it), tried in this order until the
@@ -72,14 +74,24 @@ def _half_edge_mesh(mesh, frozen, weights):
 
     A vertex at which fans of faces touch is split. Boundary vertices and corners of frozen faces are locked.
     """
+    opposite, corner, start, source, boundary, position, box, plain = _beginning(mesh)
+    locked = boundary.copy()
+    locked[corner.reshape(-1, 3)[frozen]] = True
+    quadric = plain.copy() if weights is None else vertex_quadrics(position, corner, weights[source])
+    parent = np.arange(len(source), dtype=np.int32)
+    changing = corner.copy(), opposite.copy(), start.copy(), boundary.copy(), locked, position.copy(), quadric, parent
+    return HalfEdgeMesh(*changing), source, box
+
+
+@lru_cache(maxsize=2)  # every attempt, target and kept set begins with it
+def _beginning(mesh):
+    """Of a mesh: opposite, corner, start, source, boundary, position, (middle, size) of its box, quadrics."""
     ids = mesh.faces.ravel().astype(np.int32)
     opposite = opposites(ids, len(mesh.vertices), True)[0]
     corner, start, source, boundary = fans(ids, opposite)
-    locked = boundary.copy()
-    locked[corner.reshape(-1, 3)[frozen]] = True
-    position, middle, size = unit_box(mesh.vertices, source)
-    quadric = vertex_quadrics(position, corner, np.ones(len(source)) if weights is None else weights[source])
-    surface = HalfEdgeMesh(
-        corner, opposite, start, boundary, locked, position, quadric, np.arange(len(source), dtype=np.int32)
-    )
-    return surface, source, (middle, size)
+    used = mesh.vertices[source]
+    low, high = used.min(axis=0), used.max(axis=0)
+    middle, size = (low + high) / 2, float((high - low).max()) or 1.0
+    position = (used - middle) / size
+    quadric = vertex_quadrics(position, corner, np.ones(len(source)))
+    return opposite, corner, start, source, boundary, position, (middle, size), quadric

@@ -20,6 +20,7 @@ shows only in the attempt; then the error's `smallest` is the count reached, and
 """
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 
@@ -71,7 +72,8 @@ def frozen_faces(mesh: Mesh, keep: Keep = None, rings: Rings = 3) -> np.ndarray:
         near[keep[rings == left]] = True
         near |= mesh.adjacency @ near
     touched = mesh.rings(keep, 0)
-    return np.logical_or(near[mesh.faces].all(axis=1), touched[mesh.faces].any(axis=1))
+    a, b, c = mesh.faces.T
+    return (near[a] & near[b] & near[c]) | touched[a] | touched[b] | touched[c]
 
 
 def check_keep(mesh: Mesh, keep: Keep) -> np.ndarray:
@@ -103,7 +105,14 @@ def smallest_feasible(mesh: Mesh, keep: Keep = None, rings: Rings = 3) -> int:
 
     keep and rings as in `frozen_faces`. The mesh's own count where no face can be removed.
     """
-    return smallest_with(mesh, frozen_faces(mesh, keep, rings))
+    keep = check_keep(mesh, keep)
+    rings = check_rings(keep, rings)
+    return _smallest(mesh, keep[rings >= 0].tobytes(), rings[rings >= 0].tobytes())
+
+
+@lru_cache(maxsize=64)  # shrinking to several targets asks for the same neighbourhoods
+def _smallest(mesh, keep, rings):
+    return smallest_with(mesh, frozen_faces(mesh, *(np.frombuffer(each, dtype=np.int64) for each in (keep, rings))))
 
 
 def smallest_with(mesh: Mesh, frozen: np.ndarray) -> int:

@@ -7,7 +7,7 @@ import numpy as np
 
 from stages.kit import Mesh
 
-from .perceptual import Pyramid, pyramids
+from .perceptual import Analysis, analyse
 
 
 @dataclass(frozen=True)
@@ -28,6 +28,6 @@ class ObjectInputs:
     cache: dict = field(default_factory=dict, repr=False)
 
     @cached_property
-    def bands(self) -> list[Pyramid] | None:
-        """The pyramids of its own pictures."""
-        return None if self.pictures is None else pyramids(self.pictures)
+    def analyses(self) -> list[Analysis] | None:
+        """What comparisons need of its own pictures."""
+        return None if self.pictures is None else analyse(self.pictures)

@@ -1,4 +1,13 @@
-"""The difference of two pictures without their local means, at six scales (T3.1.4, T [225])."""
+"""The difference of two pictures without their local means, at six scales (T3.1.4, T [225]).
+
+The root of the mean squared difference of each of six bands, averaged over the bands, on a scale where white is 1:
+coarse bands have the same weight as fine ones, which have more pixels. The thesis's "predicted distance in Laplacian
+domain" is the second number that the authors' own program gives, beside the normalised one.
+
+Source: Laparra, Balle, Berardino and Simoncelli, Perceptual image quality assessment using a normalized Laplacian
+pyramid, Electronic Imaging 2016 (T [225]). The filter is the binomial of Burt and Adelson 1983, as in plenoptic (Duong
+et al. 2023); the authors' program takes 0.05, 0.25, 0.4, 0.25, 0.05, within 0.025 of it per tap.
+"""
 
 from collections.abc import Sequence
 
@@ -9,23 +18,9 @@ SCALES = 6  # Laparra et al. 2016: five bands and the remaining small picture
 WHITE = 255.0  # the measure is defined on 0 to 1
 
 
-def laplacian_distance(reference: np.ndarray, picture: np.ndarray) -> float:
-    """The distance of two pictures (rows, columns), 0 to 255, in the Laplacian domain; 0 for equal ones.
-
-    The root of the mean squared difference of each of six bands, averaged over the bands, on a scale where white is 1:
-    coarse bands have the same weight as fine ones, which have more pixels. The thesis's "predicted distance in
-    Laplacian domain" is the second number that the authors' own program gives, beside the normalised one.
-
-    Source: Laparra, Balle, Berardino and Simoncelli, Perceptual image quality assessment using a normalized Laplacian
-    pyramid, Electronic Imaging 2016 (T [225]). The filter is the binomial of Burt and Adelson 1983, as in
-    plenoptic (Duong et al. 2023); the authors' program takes 0.05, 0.25, 0.4, 0.25, 0.05, within 0.025 of it per tap.
-    """
-    return band_distance(laplacian_pyramid(reference), laplacian_pyramid(picture))
-
-
 def laplacian_pyramid(picture: np.ndarray) -> list[np.ndarray]:
     """Six bands, fine to coarse, of a picture (rows, columns), 0 to 255; the last is a small picture."""
-    bands, rest = [], np.asarray(picture, dtype=np.float64) / WHITE
+    bands, rest = [], np.asarray(picture, dtype=np.float32) / np.float32(WHITE)
     for _ in range(SCALES - 1):
         small = cv2.pyrDown(rest)
         bands.append(rest - _enlarge(small, rest.shape))
@@ -41,5 +36,5 @@ def _enlarge(small, shape):
 
 def band_distance(reference: Sequence[np.ndarray], bands: Sequence[np.ndarray]) -> float:
     """Root mean square over the pixels of a band, mean over the bands (Laparra et al. 2016)."""
-    roots = [np.sqrt(np.mean((a - b) ** 2)) for a, b in zip(reference, bands, strict=True)]
+    roots = [cv2.norm(a, b) / np.sqrt(a.size) for a, b in zip(reference, bands, strict=True)]
     return float(np.mean(roots))

@@ -1,11 +1,18 @@
-"""The difference of two pictures after local mean subtraction and contrast gain control (T3.1.4)."""
+"""The difference of two pictures after local mean subtraction and contrast gain control (T3.1.4).
+
+Each value of the Laplacian pyramid is divided by a constant and a weighted sum of its neighbours' sizes, before
+`laplacian.band_distance` (NLPD). Gain control gives a difference on a dark or even background a higher weight than one
+among strong contrasts. Pixels beyond the frame count as zero in the gain.
+
+Source: Laparra, Balle, Berardino and Simoncelli 2016 (T [225]), as in plenoptic 1.2.0 (Duong et al. 2023), whose scores
+the tests check, without its 1e-10 under the root, so that equal pictures are at 0. The authors' program turns the small
+asymmetric filters by 180 degrees where plenoptic does not.
+"""
 
 from collections.abc import Sequence
 
 import cv2
 import numpy as np
-
-from .laplacian import band_distance, laplacian_pyramid
 
 # Weights of the neighbours (up, left, right, down; beyond right in the first band) in a pixel's gain, and the constants
 # beside them, band by band: fitted by the authors to undistorted photographs; the table of their own program.
@@ -20,24 +27,10 @@ NEIGHBOURS = (
 CONSTANTS = (0.0248, 0.0185, 0.0179, 0.0191, 0.0220, 0.2782)
 
 
-def normalised_laplacian_distance(reference: np.ndarray, picture: np.ndarray) -> float:
-    """The distance of two pictures (rows, columns), 0 to 255, in the normalised Laplacian domain (NLPD); 0 for equal.
-
-    Each value of the Laplacian pyramid is divided by a constant and a weighted sum of its neighbours' sizes; then as in
-    `laplacian_distance`. Gain control gives a difference on a dark or even background a higher weight than
-    one among strong contrasts. Pixels beyond the frame count as zero in the gain.
-
-    Source: Laparra, Balle, Berardino and Simoncelli 2016 (T [225]), as in plenoptic 1.2.0 (Duong et al.
-    2023), whose scores the tests check, without its 1e-10 under the root, so that equal pictures are at 0. The authors'
-    program turns the small asymmetric filters by 180 degrees where plenoptic does not.
-    """
-    return band_distance(*(normalise(laplacian_pyramid(each)) for each in (reference, picture)))
-
-
 def normalise(bands: Sequence[np.ndarray]) -> list[np.ndarray]:
     """The six bands after gain control."""
     return [
-        band / (constant + cv2.filter2D(np.abs(band), -1, kernel, borderType=cv2.BORDER_CONSTANT))
+        band / cv2.filter2D(np.abs(band), -1, kernel, delta=constant, borderType=cv2.BORDER_CONSTANT)
         for band, kernel, constant in zip(bands, KERNELS, CONSTANTS, strict=True)
     ]
 

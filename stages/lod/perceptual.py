@@ -1,6 +1,7 @@
 """Errors of the pictures of a simplified mesh (T3.1.4, T3.2.9.2)."""
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import cv2
 import numpy as np
@@ -10,11 +11,17 @@ from stages.views import TWELVE, render
 
 from .laplacian import band_distance, laplacian_pyramid
 from .normalised_laplacian import normalise
-from .similarity import WINDOW, ssim_error
-
-Pyramid = tuple[list[np.ndarray], list[np.ndarray]]  # bands before and after gain control
+from .similarity import WINDOW, local_moments, ssim_error
 
 LUMA = np.array([[0.299, 0.587, 0.114]])  # ITU-R BT.601
+
+
+class Analysis(NamedTuple):
+    """Of one picture: the bands of its pyramid before and after gain control, and its local moments."""
+
+    bands: list[np.ndarray]
+    normalised: list[np.ndarray]
+    moments: tuple[np.ndarray, np.ndarray]
 
 
 def perceptual(
@@ -44,27 +51,37 @@ def take_pictures(
         raise ValueError("pictures need one viewpoint or more")
     if min(size) < WINDOW:
         raise ValueError(f"pictures of {tuple(size)} are smaller than the window of {WINDOW} pixels")
-    views = (render(mesh, viewpoint, size, renderer=renderer).rgb for viewpoint in viewpoints)
-    return np.stack([cv2.transform(rgb.astype(np.float64), LUMA) for rgb in views])
+    pictures = np.empty((len(viewpoints), *size))
+    for picture, viewpoint in zip(pictures, viewpoints, strict=True):
+        cv2.transform(render(mesh, viewpoint, size, renderer=renderer).rgb.astype(np.float64), LUMA, picture)
+    return pictures
 
 
-def pyramids(pictures: np.ndarray) -> list[Pyramid]:
-    """The bands of each of pictures (views, rows, columns), before and after gain control."""
-    return [(bands, normalise(bands)) for bands in map(laplacian_pyramid, pictures)]
+def analyse(pictures: np.ndarray) -> list[Analysis]:
+    """What the errors need of each of pictures (views, rows, columns) beside itself."""
+    return [Analysis(*_pyramids(picture), local_moments(picture)) for picture in pictures]
 
 
 def picture_errors(
-    reference: np.ndarray, pictures: np.ndarray, bands: Sequence[Pyramid] | None = None
+    reference: np.ndarray, pictures: np.ndarray, analyses: Sequence[Analysis] | None = None
 ) -> dict[str, float]:
     """dict(ssim, dlap, dnor) of pictures (views, rows, columns) against the reference's, averaged over the views.
 
-    bands: pyramids(reference), where the reference serves many comparisons.
+    analyses: analyse(reference), where the reference serves many comparisons.
     """
     if reference.shape != pictures.shape:
         raise ValueError(f"pictures of {pictures.shape} cannot be compared with the reference's {reference.shape}")
-    pairs = list(zip(bands or pyramids(reference), pyramids(pictures), strict=True))
-    return {
-        "ssim": float(np.mean([ssim_error(*pair) for pair in zip(reference, pictures, strict=True)])),
-        "dlap": float(np.mean([band_distance(ours[0], theirs[0]) for ours, theirs in pairs])),
-        "dnor": float(np.mean([band_distance(ours[1], theirs[1]) for ours, theirs in pairs])),
-    }
+    triples = zip(reference, pictures, analyses or analyse(reference), strict=True)
+    errors = np.mean([_errors(*each) for each in triples], axis=0)
+    return dict(zip(("ssim", "dlap", "dnor"), errors.tolist(), strict=True))
+
+
+def _errors(reference, picture, known):
+    bands, normalised = _pyramids(picture)
+    ssim = ssim_error(reference, picture, known.moments)
+    return ssim, band_distance(known.bands, bands), band_distance(known.normalised, normalised)
+
+
+def _pyramids(picture):
+    bands = laplacian_pyramid(picture)
+    return bands, normalise(bands)

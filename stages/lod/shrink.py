@@ -7,7 +7,7 @@ import numpy as np
 
 from stages.kit import Mesh
 
-from .feasibility import InfeasibleTarget, Keep, Rings, check_keep, check_rings, frozen_faces, smallest_with
+from .feasibility import InfeasibleTarget, Keep, Rings, check_keep, check_rings, smallest_feasible
 
 LOWER = 0.8  # of the target, at each further try
 
@@ -31,14 +31,13 @@ def shrunk_rings(mesh: Mesh, faces: int, keep: Keep, rings: Rings = 3) -> np.nda
         return rings - np.bincount(order[:steps], minlength=len(rings))
 
     def feasible(steps):
-        frozen = frozen_faces(mesh, keep, after(steps))
-        return bool(frozen.sum() <= faces and smallest_with(mesh, frozen) <= faces)  # the first test is cheap
+        return smallest_feasible(mesh, keep, after(steps)) <= faces
 
     if feasible(0):
         return rings
     steps = bisect_left(range(len(order) + 1), True, lo=1, key=feasible)
     if steps > len(order):
-        raise InfeasibleTarget(faces, smallest_with(mesh, np.zeros(len(mesh.faces), dtype=bool)))
+        raise InfeasibleTarget(faces, smallest_feasible(mesh))
     return after(steps)
 
 

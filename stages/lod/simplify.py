@@ -17,7 +17,7 @@ from .feasibility import (
     check_keep,
     check_rings,
     frozen_faces,
-    smallest_with,
+    smallest_feasible,
 )  # fmt: skip
 from .qem import collapse as collapse_by_pymeshlab
 from .shrink import shrinking_rings
@@ -69,23 +69,18 @@ def simplify(
     failures = []
     for attempt in shrinking_rings(mesh, faces, keep, rings) if shrink else [rings]:
         frozen = frozen_faces(mesh, keep, attempt)
+        smallest = smallest_feasible(mesh, keep, attempt)
         run = partial(BACKENDS[backend], mesh, frozen=frozen, weights=multipliers)
         try:
-            return carry(mesh, _run_if_feasible(run, mesh, int(faces), frozen))
+            if faces < smallest:  # before the backend starts
+                raise InfeasibleTarget(faces, smallest, int(frozen.sum()))
+            return carry(mesh, run(int(faces)))
         except (InfeasibleTarget, SimplifyError) as error:
             failures.append((error, run))
     error, run = failures[-1]
     if isinstance(error, InfeasibleTarget):
         raise InfeasibleTarget(faces, _smallest_sound(run, error.smallest, len(mesh.faces)), error.frozen)
     raise error
-
-
-def _run_if_feasible(run, mesh, faces, frozen):
-    """The backend's mesh; InfeasibleTarget before it starts where the frozen faces leave too few."""
-    smallest = smallest_with(mesh, frozen)
-    if faces < smallest:
-        raise InfeasibleTarget(faces, smallest, int(frozen.sum()))
-    return run(faces)
 
 
 def _smallest_sound(run, smallest, count):

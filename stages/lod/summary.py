@@ -4,6 +4,9 @@ from collections.abc import Sequence
 
 import pandas as pd
 
+from stages.kit.rows import some_rows
+
+COLUMNS = ("item", "method", "target", "metric", "value", "infeasible", "shrunk")
 METRICS = ("metro_mean", "ssim_error", "salient_error")
 
 
@@ -14,7 +17,7 @@ def summarise(rows: Sequence[dict]) -> dict[str, int | float | None]:
     the shares of infeasible cells and of those with shrunk neighbourhoods, over all and per method, among the cells
     that ask for fewer faces than the object has.
     """
-    table = pd.DataFrame(rows)
+    table = some_rows(rows, COLUMNS, ("faces", *METRICS))
     cells = pd.DataFrame(table[(table["metric"] == "faces") & (table["value"].notna() | table["infeasible"])])
     methods = list(dict.fromkeys(table["method"]))
     summary: dict[str, int | float | None] = {"meshes": len(cells.dropna(subset="value"))}

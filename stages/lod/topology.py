@@ -5,8 +5,9 @@ from dataclasses import astuple, dataclass
 import numpy as np
 
 from stages.kit import Mesh
+from stages.kit.components import graph_components
 
-from .kernels import count_faults, face_components, graph_components, opposites, signed_volumes, split_fans
+from .kernels import count_faults, face_components, opposites, signed_volumes, split_fans
 
 FOLD = -0.99  # cosine between neighbouring normals: folded back within 8 degrees of flat
 THIN = 1e-7  # height of a face over the bounding-box diagonal, below which it counts as degenerate

@@ -38,7 +38,7 @@ def process(item: MeshFile, folder: Path, without_plane: bool) -> Rows:
             write_mesh(folder / f"{item.name}.npz", mesh)
     except MeshError as error:
         return [row | {"note": str(error)}]
-    return [row | {"value": known["faces"], "seconds": watch.seconds, "manifest": known}]
+    return [row | {"value": known["faces"], "seconds": watch.seconds, "_manifest": known}]
 
 
 def content_hash(item: MeshFile) -> str:
@@ -61,7 +61,7 @@ def run(workspace: Workspace) -> None:
     with StageRun(workspace, "meshes") as stage:
         work = functools.partial(process, without_plane=settings.remove_plane)
         rows = stage.each(work, items, made_of={name: content_hash(item) for name, item in items.items()})
-        manifest = [row.pop("manifest") for row in rows if "manifest" in row]
+        manifest = [row["_manifest"] for row in rows if "_manifest" in row]
         refused = [(row["item"], items[row["item"]].file, row["note"]) for row in rows if row["value"] is None]
         for _, file, reason in refused:
             print(f"meshes: refused {file}: {reason}", file=sys.stderr)
@@ -72,10 +72,10 @@ def run(workspace: Workspace) -> None:
         write_table(stage.folder / "manifest.csv", pd.DataFrame(manifest))
         write_table(stage.folder / "refused.csv", pd.DataFrame(refused, columns=REFUSED))
         if settings.classes:
-            accepted = [known["object"] for known in manifest]
+            accepted = {known["object"]: None for known in manifest}  # quickly looked up, in order
             pairs = [(name, one) for name, objects in settings.classes.items() for one in objects if one in accepted]
             write_table(stage.folder / CLASSES, pd.DataFrame(pairs, columns=["class", "object"]))
-            stage.rows += small_classes(settings.classes, accepted)
+            stage.rows += small_classes(settings.classes, list(accepted))
         closed = sum(known["watertight"] for known in manifest)
         stage.metrics({"objects": len(manifest), "refused": len(refused), "watertight": closed})
     print(f"meshes: {workspace.dataset}, {len(manifest)} objects, {closed} watertight, {len(refused)} refused")

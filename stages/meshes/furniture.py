@@ -63,24 +63,25 @@ FURNITURE = {
 }
 
 
-def furniture_files() -> tuple[Path, dict[str, tuple[str, str]]]:
+def furniture_files(everything: bool = False) -> tuple[Path, dict[str, tuple[str, str]]]:
     """(path of an archive in the cache with NAME.obj for each name of FURNITURE, {name: (creator, unit)}).
 
-    The archive is made from the package of 119.8 MB when it is missing; its file name depends on FURNITURE. The unit
-    is a length in cm: models differ in scale, and the catalogue states their height. Raises FetchError, saying which
-    file to put where, when the package cannot be fetched.
+    everything: for each of the 820 entries instead, named LIBRARY__ENTRY. The archive is made from the package of
+    119.8 MB when it is missing; its file name depends on what is in it. The unit is a length in cm: models differ in
+    scale, and the catalogue states their height. Raises FetchError, saying which file to put where, when the package
+    cannot be fetched.
     """
-    listed = hashlib.sha256(repr(FURNITURE).encode()).hexdigest()[:8]
+    listed = "all" if everything else hashlib.sha256(repr(FURNITURE).encode()).hexdigest()[:8]
     extract = cache_folder() / f"furniture-1.8-1-{listed}.zip"
     if not zipfile.is_zipfile(extract):
-        _extract(fetch_debian(PACKAGE, HASH), extract)
+        _extract(fetch_debian(PACKAGE, HASH), extract, everything)
     with zipfile.ZipFile(extract) as stored:
-        comments = {name: stored.getinfo(f"{name}.obj").comment.decode() for name in FURNITURE}
+        comments = {one.filename.removesuffix(".obj"): one.comment.decode() for one in stored.infolist()}
     metadata = {name: (comment.split("\n")[0], comment.split("\n")[1]) for name, comment in comments.items()}
     return extract, metadata
 
 
-def _extract(package, extract):
+def _extract(package, extract, everything):
     with whole_file(extract) as part, zipfile.ZipFile(part, "w", zipfile.ZIP_DEFLATED) as target:
         for path, stream in debian_files(package):
             library = path.removeprefix(f"{FOLDER}/").removesuffix(".sh3f")
@@ -88,7 +89,11 @@ def _extract(package, extract):
                 continue
             archive = io.BytesIO(stream.read())
             entries = _entries(next(read_members(archive, [CATALOGUE]))[1])
-            for name, (where, entry) in FURNITURE.items():
+            every = {
+                re.sub(r"[^\w-]", "_", f"{library}__{entry}"): (library, entry)
+                for entry in sorted(filter(None, entries))
+            }
+            for name, (where, entry) in (every if everything else FURNITURE).items():
                 if where == library:
                     _copy(archive, entries[entry], name, target)
 
@@ -96,8 +101,9 @@ def _extract(package, extract):
 def _copy(archive, entry, name, target):
     ((_, content),) = read_members(archive, [entry["model"].lstrip("/")])
     member = zipfile.ZipInfo(f"{name}.obj")
-    unit = float(entry["height"]) / np.ptp(obj_vertices(content)[:, UP])
-    member.comment = f"{entry['creator']}\n{unit:.3g} cm".encode()
+    height = np.ptp(obj_vertices(content)[:, UP])  # of a carpet or a poster this may be zero
+    unit = f"{float(entry['height']) / height:.3g} cm" if height > 0 else "unknown"
+    member.comment = f"{entry['creator']}\n{unit}".encode()
     target.writestr(member, content, zipfile.ZIP_DEFLATED)
 
 

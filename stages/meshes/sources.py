@@ -86,8 +86,17 @@ def furniture(settings: Params) -> list[MeshFile]:
     ]
 
 
+def catalogue(settings: Params) -> list[MeshFile]:
+    """All 820 models of the same package, named LIBRARY__ENTRY. All have +y up."""
+    extract, metadata = furniture_files(everything=True)
+    return [
+        _furniture_file(extract, name, *metadata[name]) for name in _select_objects(tuple(metadata), settings.objects)
+    ]
+
+
 def _furniture_file(extract, name, creator, unit):
-    library, entry = FURNITURE[name]
+    library, _, entry = name.partition("__")
+    library, entry = FURNITURE.get(name, (library, entry))
     content = Content(partial(_member, extract, f"{name}.obj"))
     return MeshFile(name, f"{library}/{entry}.obj", ".obj", content, "y", unit, LICENCES[library], creator)
 
@@ -214,15 +223,16 @@ def _off_bytes(content):
 
 
 SOURCES = {
-    "household": household, "furniture": furniture, "folder": folder, "gaze": gaze, "princeton": princeton,
-    "interest_points": interest_points,
+    "household": household, "furniture": furniture, "catalogue": catalogue, "folder": folder, "gaze": gaze,
+    "princeton": princeton, "interest_points": interest_points,
 }  # fmt: skip
 
 
 def _select_objects(available, wanted):
-    missing = [name for name in wanted if name not in available]
+    known, chosen = set(available), set(wanted)
+    missing = [name for name in wanted if name not in known]
     if missing:
         raise MeshError(
             f"meshes.objects names {', '.join(missing)}, which the source does not have. It has {', '.join(available)}"
         )
-    return [name for name in available if not wanted or name in wanted]
+    return [name for name in available if not wanted or name in chosen]

@@ -9,7 +9,6 @@ same splits, and a row with a note for each network whose weights are not at han
 import dataclasses
 import functools
 import sys
-import warnings
 
 import numpy as np
 
@@ -31,8 +30,6 @@ def run(workspace: Workspace) -> None:
     settings, recorded = workspace.settings(Params), workspace.settings(RecordedParams)
     if recorded.kind not in SOURCES:
         raise ValueError(f"recorded.kind={recorded.kind!r} is not one of {', '.join(SOURCES)}")
-    # Torch's caches make a worker grow; joblib then renews it between two items, loses none, and warns.
-    warnings.filterwarnings("ignore", message="A worker stopped while some jobs")
     recordings = SOURCES[recorded.kind](recorded.path(workspace.root))
     with StageRun(workspace, "recorded_networks", COLUMNS) as stage:
         absent = {method: why for method in settings.networks if (why := why_absent(method, settings))}

@@ -6,12 +6,15 @@ reports/claims/differences.csv.gz, reports/index.html and reports/metrics/report
 listed as not run, with the stage to run.
 """
 
+from functools import partial
+from operator import call
 from pathlib import Path
 
 import pandas as pd
 
 from stages.kit.command import workspace_of_arguments
 from stages.kit.files import write_json, write_table, write_text
+from stages.kit.parallel import parallel_map
 
 from .items import Built
 from .markdown import as_text, markdown_table
@@ -41,10 +44,9 @@ def main() -> None:
 def write_report(results: Results) -> None:
     """Builds and writes everything, and prints what could not be."""
     out, own = results.reports, results.own_meshes
-    built = {kind: build_all(kind, results) for kind in KINDS}
+    built, (claims, differences) = side_by_side(results)
     remove_older(built, out)
     not_run = {f"{kind}/{name}": why for kind, found in built.items() for name, why in found.not_run.items()}
-    claims, differences = judged(CLAIMS, results)
     if own:  # what would need other data sets is left out
         claims, not_run = claims[claims["pairs"] > 0], {"what needs other data sets": OWN_NOTE}
     write_claims(claims, differences, out)
@@ -63,6 +65,21 @@ def write_report(results: Results) -> None:
         f"report: {made['tables']} tables, {made['figures']} figures, {made['tradeoff']} charts; claims: "
         f"{', '.join(f'{count} {word}' for word, count in counts(claims).items())}; open {out / 'index.html'}"
     )
+
+
+def side_by_side(results: Results) -> tuple[dict[str, Built], tuple[pd.DataFrame, pd.DataFrame]]:
+    """(what was built of each kind, what `judged` says): a job for each kind of a topic, the longest jobs first."""
+    parts = [(kind, topic) for kind in ("figures", "tradeoff", "tables") for topic in TOPICS]
+    jobs = [partial(judged, CLAIMS, results), *(partial(build_all, kind, results, [topic]) for kind, topic in parts)]
+    where = dict(results.workspace.parallel)
+    if where.get("backend") == "dask":  # the files that a topic reads are here alone
+        where["backend"] = "loky"
+    verdicts, *found = parallel_map(call, jobs, "report", **where)
+    built = {kind: Built() for kind in KINDS}
+    for (kind, _), one in zip(parts, found, strict=True):
+        built[kind].items += one.items
+        built[kind].not_run |= one.not_run
+    return built, verdicts
 
 
 def remove_older(built: dict[str, Built], out: Path) -> None:

@@ -1,6 +1,7 @@
 """Pictures of meshes on a white page: lit surface, colour a vertex, wires and points, drawn by rays."""
 
 from collections.abc import Iterable, Sequence
+from functools import lru_cache
 
 import matplotlib
 import numpy as np
@@ -34,22 +35,35 @@ def picture(
     smoothing: int = 2,
 ) -> np.ndarray:
     """(rows, rows, 3) f8 in 0..1: the mesh on white. values (n,) in 0..1 colour the vertices; wires draws the edges."""
-    size = (rows * smoothing, rows * smoothing)
-    down, across = np.mgrid[: size[0], : size[1]].reshape(2, -1)
-    origins, directions = pixel_rays(down, across, viewpoint, size)
-    hits = RayScene(mesh).cast(origins, directions)
-    seen = np.flatnonzero(hits.hit)
-    face = hits.face[seen]
-    where = origins[seen] + directions[seen] * hits.distance[seen, None]
-    weights = np.clip(barycentric(mesh, face, where), 0, 1)
+    side = rows * smoothing
+    seen, face, weights, light = _surface(mesh, viewpoint, side)
     base = CLAY if values is None else colour_map(np.einsum("ij,ij->i", weights, values[mesh.faces[face]]))
-    shaded = base * _light(mesh, face, weights, viewpoint)[:, None]
+    shaded = base * light[:, None]
     if wires:
-        near = _edge_distance(mesh, face, weights) * pixels_per_unit(size[0])
+        near = _edge_distance(mesh, face, weights) * pixels_per_unit(side)
         shaded = np.where((near < 0.4 * smoothing)[:, None], WIRE, shaded)
-    image = np.ones((size[0] * size[1], 3))
+    image = np.ones((side * side, 3))
     image[seen] = np.clip(shaded, 0, 1)
     return image.reshape(rows, smoothing, rows, smoothing, 3).mean(axis=(1, 3))
+
+
+_scene = lru_cache(maxsize=2)(RayScene)  # a mesh is drawn many times in turn, with its points and in many colours
+
+
+@lru_cache(maxsize=2)
+def _surface(mesh: Mesh, viewpoint: Viewpoint, side: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """What a square picture shows: (pixels (k,), their faces (k,), the places in these (k, 3), the light (k,))."""
+    size = (side, side)
+    box = [slice(*np.clip((ends.min() - 1, ends.max() + 3), 0, side).astype(int))
+           for ends in project(mesh.vertices, viewpoint, size)[:2]]  # fmt: skip
+    down, across = np.mgrid[*box].reshape(2, -1)  # no ray beside the mesh
+    origins, directions = pixel_rays(down, across, viewpoint, size)
+    hits = _scene(mesh).cast(origins, directions)
+    on = np.flatnonzero(hits.hit)
+    face = hits.face[on]
+    where = origins[on] + directions[on] * hits.distance[on, None]
+    weights = np.clip(barycentric(mesh, face, where), 0, 1)
+    return side * down[on] + across[on], face, weights, _light(mesh, face, weights, viewpoint)
 
 
 def vivid(values: np.ndarray) -> np.ndarray:
@@ -64,7 +78,7 @@ def visible(
     """(rows (k',), columns (k',)) in the picture of those of the vertices (k,) that the viewer sees."""
     points, normals, back = mesh.vertices[vertices], mesh.vertex_normals[vertices], viewpoint.axes[2]
     start = points + 1e-3 * normals  # off the surface, or each point would hide itself
-    hidden = RayScene(mesh).cast(start, np.broadcast_to(back, points.shape)).hit
+    hidden = _scene(mesh).cast(start, np.broadcast_to(back, points.shape)).hit
     return project(points[~hidden & (normals @ back > 0)], viewpoint, (rows, rows))[:2]
 
 

@@ -15,13 +15,17 @@ from .style import save
 
 @dataclass(eq=False, kw_only=True)
 class Item:
-    """What tables and figures have in common. sets: the data sets that it was read from; paths: its files."""
+    """What tables and figures have in common.
+
+    sets: the data sets that it was read from; paths: its files; html: its section of the page.
+    """
 
     name: str = ""
     topic: str = ""
     title: str = ""
     sets: list[str] = field(default_factory=list)
     paths: list[Path] = field(default_factory=list)
+    html: str = ""
 
 
 @dataclass(eq=False)

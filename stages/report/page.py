@@ -46,7 +46,7 @@ def build_page(modules: Sequence[ModuleType], parts: dict[str, Any]) -> str:
         "viewer": part("viewer.html") if meshes else f"<p>not run: {escape(not_run.get('viewer', ''))}</p>",
         "dataset": escape(parts["dataset"]),
         "heading": "Your meshes" if parts["own"] else "The pipeline on one object",
-        "first": "".join(map(item_html, first)),
+        "first": "".join(item.html for item in first),
         "contents": " ".join(f'<a href="#{name}">{name.capitalize()}</a>' for name in sections),
         "claims": claims,
         "topics": "".join(topics.values()),
@@ -68,11 +68,11 @@ def topic_html(module: ModuleType, parts: dict[str, Any], items: list[Table | Fi
     if len(claims):
         said = ", ".join(f"<strong>{count}</strong> {word}" for word, count in counts(claims).items())
         text += _folded(f"{len(claims)} claims: {said}", frame_html(claims_shown(claims), "Claims", "verdict"))
-    text += "".join(item_html(item) for item in mine if item not in others)
+    text += "".join(item.html for item in mine if item not in others)
     if others:
         sets = ", ".join(dict.fromkeys(name for item in others for name in item.sets))
         said = f"{len(others)} more, measured on data sets that are not part of this run: {sets}"
-        text += _folded(escape(said), "".join(map(item_html, others)))
+        text += _folded(escape(said), "".join(item.html for item in others))
     return f'<section id="{name}"><h2>{name.capitalize()}</h2><p class="lead">{lead}</p>{text}</section>\n'
 
 

@@ -12,6 +12,7 @@ from stages.conspicuity.storage import read_maps
 from stages.imprints import read_imprints
 from stages.kit import Mesh, Viewpoint
 from stages.kit.files import read_arrays, read_mesh, read_table
+from stages.kit.packs import files_below, is_there, object_files
 from stages.kit.rows import SUFFIX, read_rows
 from stages.kit.workspace import Workspace
 from stages.salient_points import read_points, read_saliency, read_strong_points
@@ -39,7 +40,7 @@ def some(found: Found, what: str, stage: str, runnable: bool = True) -> Found:
 
 def there(path: Path, what: str, stage: str, runnable: bool = True) -> Path:
     """The path of a file; NotRun of `what` where it is not there."""
-    if not path.exists():
+    if not is_there(path):
         raise NotRun(what, stage, runnable)
     return path
 
@@ -188,12 +189,12 @@ class Results:
     @cached_property
     def objects(self) -> list[str]:
         """Names of all objects with a mesh in the first set that has meshes, in alphabetical order."""
-        return some(sorted(path.stem for path in self.folder("meshes").glob("*.npz")), "no meshes", "meshes")
+        return some(object_files(self.folder("meshes")), "no meshes", "meshes")
 
     def choose(self, preferred: Sequence[str], count: int, stage: str = "salient_points") -> list[str]:
         """Up to `count` objects that `stage` has data for: the preferred ones first, then by the alphabet."""
         folder = self.folder(stage)
-        ready = [name for name in self.objects if (folder / f"{name}.npz").exists() or (folder / name).is_dir()]
+        ready = [name for name in self.objects if is_there(folder / f"{name}.npz") or files_below(folder / name)]
         some(ready, f"no objects in {stage}", stage)
         return sorted(ready, key=lambda name: [*preferred, name].index(name))[:count]
 
@@ -253,7 +254,7 @@ class Results:
 
     def lods(self, name: str, method: str, dataset: str | None = None) -> list[tuple[str, Mesh]]:
         """Simplified meshes of one method, most faces first: list of (target, Mesh)."""
-        paths = list((self.folder("lod", dataset) / name).glob(f"{method}_*.npz"))
+        paths = [path for path in files_below(self.folder("lod", dataset) / name) if path.match(f"{method}_*.npz")]
         some(paths, f"no lod/{name}/{method}_*.npz", "lod")
         found = [(path.stem.removeprefix(f"{method}_").replace("pct", "%"), read_mesh(path)) for path in paths]
         return sorted(found, key=lambda item: (-len(item[1].faces), item[0]))

@@ -18,6 +18,7 @@ from . import (
     transfer,
 )
 from .items import Built, Figure, Table
+from .page import item_html
 from .prose import add_words
 from .results import NotRun, Results
 from .style import SETTINGS, plt
@@ -35,9 +36,14 @@ def build_all(kind: str, results: Results, topics: Iterable[ModuleType] = TOPICS
     for topic in topics:
         for name in getattr(topic, KINDS[kind]):
             try:
-                built.items.append(build_one(topic, kind, name, results))
+                item = build_one(topic, kind, name, results)
             except NotRun as missing:
                 built.not_run[name] = str(missing)
+                continue
+            item.html = item_html(item)
+            if isinstance(item, Figure):
+                item.drawing.clear()  # its pictures would fill the memory, and travel between processes
+            built.items.append(item)
     return built
 
 

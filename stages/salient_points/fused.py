@@ -19,6 +19,7 @@ class FusedDetector:
 
     def __init__(self, channels: Iterable[str]) -> None:
         self.channels = tuple(channels)
+        self.parts: tuple[FusedDetector, ...] = (self,)  # whose points it has
 
     def fused(self, sight: ViewMaps, _options: Options) -> np.ndarray:
         """(p,) f8: the saliency of each pixel of all views."""
@@ -35,22 +36,12 @@ class FusedDetector:
         """(n,) f8 in 0..1 per vertex."""
         return sight.vertex_saliency(self.fused(sight, options), options.smoothing)
 
-    def candidates(self, sight: ViewMaps, options: Options, count: int | None) -> tuple[np.ndarray, ...]:
-        """The points of each view, before they are merged: (vertices, values, strong), each (c,)."""
-        values = self.fused(sight, options)
-        select, radius = SELECTIONS[options.selection], options.radius * sight.pixels_per_unit
-        parts = []
-        for view in range(len(sight.viewpoints)):
-            image, ids = sight.cropped_image(values, view)
-            selected = select(image, radius, count)
-            strong = np.arange(len(selected.rows)) < selected.strong
-            parts.append((ids[selected.rows, selected.columns], selected.values, strong))
-        return tuple(np.concatenate(part) for part in zip(*parts, strict=True))
-
     def find(self, mesh: Mesh, sight: ViewMaps, options: Options, count: int | None = None) -> Detection:
         """The Detection; count None gives the strong points alone."""
-        saliency = self.saliency(mesh, sight, options)
-        vertices, values, above = self.candidates(sight, options, count)
+        fused = [part.fused(sight, options) for part in self.parts]
+        saliency = sight.vertex_saliency(fused[0], options.smoothing)
+        candidates = [_candidates(sight, values, options, count) for values in fused]
+        vertices, values, above = (np.concatenate(part) for part in zip(*candidates, strict=True))
         points, strong = merge_views(mesh, vertices, values, above, options.radius)
         if count is not None:
             points = continue_on_surface(mesh, points, saliency, options.radius, count)
@@ -96,11 +87,19 @@ class MergedDetector(FusedDetector):
 
     def __init__(self, *parts: FusedDetector) -> None:
         super().__init__(dict.fromkeys(channel for part in parts for channel in part.channels))
-        self._parts = parts
+        self.parts = parts
 
     def fused(self, sight: ViewMaps, options: Options) -> np.ndarray:
-        return self._parts[0].fused(sight, options)
+        return self.parts[0].fused(sight, options)
 
-    def candidates(self, sight: ViewMaps, options: Options, count: int | None) -> tuple[np.ndarray, ...]:
-        per_method = [part.candidates(sight, options, count) for part in self._parts]
-        return tuple(np.concatenate(part) for part in zip(*per_method, strict=True))
+
+def _candidates(sight, values, options, count):
+    """The points of each view of a map (p,), before they are merged: (vertices, values, strong), each (c,)."""
+    select, radius = SELECTIONS[options.selection], options.radius * sight.pixels_per_unit
+    parts = []
+    for view in range(len(sight.viewpoints)):
+        image, ids = sight.cropped_image(values, view)
+        selected = select(image, radius, count)
+        strong = np.arange(len(selected.rows)) < selected.strong
+        parts.append((ids[selected.rows, selected.columns], selected.values, strong))
+    return tuple(np.concatenate(part) for part in zip(*parts, strict=True))

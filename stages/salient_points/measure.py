@@ -7,6 +7,7 @@ import pandas as pd
 from scipy.spatial import cKDTree  # pyright: ignore[reportAttributeAccessIssue] (compiled, without a stub)
 
 from stages.kit import Mesh
+from stages.kit.rows import some_rows
 
 from .options import Detection
 
@@ -36,7 +37,6 @@ def measurement_rows(
 
 def summary(rows: Sequence[dict]) -> dict[str, float]:
     """Means over the objects of the SUMMARISED metrics, for the gate: dict "METHOD.METRIC" -> value, six digits."""
-    table = pd.DataFrame(rows, columns=["method", "metric", "value"])
-    table = table[table.metric.isin(SUMMARISED)].dropna()
+    table = some_rows(rows, ("method", "metric", "value"), SUMMARISED).dropna()
     means = pd.DataFrame(table.groupby(["method", "metric"])["value"].mean()).reset_index()
     return {f"{method}.{metric}": round(float(value), 6) for method, metric, value in means.itertuples(index=False)}

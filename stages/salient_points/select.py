@@ -5,6 +5,8 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
+from .kernels import suppress
+
 SUPPRESSION_THRESHOLD = 0.9  # of the map's maximum; T3.2.5
 REGION_SHARE = 0.3  # of the object's pixels, the most salient ones; T3.1.1
 
@@ -32,31 +34,15 @@ def select_by_suppression(
     gives no points. Raises ValueError for a map that is empty, not 2D, negative or NaN, and for a negative radius or
     count.
     """
-    left = check_map(image).copy()
+    image = check_map(image)
+    left = image.copy()
     if radius < 0 or (count is not None and count < 0):
         raise ValueError(f"radius and count must not be negative, got {radius} and {count}")
     floor = threshold * left.max()
-    limit = left.size if count is None else count
-    pixels, values = [], []
-    while len(pixels) < limit:
-        at = np.unravel_index(left.argmax(), left.shape)
-        if left[at] <= (floor if count is None else 0):
-            break
-        pixels.append(at)
-        values.append(left[at])
-        _clear_disc(left, at, radius)
-    rows, columns = np.array(pixels, dtype=np.int64).reshape(-1, 2).T
-    values = np.array(values, dtype=np.float64)
+    taken = suppress(left, radius, left.size if count is None else count, floor if count is None else 0.0)
+    rows, columns = np.unravel_index(taken, left.shape)
+    values = image[rows, columns]
     return SelectedPixels(rows, columns, values, int((values > floor).sum()))
-
-
-def _clear_disc(image, centre, radius):
-    extent = int(radius)
-    (r, c), (h, w) = centre, image.shape
-    top, left = max(r - extent, 0), max(c - extent, 0)
-    rows, columns = np.ogrid[top : min(r + extent + 1, h), left : min(c + extent + 1, w)]
-    window = image[top : top + len(rows), left : left + columns.size]
-    window[(rows - r) ** 2 + (columns - c) ** 2 <= radius**2] = 0
 
 
 def select_by_centroid(image: np.ndarray, count: int | None = None, share: float = REGION_SHARE) -> SelectedPixels:

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from stages.kit import Stopwatch
 from stages.kit.command import workspace_of_arguments
+from stages.kit.kept_rows import KeptRows
 from stages.kit.run import Rows, StageRun
 from stages.kit.workspace import Workspace
 from stages.lod.variant import variant
@@ -59,11 +60,10 @@ def run(workspace: Workspace) -> None:
         own = [pattern.format(name) for name in shown for pattern in (MESH, POINTS)]
         learned_from = [pattern.format(name) for name in others for pattern in (MESH, CURVE)]
         given = {"data": data, "made": stage.folder, "settings": settings, "shown": shown, "seed": stage.seed}
-        rows = stage.each(functools.partial(measure, **given), factors, [*own, LEVELS], values)
+        rows = [*stage.each(functools.partial(measure, **given), factors, [*own, LEVELS], values)]
         network = functools.partial(measure_network, **given, others=others)
         rows += stage.each(network, factors, [*own, *learned_from, LEVELS, PLAN], values)
-        for row in stage.rows:
-            row["group"] = settings.name
+        stage.rows = KeptRows([row | {"group": settings.name} for row in stage.rows])
         stage.rows += evaluation_rows(data, stage.objects, stage.seed, stage.map)
         export(stage.folder, data, scene, settings)
         found = summary(rows)

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -32,7 +33,7 @@ class Camera:
         if min(self.size) < 1:
             raise ValueError(f"a screen of {self.size[0]} x {self.size[1]} pixels shows nothing")
 
-    @property
+    @cached_property
     def axes(self) -> np.ndarray:
         """(3, 3) rows right, up, forward: the camera's axes in the world."""
         forward = unit(np.subtract(self.target, self.eye))

@@ -7,7 +7,7 @@ other: a part that has shrunk shows in the first, one that sticks out in the sec
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from .pictures import structure_lost, structures_lost
 from .place import Scene
 from .rendering import Rendering, nearest, nearest_two, pixel_box, rays_of, render_level, shade
 
+RECENT = 8  # errors remembered for each frame of a scene
 QUANTILE = 0.99  # of an object's pixels are within the error: one in a hundred may be a sliver on an edge
 
 
@@ -48,6 +49,7 @@ class Frames:
         self._renderings: dict[tuple, Rendering] = {}
         self._displacements: dict[tuple, np.ndarray] = {}
         self._colors: dict[tuple, np.ndarray] = {}
+        self._checked = lru_cache(RECENT * len(scene.cameras))(self._check)
 
     @cached_property
     def distance(self) -> np.ndarray:
@@ -145,11 +147,17 @@ class Frames:
         return _quantile(np.concatenate(sides))
 
     def check(self, frame: int, levels: Sequence[Level]) -> FrameError:
-        """The FrameError of a rendered frame with one level per object, over the pixels in which each is visible."""
+        """The FrameError of a rendered frame with one level per object, over the pixels in which each is visible.
+
+        The latest of each frame are remembered: two plans of a search often show a frame at the same levels.
+        """
+        return self._checked(frame, tuple(levels))
+
+    def _check(self, frame, levels):
         self.measure([(frame, item, self.full[item], level) for item, level in enumerate(levels)])
         sides = [[np.zeros(0, np.float32)] for _ in levels]
-        for shown, others in ((self.full, levels), (levels, self.full)):
-            owner = self.owners(frame, shown)
+        owners = self._others[frame][2], self.owners(frame, levels)
+        for owner, shown, others in zip(owners, (self.full, levels), (levels, self.full), strict=True):
             for item, (one, other) in enumerate(zip(shown, others, strict=True)):
                 mine = owner[self.rendering(frame, item, one).pixels] == item
                 sides[item].append(self._displacements[frame, item, one, other][mine])

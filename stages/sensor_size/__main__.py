@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from sklearn import config_context
 from threadpoolctl import threadpool_limits
 
 from stages.imprints import press_many, touchable, warm_up
@@ -41,7 +42,8 @@ def process(item: str, folder: Path, data: Path, classes: Mapping[str, list[str]
         }
     count = sum(len(images) for objects in imprints.values() for images in objects)
     rows = [{"metric": "seconds_a_touch", "value": watch.seconds / count, "seconds": watch.seconds}]
-    with threadpool_limits(1):  # equal sums on any number of cores
+    # One thread gives equal sums on any number of cores. The fits of trees are so small that checks would take longer.
+    with threadpool_limits(1), config_context(assume_finite=True, skip_parameter_validation=True):
         rows += evaluate(imprints, settings.classifiers, seed)
     for row in rows[1:]:
         row["item"] = classes[row["group"]][row["item"]]

@@ -29,17 +29,17 @@ def evaluate(imprints: dict[str, list[np.ndarray]], names: list[str], seed: int 
     check_imprints(imprints)
     rows = []
     for split, fold, train, test in _splits(imprints, seed):
-        samples, components = _components([images for _, images in train])
-        labels = np.concatenate([[label] * len(images) for label, images in train])
+        samples, test_samples = _components([images for _, images in train], [images for *_, images in test])
+        labels = np.repeat([label for label, _ in train], [len(images) for _, images in train])
+        ends = np.cumsum([len(images) for *_, images in test])[:-1]
         random_state = int(rng(seed, f"{SEEDS[split]} {fold}").integers(2**31))
         for name in names:
             model = classifier(name, random_state)
             with Stopwatch() as watch:
-                model.fit(samples, labels)
-                accuracies = [float((model.predict(components(images)) == label).mean()) for label, _, images in test]
+                answers = np.split(model.fit(samples, labels).predict(test_samples), ends)
             common = {"classifier": name, "split": split, "fold": fold, "metric": "accuracy", "seconds": watch.seconds}
-            rows += [{**common, "group": label, "item": index, "value": value}
-                     for (label, index, _), value in zip(test, accuracies, strict=True)]  # fmt: skip
+            rows += [{**common, "group": label, "item": index, "value": float((answer == label).mean())}
+                     for (label, index, _), answer in zip(test, answers, strict=True)]  # fmt: skip
     return rows
 
 
@@ -58,13 +58,13 @@ def _splits(imprints, seed):
     yield Split.RANDOM, 0, train, test
 
 
-def _components(parts):
-    """(components of all training images, a function that gives the components of others)."""
+def _components(*sides):
+    """The components of all images of each side, [images of each object], fitted to the first side."""
     from sklearn.decomposition import PCA
 
-    samples = np.concatenate([images.reshape(len(images), -1) for images in parts])
-    fitted = PCA(COMPONENTS, svd_solver="arpack", random_state=0).fit(samples)
-    return fitted.transform(samples), lambda images: fitted.transform(images.reshape(len(images), -1))
+    samples = [np.concatenate([images.reshape(len(images), -1) for images in side]) for side in sides]
+    fitted = PCA(COMPONENTS, svd_solver="arpack", random_state=0).fit(samples[0])
+    return [fitted.transform(one) for one in samples]
 
 
 def check_imprints(imprints: dict[str, list[np.ndarray]]) -> None:

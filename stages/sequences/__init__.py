@@ -1,18 +1,17 @@
 """Classification of objects by following a contour: networks and conventional classifiers (T4.4.7 to T4.4.10).
 
-Public names: classifier, directional_std, sequence_features, series, ImageNet, NormalNet.
+Public names: directional_std, sequence_features, series, ImageNet, NormalNet.
 """
 
 from typing import TYPE_CHECKING
 
-from .classifiers import classifier
 from .contourlet import directional_std
 from .series import sequence_features, series
 
 if TYPE_CHECKING:
     from .networks import ImageNet, NormalNet
 
-__all__ = ["ImageNet", "NormalNet", "classifier", "directional_std", "sequence_features", "series"]
+__all__ = ["ImageNet", "NormalNet", "directional_std", "sequence_features", "series"]
 
 
 def __getattr__(name: str) -> object:

@@ -8,7 +8,6 @@ classifier, of unseen objects also one per class; what is taken for what, and th
 
 import functools
 import sys
-import warnings
 from collections import defaultdict
 from pathlib import Path
 from typing import Any
@@ -76,8 +75,6 @@ def summary(rows: Rows, seed: int) -> dict[str, Any]:
 def run(workspace: Workspace) -> None:
     """Runs the stage on the data set of a workspace."""
     settings, data = workspace.settings(Params), workspace.data
-    # Torch's caches make a worker grow; joblib then renews it between two items, loses none, and warns.
-    warnings.filterwarnings("ignore", message="A worker stopped while some jobs")
     with StageRun(workspace, "sequences", COLUMNS, inputs=("meshes", "contours")) as stage:
         planned = plan(read_classes(data / "meshes"), data / "contours", settings)
         train = functools.partial(process, data=data, members=planned.members, settings=settings, seed=stage.seed)

@@ -1,12 +1,15 @@
 """The two conventional classifiers of T table 4.9, with and without a self-organising map."""
 
+from typing import NamedTuple
+
 import numpy as np
 from sklearn.base import BaseEstimator, ClassifierMixin
 from sklearn.neighbors import KNeighborsClassifier
-from sklearn.pipeline import Pipeline, make_pipeline
+from sklearn.pipeline import make_pipeline
 from sklearn.preprocessing import StandardScaler
 from sklearn.svm import SVC
 
+from stages.kit import Stopwatch
 from stages.kit.self_organising_map import NEURONS, SelfOrganisingMap
 
 from .reduction import MostInformative
@@ -48,38 +51,54 @@ ESTIMATORS = {"knn": knn, "svm": svm}
 CONVENTIONAL = ("knn", "svm", "knn_no_som", "svm_no_som")
 
 
-def selection() -> Pipeline:
-    """Keeps the features with the most information about the class, and standardises them."""
-    return make_pipeline(MostInformative(), StandardScaler())
+class Mapped(NamedTuple):
+    """Samples (k, d) to train and to test on, after the map of some number of dimensions; seconds: the time taken."""
+
+    train: np.ndarray
+    test: np.ndarray
+    seconds: float
 
 
-def classifier(name: str, dimensions: int | None) -> Pipeline:
-    """The pipeline of one of CONVENTIONAL: information gain, z-score, map of `dimensions`, z-score, classifier.
+class Reduced:
+    """Features to train and to test on: information gain, z-score, map, z-score, made once for all classifiers.
 
-    dimensions None: no map. Every step is fitted to the samples that `fit` is given.
+    samples (k, d), labels (k,); train, test: indices. Every step is fitted to the training samples.
     """
-    return make_pipeline(selection(), _after_selection(name, dimensions))
+
+    def __init__(self, samples: np.ndarray, labels: np.ndarray, train: np.ndarray, test: np.ndarray) -> None:
+        self.train_labels, self.test_labels = labels[train], labels[test]
+        steps = make_pipeline(MostInformative(), StandardScaler())
+        with Stopwatch() as watch:
+            selected = steps.fit_transform(samples[train], self.train_labels), steps.transform(samples[test])
+        self._selected, self._mapped = Mapped(*selected, watch.seconds), {}
+
+    def mapped(self, dimensions: int | None) -> Mapped:
+        """The samples on a map of that many dimensions, the seconds as if made alone; None: without a map."""
+        if dimensions is None:
+            return self._selected
+        if dimensions not in self._mapped:
+            train, test, seconds = self._selected
+            steps = make_pipeline(SelfOrganisingMap(dimensions, NEURONS), StandardScaler())
+            with Stopwatch() as watch:
+                placed = steps.fit_transform(train), steps.transform(test)
+            self._mapped[dimensions] = Mapped(*placed, seconds + watch.seconds)
+        return self._mapped[dimensions]
+
+    def predict(self, name: str, dimensions: int | None) -> tuple[np.ndarray, float]:
+        """(predictions for the test samples, seconds with those of the steps before) of one of CONVENTIONAL."""
+        train, test, seconds = self.mapped(dimensions)
+        with Stopwatch() as watch:
+            estimator = ESTIMATORS[name.removesuffix("_no_som")](dimensions is not None)
+            predicted = estimator.fit(train, self.train_labels).predict(test)
+        return predicted, seconds + watch.seconds
 
 
-def choose_dimensions(
-    name: str, samples: np.ndarray, labels: np.ndarray, fit: np.ndarray, validation: np.ndarray
-) -> int:
-    """The number in MAP_DIMENSIONS with the highest accuracy on `validation` when trained on `fit`.
+def choose_dimensions(name: str, validation: Reduced) -> tuple[int, float]:
+    """(the number in MAP_DIMENSIONS with the highest accuracy on the test samples of `validation`, seconds).
 
-    Of equal accuracies the smallest counts. samples (k, d), labels (k,); fit and validation are disjoint indices of
-    training samples. The thesis does not say on which data it chose. Choosing on the test samples would be optimistic.
+    Of equal accuracies the smallest counts. The samples are to be a split of the training samples: the thesis does not
+    say on which data it chose, and choosing on the test samples would be optimistic.
     """
-    selected = selection().fit(samples[fit], labels[fit])
-    fit_samples, validation_samples = selected.transform(samples[fit]), selected.transform(samples[validation])
-    accuracies = [
-        _after_selection(name, dimensions).fit(fit_samples, labels[fit]).score(validation_samples, labels[validation])
-        for dimensions in MAP_DIMENSIONS
-    ]
-    return MAP_DIMENSIONS[accuracies.index(max(accuracies))]
-
-
-def _after_selection(name, dimensions):
-    estimator = ESTIMATORS[name.removesuffix("_no_som")](dimensions is not None)
-    if dimensions is None:
-        return estimator
-    return make_pipeline(SelfOrganisingMap(dimensions, NEURONS), StandardScaler(), estimator)
+    answers, seconds = zip(*(validation.predict(name, dimensions) for dimensions in MAP_DIMENSIONS), strict=True)
+    accuracies = [(answer == validation.test_labels).mean() for answer in answers]
+    return MAP_DIMENSIONS[accuracies.index(max(accuracies))], sum(seconds)

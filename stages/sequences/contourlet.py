@@ -13,11 +13,11 @@ BATCH = 4096  # images transformed at once, which bounds the memory
 def directional_std(images: ArrayLike, count: int = DIRECTIONS) -> np.ndarray:
     """(k, count) f8: standard deviation of each directional sub-band of images (k, rows, cols), u1 or floats.
 
-    Integers are scaled from 0..255 to 0..1. The frequency plane is divided into `count` wedges like the directional
-    filter bank of Do and Vetterli (their figure 2): half of them mostly horizontal, half mostly vertical, equally wide
-    along the border of the square, with axes and diagonals on the boundaries between wedges. A wedge with the
-    frequencies of direction (x, y) responds to stripes perpendicular to it. Sub-band 0 begins at the x axis and has y
-    from 0 to x * 4 / count.
+    Integers up to 16 bits are scaled from 0..255 to 0..1 and transformed in single precision. The frequency plane is
+    divided into `count` wedges like the directional filter bank of Do and Vetterli (their figure 2): half of them
+    mostly horizontal, half mostly vertical, equally wide along the border of the square, with axes and diagonals on the
+    boundaries between wedges. A wedge with the frequencies of direction (x, y) responds to stripes perpendicular to it.
+    Sub-band 0 begins at the x axis and has y from 0 to x * 4 / count.
 
     The wedges are real, smooth masks on the Fourier transform whose squares add up to one: a tight frame as in Lu and
     Do (2006). By Parseval's theorem the standard deviation of a sub-band is the root of its energy, and the squares of
@@ -39,10 +39,10 @@ def directional_std(images: ArrayLike, count: int = DIRECTIONS) -> np.ndarray:
     scale = (255.0 if images.dtype.kind in "iu" else 1.0) * images[0].size if len(images) else 1.0
     found = np.empty((len(images), count))
     for start in range(0, len(images), BATCH):
-        part = images[start : start + BATCH].astype(np.float64)
+        part = images[start : start + BATCH].astype(np.result_type(images, np.float32))
         spectrum = np.asarray(scipy.fft.rfft2(part - part.mean(axis=(1, 2), keepdims=True)))
         power = (np.real(spectrum) ** 2 + np.imag(spectrum) ** 2).reshape(len(part), len(weights))
-        found[start : start + BATCH] = np.sqrt(power @ weights) / scale
+        found[start : start + BATCH] = np.sqrt(power @ weights.astype(power.dtype)) / scale
     return found
 
 

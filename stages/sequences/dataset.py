@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from stages.contours import read_sequences
+from stages.kit.packs import opened
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +30,7 @@ class SequenceData:
 
 def count_sequences(path: Path) -> dict[str, int]:
     """{strategy: number of sequences} of a file of data/SET/contours, without reading their images."""
-    with np.load(path, allow_pickle=False) as stored:
+    with opened(path) as stream, np.load(stream, allow_pickle=False) as stored:
         names = sorted({name.rpartition(".")[0] for name in stored.files})
         return {name: len(stored[f"{name}.planes"]) for name in names}
 
@@ -39,7 +40,7 @@ def read_sequence_data(folder: Path, members: dict[str, list[str]], strategy: st
     images, normals, labels, ranks = [], [], [], []
     for label, objects in enumerate(members.values()):
         for rank, name in enumerate(objects):
-            found = read_sequences(folder / f"{name}.npz")[strategy]
+            found = read_sequences(folder / f"{name}.npz", strategy)[strategy]
             images.append(found.images)
             normals.append(found.normals)
             labels += [label] * len(found.images)

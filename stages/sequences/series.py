@@ -12,7 +12,7 @@ STATISTICS = ("rms", "std", "skewness")
 BANDS = (*(f"detail{level}" for level in range(1, LEVELS + 1)), "sequence")
 CHANNELS = (*(f"direction{k}" for k in range(DIRECTIONS)), "normal_x", "normal_y", "normal_z")
 FEATURES = tuple(f"{channel}.{band}.{name}" for channel in CHANNELS for band in BANDS for name in STATISTICS)
-CONSTANT = 1e-9  # of the largest value of its series: a smaller standard deviation is rounding error
+CONSTANT = 1e-6  # of the largest value of its series: a smaller standard deviation is rounding error
 
 
 def series(images: ArrayLike, normals: ArrayLike) -> np.ndarray:

@@ -33,7 +33,7 @@ class ImageInputs:
         return ImageNet(self.images.shape[1], self.images.shape[2:], classes)
 
     def __call__(self, ids: np.ndarray) -> torch.Tensor:
-        return (torch.from_numpy(self.images[ids]).float() - self.mean) / self.std
+        return torch.from_numpy(self.images[ids]).float().sub_(self.mean).div_(self.std)
 
 
 class NormalInputs:
@@ -65,7 +65,7 @@ def train_network(
     """
     with repeatable(seed):
         network = inputs.network(classes)
-        optimiser = torch.optim.SGD(network.parameters(), lr=RATE)
+        parameters, rate = list(network.parameters()), RATE
         train, targets = np.asarray(train), torch.as_tensor(labels)
         batch, best, stalled = min(inputs.batch, len(train)), np.inf, 0
         network.train()
@@ -74,13 +74,14 @@ def train_network(
             for start in range(0, len(train) - batch + 1, batch):
                 chosen = shuffled[start : start + batch]
                 loss = torch.nn.functional.cross_entropy(network(inputs(chosen)), targets[chosen])
-                optimiser.zero_grad()
-                loss.backward()
-                optimiser.step()
+                slopes = torch.autograd.grad(loss, parameters)
+                with torch.no_grad():  # torch.optim loads the compiler, which takes longer than a small training
+                    for parameter, slope in zip(parameters, slopes, strict=True):
+                        parameter.sub_(slope, alpha=rate)
                 total += loss.item()
             stalled = 0 if total < best else stalled + 1
             if stalled >= PATIENCE:
-                optimiser.param_groups[0]["lr"], stalled = optimiser.param_groups[0]["lr"] / 2, 0
+                rate, stalled = rate / 2, 0
             best = min(best, total)
         return network.eval()
 

@@ -13,7 +13,7 @@ from stages.kit.rng import rng
 from stages.kit.run import Rows
 from stages.kit.split import Split
 
-from .classifiers import CONVENTIONAL, choose_dimensions, classifier
+from .classifiers import CONVENTIONAL, Reduced, choose_dimensions
 from .dataset import SequenceData, downsample, read_sequence_data
 from .schema import Params
 from .series import sequence_features, series
@@ -98,19 +98,13 @@ def conventional_results(data: SequenceData, parts: Parts) -> dict[str, Result]:
     """{classifier: Result} of CONVENTIONAL; the seconds include the features."""
     with Stopwatch() as feature_watch:
         samples = sequence_features(series(data.images, data.normals))
-    results, labels = {}, data.labels
+    validation = Reduced(samples, data.labels, parts.fit, parts.validation)
+    reduced, results = Reduced(samples, data.labels, parts.train, parts.test), {}
     for name in CONVENTIONAL:
-        with Stopwatch() as watch:
-            dimensions = None
-            if not name.endswith("_no_som"):
-                dimensions = choose_dimensions(name, samples, labels, parts.fit, parts.validation)
-            model = classifier(name, dimensions).fit(samples[parts.train], labels[parts.train])
-            predicted = model.predict(samples[parts.test])
-        results[name] = (
-            predicted,
-            feature_watch.seconds + watch.seconds,
-            {} if dimensions is None else {"map_dimensions": dimensions},
-        )
+        dimensions, seconds = (None, 0.0) if name.endswith("_no_som") else choose_dimensions(name, validation)
+        predicted, own_seconds = reduced.predict(name, dimensions)
+        metrics = {} if dimensions is None else {"map_dimensions": dimensions}
+        results[name] = predicted, feature_watch.seconds + seconds + own_seconds, metrics
     return results
 
 

@@ -20,14 +20,14 @@ def middle_severity(severities: Sequence[float]) -> float:
     return severities[(len(severities) - 1) // 2]
 
 
-def mean_repeatability(rows: list[dict] | pd.DataFrame) -> pd.DataFrame:
+def mean_repeatability(rows: Sequence[dict] | pd.DataFrame) -> pd.DataFrame:
     """Frame of perturbation, method, severity and value, the mean over the objects, in the order of the rows."""
     table = pd.DataFrame(rows)
     table = table.loc[table["metric"] == "repeatability", [*KEYS, "value"]].astype({"value": float})
     return table.groupby(KEYS, sort=False, as_index=False).mean()
 
 
-def breaking_points(rows: list[dict] | pd.DataFrame) -> dict[tuple[str, str], float]:
+def breaking_points(rows: Sequence[dict] | pd.DataFrame) -> dict[tuple[str, str], float]:
     """dict (perturbation, method) -> the severity at which the mean repeatability falls below one half, or NaN.
 
     Also NaN where a severity before it has no value at all.
@@ -38,7 +38,7 @@ def breaking_points(rows: list[dict] | pd.DataFrame) -> dict[tuple[str, str], fl
     }
 
 
-def summarise(rows: list[dict]) -> dict[str, dict]:
+def summarise(rows: Sequence[dict]) -> dict[str, dict]:
     """Numbers for the gate: `repeatability`, of each PERTURBATION.METHOD at the middle severity; `breaking_point`."""
     means = {
         f"{perturbation}.{method}": values[severities.index(middle_severity(severities))]
@@ -48,7 +48,7 @@ def summarise(rows: list[dict]) -> dict[str, dict]:
     return {"repeatability": _rounded(means), "breaking_point": _rounded(breaks)}
 
 
-def summarise_simplification(rows: list[dict]) -> dict[str, dict]:
+def summarise_simplification(rows: Sequence[dict]) -> dict[str, dict]:
     """Numbers for the gate, per backend: the share of its cases by outcome, and of the smallest counts that were met.
 
     Crashes are counted: none is allowed on any machine.

@@ -5,6 +5,7 @@ from pathlib import Path
 from stages.classification import features
 from stages.imprints import read_imprints
 from stages.kit.files import read_mesh, write_arrays
+from stages.kit.packs import files_below
 from stages.kit.run import Rows
 from stages.salient_points import read_saliency
 
@@ -21,9 +22,7 @@ SALIENCY = "enhanced"  # detector whose saliency weights the simplification, as 
 def touches_of(name: str, data: Path, settings: Params, count: int, seed: int) -> Touches:
     """The first `count` Touches of an object, with the simplified meshes that exist. data: data/SET."""
     found = read_imprints(data / "imprints" / f"{name}.npz")[settings.method]
-    levels = {
-        path.stem: read_mesh(path) for path in sorted((data / "lod" / name).glob("*.npz")) if _is_used_level(path.stem)
-    }
+    levels = {path.stem: read_mesh(path) for path in files_below(data / "lod" / name) if _is_used_level(path.stem)}
     saliency = read_saliency(data / "salient_points" / f"{name}.npz").get(SALIENCY)
     mesh, cells = read_mesh(data / "meshes" / f"{name}.npz"), found.images.shape[1:]
     return Touches(name, mesh, found.vertices[:count], cells, float(found.pitch), saliency, levels, seed)

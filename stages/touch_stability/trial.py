@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import numpy as np
+from sklearn import config_context
 from threadpoolctl import threadpool_limits
 
 from stages.exploration import SPLITS
@@ -35,7 +36,8 @@ def trial(item: str, folder: Path, made: Path, objects: list[str], settings: Par
     truth = np.repeat(np.arange(len(objects)), len(places) // len(objects))
     common = {"group": settings.set, "method": settings.method, "repetition": repetition, "chance": 1 / len(objects)}
     rows = []
-    with threadpool_limits(1):  # equal sums on any number of cores
+    # One thread gives equal sums on any number of cores. The fits are so small that checks would take longer.
+    with threadpool_limits(1), config_context(assume_finite=True, skip_parameter_validation=True):
         for split in SPLITS:
             given = (places, truth, split, width, settings.severities, settings.classifiers, repetition, seed)
             try:

@@ -11,12 +11,12 @@ accuracies, the same on disturbed touches, the change of each convolution, what 
 import dataclasses
 import functools
 import sys
-import warnings
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from stages.kit.command import workspace_of_arguments
 from stages.kit.files import read_mesh
+from stages.kit.kept_rows import KeptRows
 from stages.kit.run import Rows, StageRun
 from stages.kit.workspace import Workspace
 from stages.meshes.classes import read_classes
@@ -57,7 +57,7 @@ def train_all(stage: StageRun, planned: Plan, settings: Params) -> dict[str, dic
     rows = stage.each(work, [*(one.name for one in planned.trials), *hybrids], reads=MADE)
     trained = [trial_row(row, planned.pretrained) for row in rows if "trial" in row]
     stitched = [row for row in rows if "trial" not in row]
-    stage.rows = trained + stitched
+    stage.rows = KeptRows(trained, stitched)
     metrics = summary(trained, stage.seed)
     if hybrids:
         metrics["hybrid"] = hybrid_trial.summary(stitched, settings, stage.seed)
@@ -68,8 +68,6 @@ def run(workspace: Workspace) -> None:
     """Runs the stage on the data set of a workspace."""
     settings = workspace.settings(Params)
     check(settings)
-    # Torch's caches make a worker grow; joblib then renews it between two items, loses none, and warns.
-    warnings.filterwarnings("ignore", message="A worker stopped while some jobs")
     with StageRun(workspace, "transfer", COLUMNS, inputs=("meshes", "salient_points")) as stage:
         classes = read_classes(workspace.data / "meshes")
         vertices = {

@@ -32,7 +32,7 @@ def process(name: str, folder: Path, data: Path, settings: Params, renderer: str
         write_view(folder / name / f"{viewpoint.name}.npz", view)
         row = {"item": name, "method": renderer, "viewpoint": viewpoint.name, "metric": "coverage"}
         rows.append(row | {"value": float(view.mask.mean()), "seconds": watch.seconds})
-    return rows + (seen_rows(name, mesh) if settings.compare_sets else [])
+    return [*rows, *(seen_rows(name, mesh) if settings.compare_sets else [])]
 
 
 def seen_rows(name: str, mesh: Mesh) -> Rows:

@@ -10,20 +10,19 @@ from collections.abc import Sequence
 from functools import lru_cache
 
 import numpy as np
-from scipy import sparse
-from scipy.optimize import Bounds, LinearConstraint, milp
 
 from stages.kit import Mesh, RayScene, Viewpoint
 from stages.kit.rng import rng
 from stages.kit.surface_samples import sample_surface
 
 from .candidates import CANDIDATES
+from .kernels import find_cover
 from .sightlines import scaled_to_unit_diagonal, sightlines
 
 POINTS = 10_000  # on the surface; the standard error of a share of 99 % is 0.1 %
 SAME_DEPTH = 1e-5  # of the diagonal: depths closer than this are one surface; above single precision
 ROUNDING = 1e-9  # a share this close to the target counts as attained
-NODES = 100  # limit of HiGHS's search tree; objects needed 1 to 17
+NODES = 10_000  # limit of the search; with 200 the numbers of the objects are the same
 
 
 def surface_points(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
@@ -62,8 +61,11 @@ def cumulative_coverage(mesh: Mesh, viewpoints: Sequence[Viewpoint]) -> np.ndarr
     Visible surface is what at least one of the 62 candidates sees: the inside of a closed teapot does not count.
     Raises ValueError for a mesh without area.
     """
-    visible = _candidate_visibility(mesh).any(axis=0)
-    seen = np.logical_or.accumulate(point_visibility(mesh, viewpoints)[:, visible], axis=0)
+    candidates = dict(zip(CANDIDATES, _candidate_visibility(mesh), strict=True))
+    visible = np.any(list(candidates.values()), axis=0)
+    others = [viewpoint for viewpoint in viewpoints if viewpoint not in candidates]
+    known = candidates | dict(zip(others, point_visibility(mesh, others), strict=True))
+    seen = np.logical_or.accumulate([known[viewpoint][visible] for viewpoint in viewpoints], axis=0)
     return seen.sum(axis=1) / max(visible.sum(), 1)
 
 
@@ -82,21 +84,13 @@ def fewest_views(mesh: Mesh, share: float = 0.99) -> tuple[list[Viewpoint], np.n
     """The fewest of the 62 candidates that see `share` of the visible surface: (list of Viewpoint, shares (k,)).
 
     shares: of the visible surface, seen by the first 1, 2, ... k together, in the order of what each adds. The number
-    is exact for the points of surface_points, by mixed-integer programming (scipy.optimize.milp, HiGHS), unless that
-    needs more than NODES nodes; then it is the smallest one found. The greedy views are returned when they are as few.
-    This takes seconds, whereas greedy_views takes milliseconds. Raises ValueError for a mesh without area or a share
-    outside 0..1.
+    is exact for the points of surface_points, unless the search for a smaller one needs more than NODES nodes; then it
+    is the smallest one found. The greedy views are returned when they are as few. Raises ValueError for a mesh without
+    area or a share outside 0..1.
     """
     if not 0 < share <= 1:
         raise ValueError(f"share must be above 0 and at most 1, got {share}")
-    seen = _visible_points(mesh)
-    chosen, shares = _greedy(seen, share, len(seen))
-    if len(chosen) > 2:  # two are optimal when the first greedy view, the best single one, was not enough
-        exact = _exact(seen, share)
-        if len(exact) < len(chosen):
-            order, shares = _greedy(seen[exact], 1.0, len(exact))
-            chosen = exact[order]
-    return _with_viewpoints(chosen, shares)
+    return _with_viewpoints(*_fewest(_visible_points(mesh), share))
 
 
 @lru_cache(maxsize=2)  # several functions are called on one mesh in turn
@@ -127,17 +121,19 @@ def _greedy(seen, share, count):
     return np.array(chosen, dtype=np.int64), np.array(shares)
 
 
-def _exact(seen, share):
-    """(k,) i8: the fewest rows of seen that cover the share of its columns, by integer programming; else all rows.
+def _fewest(seen, share):
+    """As few rows of seen as cover the share of its columns, greedy ones if they are: returns as _greedy does."""
+    chosen, shares = _greedy(seen, share, len(seen))
+    # Two are optimal when the first greedy view, the best single one, was not enough.
+    while len(chosen) > 2 and len(fewer := _fewer(seen, share, len(chosen) - 1)):
+        order, shares = _greedy(seen[fewer], 1.0, len(fewer))
+        chosen = fewer[order]
+    return chosen, shares
 
-    Variables: which rows are taken, and which kinds of points are covered. Points seen by the same rows are one kind.
-    """
-    packed, counts = np.unique(np.packbits(seen, axis=0).T, axis=0, return_counts=True)
-    kinds = np.unpackbits(packed, axis=1, count=len(seen))
-    rows, k = len(seen), len(kinds)
-    covered = sparse.hstack([sparse.csr_matrix(kinds, dtype=float), -sparse.eye(k)]).tocsr()
-    enough = sparse.csr_matrix(np.r_[np.zeros(rows), counts / counts.sum()][None])
-    is_row = np.r_[np.ones(rows), np.zeros(k)]
-    limits = [LinearConstraint(covered, lb=0), LinearConstraint(enough, lb=share - ROUNDING)]
-    solved = milp(is_row, integrality=is_row, bounds=Bounds(0, 1), constraints=limits, options={"node_limit": NODES})
-    return np.arange(rows) if solved.x is None else np.flatnonzero(solved.x[:rows] > 0.5)
+
+def _fewer(seen, share, most):
+    """(k,) i8: at most `most` rows of seen that cover the share of its columns; none where no rows do."""
+    packed, counts = np.unique(np.packbits(seen, axis=0).T, axis=0, return_counts=True)  # points seen by the same rows
+    kinds = np.unpackbits(packed, axis=1, count=len(seen)).T
+    need = float(np.ceil((share - ROUNDING) * counts.sum()))
+    return find_cover(np.ascontiguousarray(kinds, dtype=np.float32), counts.astype(np.float32), need, most, NODES)

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from stages.kit import Mesh, Viewpoint
-from stages.kit.camera import DISTANCE, pixels_per_unit
+from stages.kit.camera import DISTANCE, pixels_per_unit, project
 from stages.kit.extras import from_extra
 
 from .shading import GREY, corner_groups
@@ -45,7 +45,7 @@ def render_pyrender(mesh: Mesh, viewpoint: Viewpoint, size: tuple[int, int], bac
             "install libegl1 libgl1-mesa-dri), or set renderer=raster"
         )
     view = empty_view(viewpoint, size, background)
-    if pixel_box(mesh, viewpoint, size) == (0, 0, 0, 0):
+    if pixel_box(np.stack(project(mesh.vertices[mesh.used], viewpoint, size)), size) == (0, 0, 0, 0):
         return view
     scene, node = _upload(mesh)
     _place_camera(scene, viewpoint, size)

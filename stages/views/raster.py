@@ -17,9 +17,9 @@ NO_COLORS = np.zeros((0, 3), dtype=np.uint8)
 def render_raster(mesh: Mesh, viewpoint: Viewpoint, size: tuple[int, int], background: str) -> View:
     """Renders a View (see stages.views.render) face by face."""
     view = empty_view(viewpoint, size, background)
-    top, left, bottom, right = pixel_box(mesh, viewpoint, size)
+    places = np.stack(project(mesh.vertices, viewpoint, size))
+    corners, (top, left, bottom, right) = places.T, pixel_box(places.take(mesh.used, axis=1), size)
     box = slice(top, bottom), slice(left, right)
-    corners = np.stack(project(mesh.vertices, viewpoint, size), axis=1)
     face, depth = view.face[box], np.full((bottom - top, right - left), np.inf)
     rasterise(corners, mesh.faces, top, left, face, depth)
     view.depth[box] = round_depth(depth)

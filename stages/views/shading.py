@@ -6,10 +6,9 @@ were reversed, since objects that are scanned or modelled as thin sheets are see
 """
 
 import numpy as np
-from scipy import sparse
-from scipy.sparse.csgraph import connected_components
 
 from stages.kit import Mesh
+from stages.kit.components import graph_components
 from stages.kit.mesh import unit
 
 GREY = 204  # of 255, the brightness of the material facing the light; uses most of the 8 bits
@@ -27,8 +26,7 @@ def corner_groups(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
     first, second = _smooth_pairs(mesh)
     # Half-edge h runs from corner h to the next corner of its face; the opposite half-edge runs back.
     links = np.r_[first, _next_corner(first)], np.r_[_next_corner(second), second]
-    graph = sparse.coo_matrix((np.ones(len(links[0]), dtype=bool), links), shape=(3 * m, 3 * m))
-    count, groups = connected_components(graph, directed=False)
+    groups, count = graph_components(*links, 3 * m)
     crosses = np.repeat(mesh.face_crosses, 3, axis=0)
     sums = [np.bincount(groups, weights=column, minlength=count) for column in crosses.T]
     return groups.reshape(m, 3).astype(np.int64), unit(np.stack(sums, axis=1))

@@ -8,6 +8,7 @@ from stages.kit import Viewpoint
 from stages.kit.camera import DISTANCE
 from stages.kit.files import read_arrays, write_arrays
 
+from .kernels import background_colour, fold_depth, unfold_depth
 from .view import DEPTH_STEP, View
 
 
@@ -18,17 +19,15 @@ def write_view(path: str | Path, view: View) -> None:
     ValueError when the background has more than one colour.
     """
     mask = view.mask
-    off = view.rgb[~mask]
-    background = off[0] if len(off) else np.zeros(3, dtype=np.uint8)
-    if (off != background).any():
+    background, uniform = background_colour(view.rgb, mask)
+    if not uniform:
         raise ValueError("the background of a view must have one colour to be stored")
     top, left, bottom, right = _box(mask)
     box = slice(top, bottom), slice(left, right)
     inside, rgb = mask[box], view.rgb[box]
-    if (rgb == rgb[..., :1]).all():
+    if all(np.array_equal(rgb[..., 0], rgb[..., k]) for k in (1, 2)):
         rgb = rgb[..., :1]
-    steps = np.rint(np.where(inside, view.depth[box], DISTANCE) / DEPTH_STEP).astype(np.int64)
-    faces = view.face[box][inside].astype(np.int64)
+    faces = view.face[box][inside]
     starts = np.flatnonzero(np.diff(faces, prepend=-1))
     write_arrays(
         path,
@@ -38,7 +37,7 @@ def write_view(path: str | Path, view: View) -> None:
         background=background,
         mask=np.packbits(inside),
         rgb=_differences(rgb),
-        depth=_to_bytes(_differences(steps - round(DISTANCE / DEPTH_STEP))),
+        depth=fold_depth(view.depth[box], inside, DISTANCE, DEPTH_STEP),
         run_face=_to_bytes(np.diff(faces[starts], prepend=0)),
         run_length=_to_bytes(np.diff(starts, append=len(faces))),
     )
@@ -56,7 +55,7 @@ def read_view(path: str | Path) -> View:
     top, left = stored["origin"]
     box = slice(top, top + h), slice(left, left + w)
     rgb[box] = _summed(stored["rgb"])
-    depth[box][inside] = DISTANCE + _summed(_from_bytes(stored["depth"]).reshape(h, w))[inside] * DEPTH_STEP
+    unfold_depth(stored["depth"], inside, DISTANCE, DEPTH_STEP, depth[box])
     face[box][inside] = np.repeat(np.cumsum(_from_bytes(stored["run_face"])), _from_bytes(stored["run_length"]))
     return View(rgb, depth, face, Viewpoint(*(float(angle) for angle in stored["viewpoint"])))
 
@@ -81,7 +80,7 @@ def _summed(bends):
 
 
 def _to_bytes(numbers):
-    """(4, k) u1 of k integers: the sign in the lowest bit, low bytes first, so that high bytes are mostly zero."""
+    """(4, k) u1 of k integers, folded as the depths are: see fold_depth."""
     folded = (np.abs(numbers) * 2 - (numbers < 0)).astype("<u4").ravel()
     return np.ascontiguousarray(folded.view(np.uint8).reshape(-1, 4).T)
 

@@ -2,11 +2,12 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from math import ceil, floor
 
 import numpy as np
 
-from stages.kit import Mesh, Viewpoint
-from stages.kit.camera import DISTANCE, project
+from stages.kit import Viewpoint
+from stages.kit.camera import DISTANCE
 
 BACKGROUNDS = {"black": 0, "grey": 128, "white": 255}
 DEPTH_STEP = 2.0**-16  # of a unit: 1.3 % of a pixel at 900 rows; exact in float32, so views are stored without loss
@@ -47,22 +48,20 @@ def round_depth(depth: np.ndarray) -> np.ndarray:
     return (np.rint(np.asarray(depth) / DEPTH_STEP) * DEPTH_STEP).astype(np.float32)
 
 
-def pixel_box(mesh: Mesh, viewpoint: Viewpoint, size: tuple[int, int]) -> tuple[int, int, int, int]:
-    """(top, left, bottom, right) of the pixels that the mesh can cover, the last two exclusive; zeros without faces.
+def pixel_box(places: np.ndarray, size: tuple[int, int]) -> tuple[int, int, int, int]:
+    """(top, left, bottom, right) of the pixels that a mesh can cover, the last two exclusive; zeros without corners.
 
+    places (3, k): rows, columns and depths of the vertices that lie in a face, see stages.kit.camera.project.
     Raises ValueError when the mesh leaves the frame or extends behind the camera: an image never crops its object.
     """
-    if not len(mesh.faces):
+    if not places.size:
         return 0, 0, 0, 0
-    rows, columns, depths = project(mesh.vertices[mesh.used], viewpoint, size)
-    low = np.array([rows.min(), columns.min()])
-    high = np.array([rows.max(), columns.max()])
-    if (low < -0.5).any() or (high > np.array(size) - 0.5).any() or depths.min() <= 0 or depths.max() >= 2 * DISTANCE:
-        needs = f"rows {low[0]:.0f}..{high[0]:.0f}, columns {low[1]:.0f}..{high[1]:.0f}"
+    (top, left, near), (bottom, right, far) = places.min(axis=1).tolist(), places.max(axis=1).tolist()
+    rows, columns = size
+    if min(top, left) < -0.5 or bottom > rows - 0.5 or right > columns - 0.5 or near <= 0 or far >= 2 * DISTANCE:
+        needs = f"rows {top:.0f}..{bottom:.0f}, columns {left:.0f}..{right:.0f}"
         raise ValueError(
-            f"the mesh leaves the frame of {size[0]} x {size[1]} pixels ({needs}): normalise it with "
+            f"the mesh leaves the frame of {rows} x {columns} pixels ({needs}): normalise it with "
             "stages.meshes.normalise (bounding sphere of radius 0.5 at the origin), or choose a wider image"
         )
-    top, left = np.ceil(low).astype(int).clip(0)
-    bottom, right = (np.floor(high).astype(int) + 1).clip(None, size)
-    return int(top), int(left), int(bottom), int(right)
+    return max(ceil(top), 0), max(ceil(left), 0), min(floor(bottom) + 1, rows), min(floor(right) + 1, columns)

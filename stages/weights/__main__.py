@@ -45,7 +45,7 @@ def process(item: tuple[str, Files], folder: Path, data: Path, source: str, mark
         if amounts is None or not amounts.any():
             return []
         found = collect_training_data(name, mesh, read_view_maps(path, mesh), path, amounts, seed)
-        row = {"item": name, "metric": "points", "value": len(found["points"]), "convexity": convexity(mesh)}
+        row = {"item": name, "metric": "points", "value": len(found["points"]), "_convexity": convexity(mesh)}
     except ValueError as error:  # marks of another mesh of this name, for example: the other objects are trained on
         return [{"item": name, "metric": "points", "value": None, "note": str(error)}]
     write_arrays(folder / GROUND_TRUTH / f"{name}.npz", **found)
@@ -70,7 +70,7 @@ def run(workspace: Workspace) -> None:
         for row in rows:
             if "note" in row:
                 print(f"weights: {row['item']} is left out: {row['note']}", file=sys.stderr)
-        convexities = [(row["item"], row.pop("convexity")) for row in rows if "convexity" in row]
+        convexities = [(row["item"], row["_convexity"]) for row in rows if "_convexity" in row]
         training_data = read_training_data(stage.folder / GROUND_TRUTH)
         table = weight_table(training_data, chosen)
         write_table(stage.folder / "weights.csv", table)

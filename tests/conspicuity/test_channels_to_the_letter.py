@@ -10,7 +10,8 @@ from stages.conspicuity.contrast import WINDOW, local_variance
 from stages.conspicuity.dkl import LINEAR, MECHANISMS, RGB_TO_LMS, mechanisms
 from stages.conspicuity.edge import laplacian_of_gaussian
 from stages.conspicuity.entropy import local_entropy
-from stages.conspicuity.operators import centre_surround, expand, mean_of_other_maxima, normalise, pyramid
+from stages.conspicuity.kernels import mean_of_other_maxima
+from stages.conspicuity.operators import PEAK, centre_surround, expand, normalise, pyramid
 from stages.conspicuity.orientation import ANGLES, energy
 from stages.conspicuity.symmetry_search import shape_symmetries
 from stages.kit import Mesh
@@ -77,14 +78,14 @@ def test_a_blob_answers_most_at_the_pair_of_its_size(terms, c):
 def test_n_of_a_map_of_three_peaks_by_hand():
     values = np.zeros((9, 21), dtype=np.float32)
     values[4, 4], values[4, 10], values[4, 16] = 5, 2, 1
-    assert mean_of_other_maxima(values / 5) == pytest.approx((0.4 + 0.2) / 2)
+    assert mean_of_other_maxima(values / 5, PEAK) == pytest.approx((0.4 + 0.2) / 2)
     np.testing.assert_allclose(normalise(values, np.ones_like(values, bool)), values / 5 * 0.7**2, rtol=1e-6)
 
 
 def test_n_counts_peaks_at_the_border_and_none_under_a_tenth():
     values = np.zeros((9, 21), dtype=np.float32)
     values[4, 10], values[0, 0], values[4, 16] = 1, 0.5, 0.1
-    assert mean_of_other_maxima(values) == pytest.approx(0.5)
+    assert mean_of_other_maxima(values, PEAK) == pytest.approx(0.5)
 
 
 def test_n_wipes_out_two_peaks_of_one_height_but_not_one_that_touches_itself_at_a_corner():

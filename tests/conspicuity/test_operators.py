@@ -5,7 +5,8 @@ import pytest
 
 from stages.conspicuity.background import fill
 from stages.conspicuity.cropped_view import core
-from stages.conspicuity.operators import centre_surround, expand, mean_of_other_maxima, normalise, pyramid
+from stages.conspicuity.kernels import mean_of_other_maxima
+from stages.conspicuity.operators import PEAK, centre_surround, expand, normalise, pyramid
 from stages.conspicuity.weak_cache import weak_cache
 
 EVERYWHERE = np.ones((60, 80), dtype=bool)
@@ -28,14 +29,14 @@ def test_one_peak_is_promoted_over_many_alike():
 
 def test_weight_is_the_squared_distance_to_the_mean_of_the_other_maxima():
     values = blobs([(20, 20), (40, 60)], [1.0, 0.4])
-    assert mean_of_other_maxima(values / values.max()) == pytest.approx(0.4, abs=0.01)
+    assert mean_of_other_maxima(values / values.max(), PEAK) == pytest.approx(0.4, abs=0.01)
     assert normalise(values, EVERYWHERE).max() == pytest.approx(0.36, abs=0.01)
 
 
 def test_a_plateau_is_one_peak():
     values = np.zeros((60, 80), dtype=np.float32)
     values[20:30, 20:40] = 1
-    assert mean_of_other_maxima(values) == 0
+    assert mean_of_other_maxima(values, PEAK) == 0
 
 
 def test_n_ignores_scale_and_offset():

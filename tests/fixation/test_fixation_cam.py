@@ -7,13 +7,15 @@ import torch
 from stages.conspicuity import facing
 from stages.fixation import entropy, fuse, grad_cam, highest_level, mean_over_views, project_to_vertices
 from stages.fixation.attention import MODELS, project_maps
-from stages.fixation.backbone import last_maps
+from stages.fixation.backbone import folded_network, last_maps, state_path, write_state
 from stages.fixation.cam import resize_cams
 from stages.fixation.heads import fit_head, scores
+from stages.fixation.options import method_named
 from stages.fixation.pictures import network_inputs
 from stages.fixation.viewpoints import viewpoint_sphere
 from stages.kit import Viewpoint
 from stages.kit.camera import project
+from stages.kit.files import sha256
 from stages.networks import build, recalibrate
 
 pytestmark = pytest.mark.slow
@@ -54,6 +56,25 @@ def test_grad_cam_from_maps_equals_the_one_by_backpropagation(network, pictures,
     expected = by_backpropagation(network, pictures, classes)
     assert expected.max() > 0.01
     assert np.abs(grad_cam(maps, weights, classes) - expected).max() < 1e-5 * expected.max()
+
+
+@pytest.mark.parametrize("name", ["mobilenet_v2", "efficientnet_lite0"])
+def test_folded_normalisations_leave_the_maps_as_they_were_and_follow_the_stored_weights(name, tmp_path):
+    method, pictures = method_named(f"{name}-random"), np.random.default_rng(0).integers(0, 256, (2, 64, 64))
+    found = []
+    for seed in (0, 1):
+        plain = build(name, 2, "random", seed)
+        for layer in plain.modules():
+            if isinstance(layer, torch.nn.BatchNorm2d):
+                layer.running_mean.normal_(0, 0.1)
+                layer.running_var.uniform_(0.5, 2)
+        write_state(tmp_path, method.name, plain)
+        folded = folded_network(tmp_path, method, "package", 0, sha256(state_path(tmp_path, method.name)))
+        assert not any(isinstance(layer, torch.nn.BatchNorm2d) for layer in folded.convolutions.modules())
+        expected, maps = (last_maps(network, pictures.astype(np.uint8)) for network in (plain, folded))
+        assert np.abs(maps - expected).max() < 1e-5 * np.abs(expected).max()
+        found.append(maps)
+    assert np.abs(found[0] - found[1]).max() > 0.1 * np.abs(found[0]).max()
 
 
 def test_vgg_is_looked_at_before_its_last_pooling():

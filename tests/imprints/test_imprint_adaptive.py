@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from stages.imprints import adaptive_pitch, distances_at, sensor_axes, sensor_normals
+from stages.imprints.adaptive import adaptive_distances
 
 
 def at(mesh, vertex):
@@ -44,6 +45,15 @@ def test_each_array_is_judged_for_itself(shapes):
     pitches = adaptive_pitch(saddle, centres, axes, (16, 16), np.array([0.002, 0.01, 0.02]))
     alone = [adaptive_pitch(saddle, *at(saddle, vertex), (16, 16), pitch)[0] for pitch in (0.002, 0.01, 0.02)]
     assert pitches.tolist() == alone and pitches[0] == 0.002
+
+
+@pytest.mark.parametrize("min_pitch", [0.002, 0.0099])  # it fits, or ends at the least size
+def test_distances_are_those_of_the_array_at_its_size(shapes, min_pitch):
+    mesh, vertex = shapes.solid(lambda x, y: 2 * x * x - 3 * y * y, half=20, spacing=0.003)  # narrower than the array
+    place = at(mesh, vertex)
+    pitch, measured = adaptive_distances(mesh, *place, (16, 16), 0.01, min_pitch)
+    assert pitch[0] < 0.01
+    np.testing.assert_array_equal(measured, distances_at(mesh, *place, (16, 16), pitch))
 
 
 def test_no_array_has_no_size(shapes):

@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
+from sklearn.metrics import mutual_info_score
 
 from stages.kit.self_organising_map import NEURONS, SelfOrganisingMap
-from stages.sequences.classifiers import CONVENTIONAL, MAP_DIMENSIONS, choose_dimensions, classifier
-from stages.sequences.reduction import MostInformative
+from stages.sequences.classifiers import CONVENTIONAL, ESTIMATORS, MAP_DIMENSIONS, Reduced, choose_dimensions, svm
+from stages.sequences.reduction import MostInformative, mutual_information
 
 
 def blobs(count=40, classes=3, width=8, apart=6.0, seed=0):
@@ -92,27 +93,50 @@ def test_gain_of_a_constant_is_zero_and_does_not_change_with_a_rising_scale():
     np.testing.assert_allclose(MostInformative().fit(samples**3 * 7, labels).gains_, gains)
 
 
+def test_of_equal_gains_the_first_features_are_kept():
+    random, labels = np.random.default_rng(0), np.repeat(np.arange(5), [11, 13, 17, 19, 40])
+    samples = np.stack([random.permutation(5)[labels] for _ in range(40)], axis=1)  # the classes by other names
+    assert MostInformative(40).fit(samples, labels).chosen_.tolist() == list(range(40))
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", CONVENTIONAL)
 def test_every_classifier_tells_far_clouds_apart(name):
     samples, labels = blobs(width=30)
     dimensions = None if name.endswith("no_som") else 3
-    model = classifier(name, dimensions).fit(samples[::2], labels[::2])
-    assert model.score(samples[1::2], labels[1::2]) > 0.9
+    found = Reduced(samples, labels, np.arange(0, 120, 2), np.arange(1, 120, 2))
+    assert (found.predict(name, dimensions)[0] == found.test_labels).mean() > 0.9
 
 
 def test_settings_are_the_thesis_s():
-    estimator = classifier("svm", 5)[-1][-1]
+    estimator = svm(reduced=True)
     assert (estimator.kernel, estimator.gamma, estimator.C, estimator.tol) == ("rbf", 1.0, 1.0, 0.5)
     samples, labels = blobs(width=30)
-    assert classifier("knn", 5).fit(samples, labels)[-1][-1].nearest_.n_neighbors == 10
-    assert classifier("knn", None).fit(samples[::20], labels[::20])[-1].nearest_.n_neighbors == 6
+    assert ESTIMATORS["knn"](True).fit(samples, labels).nearest_.n_neighbors == 10
+    assert ESTIMATORS["knn"](False).fit(samples[::20], labels[::20]).nearest_.n_neighbors == 6
 
 
-def test_chosen_size_does_not_see_the_other_samples():
+def test_information_is_that_of_scikit_learn():
+    random = np.random.default_rng(0)
+    parts, labels = random.integers(0, 10, (80, 5)), random.integers(3, 7, 80)
+    expected = [mutual_info_score(labels, column) for column in parts.T]
+    np.testing.assert_allclose(mutual_information(parts, labels), expected, rtol=1e-12)
+
+
+def test_reduction_is_fitted_to_the_training_samples_and_shared_by_the_classifiers():
     samples, labels = blobs(apart=1.0, width=30)
-    fit, check, test = np.array_split(np.random.default_rng(0).permutation(len(samples)), 3)
-    first = choose_dimensions("knn", samples, labels, fit, check)
+    train, test = np.arange(0, 120, 2), np.arange(1, 120, 2)
     changed, wrong = samples.copy(), labels.copy()
     changed[test], wrong[test] = 1e3, 0
-    assert choose_dimensions("knn", changed, wrong, fit, check) == first in MAP_DIMENSIONS
+    one, other = Reduced(samples, labels, train, test), Reduced(changed, wrong, train, test)
+    for dimensions in (None, 2):
+        np.testing.assert_array_equal(one.mapped(dimensions).train, other.mapped(dimensions).train)
+    assert one.mapped(2) is one.mapped(2) and one.mapped(2).train.shape == (60, 2)
+    assert one.predict("knn", 2)[1] > one.mapped(2).seconds > one.mapped(None).seconds > 0
+
+
+def test_best_size_counts_and_of_equals_the_smallest():
+    samples, labels = blobs(apart=1.0, width=30)
+    found = Reduced(samples, labels, np.arange(0, 120, 2), np.arange(1, 120, 2))
+    right = [(found.predict("knn", each)[0] == found.test_labels).mean() for each in MAP_DIMENSIONS]
+    assert choose_dimensions("knn", found)[0] == MAP_DIMENSIONS[int(np.argmax(right))]

@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
-from stages.lod.laplacian import laplacian_distance, laplacian_pyramid
-from stages.lod.normalised_laplacian import normalise, normalised_laplacian_distance
-
-DISTANCES = (laplacian_distance, normalised_laplacian_distance)
+from stages.lod import picture_errors
+from stages.lod.laplacian import laplacian_pyramid
+from stages.lod.normalised_laplacian import normalise
 
 # plenoptic 1.2.0 in double precision: metric.nlpd, and the same pooling over simulate.LaplacianPyramid(6, True).
 SCORES = {
@@ -40,27 +39,30 @@ def pair(kind, rows, columns):
     return 255 * image, 255 * (np.roll(image, 2, 1) if kind == "shift" else 0.8 * image)
 
 
+def distances(one, other):
+    """(2,) the plain and the normalised distance of two pictures."""
+    errors = picture_errors(one[None], other[None])
+    return np.array([errors["dlap"], errors["dnor"]])
+
+
 @pytest.mark.parametrize("case", SCORES)
 def test_distances_are_those_of_plenoptic(case):
-    normalised, plain = SCORES[case]
-    assert laplacian_distance(*pair(*case)) == pytest.approx(plain, rel=1e-12)
-    # plenoptic adds 1e-10 under the root of every band.
-    assert normalised_laplacian_distance(*pair(*case)) == pytest.approx(normalised, abs=2e-6)
+    plain, normalised = distances(*pair(*case))
+    assert plain == pytest.approx(SCORES[case][1], rel=1e-6)  # in single precision
+    assert normalised == pytest.approx(SCORES[case][0], abs=2e-6)  # plenoptic adds 1e-10 under the root of every band
 
 
-@pytest.mark.parametrize("distance", DISTANCES)
-def test_distance_is_a_symmetric_zero_for_equal_pictures(distance):
+def test_distances_are_a_symmetric_zero_for_equal_pictures():
     one, other = pair("disc", 60, 80)
-    assert distance(one, one) == 0
-    assert distance(one, other) == distance(other, one) > 0
+    assert not distances(one, one).any()
+    assert (distances(one, other) == distances(other, one)).all() and (distances(one, other) > 0).all()
 
 
-@pytest.mark.parametrize("distance", DISTANCES)
-def test_distance_grows_with_the_difference(distance):
+def test_distances_grow_with_the_difference():
     image = 255 * waves(60, 80)
     noise = np.random.default_rng(0).normal(size=image.shape)
-    errors = [distance(image, image + size * noise) for size in (1, 4, 16)]
-    assert 0 < errors[0] < errors[1] < errors[2]
+    errors = np.stack([distances(image, image + size * noise) for size in (0, 1, 4, 16)])
+    assert (np.diff(errors, axis=0) > 0).all()
 
 
 def test_bands_add_up_to_the_picture():
@@ -71,30 +73,29 @@ def test_bands_add_up_to_the_picture():
     for band in bands:
         rimmed = cv2.copyMakeBorder(rest, 1, 1, 1, 1, cv2.BORDER_REFLECT_101)
         rest = band + cv2.pyrUp(rimmed)[2 : 2 + band.shape[0], 2 : 2 + band.shape[1]]
-    assert 255 * rest == pytest.approx(image, abs=1e-9)
+    assert 255 * rest == pytest.approx(image, abs=1e-4)
 
 
 def test_an_even_picture_has_only_its_mean():
     *bands, rest = laplacian_pyramid(np.full((64, 96), 102.0))
-    assert max(np.abs(band).max() for band in bands) < 1e-15
-    assert rest == pytest.approx(np.full(rest.shape, 0.4))
+    assert max(np.abs(band).max() for band in bands) < 1e-7
+    assert rest == pytest.approx(np.full(rest.shape, 0.4), rel=1e-6)
 
 
 def test_plain_distance_is_linear_and_the_normalised_one_forgives_contrast():
     one, other = pair("disc", 60, 80)
-    assert laplacian_distance(one / 2, other / 2) == pytest.approx(laplacian_distance(one, other) / 2)
+    assert distances(one / 2, other / 2)[0] == pytest.approx(distances(one, other)[0] / 2)
     weak, strong = (normalise(laplacian_pyramid(gain * one))[0] for gain in (0.5, 1.0))
     assert np.abs(strong).max() < 2 * np.abs(weak).max()
 
 
 def test_the_ground_beside_an_object_thins_the_error():
     one, other = pair("disc", 60, 80)
-    for distance in DISTANCES:
-        wide = [np.pad(image, ((30, 30), (40, 40))) for image in (one, other)]
-        assert 0 < distance(*wide) < distance(one, other)
+    wide = distances(*(np.pad(image, ((30, 30), (40, 40))) for image in (one, other)))
+    assert (wide > 0).all() and (wide < distances(one, other)).all()
 
 
 def test_small_pictures_give_finite_distances():
     for size in (11, 12, 13):
-        for distance in DISTANCES:
-            assert 0 < distance(np.zeros((size, size + 1)), np.eye(size, size + 1) * 255) < np.inf
+        found = distances(np.zeros((size, size + 1)), np.eye(size, size + 1) * 255)
+        assert (found > 0).all() and np.isfinite(found).all()

@@ -37,6 +37,7 @@ def sh3f(catalogue=CATALOGUE):
     with zipfile.ZipFile(stream, "w") as archive:
         archive.writestr("PluginFurnitureCatalog.properties", catalogue)
         archive.writestr("lib/crate/crate.obj", CUBE.export(file_type="obj"))
+        archive.writestr("lib/other/other.obj", "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 3 2\n")
     return stream.getvalue()
 
 
@@ -78,6 +79,15 @@ def test_the_chosen_entry_comes_out_of_the_package_with_its_maker_licence_and_un
     mesh, row = prepare_mesh(item)
     assert row["watertight"] and row["faces"] == 12 and row["size"] == 6
     np.testing.assert_allclose(np.ptp(mesh.vertices, axis=0) / np.ptp(mesh.vertices), [1, 2 / 6, 4 / 6])
+
+
+def test_the_whole_catalogue_comes_out_with_licences_and_a_flat_model_has_no_unit(package):
+    crate, other = SOURCES["catalogue"](SimpleNamespace(objects=[]))
+    assert (crate.name, crate.file, crate.unit) == ("Scopia__crate", "Scopia/crate.obj", "10 cm")
+    assert (other.name, other.unit, other.licence, other.creator) == ("Scopia__other", "unknown", "CC-BY-3.0", "nobody")
+    assert crate.content() == items()[0].content() and b"v 1 0 0" in other.content()
+    (chosen,) = SOURCES["catalogue"](SimpleNamespace(objects=["Scopia__other"]))
+    assert chosen.name == "Scopia__other"
 
 
 def test_the_package_is_needed_once(package):

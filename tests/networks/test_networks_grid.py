@@ -7,7 +7,7 @@ import torch
 from stages.networks.grid import GRIDS, cell_positions
 from stages.networks.network import NETWORKS, build
 
-SIZE = 224
+SIZE = 96
 
 
 def middles(network):
@@ -29,7 +29,7 @@ def middles(network):
 @pytest.mark.slow
 @pytest.mark.parametrize("name", NETWORKS)
 def test_a_cell_lies_where_it_looks(name):
-    network = middles(build(name, 2, "random", 0))
+    network = middles(build(name, 2, "random", 0)).requires_grad_(False)
     image = torch.full((1, 3, SIZE, SIZE), 1e-3, requires_grad=True)  # far from what ReLU6 cuts
     maps = network.convolutions(image)
     cell = maps.shape[2] // 2

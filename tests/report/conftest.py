@@ -240,41 +240,53 @@ def _write_sight(root, name):
     write_arrays(root / f"data/test/salient_points/{name}.npz", **arrays)
 
 
-@pytest.fixture
+def make_bare(root):
+    """A root with the thesis's tables and nothing measured."""
+    shutil.copytree(THESIS, root / "data/reference/thesis")
+    common = f"seed: 0\nprofile: test\nparallel: {{backend: sequential}}\ngraph: {{}}\nsets: [{', '.join(SETS)}]\n"
+    write_text(root / "params.yaml", common)
+    return root
+
+
+def make_root(root):
+    """A root with two objects and a few measurements."""
+    make_bare(root)
+    mesh = ball()
+    for name in OBJECTS:
+        write_mesh(root / "data/test/meshes" / f"{name}.npz", mesh)
+        points = np.array([3, 50, 100])
+        found = {"points": points, "strong": np.int64(2), "saliency": np.linspace(0, 1, len(mesh.vertices))}
+        arrays = {f"enhanced.{key}": value for key, value in found.items()}
+        write_arrays(root / "data/test/salient_points" / f"{name}.npz", **arrays)
+        write_mesh(root / "data/test/lod" / name / "qem_50pct.npz", ball(8))
+    write_measurements(root, "classification", classification())
+    write_set(root, "six", 6)
+    write_set(root, "four", 4)
+    write_measurements(root, "lod", lod())
+    return root
+
+
+@pytest.fixture(scope="session")
 def small():
     """What tests make their own small runs of."""
     return SimpleNamespace(
         settings=settings, results=read_results, ball=ball, classification=classification, write=write_measurements,
-        write_set=write_set,
+        write_set=write_set, root=make_root,
         left_out=left_out, write_attention=write_attention, judged=judged, learned_weights=learned_weights, lod=lod,
+        agreed_marks=agreed_marks,
     )  # fmt: skip
 
 
 @pytest.fixture
 def bare(tmp_path):
-    """A root with the thesis's tables and nothing measured."""
-    shutil.copytree(THESIS, tmp_path / "data/reference/thesis")
-    common = f"seed: 0\nprofile: test\nparallel: {{backend: sequential}}\ngraph: {{}}\nsets: [{', '.join(SETS)}]\n"
-    write_text(tmp_path / "params.yaml", common)
-    return tmp_path
+    """A root with nothing measured."""
+    return make_bare(tmp_path)
 
 
 @pytest.fixture
-def root(bare):
-    """A root with two objects and a few measurements."""
-    mesh = ball()
-    for name in OBJECTS:
-        write_mesh(bare / "data/test/meshes" / f"{name}.npz", mesh)
-        points = np.array([3, 50, 100])
-        found = {"points": points, "strong": np.int64(2), "saliency": np.linspace(0, 1, len(mesh.vertices))}
-        arrays = {f"enhanced.{key}": value for key, value in found.items()}
-        write_arrays(bare / "data/test/salient_points" / f"{name}.npz", **arrays)
-        write_mesh(bare / "data/test/lod" / name / "qem_50pct.npz", ball(8))
-    write_measurements(bare, "classification", classification())
-    write_set(bare, "six", 6)
-    write_set(bare, "four", 4)
-    write_measurements(bare, "lod", lod())
-    return bare
+def root(tmp_path):
+    """The root of a small run."""
+    return make_root(tmp_path)
 
 
 @pytest.fixture

@@ -9,7 +9,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.kit.files import write_arrays, write_mesh
+from stages.kit import Mesh, Viewpoint
+from stages.kit.files import write_arrays, write_mesh, write_text
 from stages.report.__main__ import dataset_line, write_report
 from stages.report.drawing import VIEWPOINT, picture, visible
 from stages.report.packing import SHADES, STEPS, Store, ordered
@@ -19,11 +20,40 @@ from stages.report.viewer import pack_viewer
 pytestmark = pytest.mark.slow
 
 
-@pytest.fixture
-def page(root, small):
-    """The text of the page of the small run."""
+OLD, OTHERS = "tables/gone.csv", "bench/pipeline.csv"  # results of an earlier run, and of what is no report
+ODD = "<b>&qem</b>"
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory, small):
+    """The root of a small run with a report; a method has an odd name, and marks are of a set that is switched off."""
+    root = small.root(tmp_path_factory.mktemp("run"))
+    for name in (OLD, OTHERS):
+        write_text(root / "reports" / name, "old")
+    small.write(root, "lod", pd.concat([small.lod(), small.lod().assign(method=ODD)]))
+    small.write(root, "annotations", small.agreed_marks(), "elsewhere")
     write_report(small.results(root))
-    return (root / "reports/index.html").read_text()
+    return root
+
+
+@pytest.fixture(scope="module")
+def page(run):
+    """The text of the page of the small run."""
+    return (run / "reports/index.html").read_text()
+
+
+@pytest.fixture(scope="module")
+def own(tmp_path_factory, small):
+    """The results of a run on a folder of one's own, in which the enhanced model was not run, with its report."""
+    root = small.root(tmp_path_factory.mktemp("own"))
+    for path in (root / "data/test/salient_points").glob("*.npz"):
+        write_arrays(path, **{key.replace("enhanced", "itti"): value for key, value in np.load(path).items()})
+    text = (root / "params.yaml").read_text() + "test: {meshes: {source: folder}}\n"
+    (root / "params.yaml").write_text(text)
+    small.write(root, "lod", small.lod(), "elsewhere")
+    results = small.results(root)
+    write_report(results)
+    return results
 
 
 class Reader:
@@ -105,9 +135,9 @@ def test_page_is_accessible(page):
     assert levels[0] == 1 and levels.count(1) == 1
 
 
-def test_links_lead_to_files(page, root):
+def test_links_lead_to_files(page, run):
     for link in re.findall(r'href="([^#"][^"]*)"', page):
-        assert (root / "reports" / link).exists(), link
+        assert (run / "reports" / link).exists(), link
 
 
 def test_page_carries_the_meshes(page):
@@ -116,28 +146,25 @@ def test_page_carries_the_meshes(page):
     assert list(data["objects"][0]["ladders"]) == ["qem"]
 
 
-def test_verdicts_are_counted_beside_the_claims(page, root):
-    said = re.search(r"\d+ verdicts: .*2\.5 % each\.", (root / "reports/claims.md").read_text())[0]
-    claims = pd.read_csv(root / "reports/claims.csv")
+def test_verdicts_are_counted_beside_the_claims(page, run):
+    said = re.search(r"\d+ verdicts: .*2\.5 % each\.", (run / "reports/claims.md").read_text())[0]
+    claims = pd.read_csv(run / "reports/claims.csv")
     assert said.startswith(f"{len(claims)} verdicts: {(claims['verdict'] == 'supported').sum()} supported")
     assert f"<p>{said}</p>" in page
 
 
-def test_equal_runs_give_equal_bytes(page, root, small):
-    files = sorted(path for path in (root / "reports").rglob("*") if path.is_file())
+def test_equal_runs_give_equal_bytes_with_any_number_of_workers(run, small):
+    files = sorted(path for path in (run / "reports").rglob("*") if path.is_file())
     before = [path.read_bytes() for path in files]
-    write_report(small.results(root))
+    params = run / "params.yaml"
+    params.write_text(params.read_text().replace("backend: sequential", "backend: loky, workers: 2"))
+    write_report(small.results(run))
     assert [path.read_bytes() for path in files] == before
 
 
-def test_old_results_go_and_those_of_others_stay(page, root, small):
-    mine, other = root / "reports/tables/gone.csv", root / "reports/bench/pipeline.csv"
-    for path in (mine, other):
-        path.parent.mkdir(exist_ok=True)
-        path.write_text("old")
-    write_report(small.results(root))
-    assert not mine.exists()
-    assert other.exists()
+def test_old_results_go_and_those_of_others_stay(run):
+    assert not (run / "reports" / OLD).exists()
+    assert (run / "reports" / OTHERS).exists()
 
 
 def test_nothing_measured_is_listed_and_no_error(bare, small, capsys):
@@ -147,11 +174,18 @@ def test_nothing_measured_is_listed_and_no_error(bare, small, capsys):
     assert "not run: no data/SET/meshes" in (bare / "reports/index.html").read_text()
 
 
-def test_names_from_data_are_escaped(root, small):
-    frame = small.results(root).rows("lod").assign(method="<b>&qem</b>")
-    small.write(root, "lod", frame)
-    write_report(small.results(root))
-    assert "<b>&qem</b>" not in (root / "reports/index.html").read_text()
+def test_names_from_data_are_escaped(page):
+    assert ODD not in page and "&lt;b&gt;&amp;qem&lt;/b&gt;" in page
+
+
+def test_a_mesh_drawn_again_looks_as_if_drawn_alone_and_no_ray_at_its_rim_is_left_out(small):
+    ball = small.ball()
+    mesh, values = Mesh(0.3 * ball.vertices, ball.faces), np.random.default_rng(0).random(len(ball.vertices))
+    wide = Mesh(np.vstack([mesh.vertices, [[0.4] * 3, [-0.4] * 3]]), mesh.faces)  # rays all round
+    for given in ({}, {"values": values}, {"wires": True}, {"viewpoint": Viewpoint(20, 50)}, {"smoothing": 1}, {}):
+        found = picture(mesh, rows=60, **given)
+        for other in (wide, Mesh(mesh.vertices, mesh.faces)):
+            assert np.array_equal(found, picture(other, rows=60, **given)), given
 
 
 def test_picture_is_white_off_the_object_only(small):
@@ -169,12 +203,8 @@ def test_points_behind_the_object_are_hidden(small):
     assert abs(down[0] - 29.5) < 6
 
 
-def test_method_that_was_not_run_is_no_crash(root, small):
-    for path in (root / "data/test/salient_points").glob("*.npz"):
-        arrays = {key.replace("enhanced", "itti"): value for key, value in np.load(path).items()}
-        write_arrays(path, **arrays)
-    write_report(small.results(root))
-    assert '"itti"' in (root / "reports/index.html").read_text()
+def test_method_that_was_not_run_is_no_crash(own):
+    assert '"itti"' in (own.reports / "index.html").read_text()
 
 
 def test_the_head_of_the_page_names_the_data_set_of_the_meshes(root, small):
@@ -182,26 +212,16 @@ def test_the_head_of_the_page_names_the_data_set_of_the_meshes(root, small):
     assert dataset_line(small.results(root)).endswith("2 objects of the data set test")  # the first that is switched on
 
 
-def test_a_folder_of_ones_own_has_a_page_about_it_alone(root, small):
-    text = (root / "params.yaml").read_text() + "test: {meshes: {source: folder}}\n"
-    (root / "params.yaml").write_text(text)
-    small.write(root, "lod", small.lod(), "elsewhere")
-    results = small.results(root)
-    assert results.own_meshes and results.datasets("lod") == ["test"]
+def test_a_folder_of_ones_own_has_a_page_about_it_alone(own):
+    assert own.own_meshes and own.datasets("lod") == ["test"]
     with pytest.raises(NotRun, match="not switched on"):
-        results.rows("lod", "elsewhere")
-    write_report(results)
-    page = (root / "reports/index.html").read_text()
+        own.rows("lod", "elsewhere")
+    page = (own.reports / "index.html").read_text()
     assert "Your meshes" in page and "this page is about a folder alone" in page
-    assert pd.read_csv(root / "reports/claims.csv")["pairs"].gt(0).all()
+    assert pd.read_csv(own.reports / "claims.csv")["pairs"].gt(0).all()
 
 
-def test_what_was_measured_on_sets_that_are_off_is_folded(root, small):
-    for path in (root / "reports/measurements").glob("*/lod.csv.gz"):
-        path.unlink()
-    small.write(root, "lod", small.lod(), "elsewhere")
-    write_report(small.results(root))
-    page = (root / "reports/index.html").read_text()
+def test_what_was_measured_on_sets_that_are_off_is_folded(page):
     folded = re.findall(
         r"<summary>\d+ more, measured on data sets that are not part of this run: (.*?)</summary>", page
     )

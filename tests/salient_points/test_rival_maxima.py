@@ -5,6 +5,7 @@ import pytest
 import trimesh
 
 from stages.kit import Mesh
+from stages.salient_points.kernels import gaussian_sums
 from stages.salient_points.rivals.maxima import local_maxima
 from stages.salient_points.rivals.surface_average import gaussian_average, subdivide, surface_elements
 
@@ -57,6 +58,16 @@ def test_an_average_of_one_value_is_that_value_and_of_a_sphere_lies_below_it():
     )
     mean_square = 2 * sigma**2 * (1 - 2 * np.exp(-2) / (1 - np.exp(-2)))  # of a Gaussian in the plane, cut at 2 sigma
     np.testing.assert_allclose(sunk.mean(), mean_square / 2, rtol=0.05)
+
+
+@pytest.mark.parametrize("sigma", [1e-3, 0.1, 3.0])
+def test_gaussian_sums_are_those_over_all_pairs_within_two_sigma(sigma):
+    draw = np.random.default_rng(0)
+    places, points, values = draw.uniform(-1, 2, (40, 3)), draw.uniform(size=(300, 3)), draw.uniform(size=(300, 2))
+    places[:20] = points[:20]
+    square = ((places[:, None] - points) ** 2).sum(axis=2)
+    weights = np.where(square <= 4 * sigma**2, np.exp(square / (-2 * sigma**2)), 0)
+    np.testing.assert_allclose(gaussian_sums(places, points, values, sigma), weights @ values, atol=1e-12)
 
 
 def test_an_average_does_not_follow_the_tessellation():

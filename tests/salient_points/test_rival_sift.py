@@ -45,7 +45,7 @@ def test_the_scale_space_is_that_of_the_solid_ball(sphere):
     mesh = sphere(5, 0.1)
     speck = [[1, 0, 0], [1, 1e-4, 0], [1, 0, 1e-4]]  # makes the ball small in the grid
     mesh = Mesh(np.r_[mesh.vertices, speck], np.r_[mesh.faces, [len(mesh.vertices) + np.arange(3)]])
-    origin, step, dogs = sift._scale_space(mesh)
+    origin, step, dogs = sift._scale_space(mesh.vertices[mesh.faces])
     voxel = np.round(-origin / step).astype(int)
     u = 0.1 / step / (np.sqrt(2) * sift.SIGMA * 2 ** (np.arange(len(dogs) + 1) / sift.INTERVALS))
     held = erf(u) - 2 * u * np.exp(-(u**2)) / np.sqrt(np.pi)

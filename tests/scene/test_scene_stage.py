@@ -9,9 +9,10 @@ import pandas as pd
 import pytest
 import yaml
 
+from benchmarks import scenes
 from stages.kit.files import read_arrays, read_table, write_arrays, write_mesh, write_table
 from stages.kit.params import check_section
-from stages.kit.rows import read_rows
+from stages.kit.rows import read_rows, write_rows
 from stages.scene import __main__
 from stages.scene import measure as stage_measure
 from stages.scene.__main__ import levels_of
@@ -19,7 +20,7 @@ from stages.scene.export import export
 from stages.scene.measure import measure, measure_network
 from stages.scene.read import report_missing, scene_of
 from stages.scene.rows import summary
-from stages.scene.schema import Params
+from stages.scene.schema import COLUMNS, Params
 
 pytestmark = pytest.mark.slow
 
@@ -222,3 +223,24 @@ def test_an_object_outside_the_scene_runs_the_network_again_and_nothing_else(wor
     write_curve(workspace.data, "fourth")
     __main__.run(workspace)
     assert ran == ["compare_network"]
+
+
+def test_the_benchmark_keeps_what_is_about_all_frames_of_a_scene(workspace, monkeypatch):
+    row = {"group": "small", "method": "ours", "frame": "all", "metric": "faces", "value": 7}
+    others = ({"frame": 3}, {"item": "one"}, {"group": None, "condition": "counts"})
+    rows = [row, *(row | {"value": 8} | other for other in others)]
+    file = workspace.measurements / "scene.csv.gz"
+    monkeypatch.setattr(scenes, "run", lambda given: write_rows(file, rows, COLUMNS, given.dataset, 0))
+    (kept,) = scenes.measured(workspace).to_dict("records")
+    wanted = {"scene": "small", "method": "ours", "value": 7, "objects": 2, "shapes": 2, "frames": 4}
+    assert {name: kept[name] for name in wanted} == wanted
+
+
+def test_a_case_of_the_benchmark_has_the_scene_it_names_and_the_data_of_the_run(tmp_path, monkeypatch):
+    monkeypatch.setattr(scenes, "FOLDER", tmp_path / "scenes")
+    for stage in scenes.INPUTS:
+        write_table(tmp_path / stage / "one.csv", pd.DataFrame({"a": [1]}))
+    workspace = scenes.workspace_of("table_ssim", "household", tmp_path)
+    settings = workspace.settings(Params)
+    assert (settings.name, settings.kind, settings.factors) == ("table", "ssim", [1.0])
+    assert all((workspace.data / stage / "one.csv").exists() for stage in scenes.INPUTS)

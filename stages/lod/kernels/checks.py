@@ -5,6 +5,7 @@ import numpy as np
 from .corners import after, before
 from .jit import Id, kernel
 
+NOBODY = np.int64(-1)  # no vertex; numba compiles anew for a plain -1
 STEADY = 0.98  # cosine between a face's normal before and after above which its neighbours are not checked
 
 
@@ -30,8 +31,9 @@ def may_collapse(
     The link condition: the ends share no neighbour but the two opposite the edge, and no tetrahedron closes. mark (n,)
     scratch, last (1,) the tag of the last marking; turn, shape, fold: see `check_move`.
     """
-    t = opposite[h]
-    i, j, k, m = corner[h], corner[t], corner[before(h)], corner[before(t)]
+    t = np.int64(opposite[h])  # as all ids that are passed on: each further type compiles the callees once more
+    i, j = np.int64(corner[h]), np.int64(corner[t])
+    k, m = np.int64(corner[before(h)]), np.int64(corner[before(t)])
     if k == m or _closes_tetrahedron(corner, opposite, h, m) or _closes_tetrahedron(corner, opposite, t, k):
         return False
     last[0] += 1
@@ -72,16 +74,16 @@ def _mark_neighbours(corner, opposite, start, mark, tag, v):
 @kernel
 def _seam_holds(corner, opposite, p, i, j, h, x, y, z, fold):
     """Whether the faces that become neighbours without that of h do not fold, or one was folded before."""
-    one, two = opposite[after(h)], opposite[before(h)]
+    one, two = np.int64(opposite[after(h)]), np.int64(opposite[before(h)])
     if one < 0 or two < 0:
         return True
     ax, ay, az = _normal(corner, p, one, i, j, x, y, z)
     bx, by, bz = _normal(corner, p, two, i, j, x, y, z)
     if not _folds(ax, ay, az, bx, by, bz, fold):
         return True
-    ax, ay, az = _normal(corner, p, one, -1, -1, x, y, z)
-    bx, by, bz = _normal(corner, p, two, -1, -1, x, y, z)
-    cx, cy, cz = _normal(corner, p, h, -1, -1, x, y, z)
+    ax, ay, az = _normal(corner, p, one, NOBODY, NOBODY, x, y, z)
+    bx, by, bz = _normal(corner, p, two, NOBODY, NOBODY, x, y, z)
+    cx, cy, cz = _normal(corner, p, h, NOBODY, NOBODY, x, y, z)
     return _folds(ax, ay, az, cx, cy, cz, fold) or _folds(bx, by, bz, cx, cy, cz, fold)
 
 
@@ -162,9 +164,9 @@ def check_move(
             if h == first:
                 fx, fy, fz, gx, gy, gz = nx, ny, nz, ox, oy, oz
             if along * along < STEADY * STEADY * new * old:
-                g = opposite[after(h)]
+                g = np.int64(opposite[after(h)])
                 if g >= 0:
-                    cx, cy, cz = _normal(corner, p, g, -1, -1, x, y, z)
+                    cx, cy, cz = _normal(corner, p, g, NOBODY, NOBODY, x, y, z)
                     if _folds(nx, ny, nz, cx, cy, cz, fold) and not _folds(ox, oy, oz, cx, cy, cz, fold):
                         return -1
         a, ax, ay, az = b, bx, by, bz

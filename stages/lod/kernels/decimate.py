@@ -21,7 +21,7 @@ def decimate(surface: HalfEdgeMesh, faces: int, turn: float, shape: float, fold:
     tenth as wide are allowed: slivers on a flat region are better than a cut-off corner.
     """
     corner, opposite, start, boundary, locked, position, quadric, parent = surface
-    mark, last = np.zeros(len(position), dtype=np.int32), np.zeros(1, dtype=np.int32)
+    mark, last = np.zeros(len(position), dtype=np.int32), np.zeros(1, dtype=np.int64)
     head, following, lowest = empty_queue(len(corner))
     left = 0
     for h in range(len(corner)):

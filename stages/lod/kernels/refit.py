@@ -7,7 +7,7 @@ merged into it (least squares, as in Hoppe et al. 1993, "Mesh optimization", sec
 
 import numpy as np
 
-from .checks import check_move
+from .checks import NOBODY, check_move
 from .corners import after, before
 from .jit import kernel
 from .surface import HalfEdgeMesh
@@ -39,7 +39,7 @@ def refit(
             x = position[v, 0] + by * pull[v, 0]
             y = position[v, 1] + by * pull[v, 1]
             z = position[v, 2] + by * pull[v, 2]
-            if check_move(corner, opposite, start, position, mark, v, v, -1, x, y, z, TURN, SHAPE, fold) >= 0:
+            if check_move(corner, opposite, start, position, mark, v, v, NOBODY, x, y, z, TURN, SHAPE, fold) >= 0:
                 position[v, 0], position[v, 1], position[v, 2] = x, y, z
 
 

@@ -22,23 +22,6 @@ class HalfEdgeMesh(NamedTuple):
 
 
 @kernel
-def unit_box(vertices: np.ndarray, source: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
-    """(vertices[source] scaled to a box of size 1 around 0, the box's middle (3,) and size before)."""
-    low, high = np.full(3, np.inf), np.full(3, -np.inf)
-    for v in source:
-        for axis in range(3):
-            low[axis] = min(low[axis], vertices[v, axis])
-            high[axis] = max(high[axis], vertices[v, axis])
-    middle, size = (low + high) / 2, (high - low).max()
-    size = size if size > 0.0 else 1.0
-    position = np.empty((len(source), 3))
-    for v in range(len(source)):
-        for axis in range(3):
-            position[v, axis] = (vertices[source[v], axis] - middle[axis]) / size
-    return position, middle, size
-
-
-@kernel
 def collapse_edge(
     corner: np.ndarray,
     opposite: np.ndarray,
@@ -85,7 +68,7 @@ def collapse_edge(
     for n in range(10):
         quadric[stays, n] += quadric[goes, n]
     parent[goes] = stays
-    return left, right
+    return np.int64(left), np.int64(right)
 
 
 @kernel

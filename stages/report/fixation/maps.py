@@ -15,6 +15,7 @@ from stages.fixation.cam import resize_cams
 from stages.fixation.tasks import FUSED_TASKS
 from stages.kit import Mesh
 from stages.kit.files import read_json, write_json
+from stages.kit.packs import object_files
 from stages.networks.grid import GRIDS
 from stages.report.drawing import colour_bar, colour_map, name_panels, picture, square_grid, squared, vivid
 from stages.report.items import Figure
@@ -133,7 +134,7 @@ def _look(results: Results, dataset: str | None) -> tuple[Mesh, np.ndarray, View
 
 def _ready(results: Results, dataset: str | None) -> list[str]:
     """Names of the objects of a set at which networks looked, the settings' own first."""
-    names = sorted(path.stem for path in results.folder("fixation", dataset).glob("*.npz"))
+    names = object_files(results.folder("fixation", dataset))
     some(names, "no objects in fixation", "fixation")
     return sorted(names, key=lambda name: [*results.settings.figure_objects, name].index(name))
 

@@ -9,6 +9,7 @@ from stages.contours import Sequences, read_sequences
 from stages.imprints import SectionCurve, contour
 from stages.kit import Mesh, RayScene, Viewpoint
 from stages.kit.camera import project
+from stages.kit.packs import object_files
 from stages.report.drawing import VIEWPOINT, name_panels, picture, squared
 from stages.report.items import Figure
 from stages.report.results import Results, some
@@ -128,7 +129,7 @@ def _chosen(results: Results, count: int) -> dict[str, tuple[Mesh, dict[str, Seq
     Blind contours and, where there is one, the thesis's guided strategy or else another.
     """
     folder = results.folder("contours")
-    names = some(sorted(path.stem for path in folder.glob("*.npz")), "no data/contours", "contours")
+    names = some(object_files(folder), "no data/contours", "contours")
     first = [name for name in results.settings.figure_objects if name in names]
     others = [name for name in names if name not in first]
     places = np.linspace(0, len(others) - 1, OBJECTS).round().astype(int) if others else []

@@ -1,6 +1,6 @@
 """Where methods break: under which perturbation, and how much of it; and where the time went."""
 
-from . import kernels, points, simplification, time_spent, touch, touch_imprints, transfer
+from . import growth, kernels, points, simplification, time_spent, touch, touch_imprints, transfer
 
 TABLES = {
     "stability": points.table,
@@ -17,6 +17,7 @@ FIGURES = {
     "touch_stability_imprints": touch_imprints.build,
     "transfer_stability": transfer.figure,
     "kernels": kernels.build,
+    "growth": growth.build,
 }
 CHARTS = {}
 CLAIMS = []

@@ -82,25 +82,20 @@ def _keypoints(mesh):
     """The extrema among 80 neighbours in space and scale, within 2 sigma of the surface: the others lie inside."""
     if not mesh.face_areas.any():
         return Keypoints(np.zeros((0, 3)), np.zeros(0), np.zeros(0))
-    origin, step, dogs = _scale_space(mesh)
+    elements = subdivide(mesh, np.zeros((len(mesh.vertices), 0)))  # small triangles that make up the surface
+    origin, step, dogs = _scale_space(elements)
     size = np.abs(dogs)
     peaks = (size == ndimage.maximum_filter(size, 3)) & (size > CONTRAST)
     peaks[[0, -1]] = False
     scale, *cell = np.nonzero(peaks)
     positions = origin + step * np.array(cell).T
     sigmas = SIGMA * 2 ** (scale / INTERVALS) * step
-    near = cKDTree(_elements(mesh).mean(axis=1)).query(positions)[0] <= 2 * sigmas
+    near = cKDTree(elements.mean(axis=1)).query(positions)[0] <= 2 * sigmas
     return Keypoints(positions[near], sigmas[near], size[peaks][near].astype(np.float64))
 
 
-def _elements(mesh):
-    """(s, 3, 3) corners of small triangles that make up the surface."""
-    return subdivide(mesh, np.zeros((len(mesh.vertices), 0)))
-
-
-def _scale_space(mesh):
-    """(position of voxel 0, size of a voxel, list of differences of Gaussians (a, b, c) f4, by growing sigma)."""
-    corners = _elements(mesh)
+def _scale_space(corners):
+    """Of triangles (s, 3, 3): (position of voxel 0, size of a voxel, list of differences of Gaussians (a, b, c) f4)."""
     centre = np.average(corners.mean(axis=1), axis=0, weights=_area_vectors(corners)[1])
     step = 2 * np.linalg.norm(corners - centre, axis=2).max() / VOXELS
     origin = corners.min(axis=(0, 1)) - PADDING * step

@@ -1,16 +1,16 @@
 """Gaussian-weighted averages over the surface, the basis of centre-surround detectors."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import cKDTree  # pyright: ignore[reportAttributeAccessIssue] (compiled, without a stub)
+import pandas as pd
 
 from stages.kit import Mesh
 
+from ..kernels import gaussian_sums
+
 SPACING = 0.01  # of the diagonal: the longest edge of an element; the elements' centres lie about half as far apart
 CELLS = 3  # per sigma: elements that share a cell count as one, at their centre; widens the Gaussian by under 1 %
-BATCH = 4096  # vertices per query, so that the pairs of a large mesh stay within about 200 MB
 
 
 @dataclass(frozen=True)
@@ -49,24 +49,10 @@ def gaussian_average(mesh: Mesh, elements: SurfaceElements, sigma: float) -> np.
     section 3.2). The paper sums over the vertices; an integral over the surface is the same on an even mesh, and on
     an uneven or coarse one it does not follow the tessellation. NaN at a vertex with no surface within 2 sigma.
     """
-    totals = np.zeros((len(mesh.vertices), 1 + elements.values.shape[1]))
-    for vertices, cells, distances, near in near_cells(mesh, elements, sigma):
-        weights = np.exp(distances**2 / (-2 * sigma**2)) * near.areas[cells]
-        for k, column in enumerate([np.ones(len(near.areas)), *near.values.T]):
-            totals[:, k] += np.bincount(vertices, weights * column[cells], len(totals))
+    near = _merged(elements, sigma / CELLS)
+    values = near.areas[:, None] * np.column_stack([np.ones(len(near.areas)), near.values])
+    totals = gaussian_sums(mesh.vertices, near.centres, values, sigma)
     return np.divide(totals[:, 1:], totals[:, :1], out=np.full_like(totals[:, 1:], np.nan), where=totals[:, :1] > 0)
-
-
-def near_cells(
-    mesh: Mesh, elements: SurfaceElements, sigma: float
-) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray, SurfaceElements]]:
-    """Yields (vertex ids, cell ids, distances, cells) of all pairs within 2 sigma, a batch of vertices at a time."""
-    cells = _merged(elements, sigma / CELLS)
-    tree = cKDTree(cells.centres)
-    for start in range(0, len(mesh.vertices), BATCH):
-        some = cKDTree(mesh.vertices[start : start + BATCH])
-        found = some.sparse_distance_matrix(tree, 2 * sigma, output_type="ndarray")
-        yield start + found["i"], found["j"], found["v"], cells
 
 
 def _sides(corners):
@@ -86,7 +72,7 @@ def _merged(elements, size):
     """The elements that share a cell of a grid of the given size as one, at their common centre."""
     places = np.floor((elements.centres - elements.centres.min(axis=0, initial=np.inf)) / size).astype(np.int64)
     spans = places.max(axis=0, initial=0) + 1
-    cell = np.unique((places[:, 0] * spans[1] + places[:, 1]) * spans[2] + places[:, 2], return_inverse=True)[1]
+    cell = pd.factorize((places[:, 0] * spans[1] + places[:, 1]) * spans[2] + places[:, 2])[0]
     columns = np.concatenate([elements.centres, elements.values], axis=1).T
     areas = np.bincount(cell, elements.areas)
     means = np.stack([np.bincount(cell, elements.areas * column) / areas for column in columns], axis=1)

@@ -1,5 +1,6 @@
 """One fold: models trained on some objects and tested on others, in and beyond the measured range."""
 
+import functools
 from dataclasses import dataclass
 
 import numpy as np
@@ -39,46 +40,54 @@ class Fold:
 def evaluate_fold(fold: Fold) -> pd.DataFrame:
     """One row per case, method, condition and setting: that of `score_counts`, and the seconds of built meshes."""
     cases = between(fold.test_curves, fold.seed)
-    frames = [*_left_out(fold, cases), *_few_objects(fold, cases), *_beyond(fold)]
+
+    @functools.cache
+    def counts(kind: str, objects: frozenset[str]) -> np.ndarray:
+        training = [curve for curve in fold.training if curve.object in objects]
+        return predict_counts(kind, training, cases, fold.combinations, fold.seed)
+
+    frames = [*_left_out(fold, cases, counts), *_few_objects(fold, cases, counts), *_beyond(fold)]
     return pd.concat(frames, ignore_index=True)
 
 
-def _left_out(fold, cases):
+def _left_out(fold, cases, counts):
     """As trained, then at an equal rate of cases within the tolerance, and a sample of both as meshes."""
+    parts = _inner_parts(fold)
     for kind in ALL:
-        found = predict_counts(kind, fold.training, cases, fold.combinations, fold.seed)
+        found = counts(kind, frozenset(_names(fold.training)))
         yield labelled(score_counts(cases, found), kind, "left_out")
         yield labelled(build_some(fold, cases, found), kind, "built")
-        safe = enlarged(found, _safety(fold, kind), cases)
+        safe = enlarged(found, _safety(fold, kind, parts), cases)
         yield labelled(score_counts(cases, safe), kind, "equal_rate")
         yield labelled(build_some(fold, cases, safe), kind, "built_equal_rate")
 
 
-def _safety(fold, kind):
+def _safety(fold, kind, parts):
     """The factor on the counts of a model with which RATE of the cases of training objects are within the tolerance.
 
     Each case is predicted by a model trained on other training objects (cross-conformal prediction: Vovk 2015). Cases
     of one object are dependent, so the rate is approximate.
     """
-    objects = _names(fold.training)
-    counts, trials = [], []
+    counts = [predict_counts(kind, others, cases, fold.combinations, fold.seed) for others, cases in parts]
+    return safety_factor(np.concatenate(counts), [case for _, cases in parts for case in cases], RATE)
+
+
+def _inner_parts(fold):
+    """[(curves to train on, cases of the other training objects)]."""
+    objects, parts = _names(fold.training), []
     for _, last in KFold(INNER, shuffle=True, random_state=fold.seed).split(objects):
         aside = {objects[k] for k in last}
         others, left = ([c for c in fold.training if (c.object in aside) == chosen] for chosen in (False, True))
-        cases = between(left, fold.seed)
-        counts += list(predict_counts(kind, others, cases, fold.combinations, fold.seed))
-        trials += cases
-    return safety_factor(np.array(counts), trials, RATE)
+        parts.append((others, between(left, fold.seed)))
+    return parts
 
 
-def _few_objects(fold, cases):
+def _few_objects(fold, cases, counts):
     objects = _names(fold.training)
     for size in fold.sizes:
-        drawn = _drawn(objects, size, rng(fold.seed, f"{size} of {','.join(objects)}"))
-        training = [curve for curve in fold.training if curve.object in drawn]
+        drawn = frozenset(rng(fold.seed, f"{size} of {','.join(objects)}").permutation(objects)[:size].tolist())
         for kind in (*KINDS, "one_mesh"):
-            found = predict_counts(kind, training, cases, fold.combinations, fold.seed)
-            yield labelled(score_counts(cases, found), kind, "trained_on", size)
+            yield labelled(score_counts(cases, counts(kind, drawn)), kind, "trained_on", size)
 
 
 def _beyond(fold):
@@ -98,7 +107,3 @@ def labelled(frame: pd.DataFrame, method: str, condition: str, setting: int | No
 
 def _names(curves) -> list[str]:
     return sorted({curve.object for curve in curves})
-
-
-def _drawn(names, count, draw):
-    return set(draw.permutation(names)[:count])

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from stages.kit.jit import kernel_of
+from stages.kit.jit import inlined, kernel_of
 
 kernel = kernel_of(__file__)
 
@@ -19,39 +19,47 @@ def rasterise(corners: np.ndarray, faces: np.ndarray, top: int, left: int, face:
     """
     height, width = face.shape
     for f in range(len(faces)):
-        r0, c0, z0 = corners[faces[f, 0]]
-        r1, c1, z1 = corners[faces[f, 1]]
-        r2, c2, z2 = corners[faces[f, 2]]
+        i, j, k = faces[f, 0], faces[f, 1], faces[f, 2]  # numbers: a row is an object whose references numba counts
+        r0, c0, z0 = corners[i, 0], corners[i, 1], corners[i, 2]
+        r1, c1, z1 = corners[j, 0], corners[j, 1], corners[j, 2]
+        r2, c2, z2 = corners[k, 0], corners[k, 1], corners[k, 2]
         area = (r1 - r0) * (c2 - c0) - (c1 - c0) * (r2 - r0)
-        if abs(area) <= FLAT:
+        above = max(int(np.ceil(min(r0, r1, r2) - SLACK)), top)
+        below = min(int(np.floor(max(r0, r1, r2) + SLACK)), top + height - 1)
+        if above > below or abs(area) <= FLAT:
             continue
         # The weights of the second and the third corner grow by these along a row and along a column.
         second_row, second_column = (c2 - c0) / area, (r0 - r2) / area
         third_row, third_column = (c0 - c1) / area, (r1 - r0) / area
-        first = max(int(np.ceil(min(r0, r1, r2) - SLACK)), top)
-        last = min(int(np.floor(max(r0, r1, r2) + SLACK)), top + height - 1)
-        for row in range(first, last + 1):
+        first_column = -second_column - third_column
+        over = 1 / first_column, 1 / second_column, 1 / third_column
+        step = second_column * (z1 - z0) + third_column * (z2 - z0)
+        for row in range(above, below + 1):
             second = (row - r0) * second_row - c0 * second_column
             third = (row - r0) * third_row - c0 * third_column
-            low, high = left, left + width - 1
-            for start, slope in (
-                (second, second_column),
-                (third, third_column),
-                (1 - second - third, -second_column - third_column),
-            ):
-                if slope > 0:
-                    low = max(low, int(np.ceil(max((-SLACK - start) / slope, left))))
-                elif slope < 0:
-                    high = min(high, int(np.floor(min((-SLACK - start) / slope, left + width))))
-                elif start < -SLACK:
-                    high = low - 1
+            first = 1 - second - third
+            low, high = _columns(second, second_column, over[1], float(left), float(left + width - 1))
+            low, high = _columns(third, third_column, over[2], low, high)
+            low, high = _columns(first, first_column, over[0], low, high)
             z = z0 + second * (z1 - z0) + third * (z2 - z0)
-            step = second_column * (z1 - z0) + third_column * (z2 - z0)
-            for column in range(low, high + 1):
-                here = z + column * step
-                if here < depth[row - top, column - left]:
-                    depth[row - top, column - left] = here
-                    face[row - top, column - left] = f
+            y = np.uint64(row - top)  # unsigned: numba looks for no index from the end
+            for column in range(int(np.ceil(low)), int(np.floor(high)) + 1):
+                x, here = np.uint64(column - left), z + column * step
+                if here < depth[y, x]:
+                    depth[y, x], face[y, x] = here, f
+
+
+@inlined
+def _columns(start, slope, over, low, high):
+    """The columns, between low and high, at which a weight start + column * slope is not below 0; over is 1 / slope."""
+    end = (-SLACK - start) * over
+    if slope > 0:
+        low = max(low, end)
+    elif slope < 0:
+        high = min(high, end)
+    elif start < -SLACK:
+        high = -1.0
+    return low, high
 
 
 @kernel
@@ -70,23 +78,25 @@ def shade_pixels(
             f = face[i, j]
             if f < 0:
                 continue
-            a, b, c = faces[f]
+            a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
             r0, c0 = corners[a, 0], corners[a, 1]
             br, bc, dr, dc = corners[b, 0] - r0, corners[b, 1] - c0, corners[c, 0] - r0, corners[c, 1] - c0
-            p, q = (top + i - r0) / (br * dc - bc * dr), (left + j - c0) / (br * dc - bc * dr)
+            over = 1 / (br * dc - bc * dr)
+            p, q = (top + i - r0) * over, (left + j - c0) * over
             # On an edge rounding may lead out of the face: clipped.
             second = min(max(dc * p - dr * q, 0.0), 1.0)
             third = min(max(br * q - bc * p, 0.0), 1.0 - second)
             first = 1 - second - third
-            u, v, w = groups[f]
+            u, v, w = groups[f, 0], groups[f, 1], groups[f, 2]
             x = first * normals[u, 0] + second * normals[v, 0] + third * normals[w, 0]
             y = first * normals[u, 1] + second * normals[v, 1] + third * normals[w, 1]
             z = first * normals[u, 2] + second * normals[v, 2] + third * normals[w, 2]
             towards = crosses[f, 0] * back[0] + crosses[f, 1] * back[1] + crosses[f, 2] * back[2]
             cosine = (x * back[0] + y * back[1] + z * back[2]) * (-1.0 if towards < 0 else 1.0)
             brightness = min(max(cosine / max(np.sqrt(x * x + y * y + z * z), 1e-300), 0.0), 1.0)
+            shade = int(np.rint(grey * brightness))
             for channel in range(3):
-                value = grey
                 if len(colors):
                     value = first * colors[a, channel] + second * colors[b, channel] + third * colors[c, channel]
-                rgb[i, j, channel] = int(np.rint(value * brightness))
+                    shade = int(np.rint(value * brightness))
+                rgb[i, j, channel] = shade

@@ -1,8 +1,10 @@
-"""Connected components of a graph by union-find."""
+"""Connected components of a graph by union-find, compiled by numba; scipy's first builds a sparse matrix."""
 
 import numpy as np
 
-from .jit import kernel
+from .jit import kernel_of
+
+kernel = kernel_of(__file__)
 
 
 @kernel

@@ -1,0 +1,6 @@
+"""What every pixel of a map asks for: compiled kernels on plain arrays."""
+
+from .peaks import mean_of_other_maxima
+from .surface import locate_pixels
+
+__all__ = ["locate_pixels", "mean_of_other_maxima"]
