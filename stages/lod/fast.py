@@ -22,17 +22,20 @@ FIT_BELOW = 0.35  # share of the faces left: above it the fit gains little (4 % 
 SAMPLES = 6  # target points of the fit per remaining vertex
 
 
-def collapse(mesh: Mesh, faces: int, frozen: np.ndarray, weights: np.ndarray | None = None) -> Mesh:
+def collapse(
+    mesh: Mesh, faces: int, frozen: np.ndarray, weights: np.ndarray | None = None, fit_below: float = FIT_BELOW
+) -> Mesh:
     """A sound Mesh of at most `faces` faces, without colours.
 
     frozen (m,) boolean: faces that are preserved bit for bit, as is the boundary. weights (n,) f8: factor of each
-    vertex's quadric, and its weight in the fit; None for 1.
+    vertex's quadric, and its weight in the fit; None for 1. fit_below: the share of the faces left below which the
+    vertices are fitted; 0 is Garland and Heckbert's QSlim.
     Raises InfeasibleTarget when no collapse is left above the target, SimplifyError when every attempt is faulty.
     """
     before, reason, least = None, "", len(mesh.faces)
     waiting = [(*limits, FOLD) for limits in ATTEMPTS]
     while waiting:
-        found, left = _attempt(mesh, faces, frozen, weights, *waiting.pop(0))
+        found, left = _attempt(mesh, faces, frozen, weights, fit_below, *waiting.pop(0))
         after = faults(found)
         if left <= faces and after == NONE:
             return found
@@ -51,7 +54,7 @@ def collapse(mesh: Mesh, faces: int, frozen: np.ndarray, weights: np.ndarray | N
     raise SimplifyError(f"{faces} faces leave {reason}: ask for more faces")
 
 
-def _attempt(mesh, faces, frozen, weights, turn, shape, fold):
+def _attempt(mesh, faces, frozen, weights, fit_below, turn, shape, fold):
     surface, source, (middle, size) = _half_edge_mesh(mesh, frozen, weights)
     points, corner = surface.position.copy(), surface.corner.copy()
     weight = (
@@ -60,7 +63,7 @@ def _attempt(mesh, faces, frozen, weights, turn, shape, fold):
     left = decimate(surface, faces, turn, shape, fold)
     if left > faces:
         left = decimate(surface, faces, *LAST, fold)
-    if left < FIT_BELOW * len(mesh.faces):
+    if left < fit_below * len(mesh.faces):
         refit(surface, points, corner, weight, SAMPLES * left // 2, fold)
     kept, used = compact(surface, source, len(mesh.vertices))
     vertices = surface.position[used] * size + middle

@@ -23,7 +23,9 @@ from .qem import collapse as collapse_by_pymeshlab
 from .shrink import shrinking_rings
 
 # A backend is collapse(mesh, faces, frozen, weights=None) -> Mesh of at most `faces` faces without colours; see qem.py.
-BACKENDS: dict[str, Callable[..., Mesh]] = {"fast": collapse_fast, "pymeshlab": collapse_by_pymeshlab}
+BACKENDS: dict[str, Callable[..., Mesh]] = {
+    "fast": collapse_fast, "qslim": partial(collapse_fast, fit_below=0.0), "pymeshlab": collapse_by_pymeshlab,
+}  # fmt: skip
 BACKEND = "fast"
 MAX_DIAGONAL = 1e60  # and one over it the smallest: fourth powers of lengths are compared
 

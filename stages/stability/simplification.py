@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stages.kit import Mesh, Stopwatch
-from stages.lod import BACKENDS, simplify
+from stages.lod import simplify
 from stages.lod.targets import face_count
 from stages.lod.warm_up import warm_up
 
@@ -100,7 +100,7 @@ def run_cases(specimen: Specimen, backend: str, cases: Iterable[Case]) -> Iterat
 
 
 def simplification_rows(
-    mesh: Mesh, name: str, seed: int, damages: Sequence[str] = tuple(DAMAGES), backends: Sequence[str] = tuple(BACKENDS)
+    mesh: Mesh, name: str, seed: int, damages: Sequence[str] = tuple(DAMAGES), backends: Sequence[str] = ("fast", "pymeshlab")
 ) -> list[dict]:
     """Rows of one object: `faces` of every case (0 without a mesh) and, where there is a mesh, its `error`."""
     curve, rows = QemErrorCurve(mesh), []
