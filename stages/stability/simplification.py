@@ -100,7 +100,11 @@ def run_cases(specimen: Specimen, backend: str, cases: Iterable[Case]) -> Iterat
 
 
 def simplification_rows(
-    mesh: Mesh, name: str, seed: int, damages: Sequence[str] = tuple(DAMAGES), backends: Sequence[str] = ("fast", "pymeshlab")
+    mesh: Mesh,
+    name: str,
+    seed: int,
+    damages: Sequence[str] = tuple(DAMAGES),
+    backends: Sequence[str] = ("fast", "pymeshlab"),
 ) -> list[dict]:
     """Rows of one object: `faces` of every case (0 without a mesh) and, where there is a mesh, its `error`."""
     curve, rows = QemErrorCurve(mesh), []
