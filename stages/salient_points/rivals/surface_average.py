@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-import pandas as pd
 
 from stages.kit import Mesh
 
@@ -72,7 +71,7 @@ def _merged(elements, size):
     """The elements that share a cell of a grid of the given size as one, at their common centre."""
     places = np.floor((elements.centres - elements.centres.min(axis=0, initial=np.inf)) / size).astype(np.int64)
     spans = places.max(axis=0, initial=0) + 1
-    cell = pd.factorize((places[:, 0] * spans[1] + places[:, 1]) * spans[2] + places[:, 2])[0]
+    cell = np.unique((places[:, 0] * spans[1] + places[:, 1]) * spans[2] + places[:, 2], return_inverse=True)[1]
     columns = np.concatenate([elements.centres, elements.values], axis=1).T
     areas = np.bincount(cell, elements.areas)
     means = np.stack([np.bincount(cell, elements.areas * column) / areas for column in columns], axis=1)
