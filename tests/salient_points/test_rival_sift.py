@@ -2,12 +2,21 @@
 
 import numpy as np
 import pytest
+from scipy.ndimage import maximum_filter
 from scipy.special import erf
 
 from stages.kit import Mesh
+from stages.salient_points.kernels import scale_peaks
 from stages.salient_points.rivals import sift
 
 X = np.array([1.0, 0, 0])
+
+
+def test_peaks_are_the_maxima_of_their_neighbourhood_in_space_and_scale():
+    values = np.random.default_rng(0).integers(0, 40, (5, 7, 8, 9)).astype(np.float32)  # many ties
+    expected = (values == maximum_filter(values, 3)) & (values > 38)
+    expected[[0, -1]] = False
+    assert scale_peaks(values, 38.0).tolist() == np.flatnonzero(expected).tolist() != []
 
 
 @pytest.mark.slow

@@ -11,12 +11,13 @@ keypoints alone, so the map is these keypoints spread by their own sigma.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import fft, ndimage
+from scipy import fft
 from scipy.spatial import cKDTree  # pyright: ignore[reportAttributeAccessIssue] (compiled, without a stub)
 
 from stages.conspicuity.weak_cache import weak_cache
 from stages.kit import Mesh
 
+from ..kernels import scale_peaks
 from .surface_average import subdivide
 
 VOXELS = 96  # across the ball around the surface's centroid: its bounding box would change as the mesh turns
@@ -85,9 +86,8 @@ def _keypoints(mesh):
     elements = subdivide(mesh, np.zeros((len(mesh.vertices), 0)))  # small triangles that make up the surface
     origin, step, dogs = _scale_space(elements)
     size = np.abs(dogs)
-    peaks = (size == ndimage.maximum_filter(size, 3)) & (size > CONTRAST)
-    peaks[[0, -1]] = False
-    scale, *cell = np.nonzero(peaks)
+    peaks = np.unravel_index(scale_peaks(size, CONTRAST), size.shape)
+    scale, *cell = peaks
     positions = origin + step * np.array(cell).T
     sigmas = SIGMA * 2 ** (scale / INTERVALS) * step
     near = cKDTree(elements.mean(axis=1)).query(positions)[0] <= 2 * sigmas
