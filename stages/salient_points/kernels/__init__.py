@@ -2,6 +2,8 @@
 
 from .gaussian import gaussian_sums
 from .peaks import scale_peaks
+from .spaced import spaced
+from .splat import splat
 from .suppress import suppress
 
-__all__ = ["gaussian_sums", "scale_peaks", "suppress"]
+__all__ = ["gaussian_sums", "scale_peaks", "spaced", "splat", "suppress"]
