@@ -81,7 +81,6 @@ def main():
     stages = {name: float(seconds) for name, seconds in TAKEN.findall(output)}
     rows += [{"what": name, "metric": "processor time", "value": stages[name], "unit": "s"} for name in stages]
     again, _, _ = watch(["dvc", "repro"], COPY)
-    smoke, _, _ = watch(["make", "smoke"], ".")
     size = sum(path.stat().st_size for path in (COPY / "data").rglob("*") if path.is_file())
     everything = sum(stages.values())
     rows += [
@@ -90,15 +89,22 @@ def main():
         {"what": "all stages", "metric": "processor time in reference loops", "value": everything / loop},
         {"what": "all stages", "metric": "peak memory", "value": peak / 2**30, "unit": "GiB", "limit": 4},
         {"what": "dvc repro, unchanged", "metric": "wall time", "value": again, "unit": "s", "limit": 10},
-        {"what": "make smoke", "metric": "wall time", "value": smoke, "unit": "s", "limit": 300},
         {"what": "data/", "metric": "size", "value": size / 2**30, "unit": "GiB", "limit": 2},
     ]
-    frame = pd.DataFrame(rows)
-    frame["machine"] = f"{platform.machine()}, {len(os.sched_getaffinity(0))} cores, Python {platform.python_version()}"
-    write_table(OUT, frame)
+    frame = write(rows)
+    smoke, _, _ = watch(["make", "smoke"], ".")  # last: it fails where the gate does
+    frame = write([*rows, {"what": "make smoke", "metric": "wall time", "value": smoke, "unit": "s", "limit": 300}])
     print(frame.to_string(index=False))
     over = frame[frame.value > frame.limit]
     print("bench: all within their limits" if over.empty else f"bench: over the limit: {', '.join(over.what)}")
+
+
+def write(rows):
+    """Writes the table; returns it as a frame."""
+    frame = pd.DataFrame(rows)
+    frame["machine"] = f"{platform.machine()}, {len(os.sched_getaffinity(0))} cores, Python {platform.python_version()}"
+    write_table(OUT, frame)
+    return frame
 
 
 if __name__ == "__main__":

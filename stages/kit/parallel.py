@@ -9,10 +9,12 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from joblib import Parallel, delayed, parallel_config
+from joblib.externals.loky import process_executor
 from tqdm import tqdm
 
 from .cores import core
 
+GROWTH = 600_000_000  # bytes by which a worker may grow; joblib allows half, and each new one imports for seconds
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
@@ -95,6 +97,7 @@ def _on_a_core(function, task, root):
 
 
 def _named(function, task, root):
+    process_executor._MAX_MEMORY_LEAK_SIZE = GROWTH  # of this worker, which looks at it after each item
     return task, function(task, root)
 
 

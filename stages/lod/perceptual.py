@@ -7,11 +7,12 @@ import cv2
 import numpy as np
 
 from stages.kit import Mesh, Viewpoint
+from stages.kit.similarity import WINDOW, local_moments
 from stages.views import TWELVE, render
 
 from .laplacian import band_distance, laplacian_pyramid
 from .normalised_laplacian import normalise
-from .similarity import WINDOW, local_moments, ssim_error
+from .similarity import ssim_error
 
 LUMA = np.array([[0.299, 0.587, 0.114]])  # ITU-R BT.601
 

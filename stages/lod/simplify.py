@@ -1,7 +1,7 @@
 """Simplification that preserves the neighbourhoods of chosen vertices (T3.1.3, T3.2.8)."""
 
 from collections.abc import Callable
-from functools import partial
+from functools import lru_cache
 
 import numpy as np
 
@@ -72,29 +72,36 @@ def simplify(
     for attempt in shrinking_rings(mesh, faces, keep, rings) if shrink else [rings]:
         frozen = frozen_faces(mesh, keep, attempt)
         smallest = smallest_feasible(mesh, keep, attempt)
-        run = partial(BACKENDS[backend], mesh, frozen=frozen, weights=multipliers)
         try:
             if faces < smallest:  # before the backend starts
                 raise InfeasibleTarget(faces, smallest, int(frozen.sum()))
-            return carry(mesh, run(int(faces)))
+            return carry(mesh, BACKENDS[backend](mesh, int(faces), frozen, multipliers))
         except (InfeasibleTarget, SimplifyError) as error:
-            failures.append((error, run))
-    error, run = failures[-1]
+            failures.append((error, frozen))
+    error, frozen = failures[-1]
     if isinstance(error, InfeasibleTarget):
-        raise InfeasibleTarget(faces, _smallest_sound(run, error.smallest, len(mesh.faces)), error.frozen)
+        factors = None if multipliers is None else multipliers.tobytes()
+        sound = _smallest_sound(mesh, backend, frozen.tobytes(), factors, error.smallest)
+        raise InfeasibleTarget(faces, sound, error.frozen)
     raise error
 
 
-def _smallest_sound(run, smallest, count):
-    """The lowest face count, from `smallest` up to the mesh's own `count`, at which the backend gives a sound mesh."""
-    while smallest < count:
-        try:
-            return len(run(smallest).faces)
-        except InfeasibleTarget as error:
-            smallest = max(error.smallest, smallest + 1)
-        except SimplifyError:
-            smallest = int(GROWTH * smallest) + 2
-    return count
+@lru_cache(maxsize=256)  # every target that is refused asks for it, and searches that start apart meet
+def _smallest_sound(mesh, backend, frozen, weights, smallest):
+    """The lowest face count, from `smallest` up to the mesh's own, at which the backend gives a sound mesh.
+
+    frozen and weights: as of a backend, as bytes.
+    """
+    if smallest >= len(mesh.faces):
+        return len(mesh.faces)
+    factors = None if weights is None else np.frombuffer(weights)
+    try:
+        return len(BACKENDS[backend](mesh, smallest, np.frombuffer(frozen, dtype=bool), factors).faces)
+    except InfeasibleTarget as error:
+        higher = max(error.smallest, smallest + 1)
+    except SimplifyError:
+        higher = int(GROWTH * smallest) + 2
+    return _smallest_sound(mesh, backend, frozen, weights, higher)
 
 
 def quadric_weights(saliency: np.ndarray) -> np.ndarray | None:

@@ -4,6 +4,8 @@ import numpy as np
 
 from stages.kit import Mesh
 
+from .kernels import spaced
+
 SAME_PLACE = 1e-6  # of the diagonal: below this spacing, points coincide
 
 
@@ -18,7 +20,7 @@ def merge_views(
     feature as often as it is seen.
     """
     order = np.lexsort((-values, ~strong))
-    kept = spaced(mesh.vertices[vertices[order]], radius)
+    kept = spaced(mesh.vertices[vertices[order]], radius, 0, len(order))
     return vertices[order][kept], int(strong[order][kept].sum())
 
 
@@ -35,23 +37,6 @@ def continue_on_surface(mesh: Mesh, points: np.ndarray, saliency: np.ndarray, ra
         both = np.r_[points, ranked[~np.isin(ranked, points)]]
         if radius < SAME_PLACE * mesh.diagonal:  # only coincident vertices are left
             return both[:count]
-        points = both[spaced(mesh.vertices[both], radius, first=len(points), limit=count)]
+        points = both[spaced(mesh.vertices[both], radius, len(points), count)]
         radius /= 2
     return points[:count]
-
-
-def spaced(positions: np.ndarray, radius: float, first: int = 0, limit: int | None = None) -> np.ndarray:
-    """Indices of positions (k, 3), in order, each farther than radius from all before it; the `first` ones stay.
-
-    limit: stop at so many; None for all.
-    """
-    alive = np.ones(len(positions), dtype=bool)
-    kept = []
-    for i in range(len(positions)):
-        if limit is not None and len(kept) >= max(limit, first):
-            break
-        if alive[i] or i < first:
-            kept.append(i)
-            rest = slice(i + 1, None)
-            alive[rest] &= ((positions[rest] - positions[i]) ** 2).sum(axis=1) > radius**2
-    return np.array(kept, dtype=np.int64)

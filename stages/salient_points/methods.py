@@ -5,7 +5,7 @@ without which it cannot run, or None; and `find(mesh, sight, options, count=None
 place points (random, farthest) have `saliency(mesh, sight, options) -> (n,)` too.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 from stages.conspicuity import CHANNELS, ViewMaps
@@ -79,9 +79,12 @@ def split_runnable(methods: Iterable[str], learned: LearnedWeights) -> tuple[lis
 
 
 def find_all(
-    mesh: Mesh, sight: ViewMaps | None, methods: Iterable[str], options: Options, count: int | None
-) -> tuple[dict[str, Detection], dict[str, float]]:
+    mesh: Mesh, sight: ViewMaps | None, methods: Iterable[str], options: Options, count: int | None,
+    known: Mapping[str, Detection] | None = None,
+) -> tuple[dict[str, Detection], dict[str, float]]:  # fmt: skip
     """Runs methods on one object: (dict method -> Detection, dict method -> seconds).
+
+    known: the Detections of methods that have run on it before.
 
     A method without a threshold of its own (random, farthest) gets as many strong points as the first one that has one,
     so that what the LOD keeps for either differs in place alone.
@@ -89,7 +92,7 @@ def find_all(
     found, seconds = {}, {}
     for method in methods:
         with Stopwatch() as watch:
-            found[method] = method_named(method).find(mesh, sight, options, count)
+            found[method] = (known or {}).get(method) or method_named(method).find(mesh, sight, options, count)
         seconds[method] = watch.seconds
     strong = next((result.strong for result in found.values() if result.strong is not None), count)
     for method, result in found.items():

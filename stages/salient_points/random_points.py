@@ -27,7 +27,7 @@ class RandomPoints:
 
 def random_vertices(mesh: Mesh, count: int, generator: np.random.Generator) -> np.ndarray:
     """(k,) distinct vertices; fewer than count only on tiny meshes. Raises ValueError without area."""
-    total, count = mesh.face_areas.sum(), min(count, len(np.unique(mesh.faces)))
+    total, count = mesh.face_areas.sum(), min(count, len(mesh.used))
     if not total > 0:
         raise ValueError("the mesh has no area to draw points from")
     drawn = np.zeros(0, dtype=np.int64)

@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stages.lod.similarity import WINDOW, ssim_error, ssim_map
+from stages.kit.similarity import WINDOW, ssim_map
+from stages.lod.similarity import ssim_error
 
 from .lod_chain import Level
 from .rendering import LUMA

@@ -46,14 +46,27 @@ class Subject:
         """
         name = f"{self.options.name} {perturbation}"
         changed = PERTURBATIONS[perturbation].apply(self.mesh, severity, rng(self.options.seed, name))
-        return self._findings(replace(changed, mesh=normalise(changed.mesh)), f"{perturbation} {severity:g}")
+        what = f"{perturbation} {severity:g}"
+        if changed.mesh.vertices is self.mesh.vertices and changed.mesh.faces is self.mesh.faces:
+            return self._findings(changed, what, self._found_on_the_surface)
+        return self._findings(replace(changed, mesh=normalise(changed.mesh)), what)
 
-    def _findings(self, perturbed, what):
-        """Random points are drawn anew each time: equal draws would look repeatable."""
+    @property
+    def _found_on_the_surface(self):
+        """The Detections that depend on vertices and faces alone.
+
+        Random points are drawn anew each time: equal draws would look repeatable.
+        """
+        found = self.unperturbed.found.items()
+        return {name: one for name, one in found if not method_named(name).channels and one.saliency is not None}
+
+    def _findings(self, perturbed, what, known=None):
+        """known: Detections that need not be found again; they keep the seconds that they took."""
         with Stopwatch() as watch:
             sight = maps_under_conditions(perturbed.mesh, self.channels, perturbed.conditions, self.size)
         options = replace(self.options, name=f"{self.options.name} {what}")
-        found, seconds = find_all(perturbed.mesh, sight, self.methods, options, self.count)
+        found, seconds = find_all(perturbed.mesh, sight, self.methods, options, self.count, known)
+        seconds |= {method: self.unperturbed.seconds[method] for method in known or ()}
         image_based = [method for method in found if method_named(method).channels]
         for method in image_based:
             seconds[method] += watch.seconds / len(image_based)

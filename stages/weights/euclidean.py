@@ -36,7 +36,7 @@ def view_distances(maps: Mapping[str, np.ndarray], rows: np.ndarray, columns: np
 def _distance(image, points):
     """Mean distance of the brightest pixels to the points; as many pixels as points."""
     count = min(len(points), image.size)
-    cut = np.partition(image, image.size - count, axis=None)[image.size - count]
+    cut = np.sort(image, axis=None)[image.size - count]  # partition takes five times as long on a map of many zeros
     above, tied = image > cut, image == cut
     places = count - above.sum()
     near = _to_points(above, points).sum() + places * _to_points(tied, points).mean()

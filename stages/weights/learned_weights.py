@@ -91,8 +91,7 @@ def read_models(path: Path, prefix: str) -> dict[int, SVMModel]:
     if not path.exists():
         return {}
     grouped = {}
-    for name, values in read_arrays(path).items():
-        kind, k, key = name.split(".")
-        if kind == prefix:
-            grouped.setdefault(int(k), {})[key] = values
+    for name, values in read_arrays(path, f"{prefix}.").items():
+        _, k, key = name.split(".")
+        grouped.setdefault(int(k), {})[key] = values
     return {k: SVMModel.from_arrays(arrays) for k, arrays in grouped.items()}

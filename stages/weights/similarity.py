@@ -1,15 +1,12 @@
 """Channel weights from the similarity of conspicuity maps to the ground truth saliency map (T3.2.1.2 to T3.2.1.4)."""
 
 from collections.abc import Iterable, Mapping
-from typing import Any
 
 import numpy as np
 
-from stages.kit.extras import from_extra
+from stages.kit.similarity import WINDOW, local_moments, ssim_map
 
 from .euclidean import average, checked_maps
-
-WINDOW = 11  # pixels, for sigma 1.5 in scikit-image; as in Wang et al. 2004, T [63], and MATLAB's ssim
 
 
 def view_similarities(
@@ -38,18 +35,16 @@ def view_similarities(
         raise ValueError("maps must lie in 0..1")
     if not gts.any():
         return {}
-    return {channel: _ssim(values, gts, mask) for channel, values in maps.items()}
+    moments = local_moments(gts)
+    return {channel: _ssim(values, gts, moments, mask) for channel, values in maps.items()}
 
 
-def _ssim(values, gts, mask):
+def _ssim(values, gts, moments, mask):
     if np.ptp(values) == 0:
         return 0.0
-    with from_extra():
-        from skimage.metrics import structural_similarity
-
-    settings = {"data_range": 1.0, "gaussian_weights": True, "sigma": 1.5, "use_sample_covariance": False}
-    result: Any = structural_similarity(values, gts, full=True, **settings)  # mean and map with full=True
-    return float(result[0] if mask is None else result[1][mask].mean())
+    found, edge = ssim_map(gts, values, moments, white=1), WINDOW // 2
+    inside = found[edge:-edge, edge:-edge] if mask is None else found[mask]  # whole windows alone, as in MATLAB's ssim
+    return float(inside.mean())
 
 
 def similarity_weights(views: Iterable[Mapping[str, float]]) -> dict[str, float]:

@@ -122,6 +122,23 @@ def test_neighbourhoods_shrink_until_the_backend_gives_in(monkeypatch):
     )
 
 
+def test_the_smallest_count_is_searched_for_once_for_all_refused_targets(monkeypatch):
+    mesh, asked = Mesh(SPHERE.vertices, SPHERE.faces), []
+
+    def stubborn(mesh, faces, frozen, weights):
+        asked.append((faces, int(frozen.sum())))
+        if faces < 200 + frozen.sum():
+            raise InfeasibleTarget(faces, max(faces + 10, 180), int(frozen.sum()))
+        return Mesh(mesh.vertices, mesh.faces[: faces - 5])
+
+    monkeypatch.setitem(BACKENDS, "fast", stubborn)
+    for target, keep, calls, smallest in ((100, [], 4, 195), (120, [], 1, 195), (100, [0], 5, 205)):
+        asked.clear()
+        with pytest.raises(InfeasibleTarget) as caught:
+            simplify(mesh, target, keep, 1)
+        assert (len(asked), caught.value.smallest) == (calls, smallest)
+
+
 def test_an_edge_of_many_faces_that_takes_one_more_is_a_new_fault():
     vertices = np.array([[0, 0, 0], [0, 0, 1], *([np.cos(at), np.sin(at), 0] for at in range(5))])
     pages = np.array([[0, 1, page] for page in range(2, 7)])

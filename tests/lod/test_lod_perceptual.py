@@ -6,9 +6,10 @@ import trimesh
 from skimage.metrics import structural_similarity
 
 from stages.kit import Mesh
+from stages.kit.similarity import local_moments
 from stages.lod import perceptual, picture_errors, simplify, take_pictures
 from stages.lod.perceptual import analyse
-from stages.lod.similarity import local_moments, ssim_error
+from stages.lod.similarity import ssim_error
 from stages.views import FOUR
 
 KNOT = trimesh.creation.torus(0.33, 0.14, major_sections=48, minor_sections=24)

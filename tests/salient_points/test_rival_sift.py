@@ -2,12 +2,36 @@
 
 import numpy as np
 import pytest
+from scipy.ndimage import maximum_filter
 from scipy.special import erf
 
 from stages.kit import Mesh
+from stages.salient_points.kernels import scale_peaks, spaced, splat
 from stages.salient_points.rivals import sift
 
 X = np.array([1.0, 0, 0])
+
+
+def test_peaks_are_the_maxima_of_their_neighbourhood_in_space_and_scale():
+    values = np.random.default_rng(0).integers(0, 40, (5, 7, 8, 9)).astype(np.float32)  # many ties
+    expected = (values == maximum_filter(values, 3)) & (values > 38)
+    expected[[0, -1]] = False
+    assert scale_peaks(values, 38.0).tolist() == np.flatnonzero(expected).tolist() != []
+
+
+def test_values_on_a_grid_keep_their_sum_and_their_centre():
+    places = np.random.default_rng(0).uniform(0, 5, (20, 3))
+    field = splat(places, np.ones((20, 1)), (6, 7, 8))[0]
+    assert field.sum() == pytest.approx(20)
+    centre = [(np.arange(n) * field.sum(axis=tuple({0, 1, 2} - {axis}))).sum() / 20 for axis, n in enumerate((6, 7, 8))]
+    assert centre == pytest.approx(places.mean(axis=0))
+
+
+def test_spaced_positions_are_the_first_ones_that_keep_the_distance():
+    line = np.array([0, 0.5, 1.2, 1.3, 2.5])[:, None] * X
+    assert spaced(line, 1.0, 0, 5).tolist() == [0, 2, 4]
+    assert spaced(line, 1.0, 2, 5).tolist() == [0, 1, 4]
+    assert spaced(line, 1.0, 0, 2).tolist() == [0, 2]
 
 
 @pytest.mark.slow

@@ -13,7 +13,7 @@ from stages.conspicuity.entropy import local_entropy
 from stages.conspicuity.silhouette import silhouette_share
 from stages.kit import Mesh, Viewpoint
 from stages.views import render
-from stages.weights.svm import fit_svm, information_gain
+from stages.weights.svm import fit_svm, information_gains
 
 SIZE, MAP = (450, 600), (112, 150)
 VIEWPOINTS = (Viewpoint(-32, 17), Viewpoint(60, 20), Viewpoint(200, -30))
@@ -99,7 +99,7 @@ def symmetry_at_the_ends(mesh):
         inside = mask_at_size(view.mask, MAP)
         tip = np.abs(mesh.vertices[mesh.faces[np.maximum(view.face, 0), 0], 0]) > 0.36
         symmetry = conspicuity(mesh, view, ["symmetry"], MAP)["symmetry"]
-        gains.append(information_gain(symmetry[inside], mask_at_size(view.mask & tip, MAP)[inside]))
+        gains.append(information_gains(symmetry[inside][:, None], mask_at_size(view.mask & tip, MAP)[inside])[0])
         maps.append(symmetry)
     return gains, maps
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from skimage.metrics import structural_similarity
 
 from stages.weights.similarity import similarity_weights, view_similarities
 
@@ -21,6 +22,13 @@ NOISE = np.random.default_rng(0).random(SHAPE) * MASK
 def test_likeness_to_itself_is_one():
     assert view_similarities({"edge": GTS}, GTS) == {"edge": pytest.approx(1)}
     assert view_similarities({"edge": GTS}, GTS, MASK) == {"edge": pytest.approx(1)}
+
+
+def test_likeness_is_that_of_a_library():
+    settings = {"data_range": 1.0, "gaussian_weights": True, "sigma": 1.5, "use_sample_covariance": False}
+    mean, found = structural_similarity(NOISE, GTS, full=True, **settings)
+    assert view_similarities({"noise": NOISE}, GTS) == {"noise": pytest.approx(mean, rel=1e-9)}
+    assert view_similarities({"noise": NOISE}, GTS, MASK) == {"noise": pytest.approx(found[MASK].mean(), rel=1e-9)}
 
 
 @pytest.mark.parametrize("mask", [None, MASK])

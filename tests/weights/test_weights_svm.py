@@ -8,7 +8,7 @@ from sklearn.svm import SVC
 from stages.kit.files import read_arrays, write_arrays
 from stages.kit.rng import rng
 from stages.weights import svm
-from stages.weights.svm import SVMModel, balanced_rows, fit_svm, information_gain
+from stages.weights.svm import SVMModel, balanced_rows, fit_svm, information_gains
 from stages.weights.svm_pixels import pixel_features, pixel_samples, predicted_map, select_far_points
 from stages.weights.svm_validation import cross_validated, grouped_validated
 
@@ -83,20 +83,26 @@ def test_a_constant_channel_has_no_gain_and_no_say():
 
 
 def test_information_gain_is_one_bit_for_a_giveaway_and_none_for_chance():
-    values = draw(2000)[:, 0]
-    assert information_gain(values, values > np.median(values)) == pytest.approx(1, abs=0.01)
-    assert information_gain(values, np.arange(2000) % 2 == 0) < 0.01
+    values = draw(2000)[:, :1]
+    assert information_gains(values, values[:, 0] > np.median(values)) == pytest.approx(1, abs=0.01)
+    assert information_gains(values, np.arange(2000) % 2 == 0) < 0.01
 
 
 def test_information_gain_sees_order_alone_from_either_side():
-    values, labels = draw()[:, 0].round(1), draw()[:, 0] > 0.85
-    assert information_gain(values, labels) == pytest.approx(information_gain(-(values**3), labels))
+    values, labels = draw()[:, :1].round(1), draw()[:, 0] > 0.85
+    assert information_gains(values, labels) == pytest.approx(information_gains(-(values**3), labels))
+
+
+def test_the_gain_of_a_feature_does_not_depend_on_the_others():
+    features, labels = draw().round(1), draw()[:, 0] > 0.85
+    alone = [information_gains(column[:, None], labels)[0] for column in features.T]
+    assert information_gains(features, labels) == pytest.approx(alone) and alone[0] > 0.2
 
 
 @pytest.mark.parametrize("rare", [0.0, 1.0])
 def test_information_gain_finds_a_rare_value(rare):
     values = np.where(np.arange(100) < 5, rare, 1 - rare)
-    assert information_gain(values, values == rare) > 0.2
+    assert information_gains(values[:, None], values == rare) > 0.2
 
 
 def test_classes_are_balanced_and_capped():

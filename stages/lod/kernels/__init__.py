@@ -6,10 +6,9 @@ from .faults import count_faults
 from .parts import face_components, signed_volumes, split_fans
 from .quadrics import vertex_quadrics
 from .refit import refit
-from .similarity import similarity
 from .surface import HalfEdgeMesh, compact
 
 __all__ = [
     "HalfEdgeMesh", "compact", "count_faults", "decimate", "face_components", "fans", "opposites",
-    "refit", "signed_volumes", "similarity", "split_fans", "vertex_quadrics",
+    "refit", "signed_volumes", "split_fans", "vertex_quadrics",
 ]  # fmt: skip

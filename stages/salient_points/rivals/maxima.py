@@ -1,5 +1,7 @@
 """The local maxima of a function on the vertices of a mesh within a radius, as most detectors select them."""
 
+from itertools import chain
+
 import numpy as np
 from scipy.spatial import cKDTree  # pyright: ignore[reportAttributeAccessIssue] (compiled, without a stub)
 
@@ -29,9 +31,14 @@ def local_maxima(mesh: Mesh, values: np.ndarray, radius: float) -> np.ndarray:
     ranks = np.argsort(order)
     tree = cKDTree(mesh.vertices)
     candidates = _above_nearest(tree, levels, ranks, radius)
+    if len(candidates) == 0:
+        return candidates
     near = tree.query_ball_point(mesh.vertices[candidates], radius)
-    peaks = [v for v, ids in zip(candidates, near, strict=True) if _peak(v, np.array(ids), levels, ranks)]
-    return np.array(sorted(peaks, key=ranks.__getitem__), dtype=np.int64)
+    ids = np.fromiter(chain.from_iterable(near), dtype=np.int64)
+    starts = np.cumsum([0, *map(len, near[:-1])])  # no list is empty: each vertex is near itself
+    highest = np.minimum.reduceat(ranks[ids], starts) == ranks[candidates]
+    peaks = candidates[highest & (np.minimum.reduceat(levels[ids], starts) < levels[candidates])]
+    return peaks[np.argsort(ranks[peaks])]
 
 
 def _above_nearest(tree, levels, ranks, radius):
@@ -41,8 +48,3 @@ def _above_nearest(tree, levels, ranks, radius):
     ids = tree.query(tree.data[found], k=np.arange(1, count + 1), distance_upper_bound=radius)[1]
     best = np.append(ranks, tree.n)[ids].min(axis=1)  # an empty slot has the id n
     return found[ranks[found] <= best]
-
-
-def _peak(vertex, near, levels, ranks):
-    """True when no vertex in `near` outranks the given one and some lie lower."""
-    return ranks[near].min() == ranks[vertex] and levels[near].min() < levels[vertex]

@@ -11,12 +11,13 @@ keypoints alone, so the map is these keypoints spread by their own sigma.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import fft, ndimage
+from scipy import fft
 from scipy.spatial import cKDTree  # pyright: ignore[reportAttributeAccessIssue] (compiled, without a stub)
 
 from stages.conspicuity.weak_cache import weak_cache
 from stages.kit import Mesh
 
+from ..kernels import scale_peaks, splat
 from .surface_average import subdivide
 
 VOXELS = 96  # across the ball around the surface's centroid: its bounding box would change as the mesh turns
@@ -85,9 +86,8 @@ def _keypoints(mesh):
     elements = subdivide(mesh, np.zeros((len(mesh.vertices), 0)))  # small triangles that make up the surface
     origin, step, dogs = _scale_space(elements)
     size = np.abs(dogs)
-    peaks = (size == ndimage.maximum_filter(size, 3)) & (size > CONTRAST)
-    peaks[[0, -1]] = False
-    scale, *cell = np.nonzero(peaks)
+    peaks = np.unravel_index(scale_peaks(size, CONTRAST), size.shape)
+    scale, *cell = peaks
     positions = origin + step * np.array(cell).T
     sigmas = SIGMA * 2 ** (scale / INTERVALS) * step
     near = cKDTree(elements.mean(axis=1)).query(positions)[0] <= 2 * sigmas
@@ -100,7 +100,8 @@ def _scale_space(corners):
     step = 2 * np.linalg.norm(corners - centre, axis=2).max() / VOXELS
     origin = corners.min(axis=(0, 1)) - PADDING * step
     shape = [fft.next_fast_len(int(n) + 2 * PADDING + 2, real=True) for n in np.ptp(corners, axis=(0, 1)) / step]
-    field = _normal_field((corners - origin) / step, shape)
+    inside = (corners - origin) / step
+    field = splat(inside.mean(axis=1), _area_vectors(inside)[0], tuple(shape)).astype(np.float32)
     axes = [fft.fftfreq(n) for n in shape[:2]] + [fft.rfftfreq(shape[2])]
     waves = [2 * np.pi * w.astype(np.float32) for w in np.meshgrid(*axes, indexing="ij", sparse=True)]
     square = np.asarray(sum(wave**2 for wave in waves))
@@ -122,16 +123,3 @@ def _area_vectors(corners):
     """(normals times areas (s, 3), areas (s,)) of triangles (s, 3, 3)."""
     vectors = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2
     return vectors, np.linalg.norm(vectors, axis=1)
-
-
-def _normal_field(corners, shape):
-    """(3, a, b, c) f4 area times normal of triangles (s, 3, 3) in voxels, distributed over the eight nearest voxels."""
-    normals = _area_vectors(corners)[0]
-    centres = corners.mean(axis=1)
-    low = np.floor(centres).astype(np.int64)
-    field = np.zeros((3, np.prod(shape)))
-    for corner in np.ndindex(2, 2, 2):
-        weights = np.abs(1 - np.array(corner) - (centres - low)).prod(axis=1)
-        cells = np.ravel_multi_index((low + corner).T, shape)
-        field += [np.bincount(cells, weights * part, field.shape[1]) for part in normals.T]
-    return field.reshape(3, *shape).astype(np.float32)

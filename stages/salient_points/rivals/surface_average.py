@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-import pandas as pd
 
 from stages.kit import Mesh
 
@@ -70,10 +69,9 @@ def _halves(corners, longest):
 
 def _merged(elements, size):
     """The elements that share a cell of a grid of the given size as one, at their common centre."""
-    places = np.floor((elements.centres - elements.centres.min(axis=0, initial=np.inf)) / size).astype(np.int64)
-    spans = places.max(axis=0, initial=0) + 1
-    cell = pd.factorize((places[:, 0] * spans[1] + places[:, 1]) * spans[2] + places[:, 2])[0]
-    columns = np.concatenate([elements.centres, elements.values], axis=1).T
+    columns = np.ascontiguousarray(np.concatenate([elements.centres, elements.values], axis=1).T)
+    x, y, z = (np.floor((column - column.min(initial=np.inf)) / size).astype(np.int64) for column in columns[:3])
+    cell = np.unique((x * (y.max(initial=0) + 1) + y) * (z.max(initial=0) + 1) + z, return_inverse=True)[1]
     areas = np.bincount(cell, elements.areas)
     means = np.stack([np.bincount(cell, elements.areas * column) / areas for column in columns], axis=1)
     return SurfaceElements(means[:, :3], areas, means[:, 3:])

@@ -2,7 +2,9 @@
 
 import numpy as np
 
-from .jit import kernel
+from stages.kit.jit import kernel_of
+
+kernel = kernel_of(__file__)
 
 
 @kernel
