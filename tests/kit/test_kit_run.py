@@ -8,12 +8,13 @@ import sys
 from pathlib import Path
 
 import pytest
+from joblib.externals.loky import process_executor
 
 from stages.kit.code import code_text
 from stages.kit.files import read_json, write_json, write_text
 from stages.kit.guard import UndeclaredRead
 from stages.kit.objects import Objects, archive
-from stages.kit.parallel import parallel_map
+from stages.kit.parallel import GROWTH, parallel_map
 from stages.kit.rng import rng
 from stages.kit.rows import read_rows, write_rows
 from stages.kit.run import StageRun
@@ -275,3 +276,13 @@ def test_words_and_types_do_not_change_the_digest_of_code_and_work_does():
     same = CODE.replace("Doubles", "Two times").replace("# why", "").replace("(x)", "(x: int) -> int")
     assert code_text(CODE) == code_text(same) != code_text(CODE.replace("2 *", "3 *"))
     assert code_text("class A:\n    x: int = 1\n") != code_text("class A:\n    x: str = 1\n")  # dataclasses read these
+
+
+def growth_allowed(_):
+    """What a worker of joblib may grow by, as its own loop reads it."""
+    return process_executor._MAX_MEMORY_LEAK_SIZE
+
+
+def test_a_worker_may_grow_as_far_as_we_say_by_the_name_that_joblib_reads():
+    assert parallel_map(growth_allowed, range(2), "test", workers=2) == [GROWTH, GROWTH]
+    assert "_MAX_MEMORY_LEAK_SIZE" in process_executor._process_worker.__code__.co_names

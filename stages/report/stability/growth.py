@@ -38,7 +38,7 @@ def build(results: Results) -> Figure:
         plain_logarithm(axes.xaxis)
         plain_logarithm(axes.yaxis)
         axes.grid()
-        axes.legend(fontsize=8)
+        axes.legend(fontsize=8, loc="lower left", bbox_to_anchor=(-0.02, 1.0), ncols=2, columnspacing=1.0)
     total = fitted.groupby("objects")["processor"].sum()
     most, last = rows.groupby("objects")["main_mib"].max(), status.iloc[-1]
     words = {
