@@ -1,11 +1,11 @@
 """The virtual pressure array: what a flat tactile sensor measures at a point of an object (T4.3).
 
-Public names: adaptive_pitch, contour, contour_imprints, distances, distances_at, follow, follow_many, indent,
+Public names: adaptive_distances, contour, contour_imprints, distances, distances_at, follow, follow_many, indent,
 normalise, press, press_at, press_many, quasi_tangent, read_imprints, section, sensor_axes, sensor_normals,
 snap_to_surface, touchable, warm_up, write_imprints, Imprints, SectionCurve, Sequence, Skin, Surface, CONTACTS.
 """
 
-from .adaptive import adaptive_pitch
+from .adaptive import adaptive_distances
 from .contact import CONTACTS
 from .distances import distances, distances_at
 from .files import Imprints, read_imprints, write_imprints
@@ -27,7 +27,7 @@ __all__ = [
     "Sequence",
     "Skin",
     "Surface",
-    "adaptive_pitch",
+    "adaptive_distances",
     "contour",
     "contour_imprints",
     "distances",

@@ -13,26 +13,6 @@ MAX_FACTOR = 0.99  # between the pitches of two measurements, at most
 TOLERANCE = 0.5  # of the pitch: how deep a cell may be inside the object, as an elastic skin yields
 
 
-def adaptive_pitch(
-    surface: Mesh | Surface,
-    centres: ArrayLike,
-    axes: ArrayLike,
-    cells: tuple[int, int] = (32, 32),
-    pitch: ArrayLike = 0.01,
-    min_pitch: ArrayLike | None = None,
-    tolerance: ArrayLike | None = None,
-) -> np.ndarray:
-    """(k,) pitches, at most `pitch`, at which arrays at centres (k, 3) with axes (k, 3, 3) fit on the object (T4.4.3).
-
-    An array fits when no cell is more than `tolerance` units inside the object. If it does not fit, its pitch shrinks
-    to the size at which the deepest cells of two neighbouring square rings predict a fit, and it is measured again.
-    This ends when the array fits or the pitch is `min_pitch`, which is returned even if it does not fit. The thesis
-    shrinks the array and gives no rule. By default `min_pitch` is a fifth and `tolerance` a half of the pitch. pitch: a
-    number, or (k,). Raises ValueError for invalid cells or pitches, or a `min_pitch` above the pitch.
-    """
-    return adaptive_distances(surface, centres, axes, cells, pitch, min_pitch, tolerance)[0]
-
-
 def adaptive_distances(
     surface: Mesh | Surface,
     centres: ArrayLike,
@@ -42,7 +22,15 @@ def adaptive_distances(
     min_pitch: ArrayLike | None = None,
     tolerance: ArrayLike | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """(the pitches (k,) of `adaptive_pitch`, the distances (k, rows, cols) that `distances_at` gives at them)."""
+    """The pitches (k,), at most `pitch`, at which arrays fit on the object (T4.4.3), and their distances.
+
+    The arrays are at centres (k, 3) with axes (k, 3, 3); the distances (k, rows, cols) are those of `distances_at`. An
+    array fits when no cell is more than `tolerance` units inside the object. If it does not fit, its pitch shrinks
+    to the size at which the deepest cells of two neighbouring square rings predict a fit, and it is measured again.
+    This ends when the array fits or the pitch is `min_pitch`, which is returned even if it does not fit. The thesis
+    shrinks the array and gives no rule. By default `min_pitch` is a fifth and `tolerance` a half of the pitch. pitch: a
+    number, or (k,). Raises ValueError for invalid cells or pitches, or a `min_pitch` above the pitch.
+    """
     centres, axes = np.asarray(centres, dtype=np.float64), np.asarray(axes, dtype=np.float64)
     cells, pitches, max_distances = check_arrays(cells, pitch, None, len(centres))
     min_pitches = _checked_limit("min_pitch", min_pitch, MIN_PITCH * pitches, pitches)

@@ -44,7 +44,7 @@ def follow(
     Row 0 of an imprint is ahead: the array's up axis is the direction of motion, as a finger that follows a contour
     keeps its heading. So a rotation of the object does not change a sequence, and the frames do not spin where the
     contour passes a pole, as they would with `sensor_axes`. The thesis does not say this either. The array is smaller
-    at saddles, with the same number of cells (T4.4.3, `adaptive_pitch`).
+    at saddles, with the same number of cells (T4.4.3, `adaptive_distances`).
 
     Raises ValueError if the points define no plane, the plane misses the mesh, frames is less than 1, or cells or pitch
     are invalid.

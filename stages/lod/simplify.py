@@ -1,7 +1,7 @@
 """Simplification that preserves the neighbourhoods of chosen vertices (T3.1.3, T3.2.8)."""
 
 from collections.abc import Callable
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import numpy as np
 

@@ -21,6 +21,7 @@ from stages.weights import read_learned_weights
 from .schema import Params
 
 Found = TypeVar("Found", bound=Sized)
+SECTION_3_1, SECTION_4_2 = "household_3_1", "household_4_2"  # sets with the settings of a section of the thesis
 NUMBERS = {"four": 4, "six": 6}  # names of groups that tell how many objects they hold
 
 
@@ -78,6 +79,10 @@ class Results:
     def datasets(self, stage: str) -> list[str]:
         """The sets that have rows of a stage, `in_order`."""
         return self.in_order({path.parent.name for path in (self.reports / "measurements").glob(f"*/{stage}{SUFFIX}")})
+
+    def printed(self, dataset: str, stage: str) -> str | None:
+        """The set that follows a protocol as printed, where it has rows of a stage; else None, the first that has."""
+        return dataset if dataset in self.datasets(stage) and not self.own_meshes else None
 
     @property
     def stages(self) -> list[str]:

@@ -100,12 +100,9 @@ def run_cases(specimen: Specimen, backend: str, cases: Iterable[Case]) -> Iterat
 
 
 def simplification_rows(
-    mesh: Mesh,
-    name: str,
-    seed: int,
-    damages: Sequence[str] = tuple(DAMAGES),
+    mesh: Mesh, name: str, seed: int, damages: Sequence[str] = tuple(DAMAGES),
     backends: Sequence[str] = ("fast", "pymeshlab"),
-) -> list[dict]:
+) -> list[dict]:  # fmt: skip
     """Rows of one object: `faces` of every case (0 without a mesh) and, where there is a mesh, its `error`."""
     curve, rows = QemErrorCurve(mesh), []
     for backend in backends:

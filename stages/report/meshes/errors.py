@@ -10,7 +10,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from stages.kit.stats import interval
 from stages.report.items import Figure
-from stages.report.results import NotRun, Results, some
+from stages.report.results import SECTION_3_1, NotRun, Results, some
 from stages.report.style import CYCLE, GREY, INK, METHOD_COLOURS, PALE, plt
 from stages.report.words import dataset_text
 
@@ -29,7 +29,8 @@ FLOOR = 1e-3  # of plain QEM's median: an axis begins there, since some meshes a
 
 def figure_3_4(results: Results) -> Figure:
     """Metro and SSIM error by combination of channels, a panel for each of up to three face counts."""
-    rows = paired_cells(results, methods=COMBINATIONS)
+    dataset = results.printed(SECTION_3_1, "lod")
+    rows = paired_cells(results, methods=COMBINATIONS, dataset=dataset)
     methods, targets = [name for name in COMBINATIONS if name in set(rows["method"])], face_counts(rows)[:3]
     if CLASSICAL not in methods or len(methods) < 2 or not targets:
         raise NotRun(f"no face count that all of two combinations reach on {FEWEST} objects", "lod", runnable=False)
@@ -47,7 +48,8 @@ def figure_3_4(results: Results) -> Figure:
 
 def figure_3_5(results: Results) -> Figure:
     """Six panels, a row each method: distances, the same by face count, errors as seen, number of points."""
-    rows = paired_cells(results, methods=filter(fixed, set(results.rows("lod")["method"])))
+    dataset = results.printed(SECTION_3_1, "lod")
+    rows = paired_cells(results, methods=filter(fixed, set(results.rows("lod", dataset)["method"])), dataset=dataset)
     methods, targets = ordered(set(rows["method"])), face_counts(rows)[:2]
     if PLAIN not in methods or len(methods) < 3:
         raise NotRun("no face count that plain QEM and two other methods reach", "lod", runnable=False)
@@ -71,7 +73,8 @@ def figure_3_5(results: Results) -> Figure:
 
 def figure_3_23(results: Results) -> Figure:
     """A row of panels for each data set, a panel for each error and face count, a box for each method."""
-    found = {dataset_text(name): paired_cells(results, METRICS, BOXES, name) for name in data_sets(results)}
+    found = {dataset_text(name): paired_cells(results, METRICS, BOXES, name)
+             for name in data_sets(results, of_t3_1=False)}
     found = {name: rows[rows["target"].isin(set(TARGETS) & set(face_counts(rows)))] for name, rows in found.items()}
     shown = {name: rows for name, rows in found.items() if PLAIN in set(rows["method"])}
     some(shown, "no data set with enough objects that all methods take to 1,500 or 3,000 faces", "lod", runnable=False)

@@ -9,7 +9,7 @@ import pandas as pd
 from stages.kit.stats import interval
 from stages.report.grid import grouped, within
 from stages.report.markdown import with_interval
-from stages.report.results import Results, some
+from stages.report.results import SECTION_3_1, Results, some
 
 from .methods import PLAIN
 
@@ -24,9 +24,13 @@ METRICS = ("metro_mean", "ssim_error")  # those of the thesis's figures
 FEWEST = 3  # objects that a mean over objects needs to be shown
 
 
-def data_sets(results: Results) -> list[str]:
-    """The sets with simplified meshes, those that are switched on first; NotRun where there is none."""
-    return some(results.datasets("lod"), "no measurements of lod", "lod")
+def data_sets(results: Results, of_t3_1: bool = True) -> list[str]:
+    """The sets with simplified meshes, those that are switched on first; NotRun where there is none.
+
+    of_t3_1: also that of T3.1.5, which has other methods than T3.2.
+    """
+    found = [name for name in results.datasets("lod") if of_t3_1 or name != SECTION_3_1]
+    return some(found, "no measurements of lod", "lod")
 
 
 def paired_cells(

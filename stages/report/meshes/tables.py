@@ -9,7 +9,7 @@ import pandas as pd
 from stages.report.grid import means
 from stages.report.items import Table
 from stages.report.markdown import number
-from stages.report.results import NotRun, Results, some
+from stages.report.results import SECTION_3_1, NotRun, Results, some
 from stages.report.style import label
 from stages.report.words import dataset_text
 from stages.salient_points import METHODS
@@ -20,7 +20,7 @@ from .rows import ERRORS, FEWEST, METRICS, UNITS, cell, compared, data_sets, fac
 COUNTS = ["points", "kept"]  # beside the errors of every detector
 GUIDED = [*FIXED_ADAPTIVE, "thesis_ed", "thesis_ed-adaptive", ENHANCED, f"{ENHANCED}-adaptive", "VisAttAll", HKS,
           OURS, PLAIN]  # fmt: skip
-PRINTED = {"guided_ed": "ed", "thesis_ed": "ed", "guided_ssim": "ssim", ENHANCED: "ssim", "svm": "svm"}
+THESIS = {"guided_ed": "ed", "thesis_ed": "ed", "guided_ssim": "ssim", ENHANCED: "ssim", "svm": "svm"}
 BLOCK = ["target", "nothing_shrunk"]
 
 
@@ -40,7 +40,8 @@ def combinations(results: Results) -> Table:
     """The combinations of channels, in the thesis's order, and the mean errors that each led to."""
     found = []
     with suppress(NotRun):  # the list is worth having without the errors
-        found = means(paired_cells(results, methods=COMBINATIONS), ["method", "metric"])
+        rows = paired_cells(results, methods=COMBINATIONS, dataset=results.printed(SECTION_3_1, "lod"))
+        found = means(rows, ["method", "metric"])
     found = pd.DataFrame(found, columns=["method", "metric", "mean"])
     errors = found.pivot(index="method", columns="metric", values="mean")
     metrics = [metric for metric in ERRORS if metric != "gaze_error" or metric in errors]
@@ -89,7 +90,7 @@ def table_3_2(results: Results) -> Table:
     frame = compared(pd.concat(parts), ["data", "nothing_shrunk", "target", "method", "metric"])
     thesis = results.thesis("table_3_2_lod_errors").melt(["method", "faces"], METRICS, "metric", "thesis")
     thesis = thesis.rename(columns={"method": "printed", "faces": "target"}).astype({"target": str})
-    frame = frame.assign(printed=frame["method"].map(PRINTED)).merge(thesis, "left").drop(columns="printed")
+    frame = frame.assign(printed=frame["method"].map(THESIS)).merge(thesis, "left").drop(columns="printed")
     orders = {"target": sorted(set(frame["target"]), key=size), "method": GUIDED, "metric": METRICS}
     cells = frame.assign(block=frame["target"].map(said) + np.where(frame["nothing_shrunk"], ", nothing shrunk", ""))
     cells = cells.assign(**{name: pd.Categorical(frame[name], order) for name, order in orders.items()})
@@ -101,7 +102,7 @@ def table_3_2(results: Results) -> Table:
 
 def _parts(results: Results) -> Iterator[pd.DataFrame]:
     """Rows of each data set, with all cells and, where they are fewer, with those in which nothing shrank."""
-    for name in data_sets(results):
+    for name in data_sets(results, of_t3_1=False):
         every = np.inf
         for whole in (False, True):
             rows = paired_cells(results, METRICS, GUIDED, name, whole)

@@ -8,7 +8,7 @@ from matplotlib.ticker import FixedLocator, NullLocator
 from stages.report.grid import records
 from stages.report.items import Figure, Table
 from stages.report.markdown import number, with_interval
-from stages.report.results import Results
+from stages.report.results import SECTION_3_1, Results
 from stages.report.style import CYCLE, GREY, INK, MARKERS, plain_logarithm, plt
 
 MODELS = {
@@ -45,7 +45,7 @@ LOOKS = dict(zip(MODELS, zip(CYCLE[1::-1] + CYCLE[2:4], MARKERS, strict=False), 
 
 def build(results: Results) -> Table:
     """A line for each condition and model, and what the models cost beside the lookup."""
-    rows = results.measured("scene", condition=[*CONDITIONS, "cost"], method=list(MODELS))
+    rows = _measured(results, [*CONDITIONS, "cost"])
     costs = rows[rows["condition"] == "cost"].pivot(index="method", columns="metric", values="value")
     costs = costs.reindex(list(MODELS), columns=["fit", "ask"]).dropna()
     said = [f"{MODELS[row.Index]} {number(row.fit)} and {number(row.ask)}" for row in records(costs)]
@@ -62,7 +62,7 @@ def build(results: Results) -> Table:
 
 def figure(results: Results) -> Figure:
     """What each model of the count wastes, where it fails, how it learns, and what it costs."""
-    rows = results.measured("scene", condition=[*PLACES, "equal_rate", "trained_on", "cost"], method=list(MODELS))
+    rows = _measured(results, [*PLACES, "equal_rate", "trained_on", "cost"])
     drawing, panels = plt.subplots(2, 2, figsize=(9.6, 7.2))
     for axes, draw in zip(panels.flat, (_waste, _failures, _training, _costs), strict=True):
         draw(axes, rows)
@@ -73,6 +73,11 @@ def figure(results: Results) -> Figure:
     explained = panels[0, 1].get_legend_handles_labels()
     drawing.legend(*explained, loc="lower center", ncol=4, fontsize=9, columnspacing=1.6)
     return Figure(drawing)
+
+
+def _measured(results: Results, conditions: list[str]) -> pd.DataFrame:
+    """Rows of the models: of the thesis's fourteen combinations where they were run."""
+    return results.measured("scene", results.printed(SECTION_3_1, "scene"), condition=conditions, method=list(MODELS))
 
 
 def _of(rows: pd.DataFrame, condition: str, metric: str) -> pd.DataFrame:

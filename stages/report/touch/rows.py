@@ -8,7 +8,7 @@ import pandas as pd
 
 from stages.kit.split import Split, shared_by
 from stages.report.grid import everywhere, within
-from stages.report.results import Results
+from stages.report.results import SECTION_4_2, Results
 from stages.report.style import label
 
 STAGE = "classification"
@@ -18,7 +18,7 @@ OURS = {  # sampling of the thesis: method of ours
 }  # fmt: skip
 ENHANCED = OURS["enhanced_visual_attention"]  # the thesis's later model: the average weighted with its SSIM weights
 MODEL = "enhanced"  # this project's model of gaze
-PRINTED, PLAIN_AVERAGE = "household_4_2", "VisAttAll"  # the set whose settings are those of T4.2; the model of T3.1
+PRINTED, PLAIN_AVERAGE = SECTION_4_2, "VisAttAll"  # the model of T3.1
 
 
 @dataclass(frozen=True)
