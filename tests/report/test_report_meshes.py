@@ -16,9 +16,10 @@ from stages.report.meshes.claims import BOTH, CLAIMS, FEW_MINUS_MANY, claim, low
 from stages.report.meshes.errors import BOXES
 from stages.report.meshes.methods import ordered, short
 from stages.report.meshes.rows import data_sets, face_counts, paired_cells
-from stages.report.results import NotRun
+from stages.report.results import SECTION_3_1, NotRun
 from stages.report.style import label
 from stages.report.topics import KINDS, build_all, build_one
+from stages.report.words import dataset_text
 
 OBJECTS = ["a", "b", "c", "d"]
 POINTS = {"heat_kernel": 3, "SymRad": 4, "itti": 15, "guided_ssim": 16, "guided_ed": 17, "svm": 18, "harris": 50,
@@ -261,7 +262,7 @@ def test_ranks_agree_where_the_error_grows_with_the_points(run):
 
 @pytest.mark.slow
 def test_every_claim_on_meshes_is_judged_on_every_set(run):
-    results = run(measured(), princeton=measured("princeton", 1))
+    results = run(measured(), princeton=measured("princeton", 1), printed=measured(SECTION_3_1, 2))
     built = table(results, "lod_claims")
     assert len(built.shown) == len(CLAIMS)
     words = built.frame.set_index(["key", "data"])["verdict"]
@@ -269,8 +270,10 @@ def test_every_claim_on_meshes_is_judged_on_every_set(run):
         assert words["many_points_distort", data] == "supported"
         assert words["adaptive_svm_metro", data] == "supported"
         assert words["hks_high", data] == "contradicted"
-    own = judge(CLAIMS, results).set_index("key")["verdict"]
-    assert (own == words.xs("test", level="data").reindex(own.index)).all()
+    judged = judge(CLAIMS, results).set_index("key")["verdict"]
+    data = {claim.key: dataset_text(SECTION_3_1) if claim.dataset == SECTION_3_1 else "test" for claim in CLAIMS}
+    assert (judged == [words[place] for place in zip(judged.index, judged.index.map(data), strict=True)]).all()
+    assert len(set(data.values())) == 2
 
 
 def with_people():
@@ -307,7 +310,7 @@ def test_tables_show_the_error_by_gaze_where_it_was_measured(run, own):
 @pytest.mark.slow
 def test_not_run_claims_say_so(run):
     rows = measured()
-    frame = table(run(rows[rows["method"].isin(["qem", "itti"])]), "lod_claims").frame
+    frame = table(run(rows[rows["method"].isin(["qem", "VisAttAll"])]), "lod_claims").frame
     assert (frame["verdict"] == "open").all() and (frame["objects"] == 0).all()
 
 
