@@ -1,13 +1,12 @@
 """Methods that fuse conspicuity maps and select points in each view."""
 
 from collections.abc import Iterable
-from dataclasses import replace
 
 import numpy as np
 
 from stages.conspicuity import ViewMaps
 from stages.kit import Mesh
-from stages.weights.svm_pixels import select_far_points
+from stages.weights.svm_pixels import POINTS, select_far_points
 
 from .fuse import fuse
 from .merge import continue_on_surface, merge_views
@@ -84,15 +83,16 @@ class SvmDetector(FusedDetector):
         return values
 
     def find(self, mesh: Mesh, sight: ViewMaps, options: Options, count: int | None = None) -> Detection:
-        """As of any map, but strong are at most 32 points, far from each other, and they come first (T3.2.3).
+        """As of any map, but of its strong points 32 stay, those far from each other (T3.2.3).
 
-        An SVM sees far more points as salient than the other methods do.
+        An SVM takes far more of a map for salient than the other methods do.
         """
-        found = super().find(mesh, sight, options, count)
-        strong = found.points[: found.strong]
-        far = strong[np.sort(select_far_points(mesh.vertices[strong]))]
-        rest = found.points[~np.isin(found.points, far)] if count is not None else far[:0]
-        return replace(found, points=np.concatenate([far, rest]), strong=len(far))
+        found = super().find(mesh, sight, options)
+        far = select_far_points(mesh.vertices[found.points], POINTS if count is None else min(POINTS, count))
+        points = found.points[np.sort(far)]
+        if count is not None and found.saliency is not None:
+            points = continue_on_surface(mesh, points, found.saliency, options.radius, count)
+        return Detection(points, len(far), found.saliency)
 
 
 class MergedDetector(FusedDetector):

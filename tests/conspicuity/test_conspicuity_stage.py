@@ -13,7 +13,8 @@ from stages.views.__main__ import run as run_views
 
 VIEWS = {"viewpoints": "four", "size": [90, 120], "renderer": "raster", "background": "black",
          "compare_sets": False}  # fmt: skip
-SECTION = {"channels": ["intensity", "edge"], "size": [45, 60], "compare_background": True}
+SECTION = {"channels": ["intensity", "edge"], "size": [45, 60], "background": "filled",
+           "compare_background": True}  # fmt: skip
 
 
 def write_object(workspace, name, size):
@@ -63,6 +64,20 @@ def test_one_object_more_costs_one_object(workspace, monkeypatch):
     }
 
 
+@pytest.mark.slow
+def test_a_background_that_is_kept_is_filtered_with_the_object(workspace, make_workspace):
+    found = {}
+    for background in ("filled", "kept"):
+        stage.run(make_workspace({"views": VIEWS, "conspicuity": SECTION | {"background": background}}))
+        rows = read_rows(workspace.measurements / "conspicuity.csv.gz").set_index(["metric", "viewpoint", "method"])
+        found[background] = rows["value"]
+    unfilled = found["filled"]["silhouette_share_unfilled"]
+    assert found["kept"]["silhouette_share"][unfilled.index].to_numpy() == pytest.approx(unfilled.to_numpy())
+    assert (found["filled"]["silhouette_share"][unfilled.index] != unfilled).any()
+
+
 def test_an_unknown_channel_is_named(make_workspace):
     with pytest.raises(ValueError, match="glitter"):
         stage.run(make_workspace({"conspicuity": SECTION | {"channels": ["glitter"]}}))
+    with pytest.raises(ValueError, match="conspicuity.background='green': choose one of filled, kept"):
+        stage.run(make_workspace({"conspicuity": SECTION | {"background": "green"}}))

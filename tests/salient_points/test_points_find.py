@@ -75,6 +75,23 @@ def test_points_keep_apart_while_there_is_room(sight, ball):
     assert apart.min() > 0.1
 
 
+class Everywhere:
+    """An SVM that takes every pixel for salient."""
+
+    def predict(self, rows):
+        return np.ones(len(rows))
+
+
+@pytest.mark.parametrize("count", [None, 60])
+def test_an_svm_keeps_32_points_far_apart(sight, ball, count):
+    options = Options(LearnedWeights(svms={"svm": {0: Everywhere()}}))
+    found = METHODS["svm"].find(ball, sight, options, count)
+    assert found.strong == 32 and len(found.points) == len(set(found.points)) == (count or 32)
+    far = ball.vertices[found.points[:32]]
+    gaps = np.linalg.norm(far[:, None] - far, axis=2) + 9 * np.eye(32)
+    assert gaps.min() > 3 * options.radius
+
+
 def test_strong_points_come_first_and_more_points_change_none_of_them(sight, ball):
     strong = METHODS["thesis_ssim"].find(ball, sight, Options())
     more = METHODS["thesis_ssim"].find(ball, sight, Options(), 40)

@@ -23,6 +23,11 @@ def test_four_stand_a_right_angle_apart_all_round():
     assert [(viewpoint.azimuth, viewpoint.elevation) for viewpoint in FOUR] == [(0, 0), (90, 0), (180, 0), (270, 0)]
 
 
+def test_principal_views_are_both_ends_of_y_and_z():
+    backs = np.array([viewpoint.axes[2] for viewpoint in viewpoint_set("principal")])
+    np.testing.assert_allclose(sorted(backs.round(9).tolist()), [[0, -1, 0], [0, 0, -1], [0, 0, 1], [0, 1, 0]])
+
+
 def test_unknown_set_names_the_known_ones():
-    with pytest.raises(ValueError, match="twelve, four"):
+    with pytest.raises(ValueError, match="twelve, four, principal"):
         viewpoint_set("thirteen")
