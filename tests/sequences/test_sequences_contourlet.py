@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from stages.sequences.contourlet import LADDER, STEPS, detail, directional_bands, directional_std
+from stages.sequences.contourlet import STEPS, detail, directional_bands, directional_std
 
 SIZES = [(32, 32), (16, 16), (8, 8), (24, 16)]
 # Do and Vetterli 2005: quincunx and resampling matrices, and which of them follow each other.
@@ -11,6 +11,7 @@ Q0, Q1 = np.array([[1, -1], [1, 1]]), np.array([[1, 1], [-1, 1]])
 SHEARS = [np.array(one) for one in ([[1, 1], [0, 1]], [[1, -1], [0, 1]], [[1, 0], [1, 1]], [[1, 0], [-1, 1]])]
 QUINCUNXES = (Q0, Q1, Q1, Q0)
 SIGNS = (-1, 1, 1, -1)  # so that the first channel of every node has the larger slopes
+TAPS = (0.63, -0.193, 0.0972, -0.0526, 0.0272, -0.0144)  # half of the ladder's filter, Phoong et al. 1995
 # Analysis and synthesis low-pass of Cohen, Daubechies and Feauveau, from the middle.
 NINE = (0.852698679009, 0.377402855613, -0.110624404418, -0.023849465019, 0.037828455507)
 SEVEN = (0.788485616406, 0.418092273222, -0.040689417609, -0.064538882629)
@@ -30,10 +31,9 @@ def allpass(image, axes, sign):
     """The filter of a ladder in space: its 12 taps along both diagonals of a lattice with these axes."""
     for diagonal in (axes[:, 0] + axes[:, 1], axes[:, 0] - axes[:, 1]):
         pairs = [
-            np.roll(image, -k * diagonal, (0, 1)) - np.roll(image, (k + 1) * diagonal, (0, 1))
-            for k in range(len(LADDER))
+            np.roll(image, -k * diagonal, (0, 1)) - np.roll(image, (k + 1) * diagonal, (0, 1)) for k in range(len(TAPS))
         ]
-        image = sum((-1) ** k * tap * pair for k, (tap, pair) in enumerate(zip(LADDER, pairs, strict=True)))
+        image = sum((-1) ** k * tap * pair for k, (tap, pair) in enumerate(zip(TAPS, pairs, strict=True)))
     return -sign * np.roll(image, -axes[:, 0], (0, 1))
 
 
