@@ -14,7 +14,7 @@ PYRAMID = "bior4.4"  # the 9-7 filters of Cohen, Daubechies and Feauveau, which 
 LADDER = (0.6300, -0.1930, 0.0972, -0.0526, 0.0272, -0.0144)  # half of 12 taps: the 23-45 filters of Phoong et al. 1995
 STEPS = ((8, 2), (2, 8))  # rows and columns between two coefficients, in the first and in the second half
 SMALLEST = 4  # rows and columns of an image
-BATCH = 512  # images transformed at once, which bounds the memory and stays in the cache
+BATCH = 512  # images transformed at once, which bounds the memory
 
 
 def directional_std(images: ArrayLike) -> np.ndarray:
@@ -71,7 +71,7 @@ def directional_bands(images: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     computed in the Fourier domain. With periodic continuation a filter behind a sampling is a product of responses
     before it. Every sub-band is then one product with the spectrum of the image, and one sum over the frequencies that
     sampling cannot tell apart. This is the ladder exactly, not an approximation, and takes one matrix product per
-    frequency for many images instead of eight filters and shears per image.
+    frequency for many images.
     """
     rows, columns = images.shape[1:]
     spectra, bands = np.asarray(scipy.fft.fft2(images)), []
