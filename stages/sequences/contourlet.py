@@ -1,89 +1,138 @@
-"""Sixteen directions of an imprint, after the contourlet transform (Do and Vetterli 2005, T [261]; T4.4.9)."""
+"""Sixteen directions of an imprint: the contourlet transform (Do and Vetterli 2005, T [261]; T4.4.9)."""
+
+import functools
 
 import numpy as np
+import pywt
 import scipy.fft
 from numpy.typing import ArrayLike
 
 DIRECTIONS = 16  # T4.4.9
-EDGE = 0.5  # of a wedge's width: the width of the smooth transition between two neighbours
-SMALLEST = 4  # rows and columns, below which a wedge contains no frequency
-BATCH = 4096  # images transformed at once, which bounds the memory
+HALF = DIRECTIONS // 2
+LEVELS = (2, 3, 4)  # of the tree behind the first fan, each of which halves every sub-band
+PYRAMID = "bior4.4"  # the 9-7 filters of Cohen, Daubechies and Feauveau, which the authors use
+LADDER = (0.6300, -0.1930, 0.0972, -0.0526, 0.0272, -0.0144)  # half of 12 taps: the 23-45 filters of Phoong et al. 1995
+STEPS = ((8, 2), (2, 8))  # rows and columns between two coefficients, in the first and in the second half
+SMALLEST = 4  # rows and columns of an image
+BATCH = 512  # images transformed at once, which bounds the memory
 
 
-def directional_std(images: ArrayLike, count: int = DIRECTIONS) -> np.ndarray:
-    """(k, count) f8: standard deviation of each directional sub-band of images (k, rows, cols), u1 or floats.
+def directional_std(images: ArrayLike) -> np.ndarray:
+    """(k, 16) f8: standard deviation of each directional sub-band of images (k, rows, cols), u1 or floats.
 
-    Integers up to 16 bits are scaled from 0..255 to 0..1 and transformed in single precision. The frequency plane is
-    divided into `count` wedges like the directional filter bank of Do and Vetterli (their figure 2): half of them
-    mostly horizontal, half mostly vertical, equally wide along the border of the square, with axes and diagonals on the
-    boundaries between wedges. A wedge with the frequencies of direction (x, y) responds to stripes perpendicular to it.
-    Sub-band 0 begins at the x axis and has y from 0 to x * 4 / count.
-
-    The wedges are real, smooth masks on the Fourier transform whose squares add up to one: a tight frame as in Lu and
-    Do (2006). By Parseval's theorem the standard deviation of a sub-band is the root of its energy, and the squares of
-    all sub-bands add up to the variance of the image. There are three differences from the sampled filter bank. No
-    sub-band is decimated, so that a shift of one cell changes nothing. The wedges are sharper. All scales but the mean
-    are pooled, since the thesis has one number per direction and names no level of the pyramid. The image is continued
-    periodically, as in the authors' program, so that the discontinuity at its border counts as a stripe.
-    Raises ValueError for another shape, fewer than 4 x 4 cells, an odd number of directions, or NaN.
+    Integers up to 16 bits are scaled from 0..255 to 0..1 and transformed in single precision. The sub-bands are those
+    of the finest level of the pyramid, since the thesis has one number per direction and names no level. The image is
+    continued periodically, as in the authors' program, so that the discontinuity at its border counts as a stripe.
+    An image whose sides are no multiples of 8 is first mirrored at its end, up to the next multiple.
+    Raises ValueError for another shape, fewer than 4 x 4 cells, or NaN.
     """
     images = np.asarray(images)
     if images.ndim != 3 or min(images.shape[1:]) < SMALLEST:
         raise ValueError(f"images must have shape (k, rows, cols), at least {SMALLEST} x {SMALLEST}: {images.shape}")
-    if count < 2 or count % 2:
-        raise ValueError(f"directions must be an even number from 2, got {count}")
     if images.dtype.kind == "f" and not np.isfinite(images).all():
         raise ValueError("images hold NaN or infinite values")
-    rows, columns = images.shape[1:]
-    weights = wedges(rows, columns, count).reshape(count, -1).T
-    scale = (255.0 if images.dtype.kind in "iu" else 1.0) * images[0].size if len(images) else 1.0
-    found = np.empty((len(images), count))
+    scale = 255.0 if images.dtype.kind in "iu" else 1.0
+    whole = [(0, 0), *((0, -side % max(STEPS[0])) for side in images.shape[1:])]
+    found = np.empty((len(images), DIRECTIONS))
     for start in range(0, len(images), BATCH):
         part = images[start : start + BATCH].astype(np.result_type(images, np.float32))
-        spectrum = np.asarray(scipy.fft.rfft2(part - part.mean(axis=(1, 2), keepdims=True)))
-        power = (np.real(spectrum) ** 2 + np.imag(spectrum) ** 2).reshape(len(part), len(weights))
-        found[start : start + BATCH] = np.sqrt(power @ weights.astype(power.dtype)) / scale
+        # A constant image is then exactly 0; the detail has no mean anyway.
+        part = np.pad(part - part.mean(axis=(1, 2), keepdims=True), whole, mode="symmetric")
+        halves = [bands.std(axis=(2, 3)) for bands in directional_bands(detail(part))]
+        found[start : start + BATCH] = np.concatenate(halves, axis=1) / scale
     return found
 
 
-def wedges(rows: int, columns: int, count: int = DIRECTIONS) -> np.ndarray:
-    """(count, rows, columns // 2 + 1): the share of each frequency of an rfft2 that belongs to each direction.
+def detail(images: np.ndarray) -> np.ndarray:
+    """The finest level of the Laplacian pyramid of images (k, rows, cols): what the next coarser image lacks of them.
 
-    A column that also represents its mirror image counts twice. Over the directions the shares add up to 1 or 2. The
-    mean (0, 0) belongs to none.
+    The coarser image is the low-pass band of a wavelet transform, with rows and columns halved. Rows and columns must
+    be even. The images are continued periodically.
     """
-    down, along = np.meshgrid(np.fft.fftfreq(rows), np.fft.rfftfreq(columns), indexing="ij")
-    found = np.zeros((count, *down.shape))
-    # The highest frequency of an even length is its own mirror image: it represents both signs.
-    signs = [(row, column) for row in (1, -1) for column in (1, -1)]
-    for row, column in signs:
-        y = np.where(down == -0.5, row * down, down)
-        x = np.where(along == 0.5, column * along, along)
-        found += _wedge_shares(border_position(x, y), count) / len(signs)
-    found[:, 0, 0] = 0
-    mirrored = (along > 0) & (along < 0.5)
-    return found * np.where(mirrored, 2, 1)
+    down, along = (_low_pass(side).astype(images.dtype) for side in images.shape[1:])
+    return images - down @ images @ along.T
 
 
-def border_position(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """The position of the direction (x, y) on half of the border of the square: 0 to 4, periodic.
+def _low_pass(side):
+    """(side, side): the matrix that filters and halves a row, and interpolates it again."""
+    coarse, _ = pywt.dwt(np.eye(side), PYRAMID, mode="periodization", axis=0)
+    return pywt.idwt(coarse, None, PYRAMID, mode="periodization", axis=0)
 
-    0 is horizontal, 1 the diagonal x = y, 2 vertical, 3 the other diagonal.
+
+def directional_bands(images: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The directional filter bank of images (k, rows, cols): sub-bands 0 to 7 and 8 to 15, in the authors' order.
+
+    The first eight, (k, 8, rows / 8, cols / 2), respond to stripes steeper than 45 degrees. The slope y / x of their
+    frequency, y down, rises from -1 to 1. The others, (k, 8, rows / 2, cols / 8), respond to flatter stripes, and x / y
+    falls from 1 to -1. Rows and columns must be multiples of 8. There are as many coefficients as pixels, and the
+    images can be computed from them.
+
+    The bank is a tree of four levels of ladders with two channels on quincunx lattices (Phoong et al. 1995). It is
+    computed in the Fourier domain. With periodic continuation a filter behind a sampling is a product of responses
+    before it. Every sub-band is then one product with the spectrum of the image, and one sum over the frequencies that
+    sampling cannot tell apart. This is the ladder exactly, not an approximation, and takes one matrix product per
+    frequency for many images.
     """
-    level = np.abs(y) <= np.abs(x)
-    slope = np.divide(y, x, out=np.zeros_like(x), where=level & (x != 0))
-    steep = np.divide(x, y, out=np.zeros_like(x), where=~level)
-    return np.where(level, slope, 2 - steep) % 4
+    rows, columns = images.shape[1:]
+    spectra, bands = np.asarray(scipy.fft.fft2(images)), []
+    for weights, (down, along) in zip(_weights(rows, columns, spectra.dtype), STEPS, strict=True):
+        sampled = _aliases(spectra, down, along) @ weights
+        half = np.asarray(scipy.fft.irfft2(sampled, (rows // down, columns // along), axes=(0, 1)))
+        bands.append(np.moveaxis(half, (0, 1), (2, 3)))
+    return bands[0], bands[1]
 
 
-def _wedge_shares(positions, count):
-    """(count, ...): the share of the energy that belongs to each wedge at these positions; the shares add up to 1."""
-    width = 4 / count
-    offsets = np.arange(count).reshape(-1, *[1] * positions.ndim) * width
-    inside = (positions - offsets + 2) % 4 - 2  # -2..2, 0 at the first border of the wedge
-    return _smooth_step(inside / (EDGE * width)) - _smooth_step((inside - width) / (EDGE * width))
+@functools.lru_cache(maxsize=8)
+def _weights(rows, columns, dtype):
+    """Of both halves: (rows / down, cols / along // 2 + 1, 16, 8), the responses where frequencies fall on one."""
+    responses = filters(rows, columns).astype(dtype) / DIRECTIONS
+    parts = zip((responses[:HALF], responses[HALF:]), STEPS, strict=True)
+    return [np.ascontiguousarray(np.swapaxes(_aliases(part, *steps), 2, 3)) for part, steps in parts]
 
 
-def _smooth_step(t):
-    """Rises from 0 to 1 between -1/2 and 1/2 as a squared sine."""
-    return np.sin(np.pi / 2 * np.clip(t + 0.5, 0, 1)) ** 2
+def _aliases(spectra, down, along):
+    """(rows / down, cols / along // 2 + 1, k, 16): the frequencies of spectra (k, rows, cols) that sampling adds up.
+
+    Sampled images are real, so that the other half of the columns mirrors this one.
+    """
+    count, rows, columns = spectra.shape
+    blocks = spectra.reshape(count, down, rows // down, along, columns // along)
+    half = blocks[..., : columns // along // 2 + 1].transpose(2, 4, 0, 1, 3)
+    return half.reshape(*half.shape[:3], down * along)
+
+
+def filters(rows: int, columns: int) -> np.ndarray:
+    """(16, rows, cols) complex: the response of each sub-band at the frequencies of an fft2.
+
+    The first level splits at the diagonals, |x| = |y|. Every further level splits a wedge of slopes v / u, where u is
+    the larger of both frequencies, in the middle. The second channel of a ladder is sampled beside the first one, so
+    that its response contains a shift.
+    """
+    y, x = 2 * np.pi * np.stack(np.meshgrid(np.fft.fftfreq(rows), np.fft.fftfreq(columns), indexing="ij"))
+    found = np.empty((DIRECTIONS, rows, columns), dtype=complex)
+    for k in range(DIRECTIONS):
+        flat = k >= HALF
+        u, v = (y, x) if flat else (x, y)
+        place = DIRECTIONS - 1 - k if flat else k  # of the wedge, by its slope
+        response = channel(square_wave((x + y) / 2) * square_wave((x - y) / 2), flat)
+        shift = u * flat
+        for level in LEVELS:
+            wedges = 2 ** (level - 2)
+            middle = 2 * (place >> (5 - level)) - wedges + 1  # slope of the split, times wedges
+            lower = not place >> (4 - level) & 1
+            response = response * channel(square_wave(u) * square_wave(wedges * v - middle * u), lower)
+            shift = shift + lower * ((1 - middle) * u + wedges * v)
+        found[k] = response * np.exp(1j * shift)
+    return found
+
+
+def channel(sign: np.ndarray, second: bool) -> np.ndarray:
+    """Response of a channel of a ladder, whose allpass filter is about 1 where the first channel passes, else -1."""
+    first = (1 + sign) / np.sqrt(2)
+    return np.sqrt(2) - sign * first if second else first
+
+
+def square_wave(phase: np.ndarray) -> np.ndarray:
+    """The sign of sin(phase), as well as the ladder's filter has it."""
+    harmonics = (2 * tap * (-1) ** k * np.sin((2 * k + 1) * phase) for k, tap in enumerate(LADDER))
+    return functools.reduce(np.add, harmonics)
