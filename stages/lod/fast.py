@@ -65,11 +65,11 @@ def _attempt(mesh, faces, frozen, weights, fit_below, turn, shape, fold):
         left = decimate(surface, faces, *LAST, fold)
     if left < fit_below * len(mesh.faces):
         refit(surface, points, corner, weight, SAMPLES * left // 2, fold)
-    kept, used = compact(surface, source, len(mesh.vertices))
+    kept, used = compact(surface.corner, surface.locked, source, len(mesh.vertices))
     vertices = surface.position[used] * size + middle
     locked = surface.locked[used]
     vertices[locked] = mesh.vertices[source[used[locked]]]
-    return Mesh(vertices, kept), left
+    return Mesh(vertices, kept.reshape(-1, 3)), left
 
 
 def _half_edge_mesh(mesh, frozen, weights):

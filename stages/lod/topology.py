@@ -5,7 +5,6 @@ from dataclasses import astuple, dataclass
 import numpy as np
 
 from stages.kit import Mesh
-from stages.kit.components import graph_components
 
 from .kernels import count_faults, face_components, opposites, signed_volumes, split_fans
 
@@ -69,12 +68,23 @@ def topology(faces: np.ndarray) -> Topology:
     component, count = face_components(other)
     boundary = np.flatnonzero(other < 0)
     open_components = len(np.unique(component[boundary // 3]))
-    tails, heads = fan[boundary], fan[np.where(boundary % 3 == 2, boundary - 2, boundary + 1)]
-    on_boundary = len(np.unique(np.r_[tails, heads]))
-    loops = graph_components(tails, heads, n)[1] - (n - on_boundary)
+    heads = np.where(boundary % 3 == 2, boundary - 2, boundary + 1)
+    loops = face_components(_joined_ends(fan[np.stack([boundary, heads], axis=1)]))[1]
     euler = n - (len(ids) + len(boundary)) // 2 + len(faces)
     genus = max((2 * count - loops - euler) // 2, 0)
     return Topology(len(boundary), loops, count, count - open_components, genus)
+
+
+def _joined_ends(fans):
+    """Like `opposites`, with edges in the place of faces: the boundary edges of fans (b, 2) joined end to end.
+
+    An open fan of faces has two such ends, so that sorted by fan they are in pairs.
+    """
+    pairs = np.argsort(fans, axis=None).reshape(-1, 2)
+    pairs += pairs // 2  # the ends of edge e become 3 e and 3 e + 1
+    joined = np.full(3 * len(fans), -1, dtype=np.int32)
+    joined[pairs] = pairs[:, ::-1]
+    return joined
 
 
 def half_edges(faces: np.ndarray) -> tuple[np.ndarray, np.ndarray, int]:

@@ -22,7 +22,6 @@ def before(h: Id) -> Id:
     return h + 2 if np.uint32(h) % np.uint32(3) == np.uint32(0) else h - 1
 
 
-@kernel
 def opposites(faces: np.ndarray, count: int, oriented: bool) -> tuple[np.ndarray, int]:
     """The opposite of each half-edge, (3 m,) i4, and how many half-edges lie on non-manifold edges.
 
@@ -32,7 +31,13 @@ def opposites(faces: np.ndarray, count: int, oriented: bool) -> tuple[np.ndarray
     other = np.full(len(faces), -1, dtype=np.int32)
     if _closed(faces, count, other):
         return other, 0
-    other[:] = -1
+    return _of_any(faces, count, oriented)
+
+
+@kernel
+def _of_any(faces, count, oriented):
+    """`opposites` of faces that need not be closed."""
+    other = np.full(len(faces), -1, dtype=np.int32)
     first, order = _by_lower_end(faces, count)
     seen = np.full(count, -1, dtype=np.int32)
     slot = np.zeros(count, dtype=np.int32)

@@ -3,6 +3,7 @@
 import numpy as np
 
 from .jit import kernel
+from .vectors import between, cross, dot, point
 
 
 @kernel
@@ -18,18 +19,19 @@ def count_faults(
     degenerate = folded = 0
     for f in range(count):
         i, j, k = faces[3 * f], faces[3 * f + 1], faces[3 * f + 2]
-        ux, uy, uz = vertices[j, 0] - vertices[i, 0], vertices[j, 1] - vertices[i, 1], vertices[j, 2] - vertices[i, 2]
-        vx, vy, vz = vertices[k, 0] - vertices[i, 0], vertices[k, 1] - vertices[i, 1], vertices[k, 2] - vertices[i, 2]
+        ux, uy, uz = between(vertices, i, j)
+        vx, vy, vz = between(vertices, i, k)
         wx, wy, wz = vx - ux, vy - uy, vz - uz
-        x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
-        double = np.sqrt(x * x + y * y + z * z)
-        longest = np.sqrt(max(ux * ux + uy * uy + uz * uz, vx * vx + vy * vy + vz * vz, wx * wx + wy * wy + wz * wz))
-        degenerate += double <= thin * longest
+        x, y, z = cross(ux, uy, uz, vx, vy, vz)
+        double = np.sqrt(dot(x, y, z, x, y, z))
+        sides = max(dot(ux, uy, uz, ux, uy, uz), dot(vx, vy, vz, vx, vy, vz), dot(wx, wy, wz, wx, wy, wz))
+        degenerate += double <= thin * np.sqrt(sides)
         if double > 0.0:
             normal[f, 0], normal[f, 1], normal[f, 2] = x / double, y / double, z / double
     for h in range(len(faces)):
         if other[h] > h:
-            f, g = h // 3, other[h] // 3
-            along = normal[f, 0] * normal[g, 0] + normal[f, 1] * normal[g, 1] + normal[f, 2] * normal[g, 2]
+            ux, uy, uz = point(normal, h // 3)
+            vx, vy, vz = point(normal, other[h] // 3)
+            along = dot(ux, uy, uz, vx, vy, vz)
             folded += (-along if faces[h] == faces[other[h]] else along) < fold  # whatever the winding
     return degenerate, folded

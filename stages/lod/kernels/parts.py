@@ -4,6 +4,7 @@ import numpy as np
 
 from .corners import after, before
 from .jit import kernel
+from .vectors import between, cross, dot
 
 
 @kernel
@@ -68,11 +69,14 @@ def signed_volumes(vertices: np.ndarray, faces: np.ndarray, other: np.ndarray) -
                 3 * f
             ]  # a point of the component itself: from afar, small volumes would be lost to rounding
         o, i, j, k = origin[at], faces[3 * f], faces[3 * f + 1], faces[3 * f + 2]
-        ax, ay, az = vertices[i, 0] - vertices[o, 0], vertices[i, 1] - vertices[o, 1], vertices[i, 2] - vertices[o, 2]
-        bx, by, bz = vertices[j, 0] - vertices[o, 0], vertices[j, 1] - vertices[o, 1], vertices[j, 2] - vertices[o, 2]
-        cx, cy, cz = vertices[k, 0] - vertices[o, 0], vertices[k, 1] - vertices[o, 1], vertices[k, 2] - vertices[o, 2]
-        volume[at] += (ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)) / 6
+        ax, ay, az = between(vertices, o, i)
+        bx, by, bz = between(vertices, o, j)
+        cx, cy, cz = between(vertices, o, k)
+        nx, ny, nz = cross(bx, by, bz, cx, cy, cz)
+        volume[at] += dot(ax, ay, az, nx, ny, nz) / 6
         for h in range(3 * f, 3 * f + 3):
             boundary[at] |= other[h] < 0
-    volume[boundary] = 0.0
+    for at in range(count):
+        if boundary[at]:
+            volume[at] = 0.0
     return volume

@@ -3,6 +3,7 @@
 import numpy as np
 
 from .jit import Id, kernel
+from .vectors import between, cross, dot, point
 
 PULL = 1e-6  # weight of the distance to the point itself relative to the plane: on a flat region it alone decides
 MAX_SHIFT = 2.0  # of the optimum from the edge's midpoint, in lengths of the edge
@@ -14,17 +15,18 @@ def vertex_quadrics(position: np.ndarray, corner: np.ndarray, weight: np.ndarray
     found = np.zeros((len(position), 10))
     for f in range(len(corner) // 3):
         i, j, k = corner[3 * f], corner[3 * f + 1], corner[3 * f + 2]
-        ax, ay, az = position[i, 0], position[i, 1], position[i, 2]
-        ux, uy, uz = position[j, 0] - ax, position[j, 1] - ay, position[j, 2] - az
-        vx, vy, vz = position[k, 0] - ax, position[k, 1] - ay, position[k, 2] - az
-        nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
-        double = np.sqrt(nx * nx + ny * ny + nz * nz)
+        ax, ay, az = point(position, i)
+        ux, uy, uz = between(position, i, j)
+        vx, vy, vz = between(position, i, k)
+        nx, ny, nz = cross(ux, uy, uz, vx, vy, vz)
+        double = np.sqrt(dot(nx, ny, nz, nx, ny, nz))
         if double == 0.0:
             continue
         nx, ny, nz = nx / double, ny / double, nz / double
-        d = -(nx * ax + ny * ay + nz * az)
+        d = -dot(nx, ny, nz, ax, ay, az)
         for v in (i, j, k):
-            _add(found, v, double / 6 * weight[v], nx, ny, nz, d, position[v, 0], position[v, 1], position[v, 2])
+            px, py, pz = point(position, v)
+            _add(found, v, double / 6 * weight[v], nx, ny, nz, d, px, py, pz)
     return found
 
 
@@ -41,7 +43,7 @@ def _add(q, v, s, x, y, z, d, px, py, pz):
     q[v, 6] += s * x * d - w * px
     q[v, 7] += s * y * d - w * py
     q[v, 8] += s * z * d - w * pz
-    q[v, 9] += s * d * d + w * (px * px + py * py + pz * pz)
+    q[v, 9] += s * d * d + w * dot(px, py, pz, px, py, pz)
 
 
 # Below, arrays and ids are passed rather than rows or tuples of arrays: a row is an object whose references numba
@@ -60,20 +62,20 @@ def error_at(q: np.ndarray, i: Id, j: Id, x: float, y: float, z: float) -> float
 @kernel
 def best_place(q: np.ndarray, p: np.ndarray, i: Id, j: Id) -> tuple[float, float, float, float]:
     """(error, x, y, z): the minimum of the quadrics of two vertices at p (n, 3), near their midpoint."""
-    x, y, z = (p[i, 0] + p[j, 0]) / 2, (p[i, 1] + p[j, 1]) / 2, (p[i, 2] + p[j, 2]) / 2
+    sx, sy, sz = point(p, i)
+    tx, ty, tz = point(p, j)
+    x, y, z = (sx + tx) / 2, (sy + ty) / 2, (sz + tz) / 2
     a, b, c = q[i, 0] + q[j, 0], q[i, 3] + q[j, 3], q[i, 5] + q[j, 5]
     d, e, f = q[i, 1] + q[j, 1], q[i, 2] + q[j, 2], q[i, 4] + q[j, 4]
     lx, ly, lz = q[i, 6] + q[j, 6], q[i, 7] + q[j, 7], q[i, 8] + q[j, 8]
-    gx, gy, gz = a * x + d * y + e * z + lx, d * x + b * y + f * z + ly, e * x + f * y + c * z + lz
-    error = x * (gx + lx) + y * (gy + ly) + z * (gz + lz) + q[i, 9] + q[j, 9]
+    gx, gy, gz = dot(a, d, e, x, y, z) + lx, dot(d, b, f, x, y, z) + ly, dot(e, f, c, x, y, z) + lz
+    error = dot(x, y, z, gx + lx, gy + ly, gz + lz) + q[i, 9] + q[j, 9]
     xx, xy, xz = b * c - f * f, e * f - d * c, d * f - b * e
     yy, yz, zz = a * c - e * e, d * e - a * f, a * b - d * d
-    inverse = -1 / (a * xx + d * xy + e * xz)
-    dx, dy, dz = xx * gx + xy * gy + xz * gz, xy * gx + yy * gy + yz * gz, xz * gx + yz * gy + zz * gz
+    inverse = -1 / dot(a, d, e, xx, xy, xz)
+    dx, dy, dz = dot(xx, xy, xz, gx, gy, gz), dot(xy, yy, yz, gx, gy, gz), dot(xz, yz, zz, gx, gy, gz)
     dx, dy, dz = dx * inverse, dy * inverse, dz * inverse
-    ux, uy, uz = p[i, 0] - p[j, 0], p[i, 1] - p[j, 1], p[i, 2] - p[j, 2]
-    if dx * dx + dy * dy + dz * dz <= MAX_SHIFT * MAX_SHIFT * (
-        ux * ux + uy * uy + uz * uz
-    ):  # False for NaN, where A is flat
+    ux, uy, uz = sx - tx, sy - ty, sz - tz
+    if dot(dx, dy, dz, dx, dy, dz) <= MAX_SHIFT * MAX_SHIFT * dot(ux, uy, uz, ux, uy, uz):  # False for NaN: A is flat
         error, x, y, z = error + gx * dx + gy * dy + gz * dz, x + dx, y + dy, z + dz
     return max(error, 0.0), x, y, z

@@ -41,7 +41,8 @@ def push(head: np.ndarray, following: np.ndarray, lowest: np.ndarray, h: Id, buc
     """Puts a half-edge that is not queued into a bucket."""
     following[h] = head[bucket]
     head[bucket] = h
-    lowest[0] = min(lowest[0], bucket)
+    if bucket < lowest[0]:
+        lowest[0] = bucket
 
 
 @kernel

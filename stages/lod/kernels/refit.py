@@ -11,6 +11,7 @@ from .checks import NOBODY, check_move
 from .corners import after, before
 from .jit import kernel
 from .surface import HalfEdgeMesh
+from .vectors import between, cross, dot, point
 
 STEP = 1.4  # over the step that cannot overshoot: converges faster
 TURN = 0.8  # least cosine by which the fit may turn a face
@@ -59,13 +60,15 @@ def _target(points, faces, weight, at):
     A face weighs a third of what its corners weigh, so that all faces together weigh as much as all vertices.
     """
     if at < len(points):
-        return at, points[at, 0], points[at, 1], points[at, 2], weight[at]
+        x, y, z = point(points, at)
+        return at, x, y, z, weight[at]
     f = 3 * (at - len(points))
     i, j, k = faces[f], faces[f + 1], faces[f + 2]
-    x = (points[i, 0] + points[j, 0] + points[k, 0]) / 3
-    y = (points[i, 1] + points[j, 1] + points[k, 1]) / 3
-    z = (points[i, 2] + points[j, 2] + points[k, 2]) / 3
-    return np.int64(i), x, y, z, (weight[i] + weight[j] + weight[k]) / 3
+    ax, ay, az = point(points, i)
+    bx, by, bz = point(points, j)
+    cx, cy, cz = point(points, k)
+    share = (weight[i] + weight[j] + weight[k]) / 3
+    return np.int64(i), (ax + bx + cx) / 3, (ay + by + cy) / 3, (az + bz + cz) / 3, share
 
 
 @kernel
@@ -85,13 +88,14 @@ def _pull(corner, opposite, start, position, v, x, y, z, weight, pull):
         if h < 0 or h == first:
             break
     i, j = corner[after(at)], corner[before(at)]
-    ux, uy, uz = position[i, 0] - position[v, 0], position[i, 1] - position[v, 1], position[i, 2] - position[v, 2]
-    wx, wy, wz = position[j, 0] - position[v, 0], position[j, 1] - position[v, 1], position[j, 2] - position[v, 2]
-    nx, ny, nz = uy * wz - uz * wy, uz * wx - ux * wz, ux * wy - uy * wx
-    square = nx * nx + ny * ny + nz * nz
+    ux, uy, uz = between(position, v, i)
+    wx, wy, wz = between(position, v, j)
+    nx, ny, nz = cross(ux, uy, uz, wx, wy, wz)
+    square = dot(nx, ny, nz, nx, ny, nz)
     if square == 0.0:
         return
-    off = (x - position[v, 0]) * nx + (y - position[v, 1]) * ny + (z - position[v, 2]) * nz
+    px, py, pz = point(position, v)
+    off = dot(x - px, y - py, z - pz, nx, ny, nz)
     dx, dy, dz = off * nx / square, off * ny / square, off * nz / square
     _add(pull, v, (1 - s - t) * weight, dx, dy, dz)
     _add(pull, i, s * weight, dx, dy, dz)
@@ -109,11 +113,12 @@ def _add(pull, v, share, dx, dy, dz):
 @kernel
 def _nearest(p, a, b, c, x, y, z):
     """(squared distance, share of b, share of c) of the point of the triangle nearest to x, y, z."""
-    ux, uy, uz = p[b, 0] - p[a, 0], p[b, 1] - p[a, 1], p[b, 2] - p[a, 2]
-    vx, vy, vz = p[c, 0] - p[a, 0], p[c, 1] - p[a, 1], p[c, 2] - p[a, 2]
-    wx, wy, wz = x - p[a, 0], y - p[a, 1], z - p[a, 2]
-    uu, uv, vv = ux * ux + uy * uy + uz * uz, ux * vx + uy * vy + uz * vz, vx * vx + vy * vy + vz * vz
-    uw, vw = ux * wx + uy * wy + uz * wz, vx * wx + vy * wy + vz * wz
+    ax, ay, az = point(p, a)
+    ux, uy, uz = between(p, a, b)
+    vx, vy, vz = between(p, a, c)
+    wx, wy, wz = x - ax, y - ay, z - az
+    uu, uv, vv = dot(ux, uy, uz, ux, uy, uz), dot(ux, uy, uz, vx, vy, vz), dot(vx, vy, vz, vx, vy, vz)
+    uw, vw = dot(ux, uy, uz, wx, wy, wz), dot(vx, vy, vz, wx, wy, wz)
     det = uu * vv - uv * uv
     s, t = vv * uw - uv * vw, uu * vw - uv * uw
     if det > 0.0 and s >= 0.0 and t >= 0.0 and s + t <= det:
@@ -129,4 +134,4 @@ def _nearest(p, a, b, c, x, y, z):
         t = min(max((uu - uv - uw + vw) / along, 0.0), 1.0) if along > 0.0 else 0.0
         s = 1 - t
     dx, dy, dz = wx - s * ux - t * vx, wy - s * uy - t * vy, wz - s * uz - t * vz
-    return dx * dx + dy * dy + dz * dz, s, t
+    return dot(dx, dy, dz, dx, dy, dz), s, t

@@ -72,25 +72,23 @@ def collapse_edge(
 
 
 @kernel
-def compact(surface: HalfEdgeMesh, source: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """The remaining faces (k, 3) i8, and (n',) the vertex of the surface that each of their vertices is.
+def compact(corner: np.ndarray, locked: np.ndarray, source: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """The remaining faces (3 k,) i8, and (n',) the vertex of the surface that each of their vertices is.
 
-    source (n,): ids below `count`; locked vertices of one source become one vertex again.
+    corner, locked: as of a HalfEdgeMesh. source (n,): ids below `count`; locked vertices of one source become one
+    vertex again.
     """
-    corner, locked = surface.corner, surface.locked
     name = np.full(count + len(source), -1, dtype=np.int64)
-    faces = np.empty((len(corner) // 3, 3), dtype=np.int64)
+    faces = np.empty(len(corner), dtype=np.int64)
     used = np.empty(len(source), dtype=np.int64)
-    row = ids = 0
-    for f in range(len(corner) // 3):
-        if corner[3 * f] < 0:
+    size = ids = 0
+    for v in corner:
+        if v < 0:
             continue
-        for k in range(3):
-            v = corner[3 * f + k]
-            key = source[v] if locked[v] else count + v
-            if name[key] < 0:
-                name[key], used[ids] = ids, v
-                ids += 1
-            faces[row, k] = name[key]
-        row += 1
-    return faces[:row].copy(), used[:ids].copy()
+        key = source[v] if locked[v] else count + v
+        if name[key] < 0:
+            name[key], used[ids] = ids, v
+            ids += 1
+        faces[size] = name[key]
+        size += 1
+    return faces[:size].copy(), used[:ids].copy()
