@@ -11,8 +11,7 @@ Id = int | np.integer  # of a vertex, half-edge, face or bucket
 Result = TypeVar("Result")
 
 # Inlined throughout: a call passes seven words for each array, which took as long as the work.
-# Without the entry for callers in C, of which there are none: it takes a twentieth of the time to compile.
-_compiled = kernel_of(__file__, forceinline=True, no_cfunc_wrapper=True)
+_compiled = kernel_of(__file__, forceinline=True)
 FOLDER = kept_in(__file__)
 
 
