@@ -136,7 +136,7 @@ def test_table_of_touches_holds_the_thesis_and_the_other_ways(glance):
     shown = built.shown[built.shown["protocol"] == "as printed"].set_index("classifier")
     assert "kNN, combinations drawn before the split" in shown.index
     assert "kNN, combinations drawn before the split, blind touch" in shown.index
-    assert shown.loc["deep learning: ours · unseen regions · thesis", "5 touches, %"].endswith("46")
+    assert shown.loc["deep learning: measured · unseen regions · thesis", "5 touches, %"].endswith("46")
 
 
 def test_table_of_touches_without_touches_is_not_run(results):

@@ -44,7 +44,7 @@ def combinations(results: Results) -> Table:
         found = means(rows, ["method", "metric"])
     found = pd.DataFrame(found, columns=["method", "metric", "mean"])
     errors = found.pivot(index="method", columns="metric", values="mean")
-    metrics = [metric for metric in ERRORS if metric != "gaze_error" or metric in errors]
+    metrics = [metric for metric in ERRORS if metric in errors] or list(METRICS)
     channels = [", ".join(METHODS[method].channels) for method in COMBINATIONS]
     frame = pd.DataFrame({"combination": map(short, COMBINATIONS), "channels": channels})
     frame[metrics] = errors.reindex(COMBINATIONS, columns=metrics).to_numpy(dtype=float)

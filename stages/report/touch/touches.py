@@ -40,7 +40,7 @@ def beside_thesis(results: Results, group: str, printed: str, variant: str = "pl
     frame = pd.concat([*parts, *few]).sort_values("protocol", kind="stable", ignore_index=True)
     shown = grid(
         frame, ["protocol", "sampling"], "classifier", beside=("accuracy_regions", "thesis"),
-        names={"sampling": sampling_text}, head=lambda name: f"{label(name)}: ours · unseen regions · thesis, %",
+        names={"sampling": sampling_text}, head=lambda name: f"{label(name)}: measured · unseen regions · thesis, %",
     )  # fmt: skip
     words = {name: shared_notes(__package__, name) for name in ("cells", "regions")}
     words |= {"fifteen": shared_notes(__package__, "fifteen") if few else "15 imprints per object: not run."}
@@ -79,7 +79,7 @@ def table_4_6(results: Results) -> Table:
     others = frame["sampling"].map(label).mask(frame["best"], "")
     words = zip(frame["classifier"].map(label), frame["way"].map(WAYS), others, strict=True)
     names = pd.Series([", ".join(filter(None, said)) for said in words])
-    named = frame.assign(name=names.mask(plain, names + ": ours · unseen regions · thesis"))
+    named = frame.assign(name=names.mask(plain, names + ": measured · unseen regions · thesis"))
     parts = (named[plain], ("accuracy_regions", "thesis")), (named[~plain & frame["classifier"].isin(FURTHER)], ())
     shown = [
         grid(
