@@ -1,8 +1,12 @@
-"""Joins meshes that a file splits by material and duplicates at texture seams: OBJ with materials, and GLB."""
+"""Joins meshes that a file splits by material and duplicates at texture seams: OBJ with materials, and GLB.
+
+A material counts by its colour or its picture of colour: Kd and map_Kd, baseColorFactor and baseColorTexture.
+"""
 
 import numpy as np
 import trimesh
 from trimesh.visual import ColorVisuals
+from trimesh.visual.material import color_image
 
 from stages.kit import Mesh
 from stages.kit.texture import Texture
@@ -23,7 +27,7 @@ def join_parts(loaded: trimesh.parent.Geometry, order: np.ndarray | None = None)
     vertices = np.concatenate([part.vertices for part in parts])
     colored = [part_colors for part in parts if (part_colors := vertex_colors(part)) is not None]
     colors = np.concatenate(colored) if len(colored) == len(parts) else None
-    texture = _texture(parts)
+    texture = texture_of(parts)
     if order is not None and colors is None:
         first, ids = merge_equal_rows(np.concatenate([order, vertices]))
         if first.max() < len(order):
@@ -32,10 +36,11 @@ def join_parts(loaded: trimesh.parent.Geometry, order: np.ndarray | None = None)
     return Mesh(vertices[first], ids[faces], None if colors is None else colors[first], texture)
 
 
-def vertex_colors(part: trimesh.Trimesh) -> np.ndarray | None:
-    """(n, 3) u1, or None when the colours are not per vertex."""
+def vertex_colors(part: trimesh.Trimesh, of_faces: bool = False) -> np.ndarray | None:
+    """(n, 3) u1, or None when the colours are not per vertex. of_faces: else the mean of the faces around a vertex."""
     visual = part.visual
-    return visual.vertex_colors[:, :3] if isinstance(visual, ColorVisuals) and visual.kind == "vertex" else None
+    kinds = ("vertex", "face") if of_faces else ("vertex",)
+    return visual.vertex_colors[:, :3] if isinstance(visual, ColorVisuals) and visual.kind in kinds else None
 
 
 def obj_vertices(content: bytes) -> np.ndarray:
@@ -53,14 +58,11 @@ def merge_equal_rows(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return first[order], rank[inverse.ravel()]
 
 
-def _texture(parts):
-    """The Texture of all parts, or None when there is neither an image nor a second plain colour."""
+def texture_of(parts: list[trimesh.Trimesh]) -> Texture | None:
+    """The Texture of all parts, one behind the other, or None when no material states a colour or a picture."""
+    if not any(_stated(part) for part in parts):
+        return None
     images = [_image(part) for part in parts]
-    plain = {one.tobytes() for one in images if one.shape[:2] == (1, 1)}
-    if all(part.visual.kind != "texture" for part in parts):
-        return None
-    if len(plain) <= 1 and all(one.shape[:2] == (1, 1) for one in images):
-        return None
     uv = [_corners(part) for part in parts]
     sizes = [len(part.faces) for part in parts]
     names = {}
@@ -69,9 +71,19 @@ def _texture(parts):
     return Texture(np.concatenate(uv), np.repeat(numbers, sizes), tuple(distinct))
 
 
+def _stated(part):
+    """Whether the file states a colour or a picture for the part; where it does not, trimesh makes up a grey."""
+    material = getattr(part.visual, "material", None)
+    if any(getattr(material, name, None) is not None for name in ("baseColorTexture", "baseColorFactor")):
+        return True
+    image = getattr(material, "image", None)
+    made_up = image is None or np.array_equal(image.convert("RGBA"), color_image())
+    return not made_up or "kd" in getattr(material, "kwargs", {})
+
+
 def _image(part):
     """The image of a part's material, (h, w, 4) u1; one pixel for a plain colour."""
-    material = getattr(part.visual, "material", None)
+    material = getattr(part.visual, "material", None) if _stated(part) else None
     image = getattr(material, "baseColorTexture", None) or getattr(material, "image", None)
     if image is not None and getattr(part.visual, "uv", None) is not None:
         return np.asarray(image.convert("RGBA"))
