@@ -3,6 +3,8 @@
 A material counts by its colour or its picture of colour: Kd and map_Kd, baseColorFactor and baseColorTexture.
 """
 
+from typing import Any
+
 import numpy as np
 import trimesh
 from trimesh.visual import ColorVisuals
@@ -10,6 +12,8 @@ from trimesh.visual.material import color_image
 
 from stages.kit import Mesh
 from stages.kit.texture import Texture
+
+MADE_UP: Any = color_image()  # what trimesh paints a material with whose file is not there
 
 
 def join_parts(loaded: trimesh.parent.Geometry, order: np.ndarray | None = None) -> Mesh | None:
@@ -72,12 +76,12 @@ def texture_of(parts: list[trimesh.Trimesh]) -> Texture | None:
 
 
 def _stated(part):
-    """Whether the file states a colour or a picture for the part; where it does not, trimesh makes up a grey."""
+    """Whether the file states a colour or a picture for the part; where it does not, trimesh makes one up."""
     material = getattr(part.visual, "material", None)
     if any(getattr(material, name, None) is not None for name in ("baseColorTexture", "baseColorFactor")):
         return True
     image = getattr(material, "image", None)
-    made_up = image is None or np.array_equal(image.convert("RGBA"), color_image())
+    made_up = image is None or np.array_equal(image.convert("RGBA"), MADE_UP)
     return not made_up or "kd" in getattr(material, "kwargs", {})
 
 

@@ -24,7 +24,7 @@ class Material:
         for name, value in vars(self).items():
             low, high = (1, 1000) if name == "shininess" else (0, 1)
             if not low <= value <= high:
-                raise ValueError(f"views.material.{name}={value} must be between {low} and {high}")
+                raise ValueError(f"{name}={value} of a material must be between {low} and {high}")
 
     @property
     def values(self) -> np.ndarray:
