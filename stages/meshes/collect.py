@@ -28,7 +28,7 @@ def prepare_mesh(item: MeshFile, remove_table: bool = False, colours: str = "ver
         content, painted = item.content(), colours != "vertex"
         beside = item.beside() if painted else {}
         there = ZipResolver({name: data for name, data in beside.items() if data})
-        raw, notes = clean(parse(content, item.suffix, there if painted else None, baked=painted))
+        raw, notes = clean(parse(content, item.suffix, there if painted else None, every_colour=painted))
         notes += [f"{name}, which it names, is not there" for name, data in beside.items() if not data]
         if remove_table:
             raw, notes = _without_table(raw, notes)
