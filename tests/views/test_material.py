@@ -80,7 +80,7 @@ def test_renderers_agree_on_highlights(shapes, name):
     )
     same = rays.mask & drawn.mask & (rays.face == drawn.face)
     assert same.sum() > 0.98 * rays.mask.sum()
-    assert np.abs(rays.rgb[same].astype(int) - drawn.rgb[same]).max() <= 4
+    assert np.abs(rays.rgb[same].astype(int) - drawn.rgb[same]).max() <= 2
 
 
 @pytest.mark.parametrize(
