@@ -61,7 +61,8 @@ def _parsed(content, suffix, resolver, every_colour):
     if suffix == ".off":
         return _checked(*read_off(content))
     if suffix == ".glb" or (suffix == ".obj" and b"usemtl" in content):
-        loaded = join_parts(_open(content, suffix, resolver), obj_vertices(content) if suffix == ".obj" else None)
+        order = obj_vertices(content) if suffix == ".obj" else None
+        loaded = join_parts(_open(content, suffix, resolver), order, every_colour)
     else:
         skip = not (every_colour and suffix == ".ply")
         loaded = _open(content, suffix, resolver, maintain_order=True, skip_materials=skip)

@@ -7,7 +7,9 @@ from typing import Any
 
 import numpy as np
 import trimesh
-from trimesh.visual import ColorVisuals
+from PIL import Image
+from trimesh.visual import ColorVisuals, TextureVisuals
+from trimesh.visual.color import to_rgba
 from trimesh.visual.material import color_image
 
 from stages.kit import Mesh
@@ -16,11 +18,14 @@ from stages.kit.texture import Texture
 MADE_UP: Any = color_image()  # what trimesh paints a material with whose file is not there
 
 
-def join_parts(loaded: trimesh.parent.Geometry, order: np.ndarray | None = None) -> Mesh | None:
+def join_parts(
+    loaded: trimesh.parent.Geometry, order: np.ndarray | None = None, every_colour: bool = False
+) -> Mesh | None:
     """One Mesh of a loaded Trimesh or Scene; vertices with equal position and colour are merged. None without faces.
 
     Texture coordinates stay per face corner. order: (n, 3) vertices in the order of the file, whose ids the merged
-    vertices take; None numbers them by first appearance.
+    vertices take; None numbers them by first appearance. every_colour: the texture has the colours per vertex, too, of
+    parts that stand beside others with materials, or that have a plain material.
     """
     parts = loaded.dump() if isinstance(loaded, trimesh.Scene) else [loaded]
     parts = [part for part in parts if isinstance(part, trimesh.Trimesh) and len(part.faces)]
@@ -31,6 +36,8 @@ def join_parts(loaded: trimesh.parent.Geometry, order: np.ndarray | None = None)
     vertices = np.concatenate([part.vertices for part in parts])
     colored = [part_colors for part in parts if (part_colors := vertex_colors(part)) is not None]
     colors = np.concatenate(colored) if len(colored) == len(parts) else None
+    if every_colour and colors is None:
+        parts = [_as_picture(part) for part in parts]
     texture = texture_of(parts)
     if order is not None and colors is None:
         first, ids = merge_equal_rows(np.concatenate([order, vertices]))
@@ -45,6 +52,18 @@ def vertex_colors(part: trimesh.Trimesh, of_faces: bool = False) -> np.ndarray |
     visual = part.visual
     kinds = ("vertex", "face") if of_faces else ("vertex",)
     return visual.vertex_colors[:, :3] if isinstance(visual, ColorVisuals) and visual.kind in kinds else None
+
+
+def _as_picture(part):
+    """The part; its colours per vertex become a picture of one row, where it has no other picture."""
+    colors, beside = vertex_colors(part), part.vertex_attributes.get("color")
+    if colors is None and beside is not None and _image(part).size == 4:  # an OBJ with colours and a plain material
+        colors = to_rgba(beside)[:, :3]
+    if colors is None:
+        return part
+    uv = np.column_stack([(np.arange(len(colors)) + 0.5) / len(colors), np.full(len(colors), 0.5)])
+    visual = TextureVisuals(uv, image=Image.fromarray(np.ascontiguousarray(colors)[None]))
+    return trimesh.Trimesh(part.vertices, part.faces, visual=visual, process=False)
 
 
 def obj_vertices(content: bytes) -> np.ndarray:

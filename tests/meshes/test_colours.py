@@ -46,6 +46,13 @@ def obj(materials, *rows, library="paint.mtl"):
     return {"it.obj": "\n".join([*lines, ""]).encode(), "paint.mtl": materials.encode(), "paint.png": png()}
 
 
+def coloured_obj(*head):
+    """An OBJ with a colour behind each place, as scanners write it."""
+    rows = np.column_stack([CORNERS, PAINTED / 255])
+    lines = [*head, *("v " + " ".join(map(str, row)) for row in rows)]
+    return "\n".join([*lines, *("f " + " ".join(map(str, face)) for face in FACES + 1), ""]).encode()
+
+
 def glb(visual, corners=CORNERS, faces=FACES):
     return {"it.glb": trimesh.Trimesh(corners, faces, process=False, visual=visual).export(file_type="glb")}
 
@@ -75,11 +82,15 @@ OWN = {  # name: (files, colours of the corners)
         [(85, 170, 0), (85, 170, 0), (85, 170, 0), GREEN],
     ),
     "obj, a picture of Windows": (obj("newmtl a\nmap_Kd .\\paint.png\n", "usemtl a", "", "", ""), PAINTED),
-    "obj, colours of vertices": (
-        {"it.obj": "\n".join([f"v {x} {y} {z} {r / 255} {g / 255} {b / 255}" for (x, y, z), (r, g, b) in
-                              zip(CORNERS, PAINTED, strict=True)]
-                             + ["f " + " ".join(map(str, face)) for face in FACES + 1]).encode()}, PAINTED),
+    "obj, colours of vertices": ({"it.obj": coloured_obj()}, PAINTED),
     "glb, a picture": (glb(pictured(UV)), PAINTED),
+    "glb, a coloured part beside one with a material": (
+        {"it.glb": trimesh.Scene([
+            trimesh.Trimesh(CORNERS, FACES[:2], process=False, vertex_colors=PAINTED),
+            trimesh.Trimesh(CORNERS, FACES[2:], process=False, visual=pictured(UV)),
+        ]).export(file_type="glb")}, PAINTED),
+    "obj, colours of vertices and a plain material": (
+        {"it.obj": coloured_obj("mtllib paint.mtl", "usemtl a"), "paint.mtl": b"newmtl a\nKd .7 .7 .7\n"}, PAINTED),
     "glb, a picture on loose faces": (
         glb(pictured(UV[FACES.ravel()]), CORNERS[FACES.ravel()], np.arange(12).reshape(4, 3)), PAINTED),
     "glb, a plain colour": (glb(TextureVisuals(UV, material=PBRMaterial(baseColorFactor=[*RED, 255]))), ALL_RED),
