@@ -69,6 +69,8 @@ def test_a_set_whose_files_are_absent_is_named_and_left_out(tmp_path, monkeypatc
         ("classifier=knn,svm", "stages.sweep -m"),
         ("classification.sets.mine=[a,b]", "+classification.sets.mine"),
         ("views.size=big", "views.size"),
+        ("views.material.speculr=1", "did you mean views.material.specular"),
+        ("views.material.specular=2", "views: specular=2.0 of a material must be between 0 and 1"),
     ],
 )
 def test_a_mistyped_setting_names_the_nearest_right_one(override, hint):

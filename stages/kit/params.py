@@ -56,6 +56,8 @@ def check_section(schema: type[Settings], values: Any) -> Settings:
     except OmegaConfBaseException as error:
         key = f"{section}.{error.full_key}" if error.full_key else section
         raise ParamsError(f"{key}: {str(error).splitlines()[0]}") from None
+    except ValueError as error:  # a schema's own check
+        raise ParamsError(f"{section}: {error}") from None
 
 
 def check_common(values: dict[str, Any]) -> None:

@@ -20,11 +20,12 @@ from pathlib import Path
 import numpy as np
 
 from stages.kit import Mesh, Stopwatch
+from stages.meshes.colours import bake_texture
 from stages.meshes.load import load_unnamed
 from stages.salient_points import find_points, saliency
 
 from .error_table import NAMES, format_table, measure_meshes
-from .export import COLORLESS, bake_texture, write_any
+from .export import COLORLESS, write_any
 from .feasibility import InfeasibleTarget, SimplifyError, smallest_feasible
 from .fewest import fewest_faces
 from .kernels.jit import FOLDER

@@ -13,6 +13,7 @@ from trimesh.visual.material import PBRMaterial
 
 from stages.kit import Mesh
 from stages.kit.files import whole_file
+from stages.meshes.colours import bake_texture
 
 FORMATS = (".glb", ".obj", ".off", ".ply", ".stl")
 PICTURED = (".glb", ".obj")  # the formats with texture coordinates and images
@@ -54,17 +55,6 @@ def to_trimesh(mesh: Mesh, name: str = "mesh") -> trimesh.Trimesh | trimesh.Scen
         return trimesh.Trimesh(mesh.vertices, mesh.faces, vertex_colors=mesh.colors, process=False)
     parts = {f"{name}_{number}": number for number in np.unique(mesh.texture.image)}
     return trimesh.Scene({part: _part(mesh, number, part) for part, number in parts.items()})
-
-
-def bake_texture(mesh: Mesh) -> Mesh:
-    """The Mesh with its texture's colour at each vertex, the mean over the corners there, instead of the texture."""
-    if mesh.texture is None:
-        return mesh
-    texture, ids = mesh.texture, mesh.faces.ravel()
-    rgb = texture.sample(np.repeat(np.arange(len(mesh.faces)), 3), texture.uv.reshape(-1, 2))
-    count = np.maximum(np.bincount(ids, minlength=len(mesh.vertices)), 1)
-    colors = [np.bincount(ids, weights=column, minlength=len(mesh.vertices)) / count for column in rgb.T]
-    return Mesh(mesh.vertices, mesh.faces, np.rint(np.stack(colors, axis=1)).astype(np.uint8))
 
 
 def _part(mesh, number, name):

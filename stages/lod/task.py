@@ -7,12 +7,12 @@ import numpy as np
 
 from stages.kit import Mesh
 from stages.meshes import clean, normalise, rotate_to_z_up
+from stages.meshes.colours import bake_texture
 from stages.meshes.materials import merge_equal_rows
 from stages.meshes.normalise import RADIUS, centre_and_radius
 
 from .attributes import carry
 from .borders import close_borders, cut_borders
-from .export import bake_texture
 from .feasibility import InfeasibleTarget, smallest_feasible
 from .simplify import simplify
 from .topology import half_edges

@@ -22,6 +22,7 @@ from stages.kit.workspace import Workspace
 
 from .classes import CLASSES, chosen_objects, small_classes
 from .collect import prepare_mesh
+from .colours import COLOURS
 from .load import MeshError
 from .schema import Params
 from .sources import SOURCES, MeshFile
@@ -29,26 +30,34 @@ from .sources import SOURCES, MeshFile
 REFUSED = ["object", "file", "reason"]
 
 
-def process(item: MeshFile, folder: Path, without_plane: bool) -> Rows:
+def process(item: MeshFile, folder: Path, without_plane: bool, colours: str) -> Rows:
     """Prepares one mesh. Its row holds its line of the manifest or, where it is refused, the reason as `note`."""
     row = {"item": item.name, "metric": "faces", "value": None}
     try:
         with Stopwatch() as watch:
-            mesh, known = prepare_mesh(item, without_plane)
+            mesh, known = prepare_mesh(item, without_plane, colours)
             write_mesh(folder / f"{item.name}.npz", mesh)
     except MeshError as error:
         return [row | {"note": str(error)}]
     return [row | {"value": known["faces"], "seconds": watch.seconds, "_manifest": known}]
 
 
-def content_hash(item: MeshFile) -> str:
-    """The hash of what a mesh is made of: its file and what the source says of it. Unreadable files have one, too."""
+def content_hash(item: MeshFile, colours: str) -> str:
+    """The hash of what a mesh is made of: its file, what the source says of it, and the files of the colours in use.
+
+    Unreadable files have one, too.
+    """
+    beside = {}
     try:
         content = item.content()
+        beside = {} if colours == "vertex" else item.beside()
     except (OSError, ValueError, RuntimeError) as error:
         content = str(error).encode()
     known = (item.name, item.file, item.suffix, item.up, item.unit, item.licence, item.creator)
-    return hashlib.sha256(repr(known).encode() + content).hexdigest()
+    digest = hashlib.sha256(repr(known).encode() + content)
+    for name, data in sorted(beside.items()):
+        digest.update(name.encode() + data)
+    return digest.hexdigest()
 
 
 def run(workspace: Workspace) -> None:
@@ -56,11 +65,14 @@ def run(workspace: Workspace) -> None:
     settings = workspace.settings(Params)
     if settings.source not in SOURCES:
         raise ValueError(f"meshes.source={settings.source!r} is not one of {', '.join(SOURCES)}")
+    if settings.colours not in COLOURS:
+        raise ValueError(f"meshes.colours={settings.colours!r} is not one of {', '.join(COLOURS)}")
     chosen = dataclasses.replace(settings, objects=chosen_objects(settings.objects, settings.classes))
     items = {item.name: item for item in SOURCES[settings.source](chosen)}
     with StageRun(workspace, "meshes") as stage:
-        work = functools.partial(process, without_plane=settings.remove_plane)
-        rows = stage.each(work, items, made_of={name: content_hash(item) for name, item in items.items()})
+        work = functools.partial(process, without_plane=settings.remove_plane, colours=settings.colours)
+        made_of = {name: content_hash(item, settings.colours) for name, item in items.items()}
+        rows = stage.each(work, items, made_of=made_of)
         manifest = [row["_manifest"] for row in rows if "_manifest" in row]
         refused = [(row["item"], items[row["item"]].file, row["note"]) for row in rows if row["value"] is None]
         for _, file, reason in refused:

@@ -4,29 +4,36 @@ import hashlib
 
 import numpy as np
 from scipy.sparse.csgraph import connected_components
+from trimesh.resolvers import ZipResolver
 
 from stages.kit import Mesh
 from stages.kit.fetch import FetchError
 
 from .clean import clean
+from .colours import coloured
 from .load import MeshError, parse
 from .normalise import normalise, rotate_to_z_up
 from .plane import remove_plane
 from .sources import MeshFile
 
 
-def prepare_mesh(item: MeshFile, remove_table: bool = False) -> tuple[Mesh, dict]:
+def prepare_mesh(item: MeshFile, remove_table: bool = False, colours: str = "vertex") -> tuple[Mesh, dict]:
     """The mesh of a MeshFile, repaired, turned upright, centred and scaled, and its row of the manifest (a dict).
 
-    remove_table: first removes the plane that a scanned object stands on (remove_plane). Raises MeshError with the
-    reason when the file gives no usable mesh.
+    remove_table: first removes the plane that a scanned object stands on (remove_plane). colours: one of COLOURS. The
+    mesh has no texture: `own` and `palette` turn it into the colours of the vertices, `vertex` drops it. Raises
+    MeshError with the reason when the file gives no usable mesh.
     """
     try:
-        content = item.content()
-        raw, notes = clean(parse(content, item.suffix))
+        content, painted = item.content(), colours != "vertex"
+        beside = item.beside() if painted else {}
+        there = ZipResolver({name: data for name, data in beside.items() if data})
+        raw, notes = clean(parse(content, item.suffix, there if painted else None, every_colour=painted))
+        notes += [f"{name}, which it names, is not there" for name, data in beside.items() if not data]
         if remove_table:
             raw, notes = _without_table(raw, notes)
         mesh = normalise(rotate_to_z_up(raw, item.up))
+        mesh = coloured(mesh, item.name, colours) if painted else mesh
     except (FetchError, ValueError, OSError) as error:
         raise MeshError(str(error)) from error
     used = np.unique(mesh.faces)

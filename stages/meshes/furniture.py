@@ -1,8 +1,8 @@
 """Objects in classes, three per class, from the Debian package sweethome3d-furniture.
 
 Each object was inspected from both sides, since names mislead ("Clothes horse" is not an animal). It stands upright,
-is complete and solid, shows the outer side of its faces, and has 1,000 to 60,000 faces. Materials are not extracted,
-since the stages store no texture.
+is complete and solid, shows the outer side of its faces, and has 1,000 to 60,000 faces. Materials are not extracted, so
+that meshes.colours=own refuses all of them.
 """
 
 import hashlib

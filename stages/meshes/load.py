@@ -10,7 +10,7 @@ from trimesh.resolvers import FilePathResolver, Resolver
 from stages.kit import Mesh
 
 from .headers import MeshError, check_header
-from .materials import join_parts, merge_equal_rows, obj_vertices, vertex_colors
+from .materials import join_parts, merge_equal_rows, obj_vertices, texture_of, vertex_colors
 from .off import read_off
 
 FORMATS = (".stl", ".obj", ".ply", ".off", ".glb")
@@ -37,23 +37,18 @@ def load_unnamed(path: Path) -> Mesh:
     return parse(path.read_bytes(), path.suffix.lower(), FilePathResolver(str(path)))
 
 
-def parse(content: bytes, suffix: str, resolver: Resolver | None = None) -> Mesh:
-    """As `load`, from the bytes of a file and its suffix (`.stl`, ...). Without a resolver, no other file is read."""
+def parse(content: bytes, suffix: str, resolver: Resolver | None = None, every_colour: bool = False) -> Mesh:
+    """As `load`, from the bytes of a file and its suffix (`.stl`, ...). Without a resolver, no other file is read.
+
+    every_colour: also the colours of faces, as those of the vertices, and the picture of a PLY, as a texture.
+    """
     if suffix not in FORMATS:
         raise MeshError(f"cannot read {suffix or 'a file without suffix'}: the formats are {', '.join(FORMATS)}")
     if not content:
         raise MeshError("the file is empty")
     check_header(content, suffix)
     try:
-        if suffix == ".off":
-            return _checked(*read_off(content))
-        if suffix == ".glb" or (suffix == ".obj" and b"usemtl" in content):
-            loaded = join_parts(_open(content, suffix, resolver), obj_vertices(content) if suffix == ".obj" else None)
-        else:
-            loaded = _open(content, suffix, resolver, maintain_order=True, skip_materials=True)
-            if isinstance(loaded, trimesh.Scene):
-                loaded = loaded.to_geometry() if loaded.geometry else None
-        return loaded if isinstance(loaded, Mesh) else _to_mesh(loaded, merge=suffix == ".stl")
+        return _parsed(content, suffix, resolver, every_colour)
     except MeshError:
         raise
     except MemoryError:
@@ -62,21 +57,35 @@ def parse(content: bytes, suffix: str, resolver: Resolver | None = None) -> Mesh
         raise MeshError(f"unreadable as {suffix[1:].upper()} ({type(error).__name__}: {_brief(error)})") from None
 
 
+def _parsed(content, suffix, resolver, every_colour):
+    if suffix == ".off":
+        return _checked(*read_off(content))
+    if suffix == ".glb" or (suffix == ".obj" and b"usemtl" in content):
+        order = obj_vertices(content) if suffix == ".obj" else None
+        loaded = join_parts(_open(content, suffix, resolver), order, every_colour)
+    else:
+        skip = not (every_colour and suffix == ".ply")
+        loaded = _open(content, suffix, resolver, maintain_order=True, skip_materials=skip)
+        if isinstance(loaded, trimesh.Scene):
+            loaded = loaded.to_geometry() if loaded.geometry else None
+    return loaded if isinstance(loaded, Mesh) else _to_mesh(loaded, suffix == ".stl", every_colour)
+
+
 def _open(content, suffix, resolver, **options):
     return trimesh.load(io.BytesIO(content), file_type=suffix[1:], resolver=resolver, process=False, **options)
 
 
-def _to_mesh(loaded, merge):
+def _to_mesh(loaded, merge, every_colour):
     if loaded is None:
         raise MeshError("the file holds no geometry")
     if isinstance(loaded, trimesh.PointCloud):
         raise MeshError(f"a point cloud, or truncated before its faces: {len(loaded.vertices)} points, no faces")
     if not isinstance(loaded, trimesh.Trimesh):
         raise MeshError(f"not a triangle mesh but a {type(loaded).__name__}")
-    colors = None if merge else vertex_colors(loaded)
+    colors = None if merge else vertex_colors(loaded, of_faces=every_colour)
     mesh = _checked(np.asarray(loaded.vertices, dtype=np.float64), np.asarray(loaded.faces, dtype=np.int64), colors)
     if not merge:
-        return mesh
+        return Mesh(mesh.vertices, mesh.faces, mesh.colors, texture_of([loaded])) if every_colour else mesh
     first, ids = merge_equal_rows(mesh.vertices)
     return Mesh(mesh.vertices[first], ids[mesh.faces])
 

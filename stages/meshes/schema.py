@@ -14,4 +14,5 @@ class Params:
     objects: list[str]  # the objects to take; empty: those of classes, or all
     classes: dict[str, list[str]]  # class: its objects, for stages that recognise classes of several objects
     strict: bool  # stop at the first refused mesh instead of going on without it
+    colours: str = "vertex"  # vertex (per vertex, else grey), own (all that a file has) or palette (else one by name)
     remove_plane: bool = False  # take out the table that a scanned object stands on, before anything else (T4.2.3.2)

@@ -7,9 +7,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from stages.kit.fetch import FetchError, fetch_package, read_members, zipped
 
+from .beside import files_beside
 from .furniture import FURNITURE, LICENCES, furniture_files
 from .load import FORMATS, MeshError
 from .mat import read_mat
@@ -31,16 +33,17 @@ HOUSEHOLD = (
 
 @dataclass(frozen=True)
 class Content:
-    """Reads the bytes of a file, when it is called or when it is sent to another machine: there the bytes go along."""
+    """Reads a file, or the files beside it, when it is called or sent to another machine: there the bytes go along."""
 
-    read: Callable[[], bytes]
+    read: Callable[[], Any]
 
-    def __call__(self) -> bytes:
+    def __call__(self) -> Any:
         return self.read()
 
     def __reduce__(self) -> tuple[type, tuple]:
         try:
-            return Content, (partial(bytes, self.read()),)
+            content = self.read()
+            return Content, (partial(type(content), content),)
         except (OSError, ValueError, RuntimeError) as error:  # said where it is called: one such file ends no run
             return Content, (partial(_refuse, error),)
 
@@ -53,7 +56,8 @@ def _refuse(error):
 class MeshFile:
     """One mesh of a source: its name and file, a function that reads the bytes of the file, and metadata.
 
-    suffix: the format, for example `.stl`; up: the axis that points up, x, y or z; unit: of the coordinates.
+    suffix: the format, for example `.stl`; up: the axis that points up, x, y or z; unit: of the coordinates; beside: a
+    function that reads the files of its materials (files_beside).
     """
 
     name: str
@@ -64,6 +68,7 @@ class MeshFile:
     unit: str
     licence: str
     creator: str = "not stated"
+    beside: Callable[[], dict[str, bytes]] = dict
 
 
 def household(settings: Params) -> list[MeshFile]:
@@ -131,7 +136,8 @@ def _folder_file(root, name, path, settings):
     # glTF defines its axis and unit (version 2.0, section 3.4); the other formats define neither.
     up, unit = ("y", "m") if path.suffix.lower() == ".glb" else (settings.up, settings.unit)
     file = str(path.relative_to(root))
-    return MeshFile(name, file, path.suffix.lower(), Content(path.read_bytes), up, unit, "unknown")
+    beside = Content(partial(files_beside, path))
+    return MeshFile(name, file, path.suffix.lower(), Content(path.read_bytes), up, unit, "unknown", beside=beside)
 
 
 # What meshes.folder must hold for these sources: (source, file names, where it is published). They are not fetched

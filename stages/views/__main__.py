@@ -28,7 +28,7 @@ def process(name: str, folder: Path, data: Path, settings: Params, renderer: str
     height, width = settings.size
     for viewpoint in viewpoint_set(settings.viewpoints):
         with Stopwatch() as watch:
-            view = render(mesh, viewpoint, (height, width), renderer, settings.background)
+            view = render(mesh, viewpoint, (height, width), renderer, settings.background, settings.material)
         write_view(folder / name / f"{viewpoint.name}.npz", view)
         row = {"item": name, "method": renderer, "viewpoint": viewpoint.name, "metric": "coverage"}
         rows.append(row | {"value": float(view.mask.mean()), "seconds": watch.seconds})

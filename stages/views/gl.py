@@ -16,6 +16,7 @@ from stages.kit import Mesh, Viewpoint
 from stages.kit.camera import DISTANCE, pixels_per_unit, project
 from stages.kit.extras import from_extra
 
+from .material import LAMBERT, Material
 from .shading import GREY, corner_groups
 from .view import View, empty_view, pixel_box, round_depth
 
@@ -37,7 +38,9 @@ def egl_error() -> str:
     return ""
 
 
-def render_pyrender(mesh: Mesh, viewpoint: Viewpoint, size: tuple[int, int], background: str) -> View:
+def render_pyrender(
+    mesh: Mesh, viewpoint: Viewpoint, size: tuple[int, int], background: str, material: Material
+) -> View:
     """Renders a View (see stages.views.render) by OpenGL; OSError when no EGL context can be created."""
     if egl_error():
         raise OSError(
@@ -49,6 +52,7 @@ def render_pyrender(mesh: Mesh, viewpoint: Viewpoint, size: tuple[int, int], bac
         return view
     scene, node = _upload(mesh)
     _place_camera(scene, viewpoint, size)
+    _offscreen()._renderer._program_cache.material = material
     ids, depth = _draw(scene, node, size, FACE_IDS)
     shaded, _ = _draw(scene, node, size, SHADED)
     drawn = ids.astype(np.int32) @ np.array([1, 256, 65536], dtype=np.int32)
@@ -66,8 +70,17 @@ def _offscreen() -> Any:
         import pyrender
         from pyrender.shader_program import ShaderProgramCache
 
+    class Programs(ShaderProgramCache):
+        """The shaders compiled for a material, whose numbers are constants in them; pyrender passes no others on."""
+
+        material = LAMBERT
+
+        def get_program(self, vertex_shader, fragment_shader, geometry_shader=None, defines=None):
+            numbers = {name.upper(): repr(float(value)) for name, value in vars(self.material).items()}
+            return super().get_program(vertex_shader, fragment_shader, geometry_shader, (defines or {}) | numbers)
+
     offscreen: Any = pyrender.OffscreenRenderer(1, 1)  # typed as if its renderer and results could be missing
-    offscreen._renderer._program_cache = ShaderProgramCache(shader_dir=str(SHADERS))
+    offscreen._renderer._program_cache = Programs(shader_dir=str(SHADERS))
     return offscreen
 
 

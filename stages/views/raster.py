@@ -8,13 +8,14 @@ from stages.kit import Mesh, Viewpoint
 from stages.kit.camera import project
 
 from .kernels import rasterise, shade_pixels
+from .material import Material
 from .shading import GREY, corner_groups
 from .view import View, empty_view, pixel_box, round_depth
 
 NO_COLORS = np.zeros((0, 3), dtype=np.uint8)
 
 
-def render_raster(mesh: Mesh, viewpoint: Viewpoint, size: tuple[int, int], background: str) -> View:
+def render_raster(mesh: Mesh, viewpoint: Viewpoint, size: tuple[int, int], background: str, material: Material) -> View:
     """Renders a View (see stages.views.render) face by face."""
     view = empty_view(viewpoint, size, background)
     places = np.stack(project(mesh.vertices, viewpoint, size))
@@ -24,7 +25,7 @@ def render_raster(mesh: Mesh, viewpoint: Viewpoint, size: tuple[int, int], backg
     rasterise(corners, mesh.faces, top, left, face, depth)
     view.depth[box] = round_depth(depth)
     colors = NO_COLORS if mesh.colors is None else mesh.colors
-    light = float(GREY), viewpoint.axes[2]
+    light = float(GREY), material.values, viewpoint.axes[2]
     shade_pixels(
         corners, mesh.faces, mesh.face_crosses, *_normals(mesh), colors, *light, top, left, face, view.rgb[box]
     )

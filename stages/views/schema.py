@@ -1,6 +1,8 @@
 """The settings of the views stage."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+
+from .material import Material
 
 COLUMNS = {"viewpoint": "name of the viewpoint", "views": "how many views together, this one the last"}
 
@@ -14,3 +16,4 @@ class Params:
     renderer: str  # raster (everywhere the same bytes), pyrender (needs EGL) or auto
     background: str  # black (as in the thesis), grey or white
     compare_sets: bool  # also measure how much of the surface the views see, and the fewest that see nearly all
+    material: Material = field(default_factory=Material)  # how the surfaces reflect the light; matte by default

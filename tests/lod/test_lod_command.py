@@ -121,6 +121,15 @@ def test_pictures_go_along(simplified, tmp_path, out):
     assert np.abs(found.texture.uv - want).max() < 0.02
 
 
+@pytest.mark.parametrize("suffix", [".glb", ".obj"])
+def test_one_plain_material_is_kept(tmp_path, suffix):
+    mesh = bumpy()
+    red = np.array([[[200, 30, 30, 255]]], dtype=np.uint8)
+    plain = Texture(np.zeros((len(mesh.faces), 3, 2)), np.zeros(len(mesh.faces)), (red,))
+    write_any(tmp_path / f"red{suffix}", Mesh(mesh.vertices, mesh.faces, None, plain))
+    assert (load(tmp_path / f"red{suffix}").texture.images[0] == red).all()
+
+
 @pytest.mark.slow
 def test_format_without_colours_says_so(simplified, tmp_path):
     write_any(tmp_path / "wrapped.obj", textured())

@@ -58,9 +58,9 @@ def test_only_a_changed_file_is_prepared_again(start, tmp_path, monkeypatch):
     prepared = []
     prepare = stage.prepare_mesh
 
-    def noted(item, without_plane):
+    def noted(item, *settings):
         prepared.append(item.name)
-        return prepare(item, without_plane)
+        return prepare(item, *settings)
 
     monkeypatch.setattr(stage, "prepare_mesh", noted)
     start()

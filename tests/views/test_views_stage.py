@@ -7,9 +7,11 @@ import pytest
 
 from stages.kit import Mesh
 from stages.kit.files import read_json, write_mesh
+from stages.kit.params import ParamsError
 from stages.kit.rows import read_rows
-from stages.views import FOUR, read_view
+from stages.views import FOUR, Material, read_view, render
 from stages.views import __main__ as stage
+from stages.views.material import LAMBERT
 
 SECTION = {"viewpoints": "four", "size": [90, 120], "renderer": "raster", "background": "black",
            "compare_sets": True}  # fmt: skip
@@ -76,6 +78,18 @@ def test_mesh_that_leaves_the_frame_is_named(workspace, shapes, make_workspace):
     with pytest.raises(ValueError, match="huge: .*normalise"):
         stage.run(make_workspace({"views": SECTION}, parallel={"backend": "loky", "workers": 2}))
     assert not (workspace.data / "views").exists()
+
+
+def test_the_material_of_the_settings_is_drawn_and_one_out_of_range_is_named(workspace, shapes, make_workspace):
+    shiny = {"ambient": 0.1, "diffuse": 0.5, "specular": 0.4, "shininess": 20.0}
+    stage.run(make_workspace({"views": SECTION | {"compare_sets": False, "material": shiny}}))
+    stored = read_view(workspace.data / "views" / "torus" / f"{FOUR[0].name}.npz")
+    drawn = [
+        render(shapes["torus"], FOUR[0], (90, 120), "raster", material=one) for one in (Material(**shiny), LAMBERT)
+    ]
+    assert (stored.rgb == drawn[0].rgb).all() and (stored.rgb != drawn[1].rgb).any()
+    with pytest.raises(ParamsError, match="views: specular=4.0 of a material must be between 0 and 1"):
+        stage.run(make_workspace({"views": SECTION | {"material": shiny | {"specular": 4.0}}}))
 
 
 def test_sets_of_views_need_not_be_compared(workspace, make_workspace):

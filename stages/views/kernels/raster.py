@@ -65,14 +65,17 @@ def _columns(start, slope, over, low, high):
 @kernel
 def shade_pixels(
     corners: np.ndarray, faces: np.ndarray, crosses: np.ndarray, groups: np.ndarray, normals: np.ndarray,
-    colors: np.ndarray, grey: float, back: np.ndarray, top: int, left: int, face: np.ndarray, rgb: np.ndarray,
+    colors: np.ndarray, grey: float, material: np.ndarray, back: np.ndarray, top: int, left: int, face: np.ndarray,
+    rgb: np.ndarray,
 ) -> None:  # fmt: skip
     """Writes the shade of each pixel of a box on the object to rgb (h, w, 3) u1.
 
     corners, faces, face and the box as in `rasterise`. crosses (m, 3): the faces' normals, of any length. groups (m, 3)
     and normals (g, 3): the unit normal of each corner of a face. colors (n, 3) u1, or (0, 3) for the grey of a
-    brightness in 0..255. back (3,): the direction towards the camera and its head light.
+    brightness in 0..255. material (4,): see stages.views.Material. back (3,): the direction towards the camera
+    and its head light.
     """
+    ambient, diffuse, specular, shininess = material[0], material[1], material[2], material[3]
     for i in range(face.shape[0]):
         for j in range(face.shape[1]):
             f = face[i, j]
@@ -94,9 +97,11 @@ def shade_pixels(
             towards = crosses[f, 0] * back[0] + crosses[f, 1] * back[1] + crosses[f, 2] * back[2]
             cosine = (x * back[0] + y * back[1] + z * back[2]) * (-1.0 if towards < 0 else 1.0)
             brightness = min(max(cosine / max(np.sqrt(x * x + y * y + z * z), 1e-300), 0.0), 1.0)
-            shade = int(np.rint(grey * brightness))
+            light = ambient + diffuse * brightness
+            highlight = 255 * specular * brightness**shininess if specular > 0 else 0.0
+            shade = int(np.rint(min(grey * light + highlight, 255.0)))
             for channel in range(3):
                 if len(colors):
                     value = first * colors[a, channel] + second * colors[b, channel] + third * colors[c, channel]
-                    shade = int(np.rint(value * brightness))
+                    shade = int(np.rint(min(value * light + highlight, 255.0)))
                 rgb[i, j, channel] = shade

@@ -15,6 +15,7 @@ void main()
     } else {
         // The head light is on the view axis, at infinity: the cosine is the z component of the normal.
         float cosine = max(view_normal.z / max(length(view_normal), 1e-30), 0.0);
-        frag_color = vec4(albedo * cosine, 1.0);
+        float highlight = SPECULAR > 0.0 ? SPECULAR * pow(cosine, SHININESS) : 0.0;
+        frag_color = vec4(albedo * (AMBIENT + DIFFUSE * cosine) + highlight, 1.0);
     }
 }

@@ -1,0 +1,36 @@
+"""The files that a mesh file names: its materials, and their pictures."""
+
+import re
+from pathlib import Path
+
+from trimesh.resolvers import FilePathResolver
+
+NAMES = {  # what names a file, by the suffix of the file in which it stands
+    ".obj": re.compile(rb"^[ \t]*mtllib[ \t]+(.+?)\s*$", re.M),
+    ".mtl": re.compile(rb"^[ \t]*map_Kd[ \t]+(.+?)\s*$", re.M | re.I),
+    ".ply": re.compile(rb"^comment[ \t]+TextureFile[ \t]+(.+?)\s*$", re.M | re.I),
+}
+
+
+def files_beside(path: Path) -> dict[str, bytes]:
+    """{name: bytes} of the files that an OBJ names, as it and its material file spell them, or a PLY with a texture.
+
+    A file that is not there, or not below the folder of the mesh, is empty.
+    """
+    found: dict[str, bytes] = {}
+    resolver = FilePathResolver(str(path))
+    wanted = _named(path.read_bytes(), path.suffix)
+    while wanted:
+        name = wanted.pop(0)
+        try:
+            found[name] = resolver.get(name.replace("\\", "/"))
+        except (OSError, ValueError):
+            found[name] = b""
+        wanted += [other for other in _named(found[name], Path(name).suffix) if other not in found]
+    return found
+
+
+def _named(content, suffix):
+    header = content.partition(b"end_header")[0] if suffix.lower() == ".ply" else content
+    pattern = NAMES.get(suffix.lower())
+    return [name.decode("utf-8", "replace") for name in pattern.findall(header)] if pattern else []
