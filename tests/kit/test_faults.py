@@ -35,7 +35,8 @@ from stages.kit.run import StageRun
 from stages.kit.workspace import Workspace
 def item(name, folder):
     write_text(folder / name, name)
-    time.sleep(0.2)
+    while not Path("go").exists():
+        time.sleep(0.01)
     return [{"item": name, "metric": "m", "value": 1}]
 with StageRun(Workspace(Path("."), "toys"), "views") as run:
     run.each(item, ["a", "b", "c"])
@@ -179,16 +180,16 @@ def test_a_failed_run_leaves_the_place_free(workspace):
 
 @pytest.mark.slow
 def test_two_runs_of_one_stage_at_once_end_with_the_same_whole_folder(workspace):
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    runs = [
-        subprocess.Popen(
-            [sys.executable, "-c", TWICE], env=environment, cwd=workspace.root, stderr=subprocess.PIPE, text=True
-        )
-        for _ in range(2)
-    ]
-    words = [run.communicate(timeout=60)[1] for run in runs]
-    assert [run.returncode for run in runs] == [0, 0], words
-    assert sorted(words) == ["", "views toys: waits for another run of the same to end\n"]
+    environment, said = {**os.environ, "PYTHONPATH": str(ROOT)}, workspace.root / "said"
+    with said.open("w") as errors:
+        command = [sys.executable, "-c", TWICE]
+        runs = [subprocess.Popen(command, env=environment, cwd=workspace.root, stderr=errors) for _ in range(2)]
+    end = time.monotonic() + 60
+    while not said.read_text() and time.monotonic() < end:
+        time.sleep(0.01)
+    (workspace.root / "go").touch()
+    assert [run.wait(60) for run in runs] == [0, 0], said.read_text()
+    assert said.read_text() == "views toys: waits for another run of the same to end\n"
     assert {path.name for path in (workspace.data / "views").iterdir()} == set("abc")
 
 
@@ -201,6 +202,7 @@ def test_a_killed_run_leaves_the_place_free(workspace):
         time.sleep(0.01)
     os.kill(first.pid, signal.SIGKILL)
     first.wait()
+    (workspace.root / "go").touch()
     subprocess.run([sys.executable, "-c", TWICE], env=environment, cwd=workspace.root, check=True, timeout=60)
     assert {path.name for path in (workspace.data / "views").iterdir()} == set("abc")
 
