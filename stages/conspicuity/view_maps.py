@@ -42,7 +42,10 @@ class ViewMaps:
         self._seen = np.zeros(shape, dtype=bool)  # filled view by view
         self.vertices = np.concatenate([self._cast_rays(view, mask) for view in range(len(self.viewpoints))])
         if len(self.vertices) == 0:
-            raise ValueError("no pixel of any view sees the mesh: is it normalised (stages.meshes.normalise)?")
+            raise ValueError(
+                "no pixel of any view sees the mesh: normalise it (stages.meshes.normalise), and if it is flat "
+                "choose views from above and below, too (views.viewpoints=twelve)"
+            )
         self._ends = np.cumsum(self._seen.sum(axis=(1, 2)))
         self.maps = {channel: np.asarray(values)[self._seen].astype(np.float64) for channel, values in maps.items()}
         self.facing = facing(mesh, self.viewpoints, self._scene)
