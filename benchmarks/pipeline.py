@@ -28,7 +28,7 @@ from .maps import nine_maps_rows
 COPY = Path("build/bench")
 OUT = Path("reports/bench/pipeline.csv")
 TAKEN = re.compile(r"^(\S+): \d+ s, (\d+) s of processor time$", re.MULTILINE)  # what stages.repro says of each
-POLL = 0.1  # seconds between two looks at the memory of all processes of a stage
+POLL = 1.0  # seconds between two looks at the memory of all processes: ten a second took a sixtieth of the time
 
 
 def fresh_copy():
@@ -45,7 +45,10 @@ def fresh_copy():
 
 
 def watch(command, cwd):
-    """(seconds, peak bytes, output) of a command: wall time, and resident memory summed over all its processes."""
+    """(seconds, peak bytes, output) of a command: wall time, and memory of all its processes, shared pages once.
+
+    That is the sum of proportional set sizes, where the system tells them (Linux), else of resident sizes.
+    """
     start, peak = time.perf_counter(), 0
     process = psutil.Popen(command, cwd=cwd, env={**os.environ, "PYTHONPATH": ""}, stdout=subprocess.PIPE, text=True)
     finished = threading.Event()
@@ -55,7 +58,7 @@ def watch(command, cwd):
         while not finished.wait(POLL):
             try:
                 family = [process, *process.children(recursive=True)]
-                peak = max(peak, sum(member.memory_info().rss for member in family if member.is_running()))
+                peak = max(peak, sum(memory(member) for member in family if member.is_running()))
             except psutil.Error:
                 continue  # a worker ended between the list and the look
 
@@ -67,6 +70,12 @@ def watch(command, cwd):
     if process.returncode:
         sys.exit(f"bench: {' '.join(command)} failed with {process.returncode}")
     return time.perf_counter() - start, peak, output
+
+
+def memory(process):
+    """Bytes of a process, of shared pages its part."""
+    found = process.memory_full_info()
+    return getattr(found, "pss", found.rss)
 
 
 def main():

@@ -62,6 +62,7 @@ WAYS = ("adaptive", "area", "soft")  # of keeping a neighbourhood; behind a meth
 METHOD_COLOURS = {"random": "#E69F00", "itti": "#56B4E9", "thesis_ssim": "#009E73", "enhanced": "#0072B2", "qem": GREY}
 MARKERS = "osD^vPX*"
 PALETTE = 256  # colours of a picture: a third of the bytes, and the shading of meshes still looks smooth
+SETTLED = 1_000  # pixels that still change their colour: to go on until all stay takes five times as long
 SETTINGS: dict[Any, Any] = {
     "figure.facecolor": "white",
     "savefig.facecolor": "white",
@@ -116,7 +117,7 @@ def save(figure: Figure, path: Path, dpi: int = 130) -> Path:
     figure.savefig(drawn, dpi=dpi, bbox_inches="tight", pad_inches=0.12, metadata={"Software": None})
     plt.close(figure)
     with Image.open(drawn) as image:
-        few = image.convert("RGB").quantize(PALETTE, Image.Quantize.MEDIANCUT, kmeans=1, dither=Image.Dither.NONE)
+        few = image.convert("RGB").quantize(PALETTE, Image.Quantize.MEDIANCUT, SETTLED, dither=Image.Dither.NONE)
     with whole_file(path) as part:
         few.save(part, "PNG", optimize=True)
     return path

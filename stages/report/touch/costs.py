@@ -44,7 +44,7 @@ def by_saliency(results: Results) -> Figure:
     """What a second spent on saliency is worth to the touch that follows."""
     frame = _timed(results, ["method"], classifier="knn", variant="plain")
     frame["seconds"] = frame["method"].map(attention_seconds(results))
-    return _chart(frame, f"Looking before touching: {results.group_text('six')}, kNN", ["method"], label("itti"))
+    return _chart(frame, f"Looking before touching: {results.group_text('six')}, kNN", ["method"], label(MODEL))
 
 
 def _timed(results: Results, by: list[str], **where: Any) -> pd.DataFrame:

@@ -11,9 +11,9 @@ from stages.kit.split import Split
 from stages.report.grid import grid
 from stages.report.items import Figure, Table
 from stages.report.results import Results, some
-from stages.report.style import GREY, INK, colours, label, plt
+from stages.report.style import GREY, INK, colours, plt
 
-from .rows import STAGE, Protocol, accuracies, fifteen, protocols, sampling_text
+from .rows import ENHANCED, PLAIN_AVERAGE, PRINTED, STAGE, Protocol, accuracies, fifteen, protocols, sampling_text
 
 WAYS = {"plain": "no selection", "selected": "selection", "selected_train": "selection in training alone"}
 PRINTED_WAYS = {"plain": "all", "selected": "selected"}  # column of the thesis's table, behind the group
@@ -84,15 +84,16 @@ def _shares(protocol: Protocol, thesis: pd.Series) -> pd.DataFrame:
 
 def figure_4_4(results: Results) -> Figure:
     """Correlations of the imprints of each two objects, for blind touch and enhanced attention."""
-    one = next(protocols(results, group=["six", "four"]))
-    folder = results.folder("classification", one.dataset)
+    folder = results.folder("classification")
+    dataset = folder.parent.name
+    best = PLAIN_AVERAGE if dataset == PRINTED else ENHANCED
     groups = sorted(folder.glob("six.*.npz")) or sorted(folder.glob("four.*.npz"))
     first = some(groups, "no groups in data/classification", "classification")[0]
     pairs = list(combinations(map(str, read_arrays(first)["objects"]), 2))
-    images = {name: results.imprints(name, one.dataset) for pair in pairs for name in pair}
-    samplings = {"random": "blind touch", one.best: label(one.best)}
+    images = {name: results.imprints(name, dataset) for pair in pairs for name in pair}
+    samplings = {"random": "blind touch", best: "enhanced attention"}
     found = {way: [similarity(images[a][way], images[b][way]) for a, b in pairs] for way in samplings}
-    order = np.argsort([np.median(values) for values in found[one.best]], kind="stable")
+    order = np.argsort([np.median(values) for values in found[best]], kind="stable")
     paint = colours(list(samplings))
     figure, axes = plt.subplots(figsize=(7.6, 0.42 * len(pairs) + 1.2))
     for offset, (method, words) in zip((0.18, -0.18), samplings.items(), strict=True):
