@@ -7,7 +7,7 @@ import pytest
 from stages.imprints import Imprints, write_imprints
 from stages.kit.files import write_arrays
 from stages.report import touch
-from stages.report.results import NotRun
+from stages.report.results import SECTION_4_2, NotRun
 from stages.report.topics import CLAIMS, build_one
 from stages.report.touch import claims, pictures, touches
 from stages.report.touch.rows import PRINTED
@@ -169,14 +169,14 @@ def test_chart_counts_the_making_of_the_features(glance):
     assert frame.loc["kNN, 5 touches, map and position", "cost_ratio"] == pytest.approx(1)
 
 
-def test_correlations_are_drawn_for_every_pair(root, small):
-    random = np.random.default_rng(0)
-    write_arrays(root / "data/test/classification/six.random.npz", objects=np.array(["ball", "cube"]))
-    write_arrays(root / "data/test/classification/six.enhanced.npz", objects=np.array(["ball", "cube"]))
+@pytest.mark.parametrize("dataset, best", [("test", "thesis_ssim"), (SECTION_4_2, "VisAttAll")])
+def test_correlations_are_drawn_for_every_pair(dataset, best, bare, small):
+    random, data = np.random.default_rng(0), bare / "data" / dataset
+    write_arrays(data / "classification/six.random.npz", objects=np.array(["ball", "cube"]))
     for name in ("ball", "cube"):
         imprints = Imprints(random.random((5, 8, 8)), np.arange(5), random.random((5, 3)), 0.01)
-        write_imprints(root / f"data/test/imprints/{name}.npz", {"random": imprints, "enhanced": imprints})
-    figure = build_one(touch, "figures", "figure_4_4", small.results(root))
+        write_imprints(data / f"imprints/{name}.npz", {"random": imprints, best: imprints})
+    figure = build_one(touch, "figures", "figure_4_4", small.results(bare))
     assert figure.paths[0].stat().st_size > 5000
 
 

@@ -35,7 +35,7 @@ def build(results: Results) -> Figure:
             axes.plot(own["objects"], own[column], f"{MARKERS[k % len(MARKERS)]}-", ms=4, lw=1.2,
                       color=CYCLE[k % len(CYCLE)], label=f"{stage}: {power}")  # fmt: skip
         axes.set(xscale="log", yscale="log", xlabel="objects", ylabel=name)
-        plain_logarithm(axes.xaxis)
+        plain_logarithm(axes.xaxis, (1.0, 3.0))
         plain_logarithm(axes.yaxis)
         axes.grid()
         axes.legend(fontsize=8, loc="lower left", bbox_to_anchor=(-0.02, 1.0), ncols=2, columnspacing=1.0)
