@@ -11,6 +11,7 @@ from stages.kit import Mesh
 SMOOTHING = 0.02  # units; a few faces wide, so that single faces do not show in the map
 FILL_DISTANCE = 0.2  # units over which values extend into hidden surface; the inside of a teapot must stay dark
 MIN_FILL = 1e-6  # keeps the equations solvable without smoothing
+MIN_CONFIDENCE = 1e-6  # less is a glance along the surface: where no vertex of a part has more, no view sees it
 MIN_AREA = 1e-9  # square units; for vertices in no face and faces without area
 MAX_COTANGENT = 1e3  # larger ones come from slivers and would make the equations ill-conditioned
 
@@ -25,7 +26,7 @@ def smoother(mesh: Mesh, confidence: np.ndarray, length: float = SMOOTHING) -> C
     which keeps the result between zero and the largest value.
     """
     area = np.maximum(mesh.vertex_areas, MIN_AREA)
-    hidden = np.where(confidence > 0, 0, max(length / FILL_DISTANCE, MIN_FILL) ** 2)
+    hidden = np.where(confidence > MIN_CONFIDENCE, 0, max(length / FILL_DISTANCE, MIN_FILL) ** 2)
     system = sparse.diags((confidence + hidden) * area) + length**2 * laplacian(mesh)
     solver = splu(system.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0, options={"SymmetricMode": True})
     return lambda values: solver.solve(((confidence * area) * np.asarray(values).T).T)

@@ -5,6 +5,7 @@ import pytest
 import trimesh
 
 from stages.conspicuity import ViewMaps
+from stages.conspicuity.surface_values import smoother
 from stages.kit import Mesh, Viewpoint
 from stages.views import TWELVE
 
@@ -55,6 +56,15 @@ def test_a_piece_that_nobody_sees_is_not_salient(ball):
     values = sight.vertex_saliency(sight.maps["edge"])
     assert values[:n].min() > 0.98
     assert not values[n:].any()
+
+
+def test_a_piece_that_is_seen_along_its_surface_alone_is_smoothed(ball):
+    far = ball.vertices + 3
+    both = Mesh(np.r_[ball.vertices, far], np.r_[ball.faces, ball.faces + len(far)])
+    confidence = np.repeat([1.0, 1e-20], len(far))
+    smooth = smoother(both, confidence)(np.ones(2 * len(far)))
+    np.testing.assert_allclose(smooth[: len(far)], 1)
+    np.testing.assert_allclose(smooth[len(far) :], 0, atol=1e-9)
 
 
 def test_a_hidden_front_does_not_lend_its_value_to_the_back(ball):
