@@ -32,7 +32,7 @@ def table_4_3(results: Results) -> Table:
     frame = pd.concat([_selections(one, thesis) for one in found if one.dataset in selected], ignore_index=True)
     shown = grid(
         frame.assign(head=frame["objects"] + ", " + frame["selection"].map(WAYS)), ["protocol", "classifier"], "head",
-        names={"classifier": sampling_text}, head=lambda name: f"{name}: measured · thesis, %",
+        names={"classifier": sampling_text}, head=lambda name: f"{name}, %",
     )  # fmt: skip
     return Table(frame, shown, {"not_run": results.left_out(STAGE, variant=[*WAYS, *few])})
 

@@ -40,7 +40,7 @@ def beside_thesis(results: Results, group: str, printed: str, variant: str = "pl
     frame = pd.concat([*parts, *few]).sort_values("protocol", kind="stable", ignore_index=True)
     shown = grid(
         frame, ["protocol", "sampling"], "classifier", beside=("accuracy_regions", "thesis"),
-        names={"sampling": sampling_text}, head=lambda name: f"{label(name)}: measured · unseen regions · thesis, %",
+        names={"sampling": sampling_text}, head=lambda name: f"{label(name)}, %",
     )  # fmt: skip
     words = {name: shared_notes(__package__, name) for name in ("cells", "regions")}
     words |= {"fifteen": shared_notes(__package__, "fifteen") if few else "15 imprints per object: not run."}
