@@ -21,15 +21,19 @@ LINK = re.compile(r"\[[^\]]*\]\((?!https?:)([^)\s]+)(?: \"([^\"]*)\")?\)")
 FIGURE = re.compile(r"([+-]?[\d,.]+) \[([+-]?[\d,.]+), ([+-]?[\d,.]+)\]")
 # The title of a link to a CSV names the cells behind the figure: "scene=shelf: 100*saved 100*saved_low 100*saved_high"
 CELLS = re.compile(r"^((?:\w+=\S+ ?)+): (\S+) (\S+) (\S+)$")
-FACTORS = {"": 1.0, "-": -1.0, "100*": 100.0}
+PREFIXES = {  # before a column's name -> what is shown of its number
+    "": lambda number: number, "-": lambda number: -number, "100*": lambda number: 100 * number,
+    # of a difference in % of the mean of both sides: how many times the second the first has, and % less of it
+    "times:": lambda number: (200 - number) / (200 + number), "less:": lambda number: 200 * number / (200 + number),
+}  # fmt: skip
 WITH_FIGURES = [line for line in TEXT.splitlines() if FIGURE.search(line)]
 RESULTS, FAILURES = 5, 6
 
 
 def cell(row, wanted):
-    """The number that a column of a row holds, `-` or `100*` before the column's name applied to it."""
-    ((factor, column),) = re.findall(r"^(-|100\*)?(\w+)$", wanted)
-    return FACTORS[factor] * float(row[column])
+    """The number that a column of a row holds, as the prefix of PREFIXES before the column's name says."""
+    ((prefix, column),) = re.findall(r"^(-|100\*|times:|less:)?(\w+)$", wanted)
+    return PREFIXES[prefix](float(row[column]))
 
 
 def named_row(path, where):

@@ -81,7 +81,8 @@ def _empty(value):
 
 def read_rows(path: Path) -> pd.DataFrame:
     """Reads what write_rows wrote; names stay texts even where they look like numbers."""
-    return read_table(path, dtype=dict.fromkeys(("dataset", "item", "group", "method", "split", "note"), str))
+    names = ("dataset", "item", "group", "method", "split", "target", "note")
+    return read_table(path, dtype=dict.fromkeys(names, str))
 
 
 def some_rows(rows: Iterable[Mapping[str, Any]], columns: Sequence[str], metrics: Collection[str]) -> pd.DataFrame:

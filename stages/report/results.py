@@ -21,7 +21,8 @@ from stages.weights import read_learned_weights
 from .schema import Params
 
 Found = TypeVar("Found", bound=Sized)
-SECTION_3_1, SECTION_4_2 = "household_3_1", "household_4_2"  # sets with the settings of a section of the thesis
+# Sets with the settings of a section of the thesis.
+SECTION_3_1, SECTION_3_2, SECTION_4_2 = "household_3_1", "gaze_3_2", "household_4_2"
 NUMBERS = {"four": 4, "six": 6}  # names of groups that tell how many objects they hold
 
 

@@ -4,17 +4,17 @@ from stages.kit.split import Split
 
 from .claims import Claim, Pick, Side
 from .markdown import number
-from .results import SECTION_3_1, SECTION_4_2, Results
+from .results import SECTION_3_1, SECTION_3_2, SECTION_4_2, Results
 from .style import label
 
 METRICS = {  # "" where the claim's unit says it
     "accuracy": "", "recall": "mean of the objects' rates", "nss": "NSS", "auc": "AUC", "pcc": "PCC",
 }  # fmt: skip
 DATASETS = {
-    SECTION_3_1: "household as in T3.1", SECTION_4_2: "household as in T4.2",
-    "gaze": "meshes with human gaze", "princeton": "psb", "princeton_eight": "psb, the thesis's 8 classes",
-    "princeton_six": "psb, the thesis's 6 classes", "pressure_images": "recorded pressure array",
-    "biotac_grasps": "recorded fingertips",
+    SECTION_3_1: "household as in T3.1", SECTION_3_2: "meshes with human gaze as in T3.2",
+    SECTION_4_2: "household as in T4.2", "gaze": "meshes with human gaze", "princeton": "psb",
+    "princeton_eight": "psb, the thesis's 8 classes", "princeton_six": "psb, the thesis's 6 classes",
+    "pressure_images": "recorded pressure array", "biotac_grasps": "recorded fingertips",
 }  # fmt: skip
 NAMED = ("method", "classifier", "network")  # columns whose values have a label
 

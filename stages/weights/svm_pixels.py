@@ -64,22 +64,6 @@ def pixel_samples(
     return features[chosen], labels[chosen]
 
 
-def predicted_map(model: SVMModel, maps: Mapping[str, np.ndarray], mask: np.ndarray) -> np.ndarray:
-    """The saliency map that a model predicts for one view: (h, w) f8 in 0..1, zero off the object (T3.2.3).
-
-    Predicted at SIDE x SIDE and resized; pixels above 0.5 form the binary map of T figure 3.13. maps: as for
-    pixel_features, in the order of the training; mask (h, w) boolean: the object.
-    """
-    features, (h, w) = pixel_features(maps), checked_maps(maps)[1]
-    if np.shape(mask) != (h, w):
-        raise ValueError(f"maps are {(h, w)}, mask {np.shape(mask)}: they must agree")
-    covered = (_resized(np.asarray(mask, dtype=np.float32)) > 0).astype(np.uint8)
-    needed = cv2.dilate(covered, np.ones((3, 3), dtype=np.uint8)).ravel() > 0  # the pixels that resizing uses
-    small = np.zeros(SIDE * SIDE)
-    small[needed] = model.predict(features[needed])
-    return cv2.resize(small.reshape(SIDE, SIDE), (w, h), interpolation=cv2.INTER_LINEAR) * np.asarray(mask, dtype=bool)
-
-
 def select_far_points(points: np.ndarray, count: int = POINTS) -> np.ndarray:
     """Ids (k,) i8 of up to `count` points far from each other, of points (n, d), the most salient first (T3.2.3).
 

@@ -68,7 +68,7 @@ def test_unmeasured_claim_is_open_and_names_the_stage(results):
 
 
 def test_errors_are_compared_in_pairs_and_relative_to_their_size(results):
-    row = of(results, "keep_metro")
+    row = of(results, "ours_keep_metro")
     assert row["effect"] == pytest.approx(100 * (1 - 2) / 1.5)
     assert row["pairs"] == 2
 

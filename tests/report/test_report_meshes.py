@@ -14,9 +14,9 @@ from stages.report.differences import differences
 from stages.report.meshes import pictures, simplification
 from stages.report.meshes.claims import BOTH, CLAIMS, FEW_MINUS_MANY, claim, lower
 from stages.report.meshes.errors import BOXES
-from stages.report.meshes.methods import ordered, short
+from stages.report.meshes.methods import UNSEEN, ordered, short
 from stages.report.meshes.rows import data_sets, face_counts, paired_cells
-from stages.report.results import SECTION_3_1, NotRun
+from stages.report.results import SECTION_3_1, SECTION_3_2, NotRun
 from stages.report.style import label
 from stages.report.topics import KINDS, build_all, build_one
 from stages.report.words import dataset_text
@@ -24,6 +24,7 @@ from stages.report.words import dataset_text
 OBJECTS = ["a", "b", "c", "d"]
 POINTS = {"heat_kernel": 3, "SymRad": 4, "itti": 15, "guided_ssim": 16, "guided_ed": 17, "svm": 18, "harris": 50,
           "corners": 60, "VisAttAll": 20, "VisAttCurvSymCon": 14, "VisAttCon": 13, "enhanced": 12}  # fmt: skip
+PROTOCOLS = (SECTION_3_1, SECTION_3_2)
 WAYS = ["guided_ssim-adaptive", "guided_ed-adaptive", "svm-adaptive"]
 TARGETS = {"25%": 2000, "3000": 3000, "1500": 1500}
 
@@ -262,18 +263,20 @@ def test_ranks_agree_where_the_error_grows_with_the_points(run):
 
 @pytest.mark.slow
 def test_every_claim_on_meshes_is_judged_on_every_set(run):
-    results = run(measured(), princeton=measured("princeton", 1), printed=measured(SECTION_3_1, 2))
+    own_truth = measured(SECTION_3_2, 3).replace({"method": {name: seen for seen, name in UNSEEN.items()}})
+    printed = {"printed": measured(SECTION_3_1, 2), "own_truth": own_truth}
+    results = run(measured(), princeton=measured("princeton", 1), **printed)
     built = table(results, "lod_claims")
     assert len(built.shown) == len(CLAIMS)
     words = built.frame.set_index(["key", "data"])["verdict"]
-    for data in ("test", "psb"):
+    for data in ("test", "psb", dataset_text(SECTION_3_2)):
         assert words["many_points_distort", data] == "supported"
         assert words["adaptive_svm_metro", data] == "supported"
         assert words["hks_high", data] == "contradicted"
     judged = judge(CLAIMS, results).set_index("key")["verdict"]
-    data = {claim.key: dataset_text(SECTION_3_1) if claim.dataset == SECTION_3_1 else "test" for claim in CLAIMS}
+    data = {claim.key: dataset_text(claim.dataset) if claim.dataset in PROTOCOLS else "test" for claim in CLAIMS}
     assert (judged == [words[place] for place in zip(judged.index, judged.index.map(data), strict=True)]).all()
-    assert len(set(data.values())) == 2
+    assert len(set(data.values())) == 3
 
 
 def with_people():

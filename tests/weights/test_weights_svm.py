@@ -9,7 +9,7 @@ from stages.kit.files import read_arrays, write_arrays
 from stages.kit.rng import rng
 from stages.weights import svm
 from stages.weights.svm import SVMModel, balanced_rows, fit_svm, information_gains
-from stages.weights.svm_pixels import pixel_features, pixel_samples, predicted_map, select_far_points
+from stages.weights.svm_pixels import pixel_features, pixel_samples, select_far_points
 from stages.weights.svm_validation import cross_validated, grouped_validated
 
 CHANNELS = tuple("abcdef")
@@ -214,19 +214,6 @@ def test_a_view_without_salient_pixels_gives_no_rows():
     assert features.shape == (0, 6) and labels.shape == (0,) and labels.dtype == bool
 
 
-def test_predicted_map_shows_the_rule_on_the_object_alone():
-    maps = {"a": smooth(1) * MASK, "b": smooth(2) * MASK}
-    rule = (maps["a"] > 0.6) * MASK
-    features, labels = pixel_samples(maps, rule, 0, "x", MASK, share=1)
-    model = fit_svm(features, labels, seed=0)
-    found = predicted_map(model, maps, MASK)
-    assert found.shape == SHAPE and (found[~MASK] == 0).all() and found.max() <= 1
-    assert ((found > 0.5) == (rule > 0))[MASK].mean() > 0.95
-    whole = predicted_map(model, maps, np.ones(SHAPE, dtype=bool))
-    np.testing.assert_allclose(whole[MASK], found[MASK])
-    assert predicted_map(model, maps, np.zeros(SHAPE, dtype=bool)).max() == 0
-
-
 def test_every_map_becomes_a_column_of_200_by_200():
     features = pixel_features({"a": np.full(SHAPE, 0.25), "b": np.ones(SHAPE)})
     assert features.shape == (40000, 2)
@@ -261,8 +248,6 @@ def test_bad_questions_are_named():
     model = fit_svm(draw(), band(draw()), seed=0)
     with pytest.raises(ValueError, match="needs 3 features"):
         model.predict(np.zeros((5, 9)))
-    with pytest.raises(ValueError, match="must agree"):
-        predicted_map(model, maps_of(0), MASK[:5])
     with pytest.raises(ValueError, match="must agree"):
         pixel_samples(maps_of(0), spots(0)[:5], 0, "x")
     with pytest.raises(ValueError, match="share"):

@@ -14,7 +14,19 @@ from stages.report.results import SECTION_3_1, NotRun, Results, some
 from stages.report.style import CYCLE, GREY, INK, METHOD_COLOURS, PALE, plt
 from stages.report.words import dataset_text
 
-from .methods import CLASSICAL, COMBINATIONS, FIXED_ADAPTIVE, HKS, OURS, PLAIN, RIVALS, fixed, ordered, short
+from .methods import (
+    CLASSICAL,
+    COMBINATIONS,
+    FIXED_ADAPTIVE,
+    HKS,
+    OF_T3_2,
+    OURS,
+    PLAIN,
+    RIVALS,
+    fixed,
+    ordered,
+    short,
+)  # fmt: skip
 from .rows import ERRORS, FEWEST, METRICS, by_object, data_sets, face_counts, paired_cells, said
 
 SPREAD = {"metro_mean": "mean", "metro_rms": "rms", "metro_max": "max"}
@@ -73,9 +85,7 @@ def figure_3_5(results: Results) -> Figure:
 
 def figure_3_23(results: Results) -> Figure:
     """A row of panels for each data set, a panel for each error and face count, a box for each method."""
-    found = {
-        dataset_text(name): paired_cells(results, METRICS, BOXES, name) for name in data_sets(results, of_t3_1=False)
-    }
+    found = {dataset_text(name): paired_cells(results, METRICS, BOXES, name) for name in data_sets(results, OF_T3_2)}
     found = {name: rows[rows["target"].isin(set(TARGETS) & set(face_counts(rows)))] for name, rows in found.items()}
     shown = {name: rows for name, rows in found.items() if PLAIN in set(rows["method"])}
     some(shown, "no data set with enough objects that all methods take to 1,500 or 3,000 faces", "lod", runnable=False)

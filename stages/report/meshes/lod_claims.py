@@ -6,16 +6,16 @@ from typing import Any
 import pandas as pd
 
 from stages.kit.stats import interval
-from stages.report.claims import Claim
+from stages.report.claims import Claim, Pick
 from stages.report.differences import statistic
 from stages.report.items import Table
 from stages.report.markdown import signed
-from stages.report.results import NotRun, Results, listed, some
+from stages.report.results import SECTION_3_2, NotRun, Results, listed, some
 from stages.report.verdict import judge
 from stages.report.words import dataset_text
 
 from .claims import CLAIMS
-from .methods import PLAIN, fixed
+from .methods import PLAIN, UNSEEN, fixed
 from .rows import CELL, data_sets
 
 WORDS = {"supported": "yes", "contradicted": "no", "open": "open"}
@@ -28,7 +28,7 @@ def build(results: Results) -> Table:
     wanted = {dataset_text(name): (name, {}) for name in sets}
     wanted[f"{dataset_text(sets[0])}, nothing shrunk"] = sets[0], {"shrunk": False}
     parts = {
-        head: judge([replace(claim, dataset=name, where={**claim.where, **where}) for claim in CLAIMS], results)
+        head: judge([replace(_said_of(claim, name), where={**claim.where, **where}) for claim in CLAIMS], results)
         for head, (name, where) in wanted.items()
     }
     frame = pd.concat([part.assign(data=head, objects=part["pairs"]) for head, part in parts.items()])
@@ -36,6 +36,23 @@ def build(results: Results) -> Table:
     shown = frame.loc[frame["data"] == dataset_text(sets[0]), ["section", "claim", "unit"]].assign(**texts)
     frame = frame[["key", "data", "verdict", "effect", "low", "high", "objects"]].sort_values("key", kind="stable")
     return Table(frame, shown[["section", "claim", *texts, "unit"]])
+
+
+def _said_of(claim: Claim, dataset: str) -> Claim:
+    """The claim on another set; there, methods that learned from the object itself give way to those that did not."""
+    sides = {"first": claim.first, "second": claim.second}
+    if dataset != SECTION_3_2:
+        sides = {name: _unseen(side) for name, side in sides.items()}
+    return replace(claim, dataset=dataset, **sides)  # pyright: ignore[reportArgumentType]
+
+
+def _unseen(value: Any) -> Any:
+    """A side of a claim, or a part of it, with the names of methods replaced by UNSEEN."""
+    if isinstance(value, dict):
+        return {column: _unseen(wanted) for column, wanted in value.items()}
+    if isinstance(value, Pick):
+        return replace(value, names=_unseen(value.names))
+    return tuple(map(_unseen, value)) if isinstance(value, tuple) else UNSEEN.get(value, value)
 
 
 def _cell(row: Any) -> str:

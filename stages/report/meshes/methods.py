@@ -15,8 +15,12 @@ COMBINATIONS = (  # of channels, as the stages call them, in the order of T3.1.5
 SYMMETRIES = ("SymLat", "SymRad", "2Sym")
 # T2.2.3's detectors but the heat kernel signature, which T3.1.5 takes out of the claim ("except HKS approach").
 RIVALS = ("salient_points", "mesh_saliency", "sift", "harris", "corners")
-PROPOSED = ("guided_ed", "guided_ssim", "svm")  # T3.2.9: ED, SSIM, SVM
+PROPOSED = ("guided_ed", "guided_ssim", "svm")  # T3.2.9: ED, SSIM, SVM, learned from other objects than the simplified
+PRINTED = ("guided_ed_seen", "guided_ssim_seen", "svm_object")  # the same, learned from that object too, as printed
 ADAPTIVE = tuple(f"{name}-adaptive" for name in PROPOSED)
+PRINTED_ADAPTIVE = tuple(f"{name}-adaptive" for name in PRINTED)
+UNSEEN = dict(zip(PRINTED + PRINTED_ADAPTIVE, PROPOSED + ADAPTIVE, strict=True))
+OF_T3_2 = (*PROPOSED, OURS)  # by which the sets of T3.2 are known
 FIXED_ADAPTIVE = tuple(name for pair in zip(PROPOSED, ADAPTIVE, strict=True) for name in pair)
 NAMES = {  # short, the thesis's, in the order of its figure 3.6; then those of later sections, ours and chance
     "harris": "3DH", "mesh_saliency": "MS", "salient_points": "SP", "corners": "SDC", "sift": "3DS",

@@ -9,9 +9,9 @@ import pandas as pd
 from stages.kit.stats import interval
 from stages.report.grid import grouped, within
 from stages.report.markdown import with_interval
-from stages.report.results import SECTION_3_1, Results, some
+from stages.report.results import Results, some
 
-from .methods import PLAIN
+from .methods import PLAIN, UNSEEN
 
 CELL = ["item", "target"]
 ERRORS = {  # metric -> name, with its unit
@@ -24,12 +24,10 @@ METRICS = ("metro_mean", "ssim_error")  # those of the thesis's figures
 FEWEST = 3  # objects that a mean over objects needs to be shown
 
 
-def data_sets(results: Results, of_t3_1: bool = True) -> list[str]:
-    """The sets with simplified meshes, those that are switched on first; NotRun where there is none.
-
-    of_t3_1: also that of T3.1.5, which has other methods than T3.2.
-    """
-    found = [name for name in results.datasets("lod") if of_t3_1 or name != SECTION_3_1]
+def data_sets(results: Results, methods: Iterable[str] = ()) -> list[str]:
+    """The sets with meshes simplified by any of these methods (none: by any), those that are switched on first."""
+    names, wanted = results.datasets("lod"), set(methods)
+    found = [name for name in names if not wanted or wanted & set(results.rows("lod", name)["method"].replace(UNSEEN))]
     return some(found, "no measurements of lod", "lod")
 
 
@@ -40,9 +38,11 @@ def paired_cells(
     """Rows of these errors and methods (None: of all), only where all methods that were run reach the object's target.
 
     `seconds` is the simplification's; `plain` the value of plain QEM for the same object, target and metric. whole:
-    only where, moreover, no method had to shrink its neighbourhoods: the thesis's own algorithm.
+    only where, moreover, no method had to shrink its neighbourhoods: the thesis's own algorithm. Methods that have
+    learned from the object itself, as printed, have the names of those that have not.
     """
-    rows = results.rows("lod", dataset, metric=[*metrics, "faces"]).dropna(subset=["value"]).astype({"target": str})
+    rows = results.rows("lod", dataset, metric=[*metrics, "faces"]).dropna(subset=["value"])
+    rows["method"] = rows["method"].replace(UNSEEN)
     made = rows.loc[rows["metric"] == "faces", [*CELL, "method", "seconds"]]
     rows = rows[rows["metric"] != "faces"].drop(columns="seconds")
     plain = rows[rows["method"] == PLAIN].rename(columns={"value": "plain"})[[*CELL, "metric", "plain"]]

@@ -9,12 +9,12 @@ import pandas as pd
 from stages.report.grid import means
 from stages.report.items import Table
 from stages.report.markdown import number
-from stages.report.results import SECTION_3_1, NotRun, Results, some
+from stages.report.results import SECTION_3_1, SECTION_3_2, NotRun, Results, some
 from stages.report.style import label
 from stages.report.words import dataset_text
 from stages.salient_points import METHODS
 
-from .methods import COMBINATIONS, ENHANCED, FIXED_ADAPTIVE, HKS, OURS, PLAIN, ordered, short
+from .methods import COMBINATIONS, ENHANCED, FIXED_ADAPTIVE, HKS, OF_T3_2, OURS, PLAIN, ordered, short
 from .rows import ERRORS, FEWEST, METRICS, UNITS, cell, compared, data_sets, face_counts, paired_cells, said, size, wide
 
 COUNTS = ["points", "kept"]  # beside the errors of every detector
@@ -102,7 +102,7 @@ def table_3_2(results: Results) -> Table:
 
 def _parts(results: Results) -> Iterator[pd.DataFrame]:
     """Rows of each data set, with all cells and, where they are fewer, with those in which nothing shrank."""
-    for name in data_sets(results, of_t3_1=False):
+    for name in sorted(data_sets(results, OF_T3_2), key=lambda name: name != SECTION_3_2):
         every = np.inf
         for whole in (False, True):
             rows = paired_cells(results, METRICS, GUIDED, name, whole)
@@ -113,11 +113,14 @@ def _parts(results: Results) -> Iterator[pd.DataFrame]:
 
 
 def _blocks_wide(cells: pd.DataFrame) -> pd.DataFrame:
-    """A row a block and method, most faces first; for each metric a column a data set, and the thesis's."""
+    """A row a block and method, most faces first; for each metric the set as printed, the thesis's, the other sets."""
     printed = cells.drop_duplicates([*BLOCK, "method", "metric"]).assign(data="thesis")
     printed["text"] = (printed["metric"].map(UNITS).astype(float) * printed["thesis"]).map(number)
     cells = pd.concat([cells.assign(text=[cell(row) for row in cells.itertuples()]), printed])
     cells = cells.sort_values([*BLOCK, "method", "metric"], ignore_index=True)
     cells["head"] = cells["metric"].map(ERRORS).astype(str) + ", " + cells["data"]
     cells["kept points"] = cells["method"].map(label)
-    return wide(cells, ["block", "kept points"], "head").reset_index(names=["target", "kept points"])
+    found = wide(cells, ["block", "kept points"], "head")
+    sets = sorted(cells["data"].unique(), key=[dataset_text(SECTION_3_2), "thesis"].__contains__, reverse=True)
+    found = found[[f"{ERRORS[metric]}, {data}" for metric in METRICS for data in sets]]
+    return found.reset_index(names=["target", "kept points"])
