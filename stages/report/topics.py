@@ -6,6 +6,7 @@ from types import ModuleType
 from . import (
     attention,
     exploration,
+    fidelity,
     fixation,
     hybrid,
     meshes,
@@ -25,6 +26,7 @@ from .style import SETTINGS, plt
 
 TOPICS: tuple[ModuleType, ...] = (
     attention, fixation, meshes, scene, touch, exploration, sensor, sequences, transfer, hybrid, recorded, stability,
+    fidelity,
 )  # fmt: skip
 KINDS = {"tables": "TABLES", "figures": "FIGURES", "tradeoff": "CHARTS"}  # folder of reports/ -> dict of a topic
 CLAIMS = [claim for topic in TOPICS for claim in topic.CLAIMS]
