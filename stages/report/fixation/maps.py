@@ -4,7 +4,6 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from itertools import chain
-from pathlib import Path
 
 import cv2
 import numpy as np
@@ -14,13 +13,13 @@ from stages.fixation import fuse
 from stages.fixation.cam import resize_cams
 from stages.fixation.tasks import FUSED_TASKS
 from stages.kit import Mesh
-from stages.kit.files import read_json, write_json
 from stages.kit.packs import object_files
 from stages.networks.grid import GRIDS
 from stages.report.drawing import colour_bar, colour_map, name_panels, picture, square_grid, squared, vivid
 from stages.report.items import Figure
+from stages.report.kept import Kept, last_drawn
 from stages.report.prose import add_words
-from stages.report.results import NotRun, Results, some, there
+from stages.report.results import NotRun, Results, some
 from stages.report.style import label
 
 from .detectors import LEE, NARROWED, OURS, TASKS, network_text, task_text, untrained
@@ -33,18 +32,6 @@ Images = Mapping[str, Sequence[np.ndarray]]
 Views = dict[str, list[dict[str, np.ndarray]]]
 
 
-class Kept(Figure):
-    """A figure whose words stand beside it in NAME.json, so that both outlast the data; drawing empty: they did."""
-
-    def write(self, folder: Path) -> None:
-        """Writes NAME.png and NAME.json, where there is something new."""
-        words = folder / f"{self.name}.json"
-        if self.drawing.axes:
-            super().write(folder)
-            write_json(words, {"title": self.title, "alt": self.alt, "caption": self.caption})
-        self.paths = [words.with_suffix(".png"), words]
-
-
 def on_gaze(build: Callable[..., Figure], results: Results) -> Kept:
     """The figure on the meshes with human gaze; without their data, as it was drawn last time."""
     name = build.__name__
@@ -53,10 +40,7 @@ def on_gaze(build: Callable[..., Figure], results: Results) -> Kept:
         add_words(figure, sys.modules[__package__ or ""], "figures", name)
         title = f"{figure.title}, on meshes with human gaze"
         return Kept(figure.drawing, {"title": title, "alt": figure.alt, "caption": figure.caption}, dpi=figure.dpi)
-    words = results.reports / f"figures/{name}_gaze.json"
-    why = f"no figures/{name}_gaze.png: run the stage fixation where the data set gaze is"
-    there(words.with_suffix(".png"), why, "fixation", runnable=False)
-    return Kept(Drawing(), read_json(there(words, why, "fixation", runnable=False)))
+    return last_drawn(results, f"{name}_gaze", "fixation")
 
 
 def figure_3_29(results: Results, dataset: str | None = None) -> Figure:

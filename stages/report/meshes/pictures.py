@@ -13,14 +13,16 @@ from stages.kit import Mesh
 from stages.lod.metro import vertex_errors
 from stages.report.drawing import THIN, VIEWPOINT, filled, name_panels, show, square_grid, squared
 from stages.report.items import Figure
-from stages.report.results import NotRun, Results, some
+from stages.report.results import SECTION_3_2, NotRun, Results, some
 from stages.report.style import GREY, label
+from stages.report.words import dataset_text
 from stages.views import render
 
-from .methods import ENHANCED, FIXED_ADAPTIVE, HKS, NAMES, OURS, PLAIN, short
+from .methods import ENHANCED, FIXED_ADAPTIVE, HKS, NAMES, OURS, PLAIN, PRINTED, UNSEEN, short
 from .rows import said, size
 
 COLUMNS = 7  # of figure 3.6
+GUIDED = PRINTED[1]  # by SSIM: what figure 3.21 keeps
 DIFFERING = ("corners", "VisAttCurvSymCon", HKS)  # figure 3.7, the thesis's: many, intermediate, few points
 FACES = 1500  # the thesis's lower count; the nearest target that all methods reach
 NEAR = 1.3  # times FACES, either way
@@ -48,7 +50,8 @@ def figure_3_6(results: Results) -> Figure:
         axes.set_axis_off()
     ends = (pick(methods, key=lambda method: len(points[method])) for pick in (min, max))
     few, many = (f"{len(points[method])} ({NAMES[method]})" for method in ends)
-    return Figure(drawing, {"name": name, "count": len(methods), "few": few, "many": many})
+    words = {"name": name, "count": len(methods), "few": few, "many": many, "set": dataset_text(results.sets[0])}
+    return Figure(drawing, words)
 
 
 def figure_3_7(results: Results) -> Figure:
@@ -67,7 +70,8 @@ def figure_3_7(results: Results) -> Figure:
     for axes, method in zip(grid[0], DIFFERING, strict=True):
         show(axes, meshes[method], wires=True, rows=ROWS["figure_3_7"])
     name_panels(grid, [f"{short(method)}: {len(points[method])} points" for method in DIFFERING])
-    return Figure(drawing, {"name": name, "target": said(target), "methods": ", ".join(map(short, DIFFERING))}, dpi=85)
+    words = {"name": name, "target": said(target), "methods": ", ".join(map(short, DIFFERING))}
+    return Figure(drawing, words | {"set": dataset_text(results.sets[0])}, dpi=85)
 
 
 def figure_3_8(results: Results) -> Figure:
@@ -99,21 +103,23 @@ def figure_3_8(results: Results) -> Figure:
     bar.outline.set_edgecolor(GREY)
     worst = ", ".join(f"{100 * field.max():.2g} %" for field in fields[0])
     words = {"name": name, "levels": len(targets), "method": label(method), "top": f"{100 * TOP:.0f} %", "worst": worst}
+    words["set"] = dataset_text(results.sets[0])
     return Figure(drawing, words, dpi=80)
 
 
 def figure_3_21(results: Results) -> Figure:
     """One object at falling face counts, by plain QEM above and with salient neighbourhoods kept below."""
     found, wanted, rows = [], _preferred(results), ROWS["figure_3_21"]
-    for name, levels in _levels(results, (PLAIN, OURS), wanted, len(wanted)):
+    keeping = GUIDED if results.sets[0] == SECTION_3_2 else OURS
+    for name, levels in _levels(results, (PLAIN, keeping), wanted, len(wanted)):
         counts = sorted(filter(str.isdigit, levels[PLAIN]), key=size)
         shown = (counts if len(counts) > 1 else sorted(levels[PLAIN], key=size))[:LEVELS]
         # Area for wires, and the most targets within reach of kept points.
-        score = (filled(results.mesh(name)) > THIN, len(set(shown) & set(levels[OURS])))
+        score = (filled(results.mesh(name)) > THIN, len(set(shown) & set(levels[keeping])))
         found.append((score, name, shown, levels))
-    some(found, f"no simplified mesh with the points of {OURS} kept", "lod")
+    some(found, f"no simplified mesh with the points of {keeping} kept", "lod")
     _, name, targets, levels = max(found, key=lambda one: one[0])
-    original, points = results.mesh(name), results.strong_points(name)[OURS]
+    original, points = results.mesh(name), results.strong_points(name)[keeping]
     drawing, grid = square_grid(2, len(targets) + 1, side=2.0, gap=0.3)
     show(grid[0, 0], original, rows=rows)
     show(grid[1, 0], original, points=points, rows=rows)
@@ -128,20 +134,24 @@ def figure_3_21(results: Results) -> Figure:
             else:
                 axes.set_axis_off()
                 axes.text(0.5, 0.5, BEYOND, ha="center", va="center", color=GREY, transform=axes.transAxes)
-    return Figure(drawing, {"name": name, "count": len(targets)}, dpi=85)
+    words = {"name": name, "count": len(targets), "set": dataset_text(results.sets[0])}
+    return Figure(drawing, words, dpi=85)
 
 
 def figure_3_22(results: Results) -> Figure:
     """Two objects with the points of ED, SSIM and SVM kept, with fixed and with adaptive neighbourhoods."""
-    shown = list(islice(_simplified(results, FIXED_ADAPTIVE, results.settings.figure_objects), 2))
-    some(shown, f"no object simplified by all of {', '.join(FIXED_ADAPTIVE)}", "lod", runnable=False)
-    drawing, grid = square_grid(len(shown), len(FIXED_ADAPTIVE), side=1.6, gap=0.15)
+    own = {unseen: name for name, unseen in UNSEEN.items()} if results.sets[0] == SECTION_3_2 else {}
+    methods = [own.get(method, method) for method in FIXED_ADAPTIVE]
+    shown = list(islice(_simplified(results, methods, results.settings.figure_objects), 2))
+    some(shown, f"no object simplified by all of {', '.join(methods)}", "lod", runnable=False)
+    drawing, grid = square_grid(len(shown), len(methods), side=1.6, gap=0.15)
     for row, (*_, meshes) in zip(grid, shown, strict=True):
         for axes, mesh in zip(row, meshes.values(), strict=True):
             show(axes, mesh, wires=True, rows=ROWS["figure_3_22"])
     above = [label(method).replace(", ", ",\n") for method in FIXED_ADAPTIVE]
     name_panels(grid, above, [f"{name}\n{said(target)}" for name, target, _ in shown], letters=(9.5, 9), away=0.02)
-    return Figure(drawing, {"names": " and ".join(name for name, *_ in shown)}, dpi=85)
+    words = {"names": " and ".join(name for name, *_ in shown), "set": dataset_text(results.sets[0])}
+    return Figure(drawing, words, dpi=85)
 
 
 def _simplified(results: Results, methods: Sequence[str], preferred: Sequence[str]) -> Iterator[tuple]:
