@@ -9,6 +9,9 @@ from .rows import CLASSICAL, HUMAN, OURS, PER_OBJECT, SAME
 ENHANCED = "thesis_ssim"  # the thesis's own: the average weighted with its SSIM weights
 PHRASES = {
     ("method", OURS): "our model of gaze", ("method", "VisAttAll"): "VisAttAll",
+    ("rows", 900): "pictures of 900 rows", ("channels", "nine"): "nine channels", ("method", "equal"): "equal weights",
+    ("views", "best"): "four to eight best viewpoints", ("views", "four"): "four around the object",
+    ("views", "twelve"): "twelve",
     ("area", "image"): "random pixels of the whole image", ("area", "object"): "the object's pixels",
     ("training", "one_per_object"): "an object's own SVM", ("training", "one_for_all"): "the one for all",
     ("validation", "pixels"): "", ("validation", "views"): "on whole views left out",
@@ -44,6 +47,13 @@ CLAIMS = [
                    "image", "pixels", "pixels"),
     svm_per_object("svm_per_object_unseen", "One SVM for each object is more accurate on what it has not seen, too.",
                    "object", "views", "objects"),
+    *(
+        on_gaze(key=f"best_over_{fixed}", section="T3.2.4", stage="attention_settings", scale=1, unit="NSS",
+                sentence=f"The most salient of 62 viewpoints show where people look better than {said} do.",
+                where={"method": "equal", "metric": "nss", "rows": 900, "channels": "nine"},
+                first={"views": "best"}, second={"views": fixed})
+        for fixed, said in (("four", "four fixed ones"), ("twelve", "the twelve of T figure 3.2"))
+    ),
     closer_to_gaze("ours_over_best_gaze", "ours", "Our model of gaze predicts where people look better than its best "
                    "rival.", OURS, highest_of(but=(HUMAN, *SAME, *PER_OBJECT, "*_seen"))),
     closer_to_gaze("ours_over_enhanced_gaze", "ours", "Our model predicts where people look better than the enhanced "

@@ -57,7 +57,7 @@ def lower(
     return claim(
         key=key, section=section, sentence=sentence, where={"metric": metric} | ({"target": target} if target else {}),
         first={"method": worse}, second={"method": better}, within=("target",), relative=True, scale=100.0,
-        unit="% of the error", note="" if isinstance(target, str) and target else ALL_COUNTS, **fields,
+        unit="% of the mean of both errors", note="" if isinstance(target, str) and target else ALL_COUNTS, **fields,
     )  # fmt: skip
 
 
