@@ -27,7 +27,7 @@ from .contact import check_contact
 from .distances import check_array
 from .files import Imprints, write_imprints
 from .schema import Params
-from .sensor import SENSORS, Touched, touch
+from .sensor import SENSORS, Touched, misfit, touch
 from .surface import Surface
 from .warm_up import warm_up
 
@@ -67,6 +67,8 @@ def run(workspace: Workspace) -> None:
     settings = workspace.settings(Params)
     check_array(settings.cells, settings.pitch)
     check_contact(settings.contact, SENSORS)
+    if wrong := misfit(settings.cells, settings.pitch):
+        print(f"imprints: {wrong}", file=sys.stderr)
     with StageRun(workspace, "imprints", inputs=("meshes", "salient_points")) as stage:
         work = functools.partial(process, data=workspace.data, settings=settings)
         rows = stage.each(work, stage.objects, reads=("meshes/{}.npz", "salient_points/{}.npz"))

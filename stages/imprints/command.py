@@ -27,6 +27,7 @@ from .distances import distances_at
 from .frame import sensor_axes
 from .options import parse_options
 from .press import normalise
+from .sensor import misfit
 from .skin import indent
 from .user_mesh import Places, UserMesh, read_user_mesh
 
@@ -86,10 +87,8 @@ def open_mesh(options: argparse.Namespace) -> UserMesh:
     report_progress(
         "".join([f"{len(user_mesh.mesh.faces):,} faces, {user_mesh.up} up", *(f"; {note}" for note in notes)])
     )
-    if max(options.cells) * options.pitch > 1:
-        report_progress(
-            f"the array is {max(options.cells) * options.pitch:g} units long, the object 1: most cells will miss it"
-        )
+    if wrong := misfit(options.cells, options.pitch):
+        report_progress(wrong)
     if options.at[0] == "salient":
         report_progress("rendering it from twelve sides, to find what is salient")
     return user_mesh

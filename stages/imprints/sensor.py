@@ -1,5 +1,6 @@
 """The sensors of the stage: the array of distances in its two contacts, and the older one of contours (T4.2.3.1)."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,6 +29,13 @@ class Touched:
     depths: np.ndarray
     images: np.ndarray
     reach: float
+
+
+def misfit(cells: Sequence[int], pitch: float) -> str:
+    """What is wrong with an array that is longer than the object, of diameter 1; else ""."""
+    length = max(cells) * pitch
+    wrong = f"the array is {length:g} units long, the object 1: most cells will miss it; take fewer or a smaller pitch"
+    return wrong if length > 1 else ""
 
 
 def touch(surface: Surface, vertices: ArrayLike, cells: tuple[int, int], pitch: float, sensor: str) -> Touched:

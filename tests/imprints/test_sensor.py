@@ -5,7 +5,7 @@ import pytest
 import trimesh
 
 from stages.imprints import CONTACTS, Surface, contour_imprints, distances, normalise
-from stages.imprints.sensor import CONTOURS, SENSORS, touch
+from stages.imprints.sensor import CONTOURS, SENSORS, misfit, touch
 from stages.kit import Mesh
 
 CELLS, PITCH = (16, 16), 0.01
@@ -37,3 +37,8 @@ def test_the_contour_sensor_feels_contours(ball):
 def test_where_a_sensor_cannot_touch_it_says_so(ball, sensor):
     felt = touch(Surface(ball), [0, len(ball.vertices) - 2, 5], CELLS, PITCH, sensor)
     assert felt.can.tolist() == [True, False, True] and len(felt.images) == len(felt.depths) == 2
+
+
+def test_an_array_longer_than_the_object_is_named_with_the_remedy():
+    assert misfit((16, 16), 0.01) == misfit((10, 5), 0.1) == ""
+    assert "1.6 units long" in misfit((4, 16), 0.1) and "smaller pitch" in misfit((4, 16), 0.1)
