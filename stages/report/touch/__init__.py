@@ -1,5 +1,10 @@
 """One glance by touch: which points, classifiers and imprints make simulated touch recognisable (T4.2)."""
 
+from functools import partial
+
+from stages.report.kept import as_printed
+from stages.report.results import SECTION_4_2
+
 from . import claims, costs, imprint_rates, pictures, similar, touches
 
 TABLES = {
@@ -16,7 +21,7 @@ FIGURES = {
     "touch_one_mesh": pictures.touch_one_mesh,
     "imprints": pictures.imprints,
     "table_4_1": touches.figure_4_1,
-    "figure_4_4": similar.figure_4_4,
+    "figure_4_4": partial(as_printed, similar.figure_4_4, SECTION_4_2),
 }
 CHARTS = {
     "touch": costs.by_classifier,

@@ -12,6 +12,7 @@ from stages.report.grid import grid
 from stages.report.items import Figure, Table
 from stages.report.results import Results, some
 from stages.report.style import GREY, INK, colours, plt
+from stages.report.words import dataset_text
 
 from .rows import ENHANCED, PLAIN_AVERAGE, PRINTED, STAGE, Protocol, accuracies, fifteen, protocols, sampling_text
 
@@ -114,4 +115,4 @@ def figure_4_4(results: Results) -> Figure:
     axes.tick_params(axis="y", length=0)
     axes.set_title("How alike the imprints of two objects are", pad=26)
     axes.legend(loc="lower left", bbox_to_anchor=(-0.01, 0.99), ncols=2, fontsize=9)
-    return Figure(figure, {"threshold": SIMILARITY_THRESHOLD})
+    return Figure(figure, {"threshold": SIMILARITY_THRESHOLD, "set": dataset_text(dataset)})
