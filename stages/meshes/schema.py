@@ -7,7 +7,7 @@ from dataclasses import dataclass
 class Params:
     """Section `meshes` of params.yaml."""
 
-    source: str  # which collection: household, furniture, catalogue, folder, gaze, princeton or interest_points
+    source: str  # which collection: a name of stages.meshes.sources.SOURCES
     folder: str  # where the files lie: your own folder, or the folder or zip of a collection that is not fetched
     up: str  # the axis that points up in the files of folder and interest_points: x, y or z
     unit: str  # the unit of the folder's files, for the manifest

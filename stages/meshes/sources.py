@@ -149,6 +149,12 @@ INTEREST_POINTS = (
     "MODEL_DATASET/*.mat and OUTPUT_DATA/GROUND_TRUTH_B/*.mat",
     "https://www.itl.nist.gov/iad/vug/sharp/benchmark/3DInterestPoint",
 )
+FIXATION_MAPS = (
+    "fixation_maps",
+    "3DModels-Simplif/*.obj, FixationMaps/*norm.txt and CentricityAndVisibilityMaps/*_visibility.txt (FixationMaps.zip"
+    " and CentricityAndVisibilityMaps.zip, both unpacked)",
+    "https://perso.liris.cnrs.fr/guillaume.lavoue/data/saliency",
+)
 
 
 def gaze(settings: Params) -> list[MeshFile]:
@@ -171,6 +177,12 @@ def interest_points(settings: Params) -> list[MeshFile]:
     files = match_files(collection_files(settings.folder, *INTEREST_POINTS), r"MODEL_DATASET/([^/]+)\.mat")
     converted = {name: (path, partial(_off_bytes, content)) for name, (path, content) in files.items()}
     return _mesh_files(converted, settings, settings.up, ".off")
+
+
+def fixation_maps(settings: Params) -> list[MeshFile]:
+    """The 32 models of T3.3 with fixation density maps of three views (Lavoue 2018, T [236])."""
+    files = match_files(collection_files(settings.folder, *FIXATION_MAPS), r"3DModels-Simplif/([^/]+)\.obj")
+    return _mesh_files(files, settings, settings.up)
 
 
 def _mesh_files(files, settings, up, suffix=None):
@@ -230,7 +242,7 @@ def _off_bytes(content):
 
 SOURCES = {
     "household": household, "furniture": furniture, "catalogue": catalogue, "folder": folder, "gaze": gaze,
-    "princeton": princeton, "interest_points": interest_points,
+    "princeton": princeton, "interest_points": interest_points, "fixation_maps": fixation_maps,
 }  # fmt: skip
 
 

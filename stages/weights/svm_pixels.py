@@ -9,7 +9,7 @@ from stages.kit.rng import rng
 
 from .euclidean import checked_maps
 from .similarity import checked_ground_truth
-from .svm import SVMModel, balanced_rows
+from .svm import balanced_rows
 
 SIDE = 200  # rows and columns of the resized maps, whatever their aspect ratio; T3.2.3
 SALIENT_LEVEL = float(np.exp(-2))  # of a pixel two sigma from a point; the thesis only says "logical"

@@ -24,12 +24,12 @@ from stages.kit.files import read_arrays, read_json, read_mesh, read_table, writ
 from stages.kit.params import load_params
 from stages.lod import write_any
 from stages.meshes import clean, load, normalise
-from stages.meshes.sources import GAZE, collection_files
+from stages.meshes.sources import FIXATION_MAPS, GAZE, collection_files
 from stages.scene.loaded_back import read_lod
 from stages.transfer.recorded.bigs import read_bigs
 from stages.transfer.recorded.touches import read_picture
 from stages.weights.annotate.marks import read_marks, write_marks
-from stages.weights.ground_truth.fixations import read_fixations
+from stages.weights.ground_truth.fixations import fixation_files, fixations_on_vertices
 from stages.weights.ground_truth.gaze import read_gaze
 from stages.weights.ground_truth.interest_points import read_interest_points
 
@@ -239,6 +239,9 @@ def interest_seeds(folder):
     return found
 
 
+TRIANGLE = Mesh(np.eye(3), np.array([[0, 1, 2]]))
+
+
 def fixation_seeds(folder):
     content = b"0.5\n1\n0\n"
     for view in (300, 413, 599):
@@ -246,6 +249,10 @@ def fixation_seeds(folder):
             (folder / path).parent.mkdir(exist_ok=True)
             (folder / path).write_bytes(content)
     return [content]
+
+
+def read_fixations(folder):
+    return fixations_on_vertices(fixation_files(collection_files(folder, *FIXATION_MAPS))["cup"], TRIANGLE)
 
 
 def lod_seeds(folder):
@@ -333,7 +340,7 @@ READERS = {
     "marks": Reader("a.csv", mark_seeds, read_marks),
     "gaze": Reader("a.txt", lambda folder: [b"0 0 0 0 0 1 0.5 1\n1 0 0 0 0 1 0 0\n"], read_gaze, False),
     "fixations": Reader("FixationMaps/cup_300norm.txt", fixation_seeds,
-                        lambda path: read_fixations(path.parents[1], "cup", 3)),
+                        lambda path: read_fixations(path.parents[1])),
     "interest points": Reader("a.mat", interest_seeds, read_interest_points, False),
     "network": Reader("a.npz", network_seeds, read_network, count=200),
     "checkpoint": Reader("a.pt", checkpoint_seeds, read_checkpoint),

@@ -1,13 +1,23 @@
 """Lavoue's fixation density maps, in files of the published layout that the test makes."""
 
 import zipfile
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
+from stages.kit import Mesh
 from stages.kit.fetch import FetchError
-from stages.weights.ground_truth import read_fixations
+from stages.meshes.sources import FIXATION_MAPS, SOURCES, collection_files
+from stages.weights.ground_truth import (
+    fixation_files,
+    fixations_on_vertices,
+    ground_truth_amounts,
+    published_files,
+)  # fmt: skip
 
 DENSITIES = {"300": [0.0, 1.5, 8.25], "413": [2.0, 0.0, 0.0], "599": [0.0, 0.0, 3e-3]}
+TRIANGLE = Mesh(np.eye(3), np.array([[0, 1, 2]]))
 
 
 @pytest.fixture
@@ -24,39 +34,59 @@ def folder(tmp_path):
     return tmp_path
 
 
-def test_densities_and_visibility_of_three_views(folder):
-    found = read_fixations(folder, "car-vasa", 3)
-    assert list(found) == ["300", "413", "599"]
-    for view, density in DENSITIES.items():
-        assert found[view].density.tolist() == density
-        assert found[view].visible.tolist() == [value > 0 for value in density]
+def looked(path, mesh=TRIANGLE):
+    return fixations_on_vertices(fixation_files(collection_files(path, *FIXATION_MAPS))["car-vasa"], mesh)
+
+
+def test_a_vertex_has_the_mean_of_the_views_that_see_it_by_its_area(folder):
+    expected = np.array([2.0, 1.5, (8.25 + 3e-3) / 2]) * TRIANGLE.vertex_areas
+    np.testing.assert_allclose(looked(folder), expected)
+
+
+def test_a_vertex_that_no_view_sees_has_nothing(folder):
+    for view in DENSITIES:
+        (folder / f"CentricityAndVisibilityMaps/car-vasa_{view}_visibility.txt").write_text("1\n0\n1\n")
+    assert looked(folder)[1] == 0 and looked(folder)[0] > 0
 
 
 def test_a_zip_reads_like_the_folder(folder, tmp_path):
     with zipfile.ZipFile(tmp_path / "all.zip", "w") as archive:
         for path in folder.rglob("*.txt"):
             archive.write(path, f"3DVA/{path.relative_to(folder)}")
-    assert read_fixations(tmp_path / "all.zip", "car-vasa", 3)["413"].density.tolist() == DENSITIES["413"]
+    assert looked(tmp_path / "all.zip").tolist() == looked(folder).tolist()
 
 
 def test_a_map_of_another_length_is_named_with_both_counts(folder):
+    square = Mesh(np.eye(4)[:, :3], TRIANGLE.faces)
     with pytest.raises(ValueError, match="car-vasa_300norm.txt has 3 values for 4 vertices"):
-        read_fixations(folder, "car-vasa", 4)
+        looked(folder, square)
 
 
 @pytest.mark.parametrize(("text", "reason"), [("1\nx\n2\n", "one number"), ("1\nnan\n2", "NaN"), ("1\n-1\n2", "neg")])
 def test_a_damaged_map_is_named(folder, text, reason):
     (folder / "FixationMaps/car-vasa_413norm.txt").write_text(text)
     with pytest.raises(ValueError, match=f"car-vasa_413norm.txt.*{reason}"):
-        read_fixations(folder, "car-vasa", 3)
+        looked(folder)
 
 
-def test_an_unknown_object_is_named_with_the_known_ones(folder):
-    with pytest.raises(ValueError, match="no map cow_300: there are maps of car-vasa"):
-        read_fixations(folder, "cow", 3)
+def test_an_absent_map_is_named(folder):
+    (folder / "CentricityAndVisibilityMaps/car-vasa_599_visibility.txt").unlink()
+    with pytest.raises(ValueError, match="no CentricityAndVisibilityMaps/car-vasa_599_visibility.txt"):
+        looked(folder)
+
+
+def test_the_set_reads_its_meshes_and_their_truth(folder):
+    (folder / "3DModels-Simplif").mkdir()
+    (folder / "3DModels-Simplif/car-vasa.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    settings = SimpleNamespace(folder=str(folder), objects=[], up="y")
+    (file,) = SOURCES["fixation_maps"](settings)
+    assert (file.name, file.up, file.suffix) == ("car-vasa", "y", ".obj") and file.content().startswith(b"v 0 0 0")
+    published = published_files("fixation_maps", folder)["car-vasa"]
+    amounts = ground_truth_amounts("car-vasa", "fixation_maps", TRIANGLE, published, folder)
+    np.testing.assert_array_equal(amounts, looked(folder))
 
 
 def test_an_absent_collection_ends_in_one_line_with_the_remedy(tmp_path):
     with pytest.raises(FetchError, match="nowhere.*FixationMaps.zip.*https://perso.liris.cnrs.fr") as caught:
-        read_fixations(tmp_path / "nowhere", "cow", 3)
+        looked(tmp_path / "nowhere")
     assert "\n" not in str(caught.value)

@@ -6,55 +6,48 @@ degree of visual angle) and CentricityAndVisibilityMaps/NAME_VIEW_visibility.txt
 vertices are those of 3DModels-Simplif/NAME.obj.
 """
 
-from dataclasses import dataclass
-from pathlib import Path
+import re
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from stages.meshes.sources import collection_files, match_files
+from stages.kit import Mesh
 
 VIEWS = ("300", "413", "599")
-PUBLISHED = (
-    "fixation",
-    "FixationMaps/*norm.txt and CentricityAndVisibilityMaps/*_visibility.txt (FixationMaps.zip and"
-    " CentricityAndVisibilityMaps.zip, both unpacked)",
-    "https://perso.liris.cnrs.fr/guillaume.lavoue/data/saliency",
-)
+DENSITY, VISIBLE = "FixationMaps/{}_{}norm.txt", "CentricityAndVisibilityMaps/{}_{}_visibility.txt"
+Files = list[tuple[str, Callable[[], bytes]]]  # (path, function that reads the bytes) of each
 
 
-@dataclass(frozen=True, eq=False)
-class Fixations:
-    """One viewpoint: density (n,) f8 of fixations, zero where nobody looked; visible (n,) boolean."""
+def fixation_files(files: Mapping[str, Callable[[], bytes]]) -> dict[str, Files]:
+    """{object: its files, density and visibility of each view} of a collection (stages.meshes.sources).
 
-    density: np.ndarray
-    visible: np.ndarray
-
-
-def read_fixations(folder: str | Path, name: str, vertices: int) -> dict[str, Fixations]:
-    """dict view (`300`, `413`, `599`) -> Fixations of the mesh `name` with a number of `vertices`.
-
-    folder: with both archives unpacked, or a zip archive with both folders. Raises FetchError, saying what to get, when
-    it is missing, ValueError when a map is not a list of numbers, one per vertex (the map of turbine is published with
-    one line too few).
+    Raises ValueError that names a map which an object lacks.
     """
-    files = collection_files(folder, *PUBLISHED)
-    maps = match_files(files, r"FixationMaps/([^/]+)norm\.txt")
-    visibilities = match_files(files, r"CentricityAndVisibilityMaps/([^/]+)_visibility\.txt")
-    return {
-        view: Fixations(
-            _values(maps, f"{name}_{view}", vertices), _values(visibilities, f"{name}_{view}", vertices) > 0
-        )
-        for view in VIEWS
-    }
+    matches = [(re.search(r"(FixationMaps|CentricityAndVisibilityMaps)/[^/]+\.txt$", path), path) for path in files]
+    maps = {match[0]: (path, files[path]) for match, path in matches if match}
+    names = sorted({path.split("/")[1].rsplit("_", 1)[0] for path in maps if path.endswith("norm.txt")})
+    wanted = {name: [form.format(name, view) for view in VIEWS for form in (DENSITY, VISIBLE)] for name in names}
+    missing = sorted(path for paths in wanted.values() for path in paths if path not in maps)
+    if missing:
+        raise ValueError(f"no {', '.join(missing)}: unpack both archives")
+    return {name: [maps[path] for path in paths] for name, paths in wanted.items()}
 
 
-def _values(files, key, vertices):
-    if key not in files:
-        available = sorted({name.rsplit("_", 1)[0] for name in files})
-        raise ValueError(f"no map {key}: there are maps of {', '.join(available)}")
-    path, content = files[key]
+def fixations_on_vertices(files: Files, mesh: Mesh) -> np.ndarray:
+    """(n,) f8: how much people looked at each vertex of a mesh, the mean of the views that see it.
+
+    files: of one object, as fixation_files gives them. A density counts by the area of its vertex. Raises ValueError
+    that names the file where a map is not a list of numbers, one per vertex (the map of turbine is published with one
+    line too few).
+    """
+    values = np.array([_values(path, content(), len(mesh.vertices)) for path, content in files])
+    densities, visible = values[0::2], values[1::2] > 0
+    return (densities * visible).sum(axis=0) / np.maximum(visible.sum(axis=0), 1) * mesh.vertex_areas
+
+
+def _values(path, content, vertices):
     try:
-        values = np.array(content().split(), dtype=np.float64)
+        values = np.array(content.split(), dtype=np.float64)
     except ValueError as error:
         raise ValueError(f"{path}: not one number per line ({error})") from None
     if len(values) != vertices:

@@ -9,13 +9,14 @@ import numpy as np
 
 from stages.kit import Mesh
 from stages.meshes.load import parse
-from stages.meshes.sources import GAZE, INTEREST_POINTS, collection_files, match_files
+from stages.meshes.sources import FIXATION_MAPS, GAZE, INTEREST_POINTS, collection_files, match_files
 
 from .annotations import annotations_on_vertices
+from .fixations import fixation_files, fixations_on_vertices
 from .gaze import gaze_on_vertices, match_rows, read_gaze
 from .interest_points import read_interest_points
 
-PUBLISHED = ("gaze", "interest_points")  # the sources whose collection holds ground truth
+PUBLISHED = ("gaze", "interest_points", "fixation_maps")  # the sources whose collection holds ground truth
 
 Files = list[tuple[str, Callable[[], bytes]]]  # (path, function that reads the bytes) of each
 
@@ -25,12 +26,13 @@ def ground_truth_amounts(name: str, source: str, mesh: Mesh, published: Files, m
 
     name, source: the object, and the setting meshes.source that it was read with. published: its published_files;
     marks: the folder of annotations. The amounts are seconds of gaze (source gaze), marks of the users
-    (interest_points), or the number of annotators who marked a vertex (any other source, from NAME.csv).
+    (interest_points), densities of fixations by area (fixation_maps), or the number of annotators who marked a vertex
+    (any other source, from NAME.csv).
     `spread_on_surface` turns them into a density. Raises ValueError when the ground truth does not fit the mesh.
     """
     path = marks / f"{name}.csv"
     if published:
-        amounts = _gaze(published) if source == "gaze" else _interest_points(published, len(mesh.vertices))
+        amounts = READERS[source](published, mesh)
     elif source not in PUBLISHED and path.exists():
         amounts = annotations_on_vertices(mesh, path)
     else:
@@ -66,12 +68,14 @@ def published_files(source: str, folder: str | Path) -> dict[str, Files]:
     if source == "interest_points":
         points = match_files(collection_files(folder, *INTEREST_POINTS), r"GROUND_TRUTH_B/([^/]+)\.mat")
         return {name: [file] for name, file in points.items()}
+    if source == "fixation_maps":
+        return fixation_files(collection_files(folder, *FIXATION_MAPS))
     files = collection_files(folder, *GAZE)
     tables, models = match_files(files, r"dataset_[^/]+/([^/]+)\.txt"), match_files(files, r"Models_3D/([^/]+)\.obj")
     return {name: [tables[name], models[name]] for name in tables if name in models}
 
 
-def _gaze(files):
+def _gaze(files, _):
     (path, table), (_, model) = files
     # Coordinates agree exactly only with the mesh as published; normalising keeps the order of the vertices.
     mesh = parse(model(), ".obj")
@@ -98,9 +102,12 @@ def _named(path, read, content):
         raise ValueError(f"{path}: {error}") from None
 
 
-def _interest_points(files, count):
-    ((path, content),) = files
+def _interest_points(files, mesh):
+    ((path, content),), count = files, len(mesh.vertices)
     vertices, marks = _named(path, read_interest_points, content())
     if vertices.max(initial=-1) >= count:
         raise ValueError(f"{path} names vertex {vertices.max()}, the mesh has {count}")
     return np.bincount(vertices, marks, minlength=count)
+
+
+READERS = {"gaze": _gaze, "interest_points": _interest_points, "fixation_maps": fixations_on_vertices}
