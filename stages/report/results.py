@@ -22,6 +22,8 @@ from .schema import Params
 
 Found = TypeVar("Found", bound=Sized)
 SECTION_3_1, SECTION_4_2 = "household_3_1", "household_4_2"  # sets with the settings of a section of the thesis
+COLOURED = "furniture_coloured"  # the set whose objects have several hues
+ON_GREY, ON_WHITE, ON_BLACK = "household_on_grey", "household_on_white", "gaze_on_black"  # other backgrounds
 NUMBERS = {"four": 4, "six": 6}  # names of groups that tell how many objects they hold
 
 

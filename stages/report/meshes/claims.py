@@ -8,10 +8,23 @@ from functools import partial
 from typing import Any
 
 from stages.report.claims import Claim, Pick, highest_of, lowest_of
-from stages.report.results import SECTION_3_1
+from stages.report.results import COLOURED, ON_GREY, ON_WHITE, SECTION_3_1
 from stages.report.style import label
 
-from .methods import ADAPTIVE, CLASSICAL, COMBINATIONS, ENHANCED, HKS, OURS, PLAIN, PROPOSED, RIVALS, SYMMETRIES
+from .methods import (
+    ADAPTIVE,
+    BY_AREA,
+    CLASSICAL,
+    COMBINATIONS,
+    ENHANCED,
+    HKS,
+    OURS,
+    PLAIN,
+    PROPOSED,
+    QSLIM,
+    RIVALS,
+    SYMMETRIES,
+)  # fmt: skip
 
 REST = tuple(name for name in COMBINATIONS if name not in ("VisAttCurvSymCon", "VisAttCon"))
 OTHERS = tuple(name for name in COMBINATIONS if name not in (CLASSICAL, "VisAttAll", *SYMMETRIES, "Curv"))
@@ -66,7 +79,14 @@ BETTER = (
     ("gaze", "gaze_error", "where people look", "gaze"),
 )  # fmt: skip
 CLAIMS = [
-    # T3.1.5, in its order: channels
+    # T3.1.5, in its order: backgrounds, channels
+    *(
+        claim(key=f"background_{colour}", section="T3.1.5", dataset=SECTION_3_1, relative=True, scale=100.0,
+              sentence=f"Points found on black lead to a lower error than points found on {colour}.",
+              where=ERROR | {"method": CLASSICAL}, first={"dataset": name},  # there 1,500 faces are the only target
+              second={"dataset": SECTION_3_1, "target": LOW}, unit="% of the error")
+        for colour, name in (("grey", ON_GREY), ("white", ON_WHITE))
+    ),
     metro("curvature_points", "Added curvature points (VisAttCurvP) have the highest error of the variants.",
           "VisAttCurvP", highest_of(CLASSICAL, "Curv", "VisAttCurv"), target=LOW),
     seen("curvature_ssim", "Curvature in the map is slightly better as seen (VisAttCurv).", CLASSICAL, "VisAttCurv"),
@@ -103,12 +123,31 @@ CLAIMS = [
     lower("T3.1.5", "metro_max", "many_points_distort",
           "Methods with many points (SDC, 3DH) distort at low resolution.", ("corners", "harris"), COMBINATIONS, LOW,
           dataset=SECTION_3_1),
+    *(
+        claimed(f"area_{short}", f"Neighbourhoods by the area of the salient region lead to a lower error ({how}).",
+                BY_AREA, tuple(f"{name}-area" for name in BY_AREA))
+        for claimed, short, how in ((metro, "metro", "distance"), (seen, "ssim", "as seen"))
+    ),
+    # Colour, where objects have several hues.
+    *(
+        lower("T3.1.5", metric, f"colour_{key}_{short}",
+              f"The colour channels lower the error where objects have colours ({name}, {how}).",
+              f"{name}NoColour", name if name == "VisAttAll" else CLASSICAL, dataset=COLOURED)
+        for key, name in (("classical", "VisAtt"), ("all", "VisAttAll"))
+        for metric, short, how in ((METRO, "metro", "distance"), (SEEN, "ssim", "as seen"))
+    ),
     # Kept neighbourhoods, and points placed by chance.
     *(
         lower(section, metric, f"{start}_{short}", f"{who} gives a better simplified model than plain QEM ({how}).",
               PLAIN, method, dataset=dataset)
         for start, section, who, method in KEEPING
         for short, metric, how, dataset in BETTER
+    ),
+    *(
+        lower("ours", metric, f"fit_{short}", f"Fitting the vertices to the surface improves on QSlim ({how}).", QSLIM,
+              PLAIN, dataset=dataset)
+        for short, metric, how, dataset in BETTER
+        if short in ("metro", "ssim", "gaze")
     ),
     lower("T3.1", METRO, "blind_metro",
           "Attention places the kept points better than chance does (distance).", "random", ENHANCED),

@@ -9,7 +9,7 @@ import pandas as pd
 from stages.kit.stats import interval
 from stages.report.grid import grouped, within
 from stages.report.markdown import with_interval
-from stages.report.results import SECTION_3_1, Results, some
+from stages.report.results import ON_GREY, ON_WHITE, SECTION_3_1, Results, some
 
 from .methods import PLAIN
 
@@ -27,9 +27,10 @@ FEWEST = 3  # objects that a mean over objects needs to be shown
 def data_sets(results: Results, of_t3_1: bool = True) -> list[str]:
     """The sets with simplified meshes, those that are switched on first; NotRun where there is none.
 
-    of_t3_1: also that of T3.1.5, which has other methods than T3.2.
+    of_t3_1: also that of T3.1.5, which has other methods than T3.2. Without those of one method on other backgrounds.
     """
-    found = [name for name in results.datasets("lod") if of_t3_1 or name != SECTION_3_1]
+    left_out = (ON_GREY, ON_WHITE) if of_t3_1 else (ON_GREY, ON_WHITE, SECTION_3_1)
+    found = [name for name in results.datasets("lod") if name not in left_out]
     return some(found, "no measurements of lod", "lod")
 
 
