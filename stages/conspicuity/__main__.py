@@ -18,7 +18,7 @@ from stages.views import read_view
 
 from .background import FILLED, check_background
 from .channels import check_channels, mask_at_size
-from .measure import background_rows, measured_maps
+from .measure import background_rows, hue_rows, measured_maps
 from .schema import COLUMNS, Params
 
 
@@ -40,6 +40,7 @@ def process(name: str, folder: Path, data: Path, settings: Params) -> Rows:
         rows += measured
         if k == 0 and settings.compare_background:
             rows += background_rows(mesh, view, channels, size)
+            rows += hue_rows(mesh, view, found, size, settings.background == FILLED)
     write_arrays(folder / f"{name}.npz", maps=maps, mask=mask, viewpoints=viewpoints, channels=channels)
     return [{"item": name} | row for row in rows]
 

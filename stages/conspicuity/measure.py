@@ -1,14 +1,15 @@
 """The maps of a view with their cost, and the check that they do not respond to the silhouette."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
 
 import numpy as np
 
 from stages.kit import Mesh, Stopwatch
 from stages.views import View
 
-from .channels import conspicuity
+from .channels import conspicuity, mask_at_size
 from .silhouette import silhouette_share
 
 
@@ -34,12 +35,40 @@ def background_rows(mesh: Mesh, view: View, channels: Iterable[str], size: tuple
     return [_row(channel, view, "silhouette_share_unfilled", maps[channel], None) for channel in channels]
 
 
+def hue_rows(
+    mesh: Mesh, view: View, maps: Mapping[str, np.ndarray], size: tuple[int, int], filled: bool = True
+) -> list[dict]:
+    """Rows of a view with hues, none of a grey one: what they change in its maps, {channel: map}.
+
+    Correlations over the object's pixels, empty where a map is flat: `grey_likeness`, with the map of the same picture
+    in grey of equal brightness; `intensity_likeness`, with the map of intensity.
+    """
+    if (view.rgb == view.rgb[..., :1]).all():
+        return []
+    grey = np.rint(view.rgb.mean(axis=2, keepdims=True)).astype(np.uint8).repeat(3, axis=2)
+    in_grey = conspicuity(mesh, replace(view, rgb=grey), maps, size, filled)
+    inside, rows = mask_at_size(view.mask, size), []
+    for channel, values in maps.items():
+        others = {"grey_likeness": in_grey[channel], "intensity_likeness": maps.get("intensity", values)}
+        for metric, other in others.items():
+            rows.append(_valued(channel, view, metric, _likeness(values[inside], other[inside])))
+    return rows
+
+
+def _likeness(values, others):
+    flat = not len(values) or min(np.ptp(values), np.ptp(others)) == 0
+    return math.nan if flat else float(np.corrcoef(values, others)[0, 1])
+
+
 def _row(channel, view, metric, values, seconds):
-    share = silhouette_share(values, view.mask)
+    return _valued(channel, view, metric, silhouette_share(values, view.mask), seconds)
+
+
+def _valued(channel, view, metric, value, seconds=None):
     return {
         "method": channel,
         "viewpoint": view.viewpoint.name,
         "metric": metric,
-        "value": None if math.isnan(share) else share,
+        "value": None if math.isnan(value) else value,
         "seconds": seconds,
     }

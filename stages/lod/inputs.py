@@ -15,8 +15,8 @@ class ObjectInputs:
     """What all cells of one object share.
 
     Its mesh; the points and the saliency (n,) by method; its own pictures (views, rows, columns), or None where they
-    are not compared; human gaze spread over the surface (n,), or None; and a cache of its simplified meshes, since many
-    methods keep the same faces, above all where nothing can be kept.
+    are not compared; human gaze spread over the surface (n,), or None; and a cache of its simplified meshes and their
+    errors, since many methods keep the same faces, above all where nothing can be kept.
     """
 
     name: str

@@ -19,7 +19,7 @@ COLUMNS = {
 class Params:
     """Section `lod` of params.yaml."""
 
-    methods: list[str]  # qem (plain), or a method of salient_points, also with -adaptive, -area or -soft behind it
+    methods: list[str]  # qem, qslim, or a method of salient_points, also with -adaptive, -area or -soft behind it
     targets: list[str]  # face counts, absolute ("1500") or as a share of the object's own ("25%")
     rings: int  # edges around a kept point within which every face is frozen; T3.1.3 takes 3
     backend: str  # who simplifies: fast; qslim, without its fit, as in the thesis; or pymeshlab, the reference

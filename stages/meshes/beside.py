@@ -1,6 +1,7 @@
 """The files that a mesh file names: its materials, and their pictures."""
 
 import re
+from collections.abc import Callable
 from pathlib import Path
 
 from trimesh.resolvers import FilePathResolver
@@ -17,13 +18,17 @@ def files_beside(path: Path) -> dict[str, bytes]:
 
     A file that is not there, or not below the folder of the mesh, is empty.
     """
+    return files_named(path.read_bytes(), path.suffix, FilePathResolver(str(path)).get)
+
+
+def files_named(content: bytes, suffix: str, read: Callable[[str], bytes]) -> dict[str, bytes]:
+    """As `files_beside`, of the bytes of a mesh file; read(name, relative to it) raises OSError or ValueError."""
     found: dict[str, bytes] = {}
-    resolver = FilePathResolver(str(path))
-    wanted = _named(path.read_bytes(), path.suffix)
+    wanted = _named(content, suffix)
     while wanted:
         name = wanted.pop(0)
         try:
-            found[name] = resolver.get(name.replace("\\", "/"))
+            found[name] = read(name.replace("\\", "/"))
         except (OSError, ValueError):
             found[name] = b""
         wanted += [other for other in _named(found[name], Path(name).suffix) if other not in found]

@@ -33,7 +33,7 @@ def prepare_mesh(item: MeshFile, remove_table: bool = False, colours: str = "ver
         if remove_table:
             raw, notes = _without_table(raw, notes)
         mesh = normalise(rotate_to_z_up(raw, item.up))
-        mesh = coloured(mesh, item.name, colours) if painted else mesh
+        mesh = coloured(mesh, item.name, colours, item.suffix) if painted else mesh
     except (FetchError, ValueError, OSError) as error:
         raise MeshError(str(error)) from error
     used = np.unique(mesh.faces)

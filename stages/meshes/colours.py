@@ -18,17 +18,20 @@ PALETTE = np.array([
 ], dtype=np.uint8)  # fmt: skip
 
 
-def coloured(mesh: Mesh, name: str, colours: str) -> Mesh:
+def coloured(mesh: Mesh, name: str, colours: str, suffix: str = "") -> Mesh:
     """The mesh with a colour at each vertex: its own, or with colours=palette one of PALETTE where it has none.
 
     A texture becomes the colours of the vertices (bake_texture). The palette's colour follows from the name alone, so
-    that it is the same in every run. Raises MeshError for a mesh without colours where colours=own.
+    that it is the same in every run. Raises MeshError for a mesh without colours where colours=own; suffix: that of its
+    file, for the reason.
     """
     mesh = bake_texture(mesh)
     if mesh.colors is not None:
         return mesh
     if colours == "own":
-        raise MeshError("has no colours of its own: set meshes.colours=palette to paint it, or leave it out")
+        reason = "no vertex has a colour, and those of an OFF's faces are not read (save it as PLY)"
+        reason = reason if suffix == ".off" else "has no colours of its own"
+        raise MeshError(f"{reason}: set meshes.colours=palette to paint it, or leave it out")
     colour = PALETTE[zlib.crc32(name.encode()) % len(PALETTE)]
     return Mesh(mesh.vertices, mesh.faces, np.tile(colour, (len(mesh.vertices), 1)))
 

@@ -1,21 +1,21 @@
 """Objects in classes, three per class, from the Debian package sweethome3d-furniture.
 
 Each object was inspected from both sides, since names mislead ("Clothes horse" is not an animal). It stands upright,
-is complete and solid, shows the outer side of its faces, and has 1,000 to 60,000 faces. Materials are not extracted, so
-that meshes.colours=own refuses all of them.
+is complete and solid, shows the outer side of its faces, and has 1,000 to 60,000 faces.
 """
 
 import hashlib
 import io
 import re
 import zipfile
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
 import numpy as np
 
-from stages.kit.fetch import cache_folder, debian_files, fetch_debian, read_members
+from stages.kit.fetch import FetchError, cache_folder, debian_files, fetch_debian, read_members, zipped
 from stages.kit.files import whole_file
 
+from .beside import files_named
 from .materials import obj_vertices
 
 PACKAGE = "sweethome3d-furniture_1.8-1_all.deb"
@@ -66,17 +66,19 @@ FURNITURE = {
 def furniture_files(everything: bool = False) -> tuple[Path, dict[str, tuple[str, str]]]:
     """(path of an archive in the cache with NAME.obj for each name of FURNITURE, {name: (creator, unit)}).
 
+    The files of its materials are below NAME/, empty where the package lacks one.
+
     everything: for each of the 820 entries instead, named LIBRARY__ENTRY. The archive is made from the package of
     119.8 MB when it is missing; its file name depends on what is in it. The unit is a length in cm: models differ in
     scale, and the catalogue states their height. Raises FetchError, saying which file to put where, when the package
     cannot be fetched.
     """
     listed = "all" if everything else hashlib.sha256(repr(FURNITURE).encode()).hexdigest()[:8]
-    extract = cache_folder() / f"furniture-1.8-1-{listed}.zip"
+    extract = cache_folder() / f"furniture-1.8-1-coloured-{listed}.zip"
     if not zipfile.is_zipfile(extract):
         _extract(fetch_debian(PACKAGE, HASH), extract, everything)
     with zipfile.ZipFile(extract) as stored:
-        comments = {one.filename.removesuffix(".obj"): one.comment.decode() for one in stored.infolist()}
+        comments = {one.filename.removesuffix(".obj"): one.comment.decode() for one in stored.infolist() if one.comment}
     metadata = {name: (comment.split("\n")[0], comment.split("\n")[1]) for name, comment in comments.items()}
     return extract, metadata
 
@@ -99,12 +101,29 @@ def _extract(package, extract, everything):
 
 
 def _copy(archive, entry, name, target):
-    ((_, content),) = read_members(archive, [entry["model"].lstrip("/")])
+    model = PurePosixPath(entry["model"].lstrip("/"))
+    ((_, content),) = read_members(archive, [str(model)])
     member = zipfile.ZipInfo(f"{name}.obj")
     height = np.ptp(obj_vertices(content)[:, UP])  # of a carpet or a poster this may be zero
     unit = f"{float(entry['height']) / height:.3g} cm" if height > 0 else "unknown"
     member.comment = f"{entry['creator']}\n{unit}".encode()
     target.writestr(member, content, zipfile.ZIP_DEFLATED)
+
+    def read(beside):
+        try:
+            return next(read_members(archive, [str(model.parent / beside)]))[1]
+        except FetchError as error:
+            raise OSError(str(error)) from None
+
+    for beside, data in files_named(content, ".obj", read).items():
+        target.writestr(f"{name}/{beside}", data, zipfile.ZIP_DEFLATED)
+
+
+def material_files(extract: Path, name: str) -> dict[str, bytes]:
+    """{name: bytes} of the files of an object's materials in the archive of `furniture_files`."""
+    with zipped(extract) as stored:
+        paths = [path for path in stored.namelist() if path.startswith(f"{name}/")]
+        return {path.removeprefix(f"{name}/"): stored.read(path) for path in paths}
 
 
 def _entries(catalogue):

@@ -12,7 +12,7 @@ from typing import Any
 from stages.kit.fetch import FetchError, fetch_package, read_members, zipped
 
 from .beside import files_beside
-from .furniture import FURNITURE, LICENCES, furniture_files
+from .furniture import FURNITURE, LICENCES, furniture_files, material_files
 from .load import FORMATS, MeshError
 from .mat import read_mat
 from .schema import Params
@@ -103,7 +103,10 @@ def _furniture_file(extract, name, creator, unit):
     library, _, entry = name.partition("__")
     library, entry = FURNITURE.get(name, (library, entry))
     content = Content(partial(_member, extract, f"{name}.obj"))
-    return MeshFile(name, f"{library}/{entry}.obj", ".obj", content, "y", unit, LICENCES[library], creator)
+    beside = Content(partial(material_files, extract, name))
+    return MeshFile(
+        name, f"{library}/{entry}.obj", ".obj", content, "y", unit, LICENCES[library], creator, beside=beside
+    )
 
 
 def folder(settings: Params) -> list[MeshFile]:

@@ -39,12 +39,13 @@ def lowest_of(*names: str, but: tuple[str, ...] = ()) -> Pick:
 class Claim:
     """One testable sentence: the paired differences of two sides of the rows of a stage, positive as it is claimed.
 
-    dataset: the set of the rows; None: the first that has rows of the stage. first, second: the rows of each side;
-    second may be a number (before scaling) or None. where: what both have in common. A text value with `*` is a
-    pattern. over: columns whose combinations are the pairs, the unit of the analysis; within: columns that are matched
-    too, before the differences of a unit are averaged. relative: differences as shares of the mean of both sides.
-    mean_of: the side ("first" or "second") that counts by the mean of all its rows. contrast: two selections; the
-    difference under the first of them minus that under the second. scale, then margin: from differences to `unit`.
+    dataset: the set of the rows; None: the first that has rows of the stage. first, second: the rows of each side, of
+    another set where a side names a `dataset`; second may be a number (before scaling) or None. where: what both have
+    in common. A text value with `*` is a pattern. over: columns whose combinations are the pairs, the unit of the
+    analysis; within: columns that are matched too, before the differences of a unit are averaged. relative: differences
+    as shares of the mean of both sides. mean_of: the side ("first" or "second") that counts by the mean of all its
+    rows. contrast: two selections; the difference under the first of them minus that under the second. scale, then
+    margin: from differences to `unit`.
     statistic: a name of stages.report.differences.STATISTICS. shared: test over training share (kit.split); None:
     that of the split where the pairs are repetitions, else 0. phrases: {(column, value): words} of the topic. note:
     words behind all others.

@@ -46,10 +46,11 @@ def side(results: Results, claim: Claim, own: Side, other: Side | float | None, 
     other: the other side, whose values a Pick leaves out. extra: further columns that both sides have in common.
     """
     where = {**claim.where, **(extra or {}), **own}
+    dataset = where.pop("dataset", claim.dataset)
     picks = {column: wanted for column, wanted in where.items() if isinstance(wanted, Pick)}
     patterns = {column: wanted for column, wanted in where.items() if isinstance(wanted, str) and "*" in wanted}
     plain = {column: wanted for column, wanted in where.items() if column not in picks | patterns}
-    rows = results.measured(claim.stage, claim.dataset, **plain)
+    rows = results.measured(claim.stage, dataset, **plain)
     for column, wanted in patterns.items():
         rows = _some(rows[[fnmatch(str(name), wanted) for name in rows[column]]], claim, f"{column} like {wanted}")
     for column, wanted in picks.items():

@@ -43,6 +43,7 @@ LABELS = {
     "spectral_residual": "spectral residual (OpenCV)",
     "fine_grained": "fine-grained (OpenCV)",
     "qem": "plain QEM",
+    "qslim": "QSlim",
     "knn": "kNN",
     "svm": "SVM",
     "naive_bayes": "naive Bayes",

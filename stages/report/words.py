@@ -4,7 +4,7 @@ from stages.kit.split import Split
 
 from .claims import Claim, Pick, Side
 from .markdown import number
-from .results import SECTION_3_1, SECTION_3_2, SECTION_4_2, Results
+from .results import COLOURED, ON_BLACK, ON_GREY, ON_WHITE, SECTION_3_1, SECTION_3_2, SECTION_4_2, Results
 from .style import label
 
 METRICS = {  # "" where the claim's unit says it
@@ -12,7 +12,9 @@ METRICS = {  # "" where the claim's unit says it
 }  # fmt: skip
 DATASETS = {
     SECTION_3_1: "household as in T3.1", SECTION_3_2: "meshes with human gaze as in T3.2",
-    SECTION_4_2: "household as in T4.2", "gaze": "meshes with human gaze", "princeton": "psb",
+    SECTION_4_2: "household as in T4.2", COLOURED: "furniture in colour",
+    ON_BLACK: "the same with the black background filtered", ON_GREY: "on grey", ON_WHITE: "on white",
+    "gaze": "meshes with human gaze", "princeton": "psb",
     "princeton_eight": "psb, the thesis's 8 classes", "princeton_six": "psb, the thesis's 6 classes",
     "pressure_images": "recorded pressure array", "biotac_grasps": "recorded fingertips",
 }  # fmt: skip
@@ -62,6 +64,8 @@ def _phrase(claim: Claim, results: Results, column: str, value: object) -> str:
         return ""
     if column == "group":
         return results.group_text(str(value), claim.dataset)
+    if column == "dataset":
+        return dataset_text(str(value))
     if column == "split":
         return Split(str(value)).words
     if column == "metric":

@@ -17,6 +17,8 @@ COMBINATIONS = {
     "VisAttEnt": (*CLASSICAL, "entropy"),
     "VisAttAll": (*CLASSICAL, "contrast", "curvature", "dkl", "entropy", "symmetry"),
     "Curv": ("curvature",),
+    "VisAttNoColour": ("intensity", "orientation"),  # T figure 3.3a
+    "VisAttAllNoColour": ("intensity", "orientation", "contrast", "curvature", "entropy", "symmetry"),
 }
 
 

@@ -30,8 +30,11 @@ def collect_training_data(
     (d,); distances, similarities and on_object (v, channels), the last being similarities without the background, NaN
     for a view without points; for the SVM pixels (p, channels) f4, labels (p,) and views (p,) drawn on the object, and
     image_pixels, image_labels and image_views drawn from the whole image as in the thesis. Raises ValueError for an
-    empty ground truth.
+    empty ground truth, and for maps without a channel that our model has as a feature.
     """
+    missing = [channel for channel in CHANNEL_FEATURES if channel not in view_maps.maps]
+    if missing:
+        raise ValueError(f"conspicuity.channels lacks {', '.join(missing)}, a feature of our model: add it")
     density = spread_on_surface(mesh, amounts, SPREAD * mesh.diagonal)
     points, shares = ground_truth_points(mesh, amounts, density)
     maps, mask, viewpoints, stored = read_maps(path)

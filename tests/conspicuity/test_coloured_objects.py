@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from stages.conspicuity import conspicuity
+from stages.conspicuity.measure import hue_rows
 from stages.kit import Mesh
 from stages.views import Material, Viewpoint, render
 
@@ -44,3 +45,21 @@ def test_one_colour_gives_color_its_shading_and_grey_gives_it_nothing(ball, mate
     alike = np.corrcoef(found["color"][ball_seen], found["intensity"][ball_seen])[0, 1]
     assert found["color"].max() > 0.1 and (alike < 0.6 if material.specular else alike > 0.99)
     assert not maps(painted(ball, (120,) * 3, (120,) * 3), material)[0]["color"].any()
+
+
+def likeness(ball, around, spot):
+    """{(metric, channel): value} of the ball with a spot."""
+    mesh, names = painted(ball, around, spot), ["color", "dkl", "intensity"]
+    view = render(mesh, FRONT, SIZE, "raster")
+    found = conspicuity(mesh, view, names, (112, 150))
+    return {(row["metric"], row["method"]): row["value"] for row in hue_rows(mesh, view, found, (112, 150))}
+
+
+def test_what_hues_change_is_measured_where_there_are_any(ball):
+    found = likeness(ball, GREEN, RED)
+    assert found["grey_likeness", "color"] is None  # flat in grey
+    assert found["grey_likeness", "intensity"] > 0.99  # but for rounding
+    assert found["grey_likeness", "dkl"] < 0.9
+    assert found["intensity_likeness", "dkl"] < 0.9 and found["intensity_likeness", "intensity"] == 1
+    assert likeness(ball, RED, RED)["intensity_likeness", "dkl"] > 0.98
+    assert likeness(ball, (120,) * 3, (90,) * 3) == {}

@@ -91,6 +91,20 @@ def test_equal_kept_sets_are_simplified_once(tmp_path, monkeypatch):
     assert len(list((tmp_path / "ball").glob("*.npz"))) == 4
 
 
+def test_qslim_is_without_the_fit_whoever_simplifies_the_others_and_is_measured_once_where_that_is_the_same(
+    tmp_path, monkeypatch
+):
+    subject, calls = new_subject(), []
+    monkeypatch.setattr("stages.lod.cell.measure_errors", lambda *a: calls.append(a) or measure_errors(*a))
+    settings = dataclasses.replace(SETTINGS, targets=["50%", "10%"], backend="fast")
+    rows = [row for method in ("qem", "qslim") for row in measure_cells(subject, method, tmp_path, settings, 0)]
+    assert len(calls) == 3  # at half of the faces nothing is fitted
+    found = read_mesh(tmp_path / "ball" / "qslim_10pct.npz")
+    assert np.array_equal(found.vertices, simplify(subject.mesh, 128, backend="qslim").vertices)
+    fitted, plain = (cell(rows, method, "10%")["metro_mean"]["value"] for method in ("qem", "qslim"))
+    assert fitted < 0.9 * plain
+
+
 def test_without_saliency_there_is_no_salient_error(tmp_path):
     subject = dataclasses.replace(new_subject(), saliency={})
     found = cell(measure_cells(subject, "qem", tmp_path, SETTINGS, 0), "qem", "50%")

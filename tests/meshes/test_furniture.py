@@ -36,7 +36,8 @@ def sh3f(catalogue=CATALOGUE):
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w") as archive:
         archive.writestr("PluginFurnitureCatalog.properties", catalogue)
-        archive.writestr("lib/crate/crate.obj", CUBE.export(file_type="obj"))
+        archive.writestr("lib/crate/crate.obj", "mtllib paint.mtl\nusemtl a\n" + CUBE.export(file_type="obj"))
+        archive.writestr("lib/crate/paint.mtl", "newmtl a\nKd 1 0 0\nmap_Kd gone.png\n")
         archive.writestr("lib/other/other.obj", "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 3 2\n")
     return stream.getvalue()
 
@@ -88,6 +89,13 @@ def test_the_whole_catalogue_comes_out_with_licences_and_a_flat_model_has_no_uni
     assert crate.content() == items()[0].content() and b"v 1 0 0" in other.content()
     (chosen,) = SOURCES["catalogue"](SimpleNamespace(objects=["Scopia__other"]))
     assert chosen.name == "Scopia__other"
+
+
+def test_materials_come_along_and_one_that_the_package_lacks_is_named(package):
+    mesh, row = prepare_mesh(items()[0], colours="own")
+    assert (mesh.colors == (255, 0, 0)).all() and "gone.png, which it names, is not there" in row["repairs"]
+    crate, other = SOURCES["catalogue"](SimpleNamespace(objects=[]))
+    assert crate.beside() == items()[0].beside() and other.beside() == {}
 
 
 def test_the_package_is_needed_once(package):

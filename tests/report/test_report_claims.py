@@ -45,6 +45,15 @@ def test_no_interval_is_open():
     assert verdict(np.nan, np.nan) == "open"
 
 
+def test_a_side_may_be_of_another_set(root, small):
+    for dataset, error in (("test", 1.0), ("other", 3.0)):
+        small.write(
+            root, "test", pd.DataFrame({"dataset": dataset, "metric": "error", "item": ["a", "b"], "value": error})
+        )
+    found = differences(small.results(root), claim(first={"dataset": "other"}, second={"metric": "error"}))
+    assert found.to_dict() == {"a": 2, "b": 2}
+
+
 def test_clear_effect_is_supported(results):
     row = of(results, "ours_over_blind")
     assert row["verdict"] == "supported"

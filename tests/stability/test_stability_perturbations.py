@@ -16,17 +16,22 @@ SIZE = (120, 160)
 MILD = {
     "noise": 0.002, "decimation": 0.5, "remeshing": 0.05, "missing_faces": 0.1, "vertex_order": 1.0, "winding": 0.3,
     "turn": 20.0, "tilt": 20.0, "scale": 100.0, "light": 30.0, "background": 1.0, "background_left_in": 1.0,
-    "paint": 0.5, "pattern": 0.5, "image_size": 0.5,
+    "paint": 0.5, "pattern": 0.5, "grey": 0.5, "clay": 0.5, "image_size": 0.5,
 }  # fmt: skip
 INVALID = {
     "noise": -0.1, "decimation": 1.5, "remeshing": 0.0, "missing_faces": 1.0, "vertex_order": 2.0, "winding": -0.5,
     "scale": 0.0, "light": 200.0, "background": 2.0, "background_left_in": -1.0, "paint": 1.5, "pattern": 2.0,
-    "image_size": 0.0,
+    "grey": -1.0, "clay": 2.0, "image_size": 0.0,
 }  # fmt: skip
 WHERE_NOT_EVEN = ("decimation", "remeshing")  # the surface itself moves a little
 
 
+ORANGE, TEAL = (240, 120, 30), (20, 150, 190)
+
+
 def apply(name, mesh, severity, seed=0):
+    if name in ("grey", "clay"):  # they need colours to take away
+        mesh = Mesh(mesh.vertices, mesh.faces, np.where(mesh.vertices[:, :1] > 0, ORANGE, TEAL).astype(np.uint8))
     return PERTURBATIONS[name].apply(mesh, severity, rng(seed, "test"))
 
 
@@ -65,7 +70,8 @@ def test_the_unharmed_severity_changes_nothing(name, pear):
     found = apply(name, pear, PERTURBATIONS[name].unharmed)
     assert np.allclose(found.mesh.vertices, pear.vertices) and np.array_equal(found.mesh.faces, pear.faces)
     assert found.conditions == Conditions()
-    assert found.mesh.colors is None or (found.mesh.colors == 204).all()
+    own = name in ("grey", "clay") and {tuple(color) for color in found.mesh.colors.tolist()} == {ORANGE, TEAL}
+    assert found.mesh.colors is None or own or (found.mesh.colors == 204).all()
 
 
 @pytest.mark.parametrize("name", PERTURBATIONS)
@@ -89,6 +95,8 @@ def test_harsher_of_the_same_kind_goes_farther(name, pear):
         "background_left_in": lambda p: p.conditions.background,
         "paint": lambda p: np.ptp(p.mesh.colors, axis=1).max(),
         "pattern": lambda p: np.ptp(p.mesh.colors, axis=1).max(),
+        "grey": lambda p: -float(np.ptp(p.mesh.colors, axis=1).max()),
+        "clay": lambda p: -float(np.ptp(p.mesh.colors)),
         "image_size": lambda p: -p.conditions.rows,
     }[name]
     assert measure(harsh) > measure(mild)
@@ -156,6 +164,13 @@ def test_paint_covers_what_was_there(pear):
     found = apply("paint", Mesh(pear.vertices, pear.faces, two.astype(np.uint8)), 1.0).mesh
     assert len(np.unique(found.colors, axis=0)) == 2
     assert found.colors[pear.vertices[:, 2] > 0].max() == 200
+
+
+def test_grey_keeps_the_brightness_of_each_place_and_clay_none(pear):
+    grey, clay = (apply(name, pear, 1.0).mesh.colors for name in ("grey", "clay"))
+    assert np.array_equal(np.unique(grey), [120, 130]) and (np.ptp(grey, axis=1) == 0).all() and (clay == 204).all()
+    with pytest.raises(ValueError, match="has no colours to take away: run it on a set with meshes.colours=own"):
+        PERTURBATIONS["grey"].apply(pear, 1.0, rng(0, "test"))
 
 
 @pytest.mark.parametrize("name", INVALID)

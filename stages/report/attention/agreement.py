@@ -10,10 +10,10 @@ from stages.report.grid import records
 from stages.report.items import Table
 from stages.report.markdown import number, signed, with_interval
 from stages.report.prose import shared_notes
-from stages.report.results import NotRun, Results
+from stages.report.results import ON_BLACK, NotRun, Results
 from stages.report.style import label
 
-from .rows import ALONE, CLASSICAL, GAIN, HUMAN, OURS, THESIS, agreement, difference, method_text, rivals, scores
+from .rows import ALONE, BLACK, CLASSICAL, GAIN, HUMAN, OURS, THESIS, agreement, difference, method_text, rivals, scores
 
 COUNTED = "points_strong"
 MEANS = {
@@ -22,13 +22,17 @@ MEANS = {
 NAMED = 5  # methods that a sentence names at most
 PEEKED = {"enhanced": "fixations_seen", "guided_ssim": "guided_ssim_seen", "guided_ed": "guided_ed_seen",
           "svm": "svm_object"}  # fmt: skip
+FILTERED = (CLASSICAL, THESIS, "thesis_ssim", "thesis_ed", "guided_ssim", "guided_ed")  # the thesis's, on black too
 MARKED = "household"  # the data set whose marks come with the project
 
 
 def against_gaze(results: Results) -> Table:
     """The meshes with human gaze, each left out of the learning."""
-    rows = results.rows("salient_points", "gaze")
-    return _table(rows, list(MEANS), {"count": rows["item"].nunique()})
+    rows, black = results.rows("salient_points", "gaze"), None
+    with suppress(NotRun):
+        black = results.rows("salient_points", ON_BLACK, method=list(FILTERED))
+        black = black.assign(method=black["method"] + BLACK)
+    return _table(rows, list(MEANS), {"count": rows["item"].nunique()}, black)
 
 
 def against_marks(results: Results) -> Table:
@@ -40,10 +44,14 @@ def against_marks(results: Results) -> Table:
     return _table(rows, [COUNTED, "fne@0.05", "fpe@0.05"], {"count": count, "truth": truth})
 
 
-def _table(rows: pd.DataFrame, beside: Sequence[str], words: dict) -> Table:
-    """The judged rows, with those of MEANS that stand beside NSS and AUC; words: without those that the numbers say."""
-    frame = agreement(rows, [*ALONE, *beside])
-    timed = rows.dropna(subset=["seconds"]).drop_duplicates(["item", "method", "seconds"])
+def _table(rows: pd.DataFrame, beside: Sequence[str], words: dict, more: pd.DataFrame | None = None) -> Table:
+    """The judged rows, with those of MEANS that stand beside NSS and AUC; words: without those that the numbers say.
+
+    more: rows that stand in the table too, of which nothing is said.
+    """
+    shown = rows if more is None else pd.concat([rows, more])
+    frame = agreement(shown, [*ALONE, *beside])
+    timed = shown.dropna(subset=["seconds"]).drop_duplicates(["item", "method", "seconds"])
     cost = timed.groupby("method")["seconds"].median().map(number)
     names, lines = list(ALONE.values()), {}
     columns = ["method", *names, *(f"ours − it, {name}" for name in names), *map(MEANS.get, beside), "seconds"]

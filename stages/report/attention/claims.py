@@ -2,10 +2,13 @@
 
 from functools import partial
 
+from stages.kit.breaking_point import BROKEN
 from stages.report.claims import POINTS, Claim, Pick, highest_of
+from stages.report.results import COLOURED, ON_BLACK
 
 from .rows import CLASSICAL, HUMAN, OURS, PER_OBJECT, SAME
 
+ONE_HUE = 0.99  # the least correlation of DKL with intensity on matte objects of one hue
 ENHANCED = "thesis_ssim"  # the thesis's own: the average weighted with its SSIM weights
 PHRASES = {
     ("method", OURS): "our model of gaze", ("method", "VisAttAll"): "VisAttAll",
@@ -34,6 +37,13 @@ def svm_per_object(key: str, sentence: str, area: str, own: str, others: str) ->
                    second={"training": "one_for_all", "validation": others})  # fmt: skip
 
 
+def in_colour(key: str, sentence: str, method: str) -> Claim:
+    """A claim that a method finds half of its points or more again on the same object in grey clay."""
+    return Claim(key=key, section="T3.1.5", sentence=sentence, stage="stability", dataset=COLOURED, over=("item",),
+                 where={"metric": "repeatability", "perturbation": "clay"}, first={"method": method}, second=BROKEN,
+                 unit="points of the share found again", phrases=PHRASES)  # fmt: skip
+
+
 CLAIMS = [
     closer_to_gaze("equal_over_itti_gaze", "T3.2.2", "All channels with equal weights (VisAttAll) beat the classical "
                    "model.", "VisAttAll", CLASSICAL),
@@ -43,6 +53,17 @@ CLAIMS = [
                    "ones.", "guided_ssim", "equal"),
     closer_to_gaze("svm_gaze", "T3.2.3", "An SVM on the channels predicts attention better than equal weights.",
                    "svm", "equal"),
+    *(on_gaze(key=f"background_{key}", section="ours", stage="salient_points", scale=1, unit="NSS",
+              sentence=f"Where the background is kept out of the filters, maps are closer to gaze ({name}).",
+              where={"metric": "nss", "method": method}, first={"dataset": "gaze"}, second={"dataset": ON_BLACK})
+      for key, name, method in (("classical", "VisAtt", CLASSICAL), ("all", "VisAttAll", "VisAttAll"),
+                                ("ssim", "weights of table 3.1", ENHANCED))),
+    Claim(key="colour_parts_dkl", section="T3.1.5", stage="conspicuity",
+          sentence="Where objects have several hues, DKL is more than intensity.",
+          dataset=COLOURED, over=("item",), where={"metric": "intensity_likeness"},
+          first={"method": "dkl"}, second=ONE_HUE, scale=-1, unit="correlation with intensity, below that of one hue"),
+    *(in_colour(f"colour_{key}", f"Half of the points or more are found again without the colours ({name}).", method)
+      for key, name, method in (("classical", "VisAtt", CLASSICAL), ("all", "VisAttAll", "VisAttAll"))),
     svm_per_object("svm_per_object", "One SVM for each object is more accurate than one for all.",
                    "image", "pixels", "pixels"),
     svm_per_object("svm_per_object_unseen", "One SVM for each object is more accurate on what it has not seen, too.",

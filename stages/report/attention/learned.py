@@ -1,5 +1,6 @@
 """What was learned from the ground truth, beside the thesis: weights of channels (T table 3.1) and SVMs (T3.2.3)."""
 
+from contextlib import suppress
 from typing import Any
 
 import pandas as pd
@@ -8,7 +9,7 @@ from stages.kit.stats import interval
 from stages.report.grid import everywhere, grouped, percent, records
 from stages.report.items import Table
 from stages.report.markdown import number, with_interval
-from stages.report.results import Results, some
+from stages.report.results import COLOURED, NotRun, Results, some
 
 from .rows import MEAN
 
@@ -17,6 +18,7 @@ PRINTED = {"ssim": "guided_ssim", "one_minus_ed": "guided_ed"}  # columns of the
 TRAINING = {"one_for_all": "one for all", "one_per_object": "one per object", "one_per_viewpoint": "one per viewpoint"}
 VALIDATION = {"pixels": "random pixels", "views": "whole views", "objects": "whole objects"}
 AREA = {"image": "whole image", "object": "the object"}
+LIKENESS = {"grey_likeness": "in colour: r with itself in grey", "intensity_likeness": "in colour: r with intensity"}
 THESIS = {"one_svm_for_all_objects": "one_for_all", "one_svm_per_object": "one_per_object"}
 KEYS = ["dataset", "area", "training", "validation"]
 ORDER = {name: place for place, name in enumerate([*AREA, *TRAINING, *VALIDATION])}
@@ -42,8 +44,20 @@ def table_3_1(results: Results) -> Table:
             shown[f"{kind}: thesis"] = thesis[method].map(number)
         for dataset, objects in frame.groupby("dataset")["objects"].max().items():
             shown[f"{kind}: {dataset} ({objects})"] = wide.get((method, dataset), "not run")
+    with suppress(NotRun):
+        shown = shown.assign(**_in_colour(results)).fillna("–")
     tops = ", ".join(f"{channel} in {KINDS[str(method)]}" for method, channel in thesis.idxmax().items())
     return Table(frame, shown.reset_index(), {"tops": tops, "ranks": _ranks(frame)})
+
+
+def _in_colour(results: Results) -> dict[str, pd.Series]:
+    """Columns of table 3.1: what hues change in a channel's map, mean over the coloured objects."""
+    rows = results.measured("conspicuity", COLOURED, metric=list(LIKENESS))
+    return {
+        name: rows[rows["metric"] == metric].groupby("method")["value"]
+        .agg(lambda values: with_interval(*interval(values), places=2))
+        for metric, name in LIKENESS.items()
+    }  # fmt: skip
 
 
 def _gaze_first(results: Results, metric: str, missing: str) -> pd.DataFrame:

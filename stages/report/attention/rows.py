@@ -10,6 +10,7 @@ from stages.report.style import label
 
 OURS, HUMAN, CLASSICAL, THESIS = "enhanced", "human", "itti", "VisAttAll"
 PER_OBJECT = ("svm_object", "svm_viewpoint")  # T3.2.3: an SVM for the object itself
+BLACK = "-black"  # behind the name of a method: with the black background filtered together with the object
 SAME = ("VisAtt",)  # the classical model under the thesis's name
 ALONE = {"nss": "NSS", "auc": "AUC"}  # shown with their interval, and in which ours is compared with each other method
 MEAN, GAIN = ["mean", "low", "high"], ["gain", "gain_low", "gain_high"]  # columns: of a method, and over another
@@ -22,6 +23,8 @@ def has_seen(method: str) -> bool:
 
 def method_text(method: str) -> str:
     """A method's name as a person says it, with a star where it has seen the object."""
+    if method.endswith(BLACK):
+        return f"{label(method.removesuffix(BLACK))}, black background"
     name = "random points" if method == "random" else label(method)  # nobody touches here
     return f"{name} *" if has_seen(method) else name
 

@@ -15,7 +15,7 @@ from stages.report.verdict import judge
 from stages.report.words import dataset_text
 
 from .claims import CLAIMS
-from .methods import PLAIN, UNSEEN, fixed
+from .methods import PLAIN, QSLIM, UNSEEN, fixed
 from .rows import CELL, data_sets
 
 WORDS = {"supported": "yes", "contradicted": "no", "open": "open"}
@@ -24,11 +24,11 @@ MANY = 5  # methods that a rank correlation needs
 
 def build(results: Results) -> Table:
     """One row per claim, one column per data set, and the first set again where nothing shrank."""
-    sets = data_sets(results)
+    sets, within = data_sets(results), [claim for claim in CLAIMS if "dataset" not in claim.first]
     wanted = {dataset_text(name): (name, {}) for name in sets}
     wanted[f"{dataset_text(sets[0])}, nothing shrunk"] = sets[0], {"shrunk": False}
     parts = {
-        head: judge([replace(_said_of(claim, name), where={**claim.where, **where}) for claim in CLAIMS], results)
+        head: judge([replace(_said_of(claim, name), where={**claim.where, **where}) for claim in within], results)
         for head, (name, where) in wanted.items()
     }
     frame = pd.concat([part.assign(data=head, objects=part["pairs"]) for head, part in parts.items()])
@@ -121,7 +121,7 @@ def _errors(results: Results, claim: Claim, methods: tuple[str, ...], **where: o
 def _by_method(results: Results, claim: Claim, metric: str, column: str) -> pd.DataFrame:
     """Frame objects x methods of a column, mean over the targets that all methods reach; no objects without ranks."""
     rows = results.measured(claim.stage, claim.dataset, **claim.where, metric=metric)
-    rows = rows[[name != PLAIN and fixed(name) for name in rows["method"]]]
+    rows = rows[[name not in (PLAIN, QSLIM) and fixed(name) for name in rows["method"]]]
     reached = rows.groupby(CELL)["method"].transform("nunique")
     rows = rows[reached == rows["method"].nunique()]
     table = rows.pivot_table(index="item", columns="method", values=column)

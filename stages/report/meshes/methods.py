@@ -4,7 +4,7 @@ from collections.abc import Iterable
 
 from stages.report.style import WAYS, label
 
-PLAIN, OURS = "qem", "enhanced"
+PLAIN, QSLIM, OURS = "qem", "qslim", "enhanced"  # QSLIM: plain QEM without the fit of ours, the thesis's
 CLASSICAL = "itti"  # the classical model, VisAtt in the thesis
 ENHANCED = "thesis_ssim"  # the thesis's own: the average weighted with its SSIM weights
 HKS = "heat_kernel"
@@ -12,6 +12,7 @@ COMBINATIONS = (  # of channels, as the stages call them, in the order of T3.1.5
     CLASSICAL, "VisAttCurvP", "VisAttCurv", "Curv", "VisAttSymP", "VisAttSym", "SymLat", "SymRad", "2Sym",
     "VisAttCurvSym", "VisAttCon", "VisAttCurvSymCon", "VisAttEnt", "VisAttAll",
 )  # fmt: skip
+BY_AREA = (CLASSICAL, "VisAttCon", "VisAttCurvSymCon", "VisAttAll")  # whose neighbourhoods go by area, too (T3.1.3)
 SYMMETRIES = ("SymLat", "SymRad", "2Sym")
 # T2.2.3's detectors but the heat kernel signature, which T3.1.5 takes out of the claim ("except HKS approach").
 RIVALS = ("salient_points", "mesh_saliency", "sift", "harris", "corners")
@@ -44,6 +45,7 @@ def short(method: str) -> str:
 
 
 def ordered(methods: Iterable[str]) -> list[str]:
-    """The methods in the thesis's order (figure 3.6), then those with a way behind their name, plain QEM last."""
+    """The methods in the thesis's order (figure 3.6), then those with a way behind their name, QEM last."""
     order = [*NAMES, *(f"{name}-{way}" for name in NAMES for way in WAYS)]
-    return sorted(methods, key=lambda name: (name == PLAIN, order.index(name) if name in order else len(order), name))
+    plain = [PLAIN, QSLIM]
+    return sorted(methods, key=lambda name: (name in plain, order.index(name) if name in order else len(order), name))

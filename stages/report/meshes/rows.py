@@ -9,7 +9,7 @@ import pandas as pd
 from stages.kit.stats import interval
 from stages.report.grid import grouped, within
 from stages.report.markdown import with_interval
-from stages.report.results import Results, some
+from stages.report.results import ON_GREY, ON_WHITE, Results, some
 
 from .methods import PLAIN, UNSEEN
 
@@ -25,9 +25,16 @@ FEWEST = 3  # objects that a mean over objects needs to be shown
 
 
 def data_sets(results: Results, methods: Iterable[str] = ()) -> list[str]:
-    """The sets with meshes simplified by any of these methods (none: by any), those that are switched on first."""
+    """The sets with meshes simplified by any of these methods (none: by any), those that are switched on first.
+
+    Without those of one method on other backgrounds.
+    """
     names, wanted = results.datasets("lod"), set(methods)
-    found = [name for name in names if not wanted or wanted & set(results.rows("lod", name)["method"].replace(UNSEEN))]
+    found = [
+        name for name in names
+        if name not in (ON_GREY, ON_WHITE)
+        and (not wanted or wanted & set(results.rows("lod", name)["method"].replace(UNSEEN)))
+    ]  # fmt: skip
     return some(found, "no measurements of lod", "lod")
 
 

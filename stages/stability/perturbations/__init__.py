@@ -9,7 +9,7 @@ from .image_size import image_size
 from .light import light
 from .missing_faces import missing_faces
 from .noise import noise
-from .paint import paint, pattern
+from .paint import clay, grey, paint, pattern
 from .perturbed import Conditions, Perturbation, Perturbed
 from .remeshing import remeshing
 from .rotation import tilt, turn
@@ -32,6 +32,8 @@ PERTURBATIONS = {
     "background_left_in": Perturbation("brightness, 0 black to 1 white", 0.0, background_left_in),
     "paint": Perturbation("saturation of the colour", 0.0, paint),
     "pattern": Perturbation("saturation of two colours", 0.0, pattern),
+    "grey": Perturbation("share of the hue taken away", 0.0, grey),
+    "clay": Perturbation("share of the colour taken away", 0.0, clay),
     "image_size": Perturbation("share of the image's rows", 1.0, image_size),
 }
 

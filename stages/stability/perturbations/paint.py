@@ -1,4 +1,4 @@
-"""Colours, which the thesis's grey objects do not have: one for the whole object, or a pattern of two."""
+"""Colours, which the thesis's grey objects do not have: one for the whole object, or a pattern of two; or none."""
 
 import colorsys
 
@@ -26,6 +26,24 @@ def pattern(mesh: Mesh, severity: float, generator: np.random.Generator) -> Pert
     height = np.cos(mesh.vertices @ waves.T + generator.uniform(0, 2 * np.pi, WAVES)).sum(axis=1)
     two = np.stack([_colour(hue, saturation), _colour(hue + 0.5, saturation)])
     return _painted(mesh, two[(height > 0).astype(int)])
+
+
+def grey(mesh: Mesh, severity: float, _generator: np.random.Generator) -> Perturbed:
+    """The object's own colours without a share `severity` of their hue; their brightness stays."""
+    return _faded(mesh, severity, lambda colors: colors.mean(axis=1, keepdims=True))
+
+
+def clay(mesh: Mesh, severity: float, _generator: np.random.Generator) -> Perturbed:
+    """The object's own colours moved by a share `severity` to the even grey of objects without colours."""
+    return _faded(mesh, severity, lambda colors: GREY)
+
+
+def _faded(mesh, severity, target):
+    if mesh.colors is None:
+        raise ValueError("has no colours to take away: run it on a set with meshes.colours=own")
+    share, colors = in_range(severity, 0, 1, "the share of colour taken away"), mesh.colors.astype(np.float64)
+    faded = np.rint((1 - share) * colors + share * target(colors)).astype(np.uint8)
+    return Perturbed(Mesh(mesh.vertices, mesh.faces, faded), mesh.vertices)
 
 
 def _directions(generator):
