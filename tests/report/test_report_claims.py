@@ -139,16 +139,16 @@ def test_best_and_worst_rival_are_picked_by_their_means_and_never_the_other_side
 
 
 def test_relative_differences_are_matched_within_a_unit_and_then_averaged(root, small):
-    columns = {"item": list("aaaa"), "target": [1, 1, 2, 2], "method": ["x", "y"] * 2, "value": [3, 1, 0, 0]}
+    columns = {"item": list("aaaa"), "target": ["1", "1", "2", "2"], "method": ["x", "y"] * 2, "value": [3, 1, 0, 0]}
     sides = {"first": {"method": "x"}, "second": {"method": "y"}}
     found = differences(values(root, small, **columns), claim(**sides, within=("target",), relative=True))
     assert found.to_dict() == {"a": 0.5}  # 2 / 2 at the first target, 0 where both are zero
 
 
 def test_contrast_is_a_difference_of_differences(root, small):
-    columns = {"item": list("aaaa"), "target": [1, 1, 2, 2], "method": ["x", "y"] * 2, "value": [3, 1, 2, 1]}
+    columns = {"item": list("aaaa"), "target": ["1", "1", "2", "2"], "method": ["x", "y"] * 2, "value": [3, 1, 2, 1]}
     sides = {"first": {"method": "x"}, "second": {"method": "y"}}
-    found = differences(values(root, small, **columns), claim(**sides, contrast=({"target": 1}, {"target": 2})))
+    found = differences(values(root, small, **columns), claim(**sides, contrast=({"target": "1"}, {"target": "2"})))
     assert found.tolist() == [1.0]
 
 
@@ -275,7 +275,7 @@ def test_every_verdict_can_be_recomputed_from_the_differences(root, results, sma
     claims = pd.read_csv(root / "reports/claims.csv")
     stored = pd.read_csv(root / "reports/claims/differences.csv.gz", dtype={"pair": str})
     found = {key: part["difference"] for key, part in stored.groupby("key", sort=False)}
-    assert set(found) == set(claims.loc[claims["pairs"] > 0, "key"]) and len(found) > 10
+    assert set(found) == set(claims.loc[claims["pairs"] > 0, "key"]) and len(found) > 5
     for row in claims[claims["pairs"] > 0].itertuples():
         mean, low, high = interval(found[row.key], row.shared)
         assert len(found[row.key]) == row.pairs and verdict(low, high) == row.verdict
