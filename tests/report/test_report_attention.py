@@ -17,7 +17,7 @@ from stages.report.meshes.methods import COMBINATIONS
 from stages.report.meshes.rows import paired_cells
 from stages.report.meshes.simplification import METHODS
 from stages.report.pareto import pareto_chart
-from stages.report.results import NotRun
+from stages.report.results import COLOURED, ON_BLACK, NotRun
 from stages.report.style import colours
 from stages.report.topics import CLAIMS, TOPICS, build_all, build_one
 from stages.report.verdict import judge
@@ -137,6 +137,24 @@ def test_learned_weights_of_all_sets_make_the_table_and_gaze_comes_first(seen, r
     assert set(table_of(seen, "table_3_1").frame["dataset"]) == {"gaze"}
     small.write(root, "weights", seen.rows("weights", "gaze"), "household")
     assert list(dict.fromkeys(table_of(small.results(root), "table_3_1").frame["dataset"])) == ["gaze", "household"]
+
+
+def test_what_hues_change_stands_beside_the_weights_and_a_flat_map_has_none(seen, root, small):
+    rows = [
+        {"item": item, "method": "dkl", "metric": "grey_likeness", "value": value}
+        for item, value in zip("ab", (0.4, 0.6), strict=True)
+    ]
+    small.write(root, "conspicuity", pd.DataFrame([*rows, rows[0] | {"method": "color", "value": None}]), COLOURED)
+    shown = table_of(small.results(root), "table_3_1").shown.set_index("channel")["in colour: r with itself in grey"]
+    assert shown["dkl"].startswith("0.50 [") and shown["color"] == "–"
+
+
+def test_methods_on_black_stand_in_the_table_and_in_no_sentence(seen, root, small):
+    before = table_of(seen, "attention_gaze")
+    small.write(root, "salient_points", small.judged().query("method == 'itti'"), ON_BLACK)
+    after = table_of(small.results(root), "attention_gaze")
+    assert set(after.shown["method"]) - set(before.shown["method"]) == {"visual attention, black background"}
+    assert after.notes == before.notes
 
 
 def test_accuracy_of_the_thesis_stands_beside_its_own_way_only(seen):
