@@ -141,11 +141,11 @@ def test_marks_of_another_mesh_leave_the_object_out_with_a_note(workspace, objec
 
 
 def test_maps_without_a_feature_of_our_model_leave_the_object_out_with_a_note(
-    add_object, workspace, capsys, monkeypatch
+    add_object, make_workspace, capsys, monkeypatch
 ):
     monkeypatch.setitem(globals(), "CHANNELS", ["edge"])
     add_object("ball", 1, [3, 4, 5])
-    stage.run(workspace)
+    stage.run(make_workspace(SECTIONS | {"weights": {"method": "gaze"}}))
     assert "ball is left out: conspicuity.channels lacks symmetry" in capsys.readouterr().err
 
 
