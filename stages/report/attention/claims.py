@@ -12,6 +12,8 @@ ONE_HUE = 0.98  # the least correlation of DKL with intensity on four household 
 ENHANCED = "thesis_ssim"  # the thesis's own: the average weighted with its SSIM weights
 PHRASES = {
     ("method", OURS): "our model of gaze", ("method", "VisAttAll"): "VisAttAll",
+    ("metric", "repeatability"): "points found again", ("perturbation", "clay"): "with the colours taken away",
+    ("metric", "intensity_likeness"): "",
     ("area", "image"): "random pixels of the whole image", ("area", "object"): "the object's pixels",
     ("training", "one_per_object"): "an object's own SVM", ("training", "one_for_all"): "the one for all",
     ("validation", "pixels"): "", ("validation", "views"): "on whole views left out",
@@ -56,9 +58,9 @@ CLAIMS = [
       for key, name, method in (("classical", "VisAtt", CLASSICAL), ("all", "VisAttAll", "VisAttAll"),
                                 ("ssim", "weights of table 3.1", ENHANCED))),
     Claim(key="colour_parts_dkl", section="T3.1.5", stage="conspicuity",
-          sentence="Where objects have several hues, DKL is more than intensity.",
+          sentence="Even where objects have several hues, DKL is as close to intensity as in one hue.",
           dataset=COLOURED, over=("item",), where={"metric": "intensity_likeness"},
-          first={"method": "dkl"}, second=ONE_HUE, scale=-1, unit="correlation with intensity, below that of one hue"),
+          first={"method": "dkl"}, second=ONE_HUE, scale=1, unit="correlation with intensity", phrases=PHRASES),
     *(in_colour(f"colour_{key}", f"Half of the points or more are found again without the colours ({name}).", method)
       for key, name, method in (("classical", "VisAtt", CLASSICAL), ("all", "VisAttAll", "VisAttAll"))),
     svm_per_object("svm_per_object", "One SVM for each object is more accurate than one for all.",
