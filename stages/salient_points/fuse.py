@@ -17,8 +17,10 @@ COMBINATIONS = {
     "VisAttEnt": (*CLASSICAL, "entropy"),
     "VisAttAll": (*CLASSICAL, "contrast", "curvature", "dkl", "entropy", "symmetry"),
     "Curv": ("curvature",),
-    "VisAttNoColour": ("intensity", "orientation"),  # T figure 3.3a
-    "VisAttAllNoColour": ("intensity", "orientation", "contrast", "curvature", "entropy", "symmetry"),
+}
+WITHOUT_COLOUR = {  # T figure 3.3a
+    f"{name}NoColour": tuple(channel for channel in COMBINATIONS[name] if channel not in ("color", "dkl"))
+    for name in ("VisAtt", "VisAttAll")
 }
 
 

@@ -15,7 +15,7 @@ from stages.weights.features import CHANNEL_FEATURES
 from stages.weights.published import ENHANCED
 
 from .farthest import FarthestPoints
-from .fuse import COMBINATIONS
+from .fuse import COMBINATIONS, WITHOUT_COLOUR
 from .fused import FusedDetector, MergedDetector, SvmDetector, WeightedDetector
 from .options import Detection, Detector, Options
 from .positions import centre_distance, facing_viewer, height
@@ -44,7 +44,7 @@ METHODS: dict[str, Detector] = {
     ENHANCED: FixationDetector(ENHANCED, CHANNEL_FEATURES),
     "itti": FusedDetector(COMBINATIONS["VisAtt"]),
     "random": RandomPoints(),
-    **{name: FusedDetector(channels) for name, channels in COMBINATIONS.items()},
+    **{name: FusedDetector(channels) for name, channels in (COMBINATIONS | WITHOUT_COLOUR).items()},
     "VisAttCurvP": MergedDetector(FusedDetector(COMBINATIONS["VisAtt"]), FusedDetector(COMBINATIONS["Curv"])),
     "VisAttSymP": MergedDetector(FusedDetector(COMBINATIONS["VisAtt"]), FusedDetector(["symmetry"])),
     **{name: FusedDetector([channel]) for name, channel in SYMMETRIES.items()},

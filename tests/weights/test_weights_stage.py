@@ -140,6 +140,15 @@ def test_marks_of_another_mesh_leave_the_object_out_with_a_note(workspace, objec
     assert not (workspace.data / "weights/svm/egg.npz").exists()
 
 
+def test_maps_without_a_feature_of_our_model_leave_the_object_out_with_a_note(
+    add_object, make_workspace, capsys, monkeypatch
+):
+    monkeypatch.setitem(globals(), "CHANNELS", ["edge"])
+    add_object("ball", 1, [3, 4, 5])
+    stage.run(make_workspace(SECTIONS | {"weights": {"method": "gaze"}}))
+    assert "ball is left out: conspicuity.channels lacks symmetry" in capsys.readouterr().err
+
+
 def test_without_ground_truth_only_the_published_weights_are_written(add_object, make_workspace):
     add_object("plain", 0.6)
     workspace = make_workspace(SECTIONS | {"weights": {"method": "gaze"}})
