@@ -14,7 +14,8 @@ DATASETS = {
     SECTION_3_1: "household as in T3.1", SECTION_4_2: "household as in T4.2",
     "gaze": "meshes with human gaze", "princeton": "psb", "princeton_eight": "psb, the thesis's 8 classes",
     "princeton_six": "psb, the thesis's 6 classes", "pressure_images": "recorded pressure array",
-    "biotac_grasps": "recorded fingertips",
+    "biotac_grasps": "recorded fingertips", "household_denoised": "household, denoised",
+    "furniture_hands": "furniture, several arrays or touches",
 }  # fmt: skip
 NAMED = ("method", "classifier", "network")  # columns whose values have a label
 
