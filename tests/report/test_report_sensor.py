@@ -97,4 +97,4 @@ def test_two_arrays_and_several_touches_are_said_beside_the_single_ones(root, re
     said = ["16 x 16 and 12 x 12 at 0.005", "16 x 16, five in a salient region", "16 x 16, five separate points"]
     assert set(said) < set(shown["cells"])
     judged = judge(claims.CLAIMS, results).set_index("key")
-    assert judged.loc["two_sizes_over_coarse", "effect"] == pytest.approx(20, abs=0.5)
+    assert judged.loc["wide_hand_over_coarse", "effect"] == pytest.approx(20, abs=0.5)

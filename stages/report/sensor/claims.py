@@ -15,6 +15,7 @@ PHRASES = {
     ("fine", None): "",
     ("extent", None): "",
     ("fine", "12-0.005"): "with 12 x 12 cells 0.005 apart",
+    ("fine", "12-0.002"): "with 12 x 12 cells 0.002 apart",
     ("cells", 20): "20 x 20",
     ("pitch", 0.005): "0.005 apart",
     ("extent", "points"): "at separate points",
@@ -25,7 +26,6 @@ PHRASES = {
 claim = partial(Claim, section="T4.3.2", stage=STAGE, where=UNSEEN, over=("item",), phrases=PHRASES, note=ALL)
 larger = partial(claim, first={"cells": LARGE}, second={"cells": SMALL})
 HANDS = "furniture_hands"
-TWO_SIZES = {"cells": SMALL, "pitch": 2 * COARSE, "fine": "12-0.005"}
 EQUAL = {"cells": 20, "fine": None, "extent": None}  # as many cells as 16 x 16 and 12 x 12
 AROUND = {"cells": SMALL, "pitch": COARSE}
 hands = partial(claim, section="T6.3", dataset=HANDS, note="mean of both classifiers")
@@ -48,11 +48,12 @@ CLAIMS = [
     claim(key="finer_sensor_enough", section="ours", first={"cells": SMALL, "pitch": 2 * COARSE}, second=BEST,
           sentence="Half the cells at twice the distance are as good: the width counts, not the cells."),
     *(
-        hands(key=f"two_sizes_over_{word}", first=TWO_SIZES, second=EQUAL | {"pitch": pitch},
-              sentence=f"With as many cells in all, coarse and fine cells on one hand are better than {words}.")
-        for word, pitch, words in (
-            ("fine", 0.005, "one array of fine cells"), ("coarse", 2 * COARSE, "one array of coarse cells"),
-        )
+        hands(key=f"{hand}_hand_over_{cells}", first={"cells": SMALL, "pitch": coarse, "fine": f"12-{fine}"},
+              second=EQUAL | {"pitch": pitch},
+              sentence=f"With as many cells in all, coarse and fine cells on one {hand} hand are better than one array "
+              f"of {cells} cells.")
+        for hand, coarse, fine in (("wide", 2 * COARSE, 0.005), ("narrow", COARSE, FINE))
+        for cells, pitch in (("coarse", coarse), ("fine", fine))
     ),
     *(
         hands(key=f"region_over_{other}", first=AROUND | {"extent": "region"}, second=AROUND | {"extent": other},
