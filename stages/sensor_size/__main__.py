@@ -28,7 +28,7 @@ from stages.kit.workspace import Workspace
 from stages.meshes.classes import read_classes
 from stages.salient_points import read_points, read_saliency
 
-from .extent import sample_vertices
+from .extent import ARRAY, EXTENTS, TOUCHES, sample_vertices
 from .protocol import evaluate
 from .schema import COLUMNS, Params
 from .smallest import choice_repeatability, smallest_sufficient
@@ -52,7 +52,7 @@ def process(item: str, folder: Path, data: Path, classes: Mapping[str, list[str]
     rows = [{"metric": "seconds_a_touch", "value": watch.seconds / count, "seconds": watch.seconds}]
     # One thread gives equal sums on any number of cores. The fits of trees are so small that checks would take longer.
     with threadpool_limits(1), config_context(assume_finite=True, skip_parameter_validation=True):
-        rows += evaluate(imprints, settings.classifiers, seed, settings.extent_touches if extent else 1)
+        rows += evaluate(imprints, settings.classifiers, seed, TOUCHES if extent else 1)
     for row in rows[1:]:
         row["item"] = classes[row["group"]][row["item"]]
     common = {"method": settings.method, "cells": cells, "pitch": pitch, "touches": settings.touches}
@@ -82,8 +82,7 @@ def touch(
     chosen = chosen[touchable(mesh, chosen)]
     if extent:
         saliency = read_saliency(data / f"salient_points/{name}.npz")[settings.method]
-        count, share = settings.extent_touches, settings.extent_share
-        chosen = sample_vertices(mesh, saliency, chosen, extent, count, share, rng(seed, f"{extent} {name}"))
+        chosen = sample_vertices(mesh, saliency, chosen, extent, rng(seed, f"{extent} {name}"))
     pressed = [press_many(mesh, chosen, (cells, cells), pitch) for cells, pitch in arrays]
     return np.concatenate([images.reshape(len(chosen), -1) for images in pressed], axis=1)
 
@@ -127,10 +126,12 @@ def smallest_row(classifier: str, cells: int, pitch: float, accuracy: float, aga
 def run(workspace: Workspace) -> None:
     """Runs the stage on the data set of a workspace."""
     settings = workspace.settings(Params)
+    if not set(settings.extents) <= set(EXTENTS):
+        raise ValueError(f"sensor_size.extents: {', '.join(settings.extents)}; choose from {', '.join(EXTENTS)}")
     with StageRun(workspace, "sensor_size", COLUMNS, inputs=("meshes", "salient_points")) as stage:
         classes = chosen_classes(read_classes(workspace.data / "meshes"), settings.classes)
         items = [f"{cells}-{pitch}" for cells in settings.cells for pitch in settings.pitches]
-        items += [*settings.pairs, *(f"{settings.extent_array}:{extent}" for extent in settings.extents)]
+        items += [*settings.pairs, *(f"{ARRAY}:{extent}" for extent in settings.extents)]
         work = functools.partial(process, data=workspace.data, classes=classes, settings=settings, seed=stage.seed)
         rows = stage.each(work, items, reads=("meshes", "salient_points"))
         found = summary(rows, settings.slack, stage.seed)

@@ -24,8 +24,5 @@ class Params:
     pitches: list[float]  # distances of two sensels that are tried, in units of the mesh
     pairs: list[str]  # two arrays of one hand, pressed at the same place: CELLS-PITCH+CELLS-PITCH, the fine one last
     extents: list[str]  # where the touches of a sample lie, which vote: names of stages.sensor_size.extent.EXTENTS
-    extent_array: str  # CELLS-PITCH of the array that they are tried with
-    extent_touches: int  # of a sample
-    extent_share: float  # of a point's saliency, above which its surroundings are one region
     classifiers: list[str]  # names of stages.sensor_size.CLASSIFIERS
     slack: float  # accuracy that the smallest sensor may lack of the best one's

@@ -135,15 +135,15 @@ def test_loading_code_is_no_part_of_a_touchs_seconds(monkeypatch, tmp_path):
     done = []
     monkeypatch.setattr(stage, "warm_up", lambda: done.append("loaded"))
     monkeypatch.setattr(stage, "touch", lambda *_: done.append("touched") or np.random.default_rng(0).random((9, 8, 8)))
-    settings = SimpleNamespace(method="enhanced", touches=9, classifiers=["knn"], extent_touches=5)
+    settings = SimpleNamespace(method="enhanced", touches=9, classifiers=["knn"])
     stage.process("8-0.01", tmp_path, tmp_path, {"a": ["a1", "a2"], "b": ["b1", "b2"]}, settings, 0)
     assert done[0] == "loaded" and done.count("touched") == 4
 
 
 def test_the_stage_tests_each_object_of_the_classes(make_workspace):
     settings = {"classes": [], "method": "salient", "touches": 12, "cells": [4], "pitches": [0.02], "slack": 0.02}
-    settings |= {"pairs": ["4-0.02+3-0.01"], "extents": ["region"], "extent_array": "4-0.02", "extent_touches": 3}
-    workspace = make_workspace({"sensor_size": settings | {"classifiers": ["knn"], "extent_share": 0.8}})
+    settings |= {"pairs": ["4-0.02+3-0.01"], "extents": ["region"]}
+    workspace = make_workspace({"sensor_size": settings | {"classifiers": ["knn"]}})
     sizes = {"cube": (0.5, 0.5, 0.5), "brick": (0.5, 0.4, 0.5), "stick": (0.1, 0.1, 0.6), "pole": (0.12, 0.1, 0.6)}
     for name, size in sizes.items():
         box = trimesh.creation.box(size).subdivide().subdivide()
@@ -184,3 +184,10 @@ def test_touches_of_one_sample_are_held_out_together():
     rows = [row for row in evaluate(imprints, ["knn"], votes=3) if row["split"] == "random"]
     assert len(rows) == 4 and all(row["value"] * 2 == int(row["value"] * 2) for row in rows)
     assert np.mean([row["value"] for row in rows]) < 1
+
+
+def test_an_unknown_extent_is_refused_with_those_that_there_are(make_workspace):
+    settings = {"classes": [], "method": "salient", "touches": 12, "cells": [4], "pitches": [0.02], "slack": 0.02}
+    settings |= {"pairs": [], "extents": ["cube"], "classifiers": ["knn"]}
+    with pytest.raises(ValueError, match="cube; choose from points, region, disc"):
+        stage.run(make_workspace({"sensor_size": settings}))
