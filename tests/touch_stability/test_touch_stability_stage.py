@@ -67,6 +67,7 @@ def test_clean_touches_are_told_apart_and_pure_noise_is_not(run):
     assert means[CLEAN, 0.0] > 0.9 and means["noise", 1.0] < 0.7
 
 
+@pytest.mark.slow
 def test_denoised_touches_are_asked_about_beside_the_others(run):
     rows, other = run(denoisers=["median"], severities={"noise": [0.2]}), run(severities={"noise": [0.2]})
     cleaned = rows["features"] == "imprint_median"
