@@ -17,6 +17,7 @@ DATASETS = {
     "gaze": "meshes with human gaze", "princeton": "psb",
     "princeton_eight": "psb, the thesis's 8 classes", "princeton_six": "psb, the thesis's 6 classes",
     "pressure_images": "recorded pressure array", "biotac_grasps": "recorded fingertips",
+    "household_denoised": "household, denoised", "furniture_hands": "furniture, several arrays or touches",
 }  # fmt: skip
 NAMED = ("method", "classifier", "network")  # columns whose values have a label
 

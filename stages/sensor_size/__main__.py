@@ -20,34 +20,43 @@ from stages.imprints import press_many, touchable, warm_up
 from stages.kit import Stopwatch
 from stages.kit.command import workspace_of_arguments
 from stages.kit.files import read_mesh
+from stages.kit.rng import rng
 from stages.kit.run import Rows, StageRun
 from stages.kit.split import Split
 from stages.kit.stats import interval_metrics
 from stages.kit.workspace import Workspace
 from stages.meshes.classes import read_classes
-from stages.salient_points import read_points
+from stages.salient_points import read_points, read_saliency
 
+from .extent import ARRAY, EXTENTS, TOUCHES, sample_vertices
 from .protocol import evaluate
 from .schema import COLUMNS, Params
 from .smallest import choice_repeatability, smallest_sufficient
 
 
 def process(item: str, folder: Path, data: Path, classes: Mapping[str, list[str]], settings: Params, seed: int) -> Rows:
-    """One array, CELLS-PITCH: presses it on every object and tests all classifiers; the rows."""
-    cells, pitch = parts(item)
+    """One array, CELLS-PITCH, two of them joined by +, or one with :EXTENT behind it: the rows of all classifiers.
+
+    Presses it on every object.
+    """
+    array, _, extent = item.partition(":")
+    arrays = [parts(one) for one in array.split("+")]
+    (cells, pitch), fine = arrays[0], "+".join(array.split("+")[1:])
     warm_up()
     with Stopwatch() as watch:
         imprints = {
-            label: [touch(name, data, cells, pitch, settings) for name in names] for label, names in classes.items()
+            label: [touch(name, data, arrays, extent, settings, seed) for name in names]
+            for label, names in classes.items()
         }
     count = sum(len(images) for objects in imprints.values() for images in objects)
     rows = [{"metric": "seconds_a_touch", "value": watch.seconds / count, "seconds": watch.seconds}]
     # One thread gives equal sums on any number of cores. The fits of trees are so small that checks would take longer.
     with threadpool_limits(1), config_context(assume_finite=True, skip_parameter_validation=True):
-        rows += evaluate(imprints, settings.classifiers, seed)
+        rows += evaluate(imprints, settings.classifiers, seed, TOUCHES if extent else 1)
     for row in rows[1:]:
         row["item"] = classes[row["group"]][row["item"]]
     common = {"method": settings.method, "cells": cells, "pitch": pitch, "touches": settings.touches}
+    common |= {"fine": fine or None, "extent": extent or None}
     return [common | row for row in rows]
 
 
@@ -57,14 +66,25 @@ def parts(item: str) -> tuple[int, float]:
     return int(cells), float(pitch)
 
 
-def touch(name: str, data: Path, cells: int, pitch: float, settings: Params) -> np.ndarray:
-    """(k, cells, cells) imprints of one object at its most salient points that can be touched. data: data/SET."""
+def touch(
+    name: str, data: Path, arrays: Sequence[tuple[int, float]], extent: str, settings: Params, seed: int
+) -> np.ndarray:
+    """(k, values) imprints of one object at its most salient points that can be touched. data: data/SET.
+
+    arrays: (cells a side, pitch) of those whose imprints of a place stand side by side; extent: where the touches of a
+    sample lie, empty for one touch a sample.
+    """
     mesh, points = read_mesh(data / f"meshes/{name}.npz"), read_points(data / f"salient_points/{name}.npz")
     if settings.method not in points:
         known = ", ".join(points)
         raise ValueError(f"sensor_size.method={settings.method} is not among salient_points.methods: {known}")
     chosen = points[settings.method][: settings.touches]
-    return press_many(mesh, chosen[touchable(mesh, chosen)], (cells, cells), pitch)
+    chosen = chosen[touchable(mesh, chosen)]
+    if extent:
+        saliency = read_saliency(data / f"salient_points/{name}.npz")[settings.method]
+        chosen = sample_vertices(mesh, saliency, chosen, extent, rng(seed, f"{extent} {name}"))
+    pressed = [press_many(mesh, chosen, (cells, cells), pitch) for cells, pitch in arrays]
+    return np.concatenate([images.reshape(len(chosen), -1) for images in pressed], axis=1)
 
 
 def chosen_classes(found: Mapping[str, list[str]], wanted: Sequence[str]) -> dict[str, list[str]]:
@@ -82,7 +102,8 @@ def summary(rows: Rows, slack: float, seed: int) -> dict[str, Any]:
     values: defaultdict[str, defaultdict[tuple[int, float], list[float]]] = defaultdict(lambda: defaultdict(list))
     tree = {}
     for row in rows:
-        if row["metric"] == "accuracy" and row["split"] == Split.OBJECTS:
+        single = not (row.get("fine") or row.get("extent"))
+        if single and row["metric"] == "accuracy" and row["split"] == Split.OBJECTS:
             values[row["classifier"]][row["cells"], row["pitch"]].append(row["value"])
     for name, scores in sorted(values.items()):
         arrays = {}
@@ -105,9 +126,12 @@ def smallest_row(classifier: str, cells: int, pitch: float, accuracy: float, aga
 def run(workspace: Workspace) -> None:
     """Runs the stage on the data set of a workspace."""
     settings = workspace.settings(Params)
+    if not set(settings.extents) <= set(EXTENTS):
+        raise ValueError(f"sensor_size.extents: {', '.join(settings.extents)}; choose from {', '.join(EXTENTS)}")
     with StageRun(workspace, "sensor_size", COLUMNS, inputs=("meshes", "salient_points")) as stage:
         classes = chosen_classes(read_classes(workspace.data / "meshes"), settings.classes)
         items = [f"{cells}-{pitch}" for cells in settings.cells for pitch in settings.pitches]
+        items += [*settings.pairs, *(f"{ARRAY}:{extent}" for extent in settings.extents)]
         work = functools.partial(process, data=workspace.data, classes=classes, settings=settings, seed=stage.seed)
         rows = stage.each(work, items, reads=("meshes", "salient_points"))
         found = summary(rows, settings.slack, stage.seed)

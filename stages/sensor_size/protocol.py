@@ -13,12 +13,14 @@ HOLDOUT = 0.25  # T4.2.4
 SEEDS = {Split.OBJECTS: "accuracy", Split.RANDOM: "accuracy_holdout"}  # words on which the random numbers depend
 
 
-def evaluate(imprints: dict[str, list[np.ndarray]], names: list[str], seed: int = 0) -> list[dict]:
+def evaluate(imprints: dict[str, list[np.ndarray]], names: list[str], seed: int = 0, votes: int = 1) -> list[dict]:
     """Accuracy of classifiers that name the class of an object by one touch: a list of row dicts.
 
-    imprints: {class: [(k, rows, cols) of each object]}, at least two classes of two objects or more; names: of
-    CLASSIFIERS. Inputs are ten principal components of the vectorised imprints (T4.3.1), fitted to the training
-    touches. They are not standardised, since the later ones are small because they contain little information.
+    imprints: {class: [(k, rows, cols) or (k, values) of each object]}, at least two classes of two objects or more;
+    names: of CLASSIFIERS. votes: how many touches, one after another, make one sample, whose class is the one that most
+    of them are taken for, of equals the one named first; they are held out together. Inputs are ten principal
+    components of the vectorised imprints (T4.3.1), fitted to the training touches. They are not standardised, since the
+    later ones are small because they contain little information.
     A row holds classifier, split, fold, group (the class), item (the object's number in its class), metric (accuracy),
     value (over that object's test touches) and seconds (training and prediction of the whole fold, without the
     components). Split `objects` tests unseen objects: fold i tests the i-th object of every class and trains on all
@@ -28,22 +30,27 @@ def evaluate(imprints: dict[str, list[np.ndarray]], names: list[str], seed: int 
     """
     check_imprints(imprints)
     rows = []
-    for split, fold, train, test in _splits(imprints, seed):
+    for split, fold, train, test in _splits(imprints, seed, votes):
         samples, test_samples = _components([images for _, images in train], [images for *_, images in test])
         labels = np.repeat([label for label, _ in train], [len(images) for _, images in train])
-        ends = np.cumsum([len(images) for *_, images in test])[:-1]
+        ends = np.cumsum([len(images) // votes for *_, images in test])[:-1]
         random_state = int(rng(seed, f"{SEEDS[split]} {fold}").integers(2**31))
         for name in names:
             model = classifier(name, random_state)
             with Stopwatch() as watch:
-                answers = np.split(model.fit(samples, labels).predict(test_samples), ends)
+                answers = np.split(majority(model.fit(samples, labels).predict(test_samples), votes), ends)
             common = {"classifier": name, "split": split, "fold": fold, "metric": "accuracy", "seconds": watch.seconds}
             rows += [{**common, "group": label, "item": index, "value": float((answer == label).mean())}
                      for (label, index, _), answer in zip(test, answers, strict=True)]  # fmt: skip
     return rows
 
 
-def _splits(imprints, seed):
+def majority(answers: np.ndarray, votes: int) -> np.ndarray:
+    """(k // votes,) the most frequent of each `votes` answers (k,), of equals the first."""
+    return np.array([max(some, key=some.count) for some in answers.reshape(-1, votes).tolist()])
+
+
+def _splits(imprints, seed, votes):
     """Yields (split, fold, [(class, images) to train on], [(class, object's number, images) to test])."""
     objects = [(label, index, images) for label in sorted(imprints) for index, images in enumerate(imprints[label])]
     for fold in range(max(map(len, imprints.values()))):
@@ -51,10 +58,11 @@ def _splits(imprints, seed):
         yield Split.OBJECTS, fold, train, [each for each in objects if each[1] == fold]
     train, test = [], []
     for label, index, images in objects:
-        order = rng(seed, f"touches of {label} {index}").permutation(len(images))
+        order = rng(seed, f"touches of {label} {index}").permutation(len(images) // votes)
         held_out, kept = np.split(order, [max(1, round(HOLDOUT * len(order)))])
-        train.append((label, images[kept]))
-        test.append((label, index, images[held_out]))
+        groups = np.arange(len(images)).reshape(-1, votes)
+        train.append((label, images[groups[kept].ravel()]))
+        test.append((label, index, images[groups[held_out].ravel()]))
     yield Split.RANDOM, 0, train, test
 
 

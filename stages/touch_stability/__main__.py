@@ -2,10 +2,10 @@
 
 Reads meshes, imprints, salient_points and lod of the objects of one group (classification.sets) in data/SET.
 Classifiers train on clean touches and recognise disturbed ones of other places; where the model is coarse, or touches
-are few, the training touches are disturbed. Writes data/SET/touch_stability/NAME.npz (features and, of the first
-touches, imprints, of every perturbation and severity) and reports/measurements/SET/touch_stability.csv.gz: one row per
-split, classifier, perturbation, severity and repetition; `none` is clean touches, severity 0. The metrics hold the
-breaking points: the severity at which half of the lead over guessing is lost.
+are few, the training touches are disturbed. Writes data/SET/touch_stability/NAME.npz (features and imprints, of
+disturbed touches only the first ones where nothing is denoised) and reports/measurements/SET/touch_stability.csv.gz:
+one row per split, features, classifier, perturbation, severity and repetition; `none` is clean touches, severity 0.
+The metrics hold the breaking points: the severity at which half of the lead over guessing is lost.
 """
 
 import functools
@@ -25,6 +25,7 @@ from stages.kit.packs import is_there
 from stages.kit.run import Rows, StageRun
 from stages.kit.workspace import Workspace
 
+from .denoisers import DENOISERS
 from .one_object import process
 from .perturbations import PERTURBATIONS
 from .recognition import CLEAN
@@ -60,6 +61,9 @@ def check(settings: Params, sets: Mapping[str, list[str]]) -> None:
     unknown = [name for name in settings.severities if name not in PERTURBATIONS]
     if unknown:
         raise ValueError(f"touch_stability.severities: {', '.join(unknown)}; choose from {', '.join(PERTURBATIONS)}")
+    odd = [name for name in settings.denoisers if name not in DENOISERS]
+    if odd:
+        raise ValueError(f"touch_stability.denoisers: {', '.join(odd)}; choose from {', '.join(DENOISERS)}")
     strange = [name for name in settings.classifiers if name not in CLASSIFIERS]
     if strange:
         raise ValueError(f"touch_stability.classifiers: {', '.join(strange)}; choose from {', '.join(CLASSIFIERS)}")

@@ -36,7 +36,7 @@ def process(name: str, folder: Path, data: Path, settings: Params, count: int, s
     """Writes all disturbed touches of one object; returns a row per severity that is not available."""
     touches, rows = touches_of(name, data, settings, count, seed), []
     kept = {"clean": features(touches.images), "positions": touches.positions}
-    kept["shown.clean"] = touches.images[:STORED_IMPRINTS]
+    kept |= {"images.clean": touches.images, "shown.clean": touches.images[:STORED_IMPRINTS]}
     for key, severity in perturbation_severities(settings.severities):
         perturbation = PERTURBATIONS[key]
         for draw in range(DRAWS if perturbation.random_draws else 1):
@@ -50,6 +50,8 @@ def process(name: str, folder: Path, data: Path, settings: Params, count: int, s
                 rows.append(where | {"metric": "accuracy", "value": None, "note": note})
                 break
             kept[f"{key}.{severity:g}.{draw}"] = features(perturbed.images)
+            if settings.denoisers:
+                kept[f"images.{key}.{severity:g}.{draw}"] = perturbed.images
             if perturbed.positions is not None:
                 kept[f"{key}.{severity:g}.{draw}.positions"] = perturbed.positions
             if draw == 0:

@@ -8,9 +8,7 @@ import numpy as np
 from sklearn.pipeline import Pipeline
 
 from stages.classification import classifier
-from stages.exploration import SPLITS, split_touches
 from stages.kit import Stopwatch
-from stages.kit.rng import rng
 
 from .perturbations import PERTURBATIONS
 
@@ -21,29 +19,25 @@ CLEAN = "none"  # the perturbation in rows of undisturbed touches
 def recognition_rows(
     clean: dict[str, np.ndarray],
     perturbed_features: Callable[[str, float, str], np.ndarray | None],
-    places: np.ndarray,
     truth: np.ndarray,
-    split: str,
-    width: float,
+    order: np.ndarray,
+    test: np.ndarray,
     severities: dict[str, list[float]],
     classifiers: list[str],
     repetition: int,
-    seed: int = 0,
 ) -> list[dict]:
-    """A list of row dicts: split, features, classifier, perturbation, severity, metric accuracy, value, seconds.
+    """A list of row dicts: features, classifier, perturbation, severity, metric accuracy, value, seconds.
 
-    clean: {features, a name of FEATURES: (k, d)} of the touches at places (k, 3) of objects truth (k,);
-    perturbed_features: function (perturbation, severity, features) -> (k, d) of the same touches when disturbed, or
-    None if they are not available; split, width: as in stages.exploration.split_touches. Seconds are those of
-    prediction. Raises ValueError if there are too few touches to hold some out.
+    clean: {features: (k, d)} of the touches of objects truth (k,), by names such as FEATURES; perturbed_features:
+    function (perturbation, severity, features) -> (k, d) of the same touches when disturbed, or None if they are not
+    available; order, test: indices of the training touches, in random order, and of the test touches. Seconds are those
+    of prediction.
     """
-    rows, random = [], rng(seed, f"repetition {repetition} {SPLITS[split]}")
-    train, test = split_touches(truth, places, split, width, random)
-    order = random.permutation(train)
-    for name, features in itertools.product(classifiers, FEATURES):
+    rows, train = [], np.sort(order)
+    for name, features in itertools.product(classifiers, clean):
         test_case = RecognitionTest(name, repetition, truth, test)
         clean_model = test_case.fit(clean[features], train)
-        common = {"split": split, "features": features, "classifier": name, "metric": "accuracy"}
+        common = {"features": features, "classifier": name, "metric": "accuracy"}
         rows.append(common | test_case.score(clean_model, clean[features]) | {"perturbation": CLEAN, "severity": 0.0})
         for perturbation, severity in perturbation_severities(severities):
             registered = PERTURBATIONS[perturbation]

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 COLUMNS = {
-    "features": "imprint: imprints alone; imprint_place: with their positions",
+    "features": "imprint: imprints alone; imprint_place: with their positions; imprint_DENOISER: denoised",
     "classifier": "a name of stages.classification.CLASSIFIERS",
     "perturbation": "a name of stages.touch_stability.PERTURBATIONS; none is clean touches",
     "severity": "in the perturbation's own unit; 0 for clean touches",
@@ -21,3 +21,4 @@ class Params:
     classifiers: list[str]  # names of stages.classification.CLASSIFIERS
     severities: dict[str, list[float]]  # of each perturbation, in its own unit, from mild to harsh
     repetitions: int  # random hold-outs of places
+    denoisers: list[str]  # what also cleans all touches first: names of stages.touch_stability.denoisers.DENOISERS

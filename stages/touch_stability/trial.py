@@ -1,15 +1,19 @@
 """One repetition: recognition of disturbed touches, at random places and on unseen regions."""
 
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 from sklearn import config_context
 from threadpoolctl import threadpool_limits
 
-from stages.exploration import SPLITS
+from stages.classification import features as features_of
+from stages.exploration import SPLITS, split_touches
 from stages.kit.files import read_arrays
+from stages.kit.rng import rng
 from stages.kit.run import Rows
 
+from .denoisers import DENOISERS
 from .one_object import DRAWS
 from .perturbations import PERTURBATIONS
 from .recognition import recognition_rows
@@ -24,14 +28,16 @@ def trial(item: str, folder: Path, made: Path, objects: list[str], settings: Par
     def gathered(key):
         return np.concatenate([one[key] for one in stored])
 
-    def perturbed_features(perturbation, severity, features):
+    def perturbed_features(perturbation, severity, features, denoise):
         draw = repetition % DRAWS if PERTURBATIONS[perturbation].random_draws else 0
         key = f"{perturbation}.{severity:g}.{draw}"
         if not all(key in one for one in stored):
             return None
+        if features in denoise:
+            return features_of(denoise[features](gathered(f"images.{key}")))
         return gathered(key) if features == "imprint" else np.hstack([gathered(key), gathered(f"{key}.positions")])
 
-    places = gathered("positions")
+    places, images = gathered("positions"), gathered("images.clean")
     clean = {"imprint": gathered("clean"), "imprint_place": np.hstack([gathered("clean"), places])}
     truth = np.repeat(np.arange(len(objects)), len(places) // len(objects))
     common = {"group": settings.set, "method": settings.method, "repetition": repetition, "chance": 1 / len(objects)}
@@ -39,9 +45,18 @@ def trial(item: str, folder: Path, made: Path, objects: list[str], settings: Par
     # One thread gives equal sums on any number of cores. The fits are so small that checks would take longer.
     with threadpool_limits(1), config_context(assume_finite=True, skip_parameter_validation=True):
         for split in SPLITS:
-            given = (places, truth, split, width, settings.severities, settings.classifiers, repetition, seed)
+            random = rng(seed, f"repetition {repetition} {SPLITS[split]}")
             try:
-                rows += [common | row | {"note": None} for row in recognition_rows(clean, perturbed_features, *given)]
+                train, test = split_touches(truth, places, split, width, random)
+                denoise = {
+                    f"imprint_{name}": DENOISERS[name](images[train], seed + repetition) for name in settings.denoisers
+                }
+                samples = clean | {name: features_of(apply(images)) for name, apply in denoise.items()}
+                found = recognition_rows(
+                    samples, partial(perturbed_features, denoise=denoise), truth, random.permutation(train), test,
+                    settings.severities, settings.classifiers, repetition,
+                )  # fmt: skip
+                rows += [common | {"split": split} | row | {"note": None} for row in found]
             except ValueError as error:
                 note = f"set {settings.set}, {split}: {error}"
                 rows.append(common | {"split": split, "metric": "accuracy", "value": None, "note": note})

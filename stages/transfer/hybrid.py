@@ -78,6 +78,11 @@ class HybridNet(torch.nn.Module):
         """Scores like those of forward, but each head gets its own stream alone, even where both senses are present."""
         return Scores(*(self._head(images, self.shared(self._stream(images, sense)), sense) for sense in range(2)))
 
+    def features(self, images: torch.Tensor, sense: int) -> torch.Tensor:
+        """(b, width): what the head of one sense, an index of SENSES, gets of images (b, 6, h, w) in 0..1."""
+        # the items of a ModuleList are typed as Module
+        return self.late[sense][:-1](self.shared(self._stream(images, sense)))  # pyright: ignore
+
     @torch.no_grad()
     def predict(self, images: torch.Tensor) -> Prediction:
         """Prediction for images (b, 6, h, w) by the more confident of the present senses, of equals vision.

@@ -14,7 +14,7 @@ from stages.kit.files import read_arrays
 from stages.kit.repeatable import repeatable
 from stages.kit.rng import rng
 from stages.kit.stats import interval_metrics
-from stages.networks.device import choose_device, explain_out_of_memory
+from stages.networks.device import choose_device, device_of, explain_out_of_memory
 from stages.networks.images import augmentation
 from stages.networks.layers import frozen_modules
 from stages.networks.modes import finetuned_except
@@ -29,6 +29,7 @@ from .hybrid_compared import comparison_rows, onnx_rows
 from .hybrid_data import SenseData, as_images, read_pictures
 from .hybrid_scores import sense_scores
 from .middle import middle_of
+from .new_object import TOUCH, new_object_rows
 from .pictures import picture_augmentation
 from .schema import Params
 from .split import by_objects, by_touches, stratified_split
@@ -95,6 +96,10 @@ def process(
         rows += confusion_rows(folder / "hybrid" / "predictions" / f"{name}.npz", classes)
         if first:
             rows += fused_rows(hybrid, senses, settings, rng(seed, f"pairs {trial.split} {trial.repetition}"), seed)
+        if first and trial.split == "objects":
+            imagenet = build("mobilenet_v2", len(classes), "imagenet", 0, settings.source).to(device_of(hybrid))
+            names = object_names(members[trial.split])
+            rows += new_object_rows(hybrid, imagenet, senses[TOUCH], names, settings.new_object_touches, random)
         if first and trial.repetition == 0 and trial.split == "random" and settings.hybrid_onnx:
             rows += onnx_rows(hybrid, senses, settings, folder / "hybrid" / f"{name}.onnx")
     if trial.repetition:
@@ -106,6 +111,12 @@ def process(
         "mode": trial.layers,
     }
     return [about | {"split": trial.split, "repetition": trial.repetition} | row for row in rows]
+
+
+def object_names(members: Mapping[str, Sequence[str]]) -> dict[int, str]:
+    """{number as in Touches.objects: name} of the objects of {class: its objects}."""
+    most = max(map(len, members.values()))
+    return {label * most + rank: name for label, own in enumerate(members.values()) for rank, name in enumerate(own)}
 
 
 def fit_temperature(scores: np.ndarray, labels: np.ndarray) -> float:

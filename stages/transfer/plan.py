@@ -64,6 +64,10 @@ def check(settings: Params) -> None:
         _check_modes(network, modes)
     if min(settings.repetitions, settings.coarse_repetitions, settings.cells, *settings.coarse_cells) < 1:
         raise ValueError("transfer: repetitions and cells, the coarse ones too, must be 1 or more")
+    counts = settings.new_object_touches or [0]
+    if min(counts) < 1 or max(counts) >= settings.touches:
+        raise ValueError(f"transfer.new_object_touches: {settings.new_object_touches} must be 1 or more and less than "
+                         f"transfer.touches ({settings.touches}), so that some are left to ask about")  # fmt: skip
     choose_device(settings.device)
     disturbed.check(settings.severities)
     hybrid_damage.check(settings.hybrid_severities)

@@ -9,7 +9,7 @@ COLUMNS = {
     "mode": "what learns: frozen, finetuned, or all layers but a range",
     "repetition": "the number of the split and of its random numbers",
     "sense": "of a hybrid network: vision, touch or both",
-    "perturbation": "what was disturbed in the input",
+    "perturbation": "what was disturbed in the input; new_object: learned from as many touches as `severity` says",
     "severity": "how much, in the perturbation's unit",
     "layer": "a convolution, whose weights changed by `value` (T5.4)",
     "part": "the block of the network that it belongs to",
@@ -50,4 +50,5 @@ class Params:
     hybrid_colour: bool  # pictures in the objects' colours, which may give them away; else grey clay
     hybrid_rate: float  # learning rate of its two networks
     hybrid_onnx: bool  # also write the first network as ONNX
+    new_object_touches: list[int]  # of each new object, which a new head alone learns; less than `touches`
     hybrid_severities: dict[str, list[float]]  # of each perturbation, picture_NAME or imprint_NAME, of one sense

@@ -9,7 +9,7 @@ from stages.report import exploration, stability
 from stages.report.exploration import claims
 from stages.report.exploration.exploration import needed
 from stages.report.results import NotRun
-from stages.report.stability.touch import breaking, curve, harmless
+from stages.report.stability.touch import DENOISED, breaking, curve, harmless
 from stages.report.stability.touch_imprints import severities
 from stages.report.topics import build_one
 from stages.report.verdict import judge
@@ -138,6 +138,26 @@ def test_what_is_no_better_than_guessing_has_no_breaking_point(root, results, sm
     lost = disturbed()
     small.write(root, "touch_stability", lost.assign(value=lost["value"] - 0.7))
     assert build_one(stability, "tables", "touch_stability", results).frame.empty
+
+
+def test_what_a_denoiser_gains_stands_beside_its_breaking_point(root, results, small):
+    """An autoencoder that gives back a tenth under noise, and a median filter that takes one."""
+    rows, more = disturbed(), {"imprint": 0.0, "imprint_median": -0.1, "imprint_autoencoder": 0.1}
+    noisy, several = rows["perturbation"] == "noise", [rows.query("perturbation != 'coarse_model'")] * 3
+    several = [
+        part.assign(features=name, value=part["value"] + gained * noisy)
+        for part, (name, gained) in zip(several, more.items(), strict=True)
+    ]
+    small.write(root, "touch_stability", rows)
+    small.write(root, "touch_stability", pd.concat(several), DENOISED)
+    table = build_one(stability, "tables", "touch_stability", results)
+    shown = table.shown.set_index("perturbation")["kNN breaks at"]
+    assert "·" not in shown["noise"] and len(shown) == 4
+    assert "· +10" in shown["noise, after an autoencoder"] and "· -10" in shown["noise, after a median filter"]
+    assert any("after an autoencoder kNN 80 %" in note for note in table.notes)
+    judged = judge(stability.CLAIMS, results).set_index("key")
+    assert judged.loc["autoencoder_over_none_noise", "effect"] == pytest.approx(10, abs=0.1)
+    assert judged.loc["autoencoder_over_median_noise", "effect"] == pytest.approx(20, abs=0.1)
 
 
 @pytest.mark.slow

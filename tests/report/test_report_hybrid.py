@@ -10,6 +10,7 @@ from stages.kit.rows import write_rows
 from stages.report import hybrid, stability
 from stages.report.differences import differences
 from stages.report.hybrid import claims as chapter_5_hybrid
+from stages.report.hybrid import new_objects
 from stages.report.hybrid.hybrid_senses import METHODS as BOTH
 from stages.report.results import NotRun
 from stages.report.topics import build_one
@@ -286,3 +287,22 @@ def test_without_a_hybrid_nothing_is_made_up(bare, small):
     for topic, kind, name in [*PICTURES, *TABLES]:
         with pytest.raises(NotRun, match="transfer"):
             build_one(topic, kind, name, empty)
+
+
+def test_new_objects_stand_below_the_table_and_in_the_claims(root, results):
+    """A head that knows 30 % of eight new objects after one touch and 50 % after five, ten points over the others."""
+    random, found = np.random.default_rng(0), []
+    for name, worse in (("hybrid_head", 0.0), ("imagenet_head", 0.1), ("hybrid_nearest", 0.1)):
+        for count, share in ((1, 0.3), (2, 0.4), (5, 0.5), (10, 0.5)):
+            about = {"data": "hybrid", "method": name, "split": "objects", "repetition": 0, "severity": count}
+            about |= {"perturbation": "new_object", "metric": new_objects.METRIC, "seconds": 0.1 * count}
+            values = share - worse + 0.02 * random.normal(size=8)
+            found += [about | {"item": f"o{k}", "value": value} for k, value in enumerate(values)]
+    chance = {"data": "hybrid", "method": "chance", "metric": new_objects.METRIC, "value": 1 / 8}
+    write(root, pd.concat([rows(), pd.DataFrame([*found, chance])]))
+    notes = " ".join(build_one(hybrid, "tables", "section_5_5", results).notes)
+    assert "a new head on the hybrid's features: " in notes and "0.10 to 1 s an object on one core" in notes
+    assert "8 new objects, guessing 12.5 %" in notes
+    judged = judge(chapter_5_hybrid.CLAIMS, results).set_index("key")
+    assert judged.loc["new_object_hybrid_over_imagenet", "effect"] == pytest.approx(10, abs=3)
+    assert judged.loc["new_object_over_guessing", "effect"] == pytest.approx(17.5, abs=3)

@@ -81,3 +81,20 @@ def test_nothing_pressed_is_said_and_not_crashed_on(results):
     for kind, name in (("tables", "figure_4_11"), ("tradeoff", "sensor_size")):
         with pytest.raises(NotRun):
             build_one(sensor, kind, name, results)
+
+
+def test_two_arrays_and_several_touches_are_said_beside_the_single_ones(root, results, small):
+    rows = pressed().query("cells == 16 and pitch == 0.02 and metric == 'accuracy'")
+    kinds = [
+        ({"fine": "12-0.005"}, 0.2),
+        ({"extent": "region"}, 0.1),
+        ({"extent": "points"}, 0.0),
+        ({"cells": 20}, 0.0),
+    ]
+    several = [rows.assign(**kind, value=rows["value"] + more, dataset=claims.HANDS) for kind, more in kinds]
+    small.write(root, "sensor_size", pd.concat([*several, pressed().assign(dataset=claims.HANDS)]), claims.HANDS)
+    shown = build_one(sensor, "tables", "figure_4_11", results).shown
+    said = ["16 x 16 and 12 x 12 at 0.005", "16 x 16, five in a salient region", "16 x 16, five separate points"]
+    assert set(said) < set(shown["cells"])
+    judged = judge(claims.CLAIMS, results).set_index("key")
+    assert judged.loc["wide_hand_over_coarse", "effect"] == pytest.approx(20, abs=0.5)

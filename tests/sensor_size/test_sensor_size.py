@@ -14,6 +14,7 @@ from stages.kit.rows import read_rows
 from stages.sensor_size import CLASSIFIERS, choice_repeatability, classifier, evaluate, smallest_sufficient
 from stages.sensor_size import __main__ as stage
 from stages.sensor_size.__main__ import chosen_classes, summary
+from stages.sensor_size.protocol import majority
 
 
 def touches(level, seed, count=12, noise=0.05):
@@ -141,12 +142,14 @@ def test_loading_code_is_no_part_of_a_touchs_seconds(monkeypatch, tmp_path):
 
 def test_the_stage_tests_each_object_of_the_classes(make_workspace):
     settings = {"classes": [], "method": "salient", "touches": 12, "cells": [4], "pitches": [0.02], "slack": 0.02}
+    settings |= {"pairs": ["4-0.02+3-0.01"], "extents": ["region"]}
     workspace = make_workspace({"sensor_size": settings | {"classifiers": ["knn"]}})
     sizes = {"cube": (0.5, 0.5, 0.5), "brick": (0.5, 0.4, 0.5), "stick": (0.1, 0.1, 0.6), "pole": (0.12, 0.1, 0.6)}
     for name, size in sizes.items():
         box = trimesh.creation.box(size).subdivide().subdivide()
         write_mesh(workspace.data / f"meshes/{name}.npz", Mesh(box.vertices, box.faces))
         points = {"salient.points": np.arange(0, 90, 3), "salient.strong": np.int64(30)}
+        points["salient.saliency"] = np.ones(len(box.vertices))
         write_arrays(workspace.data / f"salient_points/{name}.npz", **points)
     table = pd.DataFrame({"class": ["box", "box", "rod", "rod"], "object": list(sizes)})
     write_table(workspace.data / "meshes/classes.csv", table)
@@ -156,7 +159,8 @@ def test_the_stage_tests_each_object_of_the_classes(make_workspace):
     assert dict(zip(tested["item"], tested["group"], strict=True)) == dict(
         zip(table["object"], table["class"], strict=True)
     )
-    assert (rows["metric"] == "smallest_chosen_again").sum() == 1 and len(rows) == 1 + 4 + 4 + 1
+    assert (rows["metric"] == "smallest_chosen_again").sum() == 1 and len(rows) == 3 * (1 + 4 + 4) + 1
+    assert (rows["fine"] == "3-0.01").sum() == (rows["extent"] == "region").sum() == 9
 
 
 def test_the_svm_stops_where_its_steps_run_in_a_circle(monkeypatch):
@@ -165,3 +169,25 @@ def test_the_svm_stops_where_its_steps_run_in_a_circle(monkeypatch):
     with pytest.warns(ConvergenceWarning):
         model = classifier("svm").fit(random.normal(size=(60, 4)), random.integers(3, size=60))
     assert model.n_iter_.max() == 3
+
+
+def test_most_answers_of_a_sample_count_and_of_equals_the_first():
+    answers = np.array(["b", "a", "a", "c", "b", "a"])
+    assert majority(answers, 3).tolist() == ["a", "c"] and majority(answers, 1).tolist() == answers.tolist()
+
+
+def test_touches_of_one_sample_are_held_out_together():
+    """Each sample of three touches has a mark of its own: known ones are told, so none may be on both sides."""
+    random = np.random.default_rng(0)
+    marks = np.repeat(20 * random.normal(size=(4, 8, 30)), 3, axis=1)
+    imprints = {one: [marks[k], marks[k + 1]] for k, one in ((0, "a"), (2, "b"))}
+    rows = [row for row in evaluate(imprints, ["knn"], votes=3) if row["split"] == "random"]
+    assert len(rows) == 4 and all(row["value"] * 2 == int(row["value"] * 2) for row in rows)
+    assert np.mean([row["value"] for row in rows]) < 1
+
+
+def test_an_unknown_extent_is_refused_with_those_that_there_are(make_workspace):
+    settings = {"classes": [], "method": "salient", "touches": 12, "cells": [4], "pitches": [0.02], "slack": 0.02}
+    settings |= {"pairs": [], "extents": ["cube"], "classifiers": ["knn"]}
+    with pytest.raises(ValueError, match="cube; choose from points, region, disc"):
+        stage.run(make_workspace({"sensor_size": settings}))

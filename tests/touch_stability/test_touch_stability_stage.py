@@ -18,6 +18,7 @@ from stages.touch_stability.schema import Params
 SEVERITIES = {"noise": [0.05, 1.0], "object_turned": [90.0], "coarse_model": [60.0], "few_touches": [8.0]}
 SETTINGS = {
     "set": "pair", "method": "here", "classifiers": ["knn"], "severities": SEVERITIES, "repetitions": 2,
+    "denoisers": [],
 }  # fmt: skip
 CLASSIFICATION = {"classifiers": [], "repetitions": 1, "closer": [], "touches": [], "combinations": 1}
 
@@ -66,6 +67,18 @@ def test_clean_touches_are_told_apart_and_pure_noise_is_not(run):
     assert means[CLEAN, 0.0] > 0.9 and means["noise", 1.0] < 0.7
 
 
+@pytest.mark.slow
+def test_denoised_touches_are_asked_about_beside_the_others(run):
+    rows, other = run(denoisers=["median"], severities={"noise": [0.2]}), run(severities={"noise": [0.2]})
+    cleaned = rows["features"] == "imprint_median"
+    assert set(rows.loc[cleaned, "perturbation"]) == {CLEAN, "noise"}
+    pd.testing.assert_frame_equal(
+        rows[~cleaned].drop(columns="seconds").reset_index(drop=True), other.drop(columns="seconds")
+    )
+    means = rows[rows["perturbation"] == "noise"].groupby("features")["value"].mean()
+    assert means["imprint_median"] != means["imprint"]
+
+
 def test_there_is_no_lead_to_lose_where_clean_touches_are_no_better_than_guessing():
     assert lead_left([0.6, 0.4], 0.8, 0.4) == pytest.approx([0.5, 0.0])
     assert np.isnan(lead_left([0.1, 0.3], 0.3, 0.4)).all() and np.isnan(lead_left([0.1], 0.4, 0.4)).all()
@@ -111,6 +124,7 @@ def test_what_was_not_touched_is_a_note(run, objects, method, note):
         ({"set": "seven"}, "no set seven"),
         ({"severities": {"fire": [1.0]}}, "fire"),
         ({"classifiers": ["oracle"]}, "oracle"),
+        ({"denoisers": ["prayer"]}, "prayer"),
     ],
 )
 def test_settings_that_make_no_measurement_are_refused(changes, message):
@@ -128,12 +142,12 @@ def test_what_is_learned_from_coarse_models_is_asked_about_clean_touches():
     truth, generator = np.repeat([0, 1], 40), np.random.default_rng(0)
     clean = 5.0 * truth[:, None] + generator.normal(size=(80, 41))
     both = {"imprint": clean, "imprint_place": np.hstack([clean, np.zeros((80, 3))])}
-    places = generator.uniform(size=(80, 3))
 
     def swapped(perturbation, severity, features):
         return both[features][::-1]
 
     severities = {"noise": [1.0], "coarse_model": [1.0]}
-    rows = pd.DataFrame(recognition_rows(both, swapped, places, truth, "random", 0.1, severities, ["knn"], 0))
+    train, test = np.split(generator.permutation(80), [60])
+    rows = pd.DataFrame(recognition_rows(both, swapped, truth, train, test, severities, ["knn"], 0))
     means = rows[rows["features"] == "imprint"].groupby("perturbation")["value"].mean()
     assert means[CLEAN] == 1 and means["noise"] == 0 and means["coarse_model"] == 0

@@ -14,7 +14,7 @@ SETTINGS = {
     "momentum": 0.9, "repetitions": 1, "coarse_repetitions": 1, "device": "cpu",
     "severities": {"noise": [0.01, 0.5], "few_touches": [0.5]}, "hybrid_middles": ["18:139"], "hybrid_repetitions": 0,
     "hybrid_pictures": 4, "hybrid_colour": False, "hybrid_rate": 0.003, "hybrid_onnx": False,
-    "hybrid_severities": {"picture_noise": [0.1]},
+    "hybrid_severities": {"picture_noise": [0.1]}, "new_object_touches": [1, 2],
 }  # fmt: skip
 
 

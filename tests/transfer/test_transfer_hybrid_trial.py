@@ -11,6 +11,7 @@ from stages.networks.network import build
 from stages.transfer import hybrid_compared, hybrid_trial
 from stages.transfer.hybrid_file import load
 from stages.transfer.middle import middle_of
+from stages.transfer.new_object import METRIC
 
 pytestmark = pytest.mark.slow
 
@@ -19,7 +20,7 @@ SETTINGS = {
     "size": 32, "cells": 32, "coarse_cells": [], "splits": ["random", "objects"], "train_share": 0.75,
     "validation_share": 0.25, "epochs": 1, "batch": 4, "momentum": 0.9, "device": "cpu", "source": "package",
     "hybrid_rate": 0.003, "hybrid_middles": ["18:139", "18:147"], "hybrid_repetitions": 2, "hybrid_onnx": False,
-    "hybrid_severities": {"picture_noise": [0.1], "imprint_dead_cells": [0.1]},
+    "hybrid_severities": {"picture_noise": [0.1], "imprint_dead_cells": [0.1]}, "new_object_touches": [1, 2],
 }  # fmt: skip
 
 
@@ -67,7 +68,7 @@ def test_smaller_kinds_take_less_room(run):
 
 def test_every_condition_has_every_answer(run):
     _, rows = run
-    found = {(row["perturbation"], row["method"]) for row in rows if "perturbation" in row}
+    found = {(row["perturbation"], row["method"]) for row in rows if row.get("sense") == "both"}
     conditions = {"none", "picture_noise", "imprint_dead_cells", "picture_missing", "imprint_missing"}
     assert found == {(one, method) for one in conditions for _, method in found}
     assert values(rows, perturbation="picture_missing", method="vision") == [0.0]
@@ -146,3 +147,11 @@ def test_ranges_are_whole_blocks():
     for layers in ("16:138", "1:150", "18:150"):
         with pytest.raises(ValueError, match="whole blocks"):
             middle_of(layers)
+
+
+def test_new_objects_are_learned_from_every_count_by_every_head(run):
+    frame = pd.DataFrame([row for row in run[1] if row["metric"] == METRIC])
+    chance, told = frame[frame["method"] == "chance"], frame[frame["method"] != "chance"]
+    assert chance["value"].tolist() == [0.5] and set(told["severity"]) == {1, 2}
+    assert set(told["item"]) == {"mug", "poodle"} and told.groupby(["method", "severity"]).size().eq(2).all()
+    assert told["value"].between(0, 1).all() and (told["seconds"] > 0).all()

@@ -91,6 +91,8 @@ def test_a_network_without_weights_is_a_note_and_the_others_run(small, weights):
         ({"splits": ["half"]}, "transfer.splits: half not known"),
         ({"repetitions": 0}, "must be 1 or more"),
         ({"device": "abacus"}, "unknown device"),
+        ({"new_object_touches": [1, 8]}, "less than transfer.touches"),
+        ({"new_object_touches": []}, "less than transfer.touches"),
         ({"severities": {"rain": [1.0]}}, "transfer.severities: rain not known"),
     ],
 )

@@ -6,6 +6,7 @@ from stages.report.claims import Claim, Side
 from stages.report.networks import both, on_their_classes
 
 from .hybrid_senses import WHOLE
+from .new_objects import METRIC
 from .section_5_5 import MIDDLE, POINT, SENSES
 
 UNHARMED = {"perturbation": WHOLE}
@@ -17,6 +18,9 @@ PHRASES = {
     ("method", "vision"): "network for sight", ("method", "touch"): "network for touch",
     ("method", "better_sense"): "better sense alone", ("method", "fusion_entropy"): "both heads by certainty",
     ("method", "fusion_entropy_raw"): "both heads by certainty without temperatures",
+    ("metric", METRIC): "new objects", ("severity", (1, 2, 5, 10)): "mean of 1, 2, 5 and 10 touches of each",
+    ("method", "hybrid_head"): "head on the hybrid's features", ("severity", 1): "one touch of each",
+    ("method", "imagenet_head"): "head on ImageNet's features", ("method", "hybrid_nearest"): "nearest touch",
     ("method", "sum_mean"): "streams summed", ("method", "hybrid_int8"): "hybrid of 8 bits",
 }  # fmt: skip
 
@@ -56,4 +60,19 @@ OURS = on_both_splits(
     joined("temperatures_help", "ours", "In the dark temperatures make the certainty a better guide.",
            "fusion_entropy", "fusion_entropy_raw", DARK),
 )  # fmt: skip
-CLAIMS = [*THESIS, *OURS, *on_their_classes(THESIS)]
+new_objects = partial(
+    Claim, section="T6.3", stage="transfer", dataset="furniture", over=("item",), phrases=PHRASES,
+    where={"metric": METRIC, "severity": (1, 2, 5, 10)},
+)  # fmt: skip
+DEVICE = [
+    new_objects(key="new_object_hybrid_over_imagenet", first={"method": "hybrid_head"},
+                second={"method": "imagenet_head"},
+                sentence="A new head learns new objects better on the hybrid network's features than on ImageNet's."),
+    new_objects(key="new_object_head_over_nearest", first={"method": "hybrid_head"},
+                second={"method": "hybrid_nearest"},
+                sentence="Of few touches a new head makes more than the nearest known touch does."),
+    new_objects(key="new_object_over_guessing", first={"method": "hybrid_head"}, second=1 / 8,
+                where={"metric": METRIC, "severity": 1},
+                sentence="One touch of each is enough to tell eight new objects apart better than by guessing."),
+]  # fmt: skip
+CLAIMS = [*THESIS, *OURS, *DEVICE, *on_their_classes(THESIS)]

@@ -14,6 +14,8 @@ from stages.report.style import INK, plt
 from stages.report.target import on_target
 from stages.report.words import dataset_text
 
+from . import new_objects
+
 SENSES = {"vision": "sight", "touch": "touch"}
 ITEMS = {split: words.replace("touches", "items") for split, words in SPLITS.items()}
 MIDDLE = "18:139"  # the layers that the thesis's network shares
@@ -43,7 +45,8 @@ def build(results: Results) -> Table:
             notes.append(_note(rows, thesis["compression_ratio"]))
     frame = pd.DataFrame(lines)
     words = {"visual": 100 * thesis["visual_accuracy"], "tactile": 100 * thesis["tactile_accuracy"]}
-    return Table(frame, _shown(frame), words | {"ratio": thesis["compression_ratio"], "notes": "\n".join(notes)})
+    words |= {"ratio": thesis["compression_ratio"], "notes": "\n".join(notes), "new": new_objects.sentences(results)}
+    return Table(frame, _shown(frame), words)
 
 
 def chart(results: Results) -> Figure:

@@ -12,6 +12,10 @@ from stages.report.words import dataset_text
 
 from .claims import COARSE, LARGE, STAGE, UNSEEN
 
+EMPTY = {"fine": "", "extent": ""}  # of one array and one touch a sample
+EXTENTS = {
+    "": "", "points": ", five separate points", "region": ", five in a salient region", "disc": ", five in a disc",
+}  # fmt: skip
 SPLITS = {Split.OBJECTS: "unseen", Split.RANDOM: "known, other touches"}
 
 
@@ -21,15 +25,27 @@ def table(results: Results) -> Table:
     rows = pd.concat([rows.sort_values("split", kind="stable") for rows in found.values()])
     rows, smallest = (rows[rows["metric"] == metric] for metric in ("accuracy", "smallest_chosen_again"))
     thesis = results.thesis("figure_4_11_sensor_32x32_sensel_0_01").set_index("classifier")["accuracy"]
-    frame = _cells(rows, ["dataset", "split", "cells", "pitch", "classifier"])
+    rows = rows.reindex(columns=[*rows.columns.union(list(EMPTY), sort=False)]).fillna(EMPTY)
+    frame = _cells(rows, ["dataset", "split", "cells", "pitch", *EMPTY, "classifier"])
     frame["thesis"] = frame["classifier"].map(thesis).where((frame["cells"] == LARGE) & (frame["pitch"] == COARSE))
     shown = grid(
-        frame.assign(width=(frame["cells"] * frame["pitch"]).map("{:.2f}".format)),
+        frame.assign(width=(frame["cells"] * frame["pitch"]).map("{:.2f}".format), cells=_arrays(frame)),
         ["dataset", "split", "cells", "pitch", "width"], "classifier", gap=None,
-        names={"dataset": dataset_text, "split": SPLITS.get, "cells": lambda count: f"{count} x {count}"},
+        names={"dataset": dataset_text, "split": SPLITS.get},
         head=lambda name: f"{label(name)}, %",
     ).rename(columns={"split": "objects", "pitch": "pitch, units", "width": "width, units"})  # fmt: skip
     return Table(frame, shown, {"classes": _classes(rows), "smallest": _smallest(smallest)})
+
+
+def _arrays(frame: pd.DataFrame) -> list[str]:
+    """For each row `16 x 16`, with the finer array beside it, or where the touches of one sample lie."""
+    return [f"{row.cells} x {row.cells}{_beside(row.fine)}{EXTENTS[row.extent]}" for row in records(frame)]
+
+
+def _beside(array: str) -> str:
+    """` and 12 x 12 at 0.005` of `12-0.005`; empty where there is none."""
+    cells, _, pitch = array.partition("-")
+    return f" and {cells} x {cells} at {pitch}" if array else ""
 
 
 def _cells(rows: pd.DataFrame, by: list[str]) -> pd.DataFrame:

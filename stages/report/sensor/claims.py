@@ -12,10 +12,23 @@ BEST = {"cells": LARGE, "pitch": COARSE}  # the thesis's best array
 ALL = "mean of all classifiers"
 PHRASES = {
     **{("cells", count): f"{count} x {count}" for count in (SMALL, LARGE)},
+    ("fine", None): "",
+    ("extent", None): "",
+    ("fine", "12-0.005"): "with 12 x 12 cells 0.005 apart",
+    ("fine", "12-0.002"): "with 12 x 12 cells 0.002 apart",
+    ("cells", 20): "20 x 20",
+    ("pitch", 0.005): "0.005 apart",
+    ("extent", "points"): "at separate points",
+    ("extent", "region"): "in a salient region",
+    ("extent", "disc"): "in a disc",
     **{("pitch", pitch): f"{pitch:g} apart" for pitch in (FINE, COARSE, 2 * COARSE)},
 }
 claim = partial(Claim, section="T4.3.2", stage=STAGE, where=UNSEEN, over=("item",), phrases=PHRASES, note=ALL)
 larger = partial(claim, first={"cells": LARGE}, second={"cells": SMALL})
+HANDS = "furniture_hands"
+EQUAL = {"cells": 20, "fine": None, "extent": None}  # as many cells as 16 x 16 and 12 x 12
+AROUND = {"cells": SMALL, "pitch": COARSE}
+hands = partial(claim, section="T6.3", dataset=HANDS, note="mean of both classifiers")
 
 CLAIMS = [
     *(
@@ -34,6 +47,19 @@ CLAIMS = [
           where=UNSEEN | BEST, first={"classifier": "knn"}, second={"classifier": highest_of()}, note=""),
     claim(key="finer_sensor_enough", section="ours", first={"cells": SMALL, "pitch": 2 * COARSE}, second=BEST,
           sentence="Half the cells at twice the distance are as good: the width counts, not the cells."),
+    *(
+        hands(key=f"{hand}_hand_over_{cells}", first={"cells": SMALL, "pitch": coarse, "fine": f"12-{fine}"},
+              second=EQUAL | {"pitch": pitch},
+              sentence=f"With as many cells in all, coarse and fine cells on one {hand} hand are better than one array "
+              f"of {cells} cells.")
+        for hand, coarse, fine in (("wide", 2 * COARSE, 0.005), ("narrow", COARSE, FINE))
+        for cells, pitch in (("coarse", coarse), ("fine", fine))
+    ),
+    *(
+        hands(key=f"region_over_{other}", first=AROUND | {"extent": "region"}, second=AROUND | {"extent": other},
+              sentence=f"Five touches in the salient region around a point are better than {words}.")
+        for other, words in (("points", "at five separate points"), ("disc", "in a disc of its area"))
+    ),
     claim(key="known_objects_easier", section="ours",
           sentence="Touches of known objects flatter: their class is named more often than unseen ones'.",
           where={"metric": "accuracy"} | BEST, first={"split": Split.RANDOM}, second={"split": Split.OBJECTS}),

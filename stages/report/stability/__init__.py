@@ -1,6 +1,6 @@
 """Where methods break: under which perturbation, and how much of it; and where the time went."""
 
-from . import growth, kernels, points, simplification, time_spent, touch, touch_imprints, transfer
+from . import claims, growth, kernels, points, simplification, time_spent, touch, touch_imprints, transfer
 
 TABLES = {
     "stability": points.table,
@@ -20,4 +20,4 @@ FIGURES = {
     "growth": growth.build,
 }
 CHARTS = {}
-CLAIMS = []
+CLAIMS = claims.CLAIMS

@@ -8,8 +8,9 @@ import pandas as pd
 from stages.kit.breaking_point import breaking_point, lead_left
 from stages.kit.split import shared_by
 from stages.kit.stats import interval
-from stages.report.grid import grouped
+from stages.report.grid import grouped, records
 from stages.report.items import Figure, Table
+from stages.report.markdown import signed
 from stages.report.results import Results
 from stages.report.style import GREY, MARKERS, label
 from stages.touch_stability import CLEAN, PERTURBATIONS
@@ -17,7 +18,10 @@ from stages.touch_stability import CLEAN, PERTURBATIONS
 from .panels import ACCURACY, Curves, broken, degradation
 
 STAGE = "touch_stability"
+DENOISED = "household_denoised"  # the set whose touches are also denoised
+DENOISERS = {"": "", "_median": "after a median filter", "_autoencoder": "after an autoencoder"}  # behind `imprint`
 KEYS = ["split", "features", "classifier"]
+PLAIN = "imprint"
 LINES = {  # (split, features, classifier): how a person says it
     ("random", "imprint", "knn"): "kNN",
     ("regions", "imprint", "knn"): "kNN, unseen regions",
@@ -30,6 +34,7 @@ UNHARMED = {name: known.unharmed for name, known in PERTURBATIONS.items()}
 ENOUGH = 0.02  # accuracy that may be lost before it is said to suffer
 COLUMNS = ["perturbation", "unit", *KEYS, "breaking_point", "low", "high", "harmless", "harshest", "accuracy"]
 LEFT = ["left", "left_low", "left_high"]
+GAIN = ["gain", "gain_low", "gain_high"]
 
 
 def curve(rows: pd.DataFrame, perturbation: str, line: Sequence[str]) -> pd.DataFrame:
@@ -61,26 +66,55 @@ def harmless(points: pd.DataFrame) -> float:
 
 def table(results: Results) -> Table:
     """Breaking points by classifier; what was not measured, or has no lead to lose, is left out."""
-    (rows, curves), found = _curves(results), []
+    blocks = [_block(*_curves(results), "")]
+    for behind in list(DENOISERS)[1:] if DENOISED in results.datasets(STAGE) else ():
+        blocks.append(_block(*_curves(results, DENOISED, behind), behind))
+    frames, shown, said = zip(*blocks, strict=True)
+    rows = results.measured(STAGE, metric="accuracy")
+    group, method = rows[["group", "method"]].iloc[0]
+    words = {
+        "points": 100 * ENOUGH, "objects": results.group_text(group).capitalize(), "method": label(method),
+        "clean": "; ".join(said), "guessing": 100 * rows["chance"].iloc[0], "not_run": results.left_out(STAGE),
+    }  # fmt: skip
+    return Table(pd.concat(frames), pd.concat(shown), words)
+
+
+def _block(rows: pd.DataFrame, curves: Curves, behind: str) -> tuple[pd.DataFrame, pd.DataFrame, str]:
+    """(breaking points, the same for a reader, undisturbed accuracies) of one denoiser, a name of DENOISERS."""
+    found = []
     for name, lines in curves.items():
         for line, points in lines.items():
             if points["left"].notna().any():
                 ends, last = (*breaking(points, name), harmless(points)), points[["severity", "accuracy"]].iloc[-1]
-                found.append((name, UNITS[name], *line, *ends, *last))
-    frame = pd.DataFrame(found, columns=COLUMNS)
-    heads = {line: f"{words} breaks at" for line, words in LINES.items()}
+                found.append((name, UNITS[name], *line, *ends, *last, *gain(rows, name, line)))
+    frame = pd.DataFrame(found, columns=[*COLUMNS, *GAIN])
+    known = _lines(behind)
+    heads = {line: f"{words} breaks at" for line, words in known.items()}
     shown = broken(frame, frame.set_index(KEYS).index.map(heads), UNHARMED)
-    shown = shown.reindex(columns=["perturbation", "unit", *heads.values()], fill_value="–")
+    columns = ["perturbation", "unit", *(f"{words} breaks at" for words in LINES.values())]
+    shown = shown.reindex(columns=columns, fill_value="–")
     first = frame.drop_duplicates("perturbation")["harmless"]
     shown["harmless to kNN"] = ["none" if np.isnan(severity) else f"{severity:g}" for severity in first]
+    if behind:
+        shown["perturbation"] += f", {DENOISERS[behind]}"
+        shown = shown.set_index("perturbation", drop=False)
+        for row in records(frame):
+            cell = f"{label(row.perturbation)}, {DENOISERS[behind]}", heads[row.split, row.features, row.classifier]
+            gained = signed(100 * row.gain, 100 * row.gain_low, 100 * row.gain_high, 0)
+            shown.loc[cell] = f"{shown.loc[cell]} · {gained}"
     clean = {key: group["value"].mean() for key, group in grouped(rows.loc[rows["perturbation"] == CLEAN], KEYS)}
-    said = [f"{words} {100 * clean[line]:.0f} %" for line, words in LINES.items() if line in clean]
-    group, method = rows[["group", "method"]].iloc[0]
-    words = {
-        "points": 100 * ENOUGH, "objects": results.group_text(group).capitalize(), "method": label(method),
-        "clean": ", ".join(said), "guessing": 100 * rows["chance"].iloc[0], "not_run": results.left_out(STAGE),
-    }  # fmt: skip
-    return Table(frame, shown, words)
+    said = [f"{words} {100 * clean[line]:.0f} %" for line, words in known.items() if line in clean]
+    return frame, shown, " ".join(filter(None, [DENOISERS[behind], ", ".join(said)]))
+
+
+def gain(rows: pd.DataFrame, perturbation: str, line: Sequence[str]) -> tuple[float, float, float]:
+    """(mean, low, high) of the accuracy that a denoiser gains, over the severities; in pairs of equal touches."""
+    own = rows[rows["perturbation"] == perturbation].set_index([*KEYS, "repetition", "severity"])["value"].sort_index()
+    split, features, classifier = line
+    if features == PLAIN:
+        return np.nan, np.nan, np.nan
+    paired = own.loc[split, features, classifier] - own.loc[split, PLAIN, classifier]
+    return interval(paired.groupby("repetition").mean(), shared_by(split))
 
 
 def figure(results: Results) -> Figure:
@@ -101,8 +135,16 @@ def figure(results: Results) -> Figure:
     return Figure(drawing, words)
 
 
-def _curves(results: Results) -> tuple[pd.DataFrame, Curves]:
+def _lines(behind: str) -> dict[tuple[str, ...], str]:
+    """LINES, or those on imprints alone that went through a denoiser, a name of DENOISERS."""
+    kept = {line: said for line, said in LINES.items() if line[1] == PLAIN or not behind}
+    return {(split, f"{features}{behind}", classifier): said for (split, features, classifier), said in kept.items()}
+
+
+def _curves(results: Results, dataset: str | None = None, behind: str = "") -> tuple[pd.DataFrame, Curves]:
     """(rows, the curves of those that were measured)."""
-    rows = results.measured(STAGE, metric="accuracy")
+    rows = results.measured(STAGE, dataset, metric="accuracy")
     names = [name for name in PERTURBATIONS if name in set(rows["perturbation"])]
-    return rows, {name: {line: found for line in LINES if len(found := curve(rows, name, line))} for name in names}
+    return rows, {
+        name: {line: found for line in _lines(behind) if len(found := curve(rows, name, line))} for name in names
+    }
