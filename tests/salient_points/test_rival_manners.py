@@ -9,7 +9,7 @@ import trimesh
 from scipy.spatial.transform import Rotation
 
 from stages.kit import Mesh
-from stages.salient_points.rivals import corners, harris, heat_kernel, mesh_saliency, salient_points, sift
+from stages.salient_points.rivals import corners, harris, heat_kernel, mesh_saliency, salient_points, sift, tasse
 
 X = np.array([1.0, 0, 0])
 
@@ -30,6 +30,7 @@ HELD = [
     Held(mesh_saliency, 1e-9, most=1 + 1e-12),
     Held(salient_points, 1e-9, most=1 + 1e-12),
     Held(sift, 1e-9, most=1 + 1e-12),
+    Held(tasse, 1e-6, most=1 + 1e-12),
 ]
 
 
@@ -178,7 +179,7 @@ def test_values_of_another_mesh_are_refused(rival, bumpy):
 
 
 @pytest.mark.slow
-@over(mesh_saliency, salient_points, sift)
+@over(mesh_saliency, salient_points, sift, tasse)
 def test_a_sphere_and_a_plane_have_neither_saliency_nor_points(rival, sphere, grid):
     for mesh in sphere(4), Mesh(*grid(9, 9)):
         values = rival.saliency(mesh)
