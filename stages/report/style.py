@@ -35,6 +35,7 @@ LABELS = {
     "svm_nearest": "SVM, nearest object's",
     "svm_object": "SVM of the object",
     "svm_viewpoint": "SVM of each view",
+    "leifman": "regions of interest",
     "tasse": "cluster-based saliency",
     "sift": "3D-SIFT",
     "harris": "3D-Harris",

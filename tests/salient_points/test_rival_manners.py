@@ -9,7 +9,16 @@ import trimesh
 from scipy.spatial.transform import Rotation
 
 from stages.kit import Mesh
-from stages.salient_points.rivals import corners, harris, heat_kernel, mesh_saliency, salient_points, sift, tasse
+from stages.salient_points.rivals import (
+    corners,
+    harris,
+    heat_kernel,
+    leifman,
+    mesh_saliency,
+    salient_points,
+    sift,
+    tasse,
+)
 
 X = np.array([1.0, 0, 0])
 
@@ -21,6 +30,7 @@ class Held:
     rival: ModuleType
     same: float  # of the largest value: what another order or size of the mesh may change
     most: float = np.inf  # the largest value that there may be
+    samples: int = 0  # that stand for the mesh: fewer than in use, since this does not depend on how many
 
 
 HELD = [
@@ -30,6 +40,7 @@ HELD = [
     Held(mesh_saliency, 1e-9, most=1 + 1e-12),
     Held(salient_points, 1e-9, most=1 + 1e-12),
     Held(sift, 1e-9, most=1 + 1e-12),
+    Held(leifman, 1e-6, most=1 + 1e-12, samples=300),
     Held(tasse, 1e-6, most=1 + 1e-12),
 ]
 
@@ -45,7 +56,10 @@ def over(*rivals):
 
 @pytest.fixture(scope="module", params=HELD, ids=lambda held: name_of(held.rival))
 def held(request):
-    return request.param
+    with pytest.MonkeyPatch.context() as patch:
+        if request.param.samples:
+            patch.setattr(request.param.rival, "SAMPLES", request.param.samples)
+        yield request.param
 
 
 @pytest.fixture(scope="module")
