@@ -36,6 +36,7 @@ LABELS = {
     "svm_object": "SVM of the object",
     "svm_viewpoint": "SVM of each view",
     "leifman": "regions of interest",
+    "song": "spectral saliency",
     "tasse": "cluster-based saliency",
     "sift": "3D-SIFT",
     "harris": "3D-Harris",

@@ -17,6 +17,7 @@ from stages.salient_points.rivals import (
     mesh_saliency,
     salient_points,
     sift,
+    song,
     tasse,
 )
 
@@ -41,6 +42,7 @@ HELD = [
     Held(salient_points, 1e-9, most=1 + 1e-12),
     Held(sift, 1e-9, most=1 + 1e-12),
     Held(leifman, 1e-6, most=1 + 1e-12, samples=300),
+    Held(song, 1e-4, samples=300),
     Held(tasse, 1e-6, most=1 + 1e-12),
 ]
 
