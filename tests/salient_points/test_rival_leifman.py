@@ -42,6 +42,21 @@ def test_the_diffusion_distance_grows_with_the_shift():
     assert np.allclose(np.abs(mirrored[1:] - mirrored[0]).sum(axis=1), distances)
 
 
+def test_what_lies_near_a_focus_shares_its_distinctness():
+    """Ten vertices on a line, sigma apart, the first two of them foci."""
+    steps = np.arange(10)
+    found = leifman.association(np.array([0.9, 0.8] + 8 * [0.1]), leifman.SIGMA * np.abs(steps[:, None] - steps))
+    assert found == pytest.approx(np.append(0.9, 0.8 * np.exp(-(steps[:9] ** 2) / 2)))
+
+
+def test_the_ends_of_limbs_are_of_interest_though_nothing_is_distinct(sphere, monkeypatch):
+    monkeypatch.setattr(leifman, "FLOOR", 9)
+    ball = sphere(3)
+    values = leifman.saliency(Mesh(ball.vertices * [3, 1, 1], ball.faces))
+    along = np.abs(ball.vertices[:, 0])
+    assert values[along > 0.98].min() > 0.4 and values[along < 0.5].max() < 0.01
+
+
 @pytest.mark.slow
 def test_a_bump_is_of_interest_and_the_ball_under_it_is_not(raised):
     ball = raised([[1, 0, 0]], [0.15], [0.3], subdivisions=4)

@@ -45,9 +45,7 @@ def saliency(mesh: Mesh) -> np.ndarray:
     reach = dijkstra(few.graph, directed=False)
     apart = np.where(np.isfinite(reach), reach, reach[np.isfinite(reach)].max())
     distinct = distinctness(unit.mesh, few, apart)
-    foci = np.flatnonzero(distinct >= np.quantile(distinct, 1 - FOCI))
-    nearest = apart[:, foci].argmin(axis=1)
-    interest = (distinct + distinct[foci][nearest] * _fade(apart[:, foci].min(axis=1))) / 2
+    interest = (distinct + association(distinct, apart)) / 2
     interest = interest / interest.max() if distinct.max() > FLOOR else np.zeros(len(interest))
     ends = limb_ends(reach)
     if len(ends):
@@ -90,6 +88,13 @@ def pyramid(images: np.ndarray) -> np.ndarray:
         rows, columns = smooth.shape[1] // 2, smooth.shape[2] // 2
         levels.append(smooth.reshape(-1, rows, 2, columns, 2).mean(axis=(2, 4)))
     return np.concatenate([level.reshape(len(images), -1) for level in levels], axis=1)
+
+
+def association(distinct: np.ndarray, apart: np.ndarray) -> np.ndarray:
+    """(k,) distinctness (k,) of the nearest focus, faded by the distance to it; apart (k, k): geodesic."""
+    foci = np.flatnonzero(distinct >= np.quantile(distinct, 1 - FOCI))
+    nearest = apart[:, foci].argmin(axis=1)
+    return distinct[foci][nearest] * _fade(apart[:, foci].min(axis=1))
 
 
 def limb_ends(reach: np.ndarray) -> np.ndarray:

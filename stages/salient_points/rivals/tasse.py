@@ -27,6 +27,7 @@ from .samples import unit_mesh
 RADIUS = 0.012  # of the size: the neighbourhood of a descriptor
 GROWTH, FEWEST = 1.1, 6  # it grows by this until a vertex has so many neighbours on average
 CLUSTERS = 500
+TINY = 1e-30  # two empty bins differ by nothing
 ROUNDS = 5  # of clustering; our choice
 NEAREST = 27  # clusters that a vertex may belong to; some so many lie within three steps
 ALIKE = 5.0  # weight of the descriptors beside that of the places
@@ -71,8 +72,7 @@ def squares(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 def chi_squares(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Chi-squared distances sum (a - b)^2 / (a + b) of histograms along the last axis."""
-    both = a + b
-    return np.divide((a - b) ** 2, both, out=np.zeros_like(both), where=both > 0).sum(axis=-1)
+    return ((a - b) ** 2 / (a + b + TINY)).sum(axis=-1)
 
 
 def _descriptors(places, normals):
