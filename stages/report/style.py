@@ -58,6 +58,7 @@ LABELS = {
     "mobilenet_v2": "MobileNetV2",
     "efficientnet_lite0": "EfficientNet-Lite0",
     "finetuned": "fine-tuned",
+    "last_block": "last block fine-tuned",
     "fast": "fast (ours)",
     "fast_simplification": "fast-simplification",
 }
