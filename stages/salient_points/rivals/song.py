@@ -5,13 +5,14 @@ R. Song, Y. Liu, R. R. Martin, P. L. Rosin: Mesh saliency via spectral processin
 
     irregularity  R(f) = |log lambda_f - mean of log lambda over the NEIGHBOURS eigenvalues around f|
     saliency      S_i = sum over j of (B diag(exp R) B^T)_ij W_ij
-    over scales   sum over t of |log |S_i(2 t epsilon)| - log |S_i(t epsilon)||, S(sigma) of the mesh smoothed by sigma
+    over scales   sum over t of |log |S(2 t)| - log |S(t)||, S(t) of the mesh smoothed by a variance of t EPSILON^2
 
-Our choices: SAMPLES vertices far apart instead of a simplified mesh, smoothed with the whole mesh before, by heat,
-which is a Gaussian along the surface; zero eigenvalues, one of each part, are regular; equal eigenvalues share the mean
-of R, so that S does not depend on the basis; |S| counts as at least LEAST of its median, since its logarithm has spikes
-where S changes sign; factor 2 between the scales. The map is smoothed over the spacing of the samples. The paper
-selects no points.
+Scales and numbers are those of public programs after the paper. Our choices: SAMPLES vertices far apart instead of a
+simplified mesh, smoothed with the whole mesh before, by heat, which is a Gaussian along the surface; 2 instead of a
+factor near 2 that differs between vertices; differences of logarithms, where such a program takes the logarithm of the
+sum; zero eigenvalues, one of each part, are regular; equal eigenvalues share the mean of R, so that S does not depend
+on the basis; |S| counts as at least LEAST of its median, since its logarithm has spikes where S changes sign. The map
+is smoothed over the spacing of the samples. The paper selects no points.
 """
 
 import numpy as np
@@ -25,8 +26,8 @@ from .maxima import high_maxima
 from .samples import samples, unit_mesh
 
 SAMPLES = 1000  # the time of the decomposition grows with the cube
-EPSILON = 0.003  # of the size
-SCALES = (1, 2, 3, 4, 5)
+EPSILON = 0.002  # of the size
+SCALES = (1, 2, 3, 4, 5)  # variances, in EPSILON^2
 NEIGHBOURS = 9  # eigenvalues of the local average
 LEAST = 0.1
 EQUAL = 1e-7  # of an eigenvalue, to the next: they are one
@@ -42,11 +43,11 @@ def saliency(mesh: Mesh) -> np.ndarray:
     if unit is None:
         return np.zeros(len(mesh.vertices))
     few, everywhere, logs = samples(unit.mesh, SAMPLES), np.ones(len(unit.mesh.vertices)), {}
-    for sigma in sorted({factor * scale for scale in SCALES for factor in (1, 2)}):
-        length = sigma * EPSILON / np.sqrt(2)  # heat that reaches so far has spread by a Gaussian of this sigma
+    for variance in sorted({factor * scale for scale in SCALES for factor in (1, 2)}):
+        length = EPSILON * np.sqrt(variance / 2)  # heat that reaches so far has spread by a Gaussian of this variance
         smooth = smoother(unit.mesh, everywhere, length)(unit.mesh.vertices)
         values = np.abs(spectral_saliency(smooth[few.ids], few.graph))
-        logs[sigma] = np.log(np.maximum(values, LEAST * np.median(values) or 1))
+        logs[variance] = np.log(np.maximum(values, LEAST * np.median(values) or 1))
     change = np.sum([np.abs(logs[2 * scale] - logs[scale]) for scale in SCALES], axis=0)
     return unit.to_vertices(few.spread(unit.mesh, change).clip(0))
 

@@ -24,8 +24,9 @@ from ..kernels import fpfh
 from .maxima import high_maxima
 from .samples import unit_mesh
 
-RADIUS = 0.012  # of the size: the neighbourhood of a descriptor
+RADIUS = 0.01  # of the size: the neighbourhood of a vertex
 GROWTH, FEWEST = 1.1, 6  # it grows by this until a vertex has so many neighbours on average
+WIDER = 1.2  # the neighbourhood of a descriptor over that
 CLUSTERS = 500
 TINY = 1e-30  # two empty bins differ by nothing
 ROUNDS = 5  # of clustering; our choice
@@ -80,7 +81,7 @@ def _descriptors(places, normals):
     tree, radius = cKDTree(places), RADIUS
     while tree.count_neighbors(tree, radius) < (1 + min(FEWEST, len(places) - 1)) * len(places):
         radius *= GROWTH
-    near = tree.query_ball_point(places, radius)
+    near = tree.query_ball_point(places, WIDER * radius)
     starts = np.cumsum([0, *map(len, near)])
     return fpfh(places, normals, np.concatenate([np.sort(ids) for ids in near]).astype(np.int64), starts)
 
