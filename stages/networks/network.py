@@ -101,7 +101,7 @@ def build(
 
 
 def published_layers(name: str, source: str) -> bool:
-    """Whether a source has ImageNet's weights of all that `fully_connected` keeps; of most networks that is nothing."""
+    """Whether a source has ImageNet's weights of the layers that `fully_connected` keeps; most networks have none."""
     return name not in FULLY_CONNECTED or resolve_source(name, source) == "download"
 
 
