@@ -3,10 +3,11 @@
 Reads data/SET/meshes, data/SET/weights (people's attention), data/SET/salient_points (the rivals) and
 data/reference/semantics.csv. Takes pictures of each object from all round, groups the objects by convexity, Gaussian
 curvature and eccentricity and by three levels of meaning, trains a head per task on each network of fixation.methods,
-and projects the maps of all tasks and of their entropy-weighted mean to the vertices. Writes data/SET/fixation:
-NAME.npz (see stages.fixation.read_attention), tasks.csv (the class of every object in every task, and its measures),
-elbow.csv (sums of squared distances over the number of clusters), heads/METHOD/TASK.npz. The rows are in
-reports/measurements/SET/fixation.csv.gz; they also hold the classes and the sums of squared distances.
+or a network per task, and projects the maps of all tasks and of their entropy-weighted mean to the vertices. Writes
+data/SET/fixation: NAME.npz (see stages.fixation.read_attention), tasks.csv (the class of every object in every task,
+and its measures), elbow.csv (sums of squared distances over the number of clusters), heads/METHOD/TASK.npz of frozen
+and random networks. The rows are in reports/measurements/SET/fixation.csv.gz; they also hold the classes and the sums
+of squared distances.
 """
 
 import dataclasses
@@ -24,16 +25,17 @@ from stages.kit.run import Rows, StageRun
 from stages.kit.workspace import Workspace
 from stages.meshes.schema import Params as Meshes
 
-from . import attention, backbone, finetune, heads, pictures
-from .options import Method, available, check
+from . import attention, backbone, finetune, heads, pictures, trunk
+from .options import TRAINED, Method, available, check
 from .schema import COLUMNS, Params
 from .summary import summary, verdicts
 from .tasks import SEMANTICS, assign_classes
 from .viewpoints import viewpoint_sphere
 
-HIDDEN = (".pictures", ".maps", ".pooled", ".networks", ".cams")  # what one step hands to the next
+HIDDEN = (".pictures", ".maps", ".pooled", ".networks", ".trunk", ".rates", ".cams")  # what one step hands to the next
 PICTURES, ALL_PICTURES = "fixation/.pictures/{}.npz", "fixation/.pictures"
 NETWORK, POOLED = "fixation/.networks/{}.npz", "fixation/.pooled"
+TRUNK, RATE = "fixation/.trunk/{}", "fixation/.rates/{}.npz"
 
 
 def measures_of(rows: Rows) -> dict[str, dict[str, float]]:
@@ -73,10 +75,15 @@ def train(
 ) -> None:
     """Trains the heads or networks of one method and computes its maps, before these are projected to the vertices."""
     given = {"made": stage.folder, "method": method, "settings": settings, "seed": stage.seed}
-    if method.mode == "finetuned":
-        trained = [PICTURES, *(NETWORK.format(f"{method.name}-{task}") for task in tasks)]
-        stage.each(functools.partial(finetune.train_network, tasks=tasks, **given), tasks.keys(), [ALL_PICTURES])
-        stage.each(functools.partial(finetune.compute_cams, tasks=tasks, **given), objects, trained)
+    if method.mode in TRAINED:
+        inputs = [ALL_PICTURES]
+        if method.mode == "last_block":
+            stage.each(functools.partial(trunk.cache_trunk, **given), objects, [PICTURES])
+            inputs = [TRUNK.format(method.name), RATE.format(method.name)]
+            choose = functools.partial(finetune.choose_rate, objects=objects, tasks=tasks, **given)
+            stage.each(choose, [method.name], inputs[:1])
+        learn = functools.partial(finetune.train_network, objects=objects, tasks=tasks, **given)
+        stage.each(learn, tasks.keys(), inputs)
         return
     if method.mode == "random":
         prepare = functools.partial(backbone.prepare_random_network, objects=objects, **given)
@@ -88,8 +95,8 @@ def train(
 
 def made_by(method: Method) -> list[str]:
     """What the attention on an object is computed from, of what `train` has made."""
-    if method.mode == "finetuned":
-        return [f"fixation/.cams/{method.name}/{{}}.npz"]
+    if method.mode in TRAINED:
+        return [f"fixation/.cams/{method.name}"]
     return [f"fixation/.maps/{method.name}/{{}}.npz", f"fixation/heads/{method.name}"]
 
 

@@ -1,9 +1,11 @@
 """The attention of the networks on one object, compared with human fixations, rivals and controls."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 
 import numpy as np
+import torch
 
 from stages.conspicuity import facing
 from stages.kit import Mesh, Stopwatch, Viewpoint
@@ -15,9 +17,10 @@ from .agreement import ALL_VIEWS, agreement_rows, task_correlations
 from .backbone import read_maps
 from .cam import grad_cam, resize_cams
 from .controls import centre_prior, random_saliency
+from .finetune import read_cams
 from .fusion import entropy, fuse, highest_level
-from .heads import read_head, scores
-from .options import Method
+from .heads import read_head
+from .options import TRAINED, Method
 from .pictures import read_pictures
 from .schema import Params
 from .tasks import FUSED_TASKS, TASKS
@@ -29,7 +32,7 @@ MODELS = {
     "ewigc_l4": lambda pictures: fuse(highest_level(pictures)),  # T eq. 3.25
     "average": lambda pictures: pictures.mean(axis=0),  # the baseline without weighting by entropy
 }
-RIVALS = ("mesh_saliency", "enhanced", "thesis_ssim", "height")  # of stages.salient_points
+RIVALS = ("mesh_saliency", "leifman", "song", "tasse", "enhanced", "thesis_ssim", "height")  # of stages.salient_points
 
 
 def measure_attention(
@@ -55,7 +58,7 @@ def measure_attention(
     rendering_seconds = read_pictures(made, name)[1]
     for method in methods:
         with Stopwatch() as watch:
-            cams, network_seconds = object_cams(made, method, name, tasks)
+            cams, network_seconds = object_cams(made, method, name, list(tasks))
             values, bits = project_maps(cams, mesh, viewpoints, seen, settings.size, method.network)
             whole = mean_over_views(values, seen)
         names = [*cams, *(MODELS if set(FUSED_TASKS) & set(cams) else ())]
@@ -66,6 +69,7 @@ def measure_attention(
             rows += ground_truth.rows(method.name, task, values[evaluated, k], whole[k], seconds)
         stored[f"{method.name}.maps"] = np.stack([cam[evaluated] for cam in cams.values()], axis=1).astype(np.float16)
         row = {"item": name, "method": method.name}
+        rows.append(row | {"metric": "views", "value": len(viewpoints), "seconds": network_seconds})
         rows += [row | one for one in task_correlations(values[:, : len(cams)], seen, list(cams))]
         rows += [
             row | {"task": task, "view": ALL_VIEWS, "metric": "entropy", "value": bit} for task, bit in bits.items()
@@ -74,18 +78,20 @@ def measure_attention(
     return rows + baseline_rows(ground_truth, data, viewpoints, settings.size, seed)
 
 
-def object_cams(folder: Path, method: Method, name: str, tasks: Iterable[str]) -> tuple[dict[str, np.ndarray], float]:
+def object_cams(folder: Path, method: Method, name: str, tasks: Sequence[str]) -> tuple[dict[str, np.ndarray], float]:
     """(dict task -> (v, i, j) f4 Grad-CAM map of the predicted class, seconds of the network)."""
-    if method.mode == "finetuned":
-        stored = read_arrays(folder / ".cams" / method.name / f"{name}.npz")
-        return {task: stored[task] for task in tasks}, float(stored["seconds"])
+    if method.mode in TRAINED:
+        return read_cams(folder, method.name, name, tasks)
     maps, seconds = read_maps(folder, method.name, name)
-    maps = maps.astype(np.float32)
-    pooled, found = maps.mean(axis=(2, 3)), {}
-    for task in tasks:
-        weights, bias, _ = read_head(folder, method.name, task)
-        found[task] = grad_cam(maps, weights, scores(pooled, weights, bias).argmax(axis=1))
-    return found, seconds
+    heads = {task: [torch.from_numpy(part) for part in read_head(folder, method.name, task)[:2]] for task in tasks}
+    return {
+        task: grad_cam(maps, partial(linear_scores, weights=w, bias=b))[0] for task, (w, b) in heads.items()
+    }, seconds
+
+
+def linear_scores(maps: torch.Tensor, weights: torch.Tensor, bias: torch.Tensor) -> torch.Tensor:
+    """(b, k): the scores of a head with weights (k, C) on the mean of each map (b, C, i, j)."""
+    return maps.mean(dim=(2, 3)) @ weights.T + bias
 
 
 def project_maps(

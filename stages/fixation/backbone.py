@@ -34,14 +34,13 @@ def prepare_random_network(
         network = build(method.network, 2, MODES[method.mode], seed, settings.source)
         few = objects[:: -(-len(objects) // CALIBRATION_PICTURES)]
         images = network_inputs(np.stack([read_pictures(made, one)[0][0] for one in few]))
-        if any(isinstance(layer, torch.nn.BatchNorm2d) for layer in network.modules()):
-            recalibrate(network, lambda ids: images[ids], np.arange(len(few)))
+        recalibrate(network, lambda ids: images[ids], np.arange(len(few)))
     write_state(folder, name, network)
     return []
 
 
 def compute_maps(name: str, folder: Path, made: Path, method: Method, settings: Params, seed: int) -> list[dict]:
-    """Stores the maps of all views of one object as float16; returns a row with its cost.
+    """Stores the maps of all views of one object as float16, with the seconds that they took; returns no rows.
 
     made: the folder of the pictures and, of a random method, of its network.
     """
@@ -55,8 +54,7 @@ def compute_maps(name: str, folder: Path, made: Path, method: Method, settings: 
     write_arrays(folder / ".pooled" / method.name / f"{name}.npz", pooled=pooled)
     half = maps.clip(-LARGEST, LARGEST).astype(np.float16)
     write_arrays(folder / ".maps" / method.name / f"{name}.npz", maps=half, seconds=watch.seconds)
-    row = {"item": name, "method": method.name, "metric": "views"}
-    return [row | {"value": len(pictures), "seconds": watch.seconds}]
+    return []
 
 
 @lru_cache(maxsize=1)  # a worker looks at many objects with one network

@@ -1,26 +1,40 @@
-"""Grad-CAM of a network whose head is linear on the pooled last maps (T eq. 3.18, 3.19)."""
+"""Grad-CAM from the last maps of a network (T eq. 3.18, 3.19)."""
+
+from collections.abc import Callable
 
 import numpy as np
+import torch
 
 from stages.networks.grid import cell_positions
 
 
-def grad_cam(maps: np.ndarray, weights: np.ndarray, classes: np.ndarray) -> np.ndarray:
-    """(b, i, j) f4: Grad-CAM maps of b images, not negative (Selvaraju et al. 2017, T [65]).
+def grad_cam(
+    maps: np.ndarray | torch.Tensor,
+    scores: Callable[[torch.Tensor], torch.Tensor],
+    classes: np.ndarray | torch.Tensor | None = None,
+) -> tuple[np.ndarray, np.ndarray]:
+    """((b, i, j) f4 Grad-CAM maps of b images, not negative, (b,) i8 their classes) (Selvaraju et al. 2017, T [65]).
 
-    maps (b, C, i, j): of the last convolution; weights (k, C): of the head, whose scores are the mean over each map @
-    weights.T + bias; classes (b,) i8: the class to explain, usually the predicted one. The derivative of the score by
-    each of the Z pixels of map k is weights[class, k] / Z, which is also its mean over the map (T eq. 3.19). So no
-    backward pass is needed, and maps may come from a cache. Raises ValueError for shapes that do not fit.
+    maps (b, C, i, j): of the last convolution, which may come from a cache; scores: what follows it in the network,
+    from maps to scores (b, k) before the softmax; classes (b,): those to explain, None for the predicted ones. The
+    weight of a map is the derivative of the score by its cells, averaged over them (T eq. 3.19). It is the same in each
+    cell where the maps are averaged and classified by one layer, but not before fully connected layers. Raises
+    ValueError for shapes that do not fit.
     """
-    maps, weights = np.asarray(maps, dtype=np.float32), np.asarray(weights, dtype=np.float32)
-    classes = np.asarray(classes, dtype=np.int64)
-    if maps.ndim != 4 or weights.ndim != 2 or maps.shape[1] != weights.shape[1] or classes.shape != maps.shape[:1]:
-        shapes = f"{maps.shape}, {weights.shape} and {classes.shape}"
-        raise ValueError(f"maps (b, C, i, j), weights (k, C) and classes (b,) do not fit: {shapes}")
+    maps = torch.as_tensor(maps).detach().float()
+    if maps.ndim != 4:
+        raise ValueError(f"maps must have shape (b, C, i, j), got {tuple(maps.shape)}")
+    with torch.enable_grad():
+        leaf = maps.clone().requires_grad_(True)
+        found = scores(leaf)
+        chosen = found.argmax(dim=1) if classes is None else torch.as_tensor(classes, device=found.device)
+        if chosen.shape != maps.shape[:1]:
+            raise ValueError(f"maps {tuple(maps.shape)} and classes {tuple(chosen.shape)} do not fit")
+        [gradient] = torch.autograd.grad(found.gather(1, chosen[:, None]).sum(), leaf)
+    importance = gradient.double().mean(dim=(2, 3)).float()  # double: the mean of equal numbers is that number
     b, channels, i, j = maps.shape
-    importance = weights[classes] / (i * j)
-    return np.maximum(importance[:, None] @ maps.reshape(b, channels, i * j), 0).reshape(b, i, j)
+    summed = importance.cpu().numpy()[:, None] @ maps.cpu().numpy().reshape(b, channels, i * j)
+    return np.maximum(summed, 0).reshape(b, i, j), chosen.cpu().numpy()
 
 
 def resize_cams(cams: np.ndarray, size: int, network: str) -> np.ndarray:

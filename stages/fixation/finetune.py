@@ -1,29 +1,59 @@
-"""Mode `finetuned`: one network per task with every layer trained (T3.3.3), costlier than frozen networks."""
+"""Modes `last_block` and `finetuned`: one network per task, of which more than a new head is trained (T3.3.3)."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 import torch
-from kornia import augmentation
 
 from stages.kit import Stopwatch
-from stages.kit.files import write_arrays
+from stages.kit.files import read_arrays, write_arrays
 from stages.kit.repeatable import repeatable
 from stages.kit.rng import rng
-from stages.networks import Network, build, normalise, recalibrate, train_model
-from stages.networks.device import choose_device, device_of, explain_out_of_memory
+from stages.networks import build, normalise, recalibrate, search_rate, train_model
+from stages.networks.device import choose_device, device_of, explain_out_of_memory, mixed_precision
 from stages.networks.modes import Task
+from stages.networks.network import Network
 
-from .backbone import BATCH, last_maps, read_state, write_state
+from .backbone import BATCH
 from .cam import grad_cam
-from .heads import majority_accuracy, scores
+from .heads import majority_accuracy
 from .options import MODES, Method
-from .pictures import network_inputs, read_pictures, to_images
+from .pictures import augmentation, network_inputs, read_pictures, to_images
 from .schema import Params
 from .split import random_views
+from .trunk import cached_task, read_trunk
 
-DEGREES, SCALE = 20, (0.8, 1.2)  # random rotation and rescaling; T3.3.2 gives no range
+Tasks = Mapping[str, Mapping[str, str]]  # task -> {object: its class}
+OF_LAST_BLOCK = "last_block"
+
+
+@explain_out_of_memory()
+def choose_rate(
+    name: str,
+    folder: Path,
+    made: Path,
+    method: Method,
+    settings: Params,
+    objects: Sequence[str],
+    tasks: Tasks,
+    seed: int,
+) -> list[dict]:
+    """Stores the learning rate of mode `last_block`; returns a row with it.
+
+    It is the one with the best accuracy on the validation views after one pass, on the task with the most classes.
+    name: of the method; made: the folder of the trunk's maps; objects: all of them.
+    """
+    task = max(tasks, key=lambda one: len(set(tasks[one].values())))
+    labels = labels_of(objects, tasks[task], settings)
+    part, validation, _ = divided(labels, seed)
+    with repeatable(seed), Stopwatch() as watch:
+        given = {"epochs": 1, "batch": settings.batch, "momentum": settings.momentum, "seed": seed}
+        lesson, _, _ = lesson_of(made, method, settings, objects, labels.max() + 1, seed)
+        rate, accuracy = search_rate(lesson, labels, part, validation, settings.rates, **given)
+    write_arrays(folder / ".rates" / f"{name}.npz", rate=rate, seconds=watch.seconds)
+    note = f"validation accuracy {accuracy:.3f} after one pass"
+    return [{"method": name, "task": task, "metric": "rate", "value": rate, "seconds": watch.seconds, "note": note}]
 
 
 @explain_out_of_memory()
@@ -33,40 +63,66 @@ def train_network(
     made: Path,
     method: Method,
     settings: Params,
-    tasks: Mapping[str, Mapping[str, str]],
+    objects: Sequence[str],
+    tasks: Tasks,
     seed: int,
 ) -> list[dict]:
-    """Trains the network of one task on the training views; returns rows of its accuracy on the test views.
+    """Trains the network of one task on the training views and stores its Grad-CAM maps of all views.
 
-    made: the folder of the pictures. The split of views is that of the frozen heads. The learning rate is fixed, so the
-    validation views are not used.
+    Returns rows of its accuracy on the test views. made: the folder of the pictures, of the trunk's maps and the
+    learning rate; objects: all of them. The split of views is that of the frozen heads. The rate of mode `finetuned` is
+    fixed, so that the validation views are not used.
     """
-    known = tasks[task]
-    stacks = [read_pictures(made, name)[0] for name in known]
-    pictures = np.concatenate(stacks)
-    classes = np.repeat(list(known.values()), [len(stack) for stack in stacks])
-    names, labels = np.unique(classes, return_inverse=True)
-    part, _, test = random_views(len(labels), rng(seed, "fixation views"))
-    with repeatable(seed), Stopwatch() as watch:
-        network = build(method.network, len(names), MODES[method.mode], seed, settings.source)
-        training = training_task(network.to(choose_device(settings.device)), pictures)
-        options = {name: getattr(settings, name) for name in ("rate", "epochs", "batch", "momentum")}
-        model = train_model(training, labels, part, **options, checkpoint=folder / "training.pt")
-    write_state(folder, f"{method.name}-{task}", model)
-    with repeatable(seed):
-        maps = last_maps(model, pictures[test])
-    found = scores(maps.mean(axis=(2, 3)), *head_of(model)).argmax(axis=1)
+    labels = labels_of(objects, tasks[task], settings)
+    part, _, test = divided(labels, seed)
+    stored = read_arrays(made / ".rates" / f"{method.name}.npz") if method.mode == OF_LAST_BLOCK else {}
+    options = {name: getattr(settings, name) for name in ("epochs", "batch", "momentum")}
+    options["rate"] = float(stored.get("rate", settings.rate))
+    with repeatable(seed), Stopwatch() as training:
+        lesson, trunk, copies = lesson_of(made, method, settings, objects, labels.max() + 1, seed)
+        model = train_model(lesson, labels, part, **options, checkpoint=folder / "training.pt")
+    with repeatable(seed), Stopwatch() as looking:
+        cams, found = look(model, lesson, len(labels))
+    seconds = (looking.seconds + trunk / len(tasks)) / len(objects)
+    cams = cams.reshape(len(objects), -1, *cams.shape[1:])
+    write_arrays(folder / ".cams" / method.name / f"{task}.npz", cams=cams, objects=np.array(objects), seconds=seconds)
+    paid = training.seconds + (copies + float(stored.get("seconds", 0))) / len(tasks)
     row = {"method": method.name, "task": task, "split": "views"}
     return [
-        row | {"metric": "accuracy", "value": float((found == labels[test]).mean()), "seconds": watch.seconds},
+        row | {"metric": "accuracy", "value": float((found[test] == labels[test]).mean()), "seconds": paid},
         row | {"metric": "chance", "value": majority_accuracy(labels, part, test)},
     ]
+
+
+def labels_of(objects: Sequence[str], known: Mapping[str, str], settings: Params) -> np.ndarray:
+    """(n,) i8: the number of the class of each picture of the objects, -1 for an object without one."""
+    names, views = sorted(set(known.values())), settings.parallels * settings.azimuths + 2
+    return np.repeat([names.index(known[name]) if name in known else -1 for name in objects], views)
+
+
+def divided(labels: np.ndarray, seed: int) -> list[np.ndarray]:
+    """[train, validation, test]: ids of the pictures with a class."""
+    own = np.flatnonzero(labels >= 0)
+    return [own[ids] for ids in random_views(len(own), rng(seed, "fixation views"))]
+
+
+def lesson_of(
+    made: Path, method: Method, settings: Params, objects: Sequence[str], classes: int, seed: int
+) -> tuple[Task, float, float]:
+    """(the Task of a method, seconds of its trunk for the pictures, and for their augmented copies)."""
+    own = method.mode == OF_LAST_BLOCK
+    network = build(method.network, classes, MODES[method.mode], seed, settings.source, fully_connected=own)
+    network = network.to(choose_device(settings.device))
+    if own:
+        maps, once, again = read_trunk(made, method.name, objects)
+        return cached_task(network, method, maps), once, again
+    return training_task(network, np.concatenate([read_pictures(made, name)[0] for name in objects])), 0.0, 0.0
 
 
 def training_task(network: Network, pictures: np.ndarray) -> Task:
     """The Task to train every layer on grey pictures (k, h, w) u1, rotated and rescaled at random."""
     network.requires_grad_(True)
-    augment, device = augmentation.RandomAffine(degrees=DEGREES, scale=SCALE, p=1.0), device_of(network)
+    augment, device = augmentation(), device_of(network)
 
     def plain(ids):
         return network_inputs(pictures[np.asarray(ids)], device)
@@ -80,34 +136,23 @@ def training_task(network: Network, pictures: np.ndarray) -> Task:
     return Task(network, augmented, plain, finish, lambda images: normalise(images.to(device)))
 
 
-def head_of(network: Network) -> tuple[np.ndarray, np.ndarray]:
-    """(weights (k, C), bias (k,)) of a network's linear head."""
-    layer = network.head[-1]
-    assert isinstance(layer, torch.nn.Linear)
-    return layer.weight.detach().cpu().numpy(), layer.bias.detach().cpu().numpy()
+@torch.no_grad()
+def look(model: torch.nn.Module, lesson: Task, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """((n, i, j) f4 Grad-CAM maps, (n,) i8 predicted classes) of the first `count` pictures of a task."""
+    assert isinstance(model, Network)
+    found = []
+    for ids in torch.arange(count).split(BATCH):
+        with explain_out_of_memory(), mixed_precision(device_of(model)):
+            found.append(grad_cam(model.convolutions(lesson.inputs(ids)), model.classify))
+    cams, classes = zip(*found, strict=True)
+    return np.concatenate(cams), np.concatenate(classes)
 
 
-def compute_cams(
-    name: str,
-    folder: Path,
-    made: Path,
-    method: Method,
-    settings: Params,
-    tasks: Mapping[str, Mapping[str, str]],
-    seed: int,
-) -> list[dict]:
-    """Stores the Grad-CAM maps of one object by each task's network; returns a row with their cost.
-
-    made: the folder of the pictures and networks.
-    """
-    found, (pictures, _) = {}, read_pictures(made, name)
-    with repeatable(seed), Stopwatch() as watch:
-        for task, known in tasks.items():
-            network = build(method.network, len(set(known.values())), MODES[method.mode], seed, settings.source)
-            read_state(made, f"{method.name}-{task}", network.to(choose_device(settings.device)))
-            maps, (weights, bias) = last_maps(network, pictures), head_of(network)
-            winners = scores(maps.mean(axis=(2, 3)), weights, bias).argmax(axis=1)
-            found[task] = grad_cam(maps, weights, winners)
-    write_arrays(folder / ".cams" / method.name / f"{name}.npz", **found, seconds=watch.seconds)
-    row = {"item": name, "method": method.name, "metric": "views"}
-    return [row | {"value": len(pictures), "seconds": watch.seconds}]
+def read_cams(made: Path, method: str, name: str, tasks: Sequence[str]) -> tuple[dict[str, np.ndarray], float]:
+    """(dict task -> (v, i, j) f4 Grad-CAM maps of one object, seconds of its networks)."""
+    found, seconds = {}, 0.0
+    for task in tasks:
+        stored = read_arrays(made / ".cams" / method / f"{task}.npz")
+        found[task] = stored["cams"][stored["objects"].tolist().index(name)]
+        seconds += float(stored["seconds"])
+    return found, seconds

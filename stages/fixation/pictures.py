@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import torch
+from kornia import augmentation as kornia_augmentation
 
 from stages.kit import Stopwatch
 from stages.kit.files import read_arrays, read_mesh, write_arrays
@@ -14,6 +15,8 @@ from stages.weights.convexity import convexity
 from .schema import Params
 from .shape import curvature_shares, eccentricity
 from .viewpoints import viewpoint_sphere
+
+DEGREES, SCALE = 20, (0.8, 1.2)  # random rotation and rescaling; T3.3.2 gives no range
 
 
 def take_pictures(name: str, folder: Path, data: Path, settings: Params) -> list[dict]:
@@ -50,3 +53,8 @@ def to_images(pictures: np.ndarray, device: str | torch.device = "cpu") -> torch
 def network_inputs(pictures: np.ndarray, device: str | torch.device = "cpu") -> torch.Tensor:
     """(b, 3, h, w) f4 normalised images of grey pictures (b, h, w) u1."""
     return normalise(to_images(pictures, device))
+
+
+def augmentation() -> torch.nn.Module:
+    """Random rotation and rescaling of images in 0..1 (T3.3.2), by torch's random numbers."""
+    return kornia_augmentation.RandomAffine(degrees=DEGREES, scale=SCALE, p=1.0)

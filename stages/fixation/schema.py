@@ -18,12 +18,13 @@ class Params:
     parallels: int  # circles of viewpoints between the poles, an odd number (T3.3.2: 9)
     azimuths: int  # viewpoints on each circle, a multiple of three (T3.3.2: 24)
     size: int  # pixels a side of the pictures
-    methods: list[str]  # NETWORK-MODE; frozen: a new head alone learns; finetuned: every layer; random: the control
+    methods: list[str]  # NETWORK-MODE; modes: frozen (a new head alone learns), last_block, finetuned (all), random
     source: str  # where ImageNet's weights come from: package (by hash), download (torchvision's) or auto
     device: str  # what the networks run on: cpu, cuda, or auto (a CUDA card where there is one)
     penalties: list[float]  # inverse strengths of regularisation tried for the heads on the validation views
     folds: int  # parts into which whole objects are held out
     rate: float  # learning rate of mode finetuned
-    epochs: int  # passes of mode finetuned
-    batch: int  # images a step of mode finetuned (T3.3.2: 32)
-    momentum: float  # of the stochastic gradient descent of mode finetuned
+    rates: list[float]  # learning rates of mode last_block, tried on the validation views
+    epochs: int  # passes of modes last_block and finetuned
+    batch: int  # images a step of these modes (T3.3.2: 32)
+    momentum: float  # of their stochastic gradient descent

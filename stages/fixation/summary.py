@@ -47,7 +47,7 @@ def agreement(frame: pd.DataFrame) -> dict[str, pd.Series]:
 def verdicts(frame: pd.DataFrame, seed: int) -> list[str]:
     """Sentences that compare each control with each model trained on photographs, over the objects."""
     found = agreement(frame)
-    trained = [name for name in found if name.endswith(("-frozen", "-finetuned"))]
+    trained = [name for name in found if name.endswith(("-frozen", "-last_block", "-finetuned"))]
     controls = [name for name in found if name.endswith("-random") or name in ("random", "centre_prior")]
     sentences = []
     for name in trained:

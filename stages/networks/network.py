@@ -10,6 +10,7 @@ from .architectures.efficientnet_lite0 import efficientnet_lite0
 from .architectures.googlenet import googlenet
 from .architectures.mobilenet_v2 import mobilenet_v2
 from .architectures.resnet import resnet50, resnet50_v1, resnet101
+from .architectures.vgg16 import fully_connected as vgg16_layers
 from .architectures.vgg16 import vgg16
 from .images import Transform
 from .weights import available_weights, imagenet_state, resolve_source
@@ -22,20 +23,30 @@ class Network(torch.nn.Module):
     """The convolutions of an architecture with a new head for k classes.
 
     Maps images (b, 3, h, w) f4, normalised as for ImageNet, to scores (b, k) before the softmax. `features` gives the
-    pooled feature maps, (b, width); `head` maps them to the scores.
+    pooled feature maps, (b, width); `head` maps them to the scores. hidden: fully connected layers between the maps,
+    pooled to 7 x 7, and the new linear layer on `width` features; None: the mean of each map is classified.
     """
 
-    def __init__(self, convolutions: torch.nn.Sequential, width: int, classes: int, dropout: float) -> None:
+    def __init__(
+        self,
+        convolutions: torch.nn.Sequential,
+        width: int,
+        classes: int,
+        dropout: float,
+        hidden: torch.nn.Sequential | None = None,
+    ) -> None:
         super().__init__()
         self.convolutions = convolutions
         self.pool = torch.nn.AdaptiveAvgPool2d(1)
+        if hidden is not None:
+            self.pool = torch.nn.Sequential(torch.nn.MaxPool2d(2), torch.nn.AdaptiveAvgPool2d(7))
         linear = torch.nn.Linear(width, classes)
-        self.head = torch.nn.Sequential(torch.nn.Dropout(dropout), linear)
+        self.head = torch.nn.Sequential(*(hidden or ()), torch.nn.Dropout(dropout), linear)
         torch.nn.init.normal_(linear.weight, std=0.01)  # as torchvision does for MobileNetV2
         torch.nn.init.zeros_(linear.bias)
 
     def features(self, images: torch.Tensor) -> torch.Tensor:
-        """(b, width): the mean of each last feature map. Raises ValueError for images of another shape or too small."""
+        """(b, width): the pooled last feature maps. Raises ValueError for images of another shape or too small."""
         if images.ndim != 4 or images.shape[1] != 3 or min(images.shape[2:]) < SMALLEST:
             raise ValueError(
                 f"images must have shape (b, 3, h, w) with sides of {SMALLEST} or more, got {tuple(images.shape)}"
@@ -44,6 +55,10 @@ class Network(torch.nn.Module):
 
     def forward(self, images: torch.Tensor) -> torch.Tensor:
         return self.head(self.features(images))
+
+    def classify(self, maps: torch.Tensor) -> torch.Tensor:
+        """(b, k): the scores of last feature maps (b, C, i, j)."""
+        return self.head(self.pool(maps).flatten(1))
 
 
 NETWORKS = {
@@ -55,16 +70,20 @@ NETWORKS = {
     "mobilenet_v2": mobilenet_v2,
     "efficientnet_lite0": efficientnet_lite0,
 }
+FULLY_CONNECTED = {"vgg16": (vgg16_layers, 4096)}  # network -> layers before the classifier, and their features
 PACKAGE_VARIANTS = {"resnet50": resnet50_v1}  # architectures of a package's weights where torchvision's differ
 
 
-def build(name: str, classes: int, weights: str, seed: int, source: str = "package") -> Network:
+def build(
+    name: str, classes: int, weights: str, seed: int, source: str = "package", fully_connected: bool = False
+) -> Network:
     """A Network for `classes` classes, in evaluation mode.
 
     name: one of NETWORKS. weights: `imagenet`, or `random` for the control. source: where the weights come from, one of
     stages.networks.weights.SOURCES; it also decides the variant of ResNet50, for the control too. The seed decides the
-    initial head and, for `random`, the convolutions; the caller's random numbers are left unchanged. Raises ValueError
-    for an unknown name, FetchError for weights that are not available.
+    initial head and, for `random`, the convolutions; the caller's random numbers are left unchanged. fully_connected:
+    keeps the fully connected layers of VGG16, which are random where the source has none (see published_layers).
+    Raises ValueError for an unknown name, FetchError for weights that are not available.
     """
     if weights not in WEIGHTS:
         raise ValueError(f"unknown weights {weights!r}, known: {', '.join(WEIGHTS)}")
@@ -75,8 +94,15 @@ def build(name: str, classes: int, weights: str, seed: int, source: str = "packa
     with torch.random.fork_rng(devices=[]):
         torch.manual_seed(seed)
         parts = design(state)
-        network = Network(parts.convolutions, parts.width, classes, parts.dropout)
+        layers, width = FULLY_CONNECTED.get(name, (None, parts.width)) if fully_connected else (None, parts.width)
+        hidden = layers(state) if layers else None
+        network = Network(parts.convolutions, width, classes, parts.dropout, hidden)
     return _ready(network)
+
+
+def published_layers(name: str, source: str) -> bool:
+    """Whether a source has ImageNet's weights of the layers that `fully_connected` keeps; most networks have none."""
+    return name not in FULLY_CONNECTED or resolve_source(name, source) == "download"
 
 
 def imagenet_classifier(name: str, source: str = "package") -> Network:
@@ -86,7 +112,8 @@ def imagenet_classifier(name: str, source: str = "package") -> Network:
     FetchError for weights that are not available.
     """
     if available_weights(name, source) == "convolutions":
-        raise ValueError(f"only the convolutions of {name} are available, without a classifier of ImageNet's classes")
+        raise ValueError(f"only the convolutions of {name} are available, without a classifier of ImageNet's classes: "
+                         "take a network with one linear layer behind them, such as resnet50")  # fmt: skip
     state = imagenet_state(name, source)
     with torch.random.fork_rng(devices=[]):
         parts = _design(name, source)(state)
@@ -129,6 +156,9 @@ def recalibrate(
         raise ValueError(f"statistics need two touches or more, got {len(ids)}")
     normalisations = {n: layer for n, layer in network.named_modules() if isinstance(layer, torch.nn.BatchNorm2d)}
     layers = [layer for name, layer in normalisations.items() if name not in fixed]
+    if not layers:
+        network.eval()
+        return
     momenta = [layer.momentum for layer in layers]
     for layer in layers:
         layer.reset_running_stats()

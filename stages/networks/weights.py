@@ -88,9 +88,9 @@ def available_weights(network: str, source: str = "package") -> str:
     """Which ImageNet weights of a network a source has: `complete`, `convolutions` or `converted`.
 
     `convolutions`: all but the fully connected layers, which no package registry has and which the networks here leave
-    out, whatever the source. `converted`: complete, but trained by another library, with another convention for colours
-    and strides. Fetches nothing. Raises FetchError with a remedy where the source has none, ValueError for unknown
-    names.
+    out, whatever the source, unless build is asked for them. `converted`: complete, but trained by another library,
+    with another convention for colours and strides. Fetches nothing. Raises FetchError with a remedy where the source
+    has none, ValueError for unknown names.
     """
     if network not in NETWORKS_WITH_WEIGHTS:
         raise ValueError(f"no ImageNet weights known for {network!r}, known: {', '.join(NETWORKS_WITH_WEIGHTS)}")

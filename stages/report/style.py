@@ -35,6 +35,9 @@ LABELS = {
     "svm_nearest": "SVM, nearest object's",
     "svm_object": "SVM of the object",
     "svm_viewpoint": "SVM of each view",
+    "leifman": "regions of interest",
+    "song": "spectral saliency",
+    "tasse": "cluster-based saliency",
     "sift": "3D-SIFT",
     "harris": "3D-Harris",
     "corners": "scale-dependent corners",
@@ -56,6 +59,7 @@ LABELS = {
     "mobilenet_v2": "MobileNetV2",
     "efficientnet_lite0": "EfficientNet-Lite0",
     "finetuned": "fine-tuned",
+    "last_block": "last block fine-tuned",
     "fast": "fast (ours)",
     "fast_simplification": "fast-simplification",
 }

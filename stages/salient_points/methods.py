@@ -20,7 +20,7 @@ from .fused import FusedDetector, MergedDetector, SvmDetector, WeightedDetector
 from .options import Detection, Detector, Options
 from .positions import centre_distance, facing_viewer, height
 from .random_points import RandomPoints
-from .rivals import corners, harris, heat_kernel, mesh_saliency, salient_points, sift
+from .rivals import corners, harris, heat_kernel, leifman, mesh_saliency, salient_points, sift, song, tasse
 from .surface import FixationDetector, SurfaceDetector
 
 SYMMETRIES = {"SymLat": "symmetry_lateral", "SymRad": "symmetry_radial", "2Sym": "symmetry"}  # T3.1.5
@@ -37,7 +37,7 @@ WEIGHTED = (
 SVMS = ("svm", "svm_nearest", "svm_seen", "svm_object", "svm_viewpoint")  # T3.2.3
 PUBLISHED = {
     "mesh_saliency": mesh_saliency, "salient_points": salient_points, "sift": sift, "harris": harris,
-    "corners": corners, "heat_kernel": heat_kernel,
+    "corners": corners, "heat_kernel": heat_kernel, "leifman": leifman, "song": song, "tasse": tasse,
 }  # fmt: skip
 
 METHODS: dict[str, Detector] = {

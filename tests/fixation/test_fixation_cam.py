@@ -1,61 +1,73 @@
 """Grad-CAM from cached maps is Grad-CAM by backpropagation; fusion of maps; maps on the surface."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 import torch
 
 from stages.conspicuity import facing
 from stages.fixation import entropy, fuse, grad_cam, highest_level, mean_over_views, project_to_vertices
-from stages.fixation.attention import MODELS, project_maps
+from stages.fixation.attention import MODELS, linear_scores, project_maps
 from stages.fixation.backbone import folded_network, last_maps, state_path, write_state
 from stages.fixation.cam import resize_cams
 from stages.fixation.heads import fit_head, scores
 from stages.fixation.options import method_named
-from stages.fixation.pictures import network_inputs
 from stages.fixation.viewpoints import viewpoint_sphere
 from stages.kit import Viewpoint
 from stages.kit.camera import project
 from stages.kit.files import sha256
-from stages.networks import build, recalibrate
+from stages.networks import Network, build
 
 pytestmark = pytest.mark.slow
 
-SIZE = 96
+
+def by_backpropagation(network, images, classes):
+    """((b, i, j), (b, C, i, j)): T eq. 3.18 and 3.19 as they stand, image by image, and the gradients by torch."""
+    kept, maps, gradients = [], [], []
+    hook = network.convolutions.register_forward_hook(lambda *made: kept.append(made[-1]) or made[-1].retain_grad())
+    for image, number in zip(images, classes, strict=True):
+        network(image[None])[0, int(number)].backward()
+        own = kept[-1].detach()[0]
+        alpha = [kept[-1].grad[0, k].sum() / own[0].numel() for k in range(len(own))]
+        maps.append(torch.relu(sum(weight * own[k] for k, weight in enumerate(alpha))).numpy())
+        gradients.append(kept[-1].grad[0].numpy())
+    hook.remove()
+    return np.stack(maps), np.stack(gradients)
 
 
-@pytest.fixture(scope="module")
-def network():
-    """An untrained MobileNetV2 with a head of five classes that are not all alike."""
-    found = build("mobilenet_v2", 5, "random", 0)
-    images = torch.rand(8, 3, SIZE, SIZE, generator=torch.Generator().manual_seed(0))
-    recalibrate(found, lambda ids: images[ids], np.arange(8))
+def small_network(hidden):
+    """(a Network of one convolution whose classes are not all alike, its images (6, 3, 32, 32))."""
     torch.manual_seed(0)
-    torch.nn.init.normal_(found.head[1].weight)
-    return found
+    convolutions = torch.nn.Sequential(torch.nn.Conv2d(3, 4, 3, padding=1), torch.nn.ReLU())
+    layers = torch.nn.Sequential(torch.nn.Linear(4 * 7 * 7, 6), torch.nn.ReLU()) if hidden else None
+    network = Network(convolutions, 6 if hidden else 4, 3, 0.5, layers).eval()
+    torch.nn.init.normal_(network.head[-1].weight)
+    return network, torch.rand(6, 3, 32, 32)
 
 
-@pytest.fixture(scope="module")
-def pictures():
-    return np.random.default_rng(0).integers(0, 256, (4, SIZE, SIZE)).astype(np.uint8)
+@pytest.mark.parametrize("hidden", [False, True])
+def test_grad_cam_from_maps_is_the_one_by_backpropagation_of_each_class(hidden):
+    network, images = small_network(hidden)
+    maps = network.convolutions(images).detach()
+    predicted = grad_cam(maps, network.classify)[1]
+    assert (predicted == network(images).argmax(dim=1).numpy()).all()
+    for classes in (predicted, (predicted + 1) % 3, (predicted + 2) % 3):
+        expected, gradients = by_backpropagation(network, images, classes)
+        varies = gradients.std(axis=(2, 3)).max(axis=1) > 1e-6 * np.abs(gradients).max()
+        assert varies.all() if hidden else not varies.any()
+        assert np.abs(grad_cam(maps, network.classify, classes)[0] - expected).max() < 1e-5 * np.abs(expected).max()
 
 
-def by_backpropagation(network, pictures, classes):
-    """(b, i, j): T eq. 3.18 and 3.19 as they stand, the gradient by torch."""
-    maps = network.convolutions(network_inputs(pictures)).detach().requires_grad_(True)
-    found = network.head(network.pool(maps).flatten(1))
-    found[torch.arange(len(found)), torch.as_tensor(classes)].sum().backward()
-    alpha = maps.grad.mean(dim=(2, 3), keepdim=True)
-    return torch.relu((alpha * maps).sum(dim=1)).detach().numpy()
-
-
-@pytest.mark.parametrize("shift", [0, 1, 3])
-def test_grad_cam_from_maps_equals_the_one_by_backpropagation(network, pictures, shift):
-    maps = last_maps(network, pictures)
-    weights, bias = (x.detach().numpy() for x in (network.head[1].weight, network.head[1].bias))
-    classes = (scores(maps.mean(axis=(2, 3)), weights, bias).argmax(axis=1) + shift) % 5
-    expected = by_backpropagation(network, pictures, classes)
-    assert expected.max() > 0.01
-    assert np.abs(grad_cam(maps, weights, classes) - expected).max() < 1e-5 * expected.max()
+def test_grad_cam_of_a_head_on_the_mean_of_each_map_weighs_the_maps_by_it():
+    network, images = small_network(hidden=False)
+    maps, linear = network.convolutions(images).detach(), network.head[-1]
+    head = partial(linear_scores, weights=linear.weight.detach(), bias=linear.bias.detach())
+    for classes in (np.zeros(6, dtype=int), np.arange(6) % 3):
+        expected = torch.relu(torch.einsum("bc,bcij->bij", linear.weight.detach()[classes] / 32**2, maps)).numpy()
+        found, explained = grad_cam(maps, head, classes)
+        assert expected.max() > 0 and np.allclose(found, expected, rtol=1e-5, atol=1e-8)
+        assert explained.tolist() == classes.tolist()
 
 
 @pytest.mark.parametrize("name", ["mobilenet_v2", "efficientnet_lite0"])
@@ -83,8 +95,11 @@ def test_vgg_is_looked_at_before_its_last_pooling():
 
 
 def test_maps_that_do_not_fit_are_refused():
+    scores = partial(linear_scores, weights=torch.zeros(5, 3), bias=torch.zeros(5))
     with pytest.raises(ValueError, match="do not fit"):
-        grad_cam(np.zeros((2, 3, 4, 4)), np.zeros((5, 4)), [0, 1])
+        grad_cam(np.zeros((2, 3, 4, 4)), scores, np.array([0, 1, 2]))
+    with pytest.raises(ValueError, match="must have shape"):
+        grad_cam(np.zeros((3, 4, 4)), scores)
 
 
 def test_a_head_names_what_can_be_told_apart_and_survives_dead_channels():

@@ -19,7 +19,7 @@ from stages.kit.rows import read_rows
 METHOD = "mobilenet_v2-random"
 SETTINGS = {
     "parallels": 1, "azimuths": 3, "size": 64, "methods": [METHOD], "source": "package", "device": "cpu",
-    "penalties": [0.01], "folds": 2, "rate": 0.01, "epochs": 1, "batch": 4, "momentum": 0.9,
+    "penalties": [0.01], "folds": 2, "rate": 0.01, "rates": [0.01, 0.03], "epochs": 1, "batch": 4, "momentum": 0.9,
 }  # fmt: skip
 
 
@@ -101,11 +101,14 @@ def test_stage_judges_models_rivals_and_controls_where_people_looked(run, capsys
 
 
 @pytest.mark.slow
-def test_finetuning_runs_beside_the_frozen_way(run, monkeypatch):
-    monkeypatch.setitem(options.MODES, "finetuned", "random")  # from scratch: no weights are fetched here
-    rows = rows_of(run(methods=["mobilenet_v2-finetuned"]))
-    own = rows[rows["method"] == "mobilenet_v2-finetuned"]
+@pytest.mark.parametrize("mode", options.TRAINED)
+def test_networks_trained_for_each_task_run_beside_the_frozen_way(run, monkeypatch, mode):
+    monkeypatch.setitem(options.MODES, mode, "random")  # from scratch: no weights are fetched here
+    rows = rows_of(run(methods=[f"mobilenet_v2-{mode}"]))
+    own = rows[rows["method"] == f"mobilenet_v2-{mode}"]
     assert {"accuracy", "chance", "views", "entropy", "pcc"} <= set(own["metric"])
+    rates = own.loc[own["metric"] == "rate", "value"].tolist()
+    assert rates in ([0.01], [0.03]) if mode == "last_block" else not rates
 
 
 @pytest.mark.slow

@@ -9,7 +9,17 @@ import trimesh
 from scipy.spatial.transform import Rotation
 
 from stages.kit import Mesh
-from stages.salient_points.rivals import corners, harris, heat_kernel, mesh_saliency, salient_points, sift
+from stages.salient_points.rivals import (
+    corners,
+    harris,
+    heat_kernel,
+    leifman,
+    mesh_saliency,
+    salient_points,
+    sift,
+    song,
+    tasse,
+)
 
 X = np.array([1.0, 0, 0])
 
@@ -21,6 +31,7 @@ class Held:
     rival: ModuleType
     same: float  # of the largest value: what another order or size of the mesh may change
     most: float = np.inf  # the largest value that there may be
+    samples: int = 0  # that stand for the mesh: fewer than in use, since this does not depend on how many
 
 
 HELD = [
@@ -30,6 +41,9 @@ HELD = [
     Held(mesh_saliency, 1e-9, most=1 + 1e-12),
     Held(salient_points, 1e-9, most=1 + 1e-12),
     Held(sift, 1e-9, most=1 + 1e-12),
+    Held(leifman, 1e-6, most=1 + 1e-12, samples=300),
+    Held(song, 1e-4, samples=300),
+    Held(tasse, 1e-6, most=1 + 1e-12),
 ]
 
 
@@ -44,7 +58,10 @@ def over(*rivals):
 
 @pytest.fixture(scope="module", params=HELD, ids=lambda held: name_of(held.rival))
 def held(request):
-    return request.param
+    with pytest.MonkeyPatch.context() as patch:
+        if request.param.samples:
+            patch.setattr(request.param.rival, "SAMPLES", request.param.samples)
+        yield request.param
 
 
 @pytest.fixture(scope="module")
@@ -178,7 +195,7 @@ def test_values_of_another_mesh_are_refused(rival, bumpy):
 
 
 @pytest.mark.slow
-@over(mesh_saliency, salient_points, sift)
+@over(mesh_saliency, salient_points, sift, tasse)
 def test_a_sphere_and_a_plane_have_neither_saliency_nor_points(rival, sphere, grid):
     for mesh in sphere(4), Mesh(*grid(9, 9)):
         values = rival.saliency(mesh)

@@ -20,12 +20,12 @@ class Architecture(NamedTuple):
 
 
 def he_initialise(module: torch.nn.Module) -> None:
-    """Initialises convolutions with He's distribution (He et al. 2015) and zero biases.
+    """Initialises convolutions and linear layers with He's distribution (He et al. 2015) and zero biases.
 
     For networks without normalisation layers: with torch's own initialisation the signal shrinks at each layer.
     """
     for layer in module.modules():
-        if isinstance(layer, torch.nn.Conv2d):
+        if isinstance(layer, torch.nn.Conv2d | torch.nn.Linear):
             torch.nn.init.kaiming_normal_(layer.weight, mode="fan_in", nonlinearity="relu")
             if layer.bias is not None:
                 torch.nn.init.zeros_(layer.bias)

@@ -14,7 +14,7 @@ from stages.report.markdown import number, signed, with_interval
 from stages.report.pareto import pareto_chart
 from stages.report.results import Results
 
-from .detectors import FUSED, LEE, PRIOR, Detector, network_text, with_random_weights
+from .detectors import FUSED, LEE, PRIOR, Detector, network_text, untrained, with_random_weights
 from .rows import detectors, networks, no_people, scores, sources
 
 METRICS = {"pcc": "PCC", "pcc_masked": "PCC, the thesis's way", "nss": "NSS", "auc": "AUC",
@@ -116,11 +116,11 @@ def chart(results: Results) -> Figure:
 
 
 def _saved(maps: dict[str, pd.Series]) -> str:
-    """What training every layer changes, paired over the objects; maps: {network: PCC of its fused maps}."""
+    """What training more than a head changes, paired over the objects; maps: {network: PCC of its fused maps}."""
     said = []
     for method, own in maps.items():
-        frozen = method.replace("-finetuned", "-frozen")
-        if frozen != method and frozen in maps:
+        frozen = f"{method.rpartition('-')[0]}-frozen"
+        if frozen != method and frozen in maps and not untrained(method):
             gain = signed(*interval(own - maps[frozen]), places=3)
             said.append(f"{network_text(method)} minus frozen: PCC {gain}")
     return f"{'; '.join(said)}." if said else "No network was fine-tuned here."

@@ -8,7 +8,7 @@ from typing import Any
 from stages.fixation.tasks import FUSED_TASKS
 from stages.report.claims import Claim
 
-from .detectors import FUSED, LEE, NARROWED, NOISE, OURS, PRIOR, network_text, task_text, with_random_weights
+from .detectors import FUSED, LEE, NARROWED, NOISE, OURS, PRIOR, RIVALS, network_text, task_text, with_random_weights
 from .places import ITSELF
 
 # The thesis's, but that ResNet101's weights come with no package; and a small one.
@@ -30,6 +30,7 @@ PHRASES = {
     ("task", OURS.task): "ours, learned on the other meshes,",
     **{("task", one): f"{task_text(one)}," for one in (FUSED, NARROWED, *NAMED)},
     **{("task", one.task): one.text for one in (LEE, PRIOR, NOISE)},
+    **{("task", task): task_text(task) for task in RIVALS.values()},
     **{("method", each): network_text(each) for one in NETWORKS for each in (one, with_random_weights(one))},
 }  # fmt: skip
 claim = partial(Claim, stage="fixation", dataset="gaze", over=("item",), scale=1, unit="PCC", phrases=PHRASES)
@@ -72,6 +73,11 @@ CLAIMS = [
                   lambda _: PRIOR),
     *nearer("ewigc_nearer_than_lee", "Fused Grad-CAM finds centres nearer to fixations than mesh saliency does.",
             EWIGC, LEE),
+    *[agrees(f"ewigc_over_{task}", f"Fused Grad-CAM predicts gaze better than {name}.", EWIGC, ("rival", task))
+      for name, task in RIVALS.items()],
+    *[one for name, task in RIVALS.items()
+      for one in nearer(f"ewigc_nearer_than_{task}", f"Fused Grad-CAM finds centres nearer to fixations than {name}.",
+                        EWIGC, ("rival", task))],
     *nearer("ewigc_nearer_than_noise", "Fused Grad-CAM finds centres nearer to fixations than noise does.",
             EWIGC, NOISE),
     *[agrees(f"{task}_least", f"Attention is less like people's where a network names {name} than in the tasks that "

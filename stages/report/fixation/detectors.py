@@ -31,6 +31,7 @@ class Detector(NamedTuple):
 
 
 LEE, OURS = Detector("rival", "mesh_saliency"), Detector("rival", "enhanced")
+RIVALS = {"Leifman's regions of interest": "leifman", "Song's spectral saliency": "song", "Tasse's clusters": "tasse"}
 PRIOR, NOISE = Detector("control", "centre_prior"), Detector("control", "random")
 
 

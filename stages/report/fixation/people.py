@@ -21,7 +21,7 @@ LINES = (*TASKS, FUSED)
 FLOOR = 0.1  # %: a centre nearer than this is on the spot, and the axis begins there
 Tables = dict[str, tuple[pd.DataFrame, pd.DataFrame]]
 DOT: dict[str, Any] = {"marker": "o", "ls": "", "ms": 5}
-LOOKS = {"finetuned": {"marker": "s"}, "random": {"mfc": "white"}}
+LOOKS = {"finetuned": {"marker": "s"}, "last_block": {"marker": "^"}, "random": {"mfc": "white"}}
 DIAMOND = DOT | {"marker": "D", "color": "white", "ms": 4.5}
 
 

@@ -8,6 +8,7 @@ from scipy.spatial import cKDTree  # pyright: ignore[reportAttributeAccessIssue]
 from stages.kit import Mesh
 
 NEAREST = 8  # vertices queried first: they rule out nearly all, so that few wide queries remain
+SPACING = 0.05  # of the size, between points of detectors that leave it open, as for 3D-Harris
 DIGITS = 9  # relative to the largest value: smaller differences are rounding, and count as equal
 
 
@@ -39,6 +40,21 @@ def local_maxima(mesh: Mesh, values: np.ndarray, radius: float) -> np.ndarray:
     highest = np.minimum.reduceat(ranks[ids], starts) == ranks[candidates]
     peaks = candidates[highest & (np.minimum.reduceat(levels[ids], starts) < levels[candidates])]
     return peaks[np.argsort(ranks[peaks])]
+
+
+def high_maxima(mesh: Mesh, values: np.ndarray) -> np.ndarray:
+    """(k,) i8 vertex ids, largest value first: the local maxima within SPACING that are above the mean of them all.
+
+    So Dutagaci 2012 selects for mesh saliency. The size is twice the distance of the farthest vertex from the middle of
+    the used ones, which no turn changes.
+    """
+    values = np.asarray(values, dtype=np.float64)
+    if not (len(mesh.faces) and values.any()):
+        return local_maxima(mesh, values, 1.0)
+    used = mesh.vertices[mesh.used]
+    size = 2 * np.linalg.norm(used - used.mean(axis=0), axis=1).max()
+    found = local_maxima(mesh, values, SPACING * size)
+    return found[values[found] >= values[found].mean()] if len(found) else found
 
 
 def _above_nearest(tree, levels, ranks, radius):

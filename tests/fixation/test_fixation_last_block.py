@@ -1,0 +1,84 @@
+"""The last block on cached maps is the network's own; fully connected layers are published or random, and named."""
+
+import numpy as np
+import pytest
+import torch
+
+from stages.fixation import options, trunk
+from stages.fixation.finetune import divided, labels_of
+from stages.fixation.options import Method, method_named
+from stages.fixation.pictures import network_inputs
+from stages.fixation.schema import Params
+from stages.kit.files import write_arrays
+from stages.networks import build, recalibrate
+from stages.networks.architectures.vgg16 import fully_connected
+
+SETTINGS = Params(
+    parallels=1, azimuths=3, size=64, methods=[], source="package", device="cpu", penalties=[], folds=2,
+    rate=0.01, rates=[0.01], epochs=1, batch=4, momentum=0.9,
+)  # fmt: skip
+
+
+PICTURES = np.random.default_rng(0).integers(0, 256, (5, 64, 64)).astype(np.uint8)
+
+
+def some_network(*_):
+    """A MobileNetV2 of random weights, whose maps are not as small as an untrained one's are."""
+    found = build("mobilenet_v2", 3, "random", 0)
+    recalibrate(found, lambda ids: network_inputs(PICTURES[ids]), np.arange(5))
+    return found
+
+
+@pytest.mark.slow
+def test_the_last_block_on_cached_maps_gives_the_scores_of_the_network(tmp_path, monkeypatch):
+    monkeypatch.setattr(trunk, "build", some_network)
+    monkeypatch.setattr(trunk, "Half", lambda layers: layers)  # this noise needs more digits than bfloat16 has
+    method = Method("mobilenet_v2-last_block", "mobilenet_v2", "last_block")
+    for name in ("a", "b"):
+        write_arrays(tmp_path / ".pictures" / f"{name}.npz", pictures=PICTURES, seconds=1.0)
+        trunk.cache_trunk(name, tmp_path, tmp_path, method, SETTINGS, 0)
+    maps, once, again = trunk.read_trunk(tmp_path, method.name, ["a", "b"])
+    assert maps.shape[:2] == (2, 10) and once > 0 and again > 0
+    assert torch.equal(maps[0, :5], maps[0, 5:]) and not torch.equal(maps[1, :5], maps[1, 5:])
+    network = some_network()
+    with torch.no_grad():
+        expected = network.classify(network.convolutions(network_inputs(PICTURES)))
+        task = trunk.cached_task(network, method, maps)
+        found = task.model(task.inputs(torch.arange(5)))
+    assert (found - expected).abs().max() < 0.01 * expected.abs().max()
+    drawn = task.training_inputs(torch.zeros(64, dtype=torch.long)).half()
+    assert {int((one == maps[0, 0]).all()) for one in drawn} == {0, 1}
+
+
+def test_an_object_without_a_class_is_looked_at_but_neither_trains_nor_tests():
+    labels = labels_of(["a", "b", "c"], {"a": "x", "c": "y"}, SETTINGS)
+    assert labels.tolist() == [0] * 5 + [-1] * 5 + [1] * 5
+    ids = np.concatenate(divided(labels, 0))
+    assert sorted(ids) == [*range(5), *range(10, 15)]
+
+
+@pytest.mark.slow
+def test_fully_connected_layers_are_those_of_the_state_or_random():
+    shapes = {"0.weight": (4096, 25088), "0.bias": (4096,), "3.weight": (4096, 4096), "3.bias": (4096,)}
+    state = {f"classifier.{key}": torch.tensor(0.5).expand(shape) for key, shape in shapes.items()}
+    assert all(bool((value == 0.5).all()) for value in fully_connected(state).state_dict().values())
+    layers = fully_connected({"features.0.weight": torch.zeros(1)})
+    linear = layers[0]
+    assert isinstance(linear, torch.nn.Linear) and not linear.bias.any()
+    assert linear.weight.detach().numpy().std() == pytest.approx(np.sqrt(2 / 25088), rel=0.01)
+    assert layers(torch.rand(2, 25088)).shape == (2, 4096)
+
+
+@pytest.mark.parametrize(("source", "word"), [("package", "source=download"), ("download", "")])
+def test_fully_connected_layers_that_nobody_carries_are_named_with_the_remedy(monkeypatch, capsys, source, word):
+    monkeypatch.setattr(options, "build", lambda *_: None)
+    methods = ["vgg16-last_block", "resnet50-last_block", "vgg16-frozen"]
+    found, missing = options.available(Params(**vars(SETTINGS) | {"methods": methods, "source": source}))
+    said = capsys.readouterr().err
+    assert len(found) == 3 and not missing and said.count("\n") == bool(word) and word in said
+    assert "vgg16-last_block" in said or not word
+
+
+def test_a_network_whose_last_block_is_not_known_is_named():
+    with pytest.raises(ValueError, match="alexnet-last_block: the last block is known of vgg16"):
+        method_named("alexnet-last_block")
