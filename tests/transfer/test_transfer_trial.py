@@ -58,7 +58,7 @@ def test_a_trial_gives_equal_files_each_time_and_tidy_rows(folder, small):
 
 
 def test_disturbed_touches_are_rows_of_their_own(folder, small):
-    rows = [trial_row(row, {"mobilenet_v2": None}) for row in run(folder, small.settings())]
+    rows = [trial_row(row, {"mobilenet_v2": None}, small.settings()) for row in run(folder, small.settings())]
     disturbed = pd.DataFrame([row for row in rows if row["metric"] == "disturbed_accuracy"])
     asked = [("noise", 0.01), ("noise", 0.5), ("few_touches", 0.5)]
     assert list(zip(disturbed["perturbation"], disturbed["severity"], strict=True)) == asked
