@@ -3,7 +3,7 @@
 from functools import partial
 
 from stages.report.claims import Claim, Side
-from stages.report.networks import both, on_their_classes
+from stages.report.networks import both, on_ours, on_their_classes
 
 from .hybrid_senses import WHOLE
 from .section_5_5 import MIDDLE, POINT, SENSES
@@ -56,4 +56,4 @@ OURS = on_both_splits(
     joined("temperatures_help", "ours", "In the dark temperatures make the certainty a better guide.",
            "fusion_entropy", "fusion_entropy_raw", DARK),
 )  # fmt: skip
-CLAIMS = [*THESIS, *OURS, *on_their_classes(THESIS)]
+CLAIMS = [*on_their_classes(THESIS), *on_ours(THESIS), *OURS]
