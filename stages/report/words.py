@@ -14,7 +14,7 @@ DATASETS = {
     SECTION_3_1: "household as in T3.1", SECTION_4_2: "household as in T4.2",
     "gaze": "meshes with human gaze", "princeton": "psb", "princeton_eight": "psb, the thesis's 8 classes",
     "princeton_six": "psb, the thesis's 6 classes", "pressure_images": "recorded pressure array",
-    "biotac_grasps": "recorded fingertips",
+    "biotac_grasps": "recorded fingertips", "schunk": "recorded hand with arrays",
 }  # fmt: skip
 NAMED = ("method", "classifier", "network")  # columns whose values have a label
 
