@@ -40,7 +40,7 @@ def read_pressure_images(path: str | Path) -> dict[str, np.ndarray]:
     (IEEE Sensors Journal 19(16), 2019): 22 classes, 50 touches each, 28 x 50 cells.
     Raises ValueError, with the file and the remedy, for anything else.
     """
-    root = _open_root(path, PRESSURE)
+    root = open_root(path, PRESSURE)
     folders = sorted(_entries(root / "Images"), key=lambda folder: folder.name)
     files_by_class = {folder.name: _images_by_number(folder) for folder in folders if folder.is_dir()}
     if not files_by_class or not all(files_by_class.values()):
@@ -59,7 +59,7 @@ def read_grasps(path: str | Path) -> Grasps:
     path: the zip file, or a folder with the tables. Raises ValueError, with the file and the remedy, if a table is
     missing, lacks a column, or contains a value that is not a number.
     """
-    root, parts = _open_root(path, GRASPS), []
+    root, parts = open_root(path, GRASPS), []
     for test in (False, True):
         for palm in PALMS:
             table = _table(root / f"bts3v2_palm_{palm}{'_test' if test else ''}.csv", path)
@@ -71,8 +71,8 @@ def read_grasps(path: str | Path) -> Grasps:
     )  # fmt: skip
 
 
-def _open_root(path, expected):
-    """The root of a zip file or a folder."""
+def open_root(path: str | Path, expected: str) -> Path | zipfile.Path:
+    """The root of a zip file or a folder; raises ValueError, with the remedy, where it is neither."""
     path = Path(path)
     if path.is_dir():
         return path

@@ -118,6 +118,8 @@ def features(network: Network, images: torch.Tensor, augment: Transform | None =
     """(k, width) f4: the network's features of images (k, 3, h, w) in 0..1, each batch first passed to `augment`."""
     found = []
     for part in images.split(batch):
-        with explain_out_of_memory(), mixed_precision(images.device):
-            found.append(network.features(normalise(part if augment is None else augment(part))).float())
+        with explain_out_of_memory():
+            inputs = normalise(part if augment is None else augment(part))  # in full precision, as in training
+            with mixed_precision(images.device):
+                found.append(network.features(inputs).float())
     return torch.cat(found)

@@ -22,7 +22,7 @@ COLUMNS = {
 class Params:
     """Section `recorded` of params.yaml; also what the other stages on recorded touches read."""
 
-    kind: str  # what was recorded: pressure_images, biotac_grasps, vitac, vt60 or bigs; the stage takes the first two
+    kind: str  # what was recorded: pressure_images, biotac_grasps; of other stages also vitac, vt60, bigs, schunk
     folder: str  # the folder or zip archive of the recordings
     repetitions: int  # random splits, and sets of classes drawn at random
 

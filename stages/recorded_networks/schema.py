@@ -19,7 +19,7 @@ class Params:
     networks: dict[str, list[str]]  # {network: its modes}
     weights: list[str]  # what each starts from: imagenet, random
     source: str  # ImageNet's weights: package, download or auto, as in transfer
-    size: dict[str, int]  # {mode: pixels a side of the images}
+    size: int  # pixels a side of the images, frozen and fine-tuned alike
     repetitions: dict[str, int]  # {mode: splits}
     rates: dict[str, list[float]]  # {mode: learning rates tried}
     epochs: dict[str, int]  # {mode: passes of the final training}

@@ -8,7 +8,16 @@ import numpy as np
 
 from stages.classification.recorded import read_grasps, read_pressure_images
 from stages.kit.split import Split
-from stages.transfer.recorded import Recorded, grasp_images, pressure_images, read_bigs, read_vitac, read_vt60
+from stages.transfer.recorded import (
+    Recorded,
+    grasp_images,
+    pressure_images,
+    read_bigs,
+    read_schunk,
+    read_vitac,
+    read_vt60,
+)
+from stages.transfer.recorded.schunk import BIGS
 
 
 @dataclass(frozen=True)
@@ -48,10 +57,18 @@ def _vt60(path: Path) -> dict[str, Recording]:
 
 
 def _bigs(path: Path) -> dict[str, Recording]:
-    return {"bigs": Recording(read_bigs(path), (Split.RANDOM, Split.OBJECTS), False)}
+    kinds = {"bigs": read_bigs(path), "bigs_instant": read_bigs(path, instant=True)}
+    return {name: Recording(touches, (Split.RANDOM, Split.OBJECTS), False) for name, touches in kinds.items()}
 
 
-# {kind of recording: reader of {what is recognised: Recording}}, whose images are the same whatever is recognised.
+def _schunk(path: Path) -> dict[str, Recording]:
+    cells = {"schunk": None, "schunk_instant": (27, 6), "schunk_coarse": BIGS}
+    kinds = {name: read_schunk(path, number) for name, number in cells.items()}
+    return {name: Recording(touches, (Split.RANDOM, Split.OBJECTS), False) for name, touches in kinds.items()}
+
+
+# {kind of recording: reader of {what is recognised: Recording}}
 SOURCES: dict[str, Callable[[Path], dict[str, Recording]]] = {
     "pressure_images": _pressure, "biotac_grasps": _grasps, "vitac": _vitac, "vt60": _vt60, "bigs": _bigs,
+    "schunk": _schunk,
 }  # fmt: skip

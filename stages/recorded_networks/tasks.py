@@ -46,7 +46,7 @@ def finetuned(
 ) -> tuple[Network, Task]:
     """All layers, on images augmented anew at every step where that makes sense."""
     where, moved = choose_device(settings.device), augmentation()
-    images = as_images(recording.touches.images, settings.size["finetuned"]).to(where)
+    images = as_images(recording.touches.images, settings.size).to(where)
     network = build(method, len(recording.touches.classes), weights, seed, settings.source).to(where)
     network.requires_grad_(True)
 
@@ -72,7 +72,7 @@ def frozen_features(recording: Recording, method: str, weights: str, settings: P
     network = build(method, 2, weights, zlib.crc32(method.encode()), settings.source).to(where)
 
     def inputs(ids, change=lambda images: images):
-        return normalise(change(as_images(recording.touches.images[ids.numpy()], settings.size["frozen"]).to(where)))
+        return normalise(change(as_images(recording.touches.images[ids.numpy()], settings.size).to(where)))
 
     ids = torch.arange(len(recording.touches.images))
     if weights == "random":

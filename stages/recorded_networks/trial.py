@@ -71,19 +71,33 @@ def trials(recordings: dict[str, Recording], settings: Params) -> list[Trial]:
 @explain_out_of_memory()
 def process(trial: Trial, folder: Path, recordings: dict[str, Recording], settings: Params, seed: int) -> Rows:
     """Makes the trainings of a trial and tests each network; returns the rows."""
-    features, seconds = torch.empty(0), 0.0
-    if trial.mode == "frozen":
-        with repeatable(seed), Stopwatch() as watch:
-            features = frozen_features(recordings[trial.runs[0].data], trial.method, trial.weights, settings)
-        seconds = watch.seconds  # shared by all runs, and counted in each
-    common = {"method": trial.method, "weights": trial.weights, "mode": trial.mode, "size": settings.size[trial.mode]}
+    cached = frozen_features_by_data(trial, recordings, settings, seed) if trial.mode == "frozen" else {}
+    common = {"method": trial.method, "weights": trial.weights, "mode": trial.mode, "size": settings.size}
     common["pretrained"] = available_weights(trial.method, settings.source) if trial.weights == "imagenet" else "none"
     rows = []
     for one in trial.runs:
+        features, seconds = cached.get(one.data, (torch.empty(0), 0.0))
         found = _train(trial, one, recordings[one.data], features, settings, seed)
-        found[0]["seconds"] += seconds
+        found[0]["seconds"] += seconds  # of the features, shared by several runs and counted in each
         rows += [common | one._asdict() | row for row in found]
     return rows
+
+
+def frozen_features_by_data(
+    trial: Trial, recordings: dict[str, Recording], settings: Params, seed: int
+) -> dict[str, tuple[torch.Tensor, float]]:
+    """{data: (features, seconds that they took)}; what has the same images has the same features."""
+    found: dict[str, tuple[torch.Tensor, float]] = {}
+    for data in dict.fromkeys(run.data for run in trial.runs):
+        images = recordings[data].touches.images
+        same = [one for one in found if np.array_equal(recordings[one].touches.images, images)]
+        if same:
+            found[data] = found[same[0]]
+            continue
+        with repeatable(seed), Stopwatch() as watch:
+            features = frozen_features(recordings[data], trial.method, trial.weights, settings)
+        found[data] = features, watch.seconds
+    return found
 
 
 def _train(trial: Trial, one: Run, recording: Recording, features: torch.Tensor, settings: Params, seed: int) -> Rows:

@@ -53,6 +53,12 @@ def accuracy(rows: pd.DataFrame, split: str) -> dict[str, float]:
     return dict(zip(("accuracy", "low", "high", "values"), (*ends, len(mine)), strict=True))
 
 
+def seen(rows: pd.DataFrame) -> str:
+    """What the networks of some rows saw, in words; empty for rows that do not say it."""
+    kinds = rows.reindex(columns=["touches", "size"]).drop_duplicates().dropna().astype(int)
+    return " or ".join(f"{touches} touches an object at {size} px" for touches, size in kinds.itertuples(index=False))
+
+
 def origin(weights: str, pretrained: str | None) -> str:
     """What a network starts from, and which of ImageNet's weights it has of these."""
     said = PRETRAINED.get(pretrained or "", "") if weights == "imagenet" else ""
@@ -78,8 +84,13 @@ def both(*claims: Claim, items: str = "touches", done: str = "touched") -> list[
 
 
 def on_their_classes(claims: list[Claim]) -> list[Claim]:
-    """Claims of `both` on the thesis's own classes."""
+    """Claims of `both` on the thesis's own classes, by its protocol."""
     return [
         replace(claim, key=f"{claim.key}_psb", dataset=THEIRS, shared=shared(str(claim.where["split"]), THEIRS))
         for claim in claims
     ]
+
+
+def on_ours(claims: list[Claim]) -> list[Claim]:
+    """The same claims on our own objects, which are no test of the thesis's sentence."""
+    return [replace(claim, section="ours") for claim in claims]

@@ -25,7 +25,7 @@ from stages.networks.weights import imagenet_state
 from . import hybrid_data, hybrid_trial, touches, trial
 from .plan import Plan, check, plan
 from .schema import COLUMNS, Params
-from .tables import summary, trial_row
+from .tables import seen, summary, trial_row
 from .touches import count_touchable_vertices
 
 MADE = ("transfer/imprints", "transfer/hybrid/pictures")  # touches and pictures of all objects
@@ -45,7 +45,7 @@ def train_all(stage: StageRun, planned: Plan, settings: Params) -> dict[str, dic
     objects = [name for names in members["random"].values() for name in names]
     # What says only which trainings there are is left out: one training more repeats no other.
     counts = dict.fromkeys(("repetitions", "coarse_repetitions", "hybrid_repetitions"), 0)
-    each = dataclasses.replace(settings, networks={}, weights=[], splits=[], **counts)
+    each = dataclasses.replace(settings, networks={}, weights=[], uncontrolled=[], splits=[], **counts)
     press = functools.partial(touches.process, data=data, settings=each, seed=stage.seed)
     stage.each(press, objects, reads=("meshes/{}.npz", "salient_points/{}.npz"))
     hybrids = hybrid_trial.trials(settings, members)
@@ -55,8 +55,8 @@ def train_all(stage: StageRun, planned: Plan, settings: Params) -> dict[str, dic
         stage.each(take, objects, reads=("meshes/{}.npz",))
     work = functools.partial(train, made=stage.folder, members=members, settings=each, seed=stage.seed)
     rows = stage.each(work, [*(one.name for one in planned.trials), *hybrids], reads=MADE)
-    trained = [trial_row(row, planned.pretrained) for row in rows if "trial" in row]
-    stitched = [row for row in rows if "trial" not in row]
+    trained = [trial_row(row, planned.pretrained, settings) for row in rows if "trial" in row]
+    stitched = [row | seen(settings) for row in rows if "trial" not in row]
     stage.rows = KeptRows(trained, stitched)
     metrics = summary(trained, stage.seed)
     if hybrids:

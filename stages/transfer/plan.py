@@ -8,7 +8,7 @@ from stages.kit.fetch import FetchError
 from stages.networks.device import choose_device
 from stages.networks.layers import is_range, parse_range
 from stages.networks.modes import MODES
-from stages.networks.network import NETWORKS, WEIGHTS
+from stages.networks.network import NETWORKS, SMALLEST, WEIGHTS
 from stages.networks.weights import available_weights, imagenet_state
 
 from . import disturbed, hybrid_damage
@@ -16,6 +16,8 @@ from .middle import middle_of
 from .schema import Params
 from .split import SPLITS
 from .touches import sensor_arrays
+
+MAY_BE_EMPTY = ("uncontrolled", "bfloat16")  # lists of networks
 
 
 class Trial(NamedTuple):
@@ -54,16 +56,20 @@ class Plan(NamedTuple):
 
 def check(settings: Params) -> None:
     """Raises ValueError, which names the setting and its possible values, for settings that cannot be run."""
-    for key, known in (("weights", WEIGHTS), ("splits", SPLITS), ("networks", tuple(NETWORKS))):
+    lists = {"weights": WEIGHTS, "splits": SPLITS} | dict.fromkeys(("networks", *MAY_BE_EMPTY), tuple(NETWORKS))
+    for key, known in lists.items():
         unknown = sorted(set(getattr(settings, key)) - set(known))
-        if unknown or not getattr(settings, key):
+        if unknown or not (getattr(settings, key) or key in MAY_BE_EMPTY):
             raise ValueError(
                 f"transfer.{key}: {', '.join(unknown) or 'none'} not known, choose from {', '.join(known)}"
             )
     for network, modes in settings.networks.items():
         _check_modes(network, modes)
-    if min(settings.repetitions, settings.coarse_repetitions, settings.cells, *settings.coarse_cells) < 1:
-        raise ValueError("transfer: repetitions and cells, the coarse ones too, must be 1 or more")
+    least = settings.repetitions, settings.coarse_repetitions + 1, settings.touches - 1
+    if min(*least, settings.cells, *settings.coarse_cells) < 1:
+        raise ValueError("transfer: repetitions and cells must be 1 or more, touches 2, coarse_repetitions 0 or more")
+    if settings.size < SMALLEST:
+        raise ValueError(f"transfer.size: {settings.size} is too small, networks see {SMALLEST} pixels a side or more")
     counts = settings.new_object_touches or [0]
     if min(counts) < 1 or max(counts) >= settings.touches:
         raise ValueError(f"transfer.new_object_touches: {settings.new_object_touches} must be 1 or more and less than "
@@ -90,8 +96,8 @@ def plan(classes: Mapping[str, Sequence[str]], vertices: Mapping[str, int], sett
     """The Plan for classes {class: its objects}. vertices: {object: number of vertices that can be touched}.
 
     On the first data all weights and all modes of each network are trained, in every split. On the others, which are
-    for comparing resolutions, only ImageNet's weights and no range of layers. A range of layers has no control. There
-    are no trials where fewer than two classes are left.
+    for comparing resolutions, only ImageNet's weights and no range of layers. A range of layers has no control, nor has
+    a network that is `uncontrolled`. There are no trials where fewer than two classes are left.
     """
     members, notes = _members(classes, vertices, settings.touches)
     if len(members["random"]) < 2:
@@ -135,7 +141,8 @@ def _kinds(settings, networks):
     for data, network, weights in itertools.product(sensor_arrays(settings), networks, settings.weights):
         for mode in settings.networks[network]:
             control, ranged = weights == "random", is_range(mode)
-            if not (control and ranged) and (data == first or not (control or ranged)):
+            left_out = control and (ranged or network in settings.uncontrolled)
+            if not left_out and (data == first or not (control or ranged)):
                 yield data, network, weights, mode
 
 

@@ -7,6 +7,9 @@ COLUMNS = {
     "weights": "what the network starts from: imagenet or random",
     "pretrained": "which of the ImageNet weights are available; empty for random ones",
     "mode": "what learns: frozen, finetuned, or all layers but a range",
+    "size": "pixels a side of the image that the network saw",
+    "touches": "imprints of each object, in training and test together",
+    "precision": "what the network computed in: float32, bfloat16 or, on a CUDA card, float16",
     "repetition": "the number of the split and of its random numbers",
     "sense": "of a hybrid network: vision, touch or both",
     "perturbation": "what was disturbed in the input; new_object: learned from as many touches as `severity` says",
@@ -28,6 +31,7 @@ class Params:
     coarse_cells: list[int]  # sensels a side of other arrays, as wide: no control, no range of layers, no stability
     networks: dict[str, list[str]]  # network: what learns, the new head (frozen), all (finetuned), all but a range
     weights: list[str]  # start from imagenet, or from random as the control
+    uncontrolled: list[str]  # networks that are not trained from random weights, for the cost
     source: str  # where ImageNet's weights come from: package (by hash), download (torchvision's) or auto
     splits: list[str]  # random: touches are drawn for testing (T5.1.3); objects: one object of each class is left out
     size: int  # pixels a side of the image that the network sees
@@ -41,8 +45,9 @@ class Params:
     batch: int  # images a step
     momentum: float  # of the stochastic gradient descent
     repetitions: int  # trainings of each kind, each with its own split and random numbers
-    coarse_repetitions: int  # the same with the coarse arrays
+    coarse_repetitions: int  # the same with the coarse arrays; 0: none
     device: str  # where networks are trained: auto (a CUDA card where there is one), cpu, cuda
+    bfloat16: list[str]  # networks that compute in bfloat16 on a CPU, the others in float32
     severities: dict[str, list[float]]  # of each perturbation of the test touches, from mild to harsh
     hybrid_middles: list[str]  # layers that both senses share in a hybrid network; damage is tried on the first
     hybrid_repetitions: int  # hybrid networks a split; 0: none

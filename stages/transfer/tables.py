@@ -4,16 +4,25 @@ from collections import defaultdict
 from collections.abc import Mapping
 
 from stages.kit.stats import interval_metrics
+from stages.networks.device import choose_device, precision
 
 from .plan import Trial
+from .schema import Params
 
 
-def trial_row(row: dict, pretrained: Mapping[str, str | None]) -> dict:
+def seen(settings: Params, network: str = "") -> dict:
+    """The columns of what a network saw and computed in."""
+    numbers = precision(choose_device(settings.device), network in settings.bfloat16)
+    return {"size": settings.size, "touches": settings.touches, "precision": numbers}
+
+
+def trial_row(row: dict, pretrained: Mapping[str, str | None], settings: Params) -> dict:
     """A row with the columns of its trial instead of the trial's name. pretrained: as in Plan."""
     trial = Trial.parse(row["trial"])
     about: dict = {"data": trial.data, "method": trial.network, "weights": trial.weights}
     about["pretrained"] = pretrained[trial.network] if trial.weights == "imagenet" else None
     about |= {"mode": trial.mode, "split": trial.split, "repetition": trial.repetition}
+    about |= seen(settings, trial.network)
     return about | {key: value for key, value in row.items() if key != "trial"}
 
 

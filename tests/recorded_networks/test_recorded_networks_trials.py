@@ -1,5 +1,7 @@
 """Trainings on recorded touches: splits, what is trained, what is kept of it, and what the rows say."""
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -20,7 +22,7 @@ LABELS = np.repeat([0, 1], 24)
 GROUPS = np.array([f"{label}/{k % 6}" for label, k in zip(LABELS, range(48), strict=True)])
 SMALL = {
     "networks": {"alexnet": ["frozen"]}, "weights": ["random"], "source": "package", "device": "cpu", "momentum": 0.9,
-    "steps": 600, "copies": 1, "size": {"frozen": 32, "finetuned": 32}, "repetitions": {"frozen": 1, "finetuned": 1},
+    "steps": 600, "copies": 1, "size": 32, "repetitions": {"frozen": 1, "finetuned": 1},
     "rates": {"frozen": [0.001, 0.003, 0.01, 0.03], "finetuned": [0.001]}, "epochs": {"frozen": 20, "finetuned": 1},
     "search_epochs": {"frozen": 8, "finetuned": 1}, "batch": {"frozen": 32, "finetuned": 16},
 }  # fmt: skip
@@ -92,8 +94,7 @@ def train(tmp_path, mode, split="random", network="mobilenet_v2", kept=(), **cha
 
 @pytest.mark.slow
 def test_a_frozen_network_learns_its_head_alone(tmp_path):
-    size = {"frozen": 64, "finetuned": 32}
-    found = train(tmp_path, "frozen", network="alexnet", size=size)  # an untrained one that keeps much of an image
+    found = train(tmp_path, "frozen", network="alexnet", size=64)  # an untrained one that keeps much of an image
     assert found["", "accuracy"] >= 0.7 and found["", "chance"] == found["", "majority"] == 0.5
     assert found["", "trained_parameters"] == 2 * 256 + 2
 
@@ -127,6 +128,19 @@ def test_frozen_trainings_share_their_features_and_fine_tuned_ones_stand_alone()
     found = trials({"a": recording(splits=("random", "blocks")), "b": recording()}, settings)
     assert sorted(len(one.runs) for one in found) == [1] * 6 + [6]
     assert len({one.name for one in found}) == len(found)
+
+
+@pytest.mark.slow
+def test_what_has_other_images_has_features_of_its_own(monkeypatch):
+    computed, frozen_features = [], trial.frozen_features
+    monkeypatch.setattr(trial, "frozen_features", lambda *given: computed.append(1) or frozen_features(*given))
+    turned = replace(recording().touches, images=recording().touches.images[:, ::-1, ::-1])
+    both = {"tiny": recording(), "same": recording(), "other": Recording(turned, ("random",), True)}
+    one = Trial("mobilenet_v2", "random", "frozen", tuple(Run(name, "random", 0) for name in both))
+    found = trial.frozen_features_by_data(one, both, small(), seed=0)
+    assert len(computed) == 2 and found["tiny"][0] is found["same"][0]
+    alone = trial.frozen_features_by_data(replace(one, runs=one.runs[2:]), both, small(), seed=0)
+    assert torch.equal(found["other"][0], alone["other"][0]) and not torch.equal(found["other"][0], found["tiny"][0])
 
 
 def test_a_strange_mode_is_named():

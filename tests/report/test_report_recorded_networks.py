@@ -1,5 +1,7 @@
 """Networks on recorded touches in the report: gains, guesses and claims on trainings whose truth is known."""
 
+from itertools import product
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -38,6 +40,7 @@ COLUMNS = [
     "value",
 ]
 DATASETS = {"pressure": "pressure_images", "grasps_object": "biotac_grasps", "grasps_slip": "biotac_grasps"}
+DATASETS |= dict.fromkeys(("schunk", "schunk_coarse"), "schunk")
 PIXELS = {"frozen": 96, "finetuned": 64}
 OBJECTS = ("cup", "hat", "pan", "shoe")
 
@@ -246,6 +249,20 @@ def test_effects_are_points_over_repetitions_or_objects(measured):
     assert judged.loc["recorded_frozen_over_guessing_fingers_slip", "effect"] == pytest.approx(30, abs=0.3)
 
 
+@pytest.mark.parametrize(("instant", "word"), [(0.1, "supported"), (0.6, "contradicted")])
+def test_one_reading_is_held_against_guessing_and_against_the_series(measured, instant, word):
+    said = {"method": "mobilenet_v2", "weights": "imagenet", "mode": "frozen", "size": 96, "pretrained": "complete"}
+    rows, random = [], np.random.default_rng(0)
+    for (data, level), split in product({"schunk": 0.4, "schunk_coarse": instant}.items(), ("random", "objects")):
+        rows += _trained(said | {"data": data, "split": split}, level, random, 4)
+    judged = verdicts(measured(pd.DataFrame(rows, columns=COLUMNS)))
+    for split in ("random", "grasps"):
+        assert judged.loc[f"recorded_instant_by_guessing_hand_{split}", "verdict"] == word
+        found = judged.loc[f"recorded_series_over_instant_hand_{split}"]
+        assert (found["verdict"], found["pairs"]) == (word, 4)
+        assert found["effect"] == pytest.approx(100 * (0.4 - instant), abs=0.3)
+
+
 def test_thesis_s_own_lead_over_guessing_is_the_bar(measured):
     judged = verdicts(measured(touches()), "frozen_by").loc["recorded_frozen_by_guessing_pressure_random"]
     assert judged["effect"] == pytest.approx(7.6 - 100 * (0.7 - 0.075 - MAJORITY), abs=0.3)
@@ -279,7 +296,7 @@ def test_a_network_alone_is_not_the_best(measured):
 
 def test_without_recorded_touches_all_claims_are_open_and_say_what_to_run(bare, small):
     path = bare / "params.yaml"
-    path.write_text(path.read_text().replace("sets: [", "sets: [pressure_images, biotac_grasps, "))
+    path.write_text(path.read_text().replace("sets: [", "sets: [pressure_images, biotac_grasps, schunk, "))
     judged = verdicts(small.results(bare))
     assert set(judged["verdict"]) == {"open"} and judged["tested_on"].str.contains("dvc repro recorded_networks").all()
 

@@ -1,5 +1,7 @@
 """Claims of chapter 5 on the thesis's own classes, on trainings whose truth is known."""
 
+from itertools import product
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -27,7 +29,7 @@ LEVELS = {  # (data, weights, mode) -> accuracy
 KEYS = {
     "tuned_over_frozen", "frozen_over_chance", "frozen_coarse_by_chance", "fine_over_coarse_frozen",
     "fine_over_coarse_tuned", "seen_over_random_frozen", "seen_over_random_tuned", "early_and_late", "middle_frozen",
-    "early_decisive",
+    "early_decisive", "earlier_change",
 }  # fmt: skip
 
 
@@ -42,6 +44,11 @@ def rows(dataset="princeton_six", turned=False, **levels):
                 one |= {"split": split, "repetition": number, "pretrained": "complete", "seconds": 1.0}
                 value = (1 - level if turned else level) + 0.002 * random.normal()
                 found += [one | {"metric": "accuracy", "value": value}, one | {"metric": "chance", "value": 1 / 6}]
+    changed = {"dataset": dataset, "data": FINE, "method": "mobilenet_v2", "weights": "imagenet", "mode": "finetuned"}
+    changed |= {"split": "random", "metric": "layer_weight_change"}
+    for number, depth in product(range(5), range(3)):
+        change = 0.1 ** (2 - depth if turned else depth)
+        found.append(changed | {"repetition": number, "layer": f"conv{depth}", "part": f"conv{depth}", "value": change})
     return pd.DataFrame(found).assign(seed=0, note=None)
 
 
@@ -74,6 +81,7 @@ def test_every_claim_on_the_thesis_s_classes_has_rows_and_says_where(both):
     theirs = found[found.index.str.endswith("_psb")]
     assert {key.removesuffix("_psb").rpartition("_")[0] for key in theirs.index} == KEYS
     assert (theirs["pairs"] == 5).all()
+    assert theirs["section"].str.startswith("T5.").all() and set(found["section"].drop(theirs.index)) == {"ours"}
     assert theirs["tested_on"].str.startswith("psb, the thesis's 6 classes, MobileNetV2, ").all()
 
 
@@ -81,7 +89,9 @@ def test_every_claim_on_the_thesis_s_classes_has_rows_and_says_where(both):
 def test_all_that_the_thesis_says_can_be_supported(bare, small):
     small.write(bare, "transfer", rows())
     found = words(small.results(bare))
-    assert set(found.loc[found.index.str.endswith("_psb"), "verdict"]) == {"supported"}
+    changed = found.index == "earlier_change_more_psb"  # equal differences show no spread
+    assert set(found.loc[found.index.str.endswith("_psb") & ~changed, "verdict"]) == {"supported"}
+    assert found.loc[changed, "effect"].item() == 1
 
 
 def test_early_layers_are_decisive_where_the_last_alone_learn_less(bare, small):

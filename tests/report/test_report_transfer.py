@@ -80,6 +80,19 @@ def test_twin_of_table_5_4_stands_beside_the_thesis_s_figures(run):
     assert line["furniture, touches at random (chance 12.5), %"].startswith("59.7 [") and line["thesis, %"] == "43.8"
 
 
+@pytest.mark.parametrize("table", ["table_5_4", "table_5_6"])
+def test_the_head_of_a_column_says_what_its_networks_saw(bare, small, table):
+    frame = rows().assign(size=80, touches=20, precision="float32")
+    later = frame["split"] == "random"
+    frame.loc[later, ["size", "touches", "precision"]] = 128, 28, "bfloat16"
+    small.write(bare, "transfer", frame)
+    made = build_one(transfer, "tables", table, small.results(bare))
+    heads = [head for head in made.shown if head.startswith("furniture")]
+    assert [head.rpartition(", 2")[2] for head in heads] == ["8 touches an object at 128 px, %",
+                                                             "0 touches an object at 80 px, %"]  # fmt: skip
+    assert ("MobileNetV2 computed in bfloat16." in made.notes) == (table == "table_5_4")
+
+
 def test_the_coarse_table_holds_the_coarse_array_alone(run):
     frame = build_one(transfer, "tables", "table_5_3", run).frame
     found = only(frame, network="mobilenet_v2", weights="imagenet", mode="frozen", split="random")
@@ -160,7 +173,7 @@ def test_a_claim_turns_with_the_rows(bare, small):
 
 
 def test_depth_is_compared_with_change(run):
-    depth = next(one for one in chapter_5.CLAIMS if one.statistic == "later_convolutions_change_less")
+    depth = next(one for one in chapter_5.CLAIMS if one.key == "earlier_change_more")
     assert differences(run, depth).to_numpy() == pytest.approx([1, 1])
 
 

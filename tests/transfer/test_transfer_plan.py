@@ -39,6 +39,16 @@ def test_controls_and_ranges_are_trained_on_the_fine_array_alone(small, weights)
     assert {kind[2] for kind in kinds if kind[0] == "imprints8"} == {"imagenet"}
 
 
+def test_large_networks_and_coarse_arrays_can_be_left_out(small, weights):
+    networks = {"mobilenet_v2": ["frozen"], "vgg16": ["frozen"]}
+    some = {"weights": ["imagenet", "random"], "networks": networks, "splits": ["random"], "uncontrolled": ["vgg16"]}
+    trials = plan(CLASSES, ENOUGH, small.settings(**some, coarse_repetitions=0)).trials
+    assert {trial[:3] for trial in trials} == {
+        ("imprints32", "mobilenet_v2", "imagenet"), ("imprints32", "mobilenet_v2", "random"),
+        ("imprints32", "vgg16", "imagenet"),
+    }  # fmt: skip
+
+
 def test_a_class_with_one_object_is_trained_but_not_left_out(small):
     planned = plan(CLASSES, ENOUGH, small.settings())
     assert list(planned.members["random"]) == ["animal", "chair", "vase"]
@@ -90,6 +100,11 @@ def test_a_network_without_weights_is_a_note_and_the_others_run(small, weights):
         ({"networks": {"lenet": ["frozen"]}}, "transfer.networks: lenet not known"),
         ({"splits": ["half"]}, "transfer.splits: half not known"),
         ({"repetitions": 0}, "must be 1 or more"),
+        ({"coarse_repetitions": -1}, "coarse_repetitions 0 or more"),
+        ({"touches": 1}, "touches 2"),
+        ({"size": 16}, "transfer.size: 16 is too small"),
+        ({"bfloat16": ["lenet"]}, "transfer.bfloat16: lenet not known"),
+        ({"uncontrolled": ["lenet"]}, "transfer.uncontrolled: lenet not known"),
         ({"device": "abacus"}, "unknown device"),
         ({"new_object_touches": [1, 8]}, "less than transfer.touches"),
         ({"new_object_touches": []}, "less than transfer.touches"),

@@ -5,9 +5,11 @@ import re
 import numpy as np
 import pytest
 from PIL import Image
+from scipy.io import savemat
 
-from stages.transfer.recorded import Recorded, read_bigs, read_vitac, read_vt60
-from stages.transfer.recorded.bigs import GRID, colour_image, electrode_grid
+from stages.transfer.recorded import Recorded, read_bigs, read_schunk, read_vitac, read_vt60
+from stages.transfer.recorded.bigs import GRID, electrode_grid
+from stages.transfer.recorded.series import colour_image, strongest_instant
 
 CLOTHS = (11, 22, 100)
 
@@ -120,6 +122,64 @@ def test_bigs_has_an_image_a_finger_of_each_successful_grasp(bigs):
     assert np.bincount(found.labels).tolist() == [6, 6, 6]
     assert sorted(set(found.groups)) == [f"{name}/grasp_{k}" for name in found.classes for k in (0, 1)]
     assert (found.images[:, :7, 0, 0] == 128).all()  # the first sample is what the others are compared with
+
+
+def test_bigs_of_one_instant_is_the_reading_that_differs_most_from_the_first(bigs):
+    for finger in ("left", "middle", "right"):
+        series = np.full((705, 19), 2000.0)
+        series[400:402, 6] = 2100, 2300  # electrode 7 is the middle cell at the tip
+        series[650, 0] = 2200
+        np.savetxt(bigs / "ball/success/grasp_0" / f"{finger}.csv", series, delimiter=",")
+    found = read_bigs(bigs, instant=True)
+    assert found.images.shape == (18, 7, 3) and np.bincount(found.labels).tolist() == [6, 6, 6]
+    assert found.groups.tolist() == read_bigs(bigs).groups.tolist()
+    cells = {tuple(cell) for cell in np.argwhere(found.images[0] != 128)}
+    assert cells == {(0, 1)} and found.images[0, 0, 1] > 128
+
+
+def test_the_strongest_instant_may_be_a_release():
+    series = np.full((2, 2, 5), 128, np.uint8)
+    series[..., 1], series[..., 3] = 140, 100
+    assert (strongest_instant(series) == 100).all()
+
+
+@pytest.fixture
+def schunk(tmp_path):
+    """Two objects, two grasps each: the distal array of each finger is pressed in its first row, from sample 10 on."""
+    for name in ("ball", "duck"):
+        for grasp in range(2):
+            arrays = np.empty((1, 6), object)
+            for finger in range(3):
+                arrays[0, 2 * finger] = np.full((14, 6, 300), 5.0)
+                arrays[0, 2 * finger + 1] = np.full((13, 6, 300), 7.0)
+                arrays[0, 2 * finger + 1][0, :, 10:] += 10 * (finger + 1)
+            (tmp_path / name).mkdir(exist_ok=True)
+            savemat(tmp_path / name / f"grasp-{grasp}.mat", {"TS": arrays})
+    (tmp_path / "_setup").mkdir()
+    return tmp_path
+
+
+def test_schunk_has_a_picture_a_finger_of_all_readings_or_of_one(schunk):
+    whole, instant, coarse = (read_schunk(schunk, cells) for cells in (None, (27, 6), (7, 3)))
+    assert whole.images.shape == (12, 126, 126, 3) and instant.images.shape == (12, 27, 6)
+    assert coarse.images.shape == (12, 7, 3)
+    assert whole.classes == ["ball", "duck"] and whole.groups.tolist() == coarse.groups.tolist()
+    assert whole.groups[:4].tolist() == ["ball/grasp-0.mat"] * 3 + ["ball/grasp-1.mat"]
+    assert (instant.images[:3, 0] > 128).all() and (instant.images[:, 1:] == 128).all()  # the distal array comes first
+    assert (np.diff(instant.images[:3, 0, 0].astype(int)) > 0).all()  # fingers in their order, on one scale
+    assert (coarse.images[:3, 0] > 128).all() and (coarse.images[:, 1:] == 128).all()
+
+
+def test_schunk_names_a_grasp_that_does_not_fit(schunk):
+    bad = schunk / "duck/grasp-1.mat"
+    savemat(bad, {"TS": np.zeros((3, 3))})
+    with pytest.raises(ValueError, match="duck/grasp-1.mat"):
+        read_schunk(schunk)
+    bad.write_text("no grasp")
+    with pytest.raises(ValueError, match="duck/grasp-1.mat is not such a grasp"):
+        read_schunk(schunk)
+    with pytest.raises(ValueError, match="nowhere does not exist: give the path of the grasps of st-hmp"):
+        read_schunk(schunk / "nowhere")
 
 
 def test_reshape_is_matlabs():

@@ -3,8 +3,10 @@
 import numpy as np
 import pandas as pd
 import pytest
+import torch
 
 from stages.kit.files import read_arrays, sha256, write_arrays
+from stages.networks.device import mixed_precision
 from stages.transfer import trial
 from stages.transfer.plan import Trial
 from stages.transfer.tables import summary, trial_row
@@ -58,7 +60,7 @@ def test_a_trial_gives_equal_files_each_time_and_tidy_rows(folder, small):
 
 
 def test_disturbed_touches_are_rows_of_their_own(folder, small):
-    rows = [trial_row(row, {"mobilenet_v2": None}) for row in run(folder, small.settings())]
+    rows = [trial_row(row, {"mobilenet_v2": None}, small.settings()) for row in run(folder, small.settings())]
     disturbed = pd.DataFrame([row for row in rows if row["metric"] == "disturbed_accuracy"])
     asked = [("noise", 0.01), ("noise", 0.5), ("few_touches", 0.5)]
     assert list(zip(disturbed["perturbation"], disturbed["severity"], strict=True)) == asked
@@ -92,6 +94,38 @@ def test_a_trial_killed_in_its_last_training_seeks_no_rate_again(folder, small, 
     monkeypatch.setattr(trial, "train_model", train_model)
     monkeypatch.setattr(trial, "search_rate", killed)
     assert plain(run(folder, settings)) == expected
+
+
+def test_what_a_network_saw_and_computed_in_stands_in_its_rows(small):
+    settings = small.settings(size=48, touches=9, bfloat16=["mobilenet_v2"])
+    row = {"trial": FROZEN.name, "metric": "accuracy", "value": 1.0}
+    found = trial_row(row, {"mobilenet_v2": None}, settings)
+    assert (found["size"], found["touches"], found["precision"]) == (48, 9, "bfloat16")
+    other = trial_row(row | {"trial": FROZEN._replace(network="alexnet").name}, {"alexnet": None}, settings)
+    assert other["precision"] == "float32"
+
+
+def test_a_network_computes_in_what_its_setting_says(folder, small, monkeypatch):
+    seen, predict = [], trial.predict_probabilities
+
+    def spied(model, inputs, ids, batch=64):
+        with mixed_precision(torch.device("cpu")):
+            seen.append(model(inputs(ids[:1])).dtype)
+        return predict(model, inputs, ids, batch)
+
+    monkeypatch.setattr(trial, "predict_probabilities", spied)
+    for networks in (["mobilenet_v2"], ["vgg16"]):
+        run(folder, small.settings(severities={}, epochs=1, search_epochs=1, bfloat16=networks))
+    assert seen == [torch.bfloat16, torch.float32]
+
+
+def test_too_little_memory_for_the_cached_features_names_the_remedy(folder, small, monkeypatch):
+    def full(*_):
+        raise RuntimeError("[enforce fail] DefaultCPUAllocator: can't allocate memory: you tried to allocate 9 bytes")
+
+    monkeypatch.setattr("stages.networks.modes.torch.stack", full)
+    with pytest.raises(ValueError, match="too little memory: .*fewer cached copies .the stage's `batch`, `size`"):
+        run(folder, small.settings())
 
 
 def test_summary_has_an_interval_over_repetitions_and_none_for_a_single_one():

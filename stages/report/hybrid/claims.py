@@ -3,7 +3,7 @@
 from functools import partial
 
 from stages.report.claims import Claim, Side
-from stages.report.networks import both, on_their_classes
+from stages.report.networks import both, on_ours, on_their_classes
 
 from .hybrid_senses import WHOLE
 from .new_objects import METRIC
@@ -75,4 +75,4 @@ DEVICE = [
                 where={"metric": METRIC, "severity": 1},
                 sentence="One touch of each is enough to tell eight new objects apart better than by guessing."),
 ]  # fmt: skip
-CLAIMS = [*THESIS, *OURS, *DEVICE, *on_their_classes(THESIS)]
+CLAIMS = [*on_their_classes(THESIS), *on_ours(THESIS), *OURS, *DEVICE]

@@ -4,7 +4,7 @@ import pandas as pd
 
 from stages.report.grid import grid, grouped
 from stages.report.items import Table
-from stages.report.networks import accuracy, measured
+from stages.report.networks import accuracy, measured, seen
 from stages.report.results import Results
 
 from .section_5_5 import MIDDLE
@@ -36,7 +36,8 @@ def build(results: Results) -> Table:
     ).drop(columns="values")
     cells = frame.assign(head=[*map(spoken, frame["damage"], frame["severity"])])
     wide = grid(cells, "method", "head", beside=(), names={"method": METHODS.get})
-    return Table(frame, wide.rename(columns={"method": "answers"}))
+    words = seen(found)
+    return Table(frame, wide.rename(columns={"method": "answers"}), {"seen": f"For touch: {words}." if words else ""})
 
 
 def spoken(perturbation: str, severity: float) -> str:

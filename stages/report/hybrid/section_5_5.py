@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 
 from stages.report.items import Figure, Table
 from stages.report.markdown import number, with_interval
-from stages.report.networks import SPLITS, everywhere, mean
+from stages.report.networks import SPLITS, everywhere, mean, seen
 from stages.report.results import Results
 from stages.report.style import INK, plt
 from stages.report.target import on_target
@@ -76,7 +76,7 @@ def chart(results: Results) -> Figure:
 def _line(rows: pd.DataFrame, first: pd.DataFrame, network: str, split: str) -> dict[str, Any]:
     """One network in one split. first: rows of the middle that was repeated, which `rows` may be."""
     source = rows["dataset"].iloc[0]
-    line = {"objects": dataset_text(source), "shared_layers": rows["mode"].iloc[0], "network": network, "split": split}
+    line = {"objects": _objects(rows), "shared_layers": rows["mode"].iloc[0], "network": network, "split": split}
     for sense in SENSES:
         values, before = (_values(frame, network, split=split, sense=sense) for frame in (rows, first))
         line[sense], line[f"{sense}_low"], line[f"{sense}_high"] = mean(values, split, source)
@@ -84,6 +84,12 @@ def _line(rows: pd.DataFrame, first: pd.DataFrame, network: str, split: str) -> 
     sizes = _values(rows, network, "size_bytes", split=split).groupby("sense", dropna=False).mean()  # of each file
     ratio = 1.0 if network == "apart" else _values(rows, network, "size_ratio", split=split).mean()
     return line | {"megabytes": sizes.sum(min_count=1) / 1e6, "size_ratio": ratio}
+
+
+def _objects(rows: pd.DataFrame) -> str:
+    """The set of some rows, and what its networks saw."""
+    words = seen(rows)
+    return dataset_text(rows["dataset"].iloc[0]) + (f", {words}" if words else "")
 
 
 def _values(rows: pd.DataFrame, network: str, metric: str = "accuracy", **where: str) -> pd.Series:

@@ -65,7 +65,8 @@ def printed(data: str, thesis: str, results: Results) -> Table:
         found = [interval(own[own["method"] == network]["value"], shared_by(Split.RANDOM)) for network in PRINTED]
         frame[[mode, f"{mode}_low", f"{mode}_high"]] = found
         frame[f"{mode}_thesis"] = figures.loc[shown["network"], f"acc_{mode}"].to_numpy()
-        shown[f"{label(mode)}: ours, %"] = [with_interval(*ends, 100, 1) for ends in found]
+        size = "".join(f", {pixels} px" for pixels in own["size"].unique())
+        shown[f"{label(mode)}{size}: ours, %"] = [with_interval(*ends, 100, 1) for ends in found]
         shown[f"{label(mode)}: thesis, %"] = [percent(share, 1) for share in frame[f"{mode}_thesis"]]
     return Table(frame, shown, {"absent": "" if len(mine) else ABSENT})
 

@@ -1,5 +1,7 @@
 """Claims of T5.4 to 5.6: what training on photographs is worth for touch, and which layers must learn."""
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 from scipy.stats import spearmanr
@@ -7,7 +9,7 @@ from scipy.stats import spearmanr
 from stages.kit.split import shared_by
 from stages.report.claims import Claim
 from stages.report.differences import statistic
-from stages.report.networks import COARSE, FINE, GUESS, NETWORK, both, on_their_classes
+from stages.report.networks import COARSE, FINE, GUESS, NETWORK, THEIRS, both, on_ours, on_their_classes
 from stages.report.results import Results
 
 PHRASES = {
@@ -34,7 +36,7 @@ def claim(
 @statistic("later_convolutions_change_less")
 def later_change_less(results: Results, claim: Claim) -> pd.Series:
     """Minus the rank correlation of a convolution's depth with its change, per training."""
-    changes = results.measured("transfer", metric="layer_weight_change", **claim.where)
+    changes = results.measured("transfer", claim.dataset, metric="layer_weight_change", **claim.where)
     return -changes.groupby("repetition")["value"].agg(lambda one: spearmanr(np.arange(len(one)), one)[0])
 
 
@@ -68,4 +70,5 @@ CHANGES = Claim(
     where={"method": NETWORK, "mode": "finetuned", "split": "random", "data": FINE, "weights": "imagenet"},
     statistic="later_convolutions_change_less", note="minus the rank correlation of depth and change",
 )  # fmt: skip
-CLAIMS = [*OWN, CHANGES, *on_their_classes([*OWN, *EARLY])]
+THEIR_CHANGES = replace(CHANGES, key=f"{CHANGES.key}_psb", dataset=THEIRS)
+CLAIMS = [*on_their_classes([*OWN, *EARLY]), THEIR_CHANGES, *on_ours([*OWN, CHANGES])]

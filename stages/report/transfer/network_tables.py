@@ -5,9 +5,21 @@ from itertools import product
 import numpy as np
 import pandas as pd
 
-from stages.report.grid import grid, percent
+from stages.report.grid import grid, grouped, percent
 from stages.report.items import Table
-from stages.report.networks import FINE, MODES, NETWORK, PRINTED, SPLITS, STARTS, THESIS, accuracy, everywhere, origin
+from stages.report.networks import (
+    FINE,
+    MODES,
+    NETWORK,
+    PRINTED,
+    SPLITS,
+    STARTS,
+    THESIS,
+    accuracy,
+    everywhere,
+    origin,
+    seen,
+)  # fmt: skip
 from stages.report.prose import shared_notes
 from stages.report.results import Results
 from stages.report.style import label
@@ -25,6 +37,7 @@ def networks(results: Results, data: str) -> Table:
     rows = pd.concat(everywhere(results, data=data).values())
     groups = dict(iter(rows.groupby(["dataset", "method", "weights", "mode", "split"])))
     ran, lines = {key[1:4] for key in groups}, []
+    looked = {key: seen(own) for key, own in grouped(rows, ["dataset", "split"])}
     settings = product(dict.fromkeys([*PRINTED, *rows["method"]]), STARTS, MODES)
     kept = [one for one in settings if one in ran or (one[0] in PRINTED and one[1] == "imagenet")]
     for source, (network, weights, mode), split in product(sources, kept, SPLITS):
@@ -34,7 +47,8 @@ def networks(results: Results, data: str) -> Table:
         lines.append({
             "objects": source, "network": network, "weights": weights,
             "pretrained": next(iter(mine["pretrained"].dropna()), None), "mode": mode, "split": split, **cell,
-            "chance": guess, "above_chance": cell["accuracy"] - guess,
+            "chance": guess, "above_chance": cell["accuracy"] - guess, "seen": looked.get((source, split), ""),
+            "precision": next(iter(mine["precision"].dropna()), None) if "precision" in mine else None,
             "thesis": thesis.loc[PRINTED[network], f"acc_{mode}"] if printed else np.nan,
             "seconds": mine["seconds"].median(),
         })  # fmt: skip
@@ -45,6 +59,7 @@ def networks(results: Results, data: str) -> Table:
     guesses = (100 * frame["chance"]).map(" (chance {:.1f})".format)
     notes = [f"Not run on {name}: {note}." for name in sources for note in results.notes("transfer", name)]
     words = {"networks": shared_notes(__package__, "networks"), "not_run": "\n".join(notes)}
+    words["precision"] = _precisions(frame)
     return Table(frame, _beside_thesis(cells, ["network", *down], guesses), words)
 
 
@@ -56,14 +71,25 @@ def frozen_layers(results: Results) -> Table:
         for (layers, printed), split in product(thesis.items(), SPLITS):
             cell = accuracy(mine[mine["mode"] == MODE_OF.get(str(layers), layers)], split)
             known = {"objects": source, "frozen_layers": layers, "split": split, "values": cell["values"]}
-            lines.append(known | cell | {"thesis": printed})
+            lines.append(known | cell | {"thesis": printed, "seen": seen(mine[mine["split"] == split])})
     frame = pd.DataFrame(lines)
     return Table(frame, _beside_thesis(frame.rename(columns={"frozen_layers": "frozen layers"}), ["frozen layers"]))
 
 
+def _precisions(frame: pd.DataFrame) -> str:
+    """Which networks computed in other numbers than float32, in a sentence; empty for none."""
+    other = frame[frame["precision"].notna() & (frame["precision"] != "float32")]
+    kinds = other[["network", "precision"]].drop_duplicates().itertuples(index=False)
+    return " ".join(f"{label(name)} computed in {numbers}." for name, numbers in kinds)
+
+
 def _beside_thesis(cells: pd.DataFrame, down: list[str], guesses: pd.Series | str = "") -> pd.DataFrame:
-    """Accuracies in per cent, a column for each set and split, whose head ends with `guesses`, then the thesis's."""
-    head = cells["objects"].map(dataset_text) + ", " + cells["split"].map(SPLITS) + guesses + ", %"
+    """Accuracies in per cent, a column for each set and split, then the thesis's.
+
+    A head ends with `guesses` and with what the networks saw.
+    """
+    looked = cells["seen"].map(lambda words: f", {words}" if words else "")
+    head = cells["objects"].map(dataset_text) + ", " + cells["split"].map(SPLITS) + guesses + looked + ", %"
     wide = grid(cells.assign(head=head), down, "head", beside=(), places=1)
     thesis = cells.groupby(down, sort=False)["thesis"].max()  # printed beside touches at random alone
     return wide.assign(**{"thesis, %": [percent(share, 1) for share in thesis]})

@@ -14,24 +14,24 @@ from pathlib import Path
 
 import numpy as np
 
+from .series import as_grey, colour_image, strongest_instant
 from .touches import Recorded, existing_folder
 
 LAYOUT = "BiGS: OBJECT/success/GRASP/FINGER.csv, OBJECT box, ball, cylinder, three fingers, 19 columns, 700 lines"
 OBJECTS = ("ball", "box", "cylinder")
 FINGERS, ELECTRODES = 3, 19
-SAMPLES, SIDE = 700, 70  # 7 x 3 cells x 700 samples are 70 x 70 x 3 numbers
+SAMPLES = 700  # 7 x 3 cells x 700 samples are 70 x 70 x 3 numbers
 GRID = [  # electrodes from above, tip first, in columns by their position y = +, 0, - on the finger; 0: none
     [9, 7, 8], [11, 10, 1], [12, 17, 2], [13, 0, 3], [14, 0, 4], [15, 18, 5], [16, 19, 6],
 ]  # fmt: skip
-SPREAD = 0.99  # share of the readings within the range of grey values; the others are clipped
 
 
-def read_bigs(path: str | Path) -> Recorded:
+def read_bigs(path: str | Path, instant: bool = False) -> Recorded:
     """The Recorded of BiGS: one 70 x 70 x 3 image per finger of a successful grasp; groups: the grasp, OBJECT/GRASP.
 
-    A finger's readings minus its first are arranged in 7 x 3 cells, cut to the first 700 samples, and reshaped. Grey
-    128 is no change; the changes are scaled by one factor for the whole set. Raises ValueError that names what is
-    missing.
+    A finger's readings minus its first are arranged in 7 x 3 cells, cut to the first 700 samples, and reshaped.
+    instant: 7 x 3 of one instant instead, on which the thesis's networks failed (T5.1.4, T5.4). Raises ValueError that
+    names what is missing.
     """
     root, series, labels, groups = existing_folder(path, LAYOUT), [], [], []
     for label, name in enumerate(OBJECTS):
@@ -44,10 +44,9 @@ def read_bigs(path: str | Path) -> Recorded:
             groups += [f"{name}/{grasp.name}"] * FINGERS
     if not series:
         raise ValueError(f"{root} holds no grasp; expected is {LAYOUT}")
-    changes = np.stack(series)
-    span = np.quantile(np.abs(changes), SPREAD) or 1
-    grey = np.round(128 + 127 * np.clip(changes / span, -1, 1)).astype(np.uint8)
-    return Recorded(np.stack([colour_image(one) for one in grey]), np.array(labels), list(OBJECTS), np.array(groups))
+    picture = strongest_instant if instant else colour_image
+    images = np.stack([picture(one) for one in as_grey(np.stack(series))])
+    return Recorded(images, np.array(labels), list(OBJECTS), np.array(groups))
 
 
 def electrode_grid(readings: np.ndarray) -> np.ndarray:
@@ -62,16 +61,6 @@ def electrode_grid(readings: np.ndarray) -> np.ndarray:
     for row in np.flatnonzero(grid[:, 1] == 0):
         image[:, row, 1] = image[:, row, [0, 2]].mean(axis=1)
     return image
-
-
-def colour_image(series: np.ndarray) -> np.ndarray:
-    """(70, 70, 3): a tactile series (7, 3, 700) as one colour image, by Matlab's reshape (T5.1.4).
-
-    In Matlab the first axis varies fastest: the value of row r, column c, sample t has index n = r + 7 c + 21 t, and
-    pixel (i, j) of channel k has index n = i + 70 j + 4900 k. So the colours are the three thirds of the seven seconds,
-    233 1/3 samples each. The 21 cells of a sample are below one another, and a column of pixels has 3 1/3 samples.
-    """
-    return np.asarray(series).reshape(SIDE, SIDE, 3, order="F")
 
 
 def _changes(file):
