@@ -19,9 +19,9 @@ from .methods import (
     COMBINATIONS,
     FIXED_ADAPTIVE,
     HKS,
-    OF_T3_2,
     OURS,
     PLAIN,
+    PROPOSED,
     RIVALS,
     fixed,
     ordered,
@@ -85,7 +85,7 @@ def figure_3_5(results: Results) -> Figure:
 
 def figure_3_23(results: Results) -> Figure:
     """A row of panels for each data set, a panel for each error and face count, a box for each method."""
-    found = {dataset_text(name): paired_cells(results, METRICS, BOXES, name) for name in data_sets(results, OF_T3_2)}
+    found = {dataset_text(name): paired_cells(results, METRICS, BOXES, name) for name in data_sets(results, PROPOSED)}
     found = {name: rows[rows["target"].isin(set(TARGETS) & set(face_counts(rows)))] for name, rows in found.items()}
     shown = {name: rows for name, rows in found.items() if PLAIN in set(rows["method"])}
     some(shown, "no data set with enough objects that all methods take to 1,500 or 3,000 faces", "lod", runnable=False)
