@@ -23,6 +23,7 @@ OF_CLASS = {THEIRS: 5}  # objects of each class; of the other sets three
 STARTS, MODES = ("imagenet", "random"), ("finetuned", "frozen")
 PRETRAINED = {"complete": "", "convolutions": "its convolutions", "converted": "converted from Keras"}
 NETWORK = "mobilenet_v2"
+SEEN = ("size", "touches")  # columns of what a network saw: a claim compares only what saw the same
 GUESS = 7.6  # points over chance that frozen filters have in T table 5.3, which calls that around a random guess
 
 

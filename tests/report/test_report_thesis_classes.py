@@ -49,7 +49,7 @@ def rows(dataset="princeton_six", turned=False, **levels):
     for number, depth in product(range(5), range(3)):
         change = 0.1 ** (2 - depth if turned else depth)
         found.append(changed | {"repetition": number, "layer": f"conv{depth}", "part": f"conv{depth}", "value": change})
-    return pd.DataFrame(found).assign(seed=0, note=None)
+    return pd.DataFrame(found).assign(size=128, touches=28, seed=0, note=None)
 
 
 @pytest.fixture
@@ -92,6 +92,15 @@ def test_all_that_the_thesis_says_can_be_supported(bare, small):
     changed = found.index == "earlier_change_more_psb"  # equal differences show no spread
     assert set(found.loc[found.index.str.endswith("_psb") & ~changed, "verdict"]) == {"supported"}
     assert found.loc[changed, "effect"].item() == 1
+
+
+def test_networks_that_saw_other_sizes_are_not_compared(bare, small):
+    frame = rows()
+    frame.loc[(frame["data"] == COARSE) | (frame["mode"] == "18:139"), "size"] = 80
+    small.write(bare, "transfer", frame)
+    found = words(small.results(bare))["verdict"]
+    assert found["fine_over_coarse_tuned_random_psb"] == found["early_and_late_random_psb"] == "open"
+    assert found["tuned_over_frozen_random_psb"] == "supported"
 
 
 def test_early_layers_are_decisive_where_the_last_alone_learn_less(bare, small):

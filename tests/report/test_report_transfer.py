@@ -24,6 +24,7 @@ MEANS = {  # (data, weights, mode) -> accuracy
     ("imprints16", "imagenet", "finetuned"): 0.7,
     ("imprints16", "imagenet", "frozen"): 0.4,
 }
+LOOKED = "20 touches an object at 80 px, %"
 LAYERS = {"conv1": "Conv1", "b2": "block_2", "b9": "block_9", "b15": "block_15", "last": "Conv_1"}
 
 
@@ -42,7 +43,7 @@ def rows(dataset="furniture", unseen=-0.2, repetitions=4):
                 values = {"accuracy": mean + loss + 0.005 * random.normal(), "chance": 0.125}
                 seconds = 10.0 if mode == "frozen" else 60.0
                 found += [common | {"metric": key, "value": v, "seconds": seconds} for key, v in values.items()]
-    return pd.DataFrame(found).assign(seed=0, note=None)
+    return pd.DataFrame(found).assign(size=80, touches=20, seed=0, note=None)
 
 
 def changes():
@@ -77,12 +78,15 @@ def test_twin_of_table_5_4_stands_beside_the_thesis_s_figures(run):
     assert found["accuracy"] == pytest.approx(0.6, abs=0.01) and found["thesis"] == 0.4381
     assert found["above_chance"] == pytest.approx(found["accuracy"] - 0.125)
     line = only(table.shown, network="MobileNetV2", filters="frozen", **{"starts from": "ImageNet"})
-    assert line["furniture, touches at random (chance 12.5), %"].startswith("59.7 [") and line["thesis, %"] == "43.8"
+    assert (
+        line[f"furniture, touches at random (chance 12.5), {LOOKED}"].startswith("59.7 [")
+        and line["thesis, %"] == "43.8"
+    )
 
 
 @pytest.mark.parametrize("table", ["table_5_4", "table_5_6"])
 def test_the_head_of_a_column_says_what_its_networks_saw(bare, small, table):
-    frame = rows().assign(size=80, touches=20, precision="float32")
+    frame = rows().assign(precision="float32")
     later = frame["split"] == "random"
     frame.loc[later, ["size", "touches", "precision"]] = 128, 28, "bfloat16"
     small.write(bare, "transfer", frame)
@@ -102,7 +106,7 @@ def test_the_coarse_table_holds_the_coarse_array_alone(run):
 def test_networks_of_the_thesis_that_were_not_run_say_so(run):
     shown = build_one(transfer, "tables", "table_5_4", run).shown
     line = only(shown, network="ResNet50", filters="frozen")
-    assert line["furniture, unseen objects (chance 12.5), %"] == "not run" and line["thesis, %"] == "52.4"
+    assert line[f"furniture, unseen objects (chance 12.5), {LOOKED}"] == "not run" and line["thesis, %"] == "52.4"
 
 
 def test_frozen_layers_go_by_the_thesis_s_numbers(run):
@@ -115,7 +119,7 @@ def test_frozen_layers_go_by_the_thesis_s_numbers(run):
 def test_rows_on_the_thesis_s_classes_stand_beside_the_run_s(bare, run, small):
     small.write(bare, "transfer", rows("princeton_six"))
     shown = build_one(transfer, "tables", "table_5_4", small.results(bare)).shown
-    assert "psb, the thesis's 6 classes, touches at random (chance 12.5), %" in shown
+    assert f"psb, the thesis's 6 classes, touches at random (chance 12.5), {LOOKED}" in shown
 
 
 @pytest.mark.slow

@@ -3,7 +3,7 @@
 from functools import partial
 
 from stages.report.claims import Claim, Side
-from stages.report.networks import both, on_ours, on_their_classes
+from stages.report.networks import SEEN, both, on_ours, on_their_classes
 
 from .hybrid_senses import WHOLE
 from .new_objects import METRIC
@@ -29,7 +29,7 @@ def claim(key: str, section: str, sentence: str, first: Side, second: Side, wher
     """The claim of one way to recognise over another. where: what both have in common."""
     return Claim(
         key=key, section=section, sentence=sentence, stage="transfer", first=first, second=second, margin=margin,
-        where={"data": "hybrid", "mode": MIDDLE, "metric": "accuracy", **where}, phrases=PHRASES,
+        where={"data": "hybrid", "mode": MIDDLE, "metric": "accuracy", **where}, phrases=PHRASES, within=SEEN,
     )  # fmt: skip
 
 

@@ -9,7 +9,7 @@ from scipy.stats import spearmanr
 from stages.kit.split import shared_by
 from stages.report.claims import Claim
 from stages.report.differences import statistic
-from stages.report.networks import COARSE, FINE, GUESS, NETWORK, THEIRS, both, on_ours, on_their_classes
+from stages.report.networks import COARSE, FINE, GUESS, NETWORK, SEEN, THEIRS, both, on_ours, on_their_classes
 from stages.report.results import Results
 
 PHRASES = {
@@ -29,7 +29,7 @@ def claim(
     common = {name: value for name, value in (SETTING | where).items() if name != column}
     return Claim(
         key=key, section=section, sentence=sentence, stage="transfer", first={column: first}, second={column: second},
-        where=common, margin=margin, phrases=PHRASES,
+        where=common, margin=margin, phrases=PHRASES, within=SEEN,
     )  # fmt: skip
 
 
