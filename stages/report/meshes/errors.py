@@ -96,10 +96,11 @@ def figure_3_23(results: Results) -> Figure:
         for axes, (metric, target) in zip(row, product(METRICS, TARGETS), strict=True):
             errors = by_object(rows, methods, metric, target)
             _draw_boxes(axes, errors)
-            title = f"{ERRORS[metric]}, {said(target)}\n{name}, {len(errors)} objects"
+            title = f"{ERRORS[metric]}, {said(target)}\n{len(errors)} objects"
             axes.set_title(title, fontsize=8.5, fontweight="normal", pad=4)
+        row[0].set_title(f"{name}\n{row[0].get_title('left')}", fontsize=8.5, fontweight="normal", pad=4)
         _name_rows(row[0], methods, TINTS, 8)
-    drawing.subplots_adjust(wspace=0.08, hspace=0.34)
+    drawing.subplots_adjust(wspace=0.08, hspace=0.4)
     return Figure(drawing, {"methods": ", ".join(map(short, methods)), "sets": " and ".join(shown)}, dpi=95)
 
 
