@@ -16,5 +16,5 @@ def build(results: Results) -> Table:
     frame = results.thesis("fidelity").fillna("")
     said = (frame["run"] + ": " + frame["differs"]).str.removesuffix(": ").replace(PRINTED, "yes")
     shown = frame.assign(run=said, sets=frame["sets"].map(dataset_text)).drop(columns="differs")
-    counts = {name.replace(" ", "_"): count for name, count in frame["run"].value_counts().items()}
+    counts = {str(name).replace(" ", "_"): count for name, count in frame["run"].value_counts().items()}
     return Table(frame, shown.rename(columns=HEADS), dict.fromkeys((run.replace(" ", "_") for run in RUNS), 0) | counts)
