@@ -27,6 +27,7 @@ from stages.meshes import clean, load, normalise
 from stages.meshes.sources import FIXATION_MAPS, GAZE, collection_files
 from stages.scene.loaded_back import read_lod
 from stages.transfer.recorded.bigs import read_bigs
+from stages.transfer.recorded.schunk import read_schunk
 from stages.transfer.recorded.touches import read_picture
 from stages.weights.annotate.marks import read_marks, write_marks
 from stages.weights.ground_truth.fixations import fixation_files, fixations_on_vertices
@@ -255,6 +256,16 @@ def read_fixations(folder):
     return fixations_on_vertices(fixation_files(collection_files(folder, *FIXATION_MAPS))["cup"], TRIANGLE)
 
 
+def schunk_seeds(folder):
+    arrays = np.empty((1, 6), object)
+    for k in range(6):
+        arrays[0, k] = np.arange((14 - k % 2) * 6 * 294.0).reshape(14 - k % 2, 6, 294)
+    for name in ("ball", "cup"):
+        (folder / name).mkdir()
+        savemat(folder / name / "grasp-0.mat", {"TS": arrays}, do_compression=True)
+    return [(folder / "cup" / "grasp-0.mat").read_bytes()]
+
+
 def lod_seeds(folder):
     tree = {"nodes": [{"name": "a", "extensions": {"MSFT_lod": {"ids": [1]}}}, {"name": "b"}]}
     text = json.dumps(tree).encode()
@@ -336,6 +347,7 @@ READERS = {
     "picture": Reader("a.jpg", pictures("jpg", "png", "bmp"), lambda path: read_picture(path, 16)),
     "pressure": Reader("Images/cup/1.jpg", pressure_seeds, lambda path: read_pressure_images(path.parents[2])),
     "grasps": Reader("bts3v2_palm_45.csv", grasp_seeds, lambda path: read_grasps(path.parent), count=200),
+    "schunk": Reader("ball/grasp-0.mat", schunk_seeds, lambda path: read_schunk(path.parents[1]), count=200),
     "bigs": Reader("ball/success/1/a.csv", bigs_seeds, lambda path: read_bigs(path.parents[3]), count=200),
     "marks": Reader("a.csv", mark_seeds, read_marks),
     "gaze": Reader("a.txt", lambda folder: [b"0 0 0 0 0 1 0.5 1\n1 0 0 0 0 1 0 0\n"], read_gaze, False),

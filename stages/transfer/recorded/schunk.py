@@ -2,21 +2,19 @@
 
 Data: Drimus, Kootstra, Bilberg, Kragic, Design of a flexible tactile sensor for classification of rigid and deformable
 objects, Robotics and Autonomous Systems 62(1), 2014; in the form that Madry, Bo, Kragic, Fox, ST-HMP: unsupervised
-spatio-temporal feature learning for tactile data, ICRA 2014, publish with their code (github.com/mmadry/st-hmp).
+spatio-temporal feature learning for tactile data, ICRA 2014, publish with their code (GitHub: mmadry/st-hmp).
 Layout: `OBJECT/grasp-NUMBER.mat` with TS, six arrays (rows, 6, samples): the proximal (14 rows) and the distal one (13
 rows) of each finger in turn.
 """
 
-import io
 from pathlib import Path
 from typing import Any
 
 import cv2
 import numpy as np
-from scipy.io import loadmat
-from scipy.io.matlab import MatReadError
 
 from stages.classification.recorded import open_root
+from stages.meshes.mat import read_mat
 
 from .series import as_grey, colour_image, strongest_instant
 from .touches import Recorded
@@ -51,10 +49,11 @@ def read_schunk(path: str | Path, cells: tuple[int, int] | None = None) -> Recor
 def fingers(file: Any) -> list[np.ndarray]:
     """(27, 6, 294) f4 of each finger, the distal array above the proximal: how its readings differ from the first."""
     try:
-        arrays = [np.asarray(one, np.float32) for one in loadmat(io.BytesIO(file.read_bytes()))["TS"].ravel()]
+        (cells,) = read_mat(file.read_bytes(), ["TS"])
+        arrays = [np.asarray(one, np.float32) for one in cells.ravel()]
         pairs = [np.concatenate([distal, proximal]) for proximal, distal in zip(arrays[::2], arrays[1::2], strict=True)]
         found = [(one - one[..., :1])[..., :SAMPLES] for one in pairs]
-    except (MatReadError, LookupError, ValueError, TypeError, AttributeError, NotImplementedError) as error:
+    except (ValueError, TypeError, IndexError) as error:
         raise ValueError(f"{file} is not such a grasp ({error}); expected is {LAYOUT}") from None
     shapes = [one.shape for one in found]
     if shapes != [(27, 6, SAMPLES)] * FINGERS or not np.isfinite(found).all():
