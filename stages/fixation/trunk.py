@@ -24,24 +24,12 @@ from .pictures import augmentation, read_pictures, to_images
 from .schema import Params
 
 
-class Half(torch.nn.Module):
-    """Layers that compute in bfloat16, in two thirds of the time, and hand on f4."""
-
-    def __init__(self, layers: torch.nn.Module) -> None:
-        super().__init__()
-        self.layers = layers
-
-    def forward(self, values: torch.Tensor) -> torch.Tensor:
-        with torch.autocast(values.device.type, torch.bfloat16):
-            return self.layers(values).float()
-
-
 class Tail(Network):
     """The last block of a network and what follows it: from the trunk's maps (b, C, i, j) to scores (b, k)."""
 
     def __init__(self, network: Network, start: int) -> None:
         torch.nn.Module.__init__(self)
-        self.convolutions, self.pool, self.head = Half(network.convolutions[start:]), network.pool, network.head
+        self.convolutions, self.pool, self.head = network.convolutions[start:], network.pool, network.head
 
     def forward(self, images: torch.Tensor) -> torch.Tensor:  # maps of the trunk instead of images
         return self.classify(self.convolutions(images))
@@ -67,10 +55,10 @@ def cache_trunk(name: str, folder: Path, made: Path, method: Method, settings: P
 
 
 @lru_cache(maxsize=1)  # a worker looks at many objects with one network
-def trunk_of(method: Method, source: str, seed: int) -> Half:
+def trunk_of(method: Method, source: str, seed: int) -> torch.nn.Module:
     """The layers of a network before its last block, their normalisations folded into the convolutions."""
     network = build(method.network, 2, MODES[method.mode], seed, source)
-    return Half(fuse(network.convolutions[: LAST_BLOCK[method.network]]))
+    return fuse(network.convolutions[: LAST_BLOCK[method.network]])
 
 
 @torch.inference_mode()

@@ -3,7 +3,6 @@
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
-from contextvars import ContextVar
 
 import torch
 
@@ -12,7 +11,6 @@ REMEDY = (
     "take a smaller batch, smaller images or fewer cached copies (the stage's `batch`, `size` and `copies`), or fewer"
     " workers (parallel.workers)"
 )
-_bfloat16 = ContextVar("whether networks compute in bfloat16 on a CPU", default=False)
 
 
 def choose_device(name: str = "auto") -> torch.device:
@@ -38,31 +36,17 @@ def device_of(module: torch.nn.Module) -> torch.device:
 
 
 def mixed_precision(device: torch.device) -> torch.autocast:
-    """A context in which a CUDA card computes in half precision where that is safe, and a CPU as `on_cpu` says."""
-    if device.type == "cuda":
-        return torch.autocast("cuda", dtype=torch.float16)
-    return torch.autocast("cpu", dtype=torch.bfloat16, enabled=_bfloat16.get())
+    """A context in which a CUDA card computes in half precision where that is safe.
 
-
-@contextmanager
-def on_cpu(bfloat16: bool) -> Iterator[None]:
-    """A context in which networks compute in bfloat16 on a CPU where that is safe, or in float32.
-
-    A setting and never the machine decides it, so that equal settings give equal rows. A CPU with instructions of its
-    own for bfloat16 takes half the time for large convolutions; another one takes longer.
+    A CPU computes in single precision: in bfloat16 it takes two thirds of the time where the processor has instructions
+    for it, and three times as long where it has none, and equal settings shall give equal rows.
     """
-    before = _bfloat16.set(bfloat16)
-    try:
-        yield
-    finally:
-        _bfloat16.reset(before)
+    return torch.autocast(device.type, dtype=torch.float16, enabled=device.type == "cuda")
 
 
-def precision(device: torch.device, bfloat16: bool = False) -> str:
-    """The name of the numbers in which networks compute on a device, on a CPU within `on_cpu(bfloat16)`."""
-    if device.type == "cuda":
-        return "float16"
-    return "bfloat16" if bfloat16 else "float32"
+def precision(device: torch.device) -> str:
+    """The name of the numbers in which networks compute on a device."""
+    return "float16" if device.type == "cuda" else "float32"
 
 
 @contextmanager

@@ -17,8 +17,6 @@ from .schema import Params
 from .split import SPLITS
 from .touches import sensor_arrays
 
-MAY_BE_EMPTY = ("uncontrolled", "bfloat16")  # lists of networks
-
 
 class Trial(NamedTuple):
     """The settings of one training; its name is DATA.NETWORK.WEIGHTS.MODE.SPLIT.REPETITION, with - for a colon."""
@@ -56,10 +54,10 @@ class Plan(NamedTuple):
 
 def check(settings: Params) -> None:
     """Raises ValueError, which names the setting and its possible values, for settings that cannot be run."""
-    lists = {"weights": WEIGHTS, "splits": SPLITS} | dict.fromkeys(("networks", *MAY_BE_EMPTY), tuple(NETWORKS))
+    lists = {"weights": WEIGHTS, "splits": SPLITS} | dict.fromkeys(("networks", "uncontrolled"), tuple(NETWORKS))
     for key, known in lists.items():
         unknown = sorted(set(getattr(settings, key)) - set(known))
-        if unknown or not (getattr(settings, key) or key in MAY_BE_EMPTY):
+        if unknown or not (getattr(settings, key) or key == "uncontrolled"):
             raise ValueError(
                 f"transfer.{key}: {', '.join(unknown) or 'none'} not known, choose from {', '.join(known)}"
             )

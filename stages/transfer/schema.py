@@ -9,7 +9,7 @@ COLUMNS = {
     "mode": "what learns: frozen, finetuned, or all layers but a range",
     "size": "pixels a side of the image that the network saw",
     "touches": "imprints of each object, in training and test together",
-    "precision": "what the network computed in: float32, bfloat16 or, on a CUDA card, float16",
+    "precision": "what the network computed in: float32 or, on a CUDA card, float16",
     "repetition": "the number of the split and of its random numbers",
     "sense": "of a hybrid network: vision, touch or both",
     "perturbation": "what was disturbed in the input; new_object: learned from as many touches as `severity` says",
@@ -47,7 +47,6 @@ class Params:
     repetitions: int  # trainings of each kind, each with its own split and random numbers
     coarse_repetitions: int  # the same with the coarse arrays; 0: none
     device: str  # where networks are trained: auto (a CUDA card where there is one), cpu, cuda
-    bfloat16: list[str]  # networks that compute in bfloat16 on a CPU, the others in float32
     severities: dict[str, list[float]]  # of each perturbation of the test touches, from mild to harsh
     hybrid_middles: list[str]  # layers that both senses share in a hybrid network; damage is tried on the first
     hybrid_repetitions: int  # hybrid networks a split; 0: none

@@ -10,9 +10,9 @@ from .plan import Trial
 from .schema import Params
 
 
-def seen(settings: Params, network: str = "") -> dict:
+def seen(settings: Params) -> dict:
     """The columns of what a network saw and computed in."""
-    numbers = precision(choose_device(settings.device), network in settings.bfloat16)
+    numbers = precision(choose_device(settings.device))
     return {"size": settings.size, "touches": settings.touches, "precision": numbers}
 
 
@@ -22,7 +22,7 @@ def trial_row(row: dict, pretrained: Mapping[str, str | None], settings: Params)
     about: dict = {"data": trial.data, "method": trial.network, "weights": trial.weights}
     about["pretrained"] = pretrained[trial.network] if trial.weights == "imagenet" else None
     about |= {"mode": trial.mode, "split": trial.split, "repetition": trial.repetition}
-    about |= seen(settings, trial.network)
+    about |= seen(settings)
     return about | {key: value for key, value in row.items() if key != "trial"}
 
 

@@ -11,7 +11,7 @@ from stages.kit.files import read_json, write_arrays, write_json
 from stages.kit.holdout import Split
 from stages.kit.repeatable import repeatable
 from stages.kit.rng import rng
-from stages.networks.device import choose_device, explain_out_of_memory, on_cpu
+from stages.networks.device import choose_device, explain_out_of_memory
 from stages.networks.images import normalise, to_images
 from stages.networks.modes import MODES, Task, mode_named
 from stages.networks.network import Network, build, count_parameters, recalibrate
@@ -41,7 +41,7 @@ def process(
     split = split_touches(touches, trial, settings, random)
     first_weights, training_seed = (int(number) for number in random.integers(2**31, size=2))
     searched, checkpoint = folder / "rate.json", folder / "training.pt"  # an interrupted training goes on from these
-    with repeatable(training_seed), on_cpu(bfloat16=trial.network in settings.bfloat16):
+    with repeatable(training_seed):
         with Stopwatch() as watch:
             network, task = prepare(trial, touches, split.train, settings, first_weights)
             rate, validation_accuracy = learning_rate(

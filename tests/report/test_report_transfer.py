@@ -88,13 +88,13 @@ def test_twin_of_table_5_4_stands_beside_the_thesis_s_figures(run):
 def test_the_head_of_a_column_says_what_its_networks_saw(bare, small, table):
     frame = rows().assign(precision="float32")
     later = frame["split"] == "random"
-    frame.loc[later, ["size", "touches", "precision"]] = 128, 28, "bfloat16"
+    frame.loc[later, ["size", "touches", "precision"]] = 128, 28, "float16"
     small.write(bare, "transfer", frame)
     made = build_one(transfer, "tables", table, small.results(bare))
     heads = [head for head in made.shown if head.startswith("furniture")]
     assert [head.rpartition(", 2")[2] for head in heads] == ["8 touches an object at 128 px, %",
                                                              "0 touches an object at 80 px, %"]  # fmt: skip
-    assert ("MobileNetV2 computed in bfloat16." in made.notes) == (table == "table_5_4")
+    assert ("MobileNetV2 computed in float16." in made.notes) == (table == "table_5_4")
 
 
 def test_the_coarse_table_holds_the_coarse_array_alone(run):

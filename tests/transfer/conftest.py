@@ -8,7 +8,7 @@ from stages.transfer.schema import Params
 
 SETTINGS = {
     "touches": 8, "detector": "thesis_ssim", "cells": 32, "pitch": 0.005, "coarse_cells": [8],
-    "networks": {"mobilenet_v2": ["frozen"]}, "weights": ["random"], "uncontrolled": [], "bfloat16": [],
+    "networks": {"mobilenet_v2": ["frozen"]}, "weights": ["random"], "uncontrolled": [],
     "source": "package",
     "splits": ["random", "objects"], "size": 32, "copies": 1, "train_share": 0.75, "validation_share": 0.25,
     "frozen_rates": [0.003, 0.01], "finetuned_rates": [0.003], "search_epochs": 2, "epochs": 4, "batch": 8,

@@ -103,7 +103,6 @@ def test_a_network_without_weights_is_a_note_and_the_others_run(small, weights):
         ({"coarse_repetitions": -1}, "coarse_repetitions 0 or more"),
         ({"touches": 1}, "touches 2"),
         ({"size": 16}, "transfer.size: 16 is too small"),
-        ({"bfloat16": ["lenet"]}, "transfer.bfloat16: lenet not known"),
         ({"uncontrolled": ["lenet"]}, "transfer.uncontrolled: lenet not known"),
         ({"device": "abacus"}, "unknown device"),
         ({"new_object_touches": [1, 8]}, "less than transfer.touches"),

@@ -6,8 +6,7 @@ import pytest
 import torch
 
 from stages.kit.files import read_arrays, sha256, write_arrays
-from stages.networks.device import mixed_precision
-from stages.transfer import trial
+from stages.transfer import tables, trial
 from stages.transfer.plan import Trial
 from stages.transfer.tables import summary, trial_row
 from stages.transfer.touches import read_touches
@@ -96,27 +95,13 @@ def test_a_trial_killed_in_its_last_training_seeks_no_rate_again(folder, small, 
     assert plain(run(folder, settings)) == expected
 
 
-def test_what_a_network_saw_and_computed_in_stands_in_its_rows(small):
-    settings = small.settings(size=48, touches=9, bfloat16=["mobilenet_v2"])
+def test_what_a_network_saw_and_computed_in_stands_in_its_rows(small, monkeypatch):
+    settings = small.settings(size=48, touches=9)
     row = {"trial": FROZEN.name, "metric": "accuracy", "value": 1.0}
     found = trial_row(row, {"mobilenet_v2": None}, settings)
-    assert (found["size"], found["touches"], found["precision"]) == (48, 9, "bfloat16")
-    other = trial_row(row | {"trial": FROZEN._replace(network="alexnet").name}, {"alexnet": None}, settings)
-    assert other["precision"] == "float32"
-
-
-def test_a_network_computes_in_what_its_setting_says(folder, small, monkeypatch):
-    seen, predict = [], trial.predict_probabilities
-
-    def spied(model, inputs, ids, batch=64):
-        with mixed_precision(torch.device("cpu")):
-            seen.append(model(inputs(ids[:1])).dtype)
-        return predict(model, inputs, ids, batch)
-
-    monkeypatch.setattr(trial, "predict_probabilities", spied)
-    for networks in (["mobilenet_v2"], ["vgg16"]):
-        run(folder, small.settings(severities={}, epochs=1, search_epochs=1, bfloat16=networks))
-    assert seen == [torch.bfloat16, torch.float32]
+    assert (found["size"], found["touches"], found["precision"]) == (48, 9, "float32")
+    monkeypatch.setattr(tables, "choose_device", lambda name: torch.device("cuda"))
+    assert trial_row(row, {"mobilenet_v2": None}, settings)["precision"] == "float16"
 
 
 def test_too_little_memory_for_the_cached_features_names_the_remedy(folder, small, monkeypatch):
