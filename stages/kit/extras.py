@@ -5,9 +5,9 @@ from contextlib import contextmanager
 
 MODULES = {
     "pipeline": (
-        "diskcache", "dvc", "filelock", "hydra", "joblib", "matplotlib", "omegaconf", "pandas",
-        "point_cloud_utils", "pymeshlab", "pyrender", "pywt", "robust_laplacian", "rtree", "skimage", "sklearn",
-        "threadpoolctl", "tqdm", "yaml",
+        "diskcache", "dvc", "filelock", "hydra", "joblib", "laspy", "matplotlib", "omegaconf", "pandas",
+        "point_cloud_utils", "pymeshlab", "pypcd4", "pyrender", "pywt", "robust_laplacian", "rtree", "skimage",
+        "sklearn", "threadpoolctl", "tqdm", "yaml",
     ),
     "deep": ("kornia", "onnx", "onnxruntime", "onnxscript", "torch", "torchvision"),
     "cluster": ("cloudpickle", "dask", "distributed"),

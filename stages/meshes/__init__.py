@@ -3,8 +3,12 @@
 from stages.kit import Mesh
 
 from .clean import clean
+from .clouds import Cloud, cloud_of_depth, surface_of
 from .load import MeshError, load
 from .normalise import normalise, rotate_to_z_up
 from .plane import remove_plane
 
-__all__ = ["Mesh", "MeshError", "clean", "load", "normalise", "remove_plane", "rotate_to_z_up"]
+__all__ = [
+    "Cloud", "Mesh", "MeshError", "clean", "cloud_of_depth", "load", "normalise", "remove_plane", "rotate_to_z_up",
+    "surface_of",
+]  # fmt: skip

@@ -1,4 +1,4 @@
-"""The files that a mesh file names: its materials, and their pictures."""
+"""The files that a mesh file names: its materials, their pictures, a depth image."""
 
 import re
 from collections.abc import Callable
@@ -9,12 +9,13 @@ from trimesh.resolvers import FilePathResolver
 NAMES = {  # what names a file, by the suffix of the file in which it stands
     ".obj": re.compile(rb"^[ \t]*mtllib[ \t]+(.+?)\s*$", re.M),
     ".mtl": re.compile(rb"^[ \t]*map_Kd[ \t]+(.+?)\s*$", re.M | re.I),
+    ".depth": re.compile(rb'"image"\s*:\s*"([^"]+)"'),
     ".ply": re.compile(rb"^comment[ \t]+TextureFile[ \t]+(.+?)\s*$", re.M | re.I),
 }
 
 
 def files_beside(path: Path) -> dict[str, bytes]:
-    """{name: bytes} of the files that an OBJ names, as it and its material file spell them, or a PLY with a texture.
+    """{name: bytes} of the files that a mesh file names, as it spells them: an OBJ and its materials, a PLY, a .depth.
 
     A file that is not there, or not below the folder of the mesh, is empty.
     """

@@ -10,6 +10,7 @@ from stages.kit import Mesh
 from stages.kit.fetch import FetchError
 
 from .clean import clean
+from .clouds import DEPTH
 from .colours import coloured
 from .load import MeshError, parse
 from .normalise import normalise, rotate_to_z_up
@@ -26,9 +27,10 @@ def prepare_mesh(item: MeshFile, remove_table: bool = False, colours: str = "ver
     """
     try:
         content, painted = item.content(), colours != "vertex"
-        beside = item.beside() if painted else {}
+        needed = painted or item.suffix == DEPTH
+        beside = item.beside() if needed else {}
         there = ZipResolver({name: data for name, data in beside.items() if data})
-        raw, notes = clean(parse(content, item.suffix, there if painted else None, every_colour=painted))
+        raw, notes = clean(parse(content, item.suffix, there if needed else None, every_colour=painted))
         notes += [f"{name}, which it names, is not there" for name, data in beside.items() if not data]
         if remove_table:
             raw, notes = _without_table(raw, notes)

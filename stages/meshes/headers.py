@@ -4,6 +4,8 @@ import json
 import re
 import struct
 
+DENSEST = 100  # bytes that one compressed byte of a PCD can hold: LZF writes three bytes for 264
+
 
 class MeshError(ValueError):
     """A mesh that cannot be used. The message is the reason; who opened the file names it."""
@@ -57,4 +59,17 @@ def _obj(content):
             raise MeshError(f"faces name vertices that do not exist ({found[1][:20].decode()})")
 
 
-CHECKS = {".glb": _glb, ".obj": _obj, ".stl": _stl, ".ply": _ply}
+def _pcd(content):
+    header, _, body = content.partition(b"\nDATA ")
+    stated = re.search(rb"^POINTS\s+(\d{1,18})\s*$", header, re.M)
+    kind, _, data = body.partition(b"\n")
+    most = len(data)
+    if kind.strip() == b"binary_compressed" and len(data) >= 8:
+        most = struct.unpack("<4xI", data[:8])[0]
+        if most > DENSEST * len(data):
+            raise MeshError(f"truncated: its header states {most} bytes, {len(data)} compressed ones follow")
+    if stated and int(stated[1]) > most:
+        raise MeshError(f"truncated: its header states {int(stated[1])} points, {most} bytes follow")
+
+
+CHECKS = {".glb": _glb, ".pcd": _pcd, ".obj": _obj, ".stl": _stl, ".ply": _ply}

@@ -1,4 +1,4 @@
-"""Reads one mesh file into arrays: STL, OBJ, PLY and GLB by trimesh, OFF by a reader of our own."""
+"""Reads one file into a mesh: STL, OBJ, PLY and GLB by trimesh, OFF by a reader of our own, scans by `clouds`."""
 
 import io
 from pathlib import Path
@@ -9,11 +9,12 @@ from trimesh.resolvers import FilePathResolver, Resolver
 
 from stages.kit import Mesh
 
+from . import clouds
 from .headers import MeshError, check_header
 from .materials import join_parts, merge_equal_rows, obj_vertices, texture_of, vertex_colors
 from .off import read_off
 
-FORMATS = (".stl", ".obj", ".ply", ".off", ".glb")
+FORMATS = (".stl", ".obj", ".ply", ".off", ".glb", *clouds.FORMATS, clouds.DEPTH)
 
 
 def load(path: str | Path) -> Mesh:
@@ -22,7 +23,10 @@ def load(path: str | Path) -> Mesh:
     Vertices keep the order of the file, since ground truth refers to them by index. STL and GLB repeat vertices at
     face corners: equal ones are merged in the order of first appearance. Polygons are triangulated. The parts of a GLB
     scene are transformed and joined. The materials of a GLB, and those of an OBJ whose material files lie next to it,
-    become the texture of the mesh. Raises MeshError with the file and the reason when it holds no usable mesh.
+    become the texture of the mesh. Of a point cloud (PLY without faces, XYZ, PTS, PCD, LAS), with or without normals,
+    the vertices are those of the surface that stages.meshes.clouds makes of it; so they are of a depth image, which a
+    .depth file names together with its camera. Raises MeshError with the file and the reason when it holds no usable
+    mesh.
     """
     try:
         return load_unnamed(Path(path))
@@ -60,6 +64,10 @@ def parse(content: bytes, suffix: str, resolver: Resolver | None = None, every_c
 def _parsed(content, suffix, resolver, every_colour):
     if suffix == ".off":
         return _checked(*read_off(content))
+    if suffix == clouds.DEPTH:
+        return clouds.surface_of(clouds.read_depth(content, resolver and resolver.get))
+    if suffix in clouds.FORMATS:
+        return clouds.surface_of(clouds.read_cloud(content, suffix))
     if suffix == ".glb" or (suffix == ".obj" and b"usemtl" in content):
         order = obj_vertices(content) if suffix == ".obj" else None
         loaded = join_parts(_open(content, suffix, resolver), order, every_colour)
@@ -79,7 +87,7 @@ def _to_mesh(loaded, merge, every_colour):
     if loaded is None:
         raise MeshError("the file holds no geometry")
     if isinstance(loaded, trimesh.PointCloud):
-        raise MeshError(f"a point cloud, or truncated before its faces: {len(loaded.vertices)} points, no faces")
+        return clouds.surface_of(clouds.cloud_of(loaded))
     if not isinstance(loaded, trimesh.Trimesh):
         raise MeshError(f"not a triangle mesh but a {type(loaded).__name__}")
     colors = None if merge else vertex_colors(loaded, of_faces=every_colour)

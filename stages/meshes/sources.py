@@ -110,7 +110,7 @@ def _furniture_file(extract, name, creator, unit):
 
 
 def folder(settings: Params) -> list[MeshFile]:
-    """The user's own meshes: every STL, OBJ, PLY, OFF and GLB file below a folder."""
+    """The user's own meshes: every mesh, point cloud and depth image below a folder (stages.meshes.load)."""
     root = Path(settings.folder).expanduser()
     if not settings.folder or not root.is_dir():
         raise MeshError(f"meshes.folder={settings.folder!r} is not a folder: set it to the folder of your meshes")

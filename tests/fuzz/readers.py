@@ -12,9 +12,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+import cv2
+import laspy
 import numpy as np
 import trimesh
 from PIL import Image
+from pypcd4 import Encoding, PointCloud
 from scipy.io import savemat
 
 from stages.classification.recorded import ELECTRODES, PALMS, read_grasps, read_pressure_images
@@ -256,6 +259,35 @@ def read_fixations(folder):
     return fixations_on_vertices(fixation_files(collection_files(folder, *FIXATION_MAPS))["cup"], TRIANGLE)
 
 
+def cloud_seeds(folder):
+    rows = np.hstack([BALL.vertices, BALL.vertex_normals, COLORS])
+    return ["\n".join(" ".join(map(str, row[:width])) for row in rows).encode() for width in (3, 6, 9)]
+
+
+def pcd_seeds(folder):
+    made, found = PointCloud.from_xyz_points(BALL.vertices.astype(np.float32)), []
+    for encoding in Encoding:
+        file = io.BytesIO()
+        made.save(file, encoding)
+        found.append(file.getvalue())
+    return found
+
+
+def las_seeds(folder):
+    made = laspy.create(point_format=2, file_version="1.2")
+    made.header.scales = [1e-4] * 3
+    made.x, made.y, made.z = BALL.vertices.T
+    file = io.BytesIO()
+    made.write(file)
+    return [file.getvalue()]
+
+
+def depth_seeds(folder):
+    cv2.imwrite(str(folder / "a.png"), np.full((9, 9), 900, np.uint16))
+    numbers = {"fx": 9.0, "fy": 9.0, "cx": 4.5, "cy": 4.5, "scale": 0.001}
+    return [json.dumps({"image": "a.png"} | numbers).encode()]
+
+
 def schunk_seeds(folder):
     arrays = np.empty((1, 6), object)
     for k in range(6):
@@ -331,6 +363,10 @@ READERS = {
     "glb": Reader("a.glb", lambda folder: [*mesh_seeds("glb")(folder), textured(folder).export(file_type="glb")],
                   read_mesh_file),
     "gltf": Reader("a.glb", gltf_seeds, read_gltf),
+    "cloud": Reader("a.xyz", cloud_seeds, load, count=200),
+    "pcd": Reader("a.pcd", pcd_seeds, load),
+    "las": Reader("a.las", las_seeds, load, count=200),
+    "depth": Reader("a.depth", depth_seeds, load, count=200),
     "mesh": Reader("a.npz", npz_seeds, read_mesh),
     "array": Reader("a.npz", npy_seeds, in_npz(read_arrays)),
     "json": Reader("a.json", lambda folder: [json.dumps({"a": [1, 2, {"b": None}], "c": "d"}).encode()], read_json),

@@ -39,13 +39,13 @@ REFUSED = {
     "no_area.off": (off([(0, 0, 0), (1, 0, 0), (2, 0, 0)], [(0, 1, 2)]), "no area"),
     "one_point.off": (off([(1, 1, 1)] * 3, [(0, 1, 2)]), "no area"),
     "degenerate.off": (off(TRIANGLE, [(0, 1, 1)]), "three different"),
-    "cloud.ply": (ply(TRIANGLE, []), "point cloud|no faces"),
+    "cloud.ply": (ply(TRIANGLE, []), "a point cloud of 3 points, 3 of them usable: a surface needs 50"),
     "cloud.off": (off(TRIANGLE, []), "no faces"),
     "missing_vertex.off": (off(TRIANGLE, [(0, 1, 7)]), "do not exist"),
     "negative_vertex.off": (off(TRIANGLE, [(0, 1, -2)]), "do not exist"),
     "claims_too_much.ply": (ply(TRIANGLE, [(0, 1, 2)], count=10**13), "truncated: its header states"),
     "huge.off": (off(np.array(TRIANGLE) * 1e300, [(0, 1, 2)]), "overflow|NaN"),
-    "wrong.xyz": (b"0 0 0\n", "cannot read .xyz"),
+    "wrong.abc": (b"0 0 0\n", "cannot read .abc"),
     "header_only.stl": (b"\0" * 80 + struct.pack("<I", 0), "no faces|no geometry|unreadable"),
 }
 

@@ -1,0 +1,167 @@
+"""Point clouds and depth images of shapes that are known give their surfaces, or the reason why they cannot."""
+
+import io
+import json
+
+import cv2
+import laspy
+import numpy as np
+import pytest
+import trimesh
+from pypcd4 import Encoding, PointCloud
+
+from stages.kit.mesh import unit
+from stages.meshes import MeshError, clean, load
+from stages.meshes.clouds import Cloud, cloud_of_depth, surface_of
+from stages.meshes.clouds.normals import normals_of
+
+RANDOM = np.random.default_rng(0)
+BALL = unit(RANDOM.normal(size=(3000, 3)))
+COLORS = np.tile(np.array([[200, 10, 30]], np.uint8), (len(BALL), 1))
+TORUS = trimesh.creation.torus(1.0, 0.25, 64, 32)
+DEPTH = {"image": "a.png", "fx": 100.0, "fy": 100.0, "cx": 32.0, "cy": 32.0, "scale": 0.001}
+
+
+def text(values):
+    return "\n".join(" ".join(map(str, row)) for row in np.asarray(values).tolist()).encode()
+
+
+def pcd(encoding):
+    made = PointCloud.from_xyzrgb_points(np.column_stack([BALL, PointCloud.encode_rgb(COLORS)]))
+    file = io.BytesIO()
+    made.save(file, encoding)
+    return file.getvalue()
+
+
+def las():
+    made = laspy.create(point_format=2, file_version="1.2")
+    made.header.scales = [1e-4] * 3
+    made.x, made.y, made.z = BALL.T
+    made.red, made.green, made.blue = COLORS.T.astype(np.uint16) << 8
+    file = io.BytesIO()
+    made.write(file)
+    return file.getvalue()
+
+
+FILES = {
+    "bare.xyz": lambda: text(BALL),
+    "commas.xyz": lambda: b"x,y,z\n" + text(BALL).replace(b" ", b","),
+    "normals.xyz": lambda: text(np.hstack([BALL, BALL])),
+    "all.pts": lambda: b"3000\n" + text(np.hstack([BALL, COLORS, BALL])),
+    "cloud.ply": lambda: trimesh.PointCloud(BALL, colors=np.c_[COLORS, COLORS[:, :1]]).export(file_type="ply"),
+    "ascii.pcd": lambda: pcd(Encoding.ASCII),
+    "binary.pcd": lambda: pcd(Encoding.BINARY),
+    "packed.pcd": lambda: pcd(Encoding.BINARY_COMPRESSED),
+    "air.las": las,
+}
+COLOURED = ("all.pts", "cloud.ply", "binary.pcd", "packed.pcd", "air.las")
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_a_ball_of_points_becomes_a_ball(name, tmp_path):
+    (tmp_path / name).write_bytes(FILES[name]())
+    mesh, notes = clean(load(tmp_path / name))
+    assert mesh.watertight and not notes
+    assert np.abs(np.linalg.norm(mesh.vertices, axis=1) - 1).max() < 0.02
+    assert (np.einsum("ij,ij->i", mesh.vertex_normals, mesh.vertices) > 0.9).all()
+    if name in COLOURED:
+        assert mesh.colors is not None and (mesh.colors == COLORS[0]).all()
+
+
+def test_place_and_size_of_the_points_do_not_matter():
+    near, far = surface_of(Cloud(BALL)), surface_of(Cloud(BALL * 1e3 + 1e6))
+    assert len(near.faces) == pytest.approx(len(far.faces), rel=0.01)
+    assert np.abs(np.linalg.norm((far.vertices - 1e6) / 1e3, axis=1) - 1).max() < 0.02
+
+
+def test_normals_point_outwards_even_where_the_shape_has_a_hole():
+    points, faces = trimesh.sample.sample_surface(TORUS, 4000, seed=0)
+    alike = np.einsum("ij,ij->i", normals_of(np.asarray(points)), TORUS.face_normals[faces])
+    assert (alike > 0.9).mean() > 0.99
+
+
+def test_what_was_not_seen_stays_a_hole():
+    front = BALL[BALL[:, 2] > 0.1]
+    mesh = surface_of(Cloud(front, sensor=np.array([0, 0, 5.0])))
+    assert not mesh.watertight and mesh.vertices[:, 2].min() > -0.1
+    assert (mesh.face_normals[:, 2] > 0).mean() > 0.95
+
+
+def test_a_sensor_within_a_hollow_sees_its_inside():
+    mesh = surface_of(Cloud(BALL, sensor=np.zeros(3)))
+    assert (np.einsum("ij,ij->i", mesh.vertex_normals, mesh.vertices) < -0.9).mean() > 0.99
+
+
+def test_outliers_and_pixels_without_a_reading_change_nothing():
+    holes = [np.full((50, 3), np.nan), np.zeros((50, 3)), RANDOM.uniform(-30, 30, (100, 3))]
+    mesh = surface_of(Cloud(np.concatenate([BALL, *holes])))
+    assert mesh.watertight and np.abs(np.linalg.norm(mesh.vertices, axis=1) - 1).max() < 0.02
+
+
+def test_noise_is_smoothed():
+    noisy = BALL * (1 + 0.01 * RANDOM.normal(size=(len(BALL), 1)))
+    mesh = surface_of(Cloud(noisy))
+    assert np.abs(np.linalg.norm(mesh.vertices, axis=1) - 1).mean() < 0.006
+
+
+@pytest.mark.parametrize(
+    ("points", "reason"),
+    [
+        (BALL[:1], "a point cloud of 1 points, 1 of them usable: a surface needs 50"),
+        (np.tile(BALL[:1], (100, 1)), "of 100 points, 1 of them usable"),
+        (np.full((100, 3), np.nan), "of 100 points, 0 of them usable"),
+        (BALL * [1, 1, 0], "lie on one plane"),
+        (BALL * [1, 0, 0], "lie on one line"),
+    ],
+)
+def test_points_without_a_shape_are_refused(points, reason):
+    with pytest.raises(MeshError, match=reason):
+        surface_of(Cloud(points))
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "reason"),
+    [
+        ("a.xyz", b"x y z\n", "no line of the point cloud holds three numbers"),
+        ("a.pcd", pcd(Encoding.BINARY)[:-9000], "truncated: its header states|unreadable as PCD"),
+        ("a.pcd", b"VERSION .7\nPOINTS 99999999\nDATA ascii\n1 2 3\n", "truncated: its header states 99999999 points"),
+        ("a.las", b"LASF" + b"\0" * 300, "unreadable as LAS"),
+        ("a.depth", b"{}", "KeyError: 'image'; a .depth file is like {\"image\""),
+        ("a.depth", json.dumps(DEPTH).encode(), "the depth image a.png is not there"),
+    ],
+)
+def test_a_damaged_file_is_refused_by_name(name, content, reason, tmp_path):
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(MeshError, match=reason) as error:
+        load(tmp_path / name)
+    assert name in str(error.value)
+
+
+def test_a_depth_image_gives_the_side_that_was_seen(tmp_path):
+    """A ball of radius 0.3 at distance 2, in millimetres."""
+    v, u = np.mgrid[:240, :320]
+    ray = np.stack([(u - 160) / 300, np.ones(u.shape), (120 - v) / 300], axis=2)
+    a, b = (ray**2).sum(axis=2), 2 * ray[..., 1]
+    inner = b**2 - a * (4 - 0.09)
+    away = np.where(inner > 0, (b - np.sqrt(np.maximum(inner, 0))) / a, 0)
+    cv2.imwrite(str(tmp_path / "a.png"), np.rint(away * 1000).astype(np.uint16))
+    intrinsics = {"fx": 300.0, "fy": 300.0, "cx": 160.0, "cy": 120.0, "scale": 0.001}
+    (tmp_path / "scan.depth").write_text(json.dumps(intrinsics | {"image": "a.png"}))
+    mesh = load(tmp_path / "scan.depth")
+    assert np.abs(np.linalg.norm(mesh.vertices - [0, 2, 0], axis=1) - 0.3).mean() < 0.002
+    assert not mesh.watertight and mesh.vertices[:, 1].max() < 2.05
+    assert (mesh.face_normals[:, 1] < 0.1).mean() > 0.99
+
+
+@pytest.mark.parametrize(
+    ("depth", "change", "reason"),
+    [
+        (np.zeros((48, 64)), {}, "no reading"),
+        (np.ones((48, 64)), {"fx": -1.0}, "fx=-1.0"),
+        (np.ones((48, 64)), {"cx": 900.0}, "cannot be of 64 x 48 pixels"),
+        (np.ones((48, 64, 3)), {}, "one channel"),
+    ],
+)
+def test_what_no_camera_can_have_seen_is_refused(depth, change, reason):
+    with pytest.raises(MeshError, match=reason):
+        cloud_of_depth(depth, **({"fx": 100.0, "fy": 100.0, "cx": 32.0, "cy": 24.0} | change))
