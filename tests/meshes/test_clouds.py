@@ -16,7 +16,7 @@ from stages.meshes.clouds import Cloud, cloud_of_depth, surface_of
 from stages.meshes.clouds.normals import normals_of
 
 RANDOM = np.random.default_rng(0)
-BALL = unit(RANDOM.normal(size=(3000, 3)))
+BALL = unit(RANDOM.normal(size=(1200, 3)))
 COLORS = np.tile(np.array([[200, 10, 30]], np.uint8), (len(BALL), 1))
 TORUS = trimesh.creation.torus(1.0, 0.25, 64, 32)
 DEPTH = {"image": "a.png", "fx": 100.0, "fy": 100.0, "cx": 32.0, "cy": 32.0, "scale": 0.001}
@@ -47,7 +47,7 @@ FILES = {
     "bare.xyz": lambda: text(BALL),
     "commas.xyz": lambda: b"x,y,z\n" + text(BALL).replace(b" ", b","),
     "normals.xyz": lambda: text(np.hstack([BALL, BALL])),
-    "all.pts": lambda: b"3000\n" + text(np.hstack([BALL, COLORS, BALL])),
+    "all.pts": lambda: b"1200\n" + text(np.hstack([BALL, COLORS, BALL])),
     "cloud.ply": lambda: trimesh.PointCloud(BALL, colors=np.c_[COLORS, COLORS[:, :1]]).export(file_type="ply"),
     "ascii.pcd": lambda: pcd(Encoding.ASCII),
     "binary.pcd": lambda: pcd(Encoding.BINARY),
@@ -83,7 +83,7 @@ def test_normals_point_outwards_even_where_the_shape_has_a_hole():
 def test_what_was_not_seen_stays_a_hole():
     front = BALL[BALL[:, 2] > 0.1]
     mesh = surface_of(Cloud(front, sensor=np.array([0, 0, 5.0])))
-    assert not mesh.watertight and mesh.vertices[:, 2].min() > -0.1
+    assert not mesh.watertight and mesh.vertices[:, 2].min() > -0.15
     assert (mesh.face_normals[:, 2] > 0).mean() > 0.95
 
 
@@ -123,7 +123,7 @@ def test_points_without_a_shape_are_refused(points, reason):
     ("name", "content", "reason"),
     [
         ("a.xyz", b"x y z\n", "no line of the point cloud holds three numbers"),
-        ("a.pcd", pcd(Encoding.BINARY)[:-9000], "truncated: its header states|unreadable as PCD"),
+        ("a.pcd", pcd(Encoding.BINARY)[:-4000], "truncated: its header states 1200 points, 950 follow"),
         ("a.pcd", b"VERSION .7\nPOINTS 99999999\nDATA ascii\n1 2 3\n", "truncated: its header states 99999999 points"),
         ("a.las", b"LASF" + b"\0" * 300, "unreadable as LAS"),
         ("a.depth", b"{}", "KeyError: 'image'; a .depth file is like {\"image\""),

@@ -59,6 +59,8 @@ def _pcd(content):
 
     read = PointCloud.from_fileobj(io.BufferedReader(io.BytesIO(content)))
     data, fields = read.pc_data, read.fields
+    if np.size(data) < read.metadata.points:
+        raise MeshError(f"truncated: its header states {read.metadata.points} points, {np.size(data)} follow")
     if not {"x", "y", "z"} <= set(fields):
         raise MeshError(f"a point cloud without x, y and z: its fields are {', '.join(fields)}")
     points = _columns(data, ("x", "y", "z"))
