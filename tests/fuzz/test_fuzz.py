@@ -16,10 +16,10 @@ from tests.fuzz.readers import READERS, Reader
 
 ROOT = Path(__file__).parents[2]
 GROUPS = {
-    "core": ("stl", "obj", "material", "texture", "ply", "off", "glb", "gltf", "mesh", "array", "json", "zip", "tar",
-             "deb"),
-    "data": ("collection", "lod", "params", "table", "packed table", "picture", "pressure", "grasps", "bigs", "marks",
-             "gaze", "fixations", "interest points", "network", "checkpoint", "pickle", "torch"),
+    "core": ("stl", "obj", "material", "texture", "ply", "off", "glb", "gltf", "cloud", "pcd", "las", "depth",
+             "mesh", "array", "json", "zip", "tar", "deb"),
+    "data": ("collection", "lod", "params", "table", "packed table", "picture", "pressure", "grasps", "schunk", "bigs",
+             "marks", "gaze", "fixations", "interest points", "network", "checkpoint", "pickle", "torch"),
 }  # fmt: skip
 SLOW = {"grasps", "bigs", "network", "checkpoint", "pickle", "torch"}  # import torch, or read many files
 

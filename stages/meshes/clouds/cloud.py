@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 
 from ..headers import MeshError
 
@@ -46,7 +46,7 @@ def usable(cloud: Cloud) -> Cloud:
     if len(cloud.points) > MOST:
         cloud = cloud.part(np.linspace(0, len(cloud.points) - 1, MOST).astype(int))
     if len(cloud.points) >= LEAST:
-        away = cKDTree(cloud.points).query(cloud.points, NEIGHBOURS + 1)[0][:, -1]
+        away = KDTree(cloud.points).query(cloud.points, NEIGHBOURS + 1)[0][:, -1]
         cloud = cloud.part(away <= STRAY * np.median(away))
     if len(cloud.points) < LEAST:
         raise MeshError(f"a point cloud of {given} points, {len(cloud.points)} of them usable: a surface needs {LEAST}")

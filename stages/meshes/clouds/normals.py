@@ -1,7 +1,7 @@
 """Normals of a point cloud: their lines from the neighbours, their sides from where the points can be seen."""
 
 import numpy as np
-from scipy.spatial import ConvexHull, cKDTree
+from scipy.spatial import ConvexHull, KDTree
 
 NEIGHBOURS = 12
 VIEWS = 32  # directions from which points are looked at
@@ -18,7 +18,7 @@ def normals_of(points: np.ndarray, sensor: np.ndarray | None = None) -> np.ndarr
     which the point is seen: from 32 directions the visible points are found without any surface (Katz, Tal, Basri,
     Direct visibility of point sets, SIGGRAPH 2007), each votes for the eye's side, and neighbours pull each other.
     """
-    tree = cKDTree(points)
+    tree = KDTree(points)
     near = tree.query(points, min(NEIGHBOURS, len(points)))[1]
     spread = points[near] - points[near].mean(axis=1, keepdims=True)
     normals = np.linalg.eigh(np.einsum("nki,nkj->nij", spread, spread))[1][:, :, 0]
@@ -27,7 +27,7 @@ def normals_of(points: np.ndarray, sensor: np.ndarray | None = None) -> np.ndarr
     voters = np.linspace(0, len(points) - 1, min(VOTERS, len(points))).astype(int)
     votes = _votes(points[voters], normals[voters])
     if len(voters) < len(points):
-        nearest = cKDTree(points[voters]).query(points)[1]
+        nearest = KDTree(points[voters]).query(points)[1]
         votes = votes[nearest] * _sign(np.einsum("ij,ij->i", normals, normals[voters][nearest]))
     alike, side = np.einsum("ni,nki->nk", normals, normals[near]), np.tanh(votes)
     for _ in range(ROUNDS):

@@ -55,15 +55,15 @@ def _text(content):
 
 def _pcd(content):
     with from_extra():
-        from pypcd4 import PointCloud
+        from pypcd4.pypcd4 import PointCloud
 
     read = PointCloud.from_fileobj(io.BufferedReader(io.BytesIO(content)))
     data, fields = read.pc_data, read.fields
     if np.size(data) < read.metadata.points:
         raise MeshError(f"truncated: its header states {read.metadata.points} points, {np.size(data)} follow")
-    if not {"x", "y", "z"} <= set(fields):
-        raise MeshError(f"a point cloud without x, y and z: its fields are {', '.join(fields)}")
     points = _columns(data, ("x", "y", "z"))
+    if points is None:
+        raise MeshError(f"a point cloud without x, y and z: its fields are {', '.join(fields)}")
     normals = _columns(data, ("normal_x", "normal_y", "normal_z")) if "normal_x" in fields else None
     colors = read.decode_rgb(np.ascontiguousarray(data["rgb"])) if "rgb" in fields else None
     return Cloud(points, _units(normals), colors, _sensor(points, np.array(read.metadata.viewpoint[:3])))
@@ -74,10 +74,10 @@ def _las(content):
         import laspy
 
     read = laspy.read(io.BytesIO(content))
-    points = np.stack([read.x, read.y, read.z], axis=1).astype(np.float64)
+    points = np.stack([np.asarray(one, np.float64) for one in (read.x, read.y, read.z)], axis=1)
     if "red" not in set(read.point_format.dimension_names):
         return Cloud(points)
-    colors = np.stack([read.red, read.green, read.blue], axis=1)
+    colors = np.stack([np.asarray(one) for one in (read.red, read.green, read.blue)], axis=1)
     wide = colors.max(initial=0) > 255  # sixteen bits as the format says, which many writers fill with eight
     return Cloud(points, colors=(colors >> 8 if wide else colors).astype(np.uint8))
 

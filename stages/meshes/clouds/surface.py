@@ -1,7 +1,9 @@
+# pymeshlab comes without types:
+# pyright: reportAttributeAccessIssue=false
 """The surface of a point cloud, with the holes that it leaves where nothing was seen."""
 
 import numpy as np
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 
 from stages.kit import Mesh
 from stages.kit.extras import from_extra
@@ -29,7 +31,7 @@ def surface_of(cloud: Cloud) -> Mesh:
     centre, extent = cloud.points.mean(axis=0), np.ptp(cloud.points, axis=0).max()
     points = (cloud.points - centre) / extent  # far from the origin, digits would be lost
     sensor = None if cloud.sensor is None else (cloud.sensor - centre) / extent
-    tree = cKDTree(points)
+    tree = KDTree(points)
     away = tree.query(points, NEIGHBOURS + 1)[0][:, -1]
     normals = normals_of(points, sensor) if cloud.normals is None else cloud.normals
     work = pymeshlab.MeshSet()
@@ -38,9 +40,10 @@ def surface_of(cloud: Cloud) -> Mesh:
     made = work.current_mesh()
     vertices, faces = made.vertex_matrix(), made.face_matrix().astype(np.int64)
     distance, nearest = tree.query(vertices)
-    faces = faces[(distance <= GAP * away[nearest])[faces].all(axis=1)]
+    seen = np.asarray(distance <= GAP * away[nearest])
+    faces = faces[seen[faces].all(axis=1)]
     used, ids = np.unique(faces, return_inverse=True)
-    colors = None if cloud.colors is None else cloud.colors[nearest[used]]
+    colors = None if cloud.colors is None else cloud.colors[np.asarray(nearest)[used]]
     return Mesh(vertices[used] * extent + centre, ids.reshape(-1, 3), colors)
 
 
