@@ -61,9 +61,15 @@ def _obj(content):
 
 def _pcd(content):
     header, _, body = content.partition(b"\nDATA ")
-    stated = re.search(rb"^POINTS\s+(\d{1,18})\s*$", header, re.M)
+    stated = re.search(rb"^\W*points\s+(\d+)", header, re.M | re.I)
+    if any(
+        len(number) > 3 for line in re.findall(rb"^\W*count\s(.*)$", header, re.M | re.I) for number in line.split()
+    ):
+        raise MeshError("unreadable as PCD (more than 999 numbers in one field of a point)")
     kind, _, data = body.partition(b"\n")
     most = len(data)
+    if kind.strip() not in (b"ascii", b"binary", b"binary_compressed"):
+        raise MeshError("unreadable as PCD (its data are neither ascii nor binary nor binary_compressed)")
     if kind.strip() == b"binary_compressed" and len(data) >= 8:
         most = struct.unpack("<4xI", data[:8])[0]
         if most > DENSEST * len(data):
@@ -72,4 +78,16 @@ def _pcd(content):
         raise MeshError(f"truncated: its header states {int(stated[1])} points, {most} bytes follow")
 
 
-CHECKS = {".glb": _glb, ".pcd": _pcd, ".obj": _obj, ".stl": _stl, ".ply": _ply}
+def _las(content):
+    if len(content) < 227 or content[:4] != b"LASF":
+        raise MeshError("unreadable as LAS (no LASF header)")
+    size, start, records, length, points = struct.unpack("<HIIxHI", content[94:111])
+    if content[25] >= 4 and len(content) >= 375:  # version 1.4 has wider numbers besides
+        more, points = struct.unpack("<IQ", content[243:255])
+        records += more
+    if size + 54 * records > len(content) or start + length * points > len(content):
+        raise MeshError(f"truncated: its header states {points} points, {records} records, the file has {len(content)}"
+                        " bytes")  # fmt: skip
+
+
+CHECKS = {".las": _las, ".glb": _glb, ".pcd": _pcd, ".obj": _obj, ".stl": _stl, ".ply": _ply}

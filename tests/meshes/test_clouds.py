@@ -125,7 +125,7 @@ def test_points_without_a_shape_are_refused(points, reason):
         ("a.xyz", b"x y z\n", "no line of the point cloud holds three numbers"),
         ("a.pcd", pcd(Encoding.BINARY)[:-4000], "truncated: its header states 1200 points, 950 follow"),
         ("a.pcd", b"VERSION .7\nPOINTS 99999999\nDATA ascii\n1 2 3\n", "truncated: its header states 99999999 points"),
-        ("a.las", b"LASF" + b"\0" * 300, "unreadable as LAS"),
+        ("a.las", b"LASF" + b"\0" * 300, "unreadable as LAS|truncated"),
         ("a.depth", b"{}", "KeyError: 'image'; a .depth file is like {\"image\""),
         ("a.depth", json.dumps(DEPTH).encode(), "the depth image a.png is not there"),
     ],
