@@ -8,6 +8,7 @@ import trimesh
 from trimesh.resolvers import FilePathResolver, Resolver
 
 from stages.kit import Mesh
+from stages.kit.extras import MissingExtra
 
 from . import clouds
 from .headers import MeshError, check_header
@@ -53,7 +54,7 @@ def parse(content: bytes, suffix: str, resolver: Resolver | None = None, every_c
     check_header(content, suffix)
     try:
         return _parsed(content, suffix, resolver, every_colour)
-    except MeshError:
+    except (MeshError, MissingExtra):
         raise
     except MemoryError:
         raise MeshError("its header claims more data than fits in memory") from None

@@ -2,6 +2,7 @@
 
 import io
 import json
+import sys
 
 import cv2
 import laspy
@@ -10,6 +11,7 @@ import pytest
 import trimesh
 from pypcd4 import Encoding, PointCloud
 
+from stages.kit.extras import MissingExtra
 from stages.kit.mesh import unit
 from stages.meshes import MeshError, clean, load
 from stages.meshes.clouds import Cloud, cloud_of_depth, surface_of
@@ -135,6 +137,13 @@ def test_a_damaged_file_is_refused_by_name(name, content, reason, tmp_path):
     with pytest.raises(MeshError, match=reason) as error:
         load(tmp_path / name)
     assert name in str(error.value)
+
+
+def test_a_core_install_says_what_point_clouds_need(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pymeshlab", None)
+    (tmp_path / "a.xyz").write_bytes(text(BALL))
+    with pytest.raises(MissingExtra, match=r"^pymeshlab is not installed: pip install 'haptic-glance\[pipeline\]'$"):
+        load(tmp_path / "a.xyz")
 
 
 def test_a_depth_image_gives_the_side_that_was_seen(tmp_path):
