@@ -16,7 +16,7 @@ ROOT = Path(__file__).parents[1]
 PIPELINE = yaml.safe_load((ROOT / "dvc.yaml").read_text())["stages"]
 ORDER = [stage for stage in PIPELINE if stage != "code"]
 STAGES = {stage: PIPELINE[stage].get("do", PIPELINE[stage]) for stage in ORDER}
-SHARED = {"kit", "networks"}  # packages that are no stages
+SHARED = {"kit", "networks", "glance"}  # packages that are no stages
 SECTIONS = sorted(path.parent.name for path in ROOT.glob("stages/*/schema.py"))
 
 
@@ -52,8 +52,9 @@ def test_kit_imports_no_stage():
     assert imported("kit") == set()
 
 
-def test_networks_import_the_kit_alone():
-    assert imported("networks") == {"kit"}
+@pytest.mark.parametrize("package", sorted(SHARED - {"kit"}))
+def test_shared_packages_import_the_kit_alone(package):
+    assert imported(package) == {"kit"}
 
 
 @pytest.mark.slow

@@ -1,15 +1,15 @@
 """All errors of one simplified mesh, each with its cost."""
 
 from stages.kit import Mesh, Stopwatch
-from stages.salient_points import METHODS
 from stages.views import viewpoint_set
+from stages.weights.published import ENHANCED
 
 from .inputs import ObjectInputs
 from .metro import surface_errors
 from .perceptual import picture_errors, take_pictures
 from .schema import Params
 
-SALIENCY_METHOD = next(iter(METHODS))  # `enhanced`: its saliency weights the salient error of all methods
+SALIENCY_METHOD = ENHANCED  # its saliency weights the salient error of all methods
 
 
 def measure_errors(inputs: ObjectInputs, mesh: Mesh, settings: Params, seed: int) -> list[dict]:

@@ -13,27 +13,29 @@ from stages.meshes.orient import orient
 from stages.views import TWELVE, render
 from stages.weights import LearnedWeights
 from stages.weights import weights as published
+from stages.weights.published import GLANCE
 
 from .methods import SVMS, method_named
-from .options import RADIUS, HasSaliency, Options
+from .options import RADIUS, Detection, HasSaliency, Options
 
 VIEW_SIZE = (900, 1200)  # rows, columns of the views; T3.2.6
 MAP_SIZE = (225, 300)  # rows, columns of the maps: a quarter of the views', so that the channels keep their scales
 
 
 def saliency(
-    mesh: Mesh, method: str = "enhanced", weights: str | Mapping[str, float] | None = None,
+    mesh: Mesh, method: str = GLANCE, weights: str | Mapping[str, float] | None = None,
     viewpoints: Iterable[Viewpoint] | None = None, smoothing: float = SMOOTHING, up: str = "z",
 ) -> np.ndarray:  # fmt: skip
     """How much each vertex attracts attention: (n,) f8 in 0..1, 1 at the maximum, whatever the mesh's place and size.
 
     up: the axis of the mesh that points up, x, y or z (a GLB's is y): people look at the upper part of things and walk
-    around them, so `enhanced` and `height` need the right one. method: a name of METHODS that has a saliency (all but
-    `random` and `farthest`). `enhanced`, the default, is the fixation density per unit of area that a log-linear model,
-    fitted to human gaze, predicts; `thesis_ssim` is the thesis's own weighted average (eq. 3.9), `itti` the classical
-    model. weights: for a method with weights, a name that stages.weights has or a dict name -> weight, instead of its
-    own. viewpoints: Viewpoints, None for the twelve of T figure 3.2. smoothing: length in units of the normalised mesh
-    (bounding sphere 0.5). Raises ValueError for unknown names or invalid weights.
+    around them, so `glance`, `enhanced` and `height` need the right one. method: a name of METHODS that has a saliency
+    (all but `random` and `farthest`). `glance`, the default, is the fixation density per unit of area that a log-linear
+    model, fitted to human gaze, predicts from points spread over the surface; `enhanced` an older one, which renders
+    views; `thesis_ssim` is the thesis's own weighted average (eq. 3.9), `itti` the classical model. weights: for
+    a method with weights, a name that stages.weights has or a dict name -> weight, instead of its own. viewpoints:
+    Viewpoints, None for the twelve of T figure 3.2. smoothing: length in units of the normalised mesh (bounding sphere
+    0.5). Raises ValueError for unknown names or invalid weights.
     """
     detector = method_named(method)
     if not isinstance(detector, HasSaliency):
@@ -44,7 +46,7 @@ def saliency(
 
 
 def find_points(
-    mesh: Mesh, method: str = "enhanced", count: int | None = None, *,
+    mesh: Mesh, method: str = GLANCE, count: int | None = None, *,
     weights: str | Mapping[str, float] | None = None, viewpoints: Iterable[Viewpoint] | None = None,
     selection: str = "suppression", radius: float = RADIUS, seed: int = 0, name: str = "", up: str = "z",
 ) -> np.ndarray:  # fmt: skip
@@ -57,12 +59,24 @@ def find_points(
     earlier calls. The other arguments are those of `saliency`. Raises ValueError for unknown names, an invalid count,
     or `random` or `farthest` without a count.
     """
+    return detect(
+        mesh, method, count, weights=weights, viewpoints=viewpoints, selection=selection, radius=radius, seed=seed,
+        name=name, up=up,
+    ).points  # fmt: skip
+
+
+def detect(
+    mesh: Mesh, method: str = GLANCE, count: int | None = None, *,
+    weights: str | Mapping[str, float] | None = None, viewpoints: Iterable[Viewpoint] | None = None,
+    selection: str = "suppression", radius: float = RADIUS, seed: int = 0, name: str = "", up: str = "z",
+) -> Detection:  # fmt: skip
+    """The points of `find_points` and the saliency of `saliency`, from one look. The arguments are those of these."""
     detector = method_named(method)
     if count is not None and (count != int(count) or count < 1):
         raise ValueError(f"count must be a whole number of at least 1, got {count}")
     options = Options(_learned(method, weights), selection, radius, SMOOTHING, seed, name)
     mesh = normalise(rotate_to_z_up(orient(mesh)[0], up))
-    return detector.find(mesh, compute_maps(mesh, detector.channels, viewpoints), options, count).points
+    return detector.find(mesh, compute_maps(mesh, detector.channels, viewpoints), options, count)
 
 
 def compute_maps(

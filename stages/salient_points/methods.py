@@ -12,11 +12,12 @@ from stages.conspicuity import CHANNELS, ViewMaps
 from stages.kit import Mesh, Stopwatch
 from stages.weights import LearnedWeights
 from stages.weights.features import CHANNEL_FEATURES
-from stages.weights.published import ENHANCED
+from stages.weights.published import ENHANCED, GLANCE
 
 from .farthest import FarthestPoints
 from .fuse import COMBINATIONS, WITHOUT_COLOUR
 from .fused import FusedDetector, MergedDetector, SvmDetector, WeightedDetector
+from .glance import GlanceDetector
 from .options import Detection, Detector, Options
 from .positions import centre_distance, facing_viewer, height
 from .random_points import RandomPoints
@@ -41,6 +42,7 @@ PUBLISHED = {
 }  # fmt: skip
 
 METHODS: dict[str, Detector] = {
+    GLANCE: GlanceDetector(),
     ENHANCED: FixationDetector(ENHANCED, CHANNEL_FEATURES),
     "itti": FusedDetector(COMBINATIONS["VisAtt"]),
     "random": RandomPoints(),

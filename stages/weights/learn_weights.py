@@ -4,6 +4,7 @@ import numpy as np
 
 from .euclidean import average, euclidean_weights
 from .fixations import fit_fixations
+from .published import GLANCE
 from .similarity import similarity_weights
 
 ALL = ""  # the value of `left_out` for weights learned from all objects
@@ -26,6 +27,7 @@ def learned_weight_rows(training_data: dict[str, dict[str, np.ndarray]]) -> list
             "guided_ssim": average([per_object[name][1] for name in kept]),
             "guided_ssim_object": average([per_object[name][2] for name in kept]),
             "fixations": _fixations([training_data[name] for name in kept]),
+            GLANCE: _glance([training_data[name] for name in kept]),
         }
         rows += [
             {"method": method, "channel": channel, "weight": round(weight, 9), "left_out": left_out}
@@ -51,3 +53,10 @@ def _fixations(objects):
     features, amounts, areas = ([one[key] for one in objects] for key in ("features", "amounts", "areas"))
     weights = fit_fixations(features, amounts, areas)
     return dict(zip((str(name) for name in objects[0]["names"]), weights.tolist(), strict=True))
+
+
+def _glance(objects):
+    """The weights of the features of stages.glance; the samples are even, so that each has the same area."""
+    features, amounts = ([one[key] for one in objects] for key in ("glance", "glance_amounts"))
+    weights = fit_fixations(features, amounts, [np.ones(len(one)) for one in amounts])
+    return dict(zip((str(name) for name in objects[0]["glance_names"]), weights.tolist(), strict=True))

@@ -15,6 +15,7 @@ TABLE = {
 }
 
 
+GLANCE = "glance"  # the method of the features of stages.glance
 ENHANCED = "enhanced"  # the method whose weights are chosen by the setting weights.method
 
 
@@ -50,19 +51,49 @@ GAZE = {
 }
 
 
+# Of the features of stages.glance, learned from the gaze on these meshes and on 14 point clouds, `gaze_clouds`.
+GLANCE_WEIGHTS = {
+    "rank": 0.475,
+    "middle": 0.279,
+    "upward": 0.124,
+    "upward_high": -0.305,
+    "seen": 0.065,
+    "above": -0.097,
+    "above_high": -0.052,
+    "below": -0.12,
+    "log_below": 0.157,
+    "log_side": 0.589,
+    "convexity": 0.631,
+    "detail": -0.03,
+    "relief": 0.08,
+    "fullness_0.12": 0.06,
+    "fullness_0.24": 0.151,
+    "distance": -0.043,
+    "distance_squared": 0.106,
+    "outward": 0.223,
+    "off_plane": -0.153,
+    "on_plane": 0.123,
+}
+
+
 def gaze() -> dict[str, float]:
     """Weights of the features in a log-linear density of fixations: for `enhanced`, not for T eq. 3.9."""
     return dict(GAZE)
 
 
-METHODS = {"equal": equal, "thesis_ssim": thesis_ssim, "thesis_ed": thesis_ed, "gaze": gaze}
+def glance() -> dict[str, float]:
+    """Weights of the features of stages.glance, in a log-linear density of fixations."""
+    return dict(GLANCE_WEIGHTS)
+
+
+METHODS = {"equal": equal, "thesis_ssim": thesis_ssim, "thesis_ed": thesis_ed, "gaze": gaze, GLANCE: glance}
 
 
 def weights(method: str) -> dict[str, float]:
     """The weight of each channel by a method of METHODS: dict channel -> weight, not normalised.
 
-    The methods give weights of all nine channels, for T eq. 3.9, which divides by their sum; `gaze` gives weights of
-    the features of stages.weights.features. Raises ValueError for an unknown method.
+    The methods give weights of all nine channels, for T eq. 3.9, which divides by their sum; `gaze` and `glance` give
+    weights of the features of stages.weights.features and of stages.glance. Raises ValueError for an unknown method.
     """
     if method not in METHODS:
         raise ValueError(f"unknown weights {method!r}: choose one of {', '.join(METHODS)}")

@@ -14,6 +14,6 @@ COLUMNS = {
 
 @dataclass
 class Params:
-    """Which weights the method `enhanced` takes."""
+    """Which weights the methods `enhanced` and `glance` take."""
 
     method: str  # gaze (learned from human gaze, comes with the package) or fixations (learned from this data set)

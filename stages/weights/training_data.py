@@ -6,6 +6,7 @@ import numpy as np
 
 from stages.conspicuity import CHANNELS, ViewMaps
 from stages.conspicuity.storage import read_maps
+from stages.glance import samples_of_mesh, standardised
 from stages.kit import Mesh
 from stages.kit.files import read_arrays
 
@@ -27,8 +28,9 @@ def collect_training_data(
 
     path: its file in data/SET/conspicuity; amounts (n,): of ground_truth_amounts. The arrays are amounts, density (n,)
     per unit of area, areas (n,); points (k,) vertex ids and shares (k,) of the attention; features (n, d) f4 and names
-    (d,); distances, similarities and on_object (v, channels), the last being similarities without the background, NaN
-    for a view without points; for the SVM pixels (p, channels) f4, labels (p,) and views (p,) drawn on the object, and
+    (d,); glance (s, e) f4, the features of s even samples, glance_names (e,) and glance_amounts (s,); distances,
+    similarities and on_object (v, channels), the last being similarities without the background, NaN for a view
+    without points; for the SVM pixels (p, channels) f4, labels (p,) and views (p,) drawn on the object, and
     image_pixels, image_labels and image_views drawn from the whole image as in the thesis. Raises ValueError for an
     empty ground truth, and for maps without a channel that our model has as a feature.
     """
@@ -42,6 +44,8 @@ def collect_training_data(
     maps = maps[:, [stored.index(channel) for channel in channels]]
     on_vertices = {channel: view_maps.vertex_values(view_maps.maps[channel]) for channel in CHANNEL_FEATURES}
     features = vertex_features(mesh, view_maps.viewpoints, view_maps.facing, on_vertices)
+    samples = samples_of_mesh(mesh)
+    glance = standardised(samples)
     found = [
         _view(
             f"{name} {viewpoint.name}",
@@ -65,6 +69,9 @@ def collect_training_data(
         "shares": shares,
         "features": np.stack(list(features.values()), axis=1).astype(np.float32),
         "names": np.array(list(features)),
+        "glance": np.stack(list(glance.values()), axis=1).astype(np.float32),
+        "glance_amounts": np.bincount(samples.tree.query(mesh.vertices)[1], amounts, minlength=len(samples.points)),
+        "glance_names": np.array(list(glance)),
         "channels": np.array(channels),
         **{kind: _table([view[kind] for view in tables], channels) for kind in tables[0]},
         **_rows("", own),

@@ -7,6 +7,7 @@ import pandas as pd
 import pytest
 
 from stages.conspicuity import CHANNELS
+from stages.glance import FEATURES
 from stages.kit.files import write_table
 from stages.kit.rows import read_rows
 from stages.weights import METHODS, LearnedWeights, read_learned_weights, weights
@@ -31,6 +32,9 @@ def arrays(best, seed):
         "features": features,
         "amounts": np.exp(2 * features[:, 0]),
         "areas": np.ones(400),
+        "glance": features[:, :2],
+        "glance_names": np.array(["rank", "seen"]),
+        "glance_amounts": np.exp(features[:, 1]),
     }
 
 
@@ -55,8 +59,8 @@ def test_equal_weights_are_equal():
 
 @pytest.mark.parametrize("method", METHODS)
 def test_every_method_weighs_every_channel_in_their_order(method):
-    expected = [*CHANNEL_FEATURES, *POSITION_FEATURES] if method == "gaze" else list(CHANNELS)
-    assert list(weights(method)) == expected
+    features = {"gaze": [*CHANNEL_FEATURES, *POSITION_FEATURES], "glance": list(FEATURES)}
+    assert list(weights(method)) == features.get(method, list(CHANNELS))
 
 
 def test_the_published_gaze_weights_are_those_that_the_gaze_taught():
@@ -99,6 +103,12 @@ def test_the_nearer_channel_and_the_likelier_feature_win(table):
     assert found["guided_ssim_object"] == pytest.approx({"edge": 0.5, "color": 0})  # what is unlike gets no say
     assert found["fixations"]["edge"] == pytest.approx(2, abs=0.4) and abs(found["fixations"]["height"]) < 0.2
     assert found["enhanced"] == found["fixations"]
+    assert found["glance"]["seen"] == pytest.approx(1, abs=0.3) and abs(found["glance"]["rank"]) < 0.2
+
+
+def test_the_glance_keeps_its_published_weights_where_the_ground_truth_is_no_gaze(tmp_path):
+    write_table(tmp_path / "weights.csv", weight_table(TRAINING_DATA, "gaze"))
+    assert read_learned_weights(tmp_path, "hand", None).weights["glance"] == pytest.approx(weights("glance"))
 
 
 def test_one_object_alone_teaches_others_but_not_itself():
@@ -110,7 +120,9 @@ def test_the_only_object_with_ground_truth_takes_nothing_that_was_learned_from_i
     (tmp_path / "ground_truth").mkdir()
     (tmp_path / "ground_truth/cup.npz").touch()
     found = read_learned_weights(tmp_path, "cup", None).weights
-    assert not {"enhanced", "fixations", "guided_ed"} & set(found) and {"guided_ed_seen", "equal"} <= set(found)
+    assert not {"enhanced", "fixations", "guided_ed", "glance"} & set(found) and {"guided_ed_seen", "equal"} <= set(
+        found
+    )
     assert "enhanced" in read_learned_weights(tmp_path, "duck", None).weights
 
 

@@ -3,6 +3,8 @@
 import numpy as np
 from scipy.spatial import ConvexHull, KDTree
 
+from stages.kit.directions import directions
+
 NEIGHBOURS = 12
 VIEWS = 32  # directions from which points are looked at
 DISTANCE = 3.0  # of the eye, in radii of the cloud
@@ -49,21 +51,13 @@ def _votes(points, normals):
     centre = (points.max(axis=0) + points.min(axis=0)) / 2
     radius = np.linalg.norm(points - centre, axis=1).max()
     votes = np.zeros(len(points))
-    for direction in _directions(VIEWS):
+    for direction in directions(VIEWS):
         eye = centre + DISTANCE * radius * direction
         seen = visible(points, eye)
         ray = eye - points[seen]
         along = np.einsum("ij,ij->i", normals[seen], ray) / np.linalg.norm(ray, axis=1)
         votes[seen] += along * np.abs(along)  # a point seen at a slant says little
     return votes
-
-
-def _directions(count):
-    """(count, 3) unit vectors spread evenly: a Fibonacci lattice."""
-    k = np.arange(count) + 0.5
-    height, turn = 1 - 2 * k / count, np.pi * (1 + 5**0.5) * k
-    across = np.sqrt(1 - height**2)
-    return np.stack([np.cos(turn) * across, np.sin(turn) * across, height], axis=1)
 
 
 def _sign(values):

@@ -1,0 +1,10 @@
+"""A glance at a surface: where people look, from points spread evenly over it, without a picture.
+
+The features describe height, what can be seen from where, relief and symmetry around each point. A log-linear model of
+them, learned from human gaze, gives the density of fixations. The cost does not depend on the number of faces.
+"""
+
+from .features import FEATURES, standardised
+from .samples import COUNT, Samples, samples_of_mesh, samples_of_points
+
+__all__ = ["COUNT", "FEATURES", "Samples", "samples_of_mesh", "samples_of_points", "standardised"]

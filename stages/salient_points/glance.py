@@ -1,0 +1,61 @@
+"""The method `glance`: the fixation density of points spread evenly over the surface, by stages.glance."""
+
+from typing import Any
+
+import numpy as np
+from scipy.spatial import KDTree
+
+from stages.glance import Samples, samples_of_mesh, standardised
+from stages.kit import Mesh
+from stages.weights import fixation_density
+from stages.weights.published import GLANCE
+
+from .merge import continue_on_surface
+from .options import Detection, Options
+from .rivals.maxima import local_maxima
+from .surface import scaled
+
+NO_FACES = np.zeros((0, 3), dtype=np.int64)
+
+
+class GlanceDetector:
+    """It looks at samples of the surface, so that neither the faces nor noise decide what it finds."""
+
+    channels: tuple[str, ...] = ()
+    required_weights = GLANCE
+
+    def saliency(self, mesh: Mesh, sight: Any, options: Options) -> np.ndarray:
+        """(n,) f8 in 0..1, the largest 1; zeros for a mesh without area."""
+        if not mesh.face_areas.sum() > 0:
+            return np.zeros(len(mesh.vertices))
+        samples = samples_of_mesh(mesh)
+        return _on_vertices(mesh, samples, _density(samples, options))
+
+    def find(self, mesh: Mesh, sight: Any, options: Options, count: int | None = None) -> Detection:
+        """The Detection: high peaks of the smoothed density are strong; count continues them by it."""
+        none = np.zeros(0, dtype=np.int64)
+        if not mesh.face_areas.sum() > 0:
+            return Detection(none, 0, np.zeros(len(mesh.vertices)))
+        samples = samples_of_mesh(mesh)
+        density = _density(samples, options)
+        smooth = samples.smoothed(density, options.smoothing)
+        peaks = local_maxima(Mesh(samples.points, NO_FACES), smooth, options.radius)
+        places = samples.points[peaks[smooth[peaks] > smooth.mean() + smooth.std()]]
+        points = mesh.used[KDTree(mesh.vertices[mesh.used]).query(places)[1]] if len(places) else none
+        strong = points[np.sort(np.unique(points, return_index=True)[1])]
+        if count is not None:
+            points = continue_on_surface(mesh, strong, _on_vertices(mesh, samples, smooth), options.radius, count)
+        else:
+            points = strong
+        return Detection(points, min(len(strong), len(points)), _on_vertices(mesh, samples, density))
+
+
+def _density(samples: Samples, options: Options) -> np.ndarray:
+    """(s,) f8 in 0..1."""
+    return fixation_density(standardised(samples), options.learned.weights[GLANCE])
+
+
+def _on_vertices(mesh, samples, values):
+    """(n,) f8 in 0..1: the values (s,) of the samples at the vertices, 0 where these have no area."""
+    near, weights = samples.interpolation(mesh.vertices, mesh.vertex_normals)
+    return scaled(np.where(mesh.vertex_areas > 0, (values[near] * weights).sum(axis=1), 0))

@@ -1,0 +1,93 @@
+"""The features of a glance on shapes whose heights, visibility, relief and symmetry are known."""
+
+import numpy as np
+import pytest
+import trimesh
+
+from stages.glance import FEATURES, samples_of_mesh, standardised
+from stages.glance.features import features
+from stages.glance.mirror import symmetry
+from stages.glance.relief import fullness, relief
+from stages.glance.visibility import visibility
+from stages.weights.published import GLANCE_WEIGHTS
+
+from .conftest import as_mesh
+
+
+@pytest.fixture(scope="module")
+def ball():
+    return samples_of_mesh(as_mesh(trimesh.creation.icosphere(5, radius=0.5)))
+
+
+def bowl():
+    """A hemisphere with a thick wall, open at the top."""
+    ball = trimesh.creation.icosphere(5, radius=0.5)
+    inner = trimesh.creation.icosphere(5, radius=0.4)
+    inner.invert()
+    both = trimesh.util.concatenate([ball, inner])
+    both.update_faces((both.triangles[:, :, 2] < 0.01).all(axis=1))
+    return both
+
+
+def box(size):
+    return samples_of_mesh(as_mesh(trimesh.creation.box(size)))
+
+
+def test_the_features_are_those_that_are_published(ball):
+    assert list(features(ball)) == list(FEATURES) == list(GLANCE_WEIGHTS)
+
+
+def test_standardised_features_have_mean_zero_and_no_scaled_noise(ball):
+    for name, values in standardised(ball).items():
+        assert abs(values.mean()) < 0.1 and values.std() < 2.05, name
+    for name in ("convexity", "relief", "distance", "seen", "off_plane"):
+        assert standardised(ball)[name].std() < 0.7, name  # the same all over a sphere
+
+
+def test_a_sphere_is_seen_from_half_of_all_directions(ball):
+    seen, side, above, below = visibility(ball)
+    assert seen == pytest.approx(0.5, abs=0.15) and seen.mean() == pytest.approx(0.5, abs=0.01)
+    top, middle = ball.points[:, 2] > 0.45, np.abs(ball.points[:, 2]) < 0.05
+    assert above[top].min() > below[top].max() and side[middle].mean() > 2 * side[top].mean()
+
+
+def test_the_inside_of_a_bowl_is_seen_from_above_alone():
+    samples = samples_of_mesh(as_mesh(bowl()))
+    seen, _, above, below = visibility(samples)
+    bottom = (np.linalg.norm(samples.points, axis=1) < 0.42) & (samples.points[:, 2] < -0.3)
+    assert bottom.sum() > 50 and below[bottom].max() < 0.02 and above[bottom].min() > 0.15
+    assert seen[bottom].mean() < seen[np.linalg.norm(samples.points, axis=1) > 0.48].mean()
+
+
+def test_bumps_are_convex_dents_are_concave_and_flats_neither():
+    samples = samples_of_mesh(as_mesh(bowl()))
+    convexity, _, _ = relief(samples)
+    radius = np.linalg.norm(samples.points, axis=1)
+    inner, outer = (radius < 0.42) & (samples.points[:, 2] < -0.1), (radius > 0.49) & (samples.points[:, 2] < -0.1)
+    assert convexity[inner].mean() < 0 < convexity[outer].mean()
+    plate = box((0.7, 0.5, 0.2))
+    flat = (np.abs(plate.points[:, 2]) > 0.099) & (np.abs(plate.points[:, :2]) < 0.15).all(axis=1)
+    assert relief(plate)[0][flat] == pytest.approx(0, abs=0.02)
+
+
+def test_a_thin_part_is_fuller_than_a_thick_one_and_a_tip_less():
+    needle = samples_of_mesh(as_mesh(trimesh.creation.cylinder(0.02, 0.98)))
+    ends = np.abs(needle.points[:, 2]) > 0.45
+    assert fullness(needle, 0.12)[ends].mean() < fullness(needle, 0.12)[~ends].mean() - 0.3
+
+
+def test_the_mirror_plane_of_a_box_halves_it():
+    samples = box((0.8, 0.3, 0.4))
+    away, near = symmetry(samples)
+    both = [np.corrcoef(away, np.abs(samples.points[:, axis]))[0, 1] for axis in (0, 1)]
+    assert max(both) > 0.99 and away.max() > 0.1
+    assert near[away < 0.005].min() > near[away > 0.1].max()
+
+
+def test_no_feature_depends_on_the_turn_about_the_vertical(ball):
+    head = trimesh.creation.icosphere(4, radius=0.15).apply_translation([0.3, 0, 0.3])
+    body = trimesh.util.concatenate([trimesh.creation.box((0.7, 0.3, 0.4)), head])  # one mirror plane
+    turned = body.copy().apply_transform(trimesh.transformations.rotation_matrix(np.pi / 2, [0, 0, 1]))
+    one, other = (features(samples_of_mesh(as_mesh(mesh))) for mesh in (body, turned))
+    for name in FEATURES:
+        assert one[name].mean() == pytest.approx(other[name].mean(), abs=max(0.3 * FEATURES[name], 1e-3)), name

@@ -1,0 +1,90 @@
+"""Samples of a surface: even, on the surface, the same whatever its triangles are, and what is read off them."""
+
+import numpy as np
+import pytest
+import trimesh
+
+from stages.glance import COUNT, Samples, samples_of_mesh, samples_of_points
+from stages.kit import Mesh
+from stages.kit.rng import rng
+
+from .conftest import as_mesh
+
+SPACING = np.sqrt(np.pi / COUNT)  # of points spread evenly over a sphere of radius 0.5
+
+
+def sphere(subdivisions: int) -> Mesh:
+    return as_mesh(trimesh.creation.icosphere(subdivisions, radius=0.5))
+
+
+@pytest.fixture(scope="module")
+def ball() -> Samples:
+    return samples_of_mesh(sphere(5))
+
+
+def test_samples_are_as_many_as_asked_for_and_lie_on_the_surface(ball):
+    assert len(ball.points) == pytest.approx(COUNT, rel=0.15)
+    assert np.linalg.norm(ball.points, axis=1) == pytest.approx(0.5, abs=0.2 * SPACING)
+    assert np.einsum("ij,ij->i", ball.normals, ball.points) == pytest.approx(0.5, abs=0.01)
+
+
+def test_samples_are_even(ball):
+    polar = [np.sum(np.abs(ball.points[:, axis]) > 0.25) for axis in range(3)]  # half of a sphere's area
+    assert np.array(polar) == pytest.approx(len(ball.points) / 2, rel=0.05)
+    assert ball.spacing == pytest.approx(SPACING, rel=0.25)
+
+
+def test_samples_hardly_depend_on_the_triangles(ball):
+    plain = Samples(ball.points, ball.normals)
+    away = plain.tree.query(samples_of_mesh(sphere(6)).points)[0]
+    assert away.max() < 2 * SPACING
+    assert len(samples_of_mesh(sphere(6)).points) == pytest.approx(len(ball.points), rel=0.05)
+
+
+def test_samples_are_the_same_at_every_call():
+    assert samples_of_mesh(sphere(3)).points.tobytes() == samples_of_mesh(sphere(3)).points.tobytes()
+
+
+def test_the_two_sides_of_a_thin_plate_stay_apart():
+    plate = samples_of_mesh(as_mesh(trimesh.creation.box((0.7, 0.7, 0.001))))
+    assert np.abs(np.abs(plate.normals[:, 2]) - 1).mean() < 0.05
+    up = plate.average @ plate.normals[:, 2]
+    inner = np.abs(plate.points[:, :2]).max(axis=1) < 0.3
+    assert np.abs(up[inner]).min() > 0.99
+
+
+def test_noise_is_averaged_away():
+    mesh = sphere(6)
+    noisy = mesh.vertices + rng(0, "noise").normal(0, 0.005, mesh.vertices.shape)
+    radii = [np.std(np.linalg.norm(one, axis=1)) for one in (noisy, samples_of_mesh(Mesh(noisy, mesh.faces)).points)]
+    assert radii[1] < 0.4 * radii[0]
+
+
+def test_values_are_interpolated_exactly_where_they_are_constant_and_nearly_where_they_are_linear(ball):
+    mesh = sphere(4)
+    near, weights = ball.interpolation(mesh.vertices, mesh.vertex_normals)
+    assert weights.sum(axis=1) == pytest.approx(1)
+    assert (ball.points[near] * weights[:, :, None]).sum(axis=1) == pytest.approx(mesh.vertices, abs=2 * SPACING)
+
+
+def test_smoothing_spreads_by_its_length_and_keeps_a_constant(ball):
+    assert ball.smoothed(np.ones(len(ball.points)), 0.05) == pytest.approx(1)
+    spot = np.zeros(len(ball.points))
+    spot[0] = 1
+    spread = ball.smoothed(spot, 0.05)
+    away = np.linalg.norm(ball.points - ball.points[0], axis=1)
+    assert np.sqrt((spread * away**2).sum() / spread.sum() / 2) == pytest.approx(0.05, rel=0.4)
+
+
+def test_samples_of_a_cloud_are_those_of_its_surface(ball):
+    given = samples_of_mesh(sphere(5), 3 * COUNT)
+    cloud = samples_of_points(given.points, given.normals)
+    assert len(cloud.points) == pytest.approx(COUNT, rel=0.3)
+    assert ball.tree.query(cloud.points)[0].max() < 2 * SPACING
+
+
+def test_nothing_to_look_at_is_an_error():
+    with pytest.raises(ValueError, match="without area"):
+        samples_of_mesh(Mesh(np.zeros((3, 3)), np.array([[0, 1, 2]])))
+    with pytest.raises(ValueError, match="different places"):
+        samples_of_points(np.zeros((9, 3)), np.tile([0.0, 0, 1], (9, 1)))
