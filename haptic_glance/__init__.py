@@ -19,14 +19,15 @@ if TYPE_CHECKING:
     from stages.kit import Mesh, Viewpoint
     from stages.lod import metro, perceptual, simplify, write_any
     from stages.meshes import Cloud, MeshError, cloud_of_depth, load, normalise, surface_of
-    from stages.salient_points import METHODS, find_points, saliency
+    from stages.salient_points import METHODS, Detection, detect, find_points, saliency
     from stages.scene import Camera, Placed, Scene, budget, fly
     from stages.views import View, render
 
 __all__ = [
-    "CHANNELS", "Camera", "Cloud", "METHODS", "Mesh", "MeshError", "Placed", "Scene", "Sequence", "Surface", "View",
-    "Viewpoint", "budget", "cloud_of_depth", "conspicuity", "find_points", "fly", "follow", "load", "metro",
-    "normalise", "perceptual", "press", "press_many", "render", "saliency", "simplify", "surface_of", "write_any",
+    "CHANNELS", "Camera", "Cloud", "Detection", "METHODS", "Mesh", "MeshError", "Placed", "Scene", "Sequence",
+    "Surface", "View", "Viewpoint", "budget", "cloud_of_depth", "conspicuity", "detect", "find_points", "fly", "follow",
+    "load", "metro", "normalise", "perceptual", "press", "press_many", "render", "saliency", "simplify", "surface_of",
+    "write_any",
 ]  # fmt: skip
 
 _NAMES = {
@@ -35,7 +36,7 @@ _NAMES = {
     "kit": ("Mesh", "Viewpoint"),
     "lod": ("metro", "perceptual", "simplify", "write_any"),
     "meshes": ("Cloud", "MeshError", "cloud_of_depth", "load", "normalise", "surface_of"),
-    "salient_points": ("METHODS", "find_points", "saliency"),
+    "salient_points": ("METHODS", "Detection", "detect", "find_points", "saliency"),
     "scene": ("Camera", "Placed", "Scene", "budget", "fly"),
     "views": ("View", "render"),
 }

@@ -76,7 +76,7 @@ class UserMesh:
     def places(self, at: list[str], count: int | None = None, method: str | None = None, seed: int = 0) -> Places:
         """The Places for the arguments of --at: `salient`, `random`, ids of vertices, positions x,y,z of the file."""
         if at[0] in ("salient", "random"):
-            method = (method or "enhanced") if at[0] == "salient" else "random"
+            method = (method or "glance") if at[0] == "salient" else "random"
             return self._selected(method, count or DEFAULT_COUNT, seed)
         placed = [self._at_point(word) if "," in word else self._at_vertex(word) for word in at]
         vertices, positions, normals = zip(*placed, strict=True)

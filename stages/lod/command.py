@@ -82,8 +82,8 @@ def prepare(mesh: Mesh, chosen: Namespace) -> SimplificationTask:
     if asked and face_count(asked, target, "--faces") >= target:
         raise ValueError(f"--faces {asked}: the mesh has only {number(target, 'face')}, there is nothing to simplify")
     rendered = bake_texture(mesh)
-    report(f"rendering twelve views, {up} up" + ("" if chosen.up else " (if another axis points up: --up)"))
-    method = "enhanced" if chosen.method == PLAIN else chosen.method
+    report(f"looking at it with {up} up" + ("" if chosen.up else " (if another axis points up: --up)"))
+    method = "glance" if chosen.method == PLAIN else chosen.method
     with Stopwatch() as watch:
         values = saliency(rendered, method, up=up)
     report(f"saliency by {method} in {watch.seconds:.1f} s")

@@ -33,8 +33,8 @@ def parser(about: str) -> argparse.ArgumentParser:
     command.add_argument(
         "--picture", metavar="FILE", type=Path, help="also draw the saliency, and the mesh before and after"
     )
-    help_method = "saliency and points by this method (default: enhanced; qem: none, every place has the same weight)"
-    command.add_argument("--method", default="enhanced", help=help_method)
+    help_method = "saliency and points by this method (default: glance; qem: none, every place has the same weight)"
+    command.add_argument("--method", default="glance", help=help_method)
     help_ways = "soft: the saliency weights the error, nothing is frozen (default); the others freeze the faces around"
     help_ways += f" the salient points, within {RINGS} rings, or by the mesh's density, or by the salient area"
     command.add_argument("--neighbourhood", choices=[SOFT, *NEIGHBOURHOODS], default=SOFT, help=help_ways)
@@ -66,19 +66,24 @@ def check_paths(chosen: argparse.Namespace) -> None:
     """Raises ValueError where the result or the picture cannot be written, or would overwrite the mesh."""
     if chosen.out.suffix.lower() not in FORMATS:
         raise ValueError(f"--out {chosen.out}: meshes are written as {', '.join(FORMATS)}")
-    for path in filter(None, (chosen.out, chosen.picture)):
+    check_outputs(chosen.mesh, chosen.out, chosen.picture, picture=chosen.picture)
+
+
+def check_outputs(mesh: Path, *paths: Path | None, picture: Path | None) -> None:
+    """Raises ValueError where one of the paths cannot be written, or would overwrite the mesh."""
+    for path in filter(None, paths):
         if path.is_dir():
             raise ValueError(f"{path} is a folder: name a file")
         if not path.absolute().parent.is_dir():
             raise ValueError(f"{path}: no such folder {path.parent}")
         if not os.access(path.absolute().parent, os.W_OK):
             raise ValueError(f"{path}: the folder {path.parent} is not writable")
-        if path.exists() and chosen.mesh.exists() and path.samefile(chosen.mesh):
+        if path.exists() and mesh.exists() and path.samefile(mesh):
             raise ValueError(f"{path} is the mesh itself, which would be overwritten: write to another file")
-    if chosen.picture:
+    if picture:
         from .picture import check_picture  # brings matplotlib, which nothing else here needs
 
-        check_picture(chosen.picture)
+        check_picture(picture)
 
 
 def check_options(chosen: argparse.Namespace) -> None:

@@ -30,9 +30,7 @@ def write_picture(path: Path, before: Mesh, after: Mesh, saliency: np.ndarray, p
     (before, after), _ = within_frame([before, after])
     figure = Figure(figsize=(12, 4.4), layout="constrained")
     axes = figure.subplots(1, 3)
-    axes[0].imshow(draw(_coloured(before, saliency)))
-    rows, columns = visible_points(before, points)
-    axes[0].plot(columns, rows, "o", color="#D81B1B", ms=5, mec="white", mew=0.8)
+    _look(axes[0], before, saliency, points)
     kept = f", {len(points)} point{'' if len(points) == 1 else 's'} kept" if len(points) else ""
     axes[0].set_title(f"saliency{kept}")
     for panel, mesh, word in ((axes[1], before, "before"), (axes[2], after, "after")):
@@ -42,6 +40,23 @@ def write_picture(path: Path, before: Mesh, after: Mesh, saliency: np.ndarray, p
         panel.set_axis_off()
     with whole_file(path) as part:
         figure.savefig(part, dpi=130, format=path.suffix.lower()[1:])
+
+
+def write_look(path: Path, mesh: Mesh, saliency: np.ndarray, points: np.ndarray) -> None:
+    """Writes a picture of a mesh as in `write_picture`, coloured by saliency (n,), with its visible points (k,)."""
+    check_picture(path)
+    figure = Figure(figsize=(5, 5), layout="constrained")
+    panel = figure.subplots()
+    _look(panel, mesh, saliency, points)
+    panel.set_axis_off()
+    with whole_file(path) as part:
+        figure.savefig(part, dpi=130, format=path.suffix.lower()[1:])
+
+
+def _look(panel, mesh, saliency, points):
+    panel.imshow(draw(coloured(mesh, saliency)))
+    rows, columns = visible_points(mesh, points)
+    panel.plot(columns, rows, "o", color="#D81B1B", ms=5, mec="white", mew=0.8)
 
 
 def check_picture(path: Path) -> None:
@@ -74,7 +89,8 @@ def visible_points(mesh: Mesh, vertices: np.ndarray) -> tuple[np.ndarray, np.nda
     return rows[near], columns[near]
 
 
-def _coloured(mesh, values):
+def coloured(mesh: Mesh, values: np.ndarray) -> Mesh:
+    """The mesh with colours of the values (n,), which saturate at their 98 % quantile."""
     top = np.quantile(values, TOP) or values.max() or 1.0
     colors = 255 * matplotlib.colormaps[MAP](np.clip(values / top, 0, 1))[:, :3]
     return Mesh(mesh.vertices, mesh.faces, np.rint(colors).astype(np.uint8))

@@ -27,6 +27,7 @@ LABELS = {
     "thesis_ssim": "enhanced attention (SSIM)",
     "thesis_ed": "enhanced attention (ED)",
     "enhanced": "ours (gaze model)",
+    "glance": "ours (glance)",
     "fixations_seen": "ours (gaze model)",
     "human": "the truth itself",
     "guided_ssim": "guided by SSIM",

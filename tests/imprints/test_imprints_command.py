@@ -240,7 +240,7 @@ def test_grid_is_as_large_as_it_can_be():
         (["--at", "0", "--count", "3"], "--count applies to"),
         (["--at", "random", "--count", "0"], "give 1 or more"),
         (["--at", "random", "--method", "itti"], "--method applies to"),
-        (["--at", "salient", "--method", "itty"], "no such method; choose one of enhanced"),
+        (["--at", "salient", "--method", "itty"], "no such method; choose one of glance"),
         (["--at", "salient", "--method", "random"], "use --at random"),
         (["--at", "salient", "--method", "svm"], "trained on the pipeline's objects"),
         (["--at", "0", "--cells", "0", "4"], "cells must be"),

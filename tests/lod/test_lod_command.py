@@ -311,7 +311,7 @@ HARD = ("--neighbourhood", "fixed")
         (["--faces", "300", "--out", "x.glb", "--picture", "x.txt"], "pictures are written as"),
         (
             ["--faces", "300", "--out", "x.glb", "--method", "guess"],
-            "there is no such method; choose one of qem, enhanced",
+            "there is no such method; choose one of qem, glance",
         ),
         (["--faces", "300", "--out", "x.glb", "--keep", "3"], "--keep has no effect where no faces are frozen"),
         (["--faces", "300", "--out", "x.glb", "--rings", "-1"], "--rings has no effect where no faces are frozen"),
@@ -465,7 +465,7 @@ def test_interrupted_it_says_one_line_and_leaves_nothing(file, tmp_path):
     command_line = [sys.executable, "-m", "stages.lod", *words]
     heard = functools.partial(signal.signal, signal.SIGINT, signal.SIG_DFL)  # what runs in the background ignores it
     work = subprocess.Popen(command_line, cwd=tmp_path, env=ours, stderr=subprocess.PIPE, text=True, preexec_fn=heard)
-    while "rendering" not in (line := work.stderr.readline()):
+    while "looking at it" not in (line := work.stderr.readline()):
         assert line, "it ended before it could be interrupted"
     work.send_signal(signal.SIGINT)
     assert work.stderr.read().splitlines()[-1] == "lod: stopped"

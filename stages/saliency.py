@@ -1,0 +1,136 @@
+"""Where people look at one mesh, and the places to touch first.
+
+Reads STL, OBJ, PLY, OFF, GLB or a point cloud. Prints the salient points, most salient first: vertex, position in the
+file's coordinates, saliency from 0 to 1. The mesh is left as it is; --out writes a copy coloured by saliency.
+
+examples:
+  haptic-glance saliency scan.stl
+  haptic-glance saliency scan.stl --out look.ply --points points.csv --picture look.png
+  haptic-glance saliency chair.glb --count 5 --json
+"""
+
+import argparse
+import json
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from stages.conspicuity.surface_values import SMOOTHING
+from stages.kit import Mesh, Stopwatch
+from stages.kit.command import errors_in_one_line
+from stages.kit.files import write_text
+from stages.lod.export import FORMATS, write_any
+from stages.lod.options import check_method, check_outputs
+from stages.meshes import normalise, rotate_to_z_up
+from stages.meshes.colours import bake_texture
+from stages.meshes.load import load_unnamed
+from stages.meshes.normalise import TO_Z_UP, centre_and_radius
+from stages.salient_points import detect
+
+COLUMNS = ("rank", "vertex", "x", "y", "z", "saliency")
+
+
+def parser() -> argparse.ArgumentParser:
+    """The parser of the command line."""
+    first, _, rest = (__doc__ or "").partition("\n")
+    form = argparse.RawDescriptionHelpFormatter
+    command = argparse.ArgumentParser("haptic-glance saliency", description=first, epilog=rest, formatter_class=form)
+    command.add_argument("mesh", metavar="MESH", type=Path, help="the file to look at")
+    command.add_argument(
+        "--out", metavar="FILE", type=Path, help=f"the coloured mesh: {', '.join(FORMATS[:2])} or .ply"
+    )
+    command.add_argument("--points", metavar="FILE", type=Path, help="the points, as CSV")
+    command.add_argument("--picture", metavar="FILE", type=Path, help="a picture of the saliency with the points")
+    command.add_argument("--count", metavar="N", type=int, help="how many points (default: those past the threshold)")
+    command.add_argument("--method", default="glance", help="how it looks (default: %(default)s)")
+    command.add_argument("--up", choices=list(TO_Z_UP), help="the axis that points up (default: y for a glb, else z)")
+    command.add_argument("--json", action="store_true", help="print the points as JSON")
+    return command
+
+
+def run(argv: Sequence[str]) -> None:
+    """Runs the command line `argv`, without the program's name."""
+    chosen = parser().parse_args(argv)
+    check(chosen)
+    up = chosen.up or ("y" if chosen.mesh.suffix.lower() == ".glb" else "z")
+    mesh = load_unnamed(chosen.mesh)
+    try:
+        with Stopwatch() as watch:
+            found = detect(bake_texture(mesh), chosen.method, chosen.count, up=up)
+    except ValueError as error:
+        raise ValueError(f"{chosen.mesh}: {error}").with_traceback(error.__traceback__) from None
+    assert found.saliency is not None  # `check` lets no method pass that has none
+    print(f"saliency: {len(mesh.faces):,} faces in {watch.seconds:.1f} s, {up} up"
+          + ("" if chosen.up else " (if another axis points up: --up)"), file=sys.stderr)  # fmt: skip
+    rows = points_of(mesh, found.points, found.saliency)
+    write(chosen, mesh, found.points, found.saliency, up, rows)  # first: what reads the lines may close the pipe
+    print(json.dumps([dict(zip(COLUMNS, row, strict=True)) for row in rows]) if chosen.json else as_csv(rows))
+
+
+def check(chosen: argparse.Namespace) -> None:
+    """Raises ValueError for files that cannot be written, and for methods and counts that cannot be."""
+    if chosen.out and chosen.out.suffix.lower() not in (".glb", ".obj", ".ply"):
+        raise ValueError(f"--out {chosen.out}: a coloured mesh is written as .glb, .obj or .ply")
+    check_outputs(chosen.mesh, chosen.out, chosen.points, chosen.picture, picture=chosen.picture)
+    check_method(chosen.method)
+    if chosen.method == "qem":
+        raise ValueError("--method qem has no saliency: choose another")
+    if chosen.count is not None and chosen.count < 1:
+        raise ValueError(f"--count {chosen.count}: give 1 or more")
+
+
+def points_of(mesh: Mesh, points: np.ndarray, saliency: np.ndarray) -> list[tuple]:
+    """Rows of COLUMNS, most salient first; positions in the file's coordinates.
+
+    The saliency is the mean around the point, over the length that smooths the saliency before its peaks are taken.
+    """
+    radius = 2 * SMOOTHING * centre_and_radius(mesh)[1]
+    values = [_mean_around(mesh, vertex, saliency, radius) for vertex in points]
+    order = np.argsort(np.negative(values), kind="stable")
+    return [
+        (rank, int(points[k]), *map(float, mesh.vertices[points[k]]), float(values[k]))
+        for rank, k in enumerate(order, 1)
+    ]
+
+
+def _mean_around(mesh, vertex, values, radius):
+    near = np.linalg.norm(mesh.vertices - mesh.vertices[vertex], axis=1) <= radius
+    near[vertex] = True
+    areas = mesh.vertex_areas[near]
+    return np.average(values[near], weights=areas) if areas.any() else values[vertex]
+
+
+def as_csv(rows: list[tuple]) -> str:
+    """The points as lines of CSV, under a header."""
+    lines = (f"{rank},{vertex},{x:.9g},{y:.9g},{z:.9g},{value:.6g}" for rank, vertex, x, y, z, value in rows)
+    return "\n".join([",".join(COLUMNS), *lines])
+
+
+def write(
+    chosen: argparse.Namespace, mesh: Mesh, points: np.ndarray, saliency: np.ndarray, up: str, rows: list[tuple]
+) -> None:
+    """Writes the files that were asked for, and names them."""
+    if chosen.out or chosen.picture:
+        from stages.lod.picture import coloured, write_look  # loads matplotlib
+
+        if chosen.out:
+            write_any(chosen.out, coloured(Mesh(mesh.vertices, mesh.faces), saliency))
+        if chosen.picture:
+            write_look(chosen.picture, normalise(rotate_to_z_up(mesh, up)), saliency, points)
+    if chosen.points:
+        write_text(chosen.points, as_csv(rows) + "\n")
+    written = [str(path) for path in (chosen.out, chosen.points, chosen.picture) if path]
+    if written:
+        print(f"saliency: written: {', '.join(written)}", file=sys.stderr)
+
+
+def main() -> None:
+    """Runs the command line of the process."""
+    errors_in_one_line("saliency")
+    run(sys.argv[1:])
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,82 @@
+"""`haptic-glance saliency MESH`: the points of one's own mesh, a coloured copy and a picture."""
+
+import json
+
+import numpy as np
+import pytest
+import trimesh
+from PIL import Image
+
+from stages.meshes import load
+from stages.saliency import COLUMNS, run
+from stages.salient_points import detect, find_points, saliency
+
+PLACE, SIZE = np.array([120.0, -40.0, 7.0]), 25.0
+
+
+@pytest.fixture
+def egg(tmp_path):
+    """The file of an egg with a nose, far from the origin."""
+    body = trimesh.creation.icosphere(4)
+    x, y, z = body.vertices.T
+    body.vertices *= (1 + 0.3 * np.exp(-20 * ((y + 1) ** 2 + (z - 0.3) ** 2 + x**2)))[:, None] * [1, 1, 1.4]
+    body.vertices = PLACE + SIZE * body.vertices
+    body.export(tmp_path / "egg.ply")
+    return tmp_path / "egg.ply"
+
+
+def test_points_are_printed_in_the_files_coordinates(egg, capsys):
+    run([str(egg)])
+    head, *lines = capsys.readouterr().out.splitlines()
+    rows = np.array([[float(value) for value in line.split(",")] for line in lines])
+    mesh = load(egg)
+    assert head == ",".join(COLUMNS) and rows[:, 0].tolist() == list(range(1, len(rows) + 1))
+    assert set(rows[:, 1]) == set(find_points(mesh)) and (np.diff(rows[:, 5]) <= 0).all()
+    assert rows[:, 2:5] == pytest.approx(mesh.vertices[rows[:, 1].astype(int)], rel=1e-6)
+    assert np.linalg.norm(rows[0, 2:5] - (PLACE + SIZE * np.array([0, -1.3, 0.55]))) < 0.3 * SIZE  # the nose
+
+
+def test_one_look_gives_what_the_two_functions_give(egg):
+    mesh = load(egg)
+    found = detect(mesh, count=4)
+    assert found.points.tolist() == find_points(mesh, count=4).tolist() and len(found.points) == 4
+    assert (found.saliency == saliency(mesh)).all()
+
+
+def test_json_holds_the_same_and_files_are_written_as_asked(egg, capsys, tmp_path):
+    out, points, picture = (tmp_path / name for name in ("look.ply", "points.csv", "look.png"))
+    run([str(egg), "--count", "3", "--json", "--out", str(out), "--points", str(points), "--picture", str(picture)])
+    shown = capsys.readouterr()
+    rows = json.loads(shown.out)
+    assert [list(row) for row in rows] == [list(COLUMNS)] * 3 and "written" in shown.err
+    lines = points.read_text().splitlines()
+    assert len(lines) == 4 and lines[1].startswith(f"1,{rows[0]['vertex']},")
+    given, coloured = load(egg), load(out)
+    assert coloured.vertices == pytest.approx(given.vertices, rel=1e-6)
+    values = saliency(given)
+    bright, dark = coloured.colors[values.argmax()], coloured.colors[values.argmin()]
+    assert bright[0] > 200 > dark[0]  # viridis: yellow, violet
+    assert np.asarray(Image.open(picture)).std() > 10
+
+
+@pytest.mark.parametrize(
+    ("options", "reason"),
+    [
+        (["--out", "x.stl"], r"--out x.stl: a coloured mesh is written as \.glb"),
+        (["--out", "missing/x.ply"], "no such folder"),
+        (["--picture", "x.txt"], "pictures are written as"),
+        (["--count", "0"], "give 1 or more"),
+        (["--method", "guess"], "there is no such method; choose one of qem, glance"),
+        (["--method", "qem"], "has no saliency"),
+    ],
+)
+def test_what_cannot_be_done_is_named_before_anything_is_computed(egg, options, reason):
+    with pytest.raises(ValueError, match=reason):
+        run([str(egg), *options])
+
+
+def test_the_mesh_itself_is_not_overwritten(egg):
+    before = egg.read_bytes()
+    with pytest.raises(ValueError, match="is the mesh itself"):
+        run([str(egg), "--out", str(egg)])
+    assert egg.read_bytes() == before
