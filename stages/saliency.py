@@ -22,6 +22,7 @@ from stages.kit import Mesh, Stopwatch
 from stages.kit.command import errors_in_one_line
 from stages.kit.files import write_text
 from stages.lod.export import FORMATS, write_any
+from stages.lod.look import check_look, coloured, write_look
 from stages.lod.options import check_method, check_outputs
 from stages.meshes import normalise, rotate_to_z_up
 from stages.meshes.colours import bake_texture
@@ -73,7 +74,9 @@ def check(chosen: argparse.Namespace) -> None:
     """Raises ValueError for files that cannot be written, and for methods and counts that cannot be."""
     if chosen.out and chosen.out.suffix.lower() not in (".glb", ".obj", ".ply"):
         raise ValueError(f"--out {chosen.out}: a coloured mesh is written as .glb, .obj or .ply")
-    check_outputs(chosen.mesh, chosen.out, chosen.points, chosen.picture, picture=chosen.picture)
+    check_outputs(chosen.mesh, chosen.out, chosen.points, chosen.picture)
+    if chosen.picture:
+        check_look(chosen.picture)
     check_method(chosen.method)
     if chosen.method == "qem":
         raise ValueError("--method qem has no saliency: choose another")
@@ -112,13 +115,10 @@ def write(
     chosen: argparse.Namespace, mesh: Mesh, points: np.ndarray, saliency: np.ndarray, up: str, rows: list[tuple]
 ) -> None:
     """Writes the files that were asked for, and names them."""
-    if chosen.out or chosen.picture:
-        from stages.lod.picture import coloured, write_look  # loads matplotlib
-
-        if chosen.out:
-            write_any(chosen.out, coloured(Mesh(mesh.vertices, mesh.faces), saliency))
-        if chosen.picture:
-            write_look(chosen.picture, normalise(rotate_to_z_up(mesh, up)), saliency, points)
+    if chosen.out:
+        write_any(chosen.out, coloured(Mesh(mesh.vertices, mesh.faces), saliency))
+    if chosen.picture:
+        write_look(chosen.picture, normalise(rotate_to_z_up(mesh, up)), saliency, points)
     if chosen.points:
         write_text(chosen.points, as_csv(rows) + "\n")
     written = [str(path) for path in (chosen.out, chosen.points, chosen.picture) if path]

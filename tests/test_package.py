@@ -110,6 +110,15 @@ def test_one_mesh_is_simplified_in_a_core_install(ball):
 
 
 @pytest.mark.slow
+def test_one_mesh_is_looked_at_in_a_core_install(ball):
+    written = [ball.with_suffix(suffix) for suffix in (".ply", ".csv", ".png")]
+    options = [word for pair in zip(("--out", "--points", "--picture"), written, strict=True) for word in pair]
+    done = run_command("saliency", ball, *options, before=CORE)
+    assert done.returncode == 0 and all(path.exists() for path in written), done.stderr
+    assert done.stdout.startswith("rank,vertex,x,y,z,saliency")
+
+
+@pytest.mark.slow
 def test_a_stage_names_the_extra_that_a_core_install_lacks():
     (line,) = run_command("lod", "household", before=CORE).stderr.splitlines()
     assert line.startswith("haptic-glance lod: ") and line.endswith("pip install 'haptic-glance[pipeline]'")

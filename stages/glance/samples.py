@@ -15,9 +15,8 @@ from stages.kit.surface_samples import sample_surface
 COUNT = 15_000  # about as many points: fewer lose detail such as eyes, more cost time
 DRAWN = 4  # points drawn for each that is kept: the mean of a cell has less noise than one point
 CELL = 1.08  # side of a cell, in units of the distance of evenly spread points; leaves about COUNT cells
-ONE_SIDE = (
-    0.15  # length of a cell's mean normal below which it holds two sides of a sheet; then one point stands for it
-)
+SMALLEST = 2.0**-19  # side of a cell: a smaller one, of a mesh with next to no area, has no number of its own
+ONE_SIDE = 0.15  # length of a cell's mean normal below which two sides of a sheet are in it: one point stands for it
 NEAREST = 4  # points that a value on the surface is interpolated from
 NEIGHBOURS = 16  # points that a point is averaged with
 WIDTH = 1.6  # of the Gaussian of that average, in units of the spacing
@@ -111,7 +110,7 @@ def samples_of_points(points: np.ndarray, normals: np.ndarray, count: int = COUN
 
 def _even(points, normals, area, count):
     """The Samples of drawn points: one a cell of a grid, at the mean of the points in it."""
-    side = CELL * np.sqrt(area / count)
+    side = max(CELL * np.sqrt(area / count), SMALLEST)
     key = np.floor(points / side).astype(np.int64) @ [1 << 42, 1 << 21, 1]
     _, cell, size = np.unique(key, return_inverse=True, return_counts=True)
     first = np.zeros(len(size), dtype=np.int64)

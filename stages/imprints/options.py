@@ -34,7 +34,7 @@ def parser(description: str) -> argparse.ArgumentParser:
     result.add_argument("--pitch", metavar="UNITS", type=float, default=0.01, help=help_pitch)
     help_count = f"number of salient or random places (default: {DEFAULT_COUNT})"
     result.add_argument("--count", metavar="N", type=int, help=help_count)
-    result.add_argument("--method", help="detector of salient places (default: enhanced, a model of human gaze)")
+    result.add_argument("--method", help="detector of salient places (default: glance, a model of human gaze)")
     help_contact = "tangent: the array stands at the place (default); rigid: it rests on the first contact"
     result.add_argument("--contact", choices=CONTACTS, default=CONTACTS[0], help=help_contact)
     help_depth = "how deep the object's highest point goes into the skin (default: the relief of each imprint)"

@@ -66,10 +66,14 @@ def check_paths(chosen: argparse.Namespace) -> None:
     """Raises ValueError where the result or the picture cannot be written, or would overwrite the mesh."""
     if chosen.out.suffix.lower() not in FORMATS:
         raise ValueError(f"--out {chosen.out}: meshes are written as {', '.join(FORMATS)}")
-    check_outputs(chosen.mesh, chosen.out, chosen.picture, picture=chosen.picture)
+    check_outputs(chosen.mesh, chosen.out, chosen.picture)
+    if chosen.picture:
+        from .picture import check_picture  # brings matplotlib, which nothing else here needs
+
+        check_picture(chosen.picture)
 
 
-def check_outputs(mesh: Path, *paths: Path | None, picture: Path | None) -> None:
+def check_outputs(mesh: Path, *paths: Path | None) -> None:
     """Raises ValueError where one of the paths cannot be written, or would overwrite the mesh."""
     for path in filter(None, paths):
         if path.is_dir():
@@ -80,10 +84,6 @@ def check_outputs(mesh: Path, *paths: Path | None, picture: Path | None) -> None
             raise ValueError(f"{path}: the folder {path.parent} is not writable")
         if path.exists() and mesh.exists() and path.samefile(mesh):
             raise ValueError(f"{path} is the mesh itself, which would be overwritten: write to another file")
-    if picture:
-        from .picture import check_picture  # brings matplotlib, which nothing else here needs
-
-        check_picture(picture)
 
 
 def check_options(chosen: argparse.Namespace) -> None:

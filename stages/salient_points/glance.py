@@ -29,7 +29,7 @@ class GlanceDetector:
         if not mesh.face_areas.sum() > 0:
             return np.zeros(len(mesh.vertices))
         samples = samples_of_mesh(mesh)
-        return _on_vertices(mesh, samples, _density(samples, options))
+        return _on_vertices(mesh, samples, _density(samples, options))[0]
 
     def find(self, mesh: Mesh, sight: Any, options: Options, count: int | None = None) -> Detection:
         """The Detection: high peaks of the smoothed density are strong; count continues them by it."""
@@ -43,11 +43,9 @@ class GlanceDetector:
         places = samples.points[peaks[smooth[peaks] > smooth.mean() + smooth.std()]]
         points = mesh.used[KDTree(mesh.vertices[mesh.used]).query(places)[1]] if len(places) else none
         strong = points[np.sort(np.unique(points, return_index=True)[1])]
-        if count is not None:
-            points = continue_on_surface(mesh, strong, _on_vertices(mesh, samples, smooth), options.radius, count)
-        else:
-            points = strong
-        return Detection(points, min(len(strong), len(points)), _on_vertices(mesh, samples, density))
+        saliency, smoothed = _on_vertices(mesh, samples, density, smooth)
+        points = strong if count is None else continue_on_surface(mesh, strong, smoothed, options.radius, count)
+        return Detection(points, min(len(strong), len(points)), saliency)
 
 
 def _density(samples: Samples, options: Options) -> np.ndarray:
@@ -55,7 +53,8 @@ def _density(samples: Samples, options: Options) -> np.ndarray:
     return fixation_density(standardised(samples), options.learned.weights[GLANCE])
 
 
-def _on_vertices(mesh, samples, values):
-    """(n,) f8 in 0..1: the values (s,) of the samples at the vertices, 0 where these have no area."""
+def _on_vertices(mesh, samples, *values):
+    """(n,) f8 in 0..1 of each of the values (s,) of the samples: at the vertices, 0 where these have no area."""
     near, weights = samples.interpolation(mesh.vertices, mesh.vertex_normals)
-    return scaled(np.where(mesh.vertex_areas > 0, (values[near] * weights).sum(axis=1), 0))
+    has_area = mesh.vertex_areas > 0
+    return [scaled(np.where(has_area, (one[near] * weights).sum(axis=1), 0)) for one in values]

@@ -83,6 +83,11 @@ def test_samples_of_a_cloud_are_those_of_its_surface(ball):
     assert ball.tree.query(cloud.points)[0].max() < 2 * SPACING
 
 
+def test_a_mesh_with_next_to_no_area_still_has_samples_along_it():
+    needle = samples_of_mesh(Mesh(np.array([[-0.5, 0, 0], [0.5, 0, 0], [0, 1e-14, 0]]), np.array([[0, 1, 2]])))
+    assert np.ptp(needle.points[:, 0]) > 0.9 and np.abs(needle.points[:, 1:]).max() < 1e-9
+
+
 def test_nothing_to_look_at_is_an_error():
     with pytest.raises(ValueError, match="without area"):
         samples_of_mesh(Mesh(np.zeros((3, 3)), np.array([[0, 1, 2]])))
