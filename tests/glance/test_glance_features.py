@@ -76,6 +76,12 @@ def test_a_thin_part_is_fuller_than_a_thick_one_and_a_tip_less():
     assert fullness(needle, 0.12)[ends].mean() < fullness(needle, 0.12)[~ends].mean() - 0.3
 
 
+def test_the_middle_is_between_top_and_bottom():
+    upright = samples_of_mesh(as_mesh(trimesh.creation.cylinder(0.1, 0.9)))
+    middle, height = features(upright)["middle"], np.abs(upright.points[:, 2])
+    assert middle[height < 0.02].min() > 0.99 and middle[height > 0.44].max() < 0.3
+
+
 def test_the_mirror_plane_of_a_box_halves_it():
     samples = box((0.8, 0.3, 0.4))
     away, near = symmetry(samples)

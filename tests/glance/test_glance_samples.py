@@ -6,6 +6,7 @@ import trimesh
 
 from stages.glance import COUNT, Samples, samples_of_mesh, samples_of_points
 from stages.kit import Mesh
+from stages.kit.mesh import unit
 from stages.kit.rng import rng
 
 from .conftest import as_mesh
@@ -58,6 +59,9 @@ def test_noise_is_averaged_away():
     noisy = mesh.vertices + rng(0, "noise").normal(0, 0.005, mesh.vertices.shape)
     radii = [np.std(np.linalg.norm(one, axis=1)) for one in (noisy, samples_of_mesh(Mesh(noisy, mesh.faces)).points)]
     assert radii[1] < 0.4 * radii[0]
+    samples = samples_of_mesh(Mesh(noisy, mesh.faces))
+    assert np.linalg.norm(samples.normals, axis=1) == pytest.approx(1)
+    assert np.einsum("ij,ij->i", samples.normals, unit(samples.points)).mean() > 0.95  # noise turned them by 50 degrees
 
 
 def test_values_are_interpolated_exactly_where_they_are_constant_and_nearly_where_they_are_linear(ball):
@@ -65,6 +69,15 @@ def test_values_are_interpolated_exactly_where_they_are_constant_and_nearly_wher
     near, weights = ball.interpolation(mesh.vertices, mesh.vertex_normals)
     assert weights.sum(axis=1) == pytest.approx(1)
     assert (ball.points[near] * weights[:, :, None]).sum(axis=1) == pytest.approx(mesh.vertices, abs=2 * SPACING)
+
+
+def test_a_side_of_a_thin_plate_takes_the_values_of_its_own_side():
+    plate = as_mesh(trimesh.creation.box((0.7, 0.7, 0.004)).subdivide_to_size(0.05))
+    samples = samples_of_mesh(plate)
+    near, weights = samples.interpolation(plate.vertices, plate.vertex_normals)
+    inner = np.abs(plate.vertices[:, :2]).max(axis=1) < 0.3
+    found = (samples.normals[near, 2] * weights).sum(axis=1)
+    assert np.abs(found - plate.vertex_normals[:, 2])[inner].mean() < 0.05
 
 
 def test_smoothing_spreads_by_its_length_and_keeps_a_constant(ball):
