@@ -46,7 +46,11 @@ def parser() -> argparse.ArgumentParser:
     command.add_argument("--picture", metavar="FILE", type=Path, help="a picture of the saliency with the points")
     command.add_argument("--count", metavar="N", type=int, help="how many points (default: those past the threshold)")
     command.add_argument("--method", default="glance", help="how it looks (default: %(default)s)")
-    command.add_argument("--up", choices=list(TO_Z_UP), help="the axis that points up (default: y for a glb, else z)")
+    command.add_argument(
+        "--up",
+        choices=list(TO_Z_UP),
+        help="the axis that points up (default: y for a glb, else z; unknown: --method glance_any_pose)",
+    )
     command.add_argument("--json", action="store_true", help="print the points as JSON")
     return command
 

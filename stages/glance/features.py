@@ -13,7 +13,7 @@ RADII = 0.12, 0.24  # of fullness, in units of the bounding sphere's diameter
 FEATURES = {
     "rank": 0.29, "middle": 0.31, "upward": 0.53, "upward_high": 0.1, "seen": 0.11, "above": 0.17,
     "above_high": 0.049, "below": 0.16, "log_below": 1.1, "log_side": 0.71, "convexity": 0.16, "detail": 0.036,
-    "relief": 0.064, "fullness_0.12": 0.28, "fullness_0.24": 0.32, "distance": 0.099, "distance_squared": 0.056,
+    "relief": 0.064, "fullness_0.12": 0.23, "fullness_0.24": 0.26, "distance": 0.099, "distance_squared": 0.056,
     "outward": 0.48, "off_plane": 0.03, "on_plane": 0.2,
 }  # fmt: skip
 LIMIT = 4.0  # standard deviations; what lies farther out counts as this

@@ -1,14 +1,14 @@
 """Bumps, dents and thickness of a surface at several scales, from a graph of neighbouring points."""
 
 import numpy as np
-from scipy.spatial import KDTree
+from scipy import ndimage
 
-from .samples import Samples, nearest
+from .samples import Samples
 
 FINE, COARSE = 2, 6  # steps over the graph of the finest relief, and of a coarser one
-BLENDED = 4  # centres whose counts are interpolated
 AROUND = 18  # steps over which relief is averaged: how rich in relief the neighbourhood is
-COUNTED, CENTRES = 7500, 3750  # about as many points are counted around about as many
+VOXELS = 48  # in a unit of length, in which the surface around a point is counted
+CUT = 3.0  # deviations at which the Gaussian of that count ends
 
 
 def relief(samples: Samples) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -30,14 +30,17 @@ def relief(samples: Samples) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def fullness(samples: Samples, radius: float) -> np.ndarray:
-    """(s,) log of the surface within a radius of each point over that of a disc of the size of the object.
+    """(s,) log of the surface around each point over that of a disc of the size of the object.
 
-    High where a part is thin or folded, low at a tip: an integral invariant, which noise does not move (Pottmann et
-    al., Integral invariants for robust geometry processing, CAGD 2009).
+    The surface is weighted by a Gaussian with the second moment of a ball of this radius. High where a part is thin or
+    folded, low at a tip: an integral invariant, which noise does not move (Pottmann et al., Integral invariants for
+    robust geometry processing, CAGD 2009).
     """
-    counted, centres = (samples.points[:: max(len(samples.points) // count, 1)] for count in (COUNTED, CENTRES))
-    found = KDTree(counted).query_ball_point(centres, radius, return_length=True)
-    share = np.asarray(found) / len(counted) * np.ptp(samples.points, axis=0).max() ** 2 / radius**2
-    distance, near = nearest(KDTree(centres), samples.points, BLENDED)
-    weight = 1 / (distance + 1e-3 * radius) ** 2
-    return (np.log(np.maximum(share, 1e-6))[near] * weight).sum(axis=1) / weight.sum(axis=1)
+    deviation = radius / np.sqrt(5)
+    places = (samples.points - samples.points.min(axis=0)) * VOXELS
+    shape = np.ceil(places.max(axis=0)).astype(np.int64) + 1
+    voxels = np.ravel_multi_index(np.rint(places).astype(np.int64).T, shape)
+    amounts = np.bincount(voxels, minlength=shape.prod()).reshape(shape).astype(np.float32) / len(places)
+    around = ndimage.gaussian_filter(amounts, deviation * VOXELS, mode="constant", truncate=CUT)
+    found = ndimage.map_coordinates(around, places.T, order=1) * (np.sqrt(2 * np.pi) * deviation * VOXELS) ** 3
+    return np.log(np.maximum(found * np.ptp(samples.points, axis=0).max() ** 2 / radius**2, 1e-6))

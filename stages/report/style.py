@@ -28,6 +28,7 @@ LABELS = {
     "thesis_ed": "enhanced attention (ED)",
     "enhanced": "ours (gaze model)",
     "glance": "ours (glance)",
+    "glance_any_pose": "ours (glance, any pose)",
     "fixations_seen": "ours (gaze model)",
     "human": "the truth itself",
     "guided_ssim": "guided by SSIM",

@@ -31,11 +31,12 @@ def saliency(
     up: the axis of the mesh that points up, x, y or z (a GLB's is y): people look at the upper part of things and walk
     around them, so `glance`, `enhanced` and `height` need the right one. method: a name of METHODS that has a saliency
     (all but `random` and `farthest`). `glance`, the default, is the fixation density per unit of area that a log-linear
-    model, fitted to human gaze, predicts from points spread over the surface; `enhanced` an older one, which renders
-    views; `thesis_ssim` is the thesis's own weighted average (eq. 3.9), `itti` the classical model. weights: for
-    a method with weights, a name that stages.weights has or a dict name -> weight, instead of its own. viewpoints:
-    Viewpoints, None for the twelve of T figure 3.2. smoothing: length in units of the normalised mesh (bounding sphere
-    0.5). Raises ValueError for unknown names or invalid weights.
+    model, fitted to human gaze, predicts from points spread over the surface, `glance_any_pose` the same without the
+    features that need an up axis, for what lies in any pose; `enhanced` is an older model, which renders views;
+    `thesis_ssim` is the thesis's own weighted average (eq. 3.9), `itti` the classical model. weights: for a method
+    with weights, a name that stages.weights has or a dict name -> weight, instead of its own. viewpoints:
+    Viewpoints, None for the twelve of T figure 3.2. smoothing: length in units of the normalised mesh (bounding
+    sphere 0.5). Raises ValueError for unknown names or invalid weights.
     """
     detector = method_named(method)
     if not isinstance(detector, HasSaliency):

@@ -1,14 +1,13 @@
-"""The method `glance`: the fixation density of points spread evenly over the surface, by stages.glance."""
+"""The methods `glance` and `glance_any_pose`: the fixation density of points spread evenly over the surface."""
 
 from typing import Any
 
 import numpy as np
 from scipy.spatial import KDTree
 
-from stages.glance import Samples, samples_of_mesh, standardised
+from stages.glance import samples_of_mesh, standardised
 from stages.kit import Mesh
 from stages.weights import fixation_density
-from stages.weights.published import GLANCE
 
 from .merge import continue_on_surface
 from .options import Detection, Options
@@ -22,14 +21,16 @@ class GlanceDetector:
     """It looks at samples of the surface, so that neither the faces nor noise decide what it finds."""
 
     channels: tuple[str, ...] = ()
-    required_weights = GLANCE
+
+    def __init__(self, weights: str) -> None:
+        self.required_weights = weights  # a key of stages.weights.published.GLANCES
 
     def saliency(self, mesh: Mesh, sight: Any, options: Options) -> np.ndarray:
         """(n,) f8 in 0..1, the largest 1; zeros for a mesh without area."""
         if not mesh.face_areas.sum() > 0:
             return np.zeros(len(mesh.vertices))
         samples = samples_of_mesh(mesh)
-        return _on_vertices(mesh, samples, _density(samples, options))[0]
+        return _on_vertices(mesh, samples, self._density(samples, options))[0]
 
     def find(self, mesh: Mesh, sight: Any, options: Options, count: int | None = None) -> Detection:
         """The Detection: high peaks of the smoothed density are strong; count continues them by it."""
@@ -37,7 +38,7 @@ class GlanceDetector:
         if not mesh.face_areas.sum() > 0:
             return Detection(none, 0, np.zeros(len(mesh.vertices)))
         samples = samples_of_mesh(mesh)
-        density = _density(samples, options)
+        density = self._density(samples, options)
         smooth = samples.smoothed(density, options.smoothing)
         peaks = local_maxima(Mesh(samples.points, NO_FACES), smooth, options.radius)
         places = samples.points[peaks[smooth[peaks] > smooth.mean() + smooth.std()]]
@@ -47,10 +48,8 @@ class GlanceDetector:
         points = strong if count is None else continue_on_surface(mesh, strong, smoothed, options.radius, count)
         return Detection(points, min(len(strong), len(points)), saliency)
 
-
-def _density(samples: Samples, options: Options) -> np.ndarray:
-    """(s,) f8 in 0..1."""
-    return fixation_density(standardised(samples), options.learned.weights[GLANCE])
+    def _density(self, samples, options):
+        return fixation_density(standardised(samples), options.learned.weights[self.required_weights])
 
 
 def _on_vertices(mesh, samples, *values):

@@ -12,7 +12,7 @@ from stages.conspicuity import CHANNELS, ViewMaps
 from stages.kit import Mesh, Stopwatch
 from stages.weights import LearnedWeights
 from stages.weights.features import CHANNEL_FEATURES
-from stages.weights.published import ENHANCED, GLANCE
+from stages.weights.published import ENHANCED, GLANCES
 
 from .farthest import FarthestPoints
 from .fuse import COMBINATIONS, WITHOUT_COLOUR
@@ -42,7 +42,7 @@ PUBLISHED = {
 }  # fmt: skip
 
 METHODS: dict[str, Detector] = {
-    GLANCE: GlanceDetector(),
+    **{name: GlanceDetector(name) for name in GLANCES},
     ENHANCED: FixationDetector(ENHANCED, CHANNEL_FEATURES),
     "itti": FusedDetector(COMBINATIONS["VisAtt"]),
     "random": RandomPoints(),

@@ -4,7 +4,7 @@ import numpy as np
 
 from .euclidean import average, euclidean_weights
 from .fixations import fit_fixations
-from .published import GLANCE
+from .published import GLANCES
 from .similarity import similarity_weights
 
 ALL = ""  # the value of `left_out` for weights learned from all objects
@@ -27,7 +27,7 @@ def learned_weight_rows(training_data: dict[str, dict[str, np.ndarray]]) -> list
             "guided_ssim": average([per_object[name][1] for name in kept]),
             "guided_ssim_object": average([per_object[name][2] for name in kept]),
             "fixations": _fixations([training_data[name] for name in kept]),
-            GLANCE: _glance([training_data[name] for name in kept]),
+            **{method: _glance([training_data[name] for name in kept], method) for method in GLANCES},
         }
         rows += [
             {"method": method, "channel": channel, "weight": round(weight, 9), "left_out": left_out}
@@ -55,8 +55,11 @@ def _fixations(objects):
     return dict(zip((str(name) for name in objects[0]["names"]), weights.tolist(), strict=True))
 
 
-def _glance(objects):
-    """The weights of the features of stages.glance; the samples are even, so that each has the same area."""
-    features, amounts = ([one[key] for one in objects] for key in ("glance", "glance_amounts"))
-    weights = fit_fixations(features, amounts, [np.ones(len(one)) for one in amounts])
-    return dict(zip((str(name) for name in objects[0]["glance_names"]), weights.tolist(), strict=True))
+def _glance(objects, method):
+    """The weights of a method of GLANCES; the samples are even, so that each has the same area."""
+    names, amounts = list(GLANCES[method]), [one["glance_amounts"] for one in objects]
+    columns = [objects[0]["glance_names"].tolist().index(name) for name in names]
+    weights = fit_fixations(
+        [one["glance"][:, columns] for one in objects], amounts, [np.ones(len(one)) for one in amounts]
+    )
+    return dict(zip(names, weights.tolist(), strict=True))

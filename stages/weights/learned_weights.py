@@ -9,7 +9,7 @@ from stages.kit.files import read_arrays, read_table, write_arrays
 
 from .convexity import convexity, nearest_convexity
 from .learn_weights import ALL
-from .published import ENHANCED, GLANCE, METHODS, weights
+from .published import ENHANCED, GLANCES, METHODS, weights
 from .svm import SVMModel
 
 SEEN_SUFFIX = "_seen"  # of methods whose weights were learned from all objects, the same one included, as in the thesis
@@ -44,7 +44,7 @@ def read_learned_weights(folder: str | Path, name: str, mesh: Mesh) -> LearnedWe
     found = every | _by_method(own)
     if own.empty and (Path(folder) / "ground_truth" / f"{name}.npz").exists():
         alone = every[ENHANCED] == every["fixations"]
-        usable = {*METHODS} - {GLANCE} if alone else {*METHODS, ENHANCED}
+        usable = {*METHODS} - {*GLANCES} if alone else {*METHODS, ENHANCED}
         found = {method: values for method, values in every.items() if method in usable}
     seen = {f"{method}{SEEN_SUFFIX}": values for method, values in every.items() if method not in METHODS}
     return LearnedWeights(found | seen, _svms(Path(folder), name, mesh))

@@ -1,5 +1,8 @@
 """Published weights: equal ones, those of T table 3.1, and those learned from human gaze."""
 
+import functools
+from collections.abc import Callable
+
 # T table 3.1: channel -> (average SSIM over 43 models, one minus the average normalised Euclidean distance).
 # In code rather than in a data file, so that they are available wherever the package is installed.
 TABLE = {
@@ -15,7 +18,7 @@ TABLE = {
 }
 
 
-GLANCE = "glance"  # the method of the features of stages.glance
+GLANCE = "glance"  # the default method
 ENHANCED = "enhanced"  # the method whose weights are chosen by the setting weights.method
 
 
@@ -51,29 +54,20 @@ GAZE = {
 }
 
 
-# Of the features of stages.glance, learned from the gaze on these meshes and on 14 point clouds, `gaze_clouds`.
-GLANCE_WEIGHTS = {
-    "rank": 0.475,
-    "middle": 0.279,
-    "upward": 0.124,
-    "upward_high": -0.305,
-    "seen": 0.065,
-    "above": -0.097,
-    "above_high": -0.052,
-    "below": -0.12,
-    "log_below": 0.157,
-    "log_side": 0.589,
-    "convexity": 0.631,
-    "detail": -0.03,
-    "relief": 0.08,
-    "fullness_0.12": 0.06,
-    "fullness_0.24": 0.151,
-    "distance": -0.043,
-    "distance_squared": 0.106,
-    "outward": 0.223,
-    "off_plane": -0.153,
-    "on_plane": 0.123,
-}
+# Of the features of stages.glance, learned from the gaze on these meshes and on 14 point clouds, `gaze_clouds`. The
+# features without an up axis are a model of their own, for what lies in any pose.
+GLANCES = {
+    "glance": {
+        "rank": 0.476, "middle": 0.279, "upward": 0.124, "upward_high": -0.304, "seen": 0.063, "above": -0.101,
+        "above_high": -0.052, "below": -0.122, "log_below": 0.156, "log_side": 0.587, "convexity": 0.63,
+        "detail": -0.03, "relief": 0.078, "fullness_0.12": -0.037, "fullness_0.24": 0.208, "distance": -0.039,
+        "distance_squared": 0.101, "outward": 0.22, "off_plane": -0.154, "on_plane": 0.123,
+    },
+    "glance_any_pose": {
+        "seen": 0.327, "convexity": 0.647, "detail": -0.045, "relief": 0.001, "fullness_0.12": -0.044,
+        "fullness_0.24": 0.328, "distance": -0.091, "distance_squared": 0.113, "outward": 0.172,
+    },
+}  # fmt: skip
 
 
 def gaze() -> dict[str, float]:
@@ -81,19 +75,18 @@ def gaze() -> dict[str, float]:
     return dict(GAZE)
 
 
-def glance() -> dict[str, float]:
-    """Weights of the features of stages.glance, in a log-linear density of fixations."""
-    return dict(GLANCE_WEIGHTS)
-
-
-METHODS = {"equal": equal, "thesis_ssim": thesis_ssim, "thesis_ed": thesis_ed, "gaze": gaze, GLANCE: glance}
+METHODS: dict[str, Callable[[], dict[str, float]]] = {
+    "equal": equal, "thesis_ssim": thesis_ssim, "thesis_ed": thesis_ed, "gaze": gaze,
+    **{name: functools.partial(dict, found) for name, found in GLANCES.items()},
+}  # fmt: skip
 
 
 def weights(method: str) -> dict[str, float]:
     """The weight of each channel by a method of METHODS: dict channel -> weight, not normalised.
 
-    The methods give weights of all nine channels, for T eq. 3.9, which divides by their sum; `gaze` and `glance` give
-    weights of the features of stages.weights.features and of stages.glance. Raises ValueError for an unknown method.
+    The methods give weights of all nine channels, for T eq. 3.9, which divides by their sum; `gaze` gives those of the
+    features of stages.weights.features, GLANCES those of the features of stages.glance. Raises ValueError for an
+    unknown method.
     """
     if method not in METHODS:
         raise ValueError(f"unknown weights {method!r}: choose one of {', '.join(METHODS)}")

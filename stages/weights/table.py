@@ -6,7 +6,7 @@ import pandas as pd
 from stages.kit.run import Rows
 
 from .learn_weights import ALL, learned_weight_rows
-from .published import ENHANCED, GLANCE, METHODS, weights
+from .published import ENHANCED, GLANCES, METHODS, weights
 
 FEATURE_METHODS = ("gaze", "fixations")  # published weights of the fixation models, or those learned from the data set
 
@@ -14,7 +14,7 @@ FEATURE_METHODS = ("gaze", "fixations")  # published weights of the fixation mod
 def weight_table(training_data: dict[str, dict[str, np.ndarray]], chosen: str) -> pd.DataFrame:
     """Frame with columns method, channel, weight, left_out; the rows of `enhanced` repeat those of the chosen method.
 
-    Those of `glance` are published or learned by the same choice. training_data: dict name -> arrays of
+    Those of GLANCES are published or learned by the same choice. training_data: dict name -> arrays of
     collect_training_data, may be empty. The choice is stored in the table, so that later stages do not read the
     settings of another stage. Raises ValueError for a choice that is not in
     FEATURE_METHODS, or whose weights were not learned for lack of ground truth.
@@ -22,11 +22,11 @@ def weight_table(training_data: dict[str, dict[str, np.ndarray]], chosen: str) -
     rows = [
         {"method": method, "channel": channel, "weight": weight, "left_out": ALL}
         for method in METHODS
-        if method != GLANCE or chosen != "fixations"
+        if method not in GLANCES or chosen != "fixations"
         for channel, weight in weights(method).items()
     ]
     learned = learned_weight_rows(training_data) if training_data else []
-    rows += [row for row in learned if row["method"] != GLANCE or chosen == "fixations"]
+    rows += [row for row in learned if row["method"] not in GLANCES or chosen == "fixations"]
     repeated = [row | {"method": ENHANCED} for row in rows if row["method"] == chosen and chosen in FEATURE_METHODS]
     if not repeated:
         reason = "" if training_data else "; no object has ground truth to learn from"

@@ -9,7 +9,7 @@ from stages.glance.features import features
 from stages.glance.mirror import symmetry
 from stages.glance.relief import fullness, relief
 from stages.glance.visibility import visibility
-from stages.weights.published import GLANCE_WEIGHTS
+from stages.weights.published import GLANCES
 
 from .conftest import as_mesh
 
@@ -34,7 +34,8 @@ def box(size):
 
 
 def test_the_features_are_those_that_are_published(ball):
-    assert list(features(ball)) == list(FEATURES) == list(GLANCE_WEIGHTS)
+    assert list(features(ball)) == list(FEATURES) == list(GLANCES["glance"])
+    assert set(GLANCES["glance_any_pose"]) < set(FEATURES)
 
 
 def test_standardised_features_have_mean_zero_and_no_scaled_noise(ball):

@@ -12,8 +12,9 @@ from stages.kit.mesh import unit
 from stages.meshes import normalise, rotate_to_z_up
 from stages.meshes.load import parse
 from stages.meshes.normalise import TO_Z_UP
-from stages.weights import fit_fixations, weights
+from stages.weights import fit_fixations
 from stages.weights.ground_truth.gaze import gaze_on_vertices, read_gaze
+from stages.weights.published import GLANCES
 
 SHARED = Path(__file__).parents[2] / "../shared/data"
 
@@ -48,6 +49,9 @@ def at_samples(samples, positions, amounts):
 @pytest.mark.skipif(not (SHARED / "gaze_clouds.zip").exists(), reason="../shared/data is not there")
 def test_the_published_weights_are_those_that_gaze_taught():
     looked = [*on_meshes(), *on_clouds()]
-    features = [np.stack(list(standardised(samples).values()), axis=1) for samples, _ in looked]
-    found = fit_fixations(features, [one for _, one in looked], [np.ones(len(one)) for one in features])
-    assert found == pytest.approx(list(weights("glance").values()), abs=0.002)
+    features = [standardised(samples) for samples, _ in looked]
+    amounts = [one for _, one in looked]
+    for method, published in GLANCES.items():
+        kept = [np.stack([one[name] for name in published], axis=1) for one in features]
+        found = fit_fixations(kept, amounts, [np.ones(len(one)) for one in amounts])
+        assert found == pytest.approx(list(published.values()), abs=0.002), method

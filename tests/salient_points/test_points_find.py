@@ -51,6 +51,17 @@ def test_a_peak_on_the_maps_gives_the_vertex_there(method, sight, ball, spot):
     assert np.linalg.norm(ball.vertices[found.saliency.argmax()] - spot) < 0.04
 
 
+def test_only_the_glance_for_any_pose_ignores_the_pose():
+    head = trimesh.creation.icosphere(3, radius=0.15).apply_translation([0.3, 0, 0.3])
+    shape = trimesh.util.concatenate([trimesh.creation.box((0.7, 0.3, 0.4)).subdivide_to_size(0.05), head])
+    turned = shape.vertices @ trimesh.transformations.rotation_matrix(2.0, [1, 2, 3])[:3, :3].T
+    agreement = {}
+    for method in ("glance", "glance_any_pose"):
+        values = [saliency(Mesh(vertices, shape.faces), method) for vertices in (shape.vertices, turned)]
+        agreement[method] = np.corrcoef(*values)[0, 1]
+    assert agreement["glance_any_pose"] > 0.85 and agreement["glance"] < 0.7, agreement  # samples are drawn anew
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("method", RUNS)
 @pytest.mark.parametrize("count", [1, 25, 200])

@@ -13,6 +13,7 @@ from stages.kit.rows import read_rows
 from stages.weights import METHODS, LearnedWeights, read_learned_weights, weights
 from stages.weights.features import CHANNEL_FEATURES, POSITION_FEATURES
 from stages.weights.learn_weights import learned_weight_rows
+from stages.weights.published import GLANCES
 from stages.weights.table import weight_table
 
 GAZE = Path(__file__).parents[2] / "reports/measurements/gaze/weights.csv.gz"
@@ -22,7 +23,7 @@ THESIS = Path(__file__).parents[2] / "data/reference/thesis/table_3_1_channel_we
 def arrays(best, seed):
     """One object in whose views the channel `best` stands on the points, and whose looks follow its first feature."""
     random = np.random.default_rng(seed)
-    features = random.normal(size=(400, 3))
+    features, glance = random.normal(size=(400, 3)), random.normal(size=(400, len(FEATURES)))
     return {
         "channels": np.array(["edge", "color"]),
         "names": np.array(["edge", "color", "height"]),
@@ -32,9 +33,9 @@ def arrays(best, seed):
         "features": features,
         "amounts": np.exp(2 * features[:, 0]),
         "areas": np.ones(400),
-        "glance": features[:, :2],
-        "glance_names": np.array(["rank", "seen"]),
-        "glance_amounts": np.exp(features[:, 1]),
+        "glance": glance,
+        "glance_names": np.array(list(FEATURES)),
+        "glance_amounts": np.exp(glance[:, list(FEATURES).index("seen")]),
     }
 
 
@@ -59,7 +60,7 @@ def test_equal_weights_are_equal():
 
 @pytest.mark.parametrize("method", METHODS)
 def test_every_method_weighs_every_channel_in_their_order(method):
-    features = {"gaze": [*CHANNEL_FEATURES, *POSITION_FEATURES], "glance": list(FEATURES)}
+    features = {"gaze": [*CHANNEL_FEATURES, *POSITION_FEATURES]} | {name: list(GLANCES[name]) for name in GLANCES}
     assert list(weights(method)) == features.get(method, list(CHANNELS))
 
 
@@ -103,12 +104,17 @@ def test_the_nearer_channel_and_the_likelier_feature_win(table):
     assert found["guided_ssim_object"] == pytest.approx({"edge": 0.5, "color": 0})  # what is unlike gets no say
     assert found["fixations"]["edge"] == pytest.approx(2, abs=0.4) and abs(found["fixations"]["height"]) < 0.2
     assert found["enhanced"] == found["fixations"]
-    assert found["glance"]["seen"] == pytest.approx(1, abs=0.3) and abs(found["glance"]["rank"]) < 0.2
+    for method, others in GLANCES.items():
+        assert list(found[method]) == list(others)
+        assert found[method].pop("seen") == pytest.approx(1, abs=0.3)
+        assert np.abs(list(found[method].values())).max() < 0.3
 
 
 def test_the_glance_keeps_its_published_weights_where_the_ground_truth_is_no_gaze(tmp_path):
     write_table(tmp_path / "weights.csv", weight_table(TRAINING_DATA, "gaze"))
-    assert read_learned_weights(tmp_path, "hand", None).weights["glance"] == pytest.approx(weights("glance"))
+    found = read_learned_weights(tmp_path, "hand", None).weights
+    for method, published in GLANCES.items():
+        assert found[method] == pytest.approx(published)
 
 
 def test_one_object_alone_teaches_others_but_not_itself():
@@ -120,9 +126,8 @@ def test_the_only_object_with_ground_truth_takes_nothing_that_was_learned_from_i
     (tmp_path / "ground_truth").mkdir()
     (tmp_path / "ground_truth/cup.npz").touch()
     found = read_learned_weights(tmp_path, "cup", None).weights
-    assert not {"enhanced", "fixations", "guided_ed", "glance"} & set(found) and {"guided_ed_seen", "equal"} <= set(
-        found
-    )
+    assert not {"enhanced", "fixations", "guided_ed", *GLANCES} & set(found)
+    assert {"guided_ed_seen", "equal"} <= set(found)
     assert "enhanced" in read_learned_weights(tmp_path, "duck", None).weights
 
 

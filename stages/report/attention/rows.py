@@ -8,7 +8,9 @@ from stages.kit.stats import interval
 from stages.report.results import NotRun, some
 from stages.report.style import label
 
-OURS, GLANCE, HUMAN, CLASSICAL, THESIS = "enhanced", "glance", "human", "itti", "VisAttAll"
+OURS, GLANCE, ANY_POSE, HUMAN = "enhanced", "glance", "glance_any_pose", "human"
+CLASSICAL, THESIS = "itti", "VisAttAll"
+NO_RIVALS = (OURS, GLANCE, ANY_POSE, HUMAN)  # our models, and the ceiling
 PER_OBJECT = ("svm_object", "svm_viewpoint")  # T3.2.3: an SVM for the object itself
 BLACK = "-black"  # behind the name of a method: with the black background filtered together with the object
 SAME = ("VisAtt",)  # the classical model under the thesis's name
@@ -48,7 +50,7 @@ def difference(rows: pd.DataFrame, metric: str, first: str, second: str) -> pd.S
 def rivals(rows: pd.DataFrame, metric: str) -> list[str]:
     """The methods that ours are to beat, best first: all but these, the ceiling, and those that peeked."""
     means = scores(rows, metric).mean().sort_values(ascending=False)
-    return [method for method in map(str, means.index) if method not in (OURS, GLANCE, HUMAN) and not has_seen(method)]
+    return [method for method in map(str, means.index) if method not in NO_RIVALS and not has_seen(method)]
 
 
 def gain(table: pd.DataFrame, first: str, second: str) -> dict[str, float]:
