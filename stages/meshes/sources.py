@@ -146,6 +146,7 @@ def _folder_file(root, name, path, settings):
 # What meshes.folder must hold for these sources: (source, file names, where it is published). They are not fetched
 # automatically, since their pages state no hash and some no licence.
 GAZE = ("gaze", "Models_3D/*.obj and dataset_*/*.txt", "GitHub: FandosA/3D_Mesh_Saliency_Prediction_PyTorch")
+GAZE_CLOUDS = ("gaze_clouds", "NAME.txt", GAZE[2])
 PRINCETON = ("princeton", "LabeledDB_new/CLASS/ID.off", "https://segeval.cs.princeton.edu")
 INTEREST_POINTS = (
     "interest_points",
@@ -164,6 +165,12 @@ def gaze(settings: Params) -> list[MeshFile]:
     """Nineteen meshes with the gaze of 32 people in virtual reality. All have +y up. Most are those of T [236]."""
     files = match_files(collection_files(settings.folder, *GAZE), r"Models_3D/([^/]+)\.obj")
     return _mesh_files(files, settings, "y")
+
+
+def gaze_clouds(settings: Params) -> list[MeshFile]:
+    """Fourteen point clouds with gaze of the same experiment, whose meshes are not published. All have +y up."""
+    files = match_files(collection_files(settings.folder, *GAZE_CLOUDS), r"([^/]+)\.txt")
+    return _mesh_files(files, settings, "y", ".xyz")
 
 
 def princeton(settings: Params) -> list[MeshFile]:
@@ -245,7 +252,7 @@ def _off_bytes(content):
 
 SOURCES = {
     "household": household, "furniture": furniture, "catalogue": catalogue, "folder": folder, "gaze": gaze,
-    "princeton": princeton, "interest_points": interest_points, "fixation_maps": fixation_maps,
+    "gaze_clouds": gaze_clouds, "princeton": princeton, "interest_points": interest_points, "fixation_maps": fixation_maps,
 }  # fmt: skip
 
 

@@ -25,18 +25,28 @@ def read_gaze(path_or_bytes: str | Path | bytes) -> tuple[np.ndarray, np.ndarray
     or negative seconds.
     """
     content = path_or_bytes if isinstance(path_or_bytes, bytes) else Path(path_or_bytes).read_bytes()
+    rows = _rows(content, COLUMNS)
+    return rows[:, :3], rows[:, 3:6], rows[:, 6]
+
+
+def read_cloud_gaze(content: bytes) -> np.ndarray:
+    """(k, 7) f8 x y z nx ny nz seconds, of the bytes of a cloud of the same experiment, which lacks the last column."""
+    return _rows(content, COLUMNS - 1)
+
+
+def _rows(content, columns):
     if not content.strip():
         raise ValueError("the gaze file is empty")
     try:
         rows = np.loadtxt(io.BytesIO(content), ndmin=2)
     except ValueError as error:
-        raise ValueError(f"not a gaze file of numbers in {COLUMNS} columns: {error}") from None
-    if rows.shape[1] != COLUMNS:
-        raise ValueError(f"a gaze file has {COLUMNS} columns, got {rows.shape[0]} rows of {rows.shape[1]}")
+        raise ValueError(f"not a gaze file of numbers in {columns} columns: {error}") from None
+    if rows.shape[1] != columns:
+        raise ValueError(f"a gaze file has {columns} columns, got {rows.shape[0]} rows of {rows.shape[1]}")
     bad = np.flatnonzero(~np.isfinite(rows).all(axis=1) | (rows[:, 6] < 0))
     if len(bad):
         raise ValueError(f"{len(bad)} rows hold NaN or negative seconds, the first in line {bad[0] + 1}")
-    return rows[:, :3], rows[:, 3:6], rows[:, 6]
+    return rows
 
 
 def match_rows(mesh: Mesh, positions: np.ndarray, tolerance: float = 0.0) -> tuple[np.ndarray, np.ndarray]:

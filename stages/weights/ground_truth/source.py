@@ -6,17 +6,23 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 
 import numpy as np
+from scipy.spatial import KDTree
 
 from stages.kit import Mesh
 from stages.meshes.load import parse
-from stages.meshes.sources import FIXATION_MAPS, GAZE, INTEREST_POINTS, collection_files, match_files
+from stages.meshes.sources import FIXATION_MAPS, GAZE, GAZE_CLOUDS, INTEREST_POINTS, collection_files, match_files
 
 from .annotations import annotations_on_vertices
 from .fixations import fixation_files, fixations_on_vertices
-from .gaze import gaze_on_vertices, match_rows, read_gaze
+from .gaze import gaze_on_vertices, match_rows, read_cloud_gaze, read_gaze
 from .interest_points import read_interest_points
 
-PUBLISHED = ("gaze", "interest_points", "fixation_maps")  # the sources whose collection holds ground truth
+PUBLISHED = (
+    "gaze",
+    "gaze_clouds",
+    "interest_points",
+    "fixation_maps",
+)  # the sources whose collection holds ground truth
 
 Files = list[tuple[str, Callable[[], bytes]]]  # (path, function that reads the bytes) of each
 
@@ -70,6 +76,9 @@ def published_files(source: str, folder: str | Path) -> dict[str, Files]:
         return {name: [file] for name, file in points.items()}
     if source == "fixation_maps":
         return fixation_files(collection_files(folder, *FIXATION_MAPS))
+    if source == "gaze_clouds":
+        clouds = match_files(collection_files(folder, *GAZE_CLOUDS), r"([^/]+)\.txt")
+        return {name: [file] for name, file in clouds.items()}
     files = collection_files(folder, *GAZE)
     tables, models = match_files(files, r"dataset_[^/]+/([^/]+)\.txt"), match_files(files, r"Models_3D/([^/]+)\.obj")
     return {name: [tables[name], models[name]] for name in tables if name in models}
@@ -94,6 +103,13 @@ def _gaze(files, _):
     return amounts
 
 
+def _gaze_clouds(files, _):
+    ((path, content),) = files
+    rows, surface = _named(path, read_cloud_gaze, content()), parse(content(), ".xyz")
+    nearest = KDTree(surface.vertices).query(rows[:, :3])[1]
+    return np.bincount(nearest, rows[:, 6], minlength=len(surface.vertices))
+
+
 def _named(path, read, content):
     """What `read` makes of the bytes; its ValueError gets the name of the file."""
     try:
@@ -110,4 +126,9 @@ def _interest_points(files, mesh):
     return np.bincount(vertices, marks, minlength=count)
 
 
-READERS = {"gaze": _gaze, "interest_points": _interest_points, "fixation_maps": fixations_on_vertices}
+READERS = {
+    "gaze": _gaze,
+    "gaze_clouds": _gaze_clouds,
+    "interest_points": _interest_points,
+    "fixation_maps": fixations_on_vertices,
+}
