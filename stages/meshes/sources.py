@@ -252,7 +252,8 @@ def _off_bytes(content):
 
 SOURCES = {
     "household": household, "furniture": furniture, "catalogue": catalogue, "folder": folder, "gaze": gaze,
-    "gaze_clouds": gaze_clouds, "princeton": princeton, "interest_points": interest_points, "fixation_maps": fixation_maps,
+    "gaze_clouds": gaze_clouds, "princeton": princeton, "interest_points": interest_points,
+    "fixation_maps": fixation_maps,
 }  # fmt: skip
 
 

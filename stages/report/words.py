@@ -14,7 +14,7 @@ DATASETS = {
     SECTION_3_1: "household as in T3.1", SECTION_3_2: "meshes with human gaze as in T3.2",
     SECTION_4_2: "household as in T4.2", COLOURED: "furniture in colour",
     ON_BLACK: "the same with the black background filtered", ON_GREY: "on grey", ON_WHITE: "on white",
-    "gaze": "meshes with human gaze", "princeton": "psb",
+    "gaze": "meshes with human gaze", "gaze_clouds": "point clouds with human gaze", "princeton": "psb",
     "princeton_eight": "psb, the thesis's 8 classes", "princeton_six": "psb, the thesis's 6 classes",
     "pressure_images": "recorded pressure array", "biotac_grasps": "recorded fingertips",
     "household_denoised": "household, denoised", "furniture_hands": "furniture, several arrays or touches",

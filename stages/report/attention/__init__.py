@@ -4,6 +4,7 @@ from . import agreement, annotations, charts, claims, learned, maps, views_seen
 
 TABLES = {
     "attention_gaze": agreement.against_gaze,
+    "attention_clouds": agreement.against_clouds,
     "attention_marks": agreement.against_marks,
     "annotations": annotations.build,
     "table_3_1": learned.table_3_1,

@@ -35,6 +35,12 @@ def against_gaze(results: Results) -> Table:
     return _table(rows, list(MEANS), {"count": rows["item"].nunique()}, black)
 
 
+def against_clouds(results: Results) -> Table:
+    """The point clouds with human gaze, each left out of the learning; how their surfaces are made costs apart."""
+    rows = results.rows("salient_points", "gaze_clouds")
+    return _table(rows, list(MEANS), {"count": rows["item"].nunique()})
+
+
 def against_marks(results: Results) -> Table:
     """The marks on this run's own objects."""
     rows = results.measured("salient_points")

@@ -8,6 +8,8 @@ from stages.report.results import COLOURED, ON_BLACK
 
 from .rows import ANY_POSE, CLASSICAL, GLANCE, NO_RIVALS, OURS, PER_OBJECT, SAME
 
+CLOUDS = "gaze_clouds"
+BEST_RIVAL = highest_of(but=(*NO_RIVALS, *SAME, *PER_OBJECT, "*_seen"))
 ONE_HUE = 0.98  # the least correlation of DKL with intensity on four household objects, each in one colour of a palette
 ENHANCED = "thesis_ssim"  # the thesis's own: the average weighted with its SSIM weights
 PHRASES = {
@@ -26,10 +28,13 @@ PHRASES = {
 on_gaze = partial(Claim, dataset="gaze", over=("item",), phrases=PHRASES)
 
 
-def closer_to_gaze(key: str, section: str, sentence: str, first: str, second: str | Pick) -> Claim:
+def closer_to_gaze(
+    key: str, section: str, sentence: str, first: str, second: str | Pick, dataset: str = "gaze"
+) -> Claim:
     """A claim that the NSS of one method is higher than that of another."""
     return on_gaze(key=key, section=section, sentence=sentence, stage="salient_points", where={"metric": "nss"},
-                   first={"method": first}, second={"method": second}, scale=1, unit="NSS")  # fmt: skip
+                   first={"method": first}, second={"method": second}, dataset=dataset, scale=1,
+                   unit="NSS")  # fmt: skip
 
 
 def svm_per_object(key: str, sentence: str, area: str, own: str, others: str) -> Claim:
@@ -79,14 +84,17 @@ CLAIMS = [
         for fixed, said in (("four", "four fixed ones"), ("twelve", "the twelve of T figure 3.2"))
     ),
     closer_to_gaze("ours_over_best_gaze", "ours", "Our model of gaze predicts where people look better than its best "
-                   "rival.", OURS, highest_of(but=(*NO_RIVALS, *SAME, *PER_OBJECT, "*_seen"))),
+                   "rival.", OURS, BEST_RIVAL),
     closer_to_gaze("glance_over_views_gaze", "ours", "Our glance at even samples of the surface predicts where people "
                    "look better than our model that renders views.", GLANCE, OURS),
     closer_to_gaze("glance_over_best_gaze", "ours", "Our glance predicts where people look better than its best rival.",
-                   GLANCE, highest_of(but=(*NO_RIVALS, *SAME, *PER_OBJECT, "*_seen"))),
+                   GLANCE, BEST_RIVAL),
+    closer_to_gaze("glance_over_views_clouds", "ours", "On point clouds, too, our glance predicts gaze better than our "
+                   "model that renders views.", GLANCE, OURS, CLOUDS),
+    closer_to_gaze("glance_over_best_clouds", "ours", "On point clouds, too, our glance predicts gaze better than its "
+                   "best rival.", GLANCE, BEST_RIVAL, CLOUDS),
     closer_to_gaze("any_pose_over_best_gaze", "ours", "Our glance without an up axis predicts where people look better "
-                   "than the best rival of the glance.", ANY_POSE,
-                   highest_of(but=(*NO_RIVALS, *SAME, *PER_OBJECT, "*_seen"))),
+                   "than the best rival of the glance.", ANY_POSE, BEST_RIVAL),
     closer_to_gaze("ours_over_enhanced_gaze", "ours", "Our model predicts where people look better than the enhanced "
                    "model.", OURS, ENHANCED),
 ]  # fmt: skip
