@@ -69,6 +69,22 @@ def gaze_archive(path, names=("ball",)):
     return path
 
 
+def test_gaze_on_a_cloud_counts_where_its_surface_is_nearest(tmp_path):
+    ball = trimesh.creation.icosphere(4)
+    seconds = np.where(ball.vertices[:, 1] > 0.9, 1.0, 0.0)  # +y is up
+    rows = "\n".join(" ".join(f"{x:.9f}" for x in row) for row in np.c_[ball.vertices, ball.vertices, seconds])
+    with zipfile.ZipFile(tmp_path / "clouds.zip", "w") as archive:
+        archive.writestr("ball.txt", rows)
+        archive.writestr("broken.txt", rows.replace(" 1.000000000\n", " -1\n"))
+    (item,) = SOURCES["gaze_clouds"](SimpleNamespace(folder=str(tmp_path / "clouds.zip"), objects=["ball"], up="z"))
+    mesh = normalise(rotate_to_z_up(clean(parse(item.content(), item.suffix))[0], item.up))
+    amounts = amounts_of("ball", "gaze_clouds", mesh, tmp_path / "clouds.zip")
+    assert amounts.sum() == seconds.sum() > 0
+    assert mesh.vertices[amounts > 0, 2].min() > 0.43
+    with pytest.raises(ValueError, match=r"broken\.txt: .* negative seconds"):
+        amounts_of("broken", "gaze_clouds", mesh, tmp_path / "clouds.zip")
+
+
 def test_gaze_follows_the_vertices_of_the_mesh_that_the_source_gives(tmp_path, capsys):
     archive = gaze_archive(tmp_path / "gaze.zip")
     items = {x.name: x for x in SOURCES["gaze"](SimpleNamespace(folder=str(archive), objects=["ball"], up="z"))}
