@@ -43,6 +43,7 @@ bench: $(VENV)/ready ## every benchmark, to reports/bench: kernels, errors, scen
 	OMP_NUM_THREADS=1 python -m benchmarks.saliency $(psb)
 	python -m benchmarks.scenes
 	OMP_NUM_THREADS=1 python -m benchmarks.imprints $(psb) $(if $(tacto),--tacto $(tacto))
+	OMP_NUM_THREADS=1 python -m benchmarks.tactile $(psb)
 	python -m benchmarks.networks
 	python -m benchmarks.cluster
 	python -m benchmarks.pipeline

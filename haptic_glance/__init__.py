@@ -15,7 +15,22 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from stages.conspicuity import CHANNELS, conspicuity
-    from stages.imprints import Sequence, Surface, follow, press, press_many
+    from stages.imprints import (
+        Layer,
+        Sequence,
+        Surface,
+        follow,
+        forces,
+        gaps_at,
+        layout_forces,
+        press,
+        press_forces,
+        press_many,
+        read_layout,
+        sensor_axes,
+        sensor_normals,
+        shear,
+    )
     from stages.kit import Mesh, Viewpoint
     from stages.lod import metro, perceptual, simplify, write_any
     from stages.meshes import Cloud, MeshError, cloud_of_depth, load, normalise, surface_of
@@ -24,22 +39,26 @@ if TYPE_CHECKING:
     from stages.views import View, render
 
 __all__ = [
-    "CHANNELS", "Camera", "Cloud", "Detection", "METHODS", "Mesh", "MeshError", "Placed", "Scene", "Sequence",
-    "Surface", "View", "Viewpoint", "budget", "cloud_of_depth", "conspicuity", "detect", "find_points", "fly", "follow",
-    "load", "metro", "normalise", "perceptual", "press", "press_many", "render", "saliency", "simplify", "surface_of",
-    "write_any",
+    "CHANNELS", "Camera", "Cloud", "Detection", "Layer", "METHODS", "Mesh", "MeshError", "Placed",
+    "Scene", "Sequence", "Surface", "View", "Viewpoint", "budget", "cloud_of_depth", "conspicuity", "detect",
+    "find_points", "fly", "follow", "forces", "gaps_at", "layout_forces", "load", "metro", "normalise",
+    "perceptual", "press", "press_forces", "press_many", "read_layout", "render", "saliency", "sensor_axes",
+    "sensor_normals", "shear", "simplify", "surface_of", "write_any",
 ]  # fmt: skip
 
 _NAMES = {
     "conspicuity": ("CHANNELS", "conspicuity"),
-    "imprints": ("Sequence", "Surface", "follow", "press", "press_many"),
+    "imprints": (
+        "Layer", "Sequence", "Surface", "follow", "forces", "gaps_at", "layout_forces", "press", "press_forces",
+        "press_many", "read_layout", "sensor_axes", "sensor_normals", "shear",
+    ),
     "kit": ("Mesh", "Viewpoint"),
     "lod": ("metro", "perceptual", "simplify", "write_any"),
     "meshes": ("Cloud", "MeshError", "cloud_of_depth", "load", "normalise", "surface_of"),
     "salient_points": ("METHODS", "Detection", "detect", "find_points", "saliency"),
     "scene": ("Camera", "Placed", "Scene", "budget", "fly"),
     "views": ("View", "render"),
-}
+}  # fmt: skip
 _STAGES = {name: stage for stage, names in _NAMES.items() for name in names}
 
 

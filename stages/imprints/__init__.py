@@ -1,8 +1,9 @@
 """The virtual pressure array: what a flat tactile sensor measures at a point of an object (T4.3).
 
-Public names: adaptive_distances, contour, contour_imprints, distances, distances_at, follow, follow_many, indent,
-normalise, press, press_at, press_many, quasi_tangent, read_imprints, section, sensor_axes, sensor_normals,
-snap_to_surface, touchable, warm_up, write_imprints, Imprints, SectionCurve, Sequence, Skin, Surface, CONTACTS.
+Public names: adaptive_distances, contour, contour_imprints, distances, distances_at, follow, follow_many, forces,
+gaps_at, indent, layout_forces, normalise, press, press_at, press_forces, press_many, quasi_tangent, read_imprints,
+read_layout, section, sensor_axes, sensor_normals, shear, snap_to_surface, touchable, warm_up, write_imprints, Imprints,
+Layer, Layout, SectionCurve, Sequence, Skin, Surface, CONTACTS.
 """
 
 from .adaptive import adaptive_distances
@@ -10,7 +11,10 @@ from .contact import CONTACTS
 from .distances import distances, distances_at
 from .files import Imprints, read_imprints, write_imprints
 from .follow import contour, follow, follow_many
+from .force import forces, gaps_at, press_forces, shear
 from .frame import sensor_axes, sensor_normals, touchable
+from .layer import Layer
+from .layout import Layout, layout_forces, read_layout
 from .press import normalise, press, press_at, press_many
 from .quasi_tangent import contour_imprints, quasi_tangent
 from .section import SectionCurve, section
@@ -23,6 +27,8 @@ from .warm_up import warm_up
 __all__ = [
     "CONTACTS",
     "Imprints",
+    "Layer",
+    "Layout",
     "SectionCurve",
     "Sequence",
     "Skin",
@@ -34,16 +40,22 @@ __all__ = [
     "distances_at",
     "follow",
     "follow_many",
+    "forces",
+    "gaps_at",
     "indent",
+    "layout_forces",
     "normalise",
     "press",
     "press_at",
+    "press_forces",
     "press_many",
     "quasi_tangent",
     "read_imprints",
+    "read_layout",
     "section",
     "sensor_axes",
     "sensor_normals",
+    "shear",
     "snap_to_surface",
     "touchable",
     "warm_up",

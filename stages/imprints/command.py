@@ -7,11 +7,14 @@ are in the file's coordinates. Writes into the folder of --out:
   imprints.npz  images (k, rows, cols) in 0..1, 0 at first contact; distances (k, rows, cols) before the skin, in units;
                 vertices, positions, normals and axes (rows right, up, normal) in the file's coordinates; pitch; unit
   places.csv    index, vertex (empty if it is none), position, normal, relief in units and in the file's units
+With --load a rigid array comes from above: imprints.npz also has forces (k, rows, cols) in newtons, and places.csv the
+highest of each place and how deep its layer is indented, in metres.
 With a data set of params.yaml instead of MESH, the pipeline's stage `imprints` runs on it.
 
 examples:
   python -m stages.imprints bunny.stl --at salient
   python -m stages.imprints chair.obj --at random --count 12 --cells 32 32 --pitch 0.005 --up y --out chair_touched
+  python -m stages.imprints bunny.stl --load 2 --metres 0.001 --layer thickness=0.003,modulus=1e5
   python -m stages.imprints part.ply --at 120 455 0.031,-0.2,1.5 --contact rigid --skin blur=0.8,noise=0.02,dead=0.03
 """
 
@@ -24,6 +27,7 @@ import pandas as pd
 from stages.kit.files import write_arrays, write_table
 
 from .distances import distances_at
+from .force import press_forces
 from .frame import sensor_axes
 from .options import parse_options
 from .press import normalise
@@ -55,9 +59,15 @@ def run(argv: list[str]) -> None:
     images = make_images(raw, options, user_mesh.name)
     if (raw == raw.max(axis=(1, 2), keepdims=True)).all():
         report_progress("every imprint is flat: the array is small compared with the shape, or touches nothing")
+    pressed = press_load(user_mesh, places.positions, axes, options)
     frame = places_table(user_mesh, places, raw)
+    if len(pressed):
+        peaks = pressed.max(axis=(1, 2))
+        stiffness = options.layer.stiffness * (options.pitch * user_mesh.unit * options.metres) ** 2
+        frame = frame.assign(peak_newtons=peaks, indentation_metres=peaks / stiffness)
     options.out.mkdir(parents=True, exist_ok=True)
-    write_arrays(options.out / ARRAYS, **saved_arrays(user_mesh, places, axes, raw, images, options.pitch))
+    arrays = saved_arrays(user_mesh, places, axes, raw, images, options.pitch)
+    write_arrays(options.out / ARRAYS, **arrays, **({"forces": pressed} if len(pressed) else {}))
     exact = {
         axis: frame[axis].map(f"{{:.{user_mesh.digits}g}}".format) for axis in "xyz"
     }  # six digits are too few far from the origin
@@ -100,6 +110,18 @@ def make_images(raw: np.ndarray, options: argparse.Namespace, name: str) -> np.n
     return images if options.skin is None else options.skin(images, name)
 
 
+def press_load(user_mesh: UserMesh, positions: np.ndarray, axes: np.ndarray, options: argparse.Namespace) -> np.ndarray:
+    """(k, rows, cols) newtons on the cells at the options' load; (0,) without a load."""
+    if options.load is None:
+        return np.zeros(0)
+    cells, unit = tuple(options.cells), user_mesh.unit * options.metres
+    try:
+        return press_forces(user_mesh.surface, positions, axes, options.layer, cells, options.pitch, options.load,
+                            unit=unit)  # fmt: skip
+    except ValueError as error:
+        raise ValueError(f"--load {options.load:g}: {error}") from None
+
+
 def places_table(user_mesh: UserMesh, places: Places, raw: np.ndarray) -> pd.DataFrame:
     """A frame with one row per place, in the file's coordinates."""
     columns = {"index": np.arange(1, len(raw) + 1), "vertex": pd.array(places.vertices, dtype="Int64")}
@@ -135,6 +157,12 @@ def summary(user_mesh: UserMesh, frame: pd.DataFrame, options: argparse.Namespac
         vertex = "-" if pd.isna(row["vertex"]) else row["vertex"]
         place = " ".join(f"{row[axis]:>{width}.{user_mesh.digits - 1}g}" for axis in "xyz")
         lines.append(f"{row['index']:>5} {vertex:>8} {place} {row['relief']:>8.4f} {row['relief_in_file']:>9.4g}")
+    if "peak_newtons" in frame:
+        indented, peak = frame["indentation_metres"] * 1000, frame["peak_newtons"]
+        lines.append(
+            f"load: {options.load:g} N a place; the highest force on a cell is {peak.max():.4g} N; "
+            f"the layer is indented by {indented.min():.4g} to {indented.max():.4g} mm"
+        )
     return "\n".join(lines)
 
 

@@ -70,12 +70,22 @@ def distances_at(
     `snap_to_surface` finds positions on the surface.
     """
     surface = as_surface(surface)
-    centres = np.asarray(centres, dtype=np.float64)
-    if centres.ndim != 2 or centres.shape[1] != 3 or not np.isfinite(centres).all():
-        raise ValueError(f"centres must be finite and of shape (k, 3), got shape {centres.shape}")
-    axes = _check_axes(axes, len(centres))
+    centres, axes = check_places(centres, axes)
     cells, pitches, max_distances = check_arrays(cells, pitch, max_distance, len(centres))
     return contact_distances(surface, centres, axes, cells, pitches, max_distances, contact)
+
+
+def check_places(centres: ArrayLike, axes: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
+    """The centres (k, 3) and axes (k, 3, 3) of arrays as f8; raises ValueError if they are invalid."""
+    centres, axes = np.asarray(centres, dtype=np.float64), np.asarray(axes, dtype=np.float64)
+    if centres.ndim != 2 or centres.shape[1] != 3 or not np.isfinite(centres).all():
+        raise ValueError(f"centres must be finite and of shape (k, 3), got shape {centres.shape}")
+    if axes.shape != (len(centres), 3, 3):
+        raise ValueError(f"axes must have shape ({len(centres)}, 3, 3), one frame per array, got {axes.shape}")
+    # Right-handed, or front and back of every face would be exchanged.
+    if not np.allclose(axes @ axes.transpose(0, 2, 1), np.eye(3), atol=1e-6) or (np.linalg.det(axes) < 0).any():
+        raise ValueError("axes must be three perpendicular unit vectors per array: right, up, normal = right x up")
+    return centres, axes
 
 
 def check_array(
@@ -108,13 +118,3 @@ def _lengths(name, values, count):
     if invalid.size:
         raise ValueError(f"{name} must be a positive number of units, got {invalid.flat[0]}")
     return np.broadcast_to(values, (count,))
-
-
-def _check_axes(axes, count):
-    axes = np.asarray(axes, dtype=np.float64)
-    if axes.shape != (count, 3, 3):
-        raise ValueError(f"axes must have shape ({count}, 3, 3), one frame per array, got {axes.shape}")
-    # Right-handed, or front and back of every face would be exchanged.
-    if not np.allclose(axes @ axes.transpose(0, 2, 1), np.eye(3), atol=1e-6) or (np.linalg.det(axes) < 0).any():
-        raise ValueError("axes must be three perpendicular unit vectors per array: right, up, normal = right x up")
-    return axes

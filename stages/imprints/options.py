@@ -5,6 +5,7 @@ import os
 import re
 from dataclasses import fields
 from pathlib import Path
+from typing import Any
 
 from stages.meshes.normalise import TO_Z_UP
 from stages.salient_points.methods import METHODS, split_runnable
@@ -12,6 +13,7 @@ from stages.weights import LearnedWeights
 
 from .contact import CONTACTS
 from .distances import check_array
+from .layer import Layer
 from .skin import Skin
 
 SELECTIONS = ("salient", "random")  # of places, which --count applies to
@@ -39,9 +41,14 @@ def parser(description: str) -> argparse.ArgumentParser:
     result.add_argument("--contact", choices=CONTACTS, default=CONTACTS[0], help=help_contact)
     help_depth = "how deep the object's highest point goes into the skin (default: the relief of each imprint)"
     result.add_argument("--depth", metavar="UNITS", type=float, help=help_depth)
-    names = ", ".join(field.name for field in fields(Skin) if field.name != "seed")
-    help_skin = f"faults of a real sensor, such as blur=0.8,noise=0.02; the names are {names}"
+    help_skin = f"faults of a real sensor, such as blur=0.8,noise=0.02; the names are {', '.join(names_of(Skin))}"
     result.add_argument("--skin", metavar="NAME=VALUE,...", help=help_skin)
+    help_load = "also write the force on each cell, in newtons, at which the whole array bears this load"
+    result.add_argument("--load", metavar="NEWTONS", type=float, help=help_load)
+    help_metres = "length of a unit of the file in metres, such as 0.001 for millimetres; --load needs it"
+    result.add_argument("--metres", metavar="METRES", type=float, help=help_metres)
+    help_layer = f"the foam on the array, for --load; the names are {', '.join(names_of(Layer))}"
+    result.add_argument("--layer", metavar="NAME=VALUE,...", help=help_layer)
     result.add_argument("--up", choices=list(TO_Z_UP), help="the axis that points up (default: y for a glb, else z)")
     result.add_argument(
         "--seed", type=int, default=0, help="seed of random places and of the skin (default: %(default)s)"
@@ -62,7 +69,9 @@ def parse_options(description: str, argv: list[str]) -> argparse.Namespace:
     if options.seed < 0:
         raise ValueError(f"--seed {options.seed}: give 0 or more")
     _check_combination(options)
+    _check_load(options)
     options.skin = parse_skin(options.skin, options.seed)
+    options.layer = Layer(**parse_values("--layer", Layer, options.layer))
     options.out = options.out or Path(f"{options.mesh.stem}_imprints")
     check_folder(options.out)
     return options
@@ -70,19 +79,26 @@ def parse_options(description: str, argv: list[str]) -> argparse.Namespace:
 
 def parse_skin(text: str | None, seed: int) -> Skin | None:
     """The Skin of a text such as `blur=0.8,noise=0.02`; None of None."""
-    if text is None:
-        return None
-    names = [field.name for field in fields(Skin) if field.name != "seed"]
-    values = {}
-    for part in text.split(","):
+    return None if text is None else Skin(**parse_values("--skin", Skin, text), seed=seed)
+
+
+def names_of(kind: type) -> list[str]:
+    """The fields of a Skin or a Layer that a text can set."""
+    return [field.name for field in fields(kind) if field.name != "seed"]
+
+
+def parse_values(option: str, kind: type, text: str | None) -> dict[str, Any]:
+    """{name: number} of a text such as `blur=0.8,noise=0.02` with names of a Skin or a Layer; empty of None."""
+    names, values = names_of(kind), {}
+    for part in text.split(",") if text is not None else ():
         name, _, value = (word.strip() for word in part.partition("="))
         if name not in names:
-            raise ValueError(f"--skin {part}: {name!r} is unknown; write NAME=VALUE with one of {', '.join(names)}")
+            raise ValueError(f"{option} {part}: {name!r} is unknown; write NAME=VALUE with one of {', '.join(names)}")
         try:
             values[name] = float(value)
         except ValueError:
-            raise ValueError(f"--skin {part}: {value!r} is not a number") from None
-    return Skin(**values, seed=seed)
+            raise ValueError(f"{option} {part}: {value!r} is not a number") from None
+    return values
 
 
 def check_folder(folder: Path) -> None:
@@ -92,6 +108,18 @@ def check_folder(folder: Path) -> None:
     existing = next(place for place in [folder.absolute(), *folder.absolute().parents] if place.exists())
     if not existing.is_dir() or not os.access(existing, os.W_OK):
         raise ValueError(f"--out {folder}: {existing} is not writable")
+
+
+def _check_load(options):
+    """Raises ValueError for a load or a length that is not positive, and for options that --load alone uses."""
+    for name in ("load", "metres"):
+        value = getattr(options, name)
+        if value is not None and not 0 < value < float("inf"):
+            raise ValueError(f"--{name} {value:g}: give a positive number")
+    if options.load is None and (options.metres is not None or options.layer is not None):
+        raise ValueError("--metres and --layer apply to --load only")
+    if options.load is not None and options.metres is None:
+        raise ValueError("--load needs --metres: the length of a unit of the file, such as 0.001 for millimetres")
 
 
 def _check_combination(options):

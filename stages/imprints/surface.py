@@ -6,7 +6,7 @@ import numpy as np
 
 from stages.kit import Mesh
 
-from .kernels import face_tree, measure
+from .kernels import face_tree, first_below, measure
 
 LIFT = 1e-6  # of the mesh's diagonal: a face within this distance of the plane is at it; 16 steps in f4
 
@@ -30,11 +30,24 @@ class Surface:
 
         centres (k, 3), axes (k, 3, 3), pitches (k,), all f8. The result for an array does not depend on the others.
         """
+        return self._run(measure, centres, axes, cells, pitches)
+
+    def first_below(
+        self, centres: np.ndarray, axes: np.ndarray, cells: tuple[int, int], pitches: np.ndarray, window: float
+    ) -> np.ndarray:
+        """(k, rows, cols) distances of the cells to the first surface below, of either side of a face.
+
+        inf where there is none, or where it is more than `window` units below the nearest of its array. Arguments as of
+        `measure`, of which this takes a fraction of the time.
+        """
+        return self._run(first_below, centres, axes, cells, pitches, window)
+
+    def _run(self, kernel, centres, axes, cells, pitches, *more):
         if not len(self._tree[0]):
             return np.full((len(centres), *cells), np.inf)
         # Writeable: for a read-only array numba would compile everything again.
         places = [np.require(values, np.float64, ["C", "W"]) for values in (centres, axes, pitches)]
-        return measure(*self._tree, self.mesh.diagonal, LIFT * self.mesh.diagonal, cells, *places)
+        return kernel(*self._tree, self.mesh.diagonal, LIFT * self.mesh.diagonal, cells, *places, *more)
 
 
 @lru_cache(maxsize=2)  # for touching one mesh, or two in turn, point by point

@@ -13,6 +13,7 @@ from PIL import Image
 
 from stages.imprints import __main__, pictures, press_many, user_mesh
 from stages.imprints.command import run
+from stages.imprints.layer import Layer
 from stages.imprints.options import POINT, parse_options, parse_skin
 from stages.imprints.pictures import CANDIDATES, _columns, _label_positions, best_views, visible, write_picture
 from stages.imprints.skin import Skin
@@ -166,6 +167,19 @@ def test_skin_and_depth_change_the_images_and_not_the_distances(touched):
     assert dead.sum() >= 26
 
 
+@pytest.mark.slow
+def test_a_load_is_shared_by_the_cells_in_newtons(touched):
+    options = "--at", 0, 50, "--load", 0.5, "--metres", 0.001, "--layer", "thickness=0.004,modulus=5e5"
+    arrays, table, said, _ = touched(*options)
+    assert np.allclose(arrays["forces"].sum(axis=(1, 2)), 0.5) and arrays["forces"].shape == (2, 16, 16)
+    area = (0.01 * arrays["unit"] * 0.001) ** 2
+    assert np.allclose(table["peak_newtons"], arrays["forces"].max(axis=(1, 2)), rtol=1e-4)
+    assert np.allclose(table["indentation_metres"] * Layer(0.004, 5e5).stiffness * area, table["peak_newtons"])
+    assert "load: 0.5 N a place" in said
+    plain, _, _, _ = touched("--at", 0, 50)
+    assert "forces" not in plain and np.array_equal(plain["images"], arrays["images"])
+
+
 def test_skin_is_read_by_name():
     assert parse_skin("blur=0.8, noise=0.02", 3) == Skin(blur=0.8, noise=0.02, seed=3)
     assert parse_skin(None, 3) is None
@@ -252,6 +266,12 @@ def test_grid_is_as_large_as_it_can_be():
         (["--at", "0", "--skin", "blurr=1"], "'blurr' is unknown; write NAME=VALUE with one of blur"),
         (["--at", "0", "--skin", "blur"], "is not a number"),
         (["--at", "0", "--skin", "dead=2"], "dead must be"),
+        (["--at", "0", "--load", "0", "--metres", "1"], "--load 0: give a positive number"),
+        (["--at", "0", "--load", "nan", "--metres", "1"], "--load nan: give"),
+        (["--at", "0", "--load", "5"], "--load needs --metres"),
+        (["--at", "0", "--layer", "modulus=1"], "apply to --load only"),
+        (["--at", "0", "--load", "1", "--metres", "1", "--layer", "modulus=0"], "layer: modulus must be above 0"),
+        (["--at", "0", "--load", "9e9", "--metres", "0.001"], "--load 9e.09: touch 0 needs more than the layer's"),
     ],
 )
 def test_what_a_person_gets_wrong_is_named_with_its_remedy(options, words, file, tmp_path):

@@ -1,6 +1,7 @@
 """What the pressure array does a million times a second: compiled kernels on plain arrays."""
 
-from .measure import measure
+from .load import depths_of_loads
+from .measure import first_below, measure
 from .tree import face_tree
 
-__all__ = ["face_tree", "measure"]
+__all__ = ["depths_of_loads", "face_tree", "first_below", "measure"]

@@ -40,13 +40,44 @@ def measure(
         below = found[k]
         below[:], back[:], out[:] = -np.inf, False, False
         frame = frame_of(centres[k], axes[k], pitches[k], rows, columns, 1.0, lift, diagonal)
-        search(blocks, boxes, children, frame, stack, projected, below, back)
+        search(blocks, boxes, children, frame, stack, projected, below, back, np.inf)
         if maybe_inside(back, above):
             frame = frame_of(centres[k], axes[k], pitches[k], rows, columns, -1.0, lift, diagonal)
-            search(blocks, boxes, children, frame, stack, projected, above, out)
+            search(blocks, boxes, children, frame, stack, projected, above, out, np.inf)
         for i in range(rows):
             for j in range(columns):
                 below[i, j] = above[i, j] if out[i, j] else -below[i, j]
+    return found
+
+
+@kernel
+def first_below(
+    blocks: np.ndarray,
+    boxes: np.ndarray,
+    children: np.ndarray,
+    diagonal: float,
+    lift: float,
+    cells: tuple[int, int],
+    centres: np.ndarray,
+    axes: np.ndarray,
+    pitches: np.ndarray,
+    window: float,
+) -> np.ndarray:
+    """(k, rows, cols) distances to the first surface below arrays, as `measure`'s but of either side of a face.
+
+    inf where it is missed, or more than `window` below the nearest of the array: what is deeper need not be searched.
+    """
+    rows, columns = cells
+    found, back = np.empty((len(centres), rows, columns)), np.empty(cells, dtype=np.bool_)
+    stack, projected = np.empty(DEEP, dtype=np.int64), np.empty(ROWS * LANES)
+    for k in range(len(centres)):
+        below = found[k]
+        below[:], back[:] = -np.inf, False
+        frame = frame_of(centres[k], axes[k], pitches[k], rows, columns, 1.0, lift, diagonal)
+        lowest = search(blocks, boxes, children, frame, stack, projected, below, back, window) - window
+        for i in range(rows):
+            for j in range(columns):
+                below[i, j] = -below[i, j] if below[i, j] >= lowest else np.inf
     return found
 
 
@@ -71,21 +102,23 @@ def search(
     projected: np.ndarray,
     best: np.ndarray,
     back: np.ndarray,
-) -> None:
+    window: float,
+) -> float:
     """Raises best (rows, cols) to the height of the highest face not above `lift`; back: if it is seen from its back.
 
-    A cell that begins at inf is not searched. The nearer child, by the height of its centre, comes first. A perfect
-    order would hardly save a box.
+    Returns the highest of all if there is a `window`: then what lies deeper below it is not searched. A cell that
+    begins at inf is not searched either. The nearer child, by the height of its centre, comes first. A perfect order
+    would hardly save a box.
     """
     rows, columns = best.shape
-    size, stack[0] = 1, 0
+    size, stack[0], highest = 1, 0, -np.inf
     while size > 0:
         size -= 1
         node = stack[size]
         x, y, z = from_centre(boxes, node, frame)
         wx, wy, wz = boxes[node, 3], boxes[node, 4], boxes[node, 5]
         height, extent = along(frame.normal, x, y, z), half_width(frame.normal, wx, wy, wz) + frame.slack
-        if height - extent > frame.lift:
+        if height - extent > frame.lift or height + extent < highest - window:
             continue
         u, extent_u = along(frame.right, x, y, z) + frame.column, half_width(frame.right, wx, wy, wz) + frame.margin
         v, extent_v = along(frame.down, x, y, z) + frame.row, half_width(frame.down, wx, wy, wz) + frame.margin
@@ -104,6 +137,10 @@ def search(
         if child < 0:
             project(blocks[-1 - child], frame, rows, columns, projected)
             raise_cells(projected, frame, best, back)
+            if window < np.inf:
+                for i in range(int(top), int(bottom) + 1):
+                    for j in range(int(first), int(last) + 1):
+                        highest = max(highest, best[i, j])
             continue
         x, y, z = from_centre(boxes, child, frame)
         one = abs(along(frame.normal, x, y, z))
@@ -111,6 +148,7 @@ def search(
         nearer = 0 if one < abs(along(frame.normal, x, y, z)) else 1
         stack[size], stack[size + 1] = child + 1 - nearer, child + nearer
         size += 2
+    return highest
 
 
 @inlined

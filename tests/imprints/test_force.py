@@ -1,0 +1,200 @@
+"""Forces in newtons: punches and spheres on an elastic foundation, whose answers are known, and what is refused."""
+
+import numpy as np
+import pytest
+import trimesh
+
+from stages.imprints import (
+    Layer,
+    Surface,
+    distances_at,
+    forces,
+    gaps_at,
+    press_forces,
+    sensor_axes,
+    sensor_normals,
+    shear,
+)
+from stages.kit import Mesh
+
+LAYER = Layer(thickness=0.01, modulus=1e5, poisson=0.25, friction=0.5)
+ABOVE = np.array([[0, 0, 0.005]]), np.eye(3)[None]  # the middle of a face of the punch
+RADIUS = 0.3
+RANDOM = np.random.default_rng(0).uniform(0, 0.004, (40, 12, 10))
+
+
+@pytest.fixture
+def punch():
+    """A cube of 1 cm; ten by ten cells of 1 mm cover a face of it."""
+    box = trimesh.creation.box((0.01, 0.01, 0.01))
+    return Mesh(box.vertices, box.faces)
+
+
+@pytest.fixture
+def ball(shapes):
+    """Function: forces of a fine array on the top of a sphere of radius 0.3 m."""
+    mesh, vertex = shapes.solid(shapes.sphere, half=60, spacing=0.0015)
+
+    def work(layer, cells=(101, 101), pitch=0.0015, **pressed):
+        return press_forces(mesh, mesh.vertices[[vertex]], np.eye(3)[None], layer, cells, pitch, **pressed)[0]
+
+    return work
+
+
+def test_stiffness_is_that_of_a_confined_layer():
+    assert Layer(0.002, 3e5, 0.0).stiffness == pytest.approx(1.5e8) and LAYER.stiffness == pytest.approx(1.2e7)
+    assert LAYER.shear_stiffness == pytest.approx(4e6)
+
+
+def test_a_flat_punch_is_borne_equally_by_the_cells_below_it(punch):
+    felt = press_forces(punch, *ABOVE, LAYER, (20, 20), 0.001, load=6.0)[0]
+    assert np.allclose(felt[5:15, 5:15], 0.06, rtol=1e-9) and (felt > 0).sum() == 100
+    by_depth = press_forces(punch, *ABOVE, LAYER, (20, 20), 0.001, depth=6.0 / (1.2e7 * 1e-4))[0]
+    assert np.allclose(by_depth, felt)
+
+
+@pytest.mark.parametrize("depth", [0.002, 0.004, 0.008])
+def test_a_sphere_is_answered_as_the_foundation_answers_it(ball, depth):
+    felt, known = ball(LAYER, depth=depth).sum(), np.pi * LAYER.stiffness * depth**2
+    assert felt == pytest.approx(known * (RADIUS - depth / 3), rel=0.003)  # a spherical cap's volume
+    assert felt == pytest.approx(known * RADIUS, rel=0.01)
+
+
+def test_the_load_of_a_sphere_finds_the_depth_of_that_load(ball):
+    by_depth = ball(LAYER, depth=0.005)
+    assert np.allclose(ball(LAYER, load=by_depth.sum()), by_depth, rtol=1e-9, atol=1e-9)
+    peak = np.sqrt(500 / (np.pi * LAYER.stiffness * RADIUS)) * LAYER.stiffness * 0.0015**2
+    assert ball(LAYER, load=500.0).max() == pytest.approx(peak, rel=0.01)
+
+
+@pytest.mark.parametrize("load", [1e-9, 1e-3, 1.0, 20.0])
+def test_the_sum_is_the_load(load):
+    areas, cosines = np.random.default_rng(1).uniform(0.5, 2, (2, 12, 10))
+    felt = forces(RANDOM, LAYER, areas * 1e-5, load=load, cosines=cosines / 2)
+    assert np.allclose((felt * cosines / 2).sum(axis=(1, 2)), load, rtol=1e-9) and (felt >= 0).all()
+
+
+def test_more_load_presses_no_taxel_less():
+    felt = np.array([forces(RANDOM, LAYER, 1e-5, load=load) for load in (0.01, 0.1, 1.0, 10.0)])
+    assert (np.diff(felt, axis=0) >= 0).all() and (np.diff((felt > 0).sum(axis=(1, 2, 3))) > 0).all()
+
+
+def test_touches_are_answered_one_by_one_and_from_any_height():
+    loads = np.linspace(0.1, 4, len(RANDOM))
+    felt = forces(RANDOM, LAYER, 1e-5, load=loads)
+    assert all(np.array_equal(forces(RANDOM[[k]], LAYER, 1e-5, load=loads[k])[0], felt[k]) for k in (0, 17, 39))
+    assert np.allclose(forces(RANDOM - 0.3, LAYER, 1e-5, load=loads), felt)
+    assert np.allclose(forces(RANDOM.reshape(40, -1), LAYER, 1e-5, load=loads), felt.reshape(40, -1))
+
+
+def test_units_of_the_mesh_change_no_force():
+    ball = trimesh.creation.icosphere(4, radius=0.02)
+    metres, millimetres = Mesh(ball.vertices, ball.faces), Mesh(1000 * ball.vertices, ball.faces)
+    top = np.array([[0, 0, 0.02]])
+    for pressed in ({"load": 0.5}, {"depth": 0.001}):
+        felt = press_forces(metres, top, ABOVE[1], LAYER, (17, 19), 0.001, **pressed)
+        other = press_forces(millimetres, 1000 * top, ABOVE[1], LAYER, (17, 19), 1.0, unit=0.001, **pressed)
+        assert np.allclose(felt, other) and 10 < (felt > 0).sum() < 17 * 19
+    near, far = (gaps_at(millimetres, 1000 * top, ABOVE[1], w, (17, 19), 1.0, 0.001) for w in (0.002, 0.01))
+    assert (
+        np.array_equal(np.isfinite(near), far <= far.min() + 0.002) and 0.0005 < near[np.isfinite(near)].max() < 0.002
+    )
+
+
+def test_gaps_are_from_where_the_array_stands(punch):
+    places = np.array([[0, 0, 0.007], [0, 0, 0.004], [0.5, 0, 0]])
+    gaps = gaps_at(punch, places, np.repeat(ABOVE[1], 3, 0), LAYER.thickness, (4, 4), 0.001)
+    assert np.allclose(gaps[0], 0.002) and np.allclose(gaps[1], -0.001) and np.isinf(gaps[2]).all()
+    felt = forces(gaps, LAYER, 1e-6, depth=np.clip(-gaps.min(axis=(1, 2)), 0, LAYER.thickness))
+    assert not felt[[0, 2]].any() and np.allclose(felt[1], LAYER.stiffness * 1e-6 * 0.001)
+
+
+@pytest.mark.parametrize("cells, pitch", [((16, 16), 0.01), ((9, 30), 0.02), ((1, 1), 0.1)])
+def test_gaps_are_the_distances_of_a_rigid_array_within_the_layer(cells, pitch):
+    knot = trimesh.creation.torus(0.3, 0.12, major_sections=60, minor_sections=30)
+    surface = Surface(Mesh(knot.vertices, knot.faces))
+    vertices = np.random.default_rng(0).choice(len(knot.vertices), 200)
+    centres, axes = knot.vertices[vertices], sensor_axes(sensor_normals(surface.mesh, vertices))
+    near = distances_at(surface, centres, axes, cells, pitch, contact="rigid")
+    near -= near.min(axis=(1, 2), keepdims=True)
+    gaps = gaps_at(surface, centres, axes, 0.03, cells, pitch)
+    first = gaps.min(axis=(1, 2), keepdims=True)
+    assert np.allclose(gaps - first, np.where(near <= 0.03, near, np.inf), atol=1e-12)
+
+
+def test_cells_past_the_object_bear_nothing_even_under_a_layer_thicker_than_the_array(punch):
+    soft = Layer(thickness=0.04, modulus=1e5)
+    felt = press_forces(punch, *ABOVE, soft, (12, 12), 0.001, depth=0.039)[0]
+    assert (felt > 0).sum() == 100
+
+
+def test_slip_is_shared_as_between_the_whole_contact_and_the_one_that_sticks(ball):
+    """Cattaneo and Mindlin: Q(d) = friction (F(d) - F(d - e)), where e is the depth at which the slip would slide."""
+    depth, slip = 0.006, 0.002
+    stuck = LAYER.shear_stiffness * slip / (LAYER.friction * LAYER.stiffness)
+    whole, inner = ball(LAYER, depth=depth), ball(LAYER, depth=depth - stuck)
+    dragged = shear(whole[None], [[slip, 0.0]], LAYER, 0.0015**2)[0]
+    assert dragged.shape == (101, 101, 2) and not dragged[..., 1].any()
+    assert np.allclose(dragged[..., 0], LAYER.friction * (whole - inner), atol=1e-12)
+    known = LAYER.friction * np.pi * LAYER.stiffness * RADIUS * (depth**2 - (depth - stuck) ** 2)
+    assert dragged.sum() == pytest.approx(known, rel=0.01)
+
+
+def test_shear_sticks_slides_and_points_along_the_slip():
+    normal = np.full((2, 3, 3), 0.2)
+    slow, fast = shear(normal, [[3e-6, -4e-6], [0.3, -0.4]], LAYER, 1e-6)
+    assert np.allclose(slow, LAYER.shear_stiffness * 1e-6 * np.array([3e-6, -4e-6]))
+    assert np.allclose(fast, [0.06, -0.08])
+    turning = np.zeros((2, 3, 3, 2))
+    turning[0, 1, 2] = 0.0, 1.0
+    assert np.argwhere(shear(normal, turning, LAYER, 1e-6)).tolist() == [[0, 1, 2, 1]]
+
+
+@pytest.mark.parametrize(
+    "values, words",
+    [
+        ({"thickness": 0.0}, "layer: thickness must be above 0 metres"),
+        ({"modulus": -1.0}, "layer: modulus must be above 0 pascals"),
+        ({"modulus": float("nan")}, "modulus must be .*, got nan"),
+        ({"modulus": float("inf")}, "modulus must be .* finite, got inf"),
+        ({"poisson": 0.5}, "poisson must be above -1 and below 0.5"),
+        ({"friction": 0}, "friction must be above 0"),
+    ],
+)
+def test_layers_that_cannot_be_are_named(values, words):
+    with pytest.raises(ValueError, match=words):
+        Layer(**values)
+
+
+@pytest.mark.parametrize(
+    "pressed, words",
+    [
+        ({"load": 0}, "load must be above 0 N, got 0: give newtons"),
+        ({"load": [1.0, -2.0]}, "load must be above 0 N, got -2"),
+        ({"load": float("nan")}, "load must be finite, got nan"),
+        ({"load": [1.0, 2.0, 3.0]}, r"load must be a number or have shape \(2,\)"),
+        ({"depth": float("inf")}, "depth must be finite"),
+        ({"depth": -0.001}, "depth must be 0 m or more, got -0.001: it counts from the first contact"),
+        ({"load": 1e6}, "touch 0 needs more than the layer's thickness of 0.01 m: press less, or"),
+        ({"depth": [0.001, 0.02]}, "touch 1 needs more than the layer's thickness"),
+        ({}, "give either load, in newtons, or depth"),
+        ({"load": 1.0, "depth": 0.1}, "give either load"),
+    ],
+)
+def test_loads_and_depths_that_cannot_be_are_named(pressed, words):
+    with pytest.raises(ValueError, match=words):
+        forces(RANDOM[:2], LAYER, 1e-5, **pressed)
+
+
+def test_a_sensor_that_touches_nothing_is_named(punch):
+    beside = np.array([[0, 0, 0.005], [0.5, 0, 0.005]]), np.repeat(ABOVE[1], 2, 0)
+    with pytest.raises(ValueError, match="touch 1 touches nothing, so no load can be reached: move the array over"):
+        press_forces(punch, *beside, LAYER, load=1.0)
+    with pytest.raises(ValueError, match="unit must be a positive number of metres"):
+        press_forces(punch, *ABOVE, LAYER, load=1.0, unit=0.0)
+    with pytest.raises(ValueError, match="gaps must be numbers"):
+        forces(np.full((1, 2, 2), np.nan), LAYER, 1e-5, load=1.0)
+    with pytest.raises(ValueError, match="areas must be above 0 m2"):
+        forces(RANDOM, LAYER, 0.0, load=1.0)
+    with pytest.raises(ValueError, match=r"slips must be finite and of shape \(k, 2\)"):
+        shear(RANDOM, [0.1, 0.2], LAYER, 1e-5)

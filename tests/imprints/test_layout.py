@@ -1,0 +1,111 @@
+"""Taxels from a file: hexagons, fingertips, and files that are wrong."""
+
+import numpy as np
+import pytest
+import trimesh
+
+from stages.imprints import Layer, Layout, layout_forces, press_forces, read_layout
+from stages.kit import Mesh
+
+LAYER = Layer(thickness=0.002, modulus=2e5)
+TIP = 0.008  # radius of the fingertip, in metres
+HEAD = "x,y,z,nx,ny,nz,area\n"
+ROW = "0,0,0,0,0,-1,1e-6\n"
+FRAME = np.eye(3)[None]
+
+
+@pytest.fixture
+def table():
+    """A slab of 4 cm whose top is z = 0."""
+    box = trimesh.creation.box((0.04, 0.04, 0.01))
+    return Mesh(box.vertices - [0, 0, 0.005], box.faces)
+
+
+def written(path, text):
+    path.write_text(text)
+    return path
+
+
+def hexagons(pitch=0.001, rings=4):
+    """(positions (n, 2), area of each) of a hexagonal array."""
+    i, j = (part.ravel() for part in np.mgrid[-rings : rings + 1, -rings : rings + 1])
+    inside = np.abs(i + j) <= rings
+    return pitch * np.c_[i + j / 2, j * np.sqrt(0.75)][inside], pitch**2 * np.sqrt(0.75)
+
+
+def fingertip(count=6000, angle=0.9):
+    """A Layout of equal areas on the cap of a ball (Fibonacci's spiral), its lowest point at the origin."""
+    k = np.arange(count) + 0.5
+    down, turn = 1 - k / count * (1 - np.cos(angle)), k * np.pi * (3 - np.sqrt(5))
+    side = np.sqrt(1 - down**2)
+    normals = np.c_[side * np.cos(turn), side * np.sin(turn), -down]
+    area = 2 * np.pi * TIP**2 * (1 - np.cos(angle)) / count
+    return Layout(TIP * (normals + [0, 0, 1]), normals, np.full(count, area))
+
+
+def test_a_rectangular_layout_is_the_rectangular_array(shapes):
+    mesh, vertex = shapes.solid(shapes.sphere)
+    mesh, pitch = Mesh(0.1 * mesh.vertices, mesh.faces), 0.0007
+    x, y = (part.ravel() for part in shapes.cell_places((9, 13), pitch))
+    layout = Layout(np.c_[x, y, 0 * x], [[0, 0, -3]] * len(x), np.full(len(x), pitch**2))
+    place = mesh.vertices[[vertex]], FRAME
+    for pressed in ({"load": 3.0}, {"depth": 0.0005}):
+        grid = press_forces(mesh, *place, LAYER, (9, 13), pitch, **pressed)
+        assert np.allclose(layout_forces(mesh, *place, LAYER, layout, **pressed), grid.reshape(1, -1), rtol=1e-4)
+
+
+def test_a_hexagonal_file_bears_a_flat_table_equally(tmp_path, table):
+    places, area = hexagons()
+    rows = "".join(f"0,{x},0,{y},0,-1,{area}\n" for x, y in places)
+    layout = read_layout(written(tmp_path / "hex.csv", "nx, x,ny, y, z, nz, area\n".replace(" z,", "z,") + rows))
+    assert len(layout.areas) == 61 and layout.positions[:, 2].tolist() == [0] * 61
+    felt = layout_forces(table, [[0, 0, 0.001]], FRAME, LAYER, layout, load=6.1)
+    assert np.allclose(felt, 0.1, rtol=1e-4)
+
+
+def test_a_fingertip_on_a_table_is_a_sphere_on_a_foundation(table):
+    tip, depth = fingertip(), 0.0004
+    felt = layout_forces(table, [[0, 0, 0.003]], FRAME, LAYER, tip, depth=depth)[0]
+    known = np.pi * LAYER.stiffness * TIP * depth**2
+    assert (felt * tip.cosines).sum() == pytest.approx(known, rel=0.05)  # the cosines of the rim are below 1
+    assert felt.argmax() == 0 and 0 < (felt > 0).mean() < 0.5
+    loaded = layout_forces(table, [[0, 0, 0.003]], FRAME, LAYER, tip, load=2.0)[0]
+    assert (loaded * tip.cosines).sum() == pytest.approx(2.0, rel=1e-9)
+
+
+def test_layouts_turn_with_their_axes_and_taxels_that_face_away_feel_nothing(table):
+    turn = trimesh.transformations.rotation_matrix(0.7, [1, 2, 3])[:3, :3]
+    turned, tip = Mesh(table.vertices @ turn.T, table.faces), fingertip(500)
+    felt = layout_forces(table, [[0.001, 0, 0.002]], FRAME, LAYER, tip, load=1.0)
+    assert np.allclose(felt, layout_forces(turned, [turn @ [0.001, 0, 0.002]], turn.T[None], LAYER, tip, load=1.0))
+    both = Layout([[0, 0, 0], [0, 0, -0.001]], [[0, 0, -1], [0, 0, 1]], [1e-6, 1e-6])
+    assert np.allclose(layout_forces(table, [[0, 0, 0.1]], FRAME, LAYER, both, load=0.1), [[0.1, 0]])
+    pressed = layout_forces(table, [[0, 0, 0.1]], FRAME, LAYER, both, depth=1e-4)
+    assert np.allclose(pressed, [[LAYER.stiffness * 1e-10, 0]])
+
+
+def test_a_layout_off_the_object_touches_nothing(table):
+    with pytest.raises(ValueError, match="touch 0 touches nothing"):
+        layout_forces(table, [[0.3, 0, 0]], FRAME, LAYER, fingertip(50), load=1.0)
+    with pytest.raises(ValueError, match="axes must have shape"):
+        layout_forces(table, [[0.3, 0, 0]], np.eye(3), LAYER, fingertip(50), load=1.0)
+
+
+@pytest.mark.parametrize(
+    "text, words",
+    [
+        ("", "layout.csv: no column x, y, z, nx, ny, nz, area; a layout has x,y,z,nx,ny,nz,area"),
+        ("x,y,z,nx,ny,area\n", "no column nz"),
+        (HEAD, "layout.csv: layout: there are no taxels"),
+        (HEAD + ROW + "1,0,0,0,0,-1,1e-6\n" + ROW, "taxels 1 and 3 are at one place; remove one"),
+        (HEAD + ROW + "0,1,0,0,0,-1,\n", "layout.csv: line 3 has a taxel that is not seven numbers"),
+        (HEAD + "0,1,0\n", "line 2 has a taxel that is not seven numbers"),
+        (HEAD + "0,nan,0,0,0,-1,1\n", "positions must be finite"),
+        (HEAD + ROW + "0,1,0,0,0,-1,0\n", "taxel 2 has an area of 0"),
+        (HEAD + "0,1,0,0,0,0,1\n", "taxel 1 has a normal without length"),
+        (HEAD + "0,1,0,0,0,1,1\n", "no taxel faces the object; normals point out of the sensor"),
+    ],
+)
+def test_files_that_are_wrong_are_named_with_the_remedy(tmp_path, text, words):
+    with pytest.raises(ValueError, match=words):
+        read_layout(written(tmp_path / "layout.csv", text))
