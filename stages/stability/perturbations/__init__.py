@@ -14,6 +14,7 @@ from .perturbed import Conditions, Perturbation, Perturbed
 from .remeshing import remeshing
 from .rotation import tilt, turn
 from .scale import scale
+from .scan import scan
 from .vertex_order import vertex_order
 from .winding import winding
 
@@ -22,6 +23,7 @@ PERTURBATIONS = {
     "decimation": Perturbation("share of the faces kept", 1.0, decimation),
     "remeshing": Perturbation("edge length, share of the diagonal", 0.0, remeshing),
     "missing_faces": Perturbation("share of the faces missing", 0.0, missing_faces),
+    "scan": Perturbation("degrees between depth cameras", 0.0, scan),
     "vertex_order": Perturbation("share of the vertices shuffled", 0.0, vertex_order),
     "winding": Perturbation("share of the faces turned inwards", 0.0, winding),
     "turn": Perturbation("degrees about the vertical", 0.0, turn),
