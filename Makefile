@@ -4,6 +4,8 @@ PYTHON ?= $(shell command -v python3.11 || command -v python3)
 BIN := $(CURDIR)/$(VENV)/bin
 SMOKE := build/smoke
 psb ?= ../shared/data/psb.zip
+gaze ?= ../shared/data/gaze.zip
+newest = $(if $(meshoptimizer),--meshoptimizer $(meshoptimizer))
 export PATH := $(BIN):$(PATH)
 unexport PYTHONDONTWRITEBYTECODE # or each of some hundred processes compiles the stages anew
 .DEFAULT_GOAL := help
@@ -39,7 +41,8 @@ lint: $(VENV)/ready ## ruff: rules and formatting; pyright: types
 bench: $(VENV)/ready ## every benchmark, to reports/bench: kernels, errors, scenes, imprints (tacto=PYTHON), ... (an hour)
 	OMP_NUM_THREADS=1 python -m benchmarks.kernels
 	OMP_NUM_THREADS=1 python -m benchmarks.errors
-	OMP_NUM_THREADS=1 python -m benchmarks.simplification $(psb)
+	OMP_NUM_THREADS=1 python -m benchmarks.simplification $(psb) $(newest)
+	OMP_NUM_THREADS=1 python -m benchmarks.salient_simplification $(gaze) $(newest)
 	OMP_NUM_THREADS=1 python -m benchmarks.saliency $(psb)
 	python -m benchmarks.scenes
 	OMP_NUM_THREADS=1 python -m benchmarks.imprints $(psb) $(if $(tacto),--tacto $(tacto))

@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 import trimesh
 
-from benchmarks import _history, imprints, kernels, simplification
+from benchmarks import _history, _simplify_peers, imprints, kernels, simplification
 from stages.kit import Mesh
 from stages.lod import SimplifyError
 
@@ -67,6 +67,14 @@ def test_more_faces_than_asked_for_are_a_miss_without_ratios(monkeypatch):
 def test_nothing_is_compared_with_a_reference_that_did_not_reach_the_target(monkeypatch, reference):
     rows = of_backends(monkeypatch, 200, pymeshlab=reference, other=part(200))
     assert rows["other"]["outcome"] == "reached" and not [name for name in rows["other"] if "ratio" in name]
+
+
+def test_simplifiers_that_are_not_here_are_named_and_left_out(monkeypatch, capsys):
+    there = {"pyfqmr", "wasmtime"}
+    monkeypatch.setattr(_simplify_peers.importlib.util, "find_spec", lambda name: name if name in there else None)
+    assert list(_simplify_peers.peers()) == ["pyfqmr"]
+    said = capsys.readouterr().out.splitlines()
+    assert len(said) == 4 and said[0].startswith("meshoptimizer is left out: --meshoptimizer")
 
 
 def test_a_talkative_peer_is_heard_and_a_failing_one_gives_its_reason(tmp_path):

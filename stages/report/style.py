@@ -64,6 +64,8 @@ LABELS = {
     "last_block": "last block fine-tuned",
     "fast": "fast (ours)",
     "fast_simplification": "fast-simplification",
+    "meshoptimizer_native": "meshoptimizer 0.2.30a0",
+    "vtk": "VTK",
 }
 WAYS = ("adaptive", "area", "soft")  # of keeping a neighbourhood; behind a method's name
 METHOD_COLOURS = {"random": "#E69F00", "itti": "#56B4E9", "thesis_ssim": "#009E73", "enhanced": "#0072B2", "qem": GREY}

@@ -27,6 +27,7 @@ def benched(power=1.0, noise=0.0):
                     cell |= {"outcome": "reached", "seconds": base * time * np.exp(noise * random.normal())}
                     cell |= {"metro_mean": 1e-3 * error, "ssim_error": 0.01 * error, "ratio": time}
                     cell |= {"whole_ratio": 2 * time, "colours_ratio": 3 * time, "error_ratio": error}
+                    cell |= {"largest_ratio": 1.1 * error}
                     rows.append(cell | {"kept": True, "valid": True, "note": ""})
     return pd.DataFrame(rows)
 
@@ -145,6 +146,28 @@ def test_a_backend_that_keeps_nothing_takes_no_cell_from_the_others(bench):
     rows = rows[(rows["backend"] != "poor") | (rows["kept_points"] == 0)]
     frame = by_backend(bench(rows))
     assert frame.loc[("fast", True), "cells"] == 10 and ("poor", True) not in frame.index
+
+
+def test_the_newest_meshoptimizer_is_compared_in_the_cells_that_both_reached(bench):
+    rows = benched()
+    rows["backend"] = rows["backend"].replace("poor", "meshoptimizer")
+    missed = (rows["mesh"] == "m1") & (rows["backend"] == "meshoptimizer")
+    rows.loc[missed, ["seconds", "metro_mean"]] *= 100
+    rows.loc[missed, "outcome"] = "missed"
+    said = [note for note in table(bench(rows)).notes if "meshoptimizer's" in note]
+    assert len(said) == 2 and all("kept: 0.600 times" in note and "takes 0.100 times" in note for note in said)
+
+
+def test_gaze_is_compared_with_the_best_of_meshoptimizer(bench, bare):
+    results = bench(benched())
+    cells = [("a", 0.5, 0.5), ("a", 0.1, 0.5), ("b", 0.5, 1.0), ("b", 0.1, 1.0)]
+    row = {"outcome": "reached", "bar": 1}
+    rows = [row | {"mesh": mesh, "share": share, "method": "fast_weights", "salient_ratio": ratio}
+            for mesh, share, ratio in cells]  # fmt: skip
+    rows += [found | {"method": "meshoptimizer", "salient_ratio": 1.3} for found in rows]
+    write_table(bare / "reports/bench/salient_simplification.csv", pd.DataFrame(rows))
+    said = [note for note in table(results).notes if "gaze" in note]
+    assert len(said) == 1 and "2 meshes" in said[0] and "has 0.707" in said[0] and "0.71 at 10%, 0.71 at 50%" in said[0]
 
 
 @pytest.mark.parametrize("power", [0.8, 1.0, 1.4])

@@ -26,11 +26,12 @@ def may_collapse(
     turn: float,
     shape: float,
     fold: float,
+    cut: float,
 ) -> bool:
     """Whether the edge of half-edge h may collapse to x, y, z: nothing folds, and the link condition holds.
 
     The link condition: the ends share no neighbour but the two opposite the edge, and no tetrahedron closes. mark (n,)
-    scratch, last (1,) the tag of the last marking; turn, shape, fold: see `check_move`.
+    scratch, last (1,) the tag of the last marking; turn, shape, fold, cut: see `check_move`.
     """
     t = np.int64(opposite[h])  # as all ids that are passed on: each further type compiles the callees once more
     i, j = np.int64(corner[h]), np.int64(corner[t])
@@ -43,7 +44,7 @@ def may_collapse(
         if locked[v]:
             shared = _mark_neighbours(corner, opposite, start, mark, last[0], v)
         else:
-            shared = check_move(corner, opposite, start, p, mark, last[0], v, other, x, y, z, turn, shape, fold)
+            shared = check_move(corner, opposite, start, p, mark, last[0], v, other, x, y, z, turn, shape, fold, cut)
         if shared < 0:
             return False
     holds = shared == 2
@@ -119,18 +120,22 @@ def check_move(
     turn: float,
     shape: float,
     fold: float,
+    cut: float,
 ) -> int:
     """-1 where moving v to x, y, z spoils a face around v; faces that also touch `other` are left out.
 
-    Spoiled is a face that turns too far, becomes a sliver, or folds onto a neighbour where it did not before. Otherwise
-    the neighbours of v are marked and counted as by `_mark_neighbours`. v: not on the boundary. p (n, 3). turn: least
-    cosine, above 0, between a face's normal before and after; shape: least quality of a face after (1 for an
-    equilateral triangle, 0 for a sliver), unless it was lower before; fold: least cosine, below 0, between the normals
-    of two neighbours.
+    Spoiled is a face that turns too far, becomes a sliver, or folds onto a neighbour where it did not before, and a tip
+    that is cut off. Otherwise the neighbours of v are marked and counted as by `_mark_neighbours`. v: not on the
+    boundary. p (n, 3). turn: least cosine, above 0, between a face's normal before and after; shape: least quality of a
+    face after (1 for an equilateral triangle, 0 for a sliver), unless it was lower before; fold: least cosine, below 0,
+    between the normals of two neighbours; cut: how far v may move where it is a tip, of which x, y, z then is the
+    nearest point that is left: all its neighbours lie behind that.
     """
     vx, vy, vz = point(p, v)
     # Normals, after and before, of the face before this one and of the first.
     lx = ly = lz = mx = my = mz = fx = fy = fz = gx = gy = gz = 0.0
+    dx, dy, dz = vx - x, vy - y, vz - z
+    tip = dot(dx, dy, dz, dx, dy, dz) > cut * cut
     found = 0
     h = first = start[v]
     a = corner[after(h)]
@@ -138,6 +143,7 @@ def check_move(
     while True:
         found += mark[a] == tag
         mark[a] = tag
+        tip = tip and dot(ax - x, ay - y, az - z, dx, dy, dz) <= 0.0
         back = before(h)
         b = corner[back]
         bx, by, bz = point(p, b)
@@ -172,7 +178,7 @@ def check_move(
         h = opposite[back]
         if h == first:
             bad = _folds(fx, fy, fz, lx, ly, lz, fold) and not _folds(gx, gy, gz, mx, my, mz, fold)
-            return -1 if bad else found
+            return -1 if bad or tip else found
 
 
 @kernel

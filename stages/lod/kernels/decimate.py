@@ -9,7 +9,8 @@ from .quadrics import best_place, error_at
 from .queue import BUCKETS, bucket_of, empty_queue, is_queued, pop, push
 from .surface import HalfEdgeMesh, collapse_edge
 
-LATER = 8  # buckets by which a refused collapse is put off: until the current cost has grown sixteenfold
+LATER = 8  # buckets by which a refused collapse is put off,
+GROWN = 16.0  # until the current cost has grown so many times
 
 
 @kernel
@@ -19,6 +20,9 @@ def decimate(surface: HalfEdgeMesh, faces: int, turn: float, shape: float, fold:
     turn, shape, fold: the limits of `check_move`. The cost in the queue is a lower bound, since quadrics only grow: an
     edge whose cost has risen is put back when its turn comes. So is a refused one, further back, and then slivers a
     tenth as wide are allowed: slivers on a flat region are better than a cut-off corner.
+
+    A tip may be cut by the distance at which a face of mean area costs as much as the collapses of now. Its own planes
+    say little of it: along a thin tip they all hold, and the fewer and smaller they are, the less it costs.
     """
     corner, opposite, start, boundary, locked, position, quadric, parent = surface
     mark, last = np.zeros(len(position), dtype=np.int32), np.zeros(1, dtype=np.int64)
@@ -29,6 +33,8 @@ def decimate(surface: HalfEdgeMesh, faces: int, turn: float, shape: float, fold:
         if opposite[h] > h and corner[h] >= 0:
             _offer(corner, opposite, locked, position, quadric, head, following, lowest, h)
     left //= 3
+    area = quadric[:, 0].sum() + quadric[:, 3].sum() + quadric[:, 5].sum()
+    level = 0.0
     while left > faces:
         h, bucket = pop(head, following, lowest)
         if h < 0:
@@ -40,8 +46,11 @@ def decimate(surface: HalfEdgeMesh, faces: int, turn: float, shape: float, fold:
         if now > bucket:
             push(head, following, lowest, h, now)
             continue
-        least = shape if bucket == now else shape * 0.1 ** ((bucket - now) / LATER)
-        if may_collapse(corner, opposite, start, locked, position, mark, last, h, x, y, z, turn, least, fold):
+        refused = (bucket - now) / LATER
+        level = max(level, cost * GROWN**refused)
+        cut, least = np.sqrt(level * left / area), shape * 0.1**refused
+        limits = turn, least, fold, cut
+        if may_collapse(corner, opposite, start, locked, position, mark, last, h, x, y, z, *limits):
             one, two = collapse_edge(corner, opposite, start, boundary, locked, position, quadric, parent, h, x, y, z)
             for g in (one, two):
                 if g >= 0 and not (is_queued(following, g) or (opposite[g] >= 0 and is_queued(following, opposite[g]))):

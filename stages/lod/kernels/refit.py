@@ -28,6 +28,7 @@ def refit(
     weight (n,): the area around each vertex, times its weight. fold: as in `check_move`.
     """
     corner, opposite, start, boundary, locked, position, quadric, parent = surface
+    limits = TURN, SHAPE, fold, np.inf
     count = len(points) + len(faces) // 3
     pull = np.zeros((len(position), 4))
     mark = np.empty(len(position), dtype=np.int32)  # scratch of check_move
@@ -40,7 +41,7 @@ def refit(
             x = position[v, 0] + by * pull[v, 0]
             y = position[v, 1] + by * pull[v, 1]
             z = position[v, 2] + by * pull[v, 2]
-            if check_move(corner, opposite, start, position, mark, v, v, NOBODY, x, y, z, TURN, SHAPE, fold) >= 0:
+            if check_move(corner, opposite, start, position, mark, v, v, NOBODY, x, y, z, *limits) >= 0:
                 position[v, 0], position[v, 1], position[v, 2] = x, y, z
 
 

@@ -11,6 +11,7 @@ from stages.report.results import NotRun, Results
 from stages.report.style import label
 from stages.report.target import on_target
 
+from .against_meshoptimizer import sentences
 from .growth import FITTED, growth
 
 REFERENCE, OURS = "pymeshlab", "fast"
@@ -19,7 +20,7 @@ LARGEST = 1_000_000  # to so many faces
 CELL, TASK = ["mesh", "full", "target", "with_points"], ["backend", "with_points"]
 RATIOS = {  # first part of a column's name -> title
     "time": "time ratio", "whole": "all of simplify", "colours": "with colours",
-    "error": "Metro ratio", "seen": "1 − SSIM ratio",
+    "error": "Metro ratio", "largest": "largest-error ratio", "seen": "1 − SSIM ratio",
 }  # fmt: skip
 GROWTHS = {"linear": "n^p", "loglinear": "(n log n)^p"}
 
@@ -30,8 +31,9 @@ def build(results: Results) -> Table:
     frame = summarised(rows, fitted=True)
     cells = rows.drop_duplicates(CELL)
     sources, kept = rows.groupby("source", sort=False)["mesh"].nunique(), cells.loc[cells["with_points"], "kept_points"]
+    targets = [_target(row) for row in frame[frame["backend"] == OURS].itertuples() if row.cells]
     words = {
-        "targets": "\n".join(_target(row) for row in frame[frame["backend"] == OURS].itertuples() if row.cells),
+        "targets": "\n".join(targets + sentences(rows, results)),
         "sources": ", ".join(f"{count} {source}" for source, count in sources.items()),
         "least": rows["full"].min(), "most": rows["full"].max(), "cells": len(cells), "with_points": len(kept),
         "kept": f"{kept.min()} to {kept.max()}" if len(kept) else "no",
@@ -47,6 +49,7 @@ def tried(results: Results) -> pd.DataFrame:
     if "outcome" not in rows:
         raise NotRun("bench/simplification.csv has no outcomes: `make bench` writes it anew", "lod", runnable=False)
     rows = rows.assign(with_points=rows["kept_points"] > 0)
+    rows["largest_ratio"] = rows.get("largest_ratio", np.nan)  # rows of before have none
     rows["base"] = rows["ssim_error"].where((rows["backend"] == REFERENCE) & (rows["ssim_error"] > 0))
     return rows.assign(seen_ratio=rows["ssim_error"] / rows.groupby(CELL)["base"].transform("first"))
 
