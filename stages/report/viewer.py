@@ -50,8 +50,9 @@ def pack_viewer(results: Results) -> dict[str, Any]:
 def pack_object(results: Results, name: str) -> dict[str, Any]:
     """One object: the full mesh, saliency and points by method, and chains of simplified meshes by method.
 
-    A level has `error`, the distance of each vertex of the full mesh to it. All levels of all chains share one scale,
-    `error_top` in % of the diagonal, so that the error is seen to grow along the slider; shades are its square root.
+    `faces` counts those of the object itself; the full mesh has at most `viewer_faces`. A level has `error`, the
+    distance of each vertex of the full mesh to it. All levels of all chains share one scale, `error_top` in % of the
+    diagonal, so that the error is seen to grow along the slider; shades are its square root.
     """
     original, found, store = results.mesh(name), results.points(name), Store()
     full, nearest = shown_mesh(original, results.settings.viewer_faces)
@@ -74,7 +75,8 @@ def pack_object(results: Results, name: str) -> dict[str, Any]:
             levels = apart([mesh for mesh in found if len(mesh.faces) <= FINEST * len(full.faces)])
             ladders[method] = [(mesh, 100 * vertex_errors(mesh, full) / full.diagonal) for mesh in levels]
     top = max((float(np.quantile(error, TOP)) for levels in ladders.values() for _, error in levels), default=0.0)
-    packed = {"name": name, "full": _mesh(full, store), "saliency": saliency, "points": points, "error_top": top}
+    packed = {"name": name, "faces": len(original.faces), "full": _mesh(full, store), "saliency": saliency}
+    packed |= {"points": points, "error_top": top}
     packed["ladders"] = {
         method: {"label": label(method), "levels": [_level(mesh, error, top, store) for mesh, error in levels]}
         for method, levels in ladders.items()

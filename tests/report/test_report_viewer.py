@@ -113,11 +113,15 @@ def browser():
 @pytest.fixture(params=[1400, 390])
 def shown(request, browser, levels, tmp_path):
     """The viewer of two objects, opened at a width."""
+    yield from opened(browser, levels, tmp_path, request.param)
+
+
+def opened(browser, results, tmp_path, width):
     template = Template(part("page.html"))
     parts = dict.fromkeys(template.get_identifiers(), "") | {"style": part("page.css"), "script": part("viewer.js")}
-    parts |= {"meshes": script_json(pack_viewer(levels)), "viewer": part("viewer.html")}
+    parts |= {"meshes": script_json(pack_viewer(results)), "viewer": part("viewer.html")}
     (tmp_path / "page.html").write_text(template.substitute(parts), encoding="utf-8")
-    page = browser.new_page(viewport={"width": request.param, "height": 900})
+    page = browser.new_page(viewport={"width": width, "height": 900})
     found = Page(page)
     page.goto((tmp_path / "page.html").as_uri())
     page.wait_for_function("document.getElementById('level').max > 0")
@@ -154,6 +158,13 @@ def test_slider_leads_from_the_original_to_more_and_more_error(shown):
     shown.slide(0)
     assert shown.caption().startswith("the original itself")
     assert not shown.faults
+
+
+def test_faces_are_those_of_the_original_where_a_coarser_one_is_drawn(browser, levels, small, tmp_path):
+    for page in opened(browser, small.results(levels.data.parent, viewer_faces=300), tmp_path, 1400):
+        assert page.page.locator("#viewer-left").inner_text() == "ball, original: 528 faces (drawn with 300)"
+        page.slide(1)
+        assert page.caption().startswith("simplified: 120 faces (23 %)")
 
 
 def test_one_can_look_at_saliency_and_shading_instead(shown):

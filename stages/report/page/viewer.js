@@ -192,8 +192,9 @@
     const one = object();
     const faces = (item) => `${item.faces.toLocaleString("en")} faces`;
     const original = mesh === one.full;
-    const share = `${(100 * mesh.faces / one.full.faces).toFixed(mesh.faces < one.full.faces / 20 ? 1 : 0)} %`;
-    ask("viewer-left").textContent = `${one.name}, original: ${faces(one.full)}`;
+    const share = `${(100 * mesh.faces / one.faces).toFixed(mesh.faces < one.faces / 20 ? 1 : 0)} %`;
+    const drawn = one.full.faces < one.faces ? ` (drawn with ${one.full.faces.toLocaleString("en")})` : "";
+    ask("viewer-left").textContent = `${one.name}, original: ${faces(one)}${drawn}`;
     ask("viewer-right").textContent = original ? "the original itself: move the slider" :
       `simplified: ${faces(mesh)} (${share}); distance mean ${mesh.error_mean} %, largest ${mesh.error_max} % of the diagonal`;
     ask("level-name").textContent = original ? "the original" : faces(mesh);
