@@ -20,6 +20,7 @@ from .prose import findings
 from .verdict import counted, counts
 
 WIDEST = 900  # pixels of a picture on the page
+LOSSLESS = 2  # times the bytes of the lossy picture: all charts of the report take less, most renderings more
 LONG = 30  # rows after which a table scrolls in its own box
 WORDS = {"supported": "yes", "contradicted": "no", "open": "open"}  # word -> class in the style sheet
 
@@ -128,17 +129,16 @@ def frame_html(frame: pd.DataFrame, title: str, words: str = "") -> str:
 
 
 def small_picture(path: Path) -> str:
-    """base64 of a picture as WebP, in the smaller of two ways: as drawn in few colours, or no wider than WIDEST.
+    """base64 of a picture as WebP: lossless, or lossy and no wider than WIDEST where that saves more than half.
 
-    A chart is smaller as drawn: shrinking blurs its edges into many colours. Its PNG is linked beside it.
+    So charts keep the colours of their series, and renderings of meshes stay small. The PNG is linked beside it.
     """
     with Image.open(path) as image:
         whole = image.convert("RGB")
     shown = whole.copy()
     shown.thumbnail((WIDEST, max(WIDEST, whole.height)), Image.Resampling.LANCZOS)
-    flat = whole.quantize(32, dither=Image.Dither.NONE).convert("RGB")
-    packed = [_webp(shown, quality=55), _webp(flat, lossless=True, quality=60)]
-    return base64.b64encode(min(packed, key=len)).decode("ascii")
+    lossy, lossless = _webp(shown, quality=55), _webp(whole, lossless=True, quality=60)
+    return base64.b64encode(lossless if len(lossless) <= LOSSLESS * len(lossy) else lossy).decode("ascii")
 
 
 def _webp(image: Image.Image, **how: Any) -> bytes:

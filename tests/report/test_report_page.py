@@ -1,6 +1,7 @@
 """The page and the stage as a whole."""
 
 import base64
+import io
 import json
 import re
 import zlib
@@ -8,12 +9,15 @@ import zlib
 import numpy as np
 import pandas as pd
 import pytest
+from matplotlib.figure import Figure
+from PIL import Image
 
 from stages.kit import Mesh, Viewpoint
 from stages.kit.files import write_arrays, write_mesh, write_text
 from stages.report.__main__ import dataset_line, write_report
 from stages.report.drawing import VIEWPOINT, picture, visible
 from stages.report.packing import SHADES, STEPS, Store, ordered
+from stages.report.page import small_picture
 from stages.report.results import NotRun
 from stages.report.viewer import pack_viewer
 
@@ -226,3 +230,21 @@ def test_what_was_measured_on_sets_that_are_off_is_folded(page):
         r"<summary>\d+ more, measured on data sets that are not part of this run: (.*?)</summary>", page
     )
     assert "elsewhere" in folded
+
+
+def test_a_chart_keeps_the_colours_of_all_its_series(tmp_path):
+    figure = Figure(figsize=(9, 5))
+    panel = figure.subplots()
+    colors = np.random.default_rng(0).integers(0, 200, (45, 3))
+    for height, color in enumerate(colors):
+        panel.plot([0, 1], [height, 1.3 * height], "o-", color=color / 255)
+    figure.savefig(tmp_path / "chart.png")
+    shown = Image.open(io.BytesIO(base64.b64decode(small_picture(tmp_path / "chart.png")))).convert("RGB")
+    assert {tuple(color) for color in colors} <= {color for _, color in shown.getcolors(1 << 24)}
+
+
+def test_a_picture_of_many_colours_is_shrunk(tmp_path):
+    noise = np.random.default_rng(0).integers(0, 255, (400, 1200, 3), dtype=np.uint8)
+    Image.fromarray(noise).save(tmp_path / "noise.png")
+    shown = Image.open(io.BytesIO(base64.b64decode(small_picture(tmp_path / "noise.png"))))
+    assert shown.size == (900, 300)
