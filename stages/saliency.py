@@ -24,10 +24,10 @@ from stages.kit.files import write_text
 from stages.lod.export import FORMATS, write_any
 from stages.lod.look import check_look, coloured, write_look
 from stages.lod.options import check_method, check_outputs
-from stages.meshes import normalise, rotate_to_z_up
 from stages.meshes.colours import bake_texture
 from stages.meshes.load import load_unnamed
-from stages.meshes.normalise import TO_Z_UP, centre_and_radius
+from stages.meshes.normalise import centre_and_radius
+from stages.meshes.up import add_up, lying_note, upright_by
 from stages.salient_points import detect
 
 COLUMNS = ("rank", "vertex", "x", "y", "z", "saliency")
@@ -46,11 +46,7 @@ def parser() -> argparse.ArgumentParser:
     command.add_argument("--picture", metavar="FILE", type=Path, help="a picture of the saliency with the points")
     command.add_argument("--count", metavar="N", type=int, help="how many points (default: those past the threshold)")
     command.add_argument("--method", default="glance", help="how it looks (default: %(default)s)")
-    command.add_argument(
-        "--up",
-        choices=list(TO_Z_UP),
-        help="the axis that points up (default: y for a glb, else z; unknown: --method glance_any_pose)",
-    )
+    add_up(command, "unknown: --method glance_any_pose")
     command.add_argument("--json", action="store_true", help="print the points as JSON")
     return command
 
@@ -59,18 +55,16 @@ def run(argv: Sequence[str]) -> None:
     """Runs the command line `argv`, without the program's name."""
     chosen = parser().parse_args(argv)
     check(chosen)
-    up = chosen.up or ("y" if chosen.mesh.suffix.lower() == ".glb" else "z")
-    mesh = load_unnamed(chosen.mesh)
+    mesh, note = upright_by(load_unnamed(chosen.mesh), chosen.mesh, chosen.up)
     try:
         with Stopwatch() as watch:
-            found = detect(bake_texture(mesh), chosen.method, chosen.count, up=up)
+            found = detect(bake_texture(mesh), chosen.method, chosen.count)
     except ValueError as error:
         raise ValueError(f"{chosen.mesh}: {error}").with_traceback(error.__traceback__) from None
     assert found.saliency is not None  # `check` lets no method pass that has none
-    print(f"saliency: {len(mesh.faces):,} faces in {watch.seconds:.1f} s, {up} up"
-          + ("" if chosen.up else " (if another axis points up: --up)"), file=sys.stderr)  # fmt: skip
+    print(f"saliency: {len(mesh.faces):,} faces in {watch.seconds:.1f} s, {note}", file=sys.stderr)
     rows = points_of(mesh, found.points, found.saliency)
-    write(chosen, mesh, found.points, found.saliency, up, rows)  # first: what reads the lines may close the pipe
+    write(chosen, mesh, found.points, found.saliency, rows)  # first: what reads the lines may close the pipe
     print(json.dumps([dict(zip(COLUMNS, row, strict=True)) for row in rows]) if chosen.json else as_csv(rows))
 
 
@@ -115,14 +109,14 @@ def as_csv(rows: list[tuple]) -> str:
     return "\n".join([",".join(COLUMNS), *lines])
 
 
-def write(
-    chosen: argparse.Namespace, mesh: Mesh, points: np.ndarray, saliency: np.ndarray, up: str, rows: list[tuple]
-) -> None:
+def write(chosen: argparse.Namespace, mesh: Mesh, points: np.ndarray, saliency: np.ndarray, rows: list[tuple]) -> None:
     """Writes the files that were asked for, and names them."""
     if chosen.out:
-        write_any(chosen.out, coloured(Mesh(mesh.vertices, mesh.faces), saliency))
+        write_any(chosen.out, coloured(mesh, saliency))
+        if note := lying_note(chosen.out, mesh):
+            print(f"saliency: {note}", file=sys.stderr)
     if chosen.picture:
-        write_look(chosen.picture, normalise(rotate_to_z_up(mesh, up)), saliency, points)
+        write_look(chosen.picture, mesh, saliency, points)
     if chosen.points:
         write_text(chosen.points, as_csv(rows) + "\n")
     written = [str(path) for path in (chosen.out, chosen.points, chosen.picture) if path]

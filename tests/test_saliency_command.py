@@ -7,6 +7,8 @@ import pytest
 import trimesh
 from PIL import Image
 
+from stages.kit import Mesh
+from stages.lod.look import write_look
 from stages.meshes import load
 from stages.saliency import COLUMNS, run
 from stages.salient_points import detect, find_points, saliency
@@ -73,6 +75,27 @@ def test_json_holds_the_same_and_files_are_written_as_asked(egg, capsys, tmp_pat
 def test_what_cannot_be_done_is_named_before_anything_is_computed(egg, options, reason):
     with pytest.raises(ValueError, match=reason):
         run([str(egg), *options])
+
+
+@pytest.mark.parametrize(("suffix", "up"), [("glb", "y"), ("ply", "z")])
+def test_the_command_and_the_function_take_the_same_axis_for_up(egg, capsys, suffix, up):
+    file = egg.with_suffix(f".{suffix}")
+    trimesh.load(egg, process=False).export(file)
+    run([str(file), "--count", "5"])
+    shown = capsys.readouterr()
+    found = [int(line.split(",")[1]) for line in shown.out.splitlines()[1:]]
+    assert set(found) == set(find_points(load(file), count=5)) == set(find_points(load(file), count=5, up=up))
+    assert f"{up} up, " in shown.err and ("(another axis: --up)" in shown.err) == (suffix == "ply")
+
+
+def test_a_picture_shows_the_mesh_upright_and_names_the_axis(egg, tmp_path):
+    mesh = load(egg)
+    shown = {}
+    for up, columns in (("z", [0, 1, 2]), ("y", [1, 2, 0])):
+        write_look(tmp_path / "look.png", Mesh(mesh.vertices[:, columns], mesh.faces, up=up), mesh.vertices[:, 2], [0])
+        shown[up] = np.asarray(Image.open(tmp_path / "look.png")).astype(int)
+    differ = np.argwhere(shown["z"] != shown["y"])
+    assert len(differ) and (differ[:, 0] > 500).all() and (differ[:, 1] < 60).all()  # the letter alone
 
 
 def test_the_mesh_itself_is_not_overwritten(egg):

@@ -75,8 +75,9 @@ def run(argv: list[str]) -> None:
     picture = options.out / PICTURE
     scale = "the depth" if options.depth else "the imprint's relief"
     write_picture(
-        picture, user_mesh.mesh, places.positions, axes, images, frame["relief"].to_numpy(), options.pitch, scale
-    )
+        picture, user_mesh.mesh, places.positions, axes, images, frame["relief"].to_numpy(), options.pitch, scale,
+        user_mesh.source.up,
+    )  # fmt: skip
     print(summary(user_mesh, frame, options))
     print("written: " + ", ".join(str(options.out / name) for name in (PICTURE, ARRAYS, TABLE)))
     if options.show:
@@ -94,9 +95,7 @@ def open_mesh(options: argparse.Namespace) -> UserMesh:
     """The UserMesh of the file; reports its size and that of the array."""
     report_progress(f"reading {options.mesh.name}")
     user_mesh, notes = read_user_mesh(options.mesh, options.up)
-    report_progress(
-        "".join([f"{len(user_mesh.mesh.faces):,} faces, {user_mesh.up} up", *(f"; {note}" for note in notes)])
-    )
+    report_progress("; ".join([f"{len(user_mesh.mesh.faces):,} faces", *notes]))
     if wrong := misfit(options.cells, options.pitch):
         report_progress(wrong)
     if options.at[0] == "salient":

@@ -7,7 +7,7 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
-from stages.meshes.normalise import TO_Z_UP
+from stages.meshes.up import add_up
 from stages.salient_points.methods import METHODS, split_runnable
 from stages.weights import LearnedWeights
 
@@ -49,7 +49,7 @@ def parser(description: str) -> argparse.ArgumentParser:
     result.add_argument("--metres", metavar="METRES", type=float, help=help_metres)
     help_layer = f"the foam on the array, for --load; the names are {', '.join(names_of(Layer))}"
     result.add_argument("--layer", metavar="NAME=VALUE,...", help=help_layer)
-    result.add_argument("--up", choices=list(TO_Z_UP), help="the axis that points up (default: y for a glb, else z)")
+    add_up(result)
     result.add_argument(
         "--seed", type=int, default=0, help="seed of random places and of the skin (default: %(default)s)"
     )

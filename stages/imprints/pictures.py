@@ -31,10 +31,12 @@ def write_picture(
     reliefs: np.ndarray,
     pitch: float,
     scale: str = "the imprint's relief",
+    up: str = "z",
 ) -> None:
-    """Writes the picture of `draw` as a PNG with the same bytes in every run."""
+    """Writes the picture of `draw` as a PNG with the same bytes in every run; up: the axis that points up there."""
     figure = Figure(figsize=(12, 5.4))
     draw(figure, mesh, positions, axes, images, reliefs, pitch, scale)
+    figure.text(0.008, 0.985, f"↑ {up}", fontsize=10, color=GREY, va="top")
     with whole_file(path) as part:
         figure.savefig(part, dpi=130, format="png", metadata={"Software": None})
 

@@ -1,6 +1,6 @@
 """A mesh file prepared for touching, and the requested places on it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -10,6 +10,7 @@ from stages.kit import Mesh
 from stages.meshes import clean, normalise, rotate_to_z_up
 from stages.meshes.load import load_unnamed
 from stages.meshes.normalise import RADIUS, TO_Z_UP, centre_and_radius
+from stages.meshes.up import upright_by
 from stages.salient_points import find_points
 
 from .frame import sensor_normals, touchable
@@ -33,17 +34,15 @@ class Places:
 
 @dataclass(frozen=True)
 class UserMesh:
-    """given: the Mesh in the file's units and axes, cleaned; up: its axis that points up; name: the file's stem."""
+    """source: the Mesh in the file's units and axes, cleaned; name: the file's stem."""
 
     source: Mesh
-    up: str
     name: str
 
     @cached_property
     def mesh(self) -> Mesh:
         """The mesh that the array touches: upright, centred, its bounding sphere 1 unit across."""
-        placed = normalise(rotate_to_z_up(self.source, self.up))
-        return Mesh(placed.vertices, placed.faces, placed.colors)
+        return replace(normalise(rotate_to_z_up(self.source)), texture=None)
 
     @cached_property
     def surface(self) -> Surface:
@@ -67,11 +66,11 @@ class UserMesh:
 
     def to_file_directions(self, directions: np.ndarray) -> np.ndarray:
         """Directions (k, 3) in the mesh's frame, converted to the file's axes."""
-        return directions @ TO_Z_UP[self.up]
+        return directions @ TO_Z_UP[self.source.up]
 
     def from_file(self, positions: np.ndarray) -> np.ndarray:
         """Positions (k, 3) in the file's coordinates, converted to the mesh's frame."""
-        return (positions - centre_and_radius(self.source)[0]) / self.unit @ TO_Z_UP[self.up].T
+        return (positions - centre_and_radius(self.source)[0]) / self.unit @ TO_Z_UP[self.source.up].T
 
     def places(self, at: list[str], count: int | None = None, method: str | None = None, seed: int = 0) -> Places:
         """The Places for the arguments of --at: `salient`, `random`, ids of vertices, positions x,y,z of the file."""
@@ -122,6 +121,7 @@ class UserMesh:
 
 
 def read_user_mesh(path: Path, up: str | None) -> tuple[UserMesh, list[str]]:
-    """(UserMesh, notes) of a file; up: its axis that points up, None for y in a GLB and z elsewhere."""
-    mesh, notes = clean(load_unnamed(path))
-    return UserMesh(mesh, up or ("y" if path.suffix.lower() == ".glb" else "z"), path.stem), notes
+    """(UserMesh, notes, the first on the axis that points up) of a file; up: that axis, None for what the file says."""
+    mesh, note = upright_by(load_unnamed(path), path, up)
+    mesh, notes = clean(mesh)
+    return UserMesh(mesh, path.stem), [note, *notes]

@@ -14,13 +14,15 @@ class Mesh:
     """A triangle mesh; vertex order is identity, nothing is ever reordered behind the caller's back.
 
     vertices (n, 3) f8, faces (m, 3) i8 into vertices, counter-clockwise seen from outside, colors (n, 3) u1 or None,
-    texture: a Texture of the m faces or None (the stages of the pipeline store and use none).
+    texture: a Texture of the m faces or None (the stages of the pipeline store and use none). up: the axis that points
+    up, x, y or z. What makes a mesh of a mesh keeps it (`dataclasses.replace`); stored meshes are z up.
     """
 
     vertices: np.ndarray
     faces: np.ndarray
     colors: np.ndarray | None = None
     texture: Texture | None = None
+    up: str = "z"
 
     def __post_init__(self) -> None:
         for name in ("faces", "colors"):
@@ -46,6 +48,8 @@ class Mesh:
             object.__setattr__(self, "colors", colors)
         if self.texture is not None and len(self.texture.image) != len(faces):
             raise ValueError(f"the texture must be of {len(faces)} faces, got {len(self.texture.image)}")
+        if self.up not in ("x", "y", "z"):
+            raise ValueError(f"unknown up axis {self.up!r}: choose one of x, y, z")
 
     @cached_property
     def face_crosses(self) -> np.ndarray:

@@ -38,7 +38,7 @@ def carry(reference: Mesh, mesh: Mesh) -> Mesh:
         return mesh
     colors = None if reference.colors is None else carry_colors(reference, mesh.vertices)
     texture = None if reference.texture is None else carry_texture(reference, mesh)
-    return Mesh(mesh.vertices, mesh.faces, colors, texture)
+    return Mesh(mesh.vertices, mesh.faces, colors, texture, reference.up)
 
 
 def carry_colors(reference: Mesh, points: np.ndarray) -> np.ndarray:

@@ -23,7 +23,7 @@ def cut_borders(mesh: Mesh) -> tuple[Mesh, np.ndarray]:
     number = np.where(extra, n + np.cumsum(extra) - 1, source)
     ids = np.r_[np.arange(n), source[extra]]
     colors = None if mesh.colors is None else mesh.colors[ids]
-    return Mesh(mesh.vertices[ids], number[inverse].reshape(-1, 3), colors, mesh.texture), ids
+    return Mesh(mesh.vertices[ids], number[inverse].reshape(-1, 3), colors, mesh.texture, mesh.up), ids
 
 
 def close_borders(mesh: Mesh, cut: Mesh, ids: np.ndarray) -> Mesh:
@@ -41,4 +41,4 @@ def close_borders(mesh: Mesh, cut: Mesh, ids: np.ndarray) -> Mesh:
     rank[order] = np.arange(len(order))
     kept = mesh.faces.ravel()[first[order]]
     colors = None if mesh.colors is None else mesh.colors[kept]
-    return Mesh(mesh.vertices[kept], rank[inverse.ravel()].reshape(-1, 3), colors, mesh.texture)
+    return Mesh(mesh.vertices[kept], rank[inverse.ravel()].reshape(-1, 3), colors, mesh.texture, mesh.up)

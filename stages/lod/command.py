@@ -22,6 +22,7 @@ import numpy as np
 from stages.kit import Mesh, Stopwatch
 from stages.meshes.colours import bake_texture
 from stages.meshes.load import load_unnamed
+from stages.meshes.up import lying_note, upright_by
 from stages.salient_points import find_points, saliency
 
 from .error_table import NAMES, format_table, measure_meshes
@@ -47,7 +48,7 @@ def run(argv: Sequence[str]) -> None:
     if not any(FOLDER.rglob("*.nbc")):
         report("the first run on a machine compiles the simplifier, which takes a minute")
     try:
-        task = prepare(read(chosen.mesh), chosen)
+        task = prepare(read(chosen.mesh, chosen.up), chosen)
         found = reduce(task, chosen)
     except ValueError as error:
         raise ValueError(f"{chosen.mesh}: {error}").with_traceback(error.__traceback__) from None
@@ -57,45 +58,48 @@ def run(argv: Sequence[str]) -> None:
         from .picture import write_picture  # loads matplotlib, which nothing else here needs
 
         points = task.points[task.points_kept(found)]
-        write_picture(chosen.picture, task.upright(task.mesh), task.upright(found), task.saliency, points)
+        write_picture(
+            chosen.picture, task.upright(task.mesh), task.upright(found), task.saliency, points, task.given.up
+        )
     print("written: " + ", ".join(str(path) for path in (chosen.out, chosen.picture) if path))
+    if note := lying_note(chosen.out, task.given):
+        report(note)
     if chosen.out.suffix.lower() in COLORLESS and (task.given.texture or task.given.colors is not None):
         report(f"{chosen.out.suffix} files have no colours: write .glb, .obj or .ply to keep them")
 
 
-def read(path: Path) -> Mesh:
-    """The repaired mesh of a file; ValueError where it cannot be used."""
+def read(path: Path, up: str | None) -> Mesh:
+    """The repaired mesh of a file, whose axis `up` points up; ValueError where it cannot be used."""
     report(f"reading {path.name}")
-    mesh = load_unnamed(path)
+    mesh, note = upright_by(load_unnamed(path), path, up)
     extent = np.ptp(mesh.vertices, axis=0).max()
     if extent < MIN_EXTENT:
         raise ValueError(f"its extent is {extent:g}: export it in smaller units, or with more digits")
     mesh, notes = repaired(mesh)
-    report(number(len(mesh.faces), "face") + "".join(f"; {note}" for note in notes))
+    report(number(len(mesh.faces), "face") + "".join(f"; {note}" for note in [note, *notes]))
     return mesh
 
 
 def prepare(mesh: Mesh, chosen: Namespace) -> SimplificationTask:
     """The SimplificationTask: saliency, and the points to keep."""
-    up = chosen.up or ("y" if chosen.mesh.suffix.lower() == ".glb" else "z")
     asked, target = chosen.faces, len(mesh.faces)
     if asked and face_count(asked, target, "--faces") >= target:
         raise ValueError(f"--faces {asked}: the mesh has only {number(target, 'face')}, there is nothing to simplify")
     rendered = bake_texture(mesh)
-    report(f"looking at it with {up} up" + ("" if chosen.up else " (if another axis points up: --up)"))
+    report("looking at it")
     method = "glance" if chosen.method == PLAIN else chosen.method
     with Stopwatch() as watch:
-        values = saliency(rendered, method, up=up)
+        values = saliency(rendered, method)
     report(f"saliency by {method} in {watch.seconds:.1f} s")
     points = np.zeros(0, dtype=np.int64)
     if chosen.neighbourhood != SOFT:
-        points = find_points(rendered, method, chosen.keep, up=up, seed=chosen.seed, name=chosen.mesh.stem)
+        points = find_points(rendered, method, chosen.keep, seed=chosen.seed, name=chosen.mesh.stem)
         report(f"the faces around {number(len(points), 'point')} are frozen")
     rule = "fixed" if chosen.neighbourhood == SOFT else chosen.neighbourhood
     rings = neighbourhoods(mesh, points, rule, values, RINGS if chosen.rings is None else chosen.rings)
     soft = chosen.neighbourhood == SOFT and chosen.method != PLAIN
     weights = values if soft else None
-    return SimplificationTask(mesh, up, values, points, rings, weights, chosen.backend, chosen.shrink)
+    return SimplificationTask(mesh, values, points, rings, weights, chosen.backend, chosen.shrink)
 
 
 def reduce(task: SimplificationTask, chosen: Namespace) -> Mesh:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from stages.meshes.normalise import TO_Z_UP
+from stages.meshes.up import add_up
 from stages.salient_points import METHODS
 from stages.salient_points.methods import split_runnable
 from stages.weights import LearnedWeights
@@ -44,7 +44,7 @@ def parser(about: str) -> argparse.ArgumentParser:
     command.add_argument(
         "--shrink", action="store_true", help="freeze fewer faces where the target is too low for all of them"
     )
-    command.add_argument("--up", choices=list(TO_Z_UP), help="the axis that points up (default: y for a glb, else z)")
+    add_up(command)
     command.add_argument("--backend", choices=list(BACKENDS), default=BACKEND, help="default: %(default)s")
     command.add_argument("--seed", type=int, default=0, help="for the samples of the errors (default: %(default)s)")
     return command

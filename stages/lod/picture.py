@@ -8,21 +8,24 @@ from matplotlib.figure import Figure
 from stages.kit import Mesh
 from stages.kit.files import whole_file
 
-from .look import coloured, draw, visible_points
+from .look import coloured, draw, visible_points, with_axis
 from .within_frame import within_frame
 
 
-def write_picture(path: Path, before: Mesh, after: Mesh, saliency: np.ndarray, points: np.ndarray) -> None:
+def write_picture(
+    path: Path, before: Mesh, after: Mesh, saliency: np.ndarray, points: np.ndarray, up: str = "z"
+) -> None:
     """Writes a picture of three panels: saliency (n,) and points (k,), and the wireframes before and after.
 
     before, after: Meshes in the frame of stages.meshes.normalise, +z up; where a coarse one exceeds it, both are drawn
-    smaller. The format follows the suffix of the path; ValueError for an unknown one (`check_picture`).
+    smaller; up: which axis that was before they were turned. The format follows the suffix of the path; ValueError for
+    an unknown one (`check_picture`).
     """
     check_picture(path)
     (before, after), _ = within_frame([before, after])
     figure = Figure(figsize=(12, 4.4), layout="constrained")
     axes = figure.subplots(1, 3)
-    axes[0].imshow(draw(coloured(before, saliency)))
+    axes[0].imshow(with_axis(draw(coloured(before, saliency)), up))
     rows, columns = visible_points(before, points)
     axes[0].plot(columns, rows, "o", color="#D81B1B", ms=5, mec="white", mew=0.8)
     kept = f", {len(points)} point{'' if len(points) == 1 else 's'} kept" if len(points) else ""

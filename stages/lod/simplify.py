@@ -1,6 +1,7 @@
 """Simplification that preserves the neighbourhoods of chosen vertices (T3.1.3, T3.2.8)."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import lru_cache, partial
 
 import numpy as np
@@ -75,7 +76,7 @@ def simplify(
         try:
             if faces < smallest:  # before the backend starts
                 raise InfeasibleTarget(faces, smallest, int(frozen.sum()))
-            return carry(mesh, BACKENDS[backend](mesh, int(faces), frozen, multipliers))
+            return carry(mesh, replace(BACKENDS[backend](mesh, int(faces), frozen, multipliers), up=mesh.up))
         except (InfeasibleTarget, SimplifyError) as error:
             failures.append((error, frozen))
     error, frozen = failures[-1]

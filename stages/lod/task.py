@@ -1,6 +1,6 @@
 """A mesh from a file prepared for simplification, and the result brought back to its coordinates."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -22,13 +22,12 @@ from .topology import half_edges
 class SimplificationTask:
     """A mesh and what simplification must preserve of it.
 
-    given: the Mesh in its own units. up: its axis that points up. saliency (n,) f8 in 0..1. points (k,) vertex ids to
+    given: the Mesh in its own units and axes. saliency (n,) f8 in 0..1. points (k,) vertex ids to
     keep, most salient first, rings (k,) around each. weights: (n,) for the soft variant or None. shrink: whether the
     neighbourhoods may shrink where the target needs it.
     """
 
     given: Mesh
-    up: str
     saliency: np.ndarray
     points: np.ndarray
     rings: np.ndarray
@@ -96,7 +95,7 @@ class SimplificationTask:
     def plain(self, faces: int) -> Mesh:
         """As `simplified`, by plain quadric edge collapse: no points, no weights."""
         nothing = np.zeros(0, dtype=np.int64)
-        other = SimplificationTask(self.given, self.up, self.saliency, nothing, nothing, None, self.backend, False)
+        other = SimplificationTask(self.given, self.saliency, nothing, nothing, None, self.backend, False)
         return other.simplified(faces)
 
     def points_kept(self, mesh: Mesh) -> np.ndarray:
@@ -106,7 +105,7 @@ class SimplificationTask:
 
     def upright(self, mesh: Mesh) -> Mesh:
         """A mesh in the frame of `mesh` as it is rendered: +z up, its texture baked into vertex colours."""
-        return bake_texture(rotate_to_z_up(mesh, self.up))
+        return bake_texture(rotate_to_z_up(mesh))
 
     def restored(self, mesh: Mesh) -> Mesh:
         """A mesh in the frame of `mesh` in the units of `given`; unmoved vertices have their original coordinates."""
@@ -119,12 +118,12 @@ class SimplificationTask:
         owner[place[:n]] = np.arange(n)
         own = owner[place[n:]]
         vertices[own >= 0] = self.given.vertices[own[own >= 0]]
-        return Mesh(vertices, mesh.faces, mesh.colors, mesh.texture)
+        return replace(mesh, vertices=vertices)
 
     def _simplify(self, mesh, ids, faces):
         keep, rings = self._on_cut(ids)
         weights = None if self.weights is None else self.weights[ids]
-        bare = Mesh(mesh.vertices, mesh.faces)  # colours and texture are transferred once, at the end
+        bare = replace(mesh, colors=None, texture=None)  # colours and texture are transferred once, at the end
         found = simplify(bare, faces, keep, rings, self.backend, self.shrink, weights=weights)
         return self.mesh if found is bare else carry(self.mesh, close_borders(found, mesh, ids))
 
@@ -154,7 +153,7 @@ def repaired(mesh: Mesh) -> tuple[Mesh, list[str]]:
         return found, notes
     first, ids = merge_equal_rows(mesh.vertices)
     colors = None if mesh.colors is None else mesh.colors[first]
-    joined, others = clean(Mesh(mesh.vertices[first], ids[mesh.faces], colors, mesh.texture))
+    joined, others = clean(replace(mesh, vertices=mesh.vertices[first], faces=ids[mesh.faces], colors=colors))
     if (half_edges(joined.faces)[1] < 0).sum() >= (half_edges(found.faces)[1] < 0).sum():
         return found, notes
     return joined, [f"{len(ids) - len(first):,} coincident vertices merged", *others]

@@ -1,6 +1,7 @@
 """Meshes scaled down together where one of them exceeds the picture."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -20,4 +21,4 @@ def within_frame(meshes: Sequence[Mesh]) -> tuple[list[Mesh], float]:
     if radius <= FITS:
         return list(meshes), 1.0
     scale = float(FITS / radius)
-    return [Mesh(scale * mesh.vertices, mesh.faces, mesh.colors, mesh.texture) for mesh in meshes], scale
+    return [replace(mesh, vertices=scale * mesh.vertices) for mesh in meshes], scale

@@ -1,5 +1,7 @@
 """Repairs what can be repaired without moving a vertex, and refuses the rest."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from stages.kit import Mesh
@@ -31,7 +33,7 @@ def clean(mesh: Mesh) -> tuple[Mesh, list[str]]:
     if len(ids) == 0:
         raise MeshError("no face has three different vertices")
     faces = mesh.faces[ids]
-    cleaned = Mesh(mesh.vertices, faces, mesh.colors, mesh.texture and mesh.texture.of(ids))
+    cleaned = replace(mesh, faces=faces, texture=mesh.texture and mesh.texture.of(ids))
     spread = np.ptp(mesh.vertices[np.unique(faces)], axis=0)
     with np.errstate(over="ignore", invalid="ignore"):
         area, square = cleaned.face_areas.sum(), float(spread @ spread)

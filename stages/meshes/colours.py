@@ -1,6 +1,7 @@
 """The colours of an object: those of its file, or one of a palette by its name."""
 
 import zlib
+from dataclasses import replace
 
 import numpy as np
 
@@ -33,7 +34,7 @@ def coloured(mesh: Mesh, name: str, colours: str, suffix: str = "") -> Mesh:
         reason = reason if suffix == ".off" else "has no colours of its own"
         raise MeshError(f"{reason}: set meshes.colours=palette to paint it, or leave it out")
     colour = PALETTE[zlib.crc32(name.encode()) % len(PALETTE)]
-    return Mesh(mesh.vertices, mesh.faces, np.tile(colour, (len(mesh.vertices), 1)))
+    return replace(mesh, colors=np.tile(colour, (len(mesh.vertices), 1)))
 
 
 def bake_texture(mesh: Mesh) -> Mesh:
@@ -44,4 +45,4 @@ def bake_texture(mesh: Mesh) -> Mesh:
     rgb = texture.sample(np.repeat(np.arange(len(mesh.faces)), 3), texture.uv.reshape(-1, 2))
     count = np.maximum(np.bincount(ids, minlength=len(mesh.vertices)), 1)
     colors = [np.bincount(ids, weights=column, minlength=len(mesh.vertices)) / count for column in rgb.T]
-    return Mesh(mesh.vertices, mesh.faces, np.rint(np.stack(colors, axis=1)).astype(np.uint8))
+    return replace(mesh, colors=np.rint(np.stack(colors, axis=1)).astype(np.uint8), texture=None)

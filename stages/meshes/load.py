@@ -1,6 +1,7 @@
 """Reads one file into a mesh: STL, OBJ, PLY and GLB by trimesh, OFF by a reader of our own, scans by `clouds`."""
 
 import io
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,7 @@ from . import clouds
 from .headers import MeshError, check_header
 from .materials import join_parts, merge_equal_rows, obj_vertices, texture_of, vertex_colors
 from .off import read_off
+from .up import UP_OF_FORMAT
 
 FORMATS = (".stl", ".obj", ".ply", ".off", ".glb", *clouds.FORMATS, clouds.DEPTH)
 
@@ -26,8 +28,8 @@ def load(path: str | Path) -> Mesh:
     scene are transformed and joined. The materials of a GLB, and those of an OBJ whose material files lie next to it,
     become the texture of the mesh. Of a point cloud (PLY without faces, XYZ, PTS, PCD, LAS), with or without normals,
     the vertices are those of the surface that stages.meshes.clouds makes of it; so they are of a depth image, which a
-    .depth file names together with its camera. Raises MeshError with the file and the reason when it holds no usable
-    mesh.
+    .depth file names together with its camera. A GLB is y up; the other formats do not say,
+    and `up` is z. Raises MeshError with the file and the reason when it holds no usable mesh.
     """
     try:
         return load_unnamed(Path(path))
@@ -53,7 +55,8 @@ def parse(content: bytes, suffix: str, resolver: Resolver | None = None, every_c
         raise MeshError("the file is empty")
     check_header(content, suffix)
     try:
-        return _parsed(content, suffix, resolver, every_colour)
+        mesh = _parsed(content, suffix, resolver, every_colour)
+        return replace(mesh, up=UP_OF_FORMAT[suffix]) if suffix in UP_OF_FORMAT else mesh
     except (MeshError, MissingExtra):
         raise
     except MemoryError:

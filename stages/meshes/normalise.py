@@ -1,5 +1,7 @@
 """The coordinate frame of all later stages: +z up, centred, a bounding sphere of radius 0.5."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from stages.kit import Mesh
@@ -21,7 +23,7 @@ def normalise(mesh: Mesh) -> Mesh:
     mesh has no faces or no extent.
     """
     centre, radius = centre_and_radius(mesh)
-    return Mesh((mesh.vertices - centre) * (RADIUS / radius), mesh.faces, mesh.colors, mesh.texture)
+    return replace(mesh, vertices=(mesh.vertices - centre) * (RADIUS / radius))
 
 
 def centre_and_radius(mesh: Mesh) -> tuple[np.ndarray, float]:
@@ -36,8 +38,9 @@ def centre_and_radius(mesh: Mesh) -> tuple[np.ndarray, float]:
     return centre, radius
 
 
-def rotate_to_z_up(mesh: Mesh, up: str) -> Mesh:
-    """The mesh rotated so that its axis `up` (x, y or z) becomes +z; ValueError for another axis."""
+def rotate_to_z_up(mesh: Mesh, up: str | None = None) -> Mesh:
+    """The mesh rotated so that its axis `up` (x, y or z; None: its own) becomes +z; ValueError for another axis."""
+    up = up or mesh.up
     if up not in TO_Z_UP:
         raise ValueError(f"unknown up axis {up!r}: choose one of {', '.join(TO_Z_UP)}")
-    return Mesh(mesh.vertices @ TO_Z_UP[up].T, mesh.faces, mesh.colors, mesh.texture)
+    return replace(mesh, vertices=mesh.vertices @ TO_Z_UP[up].T, up="z")

@@ -1,5 +1,7 @@
 """Makes the winding of faces consistent, and turns closed surfaces outwards."""
 
+from dataclasses import replace
+
 import numpy as np
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
@@ -87,4 +89,4 @@ def _flipped(mesh, flips):
         return mesh
     faces = mesh.faces.copy()
     faces[flips] = faces[flips][:, ::-1]
-    return Mesh(mesh.vertices, faces, mesh.colors, mesh.texture and mesh.texture.turned(flips))
+    return replace(mesh, faces=faces, texture=mesh.texture and mesh.texture.turned(flips))

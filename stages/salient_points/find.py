@@ -24,12 +24,13 @@ MAP_SIZE = (225, 300)  # rows, columns of the maps: a quarter of the views', so 
 
 def saliency(
     mesh: Mesh, method: str = GLANCE, weights: str | Mapping[str, float] | None = None,
-    viewpoints: Iterable[Viewpoint] | None = None, smoothing: float = SMOOTHING, up: str = "z",
+    viewpoints: Iterable[Viewpoint] | None = None, smoothing: float = SMOOTHING, up: str | None = None,
 ) -> np.ndarray:  # fmt: skip
     """How much each vertex attracts attention: (n,) f8 in 0..1, 1 at the maximum, whatever the mesh's place and size.
 
-    up: the axis of the mesh that points up, x, y or z (a GLB's is y): people look at the upper part of things and walk
-    around them, so `glance`, `enhanced` and `height` need the right one. method: a name of METHODS that has a saliency
+    up: the axis of the mesh that points up, x, y or z; None: its own, `mesh.up`, which only a GLB states and is else z.
+    People look at the upper part of things and walk around them, so `glance`, `enhanced` and `height` need the right
+    one. method: a name of METHODS that has a saliency
     (all but `random` and `farthest`). `glance`, the default, is the fixation density per unit of area that a log-linear
     model, fitted to human gaze, predicts from points spread over the surface, `glance_any_pose` the same without the
     features that need an up axis, for what lies in any pose; `enhanced` is an older model, which renders views;
@@ -49,7 +50,7 @@ def saliency(
 def find_points(
     mesh: Mesh, method: str = GLANCE, count: int | None = None, *,
     weights: str | Mapping[str, float] | None = None, viewpoints: Iterable[Viewpoint] | None = None,
-    selection: str = "suppression", radius: float = RADIUS, seed: int = 0, name: str = "", up: str = "z",
+    selection: str = "suppression", radius: float = RADIUS, seed: int = 0, name: str = "", up: str | None = None,
 ) -> np.ndarray:  # fmt: skip
     """Vertex ids of the places that attract attention: (k,) i8, most salient first.
 
@@ -69,7 +70,7 @@ def find_points(
 def detect(
     mesh: Mesh, method: str = GLANCE, count: int | None = None, *,
     weights: str | Mapping[str, float] | None = None, viewpoints: Iterable[Viewpoint] | None = None,
-    selection: str = "suppression", radius: float = RADIUS, seed: int = 0, name: str = "", up: str = "z",
+    selection: str = "suppression", radius: float = RADIUS, seed: int = 0, name: str = "", up: str | None = None,
 ) -> Detection:  # fmt: skip
     """The points of `find_points` and the saliency of `saliency`, from one look. The arguments are those of these."""
     detector = method_named(method)

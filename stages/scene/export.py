@@ -81,7 +81,7 @@ def metres_per_unit(mesh: Mesh, longest: float) -> float:
 
 def to_gltf(mesh: Mesh, metres: float = 1.0) -> Mesh:
     """A Mesh in metres with +y up."""
-    return Mesh(mesh.vertices @ Y_UP.T * metres, mesh.faces, mesh.colors)
+    return Mesh(mesh.vertices @ Y_UP.T * metres, mesh.faces, mesh.colors, up="y")
 
 
 def write_glb(

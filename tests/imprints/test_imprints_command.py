@@ -117,8 +117,8 @@ def test_normals_and_axes_are_those_of_the_file(touched, file):
 
 @pytest.mark.parametrize("up", ["x", "y", "z"])
 def test_coordinates_come_back_from_the_meshs_frame(up):
-    given = Mesh(bumpy().vertices, bumpy().faces)
-    own = UserMesh(given, up, "ball")
+    given = Mesh(bumpy().vertices, bumpy().faces, up=up)
+    own = UserMesh(given, "ball")
     points = np.random.default_rng(0).random((5, 3))
     assert np.allclose(own.from_file(own.to_file(points)), points)
     assert np.allclose(own.to_file(own.mesh.vertices), given.vertices)

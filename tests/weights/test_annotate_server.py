@@ -227,6 +227,12 @@ def test_meshes_are_found_by_file_and_by_name(cube, tmp_path):
     trimesh.creation.box(extents=[2, 4, 4]).export(tmp_path / "brick.off")
     name, mesh = find_mesh(str(tmp_path / "brick.off"), workspace)
     assert name == "brick" and np.allclose(np.linalg.norm(mesh.vertices, axis=1), 0.5)
+    trimesh.creation.box(extents=[1, 4, 2]).export(tmp_path / "tower.glb")
+    for file, up, side in (("tower.glb", None, 2), ("tower.glb", "z", 1), ("brick.off", "x", 1)):
+        shown = find_mesh(str(tmp_path / file), workspace, up)[1]
+        assert shown.up == "z" and np.ptp(shown.vertices, axis=0)[side] == np.ptp(shown.vertices, axis=0).max()
+    with pytest.raises(ValueError, match="'cube' is upright"):
+        find_mesh("cube", workspace, "y")
     (tmp_path / "torn.off").write_text("OFF\n9 9 9\n")
     with pytest.raises(ValueError, match=r"torn\.off: truncated"):
         find_mesh(str(tmp_path / "torn.off"), workspace)
@@ -248,7 +254,8 @@ def test_the_command_serves_until_it_is_interrupted(tmp_path):
         with socket.create_connection(("127.0.0.1", port), timeout=5):
             pass
         running.send_signal(signal.SIGINT)
-        assert running.wait(timeout=10) == 0 and running.stderr.read() == ""
+        assert running.wait(timeout=10) == 0
+        assert running.stderr.read() == "brick: z up, a guess, since OFF does not say (another axis: --up)\n"
     finally:
         running.kill()
         running.communicate()

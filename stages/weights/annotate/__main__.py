@@ -15,22 +15,30 @@ from stages.kit.command import errors_in_one_line
 from stages.kit.files import read_mesh
 from stages.kit.run import object_names
 from stages.kit.workspace import Workspace
-from stages.meshes import load, normalise
+from stages.meshes import load, normalise, rotate_to_z_up
+from stages.meshes.up import add_up, upright_by
 
 from .server import HOST, open_server
 
 PORT = 8062
 
 
-def find_mesh(text: str, workspace: Workspace) -> tuple[str, Mesh]:
-    """(name, normalised mesh) of a mesh file or of an object of a data set; ValueError names the objects there are."""
+def find_mesh(text: str, workspace: Workspace, up: str | None = None) -> tuple[str, Mesh]:
+    """(name, upright normalised mesh) of a mesh file or of an object; ValueError names the objects there are.
+
+    up: the axis that points up in a file, None for its own; the objects of a data set are upright.
+    """
     known, path, meshes = object_names(workspace), Path(text), workspace.data / "meshes"
     if text in known:
+        if up:
+            raise ValueError(f"--up {up} is for files: the object {text!r} is upright, z up")
         return text, read_mesh(meshes / f"{text}.npz")
     if not path.is_file():
         there = ", ".join(known) or f"none; `dvc repro meshes@{workspace.dataset}` fills {meshes}"
         raise ValueError(f"{text!r} is neither a mesh file nor an object; objects: {there}")
-    return path.stem, normalise(load(path))
+    mesh, note = upright_by(load(path), path, up)
+    print(f"{path.stem}: {note}", file=sys.stderr)
+    return path.stem, normalise(rotate_to_z_up(mesh))
 
 
 def main() -> None:
@@ -45,9 +53,10 @@ def main() -> None:
     parser.add_argument("--annotator", metavar="NAME", default="", help="who marks (default: the page asks)")
     parser.add_argument("--port", type=int, default=PORT, help=f"default {PORT}; 0 takes any free one")
     parser.add_argument("--folder", default="data/annotations", help="where the points go (default: %(default)s)")
+    add_up(parser)
     chosen = parser.parse_args()
     errors_in_one_line("annotate")
-    name, mesh = find_mesh(chosen.mesh, Workspace(Path("."), chosen.dataset))
+    name, mesh = find_mesh(chosen.mesh, Workspace(Path("."), chosen.dataset), chosen.up)
     server = open_server(name, mesh, chosen.folder, chosen.annotator, chosen.port)
     address = f"http://{HOST}:{server.server_port}/"
     try:
