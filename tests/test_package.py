@@ -155,10 +155,14 @@ def test_every_package_that_we_list_is_pinned():
 def test_the_names_of_the_package_are_those_that_a_type_checker_sees():
     tree = ast.parse(Path(haptic_glance.__file__).read_text())
     (block,) = (node for node in tree.body if isinstance(node, ast.If))
-    seen = {alias.name: node.module for node in block.body if isinstance(node, ast.ImportFrom) for alias in node.names}
+    imports = [node for node in block.body if isinstance(node, ast.ImportFrom) and not node.level]
+    seen = {alias.name: node.module for node in imports for alias in node.names}
     assert seen == {name: f"stages.{stage}" for name, stage in haptic_glance._STAGES.items()}
     assert sorted(seen) == sorted(haptic_glance.__all__) == sorted(dir(haptic_glance))
     assert all(getattr(haptic_glance, name) is not None for name in seen)
+    (doors,) = (node for node in block.body if isinstance(node, ast.ImportFrom) and node.level)
+    converted = [node for node in ast.walk(block) if isinstance(node, ast.Call) and node.func.id == doors.names[0].name]
+    assert sorted(call.args[0].id[1:] for call in converted) == sorted(haptic_glance._DOORS)
     with pytest.raises(AttributeError, match="no attribute 'salience'"):
         haptic_glance.__getattr__("salience")
 

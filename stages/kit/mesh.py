@@ -9,7 +9,7 @@ from scipy import sparse
 from .texture import Texture
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Mesh:
     """A triangle mesh; vertex order is identity, nothing is ever reordered behind the caller's back.
 
@@ -50,6 +50,9 @@ class Mesh:
             raise ValueError(f"the texture must be of {len(faces)} faces, got {len(self.texture.image)}")
         if self.up not in ("x", "y", "z"):
             raise ValueError(f"unknown up axis {self.up!r}: choose one of x, y, z")
+
+    def __repr__(self) -> str:
+        return f"Mesh({len(self.vertices):,} vertices, {len(self.faces):,} faces, {self.up} up)"
 
     @cached_property
     def face_crosses(self) -> np.ndarray:

@@ -4,11 +4,11 @@ from stages.kit import Mesh
 
 from .clean import clean
 from .clouds import Cloud, cloud_of_depth, surface_of
-from .load import MeshError, load
+from .load import MeshError, as_mesh, load
 from .normalise import normalise, rotate_to_z_up
 from .plane import remove_plane
 
 __all__ = [
-    "Cloud", "Mesh", "MeshError", "clean", "cloud_of_depth", "load", "normalise", "remove_plane", "rotate_to_z_up",
-    "surface_of",
+    "Cloud", "Mesh", "MeshError", "as_mesh", "clean", "cloud_of_depth", "load", "normalise", "remove_plane",
+    "rotate_to_z_up", "surface_of",
 ]  # fmt: skip

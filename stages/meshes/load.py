@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import trimesh
+from numpy.typing import ArrayLike
 from trimesh.resolvers import FilePathResolver, Resolver
 
 from stages.kit import Mesh
@@ -17,6 +18,7 @@ from .materials import join_parts, merge_equal_rows, obj_vertices, texture_of, v
 from .off import read_off
 from .up import UP_OF_FORMAT
 
+MeshLike = Mesh | str | Path | trimesh.Trimesh | trimesh.Scene | tuple[ArrayLike, ArrayLike]
 FORMATS = (".stl", ".obj", ".ply", ".off", ".glb", *clouds.FORMATS, clouds.DEPTH)
 
 
@@ -42,6 +44,26 @@ def load_unnamed(path: Path) -> Mesh:
     if not path.is_file():
         raise MeshError("is a folder, not a mesh" if path.is_dir() else "no such file")
     return parse(path.read_bytes(), path.suffix.lower(), FilePathResolver(str(path)))
+
+
+def as_mesh(given: MeshLike) -> Mesh:
+    """The Mesh of a path, of an object of trimesh, of (vertices (n, 3), faces (m, 3)), or the Mesh that is given.
+
+    Vertices keep their ids, but for a Scene, whose parts are joined as those of a GLB are. Colours and textures of
+    trimesh are taken over. Only the path of a GLB says which axis points up; else it is z, and functions take `up`.
+    Raises MeshError as `load` does, ValueError for arrays of another shape, TypeError for anything else.
+    """
+    if isinstance(given, Mesh):
+        return given
+    if isinstance(given, str | Path):
+        return load(given)
+    if isinstance(given, trimesh.Scene):
+        return join_parts(given, every_colour=True) or _to_mesh(None, False, False)
+    if isinstance(given, trimesh.Trimesh):
+        return _to_mesh(given, False, every_colour=True)
+    if isinstance(given, tuple) and len(given) == 2:
+        return Mesh(np.asarray(given[0], dtype=np.float64), np.asarray(given[1]))
+    raise TypeError(f"no mesh: a {type(given).__name__}; give a path, a trimesh, (vertices, faces) or a Mesh")
 
 
 def parse(content: bytes, suffix: str, resolver: Resolver | None = None, every_colour: bool = False) -> Mesh:

@@ -26,6 +26,11 @@ def test_open_mesh_is_not_watertight():
     assert not Mesh(box.vertices, box.faces[1:]).watertight
 
 
+def test_a_mesh_is_shown_in_one_line():
+    mesh = Mesh(trimesh.creation.icosphere(4).vertices, trimesh.creation.icosphere(4).faces, up="y")
+    assert repr(mesh) == "Mesh(2,562 vertices, 5,120 faces, y up)"
+
+
 def test_rings_grow_one_edge_at_a_time():
     # A strip of triangles: vertex i touches i-2 .. i+2.
     vertices = np.array([(i / 2, i % 2, 0) for i in range(12)], dtype=float)

@@ -1,0 +1,73 @@
+"""Whatever a person has for a mesh goes through the doors of the package."""
+
+import numpy as np
+import pytest
+import trimesh
+
+import haptic_glance
+from haptic_glance import Mesh, MeshError, Surface, as_mesh, load, normalise, to_trimesh
+
+EGG = trimesh.creation.icosphere(3)
+EGG.vertices *= [1, 1, 1.4]
+
+
+def forms(folder):
+    EGG.export(folder / "egg.ply")
+    arrays = (EGG.vertices.tolist(), EGG.faces.tolist())
+    return [folder / "egg.ply", str(folder / "egg.ply"), EGG, arrays, Mesh(EGG.vertices, EGG.faces)]
+
+
+def test_each_form_gives_the_same_mesh_in_the_order_of_its_vertices(tmp_path):
+    for form in forms(tmp_path):
+        mesh = as_mesh(form)
+        assert np.allclose(mesh.vertices, EGG.vertices, atol=1e-6) and (mesh.faces == EGG.faces).all()
+    assert as_mesh(mesh) is mesh
+
+
+def test_colours_of_trimesh_are_taken_over_and_given_back():
+    colors = np.arange(3 * len(EGG.vertices)).reshape(-1, 3) % 256
+    painted = trimesh.Trimesh(EGG.vertices, EGG.faces, vertex_colors=colors, process=False)
+    back = to_trimesh(as_mesh(painted))
+    assert (as_mesh(painted).colors == colors).all() and (back.visual.vertex_colors[:, :3] == colors).all()
+
+
+def test_the_parts_of_a_scene_are_joined():
+    scene = trimesh.Scene([EGG, trimesh.creation.box()])
+    assert len(as_mesh(scene).faces) == len(EGG.faces) + 12
+    with pytest.raises(MeshError, match="no geometry"):
+        as_mesh(trimesh.Scene())
+
+
+@pytest.mark.parametrize("given", [5, None, np.zeros((3, 3)), (1, 2, 3)])
+def test_what_is_no_mesh_is_told_what_would_be(given):
+    with pytest.raises(TypeError, match=f"no mesh: a {type(given).__name__}; give a path, a trimesh"):
+        as_mesh(given)
+
+
+def test_arrays_are_checked_as_those_of_a_mesh():
+    with pytest.raises(ValueError, match=r"vertices must have shape \(n, 3\)"):
+        as_mesh((np.zeros((4, 2)), [[0, 1, 2]]))
+    with pytest.raises(ValueError, match="faces must be whole numbers"):
+        as_mesh((np.zeros((4, 3)), [[0.0, 1, 2]]))
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda mesh: haptic_glance.saliency(mesh, "height"),
+        lambda mesh: haptic_glance.saliency(mesh=mesh, method="height"),
+        lambda mesh: haptic_glance.find_points(mesh, "height", 3),
+        lambda mesh: haptic_glance.detect(mesh, "height", 3).points,
+        lambda mesh: haptic_glance.simplify(mesh, 200).vertices,
+        lambda mesh: haptic_glance.press(mesh, 7, pitch=0.02),
+        lambda mesh: haptic_glance.press_many(mesh, [7], pitch=0.02),
+    ],
+)
+def test_every_door_takes_every_form(tmp_path, call):
+    first, *others = (call(form) for form in forms(tmp_path))
+    assert all(np.allclose(first, other, atol=1e-3) for other in others)
+
+
+def test_a_surface_is_pressed_as_it_is(tmp_path):
+    mesh = normalise(load(forms(tmp_path)[0]))
+    assert (haptic_glance.press(Surface(mesh), 7) == haptic_glance.press(mesh, 7)).all()
