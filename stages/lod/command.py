@@ -104,7 +104,7 @@ def prepare(mesh: Mesh, chosen: Namespace) -> SimplificationTask:
 
 def reduce(task: SimplificationTask, chosen: Namespace) -> Mesh:
     """The Mesh with the face count, or within the tolerance, of the command line."""
-    report("simplifying")
+    report("simplifying" + (f" to {100 * chosen.tolerance:g} % of the diagonal" if chosen.tolerance else ""))
     try:
         if chosen.tolerance is None:
             return task.simplified(face_count(chosen.faces, len(task.mesh.faces), "--faces"))

@@ -18,6 +18,8 @@ from .simplify import BACKEND, BACKENDS
 from .targets import face_count
 from .variant import PLAIN, SOFT
 
+LEAST_PERCENT = 0.01  # a bare tolerance from here on is more likely one in percent: few want 1 % of the diagonal
+
 
 def parser(about: str) -> argparse.ArgumentParser:
     """The parser; about: the text of --help, whose first line comes first."""
@@ -27,7 +29,8 @@ def parser(about: str) -> argparse.ArgumentParser:
     command.add_argument("mesh", metavar="MESH", type=Path, help="the file to simplify")
     target = command.add_mutually_exclusive_group(required=True)
     target.add_argument("--faces", metavar="N", help="target face count: 1500, or a share such as 10%%")
-    help_tolerance = "the fewest faces with a Metro mean error of at most this share of the diagonal: 0.2%%"
+    help_tolerance = "the fewest faces with a Metro mean error of at most this share of the diagonal: 0.2%%, or 0.002"
+    help_tolerance += f" (from {LEAST_PERCENT:g} on the sign is required: 0.2 could mean 20%% or 0.2%%)"
     target.add_argument("--tolerance", metavar="SHARE", type=share, help=help_tolerance)
     command.add_argument("--out", metavar="FILE", type=Path, required=True, help=f"the result: {', '.join(FORMATS)}")
     command.add_argument(
@@ -51,12 +54,15 @@ def parser(about: str) -> argparse.ArgumentParser:
 
 
 def share(text: str) -> float:
-    """A share of the diagonal from `0.2%` or `0.002`."""
+    """A share of the diagonal from `0.2%` or `0.002`; a bare number that may well be one in percent is refused."""
     match = re.fullmatch(r"(\d*\.?\d+(?:e-?\d+)?)(%?)", text.strip(), re.IGNORECASE)
     value = float(match[1]) / (100 if match[2] else 1) if match else np.inf
     if value == 0:
         reason = "rounding alone exceeds 0: allow a little, such as 0.001%"
         raise argparse.ArgumentTypeError(f"{text!r}: {reason}")
+    if match and not match[2] and value >= LEAST_PERCENT:
+        percent = f"{100 * value:g}%, " if value < 1 else ""
+        raise argparse.ArgumentTypeError(f"{text!r}: write {percent}{match[1]}% or what else of the diagonal is meant")
     if not value < 1:
         raise argparse.ArgumentTypeError(f"{text!r} is not a share of the diagonal: write one like 0.2% or 0.002")
     return value

@@ -86,7 +86,7 @@ def test_tolerance_gives_a_small_mesh_within_it(simplified):
     found, _, said = simplified("--tolerance", "0.5%")
     assert metro(bumpy(), found)["mean"] <= 0.005
     assert len(found.faces) < 500
-    assert "faces: " in said
+    assert "faces: " in said and "simplifying to 0.5 % of the diagonal" in said
 
 
 @pytest.mark.slow
@@ -507,6 +507,15 @@ def test_unreadable_mesh_is_named(tmp_path, content, reason):
 @pytest.mark.parametrize(("text", "value"), [("0.2%", 0.002), ("0.002", 0.002), ("1e-4", 1e-4), (".5%", 0.005)])
 def test_tolerance_is_a_share_of_the_diagonal(text, value):
     assert share(text) == pytest.approx(value)
+
+
+@pytest.mark.parametrize(
+    ("text", "ways"), [("0.2", "20%, 0.2%"), ("0.01", "1%, 0.01%"), ("2", "2%"), (".5", "50%, .5%")]
+)
+def test_tolerance_that_may_be_percent_needs_its_sign(text, ways, capsys):
+    with pytest.raises(SystemExit):
+        parser("").parse_args(["x.stl", "--out", "x.glb", "--tolerance", text])
+    assert f"{text!r}: write {ways} or " in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("text", ["0", "0%", "0.00"])
