@@ -3,6 +3,7 @@
 import base64
 import io
 import json
+import re
 from collections.abc import Sequence
 from html import escape
 from importlib import resources
@@ -39,13 +40,14 @@ def build_page(modules: Sequence[ModuleType], parts: dict[str, Any]) -> str:
     claims = Template(part("claims.html")).substitute(counted=escape(counted(judged))) if len(judged) else ""
     topics = {module.__name__.rpartition(".")[2]: topic_html(module, parts, rest) for module in modules}
     sections = [name for name, text in {"claims": claims, **topics}.items() if text]
-    missing = "".join(f"<li><code>{escape(name)}</code>: {escape(why)}</li>" for name, why in not_run.items())
+    partly = {f"tables/{item.name}": "in part, as its cells say" for item in parts["tables"].items if lacks_cells(item)}
+    missing = "".join(f"<li><code>{escape(name)}</code>: {prose(why)}</li>" for name, why in (not_run | partly).items())
     words = {
         "style": part("page.css"),
         "script": part("viewer.js"),
         "meshes": script_json(meshes) if meshes else "null",
         "viewer": part("viewer.html") if meshes else f"<p>not run: {escape(not_run.get('viewer', ''))}</p>",
-        "dataset": escape(parts["dataset"]),
+        "dataset": prose(parts["dataset"]),
         "heading": "Your meshes" if parts["own"] else "The pipeline on one object",
         "first": "".join(item.html for item in first),
         "contents": " ".join(f'<a href="#{name}">{name.capitalize()}</a>' for name in sections),
@@ -58,14 +60,14 @@ def build_page(modules: Sequence[ModuleType], parts: dict[str, Any]) -> str:
 
 def topic_html(module: ModuleType, parts: dict[str, Any], items: list[Table | Figure]) -> str:
     """A section: what the project found, the claims, and the items; those of sets that are off can be unfolded."""
-    name, lead = module.__name__.rpartition(".")[2], escape((module.__doc__ or "").strip())
+    name, lead = module.__name__.rpartition(".")[2], prose((module.__doc__ or "").strip())
     claims = parts["claims"][parts["claims"]["key"].isin([claim.key for claim in module.CLAIMS])]
     mine = [item for item in items if item.topic == name]
     others = [item for item in mine if item.sets and not set(item.sets) & set(parts["sets"])]
     if not mine and claims.empty:
         return ""
     found = "" if parts["own"] else findings(module)  # which are about other data sets
-    text = "".join(f"<p>{escape(paragraph)}</p>" for paragraph in found.strip().split("\n\n") if paragraph)
+    text = "".join(f"<p>{prose(paragraph)}</p>" for paragraph in found.strip().split("\n\n") if paragraph)
     if len(claims):
         said = ", ".join(f"<strong>{count}</strong> {word}" for word, count in counts(claims).items())
         text += _folded(f"{len(claims)} claims: {said}", frame_html(claims_shown(claims), "Claims", "verdict"))
@@ -80,14 +82,24 @@ def topic_html(module: ModuleType, parts: dict[str, Any], items: list[Table | Fi
 def item_html(item: Table | Figure) -> str:
     """A section: a table with its notes, or a picture with its caption, and links to its files."""
     if isinstance(item, Table):
-        notes = "".join(f"<li>{escape(note)}</li>" for note in item.notes)
+        notes = "".join(f"<li>{prose(note)}</li>" for note in item.notes)
         body = f"{frame_html(item.text, item.title)}<ul>{notes}</ul><p>{_link(item.paths[0])}</p>"
     else:
         picture = small_picture(item.paths[0])
         image = f'<img src="data:image/webp;base64,{picture}" alt="{escape(item.alt)}">'
-        caption = f"{escape(item.caption)} {' '.join(map(_link, item.paths))}"
+        caption = f"{prose(item.caption)} {' '.join(map(_link, item.paths))}"
         body = f"<figure>{_box('wide', item.title, image)}<figcaption>{caption}</figcaption></figure>"
     return f'<section id="{item.paths[0].parent.name}-{item.name}"><h3>{escape(item.title)}</h3>{body}</section>\n'
+
+
+def lacks_cells(table: Table) -> bool:
+    """Whether a cell of the table says that something was not run."""
+    return any("not run" in text for text in table.text.to_numpy().ravel())
+
+
+def prose(text: str) -> str:
+    """HTML of a text whose only mark-up is code between backticks."""
+    return re.sub(r"`([^`]+)`", r"<code>\1</code>", escape(text))
 
 
 def part(name: str) -> str:

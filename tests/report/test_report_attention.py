@@ -231,6 +231,12 @@ def test_figure_of_combinations_is_drawn(seen, root, small):
     assert "50%: 4 objects" in figure.caption and "25%" not in figure.caption  # two objects reach it
 
 
+def test_the_time_spent_names_stages_and_methods_in_words(seen):
+    table = build_one(stability, "tables", "time_spent", seen)
+    assert "ours (gaze model)" in set(table.text["method"]) and "enhanced" in set(table.frame["method"])
+    assert not table.text[["stage", "method"]].stack().str.contains("_").any()
+
+
 def test_views_count_once_in_the_time_spent(seen):
     frame = time_spent(seen)
     assert frame.loc[("views", "greedy"), "seconds"].sum() == 14  # seven for each of two objects

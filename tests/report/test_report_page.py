@@ -5,6 +5,7 @@ import io
 import json
 import re
 import zlib
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -16,8 +17,9 @@ from stages.kit import Mesh, Viewpoint
 from stages.kit.files import write_arrays, write_mesh, write_text
 from stages.report.__main__ import dataset_line, write_report
 from stages.report.drawing import VIEWPOINT, picture, visible
+from stages.report.items import Built, Table
 from stages.report.packing import SHADES, STEPS, Store, ordered
-from stages.report.page import small_picture
+from stages.report.page import build_page, item_html, prose, small_picture
 from stages.report.results import NotRun
 from stages.report.viewer import pack_viewer
 
@@ -235,7 +237,7 @@ def test_what_was_measured_on_sets_that_are_off_is_folded(page):
 def test_a_chart_keeps_the_colours_of_all_its_series(tmp_path):
     figure = Figure(figsize=(9, 5))
     panel = figure.subplots()
-    colors = np.random.default_rng(0).integers(0, 200, (45, 3))
+    colors = np.random.default_rng(0).integers(0, 200, (12, 3))
     for height, color in enumerate(colors):
         panel.plot([0, 1], [height, 1.3 * height], "o-", color=color / 255)
     figure.savefig(tmp_path / "chart.png")
@@ -248,3 +250,19 @@ def test_a_picture_of_many_colours_is_shrunk(tmp_path):
     Image.fromarray(noise).save(tmp_path / "noise.png")
     shown = Image.open(io.BytesIO(base64.b64decode(small_picture(tmp_path / "noise.png"))))
     assert shown.size == (900, 300)
+
+
+def test_code_in_notes_is_marked_up_and_not_shown_with_its_backticks():
+    assert prose("`a<b` and ` alone") == "<code>a&lt;b</code> and ` alone"
+    table = Table(pd.DataFrame({"x": [1]}), notes=["see `stages.compose`"], paths=[Path("tables/t.csv")])
+    assert "<li>see <code>stages.compose</code></li>" in item_html(table)
+
+
+@pytest.mark.parametrize(("cell", "whole"), [("not run · 3", False), ("3", True)])
+def test_a_table_with_gaps_is_listed_among_what_was_not_run(cell, whole):
+    table = Table(pd.DataFrame({"x": [cell]}), name="gaps", topic="none", paths=[Path("tables/t.csv")])
+    parts = {kind: Built() for kind in ("figures", "tradeoff")} | {"tables": Built([table]), "claims": pd.DataFrame()}
+    parts |= {"first": [], "not_run": {}, "meshes": None, "own": False, "dataset": "", "sets": []}
+    page = build_page([], parts)
+    assert ("Everything that this report knows was measured" in page) == whole
+    assert ("<code>tables/gaps</code>: in part" in page) != whole

@@ -35,7 +35,7 @@ def test_table_maps_the_methods_and_says_what_was_not_run(results):
     assert np.isnan(cell.loc[("enhanced", "knn"), "thesis"])
     assert np.isnan(cell.loc[("hks", "knn"), "accuracy"])
     shown = table.shown.set_index("sampling")
-    cells = shown.loc["hks"].drop("protocol")
+    cells = shown.loc["heat kernel signature"].drop("protocol")
     assert cells.str.startswith("not run").all() and cells.str.endswith("59").any()
 
 

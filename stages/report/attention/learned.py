@@ -10,6 +10,7 @@ from stages.report.grid import everywhere, grouped, percent, records
 from stages.report.items import Table
 from stages.report.markdown import number, with_interval
 from stages.report.results import COLOURED, NotRun, Results, some
+from stages.report.words import dataset_text
 
 from .rows import MEAN
 
@@ -113,7 +114,7 @@ def _shown(row: Any) -> dict[str, str | int]:
         for mean, deviation in ((row.accuracy, row.deviation), (row.thesis_accuracy, row.thesis_std))
     ]
     return {
-        "truth": row.dataset, "pixels of": AREA[row.area], "SVMs": TRAINING[row.training],
+        "truth": dataset_text(row.dataset), "pixels of": AREA[row.area], "SVMs": TRAINING[row.training],
         "left out for testing": VALIDATION[row.validation], "ours, %": ours if row.low == row.low else deviations[0],
         "background alone, %": percent(row.background_alone, 1), "thesis, %": deviations[1], "number": row.svms,
     }  # fmt: skip

@@ -7,6 +7,7 @@ import pandas as pd
 
 from stages.report.items import Table
 from stages.report.results import NotRun, Results, some
+from stages.report.style import label
 
 KEYS = ["value", "metric", "note", "task", "view", "split"]  # in which rows of one piece of work differ
 SEEN = "seen_share"  # rows of the views that stand for one piece of work, the views in a row
@@ -24,4 +25,6 @@ def build(results: Results) -> Table:
     said = {"pieces of work": "size", "seconds each": "mean", "seconds": "sum"}
     frame = timed.fillna({"method": ""}).groupby(["stage", "method"], sort=False)["seconds"].agg(**said).reset_index()
     frame["share, %"] = 100 * frame["seconds"] / frame["seconds"].sum()
-    return Table(frame.sort_values("seconds", ascending=False, kind="stable"), words={"sets": ", ".join(results.sets)})
+    frame = frame.sort_values("seconds", ascending=False, kind="stable")
+    said = {name: frame[name].map(label) for name in ("stage", "method")}
+    return Table(frame, frame.assign(**said), words={"sets": ", ".join(results.sets)})

@@ -66,6 +66,6 @@ def fifteen(variant: str) -> str:
 
 
 def sampling_text(name: str) -> str:
-    """A sampling in words: the thesis's by its own name, ours by its label; `, 15 imprints` stays behind it."""
+    """A sampling in words; `, 15 imprints` stays behind it."""
     base, comma, few = name.partition(", ")
-    return (base.replace("_", " ") if base in OURS else label(base)) + comma + few
+    return label(base) + comma + few
