@@ -180,6 +180,15 @@ def test_a_load_is_shared_by_the_cells_in_newtons(touched):
     assert "forces" not in plain and np.array_equal(plain["images"], arrays["images"])
 
 
+def test_a_default_folder_is_not_left_in_a_checkout(file):
+    root, folder = Path(__file__).parents[2], parse_options("", [str(file)]).out
+    if not (root / ".git").exists():
+        pytest.skip("no checkout")
+    ignored = ["git", "-C", str(root), "check-ignore", "-q", "--no-index"]
+    assert subprocess.run([*ignored, f"{folder}/imprints.png"]).returncode == 0
+    assert subprocess.run([*ignored, "stages/coarse_imprints/new.py"]).returncode == 1
+
+
 def test_skin_is_read_by_name():
     assert parse_skin("blur=0.8, noise=0.02", 3) == Skin(blur=0.8, noise=0.02, seed=3)
     assert parse_skin(None, 3) is None
