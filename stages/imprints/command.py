@@ -1,8 +1,8 @@
 """Touches one mesh with the virtual pressure array; shows and saves what it measures, and where.
 
 Reads STL, OBJ, PLY, OFF or GLB. The mesh is first scaled so that its bounding sphere is 1 unit across.
---pitch and --depth are in these units; their size in units of the file is printed. All positions, given and written,
-are in the file's coordinates. Writes into the folder of --out:
+--pitch and --depth are in these units, whose size in units of the file is printed, or lengths such as 1mm. All
+positions, given and written, are in the file's coordinates. Writes into the folder of --out:
   imprints.png  the mesh with numbered places and outlines of the array to scale, and the imprints beside it
   imprints.npz  images (k, rows, cols) in 0..1, 0 at first contact; distances (k, rows, cols) before the skin, in units;
                 vertices, positions, normals and axes (rows right, up, normal) in the file's coordinates; pitch; unit
@@ -14,7 +14,7 @@ With a data set of params.yaml instead of MESH, the pipeline's stage `imprints` 
 examples:
   python -m stages.imprints bunny.stl --at salient
   python -m stages.imprints chair.obj --at random --count 12 --cells 32 32 --pitch 0.005 --up y --out chair_touched
-  python -m stages.imprints bunny.stl --load 2 --metres 0.001 --layer thickness=0.003,modulus=1e5
+  python -m stages.imprints bunny.stl --unit mm --pitch 1mm --load 2 --layer thickness=0.003,modulus=1e5
   python -m stages.imprints part.ply --at 120 455 0.031,-0.2,1.5 --contact rigid --skin blur=0.8,noise=0.02,dead=0.03
 """
 
@@ -29,7 +29,7 @@ from stages.kit.files import write_arrays, write_table
 from .distances import distances_at
 from .force import press_forces
 from .frame import sensor_axes
-from .options import parse_options
+from .options import lengths_in_units, parse_options
 from .press import normalise
 from .sensor import misfit
 from .skin import indent
@@ -96,6 +96,7 @@ def open_mesh(options: argparse.Namespace) -> UserMesh:
     report_progress(f"reading {options.mesh.name}")
     user_mesh, notes = read_user_mesh(options.mesh, options.up)
     report_progress("; ".join([f"{len(user_mesh.mesh.faces):,} faces", *notes]))
+    lengths_in_units(options, user_mesh.unit)
     if wrong := misfit(options.cells, options.pitch):
         report_progress(wrong)
     if options.at[0] == "salient":

@@ -18,7 +18,12 @@ from .skin import Skin
 
 SELECTIONS = ("salient", "random")  # of places, which --count applies to
 DEFAULT_COUNT = 6
+METRES = {"mm": 0.001, "cm": 0.01, "in": 0.0254, "m": 1.0}  # m last, as the others may end with it
 POINT = re.compile(r"-?[\d.][^,]*,[^,]+,[^,]+")  # a position, which may begin with a minus like an option
+
+
+class Metres(float):
+    """A length in metres, which becomes one in units of the mesh when its size is known."""
 
 
 def parser(description: str) -> argparse.ArgumentParser:
@@ -32,21 +37,23 @@ def parser(description: str) -> argparse.ArgumentParser:
     result.add_argument("--at", metavar="PLACE", nargs="+", default=[SELECTIONS[0]], help=help_at)
     help_cells = "size of the array (default: 16 16)"
     result.add_argument("--cells", metavar=("ROWS", "COLS"), nargs=2, type=int, default=[16, 16], help=help_cells)
-    help_pitch = "distance of two cells, in units: the bounding sphere is 1 across (default: %(default)s)"
-    result.add_argument("--pitch", metavar="UNITS", type=float, default=0.01, help=help_pitch)
+    help_pitch = "distance of two cells: a length such as 1mm, or in units, of which the bounding sphere is 1 across"
+    result.add_argument("--pitch", metavar="LENGTH", type=length, default=0.01, help=f"{help_pitch} (default: 0.01)")
     help_count = f"number of salient or random places (default: {DEFAULT_COUNT})"
     result.add_argument("--count", metavar="N", type=int, help=help_count)
     result.add_argument("--method", help="detector of salient places (default: glance, a model of human gaze)")
     help_contact = "tangent: the array stands at the place (default); rigid: it rests on the first contact"
     result.add_argument("--contact", choices=CONTACTS, default=CONTACTS[0], help=help_contact)
-    help_depth = "how deep the object's highest point goes into the skin (default: the relief of each imprint)"
-    result.add_argument("--depth", metavar="UNITS", type=float, help=help_depth)
+    help_depth = (
+        "how deep the object's highest point goes into the skin, as --pitch (default: the relief of each imprint)"
+    )
+    result.add_argument("--depth", metavar="LENGTH", type=length, help=help_depth)
     help_skin = f"faults of a real sensor, such as blur=0.8,noise=0.02; the names are {', '.join(names_of(Skin))}"
     result.add_argument("--skin", metavar="NAME=VALUE,...", help=help_skin)
     help_load = "also write the force on each cell, in newtons, at which the whole array bears this load"
     result.add_argument("--load", metavar="NEWTONS", type=float, help=help_load)
-    help_metres = "length of a unit of the file in metres, such as 0.001 for millimetres; --load needs it"
-    result.add_argument("--metres", metavar="METRES", type=float, help=help_metres)
+    help_unit = "what the coordinates of the file are in; --load and lengths such as 1mm need it"
+    result.add_argument("--unit", choices=list(METRES), help=help_unit)
     help_layer = f"the foam on the array, for --load; the names are {', '.join(names_of(Layer))}"
     result.add_argument("--layer", metavar="NAME=VALUE,...", help=help_layer)
     add_up(result)
@@ -61,20 +68,41 @@ def parser(description: str) -> argparse.ArgumentParser:
 def parse_options(description: str, argv: list[str]) -> argparse.Namespace:
     """The options of a command line, checked; a position may begin with a minus."""
     options = parser(description).parse_args([f" {word}" if POINT.fullmatch(word) else word for word in argv])
-    check_array(options.cells, options.pitch)
-    if options.pitch >= 1 and max(options.cells) > 1:
-        raise ValueError(f"--pitch {options.pitch:g} is larger than the object, which is 1 unit across: try 0.01")
-    if options.depth is not None and not 0 < options.depth < float("inf"):
-        raise ValueError(f"--depth {options.depth:g}: give a positive number of units")
+    check_lengths(options)
     if options.seed < 0:
         raise ValueError(f"--seed {options.seed}: give 0 or more")
     _check_combination(options)
     _check_load(options)
+    options.metres = METRES.get(options.unit)
     options.skin = parse_skin(options.skin, options.seed)
     options.layer = Layer(**parse_values("--layer", Layer, options.layer))
     options.out = options.out or Path(f"{options.mesh.stem}_imprints")
     check_folder(options.out)
     return options
+
+
+def length(text: str) -> float:
+    """A number of units of the mesh, or Metres from a length such as 1mm, 0.5cm or 0.1in."""
+    unit = next((name for name in METRES if text.strip().endswith(name)), "")
+    number = float(text.strip().removesuffix(unit))
+    return Metres(number * METRES[unit]) if unit else number
+
+
+def lengths_in_units(options: argparse.Namespace, unit: float) -> None:
+    """Converts the lengths of the options in metres to units of the mesh, one of which is `unit` units of the file."""
+    for name in ("pitch", "depth"):
+        if isinstance(value := getattr(options, name), Metres):
+            setattr(options, name, float(value / (unit * options.metres)))
+    check_lengths(options)
+
+
+def check_lengths(options: argparse.Namespace) -> None:
+    """Raises ValueError for a pitch or a depth that is not positive, and for a pitch larger than the object."""
+    check_array(options.cells, options.pitch)
+    if not isinstance(options.pitch, Metres) and options.pitch >= 1 and max(options.cells) > 1:
+        raise ValueError(f"--pitch {options.pitch:g} is larger than the object, which is 1 unit across: try 0.01")
+    if options.depth is not None and not 0 < options.depth < float("inf"):
+        raise ValueError(f"--depth {options.depth:g}: give a positive length")
 
 
 def parse_skin(text: str | None, seed: int) -> Skin | None:
@@ -111,15 +139,17 @@ def check_folder(folder: Path) -> None:
 
 
 def _check_load(options):
-    """Raises ValueError for a load or a length that is not positive, and for options that --load alone uses."""
-    for name in ("load", "metres"):
-        value = getattr(options, name)
-        if value is not None and not 0 < value < float("inf"):
-            raise ValueError(f"--{name} {value:g}: give a positive number")
-    if options.load is None and (options.metres is not None or options.layer is not None):
-        raise ValueError("--metres and --layer apply to --load only")
-    if options.load is not None and options.metres is None:
-        raise ValueError("--load needs --metres: the length of a unit of the file, such as 0.001 for millimetres")
+    """Raises ValueError for a load that is not positive, a missing unit, and a unit or a layer without use."""
+    if options.load is not None and not 0 < options.load < float("inf"):
+        raise ValueError(f"--load {options.load:g}: give a positive number")
+    if options.load is None and options.layer is not None:
+        raise ValueError("--layer applies to --load only")
+    real = [f"--{name}" for name in ("pitch", "depth") if isinstance(getattr(options, name), Metres)]
+    real += ["--load"] if options.load is not None else []
+    if real and options.unit is None:
+        raise ValueError(f"{real[0]} needs --unit, what the file is in: {', '.join(METRES)}")
+    if options.unit is not None and not real:
+        raise ValueError("--unit applies to --load, and to a --pitch or --depth such as 1mm")
 
 
 def _check_combination(options):

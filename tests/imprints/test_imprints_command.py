@@ -169,7 +169,7 @@ def test_skin_and_depth_change_the_images_and_not_the_distances(touched):
 
 @pytest.mark.slow
 def test_a_load_is_shared_by_the_cells_in_newtons(touched):
-    options = "--at", 0, 50, "--load", 0.5, "--metres", 0.001, "--layer", "thickness=0.004,modulus=5e5"
+    options = "--at", 0, 50, "--load", 0.5, "--unit", "mm", "--layer", "thickness=0.004,modulus=5e5"
     arrays, table, said, _ = touched(*options)
     assert np.allclose(arrays["forces"].sum(axis=(1, 2)), 0.5) and arrays["forces"].shape == (2, 16, 16)
     area = (0.01 * arrays["unit"] * 0.001) ** 2
@@ -178,6 +178,19 @@ def test_a_load_is_shared_by_the_cells_in_newtons(touched):
     assert "load: 0.5 N a place" in said
     plain, _, _, _ = touched("--at", 0, 50)
     assert "forces" not in plain and np.array_equal(plain["images"], arrays["images"])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("unit", "pitch", "depth"), [("mm", "1mm", "0.05cm"), ("in", "1in", "0.5in"), ("m", "1m", "50cm")]
+)
+def test_lengths_are_those_of_the_object_in_its_unit(touched, file, unit, pitch, depth):
+    arrays, _, said, _ = touched("--at", 0, 50, "--unit", unit, "--pitch", pitch, "--depth", depth)
+    assert f"({1:.4g} in the file's units" in said
+    units = 1 / arrays["unit"]
+    plain, _, _, _ = touched("--at", 0, 50, "--pitch", units, "--depth", 0.5 * units)
+    assert np.allclose(arrays["distances"], plain["distances"], atol=1e-6)
+    assert np.allclose(arrays["images"], plain["images"], atol=1e-5)
 
 
 def test_a_default_folder_is_not_left_in_a_checkout(file):
@@ -275,12 +288,18 @@ def test_grid_is_as_large_as_it_can_be():
         (["--at", "0", "--skin", "blurr=1"], "'blurr' is unknown; write NAME=VALUE with one of blur"),
         (["--at", "0", "--skin", "blur"], "is not a number"),
         (["--at", "0", "--skin", "dead=2"], "dead must be"),
-        (["--at", "0", "--load", "0", "--metres", "1"], "--load 0: give a positive number"),
-        (["--at", "0", "--load", "nan", "--metres", "1"], "--load nan: give"),
-        (["--at", "0", "--load", "5"], "--load needs --metres"),
-        (["--at", "0", "--layer", "modulus=1"], "apply to --load only"),
-        (["--at", "0", "--load", "1", "--metres", "1", "--layer", "modulus=0"], "layer: modulus must be above 0"),
-        (["--at", "0", "--load", "9e9", "--metres", "0.001"], "--load 9e.09: touch 0 needs more than the layer's"),
+        (["--at", "0", "--load", "0", "--unit", "m"], "--load 0: give a positive number"),
+        (["--at", "0", "--load", "nan", "--unit", "m"], "--load nan: give"),
+        (["--at", "0", "--load", "5"], "--load needs --unit, what the file is in: mm, cm, in, m"),
+        (["--at", "0", "--layer", "modulus=1"], "--layer applies to --load only"),
+        (["--at", "0", "--unit", "mm"], "--unit applies to --load, and to a --pitch or --depth such as 1mm"),
+        (["--at", "0", "--pitch", "1mm"], "--pitch needs --unit"),
+        (["--at", "0", "--depth", "1mm"], "--depth needs --unit"),
+        (["--at", "0", "--pitch", "-1mm", "--unit", "mm"], "pitch must be"),
+        (["--at", "0", "--pitch", "9cm", "--unit", "mm"], "--pitch 1.5.* is larger than the object"),
+        (["--at", "0", "--depth", "0mm", "--unit", "mm"], "--depth 0: give a positive length"),
+        (["--at", "0", "--load", "1", "--unit", "m", "--layer", "modulus=0"], "layer: modulus must be above 0"),
+        (["--at", "0", "--load", "9e9", "--unit", "mm"], "--load 9e.09: touch 0 needs more than the layer's"),
     ],
 )
 def test_what_a_person_gets_wrong_is_named_with_its_remedy(options, words, file, tmp_path):
