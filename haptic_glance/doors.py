@@ -19,7 +19,7 @@ def takes_any_mesh(
 
     @wraps(function)
     def work(mesh: Any, *args: Others.args, **kwargs: Others.kwargs) -> Result:
-        prepared = isinstance(getattr(mesh, "mesh", None), Mesh)
-        return function(mesh if prepared else as_mesh(mesh), *args, **kwargs)
+        prepared: Any = mesh if isinstance(getattr(mesh, "mesh", None), Mesh) else as_mesh(mesh)
+        return function(prepared, *args, **kwargs)
 
     return work

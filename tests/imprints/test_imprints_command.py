@@ -295,7 +295,7 @@ def test_grid_is_as_large_as_it_can_be():
         (["--at", "0", "--unit", "mm"], "--unit applies to --load, and to a --pitch or --depth such as 1mm"),
         (["--at", "0", "--pitch", "1mm"], "--pitch needs --unit"),
         (["--at", "0", "--depth", "1mm"], "--depth needs --unit"),
-        (["--at", "0", "--pitch", "-1mm", "--unit", "mm"], "pitch must be"),
+        (["--at", "0", "--pitch=-1mm", "--unit", "mm"], "pitch must be"),
         (["--at", "0", "--pitch", "9cm", "--unit", "mm"], "--pitch 1.5.* is larger than the object"),
         (["--at", "0", "--depth", "0mm", "--unit", "mm"], "--depth 0: give a positive length"),
         (["--at", "0", "--load", "1", "--unit", "m", "--layer", "modulus=0"], "layer: modulus must be above 0"),
