@@ -132,6 +132,12 @@ def test_the_largest_mesh_is_named(bench, faces, said):
     assert f"The largest mesh has {said}" in notes[2]
 
 
+def test_rows_of_the_benchmark_as_it_was_are_said_to_be_older(bench):
+    older, newer = (table(bench(rows)).notes for rows in (benched(), benched().assign(metro_max=0.01)))
+    assert any("older than the code" in note for note in older) and not any("older" in note for note in newer)
+    assert any("has not seen" in note for note in newer) and not any("has not seen" in note for note in older)
+
+
 @pytest.mark.slow
 def test_infeasible_targets_are_no_refusals(bench):
     rows = benched()
