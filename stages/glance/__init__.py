@@ -4,7 +4,8 @@ The features describe height, what can be seen from where, relief and symmetry a
 them, learned from human gaze, gives the density of fixations. The cost does not depend on the number of faces.
 """
 
+from .draw import COUNT, samples_of_mesh, samples_of_points
 from .features import FEATURES, standardised
-from .samples import COUNT, Samples, samples_of_mesh, samples_of_points
+from .samples import Samples
 
 __all__ = ["COUNT", "FEATURES", "Samples", "samples_of_mesh", "samples_of_points", "standardised"]

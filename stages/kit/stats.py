@@ -1,14 +1,20 @@
 """The interval of a mean, for numbers that get compared."""
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy import stats
+
+Statistic = Callable[..., np.floating | np.ndarray]
 
 RESAMPLES = 2000  # the interval's own error is then below a tenth of its width
 ROUNDED = 1e-3  # of the largest value: differences of measurements with six digits are no more equal than this
 
 
-def interval(values: ArrayLike, shared: float = 0.0, seed: int = 0, level: float = 0.95) -> tuple[float, float, float]:
+def interval(
+    values: ArrayLike, shared: float = 0.0, seed: int = 0, level: float = 0.95, statistic: Statistic = np.mean
+) -> tuple[float, float, float]:
     """(mean, low, high): bootstrap percentile interval of the values (k,), NaN left out, widened twice about the mean.
 
     First by t(n - 1) / z * sqrt(n / (n - 1)), since the percentile interval (Efron and Tibshirani, An Introduction to
@@ -17,7 +23,8 @@ def interval(values: ArrayLike, shared: float = 0.0, seed: int = 0, level: float
     splits of the same data: without it an interval shrinks to nothing by splitting more often (Nadeau and Bengio,
     Inference for the generalization error, 2003). shared: test over training share of a split (stages.kit.split); 0 for
     values of independent items. Fewer than two values, or values without spread: no interval (NaN), since a resample of
-    equal values says nothing of how others would differ. Raises ValueError for values of another shape.
+    equal values says nothing of how others would differ. statistic: np.median, say, in the mean's place. Raises
+    ValueError for values of another shape.
     """
     values = np.asarray(values, dtype=np.float64)
     if values.ndim != 1:
@@ -26,12 +33,12 @@ def interval(values: ArrayLike, shared: float = 0.0, seed: int = 0, level: float
     n = len(values)
     if n == 0:
         return np.nan, np.nan, np.nan
-    mean = float(values.mean())
+    mean = float(statistic(values, axis=0))
     if n == 1 or np.ptp(values) <= ROUNDED * np.abs(values).max():
         return mean, np.nan, np.nan
     picks = np.random.default_rng(seed).integers(n, size=(RESAMPLES, n))
     tail = (1 + level) / 2
-    low, high = np.quantile(values[picks].mean(axis=1), [1 - tail, tail])
+    low, high = np.quantile(statistic(values[picks], axis=1), [1 - tail, tail])
     few = stats.t.ppf(tail, n - 1) / stats.norm.ppf(tail) * np.sqrt(n / (n - 1))
     widen = few * np.sqrt(1 + n * shared)
     return mean, float(mean - (mean - low) * widen), float(mean + (high - mean) * widen)

@@ -4,7 +4,9 @@ Reads data/SET/meshes and data/SET/weights. Writes data/SET/stability/NAME.npz (
 severity, for the picture) and reports/measurements/SET/stability.csv.gz: one row per object, method, perturbation,
 severity and metric.
 `repeatability`: share of the points found again within 2 % of the diagonal; `chance`: the same of random points;
-`drift`: one minus the correlation of the saliency; `points`: how many of the points pass the method's own threshold.
+`drift`: one minus the correlation of the saliency; `points`: how many of the points pass the method's own threshold;
+`nss` and `auc`: agreement of the saliency with people, read at the vertices of the undisturbed object, where the set
+knows what they looked at.
 Perturbation `none` is the object as it is. Seconds include an even share of the rendering and the maps that all methods
 share.
 
@@ -22,12 +24,13 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from stages.kit.command import workspace_of_arguments
-from stages.kit.files import read_mesh, write_arrays
+from stages.kit.files import read_arrays, read_mesh, write_arrays
 from stages.kit.run import Rows, StageRun
 from stages.kit.workspace import Workspace
 from stages.salient_points.methods import method_named, split_runnable
 from stages.salient_points.options import Options
 from stages.weights import read_learned_weights
+from stages.weights.agreement import GroundTruth
 
 from .perturbations import PERTURBATIONS
 from .schema import COLUMNS, Params
@@ -41,7 +44,8 @@ def process(name: str, folder: Path, data: Path, settings: Params, seed: int) ->
     mesh = read_mesh(data / "meshes" / f"{name}.npz")
     learned = read_learned_weights(data / "weights", name, mesh)
     methods, _ = split_runnable(settings.methods, learned)
-    subject = Subject(mesh, methods, Options(learned, seed=seed, name=name), settings.count, settings.size)
+    options = Options(learned, seed=seed, name=name)
+    subject = Subject(mesh, methods, options, settings.count, settings.size, truth_of(data, name))
     rows, cases = subject.unperturbed_rows(), []
     for perturbation in settings.perturbations:
         for severity in settings.severities[perturbation]:
@@ -55,6 +59,15 @@ def process(name: str, folder: Path, data: Path, settings: Params, seed: int) ->
                 cases.append((perturbation, severity, case))
     write_arrays(folder / f"{name}.npz", **worst_arrays(subject, cases))
     return rows + simplification_rows(mesh, name, seed) if name in settings.broken else rows
+
+
+def truth_of(data: Path, name: str) -> GroundTruth | None:
+    """What people looked at on an object, where the set knows it."""
+    path = data / "weights" / "ground_truth" / f"{name}.npz"
+    if not path.exists():
+        return None
+    known = read_arrays(path)
+    return GroundTruth(known["amounts"], known["density"], known["areas"])
 
 
 def check(settings: Params) -> None:

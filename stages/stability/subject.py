@@ -8,14 +8,17 @@ import numpy as np
 from stages.kit import Mesh, Stopwatch
 from stages.kit.rng import rng
 from stages.meshes import normalise
+from stages.meshes.orient import orient
 from stages.salient_points.methods import find_all, method_named
 from stages.salient_points.options import Detection, Options
+from stages.weights.agreement import METRICS, GroundTruth
 
 from .maps import maps_under_conditions
 from .measures import TOLERANCE, at_original_vertices, chance_repeatability, drift, repeatability
 from .perturbations import PERTURBATIONS, Conditions, Perturbed
 
 UNPERTURBED = "none"  # the perturbation in the rows of the unperturbed object
+AGREEMENT = "nss", "auc"  # with people, of the saliency on the object that they saw
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,10 +34,14 @@ class Subject:
     """An object and the methods tried on it; `unperturbed` are the Findings without a perturbation.
 
     mesh: normalised; options: its seed and name decide all random numbers; count: points per method; size: (rows,
-    columns) of the views.
+    columns) of the views; truth: what people looked at, where that is known.
     """
 
-    def __init__(self, mesh: Mesh, methods: Sequence[str], options: Options, count: int, size: Sequence[int]) -> None:
+    def __init__(
+        self, mesh: Mesh, methods: Sequence[str], options: Options, count: int, size: Sequence[int],
+        truth: GroundTruth | None = None,
+    ) -> None:  # fmt: skip
+        self.truth = truth
         self.mesh, self.methods, self.options, self.count, self.size = mesh, methods, options, count, tuple(size)
         self.channels = tuple(dict.fromkeys(name for method in methods for name in method_named(method).channels))
         self.unperturbed = self._findings(Perturbed(mesh, mesh.vertices, Conditions()), UNPERTURBED)
@@ -49,7 +56,7 @@ class Subject:
         what = f"{perturbation} {severity:g}"
         if changed.mesh.vertices is self.mesh.vertices and changed.mesh.faces is self.mesh.faces:
             return self._findings(changed, what, self._found_on_the_surface)
-        return self._findings(replace(changed, mesh=normalise(changed.mesh)), what)
+        return self._findings(replace(changed, mesh=normalise(orient(changed.mesh)[0])), what)
 
     @property
     def _found_on_the_surface(self):
@@ -73,14 +80,15 @@ class Subject:
         return Findings(perturbed, found, seconds)
 
     def unperturbed_rows(self) -> list[dict]:
-        """Rows of the unperturbed object: how many points each method has, and its seconds."""
+        """Rows of the unperturbed object: how many points each method has, its agreement with people, its seconds."""
         return [
-            self._row(method, UNPERTURBED, None, "points", found.strong, self.unperturbed.seconds[method])
+            self._row(method, UNPERTURBED, None, *item, self.unperturbed.seconds[method])
             for method, found in self.unperturbed.found.items()
+            for item in ({"points": found.strong} | self._agreement(found.saliency)).items()
         ]
 
     def rows(self, perturbation: str, severity: float, case: Findings) -> list[dict]:
-        """Rows of Findings: repeatability, chance (of as many random points), drift where there is a map, points."""
+        """Rows of Findings: repeatability, chance (of as many random points), points; of a map drift and agreement."""
         rows = []
         for method, found in case.found.items():
             before = self.mesh.vertices[self.unperturbed.found[method].points]
@@ -94,10 +102,15 @@ class Subject:
             saliency = self.unperturbed.found[method].saliency
             if saliency is not None and found.saliency is not None:
                 back = at_original_vertices(self.mesh, case.perturbed, found.saliency)
-                values["drift"] = drift(saliency, back, self.mesh.vertex_areas)
+                values |= {"drift": drift(saliency, back, self.mesh.vertex_areas)} | self._agreement(back)
             seconds = case.seconds[method]
             rows += [self._row(method, perturbation, severity, *item, seconds) for item in values.items()]
         return rows
+
+    def _agreement(self, saliency):
+        if self.truth is None or saliency is None:
+            return {}
+        return {name: METRICS[name](saliency, self.truth) for name in AGREEMENT}
 
     def failed_rows(self, perturbation: str, severity: float, why: str) -> list[dict]:
         """One row per method with the reason why there are no Findings."""

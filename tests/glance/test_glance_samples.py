@@ -5,6 +5,7 @@ import pytest
 import trimesh
 
 from stages.glance import COUNT, Samples, samples_of_mesh, samples_of_points
+from stages.glance.denoise import denoised
 from stages.kit import Mesh
 from stages.kit.mesh import unit
 from stages.kit.rng import rng
@@ -106,3 +107,17 @@ def test_nothing_to_look_at_is_an_error():
         samples_of_mesh(Mesh(np.zeros((3, 3)), np.array([[0, 1, 2]])))
     with pytest.raises(ValueError, match="different places"):
         samples_of_points(np.zeros((9, 3)), np.tile([0.0, 0, 1], (9, 1)))
+
+
+def test_noise_does_not_shrink_what_is_curved():
+    """An average over the neighbours would move the middle of the radii inwards."""
+    mesh = as_mesh(trimesh.creation.torus(0.4, 0.1, 256, 128))
+    noisy = mesh.vertices + rng(0, "noise").normal(0, 0.005, mesh.vertices.shape)
+    samples = samples_of_mesh(Mesh(noisy, mesh.faces))
+    thickness = np.hypot(np.linalg.norm(samples.points[:, :2], axis=1) - 0.4, samples.points[:, 2])
+    assert np.median(thickness) == pytest.approx(0.1, abs=0.001)
+    assert thickness.std() < 0.0025
+
+
+def test_a_clean_surface_is_left_as_it_is(ball):
+    assert denoised(ball) is ball

@@ -1,9 +1,10 @@
 """Where methods break: under which perturbation, and how much of it; and where the time went."""
 
-from . import claims, growth, kernels, points, simplification, time_spent, touch, touch_imprints, transfer
+from . import claims, growth, kernels, people, points, simplification, time_spent, touch, touch_imprints, transfer
 
 TABLES = {
     "stability": points.table,
+    "stability_people": people.table,
     "stability_simplification": simplification.table,
     "touch_stability": touch.table,
     "transfer_stability": transfer.table,

@@ -1,0 +1,63 @@
+"""What disturbances cost on the objects that people looked at: points found again, agreement with gaze."""
+
+import numpy as np
+import pandas as pd
+
+from stages.kit.stats import interval
+from stages.report.grid import grouped
+from stages.report.items import Table
+from stages.report.markdown import signed, with_interval
+from stages.report.results import Results, some
+from stages.report.style import label
+from stages.stability import PERTURBATIONS
+
+STAGE = "stability"
+SETS = "gaze", "gaze_clouds"
+UNPERTURBED = "none"
+POINTS = 30  # conf/config.yaml: stability.count
+
+
+def table(results: Results) -> Table:
+    """A row a disturbance: per method the share of points found again, and the NSS and AUC that are lost."""
+    sets = some([name for name in SETS if name in results.datasets(STAGE)], "no objects with gaze", STAGE)
+    rows = pd.concat([results.measured(STAGE, name) for name in sets])
+    plain = rows.loc[rows["perturbation"] == UNPERTURBED].set_index(["item", "method", "metric"])["value"]
+    rows = rows.loc[rows["perturbation"] != UNPERTURBED]
+    frame = pd.DataFrame([
+        dict(zip(("perturbation", "severity", "method"), key, strict=True)) | _cell(case, plain)
+        for key, case in grouped(rows, ["perturbation", "severity", "method"])
+    ])  # fmt: skip
+    methods = list(dict.fromkeys(frame["method"]))
+    shown = pd.DataFrame([_line(key, case, methods) for key, case in grouped(frame, ["perturbation", "severity"])])
+    start = plain.xs("nss", level="metric").groupby("method").mean()
+    items = {name: results.rows(STAGE, name)["item"].nunique() for name in sets}
+    words = {
+        "count": sum(items.values()), "meshes": items.get("gaze", 0), "clouds": items.get("gaze_clouds", 0),
+        "undisturbed": ", ".join(f"{start[name]:.2f} ({label(name)})" for name in methods), "points": POINTS,
+        "not_run": "\n".join(filter(None, (results.left_out(STAGE, name) for name in sets))),
+    }  # fmt: skip
+    return Table(frame, shown, words)
+
+
+def _cell(case, plain):
+    """The numbers of one method under one disturbance: rows with item, method, metric, value."""
+    wide = case.pivot(index="item", columns="metric", values="value")
+    method = case["method"].iloc[0]
+    again = np.clip(interval(wide["repeatability"], statistic=np.median), 0, 1)
+    found = dict(zip(("again", "again_low", "again_high"), again, strict=True)) | {"chance": wide["chance"].mean()}
+    for metric in ("nss", "auc"):
+        lost = wide[metric] - plain.xs((method, metric), level=("method", "metric")).reindex(wide.index)
+        found |= dict(zip((metric, f"{metric}_low", f"{metric}_high"), interval(lost), strict=True))
+    return found | {"objects": len(wide)}
+
+
+def _line(key, case, methods):
+    perturbation, severity = key
+    case = case.set_index("method")
+    again = case[["again", "again_low", "again_high"]]
+    return {
+        "disturbance": label(perturbation), "severity": f"{severity:g} {PERTURBATIONS[perturbation].unit}",
+        **{f"{label(name)}, %": with_interval(*again.loc[name], scale=100, places=0) for name in methods},
+        "chance, %": f"{100 * case['chance'].mean():.0f}",
+        **{f"{label(name)}, NSS": signed(*case.loc[name, ["nss", "nss_low", "nss_high"]]) for name in methods},
+    }  # fmt: skip
