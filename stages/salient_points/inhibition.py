@@ -2,7 +2,6 @@
 
 import numpy as np
 
-SHARPNESS = 2  # power of the values: the higher, the less what lies between two peaks counts
 FADING = 0.5  # deviation of the inhibition, in radii
 
 
@@ -16,11 +15,11 @@ def visited(
     on its own slope, not on the rim of a disc cut out, which noise moves. Stops at `count`, or where what is left falls
     to the value `floor`.
     """
-    left = np.maximum(values, 0.0) ** SHARPNESS
+    left = np.maximum(values, 0.0)
     found = []
     while len(found) != count and len(left):
         best = int(left.argmax())
-        if left[best] <= floor**SHARPNESS:
+        if left[best] <= floor:
             break
         found.append(best)
         away = ((points - points[best]) ** 2).sum(axis=1) / radius**2
