@@ -16,6 +16,9 @@ LOCATORS = f"{__name__}.ByContent,InTreeCacheLocator,UserWideCacheLocator"
 # take a twentieth of the time to compile.
 OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 inlined = numba.njit(inline="always", error_model="numpy")  # where a call costs as much as what it does
+# For what kernels alone call: inlined as late as machine code, so that it is typed once for all its callers, and
+# without an entry for callers in Python. Neither is it kept: the kernels that call it are.
+helper = numba.njit(forceinline=True, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
 
 
 def kept_in(file: str) -> Path:
