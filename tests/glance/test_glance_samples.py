@@ -109,14 +109,25 @@ def test_nothing_to_look_at_is_an_error():
         samples_of_points(np.zeros((9, 3)), np.tile([0.0, 0, 1], (9, 1)))
 
 
+def noisy(mesh: Mesh) -> Samples:
+    moved = mesh.vertices + rng(0, "noise").normal(0, 0.005, mesh.vertices.shape)
+    return samples_of_mesh(Mesh(moved, mesh.faces))
+
+
 def test_noise_does_not_shrink_what_is_curved():
     """An average over the neighbours would move the middle of the radii inwards."""
-    mesh = as_mesh(trimesh.creation.torus(0.4, 0.1, 256, 128))
-    noisy = mesh.vertices + rng(0, "noise").normal(0, 0.005, mesh.vertices.shape)
-    samples = samples_of_mesh(Mesh(noisy, mesh.faces))
-    thickness = np.hypot(np.linalg.norm(samples.points[:, :2], axis=1) - 0.4, samples.points[:, 2])
+    samples = noisy(as_mesh(trimesh.creation.torus(0.4, 0.1, 256, 128)))
+    circle = unit(samples.points * [1, 1, 0]) * 0.4
+    thickness = np.linalg.norm(samples.points - circle, axis=1)
     assert np.median(thickness) == pytest.approx(0.1, abs=0.001)
     assert thickness.std() < 0.0025
+    assert np.einsum("ij,ij->i", unit(samples.points - circle), samples.normals).mean() > 0.965
+
+
+def test_noise_does_not_join_the_sides_of_a_thin_plate():
+    samples = noisy(as_mesh(trimesh.creation.box((0.7, 0.7, 0.02)).subdivide_to_size(0.008)))
+    inner = np.abs(samples.points[:, :2]).max(axis=1) < 0.3
+    assert np.median(np.abs(samples.points[inner, 2])) == pytest.approx(0.01, rel=0.1)
 
 
 def test_a_clean_surface_is_left_as_it_is(ball):
