@@ -21,9 +21,10 @@ inlined = numba.njit(inline="always", error_model="numpy")  # where a call costs
 # For what kernels alone call, and what makes no array: inlined as late as machine code, so that it is typed once for
 # all its callers, without an entry for callers in Python, and without counts of references (_nrt). It is not kept, as
 # the kernels that call it are.
-helper = numba.njit(
-    forceinline=True, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False
-)  # fmt: skip
+HELPER: dict[str, Any] = {
+    "forceinline": True, "error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True, "_nrt": False,
+}  # fmt: skip
+helper = numba.njit(**HELPER)
 
 
 class NoGarbageCollection(event.Listener):
