@@ -8,13 +8,16 @@ from scipy.sparse.csgraph import connected_components
 
 from stages.kit import Mesh
 
+EVEN = 1 / 3  # share of flipped faces above which the majority says nothing of the side
+
 
 def orient(mesh: Mesh) -> tuple[Mesh, list[str]]:
     """The mesh with neighbours wound alike and closed parts facing outwards, and notes: (Mesh, list of str).
 
     Only the vertex order within faces changes. The virtual sensor distinguishes inside from outside by face normals,
     so an inverted mesh would seem empty to it. A part is a set of faces connected by edges that exactly two faces
-    share. In each part the minority of faces is flipped; a part that cannot be oriented (a Moebius strip) stays. A
+    share. In each part the minority of faces is flipped; a part that cannot be oriented (a Moebius strip) stays. Where
+    the minority is no clear one and the part is open, its faces look away from its middle, as most of a scan's do. A
     closed part of negative volume is flipped with all parts inside its bounding box. One that lies inside the box of
     another closed part stays, since it may be the wall of a cavity.
     """
@@ -22,7 +25,7 @@ def orient(mesh: Mesh) -> tuple[Mesh, list[str]]:
     flips = _minority_faces(len(mesh.faces), first, second, alike)
     turned = flips.sum()
     mesh = _flipped(mesh, flips)
-    inverted = _inverted(mesh, first, second, closed_edges)
+    inverted = _inverted(mesh, first, second, closed_edges, flips)
     notes = [f"{turned} faces turned to agree with their neighbours"] if turned else []
     notes += [f"{inverted.sum()} faces turned outwards"] if inverted.any() else []
     return _flipped(mesh, inverted), notes
@@ -62,21 +65,22 @@ def _minority_faces(count, first, second, alike):
     return (kept[as_is] < kept[turned]) | ((kept[as_is] == kept[turned]) & (as_is > turned))
 
 
-def _inverted(mesh, first, second, closed_edges):
-    """(m,) boolean: the faces of closed parts that face inwards."""
+def _inverted(mesh, first, second, closed_edges, flips):
+    """(m,) boolean: the faces of parts that face inwards, if these are closed or nearly as many were flipped as not."""
     count = len(mesh.faces)
     graph = sparse.coo_matrix((np.ones(len(first)), (first, second)), shape=(count, count))
     parts, part = connected_components(graph, directed=False)
-    closed = np.bincount(part, weights=closed_edges, minlength=parts) == np.bincount(part, minlength=parts)
+    sizes = np.bincount(part, minlength=parts)
+    closed = np.bincount(part, weights=closed_edges, minlength=parts) == sizes
+    turn = _undecided(mesh, part, ~closed & (np.bincount(part, weights=flips, minlength=parts) > EVEN * sizes))
     corners = mesh.vertices[mesh.faces] - mesh.vertices.mean(axis=0)
     volume = np.bincount(part, weights=np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])))
     inside_out = np.flatnonzero(closed & (volume < 0))
     if not len(inside_out):  # nearly always: boxes take a third of the time
-        return np.zeros(count, dtype=bool)
+        return turn[part]
     low, high = np.full((parts, 3), np.inf), np.full((parts, 3), -np.inf)
     np.minimum.at(low, part, corners.min(axis=1))
     np.maximum.at(high, part, corners.max(axis=1))
-    turn = np.zeros(parts, dtype=bool)
     for shell in inside_out:
         within = closed & (low > low[shell]).all(axis=1) & (high < high[shell]).all(axis=1)
         around = closed & (low < low[shell]).all(axis=1) & (high > high[shell]).all(axis=1)
@@ -84,6 +88,17 @@ def _inverted(mesh, first, second, closed_edges):
             turn |= within
             turn[shell] = True
     return turn[part]
+
+
+def _undecided(mesh, part, asked):
+    """(parts,) boolean: those of the parts asked about whose faces look towards the part's middle."""
+    if not asked.any():
+        return np.zeros(len(asked), dtype=bool)
+    middles, areas = mesh.vertices[mesh.faces].mean(axis=1), mesh.face_areas
+    total = np.maximum(np.bincount(part, weights=areas, minlength=len(asked)), 1e-300)
+    centres = [np.bincount(part, weights=areas * one, minlength=len(asked)) / total for one in middles.T]
+    outwards = np.einsum("ij,ij->i", middles - np.stack(centres, axis=1)[part], mesh.face_crosses)
+    return asked & (np.bincount(part, weights=outwards, minlength=len(asked)) < 0)
 
 
 def _flipped(mesh, flips):

@@ -52,6 +52,31 @@ def test_an_open_sheet_follows_its_majority():
     assert notes == ["3 faces turned to agree with their neighbours"]
 
 
+def bowl():
+    """Most of a sphere, open above, away from the origin."""
+    ball = trimesh.creation.icosphere(3)
+    return Mesh(ball.vertices + [3.0, 0, 0], ball.faces[ball.triangles_center[:, 2] < 0.6])
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_an_open_part_without_a_majority_looks_away_from_its_middle(seed):
+    """As it is after half of the faces were turned at random."""
+    mesh = bowl()
+    turned = np.random.default_rng(seed).random(len(mesh.faces)) < 0.5
+    faces = np.where(turned[:, None], mesh.faces[:, ::-1], mesh.faces)
+    found = orient(Mesh(mesh.vertices, faces))[0]
+    assert np.einsum("ij,ij->i", found.face_normals, mesh.face_normals).min() > 0.99
+
+
+def test_an_open_part_with_a_majority_stays_on_its_side():
+    """The inside of a bowl, with a few faces astray, is still the inside."""
+    mesh = bowl()
+    faces = mesh.faces[:, ::-1].copy()
+    faces[:9] = faces[:9, ::-1]
+    found = orient(Mesh(mesh.vertices, faces))[0]
+    assert np.einsum("ij,ij->i", found.face_normals, mesh.face_normals).max() < -0.99
+
+
 def test_a_cavity_keeps_facing_inwards():
     hollow = joined((BALL.vertices, BALL.faces), (BALL.vertices / 2, BALL.faces[:, ::-1]))
     mesh, notes = orient(hollow)
