@@ -6,6 +6,7 @@ import numpy as np
 
 from stages.kit import Mesh
 
+from .attribute_quadrics import Attributes, attribute_quadrics
 from .feasibility import InfeasibleTarget, SimplifyError
 from .kernels import HalfEdgeMesh, compact, decimate, fans, opposites, refit, vertex_quadrics
 from .topology import NONE, faults
@@ -23,19 +24,21 @@ SAMPLES = 6  # target points of the fit per remaining vertex
 
 
 def collapse(
-    mesh: Mesh, faces: int, frozen: np.ndarray, weights: np.ndarray | None = None, fit_below: float = FIT_BELOW
-) -> Mesh:
+    mesh: Mesh, faces: int, frozen: np.ndarray, weights: np.ndarray | None = None, attributes: Attributes = (),
+    fit_below: float = FIT_BELOW,
+) -> Mesh:  # fmt: skip
     """A sound Mesh of at most `faces` faces, without colours.
 
     frozen (m,) boolean: faces that are preserved bit for bit, as is the boundary. weights (n,) f8: factor of each
-    vertex's quadric, and its weight in the fit; None for 1. fit_below: the share of the faces left below which the
+    vertex's quadric, and its weight in the fit; None for 1. attributes: (name, weight) of those that the error
+    counts. fit_below: the share of the faces left below which the
     vertices are fitted; 0 is Garland and Heckbert's QSlim.
     Raises InfeasibleTarget when no collapse is left above the target, SimplifyError when every attempt is faulty.
     """
     before, reason, least = None, "", len(mesh.faces)
     waiting = [(*limits, FOLD) for limits in ATTEMPTS]
     while waiting:
-        found, left = _attempt(mesh, faces, frozen, weights, fit_below, *waiting.pop(0))
+        found, left = _attempt(mesh, faces, frozen, weights, attributes, fit_below, *waiting.pop(0))
         after = faults(found)
         if left <= faces and after == NONE:
             return found
@@ -54,15 +57,20 @@ def collapse(
     raise SimplifyError(f"{faces} faces leave {reason}: ask for more faces")
 
 
-def _attempt(mesh, faces, frozen, weights, fit_below, turn, shape, fold):
+def _attempt(mesh, faces, frozen, weights, attributes, fit_below, turn, shape, fold):
     surface, source, (middle, size) = _half_edge_mesh(mesh, frozen, weights)
     points, corner = surface.position.copy(), surface.corner.copy()
     weight = (
         surface.quadric[:, 0] + surface.quadric[:, 3] + surface.quadric[:, 5]
     )  # area around each vertex, times its weight
-    left = decimate(surface, faces, turn, shape, fold)
+    wedges = None
+    if attributes:
+        factor = np.ones(len(source)) if weights is None else weights[source]
+        added, wedges = attribute_quadrics(mesh, attributes, points, corner, surface.opposite, factor)
+        np.add(surface.quadric, added, out=surface.quadric)
+    left = decimate(surface, wedges, faces, turn, shape, fold)
     if left > faces:
-        left = decimate(surface, faces, *LAST, fold)
+        left = decimate(surface, wedges, faces, *LAST, fold)
     if left < fit_below * len(mesh.faces):
         refit(surface, points, corner, weight, SAMPLES * left // 2, fold)
     kept, used = compact(surface.corner, surface.locked, source, len(mesh.vertices))

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from .attributes import Wedges, attribute_cost, merge_wedges
 from .checks import may_collapse
 from .corners import after
 from .jit import kernel
@@ -14,9 +15,12 @@ GROWN = 16.0  # until the current cost has grown so many times
 
 
 @kernel
-def decimate(surface: HalfEdgeMesh, faces: int, turn: float, shape: float, fold: float) -> int:
+def decimate(
+    surface: HalfEdgeMesh, wedges: Wedges | None, faces: int, turn: float, shape: float, fold: float
+) -> int:
     """Collapses edges of the surface until `faces` are left or none may collapse; returns the face count.
 
+    wedges: those of the attributes that the quadrics hold; numba compiles what deals with them only where they are.
     turn, shape, fold: the limits of `check_move`. The cost in the queue is a lower bound, since quadrics only grow: an
     edge whose cost has risen is put back when its turn comes. So is a refused one, further back, and then slivers a
     tenth as wide are allowed: slivers on a flat region are better than a cut-off corner.
@@ -31,9 +35,11 @@ def decimate(surface: HalfEdgeMesh, faces: int, turn: float, shape: float, fold:
     for h in range(len(corner)):
         left += corner[h] >= 0
         if opposite[h] > h and corner[h] >= 0:
-            _offer(corner, opposite, locked, position, quadric, head, following, lowest, h)
+            _offer(surface, wedges, head, following, lowest, h)
     left //= 3
     area = quadric[:, 0].sum() + quadric[:, 3].sum() + quadric[:, 5].sum()
+    if wedges is not None:
+        area = wedges.sums[:, 0].sum()
     level = 0.0
     while left > faces:
         h, bucket = pop(head, following, lowest)
@@ -41,7 +47,7 @@ def decimate(surface: HalfEdgeMesh, faces: int, turn: float, shape: float, fold:
             break
         if corner[h] < 0 or (locked[corner[h]] and locked[corner[after(h)]]):
             continue
-        cost, x, y, z = _cost(corner, locked, position, quadric, h)
+        cost, x, y, z = _cost(surface, wedges, h)
         now = bucket_of(cost)
         if now > bucket:
             push(head, following, lowest, h, now)
@@ -51,10 +57,12 @@ def decimate(surface: HalfEdgeMesh, faces: int, turn: float, shape: float, fold:
         cut, least = np.sqrt(level * left / area), shape * 0.1**refused
         limits = turn, least, fold, cut
         if may_collapse(corner, opposite, start, locked, position, mark, last, h, x, y, z, *limits):
+            if wedges is not None:
+                merge_wedges(surface, wedges, h)
             one, two = collapse_edge(corner, opposite, start, boundary, locked, position, quadric, parent, h, x, y, z)
             for g in (one, two):
                 if g >= 0 and not (is_queued(following, g) or (opposite[g] >= 0 and is_queued(following, opposite[g]))):
-                    _offer(corner, opposite, locked, position, quadric, head, following, lowest, g)
+                    _offer(surface, wedges, head, following, lowest, g)
             left -= 2
         elif bucket + LATER < BUCKETS:
             push(head, following, lowest, h, bucket + LATER)
@@ -62,17 +70,21 @@ def decimate(surface: HalfEdgeMesh, faces: int, turn: float, shape: float, fold:
 
 
 @kernel
-def _offer(corner, opposite, locked, position, quadric, head, following, lowest, h):
-    if opposite[h] >= 0 and not (locked[corner[h]] and locked[corner[after(h)]]):
-        cost = _cost(corner, locked, position, quadric, h)[0]
-        push(head, following, lowest, h, bucket_of(cost))
+def _offer(surface, wedges, head, following, lowest, h):
+    corner, locked = surface.corner, surface.locked
+    if surface.opposite[h] >= 0 and not (locked[corner[h]] and locked[corner[after(h)]]):
+        push(head, following, lowest, h, bucket_of(_cost(surface, wedges, h)[0]))
 
 
 @kernel
-def _cost(corner, locked, position, quadric, h):
-    i, j = corner[h], corner[after(h)]
-    if locked[i] or locked[j]:
-        v = i if locked[i] else j
-        x, y, z = position[v, 0], position[v, 1], position[v, 2]
-        return error_at(quadric, i, j, x, y, z), x, y, z
-    return best_place(quadric, position, i, j)
+def _cost(surface, wedges, h):
+    i, j = surface.corner[h], surface.corner[after(h)]
+    held = i if surface.locked[i] else j
+    free = not surface.locked[held]
+    if wedges is not None:
+        return attribute_cost(surface, wedges, h, i, j, np.int32(-1) if free else held)
+    position, quadric = surface.position, surface.quadric
+    if free:
+        return best_place(quadric, position, i, j)
+    x, y, z = position[held, 0], position[held, 1], position[held, 2]
+    return error_at(quadric, i, j, x, y, z), x, y, z
