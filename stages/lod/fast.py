@@ -9,6 +9,7 @@ from stages.kit import Mesh
 from .attribute_quadrics import Attributes, attribute_quadrics
 from .feasibility import InfeasibleTarget, SimplifyError
 from .kernels import HalfEdgeMesh, compact, decimate, fans, opposites, refit, vertex_quadrics
+from .merged_attributes import at_jumps, merged_colors
 from .topology import NONE, faults
 
 # (least cosine by which a collapse may turn a face, least quality of a face after it), tried in this order until the
@@ -27,12 +28,11 @@ def collapse(
     mesh: Mesh, faces: int, frozen: np.ndarray, weights: np.ndarray | None = None, attributes: Attributes = (),
     fit_below: float = FIT_BELOW,
 ) -> Mesh:  # fmt: skip
-    """A sound Mesh of at most `faces` faces, without colours.
+    """A sound Mesh of at most `faces` faces, without colours but where the error counts them.
 
     frozen (m,) boolean: faces that are preserved bit for bit, as is the boundary. weights (n,) f8: factor of each
     vertex's quadric, and its weight in the fit; None for 1. attributes: (name, weight) of those that the error
-    counts. fit_below: the share of the faces left below which the
-    vertices are fitted; 0 is Garland and Heckbert's QSlim.
+    counts. fit_below: the share of the faces left below which the vertices are fitted; 0 is Garland and Heckbert's QSlim.
     Raises InfeasibleTarget when no collapse is left above the target, SimplifyError when every attempt is faulty.
     """
     before, reason, least = None, "", len(mesh.faces)
@@ -63,21 +63,30 @@ def _attempt(mesh, faces, frozen, weights, attributes, fit_below, turn, shape, f
     weight = (
         surface.quadric[:, 0] + surface.quadric[:, 3] + surface.quadric[:, 5]
     )  # area around each vertex, times its weight
-    wedges = None
-    if attributes:
-        factor = np.ones(len(source)) if weights is None else weights[source]
-        added, wedges = attribute_quadrics(mesh, attributes, points, corner, surface.opposite, factor)
-        np.add(surface.quadric, added, out=surface.quadric)
+    wedges = _count_attributes(mesh, attributes, weights, surface, source) if attributes else None
     left = decimate(surface, wedges, faces, turn, shape, fold)
     if left > faces:
         left = decimate(surface, wedges, faces, *LAST, fold)
     if left < fit_below * len(mesh.faces):
-        refit(surface, points, corner, weight, SAMPLES * left // 2, fold)
+        fitted = surface if wedges is None else surface._replace(locked=surface.locked | at_jumps(surface, wedges))
+        refit(fitted, points, corner, weight, SAMPLES * left // 2, fold)
     kept, used = compact(surface.corner, surface.locked, source, len(mesh.vertices))
     vertices = surface.position[used] * size + middle
     locked = surface.locked[used]
     vertices[locked] = mesh.vertices[source[used[locked]]]
-    return Mesh(vertices, kept.reshape(-1, 3)), left
+    colors = None
+    if wedges is not None and "colors" in dict(attributes):
+        colors = merged_colors(surface, wedges, dict(attributes)["colors"])[used]
+        colors[locked] = mesh.colors[source[used[locked]]]
+    return Mesh(vertices, kept.reshape(-1, 3), colors), left
+
+
+def _count_attributes(mesh, attributes, weights, surface, source):
+    """The Wedges of a surface, to whose quadrics the attributes are added."""
+    factor = np.ones(len(source)) if weights is None else weights[source]
+    added, wedges = attribute_quadrics(mesh, attributes, surface.position, surface.corner, surface.opposite, factor)
+    np.add(surface.quadric, added, out=surface.quadric)
+    return wedges
 
 
 def _half_edge_mesh(mesh, frozen, weights):
