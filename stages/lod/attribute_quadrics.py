@@ -14,7 +14,7 @@ from .kernels import Wedges, fans
 Attributes = tuple[tuple[str, float], ...]  # (name, weight) of those that the error counts
 
 NAMES = ("colors", "normals", "uv")
-CREASE = 0.7  # cosine between faces below which their edge is shaded as a sharp one: 45 degrees
+ROWS, COLUMNS = [0, 0, 0, 1, 1, 2, 0, 1, 2, 3], [0, 1, 2, 1, 2, 2, 3, 3, 3, 3]  # of a quadric: A, b, c
 SLIVER = 1e-6  # height over length of a face, below which its gradient is rounding
 
 
@@ -47,13 +47,11 @@ def attribute_quadrics(
     weights = dict(attributes)
     points = position[corner].reshape(-1, 3, 3)
     seam = _seams(mesh, opposite) if "uv" in weights else np.zeros(len(corner), dtype=bool)
-    cut = np.where(seam | (_creases(points, opposite) if "normals" in weights else False), -1, opposite)
-    wedge = fans(corner, cut.astype(np.int32))[0]
-    predicted, area = _predictions(points, _values(mesh, weights, wedge, points))
+    wedge = fans(corner, np.where(seam, np.int32(-1), opposite))[0]
+    predicted, area = _predictions(points, _values(mesh, weights))
     area = np.repeat(area / 3, 3) * factor[corner]
-    squares = np.einsum("fka,fkb->fab", predicted, predicted)[:, *np.triu_indices(4)]
-    order = [0, 1, 2, 4, 5, 7, 3, 6, 8, 9]  # A (xx, xy, xz, yy, yz, zz), b, c
-    quadric = _summed(corner, len(position), area, squares[:, order])
+    squares = np.einsum("fka,fkb->fab", predicted, predicted)[:, ROWS, COLUMNS]
+    quadric = _summed(corner, len(position), area, squares)
     quadric += _seam_quadrics(points, corner, seam, weights.get("uv", 0.0), factor)
     count = int(wedge.max()) + 1
     means = _summed(wedge, count + 1, area, predicted.reshape(len(predicted), -1))
@@ -72,25 +70,13 @@ def _seams(mesh, opposite):
     return (opposite >= 0) & ((off > SAME) | (image != image[opposite]))
 
 
-def _creases(points, opposite):
-    """(3 m,) boolean: half-edges at which the surface turns by more than CREASE says."""
-    normals = np.repeat(unit(_crosses(points)), 3, axis=0)
-    return np.einsum("ij,ij->i", normals, normals[opposite]) < CREASE
-
-
-def _crosses(points):
-    return np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0])
-
-
-def _values(mesh, weights, wedge, points):
+def _values(mesh, weights):
     """(m, 3, k): the attributes at the corners of the faces, times their weights."""
     found = []
     if "colors" in weights:
         found += [weights["colors"] / 255 * mesh.colors[mesh.faces].astype(np.float64)]
     if "normals" in weights:
-        crosses = np.repeat(_crosses(points), 3, axis=0)
-        normals = np.stack([np.bincount(wedge, each) for each in crosses.T], axis=1)
-        found += [weights["normals"] * unit(normals)[wedge].reshape(-1, 3, 3)]
+        found += [weights["normals"] * mesh.vertex_normals[mesh.faces]]
     if "uv" in weights:
         found += [weights["uv"] * mesh.texture.uv]
     return np.concatenate(found, axis=2)
@@ -112,7 +98,7 @@ def _predictions(points, values):
 
 
 def _summed(owner, count, area, rows):
-    """(count, c): rows (m, c) of the faces times the area (3 m,) of each of their corners, summed by its owner (3 m,)."""
+    """(count, c): rows (m, c) of the faces, times the area (3 m,) of each corner, summed by its owner (3 m,)."""
     face = np.arange(len(owner)) // 3
     return sparse.csr_matrix((area, (owner, face)), shape=(count, len(rows))) @ rows
 
@@ -121,11 +107,10 @@ def _seam_quadrics(points, corner, seam, weight, factor):
     """(n, 10): the squared distances to the planes through the edges of the seams, upright on their faces."""
     own = np.flatnonzero(seam)
     tail, head = points.reshape(-1, 3)[own], np.roll(points, -1, axis=1).reshape(-1, 3)[own]
-    across = unit(np.cross(head - tail, _crosses(points)[own // 3]))
+    a, b, c = points[own // 3].transpose(1, 0, 2)
+    across = unit(np.cross(head - tail, np.cross(b - a, c - a)))
     plane = np.column_stack([across, -np.einsum("ij,ij->i", across, tail)])
-    a, b = np.triu_indices(4)
-    order = [0, 1, 2, 4, 5, 7, 3, 6, 8, 9]
-    rows = (weight**2 / 2 * plane[:, a] * plane[:, b])[:, order]
+    rows = weight**2 / 2 * plane[:, ROWS] * plane[:, COLUMNS]
     ends = np.concatenate([corner[own], np.roll(corner.reshape(-1, 3), -1, axis=1).ravel()[own]])
     rows = np.concatenate([rows, rows]) * factor[ends, None]
     return np.stack([np.bincount(ends, column, len(factor)) for column in rows.T], axis=1)

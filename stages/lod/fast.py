@@ -32,7 +32,8 @@ def collapse(
 
     frozen (m,) boolean: faces that are preserved bit for bit, as is the boundary. weights (n,) f8: factor of each
     vertex's quadric, and its weight in the fit; None for 1. attributes: (name, weight) of those that the error
-    counts. fit_below: the share of the faces left below which the vertices are fitted; 0 is Garland and Heckbert's QSlim.
+    counts. fit_below: the share of the faces left below which the vertices are fitted; 0 is Garland and Heckbert's
+    QSlim.
     Raises InfeasibleTarget when no collapse is left above the target, SimplifyError when every attempt is faulty.
     """
     before, reason, least = None, "", len(mesh.faces)

@@ -50,12 +50,12 @@ def simplify(
     not). None or empty: plain QEM. rings: one number, or (k,) per kept vertex, as from `neighbourhoods` (0: the faces
     that touch it; -1: not kept). shrink: where the target is too low for them, keep smaller neighbourhoods, the least
     salient first (`shrunk_rings`). weights: (n,) f8 in 0..1, for example a saliency: the error has a higher weight
-    where it is high (`quadric_weights`). attributes: weights of `colors`, `normals` and `uv` (texture coordinates) in the
-    error, for example {"colors": 1.0, "normals": 0.5}: with a weight of 1, colours that differ as black and white
-    do, uv that are off by the width of the picture, and normals that are off by their length count as a displacement by
-    the longest side of the mesh (`attribute_quadrics`). By default the shape alone decides. Connected components and genus are preserved; components that touch in a
-    vertex or a non-manifold edge are simplified separately. Colours and texture come from the closest point of `mesh`
-    (`carry`).
+    where it is high (`quadric_weights`). attributes: weights of `colors`, `normals` and `uv` (texture coordinates) in
+    the error, for example {"colors": 1.0, "normals": 0.03}. At a weight of 1 a difference of black and white, of the
+    picture's width or of a unit normal counts as a displacement by the longest side of the mesh (`attribute_quadrics`).
+    By default the shape alone decides. Connected components and genus are preserved; components that touch in a vertex
+    or a non-manifold edge are simplified separately. Texture comes from the closest point of `mesh` (`carry`), and so
+    do colours, but for those in the error, which are the ones of least error.
 
     Source: Garland and Heckbert 1997 (T [222]). The thesis also takes edges beside the frozen region out of the list,
     which is the same: a vertex of a frozen face never moves.

@@ -15,9 +15,7 @@ GROWN = 16.0  # until the current cost has grown so many times
 
 
 @kernel
-def decimate(
-    surface: HalfEdgeMesh, wedges: Wedges | None, faces: int, turn: float, shape: float, fold: float
-) -> int:
+def decimate(surface: HalfEdgeMesh, wedges: Wedges | None, faces: int, turn: float, shape: float, fold: float) -> int:
     """Collapses edges of the surface until `faces` are left or none may collapse; returns the face count.
 
     wedges: those of the attributes that the quadrics hold; numba compiles what deals with them only where they are.
