@@ -83,7 +83,7 @@ def _values(mesh, weights):
 
 
 def _predictions(points, values):
-    """(gradient and constant (m, k, 4) of each attribute, area (m,)) of the faces; zero where they are slivers."""
+    """(gradient and constant (m, k, 4) of each attribute, area (m,)) of the faces; no gradient on slivers."""
     one, two = points[:, 1] - points[:, 0], points[:, 2] - points[:, 0]
     normal = np.cross(one, two)
     square = (normal**2).sum(axis=1)
@@ -94,7 +94,7 @@ def _predictions(points, values):
     axes[~good] = 0
     gradient = np.einsum("fak,fac->fkc", values[:, 1:] - values[:, :1], axes)
     constant = values[:, 0] - np.einsum("fkc,fc->fk", gradient, points[:, 0])
-    return np.concatenate([gradient, constant[..., None]], axis=2), np.where(good, np.sqrt(square) / 2, 0)
+    return np.concatenate([gradient, constant[..., None]], axis=2), np.sqrt(square) / 2
 
 
 def _summed(owner, count, area, rows):

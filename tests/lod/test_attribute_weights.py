@@ -90,13 +90,17 @@ def test_what_is_linear_costs_nothing(tilt):
     mesh = Mesh(
         mesh.vertices @ trimesh.transformations.rotation_matrix(tilt, [1, 2, 3])[:3, :3].T, mesh.faces, mesh.colors
     )
-    surface, source, _ = fast._half_edge_mesh(mesh, np.zeros(len(mesh.faces), bool), None)
-    added, wedges = attribute_quadrics(
-        mesh, (("colors", 1.0),), surface.position, surface.corner, surface.opposite, np.ones(len(source))
-    )
+    surface, added, wedges = quadrics_of(mesh, "colors")
     assert (added[:, 9] > 0).any()
     assert np.abs(left_of(added, wedges, surface)).max() < 1e-12
     assert colour_error(mesh, simplify(mesh, 600, attributes=COLORS)) < 0.6  # rounded to whole numbers
+
+
+def quadrics_of(mesh, name):
+    """(HalfEdgeMesh, quadrics to add, Wedges) of a mesh with one attribute, at a weight of 1."""
+    surface, source, _ = fast._half_edge_mesh(mesh, np.zeros(len(mesh.faces), bool), None)
+    place = surface.position, surface.corner, surface.opposite, np.ones(len(source))
+    return surface, *attribute_quadrics(mesh, ((name, 1.0),), *place)
 
 
 def left_of(added, wedges, surface):
@@ -231,13 +235,19 @@ def test_faces_without_area_and_all_corners_apart_do_no_harm():
     assert len(found.faces) < len(bad) and np.isfinite(found.vertices).all() and np.isfinite(found.texture.uv).all()
 
 
+def test_slivers_say_nothing_of_gradients():
+    mesh = plane(16, disc)
+    vertices = mesh.vertices.copy()
+    vertices[60] = vertices[61] + [0, 1e-9, 0]  # faces of that height, and one of none
+    colors = np.random.default_rng(0).integers(0, 256, mesh.colors.shape)
+    mesh = Mesh(vertices, np.r_[mesh.faces, [[3, 3, 4]]], colors)
+    assert 0 < quadrics_of(mesh, "colors")[1].max() < 100
+
+
 def test_wedges_add_up_after_the_collapses():
     mesh = tube(48, 24)
-    surface, source, _ = fast._half_edge_mesh(mesh, np.zeros(len(mesh.faces), bool), None)
+    surface, added, wedges = quadrics_of(mesh, "uv")
     before = surface.corner.copy()
-    added, wedges = attribute_quadrics(
-        mesh, (("uv", 1.0),), surface.position, surface.corner, surface.opposite, np.ones(len(source))
-    )
     surface.quadric[:] += added
     first = wedges.sums.copy()
     decimate(surface, wedges, 400, *fast.ATTEMPTS[0], fast.FOLD)

@@ -33,7 +33,7 @@ class Wedges(NamedTuple):
 def attribute_cost(
     surface: HalfEdgeMesh, wedges: Wedges, h: Id, i: Id, j: Id, held: Id
 ) -> tuple[float, float, float, float]:
-    """(error, x, y, z) of a collapse of half-edge h from i to j: at vertex `held`; where that is -1 at the best place."""
+    """(error, x, y, z) of a collapse of half-edge h from i to j: at vertex `held`, or if -1 at the best place."""
     quadric, ends, position = wedges.quadric, wedges.ends, surface.position
     for n in range(10):
         quadric[0, n] = surface.quadric[i, n] + surface.quadric[j, n]
