@@ -299,6 +299,8 @@ def test_colour_error_is_zero_on_the_mesh_itself_and_known_on_two_greys():
     shown = plane(8, lambda x, y: 0 * x + 255)
     shown.colors[:, 0], shown.colors[:, 1] = (255 * black.vertices[:, :2]).T
     assert colour_error(painted, shown) < 1
+    left = Mesh(half.vertices, half.faces[centres(half)[:, 0] < 0.3], half.colors)  # black, seen from there no error
+    assert min(colour_error(left, half), colour_error(half, left)) > 100
     with pytest.raises(ValueError, match="no colours to compare"):
         colour_error(black, plane(8))
     with pytest.raises(ValueError, match="samples"):
