@@ -10,6 +10,7 @@ from stages.lod import InfeasibleTarget, colour_error, fast, metro, simplify
 from stages.lod.attribute_quadrics import attribute_quadrics
 from stages.lod.attributes import closest
 from stages.lod.kernels import decimate
+from stages.lod.kernels.attributes import attribute_cost
 from tests.lod.test_attributes import GREY, tube
 
 COLORS, UV = {"colors": 1.0}, {"uv": 1.0}
@@ -143,6 +144,16 @@ def test_a_straight_seam_costs_few_vertices():
     found = simplify(charted(mesh, centres(mesh)[:, 0] > 0.5), 500, attributes=UV)
     on = np.flatnonzero(np.abs(found.vertices[:, 0] - 0.5) < 1e-9)
     assert 2 <= len(on) < 30
+
+
+def test_no_collapse_beside_a_straight_seam_costs_anything():
+    mesh = plane(8)
+    surface, added, wedges = quadrics_of(charted(mesh, centres(mesh)[:, 0] > 0.5), "uv")
+    surface.quadric[:] += added
+    ends = surface.corner, np.roll(surface.corner.reshape(-1, 3), -1, axis=1).ravel()
+    inner = np.flatnonzero((surface.opposite >= 0) & ~(surface.boundary[ends[0]] | surface.boundary[ends[1]]))
+    costs = [attribute_cost(surface, wedges, h, ends[0][h], ends[1][h], np.int32(-1))[0] for h in inner]
+    assert len(costs) > 100 and max(costs) < 1e-6  # but for the weak pull to where the vertices were
 
 
 def test_a_seam_within_one_chart_holds():
