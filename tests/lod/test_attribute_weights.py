@@ -152,7 +152,8 @@ def test_no_collapse_beside_a_straight_seam_costs_anything():
     surface.quadric[:] += added
     ends = surface.corner, np.roll(surface.corner.reshape(-1, 3), -1, axis=1).ravel()
     inner = np.flatnonzero((surface.opposite >= 0) & ~(surface.boundary[ends[0]] | surface.boundary[ends[1]]))
-    costs = [attribute_cost(surface, wedges, h, ends[0][h], ends[1][h], np.int32(-1))[0] for h in inner]
+    place = surface.opposite, surface.position, surface.quadric
+    costs = [attribute_cost(*place, wedges, h, ends[0][h], ends[1][h], np.int32(-1))[0] for h in inner]
     assert len(costs) > 100 and max(costs) < 1e-6  # but for the weak pull to where the vertices were
 
 

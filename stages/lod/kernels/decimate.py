@@ -33,7 +33,7 @@ def decimate(surface: HalfEdgeMesh, wedges: Wedges | None, faces: int, turn: flo
     for h in range(len(corner)):
         left += corner[h] >= 0
         if opposite[h] > h and corner[h] >= 0:
-            _offer(surface, wedges, head, following, lowest, h)
+            _offer(corner, opposite, locked, position, quadric, wedges, head, following, lowest, h)
     left //= 3
     area = quadric[:, 0].sum() + quadric[:, 3].sum() + quadric[:, 5].sum()
     if wedges is not None:
@@ -45,7 +45,7 @@ def decimate(surface: HalfEdgeMesh, wedges: Wedges | None, faces: int, turn: flo
             break
         if corner[h] < 0 or (locked[corner[h]] and locked[corner[after(h)]]):
             continue
-        cost, x, y, z = _cost(surface, wedges, h)
+        cost, x, y, z = _cost(corner, opposite, locked, position, quadric, wedges, h)
         now = bucket_of(cost)
         if now > bucket:
             push(head, following, lowest, h, now)
@@ -56,11 +56,11 @@ def decimate(surface: HalfEdgeMesh, wedges: Wedges | None, faces: int, turn: flo
         limits = turn, least, fold, cut
         if may_collapse(corner, opposite, start, locked, position, mark, last, h, x, y, z, *limits):
             if wedges is not None:
-                merge_wedges(surface, wedges, h)
+                merge_wedges(opposite, wedges, h)
             one, two = collapse_edge(corner, opposite, start, boundary, locked, position, quadric, parent, h, x, y, z)
             for g in (one, two):
                 if g >= 0 and not (is_queued(following, g) or (opposite[g] >= 0 and is_queued(following, opposite[g]))):
-                    _offer(surface, wedges, head, following, lowest, g)
+                    _offer(corner, opposite, locked, position, quadric, wedges, head, following, lowest, g)
             left -= 2
         elif bucket + LATER < BUCKETS:
             push(head, following, lowest, h, bucket + LATER)
@@ -68,21 +68,20 @@ def decimate(surface: HalfEdgeMesh, wedges: Wedges | None, faces: int, turn: flo
 
 
 @kernel
-def _offer(surface, wedges, head, following, lowest, h):
-    corner, locked = surface.corner, surface.locked
-    if surface.opposite[h] >= 0 and not (locked[corner[h]] and locked[corner[after(h)]]):
-        push(head, following, lowest, h, bucket_of(_cost(surface, wedges, h)[0]))
+def _offer(corner, opposite, locked, position, quadric, wedges, head, following, lowest, h):
+    if opposite[h] >= 0 and not (locked[corner[h]] and locked[corner[after(h)]]):
+        cost = _cost(corner, opposite, locked, position, quadric, wedges, h)[0]
+        push(head, following, lowest, h, bucket_of(cost))
 
 
 @kernel
-def _cost(surface, wedges, h):
-    i, j = surface.corner[h], surface.corner[after(h)]
-    held = i if surface.locked[i] else j
-    free = not surface.locked[held]
+def _cost(corner, opposite, locked, position, quadric, wedges, h):
+    i, j = corner[h], corner[after(h)]
     if wedges is not None:
-        return attribute_cost(surface, wedges, h, i, j, np.int32(-1) if free else held)
-    position, quadric = surface.position, surface.quadric
-    if free:
-        return best_place(quadric, position, i, j)
-    x, y, z = position[held, 0], position[held, 1], position[held, 2]
-    return error_at(quadric, i, j, x, y, z), x, y, z
+        held = i if locked[i] else j if locked[j] else np.int32(-1)
+        return attribute_cost(opposite, position, quadric, wedges, h, i, j, held)
+    if locked[i] or locked[j]:
+        v = i if locked[i] else j
+        x, y, z = position[v, 0], position[v, 1], position[v, 2]
+        return error_at(quadric, i, j, x, y, z), x, y, z
+    return best_place(quadric, position, i, j)
