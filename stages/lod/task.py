@@ -124,10 +124,10 @@ class SimplificationTask:
 
     def _simplify(self, mesh, ids, faces):
         keep, rings = self._on_cut(ids)
-        weights = None if self.weights is None else self.weights[ids]
+        counts = {"weights": None if self.weights is None else self.weights[ids], "attributes": self.attributes}
         # Those that the error does not count are transferred once, at the end.
         bare = mesh if self.attributes else replace(mesh, colors=None, texture=None)
-        found = simplify(bare, faces, keep, rings, self.backend, self.shrink, weights, self.attributes)
+        found = simplify(bare, faces, keep, rings, self.backend, self.shrink, **counts)
         return self.mesh if found is bare else carry(self.mesh, close_borders(found, mesh, ids))
 
     def _on_cut(self, ids):

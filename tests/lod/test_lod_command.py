@@ -192,9 +192,9 @@ def test_equal_commands_give_equal_bytes(simplified, tmp_path):
 def test_without_options_the_saliency_weighs_and_nothing_is_frozen(simplified, monkeypatch):
     weights = []
 
-    def watched(*arguments, weights=None, real=simplify, seen=weights):
+    def watched(*arguments, weights=None, real=simplify, seen=weights, **options):
         seen.append(weights)
-        return real(*arguments, weights=weights)
+        return real(*arguments, weights=weights, **options)
 
     monkeypatch.setattr("stages.lod.task.simplify", watched)
     _, said, _ = simplified("--faces", 300)
