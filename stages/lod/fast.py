@@ -59,7 +59,7 @@ def collapse(
 
 
 def _attempt(mesh, faces, frozen, weights, attributes, fit_below, turn, shape, fold):
-    surface, source, (middle, size) = _half_edge_mesh(mesh, frozen, weights)
+    surface, source, (middle, size) = half_edge_mesh(mesh, frozen, weights)
     points, corner = surface.position.copy(), surface.corner.copy()
     weight = (
         surface.quadric[:, 0] + surface.quadric[:, 3] + surface.quadric[:, 5]
@@ -90,7 +90,9 @@ def _count_attributes(mesh, attributes, weights, surface, source):
     return wedges
 
 
-def _half_edge_mesh(mesh, frozen, weights):
+def half_edge_mesh(
+    mesh: Mesh, frozen: np.ndarray, weights: np.ndarray | None
+) -> tuple[HalfEdgeMesh, np.ndarray, tuple[np.ndarray, float]]:
     """(HalfEdgeMesh in a unit box, (n',) the vertex of the mesh of each of its vertices, (middle, size) of the box).
 
     A vertex at which fans of faces touch is split. Boundary vertices and corners of frozen faces are locked.

@@ -10,7 +10,8 @@ from stages.kit import Mesh
 
 from .attribute_quadrics import check_attributes
 from .attributes import carry
-from .fast import collapse as collapse_fast
+from .blocks import collapse as collapse_fast
+from .fast import collapse as collapse_whole
 from .feasibility import (
     InfeasibleTarget,
     Keep,
@@ -26,7 +27,7 @@ from .shrink import shrinking_rings
 
 # A backend is collapse(mesh, faces, frozen, weights=None) -> Mesh of at most `faces` faces without colours; see qem.py.
 BACKENDS: dict[str, Callable[..., Mesh]] = {
-    "fast": collapse_fast, "qslim": partial(collapse_fast, fit_below=0.0), "pymeshlab": collapse_by_pymeshlab,
+    "fast": collapse_fast, "qslim": partial(collapse_whole, fit_below=0.0), "pymeshlab": collapse_by_pymeshlab,
 }  # fmt: skip
 BACKEND = "fast"
 MAX_DIAGONAL = 1e60  # and one over it the smallest: fourth powers of lengths are compared

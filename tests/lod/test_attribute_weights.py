@@ -99,7 +99,7 @@ def test_what_is_linear_costs_nothing(tilt):
 
 def quadrics_of(mesh, name):
     """(HalfEdgeMesh, quadrics to add, Wedges) of a mesh with one attribute, at a weight of 1."""
-    surface, source, _ = fast._half_edge_mesh(mesh, np.zeros(len(mesh.faces), bool), None)
+    surface, source, _ = fast.half_edge_mesh(mesh, np.zeros(len(mesh.faces), bool), None)
     place = surface.position, surface.corner, surface.opposite, np.ones(len(source))
     return surface, *attribute_quadrics(mesh, ((name, 1.0),), *place)
 
