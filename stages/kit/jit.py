@@ -1,11 +1,13 @@
 """Compiled kernels: numba, kept on disk between runs."""
 
+import gc
 import hashlib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numba
+from numba.core import event
 from numba.core.caching import UserProvidedCacheLocator
 
 from .fetch import cache_folder
@@ -16,6 +18,32 @@ LOCATORS = f"{__name__}.ByContent,InTreeCacheLocator,UserWideCacheLocator"
 # take a twentieth of the time to compile.
 OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 inlined = numba.njit(inline="always", error_model="numpy")  # where a call costs as much as what it does
+# For what kernels alone call, and what makes no array: inlined as late as machine code, so that it is typed once for
+# all its callers, without an entry for callers in Python, and without counts of references (_nrt). It is not kept, as
+# the kernels that call it are.
+helper = numba.njit(
+    forceinline=True, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False
+)  # fmt: skip
+
+
+class NoGarbageCollection(event.Listener):
+    """While numba compiles: the collector would go through its growing graphs again and again, a tenth of the time."""
+
+    def __init__(self) -> None:
+        self._before: list[bool] = []  # of each compilation under way: a kernel's holds those of what it calls
+
+    def on_start(self, event: event.Event) -> None:
+        """Stops the collector."""
+        self._before.append(gc.isenabled())
+        gc.disable()
+
+    def on_end(self, event: event.Event) -> None:
+        """Starts the collector, if it ran before."""
+        if self._before.pop():
+            gc.enable()
+
+
+event.register("numba:compile", NoGarbageCollection())
 
 
 def kept_in(file: str) -> Path:

@@ -28,7 +28,7 @@ def normalise(mesh: Mesh) -> Mesh:
 
 def centre_and_radius(mesh: Mesh) -> tuple[np.ndarray, float]:
     """(centre (3,) of the bounding box, radius of the bounding sphere about it), in the units of the mesh."""
-    used = mesh.vertices[np.unique(mesh.faces)]
+    used = mesh.vertices[mesh.used]
     if len(used) == 0:
         raise ValueError("the mesh has no faces, so that it cannot be normalised")
     centre = (used.min(axis=0) + used.max(axis=0)) / 2

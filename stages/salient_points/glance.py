@@ -12,9 +12,10 @@ from stages.weights import fixation_density
 from .inhibition import visited
 from .merge import continue_on_surface
 from .options import Detection, Options
+from .rivals.maxima import local_maxima
 from .surface import scaled
 
-STRONG = 2.0  # deviations above the mean: about as many points as the density has high peaks
+NO_FACES = np.zeros((0, 3), dtype=np.int64)
 
 
 class GlanceDetector:
@@ -33,21 +34,24 @@ class GlanceDetector:
         return _on_vertices(mesh, samples, self._density(samples, options))[0]
 
     def find(self, mesh: Mesh, sight: Any, options: Options, count: int | None = None) -> Detection:
-        """The Detection: strong points are visited while more than STRONG deviations above the mean are left."""
+        """The Detection: strong points are high peaks of the smoothed density; a count visits more places."""
         none = np.zeros(0, dtype=np.int64)
         if not mesh.face_areas.sum() > 0:
             return Detection(none, 0, np.zeros(len(mesh.vertices)))
         samples = samples_of_mesh(mesh)
         density = self._density(samples, options)
         smooth = samples.smoothed(density, options.smoothing)
-        strong = visited(samples.points, smooth, options.radius, smooth.mean() + STRONG * smooth.std())
-        order = strong if count is None else visited(samples.points, smooth, options.radius, count=count)
-        at = mesh.used[KDTree(mesh.vertices[mesh.used]).query(samples.points[order])[1]] if len(order) else none
+        peaks = local_maxima(Mesh(samples.points, NO_FACES), smooth, options.radius)
+        peaks = peaks[smooth[peaks] > smooth.mean() + smooth.std()]
+        order = peaks if count is None else visited(samples.points, smooth, options.radius, count)
+        is_peak = np.isin(order, peaks)
+        places = samples.points[np.r_[order[is_peak], order[~is_peak]]]
+        at = mesh.used[KDTree(mesh.vertices[mesh.used]).query(places)[1]] if len(order) else none
         points = at[np.sort(np.unique(at, return_index=True)[1])]
         saliency, smoothed = _on_vertices(mesh, samples, density, smooth)
         if count is not None:
             points = continue_on_surface(mesh, points, smoothed, options.radius, count)
-        return Detection(points, min(len(strong), len(points)), saliency)
+        return Detection(points, min(int(is_peak.sum()), len(points)), saliency)
 
     def _density(self, samples, options):
         return fixation_density(standardised(samples), options.learned.weights[self.required_weights])

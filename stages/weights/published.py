@@ -58,14 +58,14 @@ GAZE = {
 # features without an up axis are a model of their own, for what lies in any pose.
 GLANCES = {
     "glance": {
-        "rank": 0.476, "middle": 0.279, "upward": 0.124, "upward_high": -0.304, "seen": 0.063, "above": -0.101,
-        "above_high": -0.052, "below": -0.122, "log_below": 0.156, "log_side": 0.587, "convexity": 0.63,
-        "detail": -0.03, "relief": 0.078, "fullness_0.12": -0.037, "fullness_0.24": 0.208, "distance": -0.039,
-        "distance_squared": 0.101, "outward": 0.22, "off_plane": -0.154, "on_plane": 0.123,
+        "rank": 0.474, "middle": 0.282, "upward": 0.127, "upward_high": -0.304, "seen": 0.051, "above": -0.101,
+        "above_high": -0.049, "below": -0.123, "log_below": 0.161, "log_side": 0.576, "convexity": 0.618,
+        "detail": -0.025, "relief": 0.065, "fullness_0.12": -0.045, "fullness_0.24": 0.199, "distance": -0.037,
+        "distance_squared": 0.106, "outward": 0.206, "off_plane": -0.153, "on_plane": 0.12,
     },
     "glance_any_pose": {
-        "seen": 0.327, "convexity": 0.647, "detail": -0.045, "relief": 0.001, "fullness_0.12": -0.044,
-        "fullness_0.24": 0.328, "distance": -0.091, "distance_squared": 0.113, "outward": 0.172,
+        "seen": 0.314, "convexity": 0.637, "detail": -0.036, "relief": -0.011, "fullness_0.12": -0.05,
+        "fullness_0.24": 0.319, "distance": -0.09, "distance_squared": 0.116, "outward": 0.16,
     },
 }  # fmt: skip
 

@@ -1,7 +1,10 @@
 """Compiled kernels on disk: found again by what their folder holds, wherever it lies."""
 
+import gc
 import importlib.util
 
+import numba
+import numba.extending
 import pytest
 
 SOURCE = """from stages.kit.jit import kernel_of
@@ -35,3 +38,34 @@ def test_a_cache_that_cannot_be_written_to_is_done_without(tmp_path, monkeypatch
     (tmp_path / "cache").write_text("no folder")
     monkeypatch.setenv("HAPTIC_GLANCE_CACHE", str(tmp_path / "cache"))
     assert hits_of(tmp_path / "one", "2 * x") == 0
+
+
+@pytest.mark.parametrize("collecting", [True, False])
+def test_garbage_is_not_collected_while_numba_compiles(collecting):
+    seen = []
+
+    def marker():
+        """Nothing; numba calls `at_compilation` when it compiles a call of it."""
+
+    def at_compilation():
+        seen.append(gc.isenabled())
+        return lambda: None
+
+    numba.extending.overload(marker)(at_compilation)
+
+    @numba.njit
+    def inner():
+        marker()
+
+    @numba.njit
+    def outer():
+        inner()
+        marker()
+
+    (gc.enable if collecting else gc.disable)()
+    try:
+        outer()
+        assert gc.isenabled() == collecting
+    finally:
+        gc.enable()
+    assert seen and not any(seen)

@@ -97,7 +97,7 @@ def wavy_sheet(side=30):
 def fan(surface, vertex):
     """The half-edges that leave a vertex, found from the one that is named as its first."""
     found = [int(surface.start[vertex])]
-    while (h := int(surface.opposite[before(found[-1])])) >= 0 and h != found[0]:
+    while (h := int(surface.opposite[before.py_func(found[-1])])) >= 0 and h != found[0]:
         found.append(h)
     return found
 

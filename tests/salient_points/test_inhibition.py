@@ -1,4 +1,4 @@
-"""Points in the order of visits: spaced, by value, stopped at the floor, on peaks rather than on rims."""
+"""Points in the order of visits: spaced, by value, on peaks rather than on rims."""
 
 import numpy as np
 import pytest
@@ -25,13 +25,6 @@ def test_points_are_farther_apart_than_the_radius():
     assert len(found) == 20 and apart.min() > 6
 
 
-def test_the_visits_end_at_the_floor():
-    values = hills((10, 10, 1, 2), (40, 20, 2, 2), (20, 30, 0.3, 2))
-    assert len(visited(PLACES, values, 8, floor=0.5)) == 2
-    assert len(visited(PLACES, values, 8, floor=0.2)) == 3
-    assert len(visited(PLACES, values, 8, floor=3.0)) == 0
-
-
 def test_a_lower_hill_comes_before_the_slope_of_a_higher_one():
     """A disc cut out of the broad hill leaves a rim that is higher than the small hill's top."""
     broad, small = (20, 20, 1.0, 7.0), (48, 20, 0.75, 2.0)
@@ -43,5 +36,5 @@ def test_a_lower_hill_comes_before_the_slope_of_a_higher_one():
 
 def test_nothing_to_visit_gives_no_point():
     assert len(visited(PLACES, np.zeros(len(PLACES)), 5, count=3)) == 0
-    assert len(visited(PLACES[:0], np.zeros(0), 5)) == 0
+    assert len(visited(PLACES[:0], np.zeros(0), 5, count=3)) == 0
     assert len(visited(PLACES[:4], np.ones(4), 100, count=3)) == 1  # no room for a second

@@ -7,7 +7,7 @@ can cover, and its heights there. Only faces with hits are processed one by one.
 import numpy as np
 
 from .frame import Frame, along
-from .jit import inlined, kernel
+from .jit import helper, kernel
 from .tree import LANES
 
 ROWS = 24  # of 32 numbers, one per face
@@ -17,21 +17,21 @@ FACE = LANES * 10  # and the 13 rows after: see `crossing`
 OVER_FOUR = 16.0  # hits: the face has more than four cells under its box
 
 
-@inlined
+@helper
 def min3(a: float, b: float, c: float) -> float:
     """The least of three numbers, without a branch."""
     a = b if b < a else a
     return c if c < a else a
 
 
-@inlined
+@helper
 def max3(a: float, b: float, c: float) -> float:
     """The greatest of three numbers, without a branch."""
     a = b if b > a else a
     return c if c > a else a
 
 
-@inlined
+@helper
 def crossing(face: tuple[float, ...], column: float, row: float, lift: float) -> tuple[float, float]:
     """(0 or more if the face covers the cell and is not above `lift`, its height) at a column and row.
 
@@ -48,7 +48,7 @@ def crossing(face: tuple[float, ...], column: float, row: float, lift: float) ->
     return covered if w <= lift else -1.0, w
 
 
-@inlined
+@helper
 def project_corner(block: np.ndarray, k: int, frame: Frame) -> tuple[float, float, float]:
     """(column, row, height) of the corner whose x is the number k of a block."""
     x = block[k] - frame.centre[0]
@@ -61,7 +61,7 @@ def project_corner(block: np.ndarray, k: int, frame: Frame) -> tuple[float, floa
     )
 
 
-@inlined
+@helper
 def store_face(out: np.ndarray, f: int, face: tuple[float, ...]) -> None:
     """Writes the 14 numbers of a face; unrolled, since a loop over them would prevent vectorisation over the faces."""
     at = FACE + f
@@ -73,7 +73,7 @@ def store_face(out: np.ndarray, f: int, face: tuple[float, ...]) -> None:
     out[at + 4 * LANES], out[at + 5 * LANES] = face[12], face[13]
 
 
-@inlined
+@helper
 def load_face(projected: np.ndarray, f: int) -> tuple[float, ...]:
     """The 14 numbers that `store_face` wrote."""
     at, far = FACE + f, FACE + 8 * LANES + f
@@ -141,14 +141,9 @@ def raise_cells(projected: np.ndarray, frame: Frame, best: np.ndarray, back: np.
         )  # rows count down, so that a face seen from its front turns back
         i, j = int(projected[TOP + f]), int(projected[FIRST + f])
         if hits < OVER_FOUR:
-            if hits & 1:
-                raise_cell(best, back, i, j, projected[HEIGHT + f], from_back)
-            if hits & 2:
-                raise_cell(best, back, i, j + 1, projected[HEIGHT + LANES + f], from_back)
-            if hits & 4:
-                raise_cell(best, back, i + 1, j, projected[HEIGHT + 2 * LANES + f], from_back)
-            if hits & 8:
-                raise_cell(best, back, i + 1, j + 1, projected[HEIGHT + 3 * LANES + f], from_back)
+            for k in range(4):
+                if hits >> k & 1:
+                    raise_cell(best, back, i + (k >> 1), j + (k & 1), projected[HEIGHT + k * LANES + f], from_back)
             continue
         face = load_face(projected, f)
         for row in range(i, int(projected[BOTTOM + f]) + 1):
@@ -158,7 +153,7 @@ def raise_cells(projected: np.ndarray, frame: Frame, best: np.ndarray, back: np.
                     raise_cell(best, back, row, column, height, from_back)
 
 
-@inlined
+@helper
 def raise_cell(best: np.ndarray, back: np.ndarray, i: int, j: int, height: float, from_back: bool) -> None:
     """Stores the height of a face in the column of a cell, if it is the highest so far."""
     if height > best[i, j] or (height == best[i, j] and from_back):

@@ -4,7 +4,7 @@ from collections import namedtuple
 
 import numpy as np
 
-from .jit import inlined
+from .jit import helper
 
 SLACK = 1e-12  # of the mesh's diagonal: how far a face extends beyond its edges, so that no column passes between two
 GRAZING = 1e-12  # sine of a face's angle to the normal, below which a column has no single intersection with it
@@ -14,7 +14,7 @@ GRAZING = 1e-12  # sine of a face's angle to the normal, below which a column ha
 Frame = namedtuple("Frame", "centre right down normal column row side lift slack margin grazing")
 
 
-@inlined
+@helper
 def frame_of(
     centre: np.ndarray,
     axes: np.ndarray,
@@ -42,13 +42,13 @@ def frame_of(
     )
 
 
-@inlined
+@helper
 def along(axis: tuple[float, float, float], x: float, y: float, z: float) -> float:
     """The dot product of a vector and an axis."""
     return axis[0] * x + axis[1] * y + axis[2] * z
 
 
-@inlined
+@helper
 def half_width(axis: tuple[float, float, float], x: float, y: float, z: float) -> float:
     """The half extent along an axis of a box with half widths x, y, z."""
     return abs(axis[0]) * x + abs(axis[1]) * y + abs(axis[2]) * z

@@ -9,7 +9,7 @@ import numpy as np
 
 from .faces import ROWS, project, raise_cells
 from .frame import Frame, along, frame_of, half_width
-from .jit import inlined, kernel
+from .jit import helper, kernel
 from .tree import LANES
 
 MAX_CHECKED = 64  # cells under a box, up to which it pays to check if all of them hide it
@@ -81,7 +81,7 @@ def first_below(
     return found
 
 
-@inlined
+@helper
 def maybe_inside(back: np.ndarray, above: np.ndarray) -> bool:
     """True if any cell sees the face below from the back and must search upwards: above is -inf there, else inf."""
     any_back = False
@@ -151,7 +151,7 @@ def search(
     return highest
 
 
-@inlined
+@helper
 def from_centre(boxes: np.ndarray, node: np.integer | np.ndarray, frame: Frame) -> tuple[float, float, float]:
     """The centre of a node's box, relative to the array's centre."""
     return boxes[node, 0] - frame.centre[0], boxes[node, 1] - frame.centre[1], boxes[node, 2] - frame.centre[2]

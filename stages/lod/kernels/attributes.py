@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .corners import after
-from .jit import Id, kernel
+from .jit import Id, helper
 from .quadrics import best_place, error_at
 
 
@@ -28,7 +28,7 @@ class Wedges(NamedTuple):
     ends: np.ndarray  # (2, 3) scratch
 
 
-@kernel
+@helper
 def attribute_cost(
     opposite: np.ndarray, position: np.ndarray, quadric: np.ndarray, wedges: Wedges, h: Id, i: Id, j: Id, held: Id
 ) -> tuple[float, float, float, float]:
@@ -59,7 +59,7 @@ def attribute_cost(
     return best_place(error, ends, 0, 1)
 
 
-@kernel
+@helper
 def _pairs(opposite, wedge, merged, h):
     """The wedges at the two ends of half-edge h in its own face, then in the face across."""
     t = opposite[h]
@@ -67,7 +67,7 @@ def _pairs(opposite, wedge, merged, h):
     return a, b, _root(merged, wedge[after(t)]), _root(merged, wedge[t])
 
 
-@kernel
+@helper
 def _root(merged, w):
     while merged[w] != w:
         merged[w] = merged[merged[w]]  # halves the path for later calls
@@ -75,7 +75,7 @@ def _root(merged, w):
     return np.int64(w)
 
 
-@kernel
+@helper
 def _take_mean(error, sums, a, b, c):
     """Takes the square of the mean prediction of wedges a, b, c, times their area, off the sum of the squares."""
     area = sums[a, 0] + sums[b, 0] + sums[c, 0]
@@ -98,7 +98,7 @@ def _take_mean(error, sums, a, b, c):
         error[0, 9] -= d * d / area
 
 
-@kernel
+@helper
 def merge_wedges(opposite: np.ndarray, wedges: Wedges, h: Id) -> None:
     """Merges the wedges at the ends of half-edge h, which is about to collapse, on both of its sides."""
     a, b, c, d = _pairs(opposite, wedges.wedge, wedges.merged, h)
@@ -110,7 +110,7 @@ def merge_wedges(opposite: np.ndarray, wedges: Wedges, h: Id) -> None:
         _merge(wedges, c, d)
 
 
-@kernel
+@helper
 def _merge(wedges, stays, goes):
     """Merges a wedge into another one of the same ring."""
     before = goes

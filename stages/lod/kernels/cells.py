@@ -3,10 +3,10 @@
 import numpy as np
 
 from .face_frame import NUMBERS, set_planes
-from .jit import kernel
+from .jit import allocating_kernel
 
 
-@kernel
+@allocating_kernel
 def bounding_box(vertices: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Lower and upper corner of the box around all faces."""
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
@@ -18,7 +18,7 @@ def bounding_box(vertices: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, n
     return low, high
 
 
-@kernel
+@allocating_kernel
 def planes_of(vertices: np.ndarray, faces: np.ndarray, low: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The planes (m, 16) of all faces, relative to the corner `low`, and twice their areas (m,)."""
     planes, areas = np.empty((len(faces), NUMBERS)), np.empty(len(faces))
@@ -27,7 +27,7 @@ def planes_of(vertices: np.ndarray, faces: np.ndarray, low: np.ndarray) -> tuple
     return planes, areas
 
 
-@kernel
+@allocating_kernel
 def cell_boxes(
     vertices: np.ndarray, faces: np.ndarray, low: np.ndarray, cell: float, shape: np.ndarray
 ) -> tuple[np.ndarray, int]:
@@ -46,7 +46,7 @@ def cell_boxes(
     return boxes, total
 
 
-@kernel
+@allocating_kernel
 def fill_cells(boxes: np.ndarray, total: int, shape: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(start of each cell's faces, and one more at the end; the faces, cell by cell)."""
     sx, sy = shape[0], shape[1]

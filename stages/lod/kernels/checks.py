@@ -3,14 +3,14 @@
 import numpy as np
 
 from .corners import after, before
-from .jit import Id, kernel
+from .jit import Id, helper
 from .vectors import cross, dot, point
 
 NOBODY = np.int64(-1)  # no vertex; numba compiles anew for a plain -1
 STEADY = 0.98  # cosine between a face's normal before and after above which its neighbours are not checked
 
 
-@kernel
+@helper
 def may_collapse(
     corner: np.ndarray,
     opposite: np.ndarray,
@@ -53,7 +53,7 @@ def may_collapse(
     return holds
 
 
-@kernel
+@helper
 def _mark_neighbours(corner, opposite, start, mark, tag, v):
     """Marks all neighbours of v with `tag`; returns how many had that mark already."""
     found = 0
@@ -72,7 +72,7 @@ def _mark_neighbours(corner, opposite, start, mark, tag, v):
             return found
 
 
-@kernel
+@helper
 def _seam_holds(corner, opposite, p, i, j, h, x, y, z, fold):
     """Whether the faces that become neighbours without that of h do not fold, or one was folded before."""
     one, two = np.int64(opposite[after(h)]), np.int64(opposite[before(h)])
@@ -88,7 +88,7 @@ def _seam_holds(corner, opposite, p, i, j, h, x, y, z, fold):
     return _folds(ax, ay, az, cx, cy, cz, fold) or _folds(bx, by, bz, cx, cy, cz, fold)
 
 
-@kernel
+@helper
 def _normal(corner, p, h, i, j, x, y, z):
     """Normal, times twice the area, of the face of h once vertices i and j are at x, y, z."""
     ax, ay, az = _place(p, corner[h], i, j, x, y, z)
@@ -97,14 +97,14 @@ def _normal(corner, p, h, i, j, x, y, z):
     return cross(bx - ax, by - ay, bz - az, cx - ax, cy - ay, cz - az)
 
 
-@kernel
+@helper
 def _place(p, v, i, j, x, y, z):
     if v != i and v != j:  # compiled in a tenth of the time of `not in`
         return point(p, v)
     return x, y, z
 
 
-@kernel
+@helper
 def check_move(
     corner: np.ndarray,
     opposite: np.ndarray,
@@ -181,7 +181,7 @@ def check_move(
             return -1 if bad or tip else found
 
 
-@kernel
+@helper
 def _folds(ax, ay, az, bx, by, bz, fold):
     """Whether the cosine between two vectors lies below `fold`, which is negative."""
     along = dot(ax, ay, az, bx, by, bz)
@@ -190,14 +190,14 @@ def _folds(ax, ay, az, bx, by, bz, fold):
     return along * along > fold * fold * dot(ax, ay, az, ax, ay, az) * dot(bx, by, bz, bx, by, bz)
 
 
-@kernel
+@helper
 def _sides(ax, ay, az, ex, ey, ez):
     """The squared lengths of the sides a, e and a + e of a triangle, summed."""
     bx, by, bz = ax + ex, ay + ey, az + ez
     return ax * ax + ay * ay + az * az + bx * bx + by * by + bz * bz + ex * ex + ey * ey + ez * ez
 
 
-@kernel
+@helper
 def _closes_tetrahedron(corner, opposite, h, apex):
     """Whether the corner across h has only three faces, the outer one of which ends at the other corner `apex`."""
     one, two = opposite[after(h)], opposite[before(h)]

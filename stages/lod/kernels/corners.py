@@ -5,18 +5,18 @@ Half-edge 3 f + k runs from corner k of face f to the next; it is also the name 
 
 import numpy as np
 
-from .jit import Id, kernel
+from .jit import Id, allocating_kernel, helper, kernel
 
 MAX_EDGES = 64  # at a vertex, to vertices of higher ids: with more of them the linear search takes too long
 
 
-@kernel
+@helper
 def after(h: Id) -> Id:
     """The next half-edge of the face."""
     return h - 2 if np.uint32(h) % np.uint32(3) == np.uint32(2) else h + 1
 
 
-@kernel
+@helper
 def before(h: Id) -> Id:
     """The previous half-edge of the face."""
     return h + 2 if np.uint32(h) % np.uint32(3) == np.uint32(0) else h - 1
@@ -29,12 +29,13 @@ def opposites(faces: np.ndarray, count: int, oriented: bool) -> tuple[np.ndarray
     edge and, if `oriented`, where its two faces have opposite windings.
     """
     other = np.full(len(faces), -1, dtype=np.int32)
-    if _closed(faces, count, other):
+    ends = np.empty((2, len(faces) // 2), dtype=np.int32)
+    if _closed(faces, other, np.zeros(count + 1, dtype=np.int32), *ends):
         return other, 0
     return _of_any(faces, count, oriented)
 
 
-@kernel
+@allocating_kernel
 def _of_any(faces, count, oriented):
     """`opposites` of faces that need not be closed."""
     other = np.full(len(faces), -1, dtype=np.int32)
@@ -65,18 +66,17 @@ def _of_any(faces, count, oriented):
 
 
 @kernel
-def _closed(faces, count, other):
+def _closed(faces, other, first, up, high):
     """Fills `other` for a closed manifold with consistent winding, else returns False.
 
     There each edge has one half-edge up, to the higher id, and one down. Most meshes are such: a third of the time.
+    first (count + 1,): zeros; up, high: scratch, half as long as faces.
     """
-    first = np.zeros(count + 1, dtype=np.int32)
     for f in range(0, len(faces), 3):
-        a, b, c = faces[f], faces[f + 1], faces[f + 2]
-        first[min(a, b)] += a < b
-        first[min(b, c)] += b < c
-        first[min(c, a)] += c < a
-    total = 0
+        for k in range(3):
+            tail, head = faces[f + k], faces[f + (k + 1) % 3]
+            first[min(tail, head)] += tail < head
+    total, count = 0, len(first) - 1
     for low in range(count):
         if first[low] > MAX_EDGES:
             return False
@@ -85,34 +85,22 @@ def _closed(faces, count, other):
     first[count] = total
     if 2 * total != len(faces):
         return False
-    up, high = np.empty(total, dtype=np.int32), np.empty(total, dtype=np.int32)
     for f in range(0, len(faces), 3):
-        a, b, c = faces[f], faces[f + 1], faces[f + 2]
-        if a < b:
-            _note(first, up, high, a, b, f)
-        if b < c:
-            _note(first, up, high, b, c, f + 1)
-        if c < a:
-            _note(first, up, high, c, a, f + 2)
+        for k in range(3):
+            tail, head = faces[f + k], faces[f + (k + 1) % 3]
+            if tail < head:
+                first[tail] -= 1
+                up[first[tail]], high[first[tail]] = f + k, head
     good = True
     for f in range(0, len(faces), 3):
-        a, b, c = faces[f], faces[f + 1], faces[f + 2]
-        if a >= b:
-            good &= _match(first, up, high, other, a, b, f)
-        if b >= c:
-            good &= _match(first, up, high, other, b, c, f + 1)
-        if c >= a:
-            good &= _match(first, up, high, other, c, a, f + 2)
+        for k in range(3):
+            tail, head = faces[f + k], faces[f + (k + 1) % 3]
+            if tail >= head:
+                good &= _match(first, up, high, other, tail, head, f + k)
     return good
 
 
-@kernel
-def _note(first, up, high, tail, head, h):
-    first[tail] -= 1
-    up[first[tail]], high[first[tail]] = h, head
-
-
-@kernel
+@helper
 def _match(first, up, high, other, tail, head, h):
     """Pairs half-edge h with the first one from its head up to its tail; False where that already has a pair."""
     for at in range(first[head], first[head + 1]):
@@ -124,7 +112,7 @@ def _match(first, up, high, other, tail, head, h):
     return False
 
 
-@kernel
+@allocating_kernel
 def _by_lower_end(faces, count):
     first = np.zeros(count + 1, dtype=np.int32)
     for h in range(len(faces)):
@@ -140,7 +128,6 @@ def _by_lower_end(faces, count):
     return first, order
 
 
-@kernel
 def fans(faces: np.ndarray, opposite: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """One vertex per fan of faces, so that vertices at which several fans touch are split.
 
@@ -148,13 +135,18 @@ def fans(faces: np.ndarray, opposite: np.ndarray) -> tuple[np.ndarray, np.ndarra
     leaves a new vertex (of an open fan the one on the boundary); source (k,) i4: the old vertex of each; boundary (k,)
     boolean: whether the fan is open.
     """
-    size = len(faces)
-    corner = np.full(size, -1, dtype=np.int32)
-    start = np.empty(size, dtype=np.int32)
-    source = np.empty(size, dtype=np.int32)
-    boundary = np.zeros(size, dtype=np.bool_)
+    corner = np.full(len(faces), -1, dtype=np.int32)
+    start, source = np.empty((2, len(faces)), dtype=np.int32)
+    boundary = np.empty(len(faces), dtype=np.bool_)
+    count = _fill_fans(faces, opposite, corner, start, source, boundary)
+    return corner, start[:count].copy(), source[:count].copy(), boundary[:count].copy()
+
+
+@kernel
+def _fill_fans(faces, opposite, corner, start, source, boundary):
+    """Fills what `fans` returns; returns the number of fans."""
     count = 0
-    for seed in range(size):
+    for seed in range(len(faces)):
         if corner[seed] >= 0:
             continue
         h = seed
@@ -169,4 +161,4 @@ def fans(faces: np.ndarray, opposite: np.ndarray) -> tuple[np.ndarray, np.ndarra
             if h < 0:
                 break
         count += 1
-    return corner, start[:count].copy(), source[:count].copy(), boundary[:count].copy()
+    return count

@@ -5,7 +5,7 @@ import numpy as np
 from .attributes import Wedges, attribute_cost, merge_wedges
 from .checks import may_collapse
 from .corners import after
-from .jit import kernel
+from .jit import helper, kernel
 from .quadrics import best_place, error_at
 from .queue import BUCKETS, bucket_of, empty_queue, is_queued, pop, push
 from .surface import HalfEdgeMesh, collapse_edge
@@ -14,7 +14,6 @@ LATER = 8  # buckets by which a refused collapse is put off,
 GROWN = 16.0  # until the current cost has grown so many times
 
 
-@kernel
 def decimate(surface: HalfEdgeMesh, wedges: Wedges | None, faces: int, turn: float, shape: float, fold: float) -> int:
     """Collapses edges of the surface until `faces` are left or none may collapse; returns the face count.
 
@@ -26,18 +25,28 @@ def decimate(surface: HalfEdgeMesh, wedges: Wedges | None, faces: int, turn: flo
     A tip may be cut by the distance at which a face of mean area costs as much as the collapses of now. Its own planes
     say little of it: along a thin tip they all hold, and the fewer and smaller they are, the less it costs.
     """
+    mark, last = np.zeros(len(surface.position), dtype=np.int32), np.zeros(1, dtype=np.int64)
+    return _decimate(surface, wedges, *empty_queue(len(surface.corner)), mark, last, faces, turn, shape, fold)
+
+
+@kernel
+def _decimate(surface, wedges, head, following, lowest, mark, last, faces, turn, shape, fold):
+    """`decimate` with an empty queue; mark, last: as of `may_collapse`."""
     corner, opposite, start, boundary, locked, position, quadric, parent = surface
-    mark, last = np.zeros(len(position), dtype=np.int32), np.zeros(1, dtype=np.int64)
-    head, following, lowest = empty_queue(len(corner))
     left = 0
     for h in range(len(corner)):
         left += corner[h] >= 0
         if opposite[h] > h and corner[h] >= 0:
             _offer(corner, opposite, locked, position, quadric, wedges, head, following, lowest, h)
     left //= 3
-    area = quadric[:, 0].sum() + quadric[:, 3].sum() + quadric[:, 5].sum()
-    if wedges is not None:
-        area = wedges.sums[:, 0].sum()
+    ones, twos, threes = 0.0, 0.0, 0.0
+    for v in range(len(quadric)):
+        ones, twos, threes = ones + quadric[v, 0], twos + quadric[v, 3], threes + quadric[v, 5]
+    area = ones + twos + threes
+    if wedges is not None:  # whose attributes are in the quadrics too
+        area = 0.0
+        for w in range(len(wedges.sums)):
+            area += wedges.sums[w, 0]
     level = 0.0
     while left > faces:
         h, bucket = pop(head, following, lowest)
@@ -67,14 +76,14 @@ def decimate(surface: HalfEdgeMesh, wedges: Wedges | None, faces: int, turn: flo
     return left
 
 
-@kernel
+@helper
 def _offer(corner, opposite, locked, position, quadric, wedges, head, following, lowest, h):
     if opposite[h] >= 0 and not (locked[corner[h]] and locked[corner[after(h)]]):
         cost = _cost(corner, opposite, locked, position, quadric, wedges, h)[0]
         push(head, following, lowest, h, bucket_of(cost))
 
 
-@kernel
+@helper
 def _cost(corner, opposite, locked, position, quadric, wedges, h):
     i, j = corner[h], corner[after(h)]
     if wedges is not None:

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from .jit import Id, inlined, kernel
+from .jit import Id, allocating_kernel, inlined
 
 NUMBERS = 16  # of the planes
 SLIM = 1e-3  # height of a face over the position of its foot: below, the axes are orthogonalised again
@@ -113,7 +113,7 @@ def square_to(
     return min(best, _square_to_side(cx, cy, cz, cx - ax, cy - ay, cz - az))
 
 
-@kernel
+@allocating_kernel
 def corner_weights(points: np.ndarray, owners: np.ndarray, vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
     """(k, 3) barycentric weights, 0 to 1, of the points of faces[owners] (k,) nearest to points (k, 3)."""
     weights = np.empty((len(points), 3))

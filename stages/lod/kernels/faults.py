@@ -6,7 +6,6 @@ from .jit import kernel
 from .vectors import between, cross, dot, point
 
 
-@kernel
 def count_faults(
     vertices: np.ndarray, faces: np.ndarray, other: np.ndarray, thin: float, fold: float
 ) -> tuple[int, int]:
@@ -14,10 +13,14 @@ def count_faults(
 
     faces (3 m,); other (3 m,): their `opposites`. thin: height of a degenerate face; fold: cosine of the normals.
     """
-    count = len(faces) // 3
-    normal = np.zeros((count, 3))
+    return _count(vertices, faces, other, thin, fold, np.zeros((len(faces) // 3, 3)))
+
+
+@kernel
+def _count(vertices, faces, other, thin, fold, normal):
+    """`count_faults`; normal (m, 3): zeros."""
     degenerate = folded = 0
-    for f in range(count):
+    for f in range(len(normal)):
         i, j, k = faces[3 * f], faces[3 * f + 1], faces[3 * f + 2]
         ux, uy, uz = between(vertices, i, j)
         vx, vy, vz = between(vertices, i, k)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from .face_frame import bound_to, square_to
-from .jit import inlined, kernel
+from .jit import allocating_kernel, inlined
 
 # Grid: starts and entries of the cells (see fill_cells), lower corner, width and counts of the cells.
 Grid = tuple[np.ndarray, np.ndarray, np.ndarray, float, np.ndarray]
@@ -90,7 +90,7 @@ def _search_one(points, i, vertices, faces, starts, entries, low, cell, shape, p
     return best, face, sure
 
 
-@kernel
+@allocating_kernel
 def search(
     points: np.ndarray, vertices: np.ndarray, faces: np.ndarray, grid: Grid, planes: np.ndarray, far: float
 ) -> tuple[np.ndarray, np.ndarray]:
@@ -103,7 +103,7 @@ def search(
     return squares, found
 
 
-@kernel
+@allocating_kernel
 def farthest(
     points: np.ndarray,
     corners: np.ndarray,

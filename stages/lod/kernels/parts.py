@@ -7,13 +7,18 @@ from .jit import kernel
 from .vectors import between, cross, dot
 
 
-@kernel
 def split_fans(faces: np.ndarray, other: np.ndarray) -> tuple[np.ndarray, int]:
     """(3 m,) i4: the fan at each corner, and the number of fans; the windings of neighbours may differ.
 
     faces (3 m,); other (3 m,): their `opposites`.
     """
     fan = np.full(len(faces), -1, dtype=np.int32)
+    return fan, _fill_fans(faces, other, fan)
+
+
+@kernel
+def _fill_fans(faces, other, fan):
+    """Fills the fans of `split_fans`, all -1 before; returns their number."""
     count = 0
     for seed in range(len(faces)):
         if fan[seed] >= 0:
@@ -30,14 +35,18 @@ def split_fans(faces: np.ndarray, other: np.ndarray) -> tuple[np.ndarray, int]:
                 fan[here] = count
                 edge, tail = (before(across), False) if tail else (here, True)
         count += 1
-    return fan, count
+    return count
 
 
-@kernel
 def face_components(other: np.ndarray) -> tuple[np.ndarray, int]:
     """(m,) i4: the component, joined by edges, of each face, and their number. other (3 m,): see `opposites`."""
     component = np.full(len(other) // 3, -1, dtype=np.int32)
-    waiting = np.empty(len(component), dtype=np.int32)
+    return component, _fill_components(other, component, np.empty_like(component))
+
+
+@kernel
+def _fill_components(other, component, waiting):
+    """Fills the components, all -1 before, and returns their number. waiting (m,): scratch."""
     count = 0
     for seed in range(len(component)):
         if component[seed] >= 0:
@@ -52,16 +61,21 @@ def face_components(other: np.ndarray) -> tuple[np.ndarray, int]:
                     component[g], waiting[left] = count, g
                     left += 1
         count += 1
-    return component, count
+    return count
 
 
-@kernel
 def signed_volumes(vertices: np.ndarray, faces: np.ndarray, other: np.ndarray) -> np.ndarray:
     """(k,) volume inside each component, negative where it is inside out; 0 for one with a boundary."""
     component, count = face_components(other)
-    volume = np.zeros(count)
-    boundary = np.zeros(count, dtype=np.bool_)
-    origin = np.full(count, -1, dtype=np.int64)
+    volume, boundary = np.zeros(count), np.zeros(count, dtype=np.bool_)
+    _add_volumes(vertices, faces, other, component, np.full(count, -1, dtype=np.int32), volume, boundary)
+    volume[boundary] = 0.0
+    return volume
+
+
+@kernel
+def _add_volumes(vertices, faces, other, component, origin, volume, boundary):
+    """Adds the volume under each face to that of its component. origin: -1, then a vertex of each component."""
     for f in range(len(component)):
         at = component[f]
         if origin[at] < 0:
@@ -76,7 +90,3 @@ def signed_volumes(vertices: np.ndarray, faces: np.ndarray, other: np.ndarray) -
         volume[at] += dot(ax, ay, az, nx, ny, nz) / 6
         for h in range(3 * f, 3 * f + 3):
             boundary[at] |= other[h] < 0
-    for at in range(count):
-        if boundary[at]:
-            volume[at] = 0.0
-    return volume

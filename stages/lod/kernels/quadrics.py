@@ -2,17 +2,23 @@
 
 import numpy as np
 
-from .jit import Id, kernel
+from .jit import Id, helper, kernel
 from .vectors import between, cross, dot, point
 
 PULL = 1e-6  # weight of the distance to the point itself relative to the plane: on a flat region it alone decides
 MAX_SHIFT = 2.0  # of the optimum from the edge's midpoint, in lengths of the edge
 
 
-@kernel
 def vertex_quadrics(position: np.ndarray, corner: np.ndarray, weight: np.ndarray) -> np.ndarray:
     """(n, 10) quadrics: x.A.x + 2 b.x + c as A (xx, xy, xz, yy, yz, zz), b, c; weight (n,) multiplies them."""
     found = np.zeros((len(position), 10))
+    _add_planes(position, corner, weight, found)
+    return found
+
+
+@kernel
+def _add_planes(position, corner, weight, found):
+    """Adds the quadrics of the planes of all faces to those of their vertices."""
     for f in range(len(corner) // 3):
         i, j, k = corner[3 * f], corner[3 * f + 1], corner[3 * f + 2]
         ax, ay, az = point(position, i)
@@ -27,10 +33,9 @@ def vertex_quadrics(position: np.ndarray, corner: np.ndarray, weight: np.ndarray
         for v in (i, j, k):
             px, py, pz = point(position, v)
             _add(found, v, double / 6 * weight[v], nx, ny, nz, d, px, py, pz)
-    return found
 
 
-@kernel
+@helper
 def _add(q, v, s, x, y, z, d, px, py, pz):
     """Adds s times the squared distance to the plane x, y, z, d and, `PULL` times weaker, to the point px, py, pz."""
     w = s * PULL
@@ -50,7 +55,7 @@ def _add(q, v, s, x, y, z, d, px, py, pz):
 # counts, which took six times as long as the arithmetic.
 
 
-@kernel
+@helper
 def error_at(q: np.ndarray, i: Id, j: Id, x: float, y: float, z: float) -> float:
     """The error at a point of the sum of the quadrics of two vertices."""
     gx = (q[i, 0] + q[j, 0]) * x + 2 * ((q[i, 1] + q[j, 1]) * y + (q[i, 2] + q[j, 2]) * z + q[i, 6] + q[j, 6])

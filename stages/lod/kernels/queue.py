@@ -6,7 +6,7 @@ the end, NOT_QUEUED where the half-edge is in none; lowest (1,): all buckets bel
 
 import numpy as np
 
-from .jit import Id, kernel
+from .jit import Id, helper
 
 BITS = 1  # of the mantissa: two buckets for each doubling of the cost
 LEAST = 127 - 100  # biased exponent of the cost below which all share a bucket
@@ -14,7 +14,6 @@ NOT_QUEUED = -2
 BUCKETS = (255 - LEAST) << BITS
 
 
-@kernel
 def empty_queue(size: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(head, following, lowest) for half-edges below `size`."""
     return (
@@ -24,19 +23,19 @@ def empty_queue(size: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     )
 
 
-@kernel
+@helper
 def bucket_of(cost: float) -> Id:
     """The bucket of a cost of 0 or more: the leading bits of the number itself, which grow with it."""
     return max((np.float32(cost).view(np.int32) >> (23 - BITS)) - (LEAST << BITS), 0)
 
 
-@kernel
+@helper
 def is_queued(following: np.ndarray, h: Id) -> bool:
     """Whether a half-edge is in the queue."""
     return following[h] != NOT_QUEUED
 
 
-@kernel
+@helper
 def push(head: np.ndarray, following: np.ndarray, lowest: np.ndarray, h: Id, bucket: Id) -> None:
     """Puts a half-edge that is not queued into a bucket."""
     following[h] = head[bucket]
@@ -45,7 +44,7 @@ def push(head: np.ndarray, following: np.ndarray, lowest: np.ndarray, h: Id, buc
         lowest[0] = bucket
 
 
-@kernel
+@helper
 def pop(head: np.ndarray, following: np.ndarray, lowest: np.ndarray) -> tuple[Id, Id]:
     """(half-edge, its bucket) of least cost; (-1, -1) when the queue is empty."""
     for at in range(lowest[0], BUCKETS):

@@ -9,7 +9,7 @@ import numpy as np
 
 from .checks import NOBODY, check_move
 from .corners import after, before
-from .jit import kernel
+from .jit import helper, kernel
 from .surface import HalfEdgeMesh
 from .vectors import between, cross, dot, point
 
@@ -18,7 +18,6 @@ TURN = 0.8  # least cosine by which the fit may turn a face
 SHAPE = 0.1  # least quality of a face, as in `check_move`
 
 
-@kernel
 def refit(
     surface: HalfEdgeMesh, points: np.ndarray, faces: np.ndarray, weight: np.ndarray, samples: int, fold: float
 ) -> None:
@@ -27,11 +26,16 @@ def refit(
     points (n, 3), faces (3 m,): the original surface, of whose vertices and face centres about `samples` are targets.
     weight (n,): the area around each vertex, times its weight. fold: as in `check_move`.
     """
+    pull = np.zeros((len(surface.position), 4))
+    mark = np.empty(len(pull), dtype=np.int32)  # scratch of check_move
+    _refit(surface, points, faces, weight, samples, fold, pull, mark)
+
+
+@kernel
+def _refit(surface, points, faces, weight, samples, fold, pull, mark):
     corner, opposite, start, boundary, locked, position, quadric, parent = surface
     limits = TURN, SHAPE, fold, np.inf
     count = len(points) + len(faces) // 3
-    pull = np.zeros((len(position), 4))
-    mark = np.empty(len(position), dtype=np.int32)  # scratch of check_move
     for at in range(0, count, max(count // max(samples, 1), 1)):
         owner, x, y, z, share = _target(points, faces, weight, at)
         _pull(corner, opposite, start, position, _root(parent, owner), x, y, z, share, pull)
@@ -45,7 +49,7 @@ def refit(
                 position[v, 0], position[v, 1], position[v, 2] = x, y, z
 
 
-@kernel
+@helper
 def _root(parent, v):
     """The vertex into which v was merged in the end."""
     while parent[v] != v:
@@ -54,7 +58,7 @@ def _root(parent, v):
     return v
 
 
-@kernel
+@helper
 def _target(points, faces, weight, at):
     """(vertex, x, y, z, weight) of one target: the vertices, then the centres of the faces.
 
@@ -72,7 +76,7 @@ def _target(points, faces, weight, at):
     return np.int64(i), (ax + bx + cx) / 3, (ay + by + cy) / 3, (az + bz + cz) / 3, share
 
 
-@kernel
+@helper
 def _pull(corner, opposite, start, position, v, x, y, z, weight, pull):
     """Adds the pull of a target at x, y, z on the corners of the nearest face around v.
 
@@ -82,13 +86,14 @@ def _pull(corner, opposite, start, position, v, x, y, z, weight, pull):
     least, at, s, t = np.inf, start[v], 0.0, 0.0
     h = first = start[v]
     while True:
-        far, along, aside = _nearest(position, v, corner[after(h)], corner[before(h)], x, y, z)
+        i, j = np.int64(corner[after(h)]), np.int64(corner[before(h)])
+        far, along, aside = _nearest(position, v, i, j, x, y, z)
         if far < least:
             least, at, s, t = far, h, along, aside
         h = opposite[before(h)]
         if h < 0 or h == first:
             break
-    i, j = corner[after(at)], corner[before(at)]
+    i, j = np.int64(corner[after(at)]), np.int64(corner[before(at)])  # as v: `_add` is compiled once
     ux, uy, uz = between(position, v, i)
     wx, wy, wz = between(position, v, j)
     nx, ny, nz = cross(ux, uy, uz, wx, wy, wz)
@@ -103,7 +108,7 @@ def _pull(corner, opposite, start, position, v, x, y, z, weight, pull):
     _add(pull, j, t * weight, dx, dy, dz)
 
 
-@kernel
+@helper
 def _add(pull, v, share, dx, dy, dz):
     pull[v, 0] += share * dx
     pull[v, 1] += share * dy
@@ -111,7 +116,7 @@ def _add(pull, v, share, dx, dy, dz):
     pull[v, 3] += share
 
 
-@kernel
+@helper
 def _nearest(p, a, b, c, x, y, z):
     """(squared distance, share of b, share of c) of the point of the triangle nearest to x, y, z."""
     ax, ay, az = point(p, a)

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .corners import after, before
-from .jit import Id, kernel
+from .jit import Id, helper, kernel
 
 
 class HalfEdgeMesh(NamedTuple):
@@ -21,7 +21,7 @@ class HalfEdgeMesh(NamedTuple):
     parent: np.ndarray  # (n,) the vertex into which each was merged
 
 
-@kernel
+@helper
 def collapse_edge(
     corner: np.ndarray,
     opposite: np.ndarray,
@@ -71,7 +71,6 @@ def collapse_edge(
     return np.int64(left), np.int64(right)
 
 
-@kernel
 def compact(corner: np.ndarray, locked: np.ndarray, source: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
     """The remaining faces (3 k,) i8, and (n',) the vertex of the surface that each of their vertices is.
 
@@ -81,6 +80,13 @@ def compact(corner: np.ndarray, locked: np.ndarray, source: np.ndarray, count: i
     name = np.full(count + len(source), -1, dtype=np.int64)
     faces = np.empty(len(corner), dtype=np.int64)
     used = np.empty(len(source), dtype=np.int64)
+    size, ids = _name_corners(corner, locked, source, count, name, faces, used)
+    return faces[:size].copy(), used[:ids].copy()
+
+
+@kernel
+def _name_corners(corner, locked, source, count, name, faces, used):
+    """Fills what `compact` returns; returns the numbers of corners and of vertices. name: -1 for each key."""
     size = ids = 0
     for v in corner:
         if v < 0:
@@ -91,4 +97,4 @@ def compact(corner: np.ndarray, locked: np.ndarray, source: np.ndarray, count: i
             ids += 1
         faces[size] = name[key]
         size += 1
-    return faces[:size].copy(), used[:ids].copy()
+    return size, ids
