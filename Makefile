@@ -43,6 +43,8 @@ bench: $(VENV)/ready ## every benchmark, to reports/bench: kernels, errors, scen
 	OMP_NUM_THREADS=1 python -m benchmarks.errors
 	OMP_NUM_THREADS=1 python -m benchmarks.simplification $(psb) $(newest)
 	OMP_NUM_THREADS=1 python -m benchmarks.salient_simplification $(gaze) $(newest)
+	OMP_NUM_THREADS=1 python -m benchmarks.painted_simplification $(gaze) $(newest)
+	python -m benchmarks.large_simplification
 	OMP_NUM_THREADS=1 python -m benchmarks.saliency $(psb)
 	python -m benchmarks.scenes
 	OMP_NUM_THREADS=1 python -m benchmarks.imprints $(psb) $(if $(tacto),--tacto $(tacto))

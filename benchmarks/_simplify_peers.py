@@ -1,4 +1,4 @@
-"""Simplifiers of others, for benchmarks.simplification and benchmarks.salient_simplification, where they are installed.
+"""Simplifiers of others, for the benchmarks of simplification, where they are installed.
 
 `meshoptimizer` is the newest, which npm alone carries (1.3.0), as WebAssembly that `wasmtime` compiles for this
 processor; `meshoptimizer_native` the newest that PyPI carries as machine code (0.2.30a0), through ctypes. Both take
@@ -55,15 +55,28 @@ class Meshoptimizer:
 
     def __call__(self, mesh, faces, frozen, bits=None):
         """bits (n,) u1: LOCK, PRIORITY or neither of each vertex; None: LOCK for the corners of frozen faces."""
-        bits = locks(mesh, frozen) if bits is None else bits
-        ids, points = mesh.faces.astype(np.uint32), mesh.vertices.astype(np.float32)
+        return self._simplified(mesh, faces, locks(mesh, frozen) if bits is None else bits)
+
+    def painted(self, mesh, faces, weight, update):
+        """With the colours of the vertices in its error; update: vertices move and change colour, else they stay."""
+        return self._simplified(mesh, faces, np.zeros(len(mesh.vertices), np.uint8), weight, update)
+
+    def _simplified(self, mesh, faces, bits, weight=None, update=True):
+        ids, points, colors = mesh.faces.astype(np.uint32), mesh.vertices.astype(np.float32), None
         start = self._call("sbrk", 0)
         at, place, byte, error = (self._put(each) for each in (ids, points, bits, np.zeros(1, np.float32)))
-        surface = at, ids.size, place, len(points), points.strides[0], 0, 0, 0, 0, byte if bits.any() else 0
-        left = self._call("meshopt_simplifyWithUpdate", *surface, 3 * faces, NO_LIMIT, 0, error)
+        paint = 0, 0, 0, 0
+        if weight is not None:
+            colors = (mesh.colors / 255).astype(np.float32)
+            paint = self._put(colors), colors.strides[0], self._put(np.full(3, weight, np.float32)), 3
+        name, to = ("meshopt_simplifyWithUpdate", ()) if update else ("meshopt_simplifyWithAttributes", (at,))
+        surface = *to, at, ids.size, place, len(points), points.strides[0], *paint, byte if bits.any() else 0
+        left = self._call(name, *surface, 3 * faces, NO_LIMIT, 0, error)
         points, ids = self._get(place, points), self._get(at, ids).ravel()[:left].reshape(-1, 3)
+        if colors is not None:
+            colors = np.rint(255 * self._get(paint[0], colors).clip(0, 1)).astype(np.uint8)
         self._call("sbrk", start - self._call("sbrk", 0))
-        return in_use(points, ids)
+        return in_use(points, ids, colors)
 
     def _call(self, name, *values):
         return self.exports[name](self.store, *values)
@@ -117,11 +130,11 @@ def locks(mesh, frozen):
     return bits
 
 
-def in_use(points, faces):
+def in_use(points, faces, colors=None):
     """The Mesh of those points that have faces."""
     there = np.zeros(len(points), bool)
     there[faces] = True
-    return Mesh(points[there], (np.cumsum(there) - 1)[faces])
+    return Mesh(points[there], (np.cumsum(there) - 1)[faces], None if colors is None else colors[there])
 
 
 def vtk(mesh, faces, _):

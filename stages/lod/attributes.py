@@ -27,7 +27,8 @@ def carry(reference: Mesh, mesh: Mesh) -> Mesh:
     Colours (n, 3) are interpolated at the closest point of the reference's surface; a vertex at the position of one of
     the reference's takes its colour unchanged. Texture coordinates (m, 3, 2) are those of the chart under the face's
     centre, at the closest point of each corner within the chart, extrapolated affinely where the corner lies past the
-    seam. The images stay unchanged. Where the reference has neither, the mesh itself is returned.
+    seam. The images stay unchanged. Colours that `mesh` has already stay, as those of a simplification whose error
+    counts them. Where the reference has neither, the mesh itself is returned.
 
     Source: attributes at the closest point as in Cohen, Olano and Manocha 1998 (appearance-preserving simplification,
     section 3); the thesis has no attributes. Raises ValueError where the reference has no faces.
@@ -36,7 +37,9 @@ def carry(reference: Mesh, mesh: Mesh) -> Mesh:
         raise ValueError("the reference has no faces to take attributes from")
     if mesh is reference or len(mesh.faces) == 0 or (reference.colors is None and reference.texture is None):
         return mesh
-    colors = None if reference.colors is None else carry_colors(reference, mesh.vertices)
+    colors = mesh.colors
+    if colors is None and reference.colors is not None:
+        colors = carry_colors(reference, mesh.vertices)
     texture = None if reference.texture is None else carry_texture(reference, mesh)
     return Mesh(mesh.vertices, mesh.faces, colors, texture, reference.up)
 

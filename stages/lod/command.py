@@ -9,6 +9,7 @@ With a data set of params.yaml instead of MESH, the stage `lod` of the pipeline 
 examples:
   python -m stages.lod bunny.stl --faces 1500 --out small.glb
   python -m stages.lod chair.obj --tolerance 0.2% --up y --out chair_small.obj --picture chair.png
+  python -m stages.lod vase.glb --faces 2000 --attributes uv=1 --out vase_small.glb
   python -m stages.lod bunny.stl --faces 10% --neighbourhood adaptive --keep 8 --out small.ply
 """
 
@@ -25,6 +26,7 @@ from stages.meshes.load import load_unnamed
 from stages.meshes.up import lying_note, upright_by
 from stages.salient_points import find_points, saliency
 
+from .attribute_quadrics import check_attributes
 from .error_table import NAMES, format_table, measure_meshes
 from .export import COLORLESS, write_any
 from .feasibility import InfeasibleTarget, SimplifyError, smallest_feasible
@@ -83,6 +85,7 @@ def read(path: Path, up: str | None) -> Mesh:
 def prepare(mesh: Mesh, chosen: Namespace) -> SimplificationTask:
     """The SimplificationTask: saliency, and the points to keep."""
     asked, target = chosen.faces, len(mesh.faces)
+    check_attributes(mesh, chosen.attributes)
     if asked and face_count(asked, target, "--faces") >= target:
         raise ValueError(f"--faces {asked}: the mesh has only {number(target, 'face')}, there is nothing to simplify")
     rendered = bake_texture(mesh)
@@ -99,7 +102,7 @@ def prepare(mesh: Mesh, chosen: Namespace) -> SimplificationTask:
     rings = neighbourhoods(mesh, points, rule, values, RINGS if chosen.rings is None else chosen.rings)
     soft = chosen.neighbourhood == SOFT and chosen.method != PLAIN
     weights = values if soft else None
-    return SimplificationTask(mesh, values, points, rings, weights, chosen.backend, chosen.shrink)
+    return SimplificationTask(mesh, values, points, rings, weights, chosen.backend, chosen.shrink, chosen.attributes)
 
 
 def reduce(task: SimplificationTask, chosen: Namespace) -> Mesh:
@@ -156,7 +159,7 @@ def summary(task: SimplificationTask, found: Mesh, chosen: Namespace) -> str:
         rows += [("border edges kept", len(task.border), task.border_edges_kept(found), *rest)]
     if len(task.points) or len(task.border):
         rows += [("fewest faces that keep them", None, task.smallest_with_borders, *rest)]
-    rows += [(NAMES[name], None, *(each[name] for each in errors)) for name in NAMES]
+    rows += [(NAMES[name], None, *(each[name] for each in errors)) for name in NAMES if name in errors[0]]
     return format_table(["before", method_label(chosen), *["plain QEM"] * len(rest)], rows)
 
 

@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 from stages.kit import Mesh
 from stages.views import TWELVE
 
+from .colour_error import colour_error
 from .metro import surface_errors
 from .perceptual import picture_errors, take_pictures
 from .task import SimplificationTask
@@ -16,6 +17,7 @@ NAMES = {
     "rms": "Metro rms, %",
     "max": "Metro max, %",
     "salient": "where people look, %",
+    "colour": "colours, of 255",
     "ssim": "1 - SSIM of the pictures",
     "dlap": "Laplacian pyramid (DLap)",
     "dnor": "normalised Laplacian pyramid (DNor)",
@@ -25,7 +27,7 @@ NAMES = {
 def measure_meshes(
     task: SimplificationTask, meshes: Sequence[Mesh], seed: int = 0, report: Callable[[str], None] = lambda text: None
 ) -> list[dict[str, float | None]]:
-    """[dict name -> error] of Meshes in the frame of the task, by the names of NAMES.
+    """[dict name -> error] of Meshes in the frame of the task, by the names of NAMES; colours where they count.
 
     Where a coarse mesh exceeds the picture, all are drawn smaller by one scale, so that the columns of a table compare;
     this is reported, since the errors are then smaller too. Errors of pictures that fail are None, with the reason
@@ -39,6 +41,8 @@ def measure_meshes(
     for mesh, picture in zip(meshes, shown, strict=True):
         errors = surface_errors(task.mesh, mesh, {"salient": task.saliency}, seed=seed)
         row: dict[str, float | None] = {name: 100 * value for name, value in errors.items()}
+        if "colors" in task.attributes or "uv" in task.attributes:
+            row["colour"] = colour_error(task.mesh, mesh, seed=seed)
         try:
             row |= picture_errors(pictures, take_pictures(picture, TWELVE, SIZE))
         except ValueError as error:

@@ -6,8 +6,10 @@ import numpy as np
 
 from stages.kit import Mesh
 
+from .attribute_quadrics import Attributes, attribute_quadrics
 from .feasibility import InfeasibleTarget, SimplifyError
 from .kernels import HalfEdgeMesh, compact, decimate, fans, opposites, refit, vertex_quadrics
+from .merged_attributes import at_jumps, merged_colors
 from .topology import NONE, faults
 
 # (least cosine by which a collapse may turn a face, least quality of a face after it), tried in this order until the
@@ -23,19 +25,21 @@ SAMPLES = 6  # target points of the fit per remaining vertex
 
 
 def collapse(
-    mesh: Mesh, faces: int, frozen: np.ndarray, weights: np.ndarray | None = None, fit_below: float = FIT_BELOW
-) -> Mesh:
-    """A sound Mesh of at most `faces` faces, without colours.
+    mesh: Mesh, faces: int, frozen: np.ndarray, weights: np.ndarray | None = None, attributes: Attributes = (),
+    fit_below: float = FIT_BELOW,
+) -> Mesh:  # fmt: skip
+    """A sound Mesh of at most `faces` faces, without colours but where the error counts them.
 
     frozen (m,) boolean: faces that are preserved bit for bit, as is the boundary. weights (n,) f8: factor of each
-    vertex's quadric, and its weight in the fit; None for 1. fit_below: the share of the faces left below which the
-    vertices are fitted; 0 is Garland and Heckbert's QSlim.
+    vertex's quadric, and its weight in the fit; None for 1. attributes: (name, weight) of those that the error
+    counts. fit_below: the share of the faces left below which the vertices are fitted; 0 is Garland and Heckbert's
+    QSlim.
     Raises InfeasibleTarget when no collapse is left above the target, SimplifyError when every attempt is faulty.
     """
     before, reason, least = None, "", len(mesh.faces)
     waiting = [(*limits, FOLD) for limits in ATTEMPTS]
     while waiting:
-        found, left = _attempt(mesh, faces, frozen, weights, fit_below, *waiting.pop(0))
+        found, left = _attempt(mesh, faces, frozen, weights, attributes, fit_below, *waiting.pop(0))
         after = faults(found)
         if left <= faces and after == NONE:
             return found
@@ -54,25 +58,41 @@ def collapse(
     raise SimplifyError(f"{faces} faces leave {reason}: ask for more faces")
 
 
-def _attempt(mesh, faces, frozen, weights, fit_below, turn, shape, fold):
-    surface, source, (middle, size) = _half_edge_mesh(mesh, frozen, weights)
+def _attempt(mesh, faces, frozen, weights, attributes, fit_below, turn, shape, fold):
+    surface, source, (middle, size) = half_edge_mesh(mesh, frozen, weights)
     points, corner = surface.position.copy(), surface.corner.copy()
     weight = (
         surface.quadric[:, 0] + surface.quadric[:, 3] + surface.quadric[:, 5]
     )  # area around each vertex, times its weight
-    left = decimate(surface, faces, turn, shape, fold)
+    wedges = _count_attributes(mesh, attributes, weights, surface, source) if attributes else None
+    left = decimate(surface, wedges, faces, turn, shape, fold)
     if left > faces:
-        left = decimate(surface, faces, *LAST, fold)
+        left = decimate(surface, wedges, faces, *LAST, fold)
     if left < fit_below * len(mesh.faces):
-        refit(surface, points, corner, weight, SAMPLES * left // 2, fold)
+        fitted = surface if wedges is None else surface._replace(locked=surface.locked | at_jumps(surface, wedges))
+        refit(fitted, points, corner, weight, SAMPLES * left // 2, fold)
     kept, used = compact(surface.corner, surface.locked, source, len(mesh.vertices))
     vertices = surface.position[used] * size + middle
     locked = surface.locked[used]
     vertices[locked] = mesh.vertices[source[used[locked]]]
-    return Mesh(vertices, kept.reshape(-1, 3)), left
+    colors = None
+    if wedges is not None and "colors" in dict(attributes):
+        colors = merged_colors(surface, wedges, dict(attributes)["colors"])[used]
+        colors[locked] = mesh.colors[source[used[locked]]]
+    return Mesh(vertices, kept.reshape(-1, 3), colors), left
 
 
-def _half_edge_mesh(mesh, frozen, weights):
+def _count_attributes(mesh, attributes, weights, surface, source):
+    """The Wedges of a surface, to whose quadrics the attributes are added."""
+    factor = np.ones(len(source)) if weights is None else weights[source]
+    added, wedges = attribute_quadrics(mesh, attributes, surface.position, surface.corner, surface.opposite, factor)
+    np.add(surface.quadric, added, out=surface.quadric)
+    return wedges
+
+
+def half_edge_mesh(
+    mesh: Mesh, frozen: np.ndarray, weights: np.ndarray | None
+) -> tuple[HalfEdgeMesh, np.ndarray, tuple[np.ndarray, float]]:
     """(HalfEdgeMesh in a unit box, (n',) the vertex of the mesh of each of its vertices, (middle, size) of the box).
 
     A vertex at which fans of faces touch is split. Boundary vertices and corners of frozen faces are locked.

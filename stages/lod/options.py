@@ -47,6 +47,11 @@ def parser(about: str) -> argparse.ArgumentParser:
     command.add_argument(
         "--shrink", action="store_true", help="freeze fewer faces where the target is too low for all of them"
     )
+    help_weights = "what the error counts beside the shape, and how much: colors=1,uv=1,normals=0.03 or some of them;"
+    help_weights += " with colors=1, black and white differ as much as two ends of the mesh (default: nothing)"
+    command.add_argument(
+        "--attributes", metavar="NAME=WEIGHT,...", type=attribute_weights, default={}, help=help_weights
+    )
     add_up(command)
     command.add_argument("--backend", choices=list(BACKENDS), default=BACKEND, help="default: %(default)s")
     command.add_argument("--seed", type=int, default=0, help="for the samples of the errors (default: %(default)s)")
@@ -66,6 +71,14 @@ def share(text: str) -> float:
     if not value < 1:
         raise argparse.ArgumentTypeError(f"{text!r} is not a share of the diagonal: write one like 0.2% or 0.002")
     return value
+
+
+def attribute_weights(text: str) -> dict[str, float]:
+    """Weights by name from `colors=1,uv=0.5`; which ones a mesh has shows later."""
+    try:
+        return {name.strip(): float(weight) for name, weight in (pair.split("=") for pair in text.split(","))}
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r}: write names and weights such as colors=1,uv=0.5") from None
 
 
 def check_paths(chosen: argparse.Namespace) -> None:
@@ -106,6 +119,8 @@ def check_options(chosen: argparse.Namespace) -> None:
     if given and chosen.neighbourhood == SOFT:
         remedy = f"add --neighbourhood {' or '.join(NEIGHBOURHOODS)}, or leave it out"
         raise ValueError(f"{given} has no effect where no faces are frozen: {remedy}")
+    if chosen.attributes and chosen.backend == "pymeshlab":
+        raise ValueError("--attributes has no effect with --backend pymeshlab: choose fast or qslim")
     if chosen.rings is not None and chosen.neighbourhood != "fixed":
         raise ValueError(f"--rings has no effect with --neighbourhood {chosen.neighbourhood}: it is for fixed")
     if chosen.keep is not None and chosen.keep < 1:

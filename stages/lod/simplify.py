@@ -1,6 +1,6 @@
 """Simplification that preserves the neighbourhoods of chosen vertices (T3.1.3, T3.2.8)."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import lru_cache, partial
 
@@ -8,8 +8,10 @@ import numpy as np
 
 from stages.kit import Mesh
 
+from .attribute_quadrics import check_attributes
 from .attributes import carry
-from .fast import collapse as collapse_fast
+from .blocks import collapse as collapse_fast
+from .fast import collapse as collapse_whole
 from .feasibility import (
     InfeasibleTarget,
     Keep,
@@ -25,7 +27,7 @@ from .shrink import shrinking_rings
 
 # A backend is collapse(mesh, faces, frozen, weights=None) -> Mesh of at most `faces` faces without colours; see qem.py.
 BACKENDS: dict[str, Callable[..., Mesh]] = {
-    "fast": collapse_fast, "qslim": partial(collapse_fast, fit_below=0.0), "pymeshlab": collapse_by_pymeshlab,
+    "fast": collapse_fast, "qslim": partial(collapse_whole, fit_below=0.0), "pymeshlab": collapse_by_pymeshlab,
 }  # fmt: skip
 BACKEND = "fast"
 MAX_DIAGONAL = 1e60  # and one over it the smallest: fourth powers of lengths are compared
@@ -40,7 +42,7 @@ GROWTH = 1.1  # from one count without a sound mesh to the next one tried, for `
 
 def simplify(
     mesh: Mesh, faces: int, keep: Keep = None, rings: Rings = 3, backend: str = BACKEND, shrink: bool = False,
-    weights: np.ndarray | None = None,
+    weights: np.ndarray | None = None, attributes: Mapping[str, float] | None = None,
 ) -> Mesh:  # fmt: skip
     """A Mesh of at most `faces` faces (one fewer where the count must stay even), or the mesh itself if it has no more.
 
@@ -49,9 +51,12 @@ def simplify(
     not). None or empty: plain QEM. rings: one number, or (k,) per kept vertex, as from `neighbourhoods` (0: the faces
     that touch it; -1: not kept). shrink: where the target is too low for them, keep smaller neighbourhoods, the least
     salient first (`shrunk_rings`). weights: (n,) f8 in 0..1, for example a saliency: the error has a higher weight
-    where it is high (`quadric_weights`). Connected components and genus are preserved; components that touch in a
-    vertex or a non-manifold edge are simplified separately. Colours and texture come from the closest point of `mesh`
-    (`carry`).
+    where it is high (`quadric_weights`). attributes: weights of `colors`, `normals` and `uv` (texture coordinates) in
+    the error, for example {"colors": 1.0, "normals": 0.03}. At a weight of 1 a difference of black and white, of the
+    picture's width or of a unit normal counts as a displacement by the longest side of the mesh (`attribute_quadrics`).
+    By default the shape alone decides. Connected components and genus are preserved; components that touch in a vertex
+    or a non-manifold edge are simplified separately. Texture comes from the closest point of `mesh` (`carry`), and so
+    do colours, but for those in the error, which are the ones of least error.
 
     Source: Garland and Heckbert 1997 (T [222]). The thesis also takes edges beside the frozen region out of the list,
     which is the same: a vertex of a frozen face never moves.
@@ -67,6 +72,10 @@ def simplify(
         raise ValueError(f"a mesh of diagonal {mesh.diagonal:.3g} is out of range: scale it, see stages.meshes")
     rings = check_rings(check_keep(mesh, keep), rings)
     multipliers = None if weights is None else quadric_weights(_check_weights(mesh, weights))
+    counted = check_attributes(mesh, attributes)
+    if counted and backend == "pymeshlab":
+        raise ValueError("the backend pymeshlab has no attributes in its error: choose fast or qslim")
+    collapse = partial(BACKENDS[backend], attributes=counted) if counted else BACKENDS[backend]
     if faces >= len(mesh.faces):
         return mesh
     failures = []
@@ -76,7 +85,7 @@ def simplify(
         try:
             if faces < smallest:  # before the backend starts
                 raise InfeasibleTarget(faces, smallest, int(frozen.sum()))
-            return carry(mesh, replace(BACKENDS[backend](mesh, int(faces), frozen, multipliers), up=mesh.up))
+            return carry(mesh, replace(collapse(mesh, int(faces), frozen, multipliers), up=mesh.up))
         except (InfeasibleTarget, SimplifyError) as error:
             failures.append((error, frozen))
     error, frozen = failures[-1]

@@ -1,6 +1,7 @@
 """A mesh from a file prepared for simplification, and the result brought back to its coordinates."""
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -24,7 +25,7 @@ class SimplificationTask:
 
     given: the Mesh in its own units and axes. saliency (n,) f8 in 0..1. points (k,) vertex ids to
     keep, most salient first, rings (k,) around each. weights: (n,) for the soft variant or None. shrink: whether the
-    neighbourhoods may shrink where the target needs it.
+    neighbourhoods may shrink where the target needs it. attributes: their weights in the error, see `simplify`.
     """
 
     given: Mesh
@@ -34,6 +35,7 @@ class SimplificationTask:
     weights: np.ndarray | None
     backend: str
     shrink: bool
+    attributes: Mapping[str, float] = field(default_factory=dict)
 
     @cached_property
     def mesh(self) -> Mesh:
@@ -122,9 +124,10 @@ class SimplificationTask:
 
     def _simplify(self, mesh, ids, faces):
         keep, rings = self._on_cut(ids)
-        weights = None if self.weights is None else self.weights[ids]
-        bare = replace(mesh, colors=None, texture=None)  # colours and texture are transferred once, at the end
-        found = simplify(bare, faces, keep, rings, self.backend, self.shrink, weights=weights)
+        counts = {"weights": None if self.weights is None else self.weights[ids], "attributes": self.attributes}
+        # Those that the error does not count are transferred once, at the end.
+        bare = mesh if self.attributes else replace(mesh, colors=None, texture=None)
+        found = simplify(bare, faces, keep, rings, self.backend, self.shrink, **counts)
         return self.mesh if found is bare else carry(self.mesh, close_borders(found, mesh, ids))
 
     def _on_cut(self, ids):

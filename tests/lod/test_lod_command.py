@@ -14,7 +14,7 @@ from PIL import Image
 
 from stages.kit import Mesh
 from stages.kit.texture import Texture
-from stages.lod import __main__, command, error_table, metro, simplify
+from stages.lod import __main__, colour_error, command, error_table, metro, simplify
 from stages.lod.command import run
 from stages.lod.export import FORMATS, to_trimesh, write_any
 from stages.lod.feasibility import SimplifyError
@@ -100,6 +100,39 @@ def test_colours_go_along(simplified, tmp_path):
     assert np.abs(found.colors[:, 0] - want).max() < 4
 
 
+@pytest.mark.slow
+def test_attributes_that_count_come_out_closer(simplified, tmp_path):
+    mesh = bumpy()
+    colors = np.repeat(np.where(mesh.vertices[:, [2]] > PLACE[2] + 3, 255, 0), 3, axis=1)
+    painted = Mesh(mesh.vertices, mesh.faces, colors)
+    write_any(tmp_path / "painted.ply", painted)
+    options = "--faces", 400, "--attributes", "colors=1"
+    found, said, _ = simplified(*options, source=tmp_path / "painted.ply", out="out.ply")
+    assert len(found.faces) == 400
+    ours, plain = map(float, rows(said)["colours, of 255"][1:])
+    assert ours < plain / 3
+    assert colour_error(painted, found) == pytest.approx(ours, rel=0.2)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [(["colors=1"], "the mesh has no colors"), (["weight=1"], "unknown attribute 'weight'"),
+     (["normals=0.1", "--backend", "pymeshlab"], "has no effect with --backend pymeshlab")],
+)  # fmt: skip
+def test_attributes_without_meaning_are_refused_before_the_work(simplified, options, message):
+    with pytest.raises(ValueError, match=message):
+        simplified("--faces", 500, "--attributes", *options)
+
+
+def test_attributes_are_names_and_numbers(capsys):
+    chosen = parser("x").parse_args(["in.stl", "--faces", "9", "--out", "o.stl", "--attributes", "uv=1, colors=.5"])
+    assert chosen.attributes == {"uv": 1.0, "colors": 0.5}
+    for wrong in ("uv", "uv=much", "uv=1=2", ""):
+        with pytest.raises(SystemExit):
+            parser("x").parse_args(["in.stl", "--faces", "9", "--out", "o.stl", "--attributes", wrong])
+        assert "write names and weights such as" in capsys.readouterr().err
+
+
 def textured():
     """The ball wrapped in a picture by its directions, as an OBJ with material and picture would hold it."""
     mesh = bumpy()
@@ -159,9 +192,9 @@ def test_equal_commands_give_equal_bytes(simplified, tmp_path):
 def test_without_options_the_saliency_weighs_and_nothing_is_frozen(simplified, monkeypatch):
     weights = []
 
-    def watched(*arguments, weights=None, real=simplify, seen=weights):
+    def watched(*arguments, weights=None, real=simplify, seen=weights, **options):
         seen.append(weights)
-        return real(*arguments, weights=weights)
+        return real(*arguments, weights=weights, **options)
 
     monkeypatch.setattr("stages.lod.task.simplify", watched)
     _, said, _ = simplified("--faces", 300)

@@ -81,6 +81,30 @@ def test_tiles_that_share_a_border_still_fit_together():
     assert len(border) == 17 and places(one, 0.5) == places(two, 0.5) == border
 
 
+def test_a_patch_of_reversed_faces_stays_whole():
+    # Where two neighbours wind against each other the surface has no side: the edge stays as a border does.
+    mesh = sheet(20)
+    patch = (np.abs(mesh.vertices[mesh.faces].mean(axis=1)[:, :2] - 0.5) < 0.2).all(axis=1)
+    faces = np.where(patch[:, None], mesh.faces[:, ::-1], mesh.faces)
+    found = simplify(Mesh(mesh.vertices, faces), 400)
+    down = normals_up(found) < 0
+    assert found.face_areas[down].sum() == pytest.approx(mesh.face_areas[patch].sum())
+    assert found.face_areas.sum() == pytest.approx(1) and len(found.faces) <= 400
+    rim = np.unique(mesh.faces[patch])[np.isin(np.unique(mesh.faces[patch]), mesh.faces[~patch])]
+    assert {tuple(place) for place in mesh.vertices[rim]} <= {tuple(place) for place in found.vertices}
+
+
+def test_a_vertex_kept_on_one_side_of_a_seam_is_kept_on_both():
+    mesh = sheet(17)
+    right = mesh.vertices[mesh.faces].mean(axis=1)[:, 0] > 0.5
+    n = len(mesh.vertices)
+    cut = Mesh(np.r_[mesh.vertices, mesh.vertices], np.where(right[:, None], mesh.faces + n, mesh.faces))
+    on_seam = 8 * 17 + 8
+    for kept in (on_seam, on_seam + n):
+        found = simplify(cut, 260, [kept], 0)
+        assert (found.vertices == mesh.vertices[on_seam]).all(axis=1).sum() == 2
+
+
 def test_no_crack_opens_along_a_seam():
     # Two copies of each vertex of the seam, as files with texture coordinates have them.
     ball = Mesh(BALL.vertices, BALL.faces)

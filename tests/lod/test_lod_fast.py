@@ -74,9 +74,9 @@ def test_the_fit_brings_the_surface_nearer_than_qslim():
 
 def test_the_fit_moves_free_vertices_and_leaves_locked_ones():
     mesh = bumpy()
-    surface = fast._half_edge_mesh(mesh, frozen_faces(mesh, [7, 900], 2), None)[0]
+    surface = fast.half_edge_mesh(mesh, frozen_faces(mesh, [7, 900], 2), None)[0]
     points, corner = surface.position.copy(), surface.corner.copy()
-    decimate(surface, 900, *fast.ATTEMPTS[0], fast.FOLD)
+    decimate(surface, None, 900, *fast.ATTEMPTS[0], fast.FOLD)
     before_fit = surface.position.copy()
     refit(surface, points, corner, np.ones(len(points)), 4000, fast.FOLD)
     moved = (surface.position != before_fit).any(axis=1)
@@ -106,8 +106,8 @@ def fan(surface, vertex):
 def test_the_whole_fan_of_a_vertex_is_found_after_any_collapses(make):
     # On the boundary it is found from its first half-edge alone, on which all checks rest: a lost face is not checked.
     for faces in (1200, 700, 300):
-        surface = fast._half_edge_mesh(make(), nothing(make()), None)[0]
-        decimate(surface, faces, *fast.ATTEMPTS[0], fast.FOLD)
+        surface = fast.half_edge_mesh(make(), nothing(make()), None)[0]
+        decimate(surface, None, faces, *fast.ATTEMPTS[0], fast.FOLD)
         alive = np.flatnonzero(surface.corner >= 0)
         for vertex in np.unique(surface.corner[alive]):
             assert sorted(fan(surface, vertex)) == alive[surface.corner[alive] == vertex].tolist()
@@ -117,8 +117,8 @@ def test_a_tetrahedron_never_becomes_two_faces_back_to_back():
     tetrahedron = Mesh(
         [[0, 0, 0], [1, 0, 0], [0.5, 0.9, 0], [0.5, 0.3, 0.8]], [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]
     )
-    surface = fast._half_edge_mesh(tetrahedron, nothing(tetrahedron), None)[0]
-    assert decimate(surface, 2, *fast.LAST, fast.NO_FOLD) == 4  # where folds count, they hold it up as well
+    surface = fast.half_edge_mesh(tetrahedron, nothing(tetrahedron), None)[0]
+    assert decimate(surface, None, 2, *fast.LAST, fast.NO_FOLD) == 4  # where folds count, they hold it up as well
 
 
 def plane(*normal, d):
