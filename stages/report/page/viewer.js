@@ -11,7 +11,7 @@
   }
 
   const bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
-  // The arrays of an object, as stages/report/packing.py stored them: [offset, count] into its deflated bytes.
+  // The arrays of an object, as stages/kit/packing.py stored them: [offset, count] into its deflated bytes.
   let store = new Uint8Array(0);
   const words = ([at, count]) => Uint16Array.from({ length: count }, (_, k) => store[at + k] | (store[at + count + k] << 8));
   const summed = (values, stride) => {
