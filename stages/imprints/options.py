@@ -1,4 +1,4 @@
-"""The options of `python -m stages.imprints MESH`, and their checks before any work."""
+"""The options of `haptic-glance touch MESH`, and their checks before any work."""
 
 import argparse
 import os
@@ -31,7 +31,7 @@ def parser(description: str) -> argparse.ArgumentParser:
     first, _, rest = description.partition("\n")
     form = argparse.RawDescriptionHelpFormatter
     usage = "%(prog)s MESH [--at PLACE ...] [options]"
-    result = argparse.ArgumentParser("python -m stages.imprints", usage, first, rest, formatter_class=form)
+    result = argparse.ArgumentParser("haptic-glance touch", usage, first, rest, formatter_class=form)
     result.add_argument("mesh", metavar="MESH", type=Path, help="the file to touch: STL, OBJ, PLY, OFF or GLB")
     help_at = "places: salient (default), random, ids of vertices, or positions x,y,z in the file's coordinates"
     result.add_argument("--at", metavar="PLACE", nargs="+", default=[SELECTIONS[0]], help=help_at)
@@ -61,6 +61,7 @@ def parser(description: str) -> argparse.ArgumentParser:
         "--seed", type=int, default=0, help="seed of random places and of the skin (default: %(default)s)"
     )
     result.add_argument("--out", metavar="FOLDER", type=Path, help="output folder (default: MESH_imprints)")
+    result.add_argument("--json", action="store_true", help="print the places as JSON, as places.csv has them")
     result.add_argument("--show", action="store_true", help="also open the picture in a window")
     return result
 

@@ -6,7 +6,7 @@ What report/page/viewer.js shows of an object is the dict of `pack`, of all of t
 import base64
 import zlib
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,7 +20,13 @@ TOP = 0.99  # of the coarsest level's vertices have an error below the top of th
 # Blue is equal, green small, yellow, red large: the scale of CloudCompare.
 ERROR_COLOURS = ((38, 70, 200), (34, 160, 74), (245, 215, 50), (214, 30, 30))
 
-Level = tuple[Mesh, np.ndarray]  # a simplified mesh, and the distance to it of each vertex shown, in % of the diagonal
+
+class Level(NamedTuple):
+    """A simplified mesh of so many faces, as it is drawn; error: of each vertex of the full one, % of the diagonal."""
+
+    mesh: Mesh
+    error: np.ndarray
+    faces: int
 
 
 class Store:
@@ -86,12 +92,12 @@ def pack(
     """
     store = Store()
     levels = [level for _, ladder in ladders.values() for level in ladder]
-    top = max((float(np.quantile(error, TOP)) for _, error in levels), default=0.0)
+    top = max((float(np.quantile(level.error, TOP)) for level in levels), default=0.0)
     packed: dict[str, Any] = {"name": name, "faces": faces, "full": _mesh(full, store), "error_top": top}
     packed["saliency"] = {key: {"label": text, "values": store.put_shades(v)} for key, (text, v) in saliency.items()}
     packed["points"] = {key: {"label": text, "ids": store.put_words(ids)} for key, (text, ids) in points.items()}
     packed["ladders"] = {
-        key: {"label": text, "levels": [_level(*level, top, store) for level in ladder]}
+        key: {"label": text, "levels": [_level(level, top, store) for level in ladder]}
         for key, (text, ladder) in ladders.items()
     }
     return packed | {"store": store.text()}
@@ -102,12 +108,13 @@ def _mesh(mesh: Mesh, store: Store) -> dict[str, Any]:
     return {"faces": len(mesh.faces), "positions": positions, "triangles": triangles}
 
 
-def _level(mesh: Mesh, error: np.ndarray, top: float, store: Store) -> dict[str, Any]:
-    """A simplified mesh, with the error (n,) of the full mesh's vertices in % of the diagonal."""
-    return _mesh(mesh, store) | {
-        "error": store.put_shades(np.sqrt(error / (top or 1.0))),
-        "error_max": round(float(error.max()), 3),
-        "error_mean": round(float(error.mean()), 4),
+def _level(level: Level, top: float, store: Store) -> dict[str, Any]:
+    return _mesh(level.mesh, store) | {
+        "faces": level.faces,
+        "drawn": len(level.mesh.faces),
+        "error": store.put_shades(np.sqrt(level.error / (top or 1.0))),
+        "error_max": round(float(level.error.max()), 3),
+        "error_mean": round(float(level.error.mean()), 4),
     }
 
 

@@ -7,8 +7,9 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from stages.kit import Mesh
-from stages.kit.packing import SHADES, ordered, pack, viewer_data
-from stages.lod import simplify, vertex_errors
+from stages.kit.packing import SHADES, Level, ordered, pack, viewer_data
+from stages.lod import vertex_errors
+from stages.lod.shown import shown_mesh
 
 from .drawing import colour_map, vivid
 from .results import NotRun, Results, some
@@ -17,7 +18,6 @@ from .style import label
 METHODS = [  # those that the page offers, as far as they were run: each costs an object up to 5 kB
     "enhanced", "itti", "thesis_ssim", "mesh_saliency", "salient_points", "heat_kernel", "random",
 ]  # fmt: skip
-INDEX_LIMIT = 65535  # 16-bit vertex ids
 FINEST = 0.6  # of the object's faces: a finer level looks like the object itself and costs the page most
 STEP = 0.75  # of the faces of the finer level before it: a closer one looks the same
 
@@ -66,8 +66,10 @@ def pack_object(results: Results, name: str) -> dict[str, Any]:
         with suppress(NotRun):
             found = [ordered(mesh)[0] for _, mesh in results.lods(name, method)]
             levels = apart([mesh for mesh in found if len(mesh.faces) <= FINEST * len(full.faces)])
-            distances = [100 * vertex_errors(mesh, full) / full.diagonal for mesh in levels]
-            ladders[method] = (label(method), list(zip(levels, distances, strict=True)))
+            ladders[method] = (
+                label(method),
+                [Level(mesh, 100 * vertex_errors(mesh, full) / full.diagonal, len(mesh.faces)) for mesh in levels],
+            )
     return pack(name, len(original.faces), full, saliency, points, ladders)
 
 
@@ -78,10 +80,3 @@ def apart(levels: list[Mesh]) -> list[Mesh]:
         if not kept or len(mesh.faces) <= STEP * len(kept[-1].faces):
             kept.append(mesh)
     return kept
-
-
-def shown_mesh(mesh: Mesh, faces: int) -> tuple[Mesh, np.ndarray]:
-    """(mesh, ids): the mesh, simplified where it has more faces; ids: the original vertex nearest to each of its."""
-    large = len(mesh.faces) > faces or len(np.unique(mesh.faces)) > INDEX_LIMIT
-    small = ordered(simplify(mesh, faces) if large else mesh)[0]
-    return small, np.asarray(KDTree(mesh.vertices).query(small.vertices)[1])

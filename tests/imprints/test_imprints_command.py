@@ -359,7 +359,7 @@ def test_command_runs_and_says_errors_in_one_line(file, tmp_path):
     done = subprocess.run(command, cwd=tmp_path, env=os.environ | {"PYTHONPATH": str(root)}, capture_output=True)
     lines = done.stderr.decode().splitlines()
     assert done.returncode == 1 and "Traceback" not in done.stderr.decode()
-    assert lines[-1].startswith("imprints: ") and "no such vertex" in lines[-1]
+    assert lines[-1].startswith("touch: ") and "no such vertex" in lines[-1]
 
 
 def test_help_tells_of_units_and_has_examples(capsys, monkeypatch):

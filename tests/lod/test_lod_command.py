@@ -371,7 +371,7 @@ def test_one_face_is_one_face(tmp_path, capsys):
     write_any(tmp_path / "one.ply", Mesh(np.eye(3), [[0, 1, 2]]))
     with pytest.raises(ValueError, match="has only 1 face, there is nothing"):
         run([str(tmp_path / "one.ply"), "--faces", "9", "--out", str(tmp_path / "x.glb")])
-    assert "lod: 1 face; z up" in capsys.readouterr().err
+    assert "simplify: 1 face; z up" in capsys.readouterr().err
 
 
 def test_a_mesh_too_small_for_its_digits_is_refused_with_the_reason(tmp_path):
@@ -468,7 +468,7 @@ def test_interrupted_it_says_one_line_and_leaves_nothing(file, tmp_path):
     while "looking at it" not in (line := work.stderr.readline()):
         assert line, "it ended before it could be interrupted"
     work.send_signal(signal.SIGINT)
-    assert work.stderr.read().splitlines()[-1] == "lod: stopped"
+    assert work.stderr.read().splitlines()[-1] == "simplify: stopped"
     assert work.wait() == -signal.SIGINT  # which a shell reports as 130
     assert sorted(tmp_path.iterdir()) == before
 

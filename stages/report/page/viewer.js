@@ -193,10 +193,10 @@
     const faces = (item) => `${item.faces.toLocaleString("en")} faces`;
     const original = mesh === one.full;
     const share = `${(100 * mesh.faces / one.faces).toFixed(mesh.faces < one.faces / 20 ? 1 : 0)} %`;
-    const drawn = one.full.faces < one.faces ? ` (drawn with ${one.full.faces.toLocaleString("en")})` : "";
-    ask("viewer-left").textContent = `${one.name}, original: ${faces(one)}${drawn}`;
+    const drawn = (item, shown) => (shown < item.faces ? ` (drawn with ${shown.toLocaleString("en")})` : "");
+    ask("viewer-left").textContent = `${one.name}, original: ${faces(one)}${drawn(one, one.full.faces)}`;
     ask("viewer-right").textContent = original ? "the original itself: move the slider" :
-      `simplified: ${faces(mesh)} (${share}); distance mean ${mesh.error_mean} %, largest ${mesh.error_max} % of the diagonal`;
+      `simplified: ${faces(mesh)} (${share})${drawn(mesh, mesh.drawn)}; distance mean ${mesh.error_mean} %, largest ${mesh.error_max} % of the diagonal`;
     ask("level-name").textContent = original ? "the original" : faces(mesh);
     ask("level").setAttribute("aria-valuetext", faces(mesh));
     canvas.setAttribute("aria-label", `Turnable meshes: ${ask("viewer-left").textContent}; ${ask("viewer-right").textContent}`);
