@@ -84,7 +84,8 @@ def show(name: str, title: str, chosen: argparse.Namespace, out: Path) -> int:
     finally:
         if made:
             write_text(out / PAGE, build_page(title, made, failures, commands(chosen)))
-    print(json.dumps(figures(made, failures)) if chosen.json else listing(made, out))
+    if made or chosen.json:
+        print(json.dumps(figures(made, failures)) if chosen.json else listing(made, out))
     return 1 if failures else 0
 
 
@@ -116,7 +117,7 @@ def listing(made: Sequence[Exhibit], out: Path) -> str:
     lines = [
         f"{one.folder}: {len(one.points)} places, {len(one.levels)} levels, {len(one.touches)} imprints" for one in made
     ]
-    return "\n".join([*lines, f"open {out / PAGE}"] if made else ["nothing was made"])
+    return "\n".join([*lines, f"open {out / PAGE}"])
 
 
 def report(name: str, text: str) -> None:

@@ -72,9 +72,12 @@ class Exhibit:
 
 def exhibit(
     file: Path, name: str, folder: Path, up: str | None, count: int, levels: Sequence[str],
-    before_touch: Callable[[], object] = lambda: None,
+    ready: Callable[[], object] = lambda: None,
 ) -> Exhibit:  # fmt: skip
-    """The Exhibit of a mesh file, its files written into a folder. ValueError where the file holds no usable mesh."""
+    """The Exhibit of a mesh file, its files written into a folder. ValueError where the file holds no usable mesh.
+
+    ready: is called after the look, before anything is simplified.
+    """
     given, note = upright_by(load_unnamed(file), file, up)
     found = detect(bake_texture(given), count=count)
     assert found.saliency is not None  # glance has one
@@ -84,11 +87,11 @@ def exhibit(
     write_any(folder / "saliency.ply", coloured(given, found.saliency))
     write_text(folder / "points.csv", as_csv(points))
 
+    ready()
     mesh, notes = repaired(given)
     same = len(mesh.vertices) == len(given.vertices)
     values = found.saliency if same else saliency_of(bake_texture(mesh))
     made, missing = simplified(mesh, values, levels, folder, file, name, given)
-    before_touch()
     user_mesh = UserMesh(mesh, name)
     touches, images = touch(user_mesh, points, folder)
     text = "; ".join([note, *notes])

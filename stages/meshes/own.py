@@ -9,8 +9,10 @@ from .load import FORMATS
 def mesh_files(place: Path) -> list[Path]:
     """The file itself, or the files of a folder that `load` reads by their suffix, in alphabetical order.
 
-    Folders in the folder are left out. Raises MeshError for a folder without a mesh.
+    Folders in the folder are left out. Raises MeshError for a folder without a mesh, and where there is nothing.
     """
+    if not place.exists():
+        raise MeshError(f"{place}: no such file or folder")
     if not place.is_dir():
         return [place]
     found = sorted(path for path in place.iterdir() if path.suffix.lower() in FORMATS and path.is_file())
