@@ -23,12 +23,13 @@ from stages.kit.command import errors_in_one_line
 from stages.kit.files import write_text
 from stages.lod.export import FORMATS, write_any
 from stages.lod.look import check_look, coloured, write_look
-from stages.lod.options import check_method, check_outputs
+from stages.lod.options import check_outputs
 from stages.meshes.colours import bake_texture
 from stages.meshes.load import load_unnamed
 from stages.meshes.normalise import centre_and_radius
 from stages.meshes.up import add_up, upright_by, upright_for
 from stages.salient_points import detect
+from stages.salient_points.names import HELP, check_name
 
 COLUMNS = ("rank", "vertex", "x", "y", "z", "saliency")
 
@@ -52,7 +53,7 @@ def shared_parser(name: str, about: str) -> argparse.ArgumentParser:
     command.set_defaults(name=name)
     command.add_argument("mesh", metavar="MESH", type=Path, help="the file to look at")
     command.add_argument("--count", metavar="N", type=int, help="how many points (default: those past the threshold)")
-    command.add_argument("--method", default="glance", help="how it looks (default: %(default)s)")
+    command.add_argument("--method", default="glance", help=HELP)
     add_up(command, "unknown: --method glance_any_pose")
     command.add_argument("--json", action="store_true", help="print the points as JSON")
     return command
@@ -86,9 +87,7 @@ def check(chosen: argparse.Namespace) -> None:
     check_outputs(chosen.mesh, chosen.out, chosen.points, chosen.picture)
     if chosen.picture:
         check_look(chosen.picture)
-    check_method(chosen.method)
-    if chosen.method == "qem":
-        raise ValueError("--method qem has no saliency: choose another")
+    check_name(chosen.method)
     if chosen.count is not None and chosen.count < 1:
         raise ValueError(f"--count {chosen.count}: give 1 or more")
 

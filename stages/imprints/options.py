@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from stages.meshes.up import add_up
-from stages.salient_points.methods import METHODS, split_runnable
-from stages.weights import LearnedWeights
+from stages.salient_points.names import HELP, check_name
 
 from .contact import CONTACTS
 from .distances import check_array
@@ -41,7 +40,7 @@ def parser(description: str) -> argparse.ArgumentParser:
     result.add_argument("--pitch", metavar="LENGTH", type=length, default=0.01, help=f"{help_pitch} (default: 0.01)")
     help_count = f"number of salient or random places (default: {DEFAULT_COUNT})"
     result.add_argument("--count", metavar="N", type=int, help=help_count)
-    result.add_argument("--method", help="detector of salient places (default: glance, a model of human gaze)")
+    result.add_argument("--method", help=f"of the salient places: {HELP}")
     help_contact = "tangent: the array stands at the place (default); rigid: it rests on the first contact"
     result.add_argument("--contact", choices=CONTACTS, default=CONTACTS[0], help=help_contact)
     help_depth = (
@@ -164,9 +163,7 @@ def _check_combination(options):
         raise ValueError(f"--count {options.count}: give 1 or more")
     if options.method is not None and selection != "salient":
         raise ValueError("--method applies to --at salient only")
-    runs, others = split_runnable(METHODS, LearnedWeights())
-    usable = [name for name in runs if name != "random"]
-    if options.method is not None and options.method not in usable:
-        reason = "it is trained on the pipeline's objects" if options.method in others else "there is no such method"
-        reason = "use --at random" if options.method == "random" else reason
-        raise ValueError(f"--method {options.method}: {reason}; choose one of {', '.join(usable)}")
+    if options.method == "random":
+        raise ValueError("--method random: use --at random")
+    if options.method is not None:
+        check_name(options.method, points_alone=True)

@@ -43,9 +43,9 @@ def write_any(path: str | Path, mesh: Mesh, parts: Parts | None = None) -> None:
         options |= {"return_texture": True, "mtl_name": f"{path.stem}.mtl"}
     exported: Any = loaded.export(file_type=suffix[1:], **options)
     content, beside = exported if suffix == ".obj" else (exported, {})
-    with ExitStack() as parts:  # all are written before the first is moved into place, the mesh itself last
+    with ExitStack() as stack:  # all are written before the first is moved into place, the mesh itself last
         for name, extra in {path.name: content, **beside}.items():
-            part = parts.enter_context(whole_file(path.parent / name))
+            part = stack.enter_context(whole_file(path.parent / name))
             part.write_bytes(extra.encode() if isinstance(extra, str) else extra)
 
 

@@ -41,7 +41,7 @@ def look(mesh: Mesh, saliency: np.ndarray, points: np.ndarray) -> np.ndarray:
     image = with_axis(draw(coloured(upright, saliency)), mesh.up)
     rows, columns = places(upright, points)
     for k in np.flatnonzero(visible(upright, points))[::-1]:  # the most salient last, above the others
-        mark(image, round(columns[k]), round(rows[k]), str(k + 1))
+        mark(image, round(float(columns[k])), round(float(rows[k])), str(k + 1))
     return image
 
 

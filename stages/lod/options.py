@@ -8,9 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from stages.meshes.up import add_up
-from stages.salient_points import METHODS
-from stages.salient_points.methods import split_runnable
-from stages.weights import LearnedWeights
+from stages.salient_points.names import HELP, check_name
 
 from .export import FORMATS
 from .levels import levels
@@ -42,7 +40,7 @@ def parser(about: str) -> argparse.ArgumentParser:
     command.add_argument(
         "--picture", metavar="FILE", type=Path, help="also draw the saliency, and the mesh before and after"
     )
-    help_method = "saliency and points by this method (default: glance; qem: none, every place has the same weight)"
+    help_method = f"whose saliency and points: {HELP}; qem: nobody's, every place has the same weight"
     command.add_argument("--method", default="glance", help=help_method)
     help_ways = "soft: the saliency weights the error, nothing is frozen (default); the others freeze the faces around"
     help_ways += f" the salient points, within {RINGS} rings, or by the mesh's density, or by the salient area"
@@ -129,7 +127,7 @@ def check_options(chosen: argparse.Namespace) -> None:
         face_count(chosen.faces, 1, "--faces")
     if chosen.seed < 0:
         raise ValueError(f"--seed {chosen.seed}: give 0 or more")
-    check_method(chosen.method)
+    check_name(chosen.method, [PLAIN])
     freezing = {"--keep": chosen.keep, "--rings": chosen.rings, "--shrink": chosen.shrink or None}
     given = next((name for name, value in freezing.items() if value is not None), None)
     if chosen.method == PLAIN and (given or chosen.neighbourhood != SOFT):
@@ -143,15 +141,3 @@ def check_options(chosen: argparse.Namespace) -> None:
         raise ValueError(f"--keep {chosen.keep}: give 1 or more points; --method {PLAIN} keeps none")
     if chosen.rings is not None and chosen.rings < 0:
         raise ValueError(f"--rings {chosen.rings}: give 0 (the faces that touch a point) or more")
-
-
-def check_method(method: str) -> None:
-    """Raises ValueError for a method without a saliency for meshes outside the pipeline's data sets."""
-    runs, others = split_runnable(METHODS, LearnedWeights())
-    usable = [PLAIN, *(name for name in runs if hasattr(METHODS[name], "saliency"))]
-    if method in usable:
-        return
-    reason = "there is no such method"
-    if method in METHODS:
-        reason = "its weights are learned in the pipeline" if method in others else "it has no saliency"
-    raise ValueError(f"--method {method}: {reason}; choose one of {', '.join(usable)}")
