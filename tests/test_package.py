@@ -222,8 +222,9 @@ def test_what_a_person_got_wrong_is_one_line_without_a_source_position(ball):
 
 
 @pytest.mark.slow
-def test_one_mesh_is_touched_in_a_core_install(ball):
-    done = run_command("touch", ball, "--out", ball.parent / "out", before=CORE)
+@pytest.mark.parametrize("name", ["touch", "imprints"])
+def test_one_mesh_is_touched_in_a_core_install(name, ball):
+    done = run_command(name, ball, "--out", ball.parent / "out", before=CORE)
     assert done.returncode == 0, done.stderr
     assert {path.name for path in (ball.parent / "out").iterdir()} == {"imprints.npz", "places.csv"}
     assert "touch: no imprints.png: matplotlib is not installed" in done.stderr

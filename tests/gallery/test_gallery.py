@@ -11,10 +11,14 @@ import trimesh
 
 from haptic_glance.gallery import command, compiled, demo
 from haptic_glance.gallery.command import run
+from haptic_glance.gallery.exhibit import exhibit
+from haptic_glance.gallery.page import turnable
 from stages import saliency
 from stages.imprints.command import run as touch
+from stages.kit.packing import ordered
+from stages.lod import vertex_errors
 from stages.lod.command import run as simplify
-from stages.meshes import load
+from stages.meshes import load, rotate_to_z_up
 
 pytestmark = pytest.mark.slow
 
@@ -108,6 +112,31 @@ def test_what_turns_on_the_page_is_the_mesh_with_its_levels(shown, scans):
     store = np.frombuffer(zlib.decompress(base64.b64decode(one["store"])), np.uint8)
     at, count = one["saliency"]["glance"]["values"]
     assert (store[at : at + count].cumsum(dtype=np.uint8)).max() == 63  # the brightest of the shades
+
+
+def test_errors_stand_at_the_vertices_that_have_them(scans):
+    one = exhibit(scans / "pear.ply", "pear", scans.parent / "out", None, 3, ["10%"])
+    packed = turnable(one, 20_000)
+    full, level = ordered(one.touched.mesh)[0], packed["ladders"]["glance"]["levels"][0]
+    expected = 100 * vertex_errors(rotate_to_z_up(one.levels[0].mesh), full) / full.diagonal
+    store = np.frombuffer(zlib.decompress(base64.b64decode(packed["store"])), np.uint8)
+    at, count = level["error"]
+    shown = packed["error_top"] * (store[at : at + count].cumsum(dtype=np.uint8) / 63.0) ** 2
+    assert shown == pytest.approx(np.minimum(expected, packed["error_top"]), abs=0.03 * packed["error_top"])
+    assert level["error_mean"] == pytest.approx(expected.mean(), abs=1e-4)
+
+
+def test_each_imprint_has_its_place_and_how_salient_that_is(shown, scans):
+    _, page, _, _ = shown("--levels", "300", meshes=scans / "pear.ply")
+    rows = [line.split(",") for line in (scans.parent / "out/pear/points.csv").read_text().splitlines()[1:]]
+    captions = re.findall(r"<b>(\d+)</b> saliency ([\d.]+)", page)
+    assert captions == [(row[0], f"{float(row[5]):.2f}") for row in rows] and len(captions) == 6
+
+
+def test_what_must_be_ready_is_waited_for_after_the_look(scans):
+    out, seen = scans.parent / "out", []
+    exhibit(scans / "pear.ply", "pear", out, None, 3, ["300"], lambda: seen.append(sorted(map(str, out.iterdir()))))
+    assert seen == [[str(out / "points.csv"), str(out / "saliency.ply")]]
 
 
 def test_a_large_mesh_is_drawn_with_fewer_faces_and_says_so(shown, scans, monkeypatch):
