@@ -100,7 +100,8 @@ def listing() -> str:
     groups = {"with a mesh of your own": OWN, "with the pipeline (pip install 'haptic-glance[pipeline]')": WHOLE}
     wide, lines = max(map(len, {**OWN, **WHOLE})), []
     for title, group in groups.items():
-        lines += [f"{title}:", *(f"  {name:{wide}}  {summary(module)}" for name, module in group.items()), ""]
+        texts = {name: repro.__doc__ or "" if name == REPRO else docstring(module) for name, module in group.items()}
+        lines += [f"{title}:", *(f"  {name:{wide}}  {summary(text)}" for name, text in texts.items()), ""]
     others = [name for name in commands() if name not in {**OWN, **WHOLE}]
     stages_of_pipeline = fill(", ".join(others), 100, initial_indent="  ", subsequent_indent="  ")
     lines += ["its stages, on a data set of params.yaml (python -m stages.NAME is the same):", stages_of_pipeline, ""]
@@ -108,12 +109,16 @@ def listing() -> str:
     return "\n".join([*lines, hint, "", ABOUT])
 
 
-def summary(module: str) -> str:
-    """The first line of a module's docstring, without where the thesis or a shell has it; nothing is imported."""
+def summary(text: str) -> str:
+    """The first line of a docstring, without where the thesis or a shell has it."""
+    return re.sub(r"(: `| \(T\d).*", "", text.splitlines()[0]).rstrip(".")
+
+
+def docstring(module: str) -> str:
+    """That of a module of `stages` or of this package, which is not imported."""
     package, _, rest = module.partition(".")
     folder = Path(stages.__path__[0]) if package == "stages" else Path(__file__).parent
-    text = ast.get_docstring(ast.parse((folder / f"{rest.replace('.', '/')}.py").read_bytes())) or ""
-    return re.sub(r"(: `| \(T\d).*", "", text.splitlines()[0]).rstrip(".")
+    return ast.get_docstring(ast.parse((folder / f"{rest.replace('.', '/')}.py").read_bytes())) or ""
 
 
 if __name__ == "__main__":
