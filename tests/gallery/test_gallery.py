@@ -3,7 +3,9 @@
 import base64
 import json
 import re
+import subprocess
 import zlib
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -196,6 +198,14 @@ def test_the_demo_is_the_gallery_of_the_sample(tmp_path, capsys):
     said = capsys.readouterr().out
     assert "6 places, 3 levels, 6 imprints" in said and said.count("  haptic-glance ") == 3
     assert (tmp_path / "demo/dromedary/dromedary_10pct.glb").is_file()
+
+
+def test_default_folders_are_not_left_in_a_checkout():
+    root = Path(demo.__file__).parents[2]
+    if not (root / ".git").exists():
+        pytest.skip("no checkout")
+    for page in ("haptic_glance_demo/index.html", "scans_gallery/index.html"):
+        assert subprocess.run(["git", "-C", str(root), "check-ignore", "-q", "--no-index", page]).returncode == 0
 
 
 def test_kernels_are_compiled_beside_only_where_there_are_none(tmp_path, monkeypatch):
