@@ -1,49 +1,81 @@
-"""The command `haptic-glance`: every stage of the pipeline, and the pipeline as a whole."""
+"""The command `haptic-glance`: what can be done with a mesh of one's own, and every stage of the pipeline."""
 
 import argparse
 import ast
 import os
+import re
 import runpy
 import sys
+from collections.abc import Callable, Sequence
+from difflib import get_close_matches
+from importlib import import_module
 from pathlib import Path
+from textwrap import fill
 
 import stages
 
 REPRO = "repro"
+# Command -> the module that runs it; the first line of its docstring is what --help says of it.
+OWN = {
+    "demo": "haptic_glance.gallery.demo",
+    "gallery": "haptic_glance.gallery.command",
+    "saliency": "stages.saliency",
+    "points": "stages.points",
+    "simplify": "stages.lod.command",
+    "touch": "stages.imprints.command",
+}
+WHOLE = {"scene": "stages.scene.__main__", "gate": "stages.gate", REPRO: "stages.repro"}
+ALIASES = {"lod": "simplify", "imprints": "touch"}  # older names, which are also stages of the pipeline
+ABOUT = """\
+exit status: 0 done; 1 something could not be done, which the last lines name; 2 the command line is wrong; 130 stopped
+by Ctrl-C. Results go to stdout, progress to stderr, a line each."""
 
 
 def main() -> None:
     """Runs the subcommand that the command line names; a package that is not installed ends in one line."""
     parser = argparse.ArgumentParser(
         prog="haptic-glance",
+        usage="haptic-glance COMMAND ...",
         description="Look at a 3D object, touch only the places that matter, and know what it is.",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    names = (*commands(), REPRO)
-    parser.add_argument("command", metavar="COMMAND", choices=names, help="what to run: see below")
-    parser.add_argument(
-        "rest", metavar="...", nargs=argparse.REMAINDER, help="its arguments: COMMAND --help lists them"
-    )
-    if sys.argv[1:2] in (["-h"], ["--help"]):
+    parser.add_argument("command", help=argparse.SUPPRESS)
+    parser.add_argument("rest", nargs=argparse.REMAINDER, help=argparse.SUPPRESS)
+    if sys.argv[1:2] in ([], ["-h"], ["--help"]):
         parser.epilog = listing()
+    if not sys.argv[1:]:
+        parser.print_help(sys.stderr)
+        sys.exit(2)
     chosen = parser.parse_args()
+    names = {**OWN, **WHOLE, **commands()}
+    if chosen.command not in names:
+        close = " or ".join(get_close_matches(chosen.command, names)) or "one of those that --help lists"
+        parser.error(f"there is no command {chosen.command!r}: try {close}")
     sys.argv[1:] = chosen.rest
 
     from stages.kit.extras import MissingExtra, from_extra
 
     try:
         with from_extra():
-            run(chosen.command)
+            sys.exit(run(chosen.command, chosen.rest))
     except MissingExtra as error:
         sys.exit(f"haptic-glance {chosen.command}: {error}")
 
 
-def run(command: str) -> None:
-    """Does what `python -m stages.COMMAND` does, or `dvc repro`."""
+def run(command: str, argv: Sequence[str]) -> int:
+    """Runs a command, or does what `python -m stages.COMMAND` does, or `dvc repro`; returns the exit status."""
+    from stages.kit.command import errors_in_one_line, names_a_mesh
+
+    if command in ALIASES and names_a_mesh(argv):
+        command = ALIASES[command]
+    if command in OWN:
+        errors_in_one_line(command)  # before an import that takes a second, in which a person may press Ctrl-C
+        work: Callable[[Sequence[str]], int | None] = import_module(OWN[command]).run
+        return work(argv) or 0
     if command == REPRO:
         repro()
-    else:
-        runpy.run_module(f"stages.{command}", run_name="__main__", alter_sys=True)
+    runpy.run_module(f"stages.{command}", run_name="__main__", alter_sys=True)
+    return 0
 
 
 def repro() -> None:
@@ -64,11 +96,29 @@ def commands() -> dict[str, Path]:
 
 
 def listing() -> str:
-    """One line per command: its name and the first line of its docstring."""
-    lines = {name: ast.get_docstring(ast.parse(path.read_bytes())) or "" for name, path in commands().items()}
-    lines[REPRO] = repro.__doc__ or ""
-    wide = max(map(len, lines))
-    return "commands:\n" + "\n".join(f"  {name:{wide}}  {text.splitlines()[0]}" for name, text in lines.items())
+    """The commands with the first line of their docstrings; of the other stages the names alone."""
+    groups = {"with a mesh of your own": OWN, "with the pipeline (pip install 'haptic-glance[pipeline]')": WHOLE}
+    wide, lines = max(map(len, {**OWN, **WHOLE})), []
+    for title, group in groups.items():
+        texts = {name: repro.__doc__ or "" if name == REPRO else docstring(module) for name, module in group.items()}
+        lines += [f"{title}:", *(f"  {name:{wide}}  {summary(text)}" for name, text in texts.items()), ""]
+    others = [name for name in commands() if name not in {**OWN, **WHOLE}]
+    stages_of_pipeline = fill(", ".join(others), 100, initial_indent="  ", subsequent_indent="  ")
+    lines += ["its stages, on a data set of params.yaml (python -m stages.NAME is the same):", stages_of_pipeline, ""]
+    hint = "COMMAND --help has options and examples. lod is an older name of simplify, imprints of touch."
+    return "\n".join([*lines, hint, "", ABOUT])
+
+
+def summary(text: str) -> str:
+    """The first line of a docstring, without where the thesis or a shell has it."""
+    return re.sub(r"(: `| \(T\d).*", "", text.splitlines()[0]).rstrip(".")
+
+
+def docstring(module: str) -> str:
+    """That of a module of `stages` or of this package, which is not imported."""
+    package, _, rest = module.partition(".")
+    folder = Path(stages.__path__[0]) if package == "stages" else Path(__file__).parent
+    return ast.get_docstring(ast.parse((folder / f"{rest.replace('.', '/')}.py").read_bytes())) or ""
 
 
 if __name__ == "__main__":

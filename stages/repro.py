@@ -3,7 +3,8 @@
 `dvc repro` runs one stage at a time. Here a stage starts as soon as those that it depends on are done, through DVC, so
 that dvc.lock, its cache and what counts as changed are the same. All stages share one budget of cores, so two at once
 take no more processors than one. A stage that fails leaves out those that need it; the others go on, and the exit
-status is 1. What a stage says comes when it ends and stays in build/logs/STAGE.log.
+status is 1. What a stage says comes when it ends and stays in build/logs/STAGE.log. Where stderr is no terminal, lines
+say what runs.
 """
 
 import argparse
@@ -28,6 +29,7 @@ from stages.kit.dvc_files import keep_lock, mend_dvc_files
 AT_ONCE = 2  # stages: each has a worker a core; with more, memory is needed for no time gained
 LOGS = Path("build/logs")
 REFRESH = 1.0  # seconds between two looks at the clock of what is running
+PLAIN = 60.0  # seconds between two lines of progress where stderr is no terminal; one comes with each start, too
 
 
 class Schedule:
@@ -102,6 +104,7 @@ def run(root: Path) -> list[str]:
     (root / LOGS).mkdir(parents=True, exist_ok=True)
     running: dict[str, tuple[Any, Any, float]] = {}
     bar = tqdm(total=len(schedule.needs), desc="stages", disable=not sys.stderr.isatty(), unit="stage")
+    said: tuple[set[str], float] = set(), 0.0  # what the last line of progress names, and when it came
     with cores.budget(root / "build/cores"), bar:
         while True:
             while len(running) < AT_ONCE and (name := schedule.take()):
@@ -115,6 +118,9 @@ def run(root: Path) -> list[str]:
             bar.set_postfix_str(", ".join(f"{name} {now - began:.0f} s" for name, (_, _, began) in running.items()))
             if not running:
                 return schedule.failed
+            if bar.disable and (running.keys() - said[0] or now - said[1] > PLAIN):
+                said = set(running), now
+                print(_plain(schedule, [f"{name} {now - running[name][2]:.0f} s" for name in running]), file=sys.stderr)
             wait([process.sentinel for process, _, _ in running.values()], REFRESH)
             for name in [name for name, (process, _, _) in running.items() if process.exitcode is not None]:
                 _ended(root, name, *running.pop(name), schedule)
@@ -133,6 +139,11 @@ def run_alone(root: Path) -> list[str]:
             raise ValueError(f"{error}: {remedy}; what was computed is in the cache") from error
 
 
+def _plain(schedule, running):
+    """A line of progress for a log."""
+    return f"repro: {len(schedule.ended)} of {len(schedule.needs)} stages are done; running: {', '.join(running)}"
+
+
 def _ended(root, name, process, receive, began, schedule):
     """Takes note of how a stage ended, and prints what it said and took."""
     said = _log(root, name).read_text(errors="replace").strip()
@@ -146,6 +157,7 @@ def _ended(root, name, process, receive, began, schedule):
     if ran:
         taken = f"{name}: {time.monotonic() - began:.0f} s, {processor:.0f} s of processor time"
         tqdm.write("\n".join(filter(None, [said, taken])))
+        sys.stdout.flush()  # a log would otherwise hold it back
 
 
 def _log(root, name):

@@ -23,29 +23,37 @@ from stages.kit.command import errors_in_one_line
 from stages.kit.files import write_text
 from stages.lod.export import FORMATS, write_any
 from stages.lod.look import check_look, coloured, write_look
-from stages.lod.options import check_method, check_outputs
+from stages.lod.options import check_outputs
 from stages.meshes.colours import bake_texture
 from stages.meshes.load import load_unnamed
 from stages.meshes.normalise import centre_and_radius
-from stages.meshes.up import add_up, lying_note, upright_by
+from stages.meshes.up import add_up, upright_by, upright_for
 from stages.salient_points import detect
+from stages.salient_points.names import HELP, check_name
 
 COLUMNS = ("rank", "vertex", "x", "y", "z", "saliency")
 
 
 def parser() -> argparse.ArgumentParser:
     """The parser of the command line."""
-    first, _, rest = (__doc__ or "").partition("\n")
-    form = argparse.RawDescriptionHelpFormatter
-    command = argparse.ArgumentParser("haptic-glance saliency", description=first, epilog=rest, formatter_class=form)
-    command.add_argument("mesh", metavar="MESH", type=Path, help="the file to look at")
+    command = shared_parser("saliency", __doc__ or "")
     command.add_argument(
         "--out", metavar="FILE", type=Path, help=f"the coloured mesh: {', '.join(FORMATS[:2])} or .ply"
     )
     command.add_argument("--points", metavar="FILE", type=Path, help="the points, as CSV")
     command.add_argument("--picture", metavar="FILE", type=Path, help="a picture of the saliency with the points")
+    return command
+
+
+def shared_parser(name: str, about: str) -> argparse.ArgumentParser:
+    """What `saliency` and `points` share; about: the text of --help, whose first line comes first."""
+    first, _, rest = about.partition("\n")
+    form = argparse.RawDescriptionHelpFormatter
+    command = argparse.ArgumentParser(f"haptic-glance {name}", description=first, epilog=rest, formatter_class=form)
+    command.set_defaults(name=name)
+    command.add_argument("mesh", metavar="MESH", type=Path, help="the file to look at")
     command.add_argument("--count", metavar="N", type=int, help="how many points (default: those past the threshold)")
-    command.add_argument("--method", default="glance", help="how it looks (default: %(default)s)")
+    command.add_argument("--method", default="glance", help=HELP)
     add_up(command, "unknown: --method glance_any_pose")
     command.add_argument("--json", action="store_true", help="print the points as JSON")
     return command
@@ -53,7 +61,11 @@ def parser() -> argparse.ArgumentParser:
 
 def run(argv: Sequence[str]) -> None:
     """Runs the command line `argv`, without the program's name."""
-    chosen = parser().parse_args(argv)
+    look_at(parser().parse_args(argv))
+
+
+def look_at(chosen: argparse.Namespace) -> None:
+    """Prints the points of a mesh and writes what else was asked for."""
     check(chosen)
     mesh, note = upright_by(load_unnamed(chosen.mesh), chosen.mesh, chosen.up)
     try:
@@ -62,9 +74,9 @@ def run(argv: Sequence[str]) -> None:
     except ValueError as error:
         raise ValueError(f"{chosen.mesh}: {error}").with_traceback(error.__traceback__) from None
     assert found.saliency is not None  # `check` lets no method pass that has none
-    print(f"saliency: {len(mesh.faces):,} faces in {watch.seconds:.1f} s, {note}", file=sys.stderr)
+    print(f"{chosen.name}: {len(mesh.faces):,} faces in {watch.seconds:.1f} s, {note}", file=sys.stderr)
     rows = points_of(mesh, found.points, found.saliency)
-    write(chosen, mesh, found.points, found.saliency, rows)  # first: what reads the lines may close the pipe
+    write(chosen, mesh, found.saliency, rows)  # first: what reads the lines may close the pipe
     print(json.dumps([dict(zip(COLUMNS, row, strict=True)) for row in rows]) if chosen.json else as_csv(rows))
 
 
@@ -75,9 +87,7 @@ def check(chosen: argparse.Namespace) -> None:
     check_outputs(chosen.mesh, chosen.out, chosen.points, chosen.picture)
     if chosen.picture:
         check_look(chosen.picture)
-    check_method(chosen.method)
-    if chosen.method == "qem":
-        raise ValueError("--method qem has no saliency: choose another")
+    check_name(chosen.method)
     if chosen.count is not None and chosen.count < 1:
         raise ValueError(f"--count {chosen.count}: give 1 or more")
 
@@ -109,19 +119,20 @@ def as_csv(rows: list[tuple]) -> str:
     return "\n".join([",".join(COLUMNS), *lines])
 
 
-def write(chosen: argparse.Namespace, mesh: Mesh, points: np.ndarray, saliency: np.ndarray, rows: list[tuple]) -> None:
+def write(chosen: argparse.Namespace, mesh: Mesh, saliency: np.ndarray, rows: list[tuple]) -> None:
     """Writes the files that were asked for, and names them."""
     if chosen.out:
-        write_any(chosen.out, coloured(mesh, saliency))
-        if note := lying_note(chosen.out, mesh):
-            print(f"saliency: {note}", file=sys.stderr)
+        turned, note = upright_for(chosen.out, coloured(mesh, saliency))
+        write_any(chosen.out, turned)
+        if note:
+            print(f"{chosen.name}: {note}", file=sys.stderr)
     if chosen.picture:
-        write_look(chosen.picture, mesh, saliency, points)
+        write_look(chosen.picture, mesh, saliency, np.array([row[1] for row in rows], dtype=np.int64))
     if chosen.points:
         write_text(chosen.points, as_csv(rows) + "\n")
     written = [str(path) for path in (chosen.out, chosen.points, chosen.picture) if path]
     if written:
-        print(f"saliency: written: {', '.join(written)}", file=sys.stderr)
+        print(f"{chosen.name}: written: {', '.join(written)}", file=sys.stderr)
 
 
 def main() -> None:

@@ -57,8 +57,9 @@ def python(code, *arguments, **options):
     return subprocess.run([sys.executable, "-c", code, *map(str, arguments)], **options)
 
 
-def run_command(*arguments, before=""):
-    return python(f"{before}\nfrom haptic_glance.__main__ import main\nmain()", *arguments)
+def run_command(*arguments, before="", **options):
+    options = {"env": os.environ | {"PYTHONPATH": str(ROOT)}} | options
+    return python(f"{before}\nfrom haptic_glance.__main__ import main\nmain()", *arguments, **options)
 
 
 def distributions(requirements):
@@ -170,8 +171,10 @@ def test_the_names_of_the_package_are_those_that_a_type_checker_sees():
 def test_the_list_of_commands_imports_no_stage():
     done = run_command("--help", before="import atexit, sys; atexit.register(lambda: print(sorted(sys.modules)))")
     assert done.returncode == 0
-    for name in ("meshes", "weights.annotate", "compose", "sweep", "gate", "repro"):
-        assert re.search(rf"^  {re.escape(name)} +[A-Z]", done.stdout, re.M)
+    for name in ("demo", "gallery", "saliency", "points", "simplify", "touch", "scene", "gate", "repro"):
+        assert re.search(rf"^  {name} +[A-Z].{{20,}}$", done.stdout, re.M)
+    assert all(re.search(rf"\b{re.escape(name)}\b", done.stdout) for name in command.commands())
+    assert max(map(len, done.stdout.splitlines()[:-1])) <= 120
     loaded = ast.literal_eval(done.stdout.splitlines()[-1])
     assert not [name for name in loaded if name.startswith("stages.") or name in ("numpy", "torch", *EXTRAS)]
 
@@ -182,9 +185,49 @@ def test_a_command_is_the_module_of_its_name():
     assert done.returncode == 0 and "--update" in done.stdout
 
 
-def test_an_unknown_command_is_named():
+def test_an_unknown_command_is_named_with_one_like_it():
     done = run_command("salience")
-    assert done.returncode == 2 and "'salience'" in done.stderr and "Traceback" not in done.stderr
+    assert done.returncode == 2 and "Traceback" not in done.stderr
+    assert done.stderr.splitlines()[-1].endswith("there is no command 'salience': try saliency")
+    assert "one of those that --help lists" in run_command("quux").stderr
+
+
+def test_no_command_at_all_shows_the_list():
+    done = run_command()
+    assert done.returncode == 2 and "with a mesh of your own:" in done.stderr and not done.stdout
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", command.OWN)
+def test_every_command_shows_its_name_examples_and_json(name):
+    done = run_command(name, "--help", before=CORE)
+    assert done.returncode == 0 and done.stdout.startswith(f"usage: haptic-glance {name} ")
+    assert f"  haptic-glance {name} " in done.stdout.partition("examples:")[2] and "--json" in done.stdout
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("old", "new"), command.ALIASES.items())
+def test_an_older_name_does_the_same(old, new, ball):
+    done, same = (run_command(name, ball, "--up", "w") for name in (old, new))
+    assert done.returncode == same.returncode == 2 and done.stderr == same.stderr
+    assert f"python -m stages.{old}" in run_command(old, "--help").stdout
+
+
+@pytest.mark.slow
+def test_what_a_person_got_wrong_is_one_line_without_a_source_position(ball):
+    for words in (["simplify", ball, "--faces", "9000", "--out", "x.glb"], ["touch", "gone.stl"], ["gallery", "gone"]):
+        done = run_command(*words, cwd=ball.parent)
+        assert done.returncode == 1 and not done.stdout
+        assert done.stderr.splitlines()[-1].startswith(f"{words[0]}: ") and ".py" not in done.stderr
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["touch", "imprints"])
+def test_one_mesh_is_touched_in_a_core_install(name, ball):
+    done = run_command(name, ball, "--out", ball.parent / "out", before=CORE)
+    assert done.returncode == 0, done.stderr
+    assert {path.name for path in (ball.parent / "out").iterdir()} == {"imprints.npz", "places.csv"}
+    assert "touch: no imprints.png: matplotlib is not installed" in done.stderr
 
 
 @pytest.mark.slow
@@ -235,6 +278,7 @@ def test_the_wheel_holds_the_settings_and_all_files_of_the_stages(installed):
     wanted = {f"stages/conf/{path.relative_to(ROOT / 'conf')}" for path in ROOT.glob("conf/**/*.yaml")}
     for package in ("stages", "haptic_glance"):
         wanted |= {str(path.relative_to(ROOT)) for path in ROOT.glob(f"{package}/**/*.*") if path.is_file()}
+    assert (installed / "haptic_glance/samples/dromedary.glb").is_file()
     held = {str(path.relative_to(installed)) for path in installed.rglob("*.*")}
     assert {name for name in wanted if "__pycache__" not in name} - held == set()
     assert {name.split("/")[0] for name in held} <= {
@@ -242,6 +286,15 @@ def test_the_wheel_holds_the_settings_and_all_files_of_the_stages(installed):
         "haptic_glance",
         *(p.name for p in installed.glob("*-info")),
     }
+
+
+@pytest.mark.slow
+def test_an_installed_demo_needs_no_extra_and_no_checkout(installed, tmp_path):
+    code = f"{CORE}\nfrom haptic_glance.__main__ import main\nmain()"
+    environment = {**os.environ, "PYTHONPATH": str(installed)}
+    done = python(code, "demo", cwd=tmp_path, env=environment)
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "haptic_glance_demo/index.html").stat().st_size > 50_000
 
 
 @pytest.mark.slow

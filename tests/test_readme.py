@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import stages
-from haptic_glance.__main__ import REPRO, commands
+from haptic_glance.__main__ import OWN, REPRO, commands
 from stages.compose import groups
 
 ROOT = Path(__file__).parents[1]
@@ -92,7 +92,7 @@ def test_every_link_leads_to_a_file(path):
 def test_every_command_is_there():
     code = "\n".join(text for _, text in CODE.findall(TEXT))
     modules = set(re.findall(r"python -m stages\.([\w.]+)", TEXT)) | set(re.findall(r"haptic-glance (\w+)", code))
-    assert modules and modules <= {*commands(), REPRO}
+    assert modules and modules <= {*commands(), *OWN, REPRO}
     made = set(re.findall(r"^(\w+):", (ROOT / "Makefile").read_text(), re.M))
     assert {"repro", "test"} <= set(re.findall(r"^make (\w+)", code, re.M)) <= made
     options = re.findall(r"\b(experiment|profile|parallel|classifier)=([\w,]+)", TEXT)

@@ -62,6 +62,7 @@ def repository(tmp_path: Path) -> Path:
 def test_independent_stages_overlap_and_dvc_sees_nothing_left_to_do(repository: Path):
     found = repro(repository)
     assert found.returncode == 0 and found.stdout.startswith("said a\na: "), found.stderr
+    assert found.stderr.startswith("repro: 0 of ") and "stages are done; running: a 0 s\n" in found.stderr
     times = {name: float((repository / name).read_text()) for name in ("b_began", "b_ended", "c_began", "c_ended")}
     assert times["b_began"] < times["c_ended"] and times["c_began"] < times["b_ended"]
     assert (repository / "d").read_text() == "oneone"

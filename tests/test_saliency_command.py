@@ -8,8 +8,8 @@ import trimesh
 from PIL import Image
 
 from stages.kit import Mesh
-from stages.lod.look import write_look
-from stages.meshes import load
+from stages.lod.look import places, write_look
+from stages.meshes import load, normalise
 from stages.saliency import COLUMNS, run
 from stages.salient_points import detect, find_points, saliency
 
@@ -68,8 +68,8 @@ def test_json_holds_the_same_and_files_are_written_as_asked(egg, capsys, tmp_pat
         (["--out", "missing/x.ply"], "no such folder"),
         (["--picture", "x.txt"], "pictures are written as"),
         (["--count", "0"], "give 1 or more"),
-        (["--method", "guess"], "there is no such method; choose one of qem, glance"),
-        (["--method", "qem"], "has no saliency"),
+        (["--method", "guess"], "there is no such method; choose one of glance, "),
+        (["--method", "farthest"], "it has no saliency; choose one of glance, "),
     ],
 )
 def test_what_cannot_be_done_is_named_before_anything_is_computed(egg, options, reason):
@@ -96,6 +96,16 @@ def test_a_picture_shows_the_mesh_upright_and_names_the_axis(egg, tmp_path):
         shown[up] = np.asarray(Image.open(tmp_path / "look.png")).astype(int)
     differ = np.argwhere(shown["z"] != shown["y"])
     assert len(differ) and (differ[:, 0] > 500).all() and (differ[:, 1] < 60).all()  # the letter alone
+
+
+def test_the_numbers_of_the_picture_are_the_ranks_of_the_points(egg, tmp_path, capsys, monkeypatch):
+    marked = {}
+    monkeypatch.setattr("stages.lod.look.mark", lambda image, x, y, text: marked.update({text: (x, y)}))
+    run([str(egg), "--picture", str(tmp_path / "look.png"), "--count", "8", "--json"])
+    ids = [row["vertex"] for row in json.loads(capsys.readouterr().out)]
+    rows, columns = places(normalise(load(egg)), np.array(ids))
+    expected = {str(rank): (round(x), round(y)) for rank, (x, y) in enumerate(zip(columns, rows, strict=True), 1)}
+    assert 2 <= len(marked) < 8 and marked.items() <= expected.items()
 
 
 def test_the_mesh_itself_is_not_overwritten(egg):

@@ -5,8 +5,8 @@ reports/measurements/SET/imprints.csv.gz: per object and method the number of im
 the object, the share of cells without a surface in range, and the points that could not be touched.
 
 A mesh of your own, instead, with a picture of what the array measures and where:
-  python -m stages.imprints bunny.stl --at salient
-  python -m stages.imprints bunny.stl --help
+  haptic-glance touch bunny.stl --at salient
+  haptic-glance touch --help
 """
 
 import functools
@@ -16,9 +16,8 @@ from pathlib import Path
 import numpy as np
 
 from stages.kit import Stopwatch
-from stages.kit.command import errors_in_one_line, workspace_of_arguments
+from stages.kit.command import errors_in_one_line, names_a_mesh, workspace_of_arguments
 from stages.kit.files import read_mesh
-from stages.kit.params import load_params
 from stages.kit.run import Rows, StageRun
 from stages.kit.workspace import Workspace
 from stages.salient_points import read_points
@@ -87,18 +86,13 @@ def run(workspace: Workspace) -> None:
 
 def main() -> None:
     """Runs the stage on the data set that the command line names; with a mesh instead, the command in command.py."""
-    errors_in_one_line("imprints")  # before an import that takes a second, in which a person may press Ctrl-C
     if names_a_mesh(sys.argv[1:]):
+        errors_in_one_line("touch")  # before an import that takes a second, in which a person may press Ctrl-C
         from .command import run as run_command  # the pipeline needs neither its writers nor its pictures
 
         run_command(sys.argv[1:])
         return
     run(workspace_of_arguments(__doc__, "imprints"))
-
-
-def names_a_mesh(argv: list[str]) -> bool:
-    """False where the arguments are those of the stage: none, --help or --root, or first a set of params.yaml."""
-    return bool(argv) and argv[0] not in ("-h", "--help", "--root", *load_params().get("sets", []))
 
 
 if __name__ == "__main__":

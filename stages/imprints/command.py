@@ -9,22 +9,27 @@ positions, given and written, are in the file's coordinates. Writes into the fol
   places.csv    index, vertex (empty if it is none), position, normal, relief in units and in the file's units
 With --load a rigid array comes from above: imprints.npz also has forces (k, rows, cols) in newtons, and places.csv the
 highest of each place and how deep its layer is indented, in metres.
-With a data set of params.yaml instead of MESH, the pipeline's stage `imprints` runs on it.
+imprints.png needs matplotlib, which pip install 'haptic-glance[pipeline]' brings.
 
 examples:
-  python -m stages.imprints bunny.stl --at salient
-  python -m stages.imprints chair.obj --at random --count 12 --cells 32 32 --pitch 0.005 --up y --out chair_touched
-  python -m stages.imprints bunny.stl --unit mm --pitch 1mm --load 2 --layer thickness=0.003,modulus=1e5
-  python -m stages.imprints part.ply --at 120 455 0.031,-0.2,1.5 --contact rigid --skin blur=0.8,noise=0.02,dead=0.03
+  haptic-glance touch bunny.stl --at salient
+  haptic-glance touch chair.obj --at random --count 12 --cells 32 32 --pitch 0.005 --up y --out chair_touched
+  haptic-glance touch bunny.stl --unit mm --pitch 1mm --load 2 --layer thickness=0.003,modulus=1e5
+  haptic-glance touch part.ply --at 120 455 0.031,-0.2,1.5 --contact rigid --skin blur=0.8,noise=0.02,dead=0.03
 """
 
 import argparse
+import csv
+import io
+import json
 import sys
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
-import pandas as pd
 
-from stages.kit.files import write_arrays, write_table
+from stages.kit.extras import MissingExtra, from_extra
+from stages.kit.files import write_arrays, write_text
 
 from .distances import distances_at
 from .force import press_forces
@@ -41,10 +46,10 @@ MAX_CELLS = 50_000_000  # of all places together, which need about 2 GB of memor
 
 def run(argv: list[str]) -> None:
     """Runs the command line `argv`, which excludes the program's name."""
-    from .pictures import check_window, open_window, write_picture  # imports matplotlib, which nothing else here needs
-
     options = parse_options(__doc__ or "", argv)
     if options.show:
+        with from_extra():
+            from .pictures import check_window
         check_window()
     try:
         user_mesh = open_mesh(options)
@@ -60,28 +65,23 @@ def run(argv: list[str]) -> None:
     if (raw == raw.max(axis=(1, 2), keepdims=True)).all():
         report_progress("every imprint is flat: the array is small compared with the shape, or touches nothing")
     pressed = press_load(user_mesh, places.positions, axes, options)
-    frame = places_table(user_mesh, places, raw)
+    rows = places_rows(user_mesh, places, raw)
     if len(pressed):
-        peaks = pressed.max(axis=(1, 2))
         stiffness = options.layer.stiffness * (options.pitch * user_mesh.unit * options.metres) ** 2
-        frame = frame.assign(peak_newtons=peaks, indentation_metres=peaks / stiffness)
+        for row, peak in zip(rows, pressed.max(axis=(1, 2)).tolist(), strict=True):
+            row |= {"peak_newtons": peak, "indentation_metres": peak / stiffness}
     options.out.mkdir(parents=True, exist_ok=True)
     arrays = saved_arrays(user_mesh, places, axes, raw, images, options.pitch)
     write_arrays(options.out / ARRAYS, **arrays, **({"forces": pressed} if len(pressed) else {}))
-    exact = {
-        axis: frame[axis].map(f"{{:.{user_mesh.digits}g}}".format) for axis in "xyz"
-    }  # six digits are too few far from the origin
-    write_table(options.out / TABLE, frame.assign(**exact))
-    picture = options.out / PICTURE
-    scale = "the depth" if options.depth else "the imprint's relief"
-    write_picture(
-        picture, user_mesh.mesh, places.positions, axes, images, frame["relief"].to_numpy(), options.pitch, scale,
-        user_mesh.source.up,
-    )  # fmt: skip
-    print(summary(user_mesh, frame, options))
-    print("written: " + ", ".join(str(options.out / name) for name in (PICTURE, ARRAYS, TABLE)))
+    write_text(options.out / TABLE, as_csv(rows, user_mesh.digits))
+    drawn = draw_picture(options, user_mesh, places, axes, images, [row["relief"] for row in rows])
+    print(json.dumps(rows) if options.json else summary(user_mesh, rows, options))
+    names = (*([PICTURE] if drawn else []), ARRAYS, TABLE)
+    report_progress("written: " + ", ".join(str(options.out / name) for name in names))
     if options.show:
-        open_window(picture)
+        from .pictures import open_window
+
+        open_window(options.out / PICTURE)
 
 
 def check_size(places: int, cells: list[int]) -> None:
@@ -100,7 +100,7 @@ def open_mesh(options: argparse.Namespace) -> UserMesh:
     if wrong := misfit(options.cells, options.pitch):
         report_progress(wrong)
     if options.at[0] == "salient":
-        report_progress("rendering it from twelve sides, to find what is salient")
+        report_progress("looking at it, to find what is salient")
     return user_mesh
 
 
@@ -122,14 +122,43 @@ def press_load(user_mesh: UserMesh, positions: np.ndarray, axes: np.ndarray, opt
         raise ValueError(f"--load {options.load:g}: {error}") from None
 
 
-def places_table(user_mesh: UserMesh, places: Places, raw: np.ndarray) -> pd.DataFrame:
-    """A frame with one row per place, in the file's coordinates."""
-    columns = {"index": np.arange(1, len(raw) + 1), "vertex": pd.array(places.vertices, dtype="Int64")}
-    columns |= dict(zip("xyz", user_mesh.to_file(places.positions).T, strict=True))
-    columns |= dict(zip(("nx", "ny", "nz"), user_mesh.to_file_directions(places.normals).T, strict=True))
-    relief = np.ptp(raw, axis=(1, 2))
-    frame = pd.DataFrame(columns | {"relief": relief, "relief_in_file": relief * user_mesh.unit})
-    return frame.assign(vertex=frame["vertex"].mask(frame["vertex"] < 0))
+def draw_picture(
+    options: argparse.Namespace, user_mesh: UserMesh, places: Places, axes: np.ndarray, images: np.ndarray,
+    reliefs: Sequence[float],
+) -> bool:  # fmt: skip
+    """Whether imprints.png is written: a core install has no matplotlib, which is reported."""
+    try:
+        with from_extra():
+            from .pictures import write_picture
+    except MissingExtra as error:
+        report_progress(f"no {PICTURE}: {error}")
+        return False
+    scale = "the depth" if options.depth else "the imprint's relief"
+    write_picture(options.out / PICTURE, user_mesh.mesh, places.positions, axes, images, np.asarray(reliefs),
+                  options.pitch, scale, user_mesh.source.up)  # fmt: skip
+    return True
+
+
+def places_rows(user_mesh: UserMesh, places: Places, raw: np.ndarray) -> list[dict[str, Any]]:
+    """One dict per place, in the file's coordinates; vertex is None where the place is none."""
+    positions, normals = user_mesh.to_file(places.positions), user_mesh.to_file_directions(places.normals)
+    rows = []
+    for index, (vertex, depths) in enumerate(zip(places.vertices.tolist(), raw, strict=True)):
+        place = dict(zip(("x", "y", "z", "nx", "ny", "nz"), [*positions[index], *normals[index]], strict=True))
+        relief = float(np.ptp(depths))
+        row = {"index": index + 1, "vertex": None if vertex < 0 else vertex} | {k: float(v) for k, v in place.items()}
+        rows.append(row | {"relief": relief, "relief_in_file": relief * user_mesh.unit})
+    return rows
+
+
+def as_csv(rows: Sequence[dict[str, Any]], digits: int) -> str:
+    """Rows as CSV, six digits; digits: of positions, since six are too few far from the origin."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(rows[0])
+    for row in rows:
+        writer.writerow(f"{v:.{digits if k in 'xyz' else 6}g}" if isinstance(v, float) else v for k, v in row.items())
+    return text.getvalue()
 
 
 def saved_arrays(
@@ -143,29 +172,30 @@ def saved_arrays(
     }  # fmt: skip
 
 
-def summary(user_mesh: UserMesh, frame: pd.DataFrame, options: argparse.Namespace) -> str:
+def summary(user_mesh: UserMesh, rows: Sequence[dict[str, Any]], options: argparse.Namespace) -> str:
     """The printed table."""
-    rows, columns = options.cells
+    high, wide = options.cells
     width = user_mesh.digits + 5
     lines = [
-        f"array: {rows} x {columns} cells, {options.pitch:g} units apart "
+        f"array: {high} x {wide} cells, {options.pitch:g} units apart "
         f"({options.pitch * user_mesh.unit:.4g} in the file's units; 1 unit is {user_mesh.unit:.4g}), "
         f"{options.contact}",
         f"{'place':>5} {'vertex':>8} {'x':>{width}} {'y':>{width}} {'z':>{width}} {'relief':>8} {'in file':>9}",
     ]
-    for row in frame.to_dict("records"):
-        vertex = "-" if pd.isna(row["vertex"]) else row["vertex"]
+    for row in rows:
+        vertex = "-" if row["vertex"] is None else row["vertex"]
         place = " ".join(f"{row[axis]:>{width}.{user_mesh.digits - 1}g}" for axis in "xyz")
         lines.append(f"{row['index']:>5} {vertex:>8} {place} {row['relief']:>8.4f} {row['relief_in_file']:>9.4g}")
-    if "peak_newtons" in frame:
-        indented, peak = frame["indentation_metres"] * 1000, frame["peak_newtons"]
+    if options.load is not None:
+        indented = [1000 * row["indentation_metres"] for row in rows]
         lines.append(
-            f"load: {options.load:g} N a place; the highest force on a cell is {peak.max():.4g} N; "
-            f"the layer is indented by {indented.min():.4g} to {indented.max():.4g} mm"
+            f"load: {options.load:g} N a place; the highest force on a cell is "
+            f"{max(row['peak_newtons'] for row in rows):.4g} N; "
+            f"the layer is indented by {min(indented):.4g} to {max(indented):.4g} mm"
         )
     return "\n".join(lines)
 
 
 def report_progress(text: str) -> None:
     """Prints a line of progress to stderr, apart from the results."""
-    print(f"imprints: {text}", file=sys.stderr, flush=True)
+    print(f"touch: {text}", file=sys.stderr, flush=True)

@@ -1,4 +1,4 @@
-"""The options of `python -m stages.imprints MESH`, and their checks before any work."""
+"""The options of `haptic-glance touch MESH`, and their checks before any work."""
 
 import argparse
 import os
@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from stages.meshes.up import add_up
-from stages.salient_points.methods import METHODS, split_runnable
-from stages.weights import LearnedWeights
+from stages.salient_points.names import HELP, check_name
 
 from .contact import CONTACTS
 from .distances import check_array
@@ -31,7 +30,7 @@ def parser(description: str) -> argparse.ArgumentParser:
     first, _, rest = description.partition("\n")
     form = argparse.RawDescriptionHelpFormatter
     usage = "%(prog)s MESH [--at PLACE ...] [options]"
-    result = argparse.ArgumentParser("python -m stages.imprints", usage, first, rest, formatter_class=form)
+    result = argparse.ArgumentParser("haptic-glance touch", usage, first, rest, formatter_class=form)
     result.add_argument("mesh", metavar="MESH", type=Path, help="the file to touch: STL, OBJ, PLY, OFF or GLB")
     help_at = "places: salient (default), random, ids of vertices, or positions x,y,z in the file's coordinates"
     result.add_argument("--at", metavar="PLACE", nargs="+", default=[SELECTIONS[0]], help=help_at)
@@ -41,7 +40,7 @@ def parser(description: str) -> argparse.ArgumentParser:
     result.add_argument("--pitch", metavar="LENGTH", type=length, default=0.01, help=f"{help_pitch} (default: 0.01)")
     help_count = f"number of salient or random places (default: {DEFAULT_COUNT})"
     result.add_argument("--count", metavar="N", type=int, help=help_count)
-    result.add_argument("--method", help="detector of salient places (default: glance, a model of human gaze)")
+    result.add_argument("--method", help=f"of the salient places: {HELP}")
     help_contact = "tangent: the array stands at the place (default); rigid: it rests on the first contact"
     result.add_argument("--contact", choices=CONTACTS, default=CONTACTS[0], help=help_contact)
     help_depth = (
@@ -61,6 +60,7 @@ def parser(description: str) -> argparse.ArgumentParser:
         "--seed", type=int, default=0, help="seed of random places and of the skin (default: %(default)s)"
     )
     result.add_argument("--out", metavar="FOLDER", type=Path, help="output folder (default: MESH_imprints)")
+    result.add_argument("--json", action="store_true", help="print the places as JSON, as places.csv has them")
     result.add_argument("--show", action="store_true", help="also open the picture in a window")
     return result
 
@@ -163,9 +163,7 @@ def _check_combination(options):
         raise ValueError(f"--count {options.count}: give 1 or more")
     if options.method is not None and selection != "salient":
         raise ValueError("--method applies to --at salient only")
-    runs, others = split_runnable(METHODS, LearnedWeights())
-    usable = [name for name in runs if name != "random"]
-    if options.method is not None and options.method not in usable:
-        reason = "it is trained on the pipeline's objects" if options.method in others else "there is no such method"
-        reason = "use --at random" if options.method == "random" else reason
-        raise ValueError(f"--method {options.method}: {reason}; choose one of {', '.join(usable)}")
+    if options.method == "random":
+        raise ValueError("--method random: use --at random")
+    if options.method is not None:
+        check_name(options.method, points_alone=True)

@@ -10,8 +10,8 @@ metric, pictures included (the object's own are made once). Where two methods ke
 measured once. Settings: section `lod` of params.yaml.
 
 A mesh of your own, instead, from file to file:
-  python -m stages.lod bunny.stl --faces 1500 --out small.glb
-  python -m stages.lod bunny.stl --help
+  haptic-glance simplify bunny.stl --faces 1500 --out small.glb
+  haptic-glance simplify --help
 """
 
 import sys
@@ -47,10 +47,10 @@ def run(workspace: "Workspace") -> None:
 def main() -> None:
     """Runs the stage on the data set that the command line names; with a mesh instead, the command of command.py."""
     if names_a_mesh(sys.argv[1:]):
-        errors_in_one_line("lod")  # before an import that takes a second, in which a person may press Ctrl-C
+        errors_in_one_line("simplify")  # before an import that takes a second, in which a person may press Ctrl-C
         from .command import run as run_command
 
-        run_command(sys.argv[1:])
+        sys.exit(run_command(sys.argv[1:]))
     else:
         run(workspace_of_arguments(__doc__, "lod"))
 

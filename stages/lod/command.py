@@ -4,26 +4,31 @@ Reads STL, OBJ, PLY, OFF or GLB and writes the mesh in its own coordinates, with
 weighted by saliency, so that faces go where people look; nothing is frozen but the boundary and borders of materials.
 With --neighbourhood the faces around the salient points stay unchanged: on 50 household objects that raises the error
 over the whole mesh by half. Prints the errors, beside those of plain quadric edge collapse (QEM) with as many faces.
-With a data set of params.yaml instead of MESH, the stage `lod` of the pipeline runs on it.
+Of a folder every mesh is simplified; the nodes of a GLB keep their names. A GLB is written y up, as the format has it.
 
 examples:
-  python -m stages.lod bunny.stl --faces 1500 --out small.glb
-  python -m stages.lod chair.obj --tolerance 0.2% --up y --out chair_small.obj --picture chair.png
-  python -m stages.lod vase.glb --faces 2000 --attributes uv=1 --out vase_small.glb
-  python -m stages.lod bunny.stl --faces 10% --neighbourhood adaptive --keep 8 --out small.ply
+  haptic-glance simplify bunny.stl --faces 1500 --out small.glb
+  haptic-glance simplify chair.obj --tolerance 0.2% --up y --out chair_small.obj --picture chair.png
+  haptic-glance simplify vase.glb --faces 2000 --attributes uv=1 --out vase_small.glb
+  haptic-glance simplify bunny.stl --levels 50%,25%,10% --out levels
+  haptic-glance simplify scans --levels 5000,1000 --format glb --out levels --json
+  haptic-glance simplify bunny.stl --faces 10% --neighbourhood adaptive --keep 8 --out small.ply
 """
 
+import json
 import sys
 from argparse import Namespace
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from stages.kit import Mesh, Stopwatch
 from stages.meshes.colours import bake_texture
 from stages.meshes.load import load_unnamed
-from stages.meshes.up import lying_note, upright_by
+from stages.meshes.own import mesh_files, names_of
+from stages.meshes.up import upright_by, upright_for
 from stages.salient_points import find_points, saliency
 
 from .attribute_quadrics import check_attributes
@@ -32,8 +37,10 @@ from .export import COLORLESS, write_any
 from .feasibility import InfeasibleTarget, SimplifyError, smallest_feasible
 from .fewest import fewest_faces
 from .kernels.jit import FOLDER
+from .levels import level_path
 from .neighbourhood import RINGS, neighbourhoods
-from .options import check_options, check_paths, parser
+from .options import check_options, check_paths, one_file, parser, targets
+from .parts import Parts, moved_parts, parts_of
 from .targets import face_count
 from .task import SimplificationTask, repaired
 from .topology import topology
@@ -42,47 +49,89 @@ from .variant import PLAIN, SOFT
 MIN_EXTENT = 1e-60  # units: areas, and products of two, underflow near 1e-80
 
 
-def run(argv: Sequence[str]) -> None:
-    """Runs the command line `argv`, without the program's name."""
+def run(argv: Sequence[str]) -> int:
+    """Runs the command line `argv`, without the program's name; 1 where a level, or a mesh of a folder, failed."""
     chosen = parser(__doc__ or "").parse_args(argv)
     check_paths(chosen)
     check_options(chosen)
     if not any(FOLDER.rglob("*.nbc")):
         report("the first run on a machine compiles the simplifier, which takes a minute")
-    try:
-        task = prepare(read(chosen.mesh, chosen.up), chosen)
-        found = reduce(task, chosen)
-    except ValueError as error:
-        raise ValueError(f"{chosen.mesh}: {error}").with_traceback(error.__traceback__) from None
-    write_any(chosen.out, task.restored(found))
-    print(summary(task, found, chosen))
+    files, figures = mesh_files(chosen.mesh), []
+    for path, name in zip(files, names_of(files), strict=True):
+        try:
+            figures.append(simplify_file(path, name, chosen))
+        except ValueError as error:
+            if not chosen.mesh.is_dir():
+                raise ValueError(f"{path}: {error}").with_traceback(error.__traceback__) from None
+            report(f"{path}: {error}")
+    if chosen.json:
+        print(json.dumps(figures))
+    whole = len(figures) == len(files) and all(len(each["levels"]) == len(targets(chosen)) for each in figures)
+    return 0 if whole else 1
+
+
+def simplify_file(path: Path, name: str, chosen: Namespace) -> dict[str, Any]:
+    """Writes what is asked for of one file; prints its table, unless as JSON, and returns its figures."""
+    given, mesh = read(path, chosen.up)
+    task, parts = prepare(mesh, chosen, path.stem), parts_of(path)
+    found = {target: level for target in targets(chosen) if (level := reduce(task, chosen, target)) is not None}
+    if not found:
+        raise ValueError("no level is feasible")
+    meshes, written = (
+        list(found.values()),
+        [
+            chosen.out if one_file(chosen) else level_path(chosen.out, name, path, target, chosen.format)
+            for target in found
+        ],
+    )
+    for out, level in zip(written, meshes, strict=True):
+        write_level(out, task, level, given, parts)
+    alone = not chosen.levels and chosen.method != PLAIN
+    rival = plain(task, len(meshes[0].faces)) if alone else None
+    report("measuring the errors")
+    errors = measure_meshes(task, [*meshes, *([] if rival is None else [rival])], chosen.seed, report)
+    if not chosen.json:
+        print(summary(task, list(found) if chosen.levels else [method_label(chosen)], meshes, rival, errors))
     if chosen.picture:
-        from .picture import write_picture  # loads matplotlib, which nothing else here needs
+        draw(task, meshes[0], chosen.picture)
+    report("written: " + ", ".join(map(str, filter(None, [*written, chosen.picture]))))
+    rows = zip(written, meshes, errors, strict=False)  # the rival's errors come last
+    levels = [{"file": str(out), "faces": len(level.faces), **row} for out, level, row in rows]
+    return {"mesh": str(path), "faces": len(task.mesh.faces), "levels": levels}
 
-        points = task.points[task.points_kept(found)]
-        write_picture(
-            chosen.picture, task.upright(task.mesh), task.upright(found), task.saliency, points, task.given.up
-        )
-    print("written: " + ", ".join(str(path) for path in (chosen.out, chosen.picture) if path))
-    if note := lying_note(chosen.out, task.given):
+
+def write_level(out: Path, task: SimplificationTask, level: Mesh, given: Mesh, parts: Parts) -> None:
+    """Writes one result in the file's coordinates, with the nodes of its scene, upright as its format has it."""
+    restored = task.restored(level)
+    turned, note = upright_for(out, restored)
+    write_any(out, turned, moved_parts(parts, given, restored))
+    if note:
         report(note)
-    if chosen.out.suffix.lower() in COLORLESS and (task.given.texture or task.given.colors is not None):
-        report(f"{chosen.out.suffix} files have no colours: write .glb, .obj or .ply to keep them")
+    if out.suffix.lower() in COLORLESS and (task.given.texture or task.given.colors is not None):
+        report(f"{out.suffix} files have no colours: write .glb, .obj or .ply to keep them")
 
 
-def read(path: Path, up: str | None) -> Mesh:
-    """The repaired mesh of a file, whose axis `up` points up; ValueError where it cannot be used."""
+def draw(task: SimplificationTask, found: Mesh, path: Path) -> None:
+    """Writes the picture of the mesh before and after."""
+    from .picture import write_picture  # loads matplotlib, which nothing else here needs
+
+    points = task.points[task.points_kept(found)]
+    write_picture(path, task.upright(task.mesh), task.upright(found), task.saliency, points, task.given.up)
+
+
+def read(path: Path, up: str | None) -> tuple[Mesh, Mesh]:
+    """(the mesh of a file, the same repaired), whose axis `up` points up; ValueError where it cannot be used."""
     report(f"reading {path.name}")
-    mesh, note = upright_by(load_unnamed(path), path, up)
-    extent = np.ptp(mesh.vertices, axis=0).max()
+    given, note = upright_by(load_unnamed(path), path, up)
+    extent = np.ptp(given.vertices, axis=0).max()
     if extent < MIN_EXTENT:
         raise ValueError(f"its extent is {extent:g}: export it in smaller units, or with more digits")
-    mesh, notes = repaired(mesh)
+    mesh, notes = repaired(given)
     report(number(len(mesh.faces), "face") + "".join(f"; {note}" for note in [note, *notes]))
-    return mesh
+    return given, mesh
 
 
-def prepare(mesh: Mesh, chosen: Namespace) -> SimplificationTask:
+def prepare(mesh: Mesh, chosen: Namespace, name: str) -> SimplificationTask:
     """The SimplificationTask: saliency, and the points to keep."""
     asked, target = chosen.faces, len(mesh.faces)
     check_attributes(mesh, chosen.attributes)
@@ -96,7 +145,7 @@ def prepare(mesh: Mesh, chosen: Namespace) -> SimplificationTask:
     report(f"saliency by {method} in {watch.seconds:.1f} s")
     points = np.zeros(0, dtype=np.int64)
     if chosen.neighbourhood != SOFT:
-        points = find_points(rendered, method, chosen.keep, seed=chosen.seed, name=chosen.mesh.stem)
+        points = find_points(rendered, method, chosen.keep, seed=chosen.seed, name=name)
         report(f"the faces around {number(len(points), 'point')} are frozen")
     rule = "fixed" if chosen.neighbourhood == SOFT else chosen.neighbourhood
     rings = neighbourhoods(mesh, points, rule, values, RINGS if chosen.rings is None else chosen.rings)
@@ -105,15 +154,21 @@ def prepare(mesh: Mesh, chosen: Namespace) -> SimplificationTask:
     return SimplificationTask(mesh, values, points, rings, weights, chosen.backend, chosen.shrink, chosen.attributes)
 
 
-def reduce(task: SimplificationTask, chosen: Namespace) -> Mesh:
-    """The Mesh with the face count, or within the tolerance, of the command line."""
-    report("simplifying" + (f" to {100 * chosen.tolerance:g} % of the diagonal" if chosen.tolerance else ""))
+def reduce(task: SimplificationTask, chosen: Namespace, target: str) -> Mesh | None:
+    """The Mesh with the face count `target`, or within the tolerance; None, with the reason reported, for a level."""
+    report(
+        "simplifying" + (f" to {100 * chosen.tolerance:g} % of the diagonal" if chosen.tolerance else f" to {target}")
+    )
     try:
         if chosen.tolerance is None:
-            return task.simplified(face_count(chosen.faces, len(task.mesh.faces), "--faces"))
+            return task.simplified(face_count(target, len(task.mesh.faces), "--faces"))
         found = fewest_faces(task.mesh, task.simplified, task.lowest_target, chosen.tolerance, chosen.seed, report)
-    except InfeasibleTarget as error:
-        raise ValueError(infeasible(task, error, chosen)) from None
+    except (InfeasibleTarget, SimplifyError) as error:
+        reason = infeasible(task, error, chosen) if isinstance(error, InfeasibleTarget) else str(error)
+        if not chosen.levels:
+            raise ValueError(reason) from None
+        report(f"no level {target}: {reason}")
+        return None
     if found is task.mesh:
         report("no simplified mesh is within the tolerance: all faces are kept")
     return found
@@ -145,22 +200,21 @@ def remedies(task: SimplificationTask, error: InfeasibleTarget, chosen: Namespac
     return ways
 
 
-def summary(task: SimplificationTask, found: Mesh, chosen: Namespace) -> str:
-    """The table that the command prints."""
-    rivals = [] if chosen.method == PLAIN else [plain(task, len(found.faces))]
-    meshes = [found, *(rival for rival in rivals if rival is not None)]
-    report("measuring the errors")
-    errors = measure_meshes(task, meshes, chosen.seed, report)
-    rest = [None] * (len(meshes) - 1)
-    rows: list[tuple] = [("faces", len(task.mesh.faces), *(len(mesh.faces) for mesh in meshes))]
+def summary(
+    task: SimplificationTask, heads: Sequence[str], meshes: Sequence[Mesh], rival: Mesh | None, errors: Sequence[dict]
+) -> str:
+    """The table that the command prints: the mesh, the meshes under their heads, and plain QEM where there is one."""
+    shown = [*meshes, *([] if rival is None else [rival])]
+    rest = [None] * (len(shown) - len(meshes))
+    rows: list[tuple] = [("faces", len(task.mesh.faces), *(len(mesh.faces) for mesh in shown))]
     if len(task.points):
-        rows += [("points kept", len(task.points), int(task.points_kept(found).sum()), *rest)]
+        rows += [("points kept", len(task.points), *(int(task.points_kept(mesh).sum()) for mesh in meshes), *rest)]
     if len(task.border):
-        rows += [("border edges kept", len(task.border), task.border_edges_kept(found), *rest)]
+        rows += [("border edges kept", len(task.border), *(task.border_edges_kept(mesh) for mesh in meshes), *rest)]
     if len(task.points) or len(task.border):
-        rows += [("fewest faces that keep them", None, task.smallest_with_borders, *rest)]
+        rows += [("fewest faces that keep them", None, *([task.smallest_with_borders] * len(meshes)), *rest)]
     rows += [(NAMES[name], None, *(each[name] for each in errors)) for name in NAMES if name in errors[0]]
-    return format_table(["before", method_label(chosen), *["plain QEM"] * len(rest)], rows)
+    return format_table(["before", *heads, *["plain QEM"] * len(rest)], rows)
 
 
 def method_label(chosen: Namespace) -> str:
@@ -184,4 +238,4 @@ def number(count: int, noun: str) -> str:
 
 def report(text: str) -> None:
     """Prints progress to stderr, apart from the results."""
-    print(f"lod: {text}", file=sys.stderr, flush=True)
+    print(f"simplify: {text}", file=sys.stderr, flush=True)

@@ -15,52 +15,69 @@ from stages.kit import Mesh
 from stages.kit.files import whole_file
 from stages.meshes.colours import bake_texture
 
+from .parts import Parts
+
 FORMATS = (".glb", ".obj", ".off", ".ply", ".stl")
 PICTURED = (".glb", ".obj")  # the formats with texture coordinates and images
 COLORLESS = (".off", ".stl")
 DIGITS = 9  # of the diagonal
 
 
-def write_any(path: str | Path, mesh: Mesh) -> None:
+def write_any(path: str | Path, mesh: Mesh, parts: Parts | None = None) -> None:
     """Writes a Mesh in the format of the path's suffix: glb, obj, off, ply or stl; the file is whole or absent.
 
     Textures are written to glb and obj (with NAME.mtl and NAME_K.png beside it), where seams double vertices; ply gets
     the texture's colour at each vertex instead; off and stl have neither. obj and off have nine digits or more, the
     others single precision. Coordinates are those of the mesh: glTF expects +y up and metres, but nothing is turned
-    here. Raises ValueError for another suffix.
+    here (stages.meshes.up.upright_for). parts: in a glb the nodes, by name. Raises ValueError for another suffix.
     """
     path = Path(path)
     suffix = path.suffix.lower()
     if suffix not in FORMATS:
         raise ValueError(f"{path.name}: meshes are written as {', '.join(FORMATS)}, not as {suffix or 'no suffix'}")
-    loaded = to_trimesh(mesh if suffix in PICTURED else bake_texture(mesh), path.stem)
+    named = parts if suffix == ".glb" else None
+    loaded = to_trimesh(mesh if suffix in PICTURED else bake_texture(mesh), path.stem, named)
     digits = max(DIGITS - int(np.floor(np.log10(mesh.diagonal or 1.0))), 1)
     options: dict[str, Any] = {"digits": digits} if suffix in (".obj", ".off") else {}
     if suffix == ".obj":
         options |= {"return_texture": True, "mtl_name": f"{path.stem}.mtl"}
     exported: Any = loaded.export(file_type=suffix[1:], **options)
     content, beside = exported if suffix == ".obj" else (exported, {})
-    with ExitStack() as parts:  # all are written before the first is moved into place, the mesh itself last
+    with ExitStack() as stack:  # all are written before the first is moved into place, the mesh itself last
         for name, extra in {path.name: content, **beside}.items():
-            part = parts.enter_context(whole_file(path.parent / name))
+            part = stack.enter_context(whole_file(path.parent / name))
             part.write_bytes(extra.encode() if isinstance(extra, str) else extra)
 
 
-def to_trimesh(mesh: Mesh, name: str = "mesh") -> trimesh.Trimesh | trimesh.Scene:
+def to_trimesh(mesh: Mesh, name: str = "mesh", parts: Parts | None = None) -> trimesh.Trimesh | trimesh.Scene:
     """A trimesh.Trimesh, or with a texture a trimesh.Scene with one part per image, vertices doubled at seams.
 
-    name: prefix of the names of its parts and materials.
+    name: prefix of the names of its parts and materials. parts: a Scene of these, named so, each with one part per
+    image, the further ones numbered.
     """
-    if mesh.texture is None:
+    if mesh.texture is None and not parts:
         return trimesh.Trimesh(mesh.vertices, mesh.faces, vertex_colors=mesh.colors, process=False)
-    parts = {f"{name}_{number}": number for number in np.unique(mesh.texture.image)}
-    return trimesh.Scene({part: _part(mesh, number, part) for part, number in parts.items()})
+    if mesh.texture is None:
+        return trimesh.Scene({part: _plain_part(mesh, ids) for part, ids in (parts or {}).items()})
+    images, scene = mesh.texture.image, {}
+    if not parts:
+        scene = {f"{name}_{number}": (number, np.flatnonzero(images == number)) for number in np.unique(images)}
+    for part, ids in (parts or {}).items():
+        for place, number in enumerate(np.unique(images[ids])):
+            scene[f"{part}_{place}" if place else part] = number, ids[images[ids] == number]
+    return trimesh.Scene({part: _part(mesh, number, ids, part) for part, (number, ids) in scene.items()})
 
 
-def _part(mesh, number, name):
-    """The faces of one image, as a Trimesh whose vertices each have one pair of texture coordinates."""
-    own = mesh.texture.of(mesh.texture.image == number)
-    faces = mesh.faces[mesh.texture.image == number]
+def _plain_part(mesh, ids):
+    used, faces = np.unique(mesh.faces[ids], return_inverse=True)
+    colors = None if mesh.colors is None else mesh.colors[used]
+    return trimesh.Trimesh(mesh.vertices[used], faces.reshape(-1, 3), vertex_colors=colors, process=False)
+
+
+def _part(mesh, number, ids, name):
+    """Faces of one image, as a Trimesh whose vertices each have one pair of texture coordinates."""
+    own = mesh.texture.of(ids)
+    faces = mesh.faces[ids]
     rows = np.column_stack([faces.ravel(), own.uv.reshape(-1, 2)])
     found, first, inverse = np.unique(rows, axis=0, return_index=True, return_inverse=True)
     image = own.images[number]

@@ -25,16 +25,33 @@ KINDS = (".jpg", ".png", ".webp")
 def write_look(path: Path, mesh: Mesh, saliency: np.ndarray, points: np.ndarray) -> None:
     """Writes a picture of a mesh turned upright, with the axis that points up: its saliency (n,) and points (k,).
 
-    Points on the far side are not shown. The format follows the suffix of the path; ValueError for an unknown one.
+    Points are numbered from 1; those on the far side are not shown. The format follows the suffix of the path;
+    ValueError for an unknown one.
     """
     check_look(path)
+    with whole_file(path) as part:
+        Image.fromarray(look(mesh, saliency, points)).save(
+            part, format=Image.registered_extensions()[path.suffix.lower()]
+        )
+
+
+def look(mesh: Mesh, saliency: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """The picture of `write_look`, (ROWS, ROWS, 3) u1."""
     upright = normalise(rotate_to_z_up(mesh))
     image = with_axis(draw(coloured(upright, saliency)), mesh.up)
-    for row, column in zip(*visible_points(upright, points), strict=True):
-        for radius, colour in ((6, RIM), (4, DOT)):
-            cv2.circle(image, (round(column), round(row)), radius, colour, cv2.FILLED, cv2.LINE_AA)
-    with whole_file(path) as part:
-        Image.fromarray(image).save(part, format=Image.registered_extensions()[path.suffix.lower()])
+    rows, columns = places(upright, points)
+    for k in np.flatnonzero(visible(upright, points))[::-1]:  # the most salient last, above the others
+        mark(image, round(float(columns[k])), round(float(rows[k])), str(k + 1))
+    return image
+
+
+def mark(image: np.ndarray, column: int, row: int, text: str) -> None:
+    """Draws a dot that bears a text of a digit or two."""
+    for radius, colour in ((11, RIM), (9, DOT)):
+        cv2.circle(image, (column, row), radius, colour, cv2.FILLED, cv2.LINE_AA)
+    (width, height), _ = cv2.getTextSize(text, cv2.FONT_HERSHEY_SIMPLEX, 0.42, 1)
+    corner = column - width // 2, row + height // 2
+    cv2.putText(image, text, corner, cv2.FONT_HERSHEY_SIMPLEX, 0.42, RIM, 1, cv2.LINE_AA)
 
 
 def check_look(path: Path) -> None:
@@ -45,10 +62,18 @@ def check_look(path: Path) -> None:
 
 def coloured(mesh: Mesh, values: np.ndarray) -> Mesh:
     """The mesh with colours of the values (n,), from violet to yellow, which saturate at their 98 % quantile."""
-    top = np.quantile(values, TOP) or values.max() or 1.0
-    levels = np.rint(255 * np.clip(values / top, 0, 1)).astype(np.uint8)
-    colors = cv2.applyColorMap(levels[:, None], cv2.COLORMAP_VIRIDIS)[:, 0, ::-1]
-    return replace(mesh, colors=np.ascontiguousarray(colors), texture=None)
+    return replace(mesh, colors=viridis(vivid(values)), texture=None)
+
+
+def vivid(values: np.ndarray) -> np.ndarray:
+    """Values (n,) over their 98 % quantile, at most 1: a few high peaks would leave everything else dark."""
+    return np.clip(values / (np.quantile(values, TOP) or values.max() or 1.0), 0, 1)
+
+
+def viridis(values: np.ndarray) -> np.ndarray:
+    """(n, 3) u1 colours of values (n,) in 0..1, from violet to yellow."""
+    levels = np.rint(255 * values).astype(np.uint8)
+    return np.ascontiguousarray(cv2.applyColorMap(levels[:, None], cv2.COLORMAP_VIRIDIS)[:, 0, ::-1])
 
 
 def draw(mesh: Mesh, wires: bool = False) -> np.ndarray:
@@ -74,9 +99,20 @@ def with_axis(image: np.ndarray, up: str) -> np.ndarray:
 
 def visible_points(mesh: Mesh, vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(rows, columns) in the picture of the visible ones of the vertices."""
+    near = visible(mesh, vertices)
+    rows, columns = places(mesh, vertices)
+    return rows[near], columns[near]
+
+
+def places(mesh: Mesh, vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(rows (k,), columns (k,)) in the picture of the vertices (k,)."""
+    return project(mesh.vertices[vertices], VIEWPOINT, (ROWS, ROWS))[:2]
+
+
+def visible(mesh: Mesh, vertices: np.ndarray) -> np.ndarray:
+    """(k,) boolean: which of the vertices the picture shows."""
     size = (ROWS, ROWS)
     depth = render(mesh, VIEWPOINT, size, renderer="raster").depth
     rows, columns, depths = project(mesh.vertices[vertices], VIEWPOINT, size)
     r, c = (np.clip(np.rint(place).astype(int), 0, ROWS - 1) for place in (rows, columns))
-    near = depths <= depth[r, c] + 0.02  # units: a point on the silhouette may miss its own surface by a pixel
-    return rows[near], columns[near]
+    return depths <= depth[r, c] + 0.02  # units: a point on the silhouette may miss its own surface by a pixel

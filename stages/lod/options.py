@@ -1,4 +1,4 @@
-"""The command line of `python -m stages.lod MESH`, and its checks before any work."""
+"""The command line of `haptic-glance simplify MESH`, and its checks before any work."""
 
 import argparse
 import os
@@ -8,11 +8,10 @@ from pathlib import Path
 import numpy as np
 
 from stages.meshes.up import add_up
-from stages.salient_points import METHODS
-from stages.salient_points.methods import split_runnable
-from stages.weights import LearnedWeights
+from stages.salient_points.names import HELP, check_name
 
 from .export import FORMATS
+from .levels import levels
 from .neighbourhood import NEIGHBOURHOODS, RINGS
 from .simplify import BACKEND, BACKENDS
 from .targets import face_count
@@ -25,18 +24,23 @@ def parser(about: str) -> argparse.ArgumentParser:
     """The parser; about: the text of --help, whose first line comes first."""
     first, _, rest = about.partition("\n")
     form = argparse.RawDescriptionHelpFormatter
-    command = argparse.ArgumentParser("python -m stages.lod", description=first, epilog=rest, formatter_class=form)
-    command.add_argument("mesh", metavar="MESH", type=Path, help="the file to simplify")
+    command = argparse.ArgumentParser("haptic-glance simplify", description=first, epilog=rest, formatter_class=form)
+    command.add_argument("mesh", metavar="MESH", type=Path, help="the file to simplify, or a folder of files")
     target = command.add_mutually_exclusive_group(required=True)
+    help_levels = "several results from one look: face counts or shares, such as 50%%,25%%,10%%"
+    target.add_argument("--levels", metavar="N,N,...", type=levels, help=help_levels)
     target.add_argument("--faces", metavar="N", help="target face count: 1500, or a share such as 10%%")
     help_tolerance = "the fewest faces with a Metro mean error of at most this share of the diagonal: 0.2%%, or 0.002"
     help_tolerance += f" (from {LEAST_PERCENT:g} on the sign is required: 0.2 could mean 20%% or 0.2%%)"
     target.add_argument("--tolerance", metavar="SHARE", type=share, help=help_tolerance)
-    command.add_argument("--out", metavar="FILE", type=Path, required=True, help=f"the result: {', '.join(FORMATS)}")
+    help_out = f"the result: {', '.join(FORMATS)}; with --levels, or of a folder: the folder for them"
+    command.add_argument("--out", metavar="PATH", type=Path, required=True, help=help_out)
+    help_format = "of the files in that folder (default: that of the mesh, or glb)"
+    command.add_argument("--format", choices=[suffix[1:] for suffix in FORMATS], help=help_format)
     command.add_argument(
         "--picture", metavar="FILE", type=Path, help="also draw the saliency, and the mesh before and after"
     )
-    help_method = "saliency and points by this method (default: glance; qem: none, every place has the same weight)"
+    help_method = f"whose saliency and points: {HELP}; qem: nobody's, every place has the same weight"
     command.add_argument("--method", default="glance", help=help_method)
     help_ways = "soft: the saliency weights the error, nothing is frozen (default); the others freeze the faces around"
     help_ways += f" the salient points, within {RINGS} rings, or by the mesh's density, or by the salient area"
@@ -54,6 +58,7 @@ def parser(about: str) -> argparse.ArgumentParser:
     )
     add_up(command)
     command.add_argument("--backend", choices=list(BACKENDS), default=BACKEND, help="default: %(default)s")
+    command.add_argument("--json", action="store_true", help="print the figures as JSON")
     command.add_argument("--seed", type=int, default=0, help="for the samples of the errors (default: %(default)s)")
     return command
 
@@ -83,13 +88,37 @@ def attribute_weights(text: str) -> dict[str, float]:
 
 def check_paths(chosen: argparse.Namespace) -> None:
     """Raises ValueError where the result or the picture cannot be written, or would overwrite the mesh."""
-    if chosen.out.suffix.lower() not in FORMATS:
+    if not one_file(chosen):
+        check_folder(chosen)
+    elif chosen.out.suffix.lower() not in FORMATS:
         raise ValueError(f"--out {chosen.out}: meshes are written as {', '.join(FORMATS)}")
-    check_outputs(chosen.mesh, chosen.out, chosen.picture)
+    elif chosen.format:
+        raise ValueError("--format is for the files in a folder: --out says that of one file")
+    check_outputs(chosen.mesh, chosen.out if one_file(chosen) else None, chosen.picture)
     if chosen.picture:
         from .picture import check_picture  # brings matplotlib, which nothing else here needs
 
         check_picture(chosen.picture)
+
+
+def one_file(chosen: argparse.Namespace) -> bool:
+    """Whether --out is a file, and not the folder of several."""
+    return not chosen.levels and not chosen.mesh.is_dir()
+
+
+def targets(chosen: argparse.Namespace) -> list[str]:
+    """The face counts asked for; of a tolerance one text that names it."""
+    return chosen.levels or [chosen.faces or f"within_{100 * chosen.tolerance:g}%"]
+
+
+def check_folder(chosen: argparse.Namespace) -> None:
+    """Raises ValueError where --out is no folder, or not another one than that of the meshes."""
+    if chosen.out.is_file() or chosen.out.suffix.lower() in FORMATS:
+        raise ValueError(f"--out {chosen.out}: name a folder, since there are several results")
+    if chosen.out.resolve() == (chosen.mesh if chosen.mesh.is_dir() else chosen.mesh.parent).resolve():
+        raise ValueError(f"--out {chosen.out} is the folder of the meshes: name another one")
+    if chosen.picture:
+        raise ValueError("--picture is for one result")
 
 
 def check_outputs(mesh: Path, *paths: Path | None) -> None:
@@ -111,7 +140,7 @@ def check_options(chosen: argparse.Namespace) -> None:
         face_count(chosen.faces, 1, "--faces")
     if chosen.seed < 0:
         raise ValueError(f"--seed {chosen.seed}: give 0 or more")
-    check_method(chosen.method)
+    check_name(chosen.method, [PLAIN])
     freezing = {"--keep": chosen.keep, "--rings": chosen.rings, "--shrink": chosen.shrink or None}
     given = next((name for name, value in freezing.items() if value is not None), None)
     if chosen.method == PLAIN and (given or chosen.neighbourhood != SOFT):
@@ -127,15 +156,3 @@ def check_options(chosen: argparse.Namespace) -> None:
         raise ValueError(f"--keep {chosen.keep}: give 1 or more points; --method {PLAIN} keeps none")
     if chosen.rings is not None and chosen.rings < 0:
         raise ValueError(f"--rings {chosen.rings}: give 0 (the faces that touch a point) or more")
-
-
-def check_method(method: str) -> None:
-    """Raises ValueError for a method without a saliency for meshes outside the pipeline's data sets."""
-    runs, others = split_runnable(METHODS, LearnedWeights())
-    usable = [PLAIN, *(name for name in runs if hasattr(METHODS[name], "saliency"))]
-    if method in usable:
-        return
-    reason = "there is no such method"
-    if method in METHODS:
-        reason = "its weights are learned in the pipeline" if method in others else "it has no saliency"
-    raise ValueError(f"--method {method}: {reason}; choose one of {', '.join(usable)}")

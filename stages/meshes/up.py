@@ -4,9 +4,14 @@ import argparse
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from stages.kit import Mesh
 
+from .normalise import rotate_to_z_up
+
 UP_OF_FORMAT = {".glb": "y"}  # glTF 2.0, section 3.4; the other formats do not say
+Y_UP = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])  # from z up to y up, as Blender and others turn a glTF back
 
 
 def add_up(command: argparse.ArgumentParser, remark: str = "") -> None:
@@ -25,7 +30,13 @@ def upright_by(mesh: Mesh, path: Path, up: str | None) -> tuple[Mesh, str]:
     return mesh, f"{mesh.up} up, a guess, since {kind} does not say (another axis: --up)"
 
 
-def lying_note(path: Path, mesh: Mesh) -> str:
-    """What to say of a file that is written in the mesh's own axes though its format has another one up; or empty."""
-    expected = UP_OF_FORMAT.get(path.suffix.lower(), mesh.up)
-    return "" if expected == mesh.up else f"{path.name} stays {mesh.up} up; programs expect {expected}: --up {mesh.up}"
+def upright_for(path: Path, mesh: Mesh) -> tuple[Mesh, str]:
+    """(the Mesh turned upright as the format of a path to be written has it, what to say of that, or empty).
+
+    Formats that do not say which axis points up take every mesh as it is.
+    """
+    up = UP_OF_FORMAT.get(path.suffix.lower(), mesh.up)
+    if up == mesh.up:
+        return mesh, ""
+    turned = replace(mesh, vertices=rotate_to_z_up(mesh).vertices @ Y_UP.T, up=up)
+    return turned, f"{path.name} is {up} up, as every {path.suffix[1:].upper()}: turned from {mesh.up} up"

@@ -17,6 +17,7 @@ from trimesh.exchange.gltf import export_glb
 
 from stages.kit import Mesh
 from stages.kit.files import read_mesh, read_table, whole_file, write_json
+from stages.meshes.up import Y_UP
 
 from .compare import OURS
 from .loaded_back import EXTENSION, check_glb, read_lod
@@ -27,7 +28,6 @@ from .schema import Params
 from .storage import read_chain
 
 FOLDER, MANIFEST = "export", "manifest.json"
-Y_UP = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])
 
 
 def export(folder: Path, data: Path, scene: Scene, settings: Params) -> None:

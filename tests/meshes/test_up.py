@@ -16,7 +16,7 @@ from stages.meshes import clean, load, normalise, rotate_to_z_up
 from stages.meshes.colours import bake_texture
 from stages.meshes.orient import orient
 from stages.meshes.plane import _submesh
-from stages.meshes.up import lying_note, upright_by
+from stages.meshes.up import upright_by, upright_for
 
 BALL = trimesh.creation.icosphere(2)
 PLAIN = Texture(np.zeros((len(BALL.faces), 3, 2)), np.zeros(len(BALL.faces), int), (np.full((1, 1, 4), 255, np.uint8),))
@@ -73,6 +73,13 @@ def test_a_guess_is_told_from_what_a_file_says():
     assert upright_by(flat, Path("a.stl"), "x")[0].up == "x"
 
 
-def test_a_glb_that_does_not_stand_as_glbs_do_is_named():
-    assert lying_note(Path("a.glb"), Mesh(BALL.vertices, BALL.faces)).startswith("a.glb stays z up")
-    assert lying_note(Path("a.glb"), LYING) == lying_note(Path("a.stl"), LYING) == ""
+def test_a_mesh_is_turned_for_a_glb_alone_and_as_other_programs_turn_it_back():
+    standing = Mesh(BALL.vertices, BALL.faces)
+    turned, note = upright_for(Path("a.glb"), standing)
+    assert turned.up == "y" and note == "a.glb is y up, as every GLB: turned from z up"
+    x, y, z = turned.vertices.T
+    assert np.array_equal(np.stack([x, -z, y], axis=1), BALL.vertices)  # what Blender makes of a glTF
+    assert np.array_equal(
+        upright_for(Path("a.glb"), Mesh(BALL.vertices, BALL.faces, up="x"))[0].vertices[:, 1], BALL.vertices[:, 0]
+    )
+    assert upright_for(Path("a.glb"), LYING) == (LYING, "") and upright_for(Path("a.stl"), LYING) == (LYING, "")

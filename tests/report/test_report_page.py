@@ -15,10 +15,10 @@ from PIL import Image
 
 from stages.kit import Mesh, Viewpoint
 from stages.kit.files import write_arrays, write_mesh, write_text
+from stages.kit.packing import SHADES, STEPS, Store, ordered
 from stages.report.__main__ import dataset_line, write_report
 from stages.report.drawing import VIEWPOINT, picture, visible
 from stages.report.items import Built, Table
-from stages.report.packing import SHADES, STEPS, Store, ordered
 from stages.report.page import build_page, item_html, prose, small_picture
 from stages.report.results import NotRun
 from stages.report.viewer import pack_viewer

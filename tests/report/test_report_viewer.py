@@ -12,7 +12,7 @@ from PIL import Image
 
 from stages.kit import Mesh
 from stages.kit.files import write_mesh
-from stages.report.packing import SHADES, ordered
+from stages.kit.packing import SHADES, ordered
 from stages.report.page import part, script_json
 from stages.report.viewer import FINEST, apart, pack_object, pack_viewer
 

@@ -11,7 +11,7 @@
   }
 
   const bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
-  // The arrays of an object, as stages/report/packing.py stored them: [offset, count] into its deflated bytes.
+  // The arrays of an object, as stages/kit/packing.py stored them: [offset, count] into its deflated bytes.
   let store = new Uint8Array(0);
   const words = ([at, count]) => Uint16Array.from({ length: count }, (_, k) => store[at + k] | (store[at + count + k] << 8));
   const summed = (values, stride) => {
@@ -193,10 +193,10 @@
     const faces = (item) => `${item.faces.toLocaleString("en")} faces`;
     const original = mesh === one.full;
     const share = `${(100 * mesh.faces / one.faces).toFixed(mesh.faces < one.faces / 20 ? 1 : 0)} %`;
-    const drawn = one.full.faces < one.faces ? ` (drawn with ${one.full.faces.toLocaleString("en")})` : "";
-    ask("viewer-left").textContent = `${one.name}, original: ${faces(one)}${drawn}`;
+    const drawn = (item, shown) => (shown < item.faces ? ` (drawn with ${shown.toLocaleString("en")})` : "");
+    ask("viewer-left").textContent = `${one.name}, original: ${faces(one)}${drawn(one, one.full.faces)}`;
     ask("viewer-right").textContent = original ? "the original itself: move the slider" :
-      `simplified: ${faces(mesh)} (${share}); distance mean ${mesh.error_mean} %, largest ${mesh.error_max} % of the diagonal`;
+      `simplified: ${faces(mesh)} (${share})${drawn(mesh, mesh.drawn)}; distance mean ${mesh.error_mean} %, largest ${mesh.error_max} % of the diagonal`;
     ask("level-name").textContent = original ? "the original" : faces(mesh);
     ask("level").setAttribute("aria-valuetext", faces(mesh));
     canvas.setAttribute("aria-label", `Turnable meshes: ${ask("viewer-left").textContent}; ${ask("viewer-right").textContent}`);

@@ -93,7 +93,7 @@ def _draw_imprint(axes: Axes, image: np.ndarray | None) -> None:
 
 
 def touch_one_mesh(results: Results) -> Figure:
-    """What `python -m stages.imprints MESH --at salient` shows: of one object, of a folder of one's own of each."""
+    """What `haptic-glance touch MESH` shows: of one object, of a folder of one's own of each."""
     own, settings = results.own_meshes, results.settings
     names = results.choose(() if own else [settings.hero_object], settings.viewer_count if own else 1)
     figure = plt.figure(figsize=(12, 5.4 * len(names)))

@@ -1,0 +1,1 @@
+"""One page about a person's own meshes: where people look, fewer faces, and what a pressure array feels there."""

@@ -1,0 +1,125 @@
+"""Shows a folder of meshes on one page: where people look, fewer faces, and what a pressure array feels there.
+
+Reads every STL, OBJ, PLY, OFF, GLB and point cloud of FOLDER, or one file. Writes into the folder of --out:
+  index.html    all meshes on a page that needs no network: turnable, with their points, imprints and levels
+  NAME/         of each mesh: saliency.ply (a coloured copy), points.csv, its levels, imprints.npz and places.csv
+A file that holds no usable mesh is named, and the others go on; the exit status is then 1.
+
+examples:
+  haptic-glance gallery scans
+  haptic-glance gallery scans --up y --levels 5000,1000 --count 10 --out page
+  haptic-glance gallery chair.glb --json
+"""
+
+import argparse
+import json
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from stages.imprints.options import check_folder
+from stages.kit import Stopwatch
+from stages.kit.command import DEBUG
+from stages.kit.files import write_text
+from stages.lod.levels import levels
+from stages.meshes.own import mesh_files, names_of
+from stages.meshes.up import add_up
+
+from .compiled import compile_beside
+from .exhibit import Exhibit, exhibit
+from .page import build_page
+
+LEVELS, COUNT, PAGE = "50%,25%,10%", 6, "index.html"
+
+
+def run(argv: Sequence[str]) -> int:
+    """Runs the command line `argv`, without the program's name; returns the exit status."""
+    command = parser("gallery", __doc__ or "")
+    command.add_argument("meshes", metavar="FOLDER", type=Path, help="the folder of the meshes, or one file")
+    command.add_argument("--out", metavar="FOLDER", type=Path, help="output folder (default: FOLDER_gallery)")
+    add_up(command)
+    each = "face counts or shares (default: 50%%,25%%,10%%)"
+    command.add_argument("--levels", metavar="N,N,...", type=levels, default=levels(LEVELS), help=each)
+    command.add_argument("--count", metavar="N", type=int, default=COUNT, help="places a mesh (default: %(default)s)")
+    chosen = command.parse_args(argv)
+    if chosen.count < 1:
+        raise ValueError(f"--count {chosen.count}: give 1 or more")
+    stem = chosen.meshes.resolve().stem
+    return show("gallery", f"Gallery of {stem}", chosen, chosen.out or Path(f"{stem}_gallery"))
+
+
+def parser(name: str, about: str) -> argparse.ArgumentParser:
+    """The parser of `gallery` and `demo`; about: the text of --help, whose first line comes first."""
+    first, _, rest = about.partition("\n")
+    form = argparse.RawDescriptionHelpFormatter
+    command = argparse.ArgumentParser(f"haptic-glance {name}", description=first, epilog=rest, formatter_class=form)
+    command.add_argument("--json", action="store_true", help="print what was made as JSON")
+    return command
+
+
+def show(name: str, title: str, chosen: argparse.Namespace, out: Path) -> int:
+    """Makes the page and the files of meshes, prints what was made, returns the exit status.
+
+    chosen: meshes (a file or a folder), up, count, levels, json. Where a person stops it (Ctrl-C), the page shows what
+    is done.
+    """
+    check_folder(out)
+    files = mesh_files(chosen.meshes)
+    made: list[Exhibit] = []
+    failures: dict[str, str] = {}
+    compiled = compile_beside(lambda text: report(name, text))
+    try:
+        for number, (file, each) in enumerate(zip(files, names_of(files), strict=True), 1):
+            report(name, f"{number} of {len(files)}: {file.name}")
+            try:
+                with Stopwatch() as watch:
+                    made.append(exhibit(file, each, out / each, chosen.up, chosen.count, chosen.levels, compiled))
+                report(name, f"{file.name}: {watch.seconds:.1f} s")
+            except Exception as error:  # one mesh must not cost the others theirs
+                if os.environ.get(DEBUG):
+                    raise
+                failures[file.name] = " ".join(str(error).split()) or type(error).__name__
+                report(name, f"{file.name} is left out: {failures[file.name]}")
+    finally:
+        if made:
+            write_text(out / PAGE, build_page(title, made, failures, commands(chosen)))
+    if made or chosen.json:
+        print(json.dumps(figures(made, failures)) if chosen.json else listing(made, out))
+    return 1 if failures else 0
+
+
+def commands(chosen: argparse.Namespace) -> list[str]:
+    """The three commands that do the same with one mesh."""
+    mesh = f"YOUR_MESH.stl{f' --up {chosen.up}' if chosen.up else ''}"
+    return [
+        f"haptic-glance saliency {mesh} --count {chosen.count} --out saliency.ply --points points.csv",
+        f"haptic-glance simplify {mesh} --levels {','.join(chosen.levels)} --out levels",
+        f"haptic-glance touch {mesh} --count {chosen.count} --out touched",
+    ]
+
+
+def figures(made: Sequence[Exhibit], failures: dict[str, str]) -> list[dict[str, object]]:
+    """What was made, a dict per mesh; of a failure its file and the reason."""
+    found: list[dict[str, object]] = [
+        {
+            "mesh": str(one.file), "folder": str(one.folder), "faces": len(one.touched.mesh.faces),
+            "points": len(one.points), "levels": [len(level.mesh.faces) for level in one.levels],
+            "touches": len(one.touches), "missing": one.missing,
+        }
+        for one in made
+    ]  # fmt: skip
+    return found + [{"mesh": name, "error": why} for name, why in failures.items()]
+
+
+def listing(made: Sequence[Exhibit], out: Path) -> str:
+    """What was made, for people."""
+    lines = [
+        f"{one.folder}: {len(one.points)} places, {len(one.levels)} levels, {len(one.touches)} imprints" for one in made
+    ]
+    return "\n".join([*lines, f"open {out / PAGE}"])
+
+
+def report(name: str, text: str) -> None:
+    """Prints progress to stderr, apart from the results."""
+    print(f"{name}: {text}", file=sys.stderr, flush=True)

@@ -1,0 +1,138 @@
+"""One mesh of the gallery: looked at once, and from that look simplified and touched."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.spatial import KDTree
+
+from stages.imprints import normalise as as_images
+from stages.imprints import sensor_axes, touchable
+from stages.imprints.command import ARRAYS, TABLE, places_rows, saved_arrays
+from stages.imprints.command import as_csv as places_csv
+from stages.imprints.distances import distances_at
+from stages.imprints.user_mesh import UserMesh
+from stages.kit import Mesh
+from stages.kit.files import write_arrays, write_text
+from stages.lod import InfeasibleTarget, SimplifyError, vertex_errors
+from stages.lod.export import write_any
+from stages.lod.levels import level_path
+from stages.lod.look import coloured, look
+from stages.lod.parts import moved_parts, parts_of
+from stages.lod.simplify import BACKEND
+from stages.lod.targets import face_count
+from stages.lod.task import SimplificationTask, repaired
+from stages.meshes.colours import bake_texture
+from stages.meshes.load import load_unnamed
+from stages.meshes.up import upright_by, upright_for
+from stages.saliency import as_csv, points_of
+from stages.salient_points import detect
+from stages.salient_points import saliency as saliency_of
+
+CELLS, PITCH = (16, 16), 0.01  # as of `haptic-glance touch`
+
+
+@dataclass(frozen=True)
+class Level:
+    """A simplified mesh in the frame of `stages.meshes.normalise`, and the file that holds it in the file's own.
+
+    error: (n,) distance of each vertex of the mesh to it, in % of the diagonal.
+    """
+
+    mesh: Mesh
+    error: np.ndarray
+    file: Path
+
+
+@dataclass(frozen=True)
+class Exhibit:
+    """What was found on one mesh.
+
+    touched: the mesh, repaired; note: what is known of its up axis. saliency (n,). points: rows of
+    stages.saliency.COLUMNS, most salient first. levels: finest first; missing: {level: why there is none}. touches:
+    rows of places.csv, in the order of the points; images (k, rows, cols) in 0..1, 0 pressed first. picture: (h, w, 3)
+    u1, coloured by saliency with the points numbered.
+    """
+
+    name: str
+    file: Path
+    folder: Path
+    touched: UserMesh
+    note: str
+    saliency: np.ndarray
+    points: list[tuple]
+    levels: list[Level]
+    missing: dict[str, str]
+    touches: list[dict[str, Any]]
+    images: np.ndarray
+    picture: np.ndarray
+
+
+def exhibit(
+    file: Path, name: str, folder: Path, up: str | None, count: int, levels: Sequence[str],
+    ready: Callable[[], object] = lambda: None,
+) -> Exhibit:  # fmt: skip
+    """The Exhibit of a mesh file, its files written into a folder. ValueError where the file holds no usable mesh.
+
+    ready: is called after the look, before anything is simplified.
+    """
+    given, note = upright_by(load_unnamed(file), file, up)
+    found = detect(bake_texture(given), count=count)
+    assert found.saliency is not None  # glance has one
+    points = points_of(given, found.points, found.saliency)
+    picture = look(given, found.saliency, np.array([row[1] for row in points], dtype=np.int64))
+    folder.mkdir(parents=True, exist_ok=True)
+    write_any(folder / "saliency.ply", coloured(given, found.saliency))
+    write_text(folder / "points.csv", as_csv(points))
+
+    ready()
+    mesh, notes = repaired(given)
+    same = len(mesh.vertices) == len(given.vertices)
+    values = found.saliency if same else saliency_of(bake_texture(mesh))
+    made, missing = simplified(mesh, values, levels, folder, file, name, given)
+    user_mesh = UserMesh(mesh, name)
+    touches, images = touch(user_mesh, points, folder)
+    text = "; ".join([note, *notes])
+    return Exhibit(name, file, folder, user_mesh, text, values, points, made, missing, touches, images, picture)
+
+
+def simplified(
+    mesh: Mesh, values: np.ndarray, levels: Sequence[str], folder: Path, file: Path, name: str, given: Mesh
+) -> tuple[list[Level], dict[str, str]]:
+    """(the Levels, written into the folder, {level: why there is none}) of a mesh by its saliency (n,)."""
+    nothing = np.zeros(0, dtype=np.int64)
+    task, parts = SimplificationTask(mesh, values, nothing, nothing, values, BACKEND, False), parts_of(file)
+    found, missing = [], {}
+    for target in levels:
+        try:
+            level = task.simplified(face_count(target, len(mesh.faces), "--levels"))
+        except (InfeasibleTarget, SimplifyError) as error:
+            missing[target] = str(error)
+            continue
+        path, restored = level_path(folder, name, file, target), task.restored(level)
+        write_any(path, upright_for(path, restored)[0], moved_parts(parts, given, restored))
+        found.append(Level(level, 100 * vertex_errors(level, task.mesh) / task.mesh.diagonal, path))
+    return found, missing
+
+
+def touch(
+    user_mesh: UserMesh, points: Sequence[tuple], folder: Path
+) -> tuple[list[dict[str, Any]], np.ndarray]:  # fmt: skip
+    """(rows of places.csv, images (k, rows, cols)) of the array at those of the points that have a normal.
+
+    Both are written into the folder; the index of a row is the rank of its point.
+    """
+    place = KDTree(user_mesh.source.vertices)
+    vertices = np.asarray(place.query(np.array([row[2:5] for row in points]))[1])  # repairs may renumber them
+    can = touchable(user_mesh.mesh, vertices)
+    places = user_mesh.places([str(vertex) for vertex in vertices[can]])
+    axes = sensor_axes(places.normals)
+    raw = distances_at(user_mesh.surface, places.positions, axes, CELLS, PITCH)
+    images, rows = as_images(raw, PITCH), places_rows(user_mesh, places, raw)
+    for row, rank in zip(rows, np.flatnonzero(can) + 1, strict=True):
+        row["index"] = int(rank)
+    write_arrays(folder / ARRAYS, **saved_arrays(user_mesh, places, axes, raw, images, PITCH))
+    write_text(folder / TABLE, places_csv(rows, user_mesh.digits))
+    return rows, images

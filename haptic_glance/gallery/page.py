@@ -1,0 +1,157 @@
+"""The page of the gallery: one file that works offline, beside a folder of files per mesh."""
+
+import base64
+import io
+import json
+import re
+from collections.abc import Mapping, Sequence
+from html import escape
+from importlib import resources
+from string import Template
+from typing import Any
+from urllib.parse import quote
+
+import numpy as np
+from PIL import Image
+from scipy.spatial import KDTree
+
+from stages.kit.packing import SHADES, pack, viewer_data
+from stages.kit.packing import Level as Drawn
+from stages.lod.look import viridis, vivid
+from stages.lod.shown import shown_mesh
+from stages.meshes import rotate_to_z_up
+
+from .exhibit import Exhibit
+
+MOST, LEAST, ALL = 20_000, 2_000, 160_000  # faces of a turnable mesh, and of all on a page: some 2 MB
+WIDE = 480  # pixels of a picture
+
+
+def build_page(title: str, exhibits: Sequence[Exhibit], failures: Mapping[str, str], commands: Sequence[str]) -> str:
+    """The text of the page. failures: {file: why it is left out}; commands: those that do the same with one mesh."""
+    faces = int(np.clip(ALL // max(len(exhibits), 1), LEAST, MOST))
+    colours = viridis(np.linspace(0, 1, SHADES))
+    report = resources.files("stages") / "report" / "page"  # not stages.report, which imports what the pipeline has
+    own = resources.files(__package__ or "")
+    viewer = re.sub('data-first="(enhanced|error)"', 'data-first="glance"', (report / "viewer.html").read_text("utf-8"))
+    words = {
+        "title": escape(title),
+        "style": (report / "page.css").read_text("utf-8") + (own / "page.css").read_text("utf-8"),
+        "script": (report / "viewer.js").read_text("utf-8"),
+        "failures": failures_html(failures),
+        "contents": contents_html(exhibits),
+        "viewer": viewer,
+        "meshes": "".join(exhibit_html(k, one) for k, one in enumerate(exhibits)),
+        "commands": escape("\n".join(commands)),
+        "data": as_script(viewer_data([turnable(one, faces) for one in exhibits], colours)),
+    }
+    return Template((own / "page.html").read_text("utf-8")).substitute(words)
+
+
+def contents_html(exhibits: Sequence[Exhibit]) -> str:
+    """Links to the meshes, where there are several."""
+    links = " ".join(f'<a href="#mesh-{k}">{escape(one.name)}</a>' for k, one in enumerate(exhibits))
+    return f'<nav aria-label="Meshes">{links}</nav>' if len(exhibits) > 1 else ""
+
+
+def turnable(one: Exhibit, faces: int) -> dict[str, Any]:
+    """What the script turns of a mesh: as it is or with so many faces, its saliency, points and levels."""
+    full, nearest = shown_mesh(one.touched.mesh, faces)
+    positions = one.touched.from_file(np.array([row[2:5] for row in one.points]))
+    points = np.asarray(KDTree(full.vertices).query(positions)[1])
+    ladder = [
+        Drawn(shown_mesh(rotate_to_z_up(level.mesh), faces)[0], level.error[nearest], len(level.mesh.faces))
+        for level in one.levels
+    ]
+    saliency, ladders = ("glance", vivid(one.saliency)[nearest]), ("saliency as weight", ladder)
+    shown = {"glance": saliency}, {"glance": ("the most salient", points)}, {"glance": ladders}
+    return pack(one.name, len(one.touched.mesh.faces), full, *shown)
+
+
+def exhibit_html(number: int, one: Exhibit) -> str:
+    """The section of a mesh: its picture, its points with what is felt there, its levels, its files."""
+    size = " x ".join(f"{side:.4g}" for side in np.ptp(one.touched.source.vertices, axis=0))
+    facts = f"{len(one.touched.mesh.faces):,} faces, {size} in the file's units; {one.note}."
+    alt = f"{one.name} coloured by saliency, its {len(one.points)} most salient points numbered"
+    picture = f'<img src="{data_uri(one.picture, WIDE)}" width="{WIDE}" height="{WIDE}" alt="{escape(alt)}">'
+    caption = "Yellow: where people look most. Numbers: the places, most salient first; those behind are not shown."
+    touches = "".join(touch_html(one, row, image) for row, image in zip(one.touches, one.images, strict=True))
+    return f"""<section id="mesh-{number}"><h2>{escape(one.name)}</h2><p class="help">{escape(facts)}</p>
+<div class="mesh"><figure>{picture}<figcaption>{caption}</figcaption></figure>
+<div><h3>Touched there</h3><ol class="touches">{touches}</ol>
+<p class="help">16 x 16 cells, 1 % of the object's diameter apart. Black is pressed first, white is far or nothing.</p>
+{levels_html(one)}</div></div>
+<details><summary>Places, and all files</summary>{places_html(one)}<p>{files_html(one)}</p></details></section>
+"""
+
+
+def touch_html(one: Exhibit, row: Mapping[str, Any], image: np.ndarray) -> str:
+    """One touch: its imprint, its number, how salient its place is."""
+    rank, said = row["index"], f"what the array feels at place {row['index']} of {one.name}"
+    pixels = np.rint(255 * image).astype(np.uint8)
+    value = one.points[rank - 1][-1]
+    return (
+        f'<li><img src="{data_uri(pixels)}" width="16" height="16" alt="{escape(said)}">'
+        f"<span><b>{rank}</b> saliency {value:.2f}</span></li>"
+    )
+
+
+def levels_html(one: Exhibit) -> str:
+    """The table of levels, with their files; what is infeasible is named."""
+    rows, total = [], len(one.touched.mesh.faces)
+    for level in one.levels:
+        faces = len(level.mesh.faces)
+        link = f'<a href="{quote(f"{one.folder.name}/{level.file.name}")}" download>{escape(level.file.name)}</a>'
+        rows.append(
+            [link, f"{faces:,}", f"{100 * faces / total:.3g}", f"{level.error.mean():.2g}", f"{level.error.max():.2g}"]
+        )
+    heads = ["file", "faces", "% of all", "mean distance, %", "largest, %"]
+    lost = "".join(f"<li>{escape(f'{target}: {why}')}</li>" for target, why in one.missing.items())
+    note = '<p class="help">Distances of the mesh\'s vertices to the level, in % of its diagonal.</p>'
+    return f"<h3>With fewer faces</h3>{table(heads, rows)}{note}" + (f"<ul>{lost}</ul>" if lost else "")
+
+
+def places_html(one: Exhibit) -> str:
+    """The table of the points in the file's coordinates."""
+    rows = [[f"{rank}", f"{vertex:,}", *(f"{v:.6g}" for v in place), f"{value:.3f}"]
+            for rank, vertex, *place, value in one.points]  # fmt: skip
+    return table(["place", "vertex", "x", "y", "z", "saliency"], rows)
+
+
+def table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """A table in a box that scrolls; cells are HTML, all but the first column numbers."""
+    kinds = ["", *[' class="number"'] * (len(heads) - 1)]
+    head = "".join(f'<th scope="col"{kind}>{text}</th>' for kind, text in zip(kinds, heads, strict=True))
+    cells = ("".join(f"<td{kind}>{text}</td>" for kind, text in zip(kinds, row, strict=True)) for row in rows)
+    body = "".join(f"<tr>{row}</tr>" for row in cells)
+    box = '<div class="scroll" tabindex="0" role="region" aria-label="Table">'
+    return f"{box}<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>"
+
+
+def files_html(one: Exhibit) -> str:
+    """Links to the files of a mesh."""
+    names = sorted(path.name for path in one.folder.iterdir() if not path.name.startswith("."))
+    return " ".join(f'<a href="{quote(f"{one.folder.name}/{name}")}">{escape(name)}</a>' for name in names)
+
+
+def failures_html(failures: Mapping[str, str]) -> str:
+    """What was left out, and why; empty where nothing was."""
+    items = "".join(f"<li>{escape(f'{name}: {why}')}</li>" for name, why in failures.items())
+    return f'<div class="failures" role="note">Left out:<ul>{items}</ul></div>' if items else ""
+
+
+def data_uri(image: np.ndarray, wide: int | None = None) -> str:
+    """A picture (h, w) or (h, w, 3) u1 as WebP, or, with its pixels unchanged, as PNG."""
+    picture, packed = Image.fromarray(image), io.BytesIO()
+    if wide:
+        picture.thumbnail((2 * wide, 2 * wide), Image.Resampling.LANCZOS)  # fine screens have two pixels for one
+        picture.save(packed, "WEBP", quality=70)
+    else:
+        picture.save(packed, "PNG")
+    kind = "webp" if wide else "png"
+    return f"data:image/{kind};base64,{base64.b64encode(packed.getvalue()).decode('ascii')}"
+
+
+def as_script(value: object) -> str:
+    """JSON that is safe inside a script element."""
+    return json.dumps(value, separators=(",", ":")).replace("</", "<\\/")

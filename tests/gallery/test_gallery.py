@@ -1,0 +1,233 @@
+"""`haptic-glance gallery` and `demo`: what is made of each mesh, and what the page shows."""
+
+import base64
+import json
+import re
+import subprocess
+import zlib
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+
+from haptic_glance.gallery import command, compiled, demo
+from haptic_glance.gallery.command import run
+from haptic_glance.gallery.exhibit import exhibit
+from haptic_glance.gallery.page import turnable
+from stages import saliency
+from stages.imprints.command import run as touch
+from stages.kit.packing import ordered
+from stages.lod import vertex_errors
+from stages.lod.command import run as simplify
+from stages.meshes import load, rotate_to_z_up
+
+pytestmark = pytest.mark.slow
+
+
+def pear(path, size=1.0):
+    body = trimesh.creation.icosphere(3)
+    x, y, z = body.vertices.T
+    body.vertices *= (1 + 0.5 * np.exp(-8 * ((z - 1) ** 2 + x**2)))[:, None] * [size, size, size]
+    body.vertices += [30, 4, -7]
+    body.export(path)
+
+
+@pytest.fixture
+def scans(tmp_path):
+    """A folder of two meshes, a broken one and a text."""
+    (tmp_path / "scans").mkdir()
+    pear(tmp_path / "scans/pear.ply")
+    pear(tmp_path / "scans/pear & co.stl", 50)
+    (tmp_path / "scans/broken.obj").write_text("v 1 2\n")
+    (tmp_path / "scans/notes.txt").write_text("no mesh")
+    return tmp_path / "scans"
+
+
+@pytest.fixture
+def shown(scans, capsys):
+    """Function: makes the gallery with options and returns (exit status, page, stdout, stderr)."""
+
+    def work(*options, meshes=scans):
+        status = run([str(meshes), "--out", str(scans.parent / "out"), *options])
+        said = capsys.readouterr()
+        return status, (scans.parent / "out/index.html").read_text("utf-8"), said.out, said.err
+
+    return work
+
+
+def page_data(page):
+    return json.loads(re.search(r'id="mesh-data">(.*?)</script>', page)[1])
+
+
+def test_a_broken_file_is_named_and_the_rest_goes_on(shown, scans):
+    status, page, said, reported = shown()
+    assert status == 1 and "broken.obj is left out: " in reported
+    assert re.search(r"Left out:<ul><li>broken.obj: ", page) and "notes" not in page
+    assert [one["name"] for one in page_data(page)["objects"]] == ["pear & co", "pear"]
+    assert "<h2>pear &amp; co</h2>" in page and said.count("6 places, 3 levels, 6 imprints") == 2
+    made = {path.name for path in (scans.parent / "out/pear").iterdir()}
+    levels = {f"pear_{share}pct.ply" for share in (50, 25, 10)}
+    assert made == levels | {"saliency.ply", "points.csv", "imprints.npz", "places.csv"}
+
+
+def test_the_page_needs_nothing_but_itself(shown, scans):
+    _, page, _, _ = shown()
+    assert not re.search(r'(src|href)="(https?:)?//', page) and "@import" not in page
+    assert "$" not in re.sub(r"<script>.*?</script>", "", page, flags=re.S)  # every placeholder is filled
+    links = re.findall(r'href="([^#"][^"]*)"', page)
+    assert links and all(
+        (scans.parent / "out" / link.replace("%20", " ").replace("%26", "&")).is_file() for link in links
+    )
+
+
+def test_nothing_is_claimed_and_no_other_mesh_is_shown(shown):
+    _, page, _, _ = shown()
+    text = re.sub(r"<(style|script)\b.*?</\1>|base64,[\w+/=]+", "", page, flags=re.S)
+    assert not re.search("supported|contradicted|claim|household|duck", text, re.I)
+
+
+def test_the_same_comes_of_the_three_commands_that_it_names(shown, scans, capsys):
+    _, page, _, _ = shown("--count", "4", "--levels", "300,10%", meshes=scans / "pear.ply")
+    out, mesh = scans.parent, str(scans / "pear.ply")
+    named = re.findall(r"haptic-glance (\w+) YOUR_MESH.stl ([^<\n]*)", page)
+    assert [name for name, _ in named] == ["saliency", "simplify", "touch"]
+    for (_, options), work in zip(named, (saliency.run, simplify, touch), strict=True):
+        work([mesh, *re.sub(r"(--out|--points) ", rf"\1 {out}/", options).split()])
+    ours = out / "out/pear"
+    assert (out / "points.csv").read_text() == (ours / "points.csv").read_text()
+    assert np.array_equal(load(out / "saliency.ply").colors, load(ours / "saliency.ply").colors)
+    for name in ("pear_300.ply", "pear_10pct.ply"):
+        assert np.array_equal(load(out / "levels" / name).vertices, load(ours / name).vertices)
+    with np.load(out / "touched/imprints.npz") as alone, np.load(ours / "imprints.npz") as together:
+        order = [list(alone["vertices"]).index(vertex) for vertex in together["vertices"]]
+        assert np.allclose(alone["images"][order], together["images"], atol=1e-5)
+
+
+def test_what_turns_on_the_page_is_the_mesh_with_its_levels(shown, scans):
+    _, page, _, _ = shown(meshes=scans / "pear.ply")
+    (one,) = page_data(page)["objects"]
+    assert one["faces"] == one["full"]["faces"] == 1280 and one["points"]["glance"]["ids"][1] == 6
+    levels = one["ladders"]["glance"]["levels"]
+    assert [level["faces"] for level in levels] == [640, 320, 128]
+    assert levels[0]["error_mean"] < levels[1]["error_mean"] < levels[2]["error_mean"]
+    store = np.frombuffer(zlib.decompress(base64.b64decode(one["store"])), np.uint8)
+    at, count = one["saliency"]["glance"]["values"]
+    assert (store[at : at + count].cumsum(dtype=np.uint8)).max() == 63  # the brightest of the shades
+
+
+def test_errors_stand_at_the_vertices_that_have_them(scans):
+    one = exhibit(scans / "pear.ply", "pear", scans.parent / "out", None, 3, ["10%"])
+    packed = turnable(one, 20_000)
+    full, level = ordered(one.touched.mesh)[0], packed["ladders"]["glance"]["levels"][0]
+    expected = 100 * vertex_errors(rotate_to_z_up(one.levels[0].mesh), full) / full.diagonal
+    store = np.frombuffer(zlib.decompress(base64.b64decode(packed["store"])), np.uint8)
+    at, count = level["error"]
+    shown = packed["error_top"] * (store[at : at + count].cumsum(dtype=np.uint8) / 63.0) ** 2
+    assert shown == pytest.approx(np.minimum(expected, packed["error_top"]), abs=0.03 * packed["error_top"])
+    assert level["error_mean"] == pytest.approx(expected.mean(), abs=1e-4)
+
+
+def test_each_imprint_has_its_place_and_how_salient_that_is(shown, scans):
+    _, page, _, _ = shown("--levels", "300", meshes=scans / "pear.ply")
+    rows = [line.split(",") for line in (scans.parent / "out/pear/points.csv").read_text().splitlines()[1:]]
+    captions = re.findall(r"<b>(\d+)</b> saliency ([\d.]+)", page)
+    assert captions == [(row[0], f"{float(row[5]):.2f}") for row in rows] and len(captions) == 6
+
+
+def test_what_must_be_ready_is_waited_for_after_the_look(scans):
+    out, seen = scans.parent / "out", []
+    exhibit(scans / "pear.ply", "pear", out, None, 3, ["300"], lambda: seen.append(sorted(map(str, out.iterdir()))))
+    assert seen == [[str(out / "points.csv"), str(out / "saliency.ply")]]
+
+
+def test_a_large_mesh_is_drawn_with_fewer_faces_and_says_so(shown, scans, monkeypatch):
+    monkeypatch.setattr("haptic_glance.gallery.page.ALL", 600)
+    monkeypatch.setattr("haptic_glance.gallery.page.LEAST", 100)
+    _, page, _, _ = shown(meshes=scans / "pear.ply")
+    (one,) = page_data(page)["objects"]
+    assert one["faces"] == 1280 and one["full"]["faces"] <= 600
+    assert [(level["faces"], level["drawn"] <= 600) for level in one["ladders"]["glance"]["levels"]] == [
+        (640, True), (320, True), (128, True),
+    ]  # fmt: skip
+
+
+def test_a_level_that_is_infeasible_is_named(shown, scans):
+    status, page, _, _ = shown("--levels", "300,2", meshes=scans / "pear.ply")
+    assert status == 0 and "<li>2: " in page and "pear_300.ply" in page
+
+
+def test_json_lists_what_was_made(shown, scans):
+    _, _, said, _ = shown("--json", "--levels", "300")
+    found = {row["mesh"].split("/")[-1]: row for row in json.loads(said)}
+    assert set(found) == {"pear.ply", "pear & co.stl", "broken.obj"} and "error" in found["broken.obj"]
+    assert found["pear.ply"]["levels"] == [300] and found["pear.ply"]["faces"] == 1280
+
+
+def test_where_it_is_stopped_the_page_shows_what_is_done(scans, monkeypatch, capsys):
+    work, done = command.exhibit, []
+
+    def stopped(*given):
+        if done:
+            raise KeyboardInterrupt
+        done.append(work(*given))
+        return done[0]
+
+    monkeypatch.setattr(command, "exhibit", stopped)
+    (scans / "broken.obj").unlink()
+    with pytest.raises(KeyboardInterrupt):
+        run([str(scans), "--out", str(scans.parent / "out")])
+    assert len(page_data((scans.parent / "out/index.html").read_text("utf-8"))["objects"]) == 1
+
+
+def test_vertices_that_a_file_doubles_are_touched_where_they_are(tmp_path, capsys):
+    pear(tmp_path / "pear.ply")
+    mesh = load(tmp_path / "pear.ply")
+    soup = trimesh.Trimesh(
+        mesh.vertices[mesh.faces].reshape(-1, 3), np.arange(3 * len(mesh.faces)).reshape(-1, 3), process=False
+    )
+    soup.export(tmp_path / "soup.ply")
+    assert run([str(tmp_path / "soup.ply"), "--count", "3", "--levels", "300", "--out", str(tmp_path / "out")]) == 0
+    rows = [(tmp_path / "out/soup" / name).read_text().splitlines()[1:] for name in ("points.csv", "places.csv")]
+    points, places = (np.array([row.split(",")[2:5] for row in each], dtype=float) for each in rows)
+    assert len(points) == 3 and points == pytest.approx(places, rel=1e-5)
+
+
+def test_the_demo_is_the_gallery_of_the_sample(tmp_path, capsys):
+    assert demo.run(["--out", str(tmp_path / "demo")]) == 0
+    said = capsys.readouterr().out
+    assert "6 places, 3 levels, 6 imprints" in said and said.count("  haptic-glance ") == 3
+    assert (tmp_path / "demo/dromedary/dromedary_10pct.glb").is_file()
+
+
+def test_default_folders_are_not_left_in_a_checkout():
+    root = Path(demo.__file__).parents[2]
+    if not (root / ".git").exists():
+        pytest.skip("no checkout")
+    for page in ("haptic_glance_demo/index.html", "scans_gallery/index.html"):
+        assert subprocess.run(["git", "-C", str(root), "check-ignore", "-q", "--no-index", page]).returncode == 0
+
+
+def test_kernels_are_compiled_beside_only_where_there_are_none(tmp_path, monkeypatch):
+    started, said = [], []
+    monkeypatch.setattr(compiled.subprocess, "Popen", lambda command, **_: started.append(command) or command)
+    monkeypatch.setattr(compiled, "FOLDER", tmp_path)
+    compiled.compile_beside(said.append)
+    assert len(started) == 2 and "up to a minute" in said[0]
+    (tmp_path / "kernel.nbc").touch()
+    compiled.compile_beside(said.append)()
+    assert len(started) == 2 and len(said) == 1
+    compiled.compile_search()
+    compiled.compile_rest()
+
+
+def test_what_cannot_be_is_named_before_anything_is_looked_at(scans, tmp_path):
+    with pytest.raises(ValueError, match="--count 0: give 1 or more"):
+        run([str(scans), "--count", "0"])
+    with pytest.raises(ValueError, match="is a file: name a folder"):
+        run([str(scans), "--out", str(scans / "pear.ply")])
+    with pytest.raises(ValueError, match="gone: no such file or folder"):
+        run([str(tmp_path / "gone"), "--out", str(tmp_path / "out")])
+    with pytest.raises(ValueError, match="no mesh in this folder"):
+        run([str(tmp_path), "--out", str(tmp_path / "out")])
+    assert not (tmp_path / "out").exists()

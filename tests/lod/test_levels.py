@@ -1,0 +1,168 @@
+"""`haptic-glance simplify`: several levels from one look, folders, the nodes of a scene, and which axis points up."""
+
+import argparse
+import json
+
+import numpy as np
+import pytest
+import trimesh
+
+from stages.kit import Mesh
+from stages.kit.texture import Texture
+from stages.lod import command
+from stages.lod.command import run
+from stages.lod.export import write_any
+from stages.lod.levels import level_path, levels
+from stages.lod.parts import moved_parts, parts_of
+from stages.meshes import load, rotate_to_z_up
+
+
+def egg(subdivisions=3, at=(0.0, 0.0, 0.0), up="z"):
+    ball = trimesh.creation.icosphere(subdivisions)
+    return Mesh(ball.vertices * [1, 0.7, 1.4] + at, ball.faces, up=up)
+
+
+@pytest.fixture
+def file(tmp_path):
+    write_any(tmp_path / "egg.ply", egg())
+    return tmp_path / "egg.ply"
+
+
+@pytest.fixture
+def folder(file):
+    """A folder with two meshes, of which one cannot be read, and a text."""
+    (file.parent / "meshes").mkdir()
+    file.rename(file.parent / "meshes/egg.ply")
+    (file.parent / "meshes/bad.stl").write_bytes(b"solid")
+    (file.parent / "meshes/notes.txt").write_text("no mesh")
+    return file.parent / "meshes"
+
+
+@pytest.mark.parametrize(("text", "found"), [("50%,25%", ["50%", "25%"]), (" 300 ,9%,300", ["300", "9%"])])
+def test_levels_are_counts_or_shares_each_once(text, found):
+    assert levels(text) == found
+
+
+@pytest.mark.parametrize("text", ["", "50%,", "half", "120%", "0"])
+def test_what_is_no_level_is_named(text):
+    with pytest.raises(argparse.ArgumentTypeError, match="^--levels="):
+        levels(text)
+
+
+def test_levels_keep_the_format_where_it_can_be_written(tmp_path):
+    assert level_path(tmp_path, "a", tmp_path / "a.STL", "50%") == tmp_path / "a_50pct.stl"
+    assert level_path(tmp_path, "a", tmp_path / "a.xyz", "900") == tmp_path / "a_900.glb"
+    assert level_path(tmp_path, "a", tmp_path / "a.stl", "900", "obj") == tmp_path / "a_900.obj"
+
+
+@pytest.mark.slow
+def test_levels_come_from_one_look(file, tmp_path, monkeypatch, capsys):
+    looks, look = [], command.saliency
+    monkeypatch.setattr(command, "saliency", lambda *given: looks.append(1) or look(*given))
+    assert run([str(file), "--levels", "50%,200,10%", "--out", str(tmp_path / "out")]) == 0
+    faces = {path.name: len(load(path).faces) for path in (tmp_path / "out").iterdir()}
+    assert faces == {"egg_50pct.ply": 640, "egg_200.ply": 200, "egg_10pct.ply": 128} and len(looks) == 1
+    said = capsys.readouterr().out
+    assert said.splitlines()[1].split() == ["faces", "1,280", "640", "200", "128"] and "QEM" not in said
+
+
+@pytest.mark.slow
+def test_a_level_that_is_infeasible_does_not_cost_the_others(file, tmp_path, capsys):
+    assert run([str(file), "--levels", "100,2", "--out", str(tmp_path / "out")]) == 1
+    assert [path.name for path in (tmp_path / "out").iterdir()] == ["egg_100.ply"]
+    assert "simplify: no level 2: " in capsys.readouterr().err
+    with pytest.raises(ValueError, match="egg.ply: no level is feasible"):
+        run([str(file), "--levels", "2", "--out", str(tmp_path / "out")])
+
+
+@pytest.mark.slow
+def test_a_folder_goes_through_at_once_and_what_is_broken_is_named(folder, tmp_path, capsys):
+    assert run([str(folder), "--faces", "300", "--format", "glb", "--json", "--out", str(tmp_path / "out")]) == 1
+    shown = capsys.readouterr()
+    (found,) = json.loads(shown.out)
+    assert found["faces"] == 1280 and found["levels"][0]["faces"] == 300 and found["levels"][0]["mean"] > 0
+    assert [path.name for path in (tmp_path / "out").iterdir()] == ["egg_300.glb"]
+    assert "simplify: " in shown.err and "bad.stl: " in shown.err and "notes" not in shown.err
+
+
+@pytest.mark.parametrize(
+    ("options", "reason"),
+    [
+        (["--levels", "9%", "--out", "x.glb"], "name a folder, since there are several results"),
+        (["--levels", "9%", "--out", "x", "--picture", "x.png"], "--picture is for one result"),
+        (["--faces", "9%", "--out", "x.glb", "--format", "obj"], "--format is for the files in a folder"),
+    ],
+)
+def test_options_of_one_result_and_of_several_do_not_mix(file, options, reason):
+    with pytest.raises(ValueError, match=reason):
+        run([str(file), *options])
+
+
+def test_the_meshes_are_not_written_over(folder, file):
+    with pytest.raises(ValueError, match="is the folder of the meshes: name another one"):
+        run([str(folder), "--faces", "300", "--out", str(folder)])
+    with pytest.raises(ValueError, match="no mesh in this folder"):
+        run([str(folder.parent), "--faces", "300", "--out", str(folder.parent / "out")])
+
+
+def scene(path, painted):
+    """A GLB of a ball over a box, its nodes named; painted: with a plain material each, else with none."""
+    ball, box = trimesh.creation.icosphere(3), trimesh.creation.box().subdivide().subdivide()
+    if painted:
+        for part, colour in ((ball, [200, 30, 30, 255]), (box, [30, 30, 200, 255])):
+            material = trimesh.visual.material.PBRMaterial(baseColorFactor=colour)
+            part.visual = trimesh.visual.TextureVisuals(uv=np.zeros((len(part.vertices), 2)), material=material)
+    found = trimesh.Scene()
+    found.add_geometry(box, node_name="stand", geom_name="g1")
+    found.add_geometry(ball, node_name="vase", transform=trimesh.transformations.translation_matrix([0, 2, 0]))
+    found.export(path)
+
+
+def named_heights(path):
+    """{name of a node: mean height of its faces}."""
+    return {part.metadata["node"]: part.triangles_center[:, 1].mean() for part in trimesh.load(path).dump()}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("painted", [True, False])
+def test_the_nodes_of_a_scene_keep_their_names_and_places(tmp_path, painted):
+    scene(tmp_path / "two.glb", painted)
+    run([str(tmp_path / "two.glb"), "--faces", "400", "--out", str(tmp_path / "small.glb")])
+    before, after = named_heights(tmp_path / "two.glb"), named_heights(tmp_path / "small.glb")
+    assert set(after) == {"stand", "vase"} and after == pytest.approx(before, abs=0.1)
+    assert len(load(tmp_path / "small.glb").faces) == 400
+
+
+def test_a_node_of_several_pictures_is_one_node_with_numbered_parts(tmp_path):
+    mesh = egg(2)
+    images = tuple(np.full((1, 1, 4), shade, dtype=np.uint8) for shade in (60, 250))
+    texture = Texture(np.zeros((len(mesh.faces), 3, 2)), np.arange(len(mesh.faces)) % 2, images)
+    write_any(tmp_path / "a.glb", Mesh(mesh.vertices, mesh.faces, None, texture), {"vase": np.arange(len(mesh.faces))})
+    assert set(parts_of(tmp_path / "a.glb")) == {"vase", "vase_1"}
+
+
+def test_faces_go_with_the_closest_face():
+    low, high = egg(2), egg(2, at=(0, 0, 5.0))
+    both = Mesh(np.r_[low.vertices, high.vertices], np.r_[low.faces, high.faces + len(low.vertices)])
+    count = len(low.faces)
+    parts = {"low": np.arange(count), "high": np.arange(count, 2 * count), "gone": np.zeros(0, dtype=int)}
+    order = np.random.default_rng(0).permutation(2 * count)
+    found = moved_parts(parts, both, Mesh(both.vertices, both.faces[order]))
+    assert set(found) == {"low", "high"} and set(order[found["low"]]) == set(range(count))
+    assert moved_parts({}, both, both) == {}
+
+
+def test_only_a_glb_has_nodes(file):
+    assert parts_of(file) == {}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("up", ["z", "y"])
+def test_a_glb_stands_as_the_format_has_it_and_other_formats_stay(file, tmp_path, capsys, up):
+    for out in ("small.glb", "small.stl"):
+        run([str(file), "--faces", "300", "--up", up, "--out", str(tmp_path / out)])
+    said, (glb, stl) = capsys.readouterr().err, (load(tmp_path / f"small.{suffix}") for suffix in ("glb", "stl"))
+    long = rotate_to_z_up(glb).vertices[:, 2] if up == "z" else glb.vertices[:, 2]
+    assert np.ptp(long) == pytest.approx(2.8, rel=0.02) and glb.up == "y"
+    assert np.ptp(stl.vertices[:, 2]) == pytest.approx(2.8, rel=0.02)
+    assert ("small.glb is y up, as every GLB: turned from z up" in said) == (up == "z")
