@@ -33,7 +33,7 @@ def table(results: Results) -> Table:
     items = {name: results.rows(STAGE, name)["item"].nunique() for name in sets}
     words = {
         "count": sum(items.values()), "meshes": items.get("gaze", 0), "clouds": items.get("gaze_clouds", 0),
-        "undisturbed": ", ".join(f"{start[name]:.2f} ({label(name)})" for name in methods), "points": POINTS,
+        "undisturbed": ", ".join(f"{label(name)} {start[name]:.2f}" for name in methods), "points": POINTS,
         "not_run": "\n".join(filter(None, (results.left_out(STAGE, name) for name in sets))),
     }  # fmt: skip
     return Table(frame, shown, words)
