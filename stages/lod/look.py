@@ -66,8 +66,11 @@ def coloured(mesh: Mesh, values: np.ndarray) -> Mesh:
 
 
 def vivid(values: np.ndarray) -> np.ndarray:
-    """Values (n,) over their 98 % quantile, at most 1: a few high peaks would leave everything else dark."""
-    return np.clip(values / (np.quantile(values, TOP) or values.max() or 1.0), 0, 1)
+    """The square root of values (n,) >= 0 over their 98 % quantile, at most 1.
+
+    A density has a few high peaks, beside which everything else would be dark.
+    """
+    return np.sqrt(np.clip(values / (np.quantile(values, TOP) or values.max() or 1.0), 0, 1))
 
 
 def viridis(values: np.ndarray) -> np.ndarray:
