@@ -7,9 +7,9 @@ times the Metro mean of the whole; a noisy one whose faces fold is left whole. T
 """
 
 from concurrent.futures import ThreadPoolExecutor
+from os import cpu_count
 
 import numpy as np
-from joblib import cpu_count
 
 from stages.kit import Mesh
 
