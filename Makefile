@@ -57,7 +57,7 @@ bench: $(VENV)/ready ## every benchmark, to reports/bench: kernels, errors, scen
 
 lock: ## pin in constraints.txt all that pyproject.toml asks for
 	mkdir -p build
-	$(PYTHON) -m pip install --quiet --dry-run --ignore-installed --report build/lock.json --constraint constraints.txt '.[all,dev]'
+	$(PYTHON) -m pip install --quiet --dry-run --ignore-installed --report build/lock.json --constraint constraints.txt '.[all,dev,docs]'
 	$(PYTHON) -c 'import json; [print(each["name"], each["version"].partition("+")[0], sep="==") for each in (item["metadata"] \
 	  for item in json.load(open("build/lock.json"))["install"]) if each["name"] != "haptic-glance"]' | LC_ALL=C sort -f > constraints.txt
 
@@ -68,5 +68,5 @@ clean: ## remove what was built and computed; fetched files stay in the user's c
 $(VENV)/ready: pyproject.toml constraints.txt
 	$(PYTHON) -c 'import sys; v = sys.version_info[:2]; sys.exit(v not in ((3, 11), (3, 12)) and "Python 3.11 or 3.12 is needed, this is %d.%d" % v)'
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[all,dev]'
+	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[all,dev,docs]'
 	touch $@
