@@ -24,7 +24,7 @@ OWN = {
     "simplify": "stages.lod.command",
     "touch": "stages.imprints.command",
 }
-WHOLE = {"scene": "stages.scene.__main__", "gate": "stages.gate", REPRO: "stages.repro"}
+WHOLE = {"scene": "stages.scene.__main__", "gate": "stages.gate", "claim": "stages.claim", REPRO: "stages.repro"}
 ALIASES = {"lod": "simplify", "imprints": "touch"}  # older names, which are also stages of the pipeline
 ABOUT = """\
 exit status: 0 done; 1 something could not be done, which the last lines name; 2 the command line is wrong; 130 stopped

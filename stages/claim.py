@@ -1,0 +1,112 @@
+"""Judges claims again from the rows that they rest on: `python -m stages.claim KEY ...`
+
+KEY is a claim's key in reports/claims.csv, or a pattern such as 'ours_*'. Prints each claim with its effect, its
+interval, the difference of each pair, the rows it was read from, and the commands that measure these rows anew. Works
+in a fresh clone, from the rows in reports/measurements. Exits with 1 where a verdict is not that of reports/claims.csv.
+
+Examples: `python -m stages.claim ours_soft_gaze`, `python -m stages.claim 'ours_*' --json`,
+`python -m stages.claim contrast_household --measure`.
+"""
+
+import argparse
+import json
+import subprocess
+import sys
+from collections.abc import Sequence
+from difflib import get_close_matches
+from fnmatch import fnmatch
+from pathlib import Path
+from typing import Any
+
+from stages.kit.command import errors_in_one_line
+from stages.kit.extras import from_extra
+from stages.kit.files import read_table
+from stages.kit.rows import SUFFIX
+from stages.kit.workspace import Workspace
+
+
+def run(argv: Sequence[str]) -> int:
+    """Judges the claims that the command line names; 1 where a verdict is not the committed one."""
+    parser = argparse.ArgumentParser(
+        prog="python -m stages.claim", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("keys", nargs="+", metavar="KEY", help="a key of reports/claims.csv, or a pattern")
+    parser.add_argument("--json", action="store_true", help="print one JSON object a claim")
+    parser.add_argument("--measure", action="store_true", help="measure its rows anew first, by `dvc repro`")
+    given = parser.parse_args(argv)
+    workspace = Workspace(Path("."))
+    with from_extra():
+        from stages.report.topics import CLAIMS
+    committed = read_table(workspace.reports / "claims.csv").set_index("key")["verdict"]
+    moved = []
+    for claim in chosen(CLAIMS, given.keys):
+        if given.measure:
+            measure(workspace, judged_again(workspace, claim)["rows"])
+        found = judged_again(workspace, claim)
+        print(json.dumps(found) if given.json else as_text(found))
+        if found["verdict"] != committed.get(claim.key):
+            moved.append(f"{claim.key}: {found['verdict']}, in reports/claims.csv {committed.get(claim.key, 'absent')}")
+    print("\n".join(f"claim: {line}" for line in moved), file=sys.stderr, end="\n" if moved else "")
+    return 1 if moved else 0
+
+
+def chosen(claims: Sequence[Any], keys: Sequence[str]) -> list[Any]:
+    """The claims that match the keys or patterns, in the order of the report; ValueError for a key without a claim."""
+    known = [claim.key for claim in claims]
+    for key in keys:
+        if not any(fnmatch(name, key) for name in known):
+            close = " or ".join(get_close_matches(key, known)) or "a key of reports/claims.csv"
+            raise ValueError(f"there is no claim {key}: try {close}")
+    return [claim for claim in claims if any(fnmatch(claim.key, key) for key in keys)]
+
+
+def judged_again(workspace: Workspace, claim: Any) -> dict[str, Any]:
+    """A claim's row of reports/claims.csv, made again, with `differences` ({pair: value}), `rows` and `commands`."""
+    from stages.report.results import Results
+    from stages.report.schema import Params
+    from stages.report.verdict import judged
+
+    results = Results(workspace, workspace.settings(Params))
+    frame, pairs = judged([claim], results)
+    rows = [(claim.stage, name) for name in results.in_order(results.read)]
+    files = [f"reports/measurements/{name}/{stage}{SUFFIX}" for stage, name in rows]
+    found = {key: value for key, value in frame.iloc[0].to_dict().items() if value == value}
+    commands = [f"python -m stages.compose 'sets=[{name}]' && dvc repro {stage}@{name}" for stage, name in rows]
+    return {
+        **found,
+        "differences": dict(zip(pairs["pair"], pairs["difference"], strict=True)),
+        "rows": [file for file in files if Path(workspace.root / file).exists()],
+        "commands": commands,
+    }
+
+
+def as_text(found: dict[str, Any]) -> str:
+    """A claim as a person reads it, with a line for each pair."""
+    lines = [f"{found['key']} ({found['section']}): {found['claim']}", f"  {found['verdict']}"]
+    if "effect" in found:
+        interval = f" [{found['low']:.3g}, {found['high']:.3g}]" if "low" in found else ""
+        lines[1] += f": {found['effect']:+.3g}{interval} {found['unit']}, {found['pairs']} {found['over']}"
+    lines.append(f"  tested on: {found['tested_on']}")
+    lines += [f"    {pair:32} {value:+.4g}" for pair, value in found["differences"].items()]
+    lines += [f"  rows: {file}" for file in found["rows"]]
+    return "\n".join([*lines, *(f"  measure anew: {command}" for command in found["commands"]), ""])
+
+
+def measure(workspace: Workspace, rows: Sequence[str]) -> None:
+    """Runs the stages that make the rows; ValueError where a set is not switched on, or a stage fails."""
+    for file in rows:
+        dataset, stage = Path(file).parent.name, Path(file).name.removesuffix(SUFFIX)
+        if dataset not in workspace.params["graph"].get(stage, {}):
+            raise ValueError(f"{stage} is not switched on for {dataset}: `python -m stages.compose 'sets=[{dataset}]'`")
+        if subprocess.run([sys.executable, "-m", "dvc", "repro", f"{stage}@{dataset}"]).returncode:
+            raise ValueError(f"dvc repro {stage}@{dataset} failed, as said above; the rows stay as they were")
+
+
+def main() -> None:
+    """Judges the claims of the command line."""
+    errors_in_one_line("claim")
+    sys.exit(run(sys.argv[1:]))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,45 @@
+"""A claim judged again from the committed rows, as a reader of a fresh clone does it."""
+
+import json
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+
+from stages.claim import run
+from stages.kit.workspace import Workspace
+
+KEYS = ["ours_soft_gaze", "equal_over_itti_gaze", "four_easier_beyond_chance_ours"]
+
+
+@pytest.mark.slow
+def test_the_committed_verdicts_follow_from_the_committed_rows(capsys):
+    assert run([*KEYS, "--json"]) == 0
+    found = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    assert {one["key"] for one in found} == set(KEYS)
+    for one in found:
+        assert len(one["differences"]) == one["pairs"] and all(map(Path.exists, map(Path, one["rows"])))
+    (soft,) = (one for one in found if one["key"] == "ours_soft_gaze")
+    assert soft["commands"] == ["python -m stages.compose 'sets=[gaze]' && dvc repro lod@gaze"]
+
+
+@pytest.mark.slow
+def test_a_verdict_that_is_not_the_committed_one_is_named(monkeypatch, capsys):
+    judging = import_module("stages.report.verdict")  # not the function of that name
+    monkeypatch.setattr(judging, "verdict", lambda low, high: "contradicted")
+    assert run(["ours_soft_gaze"]) == 1
+    said = capsys.readouterr()
+    assert "ours_soft_gaze: contradicted, in reports/claims.csv supported" in said.err
+    assert "18 objects" in said.out and "measure anew" in said.out
+
+
+def test_a_key_without_a_claim_is_answered_by_its_neighbour():
+    with pytest.raises(ValueError, match="there is no claim ours_soft_gase: try ours_soft_gaze"):
+        run(["ours_soft_gase"])
+
+
+@pytest.mark.slow
+def test_a_set_that_is_not_switched_on_is_not_measured():
+    assert "gaze" not in Workspace(Path(".")).params["graph"]["lod"]
+    with pytest.raises(ValueError, match=r"lod is not switched on for gaze: `python -m stages.compose 'sets=\[gaze\]'"):
+        run(["ours_soft_gaze", "--measure"])
