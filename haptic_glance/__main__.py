@@ -25,6 +25,7 @@ OWN = {
     "touch": "stages.imprints.command",
 }
 WHOLE = {"scene": "stages.scene.__main__", "gate": "stages.gate", "claim": "stages.claim", REPRO: "stages.repro"}
+SHELL = {"completion": "haptic_glance.completion"}
 ALIASES = {"lod": "simplify", "imprints": "touch"}  # older names, which are also stages of the pipeline
 ABOUT = """\
 exit status: 0 done; 1 something could not be done, which the last lines name; 2 the command line is wrong; 130 stopped
@@ -47,7 +48,7 @@ def main() -> None:
         parser.print_help(sys.stderr)
         sys.exit(2)
     chosen = parser.parse_args()
-    names = {**OWN, **WHOLE, **commands()}
+    names = {**OWN, **WHOLE, **SHELL, **commands()}
     if chosen.command not in names:
         close = " or ".join(get_close_matches(chosen.command, names)) or "one of those that --help lists"
         parser.error(f"there is no command {chosen.command!r}: try {close}")
@@ -68,9 +69,9 @@ def run(command: str, argv: Sequence[str]) -> int:
 
     if command in ALIASES and names_a_mesh(argv):
         command = ALIASES[command]
-    if command in OWN:
+    if command in {**OWN, **SHELL}:
         errors_in_one_line(command)  # before an import that takes a second, in which a person may press Ctrl-C
-        work: Callable[[Sequence[str]], int | None] = import_module(OWN[command]).run
+        work: Callable[[Sequence[str]], int | None] = import_module({**OWN, **SHELL}[command]).run
         return work(argv) or 0
     if command == REPRO:
         repro()
@@ -97,8 +98,9 @@ def commands() -> dict[str, Path]:
 
 def listing() -> str:
     """The commands with the first line of their docstrings; of the other stages the names alone."""
-    groups = {"with a mesh of your own": OWN, "with the pipeline (pip install 'haptic-glance[pipeline]')": WHOLE}
-    wide, lines = max(map(len, {**OWN, **WHOLE})), []
+    pipeline = "with the pipeline (pip install 'haptic-glance[pipeline]')"
+    groups = {"with a mesh of your own": OWN, pipeline: WHOLE, "for the shell": SHELL}
+    wide, lines = max(len(name) for group in groups.values() for name in group), []
     for title, group in groups.items():
         texts = {name: repro.__doc__ or "" if name == REPRO else docstring(module) for name, module in group.items()}
         lines += [f"{title}:", *(f"  {name:{wide}}  {summary(text)}" for name, text in texts.items()), ""]

@@ -171,7 +171,7 @@ def test_the_names_of_the_package_are_those_that_a_type_checker_sees():
 def test_the_list_of_commands_imports_no_stage():
     done = run_command("--help", before="import atexit, sys; atexit.register(lambda: print(sorted(sys.modules)))")
     assert done.returncode == 0
-    for name in ("demo", "gallery", "saliency", "points", "simplify", "touch", "scene", "gate", "repro"):
+    for name in {**command.OWN, **command.WHOLE, **command.SHELL}:
         assert re.search(rf"^  {name} +[A-Z].{{20,}}$", done.stdout, re.M)
     assert all(re.search(rf"\b{re.escape(name)}\b", done.stdout) for name in command.commands())
     assert max(map(len, done.stdout.splitlines()[:-1])) <= 120

@@ -1,4 +1,4 @@
-"""Finds the fewest faces of every object of a scene along a camera path, and compares them with other ways (T3.1.3).
+"""Finds the fewest faces of every object of a scene along a camera path, beside other ways to choose (T3.1.3).
 
 Reads data/SET/meshes, data/SET/salient_points and data/SET/lod (the curves that the thesis's network learns from).
 Writes data/SET/scene/levels/NAME (the levels, and their errors), data/SET/scene/plans (our levels at each tolerance),

@@ -1,0 +1,63 @@
+"""Prints what a shell needs to complete commands and options: `haptic-glance completion bash`
+
+Add it once: `haptic-glance completion bash >> ~/.bashrc`, or `zsh` and `~/.zshrc`, or
+`haptic-glance completion fish > ~/.config/fish/completions/haptic-glance.fish`. What is neither a command nor an option
+is completed as a file.
+"""
+
+import argparse
+import re
+import subprocess
+import sys
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+
+BASH = """\
+_haptic_glance() {{
+  local word=${{COMP_WORDS[COMP_CWORD]}}
+  if [ "$COMP_CWORD" = 1 ]; then COMPREPLY=($(compgen -W "{commands}" -- "$word")); return; fi
+  case $word in -*) case ${{COMP_WORDS[1]}} in
+{cases}
+  esac ;; esac
+}}
+complete -o default -F _haptic_glance haptic-glance
+"""
+CASE = '    {command}) COMPREPLY=($(compgen -W "{options}" -- "$word")) ;;'
+ZSH = "autoload -Uz compinit bashcompinit && compinit && bashcompinit\n"
+FISH_COMMAND = "complete -c haptic-glance -n __fish_use_subcommand -f -a {command}"
+FISH_OPTION = "complete -c haptic-glance -n '__fish_seen_subcommand_from {command}' -l {option}"
+
+
+def run(argv: Sequence[str]) -> None:
+    """Prints the script of a shell."""
+    parser = argparse.ArgumentParser(
+        prog="haptic-glance completion", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("shell", choices=["bash", "zsh", "fish"])
+    shell = parser.parse_args(argv).shell
+    from .__main__ import OWN, SHELL, WHOLE
+
+    commands = list({**OWN, **WHOLE, **SHELL})
+    with ThreadPoolExecutor() as pool:
+        options = dict(zip(commands, pool.map(options_of, commands), strict=True))
+    print(fish(options) if shell == "fish" else (ZSH if shell == "zsh" else "") + bash(options), end="")
+
+
+def options_of(command: str) -> list[str]:
+    """The long options that the --help of a command lists; none where it needs an extra that is not installed."""
+    ran = subprocess.run([sys.executable, "-m", "haptic_glance", command, "--help"], capture_output=True, text=True)
+    return sorted(set(re.findall(r"^  (?:-\w, )?(--[a-z-]+)", ran.stdout, flags=re.MULTILINE)))
+
+
+def bash(options: dict[str, list[str]]) -> str:
+    """The script of bash, which zsh reads as well. options: {command: its options}."""
+    cases = "\n".join(CASE.format(command=name, options=" ".join(found)) for name, found in options.items())
+    return BASH.format(commands=" ".join(options), cases=cases)
+
+
+def fish(options: dict[str, list[str]]) -> str:
+    """The script of fish. options: {command: its options}."""
+    lines = [FISH_COMMAND.format(command=name) for name in options]
+    pairs = ((name, option) for name, found in options.items() for option in found)
+    lines += [FISH_OPTION.format(command=name, option=option.removeprefix("--")) for name, option in pairs]
+    return "\n".join([*lines, ""])
