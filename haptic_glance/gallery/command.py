@@ -1,4 +1,4 @@
-"""Shows a folder of meshes on one page: where people look, fewer faces, and what a pressure array feels there.
+"""Shows a folder of meshes on one page: where people look, fewer faces, what a pressure array feels.
 
 Reads every STL, OBJ, PLY, OFF, GLB and point cloud of FOLDER, or one file. Writes into the folder of --out:
   index.html    all meshes on a page that needs no network: turnable, with their points, imprints and levels
