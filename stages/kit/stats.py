@@ -9,6 +9,7 @@ from scipy import stats
 Statistic = Callable[..., np.floating | np.ndarray]
 
 RESAMPLES = 2000  # the interval's own error is then below a tenth of its width
+SMALLEST = 1e-3  # p-value
 ROUNDED = 1e-3  # of the largest value: differences of measurements with six digits are no more equal than this
 
 
@@ -42,6 +43,33 @@ def interval(
     few = stats.t.ppf(tail, n - 1) / stats.norm.ppf(tail) * np.sqrt(n / (n - 1))
     widen = few * np.sqrt(1 + n * shared)
     return mean, float(mean - (mean - low) * widen), float(mean + (high - mean) * widen)
+
+
+def p_value(values: ArrayLike, shared: float = 0.0, seed: int = 0) -> float:
+    """Two-sided: 1 less the level at which the `interval` of the values (k,) just touches zero; NaN where there is none.
+
+    Not below SMALLEST, which is what RESAMPLES draws can tell.
+    """
+    levels = np.array([SMALLEST, 1 - SMALLEST])  # searched by halving, since an interval widens with its level
+    if not np.isfinite(interval(values, shared, seed)[1]):
+        return np.nan
+    while np.ptp(levels) > SMALLEST:
+        low, high = interval(values, shared, seed, level=float(levels.mean()))[1:]
+        levels[0 if low > 0 or high < 0 else 1] = levels.mean()
+    return float(1 - levels.mean())
+
+
+def discoveries(p_values: ArrayLike, rate: float = 0.05) -> np.ndarray:
+    """(k,) bool: which of the p-values (k,) hold with a false discovery rate; NaN never does.
+
+    Benjamini and Hochberg, Controlling the false discovery rate, 1995, by scipy.
+    """
+    p_values = np.asarray(p_values, dtype=np.float64)
+    known = np.isfinite(p_values)
+    found = np.zeros(len(p_values), dtype=bool)
+    if known.any():
+        found[known] = stats.false_discovery_control(p_values[known]) <= rate
+    return found
 
 
 def interval_metrics(values: ArrayLike, seed: int = 0) -> dict[str, float]:

@@ -27,11 +27,14 @@ from .viewer import pack_viewer
 
 OWN_NOTE = "this page is about a folder alone; `python -m stages.compose` switches the project's own data sets on"
 CLAIMS_NOTE = """Each effect is a paired difference, positive on the side that the thesis claims, with its 95 %
-interval. *supported*: the interval lies wholly on the claimed side; *contradicted*: wholly on the other; *open*: it
-covers zero, is unknown (equal differences show no spread), or nothing was measured. Over objects it is a bootstrap
+interval. *supported*: the interval lies wholly on the claimed side; *contradicted*: wholly on the other; *no
+difference*: it covers zero and nothing that would matter (3 points of accuracy, 3 % of an error, 0.03 PCC, 0.05 NSS);
+*open*: it covers more, is unknown (equal differences show no spread), or nothing was measured. *holds*: whether a
+verdict that is decided holds among all claims of its chapter, at a false discovery rate of 5 % (Benjamini and Hochberg
+1995), by p, which follows from the interval. Over objects it is a bootstrap
 over the objects, and carries to other objects of this kind. Over repetitions it is a bootstrap over repeated splits
 of the same imprints, widened for what they share (Nadeau and Bengio 2003): it is about these few objects alone.
-Claims are judged one by one, without correction for their number. Section *ours*: what this project says of its own
+Section *ours*: what this project says of its own
 model, and not the thesis."""
 
 

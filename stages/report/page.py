@@ -23,7 +23,7 @@ from .verdict import counted, counts
 WIDEST = 900  # pixels of a picture on the page
 LOSSLESS = 2  # times the bytes of the lossy picture: all charts of the report take less, most renderings more
 LONG = 30  # rows after which a table scrolls in its own box
-WORDS = {"supported": "yes", "contradicted": "no", "open": "open"}  # word -> class in the style sheet
+WORDS = {"supported": "yes", "contradicted": "no", "no difference": "none", "open": "open"}  # word -> class in the style sheet
 
 
 def build_page(modules: Sequence[ModuleType], parts: dict[str, Any]) -> str:
@@ -163,6 +163,7 @@ def claims_shown(claims: pd.DataFrame) -> pd.DataFrame:
     """The frame of claims as a person reads it: section, verdict, claim, effect, tested on, over."""
     shown = claims[["section", "verdict", "claim"]].copy()
     shown["effect"] = [effect(row) for row in claims.itertuples()]
+    shown["holds"] = claims["holds"]
     shown["tested on"] = claims["tested_on"]
     shown["pairs"] = [f"{row.pairs} {row.over}" if row.pairs else "–" for row in claims.itertuples()]
     return shown

@@ -5,7 +5,7 @@ import pytest
 from scipy import stats
 
 from stages.kit.split import Split, shared_by
-from stages.kit.stats import interval, interval_metrics
+from stages.kit.stats import discoveries, interval, interval_metrics, p_value
 
 
 @pytest.mark.slow
@@ -115,3 +115,29 @@ def test_shares_of_the_splits():
 @pytest.mark.parametrize("split", list(Split))
 def test_every_split_has_words(split):
     assert len(split.words) > 8
+
+
+@pytest.mark.parametrize("shared", [0.0, 0.5])
+def test_a_p_value_is_small_just_where_the_interval_leaves_zero_out(shared):
+    random = np.random.default_rng(0)
+    for shift in (0.0, 0.3, 0.6, 1.0, 3.0):
+        values = random.normal(shift, 1, 30)
+        low, high = interval(values, shared)[1:]
+        assert (p_value(values, shared) < 0.05) == (low > 0 or high < 0)
+        assert p_value(-values, shared) == pytest.approx(p_value(values, shared), abs=0.01)
+
+
+def test_a_p_value_is_uniform_where_there_is_no_effect():
+    random = np.random.default_rng(1)
+    found = np.array([p_value(random.normal(size=25)) for _ in range(200)])
+    assert abs((found < 0.5).mean() - 0.5) < 0.1 and (found < 0.05).mean() < 0.1
+
+
+def test_no_interval_has_no_p_value():
+    assert np.isnan(p_value([1.0])) and np.isnan(p_value([1.0, 1.0])) and np.isnan(p_value([]))
+
+
+def test_discoveries_are_those_of_benjamini_and_hochberg():
+    p_values = [0.001, np.nan, 0.008, 0.039, 0.041, 0.9]  # of 5 known, 0.01 x rank: 0.01, 0.02, 0.03, 0.04, 0.05
+    assert discoveries(p_values).tolist() == [True, False, True, False, False, False]
+    assert discoveries([]).tolist() == [] and discoveries([np.nan]).tolist() == [False]

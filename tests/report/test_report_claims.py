@@ -14,7 +14,7 @@ from stages.report.differences import differences
 from stages.report.page import effect
 from stages.report.results import SECTION_3_1, NotRun
 from stages.report.topics import build_all
-from stages.report.verdict import COLUMNS, counted, judged
+from stages.report.verdict import COLUMNS, counted, holding, judged
 
 
 def of(results, key):
@@ -39,6 +39,31 @@ def claim(**fields):
 )
 def test_word_follows_from_the_interval_alone(low, high, word):
     assert verdict(low, high) == word
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "unit", "word"),
+    [
+        (-2.9, 2.9, "points of accuracy", "no difference"),
+        (-3.1, 2.9, "points of accuracy", "open"),
+        (-2.9, 3.1, "points of accuracy", "open"),
+        (0.1, 2.9, "points of accuracy", "supported"),
+        (-0.04, 0.04, "NSS", "no difference"),
+        (-0.04, 0.04, "PCC", "open"),
+        (-0.04, 0.04, "touches", "open"),  # no margin was stated
+    ],
+)
+def test_an_interval_about_zero_within_what_matters_shows_no_difference(low, high, unit, word):
+    assert verdict(low, high, unit) == word
+
+
+def test_what_is_decided_holds_or_falls_with_the_number_of_claims_of_its_chapter():
+    few = pd.DataFrame({"section": ["T3.1", "T4.2"], "p": [0.001, 0.04], "verdict": ["supported", "contradicted"]})
+    many = pd.DataFrame({"section": ["T4.2"] * 20, "p": np.linspace(0.3, 0.9, 20), "verdict": ["open"] * 20})
+    assert holding(few).tolist() == ["yes", "yes"]
+    assert holding(pd.concat([few, many], ignore_index=True)).tolist() == ["yes", "no", *[""] * 20]
+    unknown = few.assign(p=np.nan, verdict="open")
+    assert holding(unknown).tolist() == ["", ""]
 
 
 def test_no_interval_is_open():
@@ -66,8 +91,8 @@ def test_reversed_effect_is_contradicted(root, small):
     assert of(small.results(root), "ours_over_blind")["verdict"] == "contradicted"
 
 
-def test_no_effect_is_open(results):
-    assert of(results, "ours_over_weighted")["verdict"] == "open"
+def test_no_effect_shows_no_difference(results):
+    assert of(results, "ours_over_weighted")["verdict"] == "no difference"
 
 
 def test_unmeasured_claim_is_open_and_names_the_stage(results):
@@ -243,12 +268,12 @@ def test_transfer_that_was_left_out_hands_on_its_note(root, small):
     assert build_all("tradeoff", results).not_run["networks"] == "no cup"
 
 
-def test_verdicts_are_counted_beside_what_chance_alone_would_give():
-    words = ["supported"] * 30 + ["contradicted"] * 10 + ["open"] * 50
-    lows = [0.0] * 80 + [np.nan] * 10  # ten are open for want of an interval
-    said = counted(pd.DataFrame({"verdict": words, "low": lows}, columns=COLUMNS))
-    assert said.startswith("90 verdicts: 30 supported, 10 contradicted, 50 open.")
-    assert "any of the 80 that have an interval, chance alone would call about 2 of them supported" in said
+def test_verdicts_are_counted_with_those_that_hold_among_so_many():
+    words = ["supported"] * 30 + ["contradicted"] * 10 + ["no difference"] * 5 + ["open"] * 45
+    holds = ["yes"] * 33 + ["no"] * 7 + [""] * 50
+    said = counted(pd.DataFrame({"verdict": words, "holds": holds}, columns=COLUMNS))
+    assert said.startswith("90 verdicts: 30 supported, 10 contradicted, 5 no difference, 45 open.")
+    assert "Of the 40 that are supported or contradicted, 33 hold" in said
 
 
 @pytest.mark.slow
@@ -257,8 +282,10 @@ def test_chance_calls_as_many_verdicts_as_is_said(root, small):
     frame = pd.DataFrame({"dataset": "test", "method": np.repeat([f"m{k}" for k in range(800)], 20)})
     small.write(root, "test", frame.assign(item=list(range(20)) * 800, value=noise.ravel()))
     claims = [claim(key=str(k), first={"method": f"m{k}"}, second=0) for k in range(800)]
-    words = judge(claims, small.results(root))["verdict"].value_counts()
-    assert 5 < words["supported"] < 40 and 5 < words["contradicted"] < 40  # 20 of each are said
+    judged = judge(claims, small.results(root))
+    words = judged["verdict"].value_counts()
+    assert 5 < words["supported"] < 40 and 5 < words["contradicted"] < 40  # 20 of each: 2.5 % either way
+    assert (judged["holds"] == "yes").sum() <= 2  # not one of them is an effect
 
 
 def test_a_new_claim_is_one_entry(root, small):
@@ -278,5 +305,5 @@ def test_every_verdict_can_be_recomputed_from_the_differences(root, results, sma
     assert set(found) == set(claims.loc[claims["pairs"] > 0, "key"]) and len(found) > 5
     for row in claims[claims["pairs"] > 0].itertuples():
         mean, low, high = interval(found[row.key], row.shared)
-        assert len(found[row.key]) == row.pairs and verdict(low, high) == row.verdict
+        assert len(found[row.key]) == row.pairs and verdict(low, high, row.unit) == row.verdict
         assert (mean, low, high) == pytest.approx((row.effect, row.low, row.high), rel=1e-5, nan_ok=True)
