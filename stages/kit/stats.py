@@ -46,7 +46,7 @@ def interval(
 
 
 def p_value(values: ArrayLike, shared: float = 0.0, seed: int = 0) -> float:
-    """Two-sided: 1 less the level at which the `interval` of the values (k,) just touches zero; NaN where there is none.
+    """Two-sided: 1 less the level at which the `interval` of the values (k,) just touches zero; NaN without interval.
 
     Not below SMALLEST, which is what RESAMPLES draws can tell.
     """

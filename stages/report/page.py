@@ -23,7 +23,8 @@ from .verdict import counted, counts
 WIDEST = 900  # pixels of a picture on the page
 LOSSLESS = 2  # times the bytes of the lossy picture: all charts of the report take less, most renderings more
 LONG = 30  # rows after which a table scrolls in its own box
-WORDS = {"supported": "yes", "contradicted": "no", "no difference": "none", "open": "open"}  # word -> class in the style sheet
+# Word -> class in the style sheet.
+WORDS = {"supported": "yes", "contradicted": "no", "no difference": "open", "open": "open"}
 
 
 def build_page(modules: Sequence[ModuleType], parts: dict[str, Any]) -> str:

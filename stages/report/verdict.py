@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable
 
-import numpy as np
 import pandas as pd
 
 from stages.kit.stats import discoveries, interval, p_value
@@ -81,7 +80,7 @@ def judged(claims: Iterable[Claim], results: Results) -> tuple[pd.DataFrame, pd.
 
 
 def holding(frame: pd.DataFrame) -> pd.Series:
-    """"yes" or "no" of verdicts that are decided: whether they hold among the claims of their chapter; else empty.
+    """ "yes" or "no" of verdicts that are decided: whether they hold among the claims of their chapter; else empty.
 
     By Benjamini and Hochberg, at a false discovery rate of 5 %. A chapter is `T3`, say; ours is one by itself.
     """
