@@ -24,7 +24,13 @@ OWN = {
     "simplify": "stages.lod.command",
     "touch": "stages.imprints.command",
 }
-WHOLE = {"scene": "stages.scene.__main__", "gate": "stages.gate", "claim": "stages.claim", REPRO: "stages.repro"}
+WHOLE = {
+    "scene": "stages.scene.__main__",
+    "bench": "stages.bench",
+    "claim": "stages.claim",
+    "gate": "stages.gate",
+    REPRO: "stages.repro",
+}
 SHELL = {"completion": "haptic_glance.completion"}
 ALIASES = {"lod": "simplify", "imprints": "touch"}  # older names, which are also stages of the pipeline
 ABOUT = """\
