@@ -32,18 +32,19 @@ from stages.meshes.up import upright_by, upright_for
 from stages.salient_points import find_points, saliency
 
 from .attribute_quadrics import check_attributes
-from .error_table import NAMES, format_table, measure_meshes
+from .command_table import summary
+from .error_table import measure_meshes
 from .export import COLORLESS, write_any
-from .feasibility import InfeasibleTarget, SimplifyError, smallest_feasible
+from .feasibility import InfeasibleTarget, SimplifyError
 from .fewest import fewest_faces
 from .kernels.jit import FOLDER
 from .levels import level_path
 from .neighbourhood import RINGS, neighbourhoods
 from .options import check_options, check_paths, one_file, parser, targets
 from .parts import Parts, moved_parts, parts_of
+from .remedies import infeasible, number
 from .targets import face_count
 from .task import SimplificationTask, repaired
-from .topology import topology
 from .variant import PLAIN, SOFT
 
 MIN_EXTENT = 1e-60  # units: areas, and products of two, underflow near 1e-80
@@ -77,13 +78,10 @@ def simplify_file(path: Path, name: str, chosen: Namespace) -> dict[str, Any]:
     found = {target: level for target in targets(chosen) if (level := reduce(task, chosen, target)) is not None}
     if not found:
         raise ValueError("no level is feasible")
-    meshes, written = (
-        list(found.values()),
-        [
-            chosen.out if one_file(chosen) else level_path(chosen.out, name, path, target, chosen.format)
-            for target in found
-        ],
-    )
+    meshes = list(found.values())
+    written = [level_path(chosen.out, name, path, target, chosen.format) for target in found]
+    if one_file(chosen):
+        written = [chosen.out]
     for out, level in zip(written, meshes, strict=True):
         write_level(out, task, level, given, parts)
     alone = not chosen.levels and chosen.method != PLAIN
@@ -174,49 +172,6 @@ def reduce(task: SimplificationTask, chosen: Namespace, target: str) -> Mesh | N
     return found
 
 
-def infeasible(task: SimplificationTask, error: InfeasibleTarget, chosen: Namespace) -> str:
-    """The message for a target that is too low: the reason, and what is feasible."""
-    frozen = [f"{number(error.frozen, 'face')} around {number(len(task.points), 'point')}"] if error.frozen else []
-    if len(task.boundary):
-        frozen.append(f"{number(len(task.boundary), 'boundary edge')}")
-    reason = f", since {' and '.join(frozen)} are frozen" if frozen else ""
-    ways = remedies(task, error, chosen) or ["the mesh cannot be simplified further"]
-    return f"{number(error.faces, 'face')} are infeasible{reason}: {', or '.join(ways)}"
-
-
-def remedies(task: SimplificationTask, error: InfeasibleTarget, chosen: Namespace) -> list[str]:
-    """What would help; empty where nothing would."""
-    total = len(task.mesh.faces)
-    if smallest_feasible(task.mesh) >= total:  # not even with nothing frozen
-        several = len(task.boundary) and topology(task.mesh.faces).components > 1
-        return ["join its connected components first"] if several else []
-    ways = [f"ask for --faces {error.smallest} or more"] if error.smallest < total else []
-    if error.frozen and len(task.points) > 1:
-        ways += ["--keep fewer points"]
-    if error.frozen and chosen.neighbourhood == "fixed" and task.rings.any():
-        ways += ["take fewer --rings"]
-    if error.frozen:
-        ways += [*(() if task.shrink else ("let them --shrink",)), "leave --neighbourhood out"]
-    return ways
-
-
-def summary(
-    task: SimplificationTask, heads: Sequence[str], meshes: Sequence[Mesh], rival: Mesh | None, errors: Sequence[dict]
-) -> str:
-    """The table that the command prints: the mesh, the meshes under their heads, and plain QEM where there is one."""
-    shown = [*meshes, *([] if rival is None else [rival])]
-    rest = [None] * (len(shown) - len(meshes))
-    rows: list[tuple] = [("faces", len(task.mesh.faces), *(len(mesh.faces) for mesh in shown))]
-    if len(task.points):
-        rows += [("points kept", len(task.points), *(int(task.points_kept(mesh).sum()) for mesh in meshes), *rest)]
-    if len(task.border):
-        rows += [("border edges kept", len(task.border), *(task.border_edges_kept(mesh) for mesh in meshes), *rest)]
-    if len(task.points) or len(task.border):
-        rows += [("fewest faces that keep them", None, *([task.smallest_with_borders] * len(meshes)), *rest)]
-    rows += [(NAMES[name], None, *(each[name] for each in errors)) for name in NAMES if name in errors[0]]
-    return format_table(["before", *heads, *["plain QEM"] * len(rest)], rows)
-
-
 def method_label(chosen: Namespace) -> str:
     """The name of the variant, as the stage `lod` has it."""
     return PLAIN if chosen.method == PLAIN else f"{chosen.method}-{chosen.neighbourhood}"
@@ -229,11 +184,6 @@ def plain(task: SimplificationTask, faces: int) -> Mesh | None:
     except (InfeasibleTarget, SimplifyError) as error:
         report(f"no comparison with plain QEM: {error}")
         return None
-
-
-def number(count: int, noun: str) -> str:
-    """`1 face`, `1,280 faces`."""
-    return f"{count:,} {noun}{'' if count == 1 else 's'}"
 
 
 def report(text: str) -> None:
