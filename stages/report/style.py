@@ -23,13 +23,13 @@ INK, GREY, PALE = "#222222", "#767676", "#d9d9d9"
 CYCLE = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#7A6A00", "#000000"]
 LABELS = {
     "random": "blind touch",
-    "itti": "visual attention",
-    "thesis_ssim": "enhanced attention (SSIM)",
-    "thesis_ed": "enhanced attention (ED)",
-    "enhanced": "ours (gaze model)",
+    "itti": "Itti's attention",
+    "thesis_ssim": "thesis's attention (SSIM)",
+    "thesis_ed": "thesis's attention (ED)",
+    "enhanced": "ours (views)",
     "glance": "ours (glance)",
     "glance_any_pose": "ours (glance, any pose)",
-    "fixations_seen": "ours (gaze model)",
+    "fixations_seen": "ours (views)",
     "human": "the truth itself",
     "guided_ssim": "guided by SSIM",
     "guided_ed": "guided by ED",

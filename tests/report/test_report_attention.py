@@ -92,7 +92,7 @@ def test_sentences_follow_from_the_numbers(seen, small):
     assert "not than facing viewer" in notes
     for pair, word in (
         ("guided by ED − equal weights", "higher"), ("guided by SSIM − equal weights", "lower"),
-        ("VisAttAll − visual attention", "not told apart"),
+        ("VisAttAll − Itti's attention", "not told apart"),
     ):  # fmt: skip
         assert re.search(rf"{pair}: NSS [-+.\d]+ \[[-., \d]+\] \({word}\)", notes)
 
@@ -153,7 +153,7 @@ def test_methods_on_black_stand_in_the_table_and_in_no_sentence(seen, root, smal
     before = table_of(seen, "attention_gaze")
     small.write(root, "salient_points", small.judged().query("method == 'itti'"), ON_BLACK)
     after = table_of(small.results(root), "attention_gaze")
-    assert set(after.shown["method"]) - set(before.shown["method"]) == {"visual attention, black background"}
+    assert set(after.shown["method"]) - set(before.shown["method"]) == {"Itti's attention, black background"}
     assert after.notes == before.notes
 
 
@@ -233,7 +233,7 @@ def test_figure_of_combinations_is_drawn(seen, root, small):
 
 def test_the_time_spent_names_stages_and_methods_in_words(seen):
     table = build_one(stability, "tables", "time_spent", seen)
-    assert "ours (gaze model)" in set(table.text["method"]) and "enhanced" in set(table.frame["method"])
+    assert "ours (views)" in set(table.text["method"]) and "enhanced" in set(table.frame["method"])
     assert not table.text[["stage", "method"]].stack().str.contains("_").any()
 
 
@@ -303,7 +303,7 @@ def test_one_setting_alone_is_not_run(seen, small):
 @pytest.mark.parametrize(
     ("key", "word"),
     [("ours_over_best_gaze", "supported"), ("guided_ed_gaze", "supported"), ("guided_ssim_gaze", "contradicted"),
-     ("equal_over_itti_gaze", "open"), ("svm_per_object", "supported")],
+     ("equal_over_itti_gaze", "no difference"), ("svm_per_object", "supported")],
 )  # fmt: skip
 def test_claims_on_gaze_follow_from_the_rows(seen, key, word):
     assert judged_claim(seen, key)["verdict"] == word

@@ -185,7 +185,7 @@ def test_detectors_stand_in_the_order_of_their_correlation(gaze):
     made = table(gaze)
     for _, group in made.frame[made.frame["metric"] == "pcc"].groupby("truth"):
         assert group["mean"].is_monotonic_decreasing
-    assert made.shown["detector"].iloc[0] == "ours (gaze model)"
+    assert made.shown["detector"].iloc[0] == "ours (views)"
     assert line(made.shown, truth="marks, 4 objects", detector="noise")["it − random weights, PCC"] == "–"
 
 

@@ -150,7 +150,7 @@ def test_every_detector_has_all_errors_in_the_thesis_order(run):
 
 def test_a_way_is_said_behind_the_method():
     assert label("guided_ssim-adaptive") == "guided by SSIM, adaptive"
-    assert label("enhanced-soft") == "ours (gaze model), soft"
+    assert label("enhanced-soft") == "ours (views), soft"
     assert short("heat_kernel-area") == "HKS, area"
 
 

@@ -82,7 +82,7 @@ def test_twin_stands_beside_the_thesis_s_figures(run):
     assert np.isnan(cell(table.frame, split="objects", classifier="cnn", strategy="thesis_ssim")["thesis"])
     assert np.isnan(cell(table.frame, split="random", classifier="cnn", strategy="enhanced")["thesis"])
     line = cell(table.shown, split="sequences drawn at random", classifier="CNNs")
-    assert line["enhanced attention (SSIM), %"].endswith("· 99.0") and line["chance"] == "33.3"
+    assert line["thesis's attention (SSIM), %"].endswith("· 99.0") and line["chance"] == "33.3"
 
 
 def test_interval_of_unseen_objects_is_over_the_objects(run):

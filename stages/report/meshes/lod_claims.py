@@ -18,7 +18,7 @@ from .claims import CLAIMS
 from .methods import PLAIN, QSLIM, UNSEEN, fixed
 from .rows import CELL, data_sets
 
-WORDS = {"supported": "yes", "contradicted": "no", "open": "open"}
+WORDS = {"supported": "yes", "contradicted": "no", "no difference": "none", "open": "open"}
 MANY = 5  # methods that a rank correlation needs
 
 

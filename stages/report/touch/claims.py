@@ -17,8 +17,8 @@ ALL = "mean of all classifiers"
 POINTS = {"enhanced": PLAIN_AVERAGE, "ours": MODEL, "weighted": ENHANCED, "blind": "random"}
 ROWS = {"": SIX | PLAIN, "_four": FOUR | PLAIN, "_all": EVERY | PLAIN, "_apart": APART | PLAIN, "_first_15": SIX | FEW}
 PHRASES = {
-    ("method", MODEL): "our model of gaze", ("method", PLAIN_AVERAGE): "enhanced attention",
-    ("method", ENHANCED): "enhanced attention with weights",
+    ("method", MODEL): "our model of gaze", ("method", PLAIN_AVERAGE): "the thesis's attention",
+    ("method", ENHANCED): "the thesis's attention with weights",
     ("metric", "similar_share"): "share of imprints that correlate by 0.85 or more with one of another object",
     ("variant", "plain"): "all imprints",
     ("variant", "plain_side"): "all imprints",  # split regions: one side of all objects, not a region of each

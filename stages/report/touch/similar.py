@@ -92,7 +92,7 @@ def figure_4_4(results: Results) -> Figure:
     first = some(groups, "no groups in data/classification", "classification")[0]
     pairs = list(combinations(map(str, read_arrays(first)["objects"]), 2))
     images = {name: results.imprints(name, dataset) for pair in pairs for name in pair}
-    samplings = {"random": "blind touch", best: "enhanced attention"}
+    samplings = {"random": "blind touch", best: "thesis's attention"}
     found = {way: [similarity(images[a][way], images[b][way]) for a, b in pairs] for way in samplings}
     order = np.argsort([np.median(values) for values in found[best]], kind="stable")
     paint = colours(list(samplings))
