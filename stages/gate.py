@@ -1,30 +1,31 @@
-"""Holds the metric files against their baselines: `python -m stages.gate [--update]`
+"""Holds metrics against their baseline, each within its tolerance: `python -m stages.gate [METRICS.json ...]`
 
-Compares the metrics of the sets that params.yaml switches on, reports/metrics/SET/STAGE.json, and those of the report
-with reports/baselines/PROFILE.json ({metric: {value, low, high}}) of its profile; exits 1 and names what moved, by how
-much. --update writes the baseline from the metrics at hand.
+Without files: the metrics of the sets that params.yaml switches on, reports/metrics/SET/STAGE.json, and those of the
+report, against reports/baselines/PROFILE.json of its profile, within reports/tolerances.yaml. With files, of any
+project: each metric is called by its file and its keys, `train.accuracy` in train.json. A baseline is {metric: value};
+--tolerances names a file of rules such as ours: abs, rel, direction; exact without a rule. Exits with 1 and names what
+moved, by how much.
+
+examples:
+  haptic-glance gate
+  haptic-glance gate train.json eval.json --baseline baseline.json --tolerances tolerances.yaml
+  haptic-glance gate train.json --baseline baseline.json --update
+  haptic-glance gate --spread runs/seed_1 runs/seed_2
 """
 
 import argparse
-from collections.abc import Mapping
+import json
+import sys
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from stages.kit.command import errors_in_one_line
 from stages.kit.files import read_json, write_json
+from stages.kit.tolerances import Tolerances, compare, read_tolerances, spread
 from stages.kit.workspace import Workspace
 
-Bounds = dict[str, dict[str, float]]
-BAND = 0.15  # of a measured value: what another processor's rounding moves in simplification and training
-
-MEASURED = ("lod.meshes", "lod.paired_cells")  # counts that follow from measured values: held like these
-# By stage: rates that may lie near zero, where a share of the value is no band, have at least this much either way.
-LEAST = {
-    "stability.": 0.1, "salient_points.": 0.02, "touch_stability.": 0.1, "sensor_size.": 0.05, "fixation.": 0.1,
-    "classification.": 0.1, "sequences.": 0.2, "transfer.hybrid.": 0.2, "transfer.": 0.1,
-    # At smoke a map of sequences is tested with 18 of them, a hybrid with 60 touches after one training.
-}  # fmt: skip
-FREE = ("report.claims.",)  # a verdict flips where its interval just touches zero; the effects behind it are held
+TOLERANCES = Path("reports/tolerances.yaml")
 LISTED = 8  # new metrics that are named
 
 
@@ -40,81 +41,84 @@ def flatten(values: Mapping[str, Any], prefix: str = "") -> dict[str, float]:
     return flat
 
 
-def measured(workspace: Workspace) -> dict[str, float]:
-    """All metrics of the report and of the switched-on sets, flat: SET.STAGE.NAME."""
-    files = {"report": workspace.reports / "metrics/report.json"}
+def measured(workspace: Workspace, folder: Path | None = None) -> dict[str, float]:
+    """All metrics of the report and of the switched-on sets, flat: SET.STAGE.NAME. folder: reports/metrics or such."""
+    folder = folder or workspace.reports / "metrics"
+    files = {"report": folder / "report.json"}
     for dataset, sections in ((name, workspace.params["graph"]) for name in workspace.sets):
         for stage, sets in sections.items():
             if dataset in sets:
-                files[f"{dataset}.{stage}"] = workspace.on(dataset).metrics / f"{stage}.json"
-    found = flatten({name: read_json(path) for name, path in files.items() if path.exists()})
-    return {name: value for name, value in found.items() if not name.startswith(FREE)}
+                files[f"{dataset}.{stage}"] = folder / dataset / f"{stage}.json"
+    return flatten({name: read_json(path) for name, path in files.items() if path.exists()})
 
 
-def of_stage(name: str) -> str:
-    """A metric's name without the set: `lod.meshes` for `household.lod.meshes`."""
-    return name.partition(".")[2]
+def hold(metrics: Mapping[str, float], path: Path, tolerances: Tolerances, others: Iterable[str] = ()) -> str:
+    """What to say of metrics that all hold. SystemExit where one left its bounds about the baseline.
 
-
-def baseline(metrics: Mapping[str, float]) -> Bounds:
-    """Bounds about the metrics: counts exact, measured values within BAND or, near zero, LEAST."""
-    bounds = {}
-    for name, value in metrics.items():
-        exact = isinstance(value, int) and of_stage(name) not in MEASURED
-        least = next((band for prefix, band in LEAST.items() if of_stage(name).startswith(prefix)), 0)
-        band = 0 if exact else max(BAND * abs(value), least)
-        bounds[name] = {"value": value, "low": value - band, "high": value + band}
-    return bounds
-
-
-def compare(metrics: Mapping[str, float], bounds: Bounds) -> list[str]:
-    """Sentences on every metric that left its bounds or is missing; [] when all hold."""
-    moved = []
-    for name, bound in bounds.items():
-        value = metrics.get(name)
-        if value is None:
-            moved.append(f"{name} is missing (baseline {bound['value']:g})")
-        elif not bound["low"] <= value <= bound["high"]:
-            change = value - bound["value"]
-            moved.append(
-                f"{name} moved by {change:+.4g} from {bound['value']:.4g} to {value:.4g},"
-                f" outside {bound['low']:.4g} .. {bound['high']:.4g}"
-            )
-    return moved
-
-
-def hold(workspace: Workspace, update: bool = False) -> str:
-    """Compares or, with update, writes the baseline; what to say of it. SystemExit where a metric left its bounds."""
-    path = workspace.reports / "baselines" / f"{workspace.params.get('profile', 'laptop')}.json"
-    metrics = measured(workspace)
-    if update and not metrics:
-        raise SystemExit(f"gate: no metrics in {workspace.reports / 'metrics'}: run `dvc repro` first")
-    if update:
-        write_json(path, baseline(metrics))
-        return f"gate: {path} written from {len(metrics)} metrics"
+    others: metrics of other profiles, which the rules may be about.
+    """
     if not path.exists():
-        raise SystemExit(f"gate: no {path}; make it by `python -m stages.gate --update` after a run that you trust")
-    bounds = read_json(path)
-    moved = compare(metrics, bounds)
+        raise SystemExit(f"gate: no {path}; make it by --update after a run that you trust")
+    baseline = read_json(path)
+    tolerances.check([*baseline, *metrics, *others])
+    moved = compare(metrics, baseline, tolerances)
     if moved:
         raise SystemExit(
-            "\n".join([f"gate: {len(moved)} of {len(bounds)} metrics left their bounds in {path}", *moved])
+            "\n".join([f"gate: {len(moved)} of {len(baseline)} metrics left their bounds about {path}", *moved])
         )
-    new = sorted(set(metrics) - set(bounds))
+    new = sorted(set(metrics) - set(baseline))
     more = f" and {len(new) - LISTED} more" if len(new) > LISTED else ""
-    said = f"gate: {len(bounds)} metrics within the bounds of {path}"
+    said = f"gate: {len(baseline)} metrics within their tolerances about {path}"
     return f"{said}; not in the baseline yet: {', '.join(new[:LISTED])}{more}" if new else said
 
 
-def main() -> None:
-    """Compares, or updates the baseline."""
+def update(metrics: Mapping[str, float], path: Path) -> str:
+    """Writes the baseline; SystemExit where there are no metrics."""
+    if not metrics:
+        raise SystemExit(f"gate: no metrics to write to {path}: run `dvc repro` first")
+    write_json(path, dict(metrics))
+    return f"gate: {path} written from {len(metrics)} metrics"
+
+
+def run(argv: Sequence[str]) -> None:
+    """Compares, updates the baseline, or shows how far runs differ."""
     parser = argparse.ArgumentParser(
-        prog="python -m stages.gate", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+        prog="haptic-glance gate", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
+    parser.add_argument("metrics", nargs="*", type=Path, metavar="METRICS.json", help="metrics of any project")
+    parser.add_argument("--baseline", type=Path, help="default: reports/baselines/PROFILE.json")
+    parser.add_argument("--tolerances", type=Path, help=f"rules (default: {TOLERANCES}; of other files: exact)")
     parser.add_argument("--update", action="store_true", help="write the baseline from the metrics at hand")
-    update = parser.parse_args().update
+    about = "folders of metrics of other runs: how far the metrics of each rule move"
+    parser.add_argument("--spread", nargs="+", type=Path, metavar="FOLDER", help=about)
+    given = parser.parse_args(argv)
+    if given.metrics and (given.spread or not given.baseline):
+        parser.error("METRICS.json needs --baseline, and --spread is of runs of this project")
+    if given.metrics:
+        metrics = flatten({file.stem: read_json(file) for file in given.metrics})
+        path, rules, others = given.baseline, given.tolerances, []
+    else:
+        workspace = Workspace(Path("."))
+        metrics, path = measured(workspace), given.baseline or baseline_of(workspace)
+        rules = given.tolerances or (TOLERANCES if TOLERANCES.exists() else None)
+        others = [name for file in path.parent.glob("*.json") for name in read_json(file)]
+    tolerances = read_tolerances(rules) if rules else Tolerances()
+    if given.spread:
+        runs = [measured(workspace, folder) for folder in given.spread]
+        print("\n".join(json.dumps(row) for row in spread(runs, read_json(path), tolerances)))
+    else:
+        print(update(metrics, path) if given.update else hold(metrics, path, tolerances, others))
+
+
+def baseline_of(workspace: Workspace) -> Path:
+    """Where the baseline of the profile lies."""
+    return workspace.reports / "baselines" / f"{workspace.params.get('profile', 'laptop')}.json"
+
+
+def main() -> None:
+    """Runs the command line."""
     errors_in_one_line("gate")
-    print(hold(Workspace(Path(".")), update))
+    run(sys.argv[1:])
 
 
 if __name__ == "__main__":

@@ -1,38 +1,19 @@
-"""The gate passes what holds, and names what moved and by how much."""
+"""The gate passes what holds, names what moved and by how much, and is not fooled by two methods that change places."""
+
+import json
+import re
+from itertools import combinations
+from pathlib import Path
 
 import pytest
 
 from stages import gate
-from stages.kit.files import write_json
+from stages.kit.files import read_json, write_json
+from stages.kit.tolerances import Rule, Tolerances, compare, read_tolerances
 
-
-def test_equal_metrics_pass_and_a_moved_one_is_named():
-    metrics = {"a.accuracy": 0.5, "a.objects": 50}
-    bounds = gate.baseline(metrics)
-    assert gate.compare(metrics, bounds) == []
-    (line,) = gate.compare({**metrics, "a.accuracy": 0.4}, bounds)
-    assert "a.accuracy moved by -0.1 from 0.5 to 0.4" in line
-
-
-def test_counts_are_held_exactly_and_missing_metrics_are_named():
-    bounds = gate.baseline({"objects": 50, "error": 0.001})
-    assert len(gate.compare({"objects": 49, "error": 0.001}, bounds)) == 1
-    assert gate.compare({"objects": 50}, bounds) == ["error is missing (baseline 0.001)"]
-
-
-def test_small_errors_have_narrow_bands():
-    bounds = gate.baseline({"error": 0.0006})
-    assert gate.compare({"error": 0.0008}, bounds)
-
-
-def test_a_rate_near_zero_has_room_and_a_count_beside_it_none():
-    bounds = gate.baseline({"toys.stability.noise": 0.01, "toys.stability.objects": 4})
-    assert gate.compare({"toys.stability.noise": 0.09, "toys.stability.objects": 4}, bounds) == []
-    assert len(gate.compare({"toys.stability.noise": 0.2, "toys.stability.objects": 5}, bounds)) == 2
-
-
-def test_not_a_number_never_passes():
-    assert gate.compare({"x": float("nan")}, gate.baseline({"x": 1.0}))
+ROOT = Path(__file__).parents[1]
+PROFILES = ["smoke", "laptop"]
+CAUGHT = 0.95  # of the swaps of two methods
 
 
 def test_nested_metrics_are_flat_and_intervals_are_left_out():
@@ -45,21 +26,83 @@ def workspace(make_workspace):
     found = make_workspace({"lod": {}})
     write_json(found.metrics / "lod.json", {"meshes": 100, "error": 0.5})
     write_json(found.on("other").metrics / "lod.json", {"error": 3})
-    write_json(found.reports / "metrics/report.json", {"claims": {"open": 3}, "tables": 2})
-    gate.hold(found, update=True)
+    write_json(found.reports / "metrics/report.json", {"tables": 2})
+    gate.update(gate.measured(found), gate.baseline_of(found))
     return found
 
 
 def test_the_gate_names_what_moved(workspace):
-    assert "3 metrics within" in gate.hold(workspace)
+    path, rules = gate.baseline_of(workspace), Tolerances([Rule("*.error", rel=0.1)])
+    assert "3 metrics within" in gate.hold(gate.measured(workspace), path, rules)
     write_json(workspace.metrics / "lod.json", {"meshes": 100, "error": 0.1})
     with pytest.raises(SystemExit, match=r"1 of 3 metrics left .*\n.*toys.lod.error moved by -0.4"):
-        gate.hold(workspace)
+        gate.hold(gate.measured(workspace), path, rules)
 
 
-def test_only_sets_that_are_switched_on_count_and_verdicts_are_free(workspace):
+def test_only_sets_that_are_switched_on_count(workspace):
     assert gate.measured(workspace) == {"toys.lod.meshes": 100, "toys.lod.error": 0.5, "report.tables": 2}
 
 
-def test_counts_that_follow_from_measured_values_have_a_band():
-    assert gate.compare({"toys.lod.meshes": 95}, gate.baseline({"toys.lod.meshes": 100})) == []
+def test_what_the_baseline_lacks_is_named(workspace):
+    write_json(workspace.metrics / "lod.json", {"meshes": 100, "error": 0.5, "new": 1})
+    said = gate.hold(gate.measured(workspace), gate.baseline_of(workspace), Tolerances())
+    assert "not in the baseline yet: toys.lod.new" in said
+
+
+def test_metrics_of_any_project_are_held_and_kept(tmp_path, capsys):
+    metrics, baseline, rules = (tmp_path / name for name in ("train.json", "base.json", "rules.yaml"))
+    metrics.write_text(json.dumps({"accuracy": 0.8, "epochs": 10}))
+    rules.write_text("rules: [{metric: train.accuracy, abs: 0.05, direction: more}]")
+    given = [str(metrics), "--baseline", str(baseline)]
+    with pytest.raises(SystemExit, match="make it by --update"):
+        gate.run(given)
+    gate.run([*given, "--update"])
+    assert read_json(baseline) == {"train.accuracy": 0.8, "train.epochs": 10}
+    metrics.write_text(json.dumps({"accuracy": 0.9, "epochs": 10}))
+    gate.run([*given, "--tolerances", str(rules)])
+    assert "2 metrics within their tolerances" in capsys.readouterr().out
+    with pytest.raises(SystemExit, match="train.accuracy moved by \\+0.1"):
+        gate.run(given)  # exact without rules
+    with pytest.raises(SystemExit):
+        gate.run([str(metrics)])
+    assert "needs --baseline" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("profile", PROFILES)
+def test_a_baseline_holds_against_itself(profile):
+    baseline, rules = committed(profile)
+    assert compare(baseline, baseline, rules) == []
+
+
+def test_every_rule_is_of_a_metric():
+    committed("smoke")[1].check([name for profile in PROFILES for name in committed(profile)[0]])
+
+
+@pytest.mark.parametrize("profile", PROFILES)
+@pytest.mark.parametrize(
+    ("stage", "method"),
+    [("lod", r"\.metro_mean_(.+)"), ("salient_points", r"\.([^.]+)\.spread"), ("classification", r"\.([^.]+)\.knn\.")],
+)
+def test_two_methods_that_change_places_are_caught(profile, stage, method):
+    baseline, rules = committed(profile)
+    mine = {name: value for name, value in baseline.items() if name.split(".")[1] == stage}
+    methods = sorted({found[1] for name in mine if (found := re.search(method, name))})
+    swaps = [exchanged(mine, *pair) for pair in combinations(methods, 2)]
+    swaps = [swapped for swapped in swaps if swapped != mine]  # the rest has the same values
+    caught = [bool(compare(swapped, mine, rules)) for swapped in swaps]
+    assert len(swaps) >= 3 and sum(caught) >= CAUGHT * len(swaps)
+
+
+def committed(profile):
+    """(baseline, tolerances) of the repository."""
+    return read_json(ROOT / f"reports/baselines/{profile}.json"), read_tolerances(ROOT / gate.TOLERANCES)
+
+
+def exchanged(metrics, one, other):
+    """The metrics with those of two methods in each other's place."""
+    found, whole = dict(metrics), re.compile(rf"(?<![^._]){re.escape(one)}(?![^._])")
+    for name in metrics:
+        place = whole.sub(other, name, count=1)
+        if place != name and place in metrics:
+            found[name], found[place] = metrics[place], metrics[name]
+    return found

@@ -1,0 +1,143 @@
+"""How far metrics may move: rules by name, the values that they are held against, and what left its bounds.
+
+A file of rules is YAML. `rules`: the first whose pattern fits a metric holds it; without a rule it is held exactly.
+`pairs`: differences of two metrics, held as `pairs.NAME`; where both have a `*`, one for each text that fits:
+
+    rules:
+      - {metric: "*.accuracy", direction: more, abs: 0.02}
+      - {metric: "*.seconds", free: true}
+    pairs:
+      ours over blind: ["*.ours.accuracy", "*.blind.accuracy"] # pairs.ours over blind.touch, and so on
+"""
+
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, fields
+from difflib import get_close_matches
+from fnmatch import fnmatchcase
+from pathlib import Path
+from typing import Any
+
+DIRECTIONS = ("both", "more", "less")
+PAIRS = "pairs"  # the first part of the name of a difference
+DIGITS = 1e-9  # of a value: what six digits in a file and a difference of two of them lose
+
+
+@dataclass(frozen=True)
+class Rule:
+    """The metrics that fit a pattern may move by `abs`, or by `rel` of their baseline where that is more.
+
+    direction: more or less, where that is better: moves to the better side are free then. free: never held. why: what
+    the numbers rest on.
+    """
+
+    metric: str
+    abs: float = 0.0
+    rel: float = 0.0
+    direction: str = "both"
+    free: bool = False
+    why: str = ""
+
+    def bounds(self, value: float) -> tuple[float, float]:
+        """(lowest, highest) that holds, about a baseline."""
+        room = max(self.abs, self.rel * abs(value), DIGITS * abs(value))
+        low = float("-inf") if self.free or self.direction == "less" else value - room
+        return low, float("inf") if self.free or self.direction == "more" else value + room
+
+
+EXACT = Rule("*")
+
+
+@dataclass(frozen=True)
+class Tolerances:
+    """rules: in their order. pairs: {name: (metric, metric)}, whose difference is held, too."""
+
+    rules: list[Rule] = field(default_factory=list)
+    pairs: dict[str, tuple[str, str]] = field(default_factory=dict)
+
+    def of(self, metric: str) -> Rule:
+        """The rule that holds a metric."""
+        return next((rule for rule in self.rules if fnmatchcase(metric, rule.metric)), EXACT)
+
+    def with_pairs(self, metrics: Mapping[str, float]) -> dict[str, float]:
+        """The metrics and the differences of those pairs that are both there."""
+        found = dict(metrics)
+        for name, (first, second) in self.pairs.items():
+            pattern = re.compile(re.escape(first).replace(r"\*", "(.+)"))
+            for metric in metrics:
+                if (fits := pattern.fullmatch(metric)) and (
+                    other := second.replace("*", "".join(fits.groups()))
+                ) in metrics:
+                    found[".".join([PAIRS, name, *fits.groups()])] = metrics[metric] - metrics[other]
+        return found
+
+    def check(self, metrics: Iterable[str]) -> None:
+        """ValueError for a pattern that fits none of the metrics, or a pair of metrics that are not there."""
+        known = [*self.with_pairs(dict.fromkeys(metrics, 0.0))]
+        wanted = [rule.metric for rule in self.rules] + [name for pair in self.pairs.values() for name in pair]
+        for pattern in wanted:
+            if not any(fnmatchcase(name, pattern) for name in known):
+                close = "".join(f", did you mean {name}?" for name in get_close_matches(pattern, known, 1))
+                raise ValueError(f"a tolerance is for {pattern}, but no metric is called so{close}")
+
+
+def read_tolerances(path: Path) -> Tolerances:
+    """The rules of a file; ValueError that names the file and the rule for one that cannot be read."""
+    import yaml
+
+    try:
+        content = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except yaml.YAMLError as error:
+        raise ValueError(f"{path} is not YAML: {error}") from None
+    if not isinstance(content, dict) or set(content) - {"rules", PAIRS}:
+        raise ValueError(f"{path} must have `rules` and may have `{PAIRS}`, nothing else")
+    pairs = {name: _pair(path, name, pair) for name, pair in (content.get(PAIRS) or {}).items()}
+    return Tolerances([_rule(path, rule) for rule in content.get("rules") or []], pairs)
+
+
+def compare(metrics: Mapping[str, float], baseline: Mapping[str, float], tolerances: Tolerances) -> list[str]:
+    """Sentences on every metric that left its bounds or is missing; [] when all hold."""
+    metrics, moved = tolerances.with_pairs(metrics), []
+    for name, value in tolerances.with_pairs(baseline).items():
+        rule, now = tolerances.of(name), metrics.get(name)
+        low, high = rule.bounds(value)
+        if now is None:
+            moved.append(f"{name} is missing (baseline {value:g})")
+        elif not low <= now <= high:
+            move = f"{name} moved by {now - value:+.4g} from {value:.4g} to {now:.4g}"
+            moved.append(f"{move}, outside {low:.4g} .. {high:.4g}")
+    return moved
+
+
+def spread(runs: Iterable[Mapping[str, float]], baseline: Mapping[str, float], tolerances: Tolerances) -> list[dict]:
+    """For each rule the widest moves of several runs from the baseline, to write or to judge its tolerance by.
+
+    Rows with metric (the pattern), held (how many metrics), abs, rel and widest (the metric that moved most).
+    """
+    moves: dict[str, dict[str, Any]] = {}
+    runs, baseline = [tolerances.with_pairs(run) for run in runs], tolerances.with_pairs(baseline)
+    for name, value in baseline.items():
+        rule = tolerances.of(name).metric
+        row = moves.setdefault(rule, {"metric": rule, "held": 0, "abs": 0.0, "rel": 0.0, "widest": ""})
+        move = max((abs(run[name] - value) for run in runs if name in run), default=0.0)
+        share = move / abs(value) if value else float(move > 0)
+        row["widest"] = name if share > row["rel"] else row["widest"]
+        row |= {"held": row["held"] + 1, "abs": max(row["abs"], move), "rel": max(row["rel"], share)}
+    return list(moves.values())
+
+
+def _rule(path: Path, given: Any) -> Rule:
+    names = [one.name for one in fields(Rule)]
+    if not isinstance(given, dict) or "metric" not in given or set(given) - set(names):
+        raise ValueError(f"{path}: a rule has metric and some of {', '.join(names[1:])}, got {given}")
+    rule = Rule(**given)
+    numbers = [number for number in (rule.abs, rule.rel) if isinstance(number, int | float) and number >= 0]
+    if len(numbers) < 2 or rule.direction not in DIRECTIONS:
+        raise ValueError(f"{path}, {rule.metric}: abs and rel are at least 0, direction is one of {DIRECTIONS}")
+    return rule
+
+
+def _pair(path: Path, name: str, pair: Any) -> tuple[str, str]:
+    if not isinstance(pair, list) or [str(one).count("*") for one in pair] not in ([0, 0], [1, 1]):
+        raise ValueError(f"{path}: pair {name!r} must list two metrics, with one * each or none, got {pair}")
+    return pair[0], pair[1]
