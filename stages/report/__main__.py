@@ -1,9 +1,9 @@
-"""Writes what was measured: tables beside the thesis's, claims, figures, charts of accuracy against cost, the page.
+"""Writes what was measured: tables beside the thesis's, claims, figures, charts of accuracy against cost, the pages.
 
 Reads reports/measurements/SET/STAGE.csv.gz, data/ and data/reference/thesis/*.csv. Writes reports/tables,
 reports/figures, reports/tradeoff, reports/claims.md and .csv with the differences behind them in
-reports/claims/differences.csv.gz, reports/index.html and reports/metrics/report.json. What lacks its measurement is
-listed as not run, with the stage to run.
+reports/claims/differences.csv.gz, reports/index.html with reports/site, and reports/metrics/report.json. What lacks its
+measurement is listed as not run, with the stage to run.
 """
 
 from functools import partial
@@ -16,11 +16,12 @@ from stages.kit.command import workspace_of_arguments
 from stages.kit.files import write_json, write_table, write_text
 from stages.kit.parallel import parallel_map
 
+from .claims_page import claims_shown
 from .items import Built
 from .markdown import as_text, markdown_table
-from .page import build_page, claims_shown
 from .results import NotRun, Results
 from .schema import Params
+from .site import write_site
 from .topics import CLAIMS, KINDS, TOPICS, build_all
 from .verdict import counted, counts, judged
 from .viewer import pack_viewer
@@ -53,13 +54,14 @@ def write_report(results: Results) -> None:
     if own:  # what would need other data sets is left out
         claims, not_run = claims[claims["pairs"] > 0], {"what needs other data sets": OWN_NOTE}
     write_claims(claims, differences, out)
-    parts = {**built, "claims": claims, "not_run": not_run, "sets": results.sets, "own": own, "meshes": None}
+    parts = {**built, "claims": claims, "differences": differences, "known": CLAIMS, "results": results}
+    parts |= {"not_run": not_run, "sets": results.sets, "own": own, "meshes": None}
     parts |= {"first": ["touch_one_mesh" if own else "pipeline"], "dataset": dataset_line(results)}
     try:
         parts["meshes"] = pack_viewer(results)
     except NotRun as missing:
         not_run["viewer"] = str(missing)
-    write_text(out / "index.html", build_page(TOPICS, parts))
+    write_site(TOPICS, parts, out)
     made = {kind: len(found.items) for kind, found in built.items()}
     write_json(out / "metrics/report.json", {"claims": counts(claims), **made, "not_run": len(not_run)})
     for name, why in not_run.items():

@@ -55,7 +55,7 @@ class Table(Item):
 class Figure(Item):
     """drawing: as matplotlib has it; words: for its prose; frame: the numbers of a chart, for a CSV beside the PNG.
 
-    alt: what a blind reader needs.
+    alt: what a blind reader needs; element: the picture or chart alone, as a page shows it.
     """
 
     drawing: Drawing
@@ -64,6 +64,7 @@ class Figure(Item):
     dpi: int = 130
     alt: str = ""
     caption: str = ""
+    element: str = ""
 
     def write(self, folder: Path) -> None:
         """Writes NAME.png and, with a frame, NAME.csv; the drawing is closed."""

@@ -63,7 +63,8 @@ def _nearest(
         box = _beside(spot, extent, side, gap * scale)
         inside = window.x0 <= box.x0 and box.x1 <= window.x1 and window.y0 <= box.y0 and box.y1 <= window.y1
         led = _leader(spot, box, scale) if gap >= FAR else []  # its line would belong to others where it crosses them
-        if inside and not any(part.count_overlaps(taken) for part in [box, *led]):
+        free_way = not any(part.count_overlaps(taken + strokes) for part in led)
+        if inside and free_way and not box.count_overlaps(taken):
             free.append((gap + CROSSING * box.count_overlaps(strokes), len(free), gap, box))
     return min(free)[2:] if free else None
 

@@ -1,7 +1,8 @@
 """Accuracy against cost: one chart for every stage, with the Pareto front drawn."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
+from textwrap import fill
 
 import numpy as np
 import pandas as pd
@@ -10,10 +11,12 @@ from matplotlib.ticker import Locator, LogLocator, MaxNLocator
 from numpy.typing import ArrayLike
 
 from .items import Figure
+from .markdown import number
 from .names import Spot, place_names
 from .results import NotRun
 from .style import CYCLE, INK, MARKERS, SETTINGS, colours, label, plain_logarithm, plt
 
+WIDE = 76  # letters of a line of a title
 LISTED = 8  # names of the front that a caption lists at most
 
 
@@ -45,14 +48,16 @@ def pareto_chart(
     colour: str | None = None,
     marker: str | None = None,
     tints: Mapping[str, str] | None = None,
+    legends: Mapping[str, str] | None = None,
 ) -> Figure:
     """Quality against cost with the Pareto front; its words are title, alt and caption.
 
     frame: one row a choice, with its `name`; cost: its column of seconds; quality: its column, with `low` and `high`
     beside it where there is an interval. reference: the name whose cost, timed in the same run, is the unit of the
-    logarithmic cost axis. colour, marker: columns that choose colour and shape, shown in a legend. tints: dict value
-    -> colour of the column `colour`, where the charts beside it have such; the front then goes without names, which
-    the legend gives. better: "high" for accuracies, "low" for errors. NotRun where the reference was not measured.
+    logarithmic cost axis. colour, marker: columns that choose colour and shape, each shown in a legend; legends: dict
+    column -> its title, where the column's name is none. tints: dict value -> colour of the column `colour`, where the
+    charts beside it have such; the front then goes without names, which the legend gives. better: "high" for
+    accuracies, "low" for errors. NotRun where the reference was not measured.
     """
     rows = frame.loc[np.isfinite(frame[cost]) & np.isfinite(frame[quality])].copy()
     unit = rows.loc[rows["name"] == reference, cost]
@@ -64,7 +69,7 @@ def pareto_chart(
     with plt.rc_context(SETTINGS):
         drawing, axes = plt.subplots(figsize=(7.2, 4.6))
         axes.set(xscale="log", xlabel=f"cost, as a ratio to {reference}", ylabel=quality_label)
-        axes.set_title(title, pad=12)
+        axes.set_title(title if tints else fill(f"{title}. {_finding(front, quality)}", WIDE), pad=12)
         axes.grid(True)
         axes.step(front["cost_ratio"], front[quality], where="post", color=INK, lw=1, zorder=1, label="Pareto front")
         _draw(axes, rows, quality, colour, marker, tints)
@@ -74,7 +79,7 @@ def pareto_chart(
         plain_logarithm(axes.xaxis)
         axes.xaxis.set_major_locator(ticks(rows["cost_ratio"].max() / rows["cost_ratio"].min()))
         if colour:
-            axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=9)
+            _legend(axes, [(legends or {}).get(column, column) for column in (colour, marker) if column])
         if not tints:
             named = _names(front if colour else rows, quality, better)
             place_names(axes, named, rows[["cost_ratio", quality]].to_numpy(), _lines(rows, front, quality))
@@ -97,18 +102,46 @@ def _draw(
     marker: str | None,
     tints: Mapping[str, str] | None,
 ) -> None:
-    """The choices with their intervals, and an entry of the legend for each colour and shape."""
+    """The choices with their intervals, pale off the front, each with its name for those who hover it."""
     paint = tints or (colours(list(dict.fromkeys(rows[colour]))) if colour else {})
     shape = dict(zip(dict.fromkeys(rows[marker]), MARKERS, strict=False)) if marker else {}
     for _, row in rows.iterrows():
         tint, form = paint[row[colour]] if colour else CYCLE[0], shape[row[marker]] if marker else "o"
         if "low" in row and np.isfinite([row["low"], row["high"]]).all():
-            axes.plot([row["cost_ratio"]] * 2, [row["low"], row["high"]], color=tint, lw=1.2, alpha=0.55, zorder=2)
-        axes.plot(row["cost_ratio"], row[quality], form, color=tint, ms=7, mec="white", mew=0.8, zorder=3)
-    for value, tint in paint.items():
-        axes.plot([], [], "o", color=tint, ms=6, label=label(value))
-    for value, form in shape.items():
-        axes.plot([], [], form, color="none", mec=INK, ms=6, label=label(value))
+            axes.plot([row["cost_ratio"]] * 2, [row["low"], row["high"]], color=tint, lw=1.2, zorder=2,
+                      alpha=0.7 if row["on_front"] else 0.2)  # fmt: skip
+        axes.plot(row["cost_ratio"], row[quality], form, color=tint, ms=7, mec="white", mew=0.8, zorder=3,
+                  label=f"_{row['name']}")  # fmt: skip
+    for column, entries in ((colour, paint), (marker, shape)):
+        if column:
+            axes.plot([], [], marker=" ", ls="none", label=column)  # the place of a title among the entries
+        for value, look in entries.items():
+            tint, form = (look, "o") if column == colour else ("none", look)
+            axes.plot([], [], form, color=tint, mec=tint if column == colour else INK, ms=6, label=label(value))
+
+
+def _legend(axes: Axes, titles: Sequence[str]) -> None:
+    """What colours and shapes mean, each kind under its title."""
+    handles, names = axes.get_legend_handles_labels()
+    kinds = [k for k, handle in enumerate(handles) if handle.get_marker() == " "]
+    for k, title in zip(kinds, titles, strict=True):
+        names[k] = title
+    legend = axes.legend(handles, names, loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=9)
+    for k in kinds:
+        legend.get_texts()[k].set_fontweight("bold")
+
+
+def _finding(front: pd.DataFrame, quality: str) -> str:
+    """What is best, and what costs least of all that its interval holds; front: from the cheapest to the best."""
+    best = front.iloc[-1]
+    said = f"Best: {best['name']} ({number(best[quality])})"
+    if "low" not in front or len(front) < 2:
+        return said
+    near = front[:-1][front[quality][:-1].between(best["low"], best["high"])]
+    if near.empty:
+        return said
+    share = near.iloc[0]["cost_ratio"] / best["cost_ratio"]
+    return f"{said}. In its interval, at {number(100 * share, 2)} % of its cost: {near.iloc[0]['name']}"
 
 
 def ticks(span: float) -> Locator:

@@ -10,8 +10,8 @@ from stages.kit.stats import interval
 from stages.report import CLAIMS, judge, verdict
 from stages.report.__main__ import write_claims
 from stages.report.claims import Claim, highest_of, lowest_of
+from stages.report.claims_page import effect
 from stages.report.differences import differences
-from stages.report.page import effect
 from stages.report.results import SECTION_3_1, NotRun
 from stages.report.topics import build_all
 from stages.report.verdict import COLUMNS, counted, holding, judged

@@ -10,7 +10,6 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from matplotlib.figure import Figure
 from PIL import Image
 
 from stages.kit import Mesh, Viewpoint
@@ -19,14 +18,16 @@ from stages.kit.packing import SHADES, STEPS, Store, ordered
 from stages.report.__main__ import dataset_line, write_report
 from stages.report.drawing import VIEWPOINT, picture, visible
 from stages.report.items import Built, Table
-from stages.report.page import build_page, item_html, prose, small_picture
+from stages.report.page import item_html, prose, small_picture
 from stages.report.results import NotRun
+from stages.report.site import front_main
 from stages.report.viewer import pack_viewer
 
 pytestmark = pytest.mark.slow
 
 
 OLD, OTHERS = "tables/gone.csv", "bench/pipeline.csv"  # results of an earlier run, and of what is no report
+OLD_PAGE = "site/gone.html"
 ODD = "<b>&qem</b>"
 
 
@@ -34,7 +35,7 @@ ODD = "<b>&qem</b>"
 def run(tmp_path_factory, small):
     """The root of a small run with a report; a method has an odd name, and marks are of a set that is switched off."""
     root = small.root(tmp_path_factory.mktemp("run"))
-    for name in (OLD, OTHERS):
+    for name in (OLD, OLD_PAGE, OTHERS):
         write_text(root / "reports" / name, "old")
     small.write(root, "lod", pd.concat([small.lod(), small.lod().assign(method=ODD)]))
     small.write(root, "annotations", small.agreed_marks(), "elsewhere")
@@ -43,9 +44,16 @@ def run(tmp_path_factory, small):
 
 
 @pytest.fixture(scope="module")
-def page(run):
-    """The text of the page of the small run."""
+def front(run):
+    """The text of the front page of the small run."""
     return (run / "reports/index.html").read_text()
+
+
+@pytest.fixture(scope="module")
+def pages(run):
+    """{path: text} of all pages of the small run."""
+    paths = [run / "reports/index.html", *sorted((run / "reports/site").glob("*.html"))]
+    return {path: path.read_text() for path in paths}
 
 
 @pytest.fixture(scope="module")
@@ -127,36 +135,54 @@ def test_objects_that_do_not_fit_are_named(results, small):
     assert packed["left_out"] == ["cube"]
 
 
-def test_page_asks_nothing_of_the_network(page):
-    assert not re.findall(r'(?:src|href)="(?!data:|#|tables/|figures/|tradeoff/|claims\.)[^"]*"', page)
-    assert "@import" not in page and "url(" not in page
+def test_pages_ask_nothing_of_the_network(pages):
+    for text in pages.values():
+        assert not re.findall(r'(?:src|href)="(?!data:image/)[a-z]+:[^"]*"', text)
+        assert "@import" not in text and not re.findall(r"url\((?!#)", text)
 
 
-def test_page_is_accessible(page):
-    assert '<html lang="en">' in page
-    assert all(re.search(r'alt="[^"]{20,}"', image) for image in re.findall(r"<img[^>]*>", page))
-    ids = re.findall(r' id="([^"]+)"', page)
-    assert len(ids) == len(set(ids))
-    levels = [int(level) for level in re.findall(r"<h(\d)", page)]
-    assert levels[0] == 1 and levels.count(1) == 1
+def test_pages_are_accessible(pages):
+    for text in pages.values():
+        assert '<html lang="en">' in text
+        assert all(re.search(r'alt="[^"]{20,}"', image) for image in re.findall(r"<img[^>]*>", text))
+        assert all(re.search(r'aria-label="[^"]{20,}"', chart) for chart in re.findall(r"<svg[^>]*chart[^>]*>", text))
+        ids = re.findall(r'<[^>]* id="([^"]+)"', text)
+        assert len(ids) == len(set(ids))
+        levels = [int(level) for level in re.findall(r"<h(\d)", text)]
+        assert levels[0] == 1 and levels.count(1) == 1
 
 
-def test_links_lead_to_files(page, run):
-    for link in re.findall(r'href="([^#"][^"]*)"', page):
-        assert (run / "reports" / link).exists(), link
+def test_links_lead_to_files_and_places(pages):
+    for path, text in pages.items():
+        for link in re.findall(r'href="([^"]+)"', re.sub(r"<svg.*?</svg>", "", text, flags=re.DOTALL)):
+            name, _, place = link.partition("#")
+            target = (path.parent / name).resolve() if name else path
+            assert target.exists(), link
+            assert not place or f'id="{place}"' in target.read_text(), link
 
 
-def test_page_carries_the_meshes(page):
-    data = json.loads(re.search(r'id="mesh-data">(.*?)</script>', page, re.DOTALL)[1].replace("<\\/", "</"))
+def test_every_page_leads_to_every_other(pages):
+    for path, text in pages.items():
+        nav = re.search(r'<nav aria-label="Pages">(.*?)</nav>', text)[1]
+        assert {(path.parent / link).resolve() for link in re.findall(r'href="([^"]+)"', nav)} == set(pages)
+        assert nav.count('aria-current="page"') == 1
+
+
+def test_a_page_that_there_is_no_longer_is_removed(run, pages):
+    assert not (run / "reports" / OLD_PAGE).exists() and len(pages) > 3
+
+
+def test_the_front_page_carries_the_meshes(front):
+    data = json.loads(re.search(r'id="mesh-data">(.*?)</script>', front, re.DOTALL)[1].replace("<\\/", "</"))
     assert [one["name"] for one in data["objects"]] == ["ball", "cube"]
     assert list(data["objects"][0]["ladders"]) == ["qem"]
 
 
-def test_verdicts_are_counted_beside_the_claims(page, run):
+def test_verdicts_are_counted_beside_the_claims(run):
     said = re.search(r"\d+ verdicts: .*2\.5 % each\.", (run / "reports/claims.md").read_text())[0]
     claims = pd.read_csv(run / "reports/claims.csv")
     assert said.startswith(f"{len(claims)} verdicts: {(claims['verdict'] == 'supported').sum()} supported")
-    assert f"<p>{said}</p>" in page
+    assert f"<p>{said}</p>" in (run / "reports/site/claims.html").read_text()
 
 
 def test_equal_runs_give_equal_bytes_with_any_number_of_workers(run, small):
@@ -177,11 +203,30 @@ def test_nothing_measured_is_listed_and_no_error(bare, small, capsys):
     write_report(small.results(bare))
     said = capsys.readouterr().out
     assert "tables/table_4_1 not run" in said and "dvc repro classification" in said
-    assert "not run: no data/SET/meshes" in (bare / "reports/index.html").read_text()
+    text = (bare / "reports/index.html").read_text()
+    assert "<p>not run: no data/SET/salient_points" in text and "no data/SET/meshes" in text
 
 
-def test_names_from_data_are_escaped(page):
-    assert ODD not in page and "&lt;b&gt;&amp;qem&lt;/b&gt;" in page
+def readable(text):
+    """What a page says, without code, scripts and names of files."""
+    kinds = r"<(script|style|code|option)\b.*?</\1>|<a [^>]*download>.*?</a>|<[^>]*>"
+    return re.sub(kinds, " ", text, flags=re.DOTALL)
+
+
+def test_no_page_shows_literal_backticks(pages):
+    assert not [path.name for path, text in pages.items() if "`" in readable(text)]
+
+
+def test_no_table_has_raw_labels(pages):
+    for path, text in pages.items():
+        if path.stem != "fidelity":  # whose tables name functions and files
+            cells = re.findall(r"<t[dh][^>]*>([^<]*)<", text)
+            assert not [cell for cell in cells if re.search(r"\b[a-z]+_[a-z_0-9]+\b", cell)], path.name
+
+
+def test_names_from_data_are_escaped(pages):
+    assert not any(ODD in text for text in pages.values())
+    assert any("&lt;b&gt;&amp;qem&lt;/b&gt;" in text for text in pages.values())
 
 
 def test_a_mesh_drawn_again_looks_as_if_drawn_alone_and_no_ray_at_its_rim_is_left_out(small):
@@ -227,22 +272,9 @@ def test_a_folder_of_ones_own_has_a_page_about_it_alone(own):
     assert pd.read_csv(own.reports / "claims.csv")["pairs"].gt(0).all()
 
 
-def test_what_was_measured_on_sets_that_are_off_is_folded(page):
-    folded = re.findall(
-        r"<summary>\d+ more, measured on data sets that are not part of this run: (.*?)</summary>", page
-    )
-    assert "elsewhere" in folded
-
-
-def test_a_chart_keeps_the_colours_of_all_its_series(tmp_path):
-    figure = Figure(figsize=(9, 5))
-    panel = figure.subplots()
-    colors = np.random.default_rng(0).integers(0, 200, (12, 3))
-    for height, color in enumerate(colors):
-        panel.plot([0, 1], [height, 1.3 * height], "o-", color=color / 255)
-    figure.savefig(tmp_path / "chart.png")
-    shown = Image.open(io.BytesIO(base64.b64decode(small_picture(tmp_path / "chart.png")))).convert("RGB")
-    assert {tuple(color) for color in colors} <= {color for _, color in shown.getcolors(1 << 24)}
+def test_what_was_measured_on_sets_that_are_off_is_set_apart(pages):
+    apart = [found for text in pages.values() for found in re.findall(r"<p>Not part of this run: (.*?)\.</p>", text)]
+    assert "elsewhere" in apart
 
 
 def test_a_picture_of_many_colours_is_shrunk(tmp_path):
@@ -262,7 +294,7 @@ def test_code_in_notes_is_marked_up_and_not_shown_with_its_backticks():
 def test_a_table_with_gaps_is_listed_among_what_was_not_run(cell, whole):
     table = Table(pd.DataFrame({"x": [cell]}), name="gaps", topic="none", paths=[Path("tables/t.csv")])
     parts = {kind: Built() for kind in ("figures", "tradeoff")} | {"tables": Built([table]), "claims": pd.DataFrame()}
-    parts |= {"first": [], "not_run": {}, "meshes": None, "own": False, "dataset": "", "sets": []}
-    page = build_page([], parts)
+    parts |= {"first": [], "not_run": {}, "meshes": None, "own": True, "dataset": ""}
+    page = front_main(parts, {}, {}, Path("reports"))
     assert ("Everything that this report knows was measured" in page) == whole
     assert ("<code>tables/gaps</code>: in part" in page) != whole

@@ -14,6 +14,7 @@ from stages.kit import Mesh
 from stages.kit.files import write_mesh
 from stages.kit.packing import SHADES, ordered
 from stages.report.page import part, script_json
+from stages.report.site import page
 from stages.report.viewer import FINEST, apart, pack_object, pack_viewer
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "microsoft-edge")
@@ -117,16 +118,16 @@ def shown(request, browser, levels, tmp_path):
 
 
 def opened(browser, results, tmp_path, width):
-    template = Template(part("page.html"))
-    parts = dict.fromkeys(template.get_identifiers(), "") | {"style": part("page.css"), "script": part("viewer.js")}
-    parts |= {"meshes": script_json(pack_viewer(results)), "viewer": part("viewer.html")}
-    (tmp_path / "page.html").write_text(template.substitute(parts), encoding="utf-8")
-    page = browser.new_page(viewport={"width": width, "height": 900})
-    found = Page(page)
-    page.goto((tmp_path / "page.html").as_uri())
-    page.wait_for_function("document.getElementById('level').max > 0")
+    front = Template(part("front.html"))
+    parts = {"meshes": script_json(pack_viewer(results)), "viewer": part("viewer.html")}
+    main = front.substitute(dict.fromkeys(front.get_identifiers(), "") | parts)
+    (tmp_path / "page.html").write_text(page([], "", "", main, ["viewer.js", "site.js"]), encoding="utf-8")
+    tab = browser.new_page(viewport={"width": width, "height": 900})
+    found = Page(tab)
+    tab.goto((tmp_path / "page.html").as_uri())
+    tab.wait_for_function("document.getElementById('level').max > 0")
     yield found
-    page.close()
+    tab.close()
 
 
 def halves(image):
@@ -161,10 +162,10 @@ def test_slider_leads_from_the_original_to_more_and_more_error(shown):
 
 
 def test_faces_are_those_of_the_original_where_a_coarser_one_is_drawn(browser, levels, small, tmp_path):
-    for page in opened(browser, small.results(levels.data.parent, viewer_faces=300), tmp_path, 1400):
-        assert page.page.locator("#viewer-left").inner_text() == "ball, original: 528 faces (drawn with 300)"
-        page.slide(1)
-        assert page.caption().startswith("simplified: 120 faces (23 %)")
+    for found in opened(browser, small.results(levels.data.parent, viewer_faces=300), tmp_path, 1400):
+        assert found.page.locator("#viewer-left").inner_text() == "ball, original: 528 faces (drawn with 300)"
+        found.slide(1)
+        assert found.caption().startswith("simplified: 120 faces (23 %)")
 
 
 def test_one_can_look_at_saliency_and_shading_instead(shown):

@@ -44,6 +44,7 @@ def by_setting(results: Results) -> Figure:
     chart = pareto_chart(
         frame, "gain", title="How little looking the model of gaze needs", reference=best,
         quality_label="NSS on gaze, minus that of the best setting", colour="views", marker="rows",
+        legends={"views": "viewpoints", "rows": "rows of a picture"},
     )  # fmt: skip
     full = frame.loc[frame["name"] == best, "seconds"].iloc[0]
     named = "; ".join(

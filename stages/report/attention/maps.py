@@ -71,7 +71,8 @@ def figure_3_10(results: Results) -> Figure:
         values = maps[view, stored.index(channel)]
         top = float(values[mask].max())
         axes.imshow(np.where(mask, values / (top or 1.0), np.nan)[part], cmap=MAP, vmin=0, vmax=1)
-        axes.set_title(f"{channel}\nup to {top:.2f}", fontsize=9, fontweight="normal", loc="center")
+        said = f"up to {top:.2f}" if top else "nothing: one colour" if channel in COLOUR else "nothing"
+        axes.set_title(f"{label(channel)}\n{said}", fontsize=9, fontweight="normal", loc="center")
     for axes in grid.flat:
         axes.set_axis_off()
     figure.subplots_adjust(wspace=0.04, hspace=0.12)

@@ -1,7 +1,5 @@
 """Accuracy against the number of touches, and against the stated belief."""
 
-from itertools import product
-
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -10,7 +8,7 @@ from stages.kit.split import Split, shared_by
 from stages.report.grid import grouped, within
 from stages.report.items import Figure
 from stages.report.results import Results
-from stages.report.style import GREY, colours, label, plt
+from stages.report.style import CYCLE, GREY, label, plt
 
 from .exploration import GROUP, HEADLINE, HELD_OUT, LIKELIHOODS, STAGE, WAYS
 
@@ -71,22 +69,40 @@ def _draw_touches(axes: Axes, panel: pd.DataFrame) -> None:
 
 
 def calibration(results: Results) -> Figure:
-    """Accuracy against stated belief, for a fixed number of touches in random order."""
+    """Accuracy against stated belief, for a fixed number of touches in random order: a panel a split and a method."""
     rows = results.measured(STAGE, group=GROUP, way="random", stop="fixed", metric="accuracy")
     frame = _points(rows, ["split", "likelihood", "method", "level"]).sort_values("level")
-    tints = colours(list(dict.fromkeys(rows["method"])))
-    figure, panels = plt.subplots(1, len(HELD_OUT), figsize=(8.4, 4.0), sharex=True, sharey=True)
-    for axes, split in zip(panels, HELD_OUT, strict=True):
-        axes.plot([0, 1], [0, 1], color=GREY, lw=0.8)
-        for (likelihood, (dash, mark)), (method, tint) in product(LINES.items(), tints.items()):
-            line = frame[(frame[["split", "likelihood", "method"]] == (split, likelihood, method)).all(axis=1)]
-            name = f"{label(method)},\n{LIKELIHOODS[likelihood]}"
-            axes.plot(line["stated"], line["accuracy"], dash, marker=mark, ms=3.5, lw=1.3, color=tint, label=name)
-            axes.vlines(line["stated"], line["low"], line["high"], color=tint, lw=0.8, alpha=0.35)
-        axes.set(xlabel="stated belief in the likeliest object", xlim=(0.3, 1.0), ylim=(0.3, 1.0), aspect="equal")
-        axes.set_title(split.words)
-        axes.grid()
-    panels[0].set_ylabel("rate of right answers")
-    panels[-1].legend(loc="center left", bbox_to_anchor=(1.02, 0.5), fontsize=9)
-    figure.tight_layout()
+    methods = list(dict.fromkeys(rows["method"]))
+    figure, grid = plt.subplots(
+        len(HELD_OUT), len(methods), figsize=(2.9 * len(methods) + 0.4, 3.1 * len(HELD_OUT) + 0.5), squeeze=False,
+        sharex=True, sharey=True, layout="constrained",
+    )  # fmt: skip
+    for line, split in zip(grid, HELD_OUT, strict=True):
+        for axes, method in zip(line, methods, strict=True):
+            axes.plot([0, 1], [0, 1], color=GREY, lw=0.8)
+            for (likelihood, (dash, mark)), tint in zip(LINES.items(), CYCLE, strict=False):
+                own = frame[(frame[["split", "likelihood", "method"]] == (split, likelihood, method)).all(axis=1)]
+                axes.vlines(own["stated"], own["low"], own["high"], color=tint, lw=0.8, alpha=0.25)
+                axes.plot(own["stated"], own["accuracy"], dash, marker=mark, ms=4, lw=1.3, color=tint,
+                          label=LIKELIHOODS[likelihood])  # fmt: skip
+            axes.set(xlim=(0.3, 1.0), ylim=(0.3, 1.0), aspect="equal")
+            axes.grid()
+        line[0].set_ylabel(f"rate of right answers\n{HELD_OUT[split]}")
+    for above, below, method in zip(grid[0], grid[-1], methods, strict=True):
+        above.set_title(label(method), fontsize=10)
+        below.set_xlabel("stated belief")
+    handles, names = grid[0, 0].get_legend_handles_labels()
+    figure.legend(handles, names, loc="outside lower center", ncol=len(LINES), title="belief")
+    figure.suptitle("\n".join(_honesty(frame)), x=0.01, ha="left", fontsize=11, fontweight="bold")
     return Figure(figure, {"most": int(rows["level"].max()), "group": results.group_text(GROUP)})
+
+
+def _honesty(frame: pd.DataFrame) -> list[str]:
+    """For each split, by how many points the belief by imprints lies beside the rate of right answers, on average."""
+    said = []
+    for split, words in HELD_OUT.items():
+        own = frame[(frame["split"] == split) & (frame["likelihood"] == "imprint")]
+        points = 100 * (own["stated"] - own["accuracy"]).mean()
+        way = "too careful" if points < 0 else "too sure"
+        said.append(f"{str(words).capitalize()}: {abs(points):.0f} points {way} on average")
+    return said

@@ -10,7 +10,7 @@ from stages.report.items import Figure, Table
 from stages.report.markdown import number, with_interval
 from stages.report.networks import SPLITS, everywhere, mean, seen
 from stages.report.results import Results
-from stages.report.style import INK, plt
+from stages.report.style import plt
 from stages.report.target import on_target
 from stages.report.words import dataset_text
 
@@ -50,7 +50,7 @@ def build(results: Results) -> Table:
 
 
 def chart(results: Results) -> Figure:
-    """Accuracy by each sense against megabytes, a panel for each split."""
+    """Accuracy by each sense of every file, by its megabytes, a panel for each split."""
     frame = build(results).frame
     frame = frame[frame["objects"] == frame["objects"].iloc[0]]  # not those of another data set in one picture
     first = frame["shared_layers"].iloc[0]
@@ -60,8 +60,7 @@ def chart(results: Results) -> Figure:
     for axes, split in zip(panels, splits, strict=True):
         _draw(axes, frame[frame["split"] == split], first)
         axes.set_title(ITEMS[split])
-    panels[0].set_ylabel("accuracy, %")
-    panels[-1].legend(fontsize=8.5, loc="upper right")
+    panels[-1].legend(title="recognised", fontsize=9, loc="center left", bbox_to_anchor=(1.01, 0.5))
     figure.tight_layout()
     others = ", ".join(frame["shared_layers"].unique()[1:])
     words = {
@@ -131,22 +130,20 @@ def _note(rows: pd.DataFrame, theirs: float) -> str:
 
 
 def _draw(axes: Axes, frame: pd.DataFrame, first: str) -> None:
-    """Networks that share the first layers, joined by lines; hollow: other hybrids, by their gain over the first."""
-    joined = frame[frame["shared_layers"] == first].sort_values("megabytes")
-    hybrids = frame[frame["network"] == "hybrid"]
-    others = hybrids[1:]
-    for sense, tint in TINTS.items():
-        said = f"by {SENSES[sense]}"
-        axes.plot(joined["megabytes"], 100 * joined[sense], "o-", color=tint, ms=6, lw=1, mec="white", label=said)
-        ends = 100 * joined[[f"{sense}_low", f"{sense}_high"]].to_numpy().T
-        axes.plot(joined[["megabytes"] * 2].to_numpy().T, ends, color=tint, lw=1.2, alpha=0.5)
-        places = 100 * hybrids[sense].iloc[0] + others[f"{sense}_gain"]
-        axes.plot(others["megabytes"], places, "o", mfc="white", mec=tint, ms=6)
-    axes.set_xscale("log")
-    names = [*joined["network"].map(METHODS).str.replace("hybrid, weights of ", ""), *others["shared_layers"]]
-    for size, name in zip([*joined["megabytes"], *others["megabytes"]], names, strict=True):
-        axes.annotate(name, (size, 2), rotation=90, fontsize=8, color=INK, ha="center", va="bottom")
-    axes.set(ylim=(0, 102), xlabel="size of the file, MB")
-    axes.grid(axis="y")
-    axes.set_xticks(frame["megabytes"], frame["megabytes"].map("{:.1f}".format), fontsize=8)
-    axes.minorticks_off()
+    """A row for each file, the largest on top; hollow: hybrids of other shared layers, by their gain over the first."""
+    rows = frame.sort_values("megabytes", ascending=False)
+    base = frame[(frame["network"] == "hybrid") & (frame["shared_layers"] == first)].iloc[0]
+    for (sense, tint), down in zip(TINTS.items(), (-0.1, 0.1), strict=True):
+        for y, (_, row) in enumerate(rows.iterrows()):
+            other = row["shared_layers"] != first
+            place = 100 * base[sense] + row[f"{sense}_gain"] if other else 100 * row[sense]
+            style = {"color": tint, "mfc": "white" if other else tint, "ms": 7, "label": f"_by {SENSES[sense]}"}
+            axes.plot(place, y + down, "o", zorder=3, **style)
+            if not other:
+                axes.plot(100 * row[[f"{sense}_low", f"{sense}_high"]], [y + down] * 2, color=tint, lw=1.4, alpha=0.5)
+        axes.plot([], [], "o", color=tint, ms=7, label=f"by {SENSES[sense]}")
+    names = rows["network"].map(METHODS).where(rows["shared_layers"] == first, "hybrid, " + rows["shared_layers"])
+    axes.set_yticks(range(len(rows)), names + rows["megabytes"].map("\n{:.1f} MB".format))
+    axes.set(xlim=(0, 102), ylim=(len(rows) - 0.5, -0.5), xlabel="accuracy, %")
+    axes.tick_params(axis="y", length=0)
+    axes.grid(axis="x")

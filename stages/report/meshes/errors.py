@@ -89,18 +89,21 @@ def figure_3_23(results: Results) -> Figure:
     found = {name: rows[rows["target"].isin(set(TARGETS) & set(face_counts(rows)))] for name, rows in found.items()}
     shown = {name: rows for name, rows in found.items() if PLAIN in set(rows["method"])}
     some(shown, "no data set with enough objects that all methods take to 1,500 or 3,000 faces", "lod", runnable=False)
-    methods = [method for method in BOXES if any(method in set(rows["method"]) for rows in shown.values())]
-    height = 0.5 + 0.17 * len(methods)
-    drawing, grid = plt.subplots(len(shown), 4, figsize=(10.4, 0.4 + height * len(shown)), squeeze=False, sharey=True)
+    own = {name: [method for method in BOXES if method in set(rows["method"])] for name, rows in shown.items()}
+    heights = [0.9 + 0.17 * len(methods) for methods in own.values()]  # of a title, the boxes and an axis
+    drawing, grid = plt.subplots(
+        len(shown), 4, figsize=(10.4, sum(heights)), squeeze=False, sharey="row", height_ratios=heights,
+        layout="constrained",
+    )  # fmt: skip
     for row, (name, rows) in zip(grid, shown.items(), strict=True):
         for axes, (metric, target) in zip(row, product(METRICS, TARGETS), strict=True):
-            errors = by_object(rows, methods, metric, target)
+            errors = by_object(rows, own[name], metric, target)
             _draw_boxes(axes, errors)
             title = f"{ERRORS[metric]}, {said(target)}\n{len(errors)} objects"
             axes.set_title(title, fontsize=8.5, fontweight="normal", pad=4)
         row[0].set_title(f"{name}\n{row[0].get_title('left')}", fontsize=8.5, fontweight="normal", pad=4)
-        _name_rows(row[0], methods, TINTS, 8)
-    drawing.subplots_adjust(wspace=0.08, hspace=0.4)
+        _name_rows(row[0], own[name], TINTS, 8)
+    methods = [method for method in BOXES if any(method in mine for mine in own.values())]
     return Figure(drawing, {"methods": ", ".join(map(short, methods)), "sets": " and ".join(shown)}, dpi=95)
 
 
@@ -115,7 +118,7 @@ def _draw_boxes(axes: Axes, errors: pd.DataFrame) -> None:
         axes.plot([middle, middle], [y - 0.31, y + 0.31], color=INK, lw=1.3)
         axes.axvline(plain, color=GREY, lw=0.9, ls="--", zorder=0)
     axes.set(xscale="log", xlim=(FLOOR * plain if plain > 0 else None, None))
-    axes.xaxis.set_major_locator(LogLocator(numticks=6))
+    axes.xaxis.set_major_locator(LogLocator(numticks=4))
     axes.xaxis.set_minor_formatter(NullFormatter())
     axes.tick_params(axis="x", labelsize=8, which="both")
     axes.tick_params(axis="y", length=0)

@@ -92,20 +92,34 @@ def chart(results: Results) -> Figure:
             own = found[(found["classifier"] == name) & (found["pitch"] == pitch)].sort_values("cells")
             x = own["cells"] * 1.03 ** (k - (len(pitches) - 1) / 2)  # apart, so that no interval hides another
             axes.vlines(x, 100 * own["low"], 100 * own["high"], color=CYCLE[k], lw=1, alpha=0.5)
-            axes.plot(x, 100 * own["accuracy"], label=f"{pitch:g} apart", **style)
+            axes.plot(x, 100 * own["accuracy"], label=f"cells {pitch:g} units apart", **style)
         cost.plot(ratios.xs(pitch, level="pitch"), **style)
     for name, axes in accuracies.items():
         axes.axhline(100 / rows["group"].nunique(), color=GREY, lw=0.8, ls=":")
         axes.set(title=label(name), ylim=(0, min(100 * found["high"].fillna(found["accuracy"]).max() + 5, 100)))
         axes.tick_params(labelleft=axes is panels[0])
+    cheapest = f"{1e3 * costs.min():.2g} ms"
     cost.set(title="cost of a touch", yscale="log", ylim=(None, 1.2 * np.ceil(ratios.max())))
+    cost.set_ylabel(f"times the cheapest, {cheapest}")
     plain_logarithm(cost.yaxis)
     for axes in panels:
         axes.set_xscale("log", base=2)
         axes.set_xticks(sizes, [f"{size}²" for size in sizes])
         axes.grid(axis="y")
     panels[0].set_ylabel("accuracy on unseen objects, %")
-    figure.supxlabel("sensels", fontsize=10, y=0.09)
+    figure.supxlabel("cells of the array", fontsize=10, y=0.09)
+    figure.suptitle(_best(found), x=0.01, ha="left", fontsize=11, fontweight="bold")
     figure.tight_layout(w_pad=1.2, rect=(0, 0.09, 1, 1))
     figure.legend(*panels[0].get_legend_handles_labels(), loc="lower center", ncol=len(pitches), fontsize=9)
     return Figure(figure)
+
+
+def _best(found: pd.DataFrame) -> str:
+    """What the best array is, and what the one with the fewest and closest cells loses."""
+    best = found.loc[found["accuracy"].idxmax()]
+    small = found[found["classifier"] == best["classifier"]].sort_values(["cells", "pitch"]).iloc[0]
+    said = (
+        f"{label(row['classifier'])}, {row['cells']}² cells {row['pitch']:g} apart: {100 * row['accuracy']:.0f} %"
+        for row in (best, small)
+    )
+    return "Best: {}; the smallest array: {}".format(*said)

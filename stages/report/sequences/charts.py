@@ -34,6 +34,7 @@ def chart(results: Results) -> Figure:
     rows = rows[rows["split"] == split]
     strategy = rows.groupby("method")["frames"].nunique().idxmax()
     rows = rows[rows["method"] == strategy]
+    rows = rows.astype(dict.fromkeys(SIZE, int))
     frames, cells = rows[SIZE].max()
     rows = rows[(rows["classifier"] != "cnn_normals") | (rows["cells"] == cells)]  # normals have no cells
     found = []
@@ -46,8 +47,8 @@ def chart(results: Results) -> Figure:
         })  # fmt: skip
     frame = pd.DataFrame(found).sort_values(SIZE, ascending=False, ignore_index=True)
     reference = f"{CLASSIFIERS['knn']}, {frames} x {cells} x {cells}"
-    title = f"{rows['classes'].max()} classes by following contours, {label(strategy)}; frames x cells x cells"
+    title = f"{int(rows['classes'].max())} classes by following contours, {label(strategy)}, frames x cells x cells"
     return pareto_chart(
         frame, "mean", title=title, reference=reference, quality_label=f"accuracy, {TESTED[split]}", cost="cost",
-        colour="of", marker="film",
+        colour="of", marker="film", legends={"of": "classifier", "film": "length of a contour"},
     )  # fmt: skip

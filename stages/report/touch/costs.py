@@ -56,4 +56,5 @@ def _timed(results: Results, by: list[str], **where: Any) -> pd.DataFrame:
 def _chart(frame: pd.DataFrame, title: str, named: list[str], reference: str, **style: Any) -> Figure:
     """named: columns that make up the name of a choice."""
     frame = frame.assign(name=frame[named].map(label).agg(", ".join, axis=1)).dropna(subset=["seconds"])
-    return pareto_chart(frame, "mean", title=title, reference=reference, quality_label="hold-out accuracy", **style)
+    return pareto_chart(frame, "mean", title=title, reference=reference, quality_label="hold-out accuracy",
+                        legends={"method": "touched by", "samples": "a sample"}, **style)  # fmt: skip

@@ -125,14 +125,17 @@ def _draw_growth(axes: Axes, rows: pd.DataFrame, methods: list[str]) -> None:
             line, fill, rim = ("-", tint, "white") if cells == WIDE else (":", "white", tint)
             axes.plot(rates, form + line, color=tint, ms=6, lw=1.2, mew=0.9, mfc=fill, mec=rim)
         axes.plot([], [], form, color=tint, ms=6, label=NAMES[method])
-    axes.axhline(RATE, color=GREY, lw=0.9, ls="--")
+    levels = {f"{RATE:,} a second": float(RATE)}
     if {OURS, REFERENCE} <= set(methods):
         beside = np.exp(np.log(rows.loc[rows["method"] == REFERENCE, "value"]).mean())
-        axes.axhline(RATIO * beside, color=GREY, lw=0.9, ls="--")
+        levels[f"{RATIO} times TACTO"] = RATIO * beside
     axes.loglog()
+    for said, level in levels.items():
+        axes.axhline(level, color=GREY, lw=0.9, ls="--")
+        axes.text(1.01, level, said, fontsize=8.5, color=INK, va="center", transform=axes.get_yaxis_transform())
     axes.set(xlabel="faces of the mesh", ylabel="imprints a second", title="rate and size of the mesh")
     plain_logarithm(axes.xaxis)
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter(lambda value, _: f"{value:,g}")
     axes.grid(True)
-    axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=9)
+    axes.legend(loc="lower left", bbox_to_anchor=(1.01, 0), fontsize=9)

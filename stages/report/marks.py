@@ -1,0 +1,169 @@
+"""The points, bars and intervals of a drawn chart, read back from matplotlib: what one can hover, and its table."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import chain
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.axis import Axis
+from matplotlib.collections import LineCollection, PathCollection, PolyCollection
+from matplotlib.container import BarContainer
+from matplotlib.figure import Figure as Drawing
+from matplotlib.lines import Line2D
+from matplotlib.patches import Rectangle
+from matplotlib.ticker import FixedLocator
+
+from .markdown import number
+
+MOST = 120  # marks of a series: of a longer one, every so many
+NEAR = 1e-6  # of the span: coordinates that differ by less are one
+
+
+@dataclass(frozen=True)
+class Mark:
+    """A value of a chart in words, and where it is in pixels of the drawing."""
+
+    panel: str
+    series: str
+    x: tuple[str, str]  # what the axis shows, and the value
+    y: tuple[str, str]
+    interval: str
+    spot: tuple[float, float]
+
+    @property
+    def text(self) -> str:
+        """`kNN · noise: 0.1 · accuracy: 0.61 [0.55, 0.67]`."""
+        said = [": ".join(filter(None, side)) for side in (self.x, self.y)]
+        said[-1] += f" {self.interval}" if self.interval else ""
+        return " · ".join(filter(None, [self.panel, self.series, *said]))
+
+
+def marks(drawing: Drawing) -> list[Mark]:
+    """All marks of a drawing that was drawn, panel by panel; panels that show a picture have none."""
+    plots = [axes for axes in drawing.axes if not axes.images and axes.get_visible()]
+    return list(chain.from_iterable(_of_panel(axes, plots) for axes in plots))
+
+
+def table(found: Sequence[Mark]) -> pd.DataFrame:
+    """The marks as a frame of strings; columns that say nothing are left out."""
+    names = [{mark.x[0] for mark in found}, {mark.y[0] for mark in found}]
+    x, y = (one.pop() or side if len(one) == 1 else side for side, one in zip("xy", names, strict=True))
+    x = f"{x} (across)" if x == y else x
+    rows = [(mark.panel, mark.series, mark.x[1], mark.y[1], mark.interval) for mark in found]
+    frame = pd.DataFrame(rows, columns=["panel", "series", x, y, "95 % interval"])
+    return frame[[column for column in frame if (frame[column] != "").any()]]
+
+
+def _of_panel(axes: Axes, plots: Sequence[Axes]) -> Iterator[Mark]:
+    panel = " ".join((axes.get_title("left") or axes.get_title() or axes.get_title("right")).split())
+    names = [_axis_name(axes, plots, side) for side in "xy"]
+    readers, spans = (_reader(axes.xaxis), _reader(axes.yaxis)), list(_spans(axes))
+    for series, points, across in _series(axes):
+        for x, y in points[:: max(1, len(points) // MOST)]:
+            spot = axes.transData.transform((x, y))
+            if not np.isfinite([x, y]).all() or not axes.bbox.padded(2).contains(*spot):
+                continue
+            interval = _interval(spans, x, y, across)
+            yield Mark(panel, series, (names[0], readers[0](x)), (names[1], readers[1](y)), interval, tuple(spot))
+
+
+def _axis_name(axes: Axes, plots: Sequence[Axes], side: str) -> str:
+    """The label of an axis, or, of panels side by side, the only one that is written."""
+    own = getattr(axes, f"get_{side}label")()
+    shared = getattr(axes.figure, f"_sup{side}label", None)
+    written = {getattr(one, f"get_{side}label")() for one in plots} - {""} | ({shared.get_text()} if shared else set())
+    return " ".join((own or (written.pop() if len(written) == 1 else "")).split())
+
+
+def _series(axes: Axes) -> Iterator[tuple[str, np.ndarray, bool]]:
+    """(name, (k, 2) points, whether bars lie on their side) of lines with marks, of clouds of points, and of bars."""
+    for line in axes.lines:
+        points = np.asarray(line.get_xydata(), dtype=float)
+        if line.get_transform() == axes.transData and len(points) and not _is_rule(line, points):
+            yield _name(line.get_label()), points, False
+    for cloud in axes.collections:
+        if isinstance(cloud, PathCollection):
+            yield _name(cloud.get_label()), np.ma.getdata(cloud.get_offsets()).astype(float), False
+    for bars in axes.containers:
+        if isinstance(bars, BarContainer):
+            across = bars.orientation == "horizontal"
+            yield _name(bars.get_label()), np.array([_end(bar, across) for bar in bars.patches]).reshape(-1, 2), across
+
+
+def _end(bar: Rectangle, across: bool) -> tuple[float, float]:
+    """The middle of the end of a bar."""
+    right, up = (1, 0.5) if across else (0.5, 1)
+    return bar.get_x() + right * bar.get_width(), bar.get_y() + up * bar.get_height()
+
+
+def _is_rule(line: Line2D, points: np.ndarray) -> bool:
+    """Whether a line is no data: the bar of an interval, a level for comparison, a step of a Pareto front."""
+    bare = line.get_marker() in ("None", "", None, "|", "_")
+    return bare and (len(points) < 3 or line.get_drawstyle() != "default")
+
+
+def _name(label: object) -> str:
+    """The name of a series; `_` before it keeps it out of the legend, and matplotlib's own `_child3` is no name."""
+    text = " ".join(str(label).split())
+    return "" if text.startswith(("_child", "_nolegend", "_container")) else text.removeprefix("_")
+
+
+def _spans(axes: Axes) -> Iterator[tuple[int, float, float, float]]:
+    """(axis along which, coordinate across, low, high) of every bar and band of an interval."""
+    lines = [
+        np.asarray(line.get_xydata(), dtype=float) for line in axes.lines if line.get_transform() == axes.transData
+    ]
+    bars = [part for found in axes.collections if isinstance(found, LineCollection) for part in found.get_segments()]
+    for ends in [*lines, *bars]:
+        if len(ends) == 2:
+            for along in (0, 1):
+                if ends[0, 1 - along] == ends[1, 1 - along] and ends[0, along] != ends[1, along]:
+                    yield along, ends[0, 1 - along], *sorted(ends[:, along])
+    for band in axes.collections:
+        if isinstance(band, PolyCollection):
+            for path in band.get_paths():
+                for x in np.unique(path.vertices[:, 0]):
+                    heights = path.vertices[path.vertices[:, 0] == x, 1]
+                    yield 1, x, heights.min(), heights.max()
+
+
+def _interval(spans: Sequence[tuple[int, float, float, float]], x: float, y: float, across: bool) -> str:
+    """`[low, high]` of the narrowest bar or band through a point; a level one counts where bars lie on their side."""
+    through = []
+    for along, place, low, high in spans:
+        value, beside = (x, y) if along == 0 else (y, x)
+        if (
+            abs(place - beside) <= NEAR * max(1, abs(beside))
+            and low <= value <= high
+            and (along == 1 or across or not through)
+        ):
+            through.append((high - low, low, high))
+    return f"[{number(min(through)[1])}, {number(min(through)[2])}]" if through else ""
+
+
+def _reader(axis: Axis) -> Callable[[float], str]:
+    """What tells a value as its axis names it: by the nearest label of categories, else as a number."""
+    places, labels = np.array([]), []
+    if isinstance(axis.get_major_locator(), FixedLocator):
+        places = np.asarray(axis.get_majorticklocs(), dtype=float)
+        labels = [" ".join(text.get_text().split()) for text in axis.get_ticklabels()]
+    categories = len(labels) > 0 and all(labels) and not any(map(_is_own_label, places, labels))
+
+    def read(value: float) -> str:
+        if not axis.get_visible():
+            return ""
+        nearest = int(np.abs(places - value).argmin()) if labels else 0
+        exact = labels and labels[nearest] and abs(places[nearest] - value) <= NEAR
+        return labels[nearest] if exact or categories else number(value)
+
+    return read
+
+
+def _is_own_label(place: float, label: str) -> bool:
+    """Whether a label only says where it stands, as `1,500` at 1500."""
+    try:
+        return abs(float(label.replace(",", "").rstrip("%² ")) - place) <= NEAR * max(1, abs(place))
+    except ValueError:
+        return False

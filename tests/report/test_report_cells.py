@@ -1,0 +1,40 @@
+"""Figures in sentences come from their tables."""
+
+import pandas as pd
+import pytest
+
+from stages.kit.files import write_table
+from stages.report.cells import filled
+
+
+@pytest.fixture
+def reports(tmp_path):
+    """A folder with one table and the claims."""
+    frame = pd.DataFrame({"method": ["one", "two", "two"], "note": ["", "", "x"], "mean": [1234.5, 0.5, None]})
+    write_table(tmp_path / "tables/rates.csv", frame.assign(low=[1000.0, 0.25, 0], high=[2000.0, 0.75, 1]))
+    write_table(
+        tmp_path / "claims.csv", pd.DataFrame({"key": ["kept"], "effect": [-100.0], "low": [-120.0], "high": [0.0]})
+    )
+    return tmp_path
+
+
+@pytest.mark.parametrize(("place", "said"), [
+    ("tables/rates method=one: mean", "1,234"),
+    ("tables/rates method=one: mean low high", "1,234 [1,000, 2,000]"),
+    ("tables/rates method=two note=: 100*mean 100*low 100*high .0f", "50 [25, 75]"),
+    ("tables/rates method=two note=: 1/mean 1/low 1/high", "2 [1.33, 4]"),
+    ("tables/rates method=two note=: 1-mean", "0.500"),
+    ("claims key=kept: times:effect times:low times:high .2f", "3.00 [1.00, 4.00]"),
+    ("claims key=kept: -effect", "100"),
+])  # fmt: skip
+def test_a_place_becomes_what_its_cell_holds(reports, place, said):
+    assert filled(f"It is {{{place}}}.", reports) == (f"It is {said}.", [tuple(place.split(":")[0].split(" ", 1))])
+
+
+@pytest.mark.parametrize("place", [
+    "tables/none method=one: mean", "tables/rates method=three: mean", "tables/rates method=two: mean",
+    "tables/rates method=two note=x: mean", "tables/rates gone=1: mean",
+])  # fmt: skip
+def test_what_was_not_measured_or_is_not_one_row_is_an_error(reports, place):
+    with pytest.raises(LookupError):
+        filled(f"{{{place}}}", reports)

@@ -1,0 +1,111 @@
+"""What a chart says to those who hover it: values, intervals and categories, as they were drawn."""
+
+import numpy as np
+import pytest
+
+from stages.report.marks import marks, table
+from stages.report.style import plt
+
+
+@pytest.fixture
+def panel():
+    """(drawing, axes) of an empty chart."""
+    drawing, axes = plt.subplots()
+    yield drawing, axes
+    plt.close(drawing)
+
+
+def texts(drawing):
+    drawing.draw_without_rendering()
+    return [mark.text for mark in marks(drawing)]
+
+
+def test_a_line_says_its_name_its_axes_and_its_values(panel):
+    drawing, axes = panel
+    axes.plot([1, 2], [0.5, 0.25], "o-", label="kNN")
+    axes.plot([1.5], [0.3], "o", label="_hidden from the legend")
+    axes.set(xlabel="noise", ylabel="accuracy", title="six")
+    assert texts(drawing) == [
+        "six · kNN · noise: 1 · accuracy: 0.500", "six · kNN · noise: 2 · accuracy: 0.250",
+        "six · hidden from the legend · noise: 1.50 · accuracy: 0.300",
+    ]  # fmt: skip
+
+
+def test_a_bar_through_a_point_is_its_interval_and_that_of_another_is_not(panel):
+    drawing, axes = panel
+    axes.plot([1, 2], [0.5, 0.6], "o")
+    axes.plot([1, 1], [0.4, 0.7])
+    axes.vlines([3], [0.1], [0.9])
+    found = texts(drawing)
+    assert found[0].endswith("0.500 [0.400, 0.700]") and found[1].endswith("0.600")
+
+
+@pytest.mark.parametrize("draw", [
+    lambda axes: axes.vlines([1, 2], [0.4, 0.5], [0.6, 0.7]),
+    lambda axes: axes.fill_between([1, 2], [0.4, 0.5], [0.6, 0.7]),
+    lambda axes: axes.errorbar([1, 2], [0.5, 0.6], yerr=0.1, fmt="none"),
+])  # fmt: skip
+def test_intervals_are_read_from_bars_and_bands(panel, draw):
+    drawing, axes = panel
+    axes.plot([1, 2], [0.5, 0.6], "o")
+    draw(axes)
+    assert [text.partition("[")[2] for text in texts(drawing)] == ["0.400, 0.600]", "0.500, 0.700]"]
+
+
+def test_level_bars_are_intervals_where_nothing_stands_upright(panel):
+    drawing, axes = panel
+    axes.plot([0.5], [3], "o")
+    axes.hlines([3], [0.4], [0.8])
+    assert texts(drawing)[0].endswith("[0.400, 0.800]")
+
+
+def test_rules_steps_and_pictures_are_no_values(panel):
+    drawing, axes = panel
+    axes.axhline(1, ls=":")
+    axes.axvline(1)
+    axes.step([1, 2, 3], [1, 2, 3], where="post")
+    axes.plot([0, 1], [0, 1])
+    assert texts(drawing) == []
+    axes.plot([1], [1], "o")
+    axes.imshow(np.zeros((3, 3)))
+    assert texts(drawing) == []
+
+
+def test_bars_are_named_by_their_category_even_beside_its_middle(panel):
+    drawing, axes = panel
+    axes.bar(np.arange(2) - 0.2, [3, 4], 0.3, label="blind")
+    axes.bar(np.arange(2) + 0.2, [5, 6], 0.3, label="guided")
+    axes.set_xticks([0, 1], ["kNN", "SVM"])
+    assert texts(drawing) == ["blind · kNN · 3", "blind · SVM · 4", "guided · kNN · 5", "guided · SVM · 6"]
+
+
+def test_numbers_between_labelled_ticks_stay_numbers(panel):
+    drawing, axes = panel
+    axes.plot([1, 3, 4], [1, 1, 1], "o")
+    axes.set_xticks([1, 4], ["1", "4"])
+    assert [text.split(" ")[0] for text in texts(drawing)] == ["1", "3", "4"]
+
+
+def test_what_lies_outside_of_the_axes_or_is_nan_is_left_out(panel):
+    drawing, axes = panel
+    axes.plot([1, 2, 3], [1, np.nan, 100], "o")
+    axes.set(ylim=(0, 2))
+    assert len(texts(drawing)) == 1
+
+
+def test_panels_side_by_side_share_the_only_label():
+    drawing, (left, right) = plt.subplots(1, 2)
+    right.plot([1], [2], "o")
+    left.set_ylabel("accuracy")
+    assert texts(drawing) == ["1 · accuracy: 2"]
+    plt.close(drawing)
+
+
+def test_the_table_has_a_row_a_mark_and_no_empty_column(panel):
+    drawing, axes = panel
+    axes.plot([1, 2], [0.5, 0.6], "o", label="kNN")
+    axes.set(xlabel="share", ylabel="share")
+    drawing.draw_without_rendering()
+    frame = table(marks(drawing))
+    assert list(frame) == ["series", "share (across)", "share"]
+    assert frame.to_numpy().tolist() == [["kNN", "1", "0.500"], ["kNN", "2", "0.600"]]
