@@ -24,10 +24,10 @@ from docutils.parsers.rst import directives
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
+from stages.report.verdict import WORDS
+
 from .commands import Command, commands
 from .measured import REPORTS, interval_text, measured, number, rows_of
-
-VERDICTS = ("supported", "contradicted", "open")
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
@@ -95,7 +95,7 @@ class Artifact(SphinxDirective):
         """A table of the commands, then a section for each."""
         found = commands()
         lines = [(code(one.text), str(len(one.claims)), tally(one), f"{max(one.minutes, 1):.0f}") for one in found]
-        head = ("command", "claims", "supported, contradicted, open", "minutes")
+        head = ("command", "claims", ", ".join(WORDS), "minutes")
         return [made_table(head, lines, (52, 10, 24, 14)), *(self.section(one) for one in found)]
 
     def section(self, command: Command) -> nodes.section:
@@ -135,7 +135,7 @@ def shown(row: dict[str, str], column: str) -> str:
 
 def verdict(word: str) -> nodes.Node:
     """The word in its colour."""
-    return nodes.inline(word, word, classes=[f"verdict-{word}"])
+    return nodes.inline(word, word, classes=[f"verdict-{word.replace(' ', '-')}"])
 
 
 def code(text: str) -> nodes.Node:
@@ -145,7 +145,7 @@ def code(text: str) -> nodes.Node:
 
 def tally(command: Command) -> str:
     """How many of each verdict."""
-    return ", ".join(str(sum(each["verdict"] == word for each in command.claims)) for word in VERDICTS)
+    return ", ".join(str(sum(each["verdict"] == word for each in command.claims)) for word in WORDS)
 
 
 def made_table(head: Iterable[str], lines: Iterable[Iterable[str | nodes.Node]], widths=None) -> nodes.table:

@@ -81,8 +81,16 @@ for method in ["thin_parts", "glance"]:
 # Judge it by people
 # ------------------
 #
-# The gaze of 32 people on 19 meshes decides. With the name in the registry, and in ``salient_points.methods`` of the
-# settings, the experiment ``attention`` measures it beside all others, and the gate and the report take it up:
+# The gaze of 32 people on 19 meshes decides. One command asks a function in a file of yours about them, and lists it
+# beside all others, with the interval of its lead:
+#
+# .. code-block:: sh
+#
+#    haptic-glance bench my_method.py:thin_parts --gaze gaze.zip
+#
+# With the name in the registry, and in ``salient_points.methods`` of the settings, the experiment ``attention``
+# measures
+# it in the pipeline, and the gate and the report take it up:
 #
 # .. code-block:: sh
 #
