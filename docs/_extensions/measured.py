@@ -4,7 +4,7 @@
     {measured}`tables/scenes scene=shelf, method=uniform: faces | ,.0f`       2,803
 
 The file below reports/ without .csv, the row that the pairs name, its columns (one, or three with an interval), and the
-format. `100*faces` multiplies, `less:effect` turns a difference in % of the mean of both sides into % less of the
+format. `100*faces` multiplies, `minutes:value` divides by 60, `less:effect` turns a difference in % of the mean of both sides into % less of the
 second one, `times:effect` into how many times it, and `median:seconds` is over all rows that the pairs name.
 """
 
@@ -25,11 +25,12 @@ OPERATIONS = {
     "-": lambda number: -number,
     "100*": lambda number: 100 * number,
     "1000*": lambda number: 1000 * number,
+    "minutes:": lambda number: number / 60,
     "times:": lambda number: (200 - number) / (200 + number),
     "less:": lambda number: 200 * number / (200 + number),
 }
 OVER_ROWS = {"median:": statistics.median, "least:": min, "most:": max, "sum:": sum, "count:": len}
-COLUMN = re.compile(rf"(-|100\*|1000\*|times:|less:)?({'|'.join(OVER_ROWS)})?(.+)")
+COLUMN = re.compile(rf"(-|100\*|1000\*|minutes:|times:|less:)?({'|'.join(OVER_ROWS)})?(.+)")
 
 
 def setup(app: Sphinx) -> dict[str, bool]:

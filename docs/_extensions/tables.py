@@ -117,10 +117,13 @@ def one_row(file: str, where: str) -> list[dict[str, str]]:
 
 
 def effect(key: str, row: dict[str, str]) -> str:
-    """The effect with its interval and unit."""
+    """The effect with its interval and unit, with as many decimals as its ends need."""
     if not row["low"]:
         return row["effect"] and f"{float(row['effect']):.3g} {row['unit']}"
-    places = max(0, min(4, 2 - len(str(int(max(abs(float(row[name])) for name in ("low", "high")))).lstrip("0"))))
+    ends = [abs(float(row[name])) for name in ("low", "high")]
+    places = 0 if max(ends) >= 10 else 1 if max(ends) >= 1 else 2
+    while places < 4 and any(end and round(end, places) == 0 for end in ends):  # or a decided one would seem to cover 0
+        places += 1
     return f"{measured(f'claims key={key}: effect low high | +.{places}f')} {row['unit']}"
 
 

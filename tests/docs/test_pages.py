@@ -11,6 +11,7 @@ yaml = pytest.importorskip("yaml")
 
 from _extensions.commands import DEFAULT, command_for, commands  # noqa: E402
 from _extensions.measured import measured, rows_of, table  # noqa: E402
+from _extensions.tables import effect  # noqa: E402
 
 import haptic_glance  # noqa: E402
 from haptic_glance.__main__ import OWN, WHOLE  # noqa: E402
@@ -131,6 +132,13 @@ def test_figures_are_shown_as_asked():
     every = [float(each["seconds"]) for each in table("bench/tactile") if each["what"] == "build"]
     assert measured("bench/tactile what=build: count:seconds") == str(len(every))
     assert measured("bench/tactile what=build: most:seconds | .6f") == f"{max(every):.6f}"
+
+
+def test_an_interval_that_excludes_zero_is_not_shown_with_a_zero():
+    shown = {row["key"]: effect(row["key"], row) for row in table("claims") if row["low"]}
+    decided = [row["key"] for row in table("claims") if row["verdict"] in ("supported", "contradicted")]
+    ends = {key: [float(end) for end in re.findall(r"\[(\S+), (\S+)\]", shown[key])[0]] for key in decided}
+    assert len(ends) > 50 and not [key for key, (low, high) in ends.items() if low * high <= 0]
 
 
 def test_citation_and_deposit_say_the_same_as_the_package():
