@@ -9,7 +9,7 @@ newest = $(if $(meshoptimizer),--meshoptimizer $(meshoptimizer))
 export PATH := $(BIN):$(PATH)
 unexport PYTHONDONTWRITEBYTECODE # or each of some hundred processes compiles the stages anew
 .DEFAULT_GOAL := help
-.PHONY: help repro test quick smoke lint bench clean lock
+.PHONY: help repro test quick smoke lint docs bench clean lock
 
 help: ## this list
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 10
@@ -35,6 +35,10 @@ lint: $(VENV)/ready ## ruff: rules and formatting; pyright: types
 	ruff check .
 	ruff format --check .
 	pyright
+
+docs: $(VENV)/ready ## the documentation, to build/docs/index.html; a warning is an error (three minutes, then less)
+	python -m sphinx -E -W --keep-going --quiet docs build/docs # -E: numbers come from reports/, which may have changed
+	@echo "Open build/docs/index.html."
 
 # Each is one process on one core, but the pipeline and cluster; errors, scenes and cluster read what `make repro` made. The last fetches its
 # meshes by `apt-get download`.

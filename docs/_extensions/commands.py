@@ -1,0 +1,96 @@
+"""Which command tests which claims again, and how many minutes it computed when its rows were measured."""
+
+import re
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+
+import pandas as pd
+import yaml
+
+from stages.kit.rows import SUFFIX
+from stages.report.claims import Claim
+from stages.report.stability.time_spent import KEYS, SEEN
+from stages.report.topics import CLAIMS
+
+from .measured import number, rows_of, table
+
+ROOT = Path(__file__).resolve().parents[2]
+DEFAULT = "make repro"
+
+
+@dataclass
+class Command:
+    """text: what to type; claims: rows of reports/claims.csv; work: the sets and stages that it measures."""
+
+    text: str
+    claims: list[dict[str, str]] = field(default_factory=list)
+    work: set[tuple[str, str]] = field(default_factory=set)
+
+    @property
+    def name(self) -> str:
+        """The part of the text that differs from command to command."""
+        found = re.search(r"(experiment=\w+|sets=\[\w+\])", self.text)
+        return found[1] if found else self.text
+
+    @property
+    def minutes(self) -> float:
+        """Of one core, summed over the rows of all stages of its sets; of the default run as timed on two cores."""
+        if self.text == DEFAULT:
+            return number(rows_of("bench/pipeline", "what=all stages, metric=wall time"), "value") / 60
+        return sum(seconds(*each) for each in self.work) / 60
+
+
+def commands() -> list[Command]:
+    """The commands that test claims, the default run first, then those with most claims."""
+    written = {row["key"]: row for row in table("claims")}
+    found: dict[str, Command] = {}
+    for claim in CLAIMS:
+        if claim.key not in written or not (dataset := dataset_of(claim)):
+            continue
+        text = command_for(dataset, claim.stage)
+        command = found.setdefault(text, Command(text))
+        command.claims.append(written[claim.key])
+        command.work |= {(dataset, stage) for stage in stages_of(dataset) if command_for(dataset, stage) == text}
+    return sorted(found.values(), key=lambda one: (one.text != DEFAULT, -len(one.claims)))
+
+
+def dataset_of(claim: Claim) -> str:
+    """The set whose rows a claim compares, empty where none has any; a default set comes before others."""
+    if claim.dataset:
+        return claim.dataset if claim.stage in stages_of(claim.dataset) else ""
+    defaults = settings()["sets"]
+    folders = sorted((ROOT / "reports/measurements").iterdir(), key=lambda path: (path.name not in defaults, path.name))
+    return next((path.name for path in folders if claim.stage in stages_of(path.name)), "")
+
+
+def stages_of(dataset: str) -> list[str]:
+    """The stages that have rows of a set."""
+    return [path.name.removesuffix(SUFFIX) for path in (ROOT / "reports/measurements" / dataset).glob(f"*{SUFFIX}")]
+
+
+@cache
+def command_for(dataset: str, stage: str) -> str:
+    """What runs a stage on a set."""
+    if dataset in settings()["graph"].get(stage, ()):
+        return DEFAULT
+    for path in sorted((ROOT / "conf/experiment").glob("*.yaml")):
+        chosen = yaml.safe_load(path.read_text(encoding="utf-8"))
+        if dataset in chosen.get("sets", ()) and stage in chosen.get("stages", [stage]):
+            return f"python -m stages.compose experiment={path.stem} && dvc repro"
+    return f"python -m stages.compose 'sets=[{dataset}]' && dvc repro"
+
+
+@cache
+def settings() -> dict:
+    """The content of params.yaml."""
+    return yaml.safe_load((ROOT / "params.yaml").read_text(encoding="utf-8"))
+
+
+@cache
+def seconds(dataset: str, stage: str) -> float:
+    """Seconds of the pieces of work behind the rows of a stage; rows that differ in what is measured are one piece."""
+    rows = pd.read_csv(ROOT / "reports/measurements" / dataset / f"{stage}{SUFFIX}", low_memory=False)
+    timed = rows.dropna(subset=["seconds"])
+    timed = timed.loc[~((timed["metric"] == SEEN) & (timed.get("views") != 1))]
+    return float(timed.drop(columns=KEYS, errors="ignore").drop_duplicates()["seconds"].sum())

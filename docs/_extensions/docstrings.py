@@ -1,0 +1,87 @@
+"""Docstrings are plain prose with `code` in single backticks: this makes reStructuredText of them."""
+
+import inspect
+import re
+from collections.abc import Callable
+from importlib import import_module
+
+from sphinx.application import Sphinx
+
+import haptic_glance
+
+SPECIAL = re.compile(r"([*|])|(?<=\w)(_)(?!\w)")  # what would begin emphasis, a substitution or a reference
+CODE = re.compile(r"(`+[^`]+`+)")
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    """Hooks into autodoc."""
+    app.connect("autodoc-process-docstring", _process)
+    app.connect("autodoc-skip-member", _skip)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
+
+
+def as_rst(lines: list[str], role: Callable[[str], str] = "``{}``".format) -> list[str]:
+    """The lines of a docstring as reStructuredText; indented blocks after an empty line are code.
+
+    role: what becomes of the text in backticks.
+    """
+    text = "\n".join(lines)
+    blocks = re.split(r"(?:^|\n)((?:\n    .*)+)", text)
+    return "".join(_code(part) if k % 2 else _prose(part, role) for k, part in enumerate(blocks)).splitlines()
+
+
+def _prose(text, role):
+    parts = CODE.split(text)
+    return "".join(role(part.strip("`")) if k % 2 else SPECIAL.sub(r"\\\g<0>", part) for k, part in enumerate(parts))
+
+
+def _code(block):
+    return f"\n\n.. code-block:: text\n{block}\n" if ">" not in block and "=" not in block else f"\n\n::\n{block}\n"
+
+
+def _process(app, what, name, thing, options, lines):
+    if isinstance(thing, dict | tuple | int):  # else it would have the docstring of its type
+        lines[:] = [_said(thing), ""]
+        return
+    text = as_rst(lines, lambda code: linked(code, getattr(thing, "__module__", None) or ""))
+    lines[:] = [*with_bold_names(text, _parameters(thing)), ""]
+
+
+def linked(code: str, module: str) -> str:
+    """Code in a docstring of a module: a link where it is a public name of its stage or of haptic_glance."""
+    package = ".".join(module.split(".")[:2])
+    if code in haptic_glance.__all__:
+        return f":py:obj:`~haptic_glance.{code}`"
+    if code.isidentifier() and package.startswith("stages.") and code in getattr(import_module(package), "__all__", ()):
+        return f":py:obj:`~{package}.{code}`"
+    return f"``{code}``"
+
+
+def with_bold_names(lines: list[str], names: list[str]) -> list[str]:
+    """The lines with parameters in bold where a sentence begins with them: `faces: how many`, `rows, columns: of`."""
+    one = "|".join(map(re.escape, sorted(names, key=len, reverse=True)))
+    if not one:
+        return lines
+    begins = re.compile(rf"(?:(?<=^)|(?<=[.;:] )|(?<=\n))((?:{one})(?:(?:, | and )(?:{one}))*)(?=(?: \([^)]*\))?:)")
+    return begins.sub(r"**\1**", "\n".join(lines)).splitlines()
+
+
+def _said(thing):
+    """A constant in words: a number itself, of a dict or tuple its items by their names."""
+    if isinstance(thing, int):
+        return f"``{thing}``"
+    if any(isinstance(each, tuple) for each in thing):
+        return f"A {type(thing).__name__} of {len(thing)} tuples."
+    return f"A {type(thing).__name__} of " + ", ".join(f"``{getattr(each, 'name', each)}``" for each in thing) + "."
+
+
+def _parameters(thing):
+    try:
+        return list(inspect.signature(thing).parameters)
+    except (TypeError, ValueError):
+        return []
+
+
+def _skip(app, what, name, thing, skip, options):
+    """Fields of named tuples say nothing of themselves."""
+    return True if type(thing).__name__ == "_tuplegetter" else None

@@ -1,0 +1,165 @@
+"""Tables that are made of reports/ when the pages are built.
+
+```{claims} key_one, key_two          claims with their verdict, effect and interval
+```
+
+```{rows} tables/scenes               rows of a table
+:where: scene=shelf
+:columns: method; faces | ,.0f; 100*saved 100*saved_low 100*saved_high | .0f
+:titles: way; faces per frame; saved, %
+```
+
+```{notes} tables/backends            the notes below a table that contain a text
+meshoptimizer
+```
+
+```{artifact}                         every claim, by the command that tests it again, with its minutes
+```
+"""
+
+from collections.abc import Iterable
+
+from docutils import nodes
+from docutils.parsers.rst import directives
+from sphinx.application import Sphinx
+from sphinx.util.docutils import SphinxDirective
+
+from stages.report.verdict import WORDS
+
+from .commands import Command, commands
+from .measured import REPORTS, interval_text, measured, number, rows_of
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    """Adds the directives."""
+    for name, directive in {"claims": Claims, "rows": Rows, "notes": Notes, "artifact": Artifact}.items():
+        app.add_directive(name, directive)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
+
+
+class Claims(SphinxDirective):
+    """Claims by their keys, in this order."""
+
+    required_arguments, final_argument_whitespace = 1, True
+
+    def run(self) -> list[nodes.Node]:
+        """A table."""
+        lines = []
+        for key in self.arguments[0].replace(",", " ").split():
+            (row,) = one_row("claims", f"key={key}")
+            lines.append((row["section"], row["claim"], verdict(row["verdict"]), effect(key, row), row["tested_on"]))
+        return [made_table(("", "claim", "verdict", "effect [95 %]", "tested on"), lines, (8, 34, 12, 20, 26))]
+
+
+class Rows(SphinxDirective):
+    """Columns of the rows of a table that agree with `where`."""
+
+    required_arguments = 1
+    option_spec = dict.fromkeys(("where", "columns", "titles", "names"), directives.unchanged)
+
+    def run(self) -> list[nodes.Node]:
+        """A table; `names` replaces values of the first column: `ours=our levels; uniform=uniform levels`."""
+        file, where = self.arguments[0], self.options.get("where", "")
+        names = dict(pair.strip().split("=") for pair in self.options.get("names", "").split(";") if pair)
+        columns = [column.strip() for column in self.options["columns"].split(";")]
+        lines = []
+        for row in rows_of(file, where):
+            if names and row[columns[0]] not in names:
+                continue
+            first = names.get(row[columns[0]], row[columns[0]].replace("_", " "))
+            lines.append([first, *(shown(row, one) for one in columns[1:])])
+        if not lines:
+            raise self.error(f"{file} has no row with {where or 'these names'}")
+        return [made_table([one.strip() for one in self.options["titles"].split(";")], lines)]
+
+
+class Notes(SphinxDirective):
+    """Notes of a table, in its own words."""
+
+    required_arguments, has_content = 1, True
+
+    def run(self) -> list[nodes.Node]:
+        """A quotation of the notes that contain the text, of which there must be one or more."""
+        path, text = REPORTS / f"{self.arguments[0]}.md", " ".join(self.content)
+        lines = path.read_text(encoding="utf-8").splitlines()
+        found = [line.removeprefix("- ") for line in lines if line.startswith("- ") and text in line]
+        if not found:
+            raise self.error(f"{path.name} has no note with {text!r}")
+        return [nodes.block_quote("", *(nodes.paragraph("", note) for note in found))]
+
+
+class Artifact(SphinxDirective):
+    """For each command the claims that it tests, and how long it computed."""
+
+    def run(self) -> list[nodes.Node]:
+        """A table of the commands, then a section for each."""
+        found = commands()
+        lines = [(code(one.text), str(len(one.claims)), tally(one), f"{max(one.minutes, 1):.0f}") for one in found]
+        head = ("command", "claims", ", ".join(WORDS), "minutes")
+        return [made_table(head, lines, (52, 10, 24, 14)), *(self.section(one) for one in found)]
+
+    def section(self, command: Command) -> nodes.section:
+        """The claims of one command."""
+        lines = [
+            (each["section"], each["claim"], verdict(each["verdict"]), code(each["key"])) for each in command.claims
+        ]
+        title = nodes.title(command.name, command.name)
+        body = made_table(("", "claim", "verdict", "key"), lines, (10, 50, 16, 24))
+        return nodes.section("", title, body, ids=[nodes.make_id(f"claims of {command.name}")])
+
+
+def one_row(file: str, where: str) -> list[dict[str, str]]:
+    """The row, in a list; ValueError where there are none or several."""
+    rows = rows_of(file, where)
+    if len(rows) != 1:
+        raise ValueError(f"reports/{file}.csv has {len(rows)} rows with {where}")
+    return rows
+
+
+def effect(key: str, row: dict[str, str]) -> str:
+    """The effect with its interval and unit, with as many decimals as its ends need."""
+    if not row["low"]:
+        return row["effect"] and f"{float(row['effect']):.3g} {row['unit']}"
+    ends = [abs(float(row[name])) for name in ("low", "high")]
+    places = 0 if max(ends) >= 10 else 1 if max(ends) >= 1 else 2
+    while places < 4 and any(end and round(end, places) == 0 for end in ends):  # or a decided one would seem to cover 0
+        places += 1
+    return f"{measured(f'claims key={key}: effect low high | +.{places}f')} {row['unit']}"
+
+
+def shown(row: dict[str, str], column: str) -> str:
+    """One cell: text, or a number with its interval where the column has a format; empty where there is no number."""
+    names, _, style = (part.strip() for part in column.partition("|"))
+    if not style:
+        return row[names]
+    numbers = [name for name in names.split() if row[name.partition("*")[2] or name.rpartition(":")[2]]]
+    return interval_text([number([row], name) for name in numbers], style) if numbers else "–"
+
+
+def verdict(word: str) -> nodes.Node:
+    """The word in its colour."""
+    return nodes.inline(word, word, classes=[f"verdict-{word.replace(' ', '-')}"])
+
+
+def code(text: str) -> nodes.Node:
+    """A text as code."""
+    return nodes.literal(text, text)
+
+
+def tally(command: Command) -> str:
+    """How many of each verdict."""
+    return ", ".join(str(sum(each["verdict"] == word for each in command.claims)) for word in WORDS)
+
+
+def made_table(head: Iterable[str], lines: Iterable[Iterable[str | nodes.Node]], widths=None) -> nodes.table:
+    """A table of texts or nodes."""
+    head = list(head)
+    group = nodes.tgroup("", *(nodes.colspec("", colwidth=w) for w in widths or [1] * len(head)), cols=len(head))
+    group += [nodes.thead("", made_row(head)), nodes.tbody("", *(made_row(line) for line in lines))]
+    return nodes.table("", group, classes=["measured-table"])
+
+
+def made_row(cells: Iterable[str | nodes.Node]) -> nodes.row:
+    """A row of texts or nodes."""
+    inner = ((nodes.Text(cell) if isinstance(cell, str) else cell) for cell in cells)
+    return nodes.row("", *(nodes.entry("", nodes.paragraph("", "", each)) for each in inner))

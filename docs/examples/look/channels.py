@@ -1,0 +1,25 @@
+"""
+The nine channels of a view
+===========================
+
+The thesis looks at pictures of an object. Nine channels say, pixel by pixel, what stands out in one of them; their
+weighted average is its saliency map (T eq. 3.9).
+"""
+
+import matplotlib.pyplot as plt
+
+from haptic_glance import Viewpoint, conspicuity, load, normalise, render
+from haptic_glance.gallery.demo import sample
+from stages.meshes import rotate_to_z_up
+
+mesh = normalise(rotate_to_z_up(load(sample())))
+view = render(mesh, Viewpoint(azimuth=305, elevation=22), renderer="raster")
+maps = conspicuity(mesh, view)
+
+fig, axes = plt.subplots(2, 5, figsize=(10, 3.6), layout="constrained")
+for axis, (name, image) in zip(axes.flat, {"the view": view.rgb, **maps}.items(), strict=True):
+    height, width = image.shape[:2]
+    axis.imshow(image[:, width // 6 : -width // 6])
+    axis.set_title(name, fontsize=10)
+    axis.axis("off")
+plt.show()

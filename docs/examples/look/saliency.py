@@ -1,0 +1,25 @@
+"""
+Where people look
+=================
+
+:func:`haptic_glance.saliency` predicts, for each vertex, how much it attracts the gaze. The model behind it was learned
+from human gaze. It needs to know which axis points up; a GLB says so, for other files pass ``up="y"``.
+"""
+
+import matplotlib.pyplot as plt
+
+from haptic_glance import detect, load
+from haptic_glance.gallery.demo import sample
+from stages.lod.look import look
+
+mesh = load(sample())
+found = detect(mesh, count=10)  # saliency and points from one look
+print(mesh, found.saliency.min().round(3), found.saliency.max().round(3))
+
+# %%
+# Yellow attracts most. The numbers are the ranks of the points on this side.
+
+plt.figure(figsize=(5, 5), layout="constrained")
+plt.imshow(look(mesh, found.saliency, found.points))
+plt.axis("off")
+plt.show()

@@ -1,0 +1,25 @@
+"""
+The fewest faces for a tolerance
+================================
+
+How many faces does an object need? State the mean error that you can bear, and the count is found by measuring.
+"""
+
+import matplotlib.pyplot as plt
+
+from haptic_glance import load, normalise, saliency, simplify
+from haptic_glance.gallery.demo import sample
+from stages.lod.fewest import fewest_faces
+from stages.lod.look import draw
+from stages.meshes import rotate_to_z_up
+
+mesh = normalise(rotate_to_z_up(load(sample())))
+weights = saliency(mesh)
+
+fig, axes = plt.subplots(1, 3, figsize=(10, 3.7), layout="constrained")
+for axis, tolerance in zip(axes, [0.0002, 0.001, 0.004], strict=True):  # shares of the diagonal
+    found = fewest_faces(mesh, lambda faces: simplify(mesh, faces, weights=weights), 50, tolerance)
+    axis.imshow(draw(found, wires=True)[90:530, 60:560])
+    axis.set_title(f"{100 * tolerance:g} %: {len(found.faces):,} faces", fontsize=10)
+    axis.axis("off")
+plt.show()

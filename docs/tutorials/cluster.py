@@ -1,0 +1,69 @@
+"""
+Run it on a cluster
+===================
+
+The pipeline's objects, trainings and splits are pieces of work that do not depend on each other. With ``parallel=dask``
+they go to the workers of a dask cluster, and the results are the same bytes. No folder is shared: what a piece reads
+travels to the worker, and its files and rows come back.
+
+This page is not run when it is built, since it needs a cluster. The tests check that its code is valid and that the
+settings exist.
+"""
+
+import os
+
+import pandas as pd
+from dask.distributed import Client
+from dask_jobqueue import SLURMCluster
+
+from haptic_glance.gallery.demo import sample
+
+# sphinx_gallery_thumbnail_path = "../reports/figures/growth.png"
+
+# %%
+# By hand
+# -------
+#
+# On each machine ``pip install '.[cluster]'``, in the same version; another one is an error that names both. Then:
+#
+# .. code-block:: sh
+#
+#    dask scheduler                                           # on one machine; prints its address
+#    dask worker tcp://HOST:8786 --nworkers 16 --nthreads 1   # on the others: an item is the work of one core
+#    python -m stages.compose parallel=dask
+#    DASK_SCHEDULER=tcp://HOST:8786 dvc repro
+#
+# Without ``DASK_SCHEDULER`` the run starts workers on its own machine, which is a way to try it.
+
+client = Client(os.environ["DASK_SCHEDULER"])
+print(client.dashboard_link, sum(client.nthreads().values()), "cores")
+
+# %%
+# On Slurm
+# --------
+#
+# dask-jobqueue submits the workers. This keeps the cluster until it is stopped; run the pipeline in another shell, with
+# the address that it prints as ``DASK_SCHEDULER``.
+
+cluster = SLURMCluster(cores=16, processes=16, memory="64GB", walltime="04:00:00", queue="NAME")
+cluster.scale(jobs=10)
+input(f"{cluster.scheduler_address}, dashboard {cluster.dashboard_link}; Enter ends it ")
+
+# %%
+# Sweeps
+# ------
+#
+# The jobs of a sweep are whole runs and share ``data/``. Hydra's launchers submit them:
+#
+# .. code-block:: sh
+#
+#    python -m stages.sweep -m hydra/launcher=submitit_slurm classifier=knn,svm
+#
+# What it costs
+# -------------
+#
+# One scheduler feeds a limited number of workers: an item's inputs and results pass through it. The measured costs per
+# item, and the number of workers at which the scheduler becomes the limit.
+
+costs = pd.read_csv(sample().parents[1] / "reports/bench/cluster.csv")
+print(costs[["stage", "seconds", "scheduler_ms", "network_ms", "limit"]].to_string(index=False))

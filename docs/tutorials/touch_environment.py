@@ -1,0 +1,108 @@
+"""
+Simulated touch in a Gymnasium loop
+===================================
+
+An agent moves a pressure array over an object and feels forces in newtons. Its observation is the force image of 16 x
+16 cells under foam; its action moves the array along its right, up and normal. The reward is higher the nearer the
+load is to 1 N: to follow the surface with a steady touch earns most.
+
+The class below is an environment of `Gymnasium <https://gymnasium.farama.org>`_ where that is installed (``pip
+install gymnasium``; it is no dependency). Without it the class has no spaces, and the loop is the same.
+"""
+
+import matplotlib.pyplot as plt
+import numpy as np
+import trimesh
+
+from haptic_glance import Layer, Mesh, Surface, forces, gaps_at, sensor_axes
+
+try:
+    import gymnasium
+except ModuleNotFoundError:
+    gymnasium = None
+    print("gymnasium is not installed: the environment goes without its spaces and checks")
+
+CELLS, PITCH = (16, 16), 0.001  # metres
+STEP = 0.002  # metres along each axis, at most
+TARGET = 1.0  # newtons
+RANGE = 0.05  # metres off the surface, at which an episode ends
+
+# %%
+# The environment
+# ---------------
+
+
+class TouchEnvironment(gymnasium.Env if gymnasium else object):
+    """The force image (16, 16) f4 in newtons of an array on a mesh in metres; actions (3,) in -1..1, of 2 mm each."""
+
+    def __init__(self, mesh: Mesh, layer: Layer | None = None) -> None:
+        self.surface, self.layer = Surface(mesh), layer or Layer()
+        if gymnasium:
+            highest = self.layer.stiffness * self.layer.thickness * PITCH**2
+            self.observation_space = gymnasium.spaces.Box(0, highest, CELLS, np.float32)
+            self.action_space = gymnasium.spaces.Box(-1, 1, (3,), np.float32)
+
+    def reset(self, *, seed=None, options=None):
+        """Puts the array on a random point of the surface."""
+        if gymnasium:
+            super().reset(seed=seed)
+        else:
+            self.np_random = np.random.default_rng(seed)
+        mesh = self.surface.mesh
+        face = self.np_random.choice(len(mesh.faces), p=mesh.face_areas / mesh.face_areas.sum())
+        self.centre = mesh.vertices[mesh.faces[face]].mean(axis=0)
+        self.axes = sensor_axes(mesh.face_normals[[face]])
+        return self._felt(), {"centre": self.centre.copy()}
+
+    def step(self, action):
+        """Moves the array and feels."""
+        self.centre = self.centre + STEP * np.clip(action, -1, 1) @ self.axes[0]
+        felt = self._felt()
+        force = float(felt.sum())
+        info = {"load": force, "centre": self.centre.copy()}
+        return felt, -abs(force - TARGET) / TARGET, bool(self.gap > RANGE), False, info
+
+    def _felt(self):
+        """The forces where the array stands; its rigid backing stops it where the layer is compressed entirely."""
+        gaps = gaps_at(self.surface, self.centre[None], self.axes, self.layer.thickness, CELLS, PITCH)
+        self.gap = gaps.min()
+        depth = np.clip(-self.gap, 0, self.layer.thickness)
+        self.centre = self.centre + max(-self.gap - depth, 0) * self.axes[0, 2]
+        return forces(gaps, self.layer, PITCH**2, depth=depth)[0].astype(np.float32)
+
+
+# %%
+# A loop
+# ------
+#
+# The agent slides to the right over an egg, 0.2 mm at a time. Where it feels more than the target it retreats, where
+# less it approaches.
+
+if __name__ == "__main__":
+    egg = trimesh.creation.icosphere(5, radius=0.03).apply_scale([1, 1, 1.4])
+    environment = TouchEnvironment(Mesh(egg.vertices, egg.faces))
+    felt, _ = environment.reset(seed=3)
+    images, loads, rewards = [], [], []
+    for _ in range(60):
+        pushed = np.clip(0.1 * (felt.sum() - TARGET), -0.3, 0.3)
+        felt, reward, over, _, info = environment.step([0.1, 0.0, pushed])
+        images.append(felt)
+        loads.append(info["load"])
+        rewards.append(reward)
+        if over:
+            break
+    print(f"{len(loads)} steps, mean reward {np.mean(rewards):.2f}, of the last ten {np.mean(rewards[-10:]):.2f}")
+
+    fig = plt.figure(figsize=(9, 4.6), layout="constrained")
+    top, bottom = fig.subfigures(2, 1, height_ratios=[1, 1.2])
+    for step, axis in zip([1, 10, 20, 30, 40, 50], top.subplots(1, 6), strict=True):
+        axis.imshow(images[min(step, len(images) - 1)], cmap="magma", vmin=0, vmax=np.max(images))
+        axis.set_title(f"step {step}", fontsize=10)
+        axis.axis("off")
+    axis = bottom.subplots()
+    axis.plot(loads)
+    axis.axhline(TARGET, color="0.6", ls="--", label="target")
+    axis.set_xlabel("step")
+    axis.set_ylabel("load, N")
+    axis.legend()
+    plt.show()

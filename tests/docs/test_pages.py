@@ -1,0 +1,153 @@
+"""The pages of the documentation: figures from tables, links, pictures, commands and API names that exist."""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("sphinx")
+yaml = pytest.importorskip("yaml")
+
+from _extensions.commands import DEFAULT, command_for, commands  # noqa: E402
+from _extensions.measured import measured, rows_of, table  # noqa: E402
+from _extensions.tables import effect  # noqa: E402
+
+import haptic_glance  # noqa: E402
+from haptic_glance.__main__ import OWN, WHOLE  # noqa: E402
+from haptic_glance.__main__ import commands as stages_and_tools  # noqa: E402
+
+ROOT = Path(__file__).parents[2]
+DOCS = ROOT / "docs"
+PAGES = sorted(path for path in DOCS.rglob("*.md") if "generated" not in path.parts)
+SOURCES = PAGES + sorted(path for path in DOCS.rglob("*.py") if "generated" not in path.parts)
+MEASURED = re.compile(r"\{measured\}`([^`]+)`")
+NAME = re.compile(r"(?:`~?|\.\. auto\w+:: )((?:haptic_glance|stages)(?:\.\w+)+)[`\n]")
+
+
+def name(path):
+    return str(path.relative_to(DOCS))
+
+
+def text_of(path):
+    return path.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("path", [path for path in PAGES if MEASURED.search(text_of(path))], ids=name)
+def test_every_figure_is_in_its_table(path):
+    for asked in MEASURED.findall(text_of(path)):
+        assert re.search(r"\d", measured(" ".join(asked.split()))), asked
+
+
+@pytest.mark.parametrize("path", PAGES, ids=name)
+def test_no_interval_is_typed_by_hand(path):
+    assert not re.findall(r"\d \[[\d.+-]+, [\d.+-]+\]", text_of(path))
+
+
+def test_every_claim_that_a_page_lists_is_one():
+    keys = {row["key"] for row in table("claims")}
+    listed = re.findall(r"```\{claims\} (.+)", "\n".join(map(text_of, PAGES)))
+    assert len(listed) >= 9
+    assert not {key for line in listed for key in line.split(", ")} - keys
+
+
+@pytest.mark.parametrize("path", PAGES, ids=name)
+def test_every_link_and_picture_leads_to_a_file(path):
+    text = text_of(path)
+    links = re.findall(r"\]\((?!https?:|#)([^)\s]+)\)", text) + re.findall(r"```\{figure\} (\S+)", text)
+    absent = [link for link in links if not (path.parent / link).exists() and "generated/" not in link]
+    assert not absent
+
+
+def test_every_picture_has_an_alternative_text():
+    for path in PAGES:
+        figures = re.findall(r"```\{figure\} \S+\n(.*?)```", text_of(path), re.S)
+        assert all(re.match(r":alt: .{20,}", figure) for figure in figures), path
+
+
+def test_the_api_lists_every_name_of_the_core():
+    listed = re.findall(r"^   (\w+)$", text_of(DOCS / "api/haptic_glance.rst"), re.M)
+    assert sorted(listed) == sorted(haptic_glance.__all__)
+
+
+def test_the_api_lists_every_name_of_a_stage():
+    from importlib import import_module
+
+    for path in sorted((DOCS / "api").glob("*.rst")):
+        if path.stem in ("haptic_glance", "stability"):
+            continue
+        text = text_of(path)
+        absent = [each for each in import_module(f"stages.{path.stem}").__all__ if not re.search(rf"\b{each}\b", text)]
+        assert not absent, f"{name(path)} lacks {', '.join(absent)}"
+
+
+def test_every_name_that_a_page_mentions_exists():
+    import pkgutil
+
+    found = {match for path in [*SOURCES, *DOCS.glob("api/*.rst")] for match in NAME.findall(text_of(path))}
+    assert len(found) > 20
+    for each in sorted(found):
+        pkgutil.resolve_name(each)
+
+
+def test_every_command_that_a_page_shows_exists():
+    text = "\n".join(map(text_of, SOURCES))
+    shown = set(re.findall(r"^#?\s*haptic-glance (\w+)", text, re.M)) - {"studio", "contributors"}
+    assert {"saliency", "simplify", "touch"} <= shown <= {*OWN, *WHOLE}
+    assert set(re.findall(r"python -m stages\.([\w.]+)", text)) <= {*stages_and_tools()}
+    experiments = set(re.findall(r"experiment=(\w+)", text))
+    assert experiments and all((ROOT / "conf/experiment" / f"{each}.yaml").is_file() for each in experiments)
+
+
+def test_every_claim_has_a_command_and_a_command_has_minutes():
+    found = commands()
+    keys = [claim["key"] for command in found for claim in command.claims]
+    measured_claims = [row["key"] for row in table("claims") if row["low"]]
+    assert len(keys) == len(set(keys)) and set(measured_claims) <= set(keys)
+    assert found[0].text == DEFAULT and all(command.minutes > 0 for command in found)
+
+
+def test_a_command_is_that_which_switches_the_stage_on():
+    assert command_for("household", "lod") == DEFAULT
+    assert "experiment=attention " in command_for("gaze", "salient_points")
+    assert "experiment=transfer " in command_for("furniture", "transfer")
+
+
+@pytest.mark.parametrize(
+    "asked",
+    ["claims key=no_such_claim: effect", "claims: effect", "claims key=keep_metro: section", "claims key=keep_metro"],
+)
+def test_a_figure_without_one_cell_is_an_error(asked):
+    with pytest.raises((ValueError, KeyError)):
+        measured(asked)
+
+
+def test_figures_are_shown_as_asked():
+    (row,) = rows_of("claims", "key=keep_metro")
+    assert measured("claims key=keep_metro: effect | .3f") == f"{float(row['effect']):.3f}"
+    low, high = sorted((float(row["low"]), float(row["high"])))
+    assert measured("claims key=keep_metro: effect low high | .1f").endswith(f"[{low:.1f}, {high:.1f}]")
+    assert measured("claims key=keep_metro: effect high low | .1f").endswith(f"[{low:.1f}, {high:.1f}]")
+    assert measured("claims key=keep_metro: 100*effect | .0f") == f"{100 * float(row['effect']):.0f}"
+    every = [float(each["seconds"]) for each in table("bench/tactile") if each["what"] == "build"]
+    assert measured("bench/tactile what=build: count:seconds") == str(len(every))
+    assert measured("bench/tactile what=build: most:seconds | .6f") == f"{max(every):.6f}"
+
+
+def test_an_interval_that_excludes_zero_is_not_shown_with_a_zero():
+    shown = {row["key"]: effect(row["key"], row) for row in table("claims") if row["low"]}
+    decided = [row["key"] for row in table("claims") if row["verdict"] in ("supported", "contradicted")]
+    ends = {key: [float(end) for end in re.findall(r"\[(\S+), (\S+)\]", shown[key])[0]] for key in decided}
+    assert len(ends) > 50 and not [key for key, (low, high) in ends.items() if low * high <= 0]
+
+
+def test_citation_and_deposit_say_the_same_as_the_package():
+    import tomllib
+
+    project = tomllib.loads(text_of(ROOT / "pyproject.toml"))["project"]
+    citation = yaml.safe_load(text_of(ROOT / "CITATION.cff"))
+    deposit = json.loads(text_of(ROOT / ".zenodo.json"))
+    assert citation["cff-version"] == "1.2.0" and {"message", "authors", "title"} <= citation.keys()
+    assert project["version"] == citation["version"] == deposit["version"]
+    assert citation["title"] == deposit["title"] and citation["keywords"] == deposit["keywords"]
+    assert citation["abstract"] == deposit["description"] and citation["license"] == deposit["license"] == "MIT"

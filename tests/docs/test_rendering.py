@@ -1,0 +1,56 @@
+"""What the documentation makes of docstrings and formulas."""
+
+import pytest
+
+pytest.importorskip("sphinx")
+
+from _extensions.docstrings import as_rst, linked, with_bold_names  # noqa: E402
+from _extensions.order import ReadingOrder  # noqa: E402
+from docutils.core import publish_string  # noqa: E402
+
+
+def html(lines):
+    settings = {"output_encoding": "unicode", "halt_level": 2, "embed_stylesheet": False}
+    return publish_string("\n".join(lines), writer="html5", settings_overrides=settings)
+
+
+def test_backticks_become_code_even_over_the_end_of_a_line():
+    assert as_rst(["Gives `a`, and `b", "c` too."]) == ["Gives ``a``, and ``b", "c`` too."]
+
+
+@pytest.mark.parametrize(
+    "text", ["1 + STRENGTH * saliency * 2", "|O(c) - O(s)| is zero", "names such as best_ or keys_"]
+)
+def test_special_characters_stay_as_they_are(text):
+    assert text in html(as_rst([text]))
+
+
+def test_an_indented_block_is_code():
+    shown = html(as_rst(["For example:", "", "    mesh = load(path)", "    print(mesh)", "", "Done."]))
+    assert "<pre" in shown and "mesh = load(path)" in shown and "<blockquote" not in shown
+
+
+def test_parameters_are_bold_where_a_sentence_begins_with_them():
+    lines = ["faces: how many. rows, columns (n,): pixels; faces is not one here, nor is a face: that is a word."]
+    assert with_bold_names(lines, ["faces", "rows", "columns"]) == [
+        "**faces**: how many. **rows, columns** (n,): pixels; faces is not one here, nor is a face: that is a word."
+    ]
+
+
+@pytest.mark.parametrize(
+    "code, module, shown",
+    [
+        ("simplify", "stages.lod.levels", ":py:obj:`~haptic_glance.simplify`"),
+        ("quadric_weights", "stages.lod.simplify", ":py:obj:`~stages.lod.quadric_weights`"),
+        ("quadric_weights", "stages.views.view", "``quadric_weights``"),
+        ("faces > 4", "stages.lod.simplify", "``faces > 4``"),
+        ("faces", "", "``faces``"),
+    ],
+)
+def test_code_that_is_a_public_name_is_a_link(code, module, shown):
+    assert linked(code, module) == shown
+
+
+def test_the_galleries_begin_with_what_is_to_be_read_first():
+    files = ["touch_environment.py", "zebra.py", "own_scans.py", "aardvark.py"]
+    assert sorted(files, key=ReadingOrder("")) == ["own_scans.py", "touch_environment.py", "aardvark.py", "zebra.py"]

@@ -1,0 +1,63 @@
+"""The tutorials and examples of the documentation: they run, they are short, and they draw something."""
+
+import ast
+import re
+import runpy
+from pathlib import Path
+
+import pytest
+
+plt = pytest.importorskip("matplotlib.pyplot")
+
+DOCS = Path(__file__).parents[2] / "docs"
+EXAMPLES = sorted((DOCS / "examples").glob("*/*.py"))
+TUTORIALS = sorted((DOCS / "tutorials").glob("*.py"))
+SHOWN_ONLY = "cluster"  # needs a cluster; filename_pattern of docs/conf.py leaves it out as well
+RUN = [path for path in EXAMPLES + TUTORIALS if path.stem != SHOWN_ONLY]
+
+
+def name(path):
+    return str(path.relative_to(DOCS))
+
+
+def code_lines(path):
+    """Lines of a script that are neither empty, comments nor its docstring."""
+    source = path.read_text(encoding="utf-8")
+    body = ast.parse(source).body[1:]
+    lines = source.splitlines()[body[0].lineno - 1 :]
+    return [line for line in lines if line.strip() and not line.lstrip().startswith("#")]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("path", RUN, ids=name)
+def test_it_runs_and_draws(path, monkeypatch, tmp_path):
+    drawn = []
+    monkeypatch.setattr(plt, "show", lambda: drawn.extend(plt.get_fignums()) or plt.close("all"))
+    monkeypatch.chdir(tmp_path)
+    plt.switch_backend("agg")
+    runpy.run_path(str(path), run_name="__main__")
+    assert drawn and not list(tmp_path.iterdir())
+
+
+def test_there_are_twenty_examples_and_six_tutorials():
+    assert len(EXAMPLES) >= 20 and len(TUTORIALS) == 6
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=name)
+def test_an_example_is_short(path):
+    assert 8 <= len(code_lines(path)) <= 45
+
+
+@pytest.mark.parametrize("path", EXAMPLES + TUTORIALS, ids=name)
+def test_it_begins_with_a_title_and_a_text(path):
+    title, rule, empty, *text = (ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or "").splitlines()
+    assert set(rule) == {"="} and len(rule) == len(title) and not empty and len(" ".join(text)) > 60
+
+
+def test_the_cluster_page_names_settings_that_exist():
+    text = (DOCS / "tutorials" / f"{SHOWN_ONLY}.py").read_text(encoding="utf-8")
+    compile(text, SHOWN_ONLY, "exec")
+    settings = re.findall(r"\b(parallel|classifier)=(\w+)", text)
+    assert settings and all((DOCS.parent / "conf" / group / f"{option}.yaml").is_file() for group, option in settings)
+    conf = (DOCS / "conf.py").read_text(encoding="utf-8")
+    assert f"(?!{SHOWN_ONLY})" in conf

@@ -1,0 +1,82 @@
+"""The site as a whole: it builds without a warning, and asks nothing of a network."""
+
+import re
+import shutil
+import subprocess
+import sys
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+
+import haptic_glance
+
+pytest.importorskip("sphinx_gallery")
+pytest.importorskip("pydata_sphinx_theme")
+pytest.importorskip("torch", reason="the API has the hybrid network")
+
+ROOT = Path(__file__).parents[2]
+FETCHED = re.compile(
+    r"<(?:script|img|iframe|source)[^>]*src=\"(https?:|//)|<link[^>]*href=\"(https?:|//)|url\((https?:|//)"
+)
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory):
+    """The built pages; the scripts of the gallery are shown and not run, which tests/docs/test_scripts.py does."""
+    copy = tmp_path_factory.mktemp("site")
+    shutil.copytree(ROOT / "docs", copy / "docs", ignore=shutil.ignore_patterns("generated", "__pycache__"))
+    for name in ("reports", "conf", "params.yaml"):
+        (copy / name).symlink_to(ROOT / name)
+    command = [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-q", "-D", "plot_gallery=0", "docs", "built"]
+    done = subprocess.run(command, cwd=copy, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr[-3000:]
+    return copy / "built"
+
+
+@pytest.mark.slow
+def test_it_builds_without_a_warning_and_has_its_pages(site):
+    pages = {str(path.relative_to(site)) for path in site.rglob("*.html")}
+    assert {"index.html", "first_steps.html", "concepts/attention.html", "api/lod.html", "artifact.html"} <= pages
+    assert "generated/api/haptic_glance.simplify.html" in pages
+
+
+@pytest.mark.slow
+def test_no_page_fetches_anything(site):
+    files = [*site.rglob("*.html"), *site.rglob("*.css")]
+    assert len(files) > 80
+    assert not [path.name for path in files if FETCHED.search(path.read_text(encoding="utf-8"))]
+
+
+@pytest.mark.slow
+def test_formulas_figures_and_verdicts_are_in_the_pages(site):
+    attention = (site / "concepts/attention.html").read_text(encoding="utf-8")
+    assert (
+        "<math" in attention
+        and "verdict-supported" in attention
+        and 'title="reports/tables/attention_gaze' in attention
+    )
+    simplify = (site / "generated/api/haptic_glance.simplify.html").read_text(encoding="utf-8")
+    assert "<strong>keep</strong>" in simplify and "Examples" in simplify
+
+
+@pytest.mark.slow
+def test_every_link_within_the_site_leads_to_a_page(site):
+    broken = []
+    for path in site.rglob("*.html"):
+        for link in re.findall(r'href="([^"#:]+\.html)(?:#[^"]*)?"', path.read_text(encoding="utf-8")):
+            if not (path.parent / link).exists():
+                broken.append(f"{path.name}: {link}")
+    assert not broken
+
+
+@pytest.mark.slow
+def test_every_public_name_has_an_entry(site):
+    pages = [*(site / "api").glob("*.html"), *(site / "generated/api").glob("*.html")]
+    entries = set(re.findall(r'<dt[^>]* id="([\w.]+)"', "".join(path.read_text(encoding="utf-8") for path in pages)))
+    core = {f"haptic_glance.{each}" for each in haptic_glance.__all__}
+    assert not core - entries
+    for path in (ROOT / "docs/api").glob("*.rst"):
+        names = [] if path.stem in ("haptic_glance", "stability") else import_module(f"stages.{path.stem}").__all__
+        own = {f"stages.{path.stem}.{each}" for each in names if each not in haptic_glance.__all__}
+        assert not own - entries, path.name
