@@ -1,0 +1,5 @@
+"""What can be done with the mesh on the table: a panel a file, in the order in which they are offered."""
+
+from .look import LookPanel
+
+PANELS = (LookPanel,)

@@ -1,0 +1,60 @@
+"""What is drawn in one window: coloured meshes, numbered markers."""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import trimesh
+import viser
+
+from stages.kit import Mesh
+
+EYE = (1.0, -1.35, 0.75)  # where the camera starts, from the middle of an object of diameter 1
+MARKER = 0.011  # radius, in diameters of the object
+RED, BLUE = (216, 27, 27), (0, 85, 140)
+
+
+class Scene:
+    """Draws on the page of one viser client. Names begin with `/`; drawing again under a name replaces it."""
+
+    def __init__(self, client: viser.ClientHandle) -> None:
+        self.client, self.api = client, client.scene
+        self.api.set_up_direction("+z")
+
+    def aim(self) -> None:
+        """Puts the camera where it starts."""
+        with self.client.atomic():
+            self.client.camera.up_direction = (0.0, 0.0, 1.0)
+            self.client.camera.position, self.client.camera.look_at = EYE, (0.0, 0.0, 0.0)
+
+    def mesh(
+        self, name: str, mesh: Mesh, colors: np.ndarray, clicked: Callable[[np.ndarray, np.ndarray], None] | None = None,
+        flat: bool = False, at: Sequence[float] = (0, 0, 0),
+    ) -> None:  # fmt: skip
+        """A mesh with colours (n, 3) u1; clicked(origin, direction) gets the ray of a click, in the frame of the mesh.
+
+        flat: one normal a face, so that the faces are seen. at: where its middle lies.
+        """
+        normals = None if flat else mesh.vertex_normals
+        shown = trimesh.Trimesh(
+            mesh.vertices, mesh.faces, vertex_colors=colors, vertex_normals=normals, process=False, validate=False
+        )
+        handle = self.api.add_mesh_trimesh(name, shown, position=tuple(map(float, at)))
+        if clicked:
+            handle.on_click(lambda event: clicked(np.array(event.ray_origin) - at, np.array(event.ray_direction)))
+
+    def markers(
+        self, name: str, places: np.ndarray, labels: Sequence[str], colour: tuple[int, int, int] = RED,
+        radius: float = MARKER,
+    ) -> None:  # fmt: skip
+        """Balls at places (k, 3), each with its label."""
+        self.clear(name)
+        self.api.add_frame(name, show_axes=False)
+        for number, (place, label) in enumerate(zip(places, labels, strict=True)):
+            self.api.add_icosphere(f"{name}/{number}", radius, colour, subdivisions=2, position=place)
+            self.api.add_label(f"{name}/{number}/label", label, anchor="bottom-center", position=(0, 0, radius))
+
+    def clear(self, *names: str) -> None:
+        """Takes away what was drawn under the names and below them."""
+        for name in names:
+            if self.api.get_handle_by_name(name) is not None:
+                self.api.remove_by_name(name)
