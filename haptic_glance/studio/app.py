@@ -18,6 +18,7 @@ class Studio:
         self.windows: dict[int, Window] = {}
         self.server = LocalServer(port, "Haptic Glance")
         self.server.gui.configure_theme(show_logo=False, show_share_button=False, control_width="large")
+        self.server.gui.main_panel.dock_right()
         self.server.on_client_connect(self.connected)
         self.server.on_client_disconnect(self.gone)
 

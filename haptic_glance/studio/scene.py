@@ -8,7 +8,8 @@ import viser
 
 from stages.kit import Mesh
 
-EYE = (1.0, -1.35, 0.75)  # where the camera starts, from the middle of an object of diameter 1
+EYE = (1.05, -1.4, 0.6)  # where the camera starts, from the middle of an object of diameter 1
+FIELD = 0.62  # radians from the lower to the upper edge of the picture
 MARKER = 0.011  # radius, in diameters of the object
 RED, BLUE = (216, 27, 27), (0, 85, 140)
 
@@ -24,11 +25,13 @@ class Scene:
         """Puts the camera where it starts."""
         with self.client.atomic():
             self.client.camera.up_direction = (0.0, 0.0, 1.0)
+            self.client.camera.fov = FIELD
             self.client.camera.position, self.client.camera.look_at = EYE, (0.0, 0.0, 0.0)
 
     def mesh(
-        self, name: str, mesh: Mesh, colors: np.ndarray, clicked: Callable[[np.ndarray, np.ndarray], None] | None = None,
-        flat: bool = False, at: Sequence[float] = (0, 0, 0),
+        self, name: str, mesh: Mesh, colors: np.ndarray,
+        clicked: Callable[[np.ndarray, np.ndarray], None] | None = None, flat: bool = False,
+        at: Sequence[float] = (0, 0, 0),
     ) -> None:  # fmt: skip
         """A mesh with colours (n, 3) u1; clicked(origin, direction) gets the ray of a click, in the frame of the mesh.
 
@@ -36,7 +39,12 @@ class Scene:
         """
         normals = None if flat else mesh.vertex_normals
         shown = trimesh.Trimesh(
-            mesh.vertices, mesh.faces, vertex_colors=colors, vertex_normals=normals, process=False, validate=False
+            mesh.vertices,
+            mesh.faces,
+            vertex_colors=linear(colors),
+            vertex_normals=normals,
+            process=False,
+            validate=False,
         )
         handle = self.api.add_mesh_trimesh(name, shown, position=tuple(map(float, at)))
         if clicked:
@@ -51,10 +59,17 @@ class Scene:
         self.api.add_frame(name, show_axes=False)
         for number, (place, label) in enumerate(zip(places, labels, strict=True)):
             self.api.add_icosphere(f"{name}/{number}", radius, colour, subdivisions=2, position=place)
-            self.api.add_label(f"{name}/{number}/label", label, anchor="bottom-center", position=(0, 0, radius))
+            self.api.add_label(
+                f"{name}/{number}/label", label, depth_test=True, anchor="bottom-center", position=(0, 0, radius)
+            )
 
     def clear(self, *names: str) -> None:
         """Takes away what was drawn under the names and below them."""
         for name in names:
             if self.api.get_handle_by_name(name) is not None:
                 self.api.remove_by_name(name)
+
+
+def linear(colors: np.ndarray) -> np.ndarray:
+    """Colours (n, 3) u1 as a glTF has them, without the display's gamma."""
+    return np.rint(255 * (colors / 255.0) ** 2.2).astype(np.uint8)

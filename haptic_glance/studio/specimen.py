@@ -24,13 +24,13 @@ RENDERING = ThreadPoolExecutor(1)  # what renders views: an OpenGL context belon
 
 @dataclass(frozen=True)
 class Look:
-    """What a method found: saliency (n,) f8 in 0..1, or None for a method that only places points.
+    """What a method found: saliency (n,) f8 in 0..1, and the points.
 
     points: rows of stages.saliency.COLUMNS, most salient first; positions in the file's coordinates.
     """
 
     method: str
-    saliency: np.ndarray | None
+    saliency: np.ndarray
     points: list[tuple]
 
     @property
@@ -102,14 +102,9 @@ class Specimen:
         rendered = bool(METHODS[method].channels)
         arguments = self.baked, method, count
         found = RENDERING.submit(detect, *arguments).result() if rendered else detect(*arguments)
-        if found.saliency is not None:
-            return Look(method, found.saliency, points_of(self.given, found.points, found.saliency))
-        places = self.given.vertices[found.points]
-        rows = [
-            (rank, int(v), *map(float, at), 0.0)
-            for rank, (v, at) in enumerate(zip(found.points, places, strict=True), 1)
-        ]
-        return Look(method, None, rows)
+        if found.saliency is None:
+            raise ValueError(f"method {method!r} has no saliency: it only places points")
+        return Look(method, found.saliency, points_of(self.given, found.points, found.saliency))
 
 
 def open_file(path: Path, up: str | None = None) -> Specimen:

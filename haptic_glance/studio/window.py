@@ -71,14 +71,18 @@ class Window:
             except Exception as error:
                 self.fail(title, error)
 
-    def work(self, title: str, work: Callable[[Report], Any], done: Callable[[Any], Any]) -> None:
+    def work(
+        self, title: str, work: Callable[[Report], Any], done: Callable[[Any], Any], slot: str | None = None
+    ) -> None:
         """work(report) on a thread of its own, then done(result), alone; the page shows its progress and stops it.
 
-        Work of the same title that still runs is stopped, and so is all when another mesh comes. Errors become messages.
+        Work in the same slot (None: of the same title) that still runs is stopped, and so is all when another mesh
+        comes. Errors become messages.
         """
+        slot = slot or title
         with self.lock:
-            if title in self.jobs:
-                self.jobs[title].stop()
+            if slot in self.jobs:
+                self.jobs[slot].stop()
 
             def finish(found: Any) -> None:
                 with self.lock:
@@ -86,7 +90,7 @@ class Window:
                         self.run(title, lambda: done(found))
 
             job = Job(title, work, finish, lambda error: self.fail(title, error), self._ended, self.progress.show)
-            self.jobs[title] = job
+            self.jobs[slot] = job
             self.progress.begin(job)
             job.start()
 
@@ -101,7 +105,7 @@ class Window:
         if not theirs or os.environ.get(DEBUG):
             traceback.print_exception(error, file=sys.stderr)
         if not theirs:
-            text = f"{type(error).__name__}: {text}. This is a fault of the studio; the terminal shows where. The rest goes on."
+            text = f"{type(error).__name__}: {text}. A fault of the studio: the terminal shows where. The rest goes on."
         self.say(title or "That did not work", text, "red", None)
 
     def refuse(self, name: str, size: int) -> None:
@@ -153,6 +157,5 @@ class Window:
 
     def _ended(self, job):
         with self.lock:
-            if self.jobs.get(job.title) is job:
-                del self.jobs[job.title]
+            self.jobs = {slot: other for slot, other in self.jobs.items() if other is not job}
             self.progress.end(job)

@@ -36,7 +36,7 @@ class LookPanel(Panel):
     def on_show(self) -> None:
         """Draws the mesh and its points."""
         session = self.window.session
-        self.window.work(f"Looking by {session.method}", lambda _: session.look(), self.draw)
+        self.window.work(f"Looking by {session.method}", lambda _: session.look(), self.draw, slot=self.title)
 
     def draw(self, look: Look) -> None:
         """Draws what was found."""
