@@ -8,7 +8,8 @@ import viser
 
 from stages.kit import Mesh
 
-EYE = (1.05, -1.4, 0.6)  # where the camera starts, from the middle of an object of diameter 1
+EYE = np.array([1.05, -1.4, 0.6])  # where the camera starts, from the middle of an object of diameter 1
+BESIDE = np.array([0.8, 0.6, 0.0]) * 1.15  # where a second object stands, to the right of the first
 FIELD = 0.62  # radians from the lower to the upper edge of the picture
 MARKER = 0.011  # radius, in diameters of the object
 RED, BLUE = (216, 27, 27), (0, 85, 140)
@@ -21,12 +22,14 @@ class Scene:
         self.client, self.api = client, client.scene
         self.api.set_up_direction("+z")
 
-    def aim(self) -> None:
-        """Puts the camera where it starts."""
+    def aim(self, wide: bool = False) -> None:
+        """Puts the camera where it starts; wide: so that there is room for a second mesh beside the first."""
+        middle = BESIDE / 2 if wide else np.zeros(3)
         with self.client.atomic():
             self.client.camera.up_direction = (0.0, 0.0, 1.0)
             self.client.camera.fov = FIELD
-            self.client.camera.position, self.client.camera.look_at = EYE, (0.0, 0.0, 0.0)
+            self.client.camera.position = middle + EYE * (1.7 if wide else 1.0)
+            self.client.camera.look_at = middle
 
     def mesh(
         self, name: str, mesh: Mesh, colors: np.ndarray,
@@ -63,10 +66,21 @@ class Scene:
                 f"{name}/{number}/label", label, depth_test=True, anchor="bottom-center", position=(0, 0, radius)
             )
 
+    def labels(self, name: str, places: np.ndarray, labels: Sequence[str]) -> None:
+        """Words at places (k, 3), above everything."""
+        self.clear(name)
+        self.api.add_frame(name, show_axes=False)
+        for number, (place, label) in enumerate(zip(places, labels, strict=True)):
+            self.api.add_label(f"{name}/{number}", label, anchor="bottom-center", position=place)
+
+    def has(self, name: str) -> bool:
+        """Whether something is drawn under the name."""
+        return self.api.get_handle_by_name(name) is not None
+
     def clear(self, *names: str) -> None:
         """Takes away what was drawn under the names and below them."""
         for name in names:
-            if self.api.get_handle_by_name(name) is not None:
+            if self.has(name):
                 self.api.remove_by_name(name)
 
 

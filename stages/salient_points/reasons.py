@@ -1,5 +1,7 @@
 """Why a glance finds a place salient: what each of its features adds to the log of the fixation density there."""
 
+from functools import lru_cache
+
 import numpy as np
 
 from stages.glance import samples_of_mesh, standardised
@@ -43,11 +45,17 @@ def contributions(
     """
     if method not in GLANCES:
         raise ValueError(f"method {method!r} is no sum of features: only {' and '.join(GLANCES)} are")
+    mesh, samples, values = _seen(mesh, up)
+    near, shares = samples.interpolation(mesh.vertices[vertices], mesh.vertex_normals[vertices])
+    return {name: weight * (values[name][near] * shares).sum(axis=1) for name, weight in GLANCES[method].items()}
+
+
+@lru_cache(maxsize=2)  # a person asks of one mesh again and again
+def _seen(mesh, up):
+    """(the mesh as it is looked at, its samples, their standardised features)."""
     mesh = normalise(rotate_to_z_up(orient(mesh)[0], up))
     samples = samples_of_mesh(mesh)
-    near, shares = samples.interpolation(mesh.vertices[vertices], mesh.vertex_normals[vertices])
-    values = standardised(samples)
-    return {name: weight * (values[name][near] * shares).sum(axis=1) for name, weight in GLANCES[method].items()}
+    return mesh, samples, standardised(samples)
 
 
 def reasons(
