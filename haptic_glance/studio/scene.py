@@ -8,6 +8,7 @@ import viser
 
 from stages.kit import Mesh
 
+MESH = "/mesh"  # the name of the mesh on the table
 EYE = np.array([1.05, -1.4, 0.6])  # where the camera starts, from the middle of an object of diameter 1
 BESIDE = np.array([0.8, 0.6, 0.0]) * 1.15  # where a second object stands, to the right of the first
 FIELD = 0.62  # radians from the lower to the upper edge of the picture
@@ -32,26 +33,19 @@ class Scene:
             self.client.camera.look_at = middle
 
     def mesh(
-        self, name: str, mesh: Mesh, colors: np.ndarray,
-        clicked: Callable[[np.ndarray, np.ndarray], None] | None = None, flat: bool = False,
-        at: Sequence[float] = (0, 0, 0),
-    ) -> None:  # fmt: skip
-        """A mesh with colours (n, 3) u1; clicked(origin, direction) gets the ray of a click, in the frame of the mesh.
-
-        flat: one normal a face, so that the faces are seen. at: where its middle lies.
-        """
+        self, name: str, mesh: Mesh, colors: np.ndarray, flat: bool = False, at: Sequence[float] = (0, 0, 0)
+    ) -> None:
+        """A mesh with colours (n, 3) u1. flat: one normal a face, so that the faces are seen. at: where it stands."""
         normals = None if flat else mesh.vertex_normals
         shown = trimesh.Trimesh(
-            mesh.vertices,
-            mesh.faces,
-            vertex_colors=linear(colors),
-            vertex_normals=normals,
-            process=False,
-            validate=False,
+            mesh.vertices, mesh.faces, vertex_normals=normals, vertex_colors=linear(colors), process=False
         )
-        handle = self.api.add_mesh_trimesh(name, shown, position=tuple(map(float, at)))
-        if clicked:
-            handle.on_click(lambda event: clicked(np.array(event.ray_origin) - at, np.array(event.ray_direction)))
+        self.api.add_mesh_trimesh(name, shown, position=tuple(map(float, at)))
+
+    def on_click(self, clicked: Callable[[np.ndarray, np.ndarray], None]) -> None:
+        """clicked(origin, direction) gets the ray of each click on the picture."""
+        # Not that of the mesh itself: the page would search all of its faces at each movement of the pointer.
+        self.api.on_click()(lambda event: clicked(np.array(event.ray_origin), np.array(event.ray_direction)))
 
     def markers(
         self, name: str, places: np.ndarray, labels: Sequence[str], colour: tuple[int, int, int] = RED,

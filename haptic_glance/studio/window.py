@@ -19,11 +19,9 @@ from .jobs import Job, Report
 from .opening import Opening
 from .panels import PANELS
 from .progress import Progress
-from .scene import Scene
+from .scene import BESIDE, MESH, Scene
 from .session import Session
 from .specimen import Specimen
-
-MESH = "/mesh"  # the name of the mesh on the table in the scene
 
 
 class Window:
@@ -35,6 +33,7 @@ class Window:
         self.jobs: dict[str, Job] = {}
         self.scene = Scene(client)
         bound_uploads(self.gui, self.refuse)
+        self.scene.on_click(self.clicked)
         self.progress = Progress(self.gui, self.on)
         self.opening = Opening(self, files, up)
         self.panels = [make(self) for make in PANELS]
@@ -128,14 +127,18 @@ class Window:
         """The mesh on the table coloured by values (n,) >= 0; None: in grey."""
         mesh = self.session.on_table.mesh
         grey = np.full((len(mesh.vertices), 3), 190, dtype=np.uint8)
-        self.scene.mesh(MESH, mesh, grey if values is None else viridis(vivid(values)), self.clicked)
+        self.scene.mesh(MESH, mesh, grey if values is None else viridis(vivid(values)))
 
     def clicked(self, origin: np.ndarray, direction: np.ndarray) -> None:
-        """A click on the mesh on the table."""
+        """A click on the picture."""
         self.run("", lambda: self._clicked(origin, direction))
 
     def _clicked(self, origin, direction):
-        hit = self.session.on_table.pick(origin, direction)
+        if self.session.specimen is None:
+            return
+        hit = self.session.specimen.pick(origin, direction)
+        if hit is None and self.session.other is not None:
+            hit = self.session.specimen.pick(origin - BESIDE, direction)
         if hit is not None:
             self.panel.on_click(hit)
 

@@ -40,6 +40,7 @@ def test_a_hollow_counts_against_a_place():
     dent = raised_ball([SIDE], [0.2], [-0.3], 5)
     found = contributions(dent, nearest(dent, (0.7, 0, 0)))
     assert found["convexity"] < 0 and "a hollow" not in dict(reasons(found, count=len(found))[0])
+    assert dict(reasons(found, against=True)[0])["a hollow"] == pytest.approx(found["convexity"][0])
 
 
 def test_the_axis_that_points_up_decides_what_is_high(knob):

@@ -1,5 +1,6 @@
 """What can be done with the mesh on the table: a panel a file, in the order in which they are offered."""
 
+from .levels import LevelsPanel
 from .look import LookPanel
 
-PANELS = (LookPanel,)
+PANELS = (LookPanel, LevelsPanel)

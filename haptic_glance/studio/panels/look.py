@@ -97,7 +97,7 @@ class LookPanel(Panel):
         self.window.show(first.saliency)
         scene.markers(POINTS, mesh.vertices[first.vertices], [str(row[0]) for row in first.points])
         if len(looks) > 1:
-            scene.mesh(OTHER, mesh, colours(mesh, looks[1].saliency), self.window.clicked, at=BESIDE)
+            scene.mesh(OTHER, mesh, colours(mesh, looks[1].saliency), at=BESIDE)
             scene.markers(f"{OTHER}/points", mesh.vertices[looks[1].vertices], [str(row[0]) for row in looks[1].points])
             scene.labels(NAMES, np.array([ABOVE, BESIDE + ABOVE]), [look.method for look in looks])
         self.explain(specimen, first)
@@ -178,9 +178,7 @@ def listing(look: Look, why: Sequence[Sequence[tuple[str, float]]]) -> str:
 
 def for_and_against(found: dict[str, np.ndarray], method: str) -> str:
     """The reasons for looking at one place, and those against, in Markdown."""
-    ours = reasons(found, method)[0]
-    theirs = reasons({name: -amount for name, amount in found.items()}, method)[0]
-    sides = {"For it": ours, "against it": [(words, -amount) for words, amount in theirs]}
+    sides = {"For it": reasons(found, method)[0], "against it": reasons(found, method, against=True)[0]}
     said = [
         f"{name}: " + ", ".join(f"{words} ({amount:+.1f})" for words, amount in side)
         for name, side in sides.items()
