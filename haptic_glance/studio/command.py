@@ -1,11 +1,14 @@
 """Opens a page on which a mesh can be looked at, simplified, touched and marked.
 
 The page is on this machine alone. Reads every STL, OBJ, PLY, OFF, GLB, point cloud and scan that is named, those of a
-folder, and what is uploaded in the page; nothing else.
+folder, meshes that the pipeline has stored (.npz), and what is uploaded in the page; nothing else. With --mark, a click
+marks what matters to a person: annotator, time (UTC), vertex, x, y, z on the mesh with z up, bounding-box centre 0,
+bounding sphere of radius 0.5. Several people may mark one mesh; saving replaces the rows of one of them.
 
 examples:
   haptic-glance studio bunny.stl
   haptic-glance studio scans --up y
+  haptic-glance studio data/folder/meshes/vase.npz --mark data/annotations
   haptic-glance studio
 """
 
@@ -32,6 +35,8 @@ def parser() -> argparse.ArgumentParser:
     command.add_argument("meshes", metavar="MESH", nargs="*", type=Path, help="a mesh file, or a folder of them")
     command.add_argument("--port", type=int, default=PORT, help="default %(default)s, or the next free one; 0: any")
     command.add_argument("--no-browser", action="store_true", help="print the address alone")
+    command.add_argument("--mark", metavar="FOLDER", type=Path, help="mark points, to FOLDER/MESH.csv")
+    command.add_argument("--annotator", metavar="NAME", default="", help="who marks (default: the page asks)")
     add_up(command)
     return command
 
@@ -42,7 +47,9 @@ def run(argv: Sequence[str]) -> None:
     files = [file for place in chosen.meshes for file in mesh_files(place)]
     with from_extra():
         from .app import Studio
-    studio = Studio(files, chosen.port, chosen.up)
+        from .session import Settings
+    marking = {"marks": chosen.mark, "panel": "Mark"} if chosen.mark else {}
+    studio = Studio(Settings(files, chosen.up, annotator=chosen.annotator, **marking), chosen.port)
     print(f"studio: open {studio.address} ; Ctrl-C here ends it", flush=True)
     # Without a screen the standard library would open a text browser in this terminal.
     screen = sys.platform in ("darwin", "win32") or {"DISPLAY", "WAYLAND_DISPLAY", "BROWSER"} & set(os.environ)

@@ -96,9 +96,7 @@ def bound_uploads(gui: viser.GuiApi, refuse: Callable[[str, int], None], limit: 
             gui._current_file_upload_states.pop(message.transfer_uuid, None)
             room.pop(message.transfer_uuid)
 
-    for kind, old, new in (
-        (messages.FileTransferStartUpload, start, started),
-        (messages.FileTransferPart, part, arrived),
-    ):
-        interface.unregister_handler(kind, old)
-        interface.register_handler(kind, new)
+    interface.unregister_handler(messages.FileTransferStartUpload, start)
+    interface.unregister_handler(messages.FileTransferPart, part)
+    interface.register_handler(messages.FileTransferStartUpload, started)
+    interface.register_handler(messages.FileTransferPart, arrived)

@@ -1,6 +1,6 @@
 """The top of the page: which mesh is on the table, where else there is one, and which axis points up."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -8,6 +8,7 @@ from stages.meshes.own import names_of
 
 from .guard import MAX_UPLOAD
 from .jobs import Report
+from .session import Settings
 from .specimen import Specimen, open_content, open_file, turned
 
 if TYPE_CHECKING:
@@ -17,16 +18,17 @@ NOTHING = "none"
 
 
 class Opening:
-    """files: those that the person named when the studio was started; no others are read."""
+    """Reads the files that the person named when the studio was started, and no others."""
 
-    def __init__(self, window: "Window", files: Sequence[Path], up: str | None) -> None:
-        self.window, self.files, self.up = window, dict(zip(names_of(list(files)), files, strict=True)), up
+    def __init__(self, window: "Window", settings: Settings) -> None:
+        self.window, self.up = window, settings.up
+        self.files = dict(zip(names_of(list(settings.files)), settings.files, strict=True))
         gui = window.gui
         with gui.add_folder("Mesh"):
             self.about = gui.add_markdown("Upload a mesh, a point cloud or a scan.")
             self.choice = gui.add_dropdown("Open", [*self.files] or [NOTHING], visible=len(self.files) > 1)
             self.upload = gui.add_upload_button("Upload a file", hint=f"at most {MAX_UPLOAD >> 20} MB")
-            self.axis = gui.add_dropdown("Up axis", ["x", "y", "z"], initial_value=up or "z")
+            self.axis = gui.add_dropdown("Up axis", ["x", "y", "z"], initial_value=self.up or "z")
         window.on(self.choice.on_update, lambda: self.open(self.files[self.choice.value]))
         window.on(self.upload.on_upload, self.uploaded)
         window.on(self.axis.on_update, self.turn)

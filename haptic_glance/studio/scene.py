@@ -9,11 +9,13 @@ import viser
 from stages.kit import Mesh
 
 MESH = "/mesh"  # the name of the mesh on the table
+MIDDLE = np.zeros(3)
+GREY = 190  # of what has no colour
 EYE = np.array([1.05, -1.4, 0.6])  # where the camera starts, from the middle of an object of diameter 1
 BESIDE = np.array([0.8, 0.6, 0.0]) * 1.15  # where a second object stands, to the right of the first
 FIELD = 0.62  # radians from the lower to the upper edge of the picture
 MARKER = 0.011  # radius, in diameters of the object
-RED, BLUE = (216, 27, 27), (0, 85, 140)
+RED = (216, 27, 27)
 
 
 class Scene:
@@ -25,22 +27,20 @@ class Scene:
 
     def aim(self, wide: bool = False) -> None:
         """Puts the camera where it starts; wide: so that there is room for a second mesh beside the first."""
-        middle = BESIDE / 2 if wide else np.zeros(3)
+        middle = BESIDE / 2 if wide else MIDDLE
         with self.client.atomic():
             self.client.camera.up_direction = (0.0, 0.0, 1.0)
             self.client.camera.fov = FIELD
             self.client.camera.position = middle + EYE * (1.7 if wide else 1.0)
             self.client.camera.look_at = middle
 
-    def mesh(
-        self, name: str, mesh: Mesh, colors: np.ndarray, flat: bool = False, at: Sequence[float] = (0, 0, 0)
-    ) -> None:
+    def mesh(self, name: str, mesh: Mesh, colors: np.ndarray, flat: bool = False, at: np.ndarray = MIDDLE) -> None:
         """A mesh with colours (n, 3) u1. flat: one normal a face, so that the faces are seen. at: where it stands."""
         normals = None if flat else mesh.vertex_normals
         shown = trimesh.Trimesh(
             mesh.vertices, mesh.faces, vertex_normals=normals, vertex_colors=linear(colors), process=False
         )
-        self.api.add_mesh_trimesh(name, shown, position=tuple(map(float, at)))
+        self.api.add_mesh_trimesh(name, shown, position=at)
 
     def on_click(self, clicked: Callable[[np.ndarray, np.ndarray], None]) -> None:
         """clicked(origin, direction) gets the ray of each click on the picture."""

@@ -1,9 +1,26 @@
 """What one browser window holds. It is free of viser, so that it can be tested and outlives a lost connection."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 from .specimen import Look, Specimen
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What the person said when the studio was started, for all windows.
+
+    files: what can be opened besides uploads. up: their axis, None for the files' own. marks: the folder of the marks.
+    panel: the one that is shown first, by its title.
+    """
+
+    files: Sequence[Path] = ()
+    up: str | None = None
+    marks: Path = Path("data/annotations")
+    annotator: str = ""
+    panel: str = "Look"
 
 
 @dataclass

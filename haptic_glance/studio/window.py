@@ -3,8 +3,7 @@
 import os
 import sys
 import traceback
-from collections.abc import Callable, Sequence
-from pathlib import Path
+from collections.abc import Callable
 from threading import RLock
 from typing import Any
 
@@ -19,23 +18,23 @@ from .jobs import Job, Report
 from .opening import Opening
 from .panels import PANELS
 from .progress import Progress
-from .scene import BESIDE, MESH, Scene
-from .session import Session
+from .scene import BESIDE, GREY, MESH, Scene
+from .session import Session, Settings
 from .specimen import Specimen
 
 
 class Window:
-    """Everything of one viser client. files: what it may open besides uploads."""
+    """Everything of one viser client."""
 
-    def __init__(self, client: viser.ClientHandle, files: Sequence[Path], up: str | None, session: Session) -> None:
-        self.client, self.gui, self.session = client, client.gui, session
+    def __init__(self, client: viser.ClientHandle, settings: Settings, session: Session) -> None:
+        self.client, self.gui, self.settings, self.session = client, client.gui, settings, session
         self.lock = RLock()  # one callback at a time
         self.jobs: dict[str, Job] = {}
         self.scene = Scene(client)
         bound_uploads(self.gui, self.refuse)
         self.scene.on_click(self.clicked)
         self.progress = Progress(self.gui, self.on)
-        self.opening = Opening(self, files, up)
+        self.opening = Opening(self, settings)
         self.panels = [make(self) for make in PANELS]
         self.tabs = self.gui.add_button_group("Panel", [panel.title for panel in self.panels])
         self.folders = []
@@ -45,7 +44,7 @@ class Window:
             with folder:
                 panel.build(self.gui)
         self.panel = self.panels[0]
-        self.choose(self.panel.title)
+        self.choose(settings.panel)
         self.on(self.tabs.on_click, lambda: self.choose(self.tabs.value))
 
     def start(self) -> None:
@@ -124,10 +123,10 @@ class Window:
         self.run(self.panel.title, self.panel.on_show)
 
     def show(self, values: np.ndarray | None) -> None:
-        """The mesh on the table coloured by values (n,) >= 0; None: in grey."""
+        """The mesh on the table coloured by values (n,) >= 0; None: in its own colours, or grey."""
         mesh = self.session.on_table.mesh
-        grey = np.full((len(mesh.vertices), 3), 190, dtype=np.uint8)
-        self.scene.mesh(MESH, mesh, grey if values is None else viridis(vivid(values)))
+        own = np.full((len(mesh.vertices), 3), GREY, dtype=np.uint8) if mesh.colors is None else mesh.colors
+        self.scene.mesh(MESH, mesh, own if values is None else viridis(vivid(values)))
 
     def clicked(self, origin: np.ndarray, direction: np.ndarray) -> None:
         """A click on the picture."""

@@ -2,5 +2,6 @@
 
 from .levels import LevelsPanel
 from .look import LookPanel
+from .mark import MarkPanel
 
-PANELS = (LookPanel, LevelsPanel)
+PANELS = (LookPanel, LevelsPanel, MarkPanel)

@@ -11,12 +11,11 @@ from stages.saliency import as_csv
 from ..jobs import Report
 from ..levels import HARD, SOFT, Level, Levels
 from ..panel import Panel
-from ..scene import MESH
+from ..scene import GREY, MESH
 
 SHARE = 10  # % of the faces at first
 SETTLE = 0.25  # seconds that the slider rests before work begins
 SALIENCY, ERROR, PLAIN = "saliency", "error", "faces"
-GREY = 190
 
 
 class LevelsPanel(Panel):
@@ -53,7 +52,7 @@ class LevelsPanel(Panel):
 
         def work(report: Report) -> Level:
             time.sleep(SETTLE)
-            report(0.05)  # ends here where the slider has moved on
+            report(0.05, "")  # ends here where the slider has moved on
             return levels.at(max(round(levels.faces * share / 100), 4), kind, report)
 
         self.window.work("Simplifying", work, self.put, slot=self.title)
