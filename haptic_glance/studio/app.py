@@ -41,14 +41,14 @@ class Studio:
     def session_of(self, client: viser.ClientHandle) -> tuple[str, Session]:
         """(name, Session) that a window of this browser has left last, or a new one."""
         try:
-            known = (client.storage.get_item(ITEM, SECONDS) or "").split()
+            known = (client.local_storage.get_item(ITEM, SECONDS) or "").split()
         except (RuntimeError, TimeoutError):  # a browser that stores nothing
             known = []
         name = next((name for name in reversed(self.left) if name in known), None)
         if name is not None:
             return name, self.left.pop(name)
         name = uuid.uuid4().hex
-        client.storage.set_item(ITEM, " ".join([*known, name][-4 * LEFT :]))
+        client.local_storage.set_item(ITEM, " ".join([*known, name][-4 * LEFT :]))
         return name, Session()
 
     def gone(self, client: viser.ClientHandle) -> None:
