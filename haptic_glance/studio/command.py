@@ -21,8 +21,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from stages.kit.extras import from_extra
-from stages.meshes.own import mesh_files
 from stages.meshes.up import add_up
+
+from .specimen import files_at
 
 PORT = 8062
 
@@ -44,7 +45,7 @@ def parser() -> argparse.ArgumentParser:
 def run(argv: Sequence[str]) -> None:
     """Runs the command line `argv`, without the program's name, until Ctrl-C."""
     chosen = parser().parse_args(argv)
-    files = [file for place in chosen.meshes for file in mesh_files(place)]
+    files = [file for place in chosen.meshes for file in files_at(place)]
     with from_extra():
         from .app import Studio
         from .session import Settings

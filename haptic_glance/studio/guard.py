@@ -14,7 +14,13 @@ from websockets.http11 import Request, Response
 
 HOST = "127.0.0.1"  # not accessible from other machines
 MAX_UPLOAD = 300 * 2**20  # bytes of one file
+# The page is one file, which compiles the Markdown of its panels.
+POLICY = (
+    "default-src 'self' 'unsafe-inline' 'unsafe-eval' data: blob:; connect-src 'self' data: blob:; form-action 'none';"
+    " base-uri 'none'; frame-ancestors 'none'"
+)
 HEADERS = {
+    "Content-Security-Policy": POLICY,
     "Cache-Control": "no-store", "Cross-Origin-Resource-Policy": "same-origin", "X-Content-Type-Options": "nosniff",
     "X-Frame-Options": "DENY", "Referrer-Policy": "no-referrer",
 }  # fmt: skip

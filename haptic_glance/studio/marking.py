@@ -3,8 +3,6 @@
 from datetime import UTC, datetime
 from pathlib import Path
 
-import numpy as np
-
 from stages.kit import Mesh
 from stages.weights.annotate import MarksChanged, check_on_mesh, read_marks, write_marks
 from stages.weights.annotate.marks import check_annotator, utc
@@ -84,8 +82,3 @@ class Marking:
         check_on_mesh(stored, self.mesh, self.path)
         own = stored[stored.annotator == self.annotator]
         return list(zip(own.time, map(int, own.vertex), strict=True))
-
-    @property
-    def places(self) -> np.ndarray:
-        """(k, 3) the marked vertices."""
-        return self.mesh.vertices[[vertex for _, vertex in self.marks]].reshape(-1, 3)

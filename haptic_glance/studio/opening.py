@@ -8,6 +8,7 @@ from stages.meshes.own import names_of
 
 from .guard import MAX_UPLOAD
 from .jobs import Report
+from .scene import escaped
 from .session import Settings
 from .specimen import Specimen, open_content, open_file, turned
 
@@ -69,7 +70,9 @@ class Opening:
 
     def named(self, specimen: Specimen) -> None:
         """Says what is on the table."""
-        self.about.content = f"**{specimen.name}**: {len(specimen.given.faces):,} faces, {specimen.note}"
+        self.about.content = (
+            f"**{escaped(specimen.name)}**: {len(specimen.given.faces):,} faces, {escaped(specimen.note)}"
+        )
         self.axis.value = specimen.given.up
 
     def refuse(self, name: str, size: int) -> None:

@@ -7,6 +7,7 @@ from typing import Any
 import viser
 
 from .jobs import Job
+from .scene import escaped
 
 SOON = 0.4  # seconds; what is done before is not shown
 
@@ -34,7 +35,7 @@ class Progress:
         """A job has come further, or has been running for a while."""
         with self.lock:
             if self.jobs and self.jobs[-1] is job:
-                self.text.content = f"**{job.title}** {job.text}"
+                self.text.content = f"**{escaped(job.title)}** {escaped(job.text)}"
                 self.bar.value = 100 * min(max(job.share, 0.0), 1.0)
                 self._visible(True)
 

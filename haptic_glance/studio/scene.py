@@ -1,5 +1,6 @@
 """What is drawn in one window: coloured meshes, numbered markers."""
 
+import re
 from collections.abc import Callable, Sequence
 
 import numpy as np
@@ -48,17 +49,16 @@ class Scene:
         self.api.on_click()(lambda event: clicked(np.array(event.ray_origin), np.array(event.ray_direction)))
 
     def markers(
-        self, name: str, places: np.ndarray, labels: Sequence[str], colour: tuple[int, int, int] = RED,
-        radius: float = MARKER,
+        self, name: str, places: np.ndarray, normals: np.ndarray, labels: Sequence[str],
+        colour: tuple[int, int, int] = RED, radius: float = MARKER,
     ) -> None:  # fmt: skip
-        """Balls at places (k, 3), each with its label."""
+        """Balls at places (k, 3) of a surface with normals (k, 3), each with its label in front of it."""
         self.clear(name)
         self.api.add_frame(name, show_axes=False)
-        for number, (place, label) in enumerate(zip(places, labels, strict=True)):
+        for number, (place, normal, label) in enumerate(zip(places, normals, labels, strict=True)):
             self.api.add_icosphere(f"{name}/{number}", radius, colour, subdivisions=2, position=place)
-            self.api.add_label(
-                f"{name}/{number}/label", label, depth_test=True, anchor="bottom-center", position=(0, 0, radius)
-            )
+            front = (2 * normal + (0, 0, 1)) * radius
+            self.api.add_label(f"{name}/{number}/label", label, depth_test=True, anchor="bottom-center", position=front)
 
     def labels(self, name: str, places: np.ndarray, labels: Sequence[str]) -> None:
         """Words at places (k, 3), above everything."""
@@ -76,6 +76,11 @@ class Scene:
         for name in names:
             if self.has(name):
                 self.api.remove_by_name(name)
+
+
+def escaped(text: str) -> str:
+    """Text in which nothing is Markdown or code: viser's page runs what a name of a file may hold."""
+    return re.sub(r"([^\w\s/,:])", r"\\\1", text)
 
 
 def linear(colors: np.ndarray) -> np.ndarray:

@@ -13,7 +13,9 @@ from stages.kit.files import read_mesh
 from stages.kit.rays import RayScene
 from stages.meshes import normalise, rotate_to_z_up
 from stages.meshes.colours import bake_texture
-from stages.meshes.load import load_unnamed, parse
+from stages.meshes.load import MeshError, load_unnamed, parse
+from stages.meshes.orient import orient
+from stages.meshes.own import mesh_files
 from stages.meshes.up import upright_by
 from stages.saliency import points_of
 from stages.salient_points import METHODS, detect
@@ -70,8 +72,11 @@ class Specimen:
 
     @cached_property
     def mesh(self) -> Mesh:
-        """The mesh as it is shown and clicked: z up, its bounding sphere 0.5 about 0. Vertex ids are the file's."""
-        return normalise(rotate_to_z_up(self.baked))
+        """The mesh as it is shown and clicked: z up, its bounding sphere 0.5 about 0. Vertex ids are the file's.
+
+        Closed parts face outwards, as for the look and the touch.
+        """
+        return normalise(rotate_to_z_up(orient(self.baked)[0]))
 
     @cached_property
     def rays(self) -> RayScene:
@@ -105,6 +110,17 @@ class Specimen:
         if found.saliency is None:
             raise ValueError(f"method {method!r} has no saliency: it only places points")
         return Look(method, found.saliency, points_of(self.given, found.points, found.saliency))
+
+
+def files_at(place: Path) -> list[Path]:
+    """The file itself, or what a folder holds: its meshes, or else those that the pipeline stored there. MeshError."""
+    stored = sorted(place.glob(f"*{STORED}")) if place.is_dir() else []
+    try:
+        return mesh_files(place)
+    except MeshError:
+        if not stored:
+            raise
+        return stored
 
 
 def open_file(path: Path, up: str | None = None) -> Specimen:

@@ -92,6 +92,10 @@ class Window:
             self.progress.begin(job)
             job.start()
 
+    def download(self, name: str, content: bytes) -> None:
+        """Hands a file to the browser."""
+        self.client.send_file_download(name, content, save_immediately=True)
+
     def say(self, title: str, text: str = "", colour: Any = None, seconds: float | None = 6) -> None:
         """Shows a message; seconds: until it closes by itself, None for never."""
         self.client.add_notification(title, text, color=colour, auto_close_seconds=seconds)

@@ -91,7 +91,7 @@ class LevelsPanel(Panel):
         session, level, levels, kind = self.window.session, self.level, self.levels, self.kind.value
         if level is None or levels is None:
             raise ValueError("there is no level yet: wait until it is shown")
-        name, send = session.on_table.name, self.window.client.send_file_download
+        name, send = session.on_table.name, self.window.download
         if self.saves.value.startswith("CSV"):
             return send(f"{name}_points.csv", (as_csv(levels.looked.points) + "\n").encode())
         suffix = f".{self.saves.value.lower()}"

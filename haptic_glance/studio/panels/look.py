@@ -95,12 +95,17 @@ class LookPanel(Panel):
             scene.aim(wide=len(looks) > 1)
         self.on_hide()
         self.window.show(first.saliency)
-        scene.markers(POINTS, mesh.vertices[first.vertices], [str(row[0]) for row in first.points])
+        self.number(POINTS, mesh, first)
         if len(looks) > 1:
             scene.mesh(OTHER, mesh, colours(mesh, looks[1].saliency), at=BESIDE)
-            scene.markers(f"{OTHER}/points", mesh.vertices[looks[1].vertices], [str(row[0]) for row in looks[1].points])
+            self.number(f"{OTHER}/points", mesh, looks[1])
             scene.labels(NAMES, np.array([ABOVE, BESIDE + ABOVE]), [look.method for look in looks])
         self.explain(specimen, first)
+
+    def number(self, name: str, mesh: Mesh, look: Look) -> None:
+        """Draws the points of a Look with their ranks."""
+        at, ranks = look.vertices, [str(row[0]) for row in look.points]
+        self.window.scene.markers(name, mesh.vertices[at], mesh.vertex_normals[at], ranks)
 
     def explain(self, specimen: Specimen, look: Look) -> None:
         """Lists the points; with the reasons, if the method has some, when they are known."""
@@ -139,7 +144,7 @@ class LookPanel(Panel):
         """Hands out the points in the file's coordinates."""
         session = self.window.session
         content = as_csv(session.look().points) + "\n"
-        self.window.client.send_file_download(f"{session.on_table.name}_points.csv", content.encode())
+        self.window.download(f"{session.on_table.name}_points.csv", content.encode())
 
     def save_mesh(self) -> None:
         """Hands out the coloured mesh in the file's coordinates, turned upright as glTF has it."""
@@ -148,7 +153,7 @@ class LookPanel(Panel):
         name = f"{specimen.name}_{look.method}.glb"
         self.window.work(
             f"Writing {name}", lambda _: as_bytes(coloured(specimen.given, look.saliency), ".glb"),
-            lambda content: self.window.client.send_file_download(name, content),
+            lambda content: self.window.download(name, content),
         )  # fmt: skip
 
 

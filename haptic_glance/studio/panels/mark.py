@@ -1,10 +1,10 @@
 """What matters to a person: a click marks a vertex, and every change is saved at once."""
 
-import numpy as np
 import viser
 
 from ..marking import Marking
 from ..panel import Panel
+from ..scene import escaped
 from ..specimen import Hit
 
 MARKS = "/marks"
@@ -23,9 +23,9 @@ class MarkPanel(Panel):
         gui.add_markdown("Click the points of this object that matter to you, from all sides.")
         self.name = gui.add_text("Your name", settings.annotator, hint="as it will stand in the file")
         self.state = gui.add_markdown("")
-        self.undo_button = gui.add_button("Undo", disabled=True)
+        self.undo_button = gui.add_button("Undo", disabled=True, color="gray")
         self.number = gui.add_dropdown("Point", ["-"])
-        self.remove_button = gui.add_button("Remove this point", disabled=True)
+        self.remove_button = gui.add_button("Remove this point", disabled=True, color="gray")
         self.list = gui.add_markdown("")
         self.window.on(self.name.on_update, self.on_show)
         self.window.on(self.undo_button.on_click, self.undo)
@@ -82,7 +82,8 @@ class MarkPanel(Panel):
         marking = self.marking
         marks = marking.marks if marking else []
         numbers = [str(k) for k in range(1, len(marks) + 1)]
-        self.window.scene.markers(MARKS, marking.places if marking else np.zeros((0, 3)), numbers, BLUE)
+        mesh, at = self.window.session.on_table.mesh, [vertex for _, vertex in marks]
+        self.window.scene.markers(MARKS, mesh.vertices[at], mesh.vertex_normals[at], numbers, BLUE)
         self.undo_button.disabled = self.remove_button.disabled = not marks
         self.number.options = tuple(numbers) or ("-",)
         self.number.value = self.number.options[-1]
@@ -93,4 +94,4 @@ class MarkPanel(Panel):
 def state(marking: Marking) -> str:
     """How many points there are, and whether they are saved, in Markdown."""
     count = f"{len(marking.marks)} point{'' if len(marking.marks) == 1 else 's'}"
-    return f"**{count}**, all saved in `{marking.path}`" if marking.saved else f"**{count}, not saved**"
+    return f"**{count}**, all saved in {escaped(str(marking.path))}" if marking.saved else f"**{count}, not saved**"
