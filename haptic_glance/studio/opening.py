@@ -70,9 +70,8 @@ class Opening:
 
     def named(self, specimen: Specimen) -> None:
         """Says what is on the table."""
-        self.about.content = (
-            f"**{escaped(specimen.name)}**: {len(specimen.given.faces):,} faces, {escaped(specimen.note)}"
-        )
+        count = f"{len(specimen.given.faces):,} faces"
+        self.about.content = f"**{escaped(specimen.name)}**: {count}, {escaped(specimen.note)}"
         self.axis.value = specimen.given.up
 
     def refuse(self, name: str, size: int) -> None:

@@ -25,6 +25,7 @@ class Scene:
     def __init__(self, client: viser.ClientHandle) -> None:
         self.client, self.api = client, client.scene
         self.api.set_up_direction("+z")
+        self.api.configure_default_lights(cast_shadow=False)  # shadows would darken what the colours say
 
     def aim(self, wide: bool = False) -> None:
         """Puts the camera where it starts; wide: so that there is room for a second mesh beside the first."""
@@ -41,7 +42,7 @@ class Scene:
         shown = trimesh.Trimesh(
             mesh.vertices, mesh.faces, vertex_normals=normals, vertex_colors=linear(colors), process=False
         )
-        self.api.add_mesh_trimesh(name, shown, position=at)
+        self.api.add_mesh_trimesh(name, shown, position=at, cast_shadow=False, receive_shadow=False)
 
     def on_click(self, clicked: Callable[[np.ndarray, np.ndarray], None]) -> None:
         """clicked(origin, direction) gets the ray of each click on the picture."""
@@ -80,7 +81,7 @@ class Scene:
 
 def escaped(text: str) -> str:
     """Text in which nothing is Markdown or code: viser's page runs what a name of a file may hold."""
-    return re.sub(r"([^\w\s/,:])", r"\\\1", text)
+    return re.sub(r"([^\w\s/,:]|_)", r"\\\1", text)
 
 
 def linear(colors: np.ndarray) -> np.ndarray:
