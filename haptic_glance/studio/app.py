@@ -5,6 +5,7 @@ import uuid
 import viser
 
 from .guard import HOST, LocalServer
+from .opening import THEME
 from .session import Session, Settings
 from .window import Window
 
@@ -21,7 +22,7 @@ class Studio:
         self.windows: dict[int, tuple[str, Window]] = {}  # client -> name of its session, window
         self.left: dict[str, Session] = {}
         self.server = LocalServer(port, "Haptic Glance")
-        self.server.gui.configure_theme(show_logo=False, show_share_button=False, control_width="large")
+        self.server.gui.configure_theme(**THEME)
         self.server.gui.main_panel.dock_right()
         self.server.on_client_connect(self.connected)
         self.server.on_client_disconnect(self.gone)

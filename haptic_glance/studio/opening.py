@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from stages.meshes.own import names_of
 
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from .window import Window
 
 NOTHING = "none"
+THEME: dict[str, Any] = {"show_logo": False, "show_share_button": False, "control_width": "large"}
 
 
 class Opening:
@@ -29,10 +30,12 @@ class Opening:
             self.about = gui.add_markdown("Upload a mesh, a point cloud or a scan.")
             self.choice = gui.add_dropdown("Open", [*self.files] or [NOTHING], visible=len(self.files) > 1)
             self.upload = gui.add_upload_button("Upload a file", hint=f"at most {MAX_UPLOAD >> 20} MB")
+            self.dark = gui.add_checkbox("Dark", False)
             self.axis = gui.add_dropdown("Up axis", ["x", "y", "z"], initial_value=self.up or "z")
         window.on(self.choice.on_update, lambda: self.open(self.files[self.choice.value]))
         window.on(self.upload.on_upload, self.uploaded)
         window.on(self.axis.on_update, self.turn)
+        window.on(self.dark.on_update, lambda: gui.configure_theme(**THEME, dark_mode=self.dark.value))
 
     def first(self) -> None:
         """Opens the first of the files, if there is one."""

@@ -4,16 +4,19 @@ import re
 from collections.abc import Callable, Sequence
 
 import numpy as np
-import trimesh
 import viser
 
 from stages.kit import Mesh
+
+from .glb import glb
 
 MESH = "/mesh"  # the name of the mesh on the table
 MIDDLE = np.zeros(3)
 GREY = 190  # of what has no colour
 EYE = np.array([1.05, -1.4, 0.6])  # where the camera starts, from the middle of an object of diameter 1
 BESIDE = np.array([0.8, 0.6, 0.0]) * 1.15  # where a second object stands, to the right of the first
+AMBIENT = 1.5  # a full one is pi: the rest shows the shape
+LIGHTS = (((1.0, -1.4, 1.6), 1.9), ((-1.4, 1.0, 0.8), 1.2), ((0.3, 0.6, -1.0), 0.6))  # where from, how bright
 FIELD = 0.62  # radians from the lower to the upper edge of the picture
 MARKER = 0.011  # radius, in diameters of the object
 RED = (216, 27, 27)
@@ -25,7 +28,15 @@ class Scene:
     def __init__(self, client: viser.ClientHandle) -> None:
         self.client, self.api = client, client.scene
         self.api.set_up_direction("+z")
-        self.api.configure_default_lights(cast_shadow=False)  # shadows would darken what the colours say
+        self._light()
+
+    def _light(self):
+        # The environment map that viser lights with takes five times the whole rest where there is no graphics card.
+        self.api.configure_environment_map(None)
+        self.api.configure_default_lights(enabled=False)
+        self.api.add_light_ambient("/light", intensity=AMBIENT)
+        for number, (place, intensity) in enumerate(LIGHTS):
+            self.api.add_light_directional(f"/light/{number}", intensity=intensity, position=place)
 
     def aim(self, wide: bool = False) -> None:
         """Puts the camera where it starts; wide: so that there is room for a second mesh beside the first."""
@@ -38,11 +49,7 @@ class Scene:
 
     def mesh(self, name: str, mesh: Mesh, colors: np.ndarray, flat: bool = False, at: np.ndarray = MIDDLE) -> None:
         """A mesh with colours (n, 3) u1. flat: one normal a face, so that the faces are seen. at: where it stands."""
-        normals = None if flat else mesh.vertex_normals
-        shown = trimesh.Trimesh(
-            mesh.vertices, mesh.faces, vertex_normals=normals, vertex_colors=linear(colors), process=False
-        )
-        self.api.add_mesh_trimesh(name, shown, position=at, cast_shadow=False, receive_shadow=False)
+        self.api.add_glb(name, glb(mesh, colors, flat), position=at, cast_shadow=False, receive_shadow=False)
 
     def on_click(self, clicked: Callable[[np.ndarray, np.ndarray], None]) -> None:
         """clicked(origin, direction) gets the ray of each click on the picture."""
@@ -82,8 +89,3 @@ class Scene:
 def escaped(text: str) -> str:
     """Text in which nothing is Markdown or code: viser's page runs what a name of a file may hold."""
     return re.sub(r"([^\w\s/,:]|_)", r"\\\1", text)
-
-
-def linear(colors: np.ndarray) -> np.ndarray:
-    """Colours (n, 3) u1 as a glTF has them, without the display's gamma."""
-    return np.rint(255 * (colors / 255.0) ** 2.2).astype(np.uint8)
