@@ -23,7 +23,6 @@ class Studio:
         self.left: dict[str, Session] = {}
         self.server = LocalServer(port, "Haptic Glance")
         self.server.gui.configure_theme(**THEME)
-        self.server.gui.main_panel.dock_right()
         self.server.on_client_connect(self.connected)
         self.server.on_client_disconnect(self.gone)
 

@@ -2,9 +2,11 @@
 
 import functools
 import http
+import io
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, redirect_stdout
+from pathlib import Path
 from typing import Any
 
 import viser
@@ -12,6 +14,7 @@ import websockets.asyncio.server as sockets
 from viser import _messages as messages
 from websockets.http11 import Request, Response
 
+ALIVE = Path(__file__).with_name("alive.html")  # what the page says when the studio has ended
 HOST = "127.0.0.1"  # not accessible from other machines
 MAX_UPLOAD = 300 * 2**20  # bytes of one file
 # The page is one file, which compiles the Markdown of its panels.
@@ -31,7 +34,7 @@ class LocalServer(viser.ViserServer):
     """viser's server, bound to 127.0.0.1, which answers only requests of its own page and shares nothing."""
 
     def __init__(self, port: int, label: str) -> None:
-        with guarded():
+        with guarded(), redirect_stdout(io.StringIO()):  # the command says where the page is
             super().__init__(host=HOST, port=port, label=label, verbose=False)
 
     def request_share_url(self, verbose: bool = True) -> None:
@@ -60,8 +63,16 @@ def answer(then: Callable[..., Any], connection: sockets.ServerConnection, reque
     if not is_own(request.headers.get_all("Host"), request.headers.get_all("Origin"), port):
         text = f"this page is at http://{HOST}:{port}/ only\n"
         response = connection.respond(http.HTTPStatus.FORBIDDEN, text)
+    elif request.path == "/alive":
+        response = connection.respond(http.HTTPStatus.OK, "")
     else:
+        if "Accept-Encoding" in request.headers:
+            del request.headers["Accept-Encoding"]  # so that the page can be added to
         response = then(connection, request)
+        if request.path == "/" and response is not None and request.headers.get("Upgrade") is None:
+            response.body = response.body.replace(b"<head>", b"<head>" + ALIVE.read_bytes(), 1)
+            del response.headers["Content-Length"]  # or it would have two
+            response.headers["Content-Length"] = str(len(response.body))
     if isinstance(response, Response):
         for name, value in HEADERS.items():
             response.headers[name] = value

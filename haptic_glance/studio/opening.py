@@ -74,7 +74,7 @@ class Opening:
     def named(self, specimen: Specimen) -> None:
         """Says what is on the table."""
         count = f"{len(specimen.given.faces):,} faces"
-        self.about.content = f"**{escaped(specimen.name)}**: {count}, {escaped(specimen.note)}"
+        self.about.content = f"**{escaped(specimen.name)}**: {count}, {escaped(specimen.note.partition(' (')[0])}"
         self.axis.value = specimen.given.up
 
     def refuse(self, name: str, size: int) -> None:

@@ -40,11 +40,14 @@ class Scene:
 
     def aim(self, wide: bool = False) -> None:
         """Puts the camera where it starts; wide: so that there is room for a second mesh beside the first."""
-        middle = BESIDE / 2 if wide else MIDDLE
+        middle, away = (BESIDE / 2, 1.7) if wide else (MIDDLE, 1.0)
+        if self.client.camera.aspect < 1:  # a telephone, whose lower half the panel covers
+            away *= 0.8 / self.client.camera.aspect
+            middle = middle - (0, 0, 0.33 * away)
         with self.client.atomic():
             self.client.camera.up_direction = (0.0, 0.0, 1.0)
             self.client.camera.fov = FIELD
-            self.client.camera.position = middle + EYE * (1.7 if wide else 1.0)
+            self.client.camera.position = middle + EYE * away
             self.client.camera.look_at = middle
 
     def mesh(self, name: str, mesh: Mesh, colors: np.ndarray, flat: bool = False, at: np.ndarray = MIDDLE) -> None:

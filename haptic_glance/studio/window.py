@@ -31,6 +31,8 @@ class Window:
         self.lock = RLock()  # one callback at a time
         self.jobs: dict[str, Job] = {}
         self.scene = Scene(client)
+        if client.camera.aspect > 1:
+            self.gui.main_panel.dock_right()
         bound_uploads(self.gui, self.refuse)
         self.scene.on_click(self.clicked)
         self.progress = Progress(self.gui, self.on)
