@@ -73,8 +73,8 @@ class Opening:
 
     def named(self, specimen: Specimen) -> None:
         """Says what is on the table."""
-        count = f"{len(specimen.given.faces):,} faces"
-        self.about.content = f"**{escaped(specimen.name)}**: {count}, {escaped(specimen.note.partition(' (')[0])}"
+        count, note = f"{len(specimen.given.faces):,} faces", specimen.note.partition(" (")[0]
+        self.about.content = f"**{escaped(specimen.name)}**: {count}, {escaped(note)}"
         self.axis.value = specimen.given.up
 
     def refuse(self, name: str, size: int) -> None:

@@ -218,7 +218,7 @@ def test_a_telephone_shows_the_mesh_and_every_control(window):
     assert hand.page.evaluate("document.documentElement.scrollWidth") <= NARROW["width"]
     for name in ("Look", "Levels", "Mark"):
         box = hand.page.get_by_role("button", name=name, exact=True).bounding_box()
-        assert 0 <= box["x"] and box["x"] + box["width"] <= NARROW["width"]
+        assert box["x"] >= 0 and box["x"] + box["width"] <= NARROW["width"]
 
 
 def test_the_page_says_when_the_server_has_ended(window, studio):

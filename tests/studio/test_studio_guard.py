@@ -40,6 +40,7 @@ def dialled(port, **options):
 def test_the_page_is_served_and_names_no_other_machine(port):
     answer, body = ask(port)
     assert answer.status == 200 and b"<html" in body[:500].lower()
+    assert body.count(b"<title>Haptic Glance") == 1 and answer.headers.get_all("Content-Length") == [str(len(body))]
     for name, value in {"X-Frame-Options": "DENY", "X-Content-Type-Options": "nosniff"}.items():
         assert answer.headers[name] == value
     assert b'src="http' not in body and b'href="http' not in body
