@@ -85,10 +85,8 @@ class Specimen:
 
     def pick(self, origin: np.ndarray, direction: np.ndarray) -> Hit | None:
         """The first Hit of a ray from `origin` (3,) along the unit vector `direction` (3,); None where it misses."""
-        with self.lock:
-            rays = self.rays
         origin, direction = (np.asarray(vector, dtype=np.float64) for vector in (origin, direction))
-        hits = rays.cast(origin[None], direction[None])
+        hits = self.rays.cast(origin[None], direction[None])
         if not hits.hit[0]:
             return None
         face, place = int(hits.face[0]), origin + hits.distance[0] * direction
@@ -98,6 +96,8 @@ class Specimen:
 
     def look(self, method: str = "glance", count: int | None = None) -> Look:
         """The Look of a method of METHODS; count: of points, None for those past the method's own threshold."""
+        if (method, count) in self._looks:  # without the lock: a click does not wait while another method looks
+            return self._looks[method, count]
         with self.lock:
             if (method, count) not in self._looks:
                 self._looks[method, count] = self._look(method, count)

@@ -51,6 +51,25 @@ def test_a_look_is_that_of_the_library_and_is_computed_once(knob_file):
     assert np.array_equal(looks[0].saliency, found.saliency) and set(looks[0].vertices) == set(found.points)
 
 
+def test_a_click_and_a_known_look_do_not_wait_for_another_method(mesh, monkeypatch):
+    specimen, begun, go = Specimen(mesh, "ball"), Event(), Event()
+    specimen.look()
+
+    def slow(*given):
+        begun.set()
+        go.wait(10)
+        return detect(*given)
+
+    monkeypatch.setattr("haptic_glance.studio.specimen.detect", slow)
+    with ThreadPoolExecutor(3) as pool:
+        other = pool.submit(specimen.look, "height")
+        begun.wait(5)
+        pool.submit(specimen.look).result(5)
+        pool.submit(specimen.pick, np.array([5.0, 0, 0]), np.array([-1.0, 0, 0])).result(5)
+        assert not other.done()
+        go.set()
+
+
 @pytest.mark.slow
 def test_a_look_that_needs_pictures_may_be_asked_for_on_any_thread(knob_file):
     specimen = open_file(knob_file)
