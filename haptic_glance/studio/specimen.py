@@ -133,7 +133,7 @@ def open_file(path: Path, up: str | None = None) -> Specimen:
 
 def open_content(name: str, content: bytes, up: str | None = None) -> Specimen:
     """The Specimen of an uploaded file; no other file is read, so an OBJ comes without its materials."""
-    path = Path(Path(name).name)
+    path = Path(name)
     given, note = upright_by(parse(content, path.suffix.lower()), path, up)
     return Specimen(given, path.stem, note)
 

@@ -43,6 +43,11 @@ def test_a_hollow_counts_against_a_place():
     assert dict(reasons(found, against=True)[0])["a hollow"] == pytest.approx(found["convexity"][0])
 
 
+def test_words_follow_the_feature_where_its_weight_is_negative():
+    assert reasons({"above": np.array([0.5])}) == [[("hidden from above", 0.5)]]
+    assert reasons({"above": np.array([-0.5])}, against=True) == [[("seen from above", -0.5)]]
+
+
 def test_the_axis_that_points_up_decides_what_is_high(knob):
     top = nearest(knob, TOP)
     turned = Mesh(knob.vertices[:, [1, 2, 0]], knob.faces)  # what was z is y now

@@ -149,7 +149,7 @@ def test_hard_levels_keep_the_points(mesh):
     specimen = Specimen(mesh, "ball")
     levels = Levels(specimen, specimen.look("glance", 2))
     level = levels.at(200, HARD, quiet)
-    assert levels.tasks[HARD].points_kept(level.mesh).all()
+    assert list(levels.tasks[HARD].points_kept(level.mesh)) == [True, True]
 
 
 def test_a_level_that_cannot_be_names_what_can(mesh):
@@ -220,3 +220,6 @@ def test_a_stopped_job_ends_at_its_next_report_and_its_result_is_dropped():
     go.set()
     job.thread.join(5)
     assert log == ["end"] and job.stopped
+    late = log.job(lambda report: late.stop()).start()  # stopped after its last report
+    late.thread.join(5)
+    assert log == ["end", "end"]
