@@ -220,6 +220,6 @@ def test_a_stopped_job_ends_at_its_next_report_and_its_result_is_dropped():
     go.set()
     job.thread.join(5)
     assert log == ["end"] and job.stopped
-    late = log.job(lambda report: late.stop()).start()  # stopped after its last report
-    late.thread.join(5)
+    late = log.job(lambda report: late.stop())  # stopped after its last report
+    late.start().thread.join(5)
     assert log == ["end", "end"]
