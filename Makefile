@@ -9,7 +9,7 @@ newest = $(if $(meshoptimizer),--meshoptimizer $(meshoptimizer))
 export PATH := $(BIN):$(PATH)
 unexport PYTHONDONTWRITEBYTECODE # or each of some hundred processes compiles the stages anew
 .DEFAULT_GOAL := help
-.PHONY: help repro test quick smoke lint docs bench clean lock
+.PHONY: help repro studio test quick smoke lint docs bench clean lock
 
 help: ## this list
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 10
@@ -17,6 +17,9 @@ help: ## this list
 repro: $(VENV)/ready ## run the pipeline: every table, figure and the page, on what params.yaml says
 	python -m stages.repro || { dvc repro --single-item report; exit 1; }
 	@echo "Open reports/index.html; the tables are in reports/tables."
+
+studio: $(VENV)/ready ## look at a mesh, simplify it, touch and mark it, on a local page (mesh=FILE_OR_FOLDER)
+	haptic-glance studio $(or $(mesh),samples/dromedary.glb)
 
 test: $(VENV)/ready ## unit and property tests, then the whole pipeline at profile=smoke, then the gate
 	pytest -n auto --dist worksteal

@@ -23,6 +23,7 @@ OWN = {
     "points": "stages.points",
     "simplify": "stages.lod.command",
     "touch": "stages.imprints.command",
+    "studio": "haptic_glance.studio.command",
 }
 WHOLE = {
     "scene": "stages.scene.__main__",

@@ -11,6 +11,7 @@ MODULES = {
     ),
     "deep": ("kornia", "onnx", "onnxruntime", "onnxscript", "torch", "torchvision"),
     "cluster": ("cloudpickle", "dask", "distributed"),
+    "studio": ("viser",),
 }  # fmt: skip
 EXTRAS = {module: extra for extra, modules in MODULES.items() for module in modules}
 

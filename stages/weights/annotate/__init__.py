@@ -1,6 +1,5 @@
-"""A local web page on which a person marks interest points of a mesh, and the files of these marks."""
+"""The files of the points that people mark on a mesh, in the studio (`haptic-glance studio --mark`)."""
 
 from .marks import MarksChanged, MarksError, check_on_mesh, read_marks, write_marks
-from .server import open_server
 
-__all__ = ["MarksChanged", "MarksError", "check_on_mesh", "open_server", "read_marks", "write_marks"]
+__all__ = ["MarksChanged", "MarksError", "check_on_mesh", "read_marks", "write_marks"]

@@ -1,0 +1,65 @@
+"""Opens a page on which a mesh can be looked at, simplified, touched and marked.
+
+The page is on this machine alone. Reads every STL, OBJ, PLY, OFF, GLB, point cloud and scan that is named, those of a
+folder, meshes that the pipeline has stored (.npz), and what is uploaded in the page; nothing else. With --mark, a click
+marks what matters to a person: annotator, time (UTC), vertex, x, y, z on the mesh with z up, bounding-box centre 0,
+bounding sphere of radius 0.5. Several people may mark one mesh; saving replaces the rows of one of them.
+
+examples:
+  haptic-glance studio bunny.stl
+  haptic-glance studio scans --up y
+  haptic-glance studio data/folder/meshes/vase.npz --mark data/annotations
+  haptic-glance studio
+"""
+
+import argparse
+import os
+import sys
+import time
+import webbrowser
+from collections.abc import Sequence
+from pathlib import Path
+
+from stages.kit.extras import from_extra
+from stages.meshes.up import add_up
+
+from .specimen import files_at
+
+PORT = 8062
+
+
+def parser() -> argparse.ArgumentParser:
+    """The parser of the command line."""
+    first, _, rest = (__doc__ or "").partition("\n")
+    form = argparse.RawDescriptionHelpFormatter
+    command = argparse.ArgumentParser("haptic-glance studio", description=first, epilog=rest, formatter_class=form)
+    command.add_argument("meshes", metavar="MESH", nargs="*", type=Path, help="a mesh file, or a folder of them")
+    command.add_argument("--port", type=int, default=PORT, help="default %(default)s, or the next free one; 0: any")
+    command.add_argument("--no-browser", action="store_true", help="print the address alone")
+    command.add_argument("--mark", metavar="FOLDER", type=Path, help="mark points, to FOLDER/MESH.csv")
+    command.add_argument("--annotator", metavar="NAME", default="", help="who marks (default: the page asks)")
+    add_up(command)
+    return command
+
+
+def run(argv: Sequence[str]) -> None:
+    """Runs the command line `argv`, without the program's name, until Ctrl-C."""
+    chosen = parser().parse_args(argv)
+    files = [file for place in chosen.meshes for file in files_at(place)]
+    with from_extra():
+        from .app import Studio
+        from .session import Settings
+    marking = {"marks": chosen.mark, "panel": "Mark"} if chosen.mark else {}
+    studio = Studio(Settings(files, chosen.up, annotator=chosen.annotator, **marking), chosen.port)
+    print(f"studio: open {studio.address} ; Ctrl-C here ends it", flush=True)
+    # Without a screen the standard library would open a text browser in this terminal.
+    screen = sys.platform in ("darwin", "win32") or {"DISPLAY", "WAYLAND_DISPLAY", "BROWSER"} & set(os.environ)
+    if screen and not chosen.no_browser:
+        webbrowser.open(studio.address)
+    try:
+        while True:
+            time.sleep(3600)
+    except KeyboardInterrupt:
+        print("ended")
+    finally:
+        studio.stop()

@@ -1,0 +1,97 @@
+"""Levels of detail of one mesh, with their errors."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from threading import RLock
+
+import numpy as np
+from scipy.spatial import KDTree
+
+from stages.kit import Mesh
+from stages.lod import InfeasibleTarget, metro, neighbourhoods, vertex_errors
+from stages.lod.kernels.jit import FOLDER
+from stages.lod.simplify import BACKEND
+from stages.lod.task import SimplificationTask, repaired
+from stages.meshes import rotate_to_z_up
+from stages.meshes.colours import bake_texture
+from stages.salient_points import saliency
+
+from .files import as_bytes
+from .jobs import Report
+from .specimen import Look, Specimen
+
+SAMPLES = 4000  # of the Metro error: its mean within 2 % of that of 40,000
+SOFT, HARD = "soft: weighted by saliency", "hard: neighbourhoods kept"
+KEPT = 24  # levels that are kept for a slider that goes back
+
+
+@dataclass(frozen=True)
+class Level:
+    """mesh: simplified, in the frame of the task; shown: the same z up. mean, most: Metro, in % of the diagonal.
+
+    error (k,): at each vertex, how far the original is from it around there, in % of the diagonal; saliency (k,).
+    """
+
+    mesh: Mesh
+    shown: Mesh
+    mean: float
+    most: float
+    error: np.ndarray
+    saliency: np.ndarray
+
+
+class Levels:
+    """The levels of a Specimen, by what a Look at it found; each is computed once."""
+
+    def __init__(self, specimen: Specimen, look: Look) -> None:
+        self.specimen, self.looked, self.lock = specimen, look, RLock()
+        self._found: dict[tuple[int, str], Level] = {}
+
+    @cached_property
+    def tasks(self) -> dict[str, SimplificationTask]:
+        """{SOFT, HARD: the SimplificationTask}."""
+        given, _ = repaired(self.specimen.given)
+        same = len(given.vertices) == len(self.specimen.given.vertices)
+        values = self.looked.saliency if same else saliency(bake_texture(given), self.looked.method)
+        places = np.array([row[2:5] for row in self.looked.points]).reshape(-1, 3)
+        points = np.unique(KDTree(given.vertices).query(places)[1]).astype(np.int64)
+        none = np.zeros(0, dtype=np.int64)
+        rings = neighbourhoods(given, points, "adaptive")
+        return {
+            SOFT: SimplificationTask(given, values, none, none, values, BACKEND, False),
+            HARD: SimplificationTask(given, values, points, rings, None, BACKEND, True),
+        }
+
+    @property
+    def faces(self) -> int:
+        """How many faces the mesh has, repaired."""
+        return len(self.tasks[SOFT].mesh.faces)
+
+    def at(self, faces: int, kind: str, report: Report) -> Level:
+        """The Level of at most `faces` faces. ValueError that says what is feasible."""
+        with self.lock:
+            if (faces, kind) not in self._found:
+                self._found = dict(list(self._found.items())[1 - KEPT :])
+                self._found[faces, kind] = self._made(faces, kind, report)
+            return self._found[faces, kind]
+
+    def _made(self, faces, kind, report):
+        first = not any(FOLDER.rglob("*.nbc"))
+        report(0.1, "compiling, the first time on this machine: up to a minute" if first else "simplifying")
+        task = self.tasks[kind]
+        try:
+            mesh = task.simplified(faces) if faces < len(task.mesh.faces) else task.mesh
+        except InfeasibleTarget as error:
+            raise ValueError(f"{error.faces:,} faces are too few here: ask for {error.smallest:,} or more") from None
+        report(0.6, "measuring the error")
+        errors = metro(task.mesh, mesh, SAMPLES)
+        report(0.8, "measuring the error at each vertex")
+        apart = 100 * vertex_errors(mesh, task.mesh) / task.mesh.diagonal
+        around = np.zeros(len(mesh.vertices))
+        np.maximum.at(around, KDTree(mesh.vertices).query(task.mesh.vertices)[1], apart)
+        nearest = task.saliency[KDTree(task.mesh.vertices).query(mesh.vertices)[1]]
+        return Level(mesh, rotate_to_z_up(mesh), 100 * errors["mean"], 100 * errors["max"], around, nearest)
+
+    def content(self, level: Level, kind: str, suffix: str) -> bytes:
+        """The file of a level in the file's coordinates, upright as its format has it."""
+        return as_bytes(self.tasks[kind].restored(level.mesh), suffix)

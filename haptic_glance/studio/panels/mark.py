@@ -1,0 +1,97 @@
+"""What matters to a person: a click marks a vertex, and every change is saved at once."""
+
+import viser
+
+from ..marking import Marking
+from ..panel import Panel
+from ..scene import escaped
+from ..specimen import Hit
+
+MARKS = "/marks"
+BLUE = (0, 85, 140)
+
+
+class MarkPanel(Panel):
+    """Marks points of the mesh on the table, which is shown without its saliency, so as not to suggest any."""
+
+    title = "Mark"
+
+    def build(self, gui: viser.GuiApi) -> None:
+        """Adds the controls."""
+        self.marking: Marking | None = None
+        settings = self.window.settings
+        gui.add_markdown("Click the points of this object that matter to you, from all sides.")
+        self.name = gui.add_text("Your name", settings.annotator, hint="as it will stand in the file")
+        self.state = gui.add_markdown("")
+        self.undo_button = gui.add_button("Undo", disabled=True, color="gray")
+        self.number = gui.add_dropdown("Point", ["-"])
+        self.remove_button = gui.add_button("Remove this point", disabled=True, color="gray")
+        self.list = gui.add_markdown("")
+        self.window.on(self.name.on_update, self.on_show)
+        self.window.on(self.undo_button.on_click, self.undo)
+        self.window.on(self.remove_button.on_click, self.remove)
+
+    def on_mesh(self) -> None:
+        """Another mesh has marks of its own."""
+        self.marking = None
+
+    def on_show(self) -> None:
+        """Shows the mesh and the points that were saved under this name."""
+        specimen, name = self.window.session.on_table, self.name.value.strip()
+        self.window.show(None)
+        self.marking = None
+        if name:
+            self.marking = Marking(specimen.mesh, specimen.name, self.window.settings.marks, name)
+        self.draw()
+
+    def on_hide(self) -> None:
+        """Takes the points away."""
+        self.window.scene.clear(MARKS)
+
+    def on_click(self, hit: Hit) -> None:
+        """Marks the vertex."""
+        if self.marking is None:
+            raise ValueError("who marks? Write your name first")
+        self.marking.add(hit.vertex)
+        self.save()
+
+    def undo(self) -> None:
+        """Takes back the last change."""
+        if self.marking is not None:
+            self.marking.undo()
+            self.save()
+
+    def remove(self) -> None:
+        """Removes the chosen point."""
+        if self.marking is not None and self.number.value.isdecimal():
+            self.marking.remove(int(self.number.value))
+            self.save()
+
+    def save(self) -> None:
+        """Saves and shows what there is; where it cannot be saved, the points stay and the page says why."""
+        assert self.marking is not None
+        try:
+            if self.marking.save():
+                name = self.marking.annotator
+                self.window.say("Both are kept", f"{name} has saved points from another window meanwhile.", "yellow")
+        finally:
+            self.draw()
+
+    def draw(self) -> None:
+        """Shows the points, and whether they are saved."""
+        marking = self.marking
+        marks = marking.marks if marking else []
+        numbers = [str(k) for k in range(1, len(marks) + 1)]
+        mesh, at = self.window.session.on_table.mesh, [vertex for _, vertex in marks]
+        self.window.scene.markers(MARKS, mesh.vertices[at], mesh.vertex_normals[at], numbers, BLUE)
+        self.undo_button.disabled = self.remove_button.disabled = not marks
+        self.number.options = tuple(numbers) or ("-",)
+        self.number.value = self.number.options[-1]
+        self.list.content = "\n".join(f"{k}. vertex {v}, {time[11:19]} UTC" for k, (time, v) in enumerate(marks, 1))
+        self.state.content = "Nobody marks yet: write your name." if marking is None else state(marking)
+
+
+def state(marking: Marking) -> str:
+    """How many points there are, and whether they are saved, in Markdown."""
+    count = f"{len(marking.marks)} point{'' if len(marking.marks) == 1 else 's'}"
+    return f"**{count}**, all saved in {escaped(str(marking.path))}" if marking.saved else f"**{count}, not saved**"

@@ -1,0 +1,94 @@
+"""What is drawn in one window: coloured meshes, numbered markers."""
+
+import re
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import viser
+
+from stages.kit import Mesh
+
+from .glb import glb
+
+MESH = "/mesh"  # the name of the mesh on the table
+MIDDLE = np.zeros(3)
+GREY = 190  # of what has no colour
+EYE = np.array([1.05, -1.4, 0.6])  # where the camera starts, from the middle of an object of diameter 1
+BESIDE = np.array([0.8, 0.6, 0.0]) * 1.15  # where a second object stands, to the right of the first
+AMBIENT = 1.5  # a full one is pi: the rest shows the shape
+LIGHTS = (((1.0, -1.4, 1.6), 1.9), ((-1.4, 1.0, 0.8), 1.2), ((0.3, 0.6, -1.0), 0.6))  # where from, how bright
+FIELD = 0.62  # radians from the lower to the upper edge of the picture
+MARKER = 0.011  # radius, in diameters of the object
+RED = (216, 27, 27)
+
+
+class Scene:
+    """Draws on the page of one viser client. Names begin with `/`; drawing again under a name replaces it."""
+
+    def __init__(self, client: viser.ClientHandle) -> None:
+        self.client, self.api = client, client.scene
+        self.api.set_up_direction("+z")
+        self._light()
+
+    def _light(self):
+        # The environment map that viser lights with takes five times the whole rest where there is no graphics card.
+        self.api.configure_environment_map(None)
+        self.api.configure_default_lights(enabled=False)
+        self.api.add_light_ambient("/light", intensity=AMBIENT)
+        for number, (place, intensity) in enumerate(LIGHTS):
+            self.api.add_light_directional(f"/light/{number}", intensity=intensity, position=place)
+
+    def aim(self, wide: bool = False) -> None:
+        """Puts the camera where it starts; wide: so that there is room for a second mesh beside the first."""
+        middle, away = (BESIDE / 2, 1.7) if wide else (MIDDLE, 1.0)
+        if self.client.camera.aspect < 1:  # a telephone, whose lower half the panel covers
+            away *= 0.8 / self.client.camera.aspect
+            middle = middle - (0, 0, 0.33 * away)
+        with self.client.atomic():
+            self.client.camera.up_direction = (0.0, 0.0, 1.0)
+            self.client.camera.fov = FIELD
+            self.client.camera.position = middle + EYE * away
+            self.client.camera.look_at = middle
+
+    def mesh(self, name: str, mesh: Mesh, colors: np.ndarray, flat: bool = False, at: np.ndarray = MIDDLE) -> None:
+        """A mesh with colours (n, 3) u1. flat: one normal a face, so that the faces are seen. at: where it stands."""
+        self.api.add_glb(name, glb(mesh, colors, flat), position=at, cast_shadow=False, receive_shadow=False)
+
+    def on_click(self, clicked: Callable[[np.ndarray, np.ndarray], None]) -> None:
+        """clicked(origin, direction) gets the ray of each click on the picture."""
+        # Not that of the mesh itself: the page would search all of its faces at each movement of the pointer.
+        self.api.on_click()(lambda event: clicked(np.array(event.ray_origin), np.array(event.ray_direction)))
+
+    def markers(
+        self, name: str, places: np.ndarray, normals: np.ndarray, labels: Sequence[str],
+        colour: tuple[int, int, int] = RED, radius: float = MARKER,
+    ) -> None:  # fmt: skip
+        """Balls at places (k, 3) of a surface with normals (k, 3), each with its label in front of it."""
+        self.clear(name)
+        self.api.add_frame(name, show_axes=False)
+        for number, (place, normal, label) in enumerate(zip(places, normals, labels, strict=True)):
+            self.api.add_icosphere(f"{name}/{number}", radius, colour, subdivisions=2, position=place)
+            front = (2 * normal + (0, 0, 1)) * radius
+            self.api.add_label(f"{name}/{number}/label", label, depth_test=True, anchor="bottom-center", position=front)
+
+    def labels(self, name: str, places: np.ndarray, labels: Sequence[str]) -> None:
+        """Words at places (k, 3), above everything."""
+        self.clear(name)
+        self.api.add_frame(name, show_axes=False)
+        for number, (place, label) in enumerate(zip(places, labels, strict=True)):
+            self.api.add_label(f"{name}/{number}", label, anchor="bottom-center", position=place)
+
+    def has(self, name: str) -> bool:
+        """Whether something is drawn under the name."""
+        return self.api.get_handle_by_name(name) is not None
+
+    def clear(self, *names: str) -> None:
+        """Takes away what was drawn under the names and below them."""
+        for name in names:
+            if self.has(name):
+                self.api.remove_by_name(name)
+
+
+def escaped(text: str) -> str:
+    """Text in which nothing is Markdown or code: viser's page runs what a name of a file may hold."""
+    return re.sub(r"([^\w\s/,:]|_)", r"\\\1", text)

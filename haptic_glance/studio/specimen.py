@@ -1,0 +1,143 @@
+"""One mesh on the table, and everything that was found on it, computed when it is first asked for."""
+
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from threading import RLock
+
+import numpy as np
+
+from stages.kit import Mesh
+from stages.kit.files import read_mesh
+from stages.kit.rays import RayScene
+from stages.meshes import normalise, rotate_to_z_up
+from stages.meshes.colours import bake_texture
+from stages.meshes.load import MeshError, load_unnamed, parse
+from stages.meshes.orient import orient
+from stages.meshes.own import mesh_files
+from stages.meshes.up import upright_by
+from stages.saliency import points_of
+from stages.salient_points import METHODS, detect
+
+STORED = ".npz"  # a mesh as the pipeline keeps it in data/SET/meshes
+RENDERING = ThreadPoolExecutor(1)  # what renders views: an OpenGL context belongs to one thread
+
+
+@dataclass(frozen=True)
+class Look:
+    """What a method found: saliency (n,) f8 in 0..1, and the points.
+
+    points: rows of stages.saliency.COLUMNS, most salient first; positions in the file's coordinates.
+    """
+
+    method: str
+    saliency: np.ndarray
+    points: list[tuple]
+
+    @property
+    def vertices(self) -> np.ndarray:
+        """(k,) i8 ids of the points."""
+        return np.array([row[1] for row in self.points], dtype=np.int64)
+
+
+@dataclass(frozen=True)
+class Hit:
+    """Where a click meets the mesh: a face, its corner that is nearest, the position (3,) and the outward normal (3,).
+
+    Position and normal are in the frame of Specimen.mesh.
+    """
+
+    face: int
+    vertex: int
+    position: np.ndarray
+    normal: np.ndarray
+
+
+class Specimen:
+    """given: the Mesh in its file's coordinates. note: what is known of its up axis.
+
+    Several threads may ask: each answer is computed once.
+    """
+
+    def __init__(self, given: Mesh, name: str, note: str = "", path: Path | None = None) -> None:
+        self.given, self.name, self.note, self.path = given, name, note, path
+        self.lock = RLock()
+        self._looks: dict[tuple, Look] = {}
+
+    @cached_property
+    def baked(self) -> Mesh:
+        """`given`, its texture turned into colours of the vertices."""
+        return bake_texture(self.given)
+
+    @cached_property
+    def mesh(self) -> Mesh:
+        """The mesh as it is shown and clicked: z up, its bounding sphere 0.5 about 0. Vertex ids are the file's.
+
+        Closed parts face outwards, as for the look and the touch.
+        """
+        return normalise(rotate_to_z_up(orient(self.baked)[0]))
+
+    @cached_property
+    def rays(self) -> RayScene:
+        """`mesh` made ready for rays."""
+        return RayScene(self.mesh)
+
+    def pick(self, origin: np.ndarray, direction: np.ndarray) -> Hit | None:
+        """The first Hit of a ray from `origin` (3,) along the unit vector `direction` (3,); None where it misses."""
+        origin, direction = (np.asarray(vector, dtype=np.float64) for vector in (origin, direction))
+        hits = self.rays.cast(origin[None], direction[None])
+        if not hits.hit[0]:
+            return None
+        face, place = int(hits.face[0]), origin + hits.distance[0] * direction
+        corners = self.mesh.faces[face]
+        nearest = np.linalg.norm(self.mesh.vertices[corners] - place, axis=1).argmin()
+        return Hit(face, int(corners[nearest]), place, self.mesh.face_normals[face])
+
+    def look(self, method: str = "glance", count: int | None = None) -> Look:
+        """The Look of a method of METHODS; count: of points, None for those past the method's own threshold."""
+        if (method, count) in self._looks:  # without the lock: a click does not wait while another method looks
+            return self._looks[method, count]
+        with self.lock:
+            if (method, count) not in self._looks:
+                self._looks[method, count] = self._look(method, count)
+            return self._looks[method, count]
+
+    def _look(self, method, count):
+        rendered = bool(METHODS[method].channels)
+        arguments = self.baked, method, count
+        found = RENDERING.submit(detect, *arguments).result() if rendered else detect(*arguments)
+        if found.saliency is None:
+            raise ValueError(f"method {method!r} has no saliency: it only places points")
+        return Look(method, found.saliency, points_of(self.given, found.points, found.saliency))
+
+
+def files_at(place: Path) -> list[Path]:
+    """The file itself, or what a folder holds: its meshes, or else those that the pipeline stored there. MeshError."""
+    stored = sorted(place.glob(f"*{STORED}")) if place.is_dir() else []
+    try:
+        return mesh_files(place)
+    except MeshError:
+        if not stored:
+            raise
+        return stored
+
+
+def open_file(path: Path, up: str | None = None) -> Specimen:
+    """The Specimen of a mesh, a cloud, a scan, or a mesh of the pipeline (.npz). MeshError, ValueError, OSError."""
+    if path.suffix.lower() == STORED:
+        return Specimen(read_mesh(path), path.stem, "z up, as the pipeline stores it", path)
+    given, note = upright_by(load_unnamed(path), path, up)
+    return Specimen(given, path.stem, note, path)
+
+
+def open_content(name: str, content: bytes, up: str | None = None) -> Specimen:
+    """The Specimen of an uploaded file; no other file is read, so an OBJ comes without its materials."""
+    path = Path(name)
+    given, note = upright_by(parse(content, path.suffix.lower()), path, up)
+    return Specimen(given, path.stem, note)
+
+
+def turned(specimen: Specimen, up: str) -> Specimen:
+    """The same mesh with another axis up; nothing that was found on the old one is kept."""
+    return Specimen(replace(specimen.given, up=up), specimen.name, f"{up} up", specimen.path)

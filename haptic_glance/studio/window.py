@@ -1,0 +1,169 @@
+"""The page of one browser window: its panels, its messages, and its work in the background."""
+
+import os
+import sys
+import traceback
+from collections.abc import Callable
+from threading import RLock
+from typing import Any
+
+import numpy as np
+import viser
+
+from stages.kit.command import DEBUG
+from stages.lod.look import viridis, vivid
+
+from .guard import bound_uploads
+from .jobs import Job, Report
+from .opening import Opening
+from .panels import PANELS
+from .progress import Progress
+from .scene import BESIDE, GREY, MESH, Scene
+from .session import Session, Settings
+from .specimen import Specimen
+
+
+class Window:
+    """Everything of one viser client."""
+
+    def __init__(self, client: viser.ClientHandle, settings: Settings, session: Session) -> None:
+        self.client, self.gui, self.settings, self.session = client, client.gui, settings, session
+        self.lock = RLock()  # one callback at a time
+        self.jobs: dict[str, Job] = {}
+        self.scene = Scene(client)
+        if client.camera.aspect > 1:
+            self.gui.main_panel.dock_right()
+        bound_uploads(self.gui, self.refuse)
+        self.scene.on_click(self.clicked)
+        self.progress = Progress(self.gui, self.on)
+        self.opening = Opening(self, settings)
+        self.panels = [make(self) for make in PANELS]
+        self.tabs = self.gui.add_button_group("Panel", [panel.title for panel in self.panels])
+        self.folders = []
+        for panel in self.panels:
+            folder = self.gui.add_folder(panel.title, visible=False)
+            self.folders.append(folder)
+            with folder:
+                panel.build(self.gui)
+        self.panel = self.panels[0]
+        self.choose(settings.panel)
+        self.on(self.tabs.on_click, lambda: self.choose(self.tabs.value))
+
+    def start(self) -> None:
+        """Shows the mesh that the session holds, or else opens the first file."""
+        self.scene.aim()
+        if self.session.specimen is not None:
+            self.put(self.session.specimen, keep=True)
+        else:
+            self.opening.first()
+
+    # what panels use
+
+    def on(self, attach: Callable[[Callable[[Any], None]], Any], work: Callable[[], Any]) -> None:
+        """on(button.on_click, self.undo): calls work() at each event, one at a time; errors become messages."""
+        attach(lambda _: self.run("", work))
+
+    def run(self, title: str, work: Callable[[], Any]) -> None:
+        """work(), alone; an error becomes a message in the page."""
+        with self.lock:
+            try:
+                work()
+            except Exception as error:
+                self.fail(title, error)
+
+    def work(
+        self, title: str, work: Callable[[Report], Any], done: Callable[[Any], Any], slot: str | None = None
+    ) -> None:
+        """work(report) on a thread of its own, then done(result), alone; the page shows its progress and stops it.
+
+        Work in the same slot (None: of the same title) that still runs is stopped, and so is all when another mesh
+        comes. Errors become messages.
+        """
+        slot = slot or title
+        with self.lock:
+            if slot in self.jobs:
+                self.jobs[slot].stop()
+
+            def finish(found: Any) -> None:
+                with self.lock:
+                    if not job.stopped:
+                        self.run(title, lambda: done(found))
+
+            job = Job(title, work, finish, lambda error: self.fail(title, error), self._ended, self.progress.show)
+            self.jobs[slot] = job
+            self.progress.begin(job)
+            job.start()
+
+    def download(self, name: str, content: bytes) -> None:
+        """Hands a file to the browser."""
+        self.client.send_file_download(name, content, save_immediately=True)
+
+    def say(self, title: str, text: str = "", colour: Any = None, seconds: float | None = 6) -> None:
+        """Shows a message; seconds: until it closes by itself, None for never."""
+        self.client.add_notification(title, text, color=colour, auto_close_seconds=seconds)
+
+    def fail(self, title: str, error: Exception) -> None:
+        """Says what went wrong. A fault of ours is told in the terminal as well."""
+        theirs = isinstance(error, ValueError | OSError | ModuleNotFoundError)
+        text = " ".join(str(error).split()) or type(error).__name__
+        if not theirs or os.environ.get(DEBUG):
+            traceback.print_exception(error, file=sys.stderr)
+        if not theirs:
+            text = f"{type(error).__name__}: {text}. A fault of the studio: the terminal shows where. The rest goes on."
+        self.say(title or "That did not work", text, "red", None)
+
+    def refuse(self, name: str, size: int) -> None:
+        """Says that an upload is too large."""
+        self.opening.refuse(name, size)
+
+    def put(self, specimen: Specimen, keep: bool = False) -> None:
+        """Another mesh on the table: everything of the old one goes."""
+        for job in list(self.jobs.values()):
+            job.stop()
+        if not keep:
+            self.session.put(specimen)
+        self.scene.clear(MESH, "/points")
+        self.opening.named(specimen)
+        for panel in self.panels:
+            self.run(panel.title, panel.on_mesh)
+        self.run(self.panel.title, self.panel.on_show)
+
+    def show(self, values: np.ndarray | None) -> None:
+        """The mesh on the table coloured by values (n,) >= 0; None: in its own colours, or grey."""
+        mesh = self.session.on_table.mesh
+        own = np.full((len(mesh.vertices), 3), GREY, dtype=np.uint8) if mesh.colors is None else mesh.colors
+        self.scene.mesh(MESH, mesh, own if values is None else viridis(vivid(values)))
+
+    def clicked(self, origin: np.ndarray, direction: np.ndarray) -> None:
+        """A click on the picture."""
+        self.run("", lambda: self._clicked(origin, direction))
+
+    def _clicked(self, origin, direction):
+        if self.session.specimen is None:
+            return
+        hit = self.session.specimen.pick(origin, direction)
+        if hit is None and self.session.other is not None:
+            hit = self.session.specimen.pick(origin - BESIDE, direction)
+        if hit is not None:
+            self.panel.on_click(hit)
+
+    def choose(self, title: str) -> None:
+        """Shows one panel alone."""
+        chosen = next(panel for panel in self.panels if panel.title == title)
+        if chosen is not self.panel:
+            self.run(self.panel.title, self.panel.on_hide)
+        self.panel = chosen
+        for panel, folder in zip(self.panels, self.folders, strict=True):
+            folder.visible = panel is chosen
+        if self.session.specimen is not None:
+            self.run(chosen.title, chosen.on_show)
+
+    def close(self) -> None:
+        """The window is gone: its work ends."""
+        for job in list(self.jobs.values()):
+            job.stop()
+
+    def _ended(self, job):
+        with self.lock:
+            self.jobs = {slot: other for slot, other in self.jobs.items() if other is not job}
+            self.progress.end(job)

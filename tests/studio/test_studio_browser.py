@@ -1,0 +1,237 @@
+"""The studio in a real browser: what a hand does to it, what the page says, and what lies on disk afterwards."""
+
+import io
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from haptic_glance.studio.app import Studio
+from haptic_glance.studio.session import Settings
+from stages.meshes import load, normalise
+from stages.weights.annotate import read_marks
+
+from .conftest import ball
+
+playwright = pytest.importorskip("playwright.sync_api", reason="playwright drives the browser: pip install playwright")
+pytestmark = pytest.mark.slow
+
+BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "microsoft-edge")
+SOFTWARE_GL = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")  # WebGL without a card
+WIDE, NARROW = {"width": 800, "height": 560}, {"width": 390, "height": 844}
+PATIENCE = 20_000  # milliseconds, on a machine with other work
+
+
+@pytest.fixture(scope="module")
+def driver():
+    with playwright.sync_playwright() as found:
+        yield found
+
+
+@pytest.fixture(scope="module")
+def binary():
+    found = next((path for path in map(shutil.which, BROWSERS) if path), None)
+    if not found:
+        pytest.skip(f"no browser is installed: one of {', '.join(BROWSERS)}")
+    return found
+
+
+@pytest.fixture(scope="module")
+def browser(driver, binary):
+    opened = driver.chromium.launch(executable_path=binary, args=SOFTWARE_GL)
+    yield opened
+    opened.close()
+
+
+@pytest.fixture(scope="module")
+def studio(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("studio")
+    ball().export(folder / "knob.ply")
+    ball(knob=-0.3).export(folder / "dent.ply")
+    opened = Studio(Settings([folder / "knob.ply", folder / "dent.ply"], marks=folder / "marks"))
+    opened.folder = folder
+    yield opened
+    opened.stop()
+
+
+class Hand:
+    """What a person does in one window."""
+
+    def __init__(self, page, address):
+        self.page = page
+        self.faults, self.elsewhere = [], []
+        page.set_default_timeout(PATIENCE)
+        page.on("pageerror", lambda error: self.faults.append(str(error)))
+        page.on("request", lambda request: self._asked(request.url, address))
+        page.goto(address)
+
+    def _asked(self, url, address):
+        if not url.startswith((address, "data:", "blob:")):
+            self.elsewhere.append(url)
+
+    def reads(self, text):
+        playwright.expect(self.page.get_by_text(text).first).to_be_visible(timeout=PATIENCE)
+
+    def picture(self):
+        return np.asarray(Image.open(io.BytesIO(self.page.screenshot())).convert("RGB")).astype(int)
+
+    def middle(self):
+        box = self.page.locator("canvas").first.bounding_box()
+        return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+    def wait_for_drawing(self, drawn=True):
+        """Waits until the middle of the canvas shows a colour; drawn=False: until it does not."""
+        x, y = map(int, self.middle())
+        for _ in range(PATIENCE // 100):
+            patch = self.picture()[y - 3 : y + 4, x - 3 : x + 4]
+            if (np.ptp(patch, axis=-1).min() > 25) == drawn:
+                return
+            self.page.wait_for_timeout(100)
+        raise AssertionError("nothing was drawn")
+
+    def click(self):
+        self.page.mouse.click(*self.middle())
+
+    def choose(self, panel):
+        self.page.get_by_role("button", name=panel, exact=True).click()
+
+    def control(self, label):
+        """The input beside a label."""
+        return self.page.locator(
+            f"xpath=//label[text()='{label}']/ancestor::*[.//input][1]//input[not(@type='hidden')]"
+        ).first
+
+    def pick(self, label, option):
+        self.control(label).click()
+        self.page.get_by_role("option", name=option, exact=True).click()
+
+    def upload(self, path):
+        self.page.locator("input[type=file]").first.set_input_files(path)
+
+    def saved(self, button):
+        with self.page.expect_download(timeout=PATIENCE) as caught:
+            self.page.get_by_role("button", name=button, exact=True).click()
+        return caught.value
+
+
+@pytest.fixture
+def window(browser, studio):
+    """window(address=..., viewport=WIDE, ...) -> Hand; every page must stay on this machine and free of errors."""
+    contexts, hands = [], []
+
+    def make(address=studio.address, **options):
+        contexts.append(browser.new_context(**{"viewport": WIDE} | options))
+        hands.append(Hand(contexts[-1].new_page(), address))
+        return hands[-1]
+
+    yield make
+    for context in contexts:
+        context.close()
+    assert [(hand.faults, hand.elsewhere) for hand in hands] == [([], [])] * len(hands)
+
+
+def test_a_mesh_is_looked_at_clicked_simplified_and_saved(window, studio, tmp_path):
+    hand = window()
+    hand.reads("bulges out")
+    hand.wait_for_drawing()
+    hand.click()
+    hand.reads("For it:")
+    hand.pick("Method", "height")
+    hand.reads("No place stands out")
+    hand.control("Places").fill("3")
+    hand.reads("vertex")
+    hand.choose("Levels")
+    hand.reads("128 faces")
+    hand.control("Faces, %").fill("40")
+    hand.reads("512 faces")
+    hand.reads("of the diagonal")
+    saved = hand.saved("GLB")
+    saved.save_as(tmp_path / "level.glb")
+    assert saved.suggested_filename == "knob_512.glb" and len(load(tmp_path / "level.glb").faces) == 512
+    table = hand.saved("CSV of the places")
+    assert Path(table.path()).read_text().startswith("rank,vertex,x,y,z,saliency\n1,")
+
+
+def test_a_broken_file_is_named_and_the_mesh_stays(window, tmp_path):
+    hand = window()
+    hand.reads("bulges out")
+    (tmp_path / "broken.stl").write_bytes(b"solid no mesh at all")
+    hand.upload(tmp_path / "broken.stl")
+    hand.reads("Opening broken.stl")
+    hand.reads("fewer than an STL header")
+    hand.reads("1,280 faces")
+    ball(2).export(tmp_path / "small {x} <b>.ply")
+    hand.upload(tmp_path / "small {x} <b>.ply")
+    hand.reads("320 faces")
+    hand.reads("small {x} <b>")
+    hand.page.reload()  # what was uploaded comes back with the page
+    hand.reads("320 faces")
+
+
+def test_two_windows_do_not_disturb_each_other(window):
+    one, other = window(), window()
+    for hand in (one, other):
+        hand.reads("bulges out")
+    one.pick("Open", "dent")
+    one.reads("dent")
+    one.choose("Levels")
+    one.reads("Metro error")
+    other.wait_for_drawing()
+    other.click()
+    other.reads("For it:")
+    assert other.page.get_by_text("Metro error").count() == 0 and other.page.get_by_text("knob").first.is_visible()
+
+
+def test_points_are_marked_removed_and_kept_from_two_windows(window, studio):
+    hand = window()
+    hand.reads("bulges out")
+    hand.choose("Mark")
+    hand.wait_for_drawing(drawn=False)  # it is grey: no saliency suggests a place
+    hand.click()
+    hand.reads("Write your name first")
+    hand.control("Your name").fill("ann")
+    hand.reads("0 points")
+    hand.click()
+    hand.reads("1 point, all saved")
+    path = studio.folder / "marks" / "knob.csv"
+    (vertex,) = read_marks(path).vertex
+    mesh = load(studio.folder / "knob.ply")
+    assert mesh.vertices[vertex] @ [1.05, -1.4, 0.6] > 1.5  # the side that faces the camera
+    with path.open("a") as file:  # another window of the same name
+        file.write(f"ann,2026-01-01T00:00:00.000Z,0,{','.join(f'{x:.6f}' for x in normalise(mesh).vertices[0])}\n")
+    hand.page.get_by_role("button", name="Undo").click()
+    hand.reads("Both are kept")
+    assert list(read_marks(path).vertex) == [0]
+
+
+def test_a_telephone_shows_the_mesh_and_every_control(window):
+    hand = window(viewport=NARROW, has_touch=True, is_mobile=True)
+    hand.reads("bulges out")
+    for _ in range(PATIENCE // 200):
+        if (np.ptp(hand.picture()[:300], axis=-1) > 60).mean() > 0.05:  # the mesh stands above the panel
+            break
+        hand.page.wait_for_timeout(200)
+    else:
+        raise AssertionError("nothing was drawn above the panel")
+    assert hand.page.evaluate("document.documentElement.scrollWidth") <= NARROW["width"]
+    for name in ("Look", "Levels", "Mark"):
+        box = hand.page.get_by_role("button", name=name, exact=True).bounding_box()
+        assert box["x"] >= 0 and box["x"] + box["width"] <= NARROW["width"]
+
+
+def test_the_page_says_when_the_server_has_ended(window, studio):
+    own = Studio(Settings(studio.settings.files))
+    hand = window(own.address)
+    hand.reads("bulges out")
+    own.stop()
+    hand.reads("The studio has ended. Start it again")
+
+
+def test_without_webgl_the_page_says_so(driver, binary, studio):
+    blind = driver.chromium.launch(executable_path=binary, args=["--disable-3d-apis"])
+    page = blind.new_page(viewport=WIDE)
+    page.goto(studio.address)
+    playwright.expect(page.get_by_text("WebGL").first).to_be_visible(timeout=PATIENCE)
+    blind.close()

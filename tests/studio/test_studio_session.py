@@ -1,0 +1,225 @@
+"""What a window of the studio holds: meshes, looks, clicks, levels and work, without a browser."""
+
+from concurrent.futures import ThreadPoolExecutor
+from threading import Event
+
+import numpy as np
+import pytest
+
+from haptic_glance.studio.jobs import Job
+from haptic_glance.studio.levels import HARD, SOFT, Levels
+from haptic_glance.studio.panels.look import for_and_against, listing, methods, views_of
+from haptic_glance.studio.session import Session
+from haptic_glance.studio.specimen import Specimen, files_at, open_content, open_file, turned
+from stages.kit.files import write_mesh
+from stages.meshes import MeshError, load, normalise, rotate_to_z_up
+from stages.salient_points import detect
+from stages.salient_points.reasons import contributions
+
+
+def quiet(share, text):
+    """Reports nothing."""
+
+
+def test_a_session_without_a_mesh_says_what_to_do():
+    with pytest.raises(ValueError, match="open or upload one"):
+        Session().look()
+
+
+def test_another_mesh_leaves_nothing_of_the_last_one(mesh):
+    session = Session()
+    session.put(Specimen(mesh, "one"))
+    session.kept["Touch"] = "something"
+    session.put(Specimen(mesh, "two"))
+    assert session.kept == {} and session.on_table.name == "two"
+
+
+def test_two_sessions_share_nothing(mesh):
+    one, other = Session(), Session()
+    one.put(Specimen(mesh, "one"))
+    one.method = "height"
+    one.kept["Touch"] = 1
+    assert other.specimen is None and other.method == "glance" and other.kept == {}
+
+
+def test_a_look_is_that_of_the_library_and_is_computed_once(knob_file):
+    specimen = open_file(knob_file)
+    with ThreadPoolExecutor(4) as pool:
+        looks = list(pool.map(lambda _: specimen.look("glance", 3), range(4)))
+    assert all(look is looks[0] for look in looks)
+    found = detect(load(knob_file), "glance", 3)
+    assert np.array_equal(looks[0].saliency, found.saliency) and set(looks[0].vertices) == set(found.points)
+
+
+def test_a_click_and_a_known_look_do_not_wait_for_another_method(mesh, monkeypatch):
+    specimen, begun, go = Specimen(mesh, "ball"), Event(), Event()
+    specimen.look()
+
+    def slow(*given):
+        begun.set()
+        go.wait(10)
+        return detect(*given)
+
+    monkeypatch.setattr("haptic_glance.studio.specimen.detect", slow)
+    with ThreadPoolExecutor(3) as pool:
+        other = pool.submit(specimen.look, "height")
+        begun.wait(5)
+        pool.submit(specimen.look).result(5)
+        pool.submit(specimen.pick, np.array([5.0, 0, 0]), np.array([-1.0, 0, 0])).result(5)
+        assert not other.done()
+        go.set()
+
+
+@pytest.mark.slow
+def test_a_look_that_needs_pictures_may_be_asked_for_on_any_thread(knob_file):
+    specimen = open_file(knob_file)
+    with ThreadPoolExecutor(2) as pool:
+        looks = list(pool.map(lambda count: specimen.look("itti", count), (2, 3)))
+    assert [len(look.points) for look in looks] == [2, 3]
+
+
+def test_a_click_finds_the_face_and_its_nearest_corner(mesh):
+    specimen = Specimen(mesh, "ball")
+    hit = specimen.pick(np.array([5.0, 0, 0]), np.array([-1.0, 0, 0]))
+    assert hit is not None
+    tip = specimen.mesh.vertices[hit.vertex]
+    assert tip[0] == specimen.mesh.vertices[:, 0].max() and hit.vertex in specimen.mesh.faces[hit.face]
+    assert hit.normal[0] > 0.5 and np.linalg.norm(hit.position - tip) < 0.05
+    assert specimen.pick(np.array([5.0, 0, 0]), np.array([1.0, 0, 0])) is None
+
+
+def test_an_inside_out_mesh_is_clicked_from_outside(mesh):
+    inverted = Specimen(type(mesh)(mesh.vertices, mesh.faces[:, ::-1]), "ball")
+    hit = inverted.pick(np.array([5.0, 0, 0]), np.array([-1.0, 0, 0]))
+    assert hit is not None and hit.normal[0] > 0.5
+
+
+def test_turning_keeps_the_vertices_and_changes_what_is_high(mesh):
+    specimen = Specimen(mesh, "ball")
+    other = turned(specimen, "x")
+    tip = int(mesh.vertices[:, 0].argmax())
+    assert specimen.mesh.vertices[tip, 2] == pytest.approx(0, abs=0.05) and other.mesh.vertices[tip, 2] > 0.4
+    assert not np.allclose(other.look("height").saliency, specimen.look("height").saliency)
+
+
+def test_an_uploaded_file_is_that_on_disk_and_reads_no_other(knob_file):
+    opened = open_content(f"../../{knob_file.name}", knob_file.read_bytes())
+    assert opened.name == "knob" and opened.path is None
+    assert np.array_equal(opened.given.vertices, load(knob_file).vertices)
+    with pytest.raises(MeshError, match="formats are"):
+        open_content("/etc/passwd", b"root")
+    with pytest.raises(MeshError, match="empty"):
+        open_content("x.stl", b"")
+
+
+def test_a_point_cloud_is_opened(tmp_path, mesh):
+    path = tmp_path / "cloud.xyz"
+    np.savetxt(path, np.random.default_rng(0).permutation(mesh.vertices))
+    assert len(open_file(path).mesh.faces) > 100
+
+
+def test_meshes_of_the_pipeline_are_opened(tmp_path, mesh):
+    write_mesh(tmp_path / "vase.npz", normalise(mesh))
+    (path,) = files_at(tmp_path)
+    assert open_file(path).name == "vase" and len(open_file(path).given.faces) == len(mesh.faces)
+    (tmp_path / "bad.npz").write_bytes(b"no zip")
+    np.savez(tmp_path / "other.npz", a=1)
+    for name in ("bad.npz", "other.npz"):
+        with pytest.raises(ValueError, match=name):
+            open_file(tmp_path / name)
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(MeshError, match="no mesh in this folder"):
+        files_at(tmp_path / "empty")
+
+
+def test_levels_have_the_faces_asked_for_and_larger_errors_with_fewer(mesh):
+    specimen = Specimen(mesh, "ball")
+    levels = Levels(specimen, specimen.look("glance", 3))
+    found = [levels.at(faces, SOFT, quiet) for faces in (640, 160)]
+    assert [len(level.mesh.faces) for level in found] == [640, 160]
+    assert 0 < found[0].mean < found[1].mean <= found[1].most
+    assert all(level.error.shape == level.saliency.shape == (len(level.mesh.vertices),) for level in found)
+    assert found[1].error.max() <= found[1].most * 1.01
+    assert levels.at(640, SOFT, quiet) is found[0]
+    whole = levels.at(levels.faces, SOFT, quiet)
+    assert whole.most == pytest.approx(0, abs=1e-6)
+
+
+def test_hard_levels_keep_the_points(mesh):
+    specimen = Specimen(mesh, "ball")
+    levels = Levels(specimen, specimen.look("glance", 2))
+    level = levels.at(200, HARD, quiet)
+    assert list(levels.tasks[HARD].points_kept(level.mesh)) == [True, True]
+
+
+def test_a_level_that_cannot_be_names_what_can(mesh):
+    specimen = Specimen(mesh, "ball")
+    with pytest.raises(ValueError, match="ask for .* or more"):
+        Levels(specimen, specimen.look("glance", 2)).at(2, HARD, quiet)
+
+
+@pytest.mark.parametrize("suffix", [".glb", ".obj", ".ply"])
+def test_a_level_comes_back_in_the_units_of_the_file(tmp_path, mesh, suffix):
+    far = type(mesh)(mesh.vertices * 30 + 100, mesh.faces, up="z")
+    specimen = Specimen(far, "ball")
+    levels = Levels(specimen, specimen.look("glance", 2))
+    path = tmp_path / f"level{suffix}"
+    path.write_bytes(levels.content(levels.at(300, SOFT, quiet), SOFT, suffix))
+    again = load(path)
+    assert len(again.faces) == 300 and again.diagonal == pytest.approx(far.diagonal, rel=0.05)
+    assert rotate_to_z_up(again).vertices[:, 2].mean() == pytest.approx(far.vertices[:, 2].mean(), abs=3)
+
+
+def test_points_are_listed_with_reasons(mesh):
+    specimen = Specimen(mesh, "ball")
+    look = specimen.look("glance", 2)
+    assert listing(look, [[("bulges out", 2.31)], []]).startswith(f"1. vertex {look.points[0][1]}, saliency ")
+    assert "bulges out (+2.3)" in listing(look, [[("bulges out", 2.31)], []])
+    said = for_and_against(contributions(mesh, look.vertices[:1]), "glance")
+    assert "For it: " in said and "(+" in said and "against it: " in said and "(-" in said
+
+
+def test_every_method_offered_has_a_saliency(mesh):
+    assert {"glance", "enhanced", "itti", "height"} <= set(methods()) and "random" not in methods()
+
+
+def test_the_twelve_views_show_the_object(mesh):
+    specimen = Specimen(mesh, "ball")
+    image = views_of(specimen.mesh, specimen.look("height").saliency, quiet)
+    assert image.shape == (4 * 150, 3 * 200, 3) and image.dtype == np.uint8
+    tiles = image.reshape(4, 150, 3, 200, 3).swapaxes(1, 2).reshape(12, -1, 3)
+    assert all((tile != 255).any(axis=1).mean() > 0.2 for tile in tiles)
+
+
+class Log(list):
+    """What a job says when it ends."""
+
+    def job(self, work):
+        return Job("x", work, lambda found: self.append(found), self.append, lambda _: self.append("end"), lambda _: 0)
+
+
+def test_a_job_hands_over_its_result_or_its_error():
+    log, error = Log(), ValueError("no")
+    log.job(lambda report: 3).start().thread.join(5)
+    log.job(lambda report: (_ for _ in ()).throw(error)).start().thread.join(5)
+    assert log == [3, "end", error, "end"]
+
+
+def test_a_stopped_job_ends_at_its_next_report_and_its_result_is_dropped():
+    log, begun, go = Log(), Event(), Event()
+
+    def work(report):
+        begun.set()
+        go.wait(5)
+        report(0.5, "half")
+        log.append("went on")
+
+    job = log.job(work).start()
+    begun.wait(5)
+    job.stop()
+    go.set()
+    job.thread.join(5)
+    assert log == ["end"] and job.stopped
+    late = log.job(lambda report: late.stop())  # stopped after its last report
+    late.start().thread.join(5)
+    assert log == ["end", "end"]
