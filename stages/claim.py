@@ -70,7 +70,7 @@ def judged_again(workspace: Workspace, claim: Any) -> dict[str, Any]:
     frame, pairs = judged([claim], results)
     rows = [(claim.stage, name) for name in results.in_order(results.read)]
     files = [f"reports/measurements/{name}/{stage}{SUFFIX}" for stage, name in rows]
-    found = {key: value for key, value in frame.iloc[0].to_dict().items() if value == value}
+    found = {str(key): value for key, value in frame.iloc[0].to_dict().items() if value == value}
     commands = [f"python -m stages.compose 'sets=[{name}]' && dvc repro {stage}@{name}" for stage, name in rows]
     return {
         **found,
