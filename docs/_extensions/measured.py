@@ -3,9 +3,10 @@
     {measured}`claims key=glance_over_best_gaze: effect low high | +.2f`      +0.96 [0.75, 1.19]
     {measured}`tables/scenes scene=shelf, method=uniform: faces | ,.0f`       2,803
 
-The file below reports/ without .csv, the row that the pairs name, its columns (one, or three with an interval), and the
-format. `100*faces` multiplies, `minutes:value` divides by 60, `less:effect` turns a difference in % of the mean of both sides into % less of the
-second one, `times:effect` into how many times it, and `median:seconds` is over all rows that the pairs name.
+The file below reports/ without .csv, the row that the pairs name, its columns (one, or three with an interval), and
+the format. `100*faces` multiplies, `minutes:value` divides by 60, `less:effect` turns a difference in % of the mean
+of both sides into % less of the second one, `times:effect` into how many times it, and `median:seconds` is over all
+rows that the pairs name.
 """
 
 import csv

@@ -52,8 +52,8 @@ plt.show()
 # Judge it by marks
 # -----------------
 #
-# ``python -m stages.weights.annotate folder NAME`` lets you mark what matters on a mesh of yours. Here three places
-# are marked by their coordinates: the muzzle, an ear, and the tip of the tail. NSS is the mean of the standardised
+# ``haptic-glance studio vase.stl --mark FOLDER`` lets you mark what matters on a mesh of yours. Here three places are
+# marked by their coordinates: the muzzle, an ear, and the tip of the tail. NSS is the mean of the standardised
 # saliency at the marks (0 is chance); AUC is how often a mark beats a random place (0.5 is chance).
 
 marked = [mesh.vertices[:, 0].argmax(), mesh.vertices[:, 2].argmax(), mesh.vertices[:, 0].argmin()]

@@ -92,7 +92,7 @@ def test_every_name_that_a_page_mentions_exists():
 
 def test_every_command_that_a_page_shows_exists():
     text = "\n".join(map(text_of, SOURCES))
-    shown = set(re.findall(r"^#?\s*haptic-glance (\w+)", text, re.M)) - {"studio", "contributors"}
+    shown = set(re.findall(r"^#?\s*haptic-glance (\w+)", text, re.M)) - {"contributors"}
     assert {"saliency", "simplify", "touch"} <= shown <= {*OWN, *WHOLE}
     assert set(re.findall(r"python -m stages\.([\w.]+)", text)) <= {*stages_and_tools()}
     experiments = set(re.findall(r"experiment=(\w+)", text))
