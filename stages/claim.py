@@ -1,7 +1,7 @@
 """Judges claims again from the rows that they rest on: `python -m stages.claim KEY ...`
 
 KEY is a claim's key in reports/claims.csv, or a pattern such as 'ours_*'. Prints each claim with its effect, its
-interval, the difference of each pair, the rows it was read from, and the commands that measure these rows anew. Works
+interval, the difference of each pair, the rows it was read from, and the command that measures these rows anew. Works
 in a fresh clone, from the rows in reports/measurements. Exits with 1 where a verdict is not that of reports/claims.csv.
 
 Examples: `python -m stages.claim ours_soft_gaze`, `python -m stages.claim 'ours_*' --json`,
@@ -61,22 +61,22 @@ def chosen(claims: Sequence[Any], keys: Sequence[str]) -> list[Any]:
 
 
 def judged_again(workspace: Workspace, claim: Any) -> dict[str, Any]:
-    """A claim's row of reports/claims.csv, made again, with `differences` ({pair: value}), `rows` and `commands`."""
+    """A claim's row of reports/claims.csv, made again, with `differences` ({pair: value}), `rows` and `command`."""
+    from stages.report.claims_page import command, sets_of
     from stages.report.results import Results
     from stages.report.schema import Params
     from stages.report.verdict import judged
 
     results = Results(workspace, workspace.settings(Params))
     frame, pairs = judged([claim], results)
-    rows = [(claim.stage, name) for name in results.in_order(results.read)]
-    files = [f"reports/measurements/{name}/{stage}{SUFFIX}" for stage, name in rows]
+    sets = sets_of(claim, results)
+    files = [f"reports/measurements/{name}/{claim.stage}{SUFFIX}" for name in sets]
     found = {str(key): value for key, value in frame.iloc[0].to_dict().items() if value == value}
-    commands = [f"python -m stages.compose 'sets=[{name}]' && dvc repro {stage}@{name}" for stage, name in rows]
     return {
         **found,
         "differences": dict(zip(pairs["pair"], pairs["difference"], strict=True)),
         "rows": [file for file in files if Path(workspace.root / file).exists()],
-        "commands": commands,
+        "command": command(claim.stage, sets),
     }
 
 
@@ -89,7 +89,7 @@ def as_text(found: dict[str, Any]) -> str:
     lines.append(f"  tested on: {found['tested_on']}")
     lines += [f"    {pair:32} {value:+.4g}" for pair, value in found["differences"].items()]
     lines += [f"  rows: {file}" for file in found["rows"]]
-    return "\n".join([*lines, *(f"  measure anew: {command}" for command in found["commands"]), ""])
+    return "\n".join([*lines, f"  measure anew: {found['command']}", ""])
 
 
 def measure(workspace: Workspace, rows: Sequence[str]) -> None:
