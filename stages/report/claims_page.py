@@ -61,7 +61,7 @@ def claims_main(known: Sequence[Claim], claims: pd.DataFrame, differences: pd.Da
         sets = sets_of(claim, results)
         chapter = next((start for start in CHAPTERS if str(row.section).startswith(start)), str(row.section))
         values["chapter"][chapter] = CHAPTERS.get(chapter, chapter)
-        values["verdict"][row.verdict.replace(" ", "-")] = row.verdict
+        values["verdict"][str(row.verdict).replace(" ", "-")] = str(row.verdict)
         values["set"] |= {name: dataset_text(name) for name in sets}
         items.append(_claim_html(row, claim, sets, chapter))
     pairs = {

@@ -61,7 +61,7 @@ ANSWER = '<li><h3>{asked}</h3><p>{answer} <a href="{address}">{kind}</a></p></li
 
 def findings_html(claims: pd.DataFrame, differences: pd.DataFrame) -> str:
     """The cards of those FINDINGS that were measured."""
-    rows = {row.key: row for row in claims.itertuples() if row.low == row.low}
+    rows = {str(row.key): row for row in claims.dropna(subset=["low"]).itertuples()}
     cards = [_card(one, rows[one.key], differences) for one in FINDINGS if one.key in rows]
     if not cards:
         return ""

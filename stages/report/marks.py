@@ -120,12 +120,12 @@ def _spans(axes: Axes) -> Iterator[tuple[int, float, float, float]]:
         if len(ends) == 2:
             for along in (0, 1):
                 if ends[0, 1 - along] == ends[1, 1 - along] and ends[0, along] != ends[1, along]:
-                    yield along, ends[0, 1 - along], *sorted(ends[:, along])
+                    yield along, ends[0, 1 - along], ends[:, along].min(), ends[:, along].max()
     for band in axes.collections:
         if isinstance(band, PolyCollection):
-            for path in band.get_paths():
-                for x in np.unique(path.vertices[:, 0]):
-                    heights = path.vertices[path.vertices[:, 0] == x, 1]
+            for corners in (np.asarray(path.vertices) for path in band.get_paths()):
+                for x in np.unique(corners[:, 0]):
+                    heights = corners[corners[:, 0] == x, 1]
                     yield 1, x, heights.min(), heights.max()
 
 

@@ -7,6 +7,7 @@ from textwrap import fill
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
 from matplotlib.ticker import Locator, LogLocator, MaxNLocator
 from numpy.typing import ArrayLike
 
@@ -123,7 +124,7 @@ def _draw(
 def _legend(axes: Axes, titles: Sequence[str]) -> None:
     """What colours and shapes mean, each kind under its title."""
     handles, names = axes.get_legend_handles_labels()
-    kinds = [k for k, handle in enumerate(handles) if handle.get_marker() == " "]
+    kinds = [k for k, handle in enumerate(handles) if isinstance(handle, Line2D) and handle.get_marker() == " "]
     for k, title in zip(kinds, titles, strict=True):
         names[k] = title
     legend = axes.legend(handles, names, loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=9)

@@ -4,6 +4,7 @@ import re
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure as Drawing
 
 from stages.report.style import CYCLE, plt
 from stages.report.vector import MOST, has_marks_alone, vector
@@ -69,4 +70,4 @@ def test_a_drawing_with_a_picture_is_no_chart(drawing):
     assert has_marks_alone(drawing)
     drawing.axes[0].imshow(np.zeros((2, 2)))
     assert not has_marks_alone(drawing)
-    assert not has_marks_alone(plt.Figure())
+    assert not has_marks_alone(Drawing())

@@ -45,7 +45,7 @@ def combinations(results: Results) -> Table:
     found = pd.DataFrame(found, columns=["method", "metric", "mean"])
     errors = found.pivot(index="method", columns="metric", values="mean")
     metrics = [metric for metric in ERRORS if metric in errors] or list(METRICS)
-    channels = [", ".join(METHODS[method].channels) for method in COMBINATIONS]
+    channels = [", ".join(METHODS[method].channels).replace("_", " ") for method in COMBINATIONS]
     frame = pd.DataFrame({"combination": map(short, COMBINATIONS), "channels": channels})
     frame[metrics] = errors.reindex(COMBINATIONS, columns=metrics).to_numpy(dtype=float)
     shown = {metric: (UNITS[metric] * frame[metric]).map(number).replace("–", "not run") for metric in metrics}

@@ -116,7 +116,7 @@ def chart(results: Results) -> Figure:
 
 def _best(found: pd.DataFrame) -> str:
     """What the best array is, and what the one with the fewest and closest cells loses."""
-    best = found.loc[found["accuracy"].idxmax()]
+    best = found.sort_values("accuracy").iloc[-1]
     small = found[found["classifier"] == best["classifier"]].sort_values(["cells", "pitch"]).iloc[0]
     said = (
         f"{label(row['classifier'])}, {row['cells']}² cells {row['pitch']:g} apart: {100 * row['accuracy']:.0f} %"
