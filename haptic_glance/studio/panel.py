@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import viser
 
-from .specimen import Hit
+from .specimen import Hit, Specimen
 
 if TYPE_CHECKING:
     from .window import Window
@@ -30,6 +30,13 @@ class Panel:
 
     def on_click(self, hit: Hit) -> None:
         """A click on the mesh while this panel is chosen."""
+
+    def target(self) -> Specimen | None:
+        """What clicks are about: the mesh on the table."""
+        return self.window.session.specimen
+
+    def on_miss(self) -> None:
+        """A click beside the target."""
 
     def on_show(self) -> None:
         """The panel is chosen: draw in the scene what belongs to it."""

@@ -50,6 +50,16 @@ class Scene:
             self.client.camera.position = middle + EYE * away
             self.client.camera.look_at = middle
 
+    def face(self, place: np.ndarray, normal: np.ndarray) -> None:
+        """Turns the camera about the middle, where it would see the place (3,) with its normal (3,) from behind."""
+        camera = self.client.camera
+        away = np.asarray(camera.position) - camera.look_at
+        if (np.asarray(camera.position) - place) @ normal > 0:
+            return
+        distance = np.linalg.norm(away)
+        towards = normal + 0.5 * away / distance  # not quite along the normal, which may be the up axis
+        camera.position = camera.look_at + towards / np.linalg.norm(towards) * distance
+
     def mesh(self, name: str, mesh: Mesh, colors: np.ndarray, flat: bool = False, at: np.ndarray = MIDDLE) -> None:
         """A mesh with colours (n, 3) u1. flat: one normal a face, so that the faces are seen. at: where it stands."""
         self.api.add_glb(name, glb(mesh, colors, flat), position=at, cast_shadow=False, receive_shadow=False)

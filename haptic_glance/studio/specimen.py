@@ -14,6 +14,7 @@ from stages.kit.rays import RayScene
 from stages.meshes import normalise, rotate_to_z_up
 from stages.meshes.colours import bake_texture
 from stages.meshes.load import MeshError, load_unnamed, parse
+from stages.meshes.normalise import RADIUS, centre_and_radius
 from stages.meshes.orient import orient
 from stages.meshes.own import mesh_files
 from stages.meshes.up import upright_by
@@ -77,6 +78,11 @@ class Specimen:
         Closed parts face outwards, as for the look and the touch.
         """
         return normalise(rotate_to_z_up(orient(self.baked)[0]))
+
+    @cached_property
+    def unit(self) -> float:
+        """One unit of `mesh`, in units of the file."""
+        return float(centre_and_radius(self.given)[1]) / RADIUS
 
     @cached_property
     def rays(self) -> RayScene:

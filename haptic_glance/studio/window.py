@@ -139,13 +139,16 @@ class Window:
         self.run("", lambda: self._clicked(origin, direction))
 
     def _clicked(self, origin, direction):
-        if self.session.specimen is None:
+        target = self.panel.target()
+        if target is None:
             return
-        hit = self.session.specimen.pick(origin, direction)
+        hit = target.pick(origin, direction)
         if hit is None and self.session.other is not None:
-            hit = self.session.specimen.pick(origin - BESIDE, direction)
+            hit = target.pick(origin - BESIDE, direction)
         if hit is not None:
             self.panel.on_click(hit)
+        else:
+            self.panel.on_miss()
 
     def choose(self, title: str) -> None:
         """Shows one panel alone."""

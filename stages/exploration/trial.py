@@ -6,6 +6,7 @@ from stages.kit.split import Split
 
 from .belief import calibrate
 from .likelihood import feature_kernel, log_likelihood, place_kernel
+from .outcomes import nearest_outcomes
 from .split_touches import split_touches
 
 LIKELIHOODS = (
@@ -15,8 +16,6 @@ LIKELIHOODS = (
 )  # of imprints; of imprints and places; of imprints as if independent
 INNER_SPLITS = 6  # hold-outs of the training touches, for calibration
 ORDERS = 5  # random orders of each object's inner test touches
-MAX_NEIGHBOURS = 8  # training touches of an object near a place, as predictions for the place
-NEIGHBOUR_WIDTH = 0.08  # units, half an array: within which a training touch predicts others
 
 
 class Trial:
@@ -79,7 +78,7 @@ class Trial:
         counted = far_enough | (self._known[:, None] != self._known[None])
         kernel = self._kernel * counted
         counts = counted @ np.eye(self.classes)[self._known]
-        outcomes, probabilities = self._nearest_known(distances)
+        outcomes, probabilities = nearest_outcomes(distances, self._known)
         if self._uses_places:
             kernels = kernel[outcomes] * place_weights[:, None, None]  # (k, classes, outcomes, n)
             predicted = log_likelihood(kernels, self._known, counts[outcomes])
@@ -87,16 +86,3 @@ class Trial:
             predicted = log_likelihood(kernel, self._known, counts)[outcomes]
         shape = (self.classes, -1, *outcomes.shape[1:])
         return predicted.reshape(*shape, self.classes), probabilities.reshape(shape)
-
-    def _nearest_known(self, distances):
-        """(outcomes (k, classes, o): training touches of each object nearest to a place, their probabilities)."""
-        of_object = [np.flatnonzero(self._known == label) for label in range(self.classes)]
-        count = min(MAX_NEIGHBOURS, *map(len, of_object))
-        outcomes = np.stack(
-            [ids[np.argsort(distances[:, ids], axis=1, kind="stable")[:, :count]] for ids in of_object], axis=1
-        )
-        nearest = np.take_along_axis(distances[:, None], outcomes.reshape(len(distances), 1, -1), axis=2).reshape(
-            outcomes.shape
-        )
-        weights = np.exp(-(nearest - nearest[..., :1]) / NEIGHBOUR_WIDTH)
-        return outcomes, weights / weights.sum(axis=-1, keepdims=True)

@@ -1,7 +1,11 @@
 """What can be done with the mesh on the table: a panel a file, in the order in which they are offered."""
 
+from .know import KnowPanel
 from .levels import LevelsPanel
 from .look import LookPanel
 from .mark import MarkPanel
+from .path import PathPanel
+from .senses import SensesPanel
+from .touch import TouchPanel
 
-PANELS = (LookPanel, LevelsPanel, MarkPanel)
+PANELS = (LookPanel, LevelsPanel, TouchPanel, PathPanel, KnowPanel, SensesPanel, MarkPanel)

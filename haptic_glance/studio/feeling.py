@@ -1,0 +1,135 @@
+"""What a sensor feels at one place, and where each of its cells met the object: the touch panels, free of viser."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from stages.imprints import Layer, Skin, Surface, distances_at, sensor_axes
+from stages.imprints.force import gaps_at, press_forces
+from stages.imprints.press import normalise
+from stages.imprints.quasi_tangent import contour_imprints, quasi_tangent
+from stages.imprints.user_mesh import Places
+
+RAYS, RIGID, CONTOURS, NEWTONS = "rays", "rays, rigid plate", "contours", "newtons"
+SENSORS = (RAYS, RIGID, CONTOURS, NEWTONS)
+UNIT = "units of the file"
+LAYER = Layer(thickness=0.004)  # metres: soft foam, thick enough for a finger's load
+LIFT = 0.003  # units above the surface, so that it does not show through
+
+
+@dataclass(frozen=True)
+class Sensor:
+    """What the sliders say. kind: one of SENSORS; cells: of each side; pitch: units from cell to cell.
+
+    blur: of the elastic skin, in cells; noise: of full scale; turn: degrees about the normal, counter-clockwise seen
+    from outside; load: newtons on the whole array and size: of the object, in metres, for NEWTONS alone.
+    """
+
+    kind: str = RAYS
+    cells: int = 16
+    pitch: float = 0.01
+    blur: float = 0.0
+    noise: float = 0.0
+    turn: float = 0.0
+    load: float = 1.0
+    size: float = 0.1
+
+    @property
+    def array(self) -> tuple[int, int]:
+        """(rows, columns)."""
+        return self.cells, self.cells
+
+
+@dataclass(frozen=True)
+class Felt:
+    """What was felt at one place.
+
+    pressed (rows, cols) in 0..1, 1 where the array is pressed hardest. span: what 0 and 1 stand for, in `unit`.
+    centre (3,), axes (3, 3) rows right, up, normal, pitch: the array's pose, in units of the mesh. depths (rows, cols):
+    from the array to the surface, in units; inf where nothing was met.
+    """
+
+    pressed: np.ndarray
+    span: tuple[float, float]
+    unit: str
+    centre: np.ndarray
+    axes: np.ndarray
+    pitch: float
+    depths: np.ndarray
+
+    @property
+    def corners(self) -> np.ndarray:
+        """(4, 3) the array's corners, row 0 first, lifted to where it first meets the object."""
+        rows, columns = self.depths.shape
+        right, up, normal = self.axes
+        lift = -min(self.depths.min(), 0.0) if np.isfinite(self.depths.min()) else 0.0
+        signs = np.array([[-1, 1], [1, 1], [1, -1], [-1, -1]])
+        across = signs[:, :1] * columns * right + signs[:, 1:] * rows * up
+        return self.centre + lift * normal + LIFT * normal + self.pitch / 2 * across
+
+    @property
+    def contacts(self) -> tuple[np.ndarray, np.ndarray]:
+        """(places (k, 3) on the object of the cells that met it, what each of them feels (k,), of `pressed`)."""
+        rows, columns = self.depths.shape
+        right, up, normal = self.axes
+        row, column = np.nonzero(np.isfinite(self.depths))
+        x, y = column - (columns - 1) / 2, (rows - 1) / 2 - row
+        on_array = self.centre + self.pitch * (x[:, None] * right + y[:, None] * up)
+        return on_array + (LIFT - self.depths[row, column])[:, None] * normal, self.pressed[row, column]
+
+
+def feel(surface: Surface, place: Places, sensor: Sensor, unit: float = 1.0) -> Felt:
+    """What the sensor feels at the first of the places. unit: of the mesh, in those of its file.
+
+    CONTOURS is felt at vertices alone. Raises ValueError for it where the place is none, and as `press_forces` does.
+    """
+    centre, axes = _pose(surface, place, sensor)
+    if sensor.kind == NEWTONS:
+        force = press_forces(surface, centre, axes, LAYER, sensor.array, sensor.pitch, sensor.load, unit=sensor.size)
+        images, span, name = 1 - force / force.max(), (0.0, float(force.max())), "newtons"
+    elif sensor.kind == CONTOURS:
+        images, span, name = (
+            contour_imprints(surface, place.vertices[:1], sensor.array, sensor.pitch),
+            (0.0, 1.0),
+            "shares of the planes",
+        )
+    else:
+        contact = "rigid" if sensor.kind == RIGID else "tangent"
+        found = distances_at(surface, centre, axes, sensor.array, sensor.pitch, contact=contact)
+        images, span, name = normalise(found, sensor.pitch), (unit * float(np.ptp(found)), 0.0), UNIT
+    pressed = 1 - Skin(blur=sensor.blur, noise=sensor.noise)(images)[0]
+    return Felt(pressed, span, name, centre[0], axes[0], sensor.pitch, _depths(surface, centre, axes, sensor))
+
+
+def _depths(surface, centre, axes, sensor):
+    """(rows, cols) units from the array to the surface that its cells meet, inf where there is none."""
+    reach = sensor.cells * sensor.pitch
+    if sensor.kind in (RIGID, NEWTONS):  # they come from above, and meet what overhangs the place
+        return gaps_at(surface, centre, axes, reach, sensor.array, sensor.pitch)[0]
+    found = distances_at(surface, centre, axes, sensor.array, sensor.pitch)[0]
+    return np.where(found < reach, found, np.inf)
+
+
+def feel_by_rays(
+    surface: Surface, centre: np.ndarray, axes: np.ndarray, cells: tuple[int, int], pitch: float, unit: float = 1.0
+) -> Felt:
+    """What an ideal array feels at a centre (3,) with axes (3, 3); unit: of the mesh, in those of its file."""
+    found = distances_at(surface, centre[None], axes[None], cells, pitch)
+    span = unit * float(np.ptp(found)), 0.0
+    depths = np.where(found[0] < max(cells) * pitch, found[0], np.inf)
+    return Felt(1 - normalise(found, pitch)[0], span, UNIT, centre, axes, pitch, depths)
+
+
+def _pose(surface, place, sensor):
+    """(centre (1, 3), axes (1, 3, 3)) of the array."""
+    if sensor.kind != CONTOURS:
+        return place.positions[:1], turned(sensor_axes(place.normals[:1]), sensor.turn)
+    if place.vertices[0] < 0:
+        raise ValueError("contours are felt at vertices alone: click nearer to a corner of a face, or take rays")
+    return quasi_tangent(surface.mesh, place.vertices[:1])
+
+
+def turned(axes: np.ndarray, degrees: float) -> np.ndarray:
+    """Axes (k, 3, 3) turned about their normals."""
+    cos, sin = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    return np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]]) @ axes

@@ -1,0 +1,108 @@
+"""What is known of the mesh on the table, or of a hidden one, by its touches: the panel Know, free of viser."""
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from haptic_glance.knowing import Exploration, Library, known_objects, learn, primitives
+from stages.imprints.surface import as_surface
+from stages.kit import Mesh
+from stages.kit.rng import rng
+from stages.meshes import MeshError
+
+from .specimen import Specimen, open_file
+
+HOUSEHOLD = Path("data") / "household" / "meshes"  # where `haptic-glance repro` puts them, below the current folder
+MOST = 60  # objects
+
+
+@dataclass
+class Guess:
+    """An object that is touched.
+
+    name: what it is. hidden: whether its mesh and name are not shown before the end. helped: touches that the planner
+    made. said: what the person takes it for, who need not wait until the belief is sure. over: whether a hidden object
+    is found out, or given up.
+    """
+
+    specimen: Specimen
+    exploration: Exploration
+    name: str
+    hidden: bool = False
+    helped: int = 0
+    said: str = ""
+    over: bool = False
+
+    @property
+    def touches(self) -> int:
+        """How many were made."""
+        return len(self.exploration.images)
+
+
+def gather(
+    files: Sequence[Path], up: str | None, table: Specimen | None, basic: bool, household: Path | None
+) -> tuple[dict[str, Mesh], list[str]]:
+    """({name: normalised mesh}, what was left out) of all that can be known.
+
+    Basic shapes, the household objects, the files that were opened with the studio, and the mesh on the table; of equal
+    names the later ones.
+    """
+    found, notes = primitives() if basic else {}, []
+    if household is not None:
+        theirs, notes = known_objects(household, MOST)
+        found |= theirs
+    for path in files[:MOST]:
+        try:
+            found[path.stem] = open_file(path, up).mesh
+        except (MeshError, ValueError, OSError) as error:
+            notes.append(f"{path.name}: {error}")
+    if table is not None:
+        found[table.name] = table.mesh
+    return found, notes
+
+
+def study(meshes: Mapping[str, Mesh], placed: bool) -> tuple[Library, float]:
+    """(the Library, seconds that it took)."""
+    start = time.perf_counter()
+    library = learn(meshes, placed)
+    return library, time.perf_counter() - start
+
+
+def guess(library: Library, meshes: Mapping[str, Mesh], table: Specimen | None, seed: int | None = None) -> Guess:
+    """A Guess at the mesh on the table, or, with None, at one of the known objects, drawn by lot and hidden.
+
+    seed: of the lot, None for another one each time.
+    """
+    random = np.random.default_rng(seed)
+    name = str(random.choice(library.names)) if table is None else table.name
+    specimen = Specimen(meshes[name], name) if table is None else table
+    places = random if table is None else rng(0, name)
+    exploration = Exploration(library, as_surface(specimen.mesh), places)
+    return Guess(specimen, exploration, name, hidden=table is None)
+
+
+def by_planner(one: Guess) -> tuple[int, str]:
+    """(touches, the object that it knows then, or empty) of the planner that explores the same object alone."""
+    other = Exploration(one.exploration.library, one.exploration.surface, rng(1, one.name))
+    known = other.finish()
+    return len(other.images), known
+
+
+def verdict(one: Guess, planner: tuple[int, str], escaped: Callable[[str], str] = str) -> str:
+    """Who knew it, in Markdown, once it is shown. escaped: of names, so that nothing of them is Markdown."""
+    theirs = f"the planner alone knew it after {planner[0]}"
+    if planner[1] != one.name:
+        theirs = f"took it for {escaped(planner[1])}" if planner[1] else "gave up"
+        theirs = f"the planner alone {theirs} after {planner[0]}"
+    answer = one.said or one.exploration.belief.known
+    own = "You knew it" if answer == one.name else f"You took it for {escaped(answer)}" if answer else "You gave up"
+    helped = f", {one.helped} of them the planner's" if one.helped else ""
+    return f"**It is {escaped(one.name)}.** {own} after {count(one.touches)}{helped}; {theirs}."
+
+
+def count(touches: int) -> str:
+    """So many touches, in words."""
+    return f"{touches} touch{'' if touches == 1 else 'es'}"

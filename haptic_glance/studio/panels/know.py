@@ -1,0 +1,260 @@
+"""What the object is, by touch: bars of belief that move with each touch, the next touch, and a mystery object."""
+
+import numpy as np
+import viser
+
+from haptic_glance.knowing import Library, place_at
+from haptic_glance.knowing.library import CELLS, PITCH
+from stages.imprints import sensor_axes
+from stages.imprints.user_mesh import Places
+from stages.kit import Mesh
+
+from ..drawing import draw_cells
+from ..feeling import Felt, feel_by_rays
+from ..grids import bars_html, grid_html
+from ..jobs import Report
+from ..mystery import HOUSEHOLD, Guess, by_planner, count, gather, guess, study, verdict
+from ..panel import Panel
+from ..scene import GREY, MESH, escaped
+from ..specimen import Hit, Specimen
+
+DRAWN, FELT, TOUCHED, SHOWN, ROOM = "/know", "/know/felt", "/know/touched", "/know/shown", "/know/room"
+BLUE = (0, 85, 140)
+ASK = "Click the mesh to touch it, or let the planner touch where it learns most."
+HIDDEN = "An object hides in the ball. Click where it may be: what you touch is shown."
+GUESS = "guess"
+
+
+class KnowPanel(Panel):
+    """A library of known objects, and one object that is touched: that on the table, or a hidden one."""
+
+    title = "Know"
+
+    def build(self, gui: viser.GuiApi) -> None:
+        """Adds the controls."""
+        self.guess: Guess | None = None
+        self.library: Library | None = None
+        self.meshes: dict[str, Mesh] = {}
+        self.about = gui.add_markdown(ASK)
+        self.bars = gui.add_html("", visible=False)
+        self.next = gui.add_button("Touch next", hint="where the belief is expected to gain most")
+        self.until = gui.add_button("Touch until it is known", color="gray")
+        self.mystery = gui.add_button("Mystery object", hint="one of the known objects, hidden", color="violet")
+        self.name = gui.add_dropdown("It is", [GUESS], visible=False)
+        self.reveal = gui.add_button("Reveal", visible=False)
+        self.again = gui.add_button("Start again", color="gray")
+        self.grid = gui.add_html("", visible=False)
+        with gui.add_folder("Known objects", expand_by_default=False):
+            self.known = gui.add_markdown("")
+            self.basic = gui.add_checkbox("Basic shapes", True)
+            self.household = gui.add_checkbox("Household", HOUSEHOLD.is_dir(), visible=HOUSEHOLD.is_dir())
+            self.placed = gui.add_checkbox("It stands as it was learned", True, hint="or else it may lie anywhere")
+        on = self.window.on
+        on(self.next.on_click, self.touch_next)
+        on(self.until.on_click, self.touch_on)
+        on(self.mystery.on_click, lambda: self.learn(hidden=True))
+        on(self.name.on_update, self.said)
+        on(self.reveal.on_click, self.show_it)
+        on(self.again.on_click, self.start_again)
+        for control in (self.basic, self.household, self.placed):
+            on(control.on_update, self.learn)
+
+    def target(self) -> Specimen | None:
+        """What is touched: a hidden object, or the mesh on the table."""
+        return self.guess.specimen if self.guess is not None else super().target()
+
+    def on_mesh(self) -> None:
+        """Another mesh: what was touched before is gone."""
+        self.forget()
+
+    def on_show(self) -> None:
+        """Learns the objects, unless that was done, and shows what was touched."""
+        self.draw()
+        if self.guess is None:
+            self.learn()
+
+    def on_hide(self) -> None:
+        """Takes away what was touched; it comes back with the panel."""
+        self.window.scene.clear(DRAWN)
+
+    def forget(self) -> None:
+        """Nothing is touched."""
+        self.guess, self.bars.visible, self.grid.visible = None, False, False
+        self.about.content = ASK
+        self.window.scene.clear(DRAWN)
+
+    def start_again(self) -> None:
+        """Forgets the touches; of a hidden object as well, which is then not told."""
+        self.learn()
+
+    def learn(self, hidden: bool = False) -> None:
+        """Learns the objects in the background, then begins with the mesh on the table, or with a hidden one."""
+        table, settings = self.window.session.specimen, self.window.settings
+        household = HOUSEHOLD if self.household.value else None
+        basic, placed = self.basic.value, self.placed.value
+
+        def work(report: Report) -> tuple[dict[str, Mesh], list[str], Library, float, Guess | None]:
+            report(0.1, "reading the known objects")
+            meshes, notes = gather(settings.files, settings.up, table, basic, household)
+            report(0.5, f"{len(meshes)} objects")
+            library, seconds = study(meshes, placed)
+            begun = guess(library, meshes, None if hidden else table) if hidden or table is not None else None
+            return meshes, notes, library, seconds, begun
+
+        self.window.work("Learning the known objects", work, lambda found: self.begin(*found))
+
+    def begin(
+        self, meshes: dict[str, Mesh], notes: list[str], library: Library, seconds: float, begun: Guess | None
+    ) -> None:
+        """The library is there: an object can be touched."""
+        self.forget()
+        self.meshes, self.library, self.guess = meshes, library, begun
+        left_out = "".join(f"\n- left out: {escaped(note)}" for note in notes)
+        self.known.content = f"{len(library.names)} objects, learned in {seconds:.1f} s.{left_out}"
+        if self.window.panel is self:
+            self.draw()
+
+    def on_click(self, hit: Hit) -> None:
+        """Touches where the person clicked."""
+        if not self.touchable() or self.guess is None:
+            return
+        self.touch(place_at(self.guess.exploration.surface, hit.position[None], np.array([hit.face])))
+
+    def on_miss(self) -> None:
+        """Says so, of a hidden object."""
+        if self.guess is not None and self.guess.hidden:
+            self.window.say("Nothing there", "the object is elsewhere in the ball", seconds=2)
+
+    def touch(self, place: Places, by_hand: bool = True) -> None:
+        """Touches a place."""
+        assert self.guess is not None
+        self.guess.exploration.touch(place)
+        self.guess.helped += not by_hand
+        self.show_touch(self.guess.touches - 1)
+        self.report()
+
+    def touchable(self) -> bool:
+        """Whether there is something to touch; says what to do where there is not."""
+        if self.guess is None:
+            text = (
+                "the known objects are still being learned"
+                if self.window.jobs
+                else "open a mesh, or take a mystery object"
+            )
+            self.window.say("Nothing to touch yet", text)
+        return self.guess is not None and not self.guess.over
+
+    def touch_next(self) -> None:
+        """Finds the most telling place in the background, then touches it."""
+        if not self.touchable() or self.guess is None:
+            return
+        exploration = self.guess.exploration
+        self.window.work("Choosing a place", lambda _: exploration.next_place(), self.touch_planned)
+
+    def touch_planned(self, place: Places | None) -> None:
+        """Marks the chosen place and touches it."""
+        if place is None:
+            self.window.say(
+                "No touch would help", "the likeliest objects feel the same wherever it was not touched yet"
+            )
+            return
+        self.touch(place, by_hand=False)
+        assert self.guess is not None
+        number = self.guess.touches
+        words = [f"{number}, the planner's"]
+        self.window.scene.markers(f"{TOUCHED}/{number - 1}", place.positions, place.normals, words, BLUE)
+        self.window.scene.face(place.positions[0], place.normals[0])
+
+    def touch_on(self) -> None:
+        """Lets the planner touch until the object is known."""
+        if not self.touchable() or self.guess is None:
+            return
+        one, before = self.guess, self.guess.touches
+
+        def work(report: Report) -> None:
+            exploration = one.exploration
+            while not exploration.belief.known and one.touches < before + 30:
+                report((one.touches - before) / 30, f"touch {one.touches + 1}")
+                place = exploration.next_place()
+                if place is None:
+                    break
+                self.window.run(self.title, lambda place=place: self.touch(place, by_hand=False))
+
+        self.window.work("Touching", work, lambda _: self.report())
+
+    def report(self) -> None:
+        """The bars, and what is known by now."""
+        one = self.guess
+        if one is None:
+            return
+        belief = one.exploration.belief
+        self.bars.content, self.bars.visible = bars_html(belief.probabilities, belief.known), True
+        touches = f"after {count(one.touches)}"
+        begin = HIDDEN if one.hidden else ASK
+        self.about.content = (
+            f"**{escaped(belief.known)}**, {touches}." if belief.known else f"Not sure {touches}. {begin}"
+        )
+        if not one.touches:
+            self.about.content = begin
+        if one.hidden and belief.known:
+            self.show_it()
+
+    def said(self) -> None:
+        """The person says what it is."""
+        if self.guess is not None and self.guess.hidden and self.name.value != GUESS and not self.guess.over:
+            self.guess.said = self.name.value
+            self.show_it()
+
+    def show_it(self) -> None:
+        """Ends a mystery: how the planner does alone is found in the background, then the object is shown."""
+        one = self.guess
+        if one is None or not one.hidden or one.over:
+            return
+        one.over = True
+        self.draw()
+        self.about.content = f"**It is {escaped(one.name)}.**"
+        self.window.work(
+            "Letting the planner try",
+            lambda _: by_planner(one),
+            lambda planner: setattr(self.about, "content", verdict(one, planner, escaped)),
+        )
+
+    def draw(self) -> None:
+        """Everything anew: the mesh unless it hides, the touches, the controls that fit."""
+        scene, one = self.window.scene, self.guess
+        scene.clear(DRAWN)
+        hides = one is not None and one.hidden and not one.over
+        self.name.visible = self.reveal.visible = hides
+        if one is None or not one.hidden:
+            if self.window.session.specimen is not None:
+                self.window.show(None)
+        else:
+            scene.clear(MESH)
+        if one is None:
+            return
+        if hides:
+            self.name.options = (GUESS, *one.exploration.library.names)
+            scene.api.add_icosphere(ROOM, 0.5, (150, 160, 190), subdivisions=5, opacity=0.12, cast_shadow=False)
+        elif one.hidden:
+            scene.mesh(SHOWN, one.specimen.mesh, np.full((len(one.specimen.mesh.vertices), 3), GREY, np.uint8))
+        for number in range(one.touches):
+            self.show_touch(number)
+        if not one.over:
+            self.report()
+
+    def show_touch(self, number: int) -> None:
+        """Draws one touch on the object, and what was felt there."""
+        felt = self.felt(number)
+        draw_cells(self.window.scene, f"{FELT}/{number}", felt)
+        self.window.scene.markers(
+            f"{TOUCHED}/{number}", felt.centre[None], felt.axes[2:], [str(number + 1)], radius=0.008
+        )
+        self.grid.content = grid_html(felt.pressed, felt.span, felt.unit, f"touch {number + 1}")
+        self.grid.visible = True
+
+    def felt(self, number: int) -> Felt:
+        """What was felt at a touch, in the object's own units."""
+        assert self.guess is not None
+        exploration, specimen = self.guess.exploration, self.guess.specimen
+        axes = sensor_axes(exploration.normals[[number]])[0]
+        return feel_by_rays(exploration.surface, exploration.positions[number], axes, CELLS, PITCH, specimen.unit)

@@ -1,0 +1,100 @@
+"""A picture and a touch of the mesh on the table, one of them dark or dead, and which the hybrid network trusts."""
+
+import numpy as np
+import viser
+
+from haptic_glance.knowing import place_at
+from stages.imprints import sensor_axes
+from stages.imprints.surface import as_surface
+from stages.imprints.user_mesh import Places
+
+from ..drawing import draw_array
+from ..feeling import feel_by_rays
+from ..grids import bars_html, pair_html
+from ..panel import Panel
+from ..senses import CELLS, MISSING, PITCH, Answer, Trained, ask, load_network, newest_network, sense, viewpoint
+from ..specimen import Hit
+
+ARRAY = "/senses"
+DRAWN, WIDE = 16, PITCH * CELLS / 16  # cells of the array as it is drawn, and their pitch
+BARS = 4  # classes of each sense
+ASK = "Click the mesh: the picture is what you see now, the touch is where you click."
+
+
+class SensesPanel(Panel):
+    """Asks the hybrid network that was trained last."""
+
+    title = "Senses"
+
+    def build(self, gui: viser.GuiApi) -> None:
+        """Adds the controls."""
+        self.network: Trained | None = None
+        self.place: Places | None = None
+        self.about = gui.add_markdown(ASK)
+        self.images = gui.add_html("", visible=False)
+        self.seen = gui.add_html("", visible=False)
+        self.felt = gui.add_html("", visible=False)
+        self.dark = gui.add_slider("Dark", 0.0, 1.0, 0.05, 0.0, hint="share of the light that is taken")
+        self.dead = gui.add_slider("Dead", 0.0, 1.0, 0.05, 0.0, hint="share of the cells that are dead")
+        for control in (self.dark, self.dead):
+            self.window.on(control.on_update, self.again)
+
+    def on_mesh(self) -> None:
+        """Nothing was sensed yet."""
+        self.place = None
+        self.images.visible = self.seen.visible = self.felt.visible = False
+
+    def on_show(self) -> None:
+        """Loads the network, or says how one is made."""
+        self.window.show(None)
+        path = newest_network()
+        if path is None:
+            self.about.content = MISSING
+        elif self.network is None:
+            self.window.work("Loading the network", lambda _: load_network(path), self.loaded)
+
+    def loaded(self, network: Trained) -> None:
+        """The network is there."""
+        self.network, self.about.content = network, ASK
+
+    def on_hide(self) -> None:
+        """Takes the array away."""
+        self.window.scene.clear(ARRAY)
+
+    def on_click(self, hit: Hit) -> None:
+        """Touches there."""
+        self.place = place_at(as_surface(self.window.session.on_table.mesh), hit.position[None], np.array([hit.face]))
+        self.again()
+
+    def again(self) -> None:
+        """Looks, touches, and asks the network."""
+        specimen, place, network, camera = (
+            self.window.session.specimen,
+            self.place,
+            self.network,
+            self.window.client.camera,
+        )
+        if specimen is None or place is None or network is None:
+            return
+        surface, seen_from = as_surface(specimen.mesh), viewpoint(np.array(camera.position), np.array(camera.look_at))
+        dark, dead = self.dark.value, self.dead.value
+        axes = sensor_axes(place.normals[:1])[0]
+        draw_array(self.window.scene, ARRAY, feel_by_rays(surface, place.positions[0], axes, (DRAWN, DRAWN), WIDE))
+        self.window.work(
+            "Asking the network",
+            lambda _: ask(network, *sense(specimen.mesh, surface, seen_from, place), dark, dead),
+            self.answer,
+        )
+
+    def answer(self, found: Answer) -> None:
+        """Shows what both senses say, and which is trusted."""
+        of_all = found.vision if found.sense == "vision" else found.touch
+        best = next(iter(of_all), "")
+        trusted = f"It trusts **{found.sense}**: {best}, {of_all[best]:.0%}." if best else "Both senses are absent."
+        self.about.content = trusted
+        self.images.content, self.images.visible = pair_html(found.picture, found.imprint), True
+        for part, values in ((self.seen, found.vision), (self.felt, found.touch)):
+            part.content, part.visible = (
+                bars_html(dict(list(values.items())[:4]), best if values is of_all else ""),
+                True,
+            )

@@ -1,0 +1,202 @@
+"""Knowing by touch, on objects of which it is known what a hand would find."""
+
+import numpy as np
+import pytest
+import trimesh
+
+from haptic_glance.knowing import Exploration, Library, known_objects, learn, place_at, primitives, sample_places
+from haptic_glance.knowing.explore import FRESH
+from haptic_glance.knowing.library import CELLS, TOUCHES
+from stages.imprints import Surface, press
+from stages.imprints.user_mesh import Places
+from stages.kit import Mesh
+from stages.kit.rng import rng
+from stages.lod import write_any
+
+NAMES = ("ball", "box", "capsule", "cone", "cylinder", "torus")
+TOP = np.array([0.0, 0.6, 0.8])
+
+
+@pytest.fixture(scope="module")
+def shapes():
+    return primitives()
+
+
+@pytest.fixture(scope="module")
+def library(shapes):
+    return learn(shapes)
+
+
+def ball(bump):
+    """A ball of radius 0.4 with, or without, a bump of 0.1 on one side, as wide as the array."""
+    shape = trimesh.creation.icosphere(subdivisions=5)
+    towards = np.asarray(shape.vertices)
+    angle = np.arccos(np.clip(towards @ TOP, -1, 1))
+    return Mesh(towards * (0.4 + 0.1 * bump * np.exp(-((angle / 0.3) ** 2)))[:, None], np.asarray(shape.faces))
+
+
+def touched(library, mesh, count, name="again"):
+    exploration = Exploration(library, Surface(mesh), rng(7, name))
+    for place in range(count):
+        exploration.touch(exploration.candidate(place))
+    return exploration
+
+
+def test_six_shapes_are_known_without_a_file(shapes):
+    assert tuple(shapes) == NAMES
+    for mesh in shapes.values():
+        assert np.linalg.norm(mesh.vertices, axis=1).max() == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_touches_of_a_known_object_end_in_it(library, shapes, name):
+    exploration = Exploration(library, Surface(shapes[name]), rng(3, name))
+    assert exploration.finish() == name
+    assert exploration.belief.probabilities[name] >= 0.95
+    assert not any(belief.known for belief in exploration.beliefs[:-1])
+
+
+def test_the_belief_sums_to_one_and_begins_even(library, shapes):
+    exploration = touched(library, shapes["cone"], 6)
+    for belief in exploration.beliefs:
+        assert sum(belief.probabilities.values()) == pytest.approx(1)
+    assert list(exploration.beliefs[0].probabilities.values()) == pytest.approx([1 / 6] * 6)
+    ordered = list(exploration.belief.probabilities.values())
+    assert ordered == sorted(ordered, reverse=True)
+
+
+def test_a_pair_that_feels_the_same_stays_undecided(shapes):
+    pair = learn({"box": shapes["box"], "one": shapes["torus"], "two": shapes["torus"]})
+    exploration = touched(pair, shapes["torus"], 15)
+    belief = exploration.belief.probabilities
+    assert belief["box"] < 0.01 and max(belief["one"], belief["two"]) < 0.95
+    assert exploration.finish() == "" and len(exploration.images) <= 30
+
+
+def test_belief_is_as_right_as_it_says(library, shapes):
+    """Calibrated within what 120 explorations of four touches can tell."""
+    said, right = [], []
+    for name in NAMES:
+        for draw in range(20):
+            belief = touched(library, shapes[name], 4, f"{name} {draw}").belief
+            said.append(belief.values.max())
+            right.append(next(iter(belief.probabilities)) == name)
+    assert np.mean(said) == pytest.approx(np.mean(right), abs=0.1)
+
+
+def test_the_next_touch_goes_where_two_objects_differ():
+    pair = learn({"bump": ball(1), "plain": ball(0)})
+    for name, bump in (("bump", 1), ("plain", 0)):
+        exploration = Exploration(pair, Surface(ball(bump)), rng(0, "bump"))
+        place, gains = exploration.next_place(), exploration.gains()
+        assert place is not None and np.linalg.norm(place.positions[0] - 0.4 * TOP) < 0.25
+        far = np.linalg.norm(exploration.candidates.positions - 0.4 * TOP, axis=1) > 0.5
+        assert gains.max() > 0.1 and gains.max() > 5 * abs(gains[far]).max()
+        exploration.touch(place)
+        assert exploration.belief.probabilities[name] > 0.7
+
+
+def test_the_gain_is_none_where_the_object_is_known(library, shapes):
+    exploration = Exploration(library, Surface(shapes["torus"]), rng(3, "torus"))
+    first = library.gains(exploration.belief, exploration.expected)
+    exploration.finish()
+    known = library.gains(exploration.belief, exploration.expected)
+    assert 0.3 < first.max() < np.log(6) + 1e-9 and abs(known).max() < 0.2
+
+
+def test_no_place_is_touched_again(library, shapes):
+    exploration = Exploration(library, Surface(shapes["ball"]), rng(3, "ball"))
+    for _ in range(12):
+        place = exploration.next_place()
+        if place is None:
+            break
+        exploration.touch(place)
+    apart = np.linalg.norm(exploration.positions[:, None] - exploration.positions[None], axis=2)
+    assert apart[~np.eye(len(apart), dtype=bool)].min() > FRESH
+
+
+def test_the_planner_stops_where_nothing_is_fresh(library, shapes):
+    exploration = Exploration(library, Surface(shapes["ball"]), rng(3, "ball"))
+    exploration.positions = exploration.candidates.positions
+    assert exploration.next_place() is None
+
+
+def test_a_mesh_is_learned_once_and_by_its_content(shapes):
+    some = {name: shapes[name] for name in NAMES[:3]}
+    copies = {name: Mesh(mesh.vertices.copy(), mesh.faces.copy()) for name, mesh in some.items()}
+    assert learn(some) is learn(copies)
+    moved = {**copies, "ball": Mesh(shapes["ball"].vertices * 0.9, shapes["ball"].faces)}
+    assert learn(some) is not learn(moved)
+
+
+def test_an_object_may_lie_anywhere_unless_it_is_placed(shapes):
+    """Without places the likelihood asks what was felt, not where."""
+    blind, aside = learn(shapes, placed=False), Mesh(shapes["torus"].vertices + [3.0, 1.0, 0.0], shapes["torus"].faces)
+    assert touched(blind, aside, 12).belief.known == "torus"
+    assert touched(blind, aside, 12).belief.probabilities == pytest.approx(
+        touched(blind, shapes["torus"], 12).belief.probabilities, abs=1e-6
+    )
+    assert learn(shapes) is not blind
+
+
+def test_a_known_place_helps(library, shapes):
+    blind = learn(shapes, placed=False)
+    right = {one.placed: [touched(one, shapes[name], 2).belief.probabilities[name] for name in NAMES * 3]
+             for one in (library, blind)}  # fmt: skip
+    assert np.mean(right[True]) > np.mean(right[False]) + 0.1
+
+
+def test_one_object_alone_is_refused_and_a_bad_one_is_named(shapes):
+    with pytest.raises(ValueError, match="at least two"):
+        learn({"ball": shapes["ball"]})
+    flat = Mesh(np.zeros((3, 3)), np.array([[0, 1, 2]]))
+    with pytest.raises(ValueError, match="nothing: cannot sample a mesh without area"):
+        learn({"ball": shapes["ball"], "nothing": flat})
+
+
+def test_imprints_of_another_array_are_refused(library):
+    with pytest.raises(ValueError, match=r"learned with \(16, 16\) cells"):
+        library.log_likelihoods(np.zeros((1, 8, 8)), np.zeros((1, 3)))
+
+
+def test_a_learned_touch_is_not_compared_with_itself():
+    """Two objects with samples drawn alike: with itself counted each touch would favour its own object."""
+    random = np.random.default_rng(0)
+    same = Library(
+        ("one", "two"), random.standard_normal((2, TOUCHES, 41)), random.standard_normal((2, TOUCHES, 3)), False
+    )
+    own = same._own.reshape(2, TOUCHES, 2)
+    ahead = np.stack([own[0, :, 0] - own[0, :, 1], own[1, :, 1] - own[1, :, 0]])
+    assert abs(ahead.mean()) < 0.05
+
+
+def test_a_place_near_a_vertex_is_the_vertex_and_a_large_face_keeps_its_normal(shapes):
+    ball, box = Surface(shapes["ball"]), Surface(shapes["box"])
+    places = sample_places(ball, 50, rng(0, "ball"))
+    at = places.vertices >= 0
+    assert at.any() and np.array_equal(places.positions[at], shapes["ball"].vertices[places.vertices[at]])
+    middle = shapes["box"].vertices[shapes["box"].faces[:1]].mean(axis=1)
+    place = place_at(box, middle, np.array([0]))
+    assert place.vertices[0] == -1 and np.allclose(place.normals[0], shapes["box"].face_normals[0])
+
+
+def test_a_touch_at_a_vertex_is_what_press_feels(library, shapes):
+    mesh = shapes["cone"]
+    exploration = Exploration(library, Surface(mesh), rng(0, "cone"))
+    vertex = int(mesh.faces[0, 0])
+    place = place_at(exploration.surface, mesh.vertices[[vertex]], np.array([0]))
+    assert np.array_equal(exploration.touch(place), press(mesh, vertex, CELLS))
+    assert isinstance(place, Places) and len(exploration.images) == exploration.belief.touches == 1
+
+
+def test_a_folder_gives_its_meshes_and_names_what_it_leaves_out(tmp_path, shapes):
+    for name in ("cubelarge", "cubesmall", "small"):
+        write_any(tmp_path / f"{name}.stl", shapes["box"])
+    (tmp_path / "broken.stl").write_bytes(b"solid nothing")
+    (tmp_path / "notes.txt").write_text("no mesh")
+    found, notes = known_objects(tmp_path)
+    assert list(found) == ["cubelarge", "small"] and len(notes) == 1 and notes[0].startswith("broken.stl: ")
+    assert np.linalg.norm(found["small"].vertices, axis=1).max() == pytest.approx(0.5)
+    few, left_out = known_objects(tmp_path, most=1)
+    assert not few and len(left_out) == 3  # the first by name is the broken one
+    assert known_objects(tmp_path / "nowhere") == ({}, [])

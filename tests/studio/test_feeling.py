@@ -1,0 +1,155 @@
+"""What the touch panels show, without a page."""
+
+import numpy as np
+import pytest
+import trimesh
+
+from haptic_glance.knowing import place_at
+from haptic_glance.studio.feeling import (
+    CONTOURS,
+    LAYER,
+    NEWTONS,
+    RAYS,
+    RIGID,
+    SENSORS,
+    Sensor,
+    feel,
+    feel_by_rays,
+    turned,
+)
+from haptic_glance.studio.grids import bars_html, grid_html
+from stages.imprints import Surface, press, sensor_axes
+from stages.imprints.user_mesh import Places
+from stages.kit import Mesh
+from stages.meshes import normalise
+
+
+@pytest.fixture(scope="module")
+def ball():
+    shape = trimesh.creation.icosphere(subdivisions=5)
+    return Surface(normalise(Mesh(np.asarray(shape.vertices), np.asarray(shape.faces))))
+
+
+@pytest.fixture(scope="module")
+def torus():
+    shape = trimesh.creation.torus(1.0, 0.35, major_sections=96, minor_sections=48)
+    return Surface(normalise(Mesh(np.asarray(shape.vertices), np.asarray(shape.faces))))
+
+
+def at_vertex(surface, vertex=0):
+    face = int(np.flatnonzero((surface.mesh.faces == vertex).any(axis=1))[0])
+    return place_at(surface, surface.mesh.vertices[[vertex]], np.array([face]))
+
+
+def slab():
+    """A flat square with a step of 0.05 in the middle, along y."""
+    x = np.array([-0.5, -1e-4, 1e-4, 0.5])
+    height = np.array([0.0, 0.0, 0.05, 0.05])
+    rows = np.array([[(a, y, z) for a, z in zip(x, height, strict=True)] for y in (-0.5, 0.5)]).reshape(-1, 3)
+    faces = [[k, k + 1, k + 5] for k in range(3)] + [[k, k + 5, k + 4] for k in range(3)]
+    return Surface(Mesh(rows, np.array(faces)))
+
+
+def test_an_ideal_array_at_a_vertex_feels_what_press_feels(torus):
+    felt = feel(torus, at_vertex(torus, 5), Sensor())
+    assert np.allclose(felt.pressed, 1 - press(torus, 5))
+
+
+def test_the_legend_is_the_relief_in_units_of_the_file(ball):
+    """An array of 16 cells on a ball of radius 0.5: the corners are farthest, by the sagitta of their distance."""
+    felt = feel(ball, at_vertex(ball), Sensor(), unit=40.0)
+    corner = np.hypot(0.075, 0.075)
+    expected = (0.5 - np.sqrt(0.25 - corner**2)) - (0.5 - np.sqrt(0.25 - 2 * 0.005**2))
+    assert felt.span == (pytest.approx(40 * expected, rel=0.02), 0.0)
+    assert felt.pressed.max() == 1 and felt.pressed.min() == 0
+
+
+def test_newtons_add_up_to_the_load_and_a_load_too_large_is_refused(ball):
+    felt = feel(ball, at_vertex(ball), Sensor(kind=NEWTONS, load=2.0))
+    assert felt.span[0] == 0 and felt.unit == "newtons"
+    assert (felt.pressed * felt.span[1]).sum() == pytest.approx(2.0, rel=1e-4)
+    with pytest.raises(ValueError, match=f"thickness of {LAYER.thickness:g} m"):
+        feel(ball, at_vertex(ball), Sensor(kind=NEWTONS, load=10.0, size=0.01))
+
+
+def test_a_quarter_turn_turns_the_grid(torus):
+    place = at_vertex(torus, 5)
+    plain, quarter = (feel(torus, place, Sensor(turn=turn)).pressed for turn in (0, 90))
+    assert np.allclose(np.rot90(plain, -1), quarter, atol=1e-5) and not np.allclose(plain, quarter, atol=0.1)
+
+
+def test_turned_axes_stay_right_handed():
+    axes = turned(sensor_axes(np.array([[0.0, 0.6, 0.8]])), 37)
+    assert np.allclose(axes[0] @ axes[0].T, np.eye(3)) and np.linalg.det(axes[0]) == pytest.approx(1)
+    assert np.allclose(axes[0, 2], [0, 0.6, 0.8])
+
+
+def test_an_elastic_skin_blurs_and_noise_disturbs(torus):
+    place = at_vertex(torus, 5)
+    plain, skin, noise = (feel(torus, place, Sensor(**more)).pressed for more in ({}, {"blur": 2.0}, {"noise": 0.1}))
+    assert np.abs(np.diff(skin, axis=1)).max() < np.abs(np.diff(plain, axis=1)).max()
+    assert 0.02 < np.std(noise - plain) < 0.15
+
+
+@pytest.mark.parametrize("kind", SENSORS)
+def test_cells_are_drawn_on_the_surface(ball, kind):
+    felt = feel(ball, at_vertex(ball), Sensor(kind=kind, cells=8))
+    places, pressed = felt.contacts
+    assert len(places) == len(pressed) == 64
+    assert np.abs(np.linalg.norm(places, axis=1) - 0.5).max() < 0.01
+    assert np.abs(np.linalg.norm(felt.corners, axis=1)).min() > 0.5  # the outline lies on or above it
+
+
+def test_row_0_is_up_and_column_0_left():
+    """On a slab with a step at x = 0, seen from above with y up: the right columns are pressed, and drawn there."""
+    place = Places(np.array([-1]), np.array([[0.02, 0.0, 0.05]]), np.array([[0.0, 0.0, 1.0]]))
+    felt = feel(slab(), place, Sensor(kind=RIGID, cells=8))
+    places, pressed = felt.contacts
+    assert felt.pressed[:, -1].min() > 0.9 > 0.1 > felt.pressed[:, 0].max()
+    assert places[pressed > 0.9, 0].min() > 0 > places[pressed < 0.1, 0].max()
+    assert (np.diff(felt.corners[:2, 0]) > 0).all() and felt.corners[0, 1] > felt.corners[3, 1]
+
+
+def test_rows_are_drawn_where_they_feel():
+    """The same slab with the step along x: the upper rows are pressed, and drawn there."""
+    mesh = slab().mesh
+    place = Places(np.array([-1]), np.array([[0.0, 0.02, 0.05]]), np.array([[0.0, 0.0, 1.0]]))
+    felt = feel(Surface(Mesh(mesh.vertices[:, [1, 0, 2]], mesh.faces[:, ::-1])), place, Sensor(kind=RIGID, cells=8))
+    places, pressed = felt.contacts
+    assert felt.pressed[0].min() > 0.9 > 0.1 > felt.pressed[-1].max()
+    assert places[pressed > 0.9, 1].min() > 0 > places[pressed < 0.1, 1].max()
+
+
+def test_cells_that_meet_nothing_are_not_drawn():
+    edge = Places(np.array([-1]), np.array([[0.5, 0.0, 0.05]]), np.array([[0.0, 0.0, 1.0]]))
+    felt = feel(slab(), edge, Sensor(kind=RIGID, cells=8))
+    places, _ = felt.contacts
+    assert len(places) == 32 and places[:, 0].max() < 0.5
+    assert np.isinf(felt.depths).sum() == 32
+
+
+def test_contours_are_felt_at_vertices_alone(torus):
+    felt = feel(torus, at_vertex(torus, 5), Sensor(kind=CONTOURS))
+    assert len(np.unique(felt.pressed)) <= 17
+    with pytest.raises(ValueError, match="vertices alone"):
+        feel(torus, Places(np.array([-1]), *[np.array([[0.0, 0.0, 1.0]])] * 2), Sensor(kind=CONTOURS))
+
+
+def test_rays_of_a_frame_are_those_of_the_sensor(torus):
+    place = at_vertex(torus, 5)
+    one = feel(torus, place, Sensor(kind=RAYS), unit=3.0)
+    same = feel_by_rays(torus, place.positions[0], sensor_axes(place.normals)[0], (16, 16), 0.01, 3.0)
+    assert np.array_equal(one.pressed, same.pressed) and one.span == same.span
+    assert np.array_equal(one.depths, same.depths)
+
+
+def test_the_grid_has_a_pixel_a_cell_and_says_its_units():
+    html = grid_html(np.eye(4), (0.25, 0.0), "units of the file", "4 x 4 cells at <vertex>")
+    assert 'width="4" height="4"' in html and "image-rendering:pixelated" in html
+    assert ">0.25<" in html and ">0<" in html and "&lt;vertex&gt;, in units of the file" in html
+
+
+def test_bars_show_the_likeliest_and_count_the_rest():
+    html = bars_html({"a<b": 0.9, **{f"n{k}": 0.01 for k in range(10)}}, "a<b")
+    assert html.count('class="bar"') == 8 and "a&lt;b" in html and "and 3 more, 3% together" in html
+    assert html.index("a&lt;b") < html.index("n0") and "width:90.0%" in html
