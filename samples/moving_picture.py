@@ -100,6 +100,8 @@ def levels(film: Film, mesh: Mesh, values: np.ndarray) -> None:
 def touches(film: Film, mesh: Mesh, values: np.ndarray) -> None:
     """Touches at the places that people look at first, and the belief after each."""
     objects, _ = known_objects(HOUSEHOLD)
+    if not objects:  # the dromedary alone would be known before the first touch
+        raise SystemExit(f"no meshes in {HOUSEHOLD}: `dvc repro meshes@household` fetches them")
     library, surface = learn({NAME: mesh, **objects}), Surface(mesh)
     exploration = Exploration(library, surface, rng(0, NAME))
     seen = picture(mesh, vivid(values), viewpoint=view(), rows=ROWS)

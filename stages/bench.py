@@ -50,6 +50,8 @@ def run(argv: Sequence[str]) -> None:
         import pandas as pd
 
         from stages.kit.rows import read_rows
+    if not given.rows.exists():
+        raise ValueError(f"no {given.rows}: run it in a clone of the project, or name the rows by --rows")
     scores = read_rows(given.rows)[lambda frame: frame["metric"].isin(SCORES)]
     if given.method:
         scores = pd.concat([scores, pd.DataFrame(judged(function_of(given.method), given.gaze))])

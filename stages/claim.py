@@ -37,7 +37,10 @@ def run(argv: Sequence[str]) -> int:
     workspace = Workspace(Path("."))
     with from_extra():
         from stages.report.topics import CLAIMS
-    committed = read_table(workspace.reports / "claims.csv").set_index("key")["verdict"]
+    verdicts = workspace.reports / "claims.csv"
+    if not verdicts.exists():
+        raise ValueError(f"no {verdicts}: run it in a clone of the project")
+    committed = read_table(verdicts).set_index("key")["verdict"]
     moved = []
     for claim in chosen(CLAIMS, given.keys):
         if given.measure:

@@ -68,6 +68,11 @@ def test_a_file_that_is_not_there_is_named():
         bench.run(["nowhere.py:saliency"])
 
 
+def test_rows_that_are_not_there_are_named_with_the_remedy(tmp_path):
+    with pytest.raises(ValueError, match="rows.csv.gz: run it in a clone of the project, or name the rows by --rows"):
+        bench.run(["--rows", str(tmp_path / "rows.csv.gz")])
+
+
 @pytest.mark.slow
 def test_a_method_gets_the_scores_that_the_stage_gave_it(file, monkeypatch):
     if not bench.GAZE.exists():

@@ -20,6 +20,8 @@ from stages.weights.svm import fit_svm
 THESIS = Path(__file__).parents[2] / "data/reference/thesis"
 SETS = ("test", "household", "furniture")  # switched on in the small run
 OBJECTS = ["ball", "cube"]
+BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "microsoft-edge")
+SOFTWARE_GL = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")  # WebGL without a card
 FOUND = ["enhanced", "itti", "VisAttAll", "guided_ssim", "height"]  # methods with points and saliency
 
 
@@ -293,3 +295,15 @@ def root(tmp_path):
 def results(root):
     """The results of the small run."""
     return read_results(root)
+
+
+@pytest.fixture(scope="module")
+def browser():
+    playwright = pytest.importorskip("playwright.sync_api", reason="pip install playwright: it drives the browser")
+    found = next((path for path in map(shutil.which, BROWSERS) if path), None)
+    if not found:
+        pytest.skip(f"no browser is installed: one of {', '.join(BROWSERS)}")
+    with playwright.sync_playwright() as driver:
+        opened = driver.chromium.launch(executable_path=found, args=SOFTWARE_GL)
+        yield opened
+        opened.close()

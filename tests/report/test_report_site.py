@@ -2,7 +2,6 @@
 
 import os
 import re
-import shutil
 from pathlib import Path
 
 import pandas as pd
@@ -17,8 +16,6 @@ from stages.report.page import frame_html, item_html
 from stages.report.site import page
 from stages.report.topics import CLAIMS
 
-BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "microsoft-edge")
-SOFTWARE_GL = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")  # WebGL without a card
 SERIOUS = ("serious", "critical")
 
 
@@ -27,18 +24,6 @@ def axe():
     places = [os.environ.get("NODE_PATH"), "node_modules", str(Path.home() / "node_modules")]
     found = (Path(place) / "axe-core/axe.min.js" for place in places if place)
     return next((path for path in found if path.exists()), None)
-
-
-@pytest.fixture(scope="module")
-def browser():
-    playwright = pytest.importorskip("playwright.sync_api", reason="pip install playwright: it drives the browser")
-    found = next((path for path in map(shutil.which, BROWSERS) if path), None)
-    if not found:
-        pytest.skip(f"no browser is installed: one of {', '.join(BROWSERS)}")
-    with playwright.sync_playwright() as driver:
-        opened = driver.chromium.launch(executable_path=found, args=SOFTWARE_GL)
-        yield opened
-        opened.close()
 
 
 @pytest.fixture

@@ -2,7 +2,6 @@
 
 import base64
 import io
-import shutil
 import zlib
 from string import Template
 
@@ -16,9 +15,6 @@ from stages.kit.packing import SHADES, ordered
 from stages.report.page import part, script_json
 from stages.report.site import page
 from stages.report.viewer import FINEST, apart, pack_object, pack_viewer
-
-BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "microsoft-edge")
-SOFTWARE_GL = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")  # WebGL without a card
 
 
 @pytest.fixture
@@ -97,18 +93,6 @@ class Page:
         """(h, w, 3) what the canvas shows, without the captions."""
         script = "document.getElementById('canvas').toDataURL().split(',')[1]"
         return np.asarray(Image.open(io.BytesIO(base64.b64decode(self.page.evaluate(script)))).convert("RGB"))
-
-
-@pytest.fixture(scope="module")
-def browser():
-    playwright = pytest.importorskip("playwright.sync_api", reason="pip install playwright: it drives the browser")
-    found = next((path for path in map(shutil.which, BROWSERS) if path), None)
-    if not found:
-        pytest.skip(f"no browser is installed: one of {', '.join(BROWSERS)}")
-    with playwright.sync_playwright() as driver:
-        opened = driver.chromium.launch(executable_path=found, args=SOFTWARE_GL)
-        yield opened
-        opened.close()
 
 
 @pytest.fixture(params=[1400, 390])
