@@ -44,6 +44,11 @@ class Effect:
         return p_value(self.units, self.share)
 
     @property
+    def most(self) -> int:
+        """The number of units."""
+        return len(self.units)
+
+    @property
     def freedom(self) -> int:
         """Degrees of freedom of the interval."""
         return len(self.units) - 1
@@ -71,18 +76,29 @@ class PooledEffect:
 
     @property
     def interval(self) -> tuple[float, float, float]:
-        """(mean, low, high) of the pooled effect."""
-        return self.pooled.interval()
+        """(mean, low, high) of the pooled effect.
+
+        Where few sets differ it can be wider than all their own intervals together. Then it is cut to these: it is
+        about these sets alone, and sets that all say the same decide even where they say it by different amounts.
+        """
+        mean, low, high = self.pooled.interval()
+        _, lows, highs = zip(*(one.interval for one in self.sets), strict=True)
+        return mean, max(low, min(lows)), min(high, max(highs))
 
     @property
     def p_value(self) -> float:
-        """Two-sided, of no effect."""
-        return self.pooled.p_value
+        """Two-sided, of no effect: of the pooled one, or of none in any of the sets where that is smaller."""
+        return min(self.pooled.p_value, max(one.p_value for one in self.sets))
 
     @property
     def units(self) -> pd.Series:
         """The differences of the units of all sets."""
         return pd.concat([one.units for one in self.sets])
+
+    @property
+    def most(self) -> int:
+        """The number of units of the largest set."""
+        return max(one.most for one in self.sets)
 
     @property
     def disagree(self) -> bool:

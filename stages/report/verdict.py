@@ -92,7 +92,7 @@ def _open(claim: Claim, effect: Effect | PooledEffect) -> dict[str, object]:
         return {"cause": CAUSES[1]}
     count = effect.needs(max(abs(mean), NEGLIGIBLE.get(claim.unit, 0.0) - abs(mean)))
     split = isinstance(effect, Effect) and effect.share > 0
-    rank = 2 if len(effect.units) <= FEW else 3 if count < HUNDRED else 4 if np.isfinite(count) else 5 if split else 6
+    rank = 2 if effect.most <= FEW else 3 if count < HUNDRED else 4 if np.isfinite(count) else 5 if split else 6
     sets = isinstance(effect, PooledEffect) and effect.pooled.between > 0
     known = {"needed": count, "needed_of": "data sets" if sets else claim.units} if np.isfinite(count) else {}
     return {"cause": CAUSES[rank], **known}
