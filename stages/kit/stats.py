@@ -31,8 +31,6 @@ def interval(
     ValueError for values of another shape.
     """
     values = of_units(values)
-    if values.ndim != 1:
-        raise ValueError(f"values must have shape (k,), got {values.shape}")
     n = len(values)
     if n == 0:
         return np.nan, np.nan, np.nan
@@ -52,6 +50,8 @@ def of_units(values: ArrayLike) -> np.ndarray:
     if "item" in getattr(getattr(values, "index", None), "names", ()):
         values = by_unit(values)
     values = np.asarray(values, dtype=np.float64)
+    if values.ndim != 1:
+        raise ValueError(f"values must have shape (k,), got {values.shape}")
     return values[np.isfinite(values)]
 
 
