@@ -387,9 +387,9 @@ def test_copies_of_a_shape_count_once(root, small):
 @pytest.mark.parametrize(
     ("values", "cause"),
     [
-        ([0.5, -0.4, 1.0, -0.5], "5 units or fewer"),
-        (spread_about(0.3), "fewer than 100 units would decide"),
-        (spread_about(0.1), "100 units or more would decide"),
+        ([0.5, -0.4, 1.0, -0.5], "5 units or fewer a set"),
+        (spread_about(0.3), "fewer than 100 units needed"),
+        (spread_about(0.1), "100 units or more needed"),
         (spread_about(0.001), "hardly an effect"),
         ([1.0, 1.0], "no spread"),
     ],

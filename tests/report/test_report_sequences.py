@@ -180,9 +180,7 @@ def test_claims_that_hold_are_supported(bare, small):
     assert words.pop("contours_map_helps_unseen") == "contradicted"
     assert set(words.values()) == {"supported"}
     assert found.loc["contours_guided_unseen", ["pairs", "units"]].tolist() == [18, 6]  # of two sets
-    assert found.loc["contours_cnn_best_unseen", "effect"] == pytest.approx(
-        15, abs=1
-    )  # over the SVM without map
+    assert found.loc["contours_cnn_best_unseen", "effect"] == pytest.approx(15, abs=1)  # over the SVM without map
     assert found.loc["contours_random_flatters", "effect"] == pytest.approx(20, abs=1)
 
 
