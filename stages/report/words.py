@@ -1,5 +1,7 @@
 """What a claim is tested on, written from its fields."""
 
+from collections.abc import Sequence
+
 from stages.kit.split import Split
 
 from .claims import Claim, Pick, Side
@@ -28,11 +30,11 @@ def dataset_text(name: str) -> str:
     return DATASETS.get(name, name)
 
 
-def tested_on(claim: Claim, results: Results) -> str:
-    """`household: kNN, six objects, first minus second`: set, what both sides share, the sides, and the note."""
-    dataset = claim.dataset or next(iter(results.datasets(claim.stage)), "")
+def tested_on(claim: Claim, results: Results, sets: Sequence[str]) -> str:
+    """`household: kNN, six objects, first minus second`: sets, what both sides share, the sides, and the note."""
+    claim, several = claim.on(sets[0]), " and ".join(map(dataset_text, sets))
     shared = [_phrase(claim, results, column, value) for column, value in claim.where.items()]
-    parts = [dataset_text(dataset), *shared, _sides(claim, results), claim.note]
+    parts = [several, *shared, _sides(claim, results), claim.note]
     return ", ".join(part for part in parts if part)
 
 
@@ -65,7 +67,7 @@ def _phrase(claim: Claim, results: Results, column: str, value: object) -> str:
     if value is None:
         return ""
     if column == "group":
-        return results.group_text(str(value), claim.dataset)
+        return results.group_text(str(value), claim.sets[0])
     if column == "dataset":
         return dataset_text(str(value))
     if column == "split":
