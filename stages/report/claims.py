@@ -10,7 +10,14 @@ Phrases = Mapping[tuple[str, Any], str]  # (column, value) -> words
 Side = Mapping[str, Any]  # column -> value; a tuple: the mean of several; a Pick: one of several, by its mean
 
 POINTS = "points of accuracy"
-OVER = {"repetition": "repetitions", "item": "objects", "fold": "folds", "method": "methods", "group": "classes"}
+OVER = {
+    "repetition": "repetitions",
+    "item": "objects",
+    "fold": "folds",
+    "method": "methods",
+    "group": "classes",
+    "set": "sets",
+}
 
 
 @dataclass(frozen=True)
