@@ -114,10 +114,14 @@ class PooledEffect:
 
 
 def sets_of(claim: Claim, results: Results) -> list[str | None]:
-    """The data sets of a claim; for None the first with rows of the stage that it does not name, if there is any."""
-    others = [name for name in results.datasets(claim.stage) if name not in claim.sets]
+    """The data sets of a claim; for None the first with rows of the stage that it does not name, if there is any.
+
+    Where no set has such rows, None stays, and is what a run would measure.
+    """
+    there = results.datasets(claim.stage)
+    others = [name for name in there if name not in claim.sets]
     found = [name or next(iter(others), None) for name in claim.sets]
-    return [name for name in found if name] or [None]
+    return [name for name in found if name or not there]
 
 
 def effects(claim: Claim, results: Results) -> tuple[list[Effect], list[str]]:

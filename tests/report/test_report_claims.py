@@ -213,7 +213,8 @@ def test_equal_differences_are_open_and_say_why(root, small):
 
 
 def test_words_are_written_from_the_fields(root, results, small):
-    said = "test, kNN, six objects, test part drawn at random, all imprints, our model of gaze minus blind touch"
+    said = "test, kNN, six objects, test part drawn at random, all imprints, our model of gaze minus blind touch, "
+    said += "five draws"
     assert of(results, "ours_over_blind")["tested_on"] == said
     small.write_set(root, "six", 4)
     assert of(results, "ours_over_blind")["tested_on"] == said.replace("six objects", "4 objects (group six)")
