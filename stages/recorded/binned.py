@@ -62,11 +62,12 @@ class Choice(NamedTuple):
 def binned(values: np.ndarray, bins: int, heard: float = 1.0) -> np.ndarray:
     """(n, cells * channels * bins heard) f8: log(1 + sum) of touches (n, cells, channels, t) in parts of equal length.
 
-    heard: the share of the bins, from the first, that is used, one at least.
+    heard: the share of the steps, from the first, that is there; the last of the bins may be cut short.
     """
-    edges = np.linspace(0, values.shape[-1], bins + 1).round().astype(int)
-    used = max(1, round(bins * heard))
-    sums = np.add.reduceat(values[..., : edges[used]], edges[:used], axis=-1, dtype=np.float64)
+    steps = values.shape[-1]
+    there = round(steps * heard)
+    starts = np.linspace(0, steps, bins + 1).round().astype(int)[:-1]
+    sums = np.add.reduceat(values[..., :there], starts[starts < there], axis=-1, dtype=np.float64)
     return np.log1p(sums).reshape(len(values), -1)
 
 

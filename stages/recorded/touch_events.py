@@ -48,7 +48,8 @@ def process(
     """Rows of one method on one group."""
     group, method = trial
     known, asked = (recordings[group].of(own) for own in (~recordings[group].test, recordings[group].test))
-    with threadpool_limits(1):  # equal sums on any number of cores
+    # Equal sums on any number of cores. Where nothing is heard yet, the features have no variance to divide by.
+    with threadpool_limits(1), np.errstate(divide="ignore", invalid="ignore"):
         choice = choose(method, known.values, known.labels, repetitions, seed)
         common = {"group": group, "method": method, "bins": choice.bins, "parameter": choice.parameter}
         rows = [*_published(choice, known, asked), *_within(choice, known, seed)]

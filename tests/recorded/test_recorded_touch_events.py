@@ -27,8 +27,10 @@ def test_bins_hold_the_logarithm_of_one_more_than_the_events():
     values[0, 3, 1, [0, 4, 5]] = 1
     found = binned(values, 2).reshape(39, 2, 2)
     assert found[3, 1].tolist() == [np.log(3), np.log(2)] and found.sum() == np.log(3) + np.log(2)
-    assert binned(values, 2, 0.5).shape == (1, 78) and binned(values, 2, 0.1).shape == (1, 78)
     assert np.array_equal(binned(values, 2)[:, ::2], binned(values, 2, 0.5))
+    cut = binned(values, 2, 0.4).reshape(39, 2, 1)  # four steps: not the fifth of the first bin
+    assert cut[3, 1, 0] == np.log(2) and binned(values, 1, 0.5).sum() == np.log(3)
+    assert binned(values, 5, 0.5).shape == (1, 78 * 3)  # two bins and half of the third
 
 
 def test_time_is_divided_where_it_tells_the_objects_apart():
