@@ -45,6 +45,8 @@ METHODS: dict[str, tuple[Callable[[Any, int], Any], Sequence[Any]]] = {
     **{name: (partial(of_thesis, name), (None,)) for name in CLASSIFIERS},
 }
 
+LINEAR = ("discriminant", "linear_svm")  # methods to which a rotation of the features makes no difference
+
 
 class Choice(NamedTuple):
     """A method, the bins and the parameter that cross-validation chose, and its accuracy there."""
@@ -83,8 +85,17 @@ def choose(method: str, values: np.ndarray, labels: np.ndarray, repetitions: int
     Of equals, the fewest bins. Nothing but these touches is looked at.
     """
     folds = foldings(labels, repetitions, seed)
-    tried = [choice for bins in BINS for choice in _tried(method, bins, binned(values, bins), labels, folds)]
+    tried = []
+    for bins in BINS:
+        features = binned(values, bins)
+        tried += _tried(method, bins, rotated(features) if method in LINEAR else features, labels, folds)
     return max(tried, key=lambda choice: choice.accuracy)
+
+
+def rotated(features: np.ndarray) -> np.ndarray:
+    """(n, n at most): the same points about their mean, on no more axes than there are points; all distances stay."""
+    axes, lengths, _ = np.linalg.svd(features - features.mean(axis=0), full_matrices=False)
+    return axes * lengths
 
 
 def _tried(

@@ -10,9 +10,10 @@ from threadpoolctl import threadpool_limits
 from stages.kit.run import Rows, StageRun
 from stages.kit.split import Split
 
-from .binned import METHODS, binned, choose
+from .binned import binned, choose
 from .touch_series import TouchSeries
 
+METHODS = ("discriminant", "linear_svm", "knn")  # of stages.recorded.binned
 FOLDS = 10  # grasps of most objects, so that each fold leaves one of each object out, as the published lists do
 
 
@@ -23,7 +24,7 @@ def measure(run: StageRun, recordings: dict[str, TouchSeries], repetitions: int)
     one time, with one of each other object. Bins and parameter are chosen within the training part of each.
     """
     work = functools.partial(process, series=recordings["grasps"], repetitions=repetitions, seed=run.seed)
-    run.each(work, list(METHODS))
+    run.each(work, METHODS)
 
 
 def process(method: str, folder: Path, series: TouchSeries, repetitions: int, seed: int) -> Rows:

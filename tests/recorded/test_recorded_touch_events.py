@@ -3,10 +3,11 @@
 import numpy as np
 import pandas as pd
 import pytest
+from scipy.spatial.distance import pdist
 
 from stages.recorded import binned as binned_module
 from stages.recorded import schunk
-from stages.recorded.binned import METHODS, binned, choose
+from stages.recorded.binned import METHODS, binned, choose, rotated
 from stages.recorded.touch_events import disturbed, process
 from stages.recorded.touch_series import TouchSeries
 
@@ -31,6 +32,13 @@ def test_bins_hold_the_logarithm_of_one_more_than_the_events():
     cut = binned(values, 2, 0.4).reshape(39, 2, 1)  # four steps: not the fifth of the first bin
     assert cut[3, 1, 0] == np.log(2) and binned(values, 1, 0.5).sum() == np.log(3)
     assert binned(values, 5, 0.5).shape == (1, 78 * 3)  # two bins and half of the third
+
+
+def test_a_rotation_keeps_all_distances_on_fewer_axes():
+    features = binned(series().values, 10)
+    found = rotated(features)
+    assert found.shape == (32, 32) and features.shape == (32, 780)
+    assert np.allclose(pdist(found), pdist(features))
 
 
 def test_time_is_divided_where_it_tells_the_objects_apart():

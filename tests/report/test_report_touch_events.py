@@ -24,7 +24,7 @@ def event_rows(levels=METHODS):
         rows.append(common | {"part": "test"})
         folded = common | {"part": "training", "split": "folds"}
         rows += [folded | {"heard": heard, "value": common["value"] * heard} for heard in (0.25, 1.0)]
-        rows += [folded | {"cells": 20, "value": common["value"] - 0.01}]
+        rows += [folded | {"cells": 20, "value": common["value"] - 0.01 - 0.001 * k}]
         rows += [folded | {"disturbance": "jitter", "severity": 5.0, "value": common["value"] / 2}]
         if k == 0:
             about = common | {"item": None, "part": "test"}
@@ -74,7 +74,8 @@ def test_what_it_takes_has_a_row_a_condition(measured):
     table = build_one(recorded, "tables", "touch_events_conditions", measured("recorded", "touch_events", event_rows()))
     levels = table.text.groupby("condition")["level"].apply(list).to_dict()
     assert levels == {
-        "share of the touch heard": ["0.250", "1"], "taxels": ["20", "39"], "deviation of an event's time, steps": ["5"],
+        "share of the touch heard": ["0.250", "1"], "taxels": ["20", "39"],
+        "deviation of an event's time, steps": ["5"],
     }  # fmt: skip
 
 
