@@ -126,7 +126,7 @@ def test_nested_choices_stand_beside_those_made_once(measured):
     results = measured("attention_settings", "gaze", nested_rows())
     lines = build_one(attention, "tables", "attention_nested", results).text
     assert lines["flattered by, NSS"].str[:5].tolist() == ["+0.10", "-0.10"]
-    assert lines["features"].tolist() == ["1 to 2 of 3 chosen once"] * 2 and set(lines["in every choice"]) == {"rank"}
+    assert lines["features"].tolist() == ["1 to 2 (once: 3)"] * 2 and set(lines["in every choice"]) == {"rank"}
     claims = [one for one in attention.CLAIMS if one.key.startswith("gaze_choices")]
     assert judge(claims, results).set_index("key")["verdict"].tolist() == ["supported", "contradicted"]
 

@@ -40,16 +40,16 @@ def build(results: Results) -> Table:
             line[f"without the object, {words}"] = with_interval(*numbers["nested"], places=3)
             line[f"flattered by, {words}"] = signed(*numbers["once_over_nested"], places=3)
         features = tables[NESTED]["features"]
-        line["features"] = f"{features.min():.0f} to {features.max():.0f} of {_most(values)}"
+        line["features"] = f"{features.min():.0f} to {features.max():.0f} (once: {_once(values)})"
         line["ridge"] = number(tables[NESTED]["ridge"].median())
         line["in every choice"] = ", ".join(_always(values[NESTED]))
         shown.append(line)
     return Table(pd.DataFrame(found), pd.DataFrame(shown), {"count": rows["item"].nunique()})
 
 
-def _most(values: dict[str, pd.DataFrame]) -> str:
+def _once(values: dict[str, pd.DataFrame]) -> str:
     """How many features the model has by the choice that was made once."""
-    return f"{values[ONCE].loc[values[ONCE]['metric'] == 'features', 'value'].max():.0f} chosen once"
+    return f"{values[ONCE].loc[values[ONCE]['metric'] == 'features', 'value'].max():.0f}"
 
 
 def _always(rows: pd.DataFrame) -> list[str]:
