@@ -15,7 +15,7 @@ import numpy as np
 
 from stages.kit.files import read_arrays, read_mesh
 from stages.kit.run import Rows
-from stages.salient_points import METHODS
+from stages.salient_points.glance import GlanceDetector
 from stages.salient_points.options import Options
 from stages.weights import LearnedWeights, fit_fixations, fixation_density
 from stages.weights.agreement import GroundTruth, auc, nss
@@ -129,7 +129,7 @@ def _seen_vertices(name: str, gaze: dict[str, np.ndarray], made: Path) -> Seen:
 
 
 def _saliency_of_samples(path: Path, seen: Seen, weights: dict[str, float]) -> np.ndarray:
-    return METHODS[GLANCE].saliency(read_mesh(path), None, Options(LearnedWeights({GLANCE: weights})))
+    return GlanceDetector(GLANCE).saliency(read_mesh(path), None, Options(LearnedWeights({GLANCE: weights})))
 
 
 def _saliency_of_vertices(path: Path, seen: Seen, weights: dict[str, float]) -> np.ndarray:

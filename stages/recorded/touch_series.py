@@ -62,7 +62,7 @@ def read_grasp_series(path: str | Path) -> dict[str, TouchSeries]:
     """
     root = open_root(path, GRASPS)
     homes = sorted((one for one in root.iterdir() if one.is_dir() and one.name[0] != "_"), key=lambda one: one.name)
-    files = [file for home in homes for file in sorted(home.iterdir(), key=lambda file: file.name)]
+    files = [file for home in homes for file in sorted(home.iterdir(), key=str)]
     if not files or not (listed := root / "_setup/test.list").exists():
         raise ValueError(f"{path} has no {'_setup/test.list' if files else 'grasp'}; expected {GRASPS}")
     kept = {Path(line).name for line in listed.read_text().splitlines()}
@@ -85,7 +85,7 @@ def spread_taxels(count: int) -> np.ndarray:
 
 
 def _events(root: Path | zipfile.Path, folder: str, path: str | Path) -> TouchSeries:
-    parts = [_part(root / folder / part, path) for part in ("train", "test")]
+    parts = [_part(root, f"{folder}/{part}", path) for part in ("train", "test")]
     shapes = sorted({one.shape for files in parts for _, _, one in files})
     if len(shapes) > 1:
         raise ValueError(f"{path}: touches of {folder} differ in shape, {shapes}: download the archive again")
@@ -94,16 +94,15 @@ def _events(root: Path | zipfile.Path, folder: str, path: str | Path) -> TouchSe
     return TouchSeries(values, labels, names, np.repeat([False, True], [len(files) for files in parts]))
 
 
-def _part(folder: Path | zipfile.Path, path: str | Path) -> Sequence[tuple[str, str, np.ndarray]]:
+def _part(root: Path | zipfile.Path, inside: str, path: str | Path) -> Sequence[tuple[str, str, np.ndarray]]:
     """(label, name, events) of each touch in a folder, in the order of their numbers."""
+    folder = root / inside
     files = list(folder.iterdir()) if folder.is_dir() else []
     named = [(re.fullmatch(r"sample_(\d+)_label_(\d+)\.npy", file.name), file) for file in files]
     known = sorted((int(match[1]), f"{int(match[2]):02}", file) for match, file in named if match)
     if not known or [number for number, *_ in known] != list(range(len(known))):
         gap = next((k for k, (number, *_) in enumerate(known) if number != k), len(known))
-        raise ValueError(
-            f"{path} has no {folder.parent.name}/{folder.name}/sample_{gap}_label_L.npy; expected {EVENTS}"
-        )
+        raise ValueError(f"{path} has no {inside}/sample_{gap}_label_L.npy; expected {EVENTS}")
     return [(label, f"{folder.name} {number}", _touch(file)) for number, label, file in known]
 
 

@@ -3,7 +3,7 @@
 import pandas as pd
 
 from stages.kit.stats import interval
-from stages.report.grid import grouped, within
+from stages.report.grid import grouped, records, within
 from stages.report.items import Table
 from stages.report.markdown import signed, with_interval
 from stages.report.results import Results
@@ -26,11 +26,11 @@ def build(results: Results) -> Table:
     shown = pd.DataFrame({
         "method": frame["method"].map(label),
         "grasps left out in turn, %": [
-            with_interval(*ends, 100, 0) for ends in frame[["accuracy", "low", "high"]].itertuples(index=False)
+            with_interval(row.accuracy, row.low, row.high, 100, 0) for row in records(frame)
         ],
         f"{label(OURS)} − it": [
-            "–" if method == OURS else signed(*(100 * end for end in ends), places=0)
-            for method, *ends in frame[["method", "gain", "gain_low", "gain_high"]].itertuples(index=False)
+            "–" if row.method == OURS else signed(100 * row.gain, 100 * row.gain_low, 100 * row.gain_high, places=0)
+            for row in records(frame)
         ],
         "published test list": frame["listed"].astype(str) + " of " + frame["listed_of"].astype(str),
     })  # fmt: skip

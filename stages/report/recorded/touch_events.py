@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import pandas as pd
 
 from stages.kit.stats import interval
-from stages.report.grid import grouped, percent, within
+from stages.report.grid import grouped, percent, records, within
 from stages.report.items import Figure, Table
 from stages.report.markdown import number, signed, with_interval
 from stages.report.results import Results
@@ -64,11 +64,11 @@ def conditions(results: Results) -> Table:
     ]
     frame = pd.DataFrame(found)
     mine = frame[frame["method"].isin(SHOWN)]
-    cells = [with_interval(*ends, 100, 0) for ends in mine[["accuracy", "low", "high"]].itertuples(index=False)]
+    cells = [with_interval(row.accuracy, row.low, row.high, 100, 0) for row in records(mine)]
     names = [
         f"{GROUPS[group]}: {label(method)}, %" for group, method in zip(mine["group"], mine["method"], strict=True)
     ]
-    wide = mine.assign(cell=cells, name=pd.Categorical(names, dict.fromkeys(names)))
+    wide = mine.assign(cell=cells, name=pd.Categorical(names, list(dict.fromkeys(names))))
     wide = wide.pivot(index=["condition", "level"], columns="name", values="cell")
     wide = wide.reindex(frame.set_index(["condition", "level"]).index.unique()).rename_axis(columns=None).reset_index()
     return Table(frame, wide.assign(condition=wide["condition"].map(CONDITIONS), level=wide["level"].map(number)))
@@ -101,12 +101,10 @@ def chart(results: Results) -> Figure:
 
 def _line(own: pd.DataFrame) -> dict[str, str]:
     line = {"method": label(own["method"].iloc[0])}
-    by_group = own.set_index("group")
-    for group, words in GROUPS.items():
-        row = by_group.loc[group]
-        line[words] = with_interval(row["accuracy"], row["low"], row["high"], 100, 2)
-        ends = row[["gain", "gain_low", "gain_high"]]
-        line[f"{label(OURS)} − it, {group}"] = "–" if row["method"] == OURS else signed(*(100 * ends), places=1)
+    for row in records(own):
+        ends = [100 * value for value in (row.gain, row.gain_low, row.gain_high)]
+        line[GROUPS[row.group]] = with_interval(row.accuracy, row.low, row.high, 100, 2)
+        line[f"{label(OURS)} − it, {row.group}"] = "–" if row.method == OURS else signed(*ends, places=1)
     cost, folds = own["milliseconds"], own["cross_validated"]
     line["in training, %"] = " · ".join(percent(share, 1) for share in folds)
     line["bins"] = " · ".join(f"{bins:.0f}" for bins in own["bins"])
@@ -117,8 +115,8 @@ def _chosen(frame: pd.DataFrame) -> str:
     """Of each group the method with the highest accuracy in training, and what it has on the test part."""
     best = frame.loc[frame.groupby("group", sort=False)["cross_validated"].idxmax()]
     said = [
-        f"of the {GROUPS[group]} {label(method)}, {with_interval(*ends, 100, 1)} %"
-        for group, method, *ends in best[["group", "method", "accuracy", "low", "high"]].itertuples(index=False)
+        f"of the {GROUPS[row.group]} {label(row.method)}, {with_interval(row.accuracy, row.low, row.high, 100, 1)} %"
+        for row in records(best)
     ]
     return "; ".join(said)
 
