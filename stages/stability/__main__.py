@@ -7,9 +7,9 @@ severity and metric.
 `drift`: one minus the correlation of the saliency; `points`: how many of the points pass the method's own threshold;
 `nss` and `auc`: agreement of the saliency with people, read at the vertices of the undisturbed object, where the set
 knows what they looked at.
-Perturbation `none` is the object as it is, `noise+tilt` one after the other, each at its middle severity. Where random
-numbers are drawn, a value is the mean of the draws. Seconds include an even share of the rendering and the maps that
-all methods share.
+Perturbation `none` is the object as it is. Where random numbers are drawn, a value is the mean of the draws; a pair,
+such as `noise+tilt`, has one draw of both, each at its middle severity. Seconds include an even share of the rendering
+and the maps that all methods share.
 
 The points that the methods `used` find at the middle severities (those of the first draw) are used, too: `lod_mean` and
 `lod_salient` are the errors of the undisturbed object when it is simplified around them (perturbation `plain`: around
@@ -77,7 +77,7 @@ def asked(settings: Params) -> Iterator[list[Disturbance]]:
         for severity in settings.severities[perturbation]:
             yield disturbances([(perturbation, severity)], settings.draws)
     for pair in settings.pairs:
-        yield disturbances(parts_of(pair, middle_severities(settings)), settings.draws)
+        yield disturbances(parts_of(pair, middle_severities(settings)), draws=1)
 
 
 def middle_severities(settings: Params) -> dict[str, float]:
@@ -126,7 +126,9 @@ def check(settings: Params) -> None:
         )
     strange = [method for method in settings.used if method not in settings.methods]
     if strange:
-        raise ValueError(f"stability.used: {', '.join(strange)}; add to stability.methods: {', '.join(settings.methods)}")
+        raise ValueError(
+            f"stability.used: {', '.join(strange)}; add to stability.methods: {', '.join(settings.methods)}"
+        )
     if min(settings.count, settings.most, settings.draws) < 1:
         raise ValueError("stability: count, most and draws must be 1 or more")
 

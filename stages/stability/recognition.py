@@ -17,7 +17,9 @@ PARTITIONS = 5  # of all objects into such sets
 FOLDER = "touches"
 
 
-def recognise(item: str, folder: Path, made: Path, objects: list[str], severities: Mapping[str, float], seed: int) -> Rows:
+def recognise(
+    item: str, folder: Path, made: Path, objects: list[str], severities: Mapping[str, float], seed: int
+) -> Rows:
     """Rows of each object, method and perturbation: the share of its touches that are recognised among SET objects.
 
     made: the folder of the stage, whose touches/NAME.npz have METHOD.PERTURBATION: (k, 41) features. severities: of
