@@ -47,8 +47,9 @@ def breaking_interval(
     found = sign * _first_falls(severities, resampled_means(left, resamples(len(left), seed)), unharmed)
     found[np.isnan(found)] = np.inf
     tail = expanded_levels(len(left))
-    ends = [sign * np.quantile(found, tail[0], method="lower"), sign * np.quantile(found, tail[1], method="higher")]
-    return at, *(float(end) if np.isfinite(end) else float("nan") for end in ends)
+    low, high = np.quantile(found, tail[0], method="lower"), np.quantile(found, tail[1], method="higher")
+    mild, harsh = (sign * float(end) if np.isfinite(end) else float("nan") for end in (low, high))
+    return at, mild, harsh
 
 
 def resamples(units: int, seed: int = 0) -> np.ndarray:

@@ -62,8 +62,9 @@ def compared(lost: pd.DataFrame, pair: str, middle: dict[str, float]) -> dict[st
     joined = pd.concat({"first": first, "second": second, "both": both}, axis=1, join="inner")
     beyond = interval(joined["both"] - np.minimum(joined["first"] + joined["second"], 1))
     independent = joined["both"] - 1 + (1 - joined["first"]) * (1 - joined["second"])
-    ends = dict(zip(("beyond", "beyond_low", "beyond_high"), beyond, strict=True))
-    return joined.mean().to_dict() | ends | {"independent": independent.mean(), "objects": len(joined)}
+    found = {name: float(joined[name].mean()) for name in ("first", "second", "both")}
+    found |= dict(zip(("beyond", "beyond_low", "beyond_high"), beyond, strict=True))
+    return found | {"independent": float(independent.mean()), "objects": len(joined)}
 
 
 def verdict(low: float, high: float) -> str:

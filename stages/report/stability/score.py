@@ -92,7 +92,8 @@ def _gathered(found: pd.DataFrame, rows: pd.DataFrame) -> Errors:
     cases = rows.loc[rows["perturbation"].isin(known), ["perturbation", "severity"]].drop_duplicates()
     cases = sorted(cases.itertuples(index=False, name=None), key=lambda case: known.index(case[0]))
     some(cases, "no disturbed points", STAGE)
-    found = found.assign(case=list(zip(found["perturbation"], found["severity"], strict=True)))
+    pairs = list(zip(found["perturbation"], found["severity"], strict=True))
+    found = found.assign(case=pd.Series(pairs, index=found.index, dtype=object))
     disturbed, clean = (found[found["perturbation"].isin(names)] for names in (known, [UNPERTURBED]))
     objects, methods = (sorted(set(disturbed["item"])), list(dict.fromkeys(rows["method"])))
     values = _filled(disturbed, ["item", "method", "case"], (objects, methods, cases))
@@ -143,7 +144,7 @@ def scores(errors: Errors, reference: str = REFERENCE, seed: int = 0) -> pd.Data
     beyond = errors.beyond_clean
     own, more = (corruption_errors(beyond, reference, counts)[0].mean(axis=2) for counts in (every, draws))
     kept = [1 - errors.by_perturbation(errors.means(counts)) / errors.severities for counts in (every, draws)]
-    found = _with_ends("found", *(shares.mean(axis=2) for shares in kept), count)
+    found = _with_ends("found", kept[0].mean(axis=2), kept[1].mean(axis=2), count)
     return frame.assign(**_with_ends("relative", own, more, count), **found)
 
 

@@ -57,4 +57,7 @@ def _number(rows, own, method, metric):
 
 
 def _text(cells, *key):
-    return with_interval(*cells.loc[key, ["mean", "low", "high"]], 100, 0) if key in cells.index else "–"
+    if key not in cells.index:
+        return "–"
+    mean, low, high = cells.loc[key, ["mean", "low", "high"]]
+    return with_interval(mean, low, high, 100, 0)
