@@ -67,6 +67,11 @@ def test_the_score_is_paired_over_the_objects():
     found = scored(rows(spread=0.5))
     assert found["mce_high"]["glance"] - found["mce_low"]["glance"] < 1e-9
     assert found["found_high"]["glance"] - found["found_low"]["glance"] > 0.05
+    table = pd.DataFrame(rows(spread=0.0))
+    some = table["item"].isin(["object 1", "object 5"]) & (table["metric"] == "repeatability")
+    table.loc[some & (table["method"] == "glance"), "value"] = 0.2
+    known = scores(of_points(table)).set_index("method").loc["glance"]
+    assert known["mce_low"] < known["mce"] - 0.1 and known["mce_high"] > known["mce"] + 0.1
 
 
 def test_the_order_of_the_shapes_does_not_matter():
