@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from stages.kit.breaking_point import breaking_interval, breaking_point
+from stages.kit.units import unit
 
 from .perturbations import PERTURBATIONS
 from .simplification import OUTCOMES, SMALLEST
@@ -30,13 +31,15 @@ def mean_repeatability(rows: Sequence[dict] | pd.DataFrame) -> pd.DataFrame:
 def breaking_points(rows: pd.DataFrame) -> dict[tuple[str, str], tuple[float, float, float]]:
     """dict (perturbation, method) -> the severity at which the mean repeatability falls below one half, and its ends.
 
-    The interval is over the objects, see `breaking_interval`; NaN is beyond the harshest severity. Also NaN where a
-    severity before it has no value at all.
+    The interval is over the units of the objects, see `breaking_interval`; NaN is beyond the harshest severity. Also
+    NaN where a severity before it has no value at all.
     """
     found = {}
     for key, own in rows[rows["metric"] == "repeatability"].groupby(["perturbation", "method"], sort=False):
         perturbation, method = cast(tuple[str, str], key)
-        wide = own.pivot_table(index="item", columns="severity", values="value", sort=False)
+        wide = own.assign(unit=own["item"].map(unit)).pivot_table(
+            index="unit", columns="severity", values="value", sort=False
+        )
         severities = [one for one in dict.fromkeys(own["severity"]) if one in wide.columns]
         if severities:
             curves = wide[severities].to_numpy()

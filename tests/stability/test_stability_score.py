@@ -14,6 +14,7 @@ from stages.report.stability.panels import cell
 from stages.report.stability.score import corruption_errors, of_gaze, of_points, points_lost, scores
 from stages.report.topics import build_one
 from stages.report.verdict import judge
+from stages.stability.summary import breaking_points
 
 from .test_stability_report import results
 
@@ -107,6 +108,18 @@ def test_a_disturbance_that_failed_on_a_shape_counts_for_no_method():
     failed = (table["item"] == "object 3") & (table["perturbation"] == "tilt")
     table.loc[failed, "value"] = np.nan
     assert scores(of_points(table)).set_index("method")["mce"]["glance"] == pytest.approx(0.5)
+
+
+def test_copies_of_a_shape_count_once():
+    table = pd.DataFrame(rows(objects=4)).replace({"object 2": "cubesmall", "object 3": "cubelarge"})
+    errors = of_points(table)
+    assert errors.objects == ["cube", "object 0", "object 1"]
+    whole = of_points(pd.DataFrame(rows(objects=4))).values
+    assert np.allclose(errors.values, [whole[2:].mean(axis=0), whole[0], whole[1]])
+    curves = breaking_points(table[table["method"] == "itti"])["tilt", "itti"]
+    keys = ["item", "method", "perturbation", "severity", "metric"]
+    three = table.replace({"cubelarge": "cubesmall"}).groupby(keys, as_index=False, sort=False)["value"].mean()
+    assert curves == pytest.approx(breaking_points(three[three["method"] == "itti"])["tilt", "itti"])
 
 
 def test_one_shape_has_no_interval():

@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 
 from stages.kit.breaking_point import expanded_levels, resampled_means, resamples
+from stages.kit.units import unit
 from stages.report.results import NotRun, some
 from stages.stability.subject import UNPERTURBED
 
@@ -87,7 +88,8 @@ def of_gaze(rows: pd.DataFrame) -> Errors:
 
 
 def _gathered(found: pd.DataFrame, rows: pd.DataFrame) -> Errors:
-    """The Errors of the single perturbations that belong to a kind, in the order of the rows."""
+    """The Errors of the single perturbations that belong to a kind; copies of a shape are one object."""
+    found = found.assign(item=found["item"].map(unit)).groupby(KEYS, sort=False, dropna=False, as_index=False).mean()
     known = [name for names in KINDS.values() for name in names]
     cases = rows.loc[rows["perturbation"].isin(known), ["perturbation", "severity"]].drop_duplicates()
     cases = sorted(cases.itertuples(index=False, name=None), key=lambda case: known.index(case[0]))
