@@ -11,7 +11,7 @@ from stages.report.style import label
 from stages.stability import PERTURBATIONS
 from stages.stability.recognition import PARTITIONS, SET
 from stages.stability.subject import UNPERTURBED
-from stages.stability.uses import PLAIN, SENSOR_NOISE, TARGET
+from stages.stability.uses import KEPT, PLAIN, SENSOR_NOISE, TARGET
 
 from .score import BENCHMARK, STAGE
 
@@ -39,7 +39,7 @@ def table(results: Results) -> Table:
         for name in names
     ])  # fmt: skip
     words = {
-        "objects": rows["item"].nunique(), "target": f"{100 * TARGET:.0f}", "set": SET, "partitions": PARTITIONS,
+        "objects": rows["item"].nunique(), "target": f"{100 * TARGET:.0f}", "kept": KEPT, "set": SET, "partitions": PARTITIONS,
         "noise": f"{100 * SENSOR_NOISE:.0f}",
     }  # fmt: skip
     return Table(frame, shown, words)
