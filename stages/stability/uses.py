@@ -14,8 +14,8 @@ from stages.lod import simplify, surface_errors
 from .disturbance import Disturbance
 from .subject import UNPERTURBED, Findings, Subject
 
-# Around ten points there is room among half of the faces: the error where undisturbed objects are salient falls by about
-# 15 %. At a quarter, or around thirty points, what is kept leaves too little for the rest.
+# Among half of the faces there is room around ten points: the error where undisturbed objects are salient falls by
+# about 15 %. At a quarter, or around thirty points, what is kept leaves too little for the rest.
 TARGET, KEPT = 0.5, 10
 SAMPLES = 3000  # of a surface: the mean error is then exact to 2 %
 SENSOR_NOISE = 0.02  # sigma of a reading, share of full scale: nothing is felt twice in the same way

@@ -21,8 +21,8 @@ GAZE = "gaze"  # the set that tells accuracy and seconds
 CHANCE = "random"
 PROTOCOL = (  # conf/stability/benchmark.yaml
     "Smaller than the thesis: pictures of a fourth of the rows, two or three severities, three draws of what is "
-    "random. Left out, since they are the slowest: regions of interest, spectral and cluster-based saliency. Copies of a "
-    "primitive at other sizes count once."
+    "random. Left out, since they are the slowest: regions of interest, spectral and cluster-based saliency. Copies of "
+    "a primitive at other sizes count once."
 )
 BANDS = {0.3: "under 0.3", 0.6: "0.3 to 0.6", 1.2: "0.6 to 1.2", np.inf: "above 1.2"}  # NSS on gaze, for the chart
 

@@ -39,8 +39,8 @@ def table(results: Results) -> Table:
         for name in names
     ])  # fmt: skip
     words = {
-        "objects": rows["item"].nunique(), "target": f"{100 * TARGET:.0f}", "kept": KEPT, "set": SET, "partitions": PARTITIONS,
-        "noise": f"{100 * SENSOR_NOISE:.0f}",
+        "objects": rows["item"].nunique(), "target": f"{100 * TARGET:.0f}", "kept": KEPT,
+        "set": SET, "partitions": PARTITIONS, "noise": f"{100 * SENSOR_NOISE:.0f}",
     }  # fmt: skip
     return Table(frame, shown, words)
 
