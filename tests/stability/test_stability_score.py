@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.kit.breaking_point import breaking_interval, expanded_levels
+from stages.kit.breaking_point import breaking_interval, expanded_levels, resampled_means
 from stages.report import stability
 from stages.report.results import NotRun
 from stages.report.stability.pairs import compared, verdict
@@ -122,6 +122,11 @@ def test_copies_of_a_shape_count_once():
     assert curves == pytest.approx(breaking_points(three[three["method"] == "itti"])["tilt", "itti"])
 
 
+def test_means_are_over_what_was_measured():
+    found = resampled_means(np.array([[1, np.nan], [3, 5]]), np.array([[1.0, 1], [2, 0], [1, 3]]))
+    assert np.array_equal(found, [[2, 5], [1, np.nan], [2.5, 5]], equal_nan=True)
+
+
 def test_one_shape_has_no_interval():
     found = scored(rows(objects=1))
     assert found["mce_low"].isna().all() and found["mce"]["glance"] == pytest.approx(0.5)
@@ -176,6 +181,7 @@ def test_units_are_the_objects_and_few_of_them_widen_the_interval():
     few, many = breaking_interval([1, 2], curves, 0), breaking_interval([1, 2], np.tile(curves, (10, 1)), 0)
     assert few[0] == pytest.approx(many[0]) and few[2] - few[1] > 2 * (many[2] - many[1])
     assert expanded_levels(4)[0] < expanded_levels(40)[0] < 0.025 == pytest.approx(expanded_levels(10**6)[0], abs=1e-5)
+    assert expanded_levels(4)[0] == pytest.approx(0.000119, rel=0.02)  # Phi(-3.1824 * sqrt(4 / 3))
     assert breaking_interval([1, 2], curves[:1], 0) == pytest.approx((1.5, 1.5, 1.5))
     assert breaking_interval([1, 2], curves[::-1], 0)[0] == few[0]
 
