@@ -214,17 +214,17 @@ def test_the_sum_of_a_pair_is_all_at_most_and_independent_losses_are_milder():
     assert verdict(np.nan, np.nan) == "additive"
 
 
-def used(objects=8):
+def used(method="glance", scale=1.0, objects=8):
     """Points of the glance halve the salient error of plain simplification, disturbed ones save a tenth."""
     found = []
     for number in range(objects):
-        size = 0.01 * (1 + number)
+        size = 0.01 * scale * (1 + number)
         for name, severity, error, known in (
             ("plain", None, 1.0, None),
             ("none", None, 0.5, 0.9),
             ("noise", 0.001, 0.9, 0.6),
         ):
-            where = (f"object {number}", "glance", name, severity)
+            where = (f"object {number}", method, name, severity)
             found.append(row(*where, "lod_salient", error * size * (1 + 0.01 * (number % 2))))
             if known:
                 found.append(row(*where, "recognised", known + 0.01 * (number % 3 - 1)))
@@ -232,11 +232,12 @@ def used(objects=8):
 
 
 def test_uses_are_shares_of_plain_simplification_and_touches_recognised(tmp_path):
-    built = build_one(stability, "tables", "stability_uses", results(tmp_path, used()))
+    built = build_one(stability, "tables", "stability_uses", results(tmp_path, [*used(), *used("itti", 3.0)]))
     shown = built.shown.set_index("disturbance")
     assert list(shown.index) == ["none", "noise"] and shown.loc["noise", "severity"].startswith("0.001 sigma")
     error, known = "ours (glance), salient error, %", "ours (glance), recognised, %"
     assert shown.loc["none", error].startswith("50") and shown.loc["noise", error].startswith("90")
+    assert shown.loc["none", "Itti's attention, salient error, %"].startswith("50")  # of its own plain error
     assert shown.loc["none", known].startswith("90 [") and shown.loc["noise", known].startswith("60 [")
 
 
