@@ -7,6 +7,7 @@ import pytest
 
 from stages.kit import Mesh
 from stages.kit.files import read_arrays, write_mesh, write_table
+from stages.kit.rng import rng
 from stages.kit.rows import read_rows
 from stages.stability import PERTURBATIONS, Conditions
 from stages.stability.__main__ import check, process, run
@@ -43,6 +44,8 @@ def test_places_of_a_pair_lie_on_the_object_as_it_was(pear):
 
 def test_a_pair_has_the_random_numbers_of_its_parts_and_the_conditions_of_both(pear):
     pair, noise = apply(pear, NOISE, ("light", 30.0), ("image_size", 0.5)), apply(pear, NOISE)
+    alone = PERTURBATIONS["noise"].apply(pear, NOISE[1], rng(0, "pear noise"))
+    assert np.array_equal(noise.mesh.vertices, alone.mesh.vertices)  # as before there were draws
     assert np.array_equal(pair.mesh.vertices, noise.mesh.vertices)
     assert pair.conditions == Conditions(light=30.0, rows=0.5)
 
