@@ -130,6 +130,9 @@ def test_points_are_used_on_the_object_as_it_is_and_a_pair_has_no_severity(whole
     )
     assert set(lod.columns.get_level_values(1)) == {"none", "plain", "noise", "light"}
     assert (lod["harris", "none"] == lod["harris", "light"]).all()  # who does not look keeps the same points
+    assert (lod["harris", "none"] != lod["harris", "plain"]).all() and (
+        lod["random", "none"] != lod["random", "light"]
+    ).all()
     assert (lod["harris", "plain"] == lod["random", "plain"]).all() and (lod > 0).all(axis=None)
     assert set(rows.loc[rows["metric"] == "lod_salient", "method"]) == {"harris"}
     known = rows[(rows["metric"] == "recognised") & (rows["perturbation"] == "none")]
