@@ -61,8 +61,8 @@ def _words(rows, frame):
         accuracies = (f"{100 * row[split]:.0f}" for split in SPLITS.values())
         found |= zip((name, f"{name}_regions", f"{name}_objects"), (row["words"], *accuracies), strict=True)
     return found | {
-        "small_ms": number(1000 * small["seconds"], 2),
-        "times": number(usual["seconds"] / small["seconds"], 2),
+        "small_ms": number(round(1000 * small["seconds"], 1), 2),
+        "times": number(round(usual["seconds"] / small["seconds"], 1), 2),
     }
 
 
