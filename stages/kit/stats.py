@@ -6,6 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import stats
 
+from .units import by_unit
+
 Statistic = Callable[..., np.floating | np.ndarray]
 
 RESAMPLES = 2000  # the interval's own error is then below a tenth of its width
@@ -18,7 +20,8 @@ def interval(
 ) -> tuple[float, float, float]:
     """(mean, low, high): bootstrap percentile interval of the values (k,), NaN left out, widened twice about the mean.
 
-    First by t(n - 1) / z * sqrt(n / (n - 1)), since the percentile interval (Efron and Tibshirani, An Introduction to
+    A Series whose index has a level `item` counts by unit (stages.kit.units): copies of a shape are one. First it is
+    widened by t(n - 1) / z * sqrt(n / (n - 1)), since the percentile interval (Efron and Tibshirani, An Introduction to
     the Bootstrap, 1993, chapter 13) is too narrow for few values (Hesterberg, What teachers should know about the
     bootstrap, The American Statistician 2015, section 3.3). Then by sqrt(1 + n * shared) where the values are repeated
     splits of the same data: without it an interval shrinks to nothing by splitting more often (Nadeau and Bengio,
@@ -27,10 +30,9 @@ def interval(
     equal values says nothing of how others would differ. statistic: np.median, say, in the mean's place. Raises
     ValueError for values of another shape.
     """
-    values = np.asarray(values, dtype=np.float64)
+    values = of_units(values)
     if values.ndim != 1:
         raise ValueError(f"values must have shape (k,), got {values.shape}")
-    values = values[np.isfinite(values)]
     n = len(values)
     if n == 0:
         return np.nan, np.nan, np.nan
@@ -45,11 +47,20 @@ def interval(
     return mean, float(mean - (mean - low) * widen), float(mean + (high - mean) * widen)
 
 
+def of_units(values: ArrayLike) -> np.ndarray:
+    """The finite values as `interval` counts them: those of a Series over items by unit, all others each by itself."""
+    if "item" in getattr(getattr(values, "index", None), "names", ()):
+        values = by_unit(values)
+    values = np.asarray(values, dtype=np.float64)
+    return values[np.isfinite(values)]
+
+
 def p_value(values: ArrayLike, shared: float = 0.0, seed: int = 0) -> float:
     """Two-sided: 1 less the level at which the `interval` of the values (k,) just touches zero; NaN without interval.
 
     Not below SMALLEST, which is what RESAMPLES draws can tell.
     """
+    values = of_units(values)
     levels = np.array([SMALLEST, 1 - SMALLEST])  # searched by halving, since an interval widens with its level
     if not np.isfinite(interval(values, shared, seed)[1]):
         return np.nan
