@@ -6,11 +6,11 @@ import pandas as pd
 
 from stages.kit.stats import interval
 from stages.report.items import Table
-from stages.report.markdown import number, signed
+from stages.report.markdown import signed
 from stages.report.results import Results
 from stages.report.style import label
 
-from .rows import CHANGED, CHOICES, CONFIRMED, SPLITS, front_rows, named, words
+from .rows import CHANGED, CHOICES, CONFIRMED, SPLITS, brief, front_rows, named, words
 
 STAGES = {
     "method": "who chooses the places", "viewpoints": "viewpoints", "image_rows": "rows of an image",
@@ -32,7 +32,7 @@ def table(results: Results) -> Table:
         line["times"] = own["seconds"].mean() / base["seconds"].mean()
         lines.append(line | {"seconds": own["seconds"].mean(), "faces": own["faces"].mean()})
     frame = pd.DataFrame(lines).sort_values("stage", key=lambda own: own.map(CHOICES.index), kind="stable")
-    return Table(frame, _shown(frame), {"words": words(first), "seconds": number(1000 * base["seconds"].mean(), 2)})
+    return Table(frame, _shown(frame), {"words": words(first), "seconds": brief(1000 * base["seconds"].mean())})
 
 
 def _same(one, other):
@@ -51,7 +51,7 @@ def _shown(frame: pd.DataFrame) -> pd.DataFrame:
         for name, words in (("regions", "unseen regions, points"), ("objects", "unseen objects, points"))
     }
     said = [f"{_option(row['option'])} instead of {_option(row['from'])}" for _, row in frame.iterrows()]
-    times = [f"{number(value, 2)} times" for value in frame["times"]]
+    times = [f"{brief(value)} times" for value in frame["times"]]
     return pd.DataFrame({"stage": frame["stage"].map(STAGES), "option": said, **effects, "seconds": times})
 
 

@@ -5,14 +5,15 @@ from matplotlib.axes import Axes
 
 from stages.report.grid import records
 from stages.report.items import Figure, Table
-from stages.report.markdown import number, with_interval
+from stages.report.markdown import with_interval
 from stages.report.pareto import pareto_front
 from stages.report.results import Results
-from stages.report.style import CYCLE, GREY, plain_logarithm, plt
+from stages.report.style import CYCLE, GREY, PALE, plain_logarithm, plt
 
-from .rows import CONFIRMED, SEARCH, SPLITS, front_rows, named, of_rung
+from .rows import CONFIRMED, SEARCH, SPLITS, brief, front_rows, named, of_rung
 
 PANELS = {"regions": "one of six shapes, by unseen regions", "objects": "the class of an unseen object"}
+SIX = 6  # shapes of one question
 SMALLEST, DEFAULT = "the smallest within two points", "the project's default"
 
 
@@ -35,7 +36,7 @@ def table(results: Results) -> Table:
             "looking, s": frame["looking"],
             "faces": frame["faces"].round(),
             "learning one object, s": frame["training"],
-            "": frame["role"],
+            "which": frame["role"],
         }
     )
     return Table(frame, shown, _words(rows, frame))
@@ -61,8 +62,8 @@ def _words(rows, frame):
         accuracies = (f"{100 * row[split]:.0f}" for split in SPLITS.values())
         found |= zip((name, f"{name}_regions", f"{name}_objects"), (row["words"], *accuracies), strict=True)
     return found | {
-        "small_ms": number(round(1000 * small["seconds"], 1), 2),
-        "times": number(round(usual["seconds"] / small["seconds"], 1), 2),
+        "small_ms": brief(1000 * small["seconds"]),
+        "times": brief(usual["seconds"] / small["seconds"]),
     }
 
 
@@ -72,11 +73,13 @@ def chart(results: Results) -> Figure:
     searched, confirmed = of_rung(rows, SEARCH), of_rung(rows, CONFIRMED)
     marked = {named(rows, "default"): ("s", CYCLE[2], DEFAULT), named(rows, "smallest"): ("D", CYCLE[1], SMALLEST)}
     drawing, panels = plt.subplots(1, 2, figsize=(9.2, 4.1), sharex=True, sharey=True, layout="constrained")
-    for axes, (name, title) in zip(panels, PANELS.items(), strict=True):
+    guesses = (1 / SIX, 1 / rows.loc[rows["rung"] == CONFIRMED, "group"].nunique())  # shapes have no group
+    for axes, (name, title), guess in zip(panels, PANELS.items(), guesses, strict=True):
         _draw(axes, searched, confirmed, name, marked)
+        axes.axhline(100 * guess, color=GREY, lw=0.8, ls=":", label="guessing")
         axes.set_title(title, fontsize=10)
+        axes.set_xlabel("seconds of one core from mesh to name")
     panels[0].set_ylabel("right answers, %")
-    drawing.supxlabel("seconds of one core from the mesh to the name", fontsize=10)
     handles, names = panels[0].get_legend_handles_labels()
     drawing.legend(handles, names, loc="outside lower center", ncol=3, fontsize=9)
     frame = pd.concat([searched.assign(rung=SEARCH), confirmed.assign(rung=CONFIRMED)], ignore_index=True)
@@ -90,6 +93,10 @@ def _draw(axes: Axes, searched: pd.DataFrame, confirmed: pd.DataFrame, name: str
     )
     front = searched[pareto_front(searched["seconds"], searched[name])].sort_values("seconds")
     axes.step(front["seconds"], 100 * front[name], where="post", color=GREY, lw=1, zorder=1, label="their Pareto front")
+    pairs = confirmed.merge(searched, on="number", suffixes=("", "_before"))
+    for row in records(pairs):
+        ends = [[getattr(row, f"{one}_before"), getattr(row, one)] for one in ("seconds", name)]
+        axes.plot(ends[0], [100 * end for end in ends[1]], color=PALE, lw=1.2, zorder=0)
     others = confirmed[~confirmed["number"].isin(marked)]
     for own, (form, tint, said) in [
         (others, ("o", CYCLE[0], "confirmed on unseen ones, 95 % interval")),

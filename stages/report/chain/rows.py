@@ -6,6 +6,7 @@ import pandas as pd
 
 from stages.kit.split import Split
 from stages.report.grid import everywhere, within
+from stages.report.markdown import number
 from stages.report.results import Results, some
 from stages.report.style import label
 
@@ -25,9 +26,9 @@ def front_rows(results: Results) -> pd.DataFrame:
 def of_rung(rows: pd.DataFrame, rung: str) -> pd.DataFrame:
     """One row a choice: its options, `words`, the accuracies with low and high, seconds with their parts, training."""
     found = []
-    for number, own in some(rows[rows["rung"] == rung], f"no rows of {rung}", STAGE).groupby("number"):
+    for choice, own in some(rows[rows["rung"] == rung], f"no rows of {rung}", STAGE).groupby("number"):
         first = own.iloc[0]
-        line: dict[str, Any] = {"number": number, "words": words(first)} | {name: first[name] for name in CHOICES}
+        line: dict[str, Any] = {"number": choice, "words": words(first)} | {name: first[name] for name in CHOICES}
         for split, name in SPLITS.items():
             ends = within(own.loc[own["split"] == split, "value"])
             line |= zip((name, f"{name}_low", f"{name}_high"), ends, strict=True)
@@ -42,6 +43,11 @@ def words(row: pd.Series) -> str:
     touches = "1 touch" if row["touches"] == 1 else f"{row['touches']} touches"
     parts = [f"{label(row['method'])}{sight}", f"{row['points']} places", f"{row['cells']} x {row['cells']} cells"]
     return ", ".join([*parts, faces, touches, label(row["classifier"])])
+
+
+def brief(value: float) -> str:
+    """A number to two digits: 19, 0.95, 110."""
+    return number(float(f"{value:.2g}"), 2)
 
 
 def named(rows: pd.DataFrame, role: str) -> int:
