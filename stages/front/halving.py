@@ -4,8 +4,8 @@ Optuna prunes no study of several objectives, so what goes on is chosen here: th
 first, and of those alike the ones that stand farthest from the others (Deb and others, NSGA-II, 2002).
 """
 
-from collections.abc import Iterable, Mapping
-from typing import Any, TypeVar
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, Literal, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -24,7 +24,8 @@ RUNGS = {  # each asks a third of the choices of the one before
 }
 SHARE = 3  # one in so many goes on
 CONFIRMATION = RUNGS["last"]
-DIRECTIONS = ["maximize", "maximize", "minimize", "minimize", "minimize"]  # as `aims` has them
+# Of what `aims` gives.
+DIRECTIONS: Sequence[Literal["maximize", "minimize"]] = ("maximize", "maximize", "minimize", "minimize", "minimize")
 WITHIN = 0.02  # accuracy that the smallest choice may lack of the best one's
 
 

@@ -3,6 +3,7 @@
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 from stages.kit.extras import from_extra
 from stages.kit.files import read_json, write_json
@@ -85,7 +86,9 @@ class Search:
                 rows[choice] = self._asked("wide", searched, choice, RUNGS["wide"])
             elif trial.state == TrialState.RUNNING:  # a killed run has left it
                 rows |= self._tell(trial.number, trial.params, searched)
-        options = {name: optuna.distributions.CategoricalDistribution(every) for name, every in SPACE.items()}
+        options: dict[str, Any] = {
+            name: optuna.distributions.CategoricalDistribution(every) for name, every in SPACE.items()
+        }
         while (number := len(self.study.get_trials(deepcopy=False))) < trials:
             # Drawn anew for each trial, so that a run that was stopped goes on like one that was not.
             seed = int(rng(self.seed, f"trial {number}").integers(2**31))

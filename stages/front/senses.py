@@ -31,6 +31,7 @@ from .space import SPACE, WHOLE, Choice, settings_of
 MOST = max(SPACE["points"])  # places that are looked for; fewer are the first of these
 LOOKING = [name for name in SPACE["method"] if METHODS[name].channels]  # methods that need pictures
 CHANNELS = tuple(dict.fromkeys(channel for name in LOOKING for channel in METHODS[name].channels))
+SECONDS: tuple[str, ...] = ("simplifying", "looking", "surfaces", "pressing")  # of a Felt
 FEW = 200  # faces of the mesh that everything is tried on before seconds count
 
 
@@ -62,7 +63,7 @@ class Senses:
         """The first `choice.points` touches of an object; those where the array cannot stand are left out."""
         found = self._touches(name, choice)
         first = found["rank"] < choice.points
-        seconds = dict(zip(("simplifying", "looking", "surfaces", "pressing"), found["seconds"].tolist(), strict=True))
+        seconds = dict(zip(SECONDS, found["seconds"].tolist(), strict=True))
         return Felt(
             found["learned"][first], found["asked"][first], found["places"][first], int(found["faces"]), seconds
         )

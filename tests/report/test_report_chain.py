@@ -47,6 +47,7 @@ def test_confirmed_choices_stand_beside_what_the_search_found(measured):
     small = table.frame.iloc[1]
     assert small["regions"] == pytest.approx(0.5) and small["regions_searched"] == pytest.approx(0.6)
     assert small["regions_low"] < 0.5 < small["regions_high"] and np.isnan(table.frame.iloc[2]["regions_searched"])
+    assert small["regions_over"] == pytest.approx(-5) and small["regions_over_low"] < -5 < small["regions_over_high"]
     notes = " ".join(table.notes)
     assert "takes 10 ms, the default 100 times as long" in notes and "6 shapes and 6 objects" in notes
     assert words(pd.Series(small)) in notes and "in 50 and 50 % of the cases, the default in 55 and 55 %" in notes

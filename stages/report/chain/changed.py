@@ -4,13 +4,12 @@ from typing import Any
 
 import pandas as pd
 
-from stages.kit.stats import interval
 from stages.report.items import Table
 from stages.report.markdown import signed
 from stages.report.results import Results
 from stages.report.style import label
 
-from .rows import CHANGED, CHOICES, CONFIRMED, SPLITS, brief, front_rows, named, words
+from .rows import CHANGED, CHOICES, CONFIRMED, SPLITS, brief, effect, front_rows, named, words
 
 STAGES = {
     "method": "who chooses the places", "viewpoints": "viewpoints", "image_rows": "rows of an image",
@@ -28,7 +27,7 @@ def table(results: Results) -> Table:
         stage = next(name for name in CHOICES if not _same(own.iloc[0][name], first[name]))
         line: dict[str, Any] = {"stage": stage, "option": own.iloc[0][stage], "from": first[stage]}
         for split, name in SPLITS.items():
-            line |= zip((name, f"{name}_low", f"{name}_high"), _effect(base, own, split), strict=True)
+            line |= zip((name, f"{name}_low", f"{name}_high"), effect(base, own, split), strict=True)
         line["times"] = own["seconds"].mean() / base["seconds"].mean()
         lines.append(line | {"seconds": own["seconds"].mean(), "faces": own["faces"].mean()})
     frame = pd.DataFrame(lines).sort_values("stage", key=lambda own: own.map(CHOICES.index), kind="stable")
@@ -37,12 +36,6 @@ def table(results: Results) -> Table:
 
 def _same(one, other):
     return one == other or (pd.isna(one) and pd.isna(other))
-
-
-def _effect(base: pd.DataFrame, own: pd.DataFrame, split: str) -> tuple[float, float, float]:
-    """(mean, low, high) over the objects of what the option adds to the accuracy, in points."""
-    before, after = (frame[frame["split"] == split].set_index("item")["value"] for frame in (base, own))
-    return interval(100 * (after - before).dropna())
 
 
 def _shown(frame: pd.DataFrame) -> pd.DataFrame:

@@ -10,7 +10,7 @@ from stages.report.pareto import pareto_front
 from stages.report.results import Results
 from stages.report.style import CYCLE, GREY, PALE, plain_logarithm, plt
 
-from .rows import CONFIRMED, SEARCH, SPLITS, brief, front_rows, named, of_rung
+from .rows import CONFIRMED, SEARCH, SPLITS, brief, effect, front_rows, named, of_rung
 
 PANELS = {"regions": "one of six shapes, by unseen regions", "objects": "the class of an unseen object"}
 SIX = 6  # shapes of one question
@@ -24,6 +24,11 @@ def table(results: Results) -> Table:
     searched = of_rung(rows, SEARCH).set_index("number")
     for name in SPLITS.values():
         frame[f"{name}_searched"] = frame["number"].map(searched[name])
+    asked = rows[rows["rung"] == CONFIRMED]
+    usual = asked[asked["number"] == named(rows, "default")]
+    for split, name in SPLITS.items():
+        over = [effect(usual, asked[asked["number"] == choice], split) for choice in frame["number"]]
+        frame[[f"{name}_over", f"{name}_over_low", f"{name}_over_high"]] = over
     frame["role"] = frame["number"].map({named(rows, "default"): DEFAULT, named(rows, "smallest"): SMALLEST}).fillna("")
     shown = pd.DataFrame(
         {
