@@ -41,6 +41,11 @@ def test_a_third_goes_on_the_better_rank_first():
     assert best_share([[1, 1]]).tolist() == [0]
 
 
+def test_a_crowded_choice_of_the_front_goes_before_a_lonely_one_behind_it():
+    front, behind = [[0, 4], [2, 2], [4, 0]], [[1, 9], [9, 1]]
+    assert best_share([*behind, *front, [10, 10], [11, 11], [12, 12], [13, 13]]).tolist() == [2, 3, 4]
+
+
 def test_aims_are_means_over_the_objects_and_what_could_not_be_asked_is_no_good():
     found = [*rows(0.5, 0.25), *rows(0.7, None, seconds=None)]
     assert aims(found) == pytest.approx([0.6, 0.25, 1.0, 100.0, 1.0])

@@ -111,6 +111,19 @@ def test_a_dominated_choice_is_not_confirmed_and_a_third_goes_on(asked, tmp_path
     assert set(confirmed) == allowed and sorted(filter(None, confirmed.values())) == ["default", "smallest"]
 
 
+def test_where_one_choice_beats_all_it_alone_is_confirmed_beside_the_default(asked, tmp_path, monkeypatch):
+    def known(senses, objects, choice, effort, seed):
+        value = float(rng(7, choice.name).random())
+        base = {"seconds": 1 - value, "faces": 1.0, "touches": 1, "value": value, "item": "x"}
+        return [base | {"split": split} for split in ("regions", "objects")]
+
+    monkeypatch.setattr(module, "known", known)
+    rows = run(tmp_path)
+    best = max(of_rung(rows, "last"), key=lambda row: row["value"])["number"]
+    assert {row["number"]: row["role"] for row in of_rung(rows, "confirmation")}.get(best) == "smallest"
+    assert len(of_rung(rows, "confirmation")) == 2 * 2
+
+
 def test_a_trial_that_a_killed_run_left_is_answered(asked, tmp_path):
     begun = search(tmp_path)
     options = {name: optuna.distributions.CategoricalDistribution(every) for name, every in module.SPACE.items()}
