@@ -1,6 +1,7 @@
 """The interval of a mean, for numbers that get compared."""
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -31,8 +32,6 @@ def interval(
     ValueError for values of another shape.
     """
     values = of_units(values)
-    if values.ndim != 1:
-        raise ValueError(f"values must have shape (k,), got {values.shape}")
     n = len(values)
     if n == 0:
         return np.nan, np.nan, np.nan
@@ -49,10 +48,13 @@ def interval(
 
 def of_units(values: ArrayLike) -> np.ndarray:
     """The finite values as `interval` counts them: those of a Series over items by unit, all others each by itself."""
-    if "item" in getattr(getattr(values, "index", None), "names", ()):
-        values = by_unit(values)
-    values = np.asarray(values, dtype=np.float64)
-    return values[np.isfinite(values)]
+    known: Any = values  # a Series, maybe; the core install has no pandas to ask
+    if "item" in getattr(getattr(known, "index", None), "names", ()):
+        known = by_unit(known)
+    found = np.asarray(known, dtype=np.float64)
+    if found.ndim != 1:
+        raise ValueError(f"values must have shape (k,), got {found.shape}")
+    return found[np.isfinite(found)]
 
 
 def p_value(values: ArrayLike, shared: float = 0.0, seed: int = 0) -> float:

@@ -28,10 +28,9 @@ def by_unit(values: "pd.Series") -> "pd.Series":
     """
     values = values.dropna()
     if "item" in values.index.names:
-        shapes = [unit(str(name)) for name in values.index.get_level_values("item")]
-        inner = [values.index.get_level_values(name) for name in values.index.names]
-        outer = [shapes if name == "item" else level for name, level in zip(values.index.names, inner, strict=True)]
-        values = values.groupby(outer, sort=False).mean()
+        levels = [values.index.get_level_values(depth) for depth in range(values.index.nlevels)]
+        merged = [[unit(str(one)) for one in level] if level.name == "item" else level for level in levels]
+        values = values.groupby(merged, sort=False).mean()
     for depth in range(values.index.nlevels - 1, 0, -1):
         values = values.groupby(level=list(range(depth)), sort=False).mean()
     return values

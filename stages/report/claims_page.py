@@ -50,7 +50,7 @@ def open_text(row: Any) -> str:
     """Why a claim is open, and how many units would decide it at its present effect and spread; empty for others."""
     if row.cause != row.cause or not row.cause:
         return ""
-    return row.cause + (f": about {row.needed:,.0f} {row.needed_of}" if row.needed == row.needed else "")
+    return row.cause + (f": about {row.needed:,.0f} {row.needed_of} would decide" if row.needed == row.needed else "")
 
 
 def effect(row: Any) -> str:

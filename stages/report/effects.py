@@ -114,13 +114,21 @@ class PooledEffect:
 
 
 def sets_of(claim: Claim, results: Results) -> list[str | None]:
-    """The data sets of a claim; for None the first with rows of the stage that it does not name, or None."""
-    others = [name for name in results.datasets(claim.stage) if name not in claim.sets]
-    return [name or next(iter(others), None) for name in claim.sets]
+    """The data sets of a claim; for None the first with rows of the stage that it does not name, if there is any.
+
+    Where no set has such rows, None stays, and is what a run would measure.
+    """
+    there = results.datasets(claim.stage)
+    others = [name for name in there if name not in claim.sets]
+    found = [name or next(iter(others), None) for name in claim.sets]
+    return [name for name in found if name or not there]
 
 
 def effects(claim: Claim, results: Results) -> tuple[list[Effect], list[str]]:
-    """(the effect on each set that was measured, the names of the others); NotRun, of the first set, where none was."""
+    """(the effect on each set that was measured, the names of the others).
+
+    NotRun where none was: of a set that has rows of the stage, else of one that a run would measure.
+    """
     found, missing = [], {}
     for name in sets_of(claim, results):
         one = claim.on(name)
@@ -130,7 +138,8 @@ def effects(claim: Claim, results: Results) -> tuple[list[Effect], list[str]]:
         except NotRun as error:
             missing[name or ""] = error
     if not found:
-        raise next(iter(missing.values()))
+        there = results.datasets(claim.stage)
+        raise max(missing.items(), key=lambda one: (one[0] in there, one[1].runnable))[1]
     return found, list(missing)
 
 

@@ -34,6 +34,7 @@ class NotRun(Exception):
 
     def __init__(self, what: str, stage: str, runnable: bool = True) -> None:
         super().__init__(f"{what}: run `dvc repro {stage}`" if runnable else what)
+        self.runnable = runnable
 
 
 def some(found: Found, what: str, stage: str, runnable: bool = True) -> Found:

@@ -18,8 +18,8 @@ WORDS = ("supported", "contradicted", "no difference", "mixed", "open")
 NEGLIGIBLE = {POINTS: 3.0, "% of the mean of both errors": 3.0, "PCC": 0.03, "NSS": 0.05, "AUC": 0.01}
 FEW, HUNDRED = 5, 100  # units
 CAUSES = (  # of open verdicts
-    "not run", "no spread", f"{FEW} units or fewer", f"fewer than {HUNDRED} units would decide",
-    f"{HUNDRED} units or more would decide", "more splits of the same data would not decide", "hardly an effect",
+    "not run", "no spread", f"{FEW} units or fewer a set", f"fewer than {HUNDRED} units needed",
+    f"{HUNDRED} units or more needed", "more splits of the same data would not decide", "hardly an effect",
 )  # fmt: skip
 COLUMNS = [
     "section", "claim", "verdict", "effect", "low", "high", "unit", "p", "holds", "pairs", "over", "units", "shared",

@@ -81,6 +81,12 @@ CLAIMS = [
                 first={"views": "best"}, second={"views": fixed})
         for fixed, said in (("four", "four fixed ones"), ("twelve", "the twelve of T figure 3.2"))
     ),
+    *(
+        on_gaze(key=f"gaze_choices_flatter_{model}", section="ours", stage="attention_settings", scale=1, unit="NSS",
+                sentence=f"Features and ridge that were chosen on the judged objects flatter the {said}.",
+                where={"metric": "nss"}, first={"method": f"{model}_once"}, second={"method": f"{model}_nested"})
+        for model, said in (("glance", "glance"), ("fixations", "enhanced model"))
+    ),
     closer_to_gaze("ours_over_best_gaze", "ours", "Our model of gaze predicts where people look better than its best "
                    "rival.", OURS, BEST_RIVAL),
     closer_to_gaze("glance_over_views_gaze", "ours", "Our glance at even samples of the surface predicts where people "
