@@ -64,7 +64,7 @@ def ranks(losses: ArrayLike) -> np.ndarray:
     """
     losses = np.asarray(losses, dtype=np.float64)
     no_worse = (losses[:, None] <= losses[None]).all(axis=2)
-    dominates: np.ndarray = no_worse & (losses[:, None] < losses[None]).any(axis=2)
+    dominates = np.logical_and(no_worse, (losses[:, None] < losses[None]).any(axis=2))
     found = np.full(len(losses), -1)
     for rank in range(len(losses)):
         left = found < 0
