@@ -1,5 +1,6 @@
 """One scene at one tolerance: our plan, and those of other methods at the same error of the rendered frames."""
 
+import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -14,11 +15,13 @@ from .budget import budget
 from .frames import Frames
 from .levels import Plan
 from .lod_chain import ERRORS, Level
+from .online import online
 from .place import Scene
 from .plan import cheapest
 from .storage import finest_levels, read_chains
 
 OURS, PLAIN = "ours", "plain"  # kinds of LOD chain: with the salient regions spared, and without
+ONLINE = {"online": True, "online_unrendered": False}  # planners that see no frame ahead: whether they render
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,6 +36,7 @@ class MethodPlan:
     plan: Plan
     seconds: float
     note: str = ""
+    planning: float | None = None  # processor seconds of planning, of planners that begin with nothing rendered
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,14 +80,15 @@ def compare(setup: SceneSetup, all_matches: bool = True) -> list[MethodPlan]:
     """The plan of each method but the thesis's network, ours first.
 
     all_matches: also plans that equal ours in other quantities, the full meshes, plans by the levels' own errors
-    without rendering, and plans under a face limit.
+    without rendering, plans under a face limit, and those of planners that see no frame ahead.
     """
-    found = [_timed(OURS, "", lambda: _budget(setup, OURS)), _timed("ours_plain", "", lambda: _budget(setup, PLAIN))]
+    found = [_planned(OURS, lambda: _budget(setup, OURS)), _timed("ours_plain", "", lambda: _budget(setup, PLAIN))]
     ours = found[0].plan
     for method, by_size in (("uniform", False), ("uniform_size", True)):
         found += _tuned(setup, method, _uniform(setup, by_size), ours, all_matches)
     if all_matches:
         found += [_timed("full", "", lambda: rivals.full(setup.frames)), *_unrendered(setup), *_limited(setup, ours)]
+        found += [_online(setup, name, rendered) for name, rendered in ONLINE.items()]
     return found
 
 
@@ -98,6 +103,13 @@ def compare_network(setup: SceneSetup, counts: np.ndarray, ours: Plan, all_match
 
 def _budget(setup, kind):
     return budget(setup.meshes, setup.scene, chains=setup.chains[kind], frames=setup.frames)
+
+
+def _online(setup, method, rendered):
+    """Planned on frames of its own, so that it renders all that it asks about, and measured on those of the others."""
+    fresh = Frames(setup.scene, setup.meshes, setup.frames.full)
+    found = _planned(method, lambda: online(fresh, setup.of(OURS), rendered))
+    return replace(found, plan=Plan(found.plan.levels, found.plan.chains, setup.frames))
 
 
 def _uniform(setup, by_size):
@@ -150,6 +162,13 @@ def _by_surface(setup, item, chain, name):
     # The distance of two levels is at most the sum of their errors; for random directions about their root sum square.
     jumps = np.hypot(errors[:, :, None], errors[:, None, :])
     return cheapest(faces, errors, jumps, setup.scene.tolerance, setup.scene.hold)
+
+
+def _planned(method, make: Callable[[], Plan]) -> MethodPlan:
+    start = time.process_time()
+    with Stopwatch() as watch:
+        plan = make()
+    return MethodPlan(method, "", plan, watch.seconds, planning=time.process_time() - start)
 
 
 def _timed(method, matched, make: Callable[[], Plan]) -> MethodPlan:
