@@ -14,7 +14,7 @@ from stages.kit.files import write_arrays, write_table
 from stages.kit.run import Rows
 from stages.salient_points import read_strong_points
 
-from .compare import OURS, MethodPlan, SceneSetup, compare, compare_network, load_setup
+from .compare import ASKED, MATCHED, OTHERS, OURS, MethodPlan, SceneSetup, compare, compare_network, load_setup
 from .counts.evaluate import COMBINED
 from .levels import Plan
 from .network import fit_network, predicted_counts
@@ -43,6 +43,16 @@ class Case:
         return f"{self.settings.name}_{self.factor:g}"
 
     @property
+    def matched(self) -> tuple[str, ...]:
+        """In what rivals are made equal to ours."""
+        return ("displacement", "error") if self.settings.random else MATCHED if self.factor == 1 else ("error",)
+
+    @property
+    def others(self) -> tuple[str, ...]:
+        """Names of compare.OTHERS: what is compared besides."""
+        return ("full", "online") if self.settings.random else tuple(OTHERS) if self.factor == 1 else ("plain",)
+
+    @property
     def in_detail(self) -> bool:
         """Whether its frames and objects have rows, and its plan a table and pictures."""
         return self.factor == 1 and not self.settings.random
@@ -55,7 +65,7 @@ def measure(case: Case, folder: Path, data: Path, made: Path, shown: Sequence[st
     also writes the table of our plan and pictures.
     """
     setup, saliency = _setup(case, data, made, shown)
-    found = compare(setup, all_matches=case.factor == 1)
+    found = compare(setup, case.matched, case.others)
     write_plans(folder, case.name, {plan_name(each): each.plan.levels for each in found})
     if case.in_detail:
         write_table(folder / TABLE, pd.DataFrame(plan_table(setup, found[0].plan)))
@@ -84,7 +94,8 @@ def measure_network(
         row |= {"frame": "all", "metric": "faces", "value": None, "note": str(error)}
         return [row | {"factor": case.factor, "group": case.settings.name}]
     ours = MethodPlan(OURS, "", Plan(read_plans(made, case.name)[OURS], setup.of(OURS), setup.frames), 0.0)
-    found = compare_network(setup, _counts(setup, data, model), ours.plan, all_matches=case.factor == 1)
+    matched = case.matched[:1] if case.settings.random else (*case.matched, *([ASKED] if case.in_detail else []))
+    found = compare_network(setup, _counts(setup, data, model), ours.plan, matched)
     return _rows(setup, ours, found, saliency, case, seed)
 
 
