@@ -18,7 +18,7 @@ DATASETS = {
     "princeton_eight": "psb, the thesis's 8 classes", "princeton_six": "psb, the thesis's 6 classes",
     "pressure_images": "recorded pressure array", "biotac_grasps": "recorded fingertips",
     "household_denoised": "household, denoised", "furniture_hands": "furniture, several arrays or touches",
-    "schunk": "recorded hand with arrays",
+    "schunk": "recorded hand with arrays", "household_scenes": "30 random scenes of household objects",
 }  # fmt: skip
 NAMED = ("method", "classifier", "network")  # columns whose values have a label
 

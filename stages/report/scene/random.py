@@ -1,0 +1,130 @@
+"""Scenes drawn at random: what ours saves at an equal displacement, and what knowing the path is worth."""
+
+import pandas as pd
+
+from stages.kit.stats import interval
+from stages.report.grid import records
+from stages.report.items import Figure, Table
+from stages.report.markdown import number, with_interval
+from stages.report.results import NotRun, Results, some
+from stages.report.style import GREY, INK, plt
+
+from .rows import COLOURS, NAMES, OURS, RANDOM, UNITS, amount
+
+PLANS = [
+    ("full", ""), ("uniform", "displacement"), ("uniform_size", "displacement"), ("network", "displacement"),
+    (OURS, ""), ("online", ""), ("online_unrendered", ""), ("uniform", "error"), ("uniform_size", "error"),
+]  # fmt: skip
+EQUAL = {"": "", "displacement": "mean displacement", "error": "worst object's error"}
+SHOWN = {"displacement_mean": ("displacement, px", 1, 2), "error": ("frame error, mean", 1, 2),
+         "held": ("frames within, %", 100, 0), "switches_per_object": ("switches an object", 1, 1)}  # fmt: skip
+DRAWN = {"displacement": [("uniform", "o"), ("uniform_size", "s")], "error": [("uniform", "o"), ("uniform_size", "s")]}
+
+
+def build(results: Results) -> Table:
+    """A line for each plan: means over the scenes, with intervals over the scenes."""
+    wide, first = plans(results)
+    times = _times(results)
+    lines, frame = [], []
+    for plan in [plan for plan in PLANS if plan in wide.index.droplevel("group")]:
+        own = wide.xs(plan, level=["method", "matched"])
+        saved = 100 * saving(wide, plan)
+        found = {"method": plan[0], "matched": plan[1], "scenes": len(own), "faces": own["faces"].mean()}
+        found |= dict(zip(("saved", "saved_low", "saved_high"), interval(saved / 100), strict=True))
+        found |= {name: own[name].mean() for name in SHOWN} | {"step_worst": own["step_worst"].max()}
+        found |= {"planning_ms": own["planning_ms"].median()}
+        found |= dict(zip(("drawing", "drawing_low", "drawing_high"), times.get(plan, (None,) * 3), strict=True))
+        frame.append(found)
+        line = {"levels chosen by": NAMES[plan[0]], "equal to ours in": EQUAL[plan[1]], "faces a frame": found["faces"]}
+        line["faces that ours saves, %"] = "–" if plan[0] == OURS else with_interval(*interval(saved), places=0)
+        line |= {head: f"{scale * found[name]:.{places}f}" for name, (head, scale, places) in SHOWN.items()}
+        line |= {"worst jump": found["step_worst"], "planning, ms a frame": found["planning_ms"]}
+        line["drawing time / full"] = with_interval(*times[plan], places=2) if plan in times else "–"
+        lines.append(line)
+    shown = pd.DataFrame(lines)
+    shown["faces a frame"] = shown["faces a frame"].round()
+    words = {
+        "scenes": wide.index.get_level_values("group").nunique(),
+        "tolerance": amount(first["tolerance"], UNITS[first["kind"]]), "foresight": _foresight(wide),
+        "drawing": _drawing(results),
+    }  # fmt: skip
+    return Table(pd.DataFrame(frame), shown, words)
+
+
+def figure(results: Results) -> Figure:
+    """The saving in each scene, sorted, at an equal displacement and at an equal error; and online beside offline."""
+    wide, _ = plans(results)
+    drawing, panels = plt.subplots(1, 3, figsize=(9.6, 3.6))
+    for axes, (matched, rivals) in zip(panels, DRAWN.items(), strict=False):
+        for rival, marker in rivals:
+            saved = 100 * saving(wide, (rival, matched)).sort_values()
+            mean, low, high = interval(saved)
+            label = f"{NAMES[rival].removeprefix('uniform levels ')}: {mean:.0f} [{low:.0f}, {high:.0f}]"
+            axes.plot(range(1, len(saved) + 1), saved, marker, ms=4, mew=0, color=COLOURS[rival], label=label)
+        axes.set(xlabel="scenes, sorted", ylabel="faces that ours saves, %", title=f"at an equal {EQUAL[matched]}")
+        axes.legend(title="against uniform levels", fontsize=8, title_fontsize=8, loc="lower right")
+    extra = 100 * (1 / (1 - saving(wide, ("online", ""))) - 1).sort_values()
+    mean, low, high = interval(extra)
+    panels[2].plot(range(1, len(extra) + 1), extra, "o", ms=4, mew=0, color=COLOURS[OURS],
+                   label=f"{mean:.1f} [{low:.1f}, {high:.1f}]")  # fmt: skip
+    panels[2].axhline(ALLOWED, color=GREY, lw=1, ls=":")
+    panels[2].set(xlabel="scenes, sorted", ylabel="more faces than offline, %", title="no frame seen ahead")
+    panels[2].legend(fontsize=8, loc="upper left")
+    for axes in panels:
+        axes.axhline(0, color=INK, lw=0.8)
+        axes.grid(axis="y")
+    drawing.tight_layout(w_pad=2)
+    return Figure(drawing, {"scenes": wide.index.get_level_values("group").nunique(), "allowed": f"{ALLOWED:g}"})
+
+
+ALLOWED = 5.0  # per cent more faces that an online planner may need
+
+
+def plans(results: Results) -> tuple[pd.DataFrame, pd.Series]:
+    """(frame (group, method, matched) x metric over all frames, the first row) of the random scenes."""
+    rows = results.measured("scene", RANDOM, frame="all", factor=1, item=None).fillna({"matched": ""})
+    rows = some(rows[rows["kind"].notna()], "no random scenes", "scene")
+    wide = rows.pivot_table(index=["group", "method", "matched"], columns="metric", values="value", sort=False)
+    return wide[wide["faces"].notna()], rows.iloc[0]
+
+
+def saving(wide: pd.DataFrame, plan: tuple[str, str]) -> pd.Series:
+    """The share of a plan's faces that ours saves, a value a scene: 0 where it has as many."""
+    ours, rival = (wide.xs(key, level=["method", "matched"])["faces"] for key in ((OURS, ""), plan))
+    return (1 - ours / rival).dropna()
+
+
+def _foresight(wide: pd.DataFrame) -> str:
+    if ("online", "") not in wide.index.droplevel("group"):
+        return ""
+    ours, online = (wide.xs((name, ""), level=["method", "matched"]) for name in (OURS, "online"))
+    extra = 100 * (online["faces"] / ours["faces"] - 1).dropna()
+    said = f"Without a frame ahead: {with_interval(*interval(extra), places=1)} % more faces, "
+    said += f"{number(online['switches_per_object'].mean())} switches an object instead of "
+    said += f"{number(ours['switches_per_object'].mean())}, and a worst jump of {number(online['step_worst'].max())} "
+    return said + f"instead of {number(ours['step_worst'].max())}."
+
+
+def _times(results: Results) -> dict[tuple[str, str], tuple[float, float, float]]:
+    """{plan: (mean, low, high) of the time of drawing over that of the full meshes}, over the scenes."""
+    try:
+        rows = results.bench("frame_times")
+    except NotRun:
+        return {}
+    rows = rows[rows["method"] != "full"]
+    plan = {"uniform": ("uniform", "displacement")}
+    return {plan.get(name, (name, "")): interval(own["ratio"]) for name, own in rows.groupby("method", sort=False)}
+
+
+def _drawing(results: Results) -> str:
+    try:
+        rows = results.bench("frame_times")
+    except NotRun:
+        return ""
+    ms = rows.groupby("method")[["faces", "ms"]].mean()
+    said = [f"{NAMES[row.Index]} {number(row.faces)} faces, {number(row.ms)} ms" for row in records(ms)]
+    device = rows["device"].iloc[0].partition(" (")[0]
+    return (
+        f"Drawing: processor milliseconds of pyrender on {device}, a software rasteriser, one thread, screens of "
+        f"{rows['rows'].iloc[0]} rows, {rows['scene'].nunique()} scenes: {'; '.join(said)}."
+    )
