@@ -42,8 +42,8 @@ def process(name: str, folder: Path, data: Path, settings: Params) -> Rows:
     return rows
 
 
-def row(name: str, task: str, condition: float | None, faces: int) -> dict:
-    """A row of the faces that an object needs."""
+def row(name: str | None, task: str, condition: float | None, faces: float) -> dict:
+    """A row of the faces that an object needs; name: None for all together."""
     return {"item": name, "task": task, "condition": condition, "metric": "faces", "value": int(faces)}
 
 

@@ -104,4 +104,6 @@ def test_the_stage_has_a_row_an_object_task_and_condition(make_workspace, chain,
     needs = rows[rows["metric"] == "faces"].pivot(index="item", columns=["task", "condition"], values="value")
     assert needs.shape == (2, 6) and (needs["full"].iloc[:, 0] == len(mesh.faces)).all()
     assert (needs["seen"][0.5] > needs["seen"][2.0]).all() and (needs["felt"][0.02] > needs["felt"][0.1]).all()
+    together = rows[rows["metric"] == "faces_together"]
+    assert len(together) == 1 and 12 <= together["value"].iloc[0] <= len(mesh.faces)
     assert set(summary(rows.to_dict("records"))) >= {"seen_0.5", "felt_0.02", "recognised_0.02"}

@@ -96,6 +96,9 @@ def needs(root, results):
             for k in range(9) for (task, condition), count in ways.items()]  # fmt: skip
     rows += [common | {"item": f"object {k}", "task": "recognised", "metric": "accuracy", "value": 0.7 + 0.01 * k}
              for k in range(9)]  # fmt: skip
+    rows.append(
+        common | {"item": None, "task": "recognised", "condition": 0.02, "metric": "faces_together", "value": 250}
+    )
     write_table(root / "reports/measurements/household_scenes/face_needs.csv.gz", pd.DataFrame(rows))
     return results
 

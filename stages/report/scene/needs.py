@@ -33,7 +33,8 @@ def build(results: Results) -> Table:
             "of the full mesh, %": with_interval(*interval(share, statistic=np.median), places=1),
         })  # fmt: skip
     accuracy = 100 * _rows(results, "accuracy")["value"]
-    words = {"objects": len(full), "full": f"{full.median():,.0f}",
+    together = _rows(results, "faces_together")["value"].iloc[0]
+    words = {"objects": len(full), "full": f"{full.median():,.0f}", "together": f"{together:,.0f}",
              "accuracy": with_interval(*interval(accuracy), places=0)}  # fmt: skip
     return Table(pd.DataFrame(frame), pd.DataFrame(lines), words)
 
