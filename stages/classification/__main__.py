@@ -1,14 +1,15 @@
 """Recognises objects by one touch or a few: T tables 4.1, 4.2, 4.3, 4.5 and 4.6.
 
 Reads data/SET/imprints/NAME.npz, writes data/SET/classification/GROUP.SAMPLING.npz (confusion matrices of the
-hold-outs) and reports/measurements/SET/classification.csv.gz: one row per group of objects (classification.sets),
-sampling, variant, classifier, split and repetition.
+hold-outs) and reports/measurements/SET/classification.csv.gz: one row per group of objects (classification.sets,
+or classification.drawn random ones), sampling, variant, classifier, split and repetition.
 
 The mean in the metrics comes with a bootstrap interval over the repetitions. It covers the luck of the split and of
 the training. It does not cover the choice of objects and of touches: all repetitions share the same imprints, and
 their hold-outs overlap, so it is narrower than the interval of a fresh experiment.
 """
 
+import dataclasses
 import functools
 from collections import defaultdict
 from collections.abc import Mapping
@@ -29,6 +30,7 @@ from stages.kit.stats import interval_metrics
 from stages.kit.workspace import Workspace
 
 from .classifiers import check_name
+from .drawn import drawn_sets, set_of
 from .gather import feature_cost_rows, gather, similar_share_rows
 from .multi_touch import MultiTouchTrials
 from .protocol import check_counts, evaluate_prepared, prepare
@@ -84,8 +86,8 @@ def process(item: str, folder: Path, data: Path, planned: Mapping[str, int | str
     name, _, sampling = item.rpartition(".")
     count, rows, confusions = planned[item], [], {}
     if isinstance(count, str):
-        return [{"group": name, "method": sampling or None, "metric": "accuracy", "value": None, "note": count}]
-    common = {"group": name, "method": sampling}
+        return [{**set_of(name), "method": sampling or None, "metric": "accuracy", "value": None, "note": count}]
+    common = {**set_of(name), "method": sampling}
     touched, labels = gather(data / "imprints", settings.sets[name], sampling, count)
     objects = np.unique(labels)
     # One thread gives equal sums on any number of cores. Most fits are so small that checks would take half their time.
@@ -113,7 +115,7 @@ def process(item: str, folder: Path, data: Path, planned: Mapping[str, int | str
 def further(name: str, sampling: str, touched: TouchSet, classifiers: list[str], settings: Params, seed: int) -> Rows:
     """Rows of the variants, as far as the settings ask for them."""
     several = None
-    if sampling in settings.closer and name == next(iter(settings.sets)):
+    if sampling in settings.closer and set_of(name)["group"] == set_of(next(iter(settings.sets)))["group"]:
         every = sampling == settings.closer[0]
         several = MultiTouchTrials(tuple(settings.touches), settings.combinations, every)
     closer = sampling in settings.closer
@@ -153,8 +155,11 @@ def run(workspace: Workspace) -> None:
     settings = workspace.settings(Params)
     for name in settings.classifiers:
         check_name(name)
-    planned = plan(settings.sets, workspace.data / "imprints")
     with StageRun(workspace, "classification", COLUMNS, inputs=("imprints",)) as stage:
+        if settings.drawn:
+            sets = drawn_sets(settings.sets, object_files(workspace.data / "imprints"), settings.drawn, stage.seed)
+            settings = dataclasses.replace(settings, sets=sets)
+        planned = plan(settings.sets, workspace.data / "imprints")
         work = functools.partial(process, data=workspace.data, planned=planned, settings=settings, seed=stage.seed)
         rows = stage.each(work, list(planned), reads=("imprints",))
         closest = (settings.closer[0], settings.classifiers[0]) if settings.closer else None

@@ -46,6 +46,7 @@ METHODS: dict[str, Detector] = {
     ENHANCED: FixationDetector(ENHANCED, CHANNEL_FEATURES),
     "itti": FusedDetector(COMBINATIONS["VisAtt"]),
     "random": RandomPoints(),
+    **{f"random_{draw}": RandomPoints(draw) for draw in range(2, 6)},
     **{name: FusedDetector(channels) for name, channels in (COMBINATIONS | WITHOUT_COLOUR).items()},
     "VisAttCurvP": MergedDetector(FusedDetector(COMBINATIONS["VisAtt"]), FusedDetector(COMBINATIONS["Curv"])),
     "VisAttSymP": MergedDetector(FusedDetector(COMBINATIONS["VisAtt"]), FusedDetector(["symmetry"])),

@@ -1,5 +1,8 @@
 """Random points (the thesis's blind touch), the baseline of every method (T4.2.4)."""
 
+from dataclasses import dataclass
+from typing import ClassVar
+
 import numpy as np
 
 from stages.conspicuity.project import nearest_corners
@@ -12,17 +15,23 @@ from .options import Detection, Options
 ROUNDS = 100  # of drawing; only a mesh with hardly more vertices than points asked for needs more than one
 
 
+@dataclass(frozen=True)
 class RandomPoints:
-    """Vertices nearest to points drawn uniformly by area, so that finely meshed regions get no more of them."""
+    """Vertices nearest to points drawn uniformly by area, so that finely meshed regions get no more of them.
 
-    channels = ()
-    required_weights = None
+    draw: the number of the draw; what is concluded from blind touch should not hang on one.
+    """
+
+    draw: int = 1
+    channels: ClassVar = ()
+    required_weights: ClassVar = None
 
     def find(self, mesh: Mesh, _sight: None, options: Options, count: int | None = None) -> Detection:
         """A Detection of distinct vertices in the order drawn."""
         if count is None:
             raise ValueError("random points have no threshold to stop at: give a count")
-        return Detection(random_vertices(mesh, count, rng(options.seed, options.name)), None, None)
+        name = options.name if self.draw == 1 else f"{options.name}, draw {self.draw}"
+        return Detection(random_vertices(mesh, count, rng(options.seed, name)), None, None)
 
 
 def random_vertices(mesh: Mesh, count: int, generator: np.random.Generator) -> np.ndarray:

@@ -55,10 +55,9 @@ def scenes_of(settings: Params, names: Sequence[str], data: Path, seed: int) -> 
     if not settings.random:
         return [settings]
     boxes = {name: bounds(read_mesh(data / MESH.format(name))) for name in names}
-    sizes = read_table(data / SIZES, {"object": str}).set_index("object")["size"]
-    return [
-        draw_scene(settings, number, boxes, sizes.astype(float).to_dict(), seed) for number in range(settings.random)
-    ]
+    table = read_table(data / SIZES, {"object": str})
+    sizes = dict(zip(table["object"], table["size"].astype(float), strict=True))
+    return [draw_scene(settings, number, boxes, sizes, seed) for number in range(settings.random)]
 
 
 def report_missing(settings: Params, scene: Scene, missing: Sequence[str]) -> None:

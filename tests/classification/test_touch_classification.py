@@ -31,6 +31,7 @@ def settings(**changes):
     return Params(
         **{
             "sets": {"three": list(NAMES)},
+            "drawn": 0,
             "classifiers": ["knn", "naive_bayes"],
             "repetitions": 2,
             "closer": [],
@@ -137,3 +138,15 @@ def test_the_stage_writes_rows_by_split_and_metrics_by_their_names(imprints, mak
         "three.itti.npz",
         "three.random.npz",
     }
+
+
+@pytest.mark.slow
+def test_drawn_sets_take_the_place_of_the_named_one_each_with_all_its_variants(imprints, make_workspace):
+    own = settings(sets={"two": ["cup", "hand"]}, drawn=3, closer=["random"], repetitions=1, classifiers=["knn"])
+    workspace = make_workspace({"classification": vars(own)})
+    run(workspace)
+    rows = read_rows(workspace.measurements / "classification.csv.gz")
+    assert set(rows["group"]) == {"two"} and set(rows["set"]) == {1, 2, 3}
+    several = rows[rows["variant"].eq("touches_2") & rows["method"].eq("random")]
+    assert set(several["set"]) == {1, 2, 3}  # of every set, not of the first alone
+    assert set(read_json(workspace.metrics / "classification.json")) == {"two", "variants"}

@@ -242,6 +242,12 @@ def test_random_points_depend_on_seed_and_name_alone(ball):
     assert (find_points(ball, "random", 20, seed=4, name="duck") != first).any()
 
 
+def test_draws_of_blind_touch_differ_and_the_first_is_random_itself(ball):
+    draws = [find_points(ball, name, 20, name="duck").tolist() for name in ("random", "random_2", "random_3")]
+    assert draws[0] != draws[1] != draws[2] != draws[0]
+    assert find_points(ball, "random_2", 20, name="duck").tolist() == draws[1]
+
+
 def test_random_gets_as_many_strong_points_as_the_first_method(sight, ball):
     found, _ = find_all(ball, sight, ["random", "itti"], Options(), 30)
     assert found["random"].strong == found["itti"].strong < 30

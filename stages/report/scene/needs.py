@@ -76,6 +76,6 @@ def _rows(results: Results, metric: str = "faces") -> pd.DataFrame:
 
 def _tasks(rows: pd.DataFrame) -> list[tuple[tuple[str, float], pd.DataFrame]]:
     """[((task, condition), rows)] in the order of TASKS, from few faces to many."""
-    found = [(key, own) for key, own in rows.dropna(subset=["condition"]).groupby(["task", "condition"])]
-    order = list(TASKS)
-    return sorted(found, key=lambda item: (order.index(item[0][0]), -item[0][1]))
+    rows, order = rows.dropna(subset=["condition"]), list(TASKS)
+    keys = sorted({*zip(rows["task"], rows["condition"], strict=True)}, key=lambda key: (order.index(key[0]), -key[1]))
+    return [(key, rows[(rows["task"] == key[0]) & (rows["condition"] == key[1])]) for key in keys]

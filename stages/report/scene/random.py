@@ -26,7 +26,7 @@ def build(results: Results) -> Table:
     wide, first = plans(results)
     times = _times(results)
     lines, frame = [], []
-    for plan in [plan for plan in PLANS if plan in wide.index.droplevel("group")]:
+    for plan in [plan for plan in PLANS if plan in _keys(wide)]:
         own = wide.xs(plan, level=["method", "matched"])
         saved = 100 * saving(wide, plan)
         found = {"method": plan[0], "matched": plan[1], "scenes": len(own), "faces": own["faces"].mean()}
@@ -101,11 +101,11 @@ def _extra(wide: pd.DataFrame) -> pd.Series:
 
 
 def _foresight(wide: pd.DataFrame) -> str:
-    if ("online", "") not in wide.index.droplevel("group"):
+    if ("online", "") not in _keys(wide):
         return ""
     ours, online = (wide.xs((name, ""), level=["method", "matched"]) for name in (OURS, "online"))
-    switches, (jump, most) = online["switches_per_object"].mean(), _jumps(online)
-    own_switches, (own_jump, own_most) = ours["switches_per_object"].mean(), _jumps(ours)
+    switches, (jump, most) = online["switches_per_object"].mean(), _jumps(wide, "online")
+    own_switches, (own_jump, own_most) = ours["switches_per_object"].mean(), _jumps(wide, OURS)
     return (
         f"Without a frame ahead: {with_interval(*interval(_extra(wide)), places=1)} % more faces, {number(switches)} "
         f"switches an object instead of {number(own_switches)}, and a worst jump of {number(jump)} instead of "
@@ -113,8 +113,13 @@ def _foresight(wide: pd.DataFrame) -> str:
     )
 
 
-def _jumps(own: pd.DataFrame) -> tuple[float, float]:
-    return own["step_worst"].median(), own["step_worst"].max()
+def _jumps(wide: pd.DataFrame, method: str) -> tuple[float, float]:
+    own = wide.xs((method, ""), level=["method", "matched"])["step_worst"]
+    return own.median(), own.max()
+
+
+def _keys(wide: pd.DataFrame) -> set[tuple[str, str]]:
+    return {(str(method), str(matched)) for _, method, matched in wide.index}
 
 
 def _times(results: Results) -> dict[tuple[str, str], tuple[float, float, float]]:
@@ -124,8 +129,8 @@ def _times(results: Results) -> dict[tuple[str, str], tuple[float, float, float]
     except NotRun:
         return {}
     rows = rows[rows["method"] != "full"]
-    plan = {"uniform": ("uniform", "displacement")}
-    return {plan.get(name, (name, "")): interval(own["ratio"]) for name, own in rows.groupby("method", sort=False)}
+    found = {str(name): interval(own["ratio"]) for name, own in rows.groupby("method", sort=False)}
+    return {(name, "displacement" if name == "uniform" else ""): ratio for name, ratio in found.items()}
 
 
 def _drawing(results: Results) -> str:
