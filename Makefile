@@ -54,6 +54,7 @@ bench: $(VENV)/ready ## every benchmark, to reports/bench: kernels, errors, scen
 	python -m benchmarks.large_simplification
 	OMP_NUM_THREADS=1 python -m benchmarks.saliency $(psb)
 	python -m benchmarks.scenes
+	python -m benchmarks.frame_times
 	OMP_NUM_THREADS=1 python -m benchmarks.imprints $(psb) $(if $(tacto),--tacto $(tacto))
 	OMP_NUM_THREADS=1 python -m benchmarks.tactile $(psb)
 	python -m benchmarks.networks

@@ -87,7 +87,7 @@ def test_a_stage_is_one_thing_in_five_places(stage):
 
 
 def test_dvc_yaml_reads_like_a_table_of_contents():
-    assert len((ROOT / "dvc.yaml").read_text().splitlines()) <= 260
+    assert len((ROOT / "dvc.yaml").read_text().splitlines()) <= 280
 
 
 @pytest.mark.slow

@@ -23,7 +23,7 @@ DATASETS = {
     "touch_events": "recorded events of a fingertip",
     "household_denoised": "household, denoised", "household_stability": "household shapes, disturbed",
     "furniture_hands": "furniture, several arrays or touches",
-    "schunk": "recorded hand with arrays",
+    "schunk": "recorded hand with arrays", "household_scenes": "30 random scenes of household objects",
 }  # fmt: skip
 NAMED = ("method", "classifier", "network")  # columns whose values have a label
 

@@ -21,9 +21,9 @@ from stages.lod.variant import variant
 from .compare import OURS, PLAIN
 from .export import export
 from .lod_chain import build_lod_chain
-from .measure import measure, measure_network
+from .measure import Case, measure, measure_network
 from .network import CURVE, evaluation_rows
-from .read import MESH, POINTS, read_object, report_missing, scene_of
+from .read import MESH, POINTS, read_object, report_missing, scene_of, scenes_of
 from .rows import summary
 from .schema import COLUMNS, Params
 from .storage import write_chain
@@ -49,27 +49,31 @@ def run(workspace: Workspace) -> None:
     settings, data = workspace.settings(Params), workspace.data
     variant(settings.method)
     with StageRun(workspace, "scene", COLUMNS, inputs=("meshes", "salient_points", "lod")) as stage:
-        scene, missing = scene_of(settings, stage.objects)
-        report_missing(settings, scene, missing)
-        shown = sorted({placed.name for placed in scene.objects})
+        every = scenes_of(settings, stage.objects, data, stage.seed)
+        scene, missing = scene_of(every[0], stage.objects)
+        report_missing(every[0], scene, missing)
+        shown = sorted({placed.name for own in every for placed in scene_of(own, stage.objects)[0].objects})
         others = [name for name in stage.objects if name not in shown]
         chains = functools.partial(levels_of, data=data, method=settings.method, seed=stage.seed)
         stage.each(chains, shown, reads=(MESH, POINTS))
-        factors = {f"tolerance_{factor:g}": factor for factor in dict.fromkeys([1.0, *settings.factors])}
-        values = {name: repr(factor) for name, factor in factors.items()}
+        factors = dict.fromkeys([1.0, *settings.factors])
+        cases = {case.name: case for case in (Case(own, factor) for own in every for factor in factors)}
+        values = {name: repr(case) for name, case in cases.items()}
         own = [pattern.format(name) for name in shown for pattern in (MESH, POINTS)]
         learned_from = [pattern.format(name) for name in others for pattern in (MESH, CURVE)]
-        given = {"data": data, "made": stage.folder, "settings": settings, "shown": shown, "seed": stage.seed}
-        rows = [*stage.each(functools.partial(measure, **given), factors, [*own, LEVELS], values)]
+        learned_from += [CURVE.format(name) for name in shown if settings.random]  # a scene has not all that are shown
+        given = {"data": data, "made": stage.folder, "shown": shown, "seed": stage.seed}
+        rows = [*stage.each(functools.partial(measure, **given), cases, [*own, LEVELS], values)]
         network = functools.partial(measure_network, **given, others=others)
-        rows += stage.each(network, factors, [*own, *learned_from, LEVELS, PLAN], values)
-        stage.rows = KeptRows([row | {"group": settings.name} for row in stage.rows])
-        stage.rows += evaluation_rows(data, stage.objects, stage.seed, stage.map)
-        export(stage.folder, data, scene, settings)
+        rows += stage.each(network, cases, [*own, *learned_from, LEVELS, PLAN], values)
+        stage.rows = KeptRows([{"group": settings.name} | row for row in stage.rows])
+        if not settings.random:
+            stage.rows += evaluation_rows(data, stage.objects, stage.seed, stage.map)
+            export(stage.folder, data, scene, settings)
         found = summary(rows)
         stage.metrics(found)
     print(
-        f"scene: {workspace.dataset}, {settings.name}, {len(scene.objects)} objects, {len(scene.cameras)} frames: "
+        f"scene: {workspace.dataset}, {settings.name}, {len(shown)} objects, {len(scene.cameras)} frames: "
         f"{found['faces_ours']:.0f} faces per frame of {found['faces_full']:.0f}, "
         f"{found['saved_uniform_error']:.0%} fewer than uniform levels at equal error, "
         f"{found['held_ours']:.0%} of frames within the tolerance"

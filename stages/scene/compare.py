@@ -1,6 +1,7 @@
 """One scene at one tolerance: our plan, and those of other methods at the same error of the rendered frames."""
 
-from collections.abc import Callable, Mapping
+import time
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -14,11 +15,13 @@ from .budget import budget
 from .frames import Frames
 from .levels import Plan
 from .lod_chain import ERRORS, Level
+from .online import online
 from .place import Scene
 from .plan import cheapest
 from .storage import finest_levels, read_chains
 
 OURS, PLAIN = "ours", "plain"  # kinds of LOD chain: with the salient regions spared, and without
+MATCHED, ASKED = ("error", "displacement", "held"), "asked"  # see MethodPlan
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,6 +36,7 @@ class MethodPlan:
     plan: Plan
     seconds: float
     note: str = ""
+    planning: float | None = None  # processor seconds of planning, of planners that begin with nothing rendered
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,32 +76,26 @@ def worst_error(plan: Plan) -> float:
     return float(plan.errors.max())
 
 
-def compare(setup: SceneSetup, all_matches: bool = True) -> list[MethodPlan]:
-    """The plan of each method but the thesis's network, ours first.
-
-    all_matches: also plans that equal ours in other quantities, the full meshes, plans by the levels' own errors
-    without rendering, and plans under a face limit.
-    """
-    found = [_timed(OURS, "", lambda: _budget(setup, OURS)), _timed("ours_plain", "", lambda: _budget(setup, PLAIN))]
-    ours = found[0].plan
-    for method, by_size in (("uniform", False), ("uniform_size", True)):
-        found += _tuned(setup, method, _uniform(setup, by_size), ours, all_matches)
-    if all_matches:
-        found += [_timed("full", "", lambda: rivals.full(setup.frames)), *_unrendered(setup), *_limited(setup, ours)]
-    return found
-
-
-def compare_network(setup: SceneSetup, counts: np.ndarray, ours: Plan, all_matches: bool = True) -> list[MethodPlan]:
-    """The plans by the faces that the thesis's network predicts, counts (frames, objects), tuned by one common factor.
-
-    all_matches: also plans that equal ours in other quantities, and its own counts.
-    """
-    found = _tuned(setup, "network", _network(setup, counts), ours, all_matches)
-    return [*found, _timed("network", "asked", lambda: _network(setup, counts)(1.0))] if all_matches else found
-
-
 def _budget(setup, kind):
     return budget(setup.meshes, setup.scene, chains=setup.chains[kind], frames=setup.frames)
+
+
+def _plain(setup, ours):
+    return [_timed("ours_plain", "", lambda: _budget(setup, PLAIN))]
+
+
+def _full(setup, ours):
+    return [_timed("full", "", lambda: rivals.full(setup.frames))]
+
+
+def _online(setup, ours):
+    """Planned on frames of their own, so that they render all that they ask about; measured on those of the others."""
+    found = []
+    for method, rendered in (("online", True), ("online_unrendered", False)):
+        fresh = Frames(setup.scene, setup.meshes, setup.frames.full)
+        own = _planned(method, lambda fresh=fresh, rendered=rendered: online(fresh, setup.of(OURS), rendered))
+        found.append(replace(own, plan=Plan(own.plan.levels, own.plan.chains, setup.frames)))
+    return found
 
 
 def _uniform(setup, by_size):
@@ -121,18 +119,20 @@ def _limited(setup, ours):
     return [replace(_timed(name, "limit", make), note=f"limit of {limit:,} faces") for name, make in plans.items()]
 
 
-def _tuned(setup, method, plan_of, ours, all_matches):
-    found = [_timed(method, "error", lambda: rivals.tune(plan_of, mean_error, mean_error(ours)))]
-    if mean_error(found[0].plan) < mean_error(ours):
-        found = [replace(found[0], note="even its coarsest plan has less error than ours")]
-    if all_matches:
-        target = mean_displacement(ours)
-        found.append(_timed(method, "displacement", lambda: rivals.tune(plan_of, mean_displacement, target)))
+def _tuned(setup, method, plan_of, ours, matched):
+    found = []
+    for name, measure in (("error", mean_error), ("displacement", mean_displacement)):
+        if name in matched:
+            target = measure(ours)
+            own = _timed(method, name, lambda measure=measure, target=target: rivals.tune(plan_of, measure, target))
+            note = f"even its coarsest plan has less {name} than ours" if measure(own.plan) < target else ""
+            found.append(replace(own, note=note))
+    if "held" in matched:
         found.append(_timed(method, "held", lambda: rivals.tune_below(plan_of, worst_error, setup.scene.tolerance)))
     return found
 
 
-def _unrendered(setup):
+def _unrendered(setup, ours):
     """Plans by one error of the levels' own surfaces, without rendering: do these predict the errors of the frames?"""
     chains = setup.of(OURS)
     plans = []
@@ -152,8 +152,45 @@ def _by_surface(setup, item, chain, name):
     return cheapest(faces, errors, jumps, setup.scene.tolerance, setup.scene.hold)
 
 
+def _planned(method, make: Callable[[], Plan]) -> MethodPlan:
+    start = time.process_time()
+    with Stopwatch() as watch:
+        plan = make()
+    return MethodPlan(method, "", plan, watch.seconds, planning=time.process_time() - start)
+
+
 def _timed(method, matched, make: Callable[[], Plan]) -> MethodPlan:
     with Stopwatch() as watch:
         plan = make()
         _ = plan.errors  # rendered within the time
     return MethodPlan(method, matched, plan, watch.seconds)
+
+
+# Plans beside ours and uniform levels: without salience, all faces, by the levels' own errors without rendering, under
+# a face limit, and by planners that see no frame ahead.
+OTHERS = {"plain": _plain, "full": _full, "unrendered": _unrendered, "limited": _limited, "online": _online}
+
+
+def compare(
+    setup: SceneSetup, matched: Sequence[str] = MATCHED, others: Sequence[str] = tuple(OTHERS)
+) -> list[MethodPlan]:
+    """The plan of each method but the thesis's network, ours first.
+
+    matched: in what the uniform levels are made equal to ours. others: names of OTHERS, further plans.
+    """
+    found = [_planned(OURS, lambda: _budget(setup, OURS))]
+    ours = found[0].plan
+    for method, by_size in (("uniform", False), ("uniform_size", True)):
+        found += _tuned(setup, method, _uniform(setup, by_size), ours, matched)
+    return [*found, *(each for name in others for each in OTHERS[name](setup, ours))]
+
+
+def compare_network(
+    setup: SceneSetup, counts: np.ndarray, ours: Plan, matched: Sequence[str] = (*MATCHED, ASKED)
+) -> list[MethodPlan]:
+    """The plans by the faces that the thesis's network predicts, counts (frames, objects), tuned by one common factor.
+
+    matched: in what it is made equal to ours; ASKED: its own counts.
+    """
+    found = _tuned(setup, "network", _network(setup, counts), ours, matched)
+    return [*found, _timed("network", ASKED, lambda: _network(setup, counts)(1.0))] if ASKED in matched else found

@@ -7,7 +7,7 @@ other: a part that has shrunk shows in the first, one that sticks out in the sec
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 
 import numpy as np
 
@@ -49,7 +49,7 @@ class Frames:
         self._renderings: dict[tuple, Rendering] = {}
         self._displacements: dict[tuple, np.ndarray] = {}
         self._colors: dict[tuple, np.ndarray] = {}
-        self._checked = lru_cache(RECENT * len(scene.cameras))(self._check)
+        self._checks: dict[tuple, FrameError] = {}
 
     @cached_property
     def distance(self) -> np.ndarray:
@@ -151,7 +151,11 @@ class Frames:
 
         The latest of each frame are remembered: two plans of a search often show a frame at the same levels.
         """
-        return self._checked(frame, tuple(levels))
+        key = frame, tuple(levels)
+        self._checks[key] = found = self._checks.pop(key, None) or self._check(*key)
+        if len(self._checks) > RECENT * len(self.scene.cameras):
+            del self._checks[next(iter(self._checks))]
+        return found
 
     def _check(self, frame, levels):
         self.measure([(frame, item, self.full[item], level) for item, level in enumerate(levels)])

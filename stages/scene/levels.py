@@ -40,8 +40,12 @@ class Plan:
 
     @cached_property
     def jumps(self) -> list[tuple[int, int, float]]:
-        """[(frame, object, jump)]: how far the picture of an object jumps where its level switches."""
-        where = np.argwhere(np.diff(self.levels, axis=0) != 0)
+        """[(frame, object, jump)]: how far the picture of an object jumps where its level switches in plain view.
+
+        Where no pixel shows it before or after, nothing jumps: its box reaches into the view before it does.
+        """
+        shown = self.frames.scale > 0
+        where = np.argwhere((np.diff(self.levels, axis=0) != 0) & shown[1:] & shown[:-1])
         return [(int(f) + 1, int(o), self._jump(f + 1, o)) for f, o in where]
 
     def _jump(self, frame, item):

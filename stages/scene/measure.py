@@ -1,9 +1,10 @@
-"""The jobs of one tolerance: read the levels, compare the methods to choose them, return the rows.
+"""The jobs of one scene and tolerance: read the levels, compare the methods to choose them, return the rows.
 
 The network is a job of its own: it alone depends on objects that are not in the scene.
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,7 @@ from stages.kit.files import write_arrays, write_table
 from stages.kit.run import Rows
 from stages.salient_points import read_strong_points
 
-from .compare import OURS, MethodPlan, SceneSetup, compare, compare_network, load_setup
+from .compare import ASKED, MATCHED, OTHERS, OURS, MethodPlan, SceneSetup, compare, compare_network, load_setup
 from .counts.evaluate import COMBINED
 from .levels import Plan
 from .network import fit_network, predicted_counts
@@ -21,7 +22,7 @@ from .pictures import displacement_picture, shaded
 from .read import POINTS, read_object, scene_of
 from .rows import frame_rows, object_rows, plan_rows, saved_rows
 from .schema import Params
-from .storage import read_plan, write_plan
+from .storage import read_plans, write_plans
 
 SHOWN = ("full", "uniform", OURS)  # methods of the pictures for the report
 FRAMED = ("full", "uniform", "uniform_size", "network", OURS, "ours_plain")  # with rows of every frame
@@ -29,58 +30,92 @@ MAIN = ("", "error")  # plans of their own, and those at the same mean error
 TABLE = "plan.csv"
 
 
-def measure(
-    factor: float, folder: Path, data: Path, made: Path, settings: Params, shown: Sequence[str], seed: int
-) -> Rows:
-    """Rows of the scene at its tolerance times a factor, by all methods but the network; also writes our plan.
+@dataclass(frozen=True)
+class Case:
+    """A scene at its tolerance times a factor."""
 
-    made: what the run has written so far, with the levels. shown: the names of the scene's objects. At the factor 1
-    also writes the table of the plan and pictures.
+    settings: Params
+    factor: float = 1.0
+
+    @property
+    def name(self) -> str:
+        """That of its files and of its item."""
+        return f"{self.settings.name}_{self.factor:g}"
+
+    @property
+    def matched(self) -> tuple[str, ...]:
+        """In what rivals are made equal to ours."""
+        return ("displacement", "error") if self.settings.random else MATCHED if self.factor == 1 else ("error",)
+
+    @property
+    def others(self) -> tuple[str, ...]:
+        """Names of compare.OTHERS: what is compared besides."""
+        return ("full", "online") if self.settings.random else tuple(OTHERS) if self.factor == 1 else ("plain",)
+
+    @property
+    def in_detail(self) -> bool:
+        """Whether its frames and objects have rows, and its plan a table and pictures."""
+        return self.factor == 1 and not self.settings.random
+
+
+def measure(case: Case, folder: Path, data: Path, made: Path, shown: Sequence[str], seed: int) -> Rows:
+    """Rows of a case by all methods but the network; also writes the levels of each plan.
+
+    made: what the run has written so far, with the levels. shown: the names of the objects with levels. In detail it
+    also writes the table of our plan and pictures.
     """
-    setup, saliency = _setup(factor, data, made, settings, shown)
-    found = compare(setup, all_matches=factor == 1)
-    write_plan(folder, factor, found[0].plan.levels)
-    if factor == 1:
+    setup, saliency = _setup(case, data, made, shown)
+    found = compare(setup, case.matched, case.others)
+    write_plans(folder, case.name, {plan_name(each): each.plan.levels for each in found})
+    if case.in_detail:
         write_table(folder / TABLE, pd.DataFrame(plan_table(setup, found[0].plan)))
         write_arrays(folder / "pictures.npz", **pictures(setup, _framed(found)))
-    return _rows(setup, found[0], found, saliency, factor, seed)
+    return _rows(setup, found[0], found, saliency, case, seed)
+
+
+def plan_name(found: MethodPlan) -> str:
+    """The key of a plan among those of its case: method, or method.matched."""
+    return f"{found.method}.{found.matched}".rstrip(".")
 
 
 def measure_network(
-    factor: float, folder: Path, data: Path, made: Path, settings: Params, shown: Sequence[str], others: Sequence[str],
-    seed: int,
-) -> Rows:  # fmt: skip
+    case: Case, folder: Path, data: Path, made: Path, shown: Sequence[str], others: Sequence[str], seed: int
+) -> Rows:
     """Rows of the thesis's network, as `measure` has them of the other methods; one with the reason if there is none.
 
-    others: the objects outside the scene, from whose curves it learns.
+    others: the objects without levels; from the curves of all that are not in the scene it learns.
     """
-    setup, saliency = _setup(factor, data, made, settings, shown)
+    setup, saliency = _setup(case, data, made, shown)
+    others = sorted({*shown, *others} - {placed.name for placed in setup.scene.objects})
     try:
         model = _model(setup.scene, data, others, seed)
     except ValueError as error:
-        row = {"method": "network", "kind": settings.kind, "tolerance": setup.scene.tolerance, "matched": "error"}
+        row = {"method": "network", "kind": setup.scene.kind, "tolerance": setup.scene.tolerance, "matched": "error"}
         row |= {"frame": "all", "metric": "faces", "value": None, "note": str(error)}
-        return [row | {"factor": factor}]
-    ours = MethodPlan(OURS, "", Plan(read_plan(made, factor), setup.of(OURS), setup.frames), 0.0)
-    found = compare_network(setup, _counts(setup, data, model), ours.plan, all_matches=factor == 1)
-    return _rows(setup, ours, found, saliency, factor, seed)
+        return [row | {"factor": case.factor, "group": case.settings.name}]
+    ours = MethodPlan(OURS, "", Plan(read_plans(made, case.name)[OURS], setup.of(OURS), setup.frames), 0.0)
+    matched = case.matched[:1] if case.settings.random else (*case.matched, *([ASKED] if case.in_detail else []))
+    found = compare_network(setup, _counts(setup, data, model), ours.plan, matched)
+    return _rows(setup, ours, found, saliency, case, seed)
 
 
-def _setup(factor, data, made, settings, shown):
-    """(SceneSetup, dict name -> saliency (n,) or None) of the scene at its tolerance times a factor."""
-    scene, _ = scene_of(settings, shown, factor)
-    read = {name: read_object(data, name, settings.method) for name in shown}
+def _setup(case, data, made, shown):
+    """(SceneSetup, dict name -> saliency (n,) or None) of a case."""
+    scene, _ = scene_of(case.settings, shown, case.factor)
+    names = sorted({placed.name for placed in scene.objects})
+    read = {name: read_object(data, name, case.settings.method) for name in names}
     setup = load_setup(scene, {name: mesh for name, (mesh, *_) in read.items()}, made / "levels")
     return setup, {name: values for name, (*_, values) in read.items()}
 
 
-def _rows(setup, ours, found, saliency, factor, seed):
-    """All rows of the plans `found`; those of frames and objects only at the scene's own tolerance."""
-    framed = _framed(found) if factor == 1 else []
-    rows = [row for each in found for row in plan_rows(setup, each, saliency, factor == 1 and each.matched in MAIN)]
+def _rows(setup, ours, found, saliency, case, seed):
+    """All rows of the plans `found`; those of frames and objects only in detail."""
+    framed = _framed(found) if case.in_detail else []
+    shown = [case.in_detail and each.matched in MAIN for each in found]  # 1 - SSIM takes a fourth of the time
+    rows = [row for each, own in zip(found, shown, strict=True) for row in plan_rows(setup, each, saliency, own)]
     rows += saved_rows(setup, ours, found, seed)
     rows += [row for each in framed for row in (*frame_rows(setup, each), *object_rows(setup, each))]
-    return [row | {"factor": factor} for row in rows]
+    return [row | {"factor": case.factor, "group": case.settings.name} for row in rows]
 
 
 def _framed(found):
@@ -120,8 +155,8 @@ def pictures(setup: SceneSetup, found: Sequence[MethodPlan]) -> dict[str, np.nda
     """Arrays: frames (k,), methods (m,), rgb (k, m, h, w, 3) u1, displacement (k, m, h, w) f2 in pixels."""
     plans = {each.method: each.plan for each in found}
     methods = [method for method in SHOWN if method in plans]
-    size = setup.frames.scale.mean(axis=1)
-    frames = np.unique([0, int(np.argsort(size)[len(size) // 2]), int(size.argmax())])  # far, middle, and nearest
+    order = np.argsort(setup.frames.scale.mean(axis=1), kind="stable")  # far frames first, of few pixels
+    frames = np.unique([order[len(order) // 3], order[2 * len(order) // 3], order[-1]])
     rows = [(frame, [plans[method].shown(frame) for method in methods]) for frame in frames]
     return {
         "frames": frames,

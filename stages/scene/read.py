@@ -8,17 +8,19 @@ from typing import Any
 import numpy as np
 
 from stages.kit import Mesh
-from stages.kit.files import read_mesh
+from stages.kit.files import read_mesh, read_table
 from stages.lod.cell import keep_rule
 from stages.lod.inputs import ObjectInputs
 from stages.lod.variant import variant
 from stages.salient_points import read_saliency, read_strong_points
 
 from .camera import fly
-from .place import Placed, Scene
+from .drawn import draw_scene
+from .place import Placed, Scene, bounds
 from .schema import Params
 
 MESH, POINTS = "meshes/{}.npz", "salient_points/{}.npz"  # of an object, below data/SET
+SIZES = "meshes/manifest.csv"  # in metres, of all objects
 
 
 def scene_of(settings: Params, names: Sequence[str], factor: float = 1.0) -> tuple[Scene, list[str]]:
@@ -46,6 +48,16 @@ def _place(item):
         raise ValueError(f"{item.name} stands at {item.position}: give x, y, z in metres")
     x, y, z = item.position
     return x, y, z
+
+
+def scenes_of(settings: Params, names: Sequence[str], data: Path, seed: int) -> list[Params]:
+    """The settings of each scene: the one that they are of, or as many as they let be drawn at random from `names`."""
+    if not settings.random:
+        return [settings]
+    boxes = {name: bounds(read_mesh(data / MESH.format(name))) for name in names}
+    table = read_table(data / SIZES, {"object": str})
+    sizes = dict(zip(table["object"], table["size"].astype(float), strict=True))
+    return [draw_scene(settings, number, boxes, sizes, seed) for number in range(settings.random)]
 
 
 def report_missing(settings: Params, scene: Scene, missing: Sequence[str]) -> None:

@@ -38,8 +38,11 @@ def plan_rows(
         "displacement_mean": _or_zero(np.mean, spread), "displacement_95": _or_zero(np.quantile, spread, 0.95),
         "displacement_99.9": _or_zero(np.quantile, spread, 0.999), "displacement_max": _or_zero(np.max, spread),
         "salient_displacement": salient_displacement(setup, plan, saliency),
-        "switches": len(jumps), "step_worst": max(jumps, default=0.0),
+        "switches": len(jumps), "switches_per_object": len(jumps) / len(setup.scene.objects),
+        "step_worst": max(jumps, default=0.0),
     }  # fmt: skip
+    if found.planning is not None:
+        values["planning_ms"] = 1000 * found.planning / len(plan.levels)  # processor time, of a frame
     if pictures:
         frames = range(len(plan.levels))
         values["ssim_error"] = float(
@@ -117,18 +120,21 @@ def salient_displacement(setup: SceneSetup, plan: Plan, saliency: Mapping[str, n
 
 
 def summary(rows: Sequence[dict]) -> dict[str, float]:
-    """dict for the gate: faces, errors and frames within the tolerance of the main methods at the scene's tolerance."""
-    rows = [row for row in rows if row.get("factor") == 1.0 and row["frame"] == "all"]
-    found = {}
+    """dict for the gate: faces, errors and frames within the tolerance of the main methods at the scene's tolerance.
+
+    Of several scenes the mean.
+    """
+    rows = [row for row in rows if row.get("factor") == 1.0 and row["frame"] == "all" and row["value"] is not None]
+    found: dict[str, list[float]] = {}
     for row in rows:
         method, matched, metric = row["method"], row["matched"], row["metric"]
         if metric in ("faces", "error", "held") and matched in ("", "error") and "unrendered" not in method:
-            found[f"{metric}_{method}"] = row["value"]
+            found.setdefault(f"{metric}_{method}", []).append(row["value"])
         if metric.startswith("saved_"):
-            found[f"{metric}_{matched}"] = row["value"]
+            found.setdefault(f"{metric}_{matched}", []).append(row["value"])
         if (method, matched) == ("ours", "") and metric in OF_OURS:
-            found[metric] = row["value"]
-    return {name: round(float(value), 6) for name, value in found.items() if value is not None}
+            found.setdefault(metric, []).append(row["value"])
+    return {name: round(float(np.mean(values)), 6) for name, values in found.items()}
 
 
 def _row(setup, found, frame, metric, value):

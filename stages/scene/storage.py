@@ -40,11 +40,11 @@ def finest_levels(meshes: Mapping[str, Mesh]) -> dict[str, Level]:
     return {name: finest(mesh) for name, mesh in meshes.items()}
 
 
-def write_plan(folder: Path, factor: float, levels: np.ndarray) -> None:
-    """Writes our levels (frames, objects) at the scene's tolerance times a factor."""
-    write_arrays(folder / "plans" / f"tolerance_{factor:g}.npz", levels=levels)
+def write_plans(folder: Path, name: str, levels: Mapping[str, np.ndarray]) -> None:
+    """Writes the levels (frames, objects) of plans for one case; levels: dict method.matched -> levels."""
+    write_arrays(folder / f"plans/{name}.npz", **levels)
 
 
-def read_plan(folder: Path, factor: float) -> np.ndarray:
-    """What write_plan wrote."""
-    return read_arrays(folder / "plans" / f"tolerance_{factor:g}.npz")["levels"]
+def read_plans(folder: Path, name: str) -> dict[str, np.ndarray]:
+    """What write_plans wrote."""
+    return read_arrays(folder / f"plans/{name}.npz")

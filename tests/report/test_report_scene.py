@@ -12,7 +12,7 @@ from stages.report.scene.rows import left_of
 from stages.report.target import on_target
 from stages.report.topics import build_one
 
-VALUES = {"full": 9000, "uniform": 1600, "uniform_size": 1250, "network": 1500, "ours": 1000}
+VALUES = {"full": 9000, "uniform": 1600, "uniform_size": 1250, "network": 1500, "ours": 1000, "online": 1040}
 
 
 def scene(name, saved=0.4, held=1.0, **changes):

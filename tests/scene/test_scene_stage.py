@@ -16,16 +16,18 @@ from stages.kit.rows import read_rows, write_rows
 from stages.scene import __main__
 from stages.scene import measure as stage_measure
 from stages.scene.__main__ import levels_of
+from stages.scene.compare import MethodPlan, SceneSetup
 from stages.scene.export import export
-from stages.scene.measure import measure, measure_network
+from stages.scene.measure import Case, measure, measure_network, pictures
 from stages.scene.read import report_missing, scene_of
+from stages.scene.rivals import full
 from stages.scene.rows import summary
 from stages.scene.schema import COLUMNS, Params
 
 pytestmark = pytest.mark.slow
 
 SCENES = sorted((Path(__file__).parents[2] / "conf/scene").glob("*.yaml"))
-COMMON = {"limit": 0, "hold": 2, "method": "enhanced-soft", "factors": [1.0], "msft_lod": True}
+COMMON = {"limit": 0, "hold": 2, "method": "enhanced-soft", "factors": [1.0], "msft_lod": True, "random": 0}
 
 
 def settings_of(path, **changes):
@@ -61,8 +63,9 @@ def run_in(settings, root):
     def work(folder, factors, others=("third",)):
         rows = [row for name in ("one", "two") for row in levels_of(name, folder, root, settings.method, 0)]
         for factor in factors:
-            rows += measure(factor, folder, root, folder, settings, ["one", "two"], 0)
-            rows += measure_network(factor, folder, root, folder, settings, ["one", "two"], others, 0)
+            case = Case(settings, factor)
+            rows += measure(case, folder, root, folder, ["one", "two"], 0)
+            rows += measure_network(case, folder, root, folder, ["one", "two"], others, 0)
         export(folder, root, scene_of(settings, ["one", "two"])[0], settings)
         return rows
 
@@ -77,6 +80,9 @@ def run(run_in, root):
 @pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
 def test_every_scene_is_sound(path):
     settings = settings_of(path)
+    if settings.random:
+        assert not settings.objects and not settings.camera and settings.name == path.stem
+        return
     names = {item.name for item in settings.objects}
     scene, missing = scene_of(settings, names)
     assert settings.name == path.stem and not missing
@@ -132,6 +138,22 @@ def test_ours_holds_every_frame_with_fewer_faces_than_all(run):
     assert value(rows, "ours", "error_worst") <= 1.0 and value(rows, "full", "error") == 0
     assert value(rows, "ours", "step_worst") <= 1.0
     assert value(rows, "ours", "faces", factor=2.0) <= value(rows, "ours", "faces") < value(rows, "full", "faces") / 2
+
+
+def test_planners_without_foresight_are_measured_beside_ours(run):
+    rows = run[1]
+    for method in ("online", "online_unrendered"):
+        assert 0 < value(rows, method, "faces") < value(rows, "full", "faces")
+        assert value(rows, method, "planning_ms") >= 0
+    assert value(rows, "ours", "planning_ms") > 0
+
+
+def test_no_picture_is_of_a_frame_of_few_pixels(settings, meshes, chains, frames_of):
+    scene = scene_of(settings, ["one", "two"])[0]
+    frames = frames_of(scene)
+    setup = SceneSetup(scene, meshes, frames, {})
+    shown = pictures(setup, [MethodPlan("full", "", full(frames), 0.0)])["frames"]
+    assert 0 not in shown and frames.scale.mean(axis=1).argmax() in shown  # the camera comes near
 
 
 def test_rivals_have_no_smaller_error_than_ours_or_say_so(run):
@@ -223,6 +245,24 @@ def test_an_object_outside_the_scene_runs_the_network_again_and_nothing_else(wor
     write_curve(workspace.data, "fourth")
     __main__.run(workspace)
     assert ran == ["compare_network"]
+
+
+def test_random_scenes_are_measured_one_by_one(settings, workspace, make_workspace):
+    changes = {"name": "random", "random": 2, "objects": [], "camera": [], "factors": []}
+    table = pd.DataFrame({"object": ["one", "two", "third"], "size": [0.1, 0.15, 0.2]})
+    write_table(workspace.data / "meshes/manifest.csv", table)
+    random = make_workspace({"scene": dataclasses.asdict(dataclasses.replace(settings, **changes))})
+    __main__.run(random)
+    rows = read_rows(random.measurements / "scene.csv.gz")
+    faces = rows[(rows["metric"] == "faces") & (rows["frame"] == "all")]
+    wide = faces.pivot(index="group", columns=["method", "matched"], values="value")
+    assert wide.index.tolist() == ["random_00", "random_01"]
+    assert set(wide["uniform"]) == {"displacement", "error"} and not wide[["ours", "uniform", "online"]].isna().any(
+        axis=None
+    )
+    assert (wide["ours"].squeeze() < wide["full"].squeeze()).all()
+    assert sorted(path.stem for path in (random.data / "scene/plans").iterdir()) == ["random_00_1", "random_01_1"]
+    assert not (random.data / "scene/export").exists()
 
 
 def test_the_benchmark_keeps_what_is_about_all_frames_of_a_scene(workspace, monkeypatch):

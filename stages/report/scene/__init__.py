@@ -1,8 +1,13 @@
 """How many faces each object of a scene needs (T3.1.3)."""
 
-from . import counts, frames, scene, scenes
+from . import claims, counts, frames, needs, random, scene, scenes
 
-TABLES = {"face_counts": counts.build, "scene": scene.build, "scenes": scenes.build}
-FIGURES = {"face_counts": counts.figure, "scene": frames.build}
+TABLES = {
+    "random_scenes": random.build, "scenes": scenes.build, "scene": scene.build, "faces_by_task": needs.build,
+    "face_counts": counts.build,
+}  # fmt: skip
+FIGURES = {
+    "random_scenes": random.figure, "scene": frames.build, "faces_by_task": needs.figure, "face_counts": counts.figure,
+}  # fmt: skip
 CHARTS = {"scene": scene.chart}
-CLAIMS = []
+CLAIMS = claims.CLAIMS

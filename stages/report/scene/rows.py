@@ -17,13 +17,16 @@ NAMES = {
     "ours_plain": "ours, salience left out",
     "ours": "ours",
     "equal": "ours, the limit shared equally",
+    "online": "ours, no frame seen ahead",
+    "online_unrendered": "the same, nothing rendered",
 }
 COLOURS = {
     "full": "#222222", "uniform": "#E69F00", "uniform_size": "#D55E00", "network": "#CC79A7", "ours_plain": "#56B4E9",
-    "ours": "#0072B2",
+    "ours": "#0072B2", "online": "#009E73",
 }  # fmt: skip
 UNITS = {"pixels": "pixels", "ssim": "1 − SSIM"}
 OURS = "ours"
+RANDOM = "household_scenes"  # the set with scenes drawn at random
 UNIFORM = ("uniform", "uniform_size")
 
 

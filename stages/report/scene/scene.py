@@ -15,6 +15,7 @@ COLUMNS = {
     "faces": "faces a frame", "error": "frame error, mean", "error_worst": "worst frame", "held": "frames within, %",
     "displacement_mean": "displacement, mean px", "displacement_99.9": "99.9 %, px",
     "salient_displacement": "where one looks, px", "ssim_error": "1 − SSIM of the frames", "step_worst": "worst jump",
+    "planning_ms": "planning, ms a frame",
 }  # fmt: skip
 SAID = [("uniform", "error"), ("uniform_size", "error"), ("uniform", "displacement"), ("uniform_size", "displacement"),
         ("uniform", "held")]  # fmt: skip

@@ -11,7 +11,7 @@ from stages.report.target import on_target
 from .rows import NAMES, OURS, UNIFORM, UNITS, amount, left_of, savings
 
 WAYS = [("full", ""), ("uniform", "error"), ("uniform_size", "error"), ("network", "error"), (OURS, ""),
-        (OURS, "limit"), ("equal", "limit")]  # fmt: skip
+        ("online", ""), (OURS, "limit"), ("equal", "limit")]  # fmt: skip
 SCENE, WAY = ["scene", "kind", "tolerance"], ["method", "matched"]
 VALUES = ["faces", "error", "error_worst", "held", "step_worst"]
 SAVED = {"value": "saved", "low": "saved_low", "high": "saved_high"}

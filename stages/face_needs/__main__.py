@@ -1,0 +1,55 @@
+"""Finds the fewest faces with which each object is seen, felt and recognised as the full mesh is.
+
+Reads data/SET/meshes, data/SET/salient_points and the levels of data/SET/scene. Writes data/SET/face_needs/NAME.npz
+(what touches read on each level) and reports/measurements/SET/face_needs.csv.gz: a row an object, task and condition.
+Seen: the picture is displaced by no more than a tolerance, from all round. Felt: imprints at the same places differ by
+no more than a share of full scale. Recognised: touches of the real object are known by a model learned from the
+simplified one, within some points of accuracy.
+"""
+
+import functools
+
+import numpy as np
+
+from stages.kit.command import workspace_of_arguments
+from stages.kit.run import Rows, StageRun
+from stages.kit.workspace import Workspace
+
+from .one_object import process
+from .recognised import recognise
+from .schema import COLUMNS, Params
+
+READS = ("meshes/{}.npz", "meshes/manifest.csv", "salient_points/{}.npz", "scene/levels/{}")
+
+
+def run(workspace: Workspace) -> None:
+    """Runs the stage on the data set of a workspace."""
+    settings = workspace.settings(Params)
+    with StageRun(workspace, "face_needs", COLUMNS, inputs=("meshes", "salient_points", "scene")) as stage:
+        names = [name for name in stage.objects if (workspace.data / "scene/levels" / name).is_dir()]
+        stage.each(functools.partial(process, data=workspace.data, settings=settings), names, READS)
+        work = functools.partial(recognise, made=stage.folder, names=names, settings=settings, seed=stage.seed)
+        stage.each(work, ["all objects"], ["face_needs"])
+        found = summary(stage.rows)
+        stage.metrics(found)
+    said = ", ".join(f"{name} {value:.0f}" for name, value in found.items())
+    print(f"face_needs: {workspace.dataset}, {len(names)} objects; median faces: {said}")
+
+
+def summary(rows: Rows) -> dict[str, float]:
+    """{task, or task_condition: the median face count over the objects}."""
+    found: dict[str, list[float]] = {}
+    for row in rows:
+        if row["metric"] == "faces":
+            name = row["task"] if row["condition"] is None else f"{row['task']}_{row['condition']:g}"
+            found.setdefault(name, []).append(row["value"])
+    return {name: float(np.median(values)) for name, values in found.items()}
+
+
+def main() -> None:
+    """Runs the stage on the data set that the command line names."""
+    run(workspace_of_arguments(__doc__, "face_needs"))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,76 @@
+"""What one object's levels look like from all round, and what a touch reads on them."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from stages.classification import features
+from stages.imprints import Surface, press_at, sensor_axes, sensor_normals
+from stages.kit import Mesh
+from stages.kit.files import read_mesh, read_table, write_arrays
+from stages.kit.run import Rows
+from stages.salient_points import read_points
+from stages.scene import Camera, Frames, Level, Placed, Scene
+from stages.scene.compare import OURS
+from stages.scene.lod_chain import finest
+from stages.scene.storage import read_chain
+
+from .need import coarsest
+from .schema import Params
+
+RISE = 25.0  # degrees above the horizon from which an object is seen
+
+
+def process(name: str, folder: Path, data: Path, settings: Params) -> Rows:
+    """Rows of the faces that an object needs to be seen and felt; writes NAME.npz, what its touches read on each level.
+
+    Arrays: faces (levels,), finest first; features (levels, k, 41) of the imprints at the same k places.
+    """
+    mesh = read_mesh(data / f"meshes/{name}.npz")
+    chain = read_chain(data / f"scene/levels/{name}", OURS, finest(mesh))
+    size = read_table(data / "meshes/manifest.csv", {"object": str}).set_index("object")["size"].to_dict()[name]
+    faces = np.array([level.faces for level in chain])
+    rows = [row(name, "full", None, faces[0])]
+    for distance in settings.distances:
+        errors = seen(mesh, chain, size, distance, settings)
+        rows.append(row(name, "seen", distance, faces[coarsest(errors <= settings.tolerance)]))
+    images = felt(mesh, chain, read_points(data / f"salient_points/{name}.npz")[settings.detector], settings)
+    off = differences(images)
+    rows += [row(name, "felt", reading, faces[coarsest(off <= reading)]) for reading in settings.readings]
+    write_arrays(folder / f"{name}.npz", faces=faces, features=np.stack([features(own) for own in images]))
+    return rows
+
+
+def row(name: str | None, task: str, condition: float | None, faces: float) -> dict:
+    """A row of the faces that an object needs; name: None for all together."""
+    return {"item": name, "task": task, "condition": condition, "metric": "faces", "value": int(faces)}
+
+
+def seen(mesh: Mesh, chain: Sequence[Level], size: float, distance: float, settings: Params) -> np.ndarray:
+    """(levels,) largest error on the screen, in pixels, of an object `size` metres long over views all round."""
+    azimuths = np.arange(settings.views) * 2 * np.pi / settings.views
+    rise = np.radians(RISE)
+    target = (0.0, 0.0, size * float(np.ptp(mesh.vertices[:, 2]) / np.ptp(mesh.vertices, axis=0).max()) / 2)
+    along = np.stack([np.cos(azimuths) * np.cos(rise), np.sin(azimuths) * np.cos(rise),
+                      np.full(len(azimuths), np.sin(rise))], axis=1)  # fmt: skip
+    screen = settings.screen[0], settings.screen[1]
+    cameras = tuple(Camera(tuple(target + distance * way), target, settings.angle, screen) for way in along)
+    scene = Scene((Placed("object", (0.0, 0.0, 0.0), 0.0, size),), cameras, settings.tolerance)
+    frames = Frames(scene, {"object": mesh}, [chain[0]])
+    every = range(len(cameras))
+    frames.measure((frame, 0, chain[0], level) for level in chain for frame in every)
+    return np.array([max(frames.between(frame, 0, chain[0], level) for frame in every) for level in chain])
+
+
+def felt(mesh: Mesh, chain: Sequence[Level], places: np.ndarray, settings: Params) -> np.ndarray:
+    """(levels, k, rows, columns) f4: the imprints on each level, the array held as at places (k,) of the full mesh."""
+    places = places[: settings.touches]
+    centres, axes = mesh.vertices[places], sensor_axes(sensor_normals(mesh, places))
+    cells = settings.cells[0], settings.cells[1]
+    return np.stack([press_at(Surface(level.mesh), centres, axes, cells, settings.pitch) for level in chain])
+
+
+def differences(images: np.ndarray) -> np.ndarray:
+    """(levels,) root mean square difference of imprints (levels, k, rows, columns) from those of the first level."""
+    return np.sqrt(((images - images[0]).astype(np.float64) ** 2).mean(axis=(1, 2, 3)))

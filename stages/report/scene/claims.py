@@ -1,0 +1,54 @@
+"""Claims on scenes drawn at random, and on what an object needs by task; the unit is the scene, or the object."""
+
+from functools import partial
+
+import pandas as pd
+
+from stages.report.claims import Claim
+from stages.report.differences import side, statistic
+from stages.report.results import Results
+
+from .needs import STAGE, TASKS
+from .random import ALLOWED
+from .rows import NAMES, OURS, RANDOM
+
+FACES = "% of the faces"
+EQUAL = {"displacement": "at an equal mean displacement", "error": "at an equal error of each frame's worst object"}
+PHRASES = {
+    ("over", "group"): "scenes", ("metric", "faces"): "faces", ("frame", "all"): "",
+    **{("method", name): words for name, words in NAMES.items()},
+    **{("matched", name): words for name, words in EQUAL.items()},
+    **{("task", name): "" for name in TASKS},
+    **{("condition", metres): f"seen from {metres:g} m" for metres in (0.5, 1.0, 2.0)},
+    ("condition", 0.05): "felt within 5 % of full scale", ("condition", 0.02): "recognised within 2 points",
+}  # fmt: skip
+
+
+@statistic("faces_saved")
+def faces_saved(results: Results, claim: Claim) -> pd.Series:
+    """The share of the second side's faces that the first side does without."""
+    return 1 - side(results, claim, claim.first, claim.second) / side(results, claim, claim.other, claim.first)
+
+
+claim = partial(Claim, section="ours", statistic="faces_saved", unit=FACES, phrases=PHRASES)
+planned = partial(claim, stage="scene", dataset=RANDOM, over=("group",), where={"metric": "faces", "frame": "all"})
+needed = partial(claim, stage=STAGE, over=("item",), where={"metric": "faces"}, statistic="difference", relative=True,
+                 unit="% of the mean of both")  # fmt: skip
+SEEN = {"task": "seen", "condition": 1.0}
+FELT = {"task": "felt", "condition": 0.05}
+KNOWN = {"task": "recognised", "condition": 0.02}
+CLAIMS = [
+    *(
+        planned(key=f"saves_{rival}_{matched}", first={"method": OURS},
+                second={"method": rival, "matched": matched},
+                sentence=f"Ours needs fewer faces than {NAMES[rival]} {words}.")
+        for matched, words in EQUAL.items()
+        for rival in ("uniform", "uniform_size")
+    ),
+    planned(key="online_faces", first={"method": "online"}, second={"method": OURS}, margin=ALLOWED,
+            sentence=f"A planner that sees no frame ahead needs no more than {ALLOWED:g} % more faces."),
+    needed(key="felt_over_seen", first=FELT, second=SEEN,
+           sentence="To be felt as the full mesh is, an object needs more faces than to be seen from one metre."),
+    needed(key="recognised_under_felt", first=FELT, second=KNOWN,
+           sentence="To be recognised by touch, an object needs fewer faces than to be felt as the full mesh is."),
+]  # fmt: skip

@@ -1,0 +1,149 @@
+"""Scenes drawn at random: what ours saves at an equal displacement, and what knowing the path is worth."""
+
+import pandas as pd
+from matplotlib.axes import Axes
+
+from stages.kit.stats import interval
+from stages.report.grid import records
+from stages.report.items import Figure, Table
+from stages.report.markdown import number, with_interval
+from stages.report.results import NotRun, Results, some
+from stages.report.style import GREY, INK, plt
+
+from .rows import COLOURS, NAMES, OURS, RANDOM, UNITS, amount
+
+PLANS = [
+    ("full", ""), ("uniform", "displacement"), ("uniform_size", "displacement"), ("network", "displacement"),
+    (OURS, ""), ("online", ""), ("online_unrendered", ""), ("uniform", "error"), ("uniform_size", "error"),
+]  # fmt: skip
+EQUAL = {"": "", "displacement": "mean displacement", "error": "worst object's error"}
+SHOWN = {"displacement_mean": ("displacement, px", 1, 2), "error": ("frame error, mean", 1, 2),
+         "held": ("frames within, %", 100, 0), "switches_per_object": ("switches an object", 1, 1)}  # fmt: skip
+
+
+def build(results: Results) -> Table:
+    """A line for each plan: means over the scenes, with intervals over the scenes."""
+    wide, first = plans(results)
+    times = _times(results)
+    lines, frame = [], []
+    for plan in [plan for plan in PLANS if plan in _keys(wide)]:
+        own = wide.xs(plan, level=["method", "matched"])
+        saved = 100 * saving(wide, plan)
+        found = {"method": plan[0], "matched": plan[1], "scenes": len(own), "faces": own["faces"].mean()}
+        found |= dict(zip(("saved", "saved_low", "saved_high"), interval(saved / 100), strict=True))
+        found |= {name: own[name].mean() for name in SHOWN} | {"step_worst": own["step_worst"].median()}
+        found |= {"planning_ms": own["planning_ms"].median()}
+        found |= dict(zip(("drawing", "drawing_low", "drawing_high"), times.get(plan, (None,) * 3), strict=True))
+        frame.append(found)
+        line = {"levels chosen by": NAMES[plan[0]], "equal to ours in": EQUAL[plan[1]], "faces a frame": found["faces"]}
+        line["faces that ours saves, %"] = "–" if plan[0] == OURS else with_interval(*interval(saved), places=0)
+        line |= {head: f"{scale * found[name]:.{places}f}" for name, (head, scale, places) in SHOWN.items()}
+        line |= {"worst jump": found["step_worst"], "planning, ms a frame": found["planning_ms"]}
+        line["drawing time / full"] = with_interval(*times[plan], places=2) if plan in times else "–"
+        lines.append(line)
+    shown = pd.DataFrame(lines)
+    shown["faces a frame"] = shown["faces a frame"].round()
+    words = {
+        "scenes": wide.index.get_level_values("group").nunique(),
+        "tolerance": amount(first["tolerance"], UNITS[first["kind"]]), "foresight": _foresight(wide),
+        "drawing": _drawing(results),
+    }  # fmt: skip
+    return Table(pd.DataFrame(frame), shown, words)
+
+
+def figure(results: Results) -> Figure:
+    """The saving in each scene, sorted, at an equal displacement and at an equal error; and online beside offline."""
+    wide, _ = plans(results)
+    drawing, panels = plt.subplots(1, 3, figsize=(10.2, 4.0))
+    for axes, matched in zip(panels, ("displacement", "error"), strict=False):
+        for rival, marker in (("uniform", "o"), ("uniform_size", "s")):
+            _sorted(axes, 100 * saving(wide, (rival, matched)), COLOURS[rival], NAMES[rival], marker)
+        axes.set(ylabel="faces that ours saves, %", title=f"equal {EQUAL[matched]}")
+    _sorted(panels[2], _extra(wide), COLOURS["online"], NAMES["online"])
+    panels[2].axhline(ALLOWED, color=GREY, lw=1, ls=":")
+    panels[2].set(ylabel="more faces than ours, %", title="what foresight is worth")
+    for axes in panels:
+        axes.axhline(0, color=INK, lw=0.8)
+        axes.set(xlabel="scenes, sorted")
+        axes.title.set_fontsize(10.5)
+        axes.grid(axis="y")
+        axes.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.45, -0.18))
+    drawing.tight_layout(w_pad=2)
+    return Figure(drawing, {"scenes": wide.index.get_level_values("group").nunique(), "allowed": f"{ALLOWED:g}"})
+
+
+def _sorted(axes: Axes, values: pd.Series, tint: str, name: str, marker: str = "o") -> None:
+    label = f"{name}: {with_interval(*interval(values), places=0 if values.mean() > 10 else 1)}"
+    axes.plot(range(1, len(values) + 1), values.sort_values(), marker, ms=4, mew=0, color=tint, label=label)
+
+
+ALLOWED = 5.0  # per cent more faces that an online planner may need
+
+
+def plans(results: Results) -> tuple[pd.DataFrame, pd.Series]:
+    """(frame (group, method, matched) x metric over all frames, the first row) of the random scenes."""
+    rows = results.measured("scene", RANDOM, frame="all", factor=1, item=None).fillna({"matched": ""})
+    rows = some(rows[rows["kind"].notna()], "no random scenes", "scene")
+    wide = rows.pivot_table(index=["group", "method", "matched"], columns="metric", values="value", sort=False)
+    return wide[wide["faces"].notna()], rows.iloc[0]
+
+
+def saving(wide: pd.DataFrame, plan: tuple[str, str]) -> pd.Series:
+    """The share of a plan's faces that ours saves, a value a scene: 0 where it has as many."""
+    ours, rival = (wide.xs(key, level=["method", "matched"])["faces"] for key in ((OURS, ""), plan))
+    return (1 - ours / rival).dropna()
+
+
+def _extra(wide: pd.DataFrame) -> pd.Series:
+    """Per cent more faces of the planner without foresight than ours has, a value a scene."""
+    ours, online = (wide.xs((name, ""), level=["method", "matched"])["faces"] for name in (OURS, "online"))
+    return 100 * (online / ours - 1).dropna()
+
+
+def _foresight(wide: pd.DataFrame) -> str:
+    if ("online", "") not in _keys(wide):
+        return ""
+    ours, online = (wide.xs((name, ""), level=["method", "matched"]) for name in (OURS, "online"))
+    switches, (jump, most) = online["switches_per_object"].mean(), _jumps(wide, "online")
+    own_switches, (own_jump, own_most) = ours["switches_per_object"].mean(), _jumps(wide, OURS)
+    return (
+        f"Without a frame ahead: {with_interval(*interval(_extra(wide)), places=1)} % more faces, {number(switches)} "
+        f"switches an object instead of {number(own_switches)}, and a worst jump of {number(jump)} instead of "
+        f"{number(own_jump)} (medians over the scenes; at most {number(most)} and {number(own_most)})."
+    )
+
+
+def _jumps(wide: pd.DataFrame, method: str) -> tuple[float, float]:
+    own = wide.xs((method, ""), level=["method", "matched"])["step_worst"]
+    return own.median(), own.max()
+
+
+def _keys(wide: pd.DataFrame) -> set[tuple[str, str]]:
+    return {(str(method), str(matched)) for _, method, matched in wide.index}
+
+
+def _times(results: Results) -> dict[tuple[str, str], tuple[float, float, float]]:
+    """{plan: (mean, low, high) of the time of drawing over that of the full meshes}, over the scenes."""
+    try:
+        rows = results.bench("frame_times")
+    except NotRun:
+        return {}
+    rows = rows[rows["method"] != "full"]
+    found = {str(name): interval(own["ratio"]) for name, own in rows.groupby("method", sort=False)}
+    return {(name, "displacement" if name == "uniform" else ""): ratio for name, ratio in found.items()}
+
+
+def _drawing(results: Results) -> str:
+    try:
+        rows = results.bench("frame_times")
+    except NotRun:
+        return ""
+    ms = rows.groupby("method")[["faces", "ms"]].mean()
+    said = [f"{NAMES[row.Index]} {row.faces:,.0f} faces, {number(row.ms)} ms" for row in records(ms)]
+    wide = rows.pivot(index="scene", columns="method", values="ms")
+    device = rows["device"].iloc[0].partition(" (")[0]
+    return (
+        f"Drawing: processor milliseconds of pyrender on {device}, a software rasteriser, one thread, screens of "
+        f"{rows['rows'].iloc[0]} rows, {len(wide)} scenes: {'; '.join(said)}. Ours takes "
+        f"{with_interval(*interval(wide[OURS] / wide['uniform']), places=2)} of the time of uniform levels."
+    )

@@ -1,0 +1,125 @@
+"""What the report says of scenes drawn at random, and of the faces that an object needs by task."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from stages.kit.files import write_table
+from stages.report import scene as topic
+from stages.report.differences import differences
+from stages.report.results import NotRun
+from stages.report.scene.claims import CLAIMS
+from stages.report.scene.random import plans, saving
+from stages.report.topics import build_one
+from stages.report.verdict import judge
+
+BY_KEY = {claim.key: claim for claim in CLAIMS}
+
+
+def rows_of(group, faces):
+    """Rows of a scene; faces: {(method, matched): faces}."""
+    common = {"dataset": "household_scenes", "group": group, "frame": "all", "factor": 1.0, "item": None, "seed": 0}
+    common |= {"kind": "pixels", "tolerance": 1.0, "note": None}
+    found = []
+    for (method, matched), count in faces.items():
+        values = {"faces": count, "displacement_mean": 0.2, "error": 0.9, "held": 1.0, "switches_per_object": 3.0}
+        values |= {"step_worst": 1.0, "planning_ms": 20.0}
+        found += [common | {"method": method, "matched": matched or None, "metric": name, "value": value}
+                  for name, value in values.items()]  # fmt: skip
+    return found
+
+
+@pytest.fixture
+def measured(root, results):
+    """A function of {plan: a function of the scene's number to faces} to the results of twelve scenes."""
+
+    def make(**faces):
+        ways = {("ours", ""): lambda k: 1000 + 10 * k, ("full", ""): lambda k: 50_000}
+        ways |= {tuple(name.split("__")) if "__" in name else (name, ""): way for name, way in faces.items()}
+        rows = [
+            row for k in range(12) for row in rows_of(f"random_{k:02d}", {key: way(k) for key, way in ways.items()})
+        ]
+        write_table(root / "reports/measurements/household_scenes/scene.csv.gz", pd.DataFrame(rows))
+        return results
+
+    return make
+
+
+def test_a_plan_against_itself_saves_nothing_in_any_scene(measured):
+    results = measured(uniform__displacement=lambda k: 1000 + 10 * k)
+    assert (saving(plans(results)[0], ("uniform", "displacement")) == 0).all()
+    assert (differences(results, BY_KEY["saves_uniform_displacement"]) == 0).all()
+
+
+def test_the_saving_is_the_mean_of_the_scenes_with_an_interval_over_them(measured):
+    spread = np.linspace(-0.1, 0.1, 12)
+    results = measured(uniform__displacement=lambda k: (1000 + 10 * k) / (0.7 + spread[k]))
+    table = build_one(topic, "tables", "random_scenes", results)
+    line = table.frame.set_index(["method", "matched"]).loc[("uniform", "displacement")]
+    assert line["saved"] == pytest.approx(0.3, abs=1e-5) and 0.2 < line["saved_low"] < 0.3 < line["saved_high"] < 0.4
+    claims = judge([BY_KEY["saves_uniform_displacement"]], results).iloc[0]
+    assert (claims["verdict"], claims["pairs"], claims["over"]) == ("supported", 12, "scenes")
+    assert claims["effect"] == pytest.approx(30, abs=1e-3) and "30 random scenes" in claims["tested_on"]
+
+
+@pytest.mark.parametrize(("more", "verdict"), [(0.02, "supported"), (0.09, "contradicted")])
+def test_what_foresight_is_worth_is_judged_at_five_per_cent(measured, more, verdict):
+    results = measured(online=lambda k: (1000 + 10 * k) * (1 + more + 0.001 * (k % 3)))
+    assert judge([BY_KEY["online_faces"]], results).iloc[0]["verdict"] == verdict
+    notes = " ".join(build_one(topic, "tables", "random_scenes", results).notes)
+    assert f"Without a frame ahead: {100 * more + 0.1:.1f} [" in notes
+
+
+def test_the_time_of_drawing_stands_beside_the_faces(root, measured):
+    rivals = [f"{name}__{matched}" for name in ("uniform", "uniform_size") for matched in ("displacement", "error")]
+    results = measured(online=lambda k: 1000, **dict.fromkeys(rivals, lambda k: 1500))
+    ways = {"full": (50_000, 1.0), "ours": (1000, 0.25), "uniform": (1500, 0.3), "online": (1000, 0.25)}
+    bench = [{"scene": f"random_{k:02d}", "method": name, "rows": 270, "faces": faces, "ms": 40 * ratio + 0.1 * k,
+              "ratio": ratio + 0.001 * k, "device": "llvmpipe (LLVM 15)"}
+             for k in range(12) for name, (faces, ratio) in ways.items()]  # fmt: skip
+    write_table(root / "reports/bench/frame_times.csv", pd.DataFrame(bench))
+    table = build_one(topic, "tables", "random_scenes", results)
+    shown = table.shown.set_index("levels chosen by")["drawing time / full"]
+    assert shown["ours"].startswith("0.26 [") and shown["full models"] == "–"
+    assert any("llvmpipe, a software rasteriser" in note for note in table.notes)
+    build_one(topic, "figures", "random_scenes", results)
+
+
+@pytest.fixture
+def needs(root, results):
+    """Results of nine objects that need 100 faces to be seen, 1,000 to be felt and 300 to be recognised, about."""
+    ways = {("full", None): 5000, ("seen", 0.5): 200, ("seen", 1.0): 100, ("felt", 0.05): 1000, ("felt", 0.02): 3000,
+            ("recognised", 0.02): 300}  # fmt: skip
+    common = {"dataset": "household_scenes", "seed": 0}
+    faces = common | {"metric": "faces"}
+    rows = [faces | {"item": f"object {k}", "task": task, "condition": condition, "value": count + k}
+            for k in range(9) for (task, condition), count in ways.items()]  # fmt: skip
+    rows += [common | {"item": f"object {k}", "task": "recognised", "metric": "accuracy", "value": 0.7 + 0.01 * k}
+             for k in range(9)]  # fmt: skip
+    rows.append(
+        common | {"item": None, "task": "recognised", "condition": 0.02, "metric": "faces_together", "value": 250}
+    )
+    write_table(root / "reports/measurements/household_scenes/face_needs.csv.gz", pd.DataFrame(rows))
+    return results
+
+
+def test_a_task_has_the_median_of_its_objects_from_few_faces_to_many(needs):
+    table = build_one(topic, "tables", "faces_by_task", needs)
+    assert table.frame["median"].tolist() == [104, 204, 1004, 3004, 304]
+    assert table.shown["task"].tolist() == [
+        "seen from 1 m", "seen from 0.5 m", "felt, within 5 % of full scale", "felt, within 2 % of full scale",
+        "recognised by touch, within 2 points",
+    ]  # fmt: skip
+    assert "9 household objects" in table.notes[0] and "74" in table.notes[2]
+    build_one(topic, "figures", "faces_by_task", needs)
+
+
+def test_feeling_is_judged_against_seeing_and_recognising(needs):
+    found = judge([BY_KEY["felt_over_seen"], BY_KEY["recognised_under_felt"]], needs)
+    assert found["verdict"].tolist() == ["supported", "supported"] and (found["pairs"] == 9).all()
+
+
+def test_without_random_scenes_all_is_not_run(results):
+    for kind, name in (("tables", "random_scenes"), ("figures", "faces_by_task")):
+        with pytest.raises(NotRun):
+            build_one(topic, kind, name, results)

@@ -1,0 +1,115 @@
+"""A planner that sees no frame ahead: what it may not know, and what it does with what it knows."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from stages.kit import Mesh
+from stages.scene import Frames, Level, budget
+from stages.scene.online import choose, online
+from stages.scene.plan import cheapest
+from stages.scene.rows import saved
+
+FACES = np.array([100.0, 50.0, 25.0, 12.0])
+
+
+def chosen(errors, jumps=None, approach=None, seen=None, hold=2):
+    """The levels that are chosen by a table of errors (f, levels)."""
+    errors = np.asarray(errors, dtype=float)
+    jumps = np.zeros((*errors.shape, errors.shape[1])) if jumps is None else jumps
+    approach = np.ones(len(errors)) if approach is None else np.asarray(approach)
+    seen = np.ones(len(errors), dtype=bool) if seen is None else np.asarray(seen)
+    return choose(lambda f, k: errors[f, k], lambda f, a, b: jumps[f, a, b], approach, seen, errors.shape[1], 1.0, hold)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_what_stands_still_gets_what_the_planner_that_knows_the_path_gives_it(seed):
+    error = np.sort(np.random.default_rng(seed).random(4) * 2)
+    error[0] = 0
+    errors = np.tile(error, (7, 1))
+    known = cheapest(np.tile(FACES, (7, 1)), errors, np.zeros((7, 4, 4)), 1.0, 2)
+    assert chosen(errors).tolist() == known.tolist()
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_later_frames_change_no_earlier_choice(seed):
+    draw = np.random.default_rng(seed)
+    errors = np.sort(draw.random((9, 4)) * 2, axis=1) * [0, 1, 1, 1]
+    other = errors.copy()
+    other[5:] = np.sort(draw.random((4, 4)) * 2, axis=1)
+    assert chosen(errors)[:5].tolist() == chosen(other)[:5].tolist()
+
+
+def test_a_finer_level_follows_at_once_and_a_coarser_one_when_the_present_one_has_stayed():
+    errors = [[0, 0.4, 0.9, 2]] * 2 + [[0, 0.4, 1.2, 2]] + [[0, 0.4, 0.9, 2]] * 4
+    assert chosen(errors, hold=3).tolist() == [2, 2, 1, 1, 1, 2, 2]
+
+
+def test_an_error_that_will_be_too_large_at_this_speed_is_left_before_it_is():
+    errors, still = [[0, 0.3, 0.95, 2]] * 3, [1.0, 1.0, 1.0]
+    assert chosen(errors, approach=still).tolist() == [2, 2, 2]
+    assert chosen(errors, approach=[1.0, 1.1, 1.1]).tolist() == [2, 1, 1]
+
+
+def test_a_coarser_level_waits_while_the_picture_would_jump():
+    errors, jumps = [[0, 0.9, 2, 3], [0, 0.4, 0.9, 2], [0, 0.4, 0.9, 2], [0, 0.4, 0.9, 2]], np.zeros((4, 4, 4))
+    jumps[:3, 1, 2] = 1.5
+    assert chosen(errors, jumps, hold=1).tolist() == [1, 1, 1, 2]
+
+
+def test_what_comes_into_view_is_chosen_anew():
+    errors = [[0, 0.4, 2, 2], [0] * 4, [0, 0.4, 0.9, 0.95]]
+    assert chosen(errors, seen=[True, False, True], hold=5).tolist() == [1, 1, 3]
+
+
+@pytest.fixture(scope="module")
+def moving(make_scene, frames_of, chains):
+    scene = make_scene(frames=6, hold=2)
+    return scene, frames_of(scene), tuple(chains[placed.name] for placed in scene.objects)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("rendered", [True, False])
+def test_a_path_cut_short_gets_the_same_beginning(moving, frames_of, rendered):
+    scene, frames, chains = moving
+    whole = online(frames, chains, rendered)
+    for count in (1, 3, 5):
+        short = frames_of(replace(scene, cameras=scene.cameras[:count]))
+        assert np.array_equal(online(short, chains, rendered).levels, whole.levels[:count])
+    assert len(np.unique(whole.levels, axis=0)) > 1  # the path asks for more than one choice
+
+
+@pytest.mark.slow
+def test_a_still_camera_needs_no_foresight(moving, meshes, frames_of, chains):
+    scene, _, own = moving
+    still = replace(scene, cameras=scene.cameras[-1:] * 4)
+    known = budget(meshes, still, chains=chains)
+    assert np.array_equal(online(frames_of(still), own).levels, known.levels)
+
+
+@pytest.mark.slow
+def test_the_order_of_vertices_and_faces_changes_no_plan(moving, meshes, chains):
+    scene, _, own = moving
+    mixed = {name: tuple(shuffled(level, k) for k, level in enumerate(chain)) for name, chain in chains.items()}
+    full = [mixed[placed.name][0] for placed in scene.objects]
+    frames = Frames(scene, {name: chain[0].mesh for name, chain in mixed.items()}, full)
+    assert np.array_equal(
+        budget(meshes, scene, chains=chains).faces, budget(meshes, scene, chains=mixed, frames=frames).faces
+    )
+    again = online(frames, tuple(mixed[placed.name] for placed in scene.objects))
+    assert np.array_equal(again.faces, online(moving[1], own).faces)
+
+
+def shuffled(level, seed):
+    """The level with its vertices and faces in another order."""
+    draw = np.random.default_rng(seed)
+    order = draw.permutation(len(level.mesh.vertices))
+    faces = np.argsort(order)[level.mesh.faces][draw.permutation(len(level.mesh.faces))]
+    return Level(Mesh(level.mesh.vertices[order], faces), level.error)
+
+
+def test_a_plan_saves_nothing_against_itself():
+    faces = np.array([120.0, 40.0, 7.0])
+    share, low, high = saved(faces, faces, ["a", "b", "c"])
+    assert share == low == high == 0
