@@ -194,7 +194,9 @@ def test_a_first_set_without_hybrids_hides_none_of_the_second(bare, small):
 
 def test_damage_is_told_at_its_harshest(run):
     shown = build_one(hybrid, "tables", "hybrid_senses", run).shown.set_index("answers")
-    assert list(shown) == ["both whole, %", "picture: darkness 0.95, %"]
+    assert list(shown) == ["mean of all columns, %", "both whole, %", "picture: darkness 0.95, %"]
+    mean, *shares = (float(cell.split()[0]) for cell in shown.loc["sight alone"])
+    assert mean == pytest.approx(sum(shares) / 2, abs=1)
     assert shown.loc["sight alone", "picture: darkness 0.95, %"].startswith("10")
 
 
