@@ -53,9 +53,10 @@ def _figure(reports: Path, name: str, where: str, what: str) -> str:
         mean, *ends = (_cell(row, column) for column in columns)
     except ValueError:  # no number
         return label(row[columns[0]])
-    low, high = sorted(ends) if ends else (float("nan"),) * 2
-    if mean != mean:
-        raise LookupError(f"{name} {where} has no value")
+    known = ends and all(end == end for end in ends)
+    low, high = sorted(ends) if known else (float("nan"),) * 2
+    if mean != mean or (words and not known):
+        raise LookupError(f"{name} {where} has no {'interval' if mean == mean else 'value'}")
     show = (lambda value: f"{value:,.{places}f}") if places else _shown
     if words:
         return _difference(mean, low, high, words, show)
