@@ -65,21 +65,24 @@ def chosen(claims: Sequence[Any], keys: Sequence[str]) -> list[Any]:
 
 def judged_again(workspace: Workspace, claim: Any) -> dict[str, Any]:
     """A claim's row of reports/claims.csv, made again, with `differences` ({pair: value}), `rows` and `command`."""
-    from stages.report.claims_page import command, sets_of
+    from stages.report.anew import command
+    from stages.report.claims_page import open_text, over_text, sets_read, sets_text
     from stages.report.results import Results
     from stages.report.schema import Params
     from stages.report.verdict import judged
 
     results = Results(workspace, workspace.settings(Params))
     frame, pairs = judged([claim], results)
-    sets = sets_of(claim, results)
+    sets, (row,) = sets_read(claim, results), frame.itertuples()
     files = [f"reports/measurements/{name}/{claim.stage}{SUFFIX}" for name in sets]
     found = {str(key): value for key, value in frame.iloc[0].to_dict().items() if value == value}
+    texts = {"on each set": sets_text(row), "open": open_text(row), "over": over_text(row)}
     return {
         **found,
+        "texts": {name: text for name, text in texts.items() if text},
         "differences": dict(zip(pairs["pair"], pairs["difference"], strict=True)),
         "rows": [file for file in files if Path(workspace.root / file).exists()],
-        "command": command(claim.stage, sets),
+        "command": command(workspace.root / "conf", claim.stage, sets) if sets else "",
     }
 
 
@@ -88,8 +91,9 @@ def as_text(found: dict[str, Any]) -> str:
     lines = [f"{found['key']} ({found['section']}): {found['claim']}", f"  {found['verdict']}"]
     if "effect" in found:
         interval = f" [{found['low']:.3g}, {found['high']:.3g}]" if "low" in found else ""
-        lines[1] += f": {found['effect']:+.3g}{interval} {found['unit']}, {found['pairs']} {found['over']}"
+        lines[1] += f": {found['effect']:+.3g}{interval} {found['unit']}, {found['texts']['over']}"
     lines.append(f"  tested on: {found['tested_on']}")
+    lines += [f"  {name}: {text}" for name, text in found["texts"].items() if name != "over"]
     lines += [f"    {pair:32} {value:+.4g}" for pair, value in found["differences"].items()]
     lines += [f"  rows: {file}" for file in found["rows"]]
     return "\n".join([*lines, f"  measure anew: {found['command']}", ""])

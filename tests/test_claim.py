@@ -20,7 +20,7 @@ def test_the_committed_verdicts_follow_from_the_committed_rows(capsys):
     for one in found:
         assert len(one["differences"]) == one["pairs"] and all(map(Path.exists, map(Path, one["rows"])))
     (soft,) = (one for one in found if one["key"] == "ours_soft_gaze")
-    assert soft["command"] == "python -m stages.compose 'sets=[gaze]' && dvc repro lod@gaze report"
+    assert soft["command"] == "python -m stages.compose experiment=attention && dvc repro lod@gaze report"
 
 
 @pytest.mark.slow

@@ -9,6 +9,7 @@ import pandas as pd
 import yaml
 
 from stages.kit.rows import SUFFIX
+from stages.report.anew import COMPOSE, switch
 from stages.report.claims import Claim
 from stages.report.stability.time_spent import KEYS, SEEN
 from stages.report.topics import CLAIMS
@@ -46,22 +47,23 @@ def commands() -> list[Command]:
     written = {row["key"]: row for row in table("claims")}
     found: dict[str, Command] = {}
     for claim in CLAIMS:
-        if claim.key not in written or not (dataset := dataset_of(claim)):
+        if claim.key not in written or not (sets := sets_of(claim)):
             continue
-        text = command_for(dataset, claim.stage)
+        text = command_for(sets[0], claim.stage)
         command = found.setdefault(text, Command(text))
         command.claims.append(written[claim.key])
-        command.work |= {(dataset, stage) for stage in stages_of(dataset) if command_for(dataset, stage) == text}
+        command.work |= {(sets[0], stage) for stage in stages_of(sets[0]) if command_for(sets[0], stage) == text}
     return sorted(found.values(), key=lambda one: (one.text != DEFAULT, -len(one.claims)))
 
 
-def dataset_of(claim: Claim) -> str:
-    """The set whose rows a claim compares, empty where none has any; a default set comes before others."""
-    if claim.dataset:
-        return claim.dataset if claim.stage in stages_of(claim.dataset) else ""
+def sets_of(claim: Claim) -> list[str]:
+    """The sets whose rows a claim compares; a default set comes before others."""
     defaults = settings()["sets"]
-    folders = sorted((ROOT / "reports/measurements").iterdir(), key=lambda path: (path.name not in defaults, path.name))
-    return next((path.name for path in folders if claim.stage in stages_of(path.name)), "")
+    every = sorted(path.name for path in (ROOT / "reports/measurements").iterdir())
+    found = sorted((name for name in every if claim.stage in stages_of(name)), key=lambda name: name not in defaults)
+    others = [name for name in found if name not in claim.sets]
+    wanted = [name or next(iter(others), "") for name in claim.sets]
+    return [name for name in wanted if name in found]
 
 
 def stages_of(dataset: str) -> list[str]:
@@ -69,16 +71,10 @@ def stages_of(dataset: str) -> list[str]:
     return [path.name.removesuffix(SUFFIX) for path in (ROOT / "reports/measurements" / dataset).glob(f"*{SUFFIX}")]
 
 
-@cache
 def command_for(dataset: str, stage: str) -> str:
     """What runs a stage on a set."""
-    if dataset in settings()["graph"].get(stage, ()):
-        return DEFAULT
-    for path in sorted((ROOT / "conf/experiment").glob("*.yaml")):
-        chosen = yaml.safe_load(path.read_text(encoding="utf-8"))
-        if dataset in chosen.get("sets", ()) and stage in chosen.get("stages", [stage]):
-            return f"python -m stages.compose experiment={path.stem} && dvc repro"
-    return f"python -m stages.compose 'sets=[{dataset}]' && dvc repro"
+    chosen = switch(ROOT / "conf", dataset, stage)
+    return f"{COMPOSE} {chosen} && dvc repro" if chosen else DEFAULT
 
 
 @cache

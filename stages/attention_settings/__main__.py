@@ -3,7 +3,8 @@
 Reads data/SET/meshes and data/SET/weights of objects with human gaze. The model is learned for each set of viewpoints,
 image size and choice of channels, leaving each object out, and judged on it. Writes
 reports/measurements/SET/attention_settings.csv.gz: NSS and AUC of the model (fixations) and of equal weights, with the
-seconds of one core from mesh to saliency.
+seconds of one core from mesh to saliency. Where the pictures of `nested` are among the settings, also those two of the
+models of gaze with features, channels and ridge chosen once, and chosen anew without the object.
 """
 
 import functools
@@ -15,7 +16,7 @@ from stages.kit.command import workspace_of_arguments
 from stages.kit.run import Rows, StageRun
 from stages.kit.workspace import Workspace
 
-from . import judge, measure
+from . import judge, measure, nested
 from .schema import COLUMNS, Params
 
 
@@ -31,6 +32,11 @@ def run(workspace: Workspace) -> None:
         stage.each(functools.partial(measure.process, data=workspace.data, pictures=pictures), names, ["meshes/{}.npz"])
         work = functools.partial(judge.process, data=workspace.data, made=stage.folder, names=names, choices=choices)
         stage.each(work, pictures, reads=["weights/ground_truth", "attention_settings/{}"])
+        if nested.PICTURES in pictures:
+            work = functools.partial(nested.process, data=workspace.data, made=stage.folder, names=names)
+            stage.each(
+                work, list(nested.FIXED), ["meshes", "weights/ground_truth", f"attention_settings/{nested.PICTURES}"]
+            )
         for picture in pictures:
             shutil.rmtree(stage.folder / picture)  # large, and the cache of objects keeps it
         stage.metrics(summary(stage.rows))

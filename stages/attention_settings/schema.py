@@ -5,7 +5,7 @@ from dataclasses import dataclass
 COLUMNS = {
     "views": "set of viewpoints: a name of stages.attention_settings.measure.VIEWS",
     "rows": "rows of an image",
-    "channels": "choice of channels: a name of stages.attention_settings.judge.CHOICES",
+    "channels": "a name of stages.attention_settings.judge.CHOICES; of methods `_once` and `_nested` the features",
 }
 
 

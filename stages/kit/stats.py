@@ -1,10 +1,13 @@
 """The interval of a mean, for numbers that get compared."""
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy import stats
+
+from .units import by_unit
 
 Statistic = Callable[..., np.floating | np.ndarray]
 
@@ -18,7 +21,8 @@ def interval(
 ) -> tuple[float, float, float]:
     """(mean, low, high): bootstrap percentile interval of the values (k,), NaN left out, widened twice about the mean.
 
-    First by t(n - 1) / z * sqrt(n / (n - 1)), since the percentile interval (Efron and Tibshirani, An Introduction to
+    A Series whose index has a level `item` counts by unit (stages.kit.units): copies of a shape are one. First it is
+    widened by t(n - 1) / z * sqrt(n / (n - 1)), since the percentile interval (Efron and Tibshirani, An Introduction to
     the Bootstrap, 1993, chapter 13) is too narrow for few values (Hesterberg, What teachers should know about the
     bootstrap, The American Statistician 2015, section 3.3). Then by sqrt(1 + n * shared) where the values are repeated
     splits of the same data: without it an interval shrinks to nothing by splitting more often (Nadeau and Bengio,
@@ -27,10 +31,7 @@ def interval(
     equal values says nothing of how others would differ. statistic: np.median, say, in the mean's place. Raises
     ValueError for values of another shape.
     """
-    values = np.asarray(values, dtype=np.float64)
-    if values.ndim != 1:
-        raise ValueError(f"values must have shape (k,), got {values.shape}")
-    values = values[np.isfinite(values)]
+    values = of_units(values)
     n = len(values)
     if n == 0:
         return np.nan, np.nan, np.nan
@@ -45,11 +46,23 @@ def interval(
     return mean, float(mean - (mean - low) * widen), float(mean + (high - mean) * widen)
 
 
+def of_units(values: ArrayLike) -> np.ndarray:
+    """The finite values as `interval` counts them: those of a Series over items by unit, all others each by itself."""
+    known: Any = values  # a Series, maybe; the core install has no pandas to ask
+    if "item" in getattr(getattr(known, "index", None), "names", ()):
+        known = by_unit(known)
+    found = np.asarray(known, dtype=np.float64)
+    if found.ndim != 1:
+        raise ValueError(f"values must have shape (k,), got {found.shape}")
+    return found[np.isfinite(found)]
+
+
 def p_value(values: ArrayLike, shared: float = 0.0, seed: int = 0) -> float:
     """Two-sided: 1 less the level at which the `interval` of the values (k,) just touches zero; NaN without interval.
 
     Not below SMALLEST, which is what RESAMPLES draws can tell.
     """
+    values = of_units(values)
     levels = np.array([SMALLEST, 1 - SMALLEST])  # searched by halving, since an interval widens with its level
     if not np.isfinite(interval(values, shared, seed)[1]):
         return np.nan

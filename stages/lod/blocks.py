@@ -29,12 +29,13 @@ Part = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 
 
 def collapse(
-    mesh: Mesh, faces: int, frozen: np.ndarray, weights: np.ndarray | None = None, attributes: Attributes = ()
-) -> Mesh:
-    """As `fast.collapse`, for meshes of any size; attributes are counted on the whole mesh only."""
-    if len(mesh.faces) >= FROM and faces <= STRONG * len(mesh.faces) and not attributes:
+    mesh: Mesh, faces: int, frozen: np.ndarray, weights: np.ndarray | None = None, attributes: Attributes = (),
+    free: np.ndarray | None = None,
+) -> Mesh:  # fmt: skip
+    """As `fast.collapse`, for meshes of any size; where attributes count or borders are free, always as a whole."""
+    if len(mesh.faces) >= FROM and faces <= STRONG * len(mesh.faces) and not attributes and free is None:
         mesh, frozen, weights = thinned(mesh, SHARE * faces / len(mesh.faces), frozen, weights)
-    return collapse_whole(mesh, faces, frozen, weights, attributes)
+    return collapse_whole(mesh, faces, frozen, weights, attributes, free)
 
 
 def thinned(

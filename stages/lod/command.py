@@ -1,7 +1,8 @@
 """Simplifies one mesh and spares the places that people look at.
 
 Reads STL, OBJ, PLY, OFF or GLB and writes the mesh in its own coordinates, with its colours and textures. The error is
-weighted by saliency, so that faces go where people look; nothing is frozen but the boundary and borders of materials.
+weighted by saliency, so that faces go where people look; nothing is frozen but the boundary (unless --free-borders) and
+borders of materials.
 With --neighbourhood the faces around the salient points stay unchanged: on 50 household objects that raises the error
 over the whole mesh by half. Prints the errors, beside those of plain quadric edge collapse (QEM) with as many faces.
 Of a folder every mesh is simplified; the nodes of a GLB keep their names. A GLB is written y up, as the format has it.
@@ -11,7 +12,7 @@ examples:
   haptic-glance simplify chair.obj --tolerance 0.2% --up y --out chair_small.obj --picture chair.png
   haptic-glance simplify vase.glb --faces 2000 --attributes uv=1 --out vase_small.glb
   haptic-glance simplify bunny.stl --levels 50%,25%,10% --out levels
-  haptic-glance simplify scans --levels 5000,1000 --format glb --out levels --json
+  haptic-glance simplify scans --levels 5000,1000 --format glb --free-borders --out levels --json
   haptic-glance simplify bunny.stl --faces 10% --neighbourhood adaptive --keep 8 --out small.ply
 """
 
@@ -149,7 +150,8 @@ def prepare(mesh: Mesh, chosen: Namespace, name: str) -> SimplificationTask:
     rings = neighbourhoods(mesh, points, rule, values, RINGS if chosen.rings is None else chosen.rings)
     soft = chosen.neighbourhood == SOFT and chosen.method != PLAIN
     weights = values if soft else None
-    return SimplificationTask(mesh, values, points, rings, weights, chosen.backend, chosen.shrink, chosen.attributes)
+    ways = chosen.backend, chosen.shrink, chosen.attributes, chosen.free_borders
+    return SimplificationTask(mesh, values, points, rings, weights, *ways)
 
 
 def reduce(task: SimplificationTask, chosen: Namespace, target: str) -> Mesh | None:

@@ -17,7 +17,7 @@ def summary(
     rows: list[tuple] = [("faces", len(task.mesh.faces), *(len(mesh.faces) for mesh in shown))]
     if len(task.points):
         rows += [("points kept", len(task.points), *(int(task.points_kept(mesh).sum()) for mesh in meshes), *rest)]
-    if len(task.border):
+    if len(task.border) and not task.free_borders:
         rows += [("border edges kept", len(task.border), *(task.border_edges_kept(mesh) for mesh in meshes), *rest)]
     if len(task.points) or len(task.border):
         rows += [("fewest faces that keep them", None, *([task.smallest_with_borders] * len(meshes)), *rest)]

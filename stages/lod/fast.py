@@ -8,6 +8,7 @@ from stages.kit import Mesh
 
 from .attribute_quadrics import Attributes, attribute_quadrics
 from .feasibility import InfeasibleTarget, SimplifyError
+from .free_borders import closed, held, hidden, without_hidden
 from .kernels import HalfEdgeMesh, compact, decimate, fans, opposites, refit, vertex_quadrics
 from .merged_attributes import at_jumps, merged_colors
 from .topology import NONE, faults
@@ -26,20 +27,21 @@ SAMPLES = 6  # target points of the fit per remaining vertex
 
 def collapse(
     mesh: Mesh, faces: int, frozen: np.ndarray, weights: np.ndarray | None = None, attributes: Attributes = (),
-    fit_below: float = FIT_BELOW,
+    free: np.ndarray | None = None, fit_below: float = FIT_BELOW,
 ) -> Mesh:  # fmt: skip
     """A sound Mesh of at most `faces` faces, without colours but where the error counts them.
 
     frozen (m,) boolean: faces that are preserved bit for bit, as is the boundary. weights (n,) f8: factor of each
-    vertex's quadric, and its weight in the fit; None for 1. attributes: (name, weight) of those that the error
-    counts. fit_below: the share of the faces left below which the vertices are fitted; 0 is Garland and Heckbert's
-    QSlim.
+    vertex's quadric, and its weight in the fit; None for 1. attributes: (name, weight) of those that the error counts.
+    free (n,) boolean: vertices of the boundary that may move; None for none. fit_below: the share of the faces left
+    below which the vertices are fitted; 0 is Garland and Heckbert's QSlim.
+
     Raises InfeasibleTarget when no collapse is left above the target, SimplifyError when every attempt is faulty.
     """
     before, reason, least = None, "", len(mesh.faces)
     waiting = [(*limits, FOLD) for limits in ATTEMPTS]
     while waiting:
-        found, left = _attempt(mesh, faces, frozen, weights, attributes, fit_below, *waiting.pop(0))
+        found, left = _attempt(mesh, faces, frozen, weights, attributes, free, fit_below, *waiting.pop(0))
         after = faults(found)
         if left <= faces and after == NONE:
             return found
@@ -58,20 +60,26 @@ def collapse(
     raise SimplifyError(f"{faces} faces leave {reason}: ask for more faces")
 
 
-def _attempt(mesh, faces, frozen, weights, attributes, fit_below, turn, shape, fold):
+def _attempt(mesh, faces, frozen, weights, attributes, free, fit_below, turn, shape, fold):
     surface, source, (middle, size) = half_edge_mesh(mesh, frozen, weights)
     points, corner = surface.position.copy(), surface.corner.copy()
     weight = (
         surface.quadric[:, 0] + surface.quadric[:, 3] + surface.quadric[:, 5]
     )  # area around each vertex, times its weight
     wedges = _count_attributes(mesh, attributes, weights, surface, source) if attributes else None
-    left = decimate(surface, wedges, faces, turn, shape, fold)
+    if free is not None:
+        free = free.copy()
+        free[mesh.faces[frozen]] = False
+        surface = closed(surface, free[source], np.ones(len(source)) if weights is None else weights[source])
+    left = _collapsed(surface, wedges, faces, turn, shape, fold)
     if left > faces:
-        left = decimate(surface, wedges, faces, *LAST, fold)
+        left = _collapsed(surface, wedges, faces, *LAST, fold)
     if left < fit_below * len(mesh.faces):
-        fitted = surface if wedges is None else surface._replace(locked=surface.locked | at_jumps(surface, wedges))
+        fitted = (
+            held(surface) if wedges is None else surface._replace(locked=surface.locked | at_jumps(surface, wedges))
+        )
         refit(fitted, points, corner, weight, SAMPLES * left // 2, fold)
-    kept, used = compact(surface.corner, surface.locked, source, len(mesh.vertices))
+    kept, used = compact(without_hidden(surface), surface.locked, source, len(mesh.vertices))
     vertices = surface.position[used] * size + middle
     locked = surface.locked[used]
     vertices[locked] = mesh.vertices[source[used[locked]]]
@@ -80,6 +88,16 @@ def _attempt(mesh, faces, frozen, weights, attributes, fit_below, turn, shape, f
         colors = merged_colors(surface, wedges, dict(attributes)["colors"])[used]
         colors[locked] = mesh.colors[source[used[locked]]]
     return Mesh(vertices, kept.reshape(-1, 3), colors), left
+
+
+def _collapsed(surface, wedges, faces, *limits):
+    """`decimate` until `faces` are left beside the hidden ones, which grow fewer, too; returns how many that are."""
+    left = decimate(surface, wedges, faces + hidden(surface).sum(), *limits)
+    while (behind := hidden(surface).sum()) and left > faces + behind:
+        before, left = left, decimate(surface, wedges, faces + behind, *limits)
+        if left == before:
+            break
+    return left - behind
 
 
 def _count_attributes(mesh, attributes, weights, surface, source):

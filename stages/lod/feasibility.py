@@ -26,12 +26,13 @@ import numpy as np
 
 from stages.kit import Mesh
 
-from .topology import topology
+from .topology import half_edges, topology
 
 BOUNDARY_FACTOR = 2.5  # the table above
 # Of 33 closed objects with genus above 0, 25 can be collapsed further with the fast backend, to 10 to 16 faces per
 # unit: at 20 the median error is 1.6 times smaller. Seven end above it, at 24 to 70.
 FACES_PER_GENUS = 20
+LEAST_LOOP = 3  # edges
 CLOSED_FLOOR = 4  # a tetrahedron: the smallest closed surface, reached by 85 of 126 closed meshes of genus 0
 
 Keep = Sequence[int] | np.ndarray | None  # vertex ids
@@ -100,29 +101,35 @@ def check_rings(keep: np.ndarray, rings: Rings) -> np.ndarray:
     return np.broadcast_to(found, keep.shape).astype(np.int64)
 
 
-def smallest_feasible(mesh: Mesh, keep: Keep = None, rings: Rings = 3) -> int:
+def smallest_feasible(mesh: Mesh, keep: Keep = None, rings: Rings = 3, free_borders: bool = False) -> int:
     """The smallest face count that preserves frozen faces, boundary and topology, with a sound surface between.
 
-    keep and rings as in `frozen_faces`. The mesh's own count where no face can be removed.
+    keep and rings as in `frozen_faces`. free_borders: the boundary keeps its loops, but not its edges. The mesh's own
+    count where no face can be removed.
     """
     keep = check_keep(mesh, keep)
     rings = check_rings(keep, rings)
-    return _smallest(mesh, keep[rings >= 0].tobytes(), rings[rings >= 0].tobytes())
+    return _smallest(mesh, keep[rings >= 0].tobytes(), rings[rings >= 0].tobytes(), free_borders)
 
 
 @lru_cache(maxsize=64)  # shrinking to several targets asks for the same neighbourhoods
-def _smallest(mesh, keep, rings):
-    return smallest_with(mesh, frozen_faces(mesh, *(np.frombuffer(each, dtype=np.int64) for each in (keep, rings))))
+def _smallest(mesh, keep, rings, free_borders):
+    frozen = frozen_faces(mesh, *(np.frombuffer(each, dtype=np.int64) for each in (keep, rings)))
+    return smallest_with(mesh, frozen, free_borders)
 
 
-def smallest_with(mesh: Mesh, frozen: np.ndarray) -> int:
+def smallest_with(mesh: Mesh, frozen: np.ndarray, free_borders: bool = False) -> int:
     """As `smallest_feasible`, for frozen faces given as (m,) boolean."""
     free = mesh.faces[~frozen]
     if len(free) == 0:
         return len(mesh.faces)
     found = topology(free)
     open_components = found.components - found.closed_components
-    tiles = max(found.boundary_edges + 2 * found.boundary_loops - 4 * open_components, 0)
+    edges = found.boundary_edges
+    if free_borders:  # each of their loops may shrink to a triangle
+        own = int((half_edges(mesh.faces)[1].reshape(-1, 3)[~frozen] < 0).sum())
+        edges -= max(own - LEAST_LOOP * found.boundary_loops, 0)
+    tiles = max(edges + 2 * found.boundary_loops - 4 * open_components, 0)
     needed = BOUNDARY_FACTOR * tiles + CLOSED_FLOOR * found.closed_components + FACES_PER_GENUS * found.genus
     least = int(frozen.sum() + np.ceil(needed))
     return min(least + (len(mesh.faces) - least) % 2, len(mesh.faces))  # each collapse removes two faces

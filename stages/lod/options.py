@@ -56,6 +56,8 @@ def parser(about: str) -> argparse.ArgumentParser:
     command.add_argument(
         "--attributes", metavar="NAME=WEIGHT,...", type=attribute_weights, default={}, help=help_weights
     )
+    help_borders = "simplify the boundary, too: for scans and open surfaces, whose edges stay as they are otherwise"
+    command.add_argument("--free-borders", action="store_true", help=help_borders)
     add_up(command)
     command.add_argument("--backend", choices=list(BACKENDS), default=BACKEND, help="default: %(default)s")
     command.add_argument("--json", action="store_true", help="print the figures as JSON")
@@ -150,6 +152,9 @@ def check_options(chosen: argparse.Namespace) -> None:
         raise ValueError(f"{given} has no effect where no faces are frozen: {remedy}")
     if chosen.attributes and chosen.backend == "pymeshlab":
         raise ValueError("--attributes has no effect with --backend pymeshlab: choose fast or qslim")
+    if chosen.free_borders and (chosen.attributes or chosen.backend == "pymeshlab"):
+        given = "--attributes" if chosen.attributes else "--backend pymeshlab"
+        raise ValueError(f"--free-borders has no effect with {given}: leave one of them out")
     if chosen.rings is not None and chosen.neighbourhood != "fixed":
         raise ValueError(f"--rings has no effect with --neighbourhood {chosen.neighbourhood}: it is for fixed")
     if chosen.keep is not None and chosen.keep < 1:

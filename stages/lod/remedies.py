@@ -10,7 +10,7 @@ from .topology import topology
 def infeasible(task: SimplificationTask, error: InfeasibleTarget, chosen: Namespace) -> str:
     """The message for a target that is too low: the reason, and what is feasible."""
     frozen = [f"{number(error.frozen, 'face')} around {number(len(task.points), 'point')}"] if error.frozen else []
-    if len(task.boundary):
+    if len(task.boundary) and not task.free_borders:
         frozen.append(f"{number(len(task.boundary), 'boundary edge')}")
     reason = f", since {' and '.join(frozen)} are frozen" if frozen else ""
     ways = remedies(task, error, chosen) or ["the mesh cannot be simplified further"]
@@ -24,6 +24,8 @@ def remedies(task: SimplificationTask, error: InfeasibleTarget, chosen: Namespac
         several = len(task.boundary) and topology(task.mesh.faces).components > 1
         return ["join its connected components first"] if several else []
     ways = [f"ask for --faces {error.smallest} or more"] if error.smallest < total else []
+    if len(task.boundary) and not task.free_borders and not chosen.attributes and task.backend != "pymeshlab":
+        ways += ["let the boundary be simplified with --free-borders"]
     if error.frozen and len(task.points) > 1:
         ways += ["--keep fewer points"]
     if error.frozen and chosen.neighbourhood == "fixed" and task.rings.any():

@@ -24,6 +24,7 @@ from .feasibility import (
 )  # fmt: skip
 from .qem import collapse as collapse_by_pymeshlab
 from .shrink import shrinking_rings
+from .topology import half_edges
 
 # A backend is collapse(mesh, faces, frozen, weights=None) -> Mesh of at most `faces` faces without colours; see qem.py.
 BACKENDS: dict[str, Callable[..., Mesh]] = {
@@ -43,6 +44,7 @@ GROWTH = 1.1  # from one count without a sound mesh to the next one tried, for `
 def simplify(
     mesh: Mesh, faces: int, keep: Keep = None, rings: Rings = 3, backend: str = BACKEND, shrink: bool = False,
     weights: np.ndarray | None = None, attributes: Mapping[str, float] | None = None,
+    free_borders: bool | np.ndarray = False,
 ) -> Mesh:  # fmt: skip
     """A Mesh of at most `faces` faces (one fewer where the count must stay even), or the mesh itself if it has no more.
 
@@ -54,9 +56,10 @@ def simplify(
     where it is high (`quadric_weights`). attributes: weights of `colors`, `normals` and `uv` (texture coordinates) in
     the error, for example {"colors": 1.0, "normals": 0.03}. At a weight of 1 a difference of black and white, of the
     picture's width or of a unit normal counts as a displacement by the longest side of the mesh (`attribute_quadrics`).
-    By default the shape alone decides. Connected components and genus are preserved; components that touch in a vertex
-    or a non-manifold edge are simplified separately. Texture comes from the closest point of `mesh` (`carry`), and so
-    do colours, but for those in the error, which are the ones of least error.
+    By default the shape alone decides. free_borders: the edges of the boundary collapse, too, and its vertices move; or
+    (n,) boolean: those that may. The boundary keeps its loops. Connected components and genus are preserved; components
+    that touch in a vertex or a non-manifold edge are simplified separately. Texture comes from the closest point of
+    `mesh` (`carry`), and so do colours, but for those in the error, which are the ones of least error.
 
     Source: Garland and Heckbert 1997 (T [222]). The thesis also takes edges beside the frozen region out of the list,
     which is the same: a vertex of a frozen face never moves.
@@ -76,12 +79,15 @@ def simplify(
     if counted and backend == "pymeshlab":
         raise ValueError("the backend pymeshlab has no attributes in its error: choose fast or qslim")
     collapse = partial(BACKENDS[backend], attributes=counted) if counted else BACKENDS[backend]
+    free = _check_borders(mesh, free_borders, backend, bool(counted))
+    if free is not None:
+        collapse = partial(collapse, free=free)
     if faces >= len(mesh.faces):
         return mesh
     failures = []
-    for attempt in shrinking_rings(mesh, faces, keep, rings) if shrink else [rings]:
+    for attempt in shrinking_rings(mesh, faces, keep, rings, free is not None) if shrink else [rings]:
         frozen = frozen_faces(mesh, keep, attempt)
-        smallest = smallest_feasible(mesh, keep, attempt)
+        smallest = smallest_feasible(mesh, keep, attempt, free is not None)
         try:
             if faces < smallest:  # before the backend starts
                 raise InfeasibleTarget(faces, smallest, int(frozen.sum()))
@@ -89,7 +95,7 @@ def simplify(
         except (InfeasibleTarget, SimplifyError) as error:
             failures.append((error, frozen))
     error, frozen = failures[-1]
-    if isinstance(error, InfeasibleTarget):
+    if isinstance(error, InfeasibleTarget) and free is None:
         factors = None if multipliers is None else multipliers.tobytes()
         sound = _smallest_sound(mesh, backend, frozen.tobytes(), factors, error.smallest)
         raise InfeasibleTarget(faces, sound, error.frozen)
@@ -128,6 +134,18 @@ def check_backend(backend: str) -> None:
     """Raises ValueError unless there is a backend of this name."""
     if backend not in BACKENDS:
         raise ValueError(f"unknown backend {backend!r}: choose one of {', '.join(BACKENDS)}")
+
+
+def _check_borders(mesh, free, backend, counted):
+    """(n,) boolean of the vertices of borders that may move, or None; ValueError where they cannot."""
+    free = np.asarray(free, dtype=bool)
+    if free.shape not in ((), (len(mesh.vertices),)):
+        raise ValueError(f"free_borders must be True or one per vertex, ({len(mesh.vertices)},), got {free.shape}")
+    if not free.any() or (half_edges(mesh.faces)[1] >= 0).all():
+        return None
+    if backend == "pymeshlab" or counted:
+        raise ValueError("borders stay where the backend is pymeshlab or attributes are counted: leave one out")
+    return np.broadcast_to(free, len(mesh.vertices))
 
 
 def _check_weights(mesh, weights):

@@ -25,7 +25,8 @@ class SimplificationTask:
 
     given: the Mesh in its own units and axes. saliency (n,) f8 in 0..1. points (k,) vertex ids to
     keep, most salient first, rings (k,) around each. weights: (n,) for the soft variant or None. shrink: whether the
-    neighbourhoods may shrink where the target needs it. attributes: their weights in the error, see `simplify`.
+    neighbourhoods may shrink where the target needs it. attributes: their weights in the error; free_borders: whether
+    the boundary is simplified, too, but where it meets a border between materials: see `simplify`.
     """
 
     given: Mesh
@@ -36,6 +37,7 @@ class SimplificationTask:
     backend: str
     shrink: bool
     attributes: Mapping[str, float] = field(default_factory=dict)
+    free_borders: bool = False
 
     @cached_property
     def mesh(self) -> Mesh:
@@ -50,13 +52,13 @@ class SimplificationTask:
     @cached_property
     def smallest(self) -> int:
         """The smallest feasible face count with the points kept."""
-        return smallest_feasible(self.mesh, self.points, self.rings)
+        return smallest_feasible(self.mesh, self.points, self.rings, self.free_borders)
 
     @cached_property
     def smallest_with_borders(self) -> int:
         """The same with the borders between materials preserved too."""
         cut, ids = self.cut
-        return smallest_feasible(cut, *self._on_cut(ids))
+        return smallest_feasible(cut, *self._on_cut(ids), self.free_borders)
 
     @cached_property
     def border(self) -> np.ndarray:
@@ -80,7 +82,7 @@ class SimplificationTask:
     @property
     def lowest_target(self) -> int:
         """The lowest face count to ask for: less than `smallest` where neighbourhoods may shrink."""
-        return smallest_feasible(self.mesh) if self.shrink else self.smallest
+        return smallest_feasible(self.mesh, free_borders=self.free_borders) if self.shrink else self.smallest
 
     def simplified(self, faces: int) -> Mesh:
         """The Mesh of at most `faces` faces, in the frame of `mesh`, with its attributes.
@@ -97,7 +99,7 @@ class SimplificationTask:
     def plain(self, faces: int) -> Mesh:
         """As `simplified`, by plain quadric edge collapse: no points, no weights."""
         nothing = np.zeros(0, dtype=np.int64)
-        other = SimplificationTask(self.given, self.saliency, nothing, nothing, None, self.backend, False)
+        other = replace(self, points=nothing, rings=nothing, weights=None, shrink=False, attributes={})
         return other.simplified(faces)
 
     def points_kept(self, mesh: Mesh) -> np.ndarray:
@@ -125,10 +127,15 @@ class SimplificationTask:
     def _simplify(self, mesh, ids, faces):
         keep, rings = self._on_cut(ids)
         counts = {"weights": None if self.weights is None else self.weights[ids], "attributes": self.attributes}
+        counts["free_borders"] = self._free(ids) if self.free_borders else False
         # Those that the error does not count are transferred once, at the end.
         bare = mesh if self.attributes else replace(mesh, colors=None, texture=None)
         found = simplify(bare, faces, keep, rings, self.backend, self.shrink, **counts)
         return self.mesh if found is bare else carry(self.mesh, close_borders(found, mesh, ids))
+
+    def _free(self, ids):
+        """(n',) boolean: of the cut mesh's vertices those of the boundary alone."""
+        return np.isin(ids, self.boundary) & (np.bincount(ids)[ids] == 1)
 
     def _on_cut(self, ids):
         """(vertex ids, rings): the points on the cut mesh, whose vertices have the old ids `ids`; with all copies."""

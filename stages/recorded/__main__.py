@@ -1,7 +1,8 @@
 """Recognises touches that others recorded: by the thesis's protocol, and where it flatters (T4.2.4, table 4.4).
 
 Reads the archive that recorded.folder names. Writes reports/measurements/SET/recorded.csv.gz: what was measured, never
-the recordings. A data set is one kind of recording, recorded.kind: images of a pressure array, or grasps of a hand.
+the recordings. A data set is one kind of recording, recorded.kind: images of a pressure array, grasps of a hand, events
+of a fingertip, or grasps by pressure arrays over time.
 """
 
 from stages.classification.recorded import read_grasps, read_pressure_images
@@ -9,12 +10,15 @@ from stages.kit.command import workspace_of_arguments
 from stages.kit.run import StageRun
 from stages.kit.workspace import Workspace
 
-from . import biotac_grasps, pressure_images
+from . import biotac_grasps, pressure_images, schunk, touch_events
 from .schema import COLUMNS, Params
+from .touch_series import read_grasp_series, read_touch_events
 
 KINDS = {  # kind: how it is read, and what measures it
     "pressure_images": (read_pressure_images, pressure_images),
     "biotac_grasps": (read_grasps, biotac_grasps),
+    "touch_events": (read_touch_events, touch_events),
+    "schunk": (read_grasp_series, schunk),
 }
 
 

@@ -15,6 +15,13 @@ COLUMNS = {
     "scaled": "of grasps: by mean and deviation of the training part, or each part by its own",
     "components": "of grasps: principal components, or electrodes where there is no reduction",
     "count": "of grasps: grasps tested on",
+    "part": "of touches over time: test (the publisher's own test part) or training (held out within the other part)",
+    "bins": "of touches over time: parts of equal length that a touch is divided into",
+    "parameter": "of touches over time: what the classifier was set to",
+    "heard": "of touches over time: share of the touch, from its beginning",
+    "cells": "of touches over time: taxels, or cells of an array, that are read",
+    "disturbance": "of touches over time: what happens to the test touches: dead taxels, dropped events or jitter",
+    "severity": "of the disturbance: share of the taxels or events, or deviation in steps",
 }
 
 
@@ -22,9 +29,9 @@ COLUMNS = {
 class Params:
     """Section `recorded` of params.yaml; also what the other stages on recorded touches read."""
 
-    kind: str  # what was recorded: pressure_images, biotac_grasps; of other stages also vitac, vt60, bigs, schunk
+    kind: str  # what was recorded: a name of stages.recorded.__main__.KINDS; of other stages also vitac, vt60, bigs
     folder: str  # the folder or zip archive of the recordings
-    repetitions: int  # random splits, and sets of classes drawn at random
+    repetitions: int  # random splits, and sets of classes drawn at random; of touches over time the foldings
 
     def path(self, root: Path) -> Path:
         """Where the recordings lie; a relative folder counts from the repository root."""

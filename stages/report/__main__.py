@@ -17,26 +17,35 @@ from stages.kit.files import write_json, write_table, write_text
 from stages.kit.parallel import parallel_map
 
 from .claims_page import claims_shown
+from .counting import counted, counts, open_by_cause
 from .items import Built
 from .markdown import as_text, markdown_table
 from .results import NotRun, Results
 from .schema import Params
 from .site import write_site
 from .topics import CLAIMS, KINDS, TOPICS, build_all
-from .verdict import counted, counts, judged
+from .verdict import judged
 from .viewer import pack_viewer
 
 OWN_NOTE = "this page is about a folder alone; `python -m stages.compose` switches the project's own data sets on"
 CLAIMS_NOTE = """Each effect is a paired difference, positive on the side that the thesis claims, with its 95 %
 interval. *supported*: the interval lies wholly on the claimed side; *contradicted*: wholly on the other; *no
-difference*: it covers zero and nothing that would matter (3 points of accuracy, 3 % of an error, 0.03 PCC, 0.05 NSS);
-*open*: it covers more, is unknown (equal differences show no spread), or nothing was measured. *holds*: whether a
-verdict that is decided holds among all claims of its chapter, at a false discovery rate of 5 % (Benjamini and Hochberg
-1995), by p, which follows from the interval. Over objects it is a bootstrap
-over the objects, and carries to other objects of this kind. Over repetitions it is a bootstrap over repeated splits
-of the same imprints, widened for what they share (Nadeau and Bengio 2003): it is about these few objects alone.
-Section *ours*: what this project says of its own
-model, and not the thesis."""
+difference*: it covers zero and nothing that would matter (3 points of accuracy, 3 % of an error, 0.03 PCC, 0.05 NSS,
+0.01 AUC); *mixed*: the data sets disagree; *open*: it covers more, is unknown (equal differences show no spread), or
+nothing was measured. *holds*: whether a verdict that is decided holds among all claims of its chapter, at a false
+discovery rate of 5 % (Benjamini and Hochberg 1995), by p, which follows from the interval.
+
+An interval is a bootstrap over the outermost units: classes with their objects, objects with their draws. Copies of a
+shape are one unit. Over objects it carries to other objects of this kind. Over repetitions it is a bootstrap over
+repeated splits of the same imprints, widened for what they share (Nadeau and Bengio 2003): it is about these few
+objects alone. A claim on several data sets is judged by their pooled effect, by random effects. Three sets or more that
+differ have the interval of Hartung and Knapp, which carries to other sets. Sets disagree where each side of zero has a
+set whose own interval excludes it, or where sets of both signs differ by Cochran's Q (p below 0.05).
+
+Of an open claim the last column says why it is open, and how many units would decide it at its present effect and
+spread, by Student's interval. Where sets differ, these are sets. Section *ours*: what this project says of its own
+model, and not the thesis. A sentence that is judged several times counts once: with the word that all its measured
+verdicts share, as mixed where they contradict each other, else as open."""
 
 
 def main() -> None:
@@ -99,8 +108,9 @@ def write_claims(claims: pd.DataFrame, differences: pd.DataFrame, out: Path) -> 
     """Writes claims.csv, claims.md and the differences behind the verdicts."""
     write_table(out / "claims.csv", claims)
     write_table(out / "claims/differences.csv.gz", differences)
-    text = markdown_table(as_text(claims_shown(claims)))
-    write_text(out / "claims.md", f"# Claims of the thesis, tested\n\n{CLAIMS_NOTE}\n\n{counted(claims)}\n\n{text}")
+    table = markdown_table(as_text(claims_shown(claims)))
+    parts = ("# Claims of the thesis, tested", CLAIMS_NOTE, counted(claims), open_by_cause(claims), table)
+    write_text(out / "claims.md", "\n\n".join(parts))
 
 
 def dataset_line(results: Results) -> str:

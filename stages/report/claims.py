@@ -1,7 +1,7 @@
 """A claim of the thesis as data: which rows are compared, in which pairs, and in which words."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from stages.kit.split import shared_by
@@ -10,7 +10,14 @@ Phrases = Mapping[tuple[str, Any], str]  # (column, value) -> words
 Side = Mapping[str, Any]  # column -> value; a tuple: the mean of several; a Pick: one of several, by its mean
 
 POINTS = "points of accuracy"
-OVER = {"repetition": "repetitions", "item": "objects", "fold": "folds", "method": "methods", "group": "groups"}
+OVER = {
+    "repetition": "repetitions",
+    "item": "objects",
+    "fold": "folds",
+    "method": "methods",
+    "group": "classes",
+    "set": "sets",
+}
 
 
 @dataclass(frozen=True)
@@ -39,16 +46,17 @@ def lowest_of(*names: str, but: tuple[str, ...] = ()) -> Pick:
 class Claim:
     """One testable sentence: the paired differences of two sides of the rows of a stage, positive as it is claimed.
 
-    dataset: the set of the rows; None: the first that has rows of the stage. first, second: the rows of each side, of
-    another set where a side names a `dataset`; second may be a number (before scaling) or None. where: what both have
-    in common. A text value with `*` is a pattern. over: columns whose combinations are the pairs, the unit of the
-    analysis; within: columns that are matched too, before the differences of a unit are averaged. relative: differences
-    as shares of the mean of both sides. mean_of: the side ("first" or "second") that counts by the mean of all its
-    rows. contrast: two selections; the difference under the first of them minus that under the second. scale, then
-    margin: from differences to `unit`.
-    statistic: a name of stages.report.differences.STATISTICS. shared: test over training share (kit.split); None:
-    that of the split where the pairs are repetitions, else 0. phrases: {(column, value): words} of the topic. note:
-    words behind all others.
+    dataset: the set of the rows; None: the first that has rows of the stage and is not named. Several: the effects of
+    those that have such rows are pooled. elsewhere: {method: the one in its place on all sets but the first}. first,
+    second: the rows of each side, of another set where a side names a `dataset`; second may be a number (before
+    scaling) or None. where: what both have in common. A text value with `*` is a pattern. over: columns whose
+    combinations are the pairs, the outermost unit of the analysis first (stages.kit.units); within: columns that are
+    matched too, before the differences of a pair are averaged. relative: differences as shares of the mean of both
+    sides. mean_of: the side ("first" or "second") that counts by the mean of all its rows. contrast: two selections;
+    the difference under the first of them minus that under the second. scale, then margin: from differences to `unit`.
+    statistic: a name of stages.report.differences.STATISTICS. shared: test over training share (kit.split), or a
+    function of the set; None: that of the split where the pairs are repetitions, else 0. phrases: {(column, value):
+    words} of the topic. note: words behind all others.
     """
 
     key: str
@@ -58,7 +66,8 @@ class Claim:
     first: Side = field(default_factory=dict)
     second: Side | float | None = None
     where: Side = field(default_factory=dict)
-    dataset: str | None = None
+    dataset: str | None | tuple[str | None, ...] = None
+    elsewhere: Mapping[str, str] = field(default_factory=dict)
     over: tuple[str, ...] = ("repetition",)
     within: tuple[str, ...] = ()
     relative: bool = False
@@ -68,7 +77,7 @@ class Claim:
     margin: float = 0.0
     unit: str = POINTS
     statistic: str = "difference"
-    shared: float | None = None
+    shared: float | Callable[[str], float] | None = None
     phrases: Phrases = field(default_factory=dict)
     note: str = ""
 
@@ -82,12 +91,44 @@ class Claim:
     @property
     def share(self) -> float:
         """Test over training share of the pairs, for the interval."""
+        if callable(self.shared):
+            return self.shared(self.sets[0] or "")
         if self.shared is not None:
             return self.shared
         split = {**self.where, **self.first}.get("split")
         return shared_by(str(split)) if "repetition" in self.over and split else 0.0
 
     @property
+    def sets(self) -> tuple[str | None, ...]:
+        """The data sets, as they were named."""
+        return self.dataset if isinstance(self.dataset, tuple) else (self.dataset,)
+
+    def on(self, dataset: str | None) -> "Claim":
+        """The claim on one set; on all but the first of its own, methods give way to those of `elsewhere`."""
+        shared = self.shared(dataset or "") if callable(self.shared) else self.shared
+        sides = {"first": self.first, "second": self.second}
+        if self.elsewhere and dataset != self.sets[0]:
+            sides = {name: _renamed(side, self.elsewhere) for name, side in sides.items()}
+        return replace(self, dataset=dataset, shared=shared, **sides)  # pyright: ignore[reportArgumentType]
+
+    @property
     def pairs(self) -> str:
         """What the pairs are, in words."""
-        return " and ".join(self.phrases.get(("over", column), OVER.get(column, column)) for column in self.over)
+        return " and ".join(map(self._words_of, self.over))
+
+    @property
+    def units(self) -> str:
+        """What the outermost units are, in words."""
+        return self._words_of(self.over[0])
+
+    def _words_of(self, column: str) -> str:
+        return self.phrases.get(("over", column), OVER.get(column, column))
+
+
+def _renamed(value: Any, names: Mapping[str, str]) -> Any:
+    """A side of a claim, or a part of it, with other names of methods."""
+    if isinstance(value, Mapping):
+        return {column: _renamed(wanted, names) for column, wanted in value.items()}
+    if isinstance(value, Pick):
+        return replace(value, names=_renamed(value.names, names))
+    return tuple(_renamed(one, names) for one in value) if isinstance(value, tuple) else names.get(value, value)

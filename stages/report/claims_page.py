@@ -7,28 +7,50 @@ from typing import Any
 
 import pandas as pd
 
+from .anew import command
 from .claims import Claim
+from .counting import counted, open_by_cause
+from .effects import sets_of
 from .markdown import with_interval
 from .page import WORDS, folded, part, prose, script_json
 from .results import Results
-from .verdict import counted
 from .words import dataset_text
 
 CHAPTERS = {  # start of a claim's section -> what it is about
     "T3": "chapter 3: looking, meshes", "T4": "chapter 4: touching", "T5": "chapter 5: from sight to touch",
     "T6": "chapter 6: conclusions", "ours": "this project's own",
 }  # fmt: skip
-EXPERIMENTS = {("furniture", "transfer"): "experiment=transfer"}  # stages that a set runs only in an experiment
 
 
 def claims_shown(claims: pd.DataFrame) -> pd.DataFrame:
-    """The frame of claims as a person reads it: section, verdict, claim, effect, tested on, over."""
+    """The frame of claims as a person reads it, what decides those that are open last."""
     shown = claims[["section", "verdict", "claim"]].copy()
     shown["effect"] = [effect(row) for row in claims.itertuples()]
     shown["holds"] = claims["holds"]
     shown["tested on"] = claims["tested_on"]
-    shown["pairs"] = [f"{row.pairs} {row.over}" if row.pairs else "–" for row in claims.itertuples()]
+    shown["on each set"] = [sets_text(row) for row in claims.itertuples()]
+    shown["pairs"] = [over_text(row) if row.pairs else "–" for row in claims.itertuples()]
+    shown["open"] = [open_text(row) for row in claims.itertuples()]
     return shown
+
+
+def over_text(row: Any) -> str:
+    """`50 objects, 40 units`: the pairs, and how many units they are of where these are fewer."""
+    return f"{row.pairs} {row.over}" + (f", {row.units} units" if row.units != row.pairs else "")
+
+
+def sets_text(row: Any) -> str:
+    """The effect on each set, and the share of their variation that is between them; empty for one set."""
+    if row.by_set != row.by_set or not row.by_set:
+        return ""
+    return row.by_set + (f"; {100 * row.i2:.0f} % of the variation between sets" if row.i2 == row.i2 else "")
+
+
+def open_text(row: Any) -> str:
+    """Why a claim is open, and how many units would decide it at its present effect and spread; empty for others."""
+    if row.cause != row.cause or not row.cause:
+        return ""
+    return row.cause + (f": about {row.needed:,.0f} {row.needed_of} would decide" if row.needed == row.needed else "")
 
 
 def effect(row: Any) -> str:
@@ -38,18 +60,11 @@ def effect(row: Any) -> str:
     return f"{'+' if row.effect > 0 else ''}{with_interval(row.effect, row.low, row.high)} {row.unit}"
 
 
-def sets_of(claim: Claim, results: Results) -> list[str]:
-    """The data sets that a claim is tested on: its own, or the first that has rows, and those that a side names."""
-    own = claim.dataset or next(iter(results.datasets(claim.stage)), "")
+def sets_read(claim: Claim, results: Results) -> list[str]:
+    """The data sets that a claim is tested on, and those that a side names instead."""
     named = [side["dataset"] for side in (claim.first, claim.second) if isinstance(side, dict) and "dataset" in side]
-    return list(dict.fromkeys(named or [own])) if own or named else []
-
-
-def command(stage: str, sets: Sequence[str]) -> str:
-    """What measures a claim anew."""
-    chosen = next((EXPERIMENTS[name, stage] for name in sets if (name, stage) in EXPERIMENTS), None)
-    switched = chosen or f"'sets=[{','.join(sets)}]'"
-    return f"python -m stages.compose {switched} && dvc repro {' '.join(f'{stage}@{name}' for name in sets)} report"
+    own = [name for name in sets_of(claim, results) if name]
+    return list(dict.fromkeys(named or own)) if own else []
 
 
 def claims_main(known: Sequence[Claim], claims: pd.DataFrame, differences: pd.DataFrame, results: Results) -> str:
@@ -58,17 +73,20 @@ def claims_main(known: Sequence[Claim], claims: pd.DataFrame, differences: pd.Da
     items, values = [], {name: {} for name in ("chapter", "verdict", "set")}
     for row in claims.itertuples():
         claim = by_key[str(row.key)]
-        sets = sets_of(claim, results)
+        sets = sets_read(claim, results)
         chapter = next((start for start in CHAPTERS if str(row.section).startswith(start)), str(row.section))
         values["chapter"][chapter] = CHAPTERS.get(chapter, chapter)
         values["verdict"][str(row.verdict).replace(" ", "-")] = str(row.verdict)
         values["set"] |= {name: dataset_text(name) for name in sets}
-        items.append(_claim_html(row, claim, sets, chapter))
+        again = command(results.workspace.root / "conf", claim.stage, sets) if sets else ""
+        files = [name for name in sets if name in results.datasets(claim.stage)]
+        items.append(_claim_html(row, claim, sets, files, chapter, again))
     pairs = {
         key: frame[["pair", "difference"]].to_numpy().tolist() for key, frame in differences.groupby("key", sort=False)
     }
     words = {
         "counted": escape(counted(claims)),
+        "causes": escape(open_by_cause(claims)),
         **{f"{name}s": _options(found) for name, found in values.items()},
         "claims": "".join(items),
         "pairs": script_json(pairs),
@@ -76,21 +94,26 @@ def claims_main(known: Sequence[Claim], claims: pd.DataFrame, differences: pd.Da
     return Template(part("claims.html")).substitute(words)
 
 
-def _claim_html(row: Any, claim: Claim, sets: Sequence[str], chapter: str) -> str:
+def _claim_html(
+    row: Any, claim: Claim, sets: Sequence[str], files: Sequence[str], chapter: str, command: str
+) -> str:  # fmt: skip
     """A claim that opens to what it was tested on, its data and its command; a script adds its pairs."""
-    files = " ".join(
+    links = " ".join(
         f'<a href="../measurements/{name}/{claim.stage}.csv.gz" download>{name}/{claim.stage}.csv.gz</a>'
-        for name in sets
+        for name in files
     )
-    again = f"<dt>Judged again from its rows</dt><dd><code>haptic-glance claim {row.key}</code></dd>"
-    again += f"<dt>Measured again</dt><dd><code>{escape(command(claim.stage, sets))}</code></dd>" if sets else ""
-    data = f"<dt>Data</dt><dd>{files if row.pairs else 'not measured'}</dd>"
-    data += f"<dt>Holds among the claims of its chapter</dt><dd>{row.holds}</dd>" if row.holds else ""
-    over = f"{row.pairs} {row.over}" if row.pairs else "none"
-    more = (
-        f"<dl><dt>Tested on</dt><dd>{prose(row.tested_on)}</dd>{data}{again}"
-        f'<dt>Pairs</dt><dd class="pairs" data-unit="{escape(row.unit)}">{escape(over)}</dd></dl>'
-    )
+    facts = {
+        "Tested on": prose(row.tested_on),
+        "On each set": prose(sets_text(row)),
+        "Open": prose(open_text(row)),
+        "Data": links if row.pairs else "not measured",
+        "Holds among the claims of its chapter": row.holds,
+        "Judged again from its rows": f"<code>haptic-glance claim {row.key}</code>",
+        "Measured again": command and f"<code>{escape(command)}</code>",
+    }
+    said = "".join(f"<dt>{name}</dt><dd>{text}</dd>" for name, text in facts.items() if text)
+    over = escape(over_text(row)) if row.pairs else "none"
+    more = f'<dl>{said}<dt>Pairs</dt><dd class="pairs" data-unit="{escape(row.unit)}">{over}</dd></dl>'
     badge = f'<span class="word {WORDS[row.verdict]}">{row.verdict}</span>'
     summary = f"{badge} {escape(row.claim)} <small>{escape(row.section)} · {escape(effect(row))}</small>"
     marks = f'data-chapter="{chapter}" data-verdict="{row.verdict.replace(" ", "-")}" data-set="{" ".join(sets)}"'

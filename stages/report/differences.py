@@ -18,7 +18,7 @@ def statistic(name: str) -> Callable:
 
 
 def differences(results: Results, claim: Claim) -> pd.Series:
-    """The differences of a claim in its unit, indexed by its `over`; NotRun where nothing can be paired."""
+    """The differences of a claim on one set, in its unit, indexed by its `over`; NotRun where nothing can be paired."""
     found = STATISTICS[claim.statistic](results, claim).dropna()
     return claim.scale * some(found, f"no pairs for {claim.key}", claim.stage, runnable=False) + claim.margin
 
@@ -35,7 +35,7 @@ def beyond_chance(results: Results, claim: Claim) -> pd.Series:
     """First side minus second, both scaled so that guessing is 0 and certainty 1; their groups tell the chance."""
     scores, sides = [], (claim.first, claim.other)
     for one, other in (sides, sides[::-1]):
-        guess = 1 / results.classes(str({**claim.where, **one}["group"]), claim.dataset)
+        guess = 1 / results.classes(str({**claim.where, **one}["group"]), claim.sets[0])
         scores.append((side(results, claim, one, other) - guess) / (1 - guess))
     return scores[0] - scores[1]
 
@@ -46,7 +46,7 @@ def side(results: Results, claim: Claim, own: Side, other: Side | float | None, 
     other: the other side, whose values a Pick leaves out. extra: further columns that both sides have in common.
     """
     where = {**claim.where, **(extra or {}), **own}
-    dataset = where.pop("dataset", claim.dataset)
+    dataset = where.pop("dataset", claim.sets[0])
     picks = {column: wanted for column, wanted in where.items() if isinstance(wanted, Pick)}
     patterns = {column: wanted for column, wanted in where.items() if isinstance(wanted, str) and "*" in wanted}
     plain = {column: wanted for column, wanted in where.items() if column not in picks | patterns}

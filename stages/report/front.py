@@ -11,11 +11,11 @@ import pandas as pd
 from matplotlib.figure import Figure as Drawing
 
 from .cells import CLAIMS, PREFIXES, filled
+from .counting import counts
 from .markdown import with_interval
 from .page import box, part, prose
 from .style import CYCLE, INK, SETTINGS, plt
 from .vector import vector
-from .verdict import counts
 
 ROWS = 5  # heights of the dots of a chart: pairs of like values lie beside each other
 

@@ -21,9 +21,14 @@ def means(frame: pd.DataFrame, by: Sequence[str], shared: float = 0.0, top: floa
     """
     found, names = [], (*by, "mean", "low", "high", "values", "seconds")
     for key, rows in grouped(frame.dropna(subset=["value"]), by):
-        numbers = (*within(rows["value"], shared, top=top), len(rows), rows["seconds"].median())
+        numbers = (*within(over_items(rows), shared, top=top), len(rows), rows["seconds"].median())
         found.append(dict(zip(names, (*key, *numbers), strict=True)))
     return found
+
+
+def over_items(rows: pd.DataFrame) -> pd.Series:
+    """Column `value`, indexed by `item` where each row is about one: an interval then counts copies of a shape once."""
+    return rows.set_index("item")["value"] if "item" in rows and rows["item"].notna().all() else rows["value"]
 
 
 def grouped(frame: pd.DataFrame, by: Sequence[str]) -> Iterator[tuple[tuple[Any, ...], pd.DataFrame]]:

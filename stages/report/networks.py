@@ -1,6 +1,7 @@
 """What several topics read of trainings of networks on imprints (chapter 5)."""
 
 from dataclasses import replace
+from functools import partial
 from itertools import product
 from typing import Any
 
@@ -19,6 +20,7 @@ FINE, COARSE = "imprints128", "imprints16"
 THESIS = {FINE: "table_5_4_simulated_fsr_128x128", COARSE: "table_5_3_fsr_16x16"}  # its tables of them
 SPLITS = {"random": "touches at random", "objects": "unseen objects"}
 THEIRS = "princeton_six"  # the set of the thesis's classes
+SETS = (THEIRS, None)  # of a claim: that, and the first of the others, the furniture
 OF_CLASS = {THEIRS: 5}  # objects of each class; of the other sets three
 STARTS, MODES = ("imagenet", "random"), ("finetuned", "frozen")
 PRETRAINED = {"complete": "", "convolutions": "its convolutions", "converted": "converted from Keras"}
@@ -79,19 +81,6 @@ def both(*claims: Claim, items: str = "touches", done: str = "touched") -> list[
         found.append(replace(
             claim, key=f"{claim.key}_{split}", where={**claim.where, "split": split},
             sentence=f"{claim.sentence[:-1]}, on objects never {done} too." if unseen else claim.sentence,
-            shared=shared(split, claim.dataset), phrases={**claim.phrases, **words},
+            shared=partial(shared, split), phrases={**claim.phrases, **words},
         ))  # fmt: skip
     return found
-
-
-def on_their_classes(claims: list[Claim]) -> list[Claim]:
-    """Claims of `both` on the thesis's own classes, by its protocol."""
-    return [
-        replace(claim, key=f"{claim.key}_psb", dataset=THEIRS, shared=shared(str(claim.where["split"]), THEIRS))
-        for claim in claims
-    ]
-
-
-def on_ours(claims: list[Claim]) -> list[Claim]:
-    """The same claims on our own objects, which are no test of the thesis's sentence."""
-    return [replace(claim, section="ours") for claim in claims]

@@ -21,7 +21,7 @@ from .vector import has_marks_alone, vector
 WIDEST = 900  # pixels of a picture on the page
 LONG = 30  # rows after which a table scrolls in its own box
 # Word -> class in the style sheet.
-WORDS = {"supported": "yes", "contradicted": "no", "no difference": "open", "open": "open"}
+WORDS = {"supported": "yes", "contradicted": "no", "no difference": "open", "mixed": "open", "open": "open"}
 UP = "../"  # from a page of reports/site to reports/
 
 

@@ -11,11 +11,11 @@ from stages.kit.files import write_text
 
 from .cells import CLAIMS
 from .claims_page import claims_main
+from .counting import counts
 from .front import findings_html, questions, questions_html
 from .items import Figure, Table
 from .page import box, folded, image, lacks_cells, part, prose, script_json
 from .prose import findings
-from .verdict import counts
 from .words import dataset_text
 
 HOME, FOLDER = "index.html", "site"

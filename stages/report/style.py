@@ -53,6 +53,8 @@ LABELS = {
     "knn": "kNN",
     "svm": "SVM",
     "naive_bayes": "naive Bayes",
+    "discriminant": "linear discriminant",
+    "linear_svm": "linear SVM",
     "heat_kernel": "heat kernel signature",
     "hks": "heat kernel signature",
     "dkl": "DKL",

@@ -1,10 +1,12 @@
 """What a claim is tested on, written from its fields."""
 
+from collections.abc import Sequence
+
 from stages.kit.split import Split
 
 from .claims import Claim, Pick, Side
 from .markdown import number
-from .results import COLOURED, ON_BLACK, ON_GREY, ON_WHITE, SECTION_3_1, SECTION_3_2, SECTION_4_2, Results
+from .results import COLOURED, ON_BLACK, ON_GREY, ON_WHITE, SECTION_3_1, SECTION_3_2, SECTION_4_2, SETS_4_2, Results
 from .style import label
 
 METRICS = {  # "" where the claim's unit says it
@@ -12,11 +14,13 @@ METRICS = {  # "" where the claim's unit says it
 }  # fmt: skip
 DATASETS = {
     SECTION_3_1: "household as in T3.1", SECTION_3_2: "meshes with human gaze as in T3.2",
-    SECTION_4_2: "household as in T4.2", COLOURED: "furniture in colour",
+    SECTION_4_2: "household as in T4.2", SETS_4_2[0]: "random sets of household shapes as in T4.2",
+    SETS_4_2[1]: "random sets of psb as in T4.2", COLOURED: "furniture in colour",
     ON_BLACK: "the same with the black background filtered", ON_GREY: "on grey", ON_WHITE: "on white",
     "gaze": "meshes with human gaze", "gaze_clouds": "point clouds with human gaze", "princeton": "psb",
     "princeton_eight": "psb, the thesis's 8 classes", "princeton_six": "psb, the thesis's 6 classes",
     "pressure_images": "recorded pressure array", "biotac_grasps": "recorded fingertips",
+    "touch_events": "recorded events of a fingertip",
     "household_denoised": "household, denoised", "furniture_hands": "furniture, several arrays or touches",
     "schunk": "recorded hand with arrays",
 }  # fmt: skip
@@ -28,11 +32,11 @@ def dataset_text(name: str) -> str:
     return DATASETS.get(name, name)
 
 
-def tested_on(claim: Claim, results: Results) -> str:
-    """`household: kNN, six objects, first minus second`: set, what both sides share, the sides, and the note."""
-    dataset = claim.dataset or next(iter(results.datasets(claim.stage)), "")
+def tested_on(claim: Claim, results: Results, sets: Sequence[str]) -> str:
+    """`household: kNN, six objects, first minus second`: sets, what both sides share, the sides, and the note."""
+    claim, several = claim.on(sets[0]), " and ".join(map(dataset_text, sets))
     shared = [_phrase(claim, results, column, value) for column, value in claim.where.items()]
-    parts = [dataset_text(dataset), *shared, _sides(claim, results), claim.note]
+    parts = [several, *shared, _sides(claim, results), claim.note]
     return ", ".join(part for part in parts if part)
 
 
@@ -65,7 +69,7 @@ def _phrase(claim: Claim, results: Results, column: str, value: object) -> str:
     if value is None:
         return ""
     if column == "group":
-        return results.group_text(str(value), claim.dataset)
+        return results.group_text(str(value), claim.sets[0])
     if column == "dataset":
         return dataset_text(str(value))
     if column == "split":

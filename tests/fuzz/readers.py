@@ -28,6 +28,7 @@ from stages.kit.params import load_params
 from stages.lod import write_any
 from stages.meshes import clean, load, normalise
 from stages.meshes.sources import FIXATION_MAPS, GAZE, collection_files
+from stages.recorded.touch_series import read_touch_events
 from stages.scene.loaded_back import read_lod
 from stages.transfer.recorded.bigs import read_bigs
 from stages.transfer.recorded.schunk import read_schunk
@@ -298,6 +299,13 @@ def schunk_seeds(folder):
     return [(folder / "cup" / "grasp-0.mat").read_bytes()]
 
 
+def event_seeds(folder):
+    for part in ("Ev-Objects/train", "Ev-Objects/test", "Ev-Containers/train", "Ev-Containers/test"):
+        (folder / part).mkdir(parents=True)
+        np.save(folder / part / "sample_0_label_1.npy", np.ones((39, 2, 5), np.float32))
+    return [(folder / "Ev-Objects/train/sample_0_label_1.npy").read_bytes()]
+
+
 def lod_seeds(folder):
     tree = {"nodes": [{"name": "a", "extensions": {"MSFT_lod": {"ids": [1]}}}, {"name": "b"}]}
     text = json.dumps(tree).encode()
@@ -383,6 +391,9 @@ READERS = {
     "picture": Reader("a.jpg", pictures("jpg", "png", "bmp"), lambda path: read_picture(path, 16)),
     "pressure": Reader("Images/cup/1.jpg", pressure_seeds, lambda path: read_pressure_images(path.parents[2])),
     "grasps": Reader("bts3v2_palm_45.csv", grasp_seeds, lambda path: read_grasps(path.parent), count=200),
+    "events": Reader(
+        "Ev-Objects/test/sample_0_label_1.npy", event_seeds, lambda path: read_touch_events(path.parents[2]), count=200
+    ),
     "schunk": Reader("ball/grasp-0.mat", schunk_seeds, lambda path: read_schunk(path.parents[1]), count=200),
     "bigs": Reader("ball/success/1/a.csv", bigs_seeds, lambda path: read_bigs(path.parents[3]), count=200),
     "marks": Reader("a.csv", mark_seeds, read_marks),

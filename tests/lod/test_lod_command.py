@@ -631,3 +631,19 @@ def test_seams_double_vertices_and_only_they():
     whole, cut = (next(iter(to_trimesh(one).geometry.values())) for one in (mesh, split))
     assert len(whole.vertices) == len(mesh.vertices)
     assert len(mesh.vertices) < len(cut.vertices) < 1.2 * len(mesh.vertices)
+
+
+def test_a_free_boundary_is_simplified_and_what_forbids_it_is_named(tmp_path, capsys):
+    side = np.linspace(0, 10, 21)
+    x, y = (axis.ravel() for axis in np.meshgrid(side, side))
+    ids = np.arange(441).reshape(21, 21)
+    a, b, c, d = (part.ravel() for part in (ids[:-1, :-1], ids[:-1, 1:], ids[1:, 1:], ids[1:, :-1]))
+    sheet = Mesh(np.c_[x, y, np.sin(x)], np.concatenate([np.c_[a, b, c], np.c_[a, c, d]]))
+    write_any(tmp_path / "sheet.obj", sheet)
+    given = [str(tmp_path / "sheet.obj"), "--method", "qem", "--out", str(tmp_path / "out.obj"), "--faces", "100"]
+    with pytest.raises(ValueError, match="80 boundary edges are frozen: .*--free-borders"):
+        run(given)
+    with pytest.raises(ValueError, match="--free-borders has no effect with --backend pymeshlab"):
+        run([*given, "--free-borders", "--backend", "pymeshlab"])
+    assert run([*given, "--free-borders"]) == 0
+    assert len(load(tmp_path / "out.obj").faces) <= 100 and "border edges kept" not in capsys.readouterr().out

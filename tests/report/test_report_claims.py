@@ -9,12 +9,13 @@ import pytest
 from stages.kit.stats import interval
 from stages.report import CLAIMS, judge, verdict
 from stages.report.__main__ import write_claims
-from stages.report.claims import Claim, highest_of, lowest_of
-from stages.report.claims_page import effect
+from stages.report.claims import POINTS, Claim, highest_of, lowest_of
+from stages.report.claims_page import effect, open_text, over_text
+from stages.report.counting import counted, sentences
 from stages.report.differences import differences
 from stages.report.results import SECTION_3_1, NotRun
 from stages.report.topics import build_all
-from stages.report.verdict import COLUMNS, counted, holding, judged
+from stages.report.verdict import holding, judged
 
 
 def of(results, key):
@@ -212,7 +213,8 @@ def test_equal_differences_are_open_and_say_why(root, small):
 
 
 def test_words_are_written_from_the_fields(root, results, small):
-    said = "test, kNN, six objects, test part drawn at random, all imprints, our model of gaze minus blind touch"
+    said = "test, kNN, six objects, test part drawn at random, all imprints, our model of gaze minus blind touch, "
+    said += "five draws"
     assert of(results, "ours_over_blind")["tested_on"] == said
     small.write_set(root, "six", 4)
     assert of(results, "ours_over_blind")["tested_on"] == said.replace("six objects", "4 objects (group six)")
@@ -268,12 +270,172 @@ def test_transfer_that_was_left_out_hands_on_its_note(root, small):
     assert build_all("tradeoff", results).not_run["networks"] == "no cup"
 
 
+def frame_of(words, **columns):
+    """A frame of `judge` with these verdicts, each of a sentence of its own unless told."""
+    found = {"verdict": words, "section": "T3.1", "claim": [f"s{k}" for k in range(len(words))], "pairs": 5}
+    return pd.DataFrame(found | {"holds": ""} | columns)
+
+
 def test_verdicts_are_counted_with_those_that_hold_among_so_many():
-    words = ["supported"] * 30 + ["contradicted"] * 10 + ["no difference"] * 5 + ["open"] * 45
-    holds = ["yes"] * 33 + ["no"] * 7 + [""] * 50
-    said = counted(pd.DataFrame({"verdict": words, "holds": holds}, columns=COLUMNS))
-    assert said.startswith("90 verdicts: 30 supported, 10 contradicted, 5 no difference, 45 open.")
+    words = ["supported"] * 30 + ["contradicted"] * 10 + ["no difference"] * 5 + ["mixed"] * 2 + ["open"] * 45
+    said = counted(frame_of(words, holds=["yes"] * 33 + ["no"] * 7 + [""] * 52))
+    assert said.startswith("92 verdicts: 30 supported, 10 contradicted, 5 no difference, 2 mixed, 45 open.")
     assert "Of the 40 that are supported or contradicted, 33 hold" in said
+    assert "They judge 92 sentences: 30 supported" in said and "Of these 92 are the thesis's" in said
+
+
+@pytest.mark.parametrize(
+    ("words", "once"),
+    [
+        (["supported", "supported"], "supported"),
+        (["supported", "open"], "open"),
+        (["supported", "contradicted"], "mixed"),
+        (["supported", "mixed"], "mixed"),
+        (["contradicted", "no difference"], "open"),
+        (["no difference", "no difference"], "no difference"),
+    ],
+)
+def test_a_sentence_counts_once_by_the_word_that_its_verdicts_share(words, once):
+    assert sentences(frame_of(words, claim="Same."))["verdict"].tolist() == [once]
+
+
+def test_what_was_not_run_says_nothing_of_a_sentence_and_ours_is_another_than_the_thesis_s():
+    found = sentences(frame_of(["supported", "open"], claim="Same.", pairs=[5, 0]))
+    assert found["verdict"].tolist() == ["supported"]
+    assert sentences(frame_of(["open"], pairs=0))["verdict"].tolist() == ["open"]
+    assert len(sentences(frame_of(["open", "open"], claim="Same.", section=["T4.2", "ours"]))) == 2
+
+
+def sets_of_rows(root, small, **found):
+    """Results whose stage `test` has these differences from zero on these sets, one an item."""
+    for dataset, values in found.items():
+        frame = {"dataset": dataset, "metric": "error", "item": [f"{dataset}{k}" for k in range(len(values))]}
+        small.write(root, "test", pd.DataFrame(frame | {"value": values}), dataset)
+    return small.results(root)
+
+
+def spread_about(mean, seed=0, count=12, spread=1.0):
+    values = np.random.default_rng(seed).normal(size=count)
+    return mean + spread * (values - values.mean()) / values.std(ddof=1)
+
+
+def pooled(results, *sets, **fields):
+    return judge([claim(second=0.0, dataset=sets, **fields)], results).iloc[0]
+
+
+def test_sets_that_say_the_same_are_pooled_and_decide_what_none_decides_alone(root, small):
+    results = sets_of_rows(root, small, one=spread_about(0.5), two=spread_about(0.5, 1), more=spread_about(0.5, 2))
+    alone = judge([claim(second=0.0, dataset="one")], results).iloc[0]
+    row = pooled(results, "one", "two", "more")
+    assert alone["verdict"] == "open" and row["verdict"] == "supported"
+    assert row["effect"] == pytest.approx(0.5, abs=1e-3) and row["i2"] == 0 and row["pairs"] == row["units"] == 36
+    assert row["by_set"].count("+0.5") == 3 and row["tested_on"].startswith("one and two and more")
+
+
+def test_sets_on_either_side_of_zero_are_mixed(root, small):
+    results = sets_of_rows(root, small, one=spread_about(2.0), two=spread_about(-1.0))
+    row = pooled(results, "one", "two")
+    assert row["verdict"] == "mixed" and row["i2"] > 0.9 and row["holds"] == ""
+
+
+def test_sets_of_both_signs_that_differ_beyond_chance_are_mixed_and_others_are_not(root, small):
+    beyond, within = (
+        sets_of_rows(root, small, one=spread_about(2.0), two=spread_about(low)) for low in (-0.1, 1.5)
+    )  # fmt: skip
+    assert pooled(within, "one", "two")["verdict"] == "supported"
+    results = sets_of_rows(root, small, one=spread_about(2.0), two=spread_about(-0.1))
+    assert pooled(results, "one", "two")["verdict"] == "mixed"
+    results = sets_of_rows(root, small, one=spread_about(0.2), two=spread_about(-0.1))
+    assert pooled(results, "one", "two")["verdict"] == "open"
+
+
+def test_sets_that_agree_by_different_amounts_still_decide(root, small):
+    results = sets_of_rows(root, small, one=spread_about(1.0), two=spread_about(5.0), more=spread_about(20.0))
+    row, alone = pooled(results, "one", "two", "more"), interval(spread_about(1.0))
+    assert row["verdict"] == "supported" and row["i2"] > 0.9 and row["p"] < 0.05
+    assert row["low"] == pytest.approx(alone[1], rel=0.01)  # cut: by Hartung and Knapp's it would lie below zero
+
+
+def test_a_set_without_rows_is_named_and_the_others_decide(root, small):
+    results = sets_of_rows(root, small, one=spread_about(2.0), two=spread_about(2.0, 1))
+    row = pooled(results, "absent", "one", "two")
+    assert row["verdict"] == "supported" and row["tested_on"].endswith("; not measured on absent")
+    assert pooled(results, "absent", "one")["by_set"] == ""
+
+
+def test_a_set_without_an_interval_is_told_and_not_pooled(root, small):
+    results = sets_of_rows(root, small, one=spread_about(2.0), two=np.full(5, 3.0))
+    row = pooled(results, "one", "two")
+    assert row["units"] == 12 and row["effect"] == pytest.approx(2.0, abs=1e-3)
+    assert row["tested_on"].endswith("no interval of two: all 5 differences are equal")
+
+
+def test_methods_give_way_to_others_on_all_sets_but_the_first():
+    one = claim(
+        dataset=("a", "b"), elsewhere={"x": "y"}, first={"method": ("x", "z")}, second={"method": highest_of("x")}
+    )
+    assert one.on("a").first == {"method": ("x", "z")}
+    assert one.on("b").first == {"method": ("y", "z")} and one.on("b").second == {"method": highest_of("y")}
+
+
+def test_copies_of_a_shape_count_once(root, small):
+    names = ["cubesmall", "cubemedium", "cubelarge", "mug", "cup"]
+    row = judge([claim(second=0.0)], values(root, small, item=names, value=[1, 1, 1, 3, 5])).iloc[0]
+    assert row["effect"] == 3 and (row["pairs"], row["units"]) == (5, 3)
+    assert over_text(row) == "5 objects, 3 units"
+
+
+@pytest.mark.parametrize(
+    ("values", "cause"),
+    [
+        ([0.5, -0.4, 1.0, -0.5], "5 units or fewer a set"),
+        (spread_about(0.3), "fewer than 100 units needed"),
+        (spread_about(0.1), "100 units or more needed"),
+        (spread_about(0.001), "hardly an effect"),
+        ([1.0, 1.0], "no spread"),
+    ],
+)
+def test_an_open_claim_says_why_and_how_many_units_would_decide_it(root, small, values, cause):
+    row = judge([claim(second=0.0)], sets_of_rows(root, small, one=values)).iloc[0]
+    assert row["verdict"] == "open" and row["cause"] == cause
+    assert (row["needed"] == row["needed"]) == ("unit" in cause) and open_text(row).startswith(cause)
+
+
+def test_splits_of_the_same_data_may_never_decide(root, small):
+    frame = pd.DataFrame({"dataset": "test", "metric": "error", "repetition": range(12), "value": spread_about(0.3)})
+    small.write(root, "test", frame)
+    row = judge([claim(second=0.0, over=("repetition",), shared=1 / 3)], small.results(root)).iloc[0]
+    assert row["cause"] == "more splits of the same data would not decide"
+
+
+def test_where_sets_differ_more_sets_are_needed(root, small):
+    far = {name: spread_about(mean, spread=0.5) for name, mean in (("one", 3.0), ("two", 0.1), ("more", 1.0))}
+    row = pooled(sets_of_rows(root, small, **far), "one", "two", "more")
+    assert row["verdict"] == "open" and row["needed_of"] == "data sets" and 3 < row["needed"] < 50
+
+
+def test_no_margin_is_wider_than_what_it_is_a_margin_of():
+    rooms = [one for one in CLAIMS if one.statistic == "room"]
+    assert rooms and all(one.margin <= 10 and "%" in one.unit for one in rooms)  # shares of the errors themselves
+    others = [one for one in CLAIMS if one.margin and one.statistic != "room"]
+    assert all(one.unit == POINTS and one.margin < 10 for one in others)
+
+
+def test_every_verdict_of_grad_cam_by_pcc_has_its_like_by_nss_and_auc():
+    own = {one.key: one for one in CLAIMS if one.stage == "fixation" and one.where.get("metric") == "pcc"}
+    every = {one.key: one for one in CLAIMS}
+    assert len(own) > 20
+    for key, one in own.items():
+        for metric in ("nss", "auc"):
+            other = every[f"{key}_{metric}"]
+            assert other.sentence == one.sentence and other.where["metric"] == metric and other.unit == metric.upper()
+            assert (other.first, other.second, other.within) == (one.first, one.second, one.within)
+
+
+def test_no_two_sets_of_a_claim_share_an_object():
+    alike = [{"household", SECTION_3_1, None}, {"gaze", "gaze_3_2", "gaze_on_black"}, {"princeton", "princeton_all"}]
+    for one in CLAIMS:
+        assert all(len(same & set(one.sets)) < 2 for same in alike), one.key
 
 
 @pytest.mark.slow

@@ -11,6 +11,7 @@ from stages.kit.stats import interval
 from stages.report import judge, meshes
 from stages.report.claims import highest_of, lowest_of
 from stages.report.differences import differences
+from stages.report.effects import sets_of
 from stages.report.meshes import pictures, simplification
 from stages.report.meshes.claims import BOTH, CLAIMS, FEW_MINUS_MANY, claim, lower
 from stages.report.meshes.errors import BOXES
@@ -24,7 +25,6 @@ from stages.report.words import dataset_text
 OBJECTS = ["a", "b", "c", "d"]
 POINTS = {"heat_kernel": 3, "SymRad": 4, "itti": 15, "guided_ssim": 16, "guided_ed": 17, "svm": 18, "harris": 50,
           "corners": 60, "VisAttAll": 20, "VisAttCurvSymCon": 14, "VisAttCon": 13, "enhanced": 12}  # fmt: skip
-PROTOCOLS = (SECTION_3_1, SECTION_3_2)
 WAYS = ["guided_ssim-adaptive", "guided_ed-adaptive", "svm-adaptive"]
 TARGETS = {"25%": 2000, "3000": 3000, "1500": 1500}
 
@@ -238,11 +238,11 @@ def room(results, margin, methods, base):
 def test_equivalence_holds_within_the_margin_and_fails_beyond_it(run):
     results = run(measured())
     assert higher(results, "guided_ed", "guided_ssim", "1500").mean() > 0  # they differ, beyond doubt, but little
-    _, low, _ = interval(room(results, 1e-3, ("guided_ed",), "guided_ssim"))
+    _, low, _ = interval(room(results, 0.2, ("guided_ed",), "guided_ssim"))
     assert low > 0
-    _, _, high = interval(room(results, 1e-6, ("guided_ed",), "guided_ssim"))
+    _, _, high = interval(room(results, 1e-3, ("guided_ed",), "guided_ssim"))
     assert high < 0
-    _, _, high = interval(room(results, 1e-4, ("guided_ed", "corners"), "guided_ssim"))
+    _, _, high = interval(room(results, 0.2, ("guided_ed", "corners"), "guided_ssim"))
     assert high < 0  # the farthest of them decides
 
 
@@ -261,6 +261,9 @@ def test_ranks_agree_where_the_error_grows_with_the_points(run):
     assert stated(results, "ranks_agree", first=ERROR, second={"metric": "dlap"}).min() > 0.98
 
 
+DECIDED = [{"supported"}, {"contradicted"}]
+
+
 @pytest.mark.slow
 def test_every_claim_on_meshes_is_judged_on_every_set(run):
     own_truth = measured(SECTION_3_2, 3).replace({"method": {name: seen for seen, name in UNSEEN.items()}})
@@ -275,9 +278,13 @@ def test_every_claim_on_meshes_is_judged_on_every_set(run):
         assert words["adaptive_svm_metro", data] == "supported"
         assert words["hks_high", data] == "contradicted"
     judged = judge(within, results).set_index("key")["verdict"]
-    data = {claim.key: dataset_text(claim.dataset) if claim.dataset in PROTOCOLS else "test" for claim in within}
-    assert (judged == [words[place] for place in zip(judged.index, judged.index.map(data), strict=True)]).all()
-    assert len(set(data.values())) == 3
+    known = results.datasets("lod")
+    of_sets = {
+        one.key: [words[one.key, dataset_text(str(name))] for name in sets_of(one, results) if name in known]
+        for one in within
+    }
+    agreed = {key: found[0] for key, found in of_sets.items() if len(found) > 1 and set(found) in DECIDED}
+    assert len(agreed) > 10 and (judged[list(agreed)] == list(agreed.values())).all()
 
 
 def with_people():

@@ -182,7 +182,7 @@ def test_verdicts_are_counted_beside_the_claims(run):
     said = re.search(r"\d+ verdicts: .*rate of 5 %\.", (run / "reports/claims.md").read_text())[0]
     claims = pd.read_csv(run / "reports/claims.csv")
     assert said.startswith(f"{len(claims)} verdicts: {(claims['verdict'] == 'supported').sum()} supported")
-    assert f"<p>{said}</p>" in (run / "reports/site/claims.html").read_text()
+    assert f"<p>{said} They judge" in (run / "reports/site/claims.html").read_text()
 
 
 def test_equal_runs_give_equal_bytes_with_any_number_of_workers(run, small):

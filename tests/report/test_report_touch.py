@@ -7,7 +7,7 @@ import pytest
 from stages.imprints import Imprints, write_imprints
 from stages.kit.files import write_arrays
 from stages.report import touch
-from stages.report.results import SECTION_4_2, NotRun
+from stages.report.results import SECTION_4_2, SETS_4_2, NotRun
 from stages.report.topics import CLAIMS, build_one
 from stages.report.touch import claims, pictures, touches
 from stages.report.touch.rows import PRINTED
@@ -58,10 +58,20 @@ def rows(best="VisAttAll", dataset=PRINTED):
     return pd.DataFrame(found).assign(dataset=dataset, seed=0)
 
 
+def drawn(dataset):
+    """The same rows as if each repetition were a random set of objects, with the shares of each."""
+    found, numbers = rows(dataset=dataset), range(1, 7)
+    shares = found[found["repetition"].isna()]
+    each = [shares.assign(set=number, value=shares["value"] * (1 + 0.01 * number)) for number in numbers]
+    return pd.concat([found.dropna(subset=["repetition"]).assign(set=lambda row: row["repetition"] + 1), *each])
+
+
 @pytest.fixture
 def glance(root, small):
     """Results with all variants."""
     small.write(root, "classification", rows(), PRINTED)
+    for name in SETS_4_2:
+        small.write(root, "classification", drawn(name), name)
     small.write(root, "classification", rows("enhanced", "test"))
     return small.results(root)
 
@@ -76,10 +86,11 @@ def verdicts(results):
 
 def test_twin_shows_the_regions_and_the_first_fifteen(glance):
     shown = table("table_4_1", glance).shown
-    protocols = ["as printed", "ours", "as printed, unseen regions", "ours, unseen regions", "the thesis"]
-    assert shown["protocol"].unique().tolist() == protocols
+    protocols = ["as printed", "as printed, 12 random sets", "ours"]
+    below = [f"{name}, unseen regions" for name in protocols]
+    assert shown["protocol"].unique().tolist() == [*protocols, *below, "the thesis"]
     knn = shown.set_index(["protocol", "sampling"])["kNN, %"]
-    attention = [knn[protocol, "enhanced visual attention"] for protocol in (protocols[0], protocols[2], protocols[4])]
+    attention = [knn[protocol, "enhanced visual attention"] for protocol in (protocols[0], below[0], "the thesis")]
     assert attention[0].startswith("60 [") and attention[1:] == ["40", "73"]
     assert knn["as printed", "blind touch, 15 imprints"].startswith("50 [")
     assert ("the thesis", "blind touch, 15 imprints") not in knn and knn.index.is_unique
@@ -152,7 +163,7 @@ def test_claims_follow_the_measurements(glance):
     words = verdicts(glance)["verdict"]
     supported = ("selection_helps", "locations_help", "more_touches", "certain_at_five", "network_dips_disjoint",
                  "dissimilar_random", "dissimilar_itti_first_15")  # fmt: skip
-    assert all(words[key] == "supported" for key in supported)
+    assert {key: words[key] for key in supported} == dict.fromkeys(supported, "supported")
     assert words["selection_helps_train"] == words["locations_help_turned"] == words["network_dips"] == "contradicted"
     assert verdicts(glance).loc["more_touches", "effect"] == pytest.approx(39, abs=1)
 

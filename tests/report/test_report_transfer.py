@@ -177,7 +177,7 @@ def test_a_claim_turns_with_the_rows(bare, small):
 
 def test_depth_is_compared_with_change(run):
     depth = next(one for one in chapter_5.CLAIMS if one.key == "earlier_change_more")
-    assert differences(run, depth).to_numpy() == pytest.approx([1, 1])
+    assert differences(run, depth.on(None)).to_numpy() == pytest.approx([1, 1])
 
 
 def test_without_trainings_nothing_is_made_up(bare, small):

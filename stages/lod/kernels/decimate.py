@@ -79,8 +79,9 @@ def _decimate(surface, wedges, head, following, lowest, mark, last, faces, turn,
 @helper
 def _offer(corner, opposite, locked, position, quadric, wedges, head, following, lowest, h):
     if opposite[h] >= 0 and not (locked[corner[h]] and locked[corner[after(h)]]):
-        cost = _cost(corner, opposite, locked, position, quadric, wedges, h)[0]
-        push(head, following, lowest, h, bucket_of(cost))
+        cost, x, _y, _z = _cost(corner, opposite, locked, position, quadric, wedges, h)
+        if x == x:  # of hidden faces one corner lies nowhere: see stages.lod.free_borders
+            push(head, following, lowest, h, bucket_of(cost))
 
 
 @helper

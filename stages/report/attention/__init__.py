@@ -1,9 +1,10 @@
 """Where people look: models of attention against human gaze and marks (T3.1, T3.2)."""
 
-from . import agreement, annotations, charts, claims, learned, maps, views_seen
+from . import agreement, annotations, charts, claims, learned, maps, nested, views_seen
 
 TABLES = {
     "attention_gaze": agreement.against_gaze,
+    "attention_nested": nested.build,
     "attention_clouds": agreement.against_clouds,
     "attention_marks": agreement.against_marks,
     "annotations": annotations.build,

@@ -8,7 +8,7 @@ from stages.report.results import COLOURED, ON_BLACK
 
 from .rows import ANY_POSE, CLASSICAL, GLANCE, NO_RIVALS, OURS, PER_OBJECT, SAME
 
-CLOUDS = "gaze_clouds"
+SETS = ("gaze", "gaze_clouds")  # with human gaze; no object is in both
 BEST_RIVAL = highest_of(but=(*NO_RIVALS, *SAME, *PER_OBJECT, "*_seen"))
 ONE_HUE = 0.98  # the least correlation of DKL with intensity on four household objects, each in one colour of a palette
 ENHANCED = "thesis_ssim"  # the thesis's own: the average weighted with its SSIM weights
@@ -28,12 +28,10 @@ PHRASES = {
 on_gaze = partial(Claim, dataset="gaze", over=("item",), phrases=PHRASES)
 
 
-def closer_to_gaze(
-    key: str, section: str, sentence: str, first: str, second: str | Pick, dataset: str = "gaze"
-) -> Claim:
+def closer_to_gaze(key: str, section: str, sentence: str, first: str, second: str | Pick) -> Claim:
     """A claim that the NSS of one method is higher than that of another."""
     return on_gaze(key=key, section=section, sentence=sentence, stage="salient_points", where={"metric": "nss"},
-                   first={"method": first}, second={"method": second}, dataset=dataset, scale=1,
+                   first={"method": first}, second={"method": second}, dataset=SETS, scale=1,
                    unit="NSS")  # fmt: skip
 
 
@@ -83,16 +81,18 @@ CLAIMS = [
                 first={"views": "best"}, second={"views": fixed})
         for fixed, said in (("four", "four fixed ones"), ("twelve", "the twelve of T figure 3.2"))
     ),
+    *(
+        on_gaze(key=f"gaze_choices_flatter_{model}", section="ours", stage="attention_settings", scale=1, unit="NSS",
+                sentence=f"Features and ridge that were chosen on the judged objects flatter the {said}.",
+                where={"metric": "nss"}, first={"method": f"{model}_once"}, second={"method": f"{model}_nested"})
+        for model, said in (("glance", "glance"), ("fixations", "enhanced model"))
+    ),
     closer_to_gaze("ours_over_best_gaze", "ours", "Our model of gaze predicts where people look better than its best "
                    "rival.", OURS, BEST_RIVAL),
     closer_to_gaze("glance_over_views_gaze", "ours", "Our glance at even samples of the surface predicts where people "
                    "look better than our model that renders views.", GLANCE, OURS),
     closer_to_gaze("glance_over_best_gaze", "ours", "Our glance predicts where people look better than its best rival.",
                    GLANCE, BEST_RIVAL),
-    closer_to_gaze("glance_over_views_clouds", "ours", "On point clouds, too, our glance predicts gaze better than our "
-                   "model that renders views.", GLANCE, OURS, CLOUDS),
-    closer_to_gaze("glance_over_best_clouds", "ours", "On point clouds, too, our glance predicts gaze better than its "
-                   "best rival.", GLANCE, BEST_RIVAL, CLOUDS),
     closer_to_gaze("any_pose_over_best_gaze", "ours", "Our glance without an up axis predicts where people look better "
                    "than the best rival of the glance.", ANY_POSE, BEST_RIVAL),
     closer_to_gaze("ours_over_enhanced_gaze", "ours", "Our model predicts where people look better than the enhanced "

@@ -6,7 +6,7 @@ from typing import Any
 import pandas as pd
 
 from stages.kit.stats import interval
-from stages.report.grid import everywhere, grouped, percent, records
+from stages.report.grid import everywhere, grouped, over_items, percent, records
 from stages.report.items import Table
 from stages.report.markdown import number, with_interval
 from stages.report.ranking import Ranking
@@ -81,7 +81,7 @@ def _gaze_first(results: Results, metric: str, missing: str) -> pd.DataFrame:
 def _over_objects(group: pd.DataFrame) -> dict[str, float]:
     """One learned weight from all objects, with its interval over the objects' own values, n m - (n - 1) m_without."""
     of_all = group["item"].isna()
-    mean, without = group.loc[of_all, "value"].iloc[0], group.loc[~of_all, "value"].to_numpy()
+    mean, without = group.loc[of_all, "value"].iloc[0], group[~of_all].set_index("item")["value"]
     n = len(without)
     _, low, high = interval(n * mean - (n - 1) * without)
     return {"mean": mean, "low": low, "high": high, "objects": max(n, 1)}
@@ -101,7 +101,7 @@ def section_3_2_3(results: Results) -> Table:
     """How often the SVM is right about a pixel, and what the background alone would give."""
     rows = _gaze_first(results, "accuracy", "no SVM was trained")
     frame = pd.DataFrame([
-        dict(zip([*KEYS, "accuracy", "low", "high"], (*key, *interval(group["value"])), strict=True))
+        dict(zip([*KEYS, "accuracy", "low", "high"], (*key, *interval(over_items(group))), strict=True))
         | {"svms": len(group), **group[["deviation", "background_alone"]].mean().to_dict()}
         for key, group in grouped(rows, KEYS)
     ])  # fmt: skip

@@ -42,7 +42,7 @@ def touches_saved(results: Results, claim: Claim) -> pd.Series:
 @statistic("over_as_many_touches")
 def over_as_many_touches(results: Results, claim: Claim) -> pd.Series:
     """Accuracy of the first side minus that of a fixed number of touches, interpolated at as many."""
-    curve = curves(results.measured(STAGE, claim.dataset, **claim.where, stop="fixed"))
+    curve = curves(results.measured(STAGE, claim.sets[0], **claim.where, stop="fixed"))
     touches = _touches(results, claim, claim.first)
     fixed = {one: np.interp(touches[one], curve.columns, curve.loc[one]) for one in touches.index}
     return side(results, claim, claim.first, None) - pd.Series(fixed)
@@ -51,13 +51,13 @@ def over_as_many_touches(results: Results, claim: Claim) -> pd.Series:
 @statistic("overconfidence")
 def overconfidence(results: Results, claim: Claim) -> pd.Series:
     """Stated belief minus accuracy, after the largest number of touches."""
-    rows = results.measured(STAGE, claim.dataset, **claim.where)
+    rows = results.measured(STAGE, claim.sets[0], **claim.where)
     last = rows[rows["level"] == rows["level"].max()].set_index("repetition")
     return last["belief"] - last["value"]
 
 
 def _touches(results: Results, claim: Claim, own: Side) -> pd.Series:
-    return results.measured(STAGE, claim.dataset, **claim.where, **own).set_index("repetition")["touches"]
+    return results.measured(STAGE, claim.sets[0], **claim.where, **own).set_index("repetition")["touches"]
 
 
 CLAIMS = [

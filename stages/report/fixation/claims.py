@@ -5,11 +5,13 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
+from stages.fixation.agreement import ALL_VIEWS
 from stages.fixation.tasks import FUSED_TASKS
 from stages.report.claims import Claim
 
 from .detectors import FUSED, LEE, NARROWED, NOISE, OURS, PRIOR, RIVALS, network_text, task_text, with_random_weights
 from .places import ITSELF
+from .rows import WHOLE
 
 # The thesis's (T3.3.2), but that ResNet101's weights come with no package; then ours, with new heads alone.
 PRINTED = VGG, RESNET = ("vgg16-last_block", "resnet50-last_block")
@@ -24,7 +26,8 @@ DIAMETER = "% of the bounding sphere's diameter"
 VIEWS = ("0", "1", "2")  # the three views of which an object's score is the mean
 PHRASES = {
     ("method", TUNED): "mean of the networks", ("method", "rival"): "", ("method", "control"): "",
-    ("view", VIEWS): "", ("metric", "pcc_masked"): "PCC the thesis's way, hidden vertices as zeros",
+    ("view", VIEWS): "", ("view", ALL_VIEWS): "",
+    ("metric", "pcc_masked"): "PCC the thesis's way, hidden vertices as zeros",
     ("metric", "pcc_tasks"): "PCC between tasks", ("metric", "distance"): "distance (nearest, which favours many "
     "centres)", ("metric", "distance_mean"): "distance (mean of all pairs)",
     ("task", FUSED_TASKS): "mean of the four tasks that are fused,", ("task", AVERAGE): "equal weights,",
@@ -46,11 +49,23 @@ def agrees(
                  second=other, **more)  # fmt: skip
 
 
-def each_network(key: str, sentence: str, other: Callable[[str], Pair]) -> list[Claim]:
-    """The claim for each of PRINTED and FROZEN. other: of a method, what it is compared with."""
-    return [agrees(f"{key}_{one.partition('-')[0]}", sentence, (one, FUSED), other(one)) for one in PRINTED] + [
-        agrees(f"{key}_{one.replace('-', '_')}", sentence, (one, FUSED), other(one), "ours") for one in FROZEN
+def in_each_metric(*args: Any, **more: Any) -> list[Claim]:
+    """The claim of `agrees` by PCC, the thesis's measure, and by NSS and AUC, which are of all views: one sentence."""
+    claim = agrees(*args, **more)
+    return [claim] + [
+        replace(claim, key=f"{claim.key}_{metric}", where={"metric": metric, "view": ALL_VIEWS}, unit=metric.upper())
+        for metric in WHOLE
     ]
+
+
+def each_network(key: str, sentence: str, other: Callable[[str], Pair]) -> list[Claim]:
+    """The claims for each of PRINTED and FROZEN. other: of a method, what it is compared with."""
+    keys = {one: (f"{key}_{one.partition('-')[0]}", "T3.3.6") for one in PRINTED}
+    keys |= {one: (f"{key}_{one.replace('-', '_')}", "ours") for one in FROZEN}
+    return [
+        claim for one, (name, section) in keys.items()
+        for claim in in_each_metric(name, sentence, (one, FUSED), other(one), section)
+    ]  # fmt: skip
 
 
 def nearer(key: str, sentence: str, near: Pair, far: Pair) -> list[Claim]:
@@ -76,34 +91,36 @@ CLAIMS = [
                   lambda _: PRIOR),
     *nearer("ewigc_nearer_than_lee", "Fused Grad-CAM finds centres nearer to fixations than mesh saliency does.",
             EWIGC, LEE),
-    *[agrees(f"ewigc_over_{task}", f"Fused Grad-CAM predicts gaze better than {name}.", EWIGC, ("rival", task))
-      for name, task in RIVALS.items()],
+    *[one for name, task in RIVALS.items()
+      for one in in_each_metric(f"ewigc_over_{task}", f"Fused Grad-CAM predicts gaze better than {name}.", EWIGC,
+                                ("rival", task))],
     *[one for name, task in RIVALS.items()
       for one in nearer(f"ewigc_nearer_than_{task}", f"Fused Grad-CAM finds centres nearer to fixations than {name}.",
                         EWIGC, ("rival", task))],
     *nearer("ewigc_nearer_than_noise", "Fused Grad-CAM finds centres nearer to fixations than noise does.",
             EWIGC, NOISE),
-    *[agrees(f"{task}_least", f"Attention is less like people's where a network names {name} than in the tasks that "
-             "are fused.", (TUNED, FUSED_TASKS), (TUNED, task), "T3.3.3", within=("method",))
-      for task, name in NAMED.items()],
+    *[one for task, name in NAMED.items()
+      for one in in_each_metric(f"{task}_least", f"Attention is less like people's where a network names {name} than "
+                                "in the tasks that are fused.", (TUNED, FUSED_TASKS), (TUNED, task), "T3.3.3",
+                                within=("method",))],
     claim(key="resnet_more_alike", section="T3.3.3", where={"metric": "pcc_tasks"},
           sentence="The tasks' maps of ResNet are more alike than those of VGG16.",
           first={"method": RESNET}, second={"method": VGG}),
     same_place("chance", "chance would", "random places that two views see"),
     same_place("middle", "the middle of the picture", "what two views show in the middle"),
-    agrees("entropy_over_average", "Weighing maps by their entropy beats averaging them.", EWIGC, (TUNED, AVERAGE),
-           "T3.3.4", within=("method",)),
-    agrees("resnet_over_vgg", "Fused Grad-CAM of ResNet predicts gaze better than that of VGG16.", *BOTH),
+    *in_each_metric("entropy_over_average", "Weighing maps by their entropy beats averaging them.", EWIGC,
+                    (TUNED, AVERAGE), "T3.3.4", within=("method",)),
+    *in_each_metric("resnet_over_vgg", "Fused Grad-CAM of ResNet predicts gaze better than that of VGG16.", *BOTH),
     *nearer("resnet_nearer_than_vgg", "Fused Grad-CAM of ResNet finds centres nearer to fixations than that of VGG16.",
             *BOTH),
-    agrees("fused_over_narrowed", "The whole map correlates more with gaze than its highest levels alone.",
-           EWIGC, EWIGC_L4, within=("method",)),
+    *in_each_metric("fused_over_narrowed", "The whole map correlates more with gaze than its highest levels alone.",
+                    EWIGC, EWIGC_L4, within=("method",)),
     *nearer("fused_nearer_than_narrowed", "The whole map's centres lie nearer than those of its highest levels.",
             EWIGC, EWIGC_L4),
     agrees("fused_over_narrowed_masked", "The whole map correlates more with gaze than its highest levels, hidden "
            "vertices counted as zero.", EWIGC, EWIGC_L4, metric="pcc_masked", within=("method",)),
     agrees("ewigc_over_lee_masked", "Fused Grad-CAM predicts gaze better than Lee's mesh saliency, hidden vertices "
            "counted as zero.", EWIGC, LEE, metric="pcc_masked"),
-    agrees("ours_over_ewigc", "Our model of gaze predicts where people look better than fused Grad-CAM.", OURS, EWIGC,
-           "ours"),
+    *in_each_metric("ours_over_ewigc", "Our model of gaze predicts where people look better than fused Grad-CAM.",
+                    OURS, EWIGC, "ours"),
 ]  # fmt: skip

@@ -1,7 +1,7 @@
 """Claims on simplified meshes: channels and detectors (T3.1.5), kept points, learned weights, neighbourhoods (T3.2).
 
-Each is judged on the first data set, those on the error weighted by human gaze on the meshes that have it;
-tables/lod_claims has them on every set. Statistics of their own: lod_claims.py.
+Each is judged on all sets that have its rows, of which no two share an object; those on the error weighted by human
+gaze on the meshes that have it. tables/lod_claims has them set by set. Statistics of their own: lod_claims.py.
 """
 
 from functools import partial
@@ -36,7 +36,12 @@ METRO, SEEN = "metro_mean", "ssim_error"
 ERROR = {"metric": METRO}
 SHARE: dict[str, Any] = {"where": ERROR, "scale": 100.0, "unit": "% of the diagonal"}
 ALL_COUNTS = "mean over the face counts"
-MARGIN = 0.0002  # T3.1.5: "within a difference of 0.0002"; read as a share of the diagonal
+# T3.1.5: "within a difference of 0.0002"; more than many of our errors, and thus read as its share of the thesis's own
+# errors, 0.00267 in the mean of T table 3.2. Likewise "within 0.1" of errors that are far below 0.1.
+MARGIN, MARGIN_SEEN = 7.5, 10.0  # %
+# The sets of a claim; None: the first of the others, the household. The first is as the thesis printed it.
+MORE = ("gaze", "princeton")
+OF_3_1, OF_3_2, OF_OURS = (SECTION_3_1, *MORE), (SECTION_3_2, "household"), (None, *MORE, COLOURED)
 PHRASES = {
     ("metric", METRO): "Metro mean error", ("metric", "metro_max"): "Metro max",
     ("metric", SEEN): "SSIM error", ("metric", "dlap"): "DLap", ("metric", "dnor"): "Dnor",
@@ -48,7 +53,8 @@ PHRASES = {
     ("target", LOW): "1,500 faces", ("target", HIGH): "3,000 faces", ("target", (LOW, HIGH)): "1,500 and 3,000 faces",
 }  # fmt: skip
 Methods = str | tuple[str, ...] | Pick
-claim = partial(Claim, stage="lod", over=("item",), scale=1.0, phrases=PHRASES)
+claim = partial(Claim, stage="lod", dataset=OF_OURS, over=("item",), scale=1.0, phrases=PHRASES)
+of_3_2: dict[str, Any] = {"dataset": OF_3_2, "elsewhere": UNSEEN}
 
 
 def lower(
@@ -64,9 +70,10 @@ def lower(
 
 
 ranks = partial(claim, statistic="ranks_agree", unit="rank correlation")
-same = partial(claim, section="T3.1.5", dataset=SECTION_3_1, where=ERROR | BOTH, statistic="room", margin=MARGIN,
-               unit="of the diagonal", note="the largest difference either way, from the margin")  # fmt: skip
-printed: dict[str, Any] = {"dataset": SECTION_3_1, "target": (LOW, HIGH)}
+same = partial(claim, section="T3.1.5", dataset=OF_3_1, where=ERROR | BOTH, statistic="room", relative=True,
+               scale=100.0, margin=MARGIN, unit="% of both errors, within the margin",
+               note="the largest difference either way, from the margin")  # fmt: skip
+printed: dict[str, Any] = {"dataset": OF_3_1, "target": (LOW, HIGH)}
 metro, seen = (partial(lower, "T3.1.5", metric, **printed) for metric in (METRO, SEEN))
 KEEPING = (
     ("keep", "T3.2.8", "Keeping what draws the eye", "guided_ssim_seen"),
@@ -93,10 +100,10 @@ CLAIMS = [
     seen("curvature_ssim", "Curvature in the map is slightly better as seen (VisAttCurv).", CLASSICAL, "VisAttCurv"),
     claim(key="more_faces", section="T3.1.5", sentence="The error falls with more faces.", first={"method": CLASSICAL},
           statistic="falls_with_faces", note="at the fewest faces minus at the largest number", **SHARE,
-          dataset=SECTION_3_1),
+          dataset=OF_3_1),
     claim(key="wider_apart", section="T3.1.5", sentence="Methods differ more at lower resolutions.", **SHARE,
           first={"method": COMBINATIONS}, contrast=FEW_MINUS_MANY, statistic="spread", note="their standard deviation",
-          dataset=SECTION_3_1),
+          dataset=OF_3_1),
     seen("symmetry_alone", "Symmetry alone (SymLat, SymRad, 2Sym) is slightly better than VisAtt.",
          CLASSICAL, SYMMETRIES),
     same(key="symmetry_same", sentence="The symmetry channels alone lead to roughly the same errors.",
@@ -105,7 +112,7 @@ CLAIMS = [
          "VisAttSym", CLASSICAL),
     same(key="symmetry_within", sentence="VisAttSym stays within 0.1 of the classical model's perceptual errors.",
          where={"metric": (SEEN, "dlap", "dnor")} | BOTH, first={"method": ("VisAttSym",)},
-         second={"method": CLASSICAL}, margin=0.1, unit="of the error"),  # of the perceptual errors
+         second={"method": CLASSICAL}, margin=MARGIN_SEEN),
     same(key="combinations_same", sentence="All combinations but VisAttAll stay within 0.0002 of the classical model.",
          first={"method": OTHERS}, second={"method": CLASSICAL}),
     metro("all_channels", "All channels with equal weights are slightly worse (VisAttAll).", "VisAttAll", CLASSICAL),
@@ -118,12 +125,12 @@ CLAIMS = [
           RIVALS, COMBINATIONS),
     metro("attention_hks", "HKS is the exception: its error is lower than that of attention.", COMBINATIONS, HKS),
     ranks(key="points_errors", section="T3.1.5", sentence="More points go with larger errors.", first=ERROR,
-          where=BOTH, dataset=SECTION_3_1, note=f"with the number of points, over the methods, {ALL_COUNTS}"),
+          where=BOTH, dataset=OF_3_1, note=f"with the number of points, over the methods, {ALL_COUNTS}"),
     metro("curvature_salient_points", "VisAttCurvP has smaller errors than SP with about as many points.",
           "salient_points", "VisAttCurvP"),
     lower("T3.1.5", "metro_max", "many_points_distort",
           "Methods with many points (SDC, 3DH) distort at low resolution.", ("corners", "harris"), COMBINATIONS, LOW,
-          dataset=SECTION_3_1),
+          dataset=OF_3_1),
     *(
         lower("T3.1.3", metric, f"area_{short}",
               f"Neighbourhoods by the area of the salient region lead to a lower error ({how}).",
@@ -141,14 +148,15 @@ CLAIMS = [
     # Kept neighbourhoods, and points placed by chance.
     *(
         lower(section, metric, f"{start}_{short}", f"{who} gives a better simplified model than plain QEM ({how}).",
-              PLAIN, method, dataset=SECTION_3_2 if start == "keep" else dataset)
+              PLAIN, method, dataset=OF_3_2 if start == "keep" else dataset or OF_OURS,
+              elsewhere=UNSEEN if start == "keep" else {})
         for start, section, who, method in KEEPING
         for short, metric, how, dataset in BETTER
         if (start, short) != ("keep", "salient")  # our own model's, of which the thesis says nothing
     ),
     *(
         lower("ours", metric, f"fit_{short}", f"Fitting the vertices to the surface improves on QSlim ({how}).", QSLIM,
-              PLAIN, dataset=dataset)
+              PLAIN, dataset=dataset or OF_OURS)
         for short, metric, how, dataset in BETTER
         if short in ("metro", "ssim", "gaze")
     ),
@@ -161,13 +169,12 @@ CLAIMS = [
 ]  # fmt: skip
 
 metro, seen = (
-    partial(lower, section, metric, dataset=SECTION_3_2)
-    for section, metric in (("T3.2.9.1", METRO), ("T3.2.9.2", SEEN))
+    partial(lower, section, metric, **of_3_2) for section, metric in (("T3.2.9.1", METRO), ("T3.2.9.2", SEEN))
 )
 ED, SSIM, SVM = PRINTED
 CLAIMS += [
     metro("proposed_rivals", "ED, SSIM and SVM have a lower Metro error than the detectors.", RIVALS, PRINTED),
-    claim(key="rivals_low", section="T3.2.9.1", sentence="More so at low resolution.", dataset=SECTION_3_2,
+    claim(key="rivals_low", section="T3.2.9.1", sentence="More so at low resolution.", **of_3_2,
           first={"method": RIVALS}, second={"method": PRINTED}, contrast=FEW_MINUS_MANY, **SHARE),
     *(
         claimed(f"adaptive_{UNSEEN[name]}_{short}",
@@ -183,7 +190,7 @@ CLAIMS += [
     metro("hks_high", "All methods based on attention beat HKS at 3,000 faces.",
           HKS, highest_of(*PRINTED, *PRINTED_ADAPTIVE), HIGH),
     ranks(key="seen_confirms", section="T3.2.9.2", sentence="The error as seen confirms the Metro error.",
-          first=ERROR, second={"metric": SEEN}, dataset=SECTION_3_2, note=f"over the methods, {ALL_COUNTS}"),
+          first=ERROR, second={"metric": SEEN}, **of_3_2, note=f"over the methods, {ALL_COUNTS}"),
     seen("hks_seen", "HKS is better as seen than attention.", PRINTED, HKS),
     seen("ssim_over_all", "Weights by similarity beat equal weights (VisAttAll) as seen.", "VisAttAll", SSIM),
     seen("ed_over_all", "Weights by Euclidean distance beat equal weights (VisAttAll) as seen.", "VisAttAll", ED),

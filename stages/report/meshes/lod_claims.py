@@ -6,7 +6,7 @@ from typing import Any
 import pandas as pd
 
 from stages.kit.stats import interval
-from stages.report.claims import Claim, Pick
+from stages.report.claims import Claim
 from stages.report.differences import statistic
 from stages.report.items import Table
 from stages.report.results import SECTION_3_2, NotRun, Results, listed, some
@@ -17,17 +17,18 @@ from .claims import CLAIMS
 from .methods import PLAIN, QSLIM, UNSEEN, fixed
 from .rows import CELL, data_sets
 
-WORDS = {"supported": "yes", "contradicted": "no", "no difference": "none"}
+WORDS = {"supported": "yes", "contradicted": "no", "no difference": "none"}  # the others as they are
 MANY = 5  # methods that a rank correlation needs
 
 
 def build(results: Results) -> Table:
     """One row per claim, one column per data set, and the first set again where nothing shrank."""
     sets, within = data_sets(results), [claim for claim in CLAIMS if "dataset" not in claim.first]
+    within = [replace(claim, elsewhere=UNSEEN, dataset=(SECTION_3_2,)) for claim in within]  # that knows the object
     wanted = {dataset_text(name): (name, {}) for name in sets}
     wanted[f"{dataset_text(sets[0])}, nothing shrunk"] = sets[0], {"shrunk": False}
     parts = {
-        head: judge([replace(_said_of(claim, name), where={**claim.where, **where}) for claim in within], results)
+        head: judge([replace(one.on(name), where={**one.where, **where}) for one in within], results)
         for head, (name, where) in wanted.items()
     }
     frame = pd.concat([part.assign(data=head, objects=part["pairs"]) for head, part in parts.items()])
@@ -35,23 +36,6 @@ def build(results: Results) -> Table:
     shown = frame.loc[frame["data"] == dataset_text(sets[0]), ["section", "claim"]].assign(**texts)
     frame = frame[["key", "data", "verdict", "effect", "low", "high", "objects"]].sort_values("key", kind="stable")
     return Table(frame, shown)  # no ranking: claims do not compete
-
-
-def _said_of(claim: Claim, dataset: str) -> Claim:
-    """The claim on another set; there, methods that learned from the object itself give way to those that did not."""
-    sides = {"first": claim.first, "second": claim.second}
-    if dataset != SECTION_3_2:
-        sides = {name: _unseen(side) for name, side in sides.items()}
-    return replace(claim, dataset=dataset, **sides)  # pyright: ignore[reportArgumentType]
-
-
-def _unseen(value: Any) -> Any:
-    """A side of a claim, or a part of it, with the names of methods replaced by UNSEEN."""
-    if isinstance(value, dict):
-        return {column: _unseen(wanted) for column, wanted in value.items()}
-    if isinstance(value, Pick):
-        return replace(value, names=_unseen(value.names))
-    return tuple(map(_unseen, value)) if isinstance(value, tuple) else UNSEEN.get(value, value)
 
 
 def _cell(row: Any) -> str:
@@ -69,7 +53,7 @@ def spread(results: Results, claim: Claim) -> pd.Series:
 @statistic("falls_with_faces")
 def falls_with_faces(results: Results, claim: Claim) -> pd.Series:
     """Error at the fewest faces minus error at the largest number, of objects with several counts."""
-    rows = results.measured(claim.stage, claim.dataset, **claim.where, **claim.first).sort_values("faces")
+    rows = results.measured(claim.stage, claim.sets[0], **claim.where, **claim.first).sort_values("faces")
     rows = rows[rows.groupby("item")["faces"].transform("nunique") > 1]
     some(rows, "no object that is taken to two face counts", claim.stage, runnable=False)
     errors = rows.groupby("item")["value"]
@@ -78,7 +62,7 @@ def falls_with_faces(results: Results, claim: Claim) -> pd.Series:
 
 @statistic("room")
 def room(results: Results, claim: Claim) -> pd.Series:
-    """Minus the difference from the second side of the method and metric whose interval leaves the least room.
+    """Minus the relative difference from the second side of the method and metric whose interval leaves least room.
 
     With the claim's margin, an equivalence test by the interval: above zero where the whole interval of the difference
     lies within the margin (Schuirmann 1987, with the 95 % interval instead of 90 %: stricter).
@@ -88,7 +72,9 @@ def room(results: Results, claim: Claim) -> pd.Series:
         table = _errors(results, claim, (base, *claim.first["method"]), metric=metric)
         if base not in table or table.shape[1] < 2:
             raise NotRun(f"lod did not run {base} beside another", claim.stage, runnable=False)
-        gaps += [(table[name] - table[base]).groupby("item").mean() for name in table if name != base]
+        middle = (table.add(table[base], axis=0) / 2).where(lambda both: both > 0, 1.0)
+        shares = table.sub(table[base], axis=0) / middle
+        gaps += [shares[name].groupby("item").mean() for name in table if name != base]
     return min((side * gap for gap in gaps for side in (-1, 1)), key=lambda found: interval(found)[1])
 
 
@@ -108,14 +94,14 @@ def ranks_agree(results: Results, claim: Claim) -> pd.Series:
 
 def _errors(results: Results, claim: Claim, methods: tuple[str, ...], **where: object) -> pd.DataFrame:
     """Frame (object, target) x methods, where all of the methods that were run reach the target."""
-    rows = results.measured(claim.stage, claim.dataset, **{**claim.where, **where}, method=methods)
+    rows = results.measured(claim.stage, claim.sets[0], **{**claim.where, **where}, method=methods)
     table = rows.pivot(index=CELL, columns="method", values="value").dropna()
     return some(table, f"no target that all of {', '.join(methods)} reach", claim.stage, runnable=False)
 
 
 def _by_method(results: Results, claim: Claim, metric: str, column: str) -> pd.DataFrame:
     """Frame objects x methods of a column, mean over the targets that all methods reach; no objects without ranks."""
-    rows = results.measured(claim.stage, claim.dataset, **claim.where, metric=metric)
+    rows = results.measured(claim.stage, claim.sets[0], **claim.where, metric=metric)
     rows = rows[[name not in (PLAIN, QSLIM) and fixed(name) for name in rows["method"]]]
     reached = rows.groupby(CELL)["method"].transform("nunique")
     rows = rows[reached == rows["method"].nunique()]

@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 
 from stages.kit.stats import interval
-from stages.report.grid import grouped, within
+from stages.report.grid import grouped, over_items, within
 from stages.report.markdown import with_interval
 from stages.report.results import ON_GREY, ON_WHITE, Results, some
 
@@ -64,8 +64,8 @@ def compared(rows: pd.DataFrame, by: list[str], least: float = 0.0) -> pd.DataFr
     """Mean, its interval from `least` on, and mean difference from `plain`, over the objects of each value of `by`."""
     found = []
     for key, group in grouped(rows, by):
-        gain = interval(group["value"] - group["plain"])
-        found.append((*key, *within(group["value"], least=least, top=np.inf), group["value"].count(), *gain))
+        gain = interval(over_items(group.assign(value=group["value"] - group["plain"])))
+        found.append((*key, *within(over_items(group), least=least, top=np.inf), group["value"].count(), *gain))
     ends = ["mean", "low", "high", "objects", "over_plain", "over_plain_low", "over_plain_high"]
     return pd.DataFrame(found, columns=[*by, *ends])
 

@@ -23,7 +23,8 @@ PHRASES = {
     ("extent", "disc"): "in a disc",
     **{("pitch", pitch): f"{pitch:g} apart" for pitch in (FINE, COARSE, 2 * COARSE)},
 }
-claim = partial(Claim, section="T4.3.2", stage=STAGE, where=UNSEEN, over=("item",), phrases=PHRASES, note=ALL)
+claim = partial(Claim, section="T4.3.2", stage=STAGE, dataset=(None, "princeton_eight"), where=UNSEEN,
+                over=("group", "item"), phrases=PHRASES, note=ALL)  # fmt: skip
 larger = partial(claim, first={"cells": LARGE}, second={"cells": SMALL})
 HANDS = "furniture_hands"
 EQUAL = {"cells": 20, "fine": None, "extent": None}  # as many cells as 16 x 16 and 12 x 12

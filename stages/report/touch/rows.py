@@ -8,7 +8,7 @@ import pandas as pd
 
 from stages.kit.split import Split, shared_by
 from stages.report.grid import everywhere, within
-from stages.report.results import SECTION_4_2, Results
+from stages.report.results import SECTION_4_2, SETS_4_2, Results
 from stages.report.style import label
 
 STAGE = "classification"
@@ -19,14 +19,15 @@ OURS = {  # sampling of the thesis: method of ours
 ENHANCED = OURS["enhanced_visual_attention"]  # the thesis's later model: the average weighted with its SSIM weights
 MODEL = "enhanced"  # this project's model of gaze
 PRINTED, PLAIN_AVERAGE = SECTION_4_2, "VisAttAll"  # the model of T3.1
+BLIND = ("random", *(f"random_{draw}" for draw in range(2, 6)))  # draws of blind touch
 
 
 @dataclass(frozen=True)
 class Protocol:
     """Rows of one set: of T4.2's own sensor, views and model, or of ours.
 
-    dataset: its name. rows: what was measured. name: as the tables call it. best: the model whose points are looked at
-    closer.
+    dataset: its name, that of the first of several. rows: what was measured. name: as the tables call it. best: the
+    model whose points are looked at closer.
     """
 
     dataset: str
@@ -37,24 +38,37 @@ class Protocol:
     @property
     def samplings(self) -> dict[str, str]:
         """{method: sampling of the thesis}."""
-        model = self.best if self.dataset == PRINTED else ENHANCED
+        model = PLAIN_AVERAGE if self.best == PLAIN_AVERAGE else ENHANCED
         return {ours: theirs for theirs, ours in (OURS | {"enhanced_visual_attention": model}).items()}
 
 
-def protocols(results: Results, **where: Any) -> Iterator[Protocol]:
-    """The protocol as printed, where it was run, then ours on the first other set; NotRun where neither has rows."""
+def protocols(results: Results, on_sets: bool = False, **where: Any) -> Iterator[Protocol]:
+    """The protocol as printed, where it was run, then ours on the first other set; NotRun where neither has rows.
+
+    on_sets: also that as printed on random sets of objects.
+    """
     found = everywhere(results, STAGE, **where)
     if PRINTED in found:
         yield Protocol(PRINTED, found.pop(PRINTED), "as printed", PLAIN_AVERAGE)
+    if (drawn := {name: found.pop(name) for name in SETS_4_2 if name in found}) and on_sets:
+        rows = pd.concat(drawn.values()).replace({"method": dict.fromkeys(BLIND, BLIND[0])})
+        count = len(rows[["dataset", "set"]].drop_duplicates())
+        yield Protocol(next(iter(drawn)), rows, f"as printed, {count} random sets", PLAIN_AVERAGE)
     for dataset, rows in list(found.items())[:1]:
         yield Protocol(dataset, rows, "ours", MODEL)
 
 
 def accuracies(rows: pd.DataFrame) -> dict[str, float]:
-    """accuracy, low, high, repetitions at random, and mean accuracy on the other splits; NaN where not measured."""
-    values = rows[rows["metric"] == "accuracy"].dropna(subset=["value"]).set_index("split")["value"]
-    at_random = values[values.index == Split.RANDOM]
-    ends = zip(("accuracy", "low", "high"), within(at_random, shared_by(Split.RANDOM)), strict=True)
+    """accuracy, low, high, repetitions at random, and mean accuracy on the other splits; NaN where not measured.
+
+    The interval is over repeated splits of the same objects, or over random sets of objects.
+    """
+    measured = rows[rows["metric"] == "accuracy"].dropna(subset=["value"])
+    values = measured.set_index("split")["value"]
+    at_random, share = values[values.index == Split.RANDOM], shared_by(Split.RANDOM)
+    if "set" in measured and measured["set"].notna().any():
+        at_random, share = measured[measured["split"] == Split.RANDOM].groupby(["dataset", "set"])["value"].mean(), 0.0
+    ends = zip(("accuracy", "low", "high"), within(at_random, share), strict=True)
     others = (Split.FOLDS, Split.REGIONS, Split.RANDOM_FEWER)
     means = {f"accuracy_{one}": values[values.index == one].mean() for one in others}
     return {**dict(ends), "repetitions": len(at_random), **means}

@@ -36,7 +36,7 @@ def beside_thesis(results: Results, group: str, printed: str, variant: str = "pl
     """The Table of one group of objects beside the thesis's, by protocol; below, samplings of this project alone."""
     thesis = results.thesis(printed).set_index("sampling")
     parts, few = [], []
-    for protocol in protocols(results, group=group, variant=variant):
+    for protocol in protocols(results, on_sets=True, group=group, variant=variant):
         parts.append(_cells(protocol, thesis, whole=not parts))
         with suppress(NotRun):
             first = results.measured(STAGE, protocol.dataset, group=group, variant=fifteen(variant))
@@ -78,7 +78,8 @@ table_4_5 = partial(beside_thesis, group="six", printed="table_4_5_six_objects_w
 def table_4_6(results: Results) -> Table:
     """Recognition by one to five touches, beside the thesis, by protocol."""
     thesis = results.thesis("table_4_6_number_of_imprints").melt("classifier", var_name="touches", value_name="thesis")
-    frame = pd.concat([_by_touches(one, thesis) for one in protocols(results, group="six")], ignore_index=True)
+    found = protocols(results, on_sets=True, group="six")
+    frame = pd.concat([_by_touches(one, thesis) for one in found], ignore_index=True)
     some(frame, "no several touches", STAGE)
     plain = frame["best"] & (frame["way"] == "")
     others = frame["sampling"].map(label).mask(frame["best"], "")

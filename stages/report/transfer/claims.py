@@ -9,7 +9,7 @@ from scipy.stats import spearmanr
 from stages.kit.split import shared_by
 from stages.report.claims import Claim
 from stages.report.differences import statistic
-from stages.report.networks import COARSE, FINE, GUESS, NETWORK, SEEN, THEIRS, both, on_ours, on_their_classes
+from stages.report.networks import COARSE, FINE, GUESS, NETWORK, SEEN, SETS, THEIRS, both
 from stages.report.results import Results
 
 PHRASES = {
@@ -29,14 +29,14 @@ def claim(
     common = {name: value for name, value in (SETTING | where).items() if name != column}
     return Claim(
         key=key, section=section, sentence=sentence, stage="transfer", first={column: first}, second={column: second},
-        where=common, margin=margin, phrases=PHRASES, within=SEEN,
+        where=common, margin=margin, phrases=PHRASES, within=SEEN, dataset=SETS,
     )  # fmt: skip
 
 
 @statistic("later_convolutions_change_less")
 def later_change_less(results: Results, claim: Claim) -> pd.Series:
     """Minus the rank correlation of a convolution's depth with its change, per training."""
-    changes = results.measured("transfer", claim.dataset, metric="layer_weight_change", **claim.where)
+    changes = results.measured("transfer", claim.sets[0], metric="layer_weight_change", **claim.where)
     return -changes.groupby("repetition")["value"].agg(lambda one: spearmanr(np.arange(len(one)), one)[0])
 
 
@@ -60,15 +60,18 @@ OWN = both(
     claim("middle_frozen", "T5.5", "With layers 18 to 139 frozen touch is recognised as well as with all tuned, but "
           "for one point.", "mode", "18:139", "finetuned", 1.0),
 )  # fmt: skip
-EARLY = both(  # by layers that the default run does not freeze
-    claim("early_decisive", "T5.5", "The early layers are decisive: tuning them too beats tuning the last ones alone.",
-          "mode", "18:139", "1:134"),
-)  # fmt: skip
+EARLY = [  # by layers that the default run does not freeze
+    replace(one, key=f"{one.key}_psb", dataset=THEIRS)
+    for one in both(
+        claim("early_decisive", "T5.5", "The early layers are decisive: tuning them too beats tuning the last ones "
+              "alone.", "mode", "18:139", "1:134"),
+    )
+]  # fmt: skip
 CHANGES = Claim(
-    key="earlier_change_more", section="T5.4", stage="transfer", phrases=PHRASES, scale=1.0, shared=shared_by("random"),
+    key="earlier_change_more", section="T5.4", stage="transfer", dataset=SETS, phrases=PHRASES, scale=1.0,
+    shared=shared_by("random"),
     sentence="Earlier convolutions are altered more for touch than later ones.", unit="rank correlation",
     where={"method": NETWORK, "mode": "finetuned", "split": "random", "data": FINE, "weights": "imagenet"},
     statistic="later_convolutions_change_less", note="minus the rank correlation of depth and change",
 )  # fmt: skip
-THEIR_CHANGES = replace(CHANGES, key=f"{CHANGES.key}_psb", dataset=THEIRS)
-CLAIMS = [*on_their_classes([*OWN, *EARLY]), THEIR_CHANGES, *on_ours([*OWN, CHANGES])]
+CLAIMS = [*OWN, *EARLY, CHANGES]

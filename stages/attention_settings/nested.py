@@ -1,0 +1,140 @@
+"""The model of gaze with all its choices made without the object that it is judged on: features, channels, ridge.
+
+A model that leaves an object out of its fit may still have features and a ridge that were chosen by looking at it.
+Here they are chosen anew for each object from all the others. That takes thousands of fits, so each of them is a step
+of Newton's method from the fit with all features: there the likelihood of an object is a quadratic form, and a choice
+that leaves an object out is one small linear system. The last fit, with what was chosen, is exact.
+"""
+
+import functools
+from collections.abc import Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from stages.kit.files import read_arrays, read_mesh
+from stages.kit.run import Rows
+from stages.salient_points.glance import GlanceDetector
+from stages.salient_points.options import Options
+from stages.weights import LearnedWeights, fit_fixations, fixation_density
+from stages.weights.agreement import GroundTruth, auc, nss
+from stages.weights.features import CHANNEL_FEATURES, POSITION_FEATURES
+from stages.weights.fixations import RIDGE
+from stages.weights.published import GLANCE, GLANCES
+
+from .measure import stored
+
+RIDGES = (0.0003, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3)
+PICTURES = "twelve-900"  # of attention_settings.pictures: what `fixations` is taken from
+# model -> the features that it has by the choice that was made once, on all objects
+FIXED = {GLANCE: tuple(GLANCES[GLANCE]), "fixations": (*CHANNEL_FEATURES, *POSITION_FEATURES)}
+
+
+class Seen(NamedTuple):
+    """What a model is fitted to, of one object: features {name: (n,)}, amounts of gaze (n,), areas (n,)."""
+
+    features: dict[str, np.ndarray]
+    amounts: np.ndarray
+    areas: np.ndarray
+
+    def stacked(self, names: tuple[str, ...]) -> np.ndarray:
+        """(n, len(names)) of these features."""
+        return np.stack([self.features[name] for name in names], axis=1)
+
+
+def process(model: str, folder: Path, data: Path, made: Path, names: list[str]) -> Rows:
+    """Rows of one of FIXED for each object, left out: with the features and ridge chosen once, and chosen without it.
+
+    made: where measure.process has written. The methods are MODEL_once and MODEL_nested; metrics nss and auc, the
+    number of `features` and the `ridge`; the column channels names the features.
+    """
+    gaze = {name: read_arrays(data / "weights/ground_truth" / f"{name}.npz") for name in names}
+    seen = {name: SEEN[model](name, one, made) for name, one in gaze.items()}
+    rows = []
+    for name, own in gaze.items():
+        others = {other: one for other, one in seen.items() if other != name}
+        truth = GroundTruth(own["amounts"], own["density"], own["areas"])
+        fit = functools.cache(functools.partial(_fit, others))  # the fixed choice may be all features
+        chosen = choose(others, fit(tuple(seen[name].features), RIDGE))
+        for method, (features, ridge) in {f"{model}_once": (FIXED[model], RIDGE), f"{model}_nested": chosen}.items():
+            weights = dict(zip(features, fit(features, ridge).tolist(), strict=True))
+            saliency = SALIENCY[model](data / "meshes" / f"{name}.npz", seen[name], weights)
+            values = {metric.__name__: float(metric(saliency, truth)) for metric in (nss, auc)}
+            values |= {"features": len(features), "ridge": ridge}
+            common = {"item": name, "method": method, "channels": ", ".join(features)}
+            rows += [common | {"metric": metric, "value": value} for metric, value in values.items()]
+    return rows
+
+
+def choose(objects: Mapping[str, Seen], around: np.ndarray) -> tuple[tuple[str, ...], float]:
+    """(features, ridge) under which gaze on an object that is left out is the most likely, on average over the objects.
+
+    around: the weights of all features, fitted to all these objects. Features are added one at a time, the best first;
+    of all numbers of features the best is taken.
+    """
+    names = tuple(next(iter(objects.values())).features)
+    slopes, bends = _quadratic(objects, names, around)
+    chosen, found = [], []
+    for _ in names:
+        tried = [(*_left_out(slopes, bends, [*chosen, k]), k) for k in range(len(names)) if k not in chosen]
+        loss, ridge, best = min(tried)
+        chosen.append(best)
+        found.append((loss, len(chosen), ridge))
+    _, count, ridge = min(found)
+    return tuple(names[k] for k in sorted(chosen[:count])), ridge
+
+
+def _quadratic(
+    objects: Mapping[str, Seen], names: tuple[str, ...], around: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """(slopes (k, d), bends (k, d, d)): near the weights `around` the loss of object k is slopes w + w bends w / 2."""
+    slopes, bends = [], []
+    for one in objects.values():
+        features = one.stacked(names).astype(np.float64)
+        score = features @ around + np.log(np.maximum(one.areas, 1e-300))
+        likely = np.exp(score - np.logaddexp.reduce(score))
+        mean = likely @ features
+        bends.append(features.T @ (likely[:, None] * features) - np.outer(mean, mean))
+        slopes.append(mean - one.amounts / one.amounts.sum() @ features - bends[-1] @ around)
+    return np.stack(slopes), np.stack(bends)
+
+
+def _left_out(slopes: np.ndarray, bends: np.ndarray, chosen: list[int]) -> tuple[float, float]:
+    """(mean loss of an object that is left out, ridge): of the best ridge, with some of the features."""
+    slopes, bends = slopes[:, chosen], bends[:, chosen][:, :, chosen]
+    others = len(slopes) - 1
+    slope, bend = (slopes.sum(axis=0) - slopes) / others, (bends.sum(axis=0) - bends) / others
+    losses = []
+    for ridge in RIDGES:
+        weights = np.linalg.solve(bend + 2 * ridge * np.eye(len(chosen)), -slope[..., None])[..., 0]
+        each = np.einsum("ki,ki->k", slopes, weights) + np.einsum("ki,kij,kj->k", weights, bends, weights) / 2
+        losses.append((float(each.mean()), ridge))
+    return min(losses)
+
+
+def _fit(objects: Mapping[str, Seen], names: tuple[str, ...], ridge: float) -> np.ndarray:
+    found = [(one.stacked(names), one.amounts, one.areas) for one in objects.values()]
+    features, amounts, areas = zip(*found, strict=True)
+    return fit_fixations(features, amounts, areas, ridge)
+
+
+def _seen_samples(name: str, gaze: dict[str, np.ndarray], made: Path) -> Seen:
+    features = dict(zip(map(str, gaze["glance_names"]), gaze["glance"].T, strict=True))
+    return Seen(features, gaze["glance_amounts"], np.ones(len(gaze["glance"])))
+
+
+def _seen_vertices(name: str, gaze: dict[str, np.ndarray], made: Path) -> Seen:
+    return Seen(stored(made / PICTURES / f"{name}.npz", "feature"), gaze["amounts"], gaze["areas"])
+
+
+def _saliency_of_samples(path: Path, seen: Seen, weights: dict[str, float]) -> np.ndarray:
+    return GlanceDetector(GLANCE).saliency(read_mesh(path), None, Options(LearnedWeights({GLANCE: weights})))
+
+
+def _saliency_of_vertices(path: Path, seen: Seen, weights: dict[str, float]) -> np.ndarray:
+    return fixation_density(seen.features, weights)
+
+
+SEEN = {GLANCE: _seen_samples, "fixations": _seen_vertices}
+SALIENCY = {GLANCE: _saliency_of_samples, "fixations": _saliency_of_vertices}

@@ -1,0 +1,148 @@
+"""Recognition of events of a fingertip on the publisher's own test part; and, within training, what it takes.
+
+What is chosen (bins, parameter) and what is varied (time listened, taxels, disturbances) is decided within the training
+part. The test part is asked one time by each method.
+"""
+
+import functools
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from stages.kit import Stopwatch
+from stages.kit.rng import rng
+from stages.kit.run import Rows, StageRun
+from stages.kit.split import Split
+
+from .binned import METHODS, Choice, binned, choose, foldings
+from .touch_series import TouchSeries, spread_taxels
+
+HEARD = (0.1, 0.25, 0.5, 1.0)  # share of the touch
+TAXELS = (1, 2, 5, 10, 20, 39)
+SEVERITIES = {  # of disturbances of the test touches, from mild to harsh
+    "dead_taxels": (0.05, 0.1, 0.2, 0.4),  # share of the taxels
+    "dropped_events": (0.1, 0.25, 0.5, 0.75),  # share of the events
+    "jitter": (1.0, 5.0, 10.0, 25.0),  # deviation of an event's time, steps
+}
+FOLDED = {"part": "training", "split": Split.FOLDS}
+TIMED = 40  # touches that are asked about one at a time, for the milliseconds
+
+
+def measure(run: StageRun, recordings: dict[str, TouchSeries], repetitions: int) -> None:
+    """Adds rows of the accuracy by object of each method on {group: TouchSeries}; repetitions: of the foldings.
+
+    part test: trained on the training part, asked about the publisher's test part; training: in folds within the
+    training part, also by share heard, number of taxels and disturbance. metric milliseconds: of one touch, from its
+    events to the answer; cross_validated: the accuracy that bins and parameter were chosen by.
+    """
+    trials = {f"{group} {method}": (group, method) for group in recordings for method in METHODS}
+    run.each(functools.partial(process, recordings=recordings, repetitions=repetitions, seed=run.seed), trials)
+
+
+def process(
+    trial: tuple[str, str], folder: Path, recordings: dict[str, TouchSeries], repetitions: int, seed: int
+) -> Rows:
+    """Rows of one method on one group."""
+    group, method = trial
+    known, asked = (recordings[group].of(own) for own in (~recordings[group].test, recordings[group].test))
+    # Equal sums on any number of cores. Where nothing is heard yet, the features have no variance to divide by.
+    with threadpool_limits(1), np.errstate(divide="ignore", invalid="ignore"):
+        choice = choose(method, known.values, known.labels, repetitions, seed)
+        common = {"group": group, "method": method, "bins": choice.bins, "parameter": choice.parameter}
+        rows = [*_published(choice, known, asked), *_within(choice, known, seed)]
+    return [common | {"metric": "accuracy", "heard": 1.0, "cells": known.values.shape[1]} | row for row in rows]
+
+
+def summary(rows: Rows) -> dict[str, float]:
+    """{group.method: the accuracy on the publisher's test part}."""
+    found: dict[str, list[float]] = {}
+    for row in rows:
+        if row["metric"] == "accuracy" and row["part"] == "test":
+            found.setdefault(f"{row['group']}.{row['method']}", []).append(row["value"])
+    return {name: round(float(np.mean(values)), 6) for name, values in found.items()}
+
+
+def by_object(labels: np.ndarray, answers: np.ndarray) -> Iterator[dict]:
+    """A row for each object: the share of its touches that are recognised."""
+    for name in np.unique(labels):
+        own = labels == name
+        yield {"item": str(name), "value": float((answers[own] == name).mean()), "count": int(own.sum())}
+
+
+def disturbed(values: np.ndarray, disturbance: str, severity: float, random: np.random.Generator) -> np.ndarray:
+    """Touches (n, taxels, 2, t) as u1 with a disturbance of SEVERITIES.
+
+    Dead taxels are the same in all touches; jitter moves each event for itself, those that leave the touch to its ends.
+    """
+    if disturbance == "dead_taxels":
+        count = values.shape[1]
+        dead = random.choice(count, round(severity * count), replace=False)
+        return np.where(np.isin(np.arange(count), dead)[:, None, None], 0, values)
+    if disturbance == "dropped_events":
+        return values * (random.random(values.shape) >= severity)
+    found, (*place, step) = np.zeros_like(values), np.nonzero(values)
+    moved = np.rint(step + random.normal(0, severity, len(step))).astype(int).clip(0, values.shape[-1] - 1)
+    np.add.at(found, (*place, moved), 1)
+    return found
+
+
+def _published(choice: Choice, known: TouchSeries, asked: TouchSeries) -> Iterator[dict]:
+    with Stopwatch() as watch:
+        model = choice.fitted(binned(known.values, choice.bins), known.labels)
+    answers = model.predict(binned(asked.values, choice.bins))
+    common = {"part": "test", "train": len(known.labels), "test": len(asked.labels)}
+    yield from (common | row for row in by_object(asked.labels, answers))
+    yield common | {"metric": "training_seconds", "value": watch.seconds}
+    single = [known.values[k : k + 1] for k in range(min(TIMED, len(known.labels)))]
+    one = [_seconds(lambda touch=touch: model.predict(binned(touch, choice.bins))) for touch in single]
+    yield common | {"metric": "milliseconds", "value": 1000 * float(np.median(one))}
+    yield FOLDED | {"metric": "cross_validated", "value": choice.accuracy}
+
+
+def _within(choice: Choice, known: TouchSeries, seed: int) -> Iterator[dict]:
+    """Within the training part, each touch held out one time: by share heard, by taxels, and with disturbances."""
+    labels, folds = known.labels, foldings(known.labels, 1, seed)
+    for heard in HEARD:
+        features = binned(known.values, choice.bins, heard)
+        yield from (FOLDED | {"heard": heard} | row for row in _folded(choice, features, labels, folds))
+    for count in TAXELS[:-1]:  # all of them are what was heard in full
+        features = binned(known.values[:, spread_taxels(count)], choice.bins)
+        yield from (FOLDED | {"cells": count} | row for row in _folded(choice, features, labels, folds))
+    features = binned(known.values, choice.bins)
+    models = [choice.fitted(features[train], labels[train]) for train, _ in folds]
+    for kind, severities in SEVERITIES.items():
+        for severity in severities:
+            change = functools.partial(_again, known.values, choice.bins, kind, severity, seed)
+            answers = _answers(models, folds, change, labels)
+            common = FOLDED | {"disturbance": kind, "severity": severity}
+            yield from (common | row for row in by_object(labels, answers))
+
+
+def _folded(choice: Choice, features: np.ndarray, labels: np.ndarray, folds: list) -> Iterator[dict]:
+    models = [choice.fitted(features[train], labels[train]) for train, _ in folds]
+    yield from by_object(labels, _answers(models, folds, lambda test, _: features[test], labels))
+
+
+def _answers(
+    models: list, folds: list, features: Callable[[np.ndarray, int], np.ndarray], labels: np.ndarray
+) -> np.ndarray:
+    answers = np.empty_like(labels)
+    for k, (model, (_, test)) in enumerate(zip(models, folds, strict=True)):
+        answers[test] = model.predict(features(test, k))
+    return answers
+
+
+def _again(
+    values: np.ndarray, bins: int, kind: str, severity: float, seed: int, test: np.ndarray, fold: int
+) -> np.ndarray:
+    """Features of the disturbed touches of a fold, which are the same for each method."""
+    return binned(disturbed(values[test], kind, severity, rng(seed, f"{kind} {severity} {fold}")), bins)
+
+
+def _seconds(act: Callable[[], object]) -> float:
+    start = time.perf_counter()
+    act()
+    return time.perf_counter() - start

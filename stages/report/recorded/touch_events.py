@@ -1,0 +1,131 @@
+"""Events of a fingertip: recognition beside the published networks, what it takes, and where it breaks."""
+
+from collections.abc import Iterator
+
+import pandas as pd
+
+from stages.kit.stats import interval
+from stages.report.grid import grouped, percent, records, within
+from stages.report.items import Figure, Table
+from stages.report.markdown import number, signed, with_interval
+from stages.report.results import Results
+from stages.report.style import CYCLE, GREY, MARKERS, label, plt
+
+SET = "touch_events"
+GROUPS = {"objects": "36 objects", "containers": "20 containers"}
+SHOWN = ("discriminant", "linear_svm", "knn")  # of the chart, and of what it takes
+OURS = "discriminant"
+# Per cent on the publisher's test part: as Zhu, Hu, Zhou, Du and Li list them (Localist topographic expert routing,
+# NeurIPS 2025, table 1), their own last.
+PUBLISHED = {
+    "GCN (Gu and others 2020)": (85.14, 58.83),
+    "grid-based CNN (Gu and others 2020)": (88.40, 60.17),
+    "TactileSGNet, spiking graph network (Gu and others 2020)": (89.44, 64.17),
+    "GGT-SNN (2024)": (92.36, 75.00),
+    "barrel network, shared (Zhu and others 2025)": (94.44, 86.67),
+}
+NETWORK = {"objects": 0.8944, "containers": 0.6417}  # TactileSGNet, whose data these are
+CONDITIONS = {
+    "heard": "share of the touch heard", "cells": "taxels", "dead_taxels": "share of the taxels dead",
+    "dropped_events": "share of the events dropped", "jitter": "deviation of an event's time, steps",
+}  # fmt: skip
+
+
+def build(results: Results) -> Table:
+    """Each method on the publisher's test part, asked one time, beside the published figures."""
+    rows = results.rows("recorded", SET)
+    tested = rows[(rows["part"] == "test") & (rows["metric"] == "accuracy")]
+    scores = {key: own.set_index("item")["value"] for key, own in grouped(tested, ["group", "method"])}
+    other = {
+        key: own["value"].iloc[0] for key, own in grouped(rows[rows["item"].isna()], ["group", "method", "metric"])
+    }
+    frame = pd.DataFrame([
+        {"group": group, "method": method, **dict(zip(("accuracy", "low", "high"), within(own), strict=True))}
+        | dict(zip(("gain", "gain_low", "gain_high"), interval(scores[group, OURS] - own), strict=True))
+        | {metric: other[group, method, metric] for metric in ("cross_validated", "milliseconds", "training_seconds")}
+        | tested[(tested["group"] == group) & (tested["method"] == method)].iloc[0][["bins", "parameter"]].to_dict()
+        for (group, method), own in scores.items()
+    ])  # fmt: skip
+    published = [{"method": f"published: {name}"} | {
+        GROUPS[group]: f"{share:.2f}" for group, share in zip(GROUPS, shares, strict=True)
+    } for name, shares in PUBLISHED.items()]  # fmt: skip
+    ours = [_line(own) for _, own in grouped(frame, ["method"])]
+    shown = pd.DataFrame(ours + published).fillna("–")
+    return Table(frame, shown, {"chosen": _chosen(frame)})
+
+
+def conditions(results: Results) -> Table:
+    """Accuracy within the training part by time heard, taxels and disturbance."""
+    found = [
+        {"group": group, "method": method, "condition": condition, "level": level}
+        | dict(zip(("accuracy", "low", "high"), within(own["value"]), strict=True))
+        for condition, rows in _varied(results)
+        for (group, method, level), own in grouped(rows, ["group", "method", "level"])
+    ]
+    frame = pd.DataFrame(found)
+    mine = frame[frame["method"].isin(SHOWN)]
+    cells = [with_interval(row.accuracy, row.low, row.high, 100, 0) for row in records(mine)]
+    names = [
+        f"{GROUPS[group]}: {label(method)}, %" for group, method in zip(mine["group"], mine["method"], strict=True)
+    ]
+    wide = mine.assign(cell=cells, name=pd.Categorical(names, list(dict.fromkeys(names))))
+    wide = wide.pivot(index=["condition", "level"], columns="name", values="cell")
+    wide = wide.reindex(frame.set_index(["condition", "level"]).index.unique()).rename_axis(columns=None).reset_index()
+    return Table(frame, wide.assign(condition=wide["condition"].map(CONDITIONS), level=wide["level"].map(number)))
+
+
+def chart(results: Results) -> Figure:
+    """Accuracy against the share of the touch that was heard, within the training part."""
+    frame = pd.DataFrame([
+        {"group": group, "method": method, "heard": heard}
+        | dict(zip(("accuracy", "low", "high"), within(own["value"]), strict=True))
+        for condition, rows in _varied(results) if condition == "heard"
+        for (group, method, heard), own in grouped(rows, ["group", "method", "level"]) if method in SHOWN
+    ])  # fmt: skip
+    figure, panels = plt.subplots(1, len(GROUPS), figsize=(9.4, 3.9), sharey=True)
+    for axes, (group, words) in zip(panels, GROUPS.items(), strict=True):
+        for method, tint, marker in zip(SHOWN, CYCLE, MARKERS, strict=False):
+            own = frame[(frame["group"] == group) & (frame["method"] == method)]
+            across, ends = 100 * own["heard"], 100 * own[["accuracy", "low", "high"]]
+            axes.plot(across, ends["accuracy"], marker=marker, color=tint, lw=1.6, ms=5, label=label(method))
+            axes.fill_between(across, ends["low"], ends["high"], color=tint, alpha=0.13, lw=0)
+        axes.axhline(100 * NETWORK[group], color=GREY, lw=1.1, ls="--", label="TactileSGNet, whole touch")
+        axes.set(title=words, xlabel="share of the touch heard, %", ylim=(0, 100), xlim=(0, 103))
+        axes.grid(True)
+    panels[0].set_ylabel("accuracy, %")
+    explained = panels[0].get_legend_handles_labels()
+    figure.legend(*explained, loc="lower center", bbox_to_anchor=(0.5, 0.98), ncols=len(SHOWN) + 1, fontsize=9)
+    figure.tight_layout()
+    return Figure(figure, frame=frame)
+
+
+def _line(own: pd.DataFrame) -> dict[str, str]:
+    line = {"method": label(own["method"].iloc[0])}
+    for row in records(own):
+        ends = [100 * value for value in (row.gain, row.gain_low, row.gain_high)]
+        line[GROUPS[row.group]] = with_interval(row.accuracy, row.low, row.high, 100, 2)
+        line[f"{label(OURS)} − it, {row.group}"] = "–" if row.method == OURS else signed(*ends, places=1)
+    cost, folds = own["milliseconds"], own["cross_validated"]
+    line["in training, %"] = " · ".join(percent(share, 1) for share in folds)
+    line["bins"] = " · ".join(f"{bins:.0f}" for bins in own["bins"])
+    return line | {"milliseconds a touch": " · ".join(number(value) for value in cost)}
+
+
+def _chosen(frame: pd.DataFrame) -> str:
+    """Of each group the method with the highest accuracy in training, and what it has on the test part."""
+    best = frame.loc[frame.groupby("group", sort=False)["cross_validated"].idxmax()]
+    said = [
+        f"of the {GROUPS[row.group]} {label(row.method)}, {with_interval(row.accuracy, row.low, row.high, 100, 1)} %"
+        for row in records(best)
+    ]
+    return "; ".join(said)
+
+
+def _varied(results: Results) -> Iterator[tuple[str, pd.DataFrame]]:
+    """(condition, its rows within the training part, with the column level); undisturbed for heard and cells."""
+    rows = results.rows("recorded", SET, part="training", metric="accuracy")
+    plain, most = rows[rows["disturbance"].isna()], rows["cells"].max()
+    yield "heard", plain[plain["cells"] == most].assign(level=lambda own: own["heard"])
+    yield "cells", plain[plain["heard"] == 1].assign(level=lambda own: own["cells"]).sort_values("level", kind="stable")
+    for kind, own in grouped(rows.dropna(subset=["disturbance"]), ["disturbance"]):
+        yield str(kind[0]), own.assign(level=own["severity"])
