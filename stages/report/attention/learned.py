@@ -46,13 +46,13 @@ def table_3_1(results: Results) -> Table:
         if method in thesis:
             shown[f"{kind}: thesis"] = thesis[method].map(number)
         for dataset, objects in frame.groupby("dataset")["objects"].max().items():
-            shown[_head(kind, dataset, objects)] = wide.get((method, dataset), "not run")
+            shown[_head(kind, str(dataset), objects)] = wide.get((method, dataset), "not run")
     with suppress(NotRun):
         shown = shown.assign(**_in_colour(results)).fillna("–")
     tops = ", ".join(f"{label(channel)} in {KINDS[str(method)]}" for method, channel in thesis.idxmax().items())
     first = frame[frame["dataset"] == frame["dataset"].iloc[0]].drop_duplicates("method")
     heads = [_head(KINDS[row.method], row.dataset, row.objects) for row in records(first)]
-    answer = [name for name in shown if ": thesis" in name or name in heads or name in LIKENESS.values()]
+    answer = [name for name in map(str, shown) if ": thesis" in name or name in heads or name in LIKENESS.values()]
     shown = shown.rename(index=label).reset_index()
     best = Ranking(min(heads, key=list(shown).index))
     return Table(frame, shown, {"tops": tops, "ranks": _ranks(frame)}, best, ["channel", *answer])

@@ -40,7 +40,8 @@ def build(results: Results) -> Table:
     }
     shown = _wide(frame)
     hidden = [METRICS[name] for name in ("pcc_masked", "distance", "distance_mean")] + ["it − mesh saliency, PCC"]
-    return Table(frame, shown, words, Ranking("PCC", among=["truth"]), [name for name in shown if name not in hidden])
+    answer = [name for name in map(str, shown) if name not in hidden]
+    return Table(frame, shown, words, Ranking("PCC", among=["truth"]), answer)
 
 
 def _lines(source: str, rows: pd.DataFrame) -> Iterator[dict[str, Any]]:

@@ -41,7 +41,7 @@ def build(results: Results) -> Table:
     wide = grid(cells, "method", "head", names={"method": METHODS.get}).rename(columns={"method": "answers"})
     shares = frame.groupby("method", sort=False)["accuracy"].mean()
     wide.insert(1, MEAN, [percent(shares[method]) for method in METHODS if method in shares])
-    words, answer = seen(found), [name for name in wide if not any(part in name for part in DETAILS)]
+    words, answer = seen(found), [name for name in map(str, wide) if not any(part in name for part in DETAILS)]
     return Table(frame, wide, {"seen": f"For touch: {words}." if words else ""}, Ranking(MEAN), answer)
 
 

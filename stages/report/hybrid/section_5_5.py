@@ -46,10 +46,10 @@ def build(results: Results) -> Table:
     words = {"visual": 100 * thesis["visual_accuracy"], "tactile": 100 * thesis["tactile_accuracy"]}
     words |= {"ratio": thesis["compression_ratio"], "notes": "\n".join(notes), "new": new_objects.sentences(results)}
     shown = _shown(frame)
-    gains = [name for name in shown if name.startswith("gain")]
+    gains = [name for name in map(str, shown) if name.startswith("gain")]
     shown = shown.fillna(dict.fromkeys(gains, "–")).fillna("not run")
     # no ranking: size stands against accuracy, as the chart shows
-    return Table(frame, shown, words, answer=[name for name in shown if name not in gains])
+    return Table(frame, shown, words, answer=[name for name in map(str, shown) if name not in gains])
 
 
 def chart(results: Results) -> Figure:

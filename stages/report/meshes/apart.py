@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 import numpy as np
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 
 from stages.kit import Mesh
 
@@ -16,9 +16,8 @@ OCTAVES = 3.0  # eight times as many faces an area as the mean, or an eighth, ha
 def density(mesh: Mesh, points: np.ndarray) -> np.ndarray:
     """(n,) share of the points (k,) vertex ids that lie about each vertex: 1 in the mean; 0 without points."""
     width = SPREAD * mesh.diagonal
-    near = cKDTree(mesh.vertices[points].reshape(-1, 3)).sparse_distance_matrix(
-        cKDTree(mesh.vertices), 4 * width, output_type="coo_matrix"
-    )
+    places = KDTree(mesh.vertices[points].reshape(-1, 3))
+    near = places.sparse_distance_matrix(KDTree(mesh.vertices), 4 * width, output_type="coo_matrix")
     found = np.bincount(near.col, np.exp(-0.5 * (near.data / width) ** 2), len(mesh.vertices))
     return found / (found.mean() or 1.0)
 

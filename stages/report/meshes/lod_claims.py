@@ -39,7 +39,7 @@ def build(results: Results) -> Table:
 
 
 def _cell(row: Any) -> str:
-    return WORDS.get(row.verdict, row.verdict) if row.pairs else "not run"
+    return WORDS.get(str(row.verdict), str(row.verdict)) if row.pairs else "not run"
 
 
 @statistic("spread")

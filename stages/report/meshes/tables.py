@@ -65,7 +65,7 @@ def every_detector(results: Results) -> Table:
     frame.insert(3, "objects", frame.pop("objects"))
     counts = ", ".join(f"{rows['item'].nunique()} {data}" for data, rows in found.items())
     shown, own = _methods_wide(frame), [ERRORS[name] for name in (*METRICS, "salient_error")]
-    own = [name for name in shown if name in own or name in COUNTS or name.startswith(ERRORS["gaze_error"])]
+    own = [name for name in map(str, shown) if name in own or name in COUNTS or name.startswith(ERRORS["gaze_error"])]
     best = Ranking(ERRORS[METRICS[0]], lowest=True, exempt=KEEP_NOTHING)
     return Table(frame, shown, {"counts": counts}, best, ["kept points", *own])
 
@@ -104,7 +104,7 @@ def table_3_2(results: Results) -> Table:
     objects = (counts["objects"].astype(str) + " " + counts["data"]).groupby(counts["block"], sort=False)
     over = "; ".join(f"{block}: {sets}" for block, sets in objects.agg(", ".join).items())
     shown = _blocks_wide(cells)
-    answer = [name for name in shown if not name.startswith(ERRORS[METRICS[1]])]  # the first error alone
+    answer = [name for name in map(str, shown) if not name.startswith(ERRORS[METRICS[1]])]  # the first error alone
     best = Ranking(next(name for name in answer[2:] if not name.endswith("thesis")), True, ["target"], KEEP_NOTHING)
     return Table(frame, shown, {"objects": over, "fewest": FEWEST}, best, answer)
 

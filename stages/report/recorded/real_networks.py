@@ -52,7 +52,7 @@ def build(results: Results) -> Table:
         for row in records(frame)
     ]
     found = pd.DataFrame(shown)
-    answer = [name for name in found if name not in ("guessing, %", "over")]
+    answer = [name for name in map(str, found) if name not in ("guessing, %", "over")]
     return Table(frame, found, best=Ranking("accuracy, %", among=["data", "split"]), answer=answer)
 
 

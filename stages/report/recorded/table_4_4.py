@@ -33,7 +33,7 @@ def build(results: Results) -> Table:
     lines = [_line(scores, thesis, *key) for key in product(SETS, SELECTIONS, thesis.index)]
     frame = pd.DataFrame(lines, columns=[*KEYS, *VALUES])
     names = {"set": lambda name: SETS.get(name, name), "selection": SELECTIONS.get}
-    cells = blocks(frame, KEYS[:2], KEYS[2], {"thesis": PRINTED.get})
+    cells = blocks(frame, KEYS[:2], KEYS[2], {"thesis": PRINTED.__getitem__})
     shown = grid(cells, KEYS[:2], KEYS[2], names=names, head=lambda name: f"{label(name)}, %")
     by_metric = dict(list(rows.groupby("metric")))
     removed = by_metric["share_similar"].groupby("set")["value"].mean()
