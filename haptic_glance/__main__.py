@@ -28,6 +28,7 @@ OWN = {
 WHOLE = {
     "scene": "stages.scene.__main__",
     "bench": "stages.bench",
+    "front": "stages.front.__main__",
     "claim": "stages.claim",
     "gate": "stages.gate",
     REPRO: "stages.repro",

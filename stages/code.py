@@ -12,7 +12,7 @@ from stages.kit.files import write_text
 
 def stage_names() -> list[str]:
     """The stages of this repository: the packages that can be run and have settings, in alphabetical order."""
-    return sorted(path.parent.name for path in (ROOT / PACKAGE).glob("*/__main__.py"))
+    return sorted(path.parent.name for path in (ROOT / PACKAGE).glob("*/schema.py"))
 
 
 def write_digests(folder: Path) -> None:

@@ -12,6 +12,7 @@ MODULES = {
     "deep": ("kornia", "onnx", "onnxruntime", "onnxscript", "torch", "torchvision"),
     "cluster": ("cloudpickle", "dask", "distributed"),
     "studio": ("viser",),
+    "front": ("optuna",),
 }  # fmt: skip
 EXTRAS = {module: extra for extra, modules in MODULES.items() for module in modules}
 

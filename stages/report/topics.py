@@ -5,6 +5,7 @@ from types import ModuleType
 
 from . import (
     attention,
+    chain,
     exploration,
     fidelity,
     fixation,
@@ -26,7 +27,7 @@ from .style import SETTINGS, plt
 
 TOPICS: tuple[ModuleType, ...] = (
     attention, fixation, meshes, scene, touch, exploration, sensor, sequences, transfer, hybrid, recorded, stability,
-    fidelity,
+    chain, fidelity,
 )  # fmt: skip
 KINDS = {"tables": "TABLES", "figures": "FIGURES", "tradeoff": "CHARTS"}  # folder of reports/ -> dict of a topic
 CLAIMS = [claim for topic in TOPICS for claim in topic.CLAIMS]

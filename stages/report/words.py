@@ -21,7 +21,8 @@ DATASETS = {
     "princeton_eight": "psb, the thesis's 8 classes", "princeton_six": "psb, the thesis's 6 classes",
     "pressure_images": "recorded pressure array", "biotac_grasps": "recorded fingertips",
     "touch_events": "recorded events of a fingertip",
-    "household_denoised": "household, denoised", "furniture_hands": "furniture, several arrays or touches",
+    "household_denoised": "household, denoised", "household_stability": "household shapes, disturbed",
+    "furniture_hands": "furniture, several arrays or touches",
     "schunk": "recorded hand with arrays",
 }  # fmt: skip
 NAMED = ("method", "classifier", "network")  # columns whose values have a label

@@ -7,8 +7,13 @@ severity and metric.
 `drift`: one minus the correlation of the saliency; `points`: how many of the points pass the method's own threshold;
 `nss` and `auc`: agreement of the saliency with people, read at the vertices of the undisturbed object, where the set
 knows what they looked at.
-Perturbation `none` is the object as it is. Seconds include an even share of the rendering and the maps that all methods
-share.
+Perturbation `none` is the object as it is. Where random numbers are drawn, a value is the mean of the draws; a pair,
+such as `noise+tilt`, has one draw of both, each at its middle severity. Seconds include an even share of the rendering
+and the maps that all methods share.
+
+The points that the methods `used` find at the middle severities (those of the first draw) are used, too: `lod_mean` and
+`lod_salient` are the errors of the undisturbed object when it is simplified around them (perturbation `plain`: around
+nothing), `recognised` the share of touches there that are recognised among ten objects (stages.stability.uses).
 
 The objects `broken` are broken in the ways of stages.stability.DAMAGES, too, and every backend of stages.lod simplifies
 them: a row `faces` a case (method: the backend; perturbation: the damage; severity: the faces asked for; budget, kept,
@@ -20,7 +25,7 @@ Settings: section `stability` of params.yaml.
 import dataclasses
 import functools
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from stages.kit.command import workspace_of_arguments
@@ -32,11 +37,15 @@ from stages.salient_points.options import Options
 from stages.weights import read_learned_weights
 from stages.weights.agreement import GroundTruth
 
+from .disturbance import AND, Disturbance, disturbances, parts_of
+from .draws import mean_of_draws
 from .perturbations import PERTURBATIONS
+from .recognition import FOLDER, SET, recognise
 from .schema import COLUMNS, Params
 from .simplification import OUTCOMES, simplification_rows
-from .subject import Subject, worst_arrays
+from .subject import Findings, Subject, worst_arrays
 from .summary import middle_severity, summarise, summarise_simplification
+from .uses import Uses
 
 
 def process(name: str, folder: Path, data: Path, settings: Params, seed: int) -> Rows:
@@ -46,19 +55,48 @@ def process(name: str, folder: Path, data: Path, settings: Params, seed: int) ->
     methods, _ = split_runnable(settings.methods, learned)
     options = Options(learned, seed=seed, name=name)
     subject = Subject(mesh, methods, options, settings.count, settings.size, truth_of(data, name))
-    rows, cases = subject.unperturbed_rows(), []
+    rows, cases, middle = subject.unperturbed_rows(), [], middle_severities(settings)
+    for draws in asked(settings):
+        found, case = measured(subject, draws)
+        rows += found
+        if case and draws[0].parts[0] in middle.items() and draws[0].severity is not None:
+            cases.append((draws[0], case))
+    write_arrays(folder / f"{name}.npz", **worst_arrays(subject, cases))
+    if settings.used:
+        uses = Uses(subject, split_runnable(settings.used, learned)[0])
+        for disturbance, case in cases:
+            uses.add(disturbance, case)
+        write_arrays(folder / FOLDER / f"{name}.npz", **uses.touches)
+        rows += uses.rows
+    return rows + simplification_rows(mesh, name, seed) if name in settings.broken else rows
+
+
+def asked(settings: Params) -> Iterator[list[Disturbance]]:
+    """The draws of each disturbance that the settings ask for: every severity, then the pairs."""
     for perturbation in settings.perturbations:
         for severity in settings.severities[perturbation]:
-            try:
-                case = subject.perturbed(perturbation, severity)
-            except ValueError as error:
-                rows += subject.failed_rows(perturbation, severity, str(error))
-                continue
-            rows += subject.rows(perturbation, severity, case)
-            if severity == middle_severity(settings.severities[perturbation]):
-                cases.append((perturbation, severity, case))
-    write_arrays(folder / f"{name}.npz", **worst_arrays(subject, cases))
-    return rows + simplification_rows(mesh, name, seed) if name in settings.broken else rows
+            yield disturbances([(perturbation, severity)], settings.draws)
+    for pair in settings.pairs:
+        yield disturbances(parts_of(pair, middle_severities(settings)), draws=1)
+
+
+def middle_severities(settings: Params) -> dict[str, float]:
+    """The middle severity of each perturbation."""
+    return {name: middle_severity(settings.severities[name]) for name in settings.perturbations}
+
+
+def measured(subject: Subject, draws: Sequence[Disturbance]) -> tuple[Rows, Findings | None]:
+    """(rows of a disturbance, the mean of its draws; the Findings of the first draw, or None where it failed)."""
+    rows, first = [], None
+    for disturbance in draws:
+        try:
+            case = subject.disturbed(disturbance)
+        except ValueError as error:
+            rows.append(subject.failed_rows(disturbance, str(error)))
+            continue
+        rows.append(subject.rows(disturbance, case))
+        first = case if disturbance.draw == 0 else first
+    return mean_of_draws(rows), first
 
 
 def truth_of(data: Path, name: str) -> GroundTruth | None:
@@ -80,8 +118,19 @@ def check(settings: Params) -> None:
     bare = [name for name in settings.perturbations if not settings.severities.get(name)]
     if bare:
         raise ValueError(f"stability.severities has none for {', '.join(bare)}: give at least one")
-    if min(settings.count, settings.most) < 1:
-        raise ValueError("stability: count and most must be 1 or more")
+    odd = [pair for pair in settings.pairs if AND not in pair or {*pair.split(AND)} - {*settings.perturbations}]
+    if odd:
+        raise ValueError(
+            f"stability.pairs: {', '.join(odd)}; join two of stability.perturbations by {AND}: "
+            f"{', '.join(settings.perturbations)}"
+        )
+    strange = [method for method in settings.used if method not in settings.methods]
+    if strange:
+        raise ValueError(
+            f"stability.used: {', '.join(strange)}; add to stability.methods: {', '.join(settings.methods)}"
+        )
+    if min(settings.count, settings.most, settings.draws) < 1:
+        raise ValueError("stability: count, most and draws must be 1 or more")
 
 
 def chosen(settings: Params, names: Sequence[str]) -> Sequence[str]:
@@ -99,6 +148,9 @@ def run(workspace: Workspace) -> None:
         objects = chosen(settings, stage.objects)
         work = functools.partial(process, data=workspace.data, settings=each, seed=stage.seed)
         rows = stage.each(work, objects, reads=("meshes/{}.npz", "weights"))
+        if settings.used:
+            given = {"objects": objects, "severities": middle_severities(settings), "seed": stage.seed}
+            stage.each(functools.partial(recognise, made=stage.folder, **given), [f"sets of {SET}"], ["stability"])
         stage.metrics(summarise(rows) | {"simplified": summarise_simplification(rows)})
     broken = sum(value is not None for value in summarise(rows)["breaking_point"].values())
     outcomes = Counter(row["outcome"] for row in rows if row["metric"] == "faces")

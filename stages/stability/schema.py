@@ -25,3 +25,6 @@ class Params:
     size: list[int]  # rows, columns of the views
     perturbations: list[str]  # names of stages.stability.PERTURBATIONS
     severities: dict[str, list[float]]  # of each perturbation, in its own unit, from mild to harsh
+    draws: int  # of a disturbance that draws random numbers; what is measured is their mean
+    pairs: list[str]  # perturbations one after the other at their middle severities, in one draw: noise+tilt
+    used: list[str]  # methods whose points are used to simplify and to touch the undisturbed object

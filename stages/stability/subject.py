@@ -13,9 +13,10 @@ from stages.salient_points.methods import find_all, method_named
 from stages.salient_points.options import Detection, Options
 from stages.weights.agreement import METRICS, GroundTruth
 
+from .disturbance import Disturbance
 from .maps import maps_under_conditions
 from .measures import TOLERANCE, at_original_vertices, chance_repeatability, drift, repeatability
-from .perturbations import PERTURBATIONS, Conditions, Perturbed
+from .perturbations import Conditions, Perturbed
 
 UNPERTURBED = "none"  # the perturbation in the rows of the unperturbed object
 AGREEMENT = "nss", "auc"  # with people, of the saliency on the object that they saw
@@ -46,14 +47,12 @@ class Subject:
         self.channels = tuple(dict.fromkeys(name for method in methods for name in method_named(method).channels))
         self.unperturbed = self._findings(Perturbed(mesh, mesh.vertices, Conditions()), UNPERTURBED)
 
-    def perturbed(self, perturbation: str, severity: float) -> Findings:
-        """The Findings under one perturbation.
+    def disturbed(self, disturbance: Disturbance) -> Findings:
+        """The Findings under one disturbance.
 
         Raises ValueError where this mesh cannot be perturbed in this way, or cannot be rendered afterwards.
         """
-        name = f"{self.options.name} {perturbation}"
-        changed = PERTURBATIONS[perturbation].apply(self.mesh, severity, rng(self.options.seed, name))
-        what = f"{perturbation} {severity:g}"
+        changed, what = disturbance.apply(self.mesh, self.options.name, self.options.seed), str(disturbance)
         if changed.mesh.vertices is self.mesh.vertices and changed.mesh.faces is self.mesh.faces:
             return self._findings(changed, what, self._found_on_the_surface)
         return self._findings(replace(changed, mesh=normalise(orient(changed.mesh)[0])), what)
@@ -82,18 +81,18 @@ class Subject:
     def unperturbed_rows(self) -> list[dict]:
         """Rows of the unperturbed object: how many points each method has, its agreement with people, its seconds."""
         return [
-            self._row(method, UNPERTURBED, None, *item, self.unperturbed.seconds[method])
+            self._row(method, None, *item, self.unperturbed.seconds[method])
             for method, found in self.unperturbed.found.items()
             for item in ({"points": found.strong} | self._agreement(found.saliency)).items()
         ]
 
-    def rows(self, perturbation: str, severity: float, case: Findings) -> list[dict]:
+    def rows(self, disturbance: Disturbance, case: Findings) -> list[dict]:
         """Rows of Findings: repeatability, chance (of as many random points), points; of a map drift and agreement."""
         rows = []
         for method, found in case.found.items():
             before = self.mesh.vertices[self.unperturbed.found[method].points]
             tolerance = TOLERANCE * self.mesh.diagonal
-            draws = rng(self.options.seed, f"{self.options.name} {perturbation} {severity:g} {method} chance")
+            draws = rng(self.options.seed, f"{self.options.name} {disturbance} {method} chance")
             values = {
                 "repeatability": repeatability(before, case.perturbed.original_positions[found.points], tolerance),
                 "chance": chance_repeatability(before, case.perturbed, len(found.points), draws, tolerance),
@@ -104,7 +103,7 @@ class Subject:
                 back = at_original_vertices(self.mesh, case.perturbed, found.saliency)
                 values |= {"drift": drift(saliency, back, self.mesh.vertex_areas)} | self._agreement(back)
             seconds = case.seconds[method]
-            rows += [self._row(method, perturbation, severity, *item, seconds) for item in values.items()]
+            rows += [self._row(method, disturbance, *item, seconds) for item in values.items()]
         return rows
 
     def _agreement(self, saliency):
@@ -112,34 +111,36 @@ class Subject:
             return {}
         return {name: METRICS[name](saliency, self.truth) for name in AGREEMENT}
 
-    def failed_rows(self, perturbation: str, severity: float, why: str) -> list[dict]:
+    def failed_rows(self, disturbance: Disturbance, why: str) -> list[dict]:
         """One row per method with the reason why there are no Findings."""
-        return [self._row(method, perturbation, severity, "repeatability", None, None, why) for method in self.methods]
+        return [self._row(method, disturbance, "repeatability", None, None, why) for method in self.methods]
 
-    def _row(self, method, perturbation, severity, metric, value, seconds, note=None):
+    def _row(self, method, disturbance, metric, value, seconds, note=None):
         return {
-            "item": self.options.name, "method": method, "perturbation": perturbation, "severity": severity,
+            "item": self.options.name, "method": method,
+            "perturbation": disturbance.name if disturbance else UNPERTURBED,
+            "severity": disturbance.severity if disturbance else None,
             "note": note, "metric": metric, "value": value, "seconds": seconds,
         }  # fmt: skip
 
 
-def worst_arrays(subject: Subject, cases: Sequence[tuple[str, float, Findings]]) -> dict[str, np.ndarray]:
+def worst_arrays(subject: Subject, cases: Sequence[tuple[Disturbance, Findings]]) -> dict[str, np.ndarray]:
     """Arrays of each method's worst case, for the figure: dict METHOD.KEY -> array.
 
-    cases: list of (perturbation, severity, Findings). KEY: perturbation, severity, repeatability, points and saliency
+    cases: of single perturbations. KEY: perturbation, severity, repeatability, points and saliency
     before and after, and vertices and faces of the perturbed mesh. Methods without a saliency are left out.
     """
     arrays = {}
     for method, plain in subject.unperturbed.found.items():
         if plain.saliency is None or not cases:
             continue
-        scores = [_score(subject, method, case) for *_, case in cases]
+        scores = [_score(subject, method, case) for _, case in cases]
         worst = int(np.argmin(scores))
-        perturbation, severity, case = cases[worst]
+        disturbance, case = cases[worst]
         found, mesh = case.found[method], case.perturbed.mesh
         assert found.saliency is not None  # a method has one under every perturbation or under none
         values = {
-            "perturbation": np.array(perturbation), "severity": np.float64(severity),
+            "perturbation": np.array(disturbance.name), "severity": np.float64(disturbance.severity or 0.0),
             "repeatability": np.float64(scores[worst]), "before_points": plain.points,
             "before_saliency": plain.saliency.astype(np.float32), "after_points": found.points,
             "after_saliency": found.saliency.astype(np.float32), "vertices": mesh.vertices, "faces": mesh.faces,

@@ -7,7 +7,8 @@ from typing import cast
 import numpy as np
 import pandas as pd
 
-from stages.kit.breaking_point import breaking_point
+from stages.kit.breaking_point import breaking_interval, breaking_point
+from stages.kit.units import unit
 
 from .perturbations import PERTURBATIONS
 from .simplification import OUTCOMES, SMALLEST
@@ -27,15 +28,23 @@ def mean_repeatability(rows: Sequence[dict] | pd.DataFrame) -> pd.DataFrame:
     return table.groupby(KEYS, sort=False, as_index=False).mean()
 
 
-def breaking_points(rows: Sequence[dict] | pd.DataFrame) -> dict[tuple[str, str], float]:
-    """dict (perturbation, method) -> the severity at which the mean repeatability falls below one half, or NaN.
+def breaking_points(rows: pd.DataFrame) -> dict[tuple[str, str], tuple[float, float, float]]:
+    """dict (perturbation, method) -> the severity at which the mean repeatability falls below one half, and its ends.
 
-    Also NaN where a severity before it has no value at all.
+    The interval is over the units of the objects, see `breaking_interval`; NaN is beyond the harshest severity. Also
+    NaN where a severity before it has no value at all.
     """
-    return {
-        (perturbation, method): breaking_point(severities, values, PERTURBATIONS[perturbation].unharmed)
-        for perturbation, method, severities, values in _curves(rows)
-    }
+    found = {}
+    for key, own in rows[rows["metric"] == "repeatability"].groupby(["perturbation", "method"], sort=False):
+        perturbation, method = cast(tuple[str, str], key)
+        wide = own.assign(unit=own["item"].map(unit)).pivot_table(
+            index="unit", columns="severity", values="value", sort=False
+        )
+        severities = [one for one in dict.fromkeys(own["severity"]) if one in wide.columns]
+        if severities:
+            curves = wide[severities].to_numpy()
+            found[perturbation, method] = breaking_interval(severities, curves, PERTURBATIONS[perturbation].unharmed)
+    return found
 
 
 def summarise(rows: Sequence[dict]) -> dict[str, dict]:
@@ -44,7 +53,10 @@ def summarise(rows: Sequence[dict]) -> dict[str, dict]:
         f"{perturbation}.{method}": values[severities.index(middle_severity(severities))]
         for perturbation, method, severities, values in _curves(rows)
     }
-    breaks = {f"{perturbation}.{method}": value for (perturbation, method), value in breaking_points(rows).items()}
+    breaks = {
+        f"{perturbation}.{method}": breaking_point(severities, values, PERTURBATIONS[perturbation].unharmed)
+        for perturbation, method, severities, values in _curves(rows)
+    }
     return {"repeatability": _rounded(means), "breaking_point": _rounded(breaks)}
 
 

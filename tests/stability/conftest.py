@@ -21,7 +21,7 @@ SEVERITIES = {"vertex_order": [1.0], "noise": [0.001, 0.02], "light": [60.0], "m
 def settings():
     return Params(
         broken=[], objects=["pear"], most=1, methods=["itti", "harris", "random"], count=8, size=[120, 160],
-        perturbations=list(SEVERITIES), severities=SEVERITIES,
+        perturbations=list(SEVERITIES), severities=SEVERITIES, draws=1, pairs=[], used=[],
     )  # fmt: skip
 
 

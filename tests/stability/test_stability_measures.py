@@ -1,6 +1,7 @@
 """Repeatability, drift and breaking point, on sets and maps with a known answer."""
 
 import numpy as np
+import pandas as pd
 import pytest
 import trimesh
 
@@ -99,7 +100,7 @@ def test_what_never_breaks_has_no_breaking_point():
 def rows_of(perturbation, table):
     """Rows of two objects about the given means."""
     return [
-        {"object": name, "method": method, "perturbation": perturbation, "severity": severity,
+        {"item": name, "method": method, "perturbation": perturbation, "severity": severity,
          "metric": "repeatability", "value": value + shift, "seconds": 1.0}
         for method, values in table.items()
         for severity, value in values
@@ -112,7 +113,7 @@ def test_summary_takes_means_over_objects_at_the_middle_and_says_what_never_brok
     found = summarise(rows)
     assert found["repeatability"] == {"tilt.itti": 0.6, "tilt.harris": 0.9}
     assert found["breaking_point"] == {"tilt.itti": 56.25, "tilt.harris": None}
-    assert breaking_points(rows)["tilt", "itti"] == 56.25
+    assert breaking_points(pd.DataFrame(rows))["tilt", "itti"][0] == 56.25
 
 
 def test_the_middle_of_two_is_the_milder():
@@ -121,5 +122,5 @@ def test_the_middle_of_two_is_the_milder():
 
 def test_a_missing_value_is_left_out_of_the_mean():
     rows = rows_of("tilt", {"itti": [(15, 0.8)]})
-    rows.append(rows[0] | {"object": "c", "value": None})
+    rows.append(rows[0] | {"item": "c", "value": None})
     assert summarise(rows)["repeatability"] == {"tilt.itti": 0.8}

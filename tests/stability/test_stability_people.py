@@ -7,6 +7,7 @@ from stages.kit import Mesh
 from stages.report import stability
 from stages.report.topics import build_one
 from stages.salient_points.options import Options
+from stages.stability.disturbance import Disturbance
 from stages.stability.subject import Subject
 from stages.weights.agreement import GroundTruth
 
@@ -23,9 +24,9 @@ def looked_at(pear):
 
 @pytest.fixture(scope="module")
 def rows(looked_at):
-    cases = [("winding", 1.0), ("noise", 0.001), ("tilt", 90.0)]
+    cases = [Disturbance((one,)) for one in (("winding", 1.0), ("noise", 0.001), ("tilt", 90.0))]
     return looked_at.unperturbed_rows() + [
-        row for case in cases for row in looked_at.rows(*case, looked_at.perturbed(*case))
+        row for case in cases for row in looked_at.rows(case, looked_at.disturbed(case))
     ]
 
 
@@ -49,7 +50,7 @@ def test_points_alone_have_no_agreement(rows):
 
 def test_faces_that_point_inwards_are_turned_first(looked_at):
     """As `saliency` does it: an inverted mesh is the same object."""
-    turned = looked_at.perturbed("winding", 1.0).perturbed.mesh
+    turned = looked_at.disturbed(Disturbance((("winding", 1.0),))).perturbed.mesh
     crosses = Mesh(turned.vertices, turned.faces).face_crosses
     assert (np.einsum("ij,ij->i", crosses, turned.vertices[turned.faces].mean(axis=1)) > 0).mean() > 0.95
 

@@ -1,8 +1,26 @@
 """Where methods break: under which perturbation, and how much of it; and where the time went."""
 
-from . import claims, growth, kernels, people, points, simplification, time_spent, touch, touch_imprints, transfer
+from . import (
+    claims,
+    growth,
+    kernels,
+    leaderboard,
+    pairs,
+    people,
+    points,
+    simplification,
+    time_spent,
+    touch,
+    touch_imprints,
+    transfer,
+    uses,
+)
 
 TABLES = {
+    "stability_score": leaderboard.table,
+    "stability_breaking": leaderboard.breaking,
+    "stability_pairs": pairs.table,
+    "stability_uses": uses.table,
     "stability": points.table,
     "stability_people": people.table,
     "stability_simplification": simplification.table,
@@ -20,5 +38,5 @@ FIGURES = {
     "kernels": kernels.build,
     "growth": growth.build,
 }
-CHARTS = {}
+CHARTS = {"stability": leaderboard.chart}
 CLAIMS = claims.CLAIMS

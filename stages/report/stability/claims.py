@@ -1,9 +1,12 @@
-"""Claims of T6.3: what a denoising autoencoder is worth to recognition by touch, beside a median filter."""
+"""Claims of T6.3 on a denoising autoencoder before recognition by touch, and claims on the stability of attention."""
 
 from stages.kit.split import Split
 from stages.report.claims import Claim
 
+from .score import BENCHMARK, KINDS
+from .score import STAGE as ATTENTION
 from .touch import DENOISED, PLAIN, STAGE
+from .uses import PLAIN as NOTHING_KEPT
 
 LEARNED, FILTERED = f"{PLAIN}_autoencoder", f"{PLAIN}_median"
 PHRASES = {
@@ -23,6 +26,52 @@ SENTENCES = {  # (perturbation, first, second): what is claimed
     },
     ("none", LEARNED, PLAIN): "On touches without noise a denoising autoencoder does no harm.",
 }
+SCORED = tuple(name for names in KINDS.values() for name in names)
+MOVES = "noise", "decimation", "remeshing", "missing_faces", "scan", "tilt"  # what moves the points of a glance
+SHARE = "% of the points"
+WORDS = {
+    ("metric", "repeatability"): "points found again", ("metric", "recognised"): "recognition by touch",
+    ("metric", "lod_salient"): "error weighted by saliency", ("perturbation", SCORED): "all disturbances",
+    ("perturbation", MOVES): "noise, other triangles, holes, scans and tilts", ("perturbation", "none"): "undisturbed",
+    ("perturbation", NOTHING_KEPT): "plain simplification",
+}  # fmt: skip
+
+
+def _more_stable(key: str, sentence: str, first: str, second: str, perturbation: str | tuple[str, ...]) -> Claim:
+    """A claim that one method finds more of its points again than another."""
+    return Claim(
+        key=key, section="ours", sentence=sentence, stage=ATTENTION, dataset=BENCHMARK, over=("item",),
+        first={"method": first}, second={"method": second}, within=("perturbation", "severity"),
+        where={"perturbation": perturbation, "metric": "repeatability"}, unit=SHARE, phrases=WORDS,
+    )  # fmt: skip
+
+
+STABILITY = [
+    _more_stable(
+        "glance_stable_itti", "The gaze model finds more of its points again than Itti's attention.",
+        "glance", "itti", SCORED,
+    ),
+    _more_stable(
+        "glance_stable_mesh_saliency", "The gaze model finds more of its points again than mesh saliency.",
+        "glance", "mesh_saliency", SCORED,
+    ),
+    _more_stable(
+        "any_pose_stable_tilt", "Learned from any pose, the gaze model finds more of its points again when tilted.",
+        "glance_any_pose", "glance", "tilt",
+    ),
+    Claim(
+        key="disturbed_touch", section="ours", stage=ATTENTION, dataset=BENCHMARK, over=("item",), phrases=WORDS,
+        sentence="Disturbances that move the points of the gaze model cost recognition by touch.",
+        first={"perturbation": "none"}, second={"perturbation": MOVES},
+        where={"method": "glance", "metric": "recognised"},
+    ),
+    Claim(
+        key="disturbed_lod", section="ours", stage=ATTENTION, dataset=BENCHMARK, over=("item",), phrases=WORDS,
+        sentence="Points of a disturbed object still spare what the gaze model finds salient.", relative=True,
+        first={"perturbation": NOTHING_KEPT}, second={"perturbation": MOVES},
+        where={"method": "glance", "metric": "lod_salient"}, unit="% of the mean of both errors",
+    ),
+]  # fmt: skip
 
 CLAIMS = [
     Claim(
@@ -32,4 +81,4 @@ CLAIMS = [
         within=("severity",), phrases=PHRASES,
     )
     for (fault, first, second), sentence in SENTENCES.items()
-]  # fmt: skip
+] + STABILITY  # fmt: skip

@@ -62,9 +62,14 @@ def degradation(
     return figure, grid
 
 
-def broken(
-    frame: pd.DataFrame, heads: Iterable[str], unharmed: Mapping[str, float], ends: Sequence[str] = ENDS
-) -> pd.DataFrame:
+def cell(row: Any, unharmed: float) -> str:
+    """A breaking point with its interval, `0.2 [0.1, > 0.3]`; alone where nothing broke, or where both ends are it."""
+    beyond = f"{'<' if row.harshest < unharmed else '>'} {row.harshest:g}"
+    at, *interval = (beyond if np.isnan(getattr(row, end)) else number(getattr(row, end), 2) for end in ENDS)
+    return f"{at} [{', '.join(interval)}]" if {*interval} != {at} else at
+
+
+def broken(frame: pd.DataFrame, heads: Iterable[str], unharmed: Mapping[str, float]) -> pd.DataFrame:
     """A line a perturbation for a reader, with the columns `heads`, one for each row of `frame`: `0.2 [0.1, > 0.3]`.
 
     frame: perturbation, unit, the harshest severity and those where it breaks, with the interval: the columns `ends`,
@@ -72,8 +77,6 @@ def broken(
     """
     shown = {}
     for head, row in zip(heads, records(frame), strict=True):
-        beyond = f"{'<' if row.harshest < unharmed[row.perturbation] else '>'} {row.harshest:g}"
-        at, *interval = (beyond if np.isnan(getattr(row, end)) else number(getattr(row, end), 2) for end in ends)
         line = shown.setdefault(row.perturbation, {"perturbation": label(row.perturbation), "unit": row.unit})
-        line[head] = f"{at} [{', '.join(interval)}]" if {at, *interval} != {beyond} and interval else at
+        line[head] = cell(row, unharmed[row.perturbation])
     return pd.DataFrame(list(shown.values())).fillna("–")

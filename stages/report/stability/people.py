@@ -4,17 +4,18 @@ import numpy as np
 import pandas as pd
 
 from stages.kit.stats import interval
-from stages.report.grid import grouped
+from stages.report.grid import grouped, records
 from stages.report.items import Table
 from stages.report.markdown import signed, with_interval
 from stages.report.results import Results, some
 from stages.report.style import label
 from stages.stability import PERTURBATIONS
+from stages.stability.subject import UNPERTURBED
 
-STAGE = "stability"
+from .score import STAGE, of_gaze, scores
+
 SETS = "gaze", "gaze_clouds"
-UNPERTURBED = "none"
-POINTS = 30  # conf/config.yaml: stability.count
+REFERENCE = "enhanced"  # Itti's attention was not disturbed on these sets
 
 
 def table(results: Results) -> Table:
@@ -22,10 +23,10 @@ def table(results: Results) -> Table:
     sets = some([name for name in SETS if name in results.datasets(STAGE)], "no objects with gaze", STAGE)
     rows = pd.concat([results.measured(STAGE, name) for name in sets])
     plain = rows.loc[rows["perturbation"] == UNPERTURBED].set_index(["item", "method", "metric"])["value"]
-    rows = rows.loc[rows["perturbation"] != UNPERTURBED]
+    disturbed = rows.loc[rows["perturbation"] != UNPERTURBED]
     frame = pd.DataFrame([
         dict(zip(("perturbation", "severity", "method"), key, strict=True)) | _cell(case, plain)
-        for key, case in grouped(rows, ["perturbation", "severity", "method"])
+        for key, case in grouped(disturbed, ["perturbation", "severity", "method"])
     ])  # fmt: skip
     methods = list(dict.fromkeys(frame["method"]))
     shown = pd.DataFrame([_line(key, case, methods) for key, case in grouped(frame, ["perturbation", "severity"])])
@@ -33,10 +34,26 @@ def table(results: Results) -> Table:
     items = {name: results.rows(STAGE, name)["item"].nunique() for name in sets}
     words = {
         "count": sum(items.values()), "meshes": items.get("gaze", 0), "clouds": items.get("gaze_clouds", 0),
-        "undisturbed": ", ".join(f"{label(name)} {start[name]:.2f}" for name in methods), "points": POINTS,
+        "undisturbed": ", ".join(f"{label(name)} {start[name]:.2f}" for name in methods), "score": _score(rows),
         "not_run": "\n".join(filter(None, (results.left_out(STAGE, name) for name in sets))),
     }  # fmt: skip
     return Table(frame, shown, words)
+
+
+def _score(rows: pd.DataFrame) -> str:
+    """The mean corruption errors in AUC and what they have beyond the undisturbed error, in a sentence."""
+    if REFERENCE not in set(rows["method"]):
+        return ""
+    found = scores(of_gaze(rows), REFERENCE)
+    said = "; ".join(
+        f"{label(row.method)} {with_interval(row.mce, row.mce_low, row.mce_high, 100, 0)} %, relative "
+        f"{with_interval(row.relative, row.relative_low, row.relative_high, 100, 0)} %"
+        for row in records(found[found["method"] != REFERENCE])
+    )
+    return (
+        f"Mean corruption error of 1 - AUC, that of {label(REFERENCE)} being 100 %: {said}. Relative: of what is lost "
+        "beyond the undisturbed error alone, where a disturbance costs the reference anything."
+    )
 
 
 def _cell(case, plain):

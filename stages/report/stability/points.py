@@ -27,7 +27,7 @@ def table(results: Results) -> Table:
     rows = results.measured(STAGE, metric=["repeatability", "chance", "drift"])
     points = rows.loc[(rows["metric"] == "repeatability") & (rows["method"] != CHANCE)]
     found = []
-    for (perturbation, method), breaking in breaking_points(points).items():
+    for (perturbation, method), (breaking, *ends) in breaking_points(points).items():
         own = rows.loc[rows["perturbation"] == perturbation]
         severities = list(own["severity"].unique())
         middle = middle_severity(severities)
@@ -35,14 +35,14 @@ def table(results: Results) -> Table:
         mean, low, high = within(here.loc[here["metric"] == "repeatability", "value"])
         found.append({
             "perturbation": perturbation, "unit": PERTURBATIONS[perturbation].unit, "method": method,
-            "severity": middle, "repeatability": mean, "low": low, "high": high,
+            "severity": middle, "repeatability": mean, "repeatability_low": low, "repeatability_high": high,
             "drift": here.loc[here["metric"] == "drift", "value"].mean(),
             "chance": own.loc[own["metric"] == "chance", "value"].mean(), "harshest": severities[-1],
-            "breaking_point": breaking,
+            "breaking_point": breaking, "low": ends[0], "high": ends[1],
         })  # fmt: skip
     frame = pd.DataFrame(found)
     unharmed = {name: known.unharmed for name, known in PERTURBATIONS.items()}
-    shown = broken(frame, frame["method"].map(label), unharmed, ["breaking_point"])
+    shown = broken(frame, frame["method"].map(label), unharmed)
     shown["chance, %"] = [percent(share) for share in frame.drop_duplicates("perturbation")["chance"]]
     words = {"objects": ", ".join(dict.fromkeys(points["item"])), "not_run": results.left_out(STAGE)}
     return Table(frame, shown, words)

@@ -1,0 +1,1 @@
+"""The front from mesh to named object: what all choices together gain, and what they cost."""

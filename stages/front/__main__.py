@@ -1,0 +1,73 @@
+"""Searches the front from mesh to named object: `python -m stages.front`
+
+What is chosen at each stage (detector, viewpoints, image size, places, sensels, faces of the model, touches,
+classifier) decides together how often an object is known, and after how many seconds. Optuna proposes choices, Hydra
+composes and checks each, and a third of them is asked about again with more objects and splits, twice. What no other
+choice beats is then confirmed on shapes and classes that the search has not seen, and from the smallest good one each
+single choice is changed. Seconds are those of one processor core, from the mesh of an object to its name: simplifying,
+looking, pressing, asking. Learning is reported apart.
+
+Reads data/SET/meshes of household and of a set with classes; writes reports/measurements/SET/front.csv.gz of both.
+Keeps its study in build/front and goes on where it stopped. `dvc repro` does not run it.
+
+examples:
+  haptic-glance front
+  haptic-glance front --minutes 10
+  haptic-glance front --trials 300 --classes princeton_eight
+"""
+
+import argparse
+import hashlib
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from stages.kit.code import stage_digest
+from stages.kit.command import errors_in_one_line
+from stages.kit.extras import from_extra
+from stages.kit.files import sha256
+
+SHAPES = "household"
+TRIALS = 96  # choices that are proposed: four generations
+MINUTES = 60.0
+
+
+def run(argv: Sequence[str], root: Path = Path(".")) -> int:
+    """Runs or continues the search of a repository root; 1 where the minutes were over before its end."""
+    parser = argparse.ArgumentParser(
+        prog="haptic-glance front", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--trials", type=int, default=TRIALS, help="choices to propose (default: %(default)s)")
+    parser.add_argument("--minutes", type=float, default=MINUTES, help="stop after these; a later call goes on (60)")
+    parser.add_argument("--seed", type=int, default=0, help="of all random numbers (default: %(default)s)")
+    parser.add_argument("--classes", default="furniture", help="data set of the classes (default: %(default)s)")
+    given = parser.parse_args(argv)
+    with from_extra():
+        from . import rows
+        from .objects import halves, read_objects
+        from .search import OutOfTime, Search
+        from .senses import Senses
+    shapes, classes, files = read_objects(root / "data", SHAPES, given.classes)
+    searched, unseen = halves(shapes, classes, given.seed)
+    folder = root / "build/front" / f"{SHAPES}-{given.classes}-{given.seed}"
+    meshes = hashlib.sha256("".join(f"{name} {sha256(path)}" for name, path in sorted(files.items())).encode())
+    made_of = {"code": stage_digest("front"), "meshes": meshes.hexdigest()[:16]}
+    search = Search(folder, made_of, Senses(files, folder / "felt", given.seed), given.seed, given.minutes)
+    try:
+        found = search.run(searched, unseen, given.trials)
+    except OutOfTime:
+        print(f"front: {given.minutes:g} minutes are over; run it again to go on", file=sys.stderr)
+        return 1
+    paths = rows.write(root / "reports/measurements", (SHAPES, given.classes), found, given.seed)
+    print(f"front: {len(found)} rows in {' and '.join(map(str, paths))}; `python -m stages.report` shows them")
+    return 0
+
+
+def main() -> None:
+    """Runs the command line."""
+    errors_in_one_line("front")
+    sys.exit(run(sys.argv[1:]))
+
+
+if __name__ == "__main__":
+    main()

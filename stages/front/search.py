@@ -1,0 +1,121 @@
+"""The study on the disk: choices that Optuna proposes, what was found of each, and what is asked about again."""
+
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+from stages.kit.extras import from_extra
+from stages.kit.files import read_json, write_json
+from stages.kit.rng import rng
+from stages.kit.run import Rows
+
+from .halving import CONFIRMATION, DIRECTIONS, RUNGS, aims, best_share, losses, ranks, smallest_of
+from .known import Effort, known
+from .objects import Objects
+from .senses import Senses
+from .space import DEFAULT, SPACE, Choice, choice_of, one_choice_changed
+
+with from_extra():
+    import optuna
+    from optuna.storages import JournalStorage
+    from optuna.storages.journal import JournalFileBackend
+    from optuna.trial import TrialState
+
+MADE_OF = "made of"  # the study's own note of what it was made of
+POPULATION = 24  # choices of one generation
+
+
+class OutOfTime(Exception):
+    """The minutes of this call are over; what was found is kept."""
+
+
+class Search:
+    """A search for the front, in a folder of its own, that goes on where it stopped.
+
+    made_of: what its results follow from: the code's digest, the objects, the seed. ValueError where the folder holds a
+    study that was made of something else.
+    """
+
+    def __init__(self, folder: Path, made_of: dict[str, str], senses: Senses, seed: int, minutes: float) -> None:
+        self.folder, self.senses, self.seed = folder, senses, seed
+        self._end = time.monotonic() + 60 * minutes
+        self._numbers: dict[Choice, int] = {}  # in the order in which they were first asked about
+        self._found: dict[tuple[str, Choice], Rows] = {}
+        optuna.logging.set_verbosity(optuna.logging.WARNING)
+        folder.mkdir(parents=True, exist_ok=True)
+        storage = JournalStorage(JournalFileBackend(str(folder / "study.journal")))
+        self.study = optuna.create_study(
+            storage=storage, study_name="front", directions=DIRECTIONS, load_if_exists=True
+        )
+        self._check(made_of)
+
+    def _check(self, made_of):
+        known = self.study.user_attrs.get(MADE_OF)
+        if known is None:
+            self.study.set_user_attr(MADE_OF, made_of)
+            return
+        other = [f"{key} {known.get(key)}, now {value}" for key, value in made_of.items() if known.get(key) != value]
+        if other:
+            raise ValueError(
+                f"{self.folder} holds a study of another version ({'; '.join(other)}), whose results cannot be "
+                f"compared: remove that folder to search anew, or check out the version that it was made with"
+            )
+
+    def run(self, searched: Objects, unseen: Objects, trials: int) -> Rows:
+        """All rows: of each rung, of the confirmation on unseen objects, and of each single choice changed."""
+        rows = self._wide(searched, trials)
+        for rung in list(RUNGS)[1:]:
+            choices = list(rows)
+            better = [choices[k] for k in best_share(losses(rows.values()))]
+            rows = {choice: self._asked(rung, searched, choice, RUNGS[rung]) for choice in better}
+        roles = {DEFAULT: "default", smallest_of(rows): "smallest"}
+        front = [choice for choice, rank in zip(rows, ranks(losses(rows.values())), strict=True) if rank == 0]
+        for choice in dict.fromkeys([*roles, *front]):
+            self._asked("confirmation", unseen, choice, CONFIRMATION, roles.get(choice))
+        for choice in one_choice_changed(smallest_of(rows)):
+            self._asked("one_choice", unseen, choice, CONFIRMATION)
+        return [row for found in self._found.values() for row in found]
+
+    def _wide(self, searched, trials):
+        """{choice: its rows} of the choices that the study proposes, until it has asked about so many."""
+        rows = {}
+        for trial in self.study.get_trials(deepcopy=False):
+            if trial.state == TrialState.COMPLETE:
+                choice = choice_of(trial.params)
+                rows[choice] = self._asked("wide", searched, choice, RUNGS["wide"])
+            elif trial.state == TrialState.RUNNING:  # a killed run has left it
+                rows |= self._tell(trial.number, trial.params, searched)
+        options: dict[str, Any] = {
+            name: optuna.distributions.CategoricalDistribution(every) for name, every in SPACE.items()
+        }
+        while (number := len(self.study.get_trials(deepcopy=False))) < trials:
+            # Drawn anew for each trial, so that a run that was stopped goes on like one that was not.
+            seed = int(rng(self.seed, f"trial {number}").integers(2**31))
+            self.study.sampler = optuna.samplers.NSGAIISampler(population_size=POPULATION, seed=seed)
+            trial = self.study.ask(fixed_distributions=options)
+            rows |= self._tell(trial.number, trial.params, searched)
+        return rows
+
+    def _tell(self, number, params, searched):
+        if set(params) != set(SPACE):  # it was killed before it was proposed
+            self.study.tell(number, state=TrialState.FAIL)
+            return {}
+        choice = choice_of(params)
+        rows = self._asked("wide", searched, choice, RUNGS["wide"])
+        self.study.tell(number, aims(rows))
+        return {choice: rows}
+
+    def _asked(self, rung: str, objects: Objects, choice: Choice, effort: Effort, role: str | None = None) -> Rows:
+        """The rows of one choice, from the disk where it was asked about before."""
+        path = self.folder / "rows" / rung / f"{choice.name}.json"
+        if not path.exists():
+            if time.monotonic() > self._end:
+                raise OutOfTime
+            found = known(self.senses, objects, choice, effort, self.seed)
+            write_json(path, found)
+            told = " ".join(f"{value:.3g}" for value in aims(found)[:3])
+            print(f"front: {rung} {choice.name}: {told} (regions, objects, seconds)", file=sys.stderr)
+        common = {"rung": rung, "number": self._numbers.setdefault(choice, len(self._numbers)), "role": role}
+        self._found[rung, choice] = [{**row, **common} for row in read_json(path)]
+        return self._found[rung, choice]

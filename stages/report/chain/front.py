@@ -1,0 +1,117 @@
+"""The front from mesh to named object: a table of the choices that were confirmed, and a chart of all aims but two."""
+
+import pandas as pd
+from matplotlib.axes import Axes
+
+from stages.report.grid import records
+from stages.report.items import Figure, Table
+from stages.report.markdown import with_interval
+from stages.report.pareto import pareto_front
+from stages.report.results import Results
+from stages.report.style import CYCLE, GREY, PALE, plain_logarithm, plt
+
+from .rows import CONFIRMED, SEARCH, SPLITS, brief, effect, front_rows, named, of_rung
+
+PANELS = {"regions": "one of six shapes, by unseen regions", "objects": "the class of an unseen object"}
+SIX = 6  # shapes of one question
+SMALLEST, DEFAULT = "the smallest within two points", "the project's default"
+
+
+def table(results: Results) -> Table:
+    """The confirmed choices, the quickest first, beside what the search found of them."""
+    rows = front_rows(results)
+    frame = of_rung(rows, CONFIRMED).sort_values("seconds", ignore_index=True)
+    searched = of_rung(rows, SEARCH).set_index("number")
+    for name in SPLITS.values():
+        frame[f"{name}_searched"] = frame["number"].map(searched[name])
+    asked = rows[rows["rung"] == CONFIRMED]
+    usual = asked[asked["number"] == named(rows, "default")]
+    for split, name in SPLITS.items():
+        over = [effect(usual, asked[asked["number"] == choice], split) for choice in frame["number"]]
+        frame[[f"{name}_over", f"{name}_over_low", f"{name}_over_high"]] = over
+    frame["role"] = frame["number"].map({named(rows, "default"): DEFAULT, named(rows, "smallest"): SMALLEST}).fillna("")
+    shown = pd.DataFrame(
+        {
+            "choice": frame["words"],
+            "seconds to know": frame["seconds"],
+            "unseen regions, %": [_cell(row, "regions") for row in records(frame)],
+            "in the search": [_searched(value) for value in frame["regions_searched"]],
+            "unseen objects, %": [_cell(row, "objects") for row in records(frame)],
+            "in the search ": [_searched(value) for value in frame["objects_searched"]],
+            "looking, s": frame["looking"],
+            "faces": frame["faces"].round(),
+            "learning one object, s": frame["training"],
+            "which": frame["role"],
+        }
+    )
+    return Table(frame, shown, _words(rows, frame))
+
+
+def _cell(row, name):
+    return with_interval(getattr(row, name), getattr(row, f"{name}_low"), getattr(row, f"{name}_high"), 100, 0)
+
+
+def _searched(value):
+    return "–" if value != value else f"{100 * value:.0f}"
+
+
+def _words(rows, frame):
+    """What the notes say: how many choices and objects, and the two choices that are named."""
+    counts = {rung: own["number"].nunique() for rung, own in rows.groupby("rung")}
+    small, usual = (frame[frame["role"] == role].iloc[0] for role in (SMALLEST, DEFAULT))
+    asked = rows[rows["rung"] == CONFIRMED].drop_duplicates(["split", "item"])
+    shapes, objects = (int((asked["split"] == split).sum()) for split in SPLITS)
+    found = {"wide": counts["wide"], "narrow": counts["narrow"], "last": counts["last"], "confirmed": len(frame)}
+    found |= {"shapes": shapes, "objects": objects, "guess": f"{100 / asked['group'].nunique():.0f}"}
+    for name, row in (("small", small), ("usual", usual)):
+        accuracies = (f"{100 * row[split]:.0f}" for split in SPLITS.values())
+        found |= zip((name, f"{name}_regions", f"{name}_objects"), (row["words"], *accuracies), strict=True)
+    return found | {
+        "small_ms": brief(1000 * small["seconds"]),
+        "times": brief(usual["seconds"] / small["seconds"]),
+    }
+
+
+def chart(results: Results) -> Figure:
+    """Accuracy against seconds to know one object, on unseen regions and on unseen objects."""
+    rows = front_rows(results)
+    searched, confirmed = of_rung(rows, SEARCH), of_rung(rows, CONFIRMED)
+    marked = {named(rows, "default"): ("s", CYCLE[2], DEFAULT), named(rows, "smallest"): ("D", CYCLE[1], SMALLEST)}
+    drawing, panels = plt.subplots(1, 2, figsize=(9.2, 4.1), sharex=True, sharey=True, layout="constrained")
+    guesses = (1 / SIX, 1 / rows.loc[rows["rung"] == CONFIRMED, "group"].nunique())  # shapes have no group
+    for axes, (name, title), guess in zip(panels, PANELS.items(), guesses, strict=True):
+        _draw(axes, searched, confirmed, name, marked)
+        axes.axhline(100 * guess, color=GREY, lw=0.8, ls=":", label="guessing")
+        axes.set_title(title, fontsize=10)
+        axes.set_xlabel("seconds of one core from mesh to name")
+    panels[0].set_ylabel("right answers, %")
+    handles, names = panels[0].get_legend_handles_labels()
+    drawing.legend(handles, names, loc="outside lower center", ncol=3, fontsize=9)
+    frame = pd.concat([searched.assign(rung=SEARCH), confirmed.assign(rung=CONFIRMED)], ignore_index=True)
+    return Figure(drawing, _words(rows, table(results).frame), frame)
+
+
+def _draw(axes: Axes, searched: pd.DataFrame, confirmed: pd.DataFrame, name: str, marked: dict) -> None:
+    """One panel: what the search found and its front, and what was confirmed, with intervals."""
+    axes.plot(
+        searched["seconds"], 100 * searched[name], "o", color="none", mec=GREY, ms=4.5, label="on objects of the search"
+    )
+    front = searched[pareto_front(searched["seconds"], searched[name])].sort_values("seconds")
+    axes.step(front["seconds"], 100 * front[name], where="post", color=GREY, lw=1, zorder=1, label="their Pareto front")
+    pairs = confirmed.merge(searched, on="number", suffixes=("", "_before"))
+    for row in records(pairs):
+        ends = [[getattr(row, f"{one}_before"), getattr(row, one)] for one in ("seconds", name)]
+        axes.plot(ends[0], [100 * end for end in ends[1]], color=PALE, lw=1.2, zorder=0)
+    others = confirmed[~confirmed["number"].isin(marked)]
+    for own, (form, tint, said) in [
+        (others, ("o", CYCLE[0], "confirmed on unseen ones, 95 % interval")),
+        *((confirmed[confirmed["number"] == one], look) for one, look in marked.items()),
+    ]:
+        ends = 100 * own[[f"{name}_low", f"{name}_high"]].to_numpy()
+        axes.vlines(own["seconds"], *ends.T, color=tint, lw=1.2, alpha=0.6, zorder=2)
+        axes.plot(own["seconds"], 100 * own[name], form, color=tint, mec="white", mew=0.8, ms=7, zorder=3, label=said)
+    for row in records(pd.concat([searched, confirmed])):
+        axes.plot(row.seconds, 100 * getattr(row, name), alpha=0, label=f"_{row.words}")
+    axes.set(xscale="log", ylim=(0, 102))
+    axes.grid()
+    plain_logarithm(axes.xaxis, (1.0, 3.0))

@@ -1,0 +1,157 @@
+"""One number a method: its mean corruption error (mCE), as Hendrycks and Dietterich have it for classifiers.
+
+Benchmarking neural network robustness to common corruptions and perturbations, ICLR 2019. The error here is the share
+of the points that are not found again, corrected for chance; the reference is Itti's attention.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pandas as pd
+
+from stages.kit.breaking_point import expanded_levels, resampled_means, resamples
+from stages.kit.units import unit
+from stages.report.results import NotRun, some
+from stages.stability.subject import UNPERTURBED
+
+STAGE = "stability"
+BENCHMARK = "household_stability"
+REFERENCE = "itti"
+KEYS = ["item", "method", "perturbation", "severity"]
+LEAST = 0.02  # a disturbance that costs the reference less than this is no unit to measure by
+KINDS = {  # the disturbances that score, by what they change
+    "surface": ("noise", "decimation", "remeshing", "missing_faces", "scan"),
+    "pose": ("turn", "tilt"),
+    "picture": ("light", "pattern", "image_size"),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Errors:
+    """values (n, m, k): of each object, method and case; cases: (perturbation, severity) of each k, mild to harsh.
+
+    clean (n, m): the errors on the undisturbed objects.
+    """
+
+    objects: list[str]
+    methods: list[str]
+    cases: list[tuple[str, float]]
+    values: np.ndarray
+    clean: np.ndarray
+
+    @property
+    def perturbations(self) -> list[str]:
+        """Their names, in order."""
+        return list(dict.fromkeys(name for name, _ in self.cases))
+
+    @property
+    def severities(self) -> np.ndarray:
+        """(p,): how many cases each perturbation has."""
+        return np.array([sum(name == one for name, _ in self.cases) for one in self.perturbations])
+
+    @property
+    def beyond_clean(self) -> "Errors":
+        """The Errors less those on the undisturbed objects."""
+        return replace(self, values=self.values - self.clean[:, :, None], clean=np.zeros_like(self.clean))
+
+    def means(self, counts: np.ndarray) -> np.ndarray:
+        """(r, m, k): the means over the objects that counts (r, n) name."""
+        n, m, k = self.values.shape
+        return resampled_means(self.values.reshape(n, m * k), counts).reshape(len(counts), m, k)
+
+    def by_perturbation(self, means: np.ndarray) -> np.ndarray:
+        """(r, m, p): means (r, m, k) summed over the severities of each perturbation."""
+        return np.stack([means[..., [name == one for name, _ in self.cases]].sum(axis=-1)
+                         for one in self.perturbations], axis=-1)  # fmt: skip
+
+
+def points_lost(rows: pd.DataFrame) -> pd.DataFrame:
+    """A frame of item, method, perturbation, severity and value: 1 - repeatability, 1 at the level of chance.
+
+    Rows of a pair have no severity. What could not be disturbed is left out.
+    """
+    rows = rows[rows["metric"].isin(["repeatability", "chance"])].dropna(subset=["value"])
+    wide = rows.set_index([*KEYS, "metric"])["value"].unstack("metric").reset_index()
+    return wide[KEYS].assign(value=1 - (wide["repeatability"] - wide["chance"]) / (1 - wide["chance"]))
+
+
+def of_points(rows: pd.DataFrame) -> Errors:
+    """The Errors of the points: `points_lost`. On the undisturbed object every method finds its own points again."""
+    return _gathered(points_lost(rows), rows)
+
+
+def of_gaze(rows: pd.DataFrame) -> Errors:
+    """The Errors of the agreement with gaze: 1 - AUC."""
+    rows = rows[rows["metric"] == "auc"].dropna(subset=["value"])
+    return _gathered(rows[KEYS].assign(value=1 - rows["value"]), rows)
+
+
+def _gathered(found: pd.DataFrame, rows: pd.DataFrame) -> Errors:
+    """The Errors of the single perturbations that belong to a kind; copies of a shape are one object."""
+    found = found.assign(item=found["item"].map(unit)).groupby(KEYS, sort=False, dropna=False, as_index=False).mean()
+    known = [name for names in KINDS.values() for name in names]
+    cases = rows.loc[rows["perturbation"].isin(known), ["perturbation", "severity"]].drop_duplicates()
+    cases = sorted(cases.itertuples(index=False, name=None), key=lambda case: known.index(case[0]))
+    some(cases, "no disturbed points", STAGE)
+    pairs = list(zip(found["perturbation"], found["severity"], strict=True))
+    found = found.assign(case=pd.Series(pairs, index=found.index, dtype=object))
+    disturbed, clean = (found[found["perturbation"].isin(names)] for names in (known, [UNPERTURBED]))
+    objects, methods = (sorted(set(disturbed["item"])), list(dict.fromkeys(rows["method"])))
+    values = _filled(disturbed, ["item", "method", "case"], (objects, methods, cases))
+    start = np.zeros(values.shape[:2]) if clean.empty else _filled(clean, ["item", "method"], (objects, methods))
+    return Errors(objects, methods, cases, values, start)
+
+
+def _filled(frame: pd.DataFrame, columns: Sequence[str], names: Sequence[Sequence]) -> np.ndarray:
+    """The values of a frame by the places of its columns among the names, NaN where there is none."""
+    values = np.full([len(one) for one in names], np.nan)
+    places = [{name: place for place, name in enumerate(one)} for one in names]
+    for *key, value in frame[[*columns, "value"]].itertuples(index=False, name=None):
+        values[tuple(of[one] for of, one in zip(places, key, strict=True))] = value
+    return values
+
+
+def corruption_errors(errors: Errors, reference: str, counts: np.ndarray) -> tuple[np.ndarray, list[str]]:
+    """((r, m, p) errors under each perturbation over those of the reference, the p perturbations that count).
+
+    Errors are means over the objects that counts (r, n) name, summed over the severities. A perturbation that costs the
+    reference nothing (LEAST, a case) is left out: 0 / 0 says nothing. NotRun without the reference.
+    """
+    if reference not in errors.methods:
+        raise NotRun(f"{reference}, the reference of the score, is not among stability.methods", STAGE, runnable=False)
+    own = errors.methods.index(reference)
+    whole = errors.by_perturbation(errors.means(np.ones((1, len(errors.objects)))))[0, own]
+    kept = np.flatnonzero(whole > LEAST * errors.severities)
+    summed = errors.by_perturbation(errors.means(counts))[..., kept]
+    return summed / summed[:, own : own + 1], [errors.perturbations[place] for place in kept]
+
+
+def scores(errors: Errors, reference: str = REFERENCE, seed: int = 0) -> pd.DataFrame:
+    """A row a method: `mce`, the mean over the perturbations of its corruption errors, and that of each of KINDS.
+
+    `relative`: the same of what is lost beyond the undisturbed error. `found`: the share found again beyond chance, the
+    mean over the perturbations. Intervals (`_low`, `_high`) are over the objects, resampled for all methods at once, so
+    that they are paired: that of the reference is [1, 1]. One object gives none.
+    """
+    count = len(errors.objects)
+    every, draws = np.ones((1, count)), resamples(count, seed)
+    at, names = corruption_errors(errors, reference, every)
+    some(names, f"nothing disturbs {reference}", STAGE, runnable=False)
+    drawn = corruption_errors(errors, reference, draws)[0]
+    frame = pd.DataFrame({"method": errors.methods, **_with_ends("mce", at.mean(axis=2), drawn.mean(axis=2), count)})
+    for kind, members in KINDS.items():
+        chosen = [place for place, name in enumerate(names) if name in members]
+        frame[kind] = at[0][:, chosen].mean(axis=1) if chosen else np.nan
+    beyond = errors.beyond_clean
+    own, more = (corruption_errors(beyond, reference, counts)[0].mean(axis=2) for counts in (every, draws))
+    kept = [1 - errors.by_perturbation(errors.means(counts)) / errors.severities for counts in (every, draws)]
+    found = _with_ends("found", kept[0].mean(axis=2), kept[1].mean(axis=2), count)
+    return frame.assign(**_with_ends("relative", own, more, count), **found)
+
+
+def _with_ends(name, at, drawn, count):
+    """{name and its ends}: at (1, m) and drawn (r, m), of `count` objects."""
+    levels = expanded_levels(count) if count > 1 else (np.nan, np.nan)
+    ends = np.quantile(drawn, levels, axis=0) if count > 1 else np.full((2, drawn.shape[1]), np.nan)
+    return {name: at[0], f"{name}_low": ends[0], f"{name}_high": ends[1]}

@@ -1,0 +1,62 @@
+"""A choice is an option at every stage, which Hydra composes and checks."""
+
+from dataclasses import asdict, replace
+
+import pytest
+
+from stages.front.space import DEFAULT, SPACE, WIDTH, choice_of, one_choice_changed, settings_of
+from stages.imprints.schema import Params as Imprints
+from stages.kit.params import ParamsError
+from stages.salient_points.methods import METHODS
+
+OPTIONS = {name: options[0] for name, options in SPACE.items()}
+BLIND = choice_of(OPTIONS | {"method": "random"})
+
+
+def test_a_method_without_channels_looks_at_no_picture():
+    assert (BLIND.viewpoints, BLIND.image_rows) == ("", 0) and choice_of(OPTIONS).image_rows == 450
+    assert choice_of(OPTIONS | {"method": "random", "viewpoints": "four"}) == BLIND
+    assert BLIND.columns["image_rows"] is None and BLIND.columns["cells"] == 16
+    assert BLIND.name == "random-60-16-100pct-1-knn"
+
+
+def test_every_option_is_one_of_its_stage():
+    assert set(SPACE["method"]) <= set(METHODS)
+    for name in ("viewpoints", "classifier", "level", "points"):
+        for option in SPACE[name]:
+            settings_of(choice_of(OPTIONS | {name: option}))
+
+
+def test_settings_are_those_of_the_choice():
+    choice = replace(DEFAULT, viewpoints="four", image_rows=225, cells=8, level="500", touches=3, classifier="svm")
+    settings = settings_of(choice)
+    assert (settings.views.viewpoints, settings.views.size, settings.conspicuity.size) == ("four", [225, 300], [56, 75])
+    assert settings.lod.targets == ["500"] and settings.classification.touches == [3]
+    assert settings.classification.classifiers == ["svm"] and settings.salient_points.count == 60
+    assert isinstance(settings.imprints, Imprints) and settings.imprints.cells == [8, 8]
+    assert settings.imprints.cells[0] * settings.imprints.pitch == pytest.approx(WIDTH)
+
+
+def test_the_default_is_that_of_the_project():
+    settings, usual = settings_of(DEFAULT), settings_of(replace(BLIND, method="enhanced"))
+    assert settings.views == usual.views and settings.conspicuity == usual.conspicuity
+    assert settings.imprints.pitch == 0.01
+
+
+def test_an_option_that_the_settings_do_not_know_is_named():
+    with pytest.raises(ParamsError, match="unknown option classifier=nn"):
+        settings_of(replace(DEFAULT, classifier="nn"))
+    with pytest.raises(ValueError, match="unknown method 'attention'"):
+        choice_of(OPTIONS | {"method": "attention"})
+
+
+def test_one_choice_changed_differs_in_one_stage():
+    found = list(one_choice_changed(BLIND))
+    assert len(found) == len(set(found)) and BLIND not in found
+    for other in found:
+        changed = {key for key, value in asdict(other).items() if value != asdict(BLIND)[key]}
+        assert len(changed - {"viewpoints", "image_rows"}) == 1
+    pictures = [other for other in found if other.image_rows]
+    assert {other.method for other in pictures} == {"enhanced", "thesis_ssim", "itti"}
+    assert {(other.viewpoints, other.image_rows) for other in pictures} == {("twelve", 450)}
+    assert len(found) == sum(map(len, SPACE.values())) - len(SPACE) - (2 + 2 - 2)

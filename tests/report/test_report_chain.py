@@ -1,0 +1,84 @@
+"""The front in the report: what was confirmed beside what was searched, and the effect of each changed choice."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from stages.report import chain
+from stages.report.chain.rows import words
+from stages.report.results import NotRun
+from stages.report.topics import build_one
+
+BLIND = {"method": "random", "points": 40, "cells": 8, "level": "500", "touches": 3, "classifier": "knn"}
+LOOKING = BLIND | {"method": "enhanced", "viewpoints": "twelve", "image_rows": 900, "level": "100%", "touches": 1}
+OTHERS = [BLIND | {"points": 20}, BLIND | {"classifier": "svm"}]
+
+
+def choice_rows(rung, number, options, accuracy, seconds, role=None):
+    """Rows of one choice on six shapes and six objects, whose accuracies spread evenly around their mean."""
+    random, common = np.random.default_rng(number), {"method": None, "viewpoints": None, "image_rows": None} | options
+    common |= {"rung": rung, "number": number, "role": role, "metric": "accuracy", "seconds": seconds, "faces": 500}
+    common |= {"simplifying": 0, "looking": seconds, "pressing": 0, "asking": 0, "training": 1, "seed": 0}
+    spread = 0.1 * (random.permutation(6) - 2.5) / 2.5
+    return [
+        common | {"split": split, "group": group, "item": f"{split} {k}", "value": accuracy + spread[k]}
+        for split, group in (("regions", None), ("objects", "table"))
+        for k in range(6)
+    ]
+
+
+@pytest.fixture
+def measured(root, results, small):
+    rows = choice_rows("confirmation", 5, LOOKING, 0.55, 1.0, "default")
+    rows += choice_rows("confirmation", 0, BLIND, 0.5, 0.01, "smallest")
+    rows += choice_rows("confirmation", 1, OTHERS[0], 0.45, 0.005)
+    for rung in ("wide", "narrow", "last"):
+        rows += choice_rows(rung, 0, BLIND, 0.6, 0.01) + choice_rows(rung, 1, OTHERS[0], 0.5, 0.005)
+    rows += choice_rows("one_choice", 1, OTHERS[0], 0.4, 0.005) + choice_rows("one_choice", 7, OTHERS[1], 0.52, 0.02)
+    frame = pd.DataFrame(rows)
+    for dataset, split in (("test", "regions"), ("classes", "objects")):
+        small.write(root, "front", frame[frame["split"] == split], dataset)
+    return results
+
+
+def test_confirmed_choices_stand_beside_what_the_search_found(measured):
+    table = build_one(chain, "tables", "front", measured)
+    assert list(table.frame["number"]) == [1, 0, 5]  # the quickest first
+    small = table.frame.iloc[1]
+    assert small["regions"] == pytest.approx(0.5) and small["regions_searched"] == pytest.approx(0.6)
+    assert small["regions_low"] < 0.5 < small["regions_high"] and np.isnan(table.frame.iloc[2]["regions_searched"])
+    assert small["regions_over"] == pytest.approx(-5) and small["regions_over_low"] < -5 < small["regions_over_high"]
+    notes = " ".join(table.notes)
+    assert "takes 10 ms, the default 100 times as long" in notes and "6 shapes and 6 objects" in notes
+    assert words(pd.Series(small)) in notes and "in 50 and 50 % of the cases, the default in 55 and 55 %" in notes
+
+
+def test_a_choice_is_said_in_words():
+    looking = pd.Series(LOOKING)
+    assert words(looking) == (
+        "ours (views) (twelve views of 900 rows), 40 places, 8 x 8 cells, all faces, 1 touch, kNN"
+    )
+    assert (
+        words(pd.Series({"image_rows": None} | BLIND))
+        == "blind touch, 40 places, 8 x 8 cells, 500 faces, 3 touches, kNN"
+    )
+
+
+def test_each_changed_choice_has_its_paired_effect_and_its_cost(measured):
+    frame = build_one(chain, "tables", "front_changed", measured).frame.set_index("stage")
+    assert list(frame.index) == ["points", "classifier"]
+    assert frame.loc["points", "regions"] == pytest.approx(-10) and frame.loc["points", "times"] == pytest.approx(0.5)
+    assert frame.loc["classifier", "objects"] == pytest.approx(2) and frame.loc["classifier", "times"] == 2
+    assert frame.loc["classifier", "objects_low"] < 2 < frame.loc["classifier", "objects_high"]
+
+
+def test_the_chart_draws_the_front_and_keeps_its_numbers(measured):
+    figure = build_one(chain, "tradeoff", "front", measured)
+    assert all(path.exists() for path in figure.paths) and "takes 10 ms" in figure.caption
+    assert figure.frame is not None and set(figure.frame["rung"]) == {"last", "confirmation"}
+
+
+def test_without_a_search_nothing_is_shown(results):
+    for kind, name in (("tables", "front"), ("tables", "front_changed"), ("tradeoff", "front")):
+        with pytest.raises(NotRun, match="no measurements of front"):
+            build_one(chain, kind, name, results)

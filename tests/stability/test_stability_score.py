@@ -1,0 +1,253 @@
+"""The score of a method, its breaking points with censored ends, pairs and uses, on rows with a known truth."""
+
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from stages.kit.breaking_point import breaking_interval, expanded_levels, resampled_means
+from stages.report import stability
+from stages.report.results import NotRun
+from stages.report.stability.pairs import compared, verdict
+from stages.report.stability.panels import cell
+from stages.report.stability.score import corruption_errors, of_gaze, of_points, points_lost, scores
+from stages.report.topics import build_one
+from stages.report.verdict import judge
+from stages.stability.summary import breaking_points
+
+from .test_stability_report import results
+
+NOISE, TILT, LIGHT = [0.001, 0.005], [15.0, 90.0], [60.0]
+LOST = {  # of each method under noise, tilt and light, the mean over the objects
+    "itti": (0.4, 0.8, 0.5), "harris": (0.2, 0.0, 0.0), "glance": (0.2, 0.4, 0.25), "random": (1.0, 1.0, 1.0),
+}  # fmt: skip
+CHANCE = 0.1
+
+
+def row(item, method, perturbation, severity, metric, value):
+    return {"item": item, "method": method, "perturbation": perturbation, "severity": severity, "metric": metric,
+            "value": value, "seconds": 1.0, "note": None}  # fmt: skip
+
+
+def rows(objects=12, lost=None, spread=0.3):
+    """Rows whose lost share varies over the objects by `spread` of itself, alike for all methods."""
+    found = []
+    for number in range(objects):
+        more = 1 + spread * (2 * number / max(objects - 1, 1) - 1)
+        for method, shares in (lost or LOST).items():
+            cases = zip(("noise", "tilt", "light"), (NOISE, TILT, LIGHT), shares, strict=True)
+            for name, severities, share in cases:
+                for severity in severities:
+                    again = 1 - share * (1 if method == "random" else more) * (1 - CHANCE)
+                    where = (f"object {number}", method, name, severity)
+                    found += [row(*where, "repeatability", again), row(*where, "chance", CHANCE)]
+    return found
+
+
+def scored(found, **given):
+    return scores(of_points(pd.DataFrame(found)), **given).set_index("method")
+
+
+def test_the_reference_is_one_and_others_are_measured_by_it():
+    found = scored(rows())
+    assert found.loc["itti", ["mce", "mce_low", "mce_high", "relative"]].tolist() == [1, 1, 1, 1]
+    assert found["mce"]["glance"] == pytest.approx(0.5) and found["mce"]["harris"] == pytest.approx(0.5 / 3)
+    assert found.loc["harris", ["surface", "pose", "picture"]].tolist() == pytest.approx([0.5, 0, 0])
+    assert scored(rows(), reference="glance")["mce"]["itti"] == pytest.approx(2)
+
+
+def test_what_is_equal_to_chance_scores_as_chance():
+    found = scored(rows())
+    assert found["mce"]["random"] == pytest.approx(np.mean([1 / 0.4, 1 / 0.8, 1 / 0.5]))
+    assert found["found"]["random"] == pytest.approx(0) and found["found"]["harris"] == pytest.approx(1 - 0.2 / 3)
+
+
+def test_the_score_is_paired_over_the_objects():
+    """Where all methods lose more on the same objects, their ratio stays; the share found again does not."""
+    found = scored(rows(spread=0.5))
+    assert found["mce_high"]["glance"] - found["mce_low"]["glance"] < 1e-9
+    assert found["found_high"]["glance"] - found["found_low"]["glance"] > 0.05
+    table = pd.DataFrame(rows(spread=0.0))
+    some = table["item"].isin(["object 1", "object 5"]) & (table["metric"] == "repeatability")
+    table.loc[some & (table["method"] == "glance"), "value"] = 0.2
+    known = scores(of_points(table)).set_index("method").loc["glance"]
+    assert known["mce_low"] < known["mce"] - 0.1 and known["mce_high"] > known["mce"] + 0.1
+
+
+def test_the_order_of_the_shapes_does_not_matter():
+    one, other = scored(rows()), scored(rows()[::-1])
+    pd.testing.assert_frame_equal(one.sort_index(), other.sort_index()[one.columns])
+
+
+def test_errors_of_the_mean_shape_are_divided_and_not_means_of_ratios():
+    """As Hendrycks and Dietterich sum first: a shape on which the reference loses nothing is no division by zero."""
+    found = rows(spread=1.0)  # the first object loses nothing at all
+    assert scored(found)["mce"]["glance"] == pytest.approx(0.5)
+
+
+def test_severities_are_summed_before_the_ratio():
+    table = pd.DataFrame(rows(objects=4, spread=0))
+    mild = (table["perturbation"] == "tilt") & (table["severity"] == 15.0) & (table["metric"] == "repeatability")
+    table.loc[mild & (table["method"] == "itti"), "value"] = 1.0  # now 0 and 0.8, beside 0.4 and 0.4
+    errors = of_points(table)
+    ratio, names = corruption_errors(errors, "itti", np.ones((1, 4)))
+    assert ratio[0, errors.methods.index("glance"), names.index("tilt")] == pytest.approx(1.0)
+
+
+def test_what_costs_the_reference_nothing_is_left_out_and_named(tmp_path):
+    lost = LOST | {"itti": (0.4, 0.8, 0.0)}
+    found = scored(rows(lost=lost))
+    assert found["mce"]["glance"] == pytest.approx(0.5) and found["picture"].isna().all()
+    built = build_one(stability, "tables", "stability_score", results(tmp_path, rows(lost=lost)))
+    assert "Without light" in " ".join(built.notes)
+
+
+def test_a_disturbance_that_failed_on_a_shape_counts_for_no_method():
+    table = pd.DataFrame(rows())
+    failed = (table["item"] == "object 3") & (table["perturbation"] == "tilt")
+    table.loc[failed, "value"] = np.nan
+    assert scores(of_points(table)).set_index("method")["mce"]["glance"] == pytest.approx(0.5)
+
+
+def test_copies_of_a_shape_count_once():
+    table = pd.DataFrame(rows(objects=4)).replace({"object 2": "cubesmall", "object 3": "cubelarge"})
+    errors = of_points(table)
+    assert errors.objects == ["cube", "object 0", "object 1"]
+    whole = of_points(pd.DataFrame(rows(objects=4))).values
+    assert np.allclose(errors.values, [whole[2:].mean(axis=0), whole[0], whole[1]])
+    curves = breaking_points(table[table["method"] == "itti"])["tilt", "itti"]
+    keys = ["item", "method", "perturbation", "severity", "metric"]
+    three = table.replace({"cubelarge": "cubesmall"}).groupby(keys, as_index=False, sort=False)["value"].mean()
+    assert curves == pytest.approx(breaking_points(three[three["method"] == "itti"])["tilt", "itti"])
+
+
+def test_means_are_over_what_was_measured():
+    found = resampled_means(np.array([[1, np.nan], [3, 5]]), np.array([[1.0, 1], [2, 0], [1, 3]]))
+    assert np.array_equal(found, [[2, 5], [1, np.nan], [2.5, 5]], equal_nan=True)
+
+
+def test_one_shape_has_no_interval():
+    found = scored(rows(objects=1))
+    assert found["mce_low"].isna().all() and found["mce"]["glance"] == pytest.approx(0.5)
+
+
+def test_a_missing_reference_is_named():
+    with pytest.raises(NotRun, match="itti, the reference of the score"):
+        scored(rows(lost={"harris": (0.1, 0.1, 0.1)}))
+
+
+def test_relative_errors_are_those_beyond_the_undisturbed():
+    """A method that is bad from the start and loses nothing more is as good as none: Hendrycks' relative mCE."""
+    found = []
+    for item in ("a", "b", "c"):
+        for method, start, after in (("itti", 0.7, 0.5), ("glance", 0.9, 0.8), ("harris", 0.5, 0.5)):
+            found.append(row(item, method, "none", np.nan, "auc", start))
+            found += [row(item, method, "noise", severity, "auc", after) for severity in NOISE]
+    known = scores(of_gaze(pd.DataFrame(found))).set_index("method")
+    assert known["mce"].to_dict() == pytest.approx({"itti": 1.0, "glance": 0.4, "harris": 1.0})
+    assert known["relative"].to_dict() == pytest.approx({"itti": 1.0, "glance": 0.5, "harris": 0.0})
+
+
+@pytest.mark.parametrize("unharmed", [0.0, 1.0])
+def test_an_interval_is_censored_where_resamples_do_not_break(unharmed):
+    """Rising and falling severities; ends go from mild to harsh."""
+    severities = [0.5, 0.9] if unharmed == 0 else [0.5, 0.1]
+    all_break, none_breaks = np.tile([0.9, 0.1], (20, 1)), np.tile([0.9, 0.8], (20, 1))
+    at, low, high = breaking_interval(severities, all_break, unharmed)
+    assert [at, low, high] == pytest.approx(3 * [0.7 if unharmed == 0 else 0.3])
+    assert np.isnan(breaking_interval(severities, none_breaks, unharmed)).all()
+    mixed = np.vstack([np.tile([0.9, 0.1], (11, 1)), np.tile([0.9, 0.8], (9, 1))])  # their mean is 0.415
+    at, low, high = breaking_interval(severities, mixed, unharmed)
+    assert np.isfinite([at, low]).all() and np.isnan(high)
+    assert abs(low - unharmed) < abs(at - unharmed)  # the mild end is nearer to what changes nothing
+    mostly = np.vstack([np.tile([0.9, 0.1], (8, 1)), np.tile([0.9, 0.8], (12, 1))])  # their mean is 0.52
+    at, low, high = breaking_interval(severities, mostly, unharmed)
+    assert np.isnan([at, high]).all() and np.isfinite(low)
+
+
+def test_the_text_of_a_censored_breaking_point():
+    def text(at, low, high, unharmed=0.0):
+        values = {"breaking_point": at, "low": low, "high": high, "harshest": 0.3}
+        return cell(pd.DataFrame([values]).iloc[0], unharmed)
+
+    assert text(np.nan, np.nan, np.nan) == "> 0.3" and text(np.nan, np.nan, np.nan, 1.0) == "< 0.3"
+    assert text(0.2, 0.1, np.nan) == "0.20 [0.10, > 0.3]" and text(np.nan, 0.1, np.nan) == "> 0.3 [0.10, > 0.3]"
+    assert text(0.2, 0.2, 0.2) == "0.20"
+
+
+def test_units_are_the_objects_and_few_of_them_widen_the_interval():
+    curves = np.array([[0.9, 0.1], [0.9, 0.3], [0.8, 0.2], [0.7, 0.1]])
+    few, many = breaking_interval([1, 2], curves, 0), breaking_interval([1, 2], np.tile(curves, (10, 1)), 0)
+    assert few[0] == pytest.approx(many[0]) and few[2] - few[1] > 2 * (many[2] - many[1])
+    assert expanded_levels(4)[0] < expanded_levels(40)[0] < 0.025 == pytest.approx(expanded_levels(10**6)[0], abs=1e-5)
+    assert expanded_levels(4)[0] == pytest.approx(0.000119, rel=0.02)  # Phi(-3.1824 * sqrt(4 / 3))
+    assert breaking_interval([1, 2], curves[:1], 0) == pytest.approx((1.5, 1.5, 1.5))
+    assert breaking_interval([1, 2], curves[::-1], 0)[0] == few[0]
+
+
+def pairs(both, first=0.2, second=0.3, objects=10):
+    """Rows of two disturbances and of both, with a small spread over the objects."""
+    found = []
+    for number in range(objects):
+        shares = (("noise", 0.001, first), ("noise", 0.005, 0.9), ("tilt", 15.0, second), ("noise+tilt", None, both))
+        for name, severity, share in shares:
+            moved = share + (0.01 * (number % 3 - 1) if name == "noise+tilt" else 0)
+            where = (f"object {number}", "glance", name, severity)
+            found += [row(*where, "repeatability", 1 - moved * (1 - CHANCE)), row(*where, "chance", CHANCE)]
+    return found
+
+
+@pytest.mark.parametrize(("both", "word"), [(0.5, "additive"), (0.35, "milder"), (0.7, "worse")])
+def test_a_pair_is_compared_with_the_sum_of_its_parts(tmp_path, both, word):
+    built = build_one(stability, "tables", "stability_pairs", results(tmp_path, pairs(both)))
+    line = built.shown.iloc[0]
+    assert line["is"] == word and line["disturbances"] == "noise and tilt"
+    assert [line[f"{part}, %"] for part in ("first alone", "second alone", "both")] == ["20", "30", f"{100 * both:.0f}"]
+    assert f"1 {word}" in " ".join(built.notes)
+
+
+def test_the_sum_of_a_pair_is_all_at_most_and_independent_losses_are_milder():
+    lost = points_lost(pd.DataFrame(pairs(1.0, 0.8, 0.7)))
+    found = compared(lost, "noise+tilt", {"noise": 0.001, "tilt": 15.0})
+    assert found["beyond"] == pytest.approx(0, abs=0.01) and found["independent"] == pytest.approx(0.06, abs=0.01)
+    assert verdict(np.nan, np.nan) == "additive"
+
+
+def used(method="glance", scale=1.0, objects=8):
+    """Points of the glance halve the salient error of plain simplification, disturbed ones save a tenth."""
+    found = []
+    for number in range(objects):
+        size = 0.01 * scale * (1 + number)
+        for name, severity, error, known in (
+            ("plain", None, 1.0, None),
+            ("none", None, 0.5, 0.9),
+            ("noise", 0.001, 0.9, 0.6),
+        ):
+            where = (f"object {number}", method, name, severity)
+            found.append(row(*where, "lod_salient", error * size * (1 + 0.01 * (number % 2))))
+            if known:
+                found.append(row(*where, "recognised", known + 0.01 * (number % 3 - 1)))
+    return found
+
+
+def test_uses_are_shares_of_plain_simplification_and_touches_recognised(tmp_path):
+    built = build_one(stability, "tables", "stability_uses", results(tmp_path, [*used(), *used("itti", 3.0)]))
+    shown = built.shown.set_index("disturbance")
+    assert list(shown.index) == ["none", "noise"] and shown.loc["noise", "severity"].startswith("0.001 sigma")
+    error, known = "ours (glance), salient error, %", "ours (glance), recognised, %"
+    assert shown.loc["none", error].startswith("50") and shown.loc["noise", error].startswith("90")
+    assert shown.loc["none", "Itti's attention, salient error, %"].startswith("50")  # of its own plain error
+    assert shown.loc["none", known].startswith("90 [") and shown.loc["noise", known].startswith("60 [")
+
+
+def test_claims_have_their_sign(tmp_path):
+    found = [*rows(), *used()]
+    known = results(tmp_path, found)
+    claims = [claim for claim in stability.CLAIMS if claim.dataset == "household_stability"]
+    assert len(claims) == 5
+    judged = judge([replace(claim, dataset="test") for claim in claims], known).set_index("key")
+    assert judged.loc["glance_stable_itti", "verdict"] == "supported"
+    assert judged.loc["glance_stable_itti", "effect"] == pytest.approx(100 * 0.9 * (0.2 * 2 + 0.4 * 2 + 0.25) / 5)
+    assert judged.loc["disturbed_touch", "verdict"] == "open"  # the rows have noise alone, no mean of all
+    assert judged.loc["glance_stable_mesh_saliency", "verdict"] == "open"
