@@ -33,11 +33,15 @@ def picture(
     viewpoint: Viewpoint = VIEWPOINT,
     rows: int = 420,
     smoothing: int = 2,
+    tints: str = MAP,
 ) -> np.ndarray:
-    """(rows, rows, 3) f8 in 0..1: the mesh on white. values (n,) in 0..1 colour the vertices; wires draws the edges."""
+    """(rows, rows, 3) f8 in 0..1: the mesh on white.
+
+    values (n,) in 0..1 colour the vertices by the map `tints`; wires draws the edges.
+    """
     side = rows * smoothing
     seen, face, weights, light = _surface(mesh, viewpoint, side)
-    base = CLAY if values is None else colour_map(np.einsum("ij,ij->i", weights, values[mesh.faces[face]]))
+    base = CLAY if values is None else colour_map(np.einsum("ij,ij->i", weights, values[mesh.faces[face]]), tints)
     shaded = base * light[:, None]
     if wires:
         near = _edge_distance(mesh, face, weights) * pixels_per_unit(side)
@@ -114,9 +118,10 @@ def show(
     points: np.ndarray | None = None,
     viewpoint: Viewpoint = VIEWPOINT,
     rows: int = 420,
+    tints: str = MAP,
 ) -> None:
     """Draws a mesh into matplotlib axes, square and without frame; points (k,) vertex ids become red dots."""
-    image, (top, left) = squared(picture(mesh, values, wires, viewpoint, rows))
+    image, (top, left) = squared(picture(mesh, values, wires, viewpoint, rows, tints=tints))
     axes.imshow(image)
     if points is not None:
         down, across = visible(mesh, points, viewpoint, rows)
@@ -124,17 +129,22 @@ def show(
     axes.set_axis_off()
 
 
-def colour_bar(figure: Figure, box: Sequence[float], text: str) -> None:
-    """A bar of the maps' colours from 0 to 1 in box [left, bottom, width, height] of the figure, and what it is of."""
+def colour_bar(figure: Figure, box: Sequence[float], text: str, tints: str = MAP, ends: Sequence[str] = ()) -> None:
+    """A bar of the maps' colours from 0 to 1 in box [left, bottom, width, height] of the figure, and what it is of.
+
+    ends: words in place of the numbers, the lowest first.
+    """
     left, bottom, width, height = box
-    bar = figure.colorbar(ScalarMappable(Normalize(0, 1), MAP), cax=figure.add_axes((left, bottom, width, height)))
+    bar = figure.colorbar(ScalarMappable(Normalize(0, 1), tints), cax=figure.add_axes((left, bottom, width, height)))
     bar.set_label(text, fontsize=9)
+    if ends:
+        bar.set_ticks([*np.linspace(0, 1, len(ends))], labels=list(ends), fontsize=9)
     bar.outline.set_edgecolor(GREY)
 
 
-def colour_map(values: np.ndarray) -> np.ndarray:
+def colour_map(values: np.ndarray, tints: str = MAP) -> np.ndarray:
     """(..., 3) RGB of values (...) in 0..1."""
-    return matplotlib.colormaps[MAP](np.clip(values, 0, 1))[..., :3]
+    return matplotlib.colormaps[tints](np.clip(values, 0, 1))[..., :3]
 
 
 def _light(mesh: Mesh, face: np.ndarray, weights: np.ndarray, viewpoint: Viewpoint) -> np.ndarray:

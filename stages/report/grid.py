@@ -52,31 +52,45 @@ def grid(
     cells: pd.DataFrame,
     down: str | Sequence[str],
     across: str,
-    beside: Sequence[str] = ("thesis",),
     names: Mapping[str, Callable[[Any], Any]] | None = None,
     head: Callable[[Any], str] = str,
     places: int = 0,
-    gap: str | None = "–",
+    printed: str = "",
 ) -> pd.DataFrame:
-    """Cells pivoted for a reader: `62 [57, 67] · 50 · 51`, shares in per cent, in the order of the cells.
+    """Cells pivoted for a reader: `62 [57, 67]`, shares in per cent, in the order of the cells.
 
-    cells: one row each, with the columns `down` and `across`, `accuracy` with `low` and `high`, and further
-    columns `beside`, whose numbers follow it. names: how a value of a column `down` is said; head: how one of `across`
-    is. gap: what stands for an unknown number beside; None leaves it out. A cell that is absent is "not run".
+    cells: one row each, with the columns `down` and `across`, `accuracy` with `low` and `high`. names: how a value of a
+    column `down` is said; head: how one of `across` is. A cell that is absent is "not run"; in rows whose first value
+    is `printed`, a dash.
     """
     down = [down] if isinstance(down, str) else list(down)
-    text = [cell_text(row, beside, places, gap) for _, row in cells.iterrows()]
-    wide = cells.assign(text=text).pivot(index=down, columns=across, values="text")
+    wide = cells.assign(text=cell_texts(cells, places)).pivot(index=down, columns=across, values="text")
     wide = wide.reindex(index=cells.set_index(down).index.unique(), columns=cells[across].unique())
-    wide = wide.fillna("not run").rename(columns=head).rename_axis(columns=None).reset_index()
+    gaps = pd.Series(np.where(wide.index.get_level_values(0) == printed, "–", "not run"), wide.index)
+    wide = wide.apply(lambda column: column.fillna(gaps)).rename(columns=head).rename_axis(columns=None).reset_index()
     return wide.assign(**{column: wide[column].map(say) for column, say in (names or {}).items()})
 
 
-def cell_text(cell: pd.Series, beside: Sequence[str] = ("thesis",), places: int = 0, gap: str | None = "–") -> str:
-    """One cell of `grid`."""
-    parts = [with_interval(cell["accuracy"], cell["low"], cell["high"], 100, places)]
-    parts += [percent(cell[column], places, gap or "") for column in beside]
-    return " · ".join(part for part in parts if part)
+def cell_texts(cells: pd.DataFrame, places: int = 0) -> list[str]:
+    """The cells of `grid`."""
+    shares = cells[["accuracy", "low", "high"]].itertuples(index=False)
+    return [with_interval(*share, scale=100, places=places) for share in shares]
+
+
+def blocks(
+    cells: pd.DataFrame, down: Sequence[str], across: str, below: Mapping[str, Callable[[str], str]]
+) -> pd.DataFrame:
+    """Cells of `grid`, and below them those of further columns of theirs, each a block of rows of its own.
+
+    below: {column: from a value of the first column of `down` to what the block is called there}. Of cells that come
+    to stand in one place, such as the thesis's beside two protocols, the first stays.
+    """
+    parts, key = [cells], down[0]
+    for column, say in below.items():
+        block = cells.dropna(subset=[column])
+        block = block.assign(accuracy=block[column], low=np.nan, high=np.nan, **{key: block[key].map(say)})
+        parts.append(block.drop_duplicates([*down, across]))
+    return pd.concat(parts, ignore_index=True)
 
 
 def percent(share: float, places: int = 0, gap: str = "–") -> str:

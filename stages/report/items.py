@@ -1,15 +1,19 @@
 """What the report is made of: tables, and figures or charts. Their words stand in TOPIC/prose.md."""
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure as Drawing
 
 from stages.kit.files import write_table, write_text
 
+from .cells import filled
 from .markdown import as_text, markdown_table
+from .ranking import Ranking
 from .style import save
 
 
@@ -30,11 +34,18 @@ class Item:
 
 @dataclass(eq=False)
 class Table(Item):
-    """frame: tidy numbers, for the CSV; shown: what a person reads, the same or pivoted; words: for its prose."""
+    """frame: tidy numbers, for the CSV; shown: what a person reads, the same or pivoted; words: for its prose.
+
+    best: by what its best row is found, None where none of its rows competes. answer: the columns of `shown` that
+    answer its question, all where it is empty; the others stand behind them. summary: what it found, in one sentence.
+    """
 
     frame: pd.DataFrame
     shown: pd.DataFrame | None = None
     words: dict[str, Any] = field(default_factory=dict)
+    best: Ranking | None = None
+    answer: Sequence[str] = ()
+    summary: str = ""
     notes: list[str] = field(default_factory=list)
 
     @property
@@ -42,13 +53,39 @@ class Table(Item):
         """What a person reads, as strings."""
         return as_text(self.frame if self.shown is None else self.shown)
 
+    @property
+    def first(self) -> pd.DataFrame:
+        """The columns of `text` that answer the table's question."""
+        return self.text[[*self.answer] or [*self.text]]
+
+    @property
+    def best_rows(self) -> np.ndarray:
+        """(rows,) boolean: the best row, and those that are shown as equal to it."""
+        return self.best.best(self.text) if self.best else np.zeros(len(self.text), dtype=bool)
+
     def write(self, folder: Path) -> None:
-        """Writes NAME.csv and NAME.md."""
+        """Writes NAME.csv and NAME.md, and fills the summary's figures in; without them it is left out."""
         self.shown = self.text
         self.paths = [folder / f"{self.name}.csv", folder / f"{self.name}.md"]
         write_table(self.paths[0], self.frame)
-        notes = "\n".join(f"- {note}" for note in self.notes)
-        write_text(self.paths[1], f"# {self.title}\n\n{markdown_table(self.shown)}\n\n{notes}")
+        try:
+            self.summary, _ = filled(self.summary, folder.parent)
+        except LookupError:
+            self.summary = ""
+        write_text(self.paths[1], "\n\n".join(self._parts()))
+
+    def _parts(self) -> Iterator[str]:
+        """Title, summary, table and, folded, the notes, in Markdown."""
+        yield f"# {self.title}"
+        if self.summary:
+            yield self.summary
+        yield markdown_table(self.first, self.best_rows)
+        rest = len(self.text.columns) - len(self.first.columns)
+        notes = [f"{rest} more columns, on the site; their numbers are in {self.name}.csv."] if rest else []
+        notes = [*notes, *self.notes]
+        if notes:
+            listed = "\n".join(f"- {note}" for note in notes)
+            yield f"<details><summary>How to read it</summary>\n\n{listed}\n\n</details>"
 
 
 @dataclass(eq=False)

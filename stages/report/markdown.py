@@ -3,6 +3,7 @@
 import math
 import numbers
 import re
+from collections.abc import Iterable
 from typing import Any
 
 import pandas as pd
@@ -45,9 +46,13 @@ def as_text(frame: pd.DataFrame) -> pd.DataFrame:
     return frame.map(number)
 
 
-def markdown_table(frame: pd.DataFrame) -> str:
-    """A GitHub table of a frame of strings; columns of numbers stand to the right."""
-    rows = [[str(cell).replace("|", r"\|") for cell in row] for row in frame.itertuples(index=False)]
+def markdown_table(frame: pd.DataFrame, bold: Iterable[bool] = ()) -> str:
+    """A GitHub table of a frame of strings; columns of numbers stand to the right. bold: of each row whether it is."""
+    marks = ["**" if row else "" for row in bold] or [""] * len(frame)
+    rows = [
+        [f"{mark}{text}{mark}" if (text := str(cell).replace("|", r"\|")) else "" for cell in row]
+        for mark, row in zip(marks, frame.itertuples(index=False), strict=True)
+    ]
     rules = ["---:" if is_numeric(frame[column]) else "---" for column in frame.columns]
     lines = [[str(column) for column in frame.columns], rules, *rows]
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)

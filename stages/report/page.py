@@ -4,6 +4,7 @@ import base64
 import io
 import json
 import re
+from collections.abc import Iterable
 from html import escape
 from importlib import resources
 from pathlib import Path
@@ -25,14 +26,16 @@ UP = "../"  # from a page of reports/site to reports/
 
 
 def item_html(item: Table | Figure) -> str:
-    """A section: a table with its notes, or a picture with its caption and its numbers, and links to its files."""
+    """A section with links to its files: a table, its summary and notes, or a picture, its caption and numbers."""
     if isinstance(item, Table):
-        first, *others = [f"<li>{prose(note)}</li>" for note in item.notes] or [""]
-        notes = f"<ul>{first}</ul>" if first else ""
-        notes += (
-            folded(f"{len(others)} more note{'s' * (len(others) > 1)}", f"<ul>{''.join(others)}</ul>") if others else ""
-        )
-        body = f"{frame_html(item.text, item.title)}{notes}<p>{links(item.paths[:1])}</p>"
+        notes = "".join(f"<li>{prose(note)}</li>" for note in item.notes)
+        body = f'<p class="summary">{prose(item.summary)}</p>' if item.summary else ""
+        body += frame_html(item.first, item.title, bold=item.best_rows)
+        if len(item.first.columns) < len(item.text.columns):
+            whole = frame_html(item.text, f"All columns: {item.title}", bold=item.best_rows)
+            body += folded(f"All {len(item.text.columns)} columns", whole)
+        body += folded("How to read it", f"<ul>{notes}</ul>") if notes else ""
+        body += f"<p>{links(item.paths[:1])}</p>"
     else:
         item.element, numbers = element(item)
         shown = table(numbers)
@@ -90,17 +93,22 @@ def box(classes: str, title: str, body: str) -> str:
     return f'<div class="{classes}" tabindex="0" role="region" aria-label="{escape(title)}">{body}</div>'
 
 
-def frame_html(frame: pd.DataFrame, title: str, words: str = "") -> str:
-    """A table in its own box; words: the column of WORDS, which are coloured and written, never coloured alone."""
+def frame_html(frame: pd.DataFrame, title: str, words: str = "", bold: Iterable[bool] = ()) -> str:
+    """A table in its own box.
+
+    words: the column of WORDS, which are coloured and written, never coloured alone. bold: of each row whether it is
+    the best.
+    """
     right = {column: ' class="number"' for column in frame.columns if is_numeric(frame[column])}
     head = "".join(f'<th scope="col"{right.get(c, "")}>{escape(str(c))}</th>' for c in frame.columns)
 
     def cell(column: Any, text: Any) -> str:
         kind = f' class="word {WORDS[text]}"' if column == words else right.get(column, "")
-        return f"<td{kind}>{escape(str(text))}</td>"
+        return f"<td{kind}>{prose(str(text))}</td>"
 
     rows = ("".join(cell(*item) for item in row.items()) for row in frame.to_dict("records"))
-    body = "".join(f"<tr>{row}</tr>" for row in rows)
+    kinds = [' class="best"' if row else "" for row in bold] or [""] * len(frame)
+    body = "".join(f"<tr{kind}>{row}</tr>" for kind, row in zip(kinds, rows, strict=True))
     inner = f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
     return box("scroll tall" if len(frame) > LONG else "scroll", title, inner)
 

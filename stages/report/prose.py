@@ -1,8 +1,9 @@
 """The words of the report: titles, notes and captions, kept as Markdown beside the code of each topic.
 
 TOPIC/prose.md has a section for each item, `# KIND/NAME: title`, where KIND is a folder of reports/. A table's section
-is a list of notes; that of a figure or chart is `Alt: what a blind reader needs`, then the caption. `{word}` is filled
-in by the code. A note that comes out empty is left out, and one of several lines becomes as many notes.
+is its summary, one sentence whose figures come from the table (`{this row: column}`, see `cells`), then a list of
+notes; that of a figure or chart is `Alt: what a blind reader needs`, then the caption. `{word}` is filled in by the
+code. A note that comes out empty is left out, and one of several lines becomes as many notes.
 """
 
 import re
@@ -14,14 +15,16 @@ from .items import Figure, Table
 
 
 def add_words(item: Table | Figure, topic: ModuleType, kind: str, name: str) -> None:
-    """Fills in name, title and notes of a table, or name, title, alt and caption of a figure.
+    """Fills in name, title, summary (not yet its figures), notes of a table; name, title, alt, caption of a figure.
 
     Raises KeyError where prose.md lacks the section or the item lacks a word.
     """
     title, text = _sections(topic.__name__)[f"{kind}/{name}"]
     item.name, item.title = name, title.format_map(item.words)
     if isinstance(item, Table):
-        notes = (_joined(note).format_map(item.words) for note in re.split(r"^- ", text, flags=re.MULTILINE)[1:])
+        summary, *listed = re.split(r"^- ", text, flags=re.MULTILINE)
+        item.summary = _joined(summary).replace("{this ", f"{{{kind}/{name} ")
+        notes = (_joined(note).format_map(item.words) for note in listed)
         item.notes = [line for note in notes for line in note.splitlines() if line]
     else:
         alt, _, caption = text.removeprefix("Alt: ").partition("\n\n")

@@ -146,7 +146,7 @@ def test_what_hues_change_stands_beside_the_weights_and_a_flat_map_has_none(seen
     ]
     small.write(root, "conspicuity", pd.DataFrame([*rows, rows[0] | {"method": "color", "value": None}]), COLOURED)
     shown = table_of(small.results(root), "table_3_1").shown.set_index("channel")["in colour: r with itself in grey"]
-    assert shown["dkl"].startswith("0.50 [") and shown["color"] == "–"
+    assert shown["DKL"].startswith("0.50 [") and shown["color"] == "–"
 
 
 def test_methods_on_black_stand_in_the_table_and_in_no_sentence(seen, root, small):

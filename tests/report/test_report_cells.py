@@ -15,6 +15,8 @@ def reports(tmp_path):
     write_table(
         tmp_path / "claims.csv", pd.DataFrame({"key": ["kept"], "effect": [-100.0], "low": [-120.0], "high": [0.0]})
     )
+    signs = {"kind": ["none of both", "open"], "mean": [1, 1], "low": [-2, None], "high": [4, 2]}
+    write_table(tmp_path / "tables/signs.csv", pd.DataFrame(signs))
     return tmp_path
 
 
@@ -26,6 +28,15 @@ def reports(tmp_path):
     ("tables/rates method=two note=: 1-mean", "0.500"),
     ("claims key=kept: times:effect times:low times:high .2f", "3.00 [1.00, 4.00]"),
     ("claims key=kept: -effect", "100"),
+    ("tables/rates method=o*: mean", "1,234"),
+    ("tables/rates note=x method!=one: rows", "1"),
+    ("tables/rates : rows", "3"),
+    ("tables/signs kind=open: mean low high", "1"),
+    ("tables/rates highest=low: method", "one"),
+    ("tables/rates method=two lowest=mean: mean low high NSS higher|NSS lower .2f", "0.50 [0.25, 0.75] NSS higher"),
+    ("tables/rates method=two note=: -mean -low -high higher|lower .1f", "0.5 [0.2, 0.8] lower"),
+    ("tables/signs kind=none of both: mean low high points higher|points lower .0f",
+     "neither points higher nor points lower beyond chance (1 [-2, 4])"),
 ])  # fmt: skip
 def test_a_place_becomes_what_its_cell_holds(reports, place, said):
     assert filled(f"It is {{{place}}}.", reports) == (f"It is {said}.", [tuple(place.split(":")[0].split(" ", 1))])
@@ -33,7 +44,9 @@ def test_a_place_becomes_what_its_cell_holds(reports, place, said):
 
 @pytest.mark.parametrize("place", [
     "tables/none method=one: mean", "tables/rates method=three: mean", "tables/rates method=two: mean",
-    "tables/rates method=two note=x: mean", "tables/rates gone=1: mean",
+    "tables/rates method=two note=x: mean", "tables/rates gone=1: mean", "tables/rates method=one: gone",
+    "tables/signs kind=open: mean low high more|less",
+    "tables/rates highest=gone: mean", "tables/rates method=two note=x highest=mean: mean", "tables/none : rows",
 ])  # fmt: skip
 def test_what_was_not_measured_or_is_not_one_row_is_an_error(reports, place):
     with pytest.raises(LookupError):

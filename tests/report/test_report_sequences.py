@@ -81,8 +81,9 @@ def test_twin_stands_beside_the_thesis_s_figures(run):
     assert cell(table.frame, split="random", classifier="svm", strategy="random")["thesis"] == 0.7721
     assert np.isnan(cell(table.frame, split="objects", classifier="cnn", strategy="thesis_ssim")["thesis"])
     assert np.isnan(cell(table.frame, split="random", classifier="cnn", strategy="enhanced")["thesis"])
-    line = cell(table.shown, split="sequences drawn at random", classifier="CNNs")
-    assert line["thesis's attention (SSIM), %"].endswith("· 99.0") and line["chance"] == "33.3"
+    line = cell(table.shown, objects="the thesis", split="sequences drawn at random", classifier="CNNs")
+    assert line["thesis's attention (SSIM), %"] == "99.0" and line["ours (views), %"] == "–"
+    assert "Guessing: furniture 33.3 %." in " ".join(table.notes)
 
 
 def test_interval_of_unseen_objects_is_over_the_objects(run):
@@ -101,7 +102,7 @@ def test_larger_run_stands_below_where_there_is_one(bare, small):
     small.write(bare, "sequences", rows(dataset="princeton_eight"))
     table = table_4_9(small.results(bare))
     assert list(dict.fromkeys(table.frame["objects"])) == ["furniture", "princeton_eight"]
-    assert list(dict.fromkeys(table.shown["objects"])) == ["furniture", "psb, the thesis's 8 classes"]
+    assert list(dict.fromkeys(table.shown["objects"])) == ["furniture", "psb, the thesis's 8 classes", "the thesis"]
 
 
 def test_what_was_left_out_is_a_note(bare, small):

@@ -14,6 +14,7 @@ from stages.report.anew import command
 from stages.report.claims_page import sets_read
 from stages.report.items import Figure, Table
 from stages.report.page import frame_html, item_html
+from stages.report.ranking import Ranking
 from stages.report.site import page
 from stages.report.topics import CLAIMS
 
@@ -66,12 +67,20 @@ def test_a_chart_has_its_numbers_behind_it(tmp_path):
     assert text.count("<tr><td") == 3 and "<td>[0.150, 0.250]</td>" in text.replace(' class="number"', "")
 
 
-def test_more_notes_than_one_are_folded():
-    notes, paths = ["first `x`", "second", "third"], [Path("tables/t.csv")]
-    text = item_html(Table(pd.DataFrame({"x": [1]}), notes=notes, paths=paths))
+def test_the_summary_stands_over_a_table_and_the_notes_are_folded():
+    notes, paths = ["first `x`", "second"], [Path("tables/t.csv")]
+    text = item_html(Table(pd.DataFrame({"x": [1]}), notes=notes, paths=paths, summary="Found: `1`."))
     shown, _, hidden = text.partition("<details>")
-    assert "first <code>x</code>" in shown and "second" not in shown
-    assert "2 more notes" in hidden and "third" in hidden
+    assert shown.index("Found: <code>1</code>.") < shown.index("<table>") and "first" not in shown
+    assert "first <code>x</code>" in hidden and "second" in hidden
+
+
+def test_columns_that_do_not_answer_the_question_can_be_unfolded():
+    frame = pd.DataFrame({"name": ["a", "b"], "score": [1, 2], "detail": [3, 4]})
+    table = Table(frame, paths=[Path("tables/t.csv")], best=Ranking("score"), answer=["name", "score"])
+    shown, _, hidden = item_html(table).partition("<details>")
+    assert "detail" not in shown and "All 3 columns" in hidden and "detail" in hidden
+    assert '<tr class="best"><td>b</td>' in shown and shown.count('class="best"') == hidden.count('class="best"') == 1
 
 
 @pytest.mark.slow

@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from stages.report import touch
-from stages.report.grid import grid, means
+from stages.report.grid import blocks, grid, means
 from stages.report.items import Table
 from stages.report.markdown import as_text, is_numeric, markdown_table, number, with_interval
 from stages.report.meshes.rows import paired_cells
@@ -35,8 +35,10 @@ def test_table_maps_the_methods_and_says_what_was_not_run(results):
     assert np.isnan(cell.loc[("enhanced", "knn"), "thesis"])
     assert np.isnan(cell.loc[("hks", "knn"), "accuracy"])
     shown = table.shown.set_index("sampling")
-    cells = shown.loc["heat kernel signature"].drop("protocol")
-    assert cells.str.startswith("not run").all() and cells.str.endswith("59").any()
+    ours, printed = (cells for _, cells in shown.loc["heat kernel signature"].iterrows())
+    assert (
+        (ours.drop("protocol") == "not run").all() and printed["protocol"] == "the thesis" and printed["kNN, %"] == "59"
+    )
 
 
 def test_title_tells_the_objects_that_the_group_held(root, results, small):
@@ -124,18 +126,25 @@ def cells():
 def test_grid_keeps_the_order_of_the_cells_and_says_what_is_absent():
     shown = grid(cells(), "sampling", "classifier", names={"sampling": str.upper}, head=lambda name: f"{name}, %")
     assert shown.to_dict("list") == {
-        "sampling": ["B", "A"], "knn, %": ["50 [40, 60] · 55", "10 [0, 20] · 30"], "svm, %": ["70 · –", "not run"],
+        "sampling": ["B", "A"], "knn, %": ["50 [40, 60]", "10 [0, 20]"], "svm, %": ["70", "not run"],
     }  # fmt: skip
 
 
-def test_grid_may_leave_an_unknown_figure_out_and_go_down_by_several_columns():
-    shown = grid(cells().assign(of="x"), ["of", "sampling"], "classifier", gap=None, places=1)
+def test_grid_may_go_down_by_several_columns():
+    shown = grid(cells().assign(of="x"), ["of", "sampling"], "classifier", places=1)
     assert shown.columns.tolist() == ["of", "sampling", "knn", "svm"]
-    assert shown["svm"].tolist() == ["70.0", "not run"] and shown["knn"][1] == "10.0 [0.0, 20.0] · 30.0"
+    assert shown["svm"].tolist() == ["70.0", "not run"] and shown["knn"][1] == "10.0 [0.0, 20.0]"
 
 
-def test_grid_without_figures_beside():
-    assert grid(cells(), "sampling", "classifier", beside=())["knn"].tolist() == ["50 [40, 60]", "10 [0, 20]"]
+def test_blocks_hold_one_number_a_cell_and_each_printed_figure_once():
+    both = pd.concat([cells().assign(of="one"), cells().assign(of="two")])
+    down = ["of", "sampling"]
+    shown = grid(
+        blocks(both, down, "classifier", {"thesis": lambda of: "printed"}), down, "classifier", printed="printed"
+    )
+    assert shown["of"].tolist() == ["one", "one", "two", "two", "printed", "printed"]
+    assert shown["knn"].tolist()[-2:] == ["55", "30"] and shown["svm"].tolist()[-2:] == ["–", "–"]
+    assert shown["svm"].tolist()[:2] == ["70", "not run"]
 
 
 def test_means_cut_the_interval_at_what_is_possible():

@@ -86,14 +86,14 @@ def verdicts(results):
 
 def test_twin_shows_the_regions_and_the_first_fifteen(glance):
     shown = table("table_4_1", glance).shown
-    assert shown["protocol"].unique().tolist() == ["as printed", "as printed, 12 random sets", "ours"]
-    shown = shown[shown["protocol"] == "as printed"].set_index("sampling")
-    (knn,) = [column for column in shown if column.startswith("kNN")]
-    assert (
-        shown.loc["enhanced visual attention", knn].startswith("60 [")
-        and "· 40 · 73" in shown.loc["enhanced visual attention", knn]
-    )
-    assert shown.loc["blind touch, 15 imprints", knn].startswith("50 [")
+    protocols = ["as printed", "as printed, 12 random sets", "ours"]
+    below = [f"{name}, unseen regions" for name in protocols]
+    assert shown["protocol"].unique().tolist() == [*protocols, *below, "the thesis"]
+    knn = shown.set_index(["protocol", "sampling"])["kNN, %"]
+    attention = [knn[protocol, "enhanced visual attention"] for protocol in (protocols[0], below[0], "the thesis")]
+    assert attention[0].startswith("60 [") and attention[1:] == ["40", "73"]
+    assert knn["as printed", "blind touch, 15 imprints"].startswith("50 [")
+    assert ("the thesis", "blind touch, 15 imprints") not in knn and knn.index.is_unique
 
 
 def test_positions_stand_beside_the_thesis_with_the_side_held_out(glance):
@@ -113,6 +113,8 @@ def test_selection_has_a_column_for_each_group_and_way(glance):
     assert cells.loc[("knn", "six", "selected"), "recall"] == pytest.approx(0.69, abs=0.01)
     assert cells.loc[("knn, 15 imprints", "six", "selected"), "accuracy"] == pytest.approx(0.6, abs=0.01)
     assert built.shown.shape[1] == 8 and "kNN, 15 imprints" in set(built.shown["classifier"])
+    printed = built.shown.set_index(["protocol", "classifier"]).loc[("the thesis", "kNN")]
+    assert printed["six, selection, %"] == "76" and printed["six, selection in training alone, %"] == "–"
 
 
 def test_selection_that_was_not_run_says_why(root, small):
@@ -143,10 +145,12 @@ def test_table_of_touches_holds_the_thesis_and_the_other_ways(glance):
     assert cells.loc[("VisAttAll", "", "knn", 2), "thesis"] == 0.96
     assert np.isnan(cells.loc[("random", "", "knn", 2), "thesis"])
     assert cells.loc[("VisAttAll", "first_15_mixed", "knn", 2), "accuracy"] == pytest.approx(0.9, abs=0.01)
+    assert (
+        built.shown.set_index(["protocol", "classifier"]).loc[("the thesis", "deep learning"), "5 touches, %"] == "46"
+    )
     shown = built.shown[built.shown["protocol"] == "as printed"].set_index("classifier")
     assert "kNN, combinations drawn before the split" in shown.index
     assert "kNN, combinations drawn before the split, blind touch" in shown.index
-    assert shown.loc["deep learning: measured · unseen regions · thesis", "5 touches, %"].endswith("46")
 
 
 def test_table_of_touches_without_touches_is_not_run(results):

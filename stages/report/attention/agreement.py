@@ -10,10 +10,25 @@ from stages.report.grid import records
 from stages.report.items import Table
 from stages.report.markdown import number, signed, with_interval
 from stages.report.prose import shared_notes
+from stages.report.ranking import Ranking
 from stages.report.results import ON_BLACK, NotRun, Results
 from stages.report.style import label
 
-from .rows import ALONE, BLACK, CLASSICAL, GAIN, HUMAN, OURS, THESIS, agreement, difference, method_text, rivals, scores
+from .rows import (
+    ALONE,
+    BLACK,
+    CLASSICAL,
+    GAIN,
+    HUMAN,
+    OURS,
+    THESIS,
+    agreement,
+    difference,
+    has_seen,
+    method_text,
+    rivals,
+    scores,
+)
 
 COUNTED = "points_strong"
 MEANS = {
@@ -72,7 +87,10 @@ def _table(rows: pd.DataFrame, beside: Sequence[str], words: dict, more: pd.Data
             line[f"ours − it, {ALONE[row.metric]}"] = signed(row.gain, row.gain_low, row.gain_high)
     said = "\n".join([*_ours_and_rivals(rows), *_learned(rows), *_peeking(rows)])
     words = words | {"said": said, "reading": shared_notes(__package__, "reading")}
-    return Table(frame, pd.DataFrame(lines.values()), words)
+    found = pd.DataFrame(lines.values())
+    truth_and_peeking = [method_text(name) for name in lines if name == HUMAN or has_seen(name)]
+    answer = [name for name in columns if name not in MEANS.values() or name == MEANS[COUNTED]]
+    return Table(frame, found, words, Ranking("NSS", exempt=truth_and_peeking), answer)
 
 
 def _ours_and_rivals(rows: pd.DataFrame) -> Iterator[str]:

@@ -41,6 +41,7 @@ def build(results: Results) -> Table:
             "gets": _text(cells.get(other, {}), metric),
             "passes − that": _text(cells.get("passes", {}), metric, GAIN),
         })  # fmt: skip
+    # no ranking: a row is a question, not a method
     return Table(pd.DataFrame(found), pd.DataFrame(shown), {"extremes": _extremes(rows)})
 
 

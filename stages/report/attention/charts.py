@@ -34,7 +34,7 @@ def by_setting(results: Results) -> Figure:
     rows = results.rows("attention_settings", method="fixations")
     wide = rows.pivot_table(index=[*SETTING, "item", "seconds"], columns="metric", values="value", sort=False)
     tables = {
-        f"{views}, {height} rows, {channels}": group.set_index("item")
+        f"{views}, {height} rows, {channels.replace('dkl', label('dkl'))}": group.set_index("item")
         for (views, height, channels), group in grouped(wide.reset_index(), SETTING)
     }
     if len(tables) < 2:

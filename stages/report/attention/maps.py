@@ -33,7 +33,9 @@ def figure_3_3(results: Results) -> Figure:
         axes.set(xticks=[], yticks=[])
         axes.spines[:].set_visible(False)
     figure.subplots_adjust(wspace=0.04, hspace=0.04)
-    return Figure(figure, {"objects": ", ".join(names), "colour": " and ".join(COLOUR), "shares": ", ".join(shares)})
+    return Figure(
+        figure, {"objects": ", ".join(names), "colour": " and ".join(map(label, COLOUR)), "shares": ", ".join(shares)}
+    )
 
 
 def _regions(results: Results, name: str, row: Sequence[Axes]) -> float:
@@ -79,7 +81,7 @@ def figure_3_10(results: Results) -> Figure:
     bar = figure.colorbar(grid[0, 1].images[0], ax=grid, shrink=0.75, pad=0.02, aspect=30)
     bar.set_label("conspicuity, over the map's largest")
     where = {"azimuth": viewpoint.azimuth, "elevation": viewpoint.elevation}
-    return Figure(figure, {"name": name, "channels": ", ".join(channels), **where})
+    return Figure(figure, {"name": name, "channels": ", ".join(map(label, channels)), **where})
 
 
 def figure_3_12(results: Results) -> Figure:

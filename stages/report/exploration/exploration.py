@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from stages.kit.split import Split, shared_by
-from stages.report.grid import grouped, records, within
+from stages.report.grid import grouped, percent, records, within
 from stages.report.items import Table
 from stages.report.markdown import number, with_interval
 from stages.report.results import Results
@@ -22,6 +22,7 @@ LIKELIHOODS = {
 HELD_OUT = {Split.RANDOM: "at random", Split.REGIONS: "unseen regions"}
 HEADLINE = 0.95  # belief at which the table and the claims stop
 COLUMNS = {"accuracy": "value", "touches": "touches", "stated": "belief", "decided": "decided"}
+HIDDEN = ("stated, %", "decided, %")  # columns that do not answer the question
 KEYS = ["group", "split", "likelihood", "method", "way"]
 
 
@@ -41,27 +42,27 @@ def build(results: Results) -> Table:
     frame = pd.DataFrame(lines)
     most = ", ".join(map(str, sorted(set(frame["most"]))))
     words = {"headline": f"{100 * HEADLINE:.0f} %", "most": most, "not_run": results.left_out(STAGE)}
-    return Table(frame, _wide(frame, results), words)
+    shown = _wide(frame, results)
+    # no ranking: fewer touches stand against more right answers, as the chart shows
+    return Table(frame, shown, words, answer=[name for name in map(str, shown) if name not in HIDDEN])
 
 
 def _wide(frame: pd.DataFrame, results: Results) -> pd.DataFrame:
-    lines = []
-    for _, group in frame.groupby(KEYS[:-1], sort=False):
-        ways = {row.way: row for row in records(group)}
-        plain = ways["random"]
-        lines.append({
-            "objects": results.group_text(plain.group), "held out": HELD_OUT[plain.split],
-            "belief": LIKELIHOODS[plain.likelihood], "touched": label(plain.method),
-            **{words: _cell(ways[way]) if way in ways else "–" for way, words in WAYS.items()},
-            "a fixed number, in random order": "never" if np.isnan(plain.fixed) else number(plain.fixed, 2),
-            "stated": f"{100 * plain.stated:.0f} %", "decided": f"{100 * plain.decided:.0f} %",
-        })  # fmt: skip
-    return pd.DataFrame(lines)
-
-
-def _cell(row: Any) -> str:
-    touches = with_interval(row.touches, row.touches_low, row.touches_high, places=1)
-    return f"{touches}: {with_interval(row.accuracy, row.accuracy_low, row.accuracy_high, 100, 0)} %"
+    """A row a setting and way, the ways of a setting in the order of WAYS."""
+    order = dict(zip(WAYS, range(len(WAYS)), strict=True))
+    settings = frame.groupby(KEYS[:-1], sort=False).ngroup()
+    ordered = frame.assign(setting=settings, order=frame["way"].map(order)).sort_values(["setting", "order"])
+    return pd.DataFrame([
+        {
+            "objects": results.group_text(row.group), "held out": HELD_OUT[row.split],
+            "belief": LIKELIHOODS[row.likelihood], "touched": label(row.method), "next place": WAYS[row.way],
+            "touches": with_interval(row.touches, row.touches_low, row.touches_high, places=1),
+            "right, %": with_interval(row.accuracy, row.accuracy_low, row.accuracy_high, 100, 0),
+            "fixed number": "never" if np.isnan(row.fixed) else number(row.fixed, 2),
+            "stated, %": percent(row.stated), "decided, %": percent(row.decided),
+        }
+        for row in records(ordered)
+    ])  # fmt: skip
 
 
 def curves(rows: pd.DataFrame) -> pd.DataFrame:

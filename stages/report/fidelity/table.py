@@ -15,6 +15,9 @@ def build(results: Results) -> Table:
         raise NotRun("the thesis is not about a folder of one's own", "report", runnable=False)
     frame = results.thesis("fidelity").fillna("")
     said = (frame["run"] + ": " + frame["differs"]).str.removesuffix(": ").replace(PRINTED, "yes")
-    shown = frame.assign(run=said, sets=frame["sets"].map(dataset_text)).drop(columns="differs")
+    said = said.str.replace(r"\b(\w+_\w+)\b", r"`\1`", regex=True)  # names of files and columns
+    files = {name: frame[name].map(lambda text: text and f"`{text}`") for name in ("code", "twin")}
+    shown = frame.assign(run=said, sets=frame["sets"].map(dataset_text), **files).drop(columns="differs")
     counts = {str(name).replace(" ", "_"): count for name, count in frame["run"].value_counts().items()}
-    return Table(frame, shown.rename(columns=HEADS), dict.fromkeys((run.replace(" ", "_") for run in RUNS), 0) | counts)
+    words = dict.fromkeys((run.replace(" ", "_") for run in RUNS), 0) | counts
+    return Table(frame, shown.rename(columns=HEADS), words)  # no ranking: sections do not compete

@@ -12,6 +12,7 @@ from stages.report.grid import records, within
 from stages.report.items import Figure, Table
 from stages.report.markdown import number, signed, with_interval
 from stages.report.pareto import pareto_chart
+from stages.report.ranking import Ranking
 from stages.report.results import Results
 
 from .detectors import FUSED, LEE, PRIOR, Detector, network_text, untrained, with_random_weights
@@ -37,7 +38,10 @@ def build(results: Results) -> Table:
         "no_people": no_people(found).strip(),
         "not_run": "\n".join(f"Not run here: {network_text(row.method)}: {row.note}." for row in records(absent)),
     }
-    return Table(frame, _wide(frame), words)
+    shown = _wide(frame)
+    hidden = [METRICS[name] for name in ("pcc_masked", "distance", "distance_mean")] + ["it − mesh saliency, PCC"]
+    answer = [name for name in map(str, shown) if name not in hidden]
+    return Table(frame, shown, words, Ranking("PCC", among=["truth"]), answer)
 
 
 def _lines(source: str, rows: pd.DataFrame) -> Iterator[dict[str, Any]]:

@@ -2,9 +2,10 @@
 
 import pandas as pd
 
-from stages.report.grid import grid, grouped
+from stages.report.grid import grid, grouped, percent
 from stages.report.items import Table
 from stages.report.networks import accuracy, measured, seen
+from stages.report.ranking import Ranking
 from stages.report.results import Results
 
 from .section_5_5 import MIDDLE
@@ -22,6 +23,8 @@ METHODS = {
     "fusion_entropy_raw": "both heads, by certainty, no temperatures",
     "fusion_surest": "the surer head",
 }
+MEAN = "mean of all columns, %"
+DETAILS = ("blur", "darkness", "occlusion", "dead cells")  # damages that stand behind noise and a missing sense
 WHOLE = "none"  # the perturbation of senses that are as they should be
 
 
@@ -35,9 +38,11 @@ def build(results: Results) -> Table:
         for method in METHODS
     ).drop(columns="values")
     cells = frame.assign(head=[*map(spoken, frame["damage"], frame["severity"])])
-    wide = grid(cells, "method", "head", beside=(), names={"method": METHODS.get})
-    words = seen(found)
-    return Table(frame, wide.rename(columns={"method": "answers"}), {"seen": f"For touch: {words}." if words else ""})
+    wide = grid(cells, "method", "head", names={"method": METHODS.get}).rename(columns={"method": "answers"})
+    shares = frame.groupby("method", sort=False)["accuracy"].mean()
+    wide.insert(1, MEAN, [percent(shares[method]) for method in METHODS if method in shares])
+    words, answer = seen(found), [name for name in map(str, wide) if not any(part in name for part in DETAILS)]
+    return Table(frame, wide, {"seen": f"For touch: {words}." if words else ""}, Ranking(MEAN), answer)
 
 
 def spoken(perturbation: str, severity: float) -> str:

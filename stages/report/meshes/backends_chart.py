@@ -14,7 +14,7 @@ from stages.report.pareto import pareto_front
 from stages.report.results import NotRun, Results
 from stages.report.style import GREY, INK, colours, label, plain_logarithm, plt
 
-from .backends import REFERENCE, WANTED, common, summarised, tried
+from .backends import REFERENCE, common, summarised, tried
 from .growth import FITTED, Growth, growth
 
 ERRORS = {"error": ("Metro mean", "time and distance"), "seen": ("1 − SSIM", "time and error as seen")}
@@ -40,7 +40,7 @@ def build(results: Results) -> Figure:
     _growing(panels[2], paired, fits, tints)
     powers = "; ".join(f"{label(name)} {fit.said}" for name, fit in fits.items() if fit)
     words = {
-        "reference": REFERENCE, "backends": ", ".join(map(label, tints)), "wanted": WANTED, "fitted": FITTED,
+        "reference": REFERENCE, "backends": ", ".join(map(label, tints)), "fitted": FITTED,
         "powers": f"p = 1 is n log n: {powers}." if powers else "",
     }  # fmt: skip
     return Figure(drawing, words, frame, dpi=95)
@@ -58,7 +58,6 @@ def _against(axes: Axes, frame: pd.DataFrame, kind: str, tints: dict[str, str]) 
         axes.plot([], [], form, color="none", mec=INK, ms=6, label=name)
     axes.set(xscale="log", yscale="log", xlabel=f"seconds, ratio to {REFERENCE}")
     axes.axhline(1, color=GREY, lw=0.7, ls="--", zorder=0)
-    axes.axvline(1 / WANTED, color=GREY, lw=0.7, ls="--", zorder=0)
     axes.grid(True)
     axes.margins(x=0.16, y=0.2)
     for axis in (axes.xaxis, axes.yaxis):

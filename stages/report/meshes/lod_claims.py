@@ -9,7 +9,6 @@ from stages.kit.stats import interval
 from stages.report.claims import Claim
 from stages.report.differences import statistic
 from stages.report.items import Table
-from stages.report.markdown import signed
 from stages.report.results import SECTION_3_2, NotRun, Results, listed, some
 from stages.report.verdict import judge
 from stages.report.words import dataset_text
@@ -18,7 +17,7 @@ from .claims import CLAIMS
 from .methods import PLAIN, QSLIM, UNSEEN, fixed
 from .rows import CELL, data_sets
 
-WORDS = {"supported": "yes", "contradicted": "no", "no difference": "none", "open": "open"}  # of one set none is mixed
+WORDS = {"supported": "yes", "contradicted": "no", "no difference": "none"}  # the others as they are
 MANY = 5  # methods that a rank correlation needs
 
 
@@ -34,17 +33,13 @@ def build(results: Results) -> Table:
     }
     frame = pd.concat([part.assign(data=head, objects=part["pairs"]) for head, part in parts.items()])
     texts = {head: [_cell(row) for row in part.itertuples()] for head, part in parts.items()}
-    shown = frame.loc[frame["data"] == dataset_text(sets[0]), ["section", "claim", "unit"]].assign(**texts)
+    shown = frame.loc[frame["data"] == dataset_text(sets[0]), ["section", "claim"]].assign(**texts)
     frame = frame[["key", "data", "verdict", "effect", "low", "high", "objects"]].sort_values("key", kind="stable")
-    return Table(frame, shown[["section", "claim", *texts, "unit"]])
+    return Table(frame, shown)  # no ranking: claims do not compete
 
 
 def _cell(row: Any) -> str:
-    """`yes: +0.83 [0.61, 1.05] (50)`: the effect with sign to three digits."""
-    if not row.pairs:
-        return "not run"
-    places = min(max(0, 2 - int(f"{row.effect:e}".split("e")[1])), 7)
-    return f"{WORDS[row.verdict]}: {signed(row.effect, row.low, row.high, places)} ({row.pairs})"
+    return WORDS.get(str(row.verdict), str(row.verdict)) if row.pairs else "not run"
 
 
 @statistic("spread")

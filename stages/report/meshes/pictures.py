@@ -11,13 +11,14 @@ from matplotlib.colors import LinearSegmentedColormap, Normalize
 
 from stages.kit import Mesh
 from stages.lod.metro import vertex_errors
-from stages.report.drawing import THIN, VIEWPOINT, filled, name_panels, show, square_grid, squared
+from stages.report.drawing import THIN, VIEWPOINT, colour_bar, filled, name_panels, show, square_grid, squared
 from stages.report.items import Figure
 from stages.report.results import SECTION_3_2, NotRun, Results, some
 from stages.report.style import GREY, label
 from stages.report.words import dataset_text
 from stages.views import render
 
+from .apart import TINTS, against_the_mean, faces_an_area
 from .methods import ENHANCED, FIXED_ADAPTIVE, HKS, NAMES, OURS, PLAIN, PRINTED, UNSEEN, short
 from .rows import said, size
 
@@ -41,17 +42,19 @@ def figure_3_6(results: Results) -> Figure:
     name = results.choose(results.settings.figure_objects, 1)[0]
     points, mesh = results.strong_points(name), results.mesh(name)
     methods = points.those_of([method for method in NAMES if method != "thesis_ed"])
-    drawing, grid = square_grid(-(-len(methods) // COLUMNS), COLUMNS, side=1.6, gap=0.3)
+    drawing, grid = square_grid(-(-len(methods) // COLUMNS), COLUMNS, side=1.6, right=1.1, gap=0.3)
+    apart = against_the_mean(mesh, {method: points[method] for method in methods})
     for axes, method in zip(grid.flat, methods, strict=False):
-        show(axes, mesh, points=points[method])
+        show(axes, mesh, apart.get(method), points=points[method], tints=TINTS)
         title = f"{NAMES[method]}: {len(points[method])}"
         axes.set_title(title, fontsize=9, fontweight="normal", loc="center", pad=3)
     for axes in grid.flat[len(methods) :]:
         axes.set_axis_off()
+    colour_bar(drawing, [0.94, 0.25, 0.01, 0.5], "of the detector's points", TINTS, ("fewer", "as the mean", "more"))
     ends = (pick(methods, key=lambda method: len(points[method])) for pick in (min, max))
     few, many = (f"{len(points[method])} ({NAMES[method]})" for method in ends)
     words = {"name": name, "count": len(methods), "few": few, "many": many, "set": dataset_text(results.sets[0])}
-    return Figure(drawing, words)
+    return Figure(drawing, words, dpi=95)
 
 
 def figure_3_7(results: Results) -> Figure:
@@ -66,12 +69,13 @@ def figure_3_7(results: Results) -> Figure:
             found.append(((near and filled(results.mesh(name)) > THIN, apart), name, target, meshes, points))
     some(found, f"no object simplified with the points of {', '.join(DIFFERING)}", "lod", runnable=False)
     _, name, target, meshes, points = max(found, key=lambda one: one[0])  # of equals the first
-    drawing, grid = square_grid(1, len(DIFFERING), side=2.9, gap=0.3)
+    drawing, grid = square_grid(1, len(DIFFERING), side=2.9, right=1.1, gap=0.3)
     for axes, method in zip(grid[0], DIFFERING, strict=True):
-        show(axes, meshes[method], wires=True, rows=ROWS["figure_3_7"])
+        show(axes, meshes[method], faces_an_area(meshes[method]), True, rows=ROWS["figure_3_7"], tints=TINTS)
     name_panels(grid, [f"{short(method)}: {len(points[method])} points" for method in DIFFERING])
+    colour_bar(drawing, [0.93, 0.2, 0.01, 0.6], "faces an area", TINTS, ("few", "as the mean", "many"))
     words = {"name": name, "target": said(target), "methods": ", ".join(map(short, DIFFERING))}
-    return Figure(drawing, words | {"set": dataset_text(results.sets[0])}, dpi=85)
+    return Figure(drawing, words | {"set": dataset_text(results.sets[0])}, dpi=75)
 
 
 def figure_3_8(results: Results) -> Figure:

@@ -9,6 +9,7 @@ import pandas as pd
 from stages.report.grid import means
 from stages.report.items import Table
 from stages.report.markdown import number
+from stages.report.ranking import Ranking
 from stages.report.results import SECTION_3_1, SECTION_3_2, NotRun, Results, some
 from stages.report.style import label
 from stages.report.words import dataset_text
@@ -22,6 +23,7 @@ GUIDED = [*FIXED_ADAPTIVE, "thesis_ed", "thesis_ed-adaptive", ENHANCED, f"{ENHAN
           OURS, PLAIN, QSLIM]  # fmt: skip
 THESIS = {"guided_ed": "ed", "thesis_ed": "ed", "guided_ssim": "ssim", ENHANCED: "ssim", "svm": "svm"}
 BLOCK = ["target", "nothing_shrunk"]
+KEEP_NOTHING = [label(PLAIN), label(QSLIM)]  # what the others are held against
 
 
 def dataset(results: Results) -> Table:
@@ -33,7 +35,8 @@ def dataset(results: Results) -> Table:
         "count": len(frame), "least": frame["faces"].min(), "most": frame["faces"].max(),
         "closed": frame["watertight"].sum(), "refused": f"Refused: {named}." if named else "No mesh was refused.",
     }  # fmt: skip
-    return Table(frame, frame.fillna("").assign(watertight=frame["watertight"].map({True: "yes", False: "no"})), words)
+    shown = frame.fillna("").assign(watertight=frame["watertight"].map({True: "yes", False: "no"}))
+    return Table(frame, shown, words)  # no ranking: objects do not compete
 
 
 def combinations(results: Results) -> Table:
@@ -45,11 +48,11 @@ def combinations(results: Results) -> Table:
     found = pd.DataFrame(found, columns=["method", "metric", "mean"])
     errors = found.pivot(index="method", columns="metric", values="mean")
     metrics = [metric for metric in ERRORS if metric in errors] or list(METRICS)
-    channels = [", ".join(METHODS[method].channels).replace("_", " ") for method in COMBINATIONS]
+    channels = [", ".join(map(label, METHODS[method].channels)) for method in COMBINATIONS]
     frame = pd.DataFrame({"combination": map(short, COMBINATIONS), "channels": channels})
     frame[metrics] = errors.reindex(COMBINATIONS, columns=metrics).to_numpy(dtype=float)
     shown = {metric: (UNITS[metric] * frame[metric]).map(number).replace("–", "not run") for metric in metrics}
-    return Table(frame, frame.assign(**shown).rename(columns=ERRORS))
+    return Table(frame, frame.assign(**shown).rename(columns=ERRORS), best=Ranking(ERRORS[metrics[0]], lowest=True))
 
 
 def every_detector(results: Results) -> Table:
@@ -61,7 +64,10 @@ def every_detector(results: Results) -> Table:
     frame = pd.concat(parts, names=["data", None]).reset_index("data")
     frame.insert(3, "objects", frame.pop("objects"))
     counts = ", ".join(f"{rows['item'].nunique()} {data}" for data, rows in found.items())
-    return Table(frame, _methods_wide(frame), {"counts": counts})
+    shown, own = _methods_wide(frame), [ERRORS[name] for name in (*METRICS, "salient_error")]
+    own = [name for name in map(str, shown) if name in own or name in COUNTS or name.startswith(ERRORS["gaze_error"])]
+    best = Ranking(ERRORS[METRICS[0]], lowest=True, exempt=KEEP_NOTHING)
+    return Table(frame, shown, {"counts": counts}, best, ["kept points", *own])
 
 
 def _by_method(rows: pd.DataFrame) -> pd.DataFrame:
@@ -97,7 +103,10 @@ def table_3_2(results: Results) -> Table:
     counts = cells.drop_duplicates(["data", *BLOCK]).sort_values(BLOCK)
     objects = (counts["objects"].astype(str) + " " + counts["data"]).groupby(counts["block"], sort=False)
     over = "; ".join(f"{block}: {sets}" for block, sets in objects.agg(", ".join).items())
-    return Table(frame, _blocks_wide(cells), {"objects": over, "fewest": FEWEST})
+    shown = _blocks_wide(cells)
+    answer = [name for name in map(str, shown) if not name.startswith(ERRORS[METRICS[1]])]  # the first error alone
+    best = Ranking(next(name for name in answer[2:] if not name.endswith("thesis")), True, ["target"], KEEP_NOTHING)
+    return Table(frame, shown, {"objects": over, "fewest": FEWEST}, best, answer)
 
 
 def _parts(results: Results) -> Iterator[pd.DataFrame]:

@@ -6,10 +6,12 @@ from stages.kit.stats import interval
 from stages.report.grid import grouped, records, within
 from stages.report.items import Table
 from stages.report.markdown import signed, with_interval
+from stages.report.ranking import Ranking
 from stages.report.results import Results
 from stages.report.style import label
 
 SET, OURS = "schunk", "discriminant"
+BEST = Ranking("grasps left out in turn, %")
 
 
 def build(results: Results) -> Table:
@@ -35,4 +37,4 @@ def build(results: Results) -> Table:
         "published test list": frame["listed"].astype(str) + " of " + frame["listed_of"].astype(str),
     })  # fmt: skip
     counts = rows[rows["part"] == "training"].drop_duplicates("item")["item"].str.split("/").str[0].value_counts()
-    return Table(frame, shown, {"grasps": int(counts.sum()), "commonest": 100 * counts.max() / counts.sum()})
+    return Table(frame, shown, {"grasps": int(counts.sum()), "commonest": 100 * counts.max() / counts.sum()}, BEST)

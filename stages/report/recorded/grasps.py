@@ -6,6 +6,7 @@ from stages.kit.split import Split, shared_by
 from stages.kit.stats import interval
 from stages.report.grid import grid, grouped, records
 from stages.report.items import Table
+from stages.report.ranking import Ranking
 from stages.report.results import Results
 from stages.report.style import label
 
@@ -40,9 +41,9 @@ def build(results: Results) -> Table:
     keys = ["task", "palm", "scaled", "components"]
     names = {"scaled": SCALED.get, "components": lambda count: "12 components" if count == 12 else "electrodes"}
     cells = cells.sort_values(keys)
-    wide = grid(cells, keys, "classifier", beside=(), names=names, head=lambda name: f"{label(name)}, %")
+    wide = grid(cells, keys, "classifier", names=names, head=lambda name: f"{label(name)}, %")
     wide = wide.rename(columns={"scaled": "scaled by", "components": "values"})
-    return Table(frame, wide, drift | {"better": _better(frame)})
+    return Table(frame, wide, drift | {"better": _better(frame)}, Ranking("kNN, %", among=["task"]))
 
 
 def _better(frame: pd.DataFrame) -> str:

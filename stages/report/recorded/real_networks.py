@@ -13,6 +13,7 @@ from stages.report.markdown import signed, with_interval
 from stages.report.names import place_names
 from stages.report.networks import MODES, PRINTED, STARTS, origin
 from stages.report.pareto import pareto_front, ticks
+from stages.report.ranking import Ranking
 from stages.report.results import Results, some
 from stages.report.style import INK, label, plain_logarithm, plt
 
@@ -50,7 +51,9 @@ def build(results: Results) -> Table:
         }
         for row in records(frame)
     ]
-    return Table(frame, pd.DataFrame(shown))
+    found = pd.DataFrame(shown)
+    answer = [name for name in map(str, found) if name not in ("guessing, %", "over")]
+    return Table(frame, found, best=Ranking("accuracy, %", among=["data", "split"]), answer=answer)
 
 
 def printed(data: str, thesis: str, results: Results) -> Table:
@@ -68,7 +71,7 @@ def printed(data: str, thesis: str, results: Results) -> Table:
         size = "".join(f", {pixels} px" for pixels in own["size"].unique())
         shown[f"{label(mode)}{size}: ours, %"] = [with_interval(*ends, 100, 1) for ends in found]
         shown[f"{label(mode)}: thesis, %"] = [percent(share, 1) for share in frame[f"{mode}_thesis"]]
-    return Table(frame, shown, {"absent": "" if len(mine) else ABSENT})
+    return Table(frame, shown, {"absent": "" if len(mine) else ABSENT})  # no ranking: the thesis's rows are printed
 
 
 def chart(results: Results) -> Figure:

@@ -7,6 +7,7 @@ import pandas as pd
 from stages.kit.split import Split, shared_by
 from stages.report.grid import grid, means
 from stages.report.items import Figure, Table
+from stages.report.ranking import Ranking
 from stages.report.results import Results
 from stages.report.style import CYCLE, GREY, INK, MARKERS, label, plt
 
@@ -25,14 +26,14 @@ def build_table(results: Results) -> Table:
     alone = rows[(rows["group"] != "all") & (rows["training"] == "simulated")]
     shares = alone.groupby(["simulation", "aligned", "group"])["value"].mean()
     way: Any = shares.groupby(level=[0, 1]).mean().idxmax()
-    said = [f"{name} {100 * share:.0f}" for name, share in shares[way].sort_values(ascending=False).items()]
+    said = [f"{label(name)} {100 * share:.0f}" for name, share in shares[way].sort_values(ascending=False).items()]
     mine = frame[frame["classifier"] == SHOWN].sort_values("touches", kind="stable")
     mine["simulated imprints"] = [*map(_way, mine["simulation"], mine["aligned"])]
-    head = f"real touches a class, {label(SHOWN)}, %"
-    wide = grid(mine, "simulated imprints", "touches", beside=(), head=lambda count: f"{count} {head}")
+    wide = grid(mine, "simulated imprints", "touches", head=lambda count: f"{count} real touch{'es' * (count != 1)}, %")
     wide = wide.replace("not run", "–")  # with neither real nor simulated touches there is nothing to run
     wide = wide.sort_values("simulated imprints", key=lambda way: way != "none", kind="stable")
-    return Table(frame, wide, {"way": _way(*way), "shares": ", ".join(said), "best": _best(frame)})
+    words = {"way": _way(*way), "shares": ", ".join(said), "best": _best(frame)}
+    return Table(frame, wide, words, Ranking(wide.columns[-1]))
 
 
 def build_figure(results: Results) -> Figure:

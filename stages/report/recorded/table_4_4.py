@@ -7,9 +7,10 @@ import pandas as pd
 
 from stages.kit.split import Split, shared_by
 from stages.kit.stats import interval
-from stages.report.grid import grid, within
+from stages.report.grid import blocks, grid, within
 from stages.report.items import Table
 from stages.report.markdown import with_interval
+from stages.report.ranking import Ranking
 from stages.report.results import Results
 from stages.report.style import label
 
@@ -19,6 +20,7 @@ SETS = {
     "all": "all 22 classes",
 }  # fmt: skip
 SELECTIONS = {"all": "no selection", "selected": "selection", "selected_training": "selection in training alone"}
+PRINTED = {name: f"the thesis, {name} toys" for name in ("four", "six")}
 KEYS = ["set", "selection", "classifier"]
 VALUES = ["accuracy", "low", "high", "thesis", "accuracy_folds", "accuracy_blocks"]
 
@@ -30,8 +32,9 @@ def build(results: Results) -> Table:
     scores = {key: own["value"] for key, own in rows[rows["metric"] == "accuracy"].groupby([*KEYS, "split"])}
     lines = [_line(scores, thesis, *key) for key in product(SETS, SELECTIONS, thesis.index)]
     frame = pd.DataFrame(lines, columns=[*KEYS, *VALUES])
-    names = {"set": SETS.get, "selection": SELECTIONS.get}
-    shown = grid(frame, KEYS[:2], KEYS[2], names=names, head=lambda name: f"{label(name)}: ours · thesis, %", gap=None)
+    names = {"set": lambda name: SETS.get(name, name), "selection": SELECTIONS.get}
+    cells = blocks(frame, KEYS[:2], KEYS[2], {"thesis": PRINTED.__getitem__})
+    shown = grid(cells, KEYS[:2], KEYS[2], names=names, head=lambda name: f"{label(name)}, %")
     by_metric = dict(list(rows.groupby("metric")))
     removed = by_metric["share_similar"].groupby("set")["value"].mean()
     chosen = rows.groupby("set")["chosen"].first().str.replace(" ", ", ")
@@ -44,7 +47,7 @@ def build(results: Results) -> Table:
         "near": with_interval(*near, places=2), "far": with_interval(*far, places=2),
         "knn": lost["knn"], "least": lost.min(), "most": lost.max(),
     }  # fmt: skip
-    return Table(frame, shown, words)
+    return Table(frame, shown, words, Ranking("kNN, %", among=["set"], exempt=PRINTED.values()))
 
 
 def _line(scores: dict[tuple, pd.Series], thesis: pd.DataFrame, *key: str) -> tuple:

@@ -4,8 +4,9 @@ import numpy as np
 import pandas as pd
 
 from stages.kit.split import Split
-from stages.report.grid import everywhere, grid, means, records
+from stages.report.grid import blocks, everywhere, grid, means, records
 from stages.report.items import Figure, Table
+from stages.report.ranking import Ranking
 from stages.report.results import Results
 from stages.report.style import CYCLE, GREY, MARKERS, label, plain_logarithm, plt
 from stages.report.words import dataset_text
@@ -16,6 +17,7 @@ EMPTY = {"fine": "", "extent": ""}  # of one array and one touch a sample
 EXTENTS = {
     "": "", "points": ", five separate points", "region": ", five in a salient region", "disc": ", five in a disc",
 }  # fmt: skip
+PRINTED = "the thesis, four classes"
 SPLITS = {Split.OBJECTS: "unseen", Split.RANDOM: "known, other touches"}
 
 
@@ -28,13 +30,17 @@ def table(results: Results) -> Table:
     rows = rows.reindex(columns=[*rows.columns.union(list(EMPTY), sort=False)]).fillna(EMPTY)
     frame = _cells(rows, ["dataset", "split", "cells", "pitch", *EMPTY, "classifier"])
     frame["thesis"] = frame["classifier"].map(thesis).where((frame["cells"] == LARGE) & (frame["pitch"] == COARSE))
+    cells = frame.assign(width=(frame["cells"] * frame["pitch"]).map("{:.2f}".format), cells=_arrays(frame))
+    cells = cells.assign(
+        thesis=frame["thesis"].where((frame[["split", *EMPTY]] == [Split.OBJECTS, "", ""]).all(axis=1))
+    )
+    down = ["dataset", "split", "cells", "pitch", "width"]
     shown = grid(
-        frame.assign(width=(frame["cells"] * frame["pitch"]).map("{:.2f}".format), cells=_arrays(frame)),
-        ["dataset", "split", "cells", "pitch", "width"], "classifier", gap=None,
-        names={"dataset": dataset_text, "split": SPLITS.get},
-        head=lambda name: f"{label(name)}, %",
+        blocks(cells, down, "classifier", {"thesis": lambda dataset: PRINTED}), down, "classifier",
+        names={"dataset": dataset_text, "split": SPLITS.get}, head=lambda name: f"{label(name)}, %",
     ).rename(columns={"split": "objects", "pitch": "pitch, units", "width": "width, units"})  # fmt: skip
-    return Table(frame, shown, {"classes": _classes(rows), "smallest": _smallest(smallest)})
+    words = {"classes": _classes(rows), "smallest": _smallest(smallest)}
+    return Table(frame, shown, words, Ranking("kNN, %", among=["dataset", "objects"], exempt=[PRINTED]))
 
 
 def _arrays(frame: pd.DataFrame) -> list[str]:

@@ -31,7 +31,7 @@ def figure_4_14(results: Results) -> Figure:
     size = (2.7 * len(found), 2.9 * len(strategies))
     figure, grid = plt.subplots(len(strategies), len(found), figsize=size, squeeze=False)
     for column, (name, (mesh, contours)) in zip(grid.T, found.items(), strict=True):
-        column[0].set_title(name.replace("_", " "), loc="center")
+        column[0].set_title(label(name), loc="center")
         for axes, strategy in zip(column, strategies, strict=True):
             canvas, sequences = Canvas(axes, mesh), contours[strategy]
             for pair, start, tint in zip(sequences.planes[:PATHS], sequences.positions[:, 0], CYCLE, strict=False):
@@ -39,7 +39,7 @@ def figure_4_14(results: Results) -> Figure:
                 axes.plot(*canvas.pixels(start[None]), "o", mfc="white", mec=tint, mew=1.6, ms=5)
     name_panels(grid, [], map(label, strategies))
     figure.subplots_adjust(wspace=0.03, hspace=0.03)
-    words = {"names": ", ".join(found), "count": PATHS, "strategies": " and ".join(map(label, strategies))}
+    words = {"names": ", ".join(map(label, found)), "count": PATHS, "strategies": " and ".join(map(label, strategies))}
     return Figure(figure, words)
 
 
@@ -65,7 +65,7 @@ def figure_4_15(results: Results) -> Figure:
     axes.grid(axis="y")
     axes.set_ylabel("normal", labelpad=0)
     axes.legend(ncols=3, loc="lower center", bbox_to_anchor=(0.5, 0.98))
-    return Figure(figure, {"name": name, "strategy": label(strategy), "count": FRAMES, "frames": len(normals)})
+    return Figure(figure, {"name": label(name), "strategy": label(strategy), "count": FRAMES, "frames": len(normals)})
 
 
 def followed(mesh: Mesh, pair: np.ndarray) -> SectionCurve:

@@ -1,14 +1,14 @@
 """T tables 4.7 and 4.8: the layers of the two networks; T table 4.9: which class of objects is it, by contours."""
 
-from functools import partial
 from itertools import product
 
 import numpy as np
 import pandas as pd
 
 from stages.kit.split import Split
-from stages.report.grid import cell_text, everywhere, percent
+from stages.report.grid import blocks, everywhere, grid, percent, records
 from stages.report.items import Table
+from stages.report.ranking import Ranking
 from stages.report.results import Results
 from stages.report.style import label
 from stages.report.words import dataset_text
@@ -30,6 +30,7 @@ SAID = {
     ("cnn_normals", "fc2"): "ReLU",
     ("cnn_normals", "scores"): "softmax",
 }
+PRINTED = "the thesis"
 NETWORKS = {"cnn_images": "3D, images (4.7)", "cnn_normals": "1D, normals (4.8)"}
 
 
@@ -42,7 +43,7 @@ def table_4_7(results: Results) -> Table:
     shown = frame.assign(network=frame["network"].map(NETWORKS))
     shown = shown.rename(columns={"kind": "ours", "output": "output of ours"})
     totals = frame.groupby("network")["parameters"].sum()
-    return Table(frame, shown, {name: totals[name] for name in NETWORKS})
+    return Table(frame, shown, {name: totals[name] for name in NETWORKS})  # no ranking: layers do not compete
 
 
 def table_4_9(results: Results) -> Table:
@@ -65,13 +66,12 @@ def table_4_9(results: Results) -> Table:
                 "seconds": mine.loc[(mine["split"] == split) & (mine["metric"] == "accuracy"), "seconds"].median(),
             })  # fmt: skip
     frame = pd.DataFrame(lines)
-    cells = frame.assign(text=[cell_text(row, places=1, gap=None) for _, row in frame.iterrows()])
-    shown = cells.pivot_table(index=KEYS, columns="strategy", values="text", aggfunc="first", sort=False)
-    shown = shown.rename(columns=lambda name: f"{label(name)}, %")
-    shown["chance"] = frame.groupby(KEYS, sort=False)["chance"].first().map(partial(percent, places=1))
-    shown = shown.reset_index()
-    for column, say in (("objects", dataset_text), ("split", SPLITS.get), ("classifier", CLASSIFIERS.get)):
-        shown[column] = shown[column].map(say)
-    counts = frame.groupby("objects", sort=False)["sequences"].max()
-    counted = ", ".join(f"{int(count):,} ({dataset_text(str(source))})" for source, count in counts.items())
-    return Table(frame, shown, {"not_run": results.left_out(STAGE), "counted": counted})
+    names = {"objects": dataset_text, "split": SPLITS.get, "classifier": CLASSIFIERS.get}
+    cells = blocks(frame, KEYS, "strategy", {"thesis": lambda objects: PRINTED})
+    shown = grid(cells, KEYS, "strategy", names, lambda name: f"{label(name)}, %", places=1, printed=PRINTED)
+    sizes = frame.groupby("objects", sort=False)[["sequences", "chance"]].max()
+    counted = ", ".join(f"{int(row.sequences):,} ({dataset_text(row.Index)})" for row in records(sizes))
+    chance = ", ".join(f"{dataset_text(row.Index)} {percent(row.chance, 1)} %" for row in records(sizes))
+    words = {"not_run": results.left_out(STAGE), "counted": counted, "chance": chance}
+    best = Ranking(shown.columns[-1], among=["objects", "split"], exempt=[PRINTED])
+    return Table(frame, shown, words, best)

@@ -51,7 +51,7 @@ def protocols(results: Results, on_sets: bool = False, **where: Any) -> Iterator
     if PRINTED in found:
         yield Protocol(PRINTED, found.pop(PRINTED), "as printed", PLAIN_AVERAGE)
     if (drawn := {name: found.pop(name) for name in SETS_4_2 if name in found}) and on_sets:
-        rows = pd.concat(drawn.values()).replace({"method": dict.fromkeys(BLIND, BLIND[0])})
+        rows = pd.concat(drawn.values(), ignore_index=True).replace({"method": dict.fromkeys(BLIND, BLIND[0])})
         count = len(rows[["dataset", "set"]].drop_duplicates())
         yield Protocol(next(iter(drawn)), rows, f"as printed, {count} random sets", PLAIN_AVERAGE)
     for dataset, rows in list(found.items())[:1]:

@@ -8,14 +8,16 @@ import pandas as pd
 from stages.classification.similarity import SIMILARITY_THRESHOLD, similarity
 from stages.kit.files import read_arrays
 from stages.kit.split import Split
-from stages.report.grid import grid
+from stages.report.grid import blocks, grid
 from stages.report.items import Figure, Table
+from stages.report.ranking import Ranking
 from stages.report.results import Results, some
 from stages.report.style import GREY, INK, colours, plt
 from stages.report.words import dataset_text
 
 from .rows import ENHANCED, PLAIN_AVERAGE, PRINTED, STAGE, Protocol, accuracies, fifteen, protocols, sampling_text
 
+THESIS = "the thesis"
 WAYS = {"plain": "no selection", "selected": "selection", "selected_train": "selection in training alone"}
 PRINTED_WAYS = {"plain": "all", "selected": "selected"}  # column of the thesis's table, behind the group
 # T4.2.4, enhanced visual attention; of the thesis's cow, dromedary, glasses, hand, plane and cup.
@@ -31,11 +33,13 @@ def table_4_3(results: Results) -> Table:
     selected = {one.dataset for one in protocols(results, variant="selected")}
     found = protocols(results, group=["six", "four"], variant=[*WAYS, *few])
     frame = pd.concat([_selections(one, thesis) for one in found if one.dataset in selected], ignore_index=True)
-    shown = grid(
-        frame.assign(head=frame["objects"] + ", " + frame["selection"].map(WAYS)), ["protocol", "classifier"], "head",
-        names={"classifier": sampling_text}, head=lambda name: f"{name}, %",
-    )  # fmt: skip
-    return Table(frame, shown, {"not_run": results.left_out(STAGE, variant=[*WAYS, *few])})
+    down, few_of = ["protocol", "classifier"], frame["classifier"].str.contains(", ")
+    cells = frame.assign(thesis=frame["thesis"].mask(few_of))
+    cells = cells.assign(head=cells["objects"] + ", " + cells["selection"].map(WAYS))
+    cells, names = blocks(cells, down, "head", {"thesis": lambda protocol: THESIS}), {"classifier": sampling_text}
+    shown = grid(cells, down, "head", names, head=lambda name: f"{name}, %", printed=THESIS)
+    words = {"not_run": results.left_out(STAGE, variant=[*WAYS, *few])}
+    return Table(frame, shown, words, Ranking("six, no selection, %", among=["protocol"], exempt=[THESIS]))
 
 
 def _selections(protocol: Protocol, thesis: pd.DataFrame) -> pd.DataFrame:
@@ -64,7 +68,7 @@ def section_4_2_4(results: Results) -> Table:
     )
     for column, head in (("all", "ours, all, %"), ("first_15", "ours, first 15, %"), ("thesis", "thesis, %")):
         shown[head] = 100 * frame[column]
-    return Table(frame, shown)
+    return Table(frame, shown)  # no ranking: a share of alike imprints is neither good nor bad
 
 
 def _shares(protocol: Protocol, thesis: pd.Series) -> pd.DataFrame:

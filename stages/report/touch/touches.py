@@ -9,9 +9,10 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 
-from stages.report.grid import grid
+from stages.report.grid import blocks, grid
 from stages.report.items import Figure, Table
 from stages.report.prose import shared_notes
+from stages.report.ranking import Ranking
 from stages.report.results import NotRun, Results, some
 from stages.report.style import INK, colours, label, plt
 
@@ -26,6 +27,9 @@ WAYS = {
     "_mixed": "combinations drawn before the split", "first_15_mixed": "drawn before the split, 15 imprints per object",
 }  # fmt: skip
 KEYS = ["sampling", "way", "classifier", "touches"]
+DOWN, PRINTED = ["protocol", "sampling"], "the thesis"
+BELOW = {"accuracy_regions": "{}, unseen regions".format, "thesis": lambda protocol: PRINTED}
+RANKING = Ranking("kNN, %", among=["protocol"], exempt=[PRINTED])
 
 
 def beside_thesis(results: Results, group: str, printed: str, variant: str = "plain") -> Table:
@@ -38,14 +42,15 @@ def beside_thesis(results: Results, group: str, printed: str, variant: str = "pl
             first = results.measured(STAGE, protocol.dataset, group=group, variant=fifteen(variant))
             few.append(_cells(replace(protocol, rows=first), thesis, ", 15 imprints"))
     frame = pd.concat([*parts, *few]).sort_values("protocol", kind="stable", ignore_index=True)
+    once = frame.assign(thesis=frame["thesis"].mask(frame["sampling"].str.contains(", ")))  # not beside 15 imprints too
     shown = grid(
-        frame, ["protocol", "sampling"], "classifier", beside=("accuracy_regions", "thesis"),
+        blocks(once, DOWN, "classifier", BELOW), DOWN, "classifier",
         names={"sampling": sampling_text}, head=lambda name: f"{label(name)}, %",
     )  # fmt: skip
     words = {name: shared_notes(__package__, name) for name in ("cells", "regions")}
     words |= {"fifteen": shared_notes(__package__, "fifteen") if few else "15 imprints per object: not run."}
     words |= {"group": results.group_text(group), "not_run": results.left_out(STAGE, group=group, variant=variant)}
-    return Table(frame, shown, words)
+    return Table(frame, shown, words, RANKING)
 
 
 def _cells(protocol: Protocol, thesis: pd.DataFrame, few: str = "", whole: bool = False) -> pd.DataFrame:
@@ -80,16 +85,13 @@ def table_4_6(results: Results) -> Table:
     others = frame["sampling"].map(label).mask(frame["best"], "")
     words = zip(frame["classifier"].map(label), frame["way"].map(WAYS), others, strict=True)
     names = pd.Series([", ".join(filter(None, said)) for said in words])
-    named = frame.assign(name=names.mask(plain, names + ": measured · unseen regions · thesis"))
-    parts = (named[plain], ("accuracy_regions", "thesis")), (named[~plain & frame["classifier"].isin(FURTHER)], ())
-    shown = [
-        grid(
-            cells, ["protocol", "name"], "touches", beside=beside, head=lambda n: f"{n} touch{'es' if n > 1 else ''}, %"
-        )
-        for cells, beside in parts
-    ]
-    wide = pd.concat(shown).fillna("not run").rename(columns={"name": "classifier"})
-    return Table(frame, wide, {"group": results.group_text("six")})
+    named = frame.assign(name=names)
+    down, rest = ["protocol", "name"], named[~plain & frame["classifier"].isin(FURTHER)]
+    cells = pd.concat([blocks(named[plain], down, "touches", BELOW), rest])
+    wide = grid(cells, down, "touches", head=lambda n: f"{n} touch{'es' if n > 1 else ''}, %", printed=PRINTED)
+    wide = wide.rename(columns={"name": "classifier"})
+    ranking = Ranking(wide.columns[-1], among=["protocol"], exempt=[PRINTED])
+    return Table(frame, wide, {"group": results.group_text("six")}, ranking)
 
 
 def _by_touches(protocol: Protocol, thesis: pd.DataFrame) -> pd.DataFrame:

@@ -4,9 +4,10 @@ import pandas as pd
 
 from stages.kit.split import shared_by
 from stages.kit.stats import interval
-from stages.report.grid import cell_text, percent
+from stages.report.grid import cell_texts, percent
 from stages.report.items import Table
 from stages.report.markdown import signed
+from stages.report.ranking import Ranking
 from stages.report.results import Results
 
 SETTINGS = {
@@ -41,8 +42,8 @@ def build(results: Results) -> Table:
     frame = pd.DataFrame(lines, columns=["setting", "values", "accuracy", "low", "high", *gains, "chance"])
     shown = {
         "what differs": frame["setting"].map(SETTINGS),
-        "accuracy, %": frame.apply(cell_text, axis=1, beside=(), places=1),
+        "accuracy, %": cell_texts(frame, 1),
         "minus the first row, points": [signed(*gain, places=1) for gain in 100 * frame[gains].to_numpy()],
         "chance, %": [percent(guess, 1) for guess in frame["chance"]],
     }
-    return Table(frame, pd.DataFrame(shown))
+    return Table(frame, pd.DataFrame(shown), best=Ranking("accuracy, %"))

@@ -21,6 +21,7 @@ from stages.report.networks import (
     seen,
 )  # fmt: skip
 from stages.report.prose import shared_notes
+from stages.report.ranking import Ranking
 from stages.report.results import Results
 from stages.report.style import label
 from stages.report.words import dataset_text
@@ -56,11 +57,12 @@ def networks(results: Results, data: str) -> Table:
     starts = zip(frame["weights"], frame.groupby("network")["pretrained"].transform("first"), strict=True)
     down = {"starts from": [origin(*pair) for pair in starts], "filters": frame["mode"].map(label)}
     cells = frame.assign(network=frame["network"].map(label), **down)
-    guesses = (100 * frame["chance"]).map(" (chance {:.1f})".format)
-    notes = [f"Not run on {name}: {note}." for name in sources for note in results.notes("transfer", name)]
+    notes = [
+        f"Not run on {dataset_text(name)}: {note}." for name in sources for note in results.notes("transfer", name)
+    ]
     words = {"networks": shared_notes(__package__, "networks"), "not_run": "\n".join(notes)}
-    words["precision"] = _precisions(frame)
-    return Table(frame, _beside_thesis(cells, ["network", *down], guesses), words)
+    words |= {"precision": _precisions(frame), "looked": _looked(frame), "guesses": _guesses(frame)}
+    return Table(frame, _shown(cells, ["network", *down]), words, _ranking(frame))
 
 
 def frozen_layers(results: Results) -> Table:
@@ -73,7 +75,8 @@ def frozen_layers(results: Results) -> Table:
             known = {"objects": source, "frozen_layers": layers, "split": split, "values": cell["values"]}
             lines.append(known | cell | {"thesis": printed, "seen": seen(mine[mine["split"] == split])})
     frame = pd.DataFrame(lines)
-    return Table(frame, _beside_thesis(frame.rename(columns={"frozen_layers": "frozen layers"}), ["frozen layers"]))
+    shown = _shown(frame.rename(columns={"frozen_layers": "frozen layers"}), ["frozen layers"])
+    return Table(frame, shown, {"looked": _looked(frame)}, _ranking(frame))
 
 
 def _precisions(frame: pd.DataFrame) -> str:
@@ -83,13 +86,29 @@ def _precisions(frame: pd.DataFrame) -> str:
     return " ".join(f"{label(name)} computed in {numbers}." for name, numbers in kinds)
 
 
-def _beside_thesis(cells: pd.DataFrame, down: list[str], guesses: pd.Series | str = "") -> pd.DataFrame:
-    """Accuracies in per cent, a column for each set and split, then the thesis's.
+def _guesses(frame: pd.DataFrame) -> str:
+    """What guessing gives on each set."""
+    shares = frame.groupby("objects", sort=False)["chance"].first().dropna()
+    return ", ".join(f"{dataset_text(str(name))} {percent(share, 1)} %" for name, share in shares.items())
 
-    A head ends with `guesses` and with what the networks saw.
-    """
-    looked = cells["seen"].map(lambda words: f", {words}" if words else "")
-    head = cells["objects"].map(dataset_text) + ", " + cells["split"].map(SPLITS) + guesses + looked + ", %"
-    wide = grid(cells.assign(head=head), down, "head", beside=(), places=1)
+
+def _shown(cells: pd.DataFrame, down: list[str]) -> pd.DataFrame:
+    """Accuracies in per cent, a column for each set and split, then the thesis's."""
+    wide = grid(cells.assign(head=_head(cells) + ", %"), down, "head", places=1)
     thesis = cells.groupby(down, sort=False)["thesis"].max()  # printed beside touches at random alone
     return wide.assign(**{"thesis, %": [percent(share, 1) for share in thesis]})
+
+
+def _head(cells: pd.DataFrame) -> pd.Series:
+    return cells["objects"].map(dataset_text) + ", " + cells["split"].map(SPLITS)
+
+
+def _ranking(cells: pd.DataFrame) -> Ranking:
+    """By the column of most measured rows."""
+    return Ranking(_head(cells.dropna(subset=["accuracy"])).mode().iloc[0] + ", %")
+
+
+def _looked(cells: pd.DataFrame) -> str:
+    """What the networks of each column saw."""
+    heads = (_head(cells) + ": " + cells["seen"])[cells["seen"] != ""]
+    return "; ".join(heads.unique())

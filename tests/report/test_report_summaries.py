@@ -1,0 +1,78 @@
+"""Each table has one sentence that says what it found, and its figures are the table's own."""
+
+import re
+import shutil
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from stages.kit.files import write_table
+from stages.report import topics
+from stages.report.cells import filled
+from stages.report.items import Table
+from stages.report.prose import add_words
+
+REPORTS = Path(__file__).parents[2] / "reports"
+LATER = ("scene", "stability")  # topics of which a table may still lack its sentence
+LONGEST = 200
+TABLES = [(topic, name) for topic in topics.TOPICS for name in topic.TABLES]
+
+
+class Anything(dict):
+    """Words for any prose."""
+
+    def __missing__(self, key):
+        return 0
+
+
+def template(topic, name):
+    """The sentence of a table, its figures not yet filled in."""
+    table = Table(pd.DataFrame(), words=Anything())
+    add_words(table, topic, "tables", name)
+    return table.summary
+
+
+SAID = {name: template(topic, name) for topic, name in TABLES}
+
+
+@pytest.mark.parametrize(("topic", "name"), TABLES, ids=[name for _, name in TABLES])
+def test_each_table_has_a_sentence_with_a_figure_of_its_own(topic, name):
+    if not SAID[name] and topic.__name__.endswith(LATER):
+        pytest.skip("its sentence is still to come")
+    if not (REPORTS / f"tables/{name}.csv").exists():
+        pytest.skip("its table is still to be written")
+    text, sources = filled(SAID[name], REPORTS)
+    assert (f"tables/{name}") in [source for source, _ in sources]
+    assert len(text) <= LONGEST and text[0].isupper() and text.endswith(".") and re.search(r"\d", text)
+    assert not re.search(r"\d \.|\{|\}|nan|_", text), text
+
+
+@pytest.mark.parametrize("name", [name for name, said in SAID.items() if said])
+def test_a_table_with_other_numbers_has_another_sentence(tmp_path, name):
+    """Half of the rows that a sentence counts, or other numbers."""
+    if not (REPORTS / f"tables/{name}.csv").exists():
+        pytest.skip("its table is still to be written")
+    frame = pd.read_csv(REPORTS / f"tables/{name}.csv", keep_default_na=False, na_values=[""])
+    floats = (
+        frame.select_dtypes("float").columns if frame.select_dtypes("float").size else frame.select_dtypes("number")
+    )
+    other = (
+        frame.iloc[: len(frame) // 2]
+        if ": rows}" in SAID[name]
+        else frame.assign(**{column: 0.7 * frame[column] for column in floats})
+    )
+    write_table(tmp_path / f"tables/{name}.csv", other)
+    assert filled(SAID[name], tmp_path)[0] != filled(SAID[name], REPORTS)[0]
+
+
+def test_a_sentence_without_its_row_is_left_out_and_the_notes_stay(tmp_path):
+    frame = pd.DataFrame({"method": ["one"], "mean": [1.0]})
+    for where, said in (("one", "It is 1."), ("two", "")):
+        summary = f"It is {{tables/t method={where}: mean}}."
+        table = Table(frame, name="t", title="T", notes=["a note"], summary=summary)
+        table.write(tmp_path / "tables")
+        text = (tmp_path / "tables/t.md").read_text()
+        assert table.summary == said and ("# T\n\nIt is 1.\n\n| method" in text) == bool(said)
+        assert "<details><summary>How to read it</summary>\n\n- a note\n\n</details>" in text
+    shutil.rmtree(tmp_path / "tables")
