@@ -46,7 +46,7 @@ FINDINGS = (
             "NSS more than the best other", "attention", places=2),
     Finding("ours_soft_gaze", "supported", "Saliency as a weight keeps meshes closer where people looked",
             "% less error where people looked", "meshes", "less:", 1),
-    Finding("ours_over_blind", "supported", "One touch where our model expects gaze tells more than a blind one",
+    Finding("glance_over_blind", "supported", "One touch where our glance expects gaze tells more than a blind one",
             "points of accuracy more than blind touch", "touch"),
     Finding("keep_metro", "contradicted", "Fails: neighbourhoods kept unchanged double the error",
             "times the error of QSlim", "meshes", "times:", 2),
