@@ -42,7 +42,7 @@ def filled(text: str, reports: Path) -> tuple[str, list[tuple[str, str]]]:
 
 def _figure(reports: Path, name: str, where: str, what: str) -> str:
     """`1.64 [1.41, 1.88]`, `0.4 [0.2, 0.6] higher`, one number, or a name."""
-    columns, words, places = _wanted(what)
+    columns, words, places = parts_of(what)
     found = _rows(reports / f"{name}.csv", where)
     if columns == [ROWS]:
         return f"{len(found):,}"
@@ -63,7 +63,7 @@ def _figure(reports: Path, name: str, where: str, what: str) -> str:
     return show(mean) if low != low else f"{show(mean)} [{show(low)}, {show(high)}]"
 
 
-def _wanted(what: str) -> tuple[list[str], list[str], str]:
+def parts_of(what: str) -> tuple[list[str], list[str], str]:
     """(columns, the two words for a difference or none, places) of `mean low high NSS higher|NSS lower .2f`."""
     text, _, places = what.strip().partition(" .")
     found = re.fullmatch(r"(\S+ \S+ \S+) ([^|]+)\|([^|]+)", text)

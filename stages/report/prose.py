@@ -3,14 +3,18 @@
 TOPIC/prose.md has a section for each item, `# KIND/NAME: title`, where KIND is a folder of reports/. A table's section
 is its summary, one sentence whose figures come from the table (`{this row: column}`, see `cells`), then a list of
 notes; that of a figure or chart is `Alt: what a blind reader needs`, then the caption. `{word}` is filled in by the
-code. A note that comes out empty is left out, and one of several lines becomes as many notes.
+code. A note that comes out empty is left out, and one of several lines becomes as many notes. What a topic found stands
+in TOPIC/findings.md, with figures from any table or claim; a paragraph that lacks one is left out.
 """
 
 import re
+from contextlib import suppress
 from functools import cache
 from importlib import resources
+from pathlib import Path
 from types import ModuleType
 
+from .cells import filled
 from .items import Figure, Table
 
 
@@ -37,9 +41,14 @@ def shared_notes(package: str | None, name: str) -> str:
     return "\n".join(_joined(note) for note in re.split(r"^- ", text, flags=re.MULTILINE)[1:])
 
 
-def findings(topic: ModuleType) -> str:
-    """What the topic found, in Markdown: TOPIC/findings.md."""
-    return resources.files(topic.__name__).joinpath("findings.md").read_text(encoding="utf-8")
+def findings(topic: ModuleType, reports: Path) -> list[str]:
+    """The paragraphs of TOPIC/findings.md, in Markdown, with their figures; without those that lack a figure."""
+    text = resources.files(topic.__name__).joinpath("findings.md").read_text(encoding="utf-8")
+    found = []
+    for paragraph in text.strip().split("\n\n"):
+        with suppress(LookupError):
+            found.append(filled(_joined(paragraph), reports)[0])
+    return found
 
 
 @cache

@@ -33,7 +33,7 @@ def write_site(modules: Sequence[ModuleType], parts: dict[str, Any], out: Path) 
     known (the claims as data), results, not_run; first: the figures of the front page; own: whether these are a
     person's own meshes; meshes: those that can be turned, or None; dataset: what was measured, in words.
     """
-    mains = dict(topic_mains(modules, parts))
+    mains = dict(topic_mains(modules, parts, out))
     if len(parts["claims"]):
         mains[CLAIMS] = claims_main(parts["known"], parts["claims"], parts["differences"], parts["results"])
     leads = {name_of(module): (module.__doc__ or "").strip() for module in modules}
@@ -66,23 +66,26 @@ def page(names: Sequence[str], name: str, lead: str, main: str, scripts: Sequenc
     return Template(part("page.html")).substitute(words)
 
 
-def topic_mains(modules: Sequence[ModuleType], parts: dict[str, Any]) -> Iterator[tuple[str, str]]:
+def topic_mains(modules: Sequence[ModuleType], parts: dict[str, Any], out: Path) -> Iterator[tuple[str, str]]:
     """(name, text below the head) of each topic that has anything to show."""
     items = [item for kind in ("tables", "tradeoff", "figures") for item in parts[kind].items]
     for module in modules:
-        main = topic_main(module, parts, [item for item in items if item.topic == name_of(module)])
+        main = topic_main(module, parts, [item for item in items if item.topic == name_of(module)], out)
         if main:
             yield name_of(module), main
 
 
-def topic_main(module: ModuleType, parts: dict[str, Any], mine: Sequence[Table | Figure]) -> str:
-    """What the project found, how the claims stand, charts and tables; those of sets that are off can be unfolded."""
+def topic_main(module: ModuleType, parts: dict[str, Any], mine: Sequence[Table | Figure], out: Path) -> str:
+    """What the project found, how the claims stand, charts and tables; those of sets that are off can be unfolded.
+
+    out: the folder whose tables, charts and claims are written already; the figures of what was found are theirs.
+    """
     claims = parts["claims"][parts["claims"]["key"].isin([claim.key for claim in module.CLAIMS])]
     others = [item for item in mine if item.sets and not set(item.sets) & set(parts["sets"])]
     if not mine and claims.empty:
         return ""
-    found = "" if parts["own"] else findings(module)  # which are about other data sets
-    text = "".join(f"<p>{prose(paragraph)}</p>" for paragraph in found.strip().split("\n\n") if paragraph)
+    found = [] if parts["own"] else findings(module, out)  # which are about other data sets
+    text = "".join(f"<p>{prose(paragraph)}</p>" for paragraph in found)
     text = f'<section id="found" class="found"><h2>What was found</h2>{text}</section>\n' if text else ""
     shown = [item for item in mine if item not in others]
     if len(claims):

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure as Drawing
 
 from stages.report import topics
 from stages.report.items import Figure, Table
-from stages.report.prose import add_words, findings
+from stages.report.prose import add_words
 
 PROSE = """# tables/one: One of {count}
 
@@ -69,4 +69,4 @@ def test_each_item_has_its_section_and_each_section_its_item(topic):
     items = {f"{kind}/{name}" for kind, attribute in topics.KINDS.items() for name in getattr(topic, attribute)}
     sections = [name for name in re.findall(r"^# (\S+):", text, re.MULTILINE) if not name.startswith("shared/")]
     assert sorted(sections) == sorted(items)
-    assert len(findings(topic)) > 100
+    assert len((Path(topic.__file__).parent / "findings.md").read_text()) > 100

@@ -101,6 +101,13 @@ def test_what_costs_the_reference_nothing_is_left_out_and_named(tmp_path):
     assert found["mce"]["glance"] == pytest.approx(0.5) and found["picture"].isna().all()
     built = build_one(stability, "tables", "stability_score", results(tmp_path, rows(lost=lost)))
     assert "Without light" in " ".join(built.notes)
+    assert built.summary.startswith("The most stable method, 3D-Harris, loses 25 [")
+
+
+def test_the_table_of_breaking_points_says_where_the_glance_breaks(tmp_path):
+    found = rows(lost=LOST | {"glance": (0.2, 0.8, 0.25)}, spread=0.1)
+    built = build_one(stability, "tables", "stability_breaking", results(tmp_path, found))
+    assert built.summary.startswith("Half of the points of our glance are lost when the object is tilted by 10 [")
 
 
 def test_a_disturbance_that_failed_on_a_shape_counts_for_no_method():
@@ -205,6 +212,7 @@ def test_a_pair_is_compared_with_the_sum_of_its_parts(tmp_path, both, word):
     assert line["is"] == word and line["disturbances"] == "noise and tilt"
     assert [line[f"{part}, %"] for part in ("first alone", "second alone", "both")] == ["20", "30", f"{100 * both:.0f}"]
     assert f"1 {word}" in " ".join(built.notes)
+    assert built.summary.startswith("Of the pairs of disturbances, noise+tilt costs our glance most: ")
 
 
 def test_the_sum_of_a_pair_is_all_at_most_and_independent_losses_are_milder():
@@ -239,6 +247,7 @@ def test_uses_are_shares_of_plain_simplification_and_touches_recognised(tmp_path
     assert shown.loc["none", error].startswith("50") and shown.loc["noise", error].startswith("90")
     assert shown.loc["none", "Itti's attention, salient error, %"].startswith("50")  # of its own plain error
     assert shown.loc["none", known].startswith("90 [") and shown.loc["noise", known].startswith("60 [")
+    assert "names the right object in 60 [" in built.summary
 
 
 def test_claims_have_their_sign(tmp_path):
