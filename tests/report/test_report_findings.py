@@ -22,7 +22,7 @@ SETTINGS = (  # the numbers that a finding may have of its own
 PARAGRAPHS = [
     (f"{topic.__name__.rpartition('.')[2]} {number}", " ".join(text.split()))
     for topic in topics.TOPICS
-    for number, text in enumerate((Path(topic.__file__).parent / "findings.md").read_text().strip().split("\n\n"))
+    for number, text in enumerate(Path(str(topic.__file__)).with_name("findings.md").read_text().strip().split("\n\n"))
 ]
 PLACES = sorted({place for _, text in PARAGRAPHS for place in PLACE.findall(text)})
 MADE = {f"{kind}/{name}" for topic in topics.TOPICS for kind in ("tables", "tradeoff")
