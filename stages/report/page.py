@@ -19,6 +19,7 @@ from .marks import table
 from .vector import has_marks_alone, vector
 
 WIDEST = 900  # pixels of a picture on the page
+LONG_TEXT = 40  # characters of a cell from which its column is wide
 LONG = 30  # rows after which a table scrolls in its own box
 # Word -> class in the style sheet.
 WORDS = {"supported": "yes", "contradicted": "no", "no difference": "open", "mixed": "open", "open": "open"}
@@ -100,6 +101,7 @@ def frame_html(frame: pd.DataFrame, title: str, words: str = "", bold: Iterable[
     the best.
     """
     right = {column: ' class="number"' for column in frame.columns if is_numeric(frame[column])}
+    right |= {c: ' class="long"' for c in frame.columns if frame[c].map(str).map(len).max() > LONG_TEXT}
     head = "".join(f'<th scope="col"{right.get(c, "")}>{escape(str(c))}</th>' for c in frame.columns)
 
     def cell(column: Any, text: Any) -> str:
