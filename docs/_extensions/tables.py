@@ -122,7 +122,7 @@ def effect(key: str, row: dict[str, str]) -> str:
         return row["effect"] and f"{float(row['effect']):.3g} {row['unit']}"
     ends = [abs(float(row[name])) for name in ("low", "high")]
     places = 0 if max(ends) >= 10 else 1 if max(ends) >= 1 else 2
-    while places < 4 and any(end and round(end, places) == 0 for end in ends):  # or a decided one would seem to cover 0
+    while places < 6 and any(end and round(end, places) == 0 for end in ends):  # or a decided one would seem to cover 0
         places += 1
     return f"{measured(f'claims key={key}: effect low high | +.{places}f')} {row['unit']}"
 

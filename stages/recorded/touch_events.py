@@ -95,7 +95,7 @@ def _published(choice: Choice, known: TouchSeries, asked: TouchSeries) -> Iterat
     answers = model.predict(binned(asked.values, choice.bins))
     common = {"part": "test", "train": len(known.labels), "test": len(asked.labels)}
     yield from (common | row for row in by_object(asked.labels, answers))
-    yield common | {"metric": "training_seconds", "value": watch.seconds}
+    yield common | {"metric": "training_seconds", "value": watch.seconds, "seconds": watch.seconds}
     single = [known.values[k : k + 1] for k in range(min(TIMED, len(known.labels)))]
     one = [_seconds(lambda touch=touch: model.predict(binned(touch, choice.bins))) for touch in single]
     yield common | {"metric": "milliseconds", "value": 1000 * float(np.median(one))}
