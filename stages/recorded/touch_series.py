@@ -2,6 +2,7 @@
 
 import io
 import re
+import tokenize
 import zipfile
 import zlib
 from collections.abc import Sequence
@@ -24,6 +25,12 @@ TAXELS = np.array([
     (1.75, -3), (3.05, -5.2), (3.1, 1.75), (3.05, 5.2), (3.1, -1.75), (3.6, 0), (4.6, -7.8), (4.6, 7.8), (5.3, -3),
     (5.3, 3), (6, 0),
 ])  # fmt: skip
+
+
+# What reading a damaged file raises: a header that asks for more memory than there is, or is no Python, too.
+DAMAGE = (
+    ValueError, OSError, EOFError, zipfile.BadZipFile, zlib.error, SyntaxError, MemoryError, tokenize.TokenError,
+)  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,7 +117,7 @@ def _touch(file: Path | zipfile.Path) -> np.ndarray:
     """(39, 2, t) u1 of one file."""
     try:
         values = np.load(io.BytesIO(file.read_bytes()), allow_pickle=False)
-    except (ValueError, OSError, EOFError, zipfile.BadZipFile, zlib.error, SyntaxError) as error:
+    except DAMAGE as error:
         raise ValueError(f"{file} is damaged ({error}): download the archive again") from None
     good = getattr(values, "ndim", 0) == 3 and values.shape[:2] == (len(TAXELS), 2) and np.isin(values, (0, 1)).all()
     if not good:

@@ -11,7 +11,7 @@ from stages.imprints import Imprints, write_imprints
 from stages.kit.rows import read_rows
 
 SETTINGS = {"sets": ["pair"], "methods": ["here"], "confidences": [0.8], "most": 3, "repetitions": 2}
-CLASSIFICATION = {"classifiers": [], "repetitions": 1, "closer": [], "touches": [], "combinations": 1}
+CLASSIFICATION = {"drawn": 0, "classifiers": [], "repetitions": 1, "closer": [], "touches": [], "combinations": 1}
 
 
 @pytest.fixture

@@ -19,7 +19,7 @@ GROUPS = {
     "core": ("stl", "obj", "material", "texture", "ply", "off", "glb", "gltf", "cloud", "pcd", "las", "depth",
              "mesh", "array", "json", "zip", "tar", "deb"),
     "data": ("collection", "lod", "params", "table", "packed table", "picture", "pressure", "grasps", "schunk", "bigs",
-             "marks", "gaze", "fixations", "interest points", "network", "checkpoint", "pickle", "torch"),
+             "events", "marks", "gaze", "fixations", "interest points", "network", "checkpoint", "pickle", "torch"),
 }  # fmt: skip
 SLOW = {"grasps", "bigs", "network", "checkpoint", "pickle", "torch"}  # import torch, or read many files
 

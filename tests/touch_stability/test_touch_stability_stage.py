@@ -20,7 +20,7 @@ SETTINGS = {
     "set": "pair", "method": "here", "classifiers": ["knn"], "severities": SEVERITIES, "repetitions": 2,
     "denoisers": [],
 }  # fmt: skip
-CLASSIFICATION = {"classifiers": [], "repetitions": 1, "closer": [], "touches": [], "combinations": 1}
+CLASSIFICATION = {"drawn": 0, "classifiers": [], "repetitions": 1, "closer": [], "touches": [], "combinations": 1}
 
 
 @pytest.fixture

@@ -56,4 +56,4 @@ def _always(rows: pd.DataFrame) -> list[str]:
     """The features that are chosen for each object."""
     chosen = rows[rows["metric"] == "features"]["channels"].str.split(", ")
     counts = Counter(name for names in chosen for name in names)
-    return [name for name, count in counts.items() if count == len(chosen)]
+    return [label(name) for name, count in counts.items() if count == len(chosen)]
