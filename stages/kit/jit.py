@@ -2,13 +2,14 @@
 
 import gc
 import hashlib
+import uuid
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numba
 from numba.core import event
-from numba.core.caching import UserProvidedCacheLocator
+from numba.core.caching import FunctionCache, UserProvidedCacheLocator
 
 from .fetch import cache_folder
 
@@ -79,8 +80,22 @@ def kernel_of(file: str, **options: Any) -> Callable[[Callable[..., Any]], Any]:
         before = config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES
         config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES = folder, LOCATORS
         try:
-            return numba.njit(**OPTIONS, **options)(function)
+            return _kept_apart(numba.njit(**OPTIONS, **options)(function))
         finally:
             config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES = before
 
     return kernel
+
+
+def _kept_apart(compiled: Any) -> Any:
+    """The compiled function, whose machine code for each choice of types gets a file of its own, whoever writes it.
+
+    numba numbers these files: two processes that compile a kernel at once for different types take one number, and the
+    index may then name the code of the one for the types of the other.
+    """
+    cache = getattr(compiled, "_cache", None)  # none where NUMBA_DISABLE_JIT is set
+    if isinstance(cache, FunctionCache):
+        file: Any = cache._cache_file
+        pattern = file._data_name_pattern
+        file._data_name = lambda number: pattern.replace("{number:d}", uuid.uuid4().hex)
+    return compiled

@@ -16,15 +16,35 @@ def double(x):
 """
 
 
-def hits_of(folder, body):
-    """How many kernels of a module with such a body, written to a folder, were compiled before."""
-    folder.mkdir()
+def double_in(folder, body):
+    """The kernel of a module with such a body, written to a folder, as another process would have it."""
+    folder.mkdir(exist_ok=True)
     (folder / "kernels.py").write_text(SOURCE.format(body))
     spec = importlib.util.spec_from_file_location("kernels", folder / "kernels.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    assert module.double(3) == 6
-    return sum(module.double.stats.cache_hits.values())
+    return module.double
+
+
+def hits_of(folder, body):
+    """How many kernels of a module with such a body, written to a folder, were compiled before."""
+    double = double_in(folder, body)
+    assert double(3) == 6
+    return sum(double.stats.cache_hits.values())
+
+
+@pytest.mark.slow
+def test_processes_that_compile_at_once_do_not_mix_up_their_code(tmp_path, monkeypatch):
+    monkeypatch.setenv("HAPTIC_GLANCE_CACHE", str(tmp_path / "cache"))
+    ints, floats, reader = (double_in(tmp_path / "one", "2 * x") for _ in range(3))
+    cache = ints._cache._cache_file
+    late, save = [], cache._save_data
+    monkeypatch.setattr(cache, "_save_data", lambda *code: late.append(code))  # it is slow to write its code
+    assert ints(3) == 6
+    monkeypatch.setattr(floats._cache._cache_file, "_load_index", dict)  # it looked before the other wrote the index
+    assert floats(1.5) == 3
+    save(*late[0])
+    assert reader(1.5) == 3 and reader.stats.cache_hits
 
 
 @pytest.mark.slow
