@@ -105,10 +105,11 @@ def _line(own: pd.DataFrame) -> dict[str, str]:
         ends = [100 * value for value in (row.gain, row.gain_low, row.gain_high)]
         line[GROUPS[row.group]] = with_interval(row.accuracy, row.low, row.high, 100, 2)
         line[f"{label(OURS)} − it, {row.group}"] = "–" if row.method == OURS else signed(*ends, places=1)
-    cost, folds = own["milliseconds"], own["cross_validated"]
-    line["in training, %"] = " · ".join(percent(share, 1) for share in folds)
-    line["bins"] = " · ".join(f"{bins:.0f}" for bins in own["bins"])
-    return line | {"milliseconds a touch": " · ".join(number(value) for value in cost)}
+    for row in records(own):
+        line[f"in training, {row.group}, %"] = percent(row.cross_validated, 1)
+    for row in records(own):
+        line[f"milliseconds a touch, {row.group}"] = number(row.milliseconds)
+    return line
 
 
 def _chosen(frame: pd.DataFrame) -> str:

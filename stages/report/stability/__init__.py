@@ -25,6 +25,7 @@ TABLES = {
     "stability_people": people.table,
     "stability_simplification": simplification.table,
     "touch_stability": touch.table,
+    "touch_denoised": touch.denoised,
     "transfer_stability": transfer.table,
     "time_spent": time_spent.build,
 }

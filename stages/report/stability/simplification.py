@@ -26,7 +26,7 @@ SHOWN = ("sound", "wide_holes", "fins", "needles", "islands", "noise_0.01", "sna
 
 
 def table(results: Results) -> Table:
-    """Cases by outcome, a line a kind of damage; the fewest faces, and seconds of each backend."""
+    """Cases by outcome, a line a kind of damage and simplifier; the fewest faces, and seconds of each."""
     cases = results.measured(STAGE, metric="faces")
     frame = pd.DataFrame([
         {"damage": damage, "backend": backend, **_outcomes(group)}
@@ -34,19 +34,18 @@ def table(results: Results) -> Table:
     ])  # fmt: skip
     counted = [*OUTCOMES, "smallest_named", "smallest_had"]
     total = frame.groupby("backend", sort=False)[counted].sum().reset_index().assign(damage="all", least=np.nan)
-    shown = {}
-    for row in pd.concat([frame, total]).to_dict("records"):
-        line, backend = shown.setdefault(row["damage"], {"damage": label(row["damage"])}), row["backend"]
-        line[backend] = " / ".join(str(row[outcome]) for outcome in OUTCOMES)
-        line[f"least, {backend}"] = row["least"]
-        line[f"smallest had, {backend}"] = f"{row['smallest_had']} of {row['smallest_named']}"
+    shown = [
+        {"damage": label(row["damage"]), "simplifier": label(row["backend"]), **{name: row[name] for name in OUTCOMES}}
+        | {"least": row["least"], "smallest had": f"{row['smallest_had']} of {row['smallest_named']}"}
+        for row in pd.concat([frame, total]).to_dict("records")
+    ]  # fmt: skip
     valid = cases.loc[(cases["outcome"] == "valid") & (cases["budget"] != SMALLEST)].fillna({"soft": ""})
     keys, backends = ["item", "perturbation", "budget", "kept", "soft"], cases["method"].unique()
     means = valid.pivot_table("seconds", index=keys, columns="method").dropna().mean()  # of what all backends can
     times = [f"{label(one)} {means[one]:.4f} ({means[one] / means[backends[0]]:.2g} times)" for one in backends]
     objects = ", ".join(dict.fromkeys(cases["item"]))
-    words = {"outcomes": " / ".join(OUTCOMES), "ruin": RUIN, "largest": 100 * LARGEST_ERROR, "objects": objects}
-    return Table(frame, pd.DataFrame(list(shown.values())), words | {"times": ", ".join(times)})
+    words = {"ruin": RUIN, "largest": 100 * LARGEST_ERROR, "objects": objects}
+    return Table(frame, pd.DataFrame(shown), words | {"times": ", ".join(times)})
 
 
 def _outcomes(cases: pd.DataFrame) -> dict[str, Any]:

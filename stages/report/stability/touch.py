@@ -34,7 +34,6 @@ UNHARMED = {name: known.unharmed for name, known in PERTURBATIONS.items()}
 ENOUGH = 0.02  # accuracy that may be lost before it is said to suffer
 COLUMNS = ["perturbation", "unit", *KEYS, "breaking_point", "low", "high", "harmless", "harshest", "accuracy"]
 LEFT = ["left", "left_low", "left_high"]
-GAIN = ["gain", "gain_low", "gain_high"]
 
 
 def curve(rows: pd.DataFrame, perturbation: str, line: Sequence[str]) -> pd.DataFrame:
@@ -79,6 +78,30 @@ def table(results: Results) -> Table:
     return Table(pd.concat(frames), pd.concat(shown), words)
 
 
+def denoised(results: Results) -> Table:
+    """Points of accuracy that a denoiser gains, by disturbance and classifier, on the same touches."""
+    frame = pd.DataFrame([
+        {"perturbation": name, "denoiser": behind.removeprefix("_"), "classifier": words}
+        | dict(zip(("gain", "low", "high"), gain(rows, name, line), strict=True))
+        for behind in list(DENOISERS)[1:]
+        for rows, curves in [_curves(results, DENOISED, behind)]
+        for name, lines in curves.items()
+        for line, words in _lines(behind).items() if line in lines
+    ])  # fmt: skip
+    cells = [signed(100 * row.gain, 100 * row.low, 100 * row.high, 0) for row in records(frame)]
+    shown = frame.assign(cell=cells, gained=frame["classifier"] + ": points gained")
+    shown = shown.pivot(index=["perturbation", "denoiser"], columns="gained", values="cell").reset_index()
+    behind = {name.removeprefix("_"): words for name, words in DENOISERS.items()}
+    named = shown.assign(
+        perturbation=shown["perturbation"].map(label), denoiser=shown["denoiser"].map(behind).str.removeprefix("after ")
+    )
+    return Table(frame, named.rename_axis(columns=None), {"objects": results.group_text(_group(results))})
+
+
+def _group(results: Results) -> str:
+    return results.measured(STAGE, DENOISED, metric="accuracy")["group"].iloc[0]
+
+
 def _block(rows: pd.DataFrame, curves: Curves, behind: str) -> tuple[pd.DataFrame, pd.DataFrame, str]:
     """(breaking points, the same for a reader, undisturbed accuracies) of one denoiser, a name of DENOISERS."""
     found = []
@@ -86,8 +109,8 @@ def _block(rows: pd.DataFrame, curves: Curves, behind: str) -> tuple[pd.DataFram
         for line, points in lines.items():
             if points["left"].notna().any():
                 ends, last = (*breaking(points, name), harmless(points)), points[["severity", "accuracy"]].iloc[-1]
-                found.append((name, UNITS[name], *line, *ends, *last, *gain(rows, name, line)))
-    frame = pd.DataFrame(found, columns=[*COLUMNS, *GAIN])
+                found.append((name, UNITS[name], *line, *ends, *last))
+    frame = pd.DataFrame(found, columns=COLUMNS)
     known = _lines(behind)
     heads = {line: f"{words} breaks at" for line, words in known.items()}
     shown = broken(frame, frame.set_index(KEYS).index.map(heads), UNHARMED)
@@ -97,11 +120,6 @@ def _block(rows: pd.DataFrame, curves: Curves, behind: str) -> tuple[pd.DataFram
     shown["harmless to kNN"] = ["none" if np.isnan(severity) else f"{severity:g}" for severity in first]
     if behind:
         shown["perturbation"] += f", {DENOISERS[behind]}"
-        shown = shown.set_index("perturbation", drop=False)
-        for row in records(frame):
-            cell = f"{label(row.perturbation)}, {DENOISERS[behind]}", heads[row.split, row.features, row.classifier]
-            gained = signed(100 * row.gain, 100 * row.gain_low, 100 * row.gain_high, 0)
-            shown.loc[cell] = f"{shown.loc[cell]} · {gained}"
     clean = {key: group["value"].mean() for key, group in grouped(rows.loc[rows["perturbation"] == CLEAN], KEYS)}
     said = [f"{words} {100 * clean[line]:.0f} %" for line, words in known.items() if line in clean]
     return frame, shown, " ".join(filter(None, [DENOISERS[behind], ", ".join(said)]))
@@ -111,8 +129,6 @@ def gain(rows: pd.DataFrame, perturbation: str, line: Sequence[str]) -> tuple[fl
     """(mean, low, high) of the accuracy that a denoiser gains, over the severities; in pairs of equal touches."""
     own = rows[rows["perturbation"] == perturbation].set_index([*KEYS, "repetition", "severity"])["value"].sort_index()
     split, features, classifier = line
-    if features == PLAIN:
-        return np.nan, np.nan, np.nan
     paired = own.loc[split, features, classifier] - own.loc[split, PLAIN, classifier]
     return interval(paired.groupby("repetition").mean(), shared_by(split))
 
