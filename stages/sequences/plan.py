@@ -42,7 +42,7 @@ def plan(classes: dict[str, list[str]], folder: Path, settings: Params) -> Plan:
     folds = min(len(objects) for objects in members.values())
     if folds < 2:
         notes.append("objects are not held out: every class needs two or more")
-    object_rounds = [(Split.OBJECTS, number) for number in range(folds)] if folds > 1 else []
+    object_rounds = [(Split.OBJECTS, number) for number in range(folds * settings.trainings)] if folds > 1 else []
     rounds = [(Split.RANDOM, number) for number in range(settings.repetitions)] + object_rounds
     full_size = _possible(f"{shape[0]}x{shape[1]}", shape, KINDS, notes)
     trials = [

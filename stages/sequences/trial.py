@@ -27,7 +27,10 @@ Result = tuple[np.ndarray, float, dict[str, int]]  # predictions for the test pa
 
 
 class Trial(NamedTuple):
-    """The parts of a trial's name, STRATEGY.SPLIT.REPETITION.KIND.FRAMESxCELLS."""
+    """The parts of a trial's name, STRATEGY.SPLIT.REPETITION.KIND.FRAMESxCELLS.
+
+    repetition: of unseen objects the number of the fold, plus all folds for each training before.
+    """
 
     strategy: str
     split: Split
@@ -61,7 +64,7 @@ def process(name: str, folder: Path, data: Path, members: dict[str, list[str]], 
     read = downsample(read_sequence_data(data / "contours", members, trial.strategy), *trial.frames_and_cells)
     random = rng(seed, f"sequences {SPLITS[trial.split]} {trial.repetition}")
     if trial.split == Split.OBJECTS:
-        parts = split_by_objects(read.labels, read.ranks, trial.repetition, read.folds, random)
+        parts = split_by_objects(read.labels, read.ranks, trial.repetition % read.folds, read.folds, random)
     else:
         parts = split_by_sequences(read.labels, random)
     with threadpool_limits(1):  # equal sums on any number of cores
@@ -110,7 +113,9 @@ def conventional_results(data: SequenceData, parts: Parts) -> dict[str, Result]:
 
 def _rows(trial, data, truth, results):
     frames, cells = trial.frames_and_cells
-    common = {"method": trial.strategy, "split": trial.split, "repetition": trial.repetition}
+    rounds = data.folds if trial.split == Split.OBJECTS else trial.repetition + 1
+    training, repetition = divmod(trial.repetition, rounds)
+    common = {"method": trial.strategy, "split": trial.split, "repetition": repetition, "training": training}
     common |= {"frames": frames, "cells": cells, "classes": len(data.classes), "sequences": len(data.labels)}
     rows = []
     for name, (predicted, seconds, extra_metrics) in results.items():

@@ -8,6 +8,7 @@ import pandas as pd
 import pytest
 
 from stages.contours import Sequences, write_sequences
+from stages.kit.files import read_arrays
 from stages.sequences import trial as trials
 from stages.sequences.__main__ import confusion_rows, layer_rows, summary
 from stages.sequences.classifiers import CONVENTIONAL
@@ -19,6 +20,7 @@ from stages.sequences.trial import Trial, process
 CLASSES = {"flat": ["plate", "tray"], "round": ["ball", "egg"]}
 SETTINGS = SimpleNamespace(
     repetitions=1,
+    trainings=1,
     image_epochs=3,
     normal_epochs=3,
     smaller_strategy="guided",
@@ -116,6 +118,21 @@ def test_plan_holds_both_splits_and_the_smaller_sequences(contours):
     assert {"guided.random.0.networks.10x8", "random.objects.1.conventional.10x8"} <= set(names)
     assert {"guided.objects.0.conventional.5x4", "guided.objects.1.networks.9x8"} <= set(names)
     assert all(Trial.parse(name) == one for name, one in zip(names, planned.trials, strict=True))
+
+
+@pytest.mark.slow
+def test_each_fold_of_objects_is_trained_for_as_often_as_asked(contours, tmp_path):
+    settings = SimpleNamespace(**{**vars(SETTINGS), "trainings": 2, "smaller": [], "smaller_networks": []})
+    names = [trial.name for trial in plan(CLASSES, contours, settings).trials if trial.split == "objects"]
+    assert len(names) == 2 * 2 * 2 * 2 and "guided.objects.3.networks.10x8" in names
+    first, again = (
+        pd.DataFrame(process(f"guided.objects.{k}.networks.10x8", tmp_path, contours.parent, CLASSES, settings, seed=0))
+        for k in (1, 3)
+    )
+    assert set(first["repetition"]) == set(again["repetition"]) == {1}
+    assert set(first["training"]) == {0} and set(again["training"]) == {1}
+    tested = [read_arrays(tmp_path / f"predictions/guided.objects.{k}.networks.10x8.npz")["test"] for k in (1, 3)]
+    assert np.array_equal(*tested)
 
 
 def test_what_is_left_out_is_said(contours):

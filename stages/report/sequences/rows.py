@@ -20,5 +20,6 @@ SIZE = ["frames", "cells"]
 
 def accuracy(rows: pd.DataFrame, split: Split) -> tuple[float, float, float, int]:
     """(mean, low, high, values) of one strategy, classifier and size: over random splits, or objects left out."""
-    values = rows.loc[(rows["split"] == split) & (rows["metric"] == METRICS[split]), "value"]
+    rows = rows[(rows["split"] == split) & (rows["metric"] == METRICS[split])]
+    values = rows.groupby(["group", "repetition"], dropna=False)["value"].mean()  # several trainings for one object
     return *within(values, SHARED[split]), len(values)
