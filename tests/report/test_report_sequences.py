@@ -7,6 +7,7 @@ import pytest
 from stages.report import sequences
 from stages.report.results import NotRun
 from stages.report.sequences.charts import SHOWN
+from stages.report.sequences.claims import SETS
 from stages.report.sequences.rows import SPLITS
 from stages.report.sequences.tables import SAID
 from stages.report.topics import build_one
@@ -168,8 +169,8 @@ def test_layers_stand_beside_the_printed_ones(bare, small):
 
 def verdicts(bare, small, frame):
     """dict key -> verdict, and the frame of all, of the claims on these rows, in this run and on the other data set."""
-    small.write(bare, "sequences", frame)
-    small.write(bare, "sequences", frame, "princeton_eight")
+    for name in SETS:
+        small.write(bare, "sequences", frame, name)
     found = judge(sequences.CLAIMS, small.results(bare)).set_index("key")
     return found["verdict"].to_dict(), found
 

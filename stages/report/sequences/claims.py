@@ -11,7 +11,7 @@ from stages.report.claims import Claim, highest_of
 from stages.report.differences import difference, statistic
 from stages.report.results import Results
 
-from .rows import BLIND, CLASSIFIERS, GUIDED, METRICS, PRINTED, SHARED, SIZE, SPLITS, STAGE, THESIS_SET
+from .rows import BLIND, CLASSIFIERS, GUIDED, METRICS, PRINTED, SHARED, SIZE, SPLITS, STAGE
 
 RANDOM, UNSEEN = ({"split": split, "metric": METRICS[split]} for split in (Split.RANDOM, Split.OBJECTS))
 WITH_MAP, NO_MAP = ("knn", "svm"), ("knn_no_som", "svm_no_som")
@@ -26,7 +26,7 @@ OBJECTS = {  # the pairs: one of each class left out
     "over": ("group", "repetition"), "shared": SHARED[Split.OBJECTS],
     "phrases": PHRASES | {("over", "repetition"): "objects"},
 }  # fmt: skip
-SETS = (THESIS_SET, None)  # None: the first of the others, the furniture
+SETS = ("princeton_touched", "furniture_splits")  # by experiment=contour_splits, with the units that verdicts need
 claim = partial(Claim, section="T4.4.10", stage=STAGE, dataset=SETS, statistic="whole_sequences", phrases=PHRASES)
 guided = partial(claim, first={"method": GUIDED}, second={"method": BLIND})
 cnn = partial(claim, where={"method": GUIDED}, first={"classifier": "cnn"})

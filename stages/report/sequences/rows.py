@@ -5,7 +5,7 @@ import pandas as pd
 from stages.kit.split import Split
 from stages.report.grid import within
 
-STAGE, THESIS_SET = "sequences", "princeton_eight"  # the latter is of the thesis's size
+STAGE = "sequences"
 SPLITS = {Split.RANDOM: "sequences drawn at random", Split.OBJECTS: "unseen objects"}
 METRICS = {Split.RANDOM: "accuracy", Split.OBJECTS: "accuracy_object"}
 SHARED = {Split.RANDOM: 0.2 / 0.8, Split.OBJECTS: 0.0}  # test over training share; of the random splits T4.4.10
