@@ -2,7 +2,7 @@
 
 Fetches Debian's package libcgal-demo once (by `apt-get download`, hash checked; never installed), takes the meshes out
 of it, and asks every backend for 4 faces and more, with and without kept vertices, each mesh in a process of its own
-with a limit of time and memory. Writes reports/bench/broken_meshes.csv: a row a case, with what the surface is
+with a limit of time and memory. Writes reports/bench/broken_meshes.csv.gz: a row a case, with what the surface is
 (faces, pieces, rim edges, flat faces, folds, crowded edges, pinches) and what came of it: valid, refused, ruined or
 crash (stages.stability.simplification), with the reason and the seconds. A file that the loader refuses has one row.
 Both backends are warmed up before the processes fork, or each would first load compiled code.
@@ -30,7 +30,7 @@ from stages.stability.qem_error_curve import QemErrorCurve
 from stages.stability.simplification import run_cases
 from stages.stability.specimen import Case, Specimen
 
-OUT = Path("reports/bench/broken_meshes.csv")
+OUT = Path("reports/bench/broken_meshes.csv.gz")
 PACKAGE = "libcgal-demo_5.5.1-2_all.deb"
 DIGEST = "78b09b23d4d6d1bf15552a1060b419ab3fc09918486462faed197e5fc6ac3735"
 INNER = "usr/share/doc/libcgal-dev/data.tar.gz"

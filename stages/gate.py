@@ -3,29 +3,31 @@
 Without files: the metrics of the sets that params.yaml switches on, reports/metrics/SET/STAGE.json, and those of the
 report, against reports/baselines/PROFILE.json of its profile, within reports/tolerances.yaml. With files, of any
 project: each metric is called by its file and its keys, `train.accuracy` in train.json. A baseline is {metric: value};
---tolerances names a file of rules such as ours: abs, rel, direction; exact without a rule. Exits with 1 and names what
-moved, by how much.
+--tolerances names a file of rules such as ours: abs, rel, direction; exact without a rule. How far each metric moves
+with the seed, the threads or the machine is measured by --spread, which writes it beside the baseline: so far it may
+move, whatever its rule. Exits with 1 and names what moved, by how much.
 
 examples:
   haptic-glance gate
   haptic-glance gate train.json eval.json --baseline baseline.json --tolerances tolerances.yaml
   haptic-glance gate train.json --baseline baseline.json --update
-  haptic-glance gate --spread runs/seed_1 runs/seed_2
+  haptic-glance gate --spread runs/seed_1/reports/metrics runs/two_threads/reports/metrics
 """
 
 import argparse
-import json
 import sys
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from stages.kit.command import errors_in_one_line
 from stages.kit.files import read_json, write_json
-from stages.kit.tolerances import Tolerances, compare, read_tolerances, spread
+from stages.kit.tolerances import Tolerances, compare, read_tolerances, widest_moves
 from stages.kit.workspace import Workspace
 
 TOLERANCES = Path("reports/tolerances.yaml")
+REPORT = "report."  # metrics that count tables and verdicts: no measurements, whose luck is to be known
 LISTED = 8  # new metrics that are named
 
 
@@ -80,8 +82,30 @@ def update(metrics: Mapping[str, float], path: Path) -> str:
     return f"gate: {path} written from {len(metrics)} metrics"
 
 
+def allowed(rules: Path | None, baseline: Path) -> Tolerances:
+    """The Tolerances of a file of rules, and of what --spread wrote beside a baseline."""
+    tolerances, moves = read_tolerances(rules) if rules else Tolerances(), spread_of(baseline)
+    return replace(tolerances, moves=read_json(moves)) if moves.exists() else tolerances
+
+
+def spread_of(baseline: Path) -> Path:
+    """Where the widest moves of the metrics of a baseline lie."""
+    return baseline.with_name(f"{baseline.stem}_spread.json")
+
+
+def write_spread(runs: Sequence[Mapping[str, float]], baseline: Path) -> str:
+    """Writes how far each metric moved in the runs; SystemExit where one has none of the metrics."""
+    held = {name: value for name, value in read_json(baseline).items() if not name.startswith(REPORT)}
+    for k, run in enumerate(runs):
+        if not set(held) & set(run):
+            raise SystemExit(f"gate: folder {k + 1} of --spread has none of the metrics of {baseline}")
+    moves = widest_moves(runs, held)
+    write_json(spread_of(baseline), moves)
+    return f"gate: {spread_of(baseline)} written: {len(moves)} of {len(held)} metrics moved in {len(runs)} runs"
+
+
 def run(argv: Sequence[str]) -> None:
-    """Compares, updates the baseline, or shows how far runs differ."""
+    """Compares, updates the baseline, or measures how far runs differ."""
     parser = argparse.ArgumentParser(
         prog="haptic-glance gate", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
@@ -89,7 +113,7 @@ def run(argv: Sequence[str]) -> None:
     parser.add_argument("--baseline", type=Path, help="default: reports/baselines/PROFILE.json")
     parser.add_argument("--tolerances", type=Path, help=f"rules (default: {TOLERANCES}; of other files: exact)")
     parser.add_argument("--update", action="store_true", help="write the baseline from the metrics at hand")
-    about = "folders of metrics of other runs: how far the metrics of each rule move"
+    about = "folders of metrics of runs with other seeds or threads: write how far each metric moves"
     parser.add_argument("--spread", nargs="+", type=Path, metavar="FOLDER", help=about)
     given = parser.parse_args(argv)
     if given.metrics and (given.spread or not given.baseline):
@@ -102,12 +126,10 @@ def run(argv: Sequence[str]) -> None:
         metrics, path = measured(workspace), given.baseline or baseline_of(workspace)
         rules = given.tolerances or (TOLERANCES if TOLERANCES.exists() else None)
         others = [name for file in path.parent.glob("*.json") for name in read_json(file)]
-    tolerances = read_tolerances(rules) if rules else Tolerances()
     if given.spread:
-        runs = [measured(workspace, folder) for folder in given.spread]
-        print("\n".join(json.dumps(row) for row in spread(runs, read_json(path), tolerances)))
+        print(write_spread([measured(workspace, folder) for folder in given.spread], path))
     else:
-        print(update(metrics, path) if given.update else hold(metrics, path, tolerances, others))
+        print(update(metrics, path) if given.update else hold(metrics, path, allowed(rules, path), others))
 
 
 def baseline_of(workspace: Workspace) -> Path:

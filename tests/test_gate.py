@@ -9,7 +9,7 @@ import pytest
 
 from stages import gate
 from stages.kit.files import read_json, write_json
-from stages.kit.tolerances import Rule, Tolerances, compare, read_tolerances
+from stages.kit.tolerances import Rule, Tolerances, compare
 
 ROOT = Path(__file__).parents[1]
 PROFILES = ["smoke", "laptop"]
@@ -68,6 +68,24 @@ def test_metrics_of_any_project_are_held_and_kept(tmp_path, capsys):
     assert "needs --baseline" in capsys.readouterr().err
 
 
+def test_what_moved_with_the_seed_may_move_as_far(workspace, tmp_path, monkeypatch):
+    monkeypatch.chdir(workspace.root)
+    monkeypatch.setattr(gate, "Workspace", lambda _: workspace)
+    for folder, error in (("one", 0.6), ("two", 0.45)):
+        write_json(tmp_path / folder / "toys/lod.json", {"meshes": 100, "error": error})
+        write_json(tmp_path / folder / "report.json", {"tables": 3})
+    gate.run(["--spread", str(tmp_path / "one"), str(tmp_path / "two")])
+    assert read_json(gate.spread_of(gate.baseline_of(workspace))) == {"toys.lod.error": 0.1}
+    write_json(workspace.metrics / "lod.json", {"meshes": 100, "error": 0.41})
+    gate.run([])
+    write_json(workspace.metrics / "lod.json", {"meshes": 100, "error": 0.39})
+    with pytest.raises(SystemExit, match="toys.lod.error moved by -0.11"):
+        gate.run([])
+    (tmp_path / "none").mkdir()
+    with pytest.raises(SystemExit, match="folder 1 of --spread has none of the metrics"):
+        gate.run(["--spread", str(tmp_path / "none")])
+
+
 @pytest.mark.parametrize("profile", PROFILES)
 def test_a_baseline_holds_against_itself(profile):
     baseline, rules = committed(profile)
@@ -95,7 +113,8 @@ def test_two_methods_that_change_places_are_caught(profile, stage, method):
 
 def committed(profile):
     """(baseline, tolerances) of the repository."""
-    return read_json(ROOT / f"reports/baselines/{profile}.json"), read_tolerances(ROOT / gate.TOLERANCES)
+    baseline = ROOT / f"reports/baselines/{profile}.json"
+    return read_json(baseline), gate.allowed(ROOT / gate.TOLERANCES, baseline)
 
 
 def exchanged(metrics, one, other):

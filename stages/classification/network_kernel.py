@@ -3,12 +3,14 @@
 import numba
 import numpy as np
 
+from stages.kit.jit import kernel_of
+
 REAL = np.float32
 Layers = tuple[np.ndarray, ...]
 
 
-# error_model: divides as numpy does, without a branch on zero that would prevent vectorisation of Adadelta's loop.
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+# It divides as numpy does, without a branch on zero, which would prevent vectorisation of Adadelta's loop.
+@kernel_of(__file__)
 def train(
     weights: Layers,
     squares: Layers,

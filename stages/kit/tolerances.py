@@ -38,9 +38,9 @@ class Rule:
     free: bool = False
     why: str = ""
 
-    def bounds(self, value: float) -> tuple[float, float]:
-        """(lowest, highest) that holds, about a baseline."""
-        room = max(self.abs, self.rel * abs(value), DIGITS * abs(value))
+    def bounds(self, value: float, moved: float = 0.0) -> tuple[float, float]:
+        """(lowest, highest) that holds, about a baseline; moved: how far other runs moved it."""
+        room = max(self.abs, self.rel * abs(value), DIGITS * abs(value), moved)
         low = float("-inf") if self.free or self.direction == "less" else value - room
         return low, float("inf") if self.free or self.direction == "more" else value + room
 
@@ -50,10 +50,14 @@ EXACT = Rule("*")
 
 @dataclass(frozen=True)
 class Tolerances:
-    """rules: in their order. pairs: {name: (metric, metric)}, whose difference is held, too."""
+    """rules: in their order. pairs: {name: (metric, metric)}, whose difference is held, too.
+
+    moves: {metric: how far it moved in runs with other seeds, threads or machines}, which it may, whatever its rule.
+    """
 
     rules: list[Rule] = field(default_factory=list)
     pairs: dict[str, tuple[str, str]] = field(default_factory=dict)
+    moves: Mapping[str, float] = field(default_factory=dict)
 
     def of(self, metric: str) -> Rule:
         """The rule that holds a metric."""
@@ -100,7 +104,7 @@ def compare(metrics: Mapping[str, float], baseline: Mapping[str, float], toleran
     metrics, moved = tolerances.with_pairs(metrics), []
     for name, value in tolerances.with_pairs(baseline).items():
         rule, now = tolerances.of(name), metrics.get(name)
-        low, high = rule.bounds(value)
+        low, high = rule.bounds(value, tolerances.moves.get(name, 0.0))
         if now is None:
             moved.append(f"{name} is missing (baseline {value:g})")
         elif not low <= now <= high:
@@ -109,21 +113,11 @@ def compare(metrics: Mapping[str, float], baseline: Mapping[str, float], toleran
     return moved
 
 
-def spread(runs: Iterable[Mapping[str, float]], baseline: Mapping[str, float], tolerances: Tolerances) -> list[dict]:
-    """For each rule the widest moves of several runs from the baseline, to write or to judge its tolerance by.
-
-    Rows with metric (the pattern), held (how many metrics), abs, rel and widest (the metric that moved most).
-    """
-    moves: dict[str, dict[str, Any]] = {}
-    runs, baseline = [tolerances.with_pairs(run) for run in runs], tolerances.with_pairs(baseline)
-    for name, value in baseline.items():
-        rule = tolerances.of(name).metric
-        row = moves.setdefault(rule, {"metric": rule, "held": 0, "abs": 0.0, "rel": 0.0, "widest": ""})
-        move = max((abs(run[name] - value) for run in runs if name in run), default=0.0)
-        share = move / abs(value) if value else float(move > 0)
-        row["widest"] = name if share > row["rel"] else row["widest"]
-        row |= {"held": row["held"] + 1, "abs": max(row["abs"], move), "rel": max(row["rel"], share)}
-    return list(moves.values())
+def widest_moves(runs: Iterable[Mapping[str, float]], baseline: Mapping[str, float]) -> dict[str, float]:
+    """{metric: how far the one of several runs that moved it most did so}; without those that never moved."""
+    runs = list(runs)
+    moves = {name: max(abs(run.get(name, value) - value) for run in runs) for name, value in baseline.items()}
+    return {name: float(f"{move:.3g}") for name, move in moves.items() if move > DIGITS * abs(baseline[name])}
 
 
 def _rule(path: Path, given: Any) -> Rule:

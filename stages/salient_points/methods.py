@@ -45,7 +45,7 @@ METHODS: dict[str, Detector] = {
     **{name: GlanceDetector(name) for name in GLANCES},
     ENHANCED: FixationDetector(ENHANCED, CHANNEL_FEATURES),
     "itti": FusedDetector(COMBINATIONS["VisAtt"]),
-    "random": RandomPoints(),  # pyright: ignore[reportAssignmentType]  # its two class attributes are what is asked for
+    "random": RandomPoints(),
     **{f"random_{draw}": RandomPoints(draw) for draw in range(2, 6)},
     **{name: FusedDetector(channels) for name, channels in (COMBINATIONS | WITHOUT_COLOUR).items()},
     "VisAttCurvP": MergedDetector(FusedDetector(COMBINATIONS["VisAtt"]), FusedDetector(COMBINATIONS["Curv"])),

@@ -1,7 +1,6 @@
 """Random points (the thesis's blind touch), the baseline of every method (T4.2.4)."""
 
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 
@@ -23,8 +22,8 @@ class RandomPoints:
     """
 
     draw: int = 1
-    channels: ClassVar = ()
-    required_weights: ClassVar = None
+    channels = ()
+    required_weights = None
 
     def find(self, mesh: Mesh, _sight: None, options: Options, count: int | None = None) -> Detection:
         """A Detection of distinct vertices in the order drawn."""

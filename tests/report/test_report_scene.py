@@ -1,6 +1,5 @@
-"""The tables of scenes: what was measured beside what is to be reached, and what it leaves open."""
+"""The tables of scenes: what was measured, and what it leaves open."""
 
-import numpy as np
 import pandas as pd
 import pytest
 
@@ -9,7 +8,6 @@ from stages.report import scene as topic
 from stages.report.results import NotRun
 from stages.report.scene import scenes
 from stages.report.scene.rows import left_of
-from stages.report.target import on_target
 from stages.report.topics import build_one
 
 VALUES = {"full": 9000, "uniform": 1600, "uniform_size": 1250, "network": 1500, "ours": 1000, "online": 1040}
@@ -51,25 +49,12 @@ def test_every_scene_has_a_line_a_way(root, results):
     assert lines.loc["ours, the limit shared equally", "frame error, mean"] == "2.50"
 
 
-def test_what_is_to_be_reached_is_said_of_each_scene(root, results):
-    groups = scene("shelf"), scene("table", saved=0.29), scene("hall", held=0.9), scene("desk", saved=0.35)
-    notes = table(root, results, *groups).notes
+def test_what_is_saved_is_said_of_each_scene(root, results):
+    notes = table(root, results, scene("shelf"), scene("table", saved=0.29)).notes
     assert "8 objects (5 different), 24 frames" in notes[0]
-    assert [note.count("equal mean displacement of all pixels it saves 7 [-10, 20] %") for note in notes[:4]] == [2] * 4
-    assert [note.count("is met.") for note in notes[:4]] == [2, 0, 0, 0]
-    assert [note.count("missed") for note in notes[:4]] == [0, 2, 2, 0]
-    assert notes[3].count("is met on average (interval from 25 %).") == 2
-
-
-def test_the_word_goes_by_the_end_of_the_interval():
-    assert on_target(0.4, 0.3, 0.5, at_least=0.3) == on_target(0.9, 0.8, 1.0, at_most=1) == "met"
-    assert on_target(0.4, 0.299, 0.5, at_least=0.3) == "met on average (interval from 0.299)"
-    assert on_target(0.9, 0.8, 1.1, at_most=1) == "met on average (interval to 1.10)"
-    assert on_target(0.2, 0.1, 0.29, at_least=0.3) == on_target(1.2, 1.01, 1.3, at_most=1) == "missed"
-    assert on_target(0.29, 0.2, 0.5, at_least=0.3) == "missed on average (interval to 0.500)"
-    assert on_target(1.01, 0.8, 1.1, at_most=1) == "missed on average (interval from 0.800)"
-    assert on_target(25, np.nan, np.nan, at_least=20) == "met on average (no interval)"
-    assert on_target(np.nan, np.nan, np.nan, at_most=1) == "not measured"
+    assert [note.count("equal mean displacement of all pixels it saves 7 [-10, 20] %") for note in notes[:2]] == [2, 2]
+    assert notes[0].count("saves 40 [30, 50] % at an equal mean error") == 2
+    assert notes[1].count("saves 29 [19, 39] % at an equal mean error") == 2
 
 
 @pytest.mark.parametrize(

@@ -212,7 +212,7 @@ def test_a_pair_is_compared_with_the_sum_of_its_parts(tmp_path, both, word):
     assert line["is"] == word and line["disturbances"] == "noise and tilt"
     assert [line[f"{part}, %"] for part in ("first alone", "second alone", "both")] == ["20", "30", f"{100 * both:.0f}"]
     assert f"1 {word}" in " ".join(built.notes)
-    assert built.summary.startswith("Of the pairs of disturbances, noise+tilt costs our glance most: ")
+    assert built.summary.startswith("The pair of disturbances that costs our glance most is noise and tilt: ")
 
 
 def test_the_sum_of_a_pair_is_all_at_most_and_independent_losses_are_milder():

@@ -23,14 +23,15 @@ def table(results: Results) -> Table:
     lost = points_lost(rows)
     pairs = [name for name in dict.fromkeys(lost["perturbation"]) if AND in name]
     pairs = some(pairs, "no pairs of disturbances: stability.pairs is empty", STAGE, runnable=False)
+    methods = [method for method in dict.fromkeys(lost["method"]) if method != "random"]
     frame = pd.DataFrame([
-        {"pair": pair, "method": method, **compared(lost[lost["method"] == method], pair, middle_of(rows))}
+        {"pair": " and ".join(map(label, pair.split(AND))), "method": method}
+        | compared(lost[lost["method"] == method], pair, middle_of(rows))
         for pair in pairs
-        for method in dict.fromkeys(lost["method"])
-        if method != "random"
+        for method in methods
     ])  # fmt: skip
     shown = pd.DataFrame([
-        {"disturbances": " and ".join(label(name) for name in row.pair.split(AND)), "method": label(row.method),
+        {"disturbances": row.pair, "method": label(row.method),
          "first alone, %": percent(row.first), "second alone, %": percent(row.second),
          "both, %": percent(row.both), "both less the sum": signed(*_hundredfold(row, "beyond"), places=0),
          "is": verdict(row.beyond_low, row.beyond_high)}
