@@ -4,33 +4,24 @@ Where an object is looked at and how it feels is learned from a mesh of as many 
 ask are pressed on the object itself, with all its faces: a coarse model must know the real thing.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 
 import cv2
 import numpy as np
-from scipy.spatial import KDTree
 
-from stages.classification import features
-from stages.conspicuity import ViewMaps, conspicuity
-from stages.conspicuity.channels import mask_at_size
-from stages.imprints import Surface, press_many, touchable
-from stages.kit import Mesh, Viewpoint
 from stages.kit.files import read_arrays, read_json, read_mesh, write_arrays, write_json
 from stages.lod import InfeasibleTarget, simplify
 from stages.lod.targets import face_count
 from stages.salient_points.methods import METHODS, method_named
 from stages.salient_points.options import Options
-from stages.views import TWELVE, render, viewpoint_set
 
 from .clock import CoreSeconds
+from .looking import MOST, looks
+from .pressing import press_both
 from .space import SPACE, WHOLE, Choice, settings_of
 
-MOST = max(SPACE["points"])  # places that are looked for; fewer are the first of these
-LOOKING = [name for name in SPACE["method"] if METHODS[name].channels]  # methods that need pictures
-CHANNELS = tuple(dict.fromkeys(channel for name in LOOKING for channel in METHODS[name].channels))
 SECONDS: tuple[str, ...] = ("simplifying", "looking", "surfaces", "pressing")  # of a Felt
 FEW = 200  # faces of the mesh that everything is tried on before seconds count
 
@@ -76,7 +67,7 @@ class Senses:
             self._warm_up()
             mesh, simplifying = self._level(name, choice.level)
             points, looking = self._places(name, choice, mesh)
-            write_arrays(path, **_press(mesh, _mesh(self.files[name]), points, choice, [simplifying, looking]))
+            write_arrays(path, **press_both(mesh, _mesh(self.files[name]), points, choice, [simplifying, looking]))
         return read_arrays(path)
 
     def _level(self, name, level):
@@ -101,7 +92,7 @@ class Senses:
             return points, watch.seconds
         path = self.folder / name / f"{_folder(choice.level)}-{choice.image_rows}.npz"
         if not path.exists():
-            write_arrays(path, **dict(_looks(mesh, choice, options)))
+            write_arrays(path, **dict(looks(mesh, choice, options)))
         look = f"{choice.method}-{choice.viewpoints}"
         found = read_arrays(path, look)
         return found[f"{look} points"], float(found[f"{look} seconds"])
@@ -115,10 +106,10 @@ class Senses:
         for method in SPACE["method"]:
             choice = Choice(method, "four", 225, 20, 16, WHOLE, 1, "knn")
             if method_named(method).channels:
-                points = dict(_looks(mesh, choice, Options()))[f"{method}-four points"]
+                points = dict(looks(mesh, choice, Options()))[f"{method}-four points"]
             else:
                 points = METHODS[method].find(mesh, None, Options(), MOST).points
-            _press(mesh, mesh, points, choice, [0.0, 0.0])
+            press_both(mesh, mesh, points, choice, [0.0, 0.0])
 
 
 def _simplified(mesh, count):
@@ -127,64 +118,6 @@ def _simplified(mesh, count):
         return simplify(mesh, count)
     except InfeasibleTarget as error:
         return simplify(mesh, error.smallest)
-
-
-def _looks(mesh, choice, options) -> Iterator[tuple[str, np.ndarray]]:
-    """(METHOD-VIEWPOINTS points, (k,)) and (... seconds, ()) of all methods that look, at one image size.
-
-    Pictures, maps and lines of sight are made once, and each method pays for those that it needs by itself.
-    """
-    settings = settings_of(choice)
-    pictures, cost = {}, {}
-    for viewpoint in TWELVE:
-        pictures[viewpoint], cost[viewpoint] = _picture(mesh, viewpoint, settings)
-    for name in SPACE["viewpoints"]:
-        viewpoints = viewpoint_set(name)
-        maps = {channel: np.stack([pictures[one][channel] for one in viewpoints]) for channel in CHANNELS}
-        mask = np.stack([pictures[one]["mask"] for one in viewpoints])
-        with CoreSeconds() as lines:
-            sight = ViewMaps(replace(mesh), viewpoints, maps, mask)
-            sight.vertex_values(sight.maps[CHANNELS[0]])  # factors the equations of the smoothing, which all need
-        for method in LOOKING:
-            with CoreSeconds() as finding:
-                points = METHODS[method].find(sight.mesh, sight, options, MOST).points
-            parts = ("picture", *METHODS[method].channels)
-            seconds = sum(cost[one][part] for one in viewpoints for part in parts)
-            yield f"{method}-{name} points", points
-            yield f"{method}-{name} seconds", np.array(seconds + lines.seconds + finding.seconds)
-
-
-def _picture(mesh: Mesh, viewpoint: Viewpoint, settings) -> tuple[dict[str, np.ndarray], dict[str, float]]:
-    """({channel: its map, "mask"}, {"picture", channel: seconds}) of one view."""
-    size = tuple(settings.conspicuity.size)
-    with CoreSeconds() as watch:
-        view = render(mesh, viewpoint, settings.views.size, settings.views.renderer)
-        maps = {"mask": mask_at_size(view.mask, size)}
-    seconds = {"picture": watch.seconds}
-    for channel in CHANNELS:
-        with CoreSeconds() as watch:
-            maps |= conspicuity(mesh, view, [channel], size)
-        seconds[channel] = watch.seconds
-    return maps, seconds
-
-
-def _press(mesh, whole, points, choice, before):
-    """Arrays of the touches at vertices of a mesh, and at the nearest vertices of the whole one."""
-    sensor = settings_of(choice).imprints
-    cells = sensor.cells[0], sensor.cells[1]
-    with CoreSeconds() as once:
-        surface = Surface(replace(whole))
-        near = whole.used[KDTree(whole.vertices[whole.used]).query(mesh.vertices[points])[1]]
-        can = touchable(surface.mesh, near)
-    rank = np.flatnonzero(can & touchable(mesh, points))
-    with CoreSeconds() as each:
-        asked = features(press_many(surface, near[rank], cells, sensor.pitch, contact=sensor.contact))
-    learned = asked
-    if mesh is not whole:
-        learned = features(press_many(Surface(mesh), points[rank], cells, sensor.pitch, contact=sensor.contact))
-    seconds = np.array([*before, once.seconds, each.seconds / max(len(rank), 1)])
-    return {"learned": learned, "asked": asked, "places": mesh.vertices[points[rank]], "rank": rank,
-            "faces": np.array(len(mesh.faces)), "seconds": seconds}  # fmt: skip
 
 
 @lru_cache(maxsize=128)

@@ -19,7 +19,7 @@ from .style import CYCLE, INK, MARKERS, SETTINGS, colours, label, plain_logarith
 
 WIDE = 76  # letters of a line of a title
 LISTED = 8  # names of the front that a caption lists at most
-FEW = 12  # choices that are all named where there is room; of more only the front, where colours tell the others
+FEW = 12  # choices that are all named where there is room; of more only the front, where legends tell the others
 
 
 def pareto_front(cost: ArrayLike, quality: ArrayLike, better: str = "high") -> np.ndarray:
@@ -83,7 +83,7 @@ def pareto_chart(
         if colour:
             _legend(axes, [(legends or {}).get(column, column) for column in (colour, marker) if column])
         if not tints:
-            named = _names(front if colour and len(rows) > FEW else rows, quality, better)
+            named = _names(front if colour and marker and len(rows) > FEW else rows, quality, better)
             place_names(axes, named, rows[["cost_ratio", quality]].to_numpy(), _lines(rows, front, quality))
     names = list(front["name"])  # from the cheapest to the best; of a long front its ends
     said = "; ".join(names) if len(names) <= LISTED else f"{len(names)} choices, from {names[0]} to {names[-1]}"

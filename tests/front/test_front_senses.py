@@ -46,7 +46,7 @@ def test_a_coarse_model_is_learned_and_the_object_itself_is_asked(feeler):
 @pytest.mark.slow
 def test_what_was_felt_is_kept_with_its_seconds(feeler, monkeypatch):
     first = feeler.feel("one", BLIND)
-    monkeypatch.setattr(module, "_press", None)
+    monkeypatch.setattr(module, "press_both", None)
     again, fewer = feeler.feel("one", BLIND), feeler.feel("one", replace(BLIND, touches=3, classifier="svm"))
     for found in (again, fewer):
         assert (found.learned == first.learned).all() and found.seconds == first.seconds
