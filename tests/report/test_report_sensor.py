@@ -92,8 +92,8 @@ def test_two_arrays_and_several_touches_are_said_beside_the_single_ones(root, re
         ({"extent": "points"}, 0.0),
         ({"cells": 20}, 0.0),
     ]
-    several = [rows.assign(**kind, value=rows["value"] + more, dataset=claims.HANDS) for kind, more in kinds]
-    small.write(root, "sensor_size", pd.concat([*several, pressed().assign(dataset=claims.HANDS)]), claims.HANDS)
+    several = [rows.assign(**kind, value=rows["value"] + more, dataset=claims.HANDS[0]) for kind, more in kinds]
+    small.write(root, "sensor_size", pd.concat([*several, pressed().assign(dataset=claims.HANDS[0])]), claims.HANDS[0])
     shown = build_one(sensor, "tables", "figure_4_11", results).shown
     said = ["16 x 16 and 12 x 12 at 0.005", "16 x 16, five in a salient region", "16 x 16, five separate points"]
     assert set(said) < set(shown["cells"])

@@ -23,10 +23,10 @@ PHRASES = {
     ("extent", "disc"): "in a disc",
     **{("pitch", pitch): f"{pitch:g} apart" for pitch in (FINE, COARSE, 2 * COARSE)},
 }
-claim = partial(Claim, section="T4.3.2", stage=STAGE, dataset=(None, "princeton_eight"), where=UNSEEN,
+claim = partial(Claim, section="T4.3.2", stage=STAGE, dataset=(None, "princeton_touched"), where=UNSEEN,
                 over=("group", "item"), phrases=PHRASES, note=ALL)  # fmt: skip
 larger = partial(claim, first={"cells": LARGE}, second={"cells": SMALL})
-HANDS = "furniture_hands"
+HANDS = ("furniture_hands", "princeton_hands")
 EQUAL = {"cells": 20, "fine": None, "extent": None}  # as many cells as 16 x 16 and 12 x 12
 AROUND = {"cells": SMALL, "pitch": COARSE}
 hands = partial(claim, section="T6.3", dataset=HANDS, note="mean of both classifiers")
