@@ -62,14 +62,14 @@ def finetuned(
 
 
 @torch.no_grad()
-def frozen_features(recording: Recording, method: str, weights: str, settings: Params) -> torch.Tensor:
+def frozen_features(recording: Recording, method: str, weights: str, draw: int, settings: Params) -> torch.Tensor:
     """(1 + copies, k, width) f4: the frozen network's features of all images, plain first, then augmented.
 
-    They are the same for every split and repetition. The untrained network is one, drawn by the method's name; its
-    normalisation has the statistics of some images of all parts, without their labels.
+    They are the same for every split. An untrained network is drawn by the method's name and the number of the draw;
+    its normalisation has the statistics of some images of all parts, without their labels.
     """
     where, moved = choose_device(settings.device), augmentation()
-    network = build(method, 2, weights, zlib.crc32(method.encode()), settings.source).to(where)
+    network = build(method, 2, weights, zlib.crc32(f"{method} {draw}".encode()), settings.source).to(where)
 
     def inputs(ids, change=lambda images: images):
         return normalise(change(as_images(recording.touches.images[ids.numpy()], settings.size).to(where)))

@@ -36,7 +36,11 @@ class Run(NamedTuple):
 
 @dataclass(frozen=True)
 class Trial:
-    """Trainings of a network that are made together: those that share frozen features, or one that is fine-tuned."""
+    """Trainings of a network that are made together: those that share frozen features, or one that is fine-tuned.
+
+    ImageNet's features are shared by all runs, those of an untrained network by the runs of one repetition: each
+    repetition draws its own, so that an interval over repetitions covers the draw of the weights, too.
+    """
 
     method: str
     weights: str
@@ -46,7 +50,7 @@ class Trial:
     @property
     def name(self) -> str:
         """Tells the trial apart from all others of the stage."""
-        own = self.runs[0] if self.mode == "finetuned" else ()
+        own = () if (self.weights, self.mode) == ("imagenet", "frozen") else self.runs[0]
         return "-".join(map(str, (self.method, self.weights, self.mode, *own)))
 
 
@@ -63,8 +67,12 @@ def trials(recordings: dict[str, Recording], settings: Params) -> list[Trial]:
                 for split in recording.splits
                 for repetition in range(settings.repetitions[mode])
             ]
-            together = [runs] if mode == "frozen" else [[one] for one in runs]
-            found += [Trial(method, weights, mode, tuple(own)) for own in together]
+            draws = [[run for run in runs if run.repetition == draw] for draw in range(settings.repetitions[mode])]
+            if mode == "finetuned":
+                draws = [[run] for run in runs]
+            elif weights == "imagenet":
+                draws = [runs]
+            found += [Trial(method, weights, mode, tuple(together)) for together in draws]
     return found
 
 
@@ -95,7 +103,9 @@ def frozen_features_by_data(
             found[data] = found[same[0]]
             continue
         with repeatable(seed), Stopwatch() as watch:
-            features = frozen_features(recordings[data], trial.method, trial.weights, settings)
+            features = frozen_features(
+                recordings[data], trial.method, trial.weights, trial.runs[0].repetition, settings
+            )
         found[data] = features, watch.seconds
     return found
 

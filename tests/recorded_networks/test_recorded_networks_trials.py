@@ -124,10 +124,11 @@ def default(dataset):
 
 def test_frozen_trainings_share_their_features_and_fine_tuned_ones_stand_alone():
     networks = {"mobilenet_v2": ["frozen", "finetuned"]}
-    settings = small(networks=networks, repetitions={"frozen": 2, "finetuned": 2})
+    settings = small(networks=networks, weights=["imagenet", "random"], repetitions={"frozen": 2, "finetuned": 2})
     found = trials({"a": recording(splits=("random", "blocks")), "b": recording()}, settings)
-    assert sorted(len(one.runs) for one in found) == [1] * 6 + [6]
-    assert len({one.name for one in found}) == len(found)
+    shared = [[{run.repetition for run in one.runs} for one in found if len(one.runs) == size] for size in (6, 3)]
+    assert shared == [[{0, 1}], [{0}, {1}]]  # an untrained network is drawn for each repetition
+    assert len(found) == 3 + 12 and len({one.name for one in found}) == len(found)
 
 
 @pytest.mark.slow
@@ -141,6 +142,9 @@ def test_what_has_other_images_has_features_of_its_own(monkeypatch):
     assert len(computed) == 2 and found["tiny"][0] is found["same"][0]
     alone = trial.frozen_features_by_data(replace(one, runs=one.runs[2:]), both, small(), seed=0)
     assert torch.equal(found["other"][0], alone["other"][0]) and not torch.equal(found["other"][0], found["tiny"][0])
+    second = replace(one, runs=(one.runs[2]._replace(repetition=1),))
+    drawn = trial.frozen_features_by_data(second, both, small(), seed=0)["other"][0]
+    assert not torch.equal(alone["other"][0], drawn)
 
 
 def test_a_strange_mode_is_named():
@@ -169,7 +173,9 @@ def test_a_finished_training_is_kept_and_other_settings_train_anew(workspace, mo
     pd.testing.assert_frame_equal(measure(workspace()), found)
     monkeypatch.setattr(trial, "_train", lambda *_: [{"metric": "accuracy", "value": 0.25, "seconds": 0}])
     assert set(measure(workspace(momentum=0.5))["value"]) == {0.25}
-    assert set(measure(workspace(repetitions={"frozen": 2, "finetuned": 1}))["value"]) == {0.25}
+    more = measure(workspace(repetitions={"frozen": 2, "finetuned": 1}))
+    assert set(more.loc[more["repetition"] == 1, "value"]) == {0.25}
+    pd.testing.assert_frame_equal(more[more["repetition"] == 0].reset_index(drop=True), found)
 
 
 @pytest.mark.slow
