@@ -20,7 +20,7 @@ class Params:
     weights: list[str]  # what each starts from: imagenet, random
     source: str  # ImageNet's weights: package, download or auto, as in transfer
     size: int  # pixels a side of the images, frozen and fine-tuned alike
-    repetitions: dict[str, int]  # {mode: splits}
+    repetitions: dict[str, int]  # {mode: splits, each with a draw of random weights}
     rates: dict[str, list[float]]  # {mode: learning rates tried}
     epochs: dict[str, int]  # {mode: passes of the final training}
     search_epochs: dict[str, int]  # {mode: passes of each tried rate}

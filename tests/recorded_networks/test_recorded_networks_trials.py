@@ -188,9 +188,3 @@ def test_weights_that_are_not_at_hand_are_named_and_the_control_runs(workspace, 
     assert absent["mode"].tolist() == ["frozen", "finetuned"] and set(absent["data"]) == {"tiny"}
     assert set(found.loc[found["value"].notna(), "weights"]) == {"random"}
     assert "googlenet: no package registry has" in capsys.readouterr().err
-
-
-@pytest.mark.slow
-def test_grasps_are_not_tuned_where_nobody_asks():
-    assert default("biotac_grasps")["networks"]["mobilenet_v2"] == ["frozen"]
-    assert set(default("biotac_grasps")["networks"]) == set(default("pressure_images")["networks"])

@@ -26,7 +26,7 @@ OBJECTS = {  # the pairs: one of each class left out
     "over": ("group", "repetition"), "shared": SHARED[Split.OBJECTS],
     "phrases": PHRASES | {("over", "repetition"): "objects"},
 }  # fmt: skip
-SETS = ("princeton_eight", "furniture_splits")  # of the thesis's size, and with the splits that verdicts need
+SETS = ("princeton_touched", "furniture_splits")  # by experiment=more_units, with the units that verdicts need
 claim = partial(Claim, section="T4.4.10", stage=STAGE, dataset=SETS, statistic="whole_sequences", phrases=PHRASES)
 guided = partial(claim, first={"method": GUIDED}, second={"method": BLIND})
 cnn = partial(claim, where={"method": GUIDED}, first={"classifier": "cnn"})
