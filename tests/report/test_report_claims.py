@@ -97,7 +97,7 @@ def test_no_effect_shows_no_difference(results):
 
 
 def test_unmeasured_claim_is_open_and_names_the_stage(results):
-    row = of(results, "tuned_over_frozen_random")
+    row = of(results, "tuned_over_frozen_objects")
     assert row["verdict"] == "open"
     assert "dvc repro transfer" in row["tested_on"]
 
