@@ -264,8 +264,8 @@ def test_transfer_that_was_left_out_hands_on_its_note(root, small):
     row = {"dataset": "test", "method": None, "metric": "accuracy", "value": None, "seconds": None, "note": "no cup"}
     small.write(root, "transfer", pd.DataFrame([row]))
     results = small.results(root)
-    assert of(results, "tuned_over_frozen_random")["tested_on"] == "not run: no cup"
-    assert of(results, "frozen_over_chance_random")["tested_on"] == "not run: no cup"
+    assert of(results, "tuned_over_frozen_objects")["tested_on"] == "not run: no cup"
+    assert of(results, "frozen_over_chance_objects")["tested_on"] == "not run: no cup"
     assert build_all("tables", results).not_run["table_5_4"] == "no cup"
     assert build_all("tradeoff", results).not_run["networks"] == "no cup"
 
