@@ -57,10 +57,13 @@ class HybridTrial(NamedTuple):
 
 
 def trials(settings: Params, members: Mapping[str, Mapping[str, Sequence[str]]]) -> list[str]:
-    """The names of all hybrid networks; empty where hybrid_repetitions is 0. members: {split: {class: its objects}}."""
-    splits = [split for split in settings.splits if len(members[split]) > 1]
-    every = itertools.product(settings.hybrid_middles, splits, range(settings.hybrid_repetitions))
-    return [HybridTrial(layers, split, number).name for layers, split, number in every]
+    """The names of all hybrid networks, as many of each middle as splits. members: {split: {class: its objects}}."""
+    return [
+        HybridTrial(layers, split, number).name
+        for layers, (split, count) in itertools.product(settings.hybrid_middles, settings.splits.items())
+        if len(members[split]) > 1
+        for number in range(count)
+    ]
 
 
 @explain_out_of_memory()

@@ -63,9 +63,8 @@ def check(settings: Params) -> None:
             )
     for network, modes in settings.networks.items():
         _check_modes(network, modes)
-    least = settings.repetitions, settings.coarse_repetitions + 1, settings.touches - 1
-    if min(*least, settings.cells, *settings.coarse_cells) < 1:
-        raise ValueError("transfer: repetitions and cells must be 1 or more, touches 2, coarse_repetitions 0 or more")
+    if min(max(settings.splits.values()), settings.touches - 1, settings.cells, *settings.coarse_cells) < 1:
+        raise ValueError("transfer: of one split and of cells there must be 1 or more, of touches 2")
     if settings.size < SMALLEST:
         raise ValueError(f"transfer.size: {settings.size} is too small, networks see {SMALLEST} pixels a side or more")
     counts = settings.new_object_touches or [0]
@@ -104,13 +103,11 @@ def plan(classes: Mapping[str, Sequence[str]], vertices: Mapping[str, int], sett
         )
         return Plan([], members, {}, [*notes, ({}, note)])
     found, left_out = fetch_weights(settings)
-    splits = [split for split in settings.splits if len(members[split]) > 1]
-    if "objects" in settings.splits and "objects" not in splits:
+    splits = {split: count for split, count in settings.splits.items() if len(members[split]) > 1}
+    if settings.splits.get("objects") and "objects" not in splits:
         left_out.append(({"split": "objects"}, "fewer than two classes have a second object: none is left out"))
-    trials = []
-    for kind in _kinds(settings, found):
-        count = settings.repetitions if kind[0] == main_data(settings) else settings.coarse_repetitions
-        trials += [Trial(*kind, split, number) for split in splits for number in range(count)]
+    kinds = itertools.product(_kinds(settings, found), splits.items())
+    trials = [Trial(*kind, split, number) for kind, (split, count) in kinds for number in range(count)]
     return Plan(trials, members, found, notes + left_out)
 
 

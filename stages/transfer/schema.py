@@ -33,7 +33,7 @@ class Params:
     weights: list[str]  # start from imagenet, or from random as the control
     uncontrolled: list[str]  # networks that are not trained from random weights, for the cost
     source: str  # where ImageNet's weights come from: package (by hash), download (torchvision's) or auto
-    splits: list[str]  # random: touches are drawn for testing (T5.1.3); objects: one object of each class is left out
+    splits: dict[str, int]  # how many of random (touches are drawn for testing, T5.1.3) and objects (one of each class)
     size: int  # pixels a side of the image that the network sees
     copies: int  # augmented copies of each image whose frozen features are cached
     train_share: float  # part of the touches for training where the split is random, the rest for testing
@@ -44,12 +44,9 @@ class Params:
     epochs: int  # passes of the final training
     batch: int  # images a step
     momentum: float  # of the stochastic gradient descent
-    repetitions: int  # trainings of each kind, each with its own split and random numbers
-    coarse_repetitions: int  # the same with the coarse arrays; 0: none
     device: str  # where networks are trained: auto (a CUDA card where there is one), cpu, cuda
     severities: dict[str, list[float]]  # of each perturbation of the test touches, from mild to harsh
     hybrid_middles: list[str]  # layers that both senses share in a hybrid network; damage is tried on the first
-    hybrid_repetitions: int  # hybrid networks a split; 0: none
     hybrid_pictures: int  # pictures of each object
     hybrid_colour: bool  # pictures in the objects' colours, which may give them away; else grey clay
     hybrid_rate: float  # learning rate of its two networks

@@ -51,8 +51,8 @@ SMALL = {
             "viewpoints": "four", "size": [48, 64], "shrink": True},
     "transfer": {"touches": 8, "new_object_touches": [1], "detector": "enhanced", "coarse_cells": [8],
                  "weights": ["random"], "size": 32, "networks": {"mobilenet_v2": ["frozen"]},
-                 "splits": ["random", "objects"], "copies": 1, "epochs": 2, "search_epochs": 1,
-                 "severities": {}, "hybrid_repetitions": 0, "device": "cpu"},
+                 "splits": {"random": 3, "objects": 3}, "copies": 1, "epochs": 2, "search_epochs": 1,
+                 "severities": {}, "hybrid_middles": [], "device": "cpu"},
 }  # fmt: skip
 SHAPES = {
     "ball": trimesh.creation.icosphere(2), "egg": trimesh.creation.icosphere(2).apply_scale([1, 1, 1.5]),

@@ -10,10 +10,10 @@ SETTINGS = {
     "touches": 8, "detector": "thesis_ssim", "cells": 32, "pitch": 0.005, "coarse_cells": [8],
     "networks": {"mobilenet_v2": ["frozen"]}, "weights": ["random"], "uncontrolled": [],
     "source": "package",
-    "splits": ["random", "objects"], "size": 32, "copies": 1, "train_share": 0.75, "validation_share": 0.25,
+    "splits": {"random": 1, "objects": 1}, "size": 32, "copies": 1, "train_share": 0.75, "validation_share": 0.25,
     "frozen_rates": [0.003, 0.01], "finetuned_rates": [0.003], "search_epochs": 2, "epochs": 4, "batch": 8,
-    "momentum": 0.9, "repetitions": 1, "coarse_repetitions": 1, "device": "cpu",
-    "severities": {"noise": [0.01, 0.5], "few_touches": [0.5]}, "hybrid_middles": ["18:139"], "hybrid_repetitions": 0,
+    "momentum": 0.9, "device": "cpu",
+    "severities": {"noise": [0.01, 0.5], "few_touches": [0.5]}, "hybrid_middles": [],
     "hybrid_pictures": 4, "hybrid_colour": False, "hybrid_rate": 0.003, "hybrid_onnx": False,
     "hybrid_severities": {"picture_noise": [0.1]}, "new_object_touches": [1, 2],
 }  # fmt: skip

@@ -17,9 +17,9 @@ pytestmark = pytest.mark.slow
 
 MEMBERS = {"cup": ["mug", "glass"], "dog": ["poodle", "pug"]}
 SETTINGS = {
-    "size": 32, "cells": 32, "coarse_cells": [], "splits": ["random", "objects"], "train_share": 0.75,
+    "size": 32, "cells": 32, "coarse_cells": [], "splits": {"random": 2, "objects": 2}, "train_share": 0.75,
     "validation_share": 0.25, "epochs": 1, "batch": 4, "momentum": 0.9, "device": "cpu", "source": "package",
-    "hybrid_rate": 0.003, "hybrid_middles": ["18:139", "18:147"], "hybrid_repetitions": 2, "hybrid_onnx": False,
+    "hybrid_rate": 0.003, "hybrid_middles": ["18:139", "18:147"], "hybrid_onnx": False,
     "hybrid_severities": {"picture_noise": [0.1], "imprint_dead_cells": [0.1]}, "new_object_touches": [1, 2],
 }  # fmt: skip
 
@@ -137,7 +137,7 @@ def test_every_middle_has_a_network_for_each_split_and_repetition():
 
 
 def test_no_repetitions_and_no_classes_are_no_trials():
-    assert hybrid_trial.trials(SimpleNamespace(**SETTINGS | {"hybrid_repetitions": 0}), members()) == []
+    assert hybrid_trial.trials(SimpleNamespace(**SETTINGS | {"splits": {"random": 0, "objects": 0}}), members()) == []
     alone = {"random": MEMBERS, "objects": {"cup": ["mug", "glass"]}}
     assert not any("objects" in name for name in hybrid_trial.trials(SimpleNamespace(**SETTINGS), alone))
 

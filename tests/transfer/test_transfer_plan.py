@@ -31,7 +31,7 @@ def test_a_trials_name_is_its_file_and_gives_it_back():
 
 def test_controls_and_ranges_are_trained_on_the_fine_array_alone(small, weights):
     networks = {"mobilenet_v2": ["frozen", "finetuned", "18:139"], "alexnet": ["frozen", "finetuned"]}
-    both = small.settings(weights=["imagenet", "random"], networks=networks, splits=["random"])
+    both = small.settings(weights=["imagenet", "random"], networks=networks, splits={"random": 1})
     trials = plan(CLASSES, ENOUGH, both).trials
     kinds = {trial[:4] for trial in trials}
     assert len(kinds) == len(trials) == 2 * 4 + 1 + 2 * 2
@@ -41,8 +41,8 @@ def test_controls_and_ranges_are_trained_on_the_fine_array_alone(small, weights)
 
 def test_large_networks_and_coarse_arrays_can_be_left_out(small, weights):
     networks = {"mobilenet_v2": ["frozen"], "vgg16": ["frozen"]}
-    some = {"weights": ["imagenet", "random"], "networks": networks, "splits": ["random"], "uncontrolled": ["vgg16"]}
-    trials = plan(CLASSES, ENOUGH, small.settings(**some, coarse_repetitions=0)).trials
+    some = {"weights": ["imagenet", "random"], "networks": networks, "splits": {"random": 1}, "uncontrolled": ["vgg16"]}
+    trials = plan(CLASSES, ENOUGH, small.settings(**some, coarse_cells=[])).trials
     assert {trial[:3] for trial in trials} == {
         ("imprints32", "mobilenet_v2", "imagenet"), ("imprints32", "mobilenet_v2", "random"),
         ("imprints32", "vgg16", "imagenet"),
@@ -98,9 +98,8 @@ def test_a_network_without_weights_is_a_note_and_the_others_run(small, weights):
         ({"networks": {"alexnet": ["18:139"]}}, "transfer.networks.alexnet: 18:139 not known"),
         ({"weights": []}, "transfer.weights: none not known"),
         ({"networks": {"lenet": ["frozen"]}}, "transfer.networks: lenet not known"),
-        ({"splits": ["half"]}, "transfer.splits: half not known"),
-        ({"repetitions": 0}, "must be 1 or more"),
-        ({"coarse_repetitions": -1}, "coarse_repetitions 0 or more"),
+        ({"splits": {"half": 1}}, "transfer.splits: half not known"),
+        ({"splits": {"random": 0, "objects": 0}}, "must be 1 or more"),
         ({"touches": 1}, "touches 2"),
         ({"size": 16}, "transfer.size: 16 is too small"),
         ({"uncontrolled": ["lenet"]}, "transfer.uncontrolled: lenet not known"),

@@ -67,7 +67,7 @@ def test_one_training_more_repeats_no_other(run, monkeypatch):
 
     monkeypatch.setattr(trial, "train_model", counted)
     monkeypatch.setattr("stages.networks.training.train_model", counted)
-    short = {"epochs": 3, "search_epochs": 1, "severities": {}, "splits": ["random"]}
+    short = {"epochs": 3, "search_epochs": 1, "severities": {}, "splits": {"random": 1}}
     killed = True
     with pytest.raises(KeyboardInterrupt):
         run(CLASSES, **short)
@@ -77,7 +77,7 @@ def test_one_training_more_repeats_no_other(run, monkeypatch):
     assert trained == [1, 1, 3, 3]
     file = workspace.data / "transfer/networks/imprints32.mobilenet_v2.random.frozen.random.0.npz"
     before = sha256(file)
-    _, second = run(CLASSES, **short, repetitions=2)
+    _, second = run(CLASSES, **short | {"splits": {"random": 2}})
     assert trained == [1, 1, 3, 3] + [1, 1, 3] and sha256(file) == before
     assert second[second["repetition"] == 0]["value"].tolist() == first["value"].tolist()
 
