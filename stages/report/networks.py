@@ -21,7 +21,6 @@ THESIS = {FINE: "table_5_4_simulated_fsr_128x128", COARSE: "table_5_3_fsr_16x16"
 SPLITS = {"random": "touches at random", "objects": "unseen objects"}
 THEIRS = "princeton_six"  # the set of the thesis's classes
 SETS = (THEIRS, None)  # of a claim: that, and the first of the others, the furniture
-RANDOM_SETS = (THEIRS, "furniture_trainings")  # where touches are drawn at random: with the splits that verdicts need
 OF_CLASS = {THEIRS: 5}  # objects of each class; of the other sets three
 STARTS, MODES = ("imagenet", "random"), ("finetuned", "frozen")
 PRETRAINED = {"complete": "", "convolutions": "its convolutions", "converted": "converted from Keras"}
@@ -82,6 +81,6 @@ def both(*claims: Claim, items: str = "touches", done: str = "touched") -> list[
         found.append(replace(
             claim, key=f"{claim.key}_{split}", where={**claim.where, "split": split},
             sentence=f"{claim.sentence[:-1]}, on objects never {done} too." if unseen else claim.sentence,
-            dataset=SETS if unseen else RANDOM_SETS, shared=partial(shared, split), phrases={**claim.phrases, **words},
+            shared=partial(shared, split), phrases={**claim.phrases, **words},
         ))  # fmt: skip
     return found

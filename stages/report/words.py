@@ -20,7 +20,7 @@ DATASETS = {
     "gaze": "meshes with human gaze", "gaze_clouds": "point clouds with human gaze", "princeton": "psb",
     "princeton_touched": "psb, 8 classes of 6 objects", "princeton_hands": "psb, several arrays or touches",
     "princeton_eight": "psb, the thesis's 8 classes", "princeton_six": "psb, the thesis's 6 classes",
-    "furniture_splits": "furniture, 20 splits", "furniture_trainings": "furniture, 20 splits",
+    "furniture_splits": "furniture, 20 splits",
     "pressure_images": "recorded pressure array", "biotac_grasps": "recorded fingertips",
     "touch_events": "recorded events of a fingertip",
     "household_denoised": "household, denoised", "household_stability": "household shapes, disturbed",

@@ -12,7 +12,6 @@ from stages.report.differences import differences
 from stages.report.hybrid import claims as chapter_5_hybrid
 from stages.report.hybrid import new_objects
 from stages.report.hybrid.hybrid_senses import METHODS as BOTH
-from stages.report.networks import RANDOM_SETS
 from stages.report.results import NotRun
 from stages.report.topics import build_one
 from stages.report.verdict import judge
@@ -242,9 +241,8 @@ VERDICTS = {
 
 
 def verdicts(bare, small, frame):
-    """The judged claims on these rows, those of the set with more splits among them."""
-    for dataset in ("furniture", RANDOM_SETS[1]):
-        write(bare, frame, dataset)
+    """The judged claims on these rows."""
+    write(bare, frame)
     return judge(chapter_5_hybrid.CLAIMS, small.results(bare)).set_index("key")
 
 
@@ -285,8 +283,7 @@ def test_the_hybrid_itself_leaves_no_difference_to_judge(run):
 def test_claims_on_the_thesis_s_classes_and_ours_are_pooled(bare, run, small):
     frame = rows()
     frame.loc[frame["sense"] == "touch", "value"] += 0.9
-    for dataset in RANDOM_SETS:
-        write(bare, rows() if dataset != "princeton_six" else frame, dataset)
+    write(bare, frame, "princeton_six")
     found = judge(chapter_5_hybrid.CLAIMS, small.results(bare)).set_index("key")
     row = found.loc["sight_over_touch_random"]
     assert row["verdict"] == "mixed" and row["tested_on"].startswith("psb, the thesis's 6 classes and ")

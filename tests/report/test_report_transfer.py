@@ -9,7 +9,6 @@ from stages.report import networks as _transfer
 from stages.report import recorded as recorded_topic
 from stages.report import transfer
 from stages.report.differences import differences
-from stages.report.networks import RANDOM_SETS
 from stages.report.results import NotRun
 from stages.report.topics import KINDS, build_one
 from stages.report.transfer import claims as chapter_5
@@ -162,16 +161,15 @@ VERDICTS = {
 
 
 @pytest.mark.slow
-def test_claims_say_what_the_rows_hold(bare, run, small):
-    small.write(bare, "transfer", rows(RANDOM_SETS[1]))
-    judged = judge(chapter_5.CLAIMS, small.results(bare)).set_index("key")
+def test_claims_say_what_the_rows_hold(run):
+    judged = judge(chapter_5.CLAIMS, run).set_index("key")
     assert judged.loc[list(VERDICTS), "verdict"].to_dict() == VERDICTS
 
 
 def test_a_claim_turns_with_the_rows(bare, small):
     frame = rows()
     frame["mode"] = frame["mode"].map({"frozen": "finetuned", "finetuned": "frozen"}).fillna(frame["mode"])
-    small.write(bare, "transfer", frame.assign(dataset=RANDOM_SETS[1]))
+    small.write(bare, "transfer", frame)
     judged = judge(chapter_5.CLAIMS, small.results(bare)).set_index("key")
     assert judged.loc["tuned_over_frozen_random", "verdict"] == "contradicted"
 

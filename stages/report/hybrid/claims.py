@@ -3,7 +3,7 @@
 from functools import partial
 
 from stages.report.claims import Claim, Side
-from stages.report.networks import SEEN, both
+from stages.report.networks import SEEN, SETS, both
 
 from .hybrid_senses import WHOLE
 from .new_objects import METRIC
@@ -30,6 +30,7 @@ def claim(key: str, section: str, sentence: str, first: Side, second: Side, wher
     return Claim(
         key=key, section=section, sentence=sentence, stage="transfer", first=first, second=second, margin=margin,
         where={"data": "hybrid", "mode": MIDDLE, "metric": "accuracy", **where}, phrases=PHRASES, within=SEEN,
+        dataset=SETS,
     )  # fmt: skip
 
 

@@ -9,7 +9,7 @@ from scipy.stats import spearmanr
 from stages.kit.split import shared_by
 from stages.report.claims import Claim
 from stages.report.differences import statistic
-from stages.report.networks import COARSE, FINE, GUESS, NETWORK, RANDOM_SETS, SEEN, THEIRS, both
+from stages.report.networks import COARSE, FINE, GUESS, NETWORK, SEEN, SETS, THEIRS, both
 from stages.report.results import Results
 
 PHRASES = {
@@ -29,7 +29,7 @@ def claim(
     common = {name: value for name, value in (SETTING | where).items() if name != column}
     return Claim(
         key=key, section=section, sentence=sentence, stage="transfer", first={column: first}, second={column: second},
-        where=common, margin=margin, phrases=PHRASES, within=SEEN,
+        where=common, margin=margin, phrases=PHRASES, within=SEEN, dataset=SETS,
     )  # fmt: skip
 
 
@@ -68,7 +68,7 @@ EARLY = [  # by layers that the default run does not freeze
     )
 ]  # fmt: skip
 CHANGES = Claim(
-    key="earlier_change_more", section="T5.4", stage="transfer", dataset=RANDOM_SETS, phrases=PHRASES, scale=1.0,
+    key="earlier_change_more", section="T5.4", stage="transfer", dataset=SETS, phrases=PHRASES, scale=1.0,
     shared=shared_by("random"),
     sentence="Earlier convolutions are altered more for touch than later ones.", unit="rank correlation",
     where={"method": NETWORK, "mode": "finetuned", "split": "random", "data": FINE, "weights": "imagenet"},
