@@ -17,19 +17,25 @@ KIND = {}  # of sets that do not begin with meshes: the stage that does
 OPTIONS = [(path.parent.name, path.stem) for path in sorted(CONF.glob("*/*.yaml"))]
 
 
+@pytest.fixture(scope="module")
+def composed():
+    """What conf/ composes where nothing is chosen."""
+    return compose()
+
+
 @pytest.mark.slow
-def test_params_yaml_is_the_composed_default():
-    assert (ROOT / "params.yaml").read_text() == OmegaConf.to_yaml(OmegaConf.create(compose()))
+def test_params_yaml_is_the_composed_default(composed):
+    assert (ROOT / "params.yaml").read_text() == OmegaConf.to_yaml(OmegaConf.create(composed))
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("group", "option"), OPTIONS)
-def test_every_option_composes_and_fits_the_schemas(group, option):
+def test_every_option_composes_and_fits_the_schemas(composed, group, option):
     chosen = [f"sets=[{option}]"] if group == "data" else [f"{group}={option}"]
     if group == "data" and "folder: ???" in (CONF / f"data/{option}.yaml").read_text():
         chosen.append(f"{option}.{KIND.get(option, 'meshes')}.folder=somewhere")
     defaults = {next(iter(entry.items())) for entry in DEFAULTS if isinstance(entry, dict)}
-    assert (compose(chosen) == compose()) == ((group, option) in defaults and group != "data")
+    assert (compose(chosen) == composed) == ((group, option) in defaults and group != "data")
 
 
 @pytest.mark.slow

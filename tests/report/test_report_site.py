@@ -2,6 +2,7 @@
 
 import os
 import re
+from functools import cache
 from pathlib import Path
 
 import pandas as pd
@@ -161,8 +162,7 @@ def test_claims_filter_and_open_to_their_pairs(tab, site):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("width", [1280, 390])
-@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize(("scheme", "width"), [("light", 1280), ("dark", 390)])
 def test_pages_fit_their_width_and_axe_finds_nothing_serious(browser, site, width, scheme):
     if axe() is None:
         pytest.skip("no axe-core: `npm install axe-core@4.10.3`")
@@ -182,8 +182,9 @@ def test_the_command_of_a_claim_switches_its_stage_on(small):
     results = small.results(Path(__file__).parents[2])
     asked = {(claim.stage, tuple(sets_read(claim, results))) for claim in CLAIMS}
     assert len(asked) > 10
+    graphs = cache(lambda override: compose([override] if override else [])["graph"])
     for stage, sets in asked:
         steps = re.findall(r"python -m stages\.compose ?'?([^' ]*)'? && dvc repro ([^&]+)", command(CONF, stage, sets))
         found = [name for override, repeated in steps for name in repeated.split() if name != "report"
-                 if name.partition("@")[2] in compose([override] if override else [])["graph"][stage]]  # fmt: skip
+                 if name.partition("@")[2] in graphs(override)[stage]]  # fmt: skip
         assert sorted(found) == sorted(f"{stage}@{name}" for name in sets), (stage, sets)
