@@ -82,7 +82,7 @@ CLAIMS = [
     *claims("seen_over_random_tuned", f"{SHARED} sight is a better start for recorded touches.",
             SEEN, UNSEEN, where=TUNED),
     *claims("tuned_over_frozen", "Fine-tuning on recorded touches beats frozen filters.",
-            {"mode": "finetuned"}, {"mode": "frozen"}, note="tuned in 600 steps at most, which of fingertips are two passes"),
+            {"mode": "finetuned"}, {"mode": "frozen"}, note="tuned in 600 steps at most, of fingertips two passes"),
     *claims("resnet_best", "ResNet50 is the best of the networks on recorded touches.",
             {"method": "resnet50"}, {"method": RIVALS}, ARRAY,
             note="of those that were run; the highest in these tests, which is hard on ResNet50"),
