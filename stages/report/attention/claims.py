@@ -37,8 +37,8 @@ def closer_to_gaze(key: str, section: str, sentence: str, first: str, second: st
 
 def svm_per_object(key: str, sentence: str, area: str, own: str, others: str) -> Claim:
     """A claim that an object's own SVM is more accurate than the one for all; own, others: how each was validated."""
-    return on_gaze(key=key, section="T3.2.3", sentence=sentence, stage="weights", unit=POINTS, mean_of="second", dataset=SETS,
-                   where={"metric": "accuracy", "area": area},
+    return on_gaze(key=key, section="T3.2.3", sentence=sentence, stage="weights", unit=POINTS, mean_of="second",
+                   where={"metric": "accuracy", "area": area}, dataset=SETS,
                    first={"training": "one_per_object", "validation": own},
                    second={"training": "one_for_all", "validation": others})  # fmt: skip
 
