@@ -12,7 +12,7 @@ from .alone import alone
 from .code import stage_digest
 from .files import replace_folder, sha256, write_json
 from .kept_rows import ItemRows, KeptRows
-from .make import SCRATCH, make
+from .make import make, scratch
 from .objects import Objects, item_key, key_of
 from .packs import files_below, is_there, object_files, pack
 from .parallel import Task, finished, parallel_map, progress
@@ -100,13 +100,13 @@ class StageRun:
         call = key_of(stage and stage_digest(stage), f"{function.__module__}.{function.__qualname__}", given)
         tasks = self._tasks(call, values, reads, made_of or {})
         root, desc = self.workspace.root, f"{self.stage} {self.dataset}"
-        work = functools.partial(make, process, root)
+        work = functools.partial(make, process, root, self.dataset)
         with Objects(self.workspace.build / "objects") as objects:
             rows = ItemRows(self.folder.parent, values)
             missing = [task for task in tasks if not self._taken(task, objects, rows)]  # before any worker starts
             for task, content in finished(work, missing, root, desc, stage=stage, **self.workspace.parallel):
                 objects.keep(task.key, content)
-                shutil.rmtree(root / SCRATCH / task.key, ignore_errors=True)
+                shutil.rmtree(scratch(root, self.dataset, task), ignore_errors=True)
                 if not self._taken(task, objects, rows):
                     raise OSError(f"{objects.folder} does not keep what is written to it: is the disk full?")
         self.rows += rows

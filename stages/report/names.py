@@ -12,7 +12,7 @@ from matplotlib.transforms import Bbox
 from .style import GREY, INK
 
 SIDES = [(1, 1), (-1, 1), (1, -1), (-1, -1), (1, 0), (-1, 0), (0, 1), (0, -1)]  # of the point, the best first
-GAPS = [5, 14, 26, 40]  # from the point to its name, in typographic points
+GAPS = [8, 14, 26, 40]  # from the point to its name, in typographic points
 FAR = 14  # a name from this gap on gets a thin line to its point
 CROSSING = 15  # a crossed line is as bad as so much more of a gap
 SIZE, RADIUS = 8.5, 5.5  # of the letters and of a point with its rim, in typographic points

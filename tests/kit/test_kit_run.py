@@ -1,6 +1,7 @@
 """Results independent of the workers, runs that can be killed, and objects that are made once."""
 
 import functools
+import multiprocessing
 import os
 import signal
 import subprocess
@@ -80,6 +81,31 @@ def test_an_object_is_made_once(workspace):
     before = (made(workspace), (workspace.measurements / "views.csv.gz").read_bytes())
     assert run_items(workspace) == []
     assert (made(workspace), (workspace.measurements / "views.csv.gz").read_bytes()) == before
+
+
+def meanwhile(name, folder, root):
+    """Writes a file; the first call then runs the same stage of the other set, with the same object, to its end."""
+    write_text(folder / f"{name}.txt", name)
+    if not (root / "begun").exists():
+        write_text(root / "begun", "")
+        other = multiprocessing.get_context("spawn").Process(target=run_shared, args=[Workspace(root, "others")])
+        other.start()
+        other.join()
+    return [{"item": name, "metric": "length", "value": 1, "seconds": 0.1}]
+
+
+def run_shared(workspace):
+    with StageRun(workspace, "views", inputs=("meshes",)) as run:
+        run.each(functools.partial(meanwhile, root=workspace.root), ["a"])
+
+
+@pytest.mark.slow
+def test_two_sets_with_an_object_in_common_may_run_at_the_same_time(workspace):
+    path = workspace.root / "params.yaml"
+    write_text(path, path.read_text().replace("[toys]", "[toys, others]") + "others: {}\n")
+    write_text(workspace.root / "data/others/meshes/a.txt", "a")
+    run_shared(workspace)
+    assert [(workspace.root / f"data/{name}/views/a.txt").read_text() for name in ("toys", "others")] == ["a\n"] * 2
 
 
 def test_one_object_more_costs_one_object(workspace):

@@ -18,7 +18,8 @@ def build(results: Results) -> Figure:
     rows = measured(results, data=FINE, split="random")
     frame = pd.DataFrame(means(rows, ["method", "weights", "mode"], shared_by("random"), top=1.0))
     frame = frame.dropna(subset=["seconds"])
-    frame["name"] = frame["method"].map(label) + ", " + frame["weights"].map(start) + ", " + frame["mode"].map(label)
+    mode = frame["mode"].map(label).str.replace(r"^(\d+):(\d+)$", r"layers \1 to \2 frozen", regex=True)
+    frame["name"] = frame["method"].map(label) + ", " + frame["weights"].map(start) + ", " + mode
     return pareto_chart(
         frame, "mean", title="From sight to touch: what training costs", reference=REFERENCE,
         quality_label="test accuracy, touches at random",
