@@ -67,8 +67,8 @@ def run(argv: Sequence[str]) -> None:
 def look_at(chosen: argparse.Namespace) -> None:
     """Prints the points of a mesh and writes what else was asked for."""
     check(chosen)
-    mesh, note = upright_by(load_unnamed(chosen.mesh), chosen.mesh, chosen.up)
     try:
+        mesh, note = upright_by(load_unnamed(chosen.mesh), chosen.mesh, chosen.up)
         with Stopwatch() as watch:
             found = detect(bake_texture(mesh), chosen.method, chosen.count)
     except ValueError as error:

@@ -38,6 +38,13 @@ def test_points_are_printed_in_the_files_coordinates(egg, capsys):
     assert np.linalg.norm(rows[0, 2:5] - (PLACE + SIZE * np.array([0, -1.3, 0.55]))) < 0.3 * SIZE  # the nose
 
 
+def test_a_file_that_cannot_be_read_is_named(tmp_path):
+    (tmp_path / "broken.stl").write_bytes(b"solid nothing")
+    for given, reason in (("broken.stl", "truncated"), ("nowhere.stl", "no such file"), ("", "is a folder")):
+        with pytest.raises(ValueError, match=f"^{tmp_path / given}: {reason}"):
+            run([str(tmp_path / given)])
+
+
 def test_one_look_gives_what_the_two_functions_give(egg):
     mesh = load(egg)
     found = detect(mesh, count=4)

@@ -135,7 +135,8 @@ def read_table(path: str | Path, dtype: Any = None) -> "pd.DataFrame":
 
     try:
         with opened(path) as stream:
-            return pd.read_csv(stream, dtype=dtype, compression="gzip" if Path(path).suffix == ".gz" else None)
+            packed = "gzip" if Path(path).suffix == ".gz" else None
+            return pd.read_csv(stream, dtype=dtype, compression=packed, low_memory=False)  # one guess for a column
     except (ValueError, gzip.BadGzipFile, EOFError, zlib.error) as error:
         raise ValueError(f"{path} is not a valid table: {error}") from None
 

@@ -26,6 +26,7 @@ from typing import Any
 import numpy as np
 
 from stages.kit import Mesh, Stopwatch
+from stages.kit.extras import MissingExtra
 from stages.meshes.colours import bake_texture
 from stages.meshes.load import load_unnamed
 from stages.meshes.own import mesh_files, names_of
@@ -62,9 +63,10 @@ def run(argv: Sequence[str]) -> int:
     for path, name in zip(files, names_of(files), strict=True):
         try:
             figures.append(simplify_file(path, name, chosen))
-        except ValueError as error:
+        except (ValueError, MissingExtra) as error:
             if not chosen.mesh.is_dir():
-                raise ValueError(f"{path}: {error}").with_traceback(error.__traceback__) from None
+                kind = MissingExtra if isinstance(error, MissingExtra) else ValueError
+                raise kind(f"{path}: {error}").with_traceback(error.__traceback__) from None
             report(f"{path}: {error}")
     if chosen.json:
         print(json.dumps(figures))

@@ -20,19 +20,28 @@ def infeasible(task: SimplificationTask, error: InfeasibleTarget, chosen: Namesp
 def remedies(task: SimplificationTask, error: InfeasibleTarget, chosen: Namespace) -> list[str]:
     """What would help; empty where nothing would."""
     total = len(task.mesh.faces)
-    if smallest_feasible(task.mesh) >= total:  # not even with nothing frozen
-        several = len(task.boundary) and topology(task.mesh.faces).components > 1
-        return ["join its connected components first"] if several else []
+    possible = smallest_feasible(task.mesh, free_borders=task.free_borders) < total  # with nothing frozen
+    may_free = len(task.boundary) and not task.free_borders and not chosen.attributes and task.backend != "pymeshlab"
     ways = [f"ask for --faces {error.smallest} or more"] if error.smallest < total else []
-    if len(task.boundary) and not task.free_borders and not chosen.attributes and task.backend != "pymeshlab":
+    if may_free and (possible or smallest_feasible(task.mesh, free_borders=True) < total):
         ways += ["let the boundary be simplified with --free-borders"]
-    if error.frozen and len(task.points) > 1:
-        ways += ["--keep fewer points"]
-    if error.frozen and chosen.neighbourhood == "fixed" and task.rings.any():
+    if error.frozen and possible:
+        ways += _thaw(task, chosen)
+    return ways + ([] if possible else _mend(task.mesh))
+
+
+def _thaw(task, chosen):
+    ways = ["--keep fewer points"] if len(task.points) > 1 else []
+    if chosen.neighbourhood == "fixed" and task.rings.any():
         ways += ["take fewer --rings"]
-    if error.frozen:
-        ways += [*(() if task.shrink else ("let them --shrink",)), "leave --neighbourhood out"]
-    return ways
+    return [*ways, *(() if task.shrink else ("let them --shrink",)), "leave --neighbourhood out"]
+
+
+def _mend(mesh):
+    found = topology(mesh.faces)
+    holes = found.boundary_loops - (found.components - found.closed_components)  # one loop of each may be its outline
+    ways = [f"close its {number(holes, 'hole')} first"] if holes > 0 else []
+    return [*ways, *(["join its connected components first"] if found.components > 1 and found.boundary_edges else [])]
 
 
 def number(count: int, noun: str) -> str:

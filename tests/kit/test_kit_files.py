@@ -66,3 +66,10 @@ def test_a_cached_file_of_another_hash_is_not_used(tmp_path, monkeypatch):
     (tmp_path / "nothing-1.0.whl").write_bytes(b"tampered")
     with pytest.raises(fetch.FetchError):
         fetch.fetch_package("nothing-of-this-name==1.0", "nothing-1.0.whl", "0" * 64)
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_column_that_is_empty_for_long_is_one_column_of_texts(tmp_path):
+    (tmp_path / "long.csv").write_text("name,value\n" + ",1\n" * 400_000 + "kNN,1\n" * 400_000)
+    column = files.read_table(tmp_path / "long.csv")["name"].dropna()
+    assert set(column) == {"kNN"} and len(column) == 400_000

@@ -2,6 +2,8 @@
 
 import functools
 import os
+import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -13,6 +15,7 @@ import trimesh
 from PIL import Image
 
 from stages.kit import Mesh
+from stages.kit.extras import MissingExtra
 from stages.kit.texture import Texture
 from stages.lod import __main__, colour_error, command, error_table, metro, simplify
 from stages.lod.command import run
@@ -24,6 +27,7 @@ from stages.lod.picture import write_picture
 from stages.lod.task import repaired
 from stages.lod.within_frame import within_frame
 from stages.meshes import load
+from stages.meshes.load import load_unnamed
 from stages.views import TWELVE, render
 
 PLACE, SIZE = np.array([120.0, -40.0, 7.0]), 25.0
@@ -379,6 +383,36 @@ def test_options_are_refused_before_the_mesh_is_read(file, tmp_path, monkeypatch
     monkeypatch.setattr(command, "read", lambda path: pytest.fail("it was read before they were refused"))
     with pytest.raises(ValueError, match=reason):
         run([str(file), "--faces", "300", "--out", str(tmp_path / "x.glb"), *options])
+
+
+def test_a_mesh_full_of_holes_is_told_what_is_feasible(simplified, tmp_path):
+    ball = bumpy()
+    apart = np.arange(len(ball.faces)) % 9 > 0  # triangles are missing all over it
+    write_any(tmp_path / "net.ply", Mesh(ball.vertices, ball.faces[apart]))
+    with pytest.raises(ValueError, match=r"--free-borders, or close its \d+ holes first"):
+        simplified("--faces", 300, source=tmp_path / "net.ply")
+    with pytest.raises(ValueError, match=r"ask for --faces (\d+) or more") as refused:
+        simplified("--faces", 300, "--free-borders", source=tmp_path / "net.ply")
+    least = re.search(r"ask for --faces (\d+)", str(refused.value))[1]
+    simplified("--faces", least, "--free-borders", source=tmp_path / "net.ply")
+
+
+def test_a_file_that_needs_an_extra_does_not_stop_a_folder(file, tmp_path, monkeypatch, capsys):
+    def no_clouds(path):
+        if path.stem == "cloud":
+            raise MissingExtra("pymeshlab is not installed")
+        return load_unnamed(path)
+
+    monkeypatch.setattr(command, "load_unnamed", no_clouds)
+    folder = tmp_path / "scans"
+    folder.mkdir()
+    (folder / "cloud.ply").touch()
+    shutil.copy(file, folder / "solid.obj")
+    assert run([str(folder), "--levels", "30%", "--out", str(tmp_path / "levels")]) == 1
+    assert "cloud.ply: pymeshlab is not installed" in capsys.readouterr().err
+    assert [path.name for path in (tmp_path / "levels").iterdir()] == ["solid_30pct.obj"]
+    with pytest.raises(MissingExtra, match=r"cloud.ply: pymeshlab is not installed"):
+        run([str(folder / "cloud.ply"), "--faces", "300", "--out", str(tmp_path / "x.glb")])
 
 
 def test_frozen_faces_that_leave_nothing_are_blamed_and_not_the_components(simplified):
