@@ -1,7 +1,7 @@
 """One mesh of the gallery: looked at once, and from that look simplified and touched."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +21,7 @@ from stages.lod.export import write_any
 from stages.lod.levels import level_path
 from stages.lod.look import coloured, look
 from stages.lod.parts import moved_parts, parts_of
+from stages.lod.remedies import infeasible
 from stages.lod.simplify import BACKEND
 from stages.lod.targets import face_count
 from stages.lod.task import SimplificationTask, repaired
@@ -107,14 +108,25 @@ def simplified(
     found, missing = [], {}
     for target in levels:
         try:
-            level = task.simplified(face_count(target, len(mesh.faces), "--levels"))
-        except (InfeasibleTarget, SimplifyError) as error:
+            level = _reduced(task, face_count(target, len(mesh.faces), "--levels"))
+        except InfeasibleTarget as error:
+            missing[target] = infeasible(replace(task, free_borders=True), error)
+            continue
+        except SimplifyError as error:
             missing[target] = str(error)
             continue
         path, restored = level_path(folder, name, file, target), task.restored(level)
         write_any(path, upright_for(path, restored)[0], moved_parts(parts, given, restored))
         found.append(Level(level, 100 * vertex_errors(level, task.mesh) / task.mesh.diagonal, path))
     return found, missing
+
+
+def _reduced(task, faces):
+    """The task's level; where its frozen boundary leaves too many faces, that is simplified, too."""
+    try:
+        return task.simplified(faces)
+    except InfeasibleTarget:
+        return replace(task, free_borders=True).simplified(faces)
 
 
 def touch(

@@ -18,6 +18,7 @@ from scipy.spatial import KDTree
 from stages.kit.packing import SHADES, pack, viewer_data
 from stages.kit.packing import Level as Drawn
 from stages.lod.look import viridis, vivid
+from stages.lod.remedies import number
 from stages.lod.shown import shown_mesh
 from stages.meshes import rotate_to_z_up
 
@@ -68,15 +69,15 @@ def turnable(one: Exhibit, faces: int) -> dict[str, Any]:
     return pack(one.name, len(one.touched.mesh.faces), full, *shown)
 
 
-def exhibit_html(number: int, one: Exhibit) -> str:
+def exhibit_html(index: int, one: Exhibit) -> str:
     """The section of a mesh: its picture, its points with what is felt there, its levels, its files."""
     size = " x ".join(f"{side:.4g}" for side in np.ptp(one.touched.source.vertices, axis=0))
-    facts = f"{len(one.touched.mesh.faces):,} faces, {size} in the file's units; {one.note}."
+    facts = f"{number(len(one.touched.mesh.faces), 'face')}, {size} in the file's units; {one.note}."
     alt = f"{one.name} coloured by saliency, its {len(one.points)} most salient points numbered"
     picture = f'<img src="{data_uri(one.picture, WIDE)}" width="{WIDE}" height="{WIDE}" alt="{escape(alt)}">'
     caption = "Yellow: where people look most. Numbers: the places, most salient first; those behind are not shown."
     touches = "".join(touch_html(one, row, image) for row, image in zip(one.touches, one.images, strict=True))
-    return f"""<section id="mesh-{number}"><h2>{escape(one.name)}</h2><p class="help">{escape(facts)}</p>
+    return f"""<section id="mesh-{index}"><h2>{escape(one.name)}</h2><p class="help">{escape(facts)}</p>
 <div class="mesh"><figure>{picture}<figcaption>{caption}</figcaption></figure>
 <div><h3>Touched there</h3><ol class="touches">{touches}</ol>
 <p class="help">16 x 16 cells, 1 % of the object's diameter apart. Black is pressed first, white is far or nothing.</p>
@@ -108,7 +109,8 @@ def levels_html(one: Exhibit) -> str:
     heads = ["file", "faces", "% of all", "mean distance, %", "largest, %"]
     lost = "".join(f"<li>{escape(f'{target}: {why}')}</li>" for target, why in one.missing.items())
     note = '<p class="help">Distances of the mesh\'s vertices to the level, in % of its diagonal.</p>'
-    return f"<h3>With fewer faces</h3>{table(heads, rows)}{note}" + (f"<ul>{lost}</ul>" if lost else "")
+    found = f"{table(heads, rows)}{note}" if rows else ""
+    return f"<h3>With fewer faces</h3>{found}" + (f"<ul>{lost}</ul>" if lost else "")
 
 
 def places_html(one: Exhibit) -> str:

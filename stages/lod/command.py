@@ -166,7 +166,7 @@ def reduce(task: SimplificationTask, chosen: Namespace, target: str) -> Mesh | N
             return task.simplified(face_count(target, len(task.mesh.faces), "--faces"))
         found = fewest_faces(task.mesh, task.simplified, task.lowest_target, chosen.tolerance, chosen.seed, report)
     except (InfeasibleTarget, SimplifyError) as error:
-        reason = infeasible(task, error, chosen) if isinstance(error, InfeasibleTarget) else str(error)
+        reason = infeasible(task, error, chosen.neighbourhood) if isinstance(error, InfeasibleTarget) else str(error)
         if not chosen.levels:
             raise ValueError(reason) from None
         report(f"no level {target}: {reason}")

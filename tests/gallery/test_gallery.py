@@ -157,6 +157,16 @@ def test_a_level_that_is_infeasible_is_named(shown, scans):
     assert status == 0 and "<li>2: " in page and "pear_300.ply" in page
 
 
+def test_a_boundary_that_leaves_too_many_faces_is_simplified_too(shown, scans):
+    u, v = (axis.ravel() for axis in np.meshgrid(np.linspace(0, 3, 41), np.linspace(0, 0.4, 5)))
+    corner = np.arange(40)[:, None] + 41 * np.arange(4)
+    faces = np.stack([corner, corner + 1, corner + 41, corner + 1, corner + 42, corner + 41], axis=-1).reshape(-1, 3)
+    trimesh.Trimesh(np.stack([np.cos(u), np.sin(u), v], axis=1), faces).export(scans / "strip.ply")
+    _, page, _, _ = shown("--levels", "25%", meshes=scans / "strip.ply")
+    (one,) = page_data(page)["objects"]
+    assert one["faces"] == 320 and [level["faces"] for level in one["ladders"]["glance"]["levels"]] == [80]
+
+
 def test_json_lists_what_was_made(shown, scans):
     _, _, said, _ = shown("--json", "--levels", "300")
     found = {row["mesh"].split("/")[-1]: row for row in json.loads(said)}
