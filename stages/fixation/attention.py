@@ -22,6 +22,7 @@ from .fusion import entropy, fuse, highest_level
 from .heads import read_head
 from .options import TRAINED, Method
 from .pictures import read_pictures
+from .places import ITSELF, nearer
 from .schema import Params
 from .tasks import FUSED_TASKS, TASKS
 from .vertices import mean_over_views, project_to_vertices
@@ -69,6 +70,10 @@ def measure_attention(
             rows += ground_truth.rows(method.name, task, values[evaluated, k], whole[k], seconds)
         stored[f"{method.name}.maps"] = np.stack([cam[evaluated] for cam in cams.values()], axis=1).astype(np.float16)
         row = {"item": name, "method": method.name}
+        if method.mode == "frozen" and ITSELF in cams:
+            looks = values[evaluated, names.index(ITSELF)].astype(np.float16)
+            apart = nearer(mesh, [viewpoints[view] for view in evaluated], seen[evaluated], looks)
+            rows += [row | {"task": ITSELF, "metric": metric, "value": value} for metric, value in apart.items()]
         rows.append(row | {"metric": "views", "value": len(viewpoints), "seconds": network_seconds})
         rows += [row | one for one in task_correlations(values[:, : len(cams)], seen, list(cams))]
         rows += [

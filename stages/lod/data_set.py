@@ -21,12 +21,13 @@ from .warm_up import warm_up
 
 READS = ("meshes/{}.npz", "salient_points/{}.npz")
 GAZE = "weights/ground_truth/{}.npz"
+GAZED = ("gaze", "gaze_clouds")  # sources whose ground truth is gaze; that of others is marks
 
 
 def simplify_all(workspace: Workspace, settings: Params, source: str) -> str:
     """Runs the stage on a data set whose meshes come from `source`; returns one sentence on what was made."""
     with StageRun(workspace, "lod", COLUMNS, inputs=("meshes", "weights", "salient_points")) as stage:
-        gaze = source == "gaze"  # the ground truth of other sources is marks
+        gaze = source in GAZED
         work = functools.partial(process, data=workspace.data, settings=settings, seed=stage.seed, gaze=gaze)
         rows = stage.each(work, stage.objects, (*READS, GAZE) if gaze else READS)
         summary = summarise(rows)

@@ -24,6 +24,7 @@ Found = TypeVar("Found", bound=Sized)
 # Sets with the settings of a section of the thesis.
 SECTION_3_1, SECTION_3_2, SECTION_4_2 = "household_3_1", "gaze_3_2", "household_4_2"
 SETS_4_2 = "household_4_2_sets", "princeton_4_2_sets"  # random sets of six objects, as many as there are rows of
+GAZED = "gaze", "gaze_clouds"  # sets with recorded human gaze; no object is in both
 COLOURED = "furniture_coloured"  # the set whose objects have several hues
 ON_GREY, ON_WHITE, ON_BLACK = "household_on_grey", "household_on_white", "gaze_on_black"  # other backgrounds
 NUMBERS = {"four": 4, "six": 6}  # names of groups that tell how many objects they hold

@@ -11,14 +11,13 @@ import pytest
 from stages.fixation.agreement import ALL_VIEWS
 from stages.fixation.tasks import SHAPE_MEASURES
 from stages.fixation.viewpoints import evaluated_views, viewpoint_sphere
-from stages.kit.files import read_arrays, write_arrays
+from stages.kit.files import write_arrays
 from stages.kit.stats import interval
 from stages.report import fixation as topic
 from stages.report.differences import differences
 from stages.report.fixation import claims as chapter_3_fixation
 from stages.report.fixation import maps
 from stages.report.fixation import rows as _fixation
-from stages.report.fixation.places import anywhere, middle, nearer
 from stages.report.items import Figure
 from stages.report.results import NotRun
 from stages.report.topics import CLAIMS, build_one
@@ -35,7 +34,6 @@ DISTANCES = {"ewigc": 0.1, "ewigc_l4": 0.15, "mesh_saliency": 0.2, "enhanced": 0
 ALIKE = {"vgg16-last_block": 0.5, "resnet50-last_block": 0.7}  # mean correlation of two tasks' maps; 0.4 for others
 FIGURES = ["figure_3_28", "figure_3_31", "figure_3_32", "figure_3_35", "figure_3_36"]
 VIEWED = ["figure_3_29", "figure_3_30", "figure_3_34"]
-nearer_than_chance, nearer_than_middle = partial(nearer, anywhere), partial(nearer, middle)
 
 
 def table(results):
@@ -254,6 +252,17 @@ def test_resnet_is_compared_with_vgg_in_correlation_and_in_both_distances(gaze, 
         assert found["verdict"] == word and found["effect"] == pytest.approx(effect, rel=0.1) and found["pairs"] == 6
 
 
+def test_one_place_from_all_sides_is_judged_on_both_kinds_of_objects(gaze, small):
+    for count, dataset in ((6, "household"), (8, "princeton")):
+        names = [f"{dataset}_{k}" for k in range(count)]
+        frame = [{"item": name, "method": "mobilenet_v2-frozen", "task": "level_3", "metric": "nearer_than_chance",
+                  "value": 0.05 + 0.01 * (k % 3)} for k, name in enumerate(names)]  # fmt: skip
+        small.write(gaze.data.parent, "fixation", pd.DataFrame(frame), dataset)
+    found = one(small.results(gaze.data.parent), "same_place_over_chance")
+    assert found["verdict"] == "supported" and found["units"] == 14 and 5 < found["effect"] < 7
+    assert one(gaze, "same_place_over_middle")["verdict"] == "open"  # without such rows
+
+
 def test_a_claim_turns_with_the_rows(gaze, small):
     assert one(again(gaze, small, rows(ewigc=0.05)), "ewigc_over_lee_vgg16")["verdict"] == "contradicted"
 
@@ -357,27 +366,6 @@ def test_fused_attention_stands_beside_models_where_nobody_marked_anything(looke
         path.unlink()
     made = figure(looked, "figure_3_34")
     assert "marks" not in made.alt.lower() and "mesh saliency" not in made.alt and "ours" in made.alt
-
-
-def test_one_place_seen_from_all_sides_is_told_from_chance_and_from_the_middle(looked):
-    for gain in (nearer_than_chance, nearer_than_middle):
-        found = gain(looked)
-        assert len(found) == 2 and (found > 0.4).all()  # all views look at the pole
-
-
-def test_looking_at_the_middle_of_each_picture_is_no_place_of_the_object(looked, small):
-    for name in ("ball", "cube"):
-        write_look(looked.data.parent, name, small.ball(), None)
-    assert (nearer_than_chance(looked) < -0.05).all()
-    assert nearer_than_middle(looked).to_numpy() == pytest.approx([0, 0], abs=0.01)
-
-
-def test_a_view_that_sees_nothing_has_no_place(looked, root):
-    path = root / "data/test/fixation/ball.npz"
-    arrays = read_arrays(path)
-    arrays["visible"][1:] = False
-    write_arrays(path, **arrays)
-    assert len(nearer_than_chance(looked).dropna()) == 1  # one view of the ball is left
 
 
 def test_a_picture_on_gaze_is_kept_with_its_words_where_the_meshes_are_absent(bare, small, monkeypatch):

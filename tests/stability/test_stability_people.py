@@ -60,7 +60,7 @@ def test_without_known_gaze_there_is_no_agreement(disturbed):
 
 
 def test_the_table_has_what_is_found_again_and_what_agreement_is_lost(tmp_path, rows, monkeypatch):
-    monkeypatch.setattr(stability.people, "SETS", ("test",))
+    monkeypatch.setattr(stability.people, "GAZED", ("test",))
     kept = [row | {"item": item} for item in ("pear", "apple") for row in rows if row["method"] == "height"]
     built = build_one(stability, "tables", "stability_people", results(tmp_path, kept))
     shown = built.shown.set_index("disturbance")

@@ -4,11 +4,10 @@ from functools import partial
 
 from stages.kit.breaking_point import BROKEN
 from stages.report.claims import POINTS, Claim, Pick, highest_of
-from stages.report.results import COLOURED, ON_BLACK
+from stages.report.results import COLOURED, GAZED, ON_BLACK
 
 from .rows import ANY_POSE, CLASSICAL, GLANCE, NO_RIVALS, OURS, PER_OBJECT, SAME
 
-SETS = ("gaze", "gaze_clouds")  # with human gaze; no object is in both
 BEST_RIVAL = highest_of(but=(*NO_RIVALS, *SAME, *PER_OBJECT, "*_seen"))
 ONE_HUE = 0.98  # the least correlation of DKL with intensity on four household objects, each in one colour of a palette
 ENHANCED = "thesis_ssim"  # the thesis's own: the average weighted with its SSIM weights
@@ -31,14 +30,14 @@ on_gaze = partial(Claim, dataset="gaze", over=("item",), phrases=PHRASES)
 def closer_to_gaze(key: str, section: str, sentence: str, first: str, second: str | Pick) -> Claim:
     """A claim that the NSS of one method is higher than that of another."""
     return on_gaze(key=key, section=section, sentence=sentence, stage="salient_points", where={"metric": "nss"},
-                   first={"method": first}, second={"method": second}, dataset=SETS, scale=1,
+                   first={"method": first}, second={"method": second}, dataset=GAZED, scale=1,
                    unit="NSS")  # fmt: skip
 
 
 def svm_per_object(key: str, sentence: str, area: str, own: str, others: str) -> Claim:
     """A claim that an object's own SVM is more accurate than the one for all; own, others: how each was validated."""
     return on_gaze(key=key, section="T3.2.3", sentence=sentence, stage="weights", unit=POINTS, mean_of="second",
-                   where={"metric": "accuracy", "area": area}, dataset=SETS,
+                   where={"metric": "accuracy", "area": area}, dataset=GAZED,
                    first={"training": "one_per_object", "validation": own},
                    second={"training": "one_for_all", "validation": others})  # fmt: skip
 
@@ -76,6 +75,7 @@ CLAIMS = [
                    "object", "views", "objects"),
     *(
         on_gaze(key=f"best_over_{fixed}", section="T3.2.4", stage="attention_settings", scale=1, unit="NSS",
+                dataset=GAZED,
                 sentence=f"The most salient of 62 viewpoints show where people look better than {said} do.",
                 where={"method": "equal", "metric": "nss", "rows": 900, "channels": "nine"},
                 first={"views": "best"}, second={"views": fixed})

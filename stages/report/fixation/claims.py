@@ -6,11 +6,11 @@ from functools import partial
 from typing import Any
 
 from stages.fixation.agreement import ALL_VIEWS
+from stages.fixation.places import ITSELF
 from stages.fixation.tasks import FUSED_TASKS
 from stages.report.claims import Claim
 
 from .detectors import FUSED, LEE, NARROWED, NOISE, OURS, PRIOR, RIVALS, network_text, task_text, with_random_weights
-from .places import ITSELF
 from .rows import WHOLE
 
 # The thesis's (T3.3.2), but that ResNet101's weights come with no package; then ours, with new heads alone.
@@ -23,9 +23,11 @@ NAMED = {ITSELF: "the object itself", "convexity": "the convexity"}  # tasks tha
 AVERAGE = "average"  # the same four maps with equal weights
 Pair = tuple[str, str | tuple[str, ...]]  # method and task, or tasks
 DIAMETER = "% of the bounding sphere's diameter"
+SEEN = "household", "princeton"  # sets of whose objects networks were asked for the most salient place
 VIEWS = ("0", "1", "2")  # the three views of which an object's score is the mean
 PHRASES = {
     ("method", TUNED): "mean of the networks", ("method", "rival"): "", ("method", "control"): "",
+    ("method", "*-frozen"): "", ("metric", "nearer_than_chance"): "", ("metric", "nearer_than_middle"): "",
     ("view", VIEWS): "", ("view", ALL_VIEWS): "",
     ("metric", "pcc_masked"): "PCC the thesis's way, hidden vertices as zeros",
     ("metric", "pcc_tasks"): "PCC between tasks", ("metric", "distance"): "distance (nearest, which favours many "
@@ -79,8 +81,9 @@ def same_place(other: str, words: str, note: str) -> Claim:
     """The claim that the maxima of two views lie nearer to each other than other places: "chance" or "middle"."""
     sentence = f"Changing the viewpoint moves the most salient place less than {words}."
     note = f"{task_text(ITSELF)}, frozen networks: distance of {note} minus that of their maxima"
-    return Claim(key=f"same_place_over_{other}", section="T3.3.3", sentence=sentence, stage="fixation", over=("item",),
-                 unit=DIAMETER, statistic=f"nearer_than_{other}", note=note)  # fmt: skip
+    return claim(key=f"same_place_over_{other}", section="T3.3.3", sentence=sentence, dataset=SEEN, unit=DIAMETER,
+                 where={"metric": f"nearer_than_{other}"}, first={"method": "*-frozen"}, second=0, scale=100,
+                 note=note)  # fmt: skip
 
 
 CLAIMS = [

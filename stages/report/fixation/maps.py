@@ -11,6 +11,7 @@ from matplotlib.figure import Figure as Drawing
 
 from stages.fixation import fuse
 from stages.fixation.cam import resize_cams
+from stages.fixation.places import ITSELF
 from stages.fixation.tasks import FUSED_TASKS
 from stages.kit import Mesh
 from stages.kit.packs import object_files
@@ -23,7 +24,6 @@ from stages.report.results import NotRun, Results, some
 from stages.report.style import label
 
 from .detectors import LEE, NARROWED, OURS, TASKS, network_text, task_text, untrained
-from .places import ITSELF
 from .rows import VIEWPOINTS, stored
 
 ROWS, SMALL = 420, 260  # pixels a side of a picture; of the small ones of figure 3.34

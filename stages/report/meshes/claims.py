@@ -8,7 +8,7 @@ from functools import partial
 from typing import Any
 
 from stages.report.claims import Claim, Pick, highest_of, lowest_of
-from stages.report.results import COLOURED, ON_GREY, ON_WHITE, SECTION_3_1, SECTION_3_2
+from stages.report.results import COLOURED, GAZED, ON_GREY, ON_WHITE, SECTION_3_1, SECTION_3_2
 from stages.report.style import label
 
 from .methods import (
@@ -40,8 +40,8 @@ ALL_COUNTS = "mean over the face counts"
 # errors, 0.00267 in the mean of T table 3.2. Likewise "within 0.1" of errors that are far below 0.1.
 MARGIN, MARGIN_SEEN = 7.5, 10.0  # %
 # The sets of a claim; None: the first of the others, the household. The first is as the thesis printed it.
-MORE = ("gaze", "princeton")
-OF_3_1, OF_3_2, OF_OURS = (SECTION_3_1, *MORE), (SECTION_3_2, "household"), (None, *MORE, COLOURED)
+MORE = (*GAZED, "princeton")
+OF_3_1, OF_3_2, OF_OURS = (SECTION_3_1, *MORE), (SECTION_3_2, "gaze_clouds", "household"), (None, *MORE, COLOURED)
 PHRASES = {
     ("metric", METRO): "Metro mean error", ("metric", "metro_max"): "Metro max",
     ("metric", SEEN): "SSIM error", ("metric", "dlap"): "DLap", ("metric", "dnor"): "Dnor",
@@ -84,7 +84,7 @@ BETTER = (
     ("metro", METRO, "distance", None), ("ssim", SEEN, "as seen", None), ("dlap", "dlap", "Laplacian distance", None),
     ("dnor", "dnor", "normalised Laplacian distance", None),
     ("salient", "salient_error", "where our own model looks", None),
-    ("gaze", "gaze_error", "where people look", "gaze"),
+    ("gaze", "gaze_error", "where people look", GAZED),
 )  # fmt: skip
 CLAIMS = [
     # T3.1.5, in its order: backgrounds, channels

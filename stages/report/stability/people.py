@@ -7,20 +7,19 @@ from stages.kit.stats import interval
 from stages.report.grid import grouped, records
 from stages.report.items import Table
 from stages.report.markdown import signed, with_interval
-from stages.report.results import Results, some
+from stages.report.results import GAZED, Results, some
 from stages.report.style import label
 from stages.stability import PERTURBATIONS
 from stages.stability.subject import UNPERTURBED
 
 from .score import STAGE, of_gaze, scores
 
-SETS = "gaze", "gaze_clouds"
 REFERENCE = "enhanced"  # Itti's attention was not disturbed on these sets
 
 
 def table(results: Results) -> Table:
     """A row a disturbance: per method the share of points found again, and the NSS and AUC that are lost."""
-    sets = some([name for name in SETS if name in results.datasets(STAGE)], "no objects with gaze", STAGE)
+    sets = some([name for name in GAZED if name in results.datasets(STAGE)], "no objects with gaze", STAGE)
     rows = pd.concat([results.measured(STAGE, name) for name in sets])
     plain = rows.loc[rows["perturbation"] == UNPERTURBED].set_index(["item", "method", "metric"])["value"]
     disturbed = rows.loc[rows["perturbation"] != UNPERTURBED]
