@@ -7,7 +7,7 @@ Meshes: the Princeton segmentation benchmark (psb.zip in ../shared/data, or the 
 as it is, some cut down to 2,000 faces, some subdivided (Loop) to 200,000 and to a million; each to three shares of its
 faces, those above 100,000 to one; once with nothing kept and once with points far from each other, as many and with as
 wide rings as the target leaves room for (KEPT), so that there is a kept set at every size. Writes
-reports/bench/simplification.csv: a row a mesh, share, kept set and backend.
+reports/bench/simplification.csv.gz: a row a mesh, share, kept set and backend.
 
 `seconds` is the time of the process (all its threads, not that of other programs) in the backend alone, its own check
 of the result included; `whole_seconds` that of all of `simplify`, with the kept faces found and the target tested;
@@ -47,7 +47,7 @@ from stages.meshes.load import parse
 from stages.meshes.sources import PRINCETON, collection_files
 from stages.weights.svm_pixels import select_far_points
 
-OUT = Path("reports/bench/simplification.csv")
+OUT = Path("reports/bench/simplification.csv.gz")
 PSB = "../shared/data/psb.zip"
 SHARES = (0.5, 0.1, 0.02)
 SMALL, SMALL_OF = 2000, 5  # faces of the small meshes, and how many there are

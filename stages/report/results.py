@@ -152,11 +152,13 @@ class Results:
         return self._tables[path]
 
     def bench(self, name: str) -> pd.DataFrame:
-        """Rows of reports/bench/NAME.csv: what `make bench` measured; times are ratios to a named peer."""
+        """Rows of reports/bench/NAME.csv (or .csv.gz): what `make bench` measured; times are ratios to a named peer."""
         if self.own_meshes:
             raise NotRun("benchmarks are not about a folder of one's own", "bench", runnable=False)
         what = f"no bench/{name}.csv: `make bench` writes it"
-        return self._table(there(self.reports / "bench" / f"{name}.csv", what, "bench", runnable=False))
+        path = self.reports / "bench" / f"{name}.csv"
+        path = path if is_there(path) else path.with_name(f"{path.name}.gz")
+        return self._table(there(path, what, "bench", runnable=False))
 
     def thesis(self, name: str) -> pd.DataFrame:
         """One of the thesis's own tables, data/reference/thesis/NAME.csv."""

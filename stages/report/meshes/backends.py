@@ -45,10 +45,10 @@ def build(results: Results) -> Table:
 
 
 def tried(results: Results) -> pd.DataFrame:
-    """The rows of bench/simplification.csv, with with_points and RATIOS' columns; NotRun without outcomes."""
+    """The rows of bench/simplification.csv.gz, with with_points and RATIOS' columns; NotRun without outcomes."""
     rows = results.bench("simplification").rename(columns={"ratio": "time_ratio"})
     if "outcome" not in rows:
-        raise NotRun("bench/simplification.csv has no outcomes: `make bench` writes it anew", "lod", runnable=False)
+        raise NotRun("bench/simplification.csv.gz has no outcomes: `make bench` writes it anew", "lod", runnable=False)
     rows = rows.assign(with_points=rows["kept_points"] > 0)
     rows["largest_ratio"] = rows.get("largest_ratio", np.nan)  # rows of before have none
     rows["base"] = rows["ssim_error"].where((rows["backend"] == REFERENCE) & (rows["ssim_error"] > 0))
