@@ -1,6 +1,6 @@
 """What was measured, set by set, beside what the thesis says; a missing measurement is NotRun, never a crash."""
 
-from collections.abc import Iterable, Sequence, Sized
+from collections.abc import Callable, Iterable, Sequence, Sized
 from functools import cached_property
 from pathlib import Path
 from typing import TypeVar
@@ -144,11 +144,12 @@ class Results:
             raise NotRun(f"{dataset} is not switched on", stage, runnable=False)
         self.read.add(dataset)
         path = self.reports / "measurements" / dataset / f"{stage}{SUFFIX}"
-        return self._table(there(path, f"no measurements of {stage} on {dataset}", stage, dataset in self.sets))
+        there(path, f"no measurements of {stage} on {dataset}", stage, dataset in self.sets)
+        return self._table(path, read_rows)
 
-    def _table(self, path: Path) -> pd.DataFrame:
+    def _table(self, path: Path, read: Callable[[Path], pd.DataFrame]) -> pd.DataFrame:
         if path not in self._tables:
-            self._tables[path] = read_rows(path) if path.name.endswith(SUFFIX) else read_table(path)
+            self._tables[path] = read(path)
         return self._tables[path]
 
     def bench(self, name: str) -> pd.DataFrame:
@@ -158,7 +159,7 @@ class Results:
         what = f"no bench/{name}.csv: `make bench` writes it"
         path = self.reports / "bench" / f"{name}.csv"
         path = path if is_there(path) else path.with_name(f"{path.name}.gz")
-        return self._table(there(path, what, "bench", runnable=False))
+        return self._table(there(path, what, "bench", runnable=False), read_table)
 
     def thesis(self, name: str) -> pd.DataFrame:
         """One of the thesis's own tables, data/reference/thesis/NAME.csv."""

@@ -9,6 +9,7 @@ from stages.fixation.agreement import ALL_VIEWS
 from stages.fixation.places import ITSELF
 from stages.fixation.tasks import FUSED_TASKS
 from stages.report.claims import Claim
+from stages.report.results import GAZED
 
 from .detectors import FUSED, LEE, NARROWED, NOISE, OURS, PRIOR, RIVALS, network_text, task_text, with_random_weights
 from .rows import WHOLE
@@ -39,7 +40,7 @@ PHRASES = {
     **{("task", task): task_text(task) for task in RIVALS.values()},
     **{("method", each): network_text(each) for one in (*PRINTED, *FROZEN) for each in (one, with_random_weights(one))},
 }  # fmt: skip
-claim = partial(Claim, stage="fixation", dataset="gaze", over=("item",), scale=1, unit="PCC", phrases=PHRASES)
+claim = partial(Claim, stage="fixation", dataset=GAZED, over=("item",), scale=1, unit="PCC", phrases=PHRASES)
 
 
 def agrees(

@@ -8,7 +8,7 @@ import pandas as pd
 from stages.fixation import viewpoint_sphere
 from stages.fixation.agreement import ALL_VIEWS
 from stages.kit.files import read_arrays
-from stages.report.results import Results, some, there
+from stages.report.results import GAZED, Results, some, there
 
 from .detectors import FUSED, KINDS, NARROWED, Detector, untrained
 
@@ -20,13 +20,13 @@ NO_PEOPLE = "The truth of the marked objects is no gaze: marks by a vision model
 
 def sources(results: Results, metric: str = "pcc") -> dict[str, pd.DataFrame]:
     """{whose attention the truth is: rows with a value}: of all sets that have the metric, human gaze first."""
-    found = {}
-    for dataset in sorted(results.datasets("fixation") or [None], key=lambda name: name != "gaze"):
+    found, gazed = {}, dict(zip(GAZED, ("meshes", "point clouds"), strict=True))
+    for dataset in sorted(results.datasets("fixation") or [None], key=lambda name: name not in gazed):
         rows = results.rows("fixation", dataset).dropna(subset=["value"])
         count = rows.loc[rows["metric"] == metric, "item"].nunique()
         name = "marks" if dataset == MARKED and metric != "pcc_tasks" else dataset
         if count:
-            found[f"human gaze, {count} meshes" if dataset == "gaze" else f"{name}, {count} objects"] = rows
+            found[f"human gaze, {count} {gazed[dataset]}" if dataset in gazed else f"{name}, {count} objects"] = rows
     return some(found, "no object of this run has ground truth", "fixation", runnable=False)
 
 

@@ -16,7 +16,8 @@ from stages.report.words import dataset_text
 from .detectors import TASKS, network_text
 from .rows import networks, sources
 
-LINES = ((CYCLE[0], (-14, -7)), (CYCLE[1], (7, 6)))  # colour, and where the chosen number stands, in points
+# A set's colour, and where its chosen number stands, in points.
+LINES = ((CYCLE[0], (-14, -7)), (CYCLE[1], (7, 6)), (CYCLE[2], (7, -12)))
 
 
 def figure_3_28(results: Results) -> Figure:

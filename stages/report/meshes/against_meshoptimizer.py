@@ -15,7 +15,7 @@ Interval = tuple[float, float, float]
 
 
 def sentences(rows: pd.DataFrame, results: Results) -> list[str]:
-    """A sentence a task, of the rows of bench/simplification.csv.gz, and one on gaze; none where it was not measured."""
+    """A sentence a task, of the rows of bench/simplification.csv.gz, and one on gaze; none where not measured."""
     tasks = [group for _, group in rows.groupby("with_points") if OTHER in set(group["backend"])]
     return [_plain(group) for group in tasks] + [*_salient(results)]
 
