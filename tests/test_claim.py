@@ -20,12 +20,13 @@ def test_the_committed_verdicts_follow_from_the_committed_rows(capsys):
     for one in found:
         assert len(one["differences"]) == one["pairs"] and all(map(Path.exists, map(Path, one["rows"])))
     (soft,) = (one for one in found if one["key"] == "ours_soft_gaze")
-    assert soft["command"] == "python -m stages.compose experiment=attention && dvc repro lod@gaze lod@gaze_clouds report"
+    anew = "python -m stages.compose experiment=attention && dvc repro lod@gaze lod@gaze_clouds report"
+    assert soft["command"] == anew
 
 
 @pytest.mark.slow
 def test_a_verdict_that_is_not_the_committed_one_is_named(monkeypatch, capsys):
-    judging = import_module("stages.report.verdict")  # not the function of that name
+    judging = import_module("stages.report.verdict")
     monkeypatch.setattr(judging, "verdict", lambda low, high, unit: "contradicted")
     assert run(["ours_soft_gaze"]) == 1
     said = capsys.readouterr()

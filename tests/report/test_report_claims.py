@@ -7,15 +7,14 @@ import pandas as pd
 import pytest
 
 from stages.kit.stats import interval
-from stages.report import CLAIMS, judge, verdict
 from stages.report.__main__ import write_claims
 from stages.report.claims import POINTS, Claim, highest_of, lowest_of
 from stages.report.claims_page import effect, open_text, over_text
 from stages.report.counting import counted, sentences
 from stages.report.differences import differences
 from stages.report.results import SECTION_3_1, NotRun
-from stages.report.topics import build_all
-from stages.report.verdict import holding, judged
+from stages.report.topics import CLAIMS, build_all
+from stages.report.verdict import holding, judge, judged, verdict
 
 
 def of(results, key):

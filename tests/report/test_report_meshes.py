@@ -8,7 +8,7 @@ import pytest
 
 from stages.kit.files import write_arrays, write_mesh
 from stages.kit.stats import interval
-from stages.report import judge, meshes
+from stages.report import meshes
 from stages.report.claims import highest_of, lowest_of
 from stages.report.differences import differences
 from stages.report.effects import sets_of
@@ -20,6 +20,7 @@ from stages.report.meshes.rows import data_sets, face_counts, paired_cells
 from stages.report.results import SECTION_3_1, SECTION_3_2, NotRun
 from stages.report.style import label
 from stages.report.topics import KINDS, build_all, build_one
+from stages.report.verdict import judge
 from stages.report.words import dataset_text
 
 OBJECTS = ["a", "b", "c", "d"]

@@ -7,9 +7,8 @@ import pandas as pd
 import pytest
 from matplotlib.text import Text
 
-from stages.report import pareto_chart, pareto_front
 from stages.report.names import place_names
-from stages.report.pareto import ticks
+from stages.report.pareto import pareto_chart, pareto_front, ticks
 from stages.report.results import NotRun
 from stages.report.style import plt
 
