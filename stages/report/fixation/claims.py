@@ -24,7 +24,7 @@ NAMED = {ITSELF: "the object itself", "convexity": "the convexity"}  # tasks tha
 AVERAGE = "average"  # the same four maps with equal weights
 Pair = tuple[str, str | tuple[str, ...]]  # method and task, or tasks
 DIAMETER = "% of the bounding sphere's diameter"
-SEEN = "household", "princeton"  # sets of whose objects networks were asked for the most salient place
+SEEN = "household", "princeton", "gaze_clouds"  # sets of whose objects networks were asked for the most salient place
 VIEWS = ("0", "1", "2")  # the three views of which an object's score is the mean
 PHRASES = {
     ("method", TUNED): "mean of the networks", ("method", "rival"): "", ("method", "control"): "",
