@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import replace
 from fnmatch import fnmatch
+from importlib import import_module
 
 import pandas as pd
 
@@ -19,6 +20,8 @@ def statistic(name: str) -> Callable:
 
 def differences(results: Results, claim: Claim) -> pd.Series:
     """The differences of a claim on one set, in its unit, indexed by its `over`; NotRun where nothing can be paired."""
+    if claim.statistic not in STATISTICS:
+        import_module(f"{__package__}.topics")  # a worker has not imported the topic that registers it
     found = STATISTICS[claim.statistic](results, claim).dropna()
     return claim.scale * some(found, f"no pairs for {claim.key}", claim.stage, runnable=False) + claim.margin
 

@@ -1,6 +1,10 @@
 """Claims: pairing, intervals, words, and the one word."""
 
+import pickle
+import subprocess
+import sys
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -468,3 +472,19 @@ def test_every_verdict_can_be_recomputed_from_the_differences(root, results, sma
         mean, low, high = interval(found[row.key], row.shared)
         assert len(found[row.key]) == row.pairs and verdict(low, high, row.unit) == row.verdict
         assert (mean, low, high) == pytest.approx((row.effect, row.low, row.high), rel=1e-5, nan_ok=True)
+
+
+@pytest.mark.slow
+def test_a_process_that_imported_no_topic_knows_the_statistic_of_a_claim():
+    program = (
+        "import pickle, sys; from pathlib import Path\n"
+        "from stages.kit.workspace import Workspace; from stages.report.schema import Params\n"
+        "from stages.report.results import Results; from stages.report.verdict import judge\n"
+        "one, workspace = pickle.load(sys.stdin.buffer), Workspace(Path('.'))\n"
+        "assert 'stages.report.topics' not in sys.modules\n"
+        "print(judge([one], Results(workspace, workspace.settings(Params)))['verdict'].iloc[0])"
+    )
+    one = pickle.dumps(next(claim for claim in CLAIMS if claim.statistic == "falls_with_faces"))
+    root = Path(__file__).parents[2]
+    done = subprocess.run([sys.executable, "-c", program], input=one, cwd=root, capture_output=True, check=True)
+    assert done.stdout.strip()
