@@ -17,7 +17,7 @@ from .detectors import TASKS, network_text
 from .rows import networks, sources
 
 # A set's colour, and where its chosen number stands, in points.
-LINES = ((CYCLE[0], (-14, -7)), (CYCLE[1], (7, 6)), (CYCLE[2], (7, -12)))
+LINES = ((CYCLE[0], (-14, -7)), (CYCLE[1], (7, 6)), (CYCLE[2], (-16, -9)))
 
 
 def figure_3_28(results: Results) -> Figure:
