@@ -49,7 +49,7 @@ FINDINGS = (
     Finding("glance_over_blind", "supported", "One touch where our glance expects gaze tells more than a blind one",
             "points of accuracy more than blind touch", "touch"),
     Finding("keep_metro", "contradicted", "Fails: neighbourhoods kept unchanged raise the error",
-            "times the error of QSlim", "meshes", "times:", 2),
+            "times the error of plain simplification", "meshes", "times:", 2),
     Finding("simulation_helps_5", "contradicted", "Fails: simulated imprints make real touches harder to recognise",
             "points of accuracy more than without them", "recorded"),
 )  # fmt: skip

@@ -150,7 +150,7 @@ def workspace(make_workspace):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("source", "measured"), [("gaze", True), ("household", False)])
+@pytest.mark.parametrize(("source", "measured"), [("gaze", True), ("gaze_clouds", True), ("household", False)])
 def test_only_recorded_gaze_is_human_gaze(workspace, source, measured):
     workspace = workspace(source)
     __main__.run(workspace)
