@@ -42,9 +42,7 @@ def subjects(archive):
     for name, files in sorted(published_files("gaze", archive).items()):
         mesh = normalise(parse(files[1][1](), ".obj"))
         mesh = Mesh(mesh.vertices.astype(np.float32), mesh.faces)  # meshoptimizer's precision
-        density = spread_on_surface(
-            mesh, ground_truth_amounts(name, "gaze", mesh, files, Path()), SIGMA * mesh.diagonal
-        )
+        density = spread_on_surface(mesh, ground_truth_amounts(name, "gaze", mesh, files), SIGMA * mesh.diagonal)
         yield name, mesh, density / density.max()
 
 

@@ -106,7 +106,7 @@ def gazed(archive: Path) -> Iterator[tuple[str, Mesh, Any]]:
     files = published_files("gaze", archive)
     for item in progress(gaze(Params("gaze", str(archive), "y", "unknown", [], {}, False)), "bench"):
         mesh, _ = prepare_mesh(item)
-        amounts = ground_truth_amounts(item.name, "gaze", mesh, files.get(item.name, []), Path())
+        amounts = ground_truth_amounts(item.name, "gaze", mesh, files.get(item.name, []))
         if amounts is not None:
             density = spread_on_surface(mesh, amounts, SPREAD * mesh.diagonal)
             yield item.name, mesh, GroundTruth(amounts, density, mesh.vertex_areas)

@@ -37,15 +37,16 @@ def run(argv: Sequence[str]) -> int:
     workspace = Workspace(Path("."))
     with from_extra():
         from stages.report.topics import CLAIMS
-    verdicts = workspace.reports / "claims.csv"
+    verdicts = workspace.published / "claims.csv"
     if not verdicts.exists():
         raise ValueError(f"no {verdicts}: run it in a clone of the project")
     committed = read_table(verdicts).set_index("key")["verdict"]
     moved = []
     for claim in chosen(CLAIMS, given.keys):
-        if given.measure:
-            measure(workspace, judged_again(workspace, claim)["rows"])
         found = judged_again(workspace, claim)
+        if given.measure:
+            measure(workspace, found["rows"])
+            found = judged_again(workspace, claim, anew=True)
         print(json.dumps(found) if given.json else as_text(found))
         if found["verdict"] != committed.get(claim.key):
             moved.append(f"{claim.key}: {found['verdict']}, in reports/claims.csv {committed.get(claim.key, 'absent')}")
@@ -63,18 +64,22 @@ def chosen(claims: Sequence[Any], keys: Sequence[str]) -> list[Any]:
     return [claim for claim in claims if any(fnmatch(claim.key, key) for key in keys)]
 
 
-def judged_again(workspace: Workspace, claim: Any) -> dict[str, Any]:
-    """A claim's row of reports/claims.csv, made again, with `differences` ({pair: value}), `rows` and `command`."""
+def judged_again(workspace: Workspace, claim: Any, anew: bool = False) -> dict[str, Any]:
+    """A claim's row of reports/claims.csv, made again, with `differences` ({pair: value}), `rows` and `command`.
+
+    anew: from the rows of the run that params.yaml describes, not from the published ones.
+    """
     from stages.report.anew import command
     from stages.report.claims_page import open_text, over_text, sets_read, sets_text
     from stages.report.results import Results
     from stages.report.schema import Params
     from stages.report.verdict import judged
 
-    results = Results(workspace, workspace.settings(Params))
+    results = (Results if anew else Results.published)(workspace, workspace.settings(Params))
     frame, pairs = judged([claim], results)
     sets, (row,) = sets_read(claim, results), frame.itertuples()
-    files = [f"reports/measurements/{name}/{claim.stage}{SUFFIX}" for name in sets]
+    folder = results.reports.relative_to(workspace.root) / "measurements"
+    files = [(folder / name / f"{claim.stage}{SUFFIX}").as_posix() for name in sets]
     found = {str(key): value for key, value in frame.iloc[0].to_dict().items() if value == value}
     texts = {"on each set": sets_text(row), "open": open_text(row), "over": over_text(row)}
     return {

@@ -2,11 +2,14 @@
 
 Examples: `python -m stages.compose profile=smoke`, `python -m stages.compose sets=[folder] meshes.folder=~/scans`,
 `python -m stages.compose sets=[household,gaze] gaze.lod.rings=2`. A setting holds for every set; with a set's name
-before it, for that set alone. The pipeline reads params.yaml alone; without arguments the defaults come back.
+before it, for that set alone. The pipeline reads params.yaml alone. Without arguments the published configuration comes
+back, whose results lie in reports/. Every other choice writes to a folder of its own below runs/, which git ignores;
+out=FOLDER names another one.
 """
 
 import argparse
 import difflib
+import re
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -23,10 +26,12 @@ from stages.kit.command import errors_in_one_line
 from stages.kit.conf import conf_folder
 from stages.kit.files import write_text
 from stages.kit.params import FILE, ParamsError, check_common, check_section, schema_of
+from stages.kit.workspace import PUBLISHED
 
 OPEN = ("classification.sets", "meshes.classes", "transfer.networks")  # sections whose keys a person may add to
 CONF = conf_folder()
-SHARED = ("profile", "seed", "parallel", "sets", "report")  # what is said once, not for each set
+SHARED = ("profile", "out", "seed", "parallel", "sets", "report")  # what is said once, not for each set
+RUNS = "runs"  # below it are the results of every configuration but the published one
 READ_TOO = {  # sections that a stage also reads
     "exploration": ["classification"],
     "touch_stability": ["classification"],
@@ -59,7 +64,21 @@ def compose(overrides: Sequence[str] = ()) -> dict[str, Any]:
         stage: {name: begins_with(values[name], stage, name) for name in sets} if stage in STARTS else sets
         for stage, sets in values["graph"].items()
     }
+    values["out"] = values["out"] or (PUBLISHED if not overrides or _is_published(values) else own_folder(overrides))
     return values
+
+
+def own_folder(overrides: Sequence[str]) -> str:
+    """The folder of a run's results: runs/ and the names of its profile, experiment and sets, or `own` without any."""
+    chosen = dict(override.split("=", 1) for override in overrides if "=" in override)
+    words = [word for key in ("profile", "experiment", "sets") for word in re.findall(r"\w+", chosen.get(key, ""))]
+    return f"{RUNS}/{'-'.join(words) or 'own'}"
+
+
+def _is_published(values: dict[str, Any]) -> bool:
+    """Whether settings are those of the published configuration; how objects run side by side does not matter."""
+    free = {"parallel": None, "out": None}
+    return values | free == compose() | free
 
 
 STARTS = ("meshes", "recorded", "simulated_to_real", "recorded_networks")  # they read files that no stage has made
@@ -177,12 +196,19 @@ def main() -> None:
     overrides = parser.parse_args().overrides
     errors_in_one_line("compose")
     values = compose(overrides)
-    for dataset, path in absent(values).items():
-        obtain = _composed([f"data={dataset}"])["obtain"]
-        print(f"compose: {dataset} is left out, {path} is not there: {obtain}", file=sys.stderr)
+    missing = absent(values)
+    if len(missing) == len(values["sets"]):
+        raise ParamsError("; ".join(f"{name}: {path} is not there: {_obtain(name)}" for name, path in missing.items()))
+    for dataset, path in missing.items():
+        print(f"compose: {dataset} is left out, {path} is not there: {_obtain(dataset)}", file=sys.stderr)
         leave_out(values, dataset)
     write_text(FILE, OmegaConf.to_yaml(OmegaConf.create(values)))
-    print(f"compose: {FILE} written" + (f" with {' '.join(overrides)}" if overrides else ""))
+    chosen = f" with {' '.join(overrides)}" if overrides else ""
+    print(f"compose: {FILE} written{chosen}; results go to {values['out']}/")
+
+
+def _obtain(dataset: str) -> str:
+    return _composed([f"data={dataset}"])["obtain"]
 
 
 def leave_out(values: dict[str, Any], dataset: str) -> None:

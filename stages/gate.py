@@ -1,7 +1,8 @@
 """Holds metrics against their baseline, each within its tolerance: `python -m stages.gate [METRICS.json ...]`
 
 Without files: the metrics of the sets that params.yaml switches on, reports/metrics/SET/STAGE.json, and those of the
-report, against reports/baselines/PROFILE.json of its profile, within reports/tolerances.yaml. With files, of any
+report, against reports/baselines/PROFILE.json of its profile, within reports/tolerances.yaml. A run with other sets or
+settings has a baseline of its own, baseline.json in the folder of its results, which --update makes. With files, of any
 project: each metric is called by its file and its keys, `train.accuracy` in train.json. A baseline is {metric: value};
 --tolerances names a file of rules such as ours: abs, rel, direction; exact without a rule. How far each metric moves
 with the seed, the threads or the machine is measured by --spread, which writes it beside the baseline: so far it may
@@ -28,6 +29,7 @@ from stages.kit.workspace import Workspace
 
 TOLERANCES = Path("reports/tolerances.yaml")
 REPORT = "report."  # metrics that count tables and verdicts: no measurements, whose luck is to be known
+BASELINE = "baseline.json"  # of a run of one's own, in the folder of its results
 LISTED = 8  # new metrics that are named
 
 
@@ -60,7 +62,7 @@ def hold(metrics: Mapping[str, float], path: Path, tolerances: Tolerances, other
     others: metrics of other profiles, which the rules may be about.
     """
     if not path.exists():
-        raise SystemExit(f"gate: no {path}; make it by --update after a run that you trust")
+        raise SystemExit(f"gate: no {path}: --update makes it from the metrics at hand, after a run that you trust")
     baseline = read_json(path)
     tolerances.check([*baseline, *metrics, *others])
     moved = compare(metrics, baseline, tolerances)
@@ -133,8 +135,14 @@ def run(argv: Sequence[str]) -> None:
 
 
 def baseline_of(workspace: Workspace) -> Path:
-    """Where the baseline of the profile lies."""
-    return workspace.reports / "baselines" / f"{workspace.params.get('profile', 'laptop')}.json"
+    """Where the baseline of a run lies: with the published ones, or beside the results of a run of one's own."""
+    name = (
+        workspace.params.get("profile", "laptop")
+        if workspace.reports == workspace.published
+        else workspace.reports.name
+    )
+    published = workspace.published / "baselines" / f"{name}.json"
+    return published if workspace.reports == workspace.published or published.exists() else workspace.reports / BASELINE
 
 
 def main() -> None:

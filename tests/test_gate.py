@@ -54,7 +54,7 @@ def test_metrics_of_any_project_are_held_and_kept(tmp_path, capsys):
     metrics.write_text(json.dumps({"accuracy": 0.8, "epochs": 10}))
     rules.write_text("rules: [{metric: train.accuracy, abs: 0.05, direction: more}]")
     given = [str(metrics), "--baseline", str(baseline)]
-    with pytest.raises(SystemExit, match="make it by --update"):
+    with pytest.raises(SystemExit, match="--update makes it"):
         gate.run(given)
     gate.run([*given, "--update"])
     assert read_json(baseline) == {"train.accuracy": 0.8, "train.epochs": 10}

@@ -83,7 +83,7 @@ def show(name: str, title: str, chosen: argparse.Namespace, out: Path) -> int:
                 report(name, f"{file.name} is left out: {failures[file.name]}")
     finally:
         if made:
-            write_text(out / PAGE, build_page(title, made, failures, commands(chosen)))
+            write_text(out / PAGE, build_page(title, made, failures, commands(chosen), out))
     if made or chosen.json:
         print(json.dumps(figures(made, failures)) if chosen.json else listing(made, out))
     return 1 if failures else 0

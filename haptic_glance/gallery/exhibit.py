@@ -54,7 +54,7 @@ class Exhibit:
     touched: the mesh, repaired; note: what is known of its up axis. saliency (n,). points: rows of
     stages.saliency.COLUMNS, most salient first. levels: finest first; missing: {level: why there is none}. touches:
     rows of places.csv, in the order of the points; images (k, rows, cols) in 0..1, 0 pressed first. picture: (h, w, 3)
-    u1, coloured by saliency with the points numbered.
+    u1, coloured by saliency with the points numbered. units: of its lengths and positions.
     """
 
     name: str
@@ -69,6 +69,7 @@ class Exhibit:
     touches: list[dict[str, Any]]
     images: np.ndarray
     picture: np.ndarray
+    units: str = "the file's units"
 
 
 def exhibit(

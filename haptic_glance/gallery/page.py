@@ -7,6 +7,7 @@ import re
 from collections.abc import Mapping, Sequence
 from html import escape
 from importlib import resources
+from pathlib import Path
 from string import Template
 from typing import Any
 from urllib.parse import quote
@@ -28,8 +29,14 @@ MOST, LEAST, ALL = 20_000, 2_000, 160_000  # faces of a turnable mesh, and of al
 WIDE = 480  # pixels of a picture
 
 
-def build_page(title: str, exhibits: Sequence[Exhibit], failures: Mapping[str, str], commands: Sequence[str]) -> str:
-    """The text of the page. failures: {file: why it is left out}; commands: those that do the same with one mesh."""
+def build_page(
+    title: str, exhibits: Sequence[Exhibit], failures: Mapping[str, str], commands: Sequence[str], out: Path,
+    more: str = "",
+) -> str:  # fmt: skip
+    """The text of the page, which lies in the folder `out`.
+
+    failures: {file: why it is left out}; commands: those that do the same; more: HTML behind the meshes.
+    """
     faces = int(np.clip(ALL // max(len(exhibits), 1), LEAST, MOST))
     colours = viridis(np.linspace(0, 1, SHADES))
     report = resources.files("stages") / "report" / "page"  # not stages.report, which imports what the pipeline has
@@ -42,7 +49,7 @@ def build_page(title: str, exhibits: Sequence[Exhibit], failures: Mapping[str, s
         "failures": failures_html(failures),
         "contents": contents_html(exhibits),
         "viewer": viewer,
-        "meshes": "".join(exhibit_html(k, one) for k, one in enumerate(exhibits)),
+        "meshes": "".join(exhibit_html(k, one, out) for k, one in enumerate(exhibits)) + more,
         "commands": escape("\n".join(commands)),
         "data": as_script(viewer_data([turnable(one, faces) for one in exhibits], colours)),
     }
@@ -69,10 +76,11 @@ def turnable(one: Exhibit, faces: int) -> dict[str, Any]:
     return pack(one.name, len(one.touched.mesh.faces), full, *shown)
 
 
-def exhibit_html(index: int, one: Exhibit) -> str:
-    """The section of a mesh: its picture, its points with what is felt there, its levels, its files."""
+def exhibit_html(index: int, one: Exhibit, out: Path) -> str:
+    """The section of a mesh: its picture, its points with their imprints, its levels, its files. out: of the page."""
+    files = quote(one.folder.relative_to(out).as_posix())
     size = " x ".join(f"{side:.4g}" for side in np.ptp(one.touched.source.vertices, axis=0))
-    facts = f"{number(len(one.touched.mesh.faces), 'face')}, {size} in the file's units; {one.note}."
+    facts = f"{number(len(one.touched.mesh.faces), 'face')}, {size} in {one.units}; {one.note}."
     alt = f"{one.name} coloured by saliency, its {len(one.points)} most salient points numbered"
     picture = f'<img src="{data_uri(one.picture, WIDE)}" width="{WIDE}" height="{WIDE}" alt="{escape(alt)}">'
     caption = "Yellow: where people look most. Numbers: the places, most salient first; those behind are not shown."
@@ -81,8 +89,8 @@ def exhibit_html(index: int, one: Exhibit) -> str:
 <div class="mesh"><figure>{picture}<figcaption>{caption}</figcaption></figure>
 <div><h3>Touched there</h3><ol class="touches">{touches}</ol>
 <p class="help">16 x 16 cells, 1 % of the object's diameter apart. Black is pressed first, white is far or nothing.</p>
-{levels_html(one)}</div></div>
-<details><summary>Places, and all files</summary>{places_html(one)}<p>{files_html(one)}</p></details></section>
+{levels_html(one, files)}</div></div>
+<details><summary>Places, and all files</summary>{places_html(one)}<p>{files_html(one, files)}</p></details></section>
 """
 
 
@@ -97,12 +105,12 @@ def touch_html(one: Exhibit, row: Mapping[str, Any], image: np.ndarray) -> str:
     )
 
 
-def levels_html(one: Exhibit) -> str:
-    """The table of levels, with their files; what is infeasible is named."""
+def levels_html(one: Exhibit, folder: str) -> str:
+    """The table of levels, with their files in a folder beside the page; what is infeasible is named."""
     rows, total = [], len(one.touched.mesh.faces)
     for level in one.levels:
         faces = len(level.mesh.faces)
-        link = f'<a href="{quote(f"{one.folder.name}/{level.file.name}")}" download>{escape(level.file.name)}</a>'
+        link = f'<a href="{folder}/{quote(level.file.name)}" download>{escape(level.file.name)}</a>'
         rows.append(
             [link, f"{faces:,}", f"{100 * faces / total:.3g}", f"{level.error.mean():.2g}", f"{level.error.max():.2g}"]
         )
@@ -130,10 +138,10 @@ def table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     return f"{box}<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>"
 
 
-def files_html(one: Exhibit) -> str:
-    """Links to the files of a mesh."""
+def files_html(one: Exhibit, folder: str) -> str:
+    """Links to the files of a mesh, in a folder beside the page."""
     names = sorted(path.name for path in one.folder.iterdir() if not path.name.startswith("."))
-    return " ".join(f'<a href="{quote(f"{one.folder.name}/{name}")}">{escape(name)}</a>' for name in names)
+    return " ".join(f'<a href="{folder}/{quote(name)}">{escape(name)}</a>' for name in names)
 
 
 def failures_html(failures: Mapping[str, str]) -> str:

@@ -5,8 +5,6 @@ from collections.abc import Callable
 import numpy as np
 import torch
 
-from stages.networks.grid import cell_positions
-
 
 def grad_cam(
     maps: np.ndarray | torch.Tensor,
@@ -35,21 +33,3 @@ def grad_cam(
     b, channels, i, j = maps.shape
     summed = importance.cpu().numpy()[:, None] @ maps.cpu().numpy().reshape(b, channels, i * j)
     return np.maximum(summed, 0).reshape(b, i, j), chosen.cpu().numpy()
-
-
-def resize_cams(cams: np.ndarray, size: int, network: str) -> np.ndarray:
-    """(b, size, size) f4: maps (b, i, j) resized bilinearly, each divided by its maximum; zero maps stay zero.
-
-    network: decides the positions of the cells in the image (stages.networks.grid). Ordinary resizing, which aligns the
-    corners of pixels, would shift the maps of most networks by half a cell.
-    """
-    cams = np.asarray(cams, dtype=np.float32)
-    down, across = (_weights(cell_positions(network, size, cells), cells) for cells in cams.shape[1:])
-    large = down @ cams @ across.T
-    top = large.max(axis=(1, 2), keepdims=True)
-    return np.divide(large, top, out=np.zeros_like(large), where=top > 0)
-
-
-def _weights(positions, cells):
-    """(p, cells) f4: the weight of each cell at a position between two of them."""
-    return np.maximum(1 - np.abs(positions[:, None] - np.arange(cells)), 0).astype(np.float32)

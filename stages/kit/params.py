@@ -10,7 +10,7 @@ from omegaconf.errors import OmegaConfBaseException
 from yaml import YAMLError
 
 FILE = Path("params.yaml")
-COMMON = {"profile": str, "seed": int, "parallel": dict, "sets": list, "graph": dict, "report": dict}
+COMMON = {"profile": str, "out": str, "seed": int, "parallel": dict, "sets": list, "graph": dict, "report": dict}
 
 Settings = TypeVar("Settings")
 

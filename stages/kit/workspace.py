@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 from .params import FILE, ParamsError, check_common, check_section, load_params, section_of
 
 Settings = TypeVar("Settings")
+PUBLISHED = "reports"
 
 
 @dataclass(frozen=True)
@@ -27,17 +28,22 @@ class Workspace:
 
     @property
     def reports(self) -> Path:
-        """The folder of tables, figures, measurements and metrics."""
-        return self.root / "reports"
+        """The folder of tables, figures, measurements and metrics: that of the published ones, or the run's own."""
+        return self.root / self.params.get("out", PUBLISHED)
+
+    @property
+    def published(self) -> Path:
+        """The folder of the published results, which git keeps; only the published configuration writes there."""
+        return self.root / PUBLISHED
 
     @property
     def measurements(self) -> Path:
-        """reports/measurements/SET: a table of rows for each stage."""
+        """measurements/SET below `reports`: a table of rows for each stage."""
         return self.reports / "measurements" / self.dataset
 
     @property
     def metrics(self) -> Path:
-        """reports/metrics/SET: a file of a few numbers for each stage."""
+        """metrics/SET below `reports`: a file of a few numbers for each stage."""
         return self.reports / "metrics" / self.dataset
 
     @property

@@ -1,4 +1,4 @@
-"""The positions in the image of the cells of a network's last feature maps."""
+"""The positions in the image of the cells of a network's last feature maps, and maps resized to the image."""
 
 import numpy as np
 
@@ -25,3 +25,21 @@ def cell_positions(network: str, size: int, cells: int) -> np.ndarray:
         raise ValueError(f"unknown network {network!r}, known: {', '.join(GRIDS)}")
     stride, first = GRIDS[network]
     return np.clip((np.arange(size) - first) / stride, 0, cells - 1)
+
+
+def resize_cams(cams: np.ndarray, size: int, network: str) -> np.ndarray:
+    """(b, size, size) f4: maps (b, i, j) resized bilinearly, each divided by its maximum; zero maps stay zero.
+
+    network: decides the positions of the cells in the image (`cell_positions`). Ordinary resizing, which aligns the
+    corners of pixels, would shift the maps of most networks by half a cell.
+    """
+    cams = np.asarray(cams, dtype=np.float32)
+    down, across = (_weights(cell_positions(network, size, cells), cells) for cells in cams.shape[1:])
+    large = down @ cams @ across.T
+    top = large.max(axis=(1, 2), keepdims=True)
+    return np.divide(large, top, out=np.zeros_like(large), where=top > 0)
+
+
+def _weights(positions, cells):
+    """(p, cells) f4: the weight of each cell at a position between two of them."""
+    return np.maximum(1 - np.abs(positions[:, None] - np.arange(cells)), 0).astype(np.float32)

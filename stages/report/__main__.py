@@ -6,20 +6,25 @@ reports/claims/differences.csv.gz, reports/index.html with reports/site, and rep
 measurement is listed as not run, with the stage to run.
 """
 
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import partial
 from operator import call
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 
 from stages.kit.command import workspace_of_arguments
-from stages.kit.files import write_json, write_table, write_text
+from stages.kit.files import replace_folder, write_json, write_table, write_text
 from stages.kit.parallel import parallel_map
 
 from .claims_page import claims_shown
 from .counting import counted, counts, open_by_cause
 from .items import Built
 from .markdown import as_text, markdown_table
+from .own import write_own_page
 from .results import NotRun, Results
 from .schema import Params
 from .site import write_site
@@ -27,6 +32,7 @@ from .topics import CLAIMS, KINDS, TOPICS, build_all
 from .verdict import judged
 from .viewer import pack_viewer
 
+OUTPUTS = ("tables", "figures", "tradeoff", "claims", "site", "claims.md", "claims.csv", "index.html")
 OWN_NOTE = "this page is about a folder alone; `python -m stages.compose` switches the project's own data sets on"
 CLAIMS_NOTE = """Each effect is a paired difference, positive on the side that the thesis claims, with its 95 %
 interval. *supported*: the interval lies wholly on the claimed side; *contradicted*: wholly on the other; *no
@@ -55,8 +61,39 @@ def main() -> None:
 
 
 def write_report(results: Results) -> None:
-    """Builds and writes everything, and prints what could not be."""
-    out, own = results.reports, results.own_meshes
+    """Builds everything, prints what could not be built, and moves the rest into place at the end."""
+    with beside(results.reports, results.out) as out:
+        made = build(results, out)
+    write_json(results.reports / "metrics/report.json", made)
+    print(f"report: open {results.reports / 'index.html'}")
+
+
+@contextmanager
+def beside(reports: Path, out: Path) -> Iterator[Path]:
+    """A copy of the report of an earlier run, to be made anew; it takes its place where nothing failed.
+
+    The copy holds figures of data sets whose data is no longer there.
+    """
+    shutil.rmtree(out, ignore_errors=True)
+    out.mkdir(parents=True)
+    for path in (reports / name for name in OUTPUTS):
+        if path.is_dir():
+            shutil.copytree(path, out / path.name)
+        elif path.exists():
+            shutil.copyfile(path, out / path.name)
+    yield out
+    reports.mkdir(parents=True, exist_ok=True)
+    for path in (out / name for name in OUTPUTS):
+        if path.is_dir():
+            replace_folder(path, reports / path.name)
+        else:
+            shutil.move(path, reports / path.name)
+    shutil.rmtree(out)
+
+
+def build(results: Results, out: Path) -> dict[str, Any]:
+    """Writes the report below `out`; returns its metrics."""
+    own = results.own_meshes
     built, (claims, differences) = side_by_side(results)
     remove_older(built, out)
     not_run = {f"{kind}/{name}": why for kind, found in built.items() for name, why in found.not_run.items()}
@@ -65,20 +102,22 @@ def write_report(results: Results) -> None:
     write_claims(claims, differences, out)
     parts = {**built, "claims": claims, "differences": differences, "known": CLAIMS, "results": results}
     parts |= {"not_run": not_run, "sets": results.sets, "own": own, "meshes": None}
-    parts |= {"first": ["touch_one_mesh" if own else "pipeline"], "dataset": dataset_line(results)}
+    parts |= {"first": ["pipeline"], "dataset": dataset_line(results)}
     try:
-        parts["meshes"] = pack_viewer(results)
+        parts["meshes"] = None if own else pack_viewer(results)
     except NotRun as missing:
         not_run["viewer"] = str(missing)
-    write_site(TOPICS, parts, out)
+    pages = write_site(TOPICS, parts, out)
+    if own:
+        write_own_page(results, pages, out)
     made = {kind: len(found.items) for kind, found in built.items()}
-    write_json(out / "metrics/report.json", {"claims": counts(claims), **made, "not_run": len(not_run)})
     for name, why in not_run.items():
         print(f"report: {name} not run, {why}")
     print(
         f"report: {made['tables']} tables, {made['figures']} figures, {made['tradeoff']} charts; claims: "
-        f"{', '.join(f'{count} {word}' for word, count in counts(claims).items())}; open {out / 'index.html'}"
+        f"{', '.join(f'{count} {word}' for word, count in counts(claims).items())}"
     )
+    return {"claims": counts(claims), **made, "not_run": len(not_run)}
 
 
 def side_by_side(results: Results) -> tuple[dict[str, Built], tuple[pd.DataFrame, pd.DataFrame]]:

@@ -26,7 +26,7 @@ class Kept(Figure):
 
 def last_drawn(results: Results, name: str, stage: str) -> Kept:
     """The figure as it was drawn last time; NotRun where it never was."""
-    words = results.reports / f"figures/{name}.json"
+    words = results.out / f"figures/{name}.json"
     why = f"no figures/{name}.png: run the stage {stage} on its data set"
     there(words.with_suffix(".png"), why, stage, runnable=False)
     return Kept(Drawing(), read_json(there(words, why, stage, runnable=False)))

@@ -11,8 +11,10 @@ import pandas as pd
 from stages.conspicuity.storage import read_maps
 from stages.imprints import read_imprints
 from stages.kit import Mesh, Viewpoint
+from stages.kit.conf import conf_folder
 from stages.kit.files import read_arrays, read_mesh, read_table
 from stages.kit.packs import files_below, is_there, object_files
+from stages.kit.params import load_params
 from stages.kit.rows import SUFFIX, read_rows
 from stages.kit.workspace import Workspace
 from stages.salient_points import read_points, read_saliency, read_strong_points
@@ -78,9 +80,17 @@ class Results:
     def __init__(self, workspace: Workspace, settings: Params) -> None:
         self.workspace, self.settings = workspace, settings
         self.data, self.reports = workspace.root / "data", workspace.reports
+        self.out = workspace.build / "partial/report"  # where the report is made before it takes its place
         self.sets = workspace.sets  # the names of the data sets that are switched on, in order
         self.read: set[str] = set()  # the data sets that were read since somebody cleared this
         self._tables: dict[Path, pd.DataFrame] = {}
+
+    @classmethod
+    def published(cls, workspace: Workspace, settings: Params) -> "Results":
+        """The published results of a root, whatever its params.yaml switches on."""
+        found = cls(workspace, settings)
+        found.reports, found.sets = workspace.published, load_params(conf_folder() / "config.yaml")["sets"]
+        return found
 
     def datasets(self, stage: str) -> list[str]:
         """The sets that have rows of a stage, `in_order`."""
@@ -157,7 +167,7 @@ class Results:
         if self.own_meshes:
             raise NotRun("benchmarks are not about a folder of one's own", "bench", runnable=False)
         what = f"no bench/{name}.csv: `make bench` writes it"
-        path = self.reports / "bench" / f"{name}.csv"
+        path = self.workspace.published / "bench" / f"{name}.csv"
         path = path if is_there(path) else path.with_name(f"{path.name}.gz")
         return self._table(there(path, what, "bench", runnable=False), read_table)
 

@@ -26,8 +26,8 @@ Glance does the same for 3D meshes: it predicts where people look, keeps the mes
 array there, and recognises the object. It tests every claim of a thesis on the way, and says which fail."""
 
 
-def write_site(modules: Sequence[ModuleType], parts: dict[str, Any], out: Path) -> None:
-    """Writes reports/index.html and reports/site/*.html, and removes pages that there are no longer.
+def write_site(modules: Sequence[ModuleType], parts: dict[str, Any], out: Path) -> list[str]:
+    """Writes OUT/index.html and OUT/site/*.html, and removes older pages; returns the names of the pages of the site.
 
     modules: the topics in reading order. parts: tables, figures, tradeoff (Built), claims and differences (frames),
     known (the claims as data), results, not_run; first: the figures of the front page; own: whether these are a
@@ -45,6 +45,7 @@ def write_site(modules: Sequence[ModuleType], parts: dict[str, Any], out: Path) 
         path.unlink()
     lead = "Look at an object, touch only the places that matter, and know what it is."
     write_text(out / HOME, page(list(mains), "", lead, front_main(parts, mains, leads, out), ["viewer.js", "site.js"]))
+    return list(mains)
 
 
 def page(names: Sequence[str], name: str, lead: str, main: str, scripts: Sequence[str]) -> str:

@@ -51,11 +51,11 @@ def build_all(kind: str, results: Results, topics: Iterable[ModuleType] = TOPICS
 
 
 def build_one(topic: ModuleType, kind: str, name: str, results: Results) -> Table | Figure:
-    """One table, figure or chart, with its words, written to reports/KIND; NotRun where it lacks its measurement."""
+    """One table, figure or chart, with its words, written to OUT/KIND; NotRun where it lacks its measurement."""
     results.read.clear()
     with plt.rc_context(SETTINGS):
         item = getattr(topic, KINDS[kind])[name](results)
         add_words(item, topic, kind, name)
-        item.write(results.reports / kind)
+        item.write(results.out / kind)
     item.topic, item.sets = topic.__name__.rpartition(".")[2], results.in_order(results.read)
     return item

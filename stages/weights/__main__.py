@@ -1,10 +1,10 @@
 """Learns the weight of each conspicuity channel from where people look or mark (T3.2.1 to T3.2.3).
 
-Reads data/SET/meshes, data/SET/conspicuity and the ground truth: data/annotations/NAME.csv, or what comes with the
-collection (gaze, interest points). Writes data/SET/weights: weights.csv (method, channel, weight, left_out: the object
-that was not trained on), ground_truth/NAME.npz (the ground truth on the vertices and all that the training takes from
-an object), svm.npz, svm/NAME.npz, convexity.csv; and reports/measurements/SET/weights.csv.gz. Objects without ground
-truth are left out; with none at all only the published weights are written.
+Reads data/SET/meshes, data/SET/conspicuity and the ground truth: the file of data/annotations that fits a mesh, or what
+comes with the collection (gaze, interest points). Writes data/SET/weights: weights.csv (method, channel, weight,
+left_out: the object that was not trained on), ground_truth/NAME.npz (the ground truth on the vertices and all that the
+training takes from an object), svm.npz, svm/NAME.npz, convexity.csv; and reports/measurements/SET/weights.csv.gz.
+Objects without ground truth are left out; with none at all only the published weights are written.
 """
 
 import functools
@@ -22,7 +22,7 @@ from stages.kit.workspace import Workspace
 from stages.meshes.schema import Params as MeshesParams
 
 from .convexity import convexity
-from .ground_truth import PUBLISHED, ground_truth_amounts, ground_truth_digests, published_files
+from .ground_truth import digest, ground_truth_amounts, ground_truth_files
 from .ground_truth.source import Files
 from .schema import COLUMNS, Params
 from .table import weight_rows, weight_table
@@ -32,16 +32,16 @@ from .training_data import collect_training_data, read_training_data
 GROUND_TRUTH = "ground_truth"  # the folder of the training data in data/SET/weights
 
 
-def process(item: tuple[str, Files], folder: Path, data: Path, source: str, marks: Path, seed: int) -> Rows:
+def process(item: tuple[str, Files], folder: Path, data: Path, source: str, seed: int) -> Rows:
     """Writes the training data of an object with ground truth; a row with its number of points, or why it has none.
 
-    item: the object's name and published files; marks: the folder of annotations.
+    item: the object's name and the files of its ground truth.
     """
-    name, published = item
+    name, files = item
     mesh = read_mesh(data / "meshes" / f"{name}.npz")
     path = data / "conspicuity" / f"{name}.npz"
     try:
-        amounts = ground_truth_amounts(name, source, mesh, published, marks)
+        amounts = ground_truth_amounts(name, source, mesh, files)
         if amounts is None or not amounts.any():
             return []
         found = collect_training_data(name, mesh, read_view_maps(path, mesh), path, amounts, seed)
@@ -56,17 +56,14 @@ def run(workspace: Workspace) -> None:
     """Runs the stage on the data set of a workspace."""
     chosen, meshes = workspace.settings(Params).method, workspace.settings(MeshesParams)
     marks = workspace.root / "data" / "annotations"
-    place = meshes.folder if meshes.source in PUBLISHED else marks
     with StageRun(workspace, "weights", COLUMNS, inputs=("meshes", "conspicuity")) as stage:
         # Objects without ground truth are no items: what is trained on the others does not depend on them.
-        digests = ground_truth_digests(stage.objects, meshes.source, place)
-        published = published_files(meshes.source, place)
-        items = {name: (name, published.get(name, [])) for name in digests}
-        collect = functools.partial(
-            process, data=workspace.data, source=meshes.source, marks=marks, seed=workspace.seed
-        )
-        reads = ("meshes/{}.npz", "conspicuity/{}.npz", "../annotations/{}.csv")
-        rows = stage.each(collect, items, reads=reads, made_of=digests)
+        each = ((name, read_mesh(workspace.data / "meshes" / f"{name}.npz")) for name in stage.objects)
+        files = ground_truth_files(each, meshes.source, meshes.folder, marks)
+        collect = functools.partial(process, data=workspace.data, source=meshes.source, seed=workspace.seed)
+        reads = ("meshes/{}.npz", "conspicuity/{}.npz")
+        made_of = {name: digest(own) for name, own in files.items()}
+        rows = stage.each(collect, {name: (name, own) for name, own in files.items()}, reads=reads, made_of=made_of)
         for row in rows:
             if "note" in row:
                 print(f"weights: {row['item']} is left out: {row['note']}", file=sys.stderr)

@@ -10,7 +10,6 @@ from stages.conspicuity import facing
 from stages.fixation import entropy, fuse, grad_cam, highest_level, mean_over_views, project_to_vertices
 from stages.fixation.attention import MODELS, linear_scores, project_maps
 from stages.fixation.backbone import folded_network, last_maps, state_path, write_state
-from stages.fixation.cam import resize_cams
 from stages.fixation.heads import fit_head, scores
 from stages.fixation.options import method_named
 from stages.fixation.viewpoints import viewpoint_sphere
@@ -18,6 +17,7 @@ from stages.kit import Viewpoint
 from stages.kit.camera import project
 from stages.kit.files import sha256
 from stages.networks import Network, build
+from stages.networks.grid import resize_cams
 
 pytestmark = pytest.mark.slow
 

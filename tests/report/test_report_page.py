@@ -60,8 +60,9 @@ def pages(run):
 def own(tmp_path_factory, small):
     """The results of a run on a folder of one's own, in which the enhanced model was not run, with its report."""
     root = small.root(tmp_path_factory.mktemp("own"))
-    for path in (root / "data/test/salient_points").glob("*.npz"):
-        write_arrays(path, **{key.replace("enhanced", "itti"): value for key, value in np.load(path).items()})
+    for stage in ("salient_points", "imprints"):
+        for path in (root / f"data/test/{stage}").glob("*.npz"):
+            write_arrays(path, **{key.replace("enhanced", "glance"): value for key, value in np.load(path).items()})
     text = (root / "params.yaml").read_text() + "test: {meshes: {source: folder}}\n"
     (root / "params.yaml").write_text(text)
     small.write(root, "lod", small.lod(), "elsewhere")
@@ -254,10 +255,6 @@ def test_points_behind_the_object_are_hidden(small):
     assert abs(down[0] - 29.5) < 6
 
 
-def test_method_that_was_not_run_is_no_crash(own):
-    assert '"itti"' in (own.reports / "index.html").read_text()
-
-
 def test_the_head_of_the_page_names_the_data_set_of_the_meshes(root, small):
     write_mesh(root / "data/furniture/meshes/chair.npz", small.ball())
     assert dataset_line(small.results(root)).endswith("2 objects of the data set test")  # the first that is switched on
@@ -268,7 +265,9 @@ def test_a_folder_of_ones_own_has_a_page_about_it_alone(own):
     with pytest.raises(NotRun, match="not switched on"):
         own.rows("lod", "elsewhere")
     page = (own.reports / "index.html").read_text()
-    assert "Your meshes" in page and "this page is about a folder alone" in page
+    assert "Your meshes" in page and all(f"<h2>{name}</h2>" in page for name in own.objects)
+    assert all((own.reports / address).exists() for address in re.findall(r'href="(site/[^"]+)"', page))
+    assert "units of the object&#x27;s diameter" in page and "Touched there" in page
     assert pd.read_csv(own.reports / "claims.csv")["pairs"].gt(0).all()
 
 

@@ -82,7 +82,7 @@ def test_the_set_reads_its_meshes_and_their_truth(folder):
     (file,) = SOURCES["fixation_maps"](settings)
     assert (file.name, file.up, file.suffix) == ("car-vasa", "y", ".obj") and file.content().startswith(b"v 0 0 0")
     published = published_files("fixation_maps", folder)["car-vasa"]
-    amounts = ground_truth_amounts("car-vasa", "fixation_maps", TRIANGLE, published, folder)
+    amounts = ground_truth_amounts("car-vasa", "fixation_maps", TRIANGLE, published)
     np.testing.assert_array_equal(amounts, looked(folder))
 
 

@@ -2,6 +2,7 @@
 
 import io
 import zipfile
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -15,7 +16,7 @@ from stages.meshes import clean, normalise
 from stages.meshes.load import parse
 from stages.meshes.normalise import rotate_to_z_up
 from stages.meshes.sources import SOURCES
-from stages.weights.ground_truth import ground_truth_amounts, ground_truth_digests, published_files
+from stages.weights.ground_truth import digest, ground_truth_amounts, ground_truth_files
 
 BALL = trimesh.creation.icosphere(2)
 MESH = normalise(Mesh(BALL.vertices, BALL.faces))
@@ -30,7 +31,15 @@ def marks(path, rows, shift=0.0):
 
 
 def amounts_of(name, source, mesh, folder):
-    return ground_truth_amounts(name, source, mesh, published_files(source, folder).get(name, []), folder)
+    return ground_truth_amounts(name, source, mesh, files_of([name], source, folder, mesh).get(name, []))
+
+
+def files_of(names, source, folder, mesh=MESH):
+    return ground_truth_files(((name, mesh) for name in names), source, folder, folder)
+
+
+def digests(names, source, folder):
+    return {name: digest(files) for name, files in files_of(names, source, folder).items()}
 
 
 def test_marks_count_the_annotators_at_each_vertex(tmp_path):
@@ -125,16 +134,26 @@ def test_an_absent_archive_ends_in_one_line_with_the_remedy(tmp_path):
 
 
 def test_a_digest_stands_for_the_gaze_and_the_mesh_of_an_object(tmp_path):
-    before = ground_truth_digests(["ball", "unseen", "cube"], "gaze", gaze_archive(tmp_path / "a.zip"))
+    before = digests(["ball", "unseen", "cube"], "gaze", gaze_archive(tmp_path / "a.zip"))
     assert list(before) == ["ball"]
-    assert before == ground_truth_digests(["ball"], "gaze", gaze_archive(tmp_path / "b.zip", ["ball", "other"]))
+    assert before == digests(["ball"], "gaze", gaze_archive(tmp_path / "b.zip", ["ball", "other"]))
     for file in ("Models_3D/ball.obj", "dataset_train/ball.txt"):
         with zipfile.ZipFile(tmp_path / "a.zip") as whole, zipfile.ZipFile(tmp_path / "c.zip", "w") as changed:
             for name in whole.namelist():
                 changed.writestr(name, whole.read(name) + (b"\n" if name == file else b""))
-        assert before != ground_truth_digests(["ball"], "gaze", tmp_path / "c.zip")
+        assert before != digests(["ball"], "gaze", tmp_path / "c.zip")
 
 
-def test_objects_with_marks_have_ground_truth(tmp_path):
-    marks(tmp_path / "ball.csv", [("a", 3)])
-    assert ground_truth_digests(["ball", "cube"], "household", tmp_path) == {"ball": ""}
+def test_marks_belong_to_the_mesh_that_they_fit_whatever_it_is_called(tmp_path):
+    marks(tmp_path / "ball.csv", [("a", 3), ("a", 70)])
+    turned = Mesh(MESH.vertices[::-1], MESH.faces)  # another mesh of the same name
+    given = [("scan", MESH), ("ball", turned), ("cube", turned)]
+    found = ground_truth_files(given, "household", tmp_path, tmp_path)
+    assert list(found) == ["scan"] and Path(found["scan"][0][0]).name == "ball.csv"
+    assert ground_truth_amounts("scan", "household", MESH, found["scan"]).sum() == 2
+    assert list(files_of(["ball", "scan"], "household", tmp_path)) == ["ball", "scan"]  # copies of one mesh
+
+
+def test_marks_of_a_namesake_that_fit_no_mesh_are_kept_to_be_named(tmp_path):
+    marks(tmp_path / "ball.csv", [("a", 3)], shift=0.2)
+    assert list(files_of(["ball", "cube"], "household", tmp_path)) == ["ball"]

@@ -31,13 +31,13 @@ class MarksChanged(ValueError):
     """The rows of the annotator on disk have changed since the caller read them."""
 
 
-def read_marks(path: str | Path) -> pd.DataFrame:
-    """The marks in a CSV: frame with columns annotator, time, vertex (i8), x, y, z (f8), in the order of the file.
+def read_marks(path: str | Path, content: bytes | None = None) -> pd.DataFrame:
+    """The marks in a CSV, or in its content: frame with columns annotator, time, vertex (i8), x, y, z (f8), in order.
 
     time: ISO 8601 in UTC, when the point was marked; x, y, z: in units of the normalised mesh (bounding-box centre 0,
     bounding sphere of radius 0.5). Raises FileNotFoundError, or MarksError naming the first damaged line.
     """
-    return _frame([row for _, _, row in _rows(Path(path))])
+    return _frame([row for _, _, row in _rows(Path(path), content)])
 
 
 def write_marks(
@@ -96,9 +96,9 @@ def utc(time: str | datetime) -> str:
     return moment.astimezone(UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")
 
 
-def _rows(path):
+def _rows(path, content=None):
     """Yields (line number, line, row of typed values) of each mark."""
-    lines = _text(path).split("\n")
+    lines = _text(path, content).split("\n")
     if lines[0].rstrip("\r") != ",".join(COLUMNS):
         raise MarksError(f"{path}, line 1: the header is not {','.join(COLUMNS)}")
     for number, line in enumerate(lines[1:], start=2):
@@ -110,8 +110,8 @@ def _rows(path):
                 raise MarksError(f"{path}, line {number}: {error}; correct or remove the line") from None
 
 
-def _text(path):
-    content = path.read_bytes()
+def _text(path, content):
+    content = path.read_bytes() if content is None else content
     try:
         return content.decode("utf-8-sig")  # spreadsheets write a byte order mark
     except UnicodeDecodeError as error:

@@ -5,7 +5,7 @@ from .fixations import fixation_files, fixations_on_vertices
 from .gaze import gaze_on_vertices, match_rows, read_gaze
 from .interest_points import read_interest_points
 from .maps import gts_map, visible_points
-from .source import PUBLISHED, ground_truth_amounts, ground_truth_digests, published_files
+from .source import PUBLISHED, digest, ground_truth_amounts, ground_truth_files, published_files
 from .spread import spread_on_surface
 
 __all__ = [
@@ -20,7 +20,8 @@ __all__ = [
     "read_interest_points",
     "spread_on_surface",
     "ground_truth_amounts",
-    "ground_truth_digests",
+    "digest",
+    "ground_truth_files",
     "published_files",
     "visible_points",
 ]

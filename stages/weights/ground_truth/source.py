@@ -12,7 +12,7 @@ from stages.kit import Mesh
 from stages.meshes.load import parse
 from stages.meshes.sources import FIXATION_MAPS, GAZE, GAZE_CLOUDS, INTEREST_POINTS, collection_files, match_files
 
-from .annotations import annotations_on_vertices
+from .annotations import annotations_on_vertices, marked_files
 from .fixations import fixation_files, fixations_on_vertices
 from .gaze import gaze_on_vertices, match_rows, read_cloud_gaze, read_gaze
 from .interest_points import read_interest_points
@@ -27,40 +27,37 @@ PUBLISHED = (
 Files = list[tuple[str, Callable[[], bytes]]]  # (path, function that reads the bytes) of each
 
 
-def ground_truth_amounts(name: str, source: str, mesh: Mesh, published: Files, marks: Path) -> np.ndarray | None:
+def ground_truth_amounts(name: str, source: str, mesh: Mesh, files: Files) -> np.ndarray | None:
     """(n,) f8 amounts at the vertices of the normalised mesh of an object, or None if it has no ground truth.
 
-    name, source: the object, and the setting meshes.source that it was read with. published: its published_files;
-    marks: the folder of annotations. The amounts are seconds of gaze (source gaze), marks of the users
-    (interest_points), densities of fixations by area (fixation_maps), or the number of annotators who marked a vertex
-    (any other source, from NAME.csv).
+    name, source: the object, and the setting meshes.source that it was read with. files: of ground_truth_files. The
+    amounts are seconds of gaze (source gaze), marks of the users (interest_points), densities of fixations by area
+    (fixation_maps), or the number of annotators who marked a vertex (any other source).
     `spread_on_surface` turns them into a density. Raises ValueError when the ground truth does not fit the mesh.
     """
-    path = marks / f"{name}.csv"
-    if published:
-        amounts = READERS[source](published, mesh)
-    elif source not in PUBLISHED and path.exists():
-        amounts = annotations_on_vertices(mesh, path)
-    else:
+    if not files:
         return None
+    amounts = READERS.get(source, _marks)(files, mesh)
     if len(amounts) != len(mesh.vertices):
         raise ValueError(f"{name}: the published mesh has {len(amounts)} vertices, this one {len(mesh.vertices)}")
     return amounts
 
 
-def ground_truth_digests(names: Iterable[str], source: str, folder: str | Path) -> dict[str, str]:
-    """{object: hash of the published files that its ground truth comes from} of those that have ground truth.
+def ground_truth_files(
+    meshes: Iterable[tuple[str, Mesh]], source: str, published: str | Path, marks: Path
+) -> dict[str, Files]:
+    """{object: the files that its ground truth comes from} of the objects that have ground truth, in their order.
 
-    folder: meshes.folder for a source of PUBLISHED, for any other the folder of annotations, one file per object; their
-    hash is empty.
+    meshes: (name, normalised mesh) of each; published: meshes.folder; marks: the folder of annotations.
     """
     if source not in PUBLISHED:
-        return {name: "" for name in names if (Path(folder) / f"{name}.csv").exists()}
-    files = published_files(source, folder)
-    return {name: _digest(files[name]) for name in names if name in files}
+        return dict(marked_files(meshes, marks))
+    files = published_files(source, published)
+    return {name: files[name] for name, _ in meshes if name in files}
 
 
-def _digest(files: Files) -> str:
+def digest(files: Files) -> str:
+    """The hash of the content of files."""
     return hashlib.sha256(b"".join(hashlib.sha256(read()).digest() for _, read in files)).hexdigest()
 
 
@@ -116,6 +113,11 @@ def _named(path, read, content):
         return read(content)
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
+
+
+def _marks(files, mesh):
+    ((path, content),) = files
+    return annotations_on_vertices(mesh, path, content())
 
 
 def _interest_points(files, mesh):
