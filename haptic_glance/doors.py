@@ -1,25 +1,203 @@
-"""Where a function asks for a mesh, a path, arrays or an object of trimesh do as well."""
+"""The public functions as a person calls them: a mesh in every form, lengths and face counts as people say them."""
 
-from collections.abc import Callable
+import warnings
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import replace
 from functools import wraps
-from typing import Any, Concatenate, ParamSpec, TypeVar
+from html import escape
+from importlib import import_module
+from inspect import Parameter, signature
+from pathlib import Path
+from typing import Any
 
+import numpy as np
+from scipy.spatial import KDTree
+
+from stages.imprints.options import METRES, Metres, length
 from stages.kit import Mesh
+from stages.lod.feasibility import InfeasibleTarget, SimplifyError
+from stages.lod.look import coloured
+from stages.lod.targets import face_count
+from stages.lod.task import repaired
+from stages.meshes import load as read
 from stages.meshes.load import MeshLike, as_mesh
+from stages.meshes.normalise import RADIUS, centre_and_radius
+from stages.meshes.up import says_up
 
-Own = TypeVar("Own")  # what the function takes by itself: a Mesh, or also a Surface of one
-Others = ParamSpec("Others")
-Result = TypeVar("Result")
+MESHES = {  # public function: its arguments that are meshes
+    **dict.fromkeys(
+        ("clean", "conspicuity", "detect", "find_points", "layout_forces", "normalise", "press", "press_many", "render",
+         "rotate_to_z_up", "saliency", "sensor_normals", "simplify", "to_trimesh", "write_any"), ("mesh",)
+    ),
+    **dict.fromkeys(("gaps_at", "press_forces"), ("surface",)),
+    **dict.fromkeys(("metro", "perceptual"), ("reference", "mesh")),
+    "follow": ("mesh_or_surface",),
+}  # fmt: skip
+LENGTHS = {"press": ("pitch", "max_distance"), "press_many": ("pitch", "max_distance"), "follow": ("pitch",)}
+LOOKING = ("detect", "find_points", "saliency")  # what depends on the axis that points up
 
 
-def takes_any_mesh(
-    function: Callable[Concatenate[Own, Others], Result],
-) -> Callable[Concatenate[Own | MeshLike, Others], Result]:
-    """The function, its first argument `mesh` converted by `as_mesh`, unless it is a Surface or so, made of a Mesh."""
+def door(name: str, function: Callable[..., Any]) -> Callable[..., Any]:
+    """The public function of a name, made of the one of the stages."""
+    made = with_lengths(simplify if name == "simplify" else function, LENGTHS.get(name, ()))
+    return takes_any_mesh(made, MESHES[name], name in LOOKING)
+
+
+def takes_any_mesh(function: Callable[..., Any], names: Sequence[str], looking: bool = False) -> Callable[..., Any]:
+    """The function, its arguments of these names converted by `as_mesh`, but a Surface, which holds a Mesh.
+
+    looking: whether the function depends on the axis that points up, which is then warned of where nobody has said it.
+    """
+    known = signature(function)
 
     @wraps(function)
-    def work(mesh: Any, *args: Others.args, **kwargs: Others.kwargs) -> Result:
-        prepared: Any = mesh if isinstance(getattr(mesh, "mesh", None), Mesh) else as_mesh(mesh)
-        return function(prepared, *args, **kwargs)
+    def work(*args: Any, **kwargs: Any) -> Any:
+        given = known.bind(*args, **kwargs)
+        for name in names:
+            mesh = given.arguments[name]
+            if not isinstance(getattr(mesh, "mesh", mesh), Mesh):
+                given.arguments[name] = as_mesh(mesh)
+                if looking and not given.arguments.get("up") and isinstance(mesh, str | Path):
+                    _warn_of_axis(Path(mesh), given.arguments[name])
+        return function(*given.args, **given.kwargs)
 
     return work
+
+
+def with_lengths(function: Callable[..., Any], names: Sequence[str]) -> Callable[..., Any]:
+    """The function, its lengths as shares of the object's diameter, or as text such as "1mm" with unit="mm".
+
+    unit: what the coordinates of the mesh are in. The diameter is that of the bounding sphere about the middle of the
+    bounding box, which is 1 for a normalised mesh.
+    """
+    if not names:
+        return function
+    known = signature(function)
+
+    @wraps(function)
+    def work(*args: Any, unit: str | None = None, **kwargs: Any) -> Any:
+        given = known.bind(*args, **kwargs)
+        given.apply_defaults()
+        whole = next(iter(given.arguments.values()))
+        diameter = centre_and_radius(as_mesh(getattr(whole, "mesh", whole)))[1] / RADIUS
+        for name in names:
+            if given.arguments[name] is not None:
+                given.arguments[name] = in_units(name, given.arguments[name], diameter, unit)
+        return function(*given.args, **given.kwargs)
+
+    more = Parameter("unit", Parameter.KEYWORD_ONLY, default=None, annotation="str | None")
+    work.__signature__ = known.replace(parameters=[*known.parameters.values(), more])  # type: ignore[attr-defined]
+    return work
+
+
+def in_units(name: str, value: float | str, diameter: float, unit: str | None) -> Any:
+    """A length in units of the mesh: a share of its diameter, or text such as "1mm" of a mesh whose unit is known."""
+    if not isinstance(value, str):
+        return value if abs(diameter - 1) < 1e-9 else np.multiply(value, diameter)
+    try:
+        found = length(value)
+    except ValueError:
+        raise ValueError(
+            f'{name}={value!r}: give a share of the diameter such as 0.01, or a length such as "1mm"'
+        ) from None
+    if not isinstance(found, Metres):
+        return found * diameter
+    if unit not in METRES:
+        raise ValueError(f"{name}={value!r} needs unit, what the coordinates of the mesh are in: {', '.join(METRES)}")
+    return float(found) / METRES[unit]
+
+
+def load(path: str | Path, up: str | None = None) -> Mesh:
+    """The Mesh of a file, see `stages.meshes.load`. up: the axis that points up, x, y or z.
+
+    None: the axis that the file states, as every GLB does; else z, with a warning, since people look at the upper part
+    of things.
+    """
+    mesh = read(path)
+    if up is None:
+        _warn_of_axis(Path(path), mesh)
+        return mesh
+    return replace(mesh, up=up)
+
+
+def _warn_of_axis(path: Path, mesh: Mesh) -> None:
+    if not says_up(path, mesh):
+        said = f"{path.name} does not say which axis points up: z is taken; load(path, up='y') takes another"
+        warnings.warn(said, stacklevel=3)
+
+
+def simplify(
+    mesh: Mesh, faces: int | float | str, keep: Sequence[int] | np.ndarray | None = None, rings: Any = 3,
+    backend: str = "fast", shrink: bool = False, weights: np.ndarray | None = None, attributes: Any = None,
+    free_borders: bool | np.ndarray | None = None,
+) -> Mesh:  # fmt: skip
+    """A Mesh of at most `faces` faces: a count, a share of the mesh's own such as 0.25, or a text, "25%" or "1500".
+
+    The mesh is simplified by `stages.lod.simplify`, which has the other arguments. Where that is infeasible, the
+    coincident vertices of the mesh are merged and its faces oriented, as `repair` does, and its borders are simplified,
+    too, unless free_borders says otherwise: None allows it, False does not. A refusal is then the last resort.
+    Without kept points even a count is tried near which the surface loses its shape. Raises InfeasibleTarget with
+    `smallest`, a count that is feasible, SimplifyError, or ValueError.
+    """
+    work = import_module("stages.lod").simplify
+    share = isinstance(faces, float) and 0 < faces < 1
+    count = face_count(f"{100 * faces:.12g}%" if share else faces, len(mesh.faces), "faces")
+    given = dict(keep=keep, weights=weights, rings=rings, backend=backend, shrink=shrink, attributes=attributes)
+    borders = [False if free_borders is None else free_borders]
+    if free_borders is None and not attributes and backend != "pymeshlab":
+        borders.append(True)
+    failures = []
+    named = np.ndim(free_borders) > 0  # vertex by vertex, which repairs would renumber
+    for whole, own in [(mesh, given)] if named else _as_given_and_mended(mesh, given):
+        for free in borders:
+            try:
+                return work(whole, count, free_borders=free, **own)
+            except (InfeasibleTarget, SimplifyError) as error:
+                failures.append(error)
+    if len(borders) > 1 and keep is None:
+        with suppress(InfeasibleTarget, SimplifyError):
+            return work(whole, count, free_borders=True, below=True, **own)
+    infeasible = [error for error in failures if isinstance(error, InfeasibleTarget)]
+    raise min(infeasible, key=lambda error: error.smallest) if infeasible else failures[0]
+
+
+def _as_given_and_mended(mesh: Mesh, given: dict[str, Any]) -> Iterator[tuple[Mesh, dict[str, Any]]]:
+    """The mesh and its arguments, then those of the mesh repaired, where that differs and its vertices can be named."""
+    yield mesh, given
+    if not np.ndim(given["rings"]) and (mended := repair(mesh)) != mesh:
+        nearest = KDTree(mesh.vertices).query(mended.vertices)[1]
+        weights, keep = given["weights"], given["keep"]
+        if weights is not None:
+            weights = np.asarray(weights)[nearest]
+        if keep is not None:
+            keep = KDTree(mended.vertices).query(mesh.vertices[np.asarray(keep, dtype=np.int64)])[1]
+        yield mended, given | {"weights": weights, "keep": keep}
+
+
+def repair(mesh: MeshLike) -> Mesh:
+    """The mesh without repeated and degenerate faces, all others wound alike and outwards, coincident vertices merged.
+
+    Vertices are merged only where that closes the boundary; their ids change then. Raises MeshError where nothing is
+    left.
+    """
+    return repaired(as_mesh(mesh))[0]
+
+
+class Shown:
+    """A mesh in a notebook, which turns it; `html` is the page."""
+
+    def __init__(self, mesh: Mesh) -> None:
+        from trimesh.viewer.notebook import scene_to_html
+
+        scene = import_module("stages.lod").to_trimesh(mesh)
+        self.html: str = scene_to_html(scene.scene() if hasattr(scene, "scene") else scene)
+
+    def _repr_html_(self) -> str:
+        return f'<iframe srcdoc="{escape(self.html)}" width="100%" height="480" style="border: 0"></iframe>'
+
+
+def show(mesh: MeshLike, values: np.ndarray | None = None) -> Shown:
+    """A mesh for a notebook, to be turned; values (n,): such as a saliency, which colour it from violet to yellow."""
+    given = as_mesh(mesh)
+    return Shown(given if values is None else coloured(given, np.asarray(values, dtype=np.float64)))

@@ -1,6 +1,6 @@
 """Prints the places of one mesh that people look at first.
 
-They are those of `haptic-glance saliency`, most salient first: vertex, position in the file's coordinates, saliency
+They are those of `haptic-glance saliency`, most salient first: vertex, position in the file's coordinates, score
 from 0 to 1. Positions can be handed to `haptic-glance touch --at`.
 
 examples:

@@ -1,7 +1,8 @@
 """Where people look at one mesh, and the places to touch first.
 
 Reads STL, OBJ, PLY, OFF, GLB or a point cloud. Prints the salient points, most salient first: vertex, position in the
-file's coordinates, saliency from 0 to 1. The mesh is left as it is; --out writes a copy coloured by saliency.
+file's coordinates, score from 0 to 1 (the saliency around the point, never more than that of the point before it). The
+mesh is left as it is; --out writes a copy coloured by saliency.
 
 examples:
   haptic-glance saliency scan.stl
@@ -17,7 +18,6 @@ from pathlib import Path
 
 import numpy as np
 
-from stages.conspicuity.surface_values import SMOOTHING
 from stages.kit import Mesh, Stopwatch
 from stages.kit.command import errors_in_one_line
 from stages.kit.files import write_text
@@ -26,12 +26,11 @@ from stages.lod.look import check_look, coloured, write_look
 from stages.lod.options import check_outputs
 from stages.meshes.colours import bake_texture
 from stages.meshes.load import load_unnamed
-from stages.meshes.normalise import centre_and_radius
 from stages.meshes.up import add_up, upright_by, upright_for
-from stages.salient_points import detect
+from stages.salient_points import Detection, detect
 from stages.salient_points.names import HELP, check_name
 
-COLUMNS = ("rank", "vertex", "x", "y", "z", "saliency")
+COLUMNS = ("rank", "vertex", "x", "y", "z", "score")
 
 
 def parser() -> argparse.ArgumentParser:
@@ -75,7 +74,7 @@ def look_at(chosen: argparse.Namespace) -> None:
         raise ValueError(f"{chosen.mesh}: {error}").with_traceback(error.__traceback__) from None
     assert found.saliency is not None  # `check` lets no method pass that has none
     print(f"{chosen.name}: {len(mesh.faces):,} faces in {watch.seconds:.1f} s, {note}", file=sys.stderr)
-    rows = points_of(mesh, found.points, found.saliency)
+    rows = points_of(mesh, found)
     write(chosen, mesh, found.saliency, rows)  # first: what reads the lines may close the pipe
     print(json.dumps([dict(zip(COLUMNS, row, strict=True)) for row in rows]) if chosen.json else as_csv(rows))
 
@@ -92,25 +91,11 @@ def check(chosen: argparse.Namespace) -> None:
         raise ValueError(f"--count {chosen.count}: give 1 or more")
 
 
-def points_of(mesh: Mesh, points: np.ndarray, saliency: np.ndarray) -> list[tuple]:
-    """Rows of COLUMNS, most salient first; positions in the file's coordinates.
-
-    The saliency is the mean around the point, over the length that smooths the saliency before its peaks are taken.
-    """
-    radius = 2 * SMOOTHING * centre_and_radius(mesh)[1]
-    values = [_mean_around(mesh, vertex, saliency, radius) for vertex in points]
-    order = np.argsort(np.negative(values), kind="stable")
-    return [
-        (rank, int(points[k]), *map(float, mesh.vertices[points[k]]), float(values[k]))
-        for rank, k in enumerate(order, 1)
-    ]
-
-
-def _mean_around(mesh, vertex, values, radius):
-    near = np.linalg.norm(mesh.vertices - mesh.vertices[vertex], axis=1) <= radius
-    near[vertex] = True
-    areas = mesh.vertex_areas[near]
-    return np.average(values[near], weights=areas) if areas.any() else values[vertex]
+def points_of(mesh: Mesh, found: Detection) -> list[tuple]:
+    """Rows of COLUMNS in the order of the Detection, with its scores; positions in the file's coordinates."""
+    assert found.scores is not None  # of methods that have a saliency
+    rows = zip(found.points.tolist(), mesh.vertices[found.points].tolist(), found.scores.tolist(), strict=True)
+    return [(rank, vertex, *place, score) for rank, (vertex, place, score) in enumerate(rows, 1)]
 
 
 def as_csv(rows: list[tuple]) -> str:

@@ -83,7 +83,7 @@ def exhibit(
     given, note = upright_by(load_unnamed(file), file, up)
     found = detect(bake_texture(given), count=count)
     assert found.saliency is not None  # glance has one
-    points = points_of(given, found.points, found.saliency)
+    points = points_of(given, found)
     picture = look(given, found.saliency, np.array([row[1] for row in points], dtype=np.int64))
     folder.mkdir(parents=True, exist_ok=True)
     write_any(folder / "saliency.ply", coloured(given, found.saliency))

@@ -101,7 +101,7 @@ def touch_html(one: Exhibit, row: Mapping[str, Any], image: np.ndarray) -> str:
     value = one.points[rank - 1][-1]
     return (
         f'<li><img src="{data_uri(pixels)}" width="16" height="16" alt="{escape(said)}">'
-        f"<span><b>{rank}</b> saliency {value:.2f}</span></li>"
+        f"<span><b>{rank}</b> score {value:.2f}</span></li>"
     )
 
 
@@ -125,7 +125,7 @@ def places_html(one: Exhibit) -> str:
     """The table of the points in the file's coordinates."""
     rows = [[f"{rank}", f"{vertex:,}", *(f"{v:.6g}" for v in place), f"{value:.3f}"]
             for rank, vertex, *place, value in one.points]  # fmt: skip
-    return table(["place", "vertex", "x", "y", "z", "saliency"], rows)
+    return table(["place", "vertex", "x", "y", "z", "score"], rows)
 
 
 def table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:

@@ -115,7 +115,7 @@ class Specimen:
         found = RENDERING.submit(detect, *arguments).result() if rendered else detect(*arguments)
         if found.saliency is None:
             raise ValueError(f"method {method!r} has no saliency: it only places points")
-        return Look(method, found.saliency, points_of(self.given, found.points, found.saliency))
+        return Look(method, found.saliency, points_of(self.given, found))
 
 
 def files_at(place: Path) -> list[Path]:

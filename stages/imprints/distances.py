@@ -46,7 +46,7 @@ def distances(
     surface = as_surface(mesh)
     vertices = check_vertices(surface.mesh, vertices)
     (rows, columns), pitch, max_distance = check_array(cells, pitch, max_distance)
-    axes = sensor_axes(sensor_normals(surface.mesh, vertices)) if axes is None else axes
+    axes = sensor_axes(sensor_normals(surface.mesh, vertices), surface.mesh.up) if axes is None else axes
     measured = distances_at(
         surface, surface.mesh.vertices[vertices], axes, (rows, columns), pitch, max_distance, contact
     )

@@ -5,6 +5,7 @@ from functools import lru_cache
 import numpy as np
 
 from stages.kit import Mesh
+from stages.meshes.load import MeshLike, as_mesh
 
 from .kernels import face_tree, first_below, measure
 
@@ -14,14 +15,12 @@ LIFT = 1e-6  # of the mesh's diagonal: a face within this distance of the plane 
 class Surface:
     """A mesh prepared for touching: its faces in a tree of boxes (20 ms for 50,000 faces).
 
-    mesh: a Mesh, which must not change afterwards. Faces without area are ignored. Use a Surface to touch a mesh many
-    times. Building one costs less than sending it to another process.
+    mesh: a Mesh, which must not change afterwards, or what `as_mesh` makes one of. Faces without area are ignored. Use
+    a Surface to touch a mesh many times. Building one costs less than sending it to another process.
     """
 
-    def __init__(self, mesh: Mesh) -> None:
-        if not isinstance(mesh, Mesh):
-            raise ValueError(f"touch a Mesh (stages.kit) or a Surface of one, got {type(mesh).__name__}")
-        self.mesh = mesh
+    def __init__(self, mesh: MeshLike) -> None:
+        self.mesh = mesh = as_mesh(mesh)
         solid = mesh.face_areas > 0
         self._tree = face_tree(mesh.vertices[mesh.faces[solid]], 2 * mesh.face_areas[solid])
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from stages.kit import Mesh
 from stages.meshes import clean, normalise, rotate_to_z_up
+from stages.meshes.colours import bake_texture
 from stages.meshes.load import load_unnamed
 from stages.meshes.normalise import RADIUS, TO_Z_UP, centre_and_radius
 from stages.meshes.up import upright_by
@@ -82,7 +83,7 @@ class UserMesh:
         return Places(np.array(vertices), np.concatenate(positions), np.concatenate(normals))
 
     def _selected(self, method, count, seed):
-        vertices = find_points(self.mesh, method, count, seed=seed, name=self.name)
+        vertices = find_points(bake_texture(self.source), method, count, seed=seed, name=self.name)
         placed, vertices = len(vertices), vertices[touchable(self.mesh, vertices)]
         note = f"{len(vertices)} of {count} places: the mesh has no more" if placed < count else ""
         note = f"{len(vertices)} of {count} places: the others have no normal" if len(vertices) < placed else note

@@ -1,7 +1,8 @@
 """The triangle mesh as arrays, and the few facts of it that several stages ask for."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from scipy import sparse
@@ -16,6 +17,9 @@ class Mesh:
     vertices (n, 3) f8, faces (m, 3) i8 into vertices, counter-clockwise seen from outside, colors (n, 3) u1 or None,
     texture: a Texture of the m faces or None (the stages of the pipeline store and use none). up: the axis that points
     up, x, y or z. What makes a mesh of a mesh keeps it (`dataclasses.replace`); stored meshes are z up.
+
+    The arrays are the mesh's own: those of the caller are copied where they can still be written to. Two meshes are
+    equal where all of this is, and equal meshes have one hash; a pickled mesh leaves what it has computed behind.
     """
 
     vertices: np.ndarray
@@ -29,8 +33,7 @@ class Mesh:
             values = getattr(self, name)
             if values is not None and np.size(values) and np.asarray(values).dtype.kind not in "iu":
                 raise ValueError(f"{name} must be whole numbers, got {np.asarray(values).dtype}")
-        vertices = np.ascontiguousarray(self.vertices, dtype=np.float64)
-        faces = np.ascontiguousarray(self.faces, dtype=np.int64)
+        vertices, faces = _own(self.vertices, np.float64), _own(self.faces, np.int64)
         if vertices.ndim != 2 or vertices.shape[1] != 3:
             raise ValueError(f"vertices must have shape (n, 3), got {vertices.shape}")
         if faces.ndim != 2 or faces.shape[1] != 3:
@@ -42,7 +45,7 @@ class Mesh:
         object.__setattr__(self, "vertices", vertices)
         object.__setattr__(self, "faces", faces)
         if self.colors is not None:
-            colors = np.ascontiguousarray(self.colors, dtype=np.uint8)
+            colors = _own(self.colors, np.uint8)
             if colors.shape != vertices.shape:
                 raise ValueError(f"colors must have shape {vertices.shape}, got {colors.shape}")
             object.__setattr__(self, "colors", colors)
@@ -53,6 +56,27 @@ class Mesh:
 
     def __repr__(self) -> str:
         return f"Mesh({len(self.vertices):,} vertices, {len(self.faces):,} faces, {self.up} up)"
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Mesh):
+            return NotImplemented
+        return self is other or (self.up == other.up and self._arrays() == other._arrays())
+
+    def __hash__(self) -> int:
+        return self._hash
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {field.name: getattr(self, field.name) for field in fields(self)}
+
+    @cached_property
+    def _hash(self) -> int:
+        return hash((self.up, *(hash(content) for content in self._arrays())))
+
+    def _arrays(self) -> list[bytes]:
+        """The content of all arrays, each with its shape."""
+        texture = () if self.texture is None else (self.texture.image, self.texture.uv, *self.texture.images)
+        arrays = (self.vertices, self.faces, *(() if self.colors is None else (self.colors,)), *texture)
+        return [repr((array.shape, array.dtype.str)).encode() + array.tobytes() for array in map(np.asarray, arrays)]
 
     @cached_property
     def face_crosses(self) -> np.ndarray:
@@ -120,6 +144,13 @@ class Mesh:
         for _ in range(count):
             near |= self.adjacency @ near
         return near
+
+
+def _own(values: Any, kind: type) -> np.ndarray:
+    """A contiguous array of a type that nobody else can write to."""
+    found = np.ascontiguousarray(values, dtype=kind)
+    shared = isinstance(values, np.ndarray) and values.flags.writeable and np.may_share_memory(found, values)
+    return found.copy() if shared else found
 
 
 def unit(vectors: np.ndarray) -> np.ndarray:

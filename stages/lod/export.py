@@ -14,6 +14,7 @@ from trimesh.visual.material import PBRMaterial
 from stages.kit import Mesh
 from stages.kit.files import whole_file
 from stages.meshes.colours import bake_texture
+from stages.meshes.up import with_stated_up
 
 from .parts import Parts
 
@@ -29,7 +30,8 @@ def write_any(path: str | Path, mesh: Mesh, parts: Parts | None = None) -> None:
     Textures are written to glb and obj (with NAME.mtl and NAME_K.png beside it), where seams double vertices; ply gets
     the texture's colour at each vertex instead; off and stl have neither. obj and off have nine digits or more, the
     others single precision. Coordinates are those of the mesh: glTF expects +y up and metres, but nothing is turned
-    here (stages.meshes.up.upright_for). parts: in a glb the nodes, by name. Raises ValueError for another suffix.
+    here (stages.meshes.up.upright_for); the other formats get a comment where another axis than z points up. parts: in
+    a glb the nodes, by name. Raises ValueError for another suffix.
     """
     path = Path(path)
     suffix = path.suffix.lower()
@@ -46,7 +48,8 @@ def write_any(path: str | Path, mesh: Mesh, parts: Parts | None = None) -> None:
     with ExitStack() as stack:  # all are written before the first is moved into place, the mesh itself last
         for name, extra in {path.name: content, **beside}.items():
             part = stack.enter_context(whole_file(path.parent / name))
-            part.write_bytes(extra.encode() if isinstance(extra, str) else extra)
+            data = extra.encode() if isinstance(extra, str) else extra
+            part.write_bytes(with_stated_up(data, suffix, mesh.up) if name == path.name else data)
 
 
 def to_trimesh(mesh: Mesh, name: str = "mesh", parts: Parts | None = None) -> trimesh.Trimesh | trimesh.Scene:

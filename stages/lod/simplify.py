@@ -44,7 +44,7 @@ GROWTH = 1.1  # from one count without a sound mesh to the next one tried, for `
 def simplify(
     mesh: Mesh, faces: int, keep: Keep = None, rings: Rings = 3, backend: str = BACKEND, shrink: bool = False,
     weights: np.ndarray | None = None, attributes: Mapping[str, float] | None = None,
-    free_borders: bool | np.ndarray = False,
+    free_borders: bool | np.ndarray = False, below: bool = False,
 ) -> Mesh:  # fmt: skip
     """A Mesh of at most `faces` faces (one fewer where the count must stay even), or the mesh itself if it has no more.
 
@@ -57,9 +57,10 @@ def simplify(
     the error, for example {"colors": 1.0, "normals": 0.03}. At a weight of 1 a difference of black and white, of the
     picture's width or of a unit normal counts as a displacement by the longest side of the mesh (`attribute_quadrics`).
     By default the shape alone decides. free_borders: the edges of the boundary collapse, too, and its vertices move; or
-    (n,) boolean: those that may. The boundary keeps its loops. Connected components and genus are preserved; components
-    that touch in a vertex or a non-manifold edge are simplified separately. Texture comes from the closest point of
-    `mesh` (`carry`), and so do colours, but for those in the error, which are the ones of least error.
+    (n,) boolean: those that may. The boundary keeps its loops. below: also try counts below `smallest_feasible`, near
+    which the surface loses its shape. Connected components and genus are preserved; components that touch in a vertex
+    or a non-manifold edge are simplified separately. Texture comes from the closest point of `mesh` (`carry`), and so
+    do colours, but for those in the error, which are the ones of least error.
 
     Source: Garland and Heckbert 1997 (T [222]). The thesis also takes edges beside the frozen region out of the list,
     which is the same: a vertex of a frozen face never moves.
@@ -89,35 +90,36 @@ def simplify(
         frozen = frozen_faces(mesh, keep, attempt)
         smallest = smallest_feasible(mesh, keep, attempt, free is not None)
         try:
-            if faces < smallest:  # before the backend starts
+            if faces < smallest and not below:  # before the backend starts
                 raise InfeasibleTarget(faces, smallest, int(frozen.sum()))
             return carry(mesh, replace(collapse(mesh, int(faces), frozen, multipliers), up=mesh.up))
         except (InfeasibleTarget, SimplifyError) as error:
             failures.append((error, frozen))
     error, frozen = failures[-1]
-    if isinstance(error, InfeasibleTarget) and free is None:
-        factors = None if multipliers is None else multipliers.tobytes()
-        sound = _smallest_sound(mesh, backend, frozen.tobytes(), factors, error.smallest)
+    if isinstance(error, InfeasibleTarget):
+        factors, may = (None if values is None else values.tobytes() for values in (multipliers, free))
+        sound = _smallest_sound(mesh, backend, frozen.tobytes(), factors, error.smallest, may)
         raise InfeasibleTarget(faces, sound, error.frozen)
     raise error
 
 
 @lru_cache(maxsize=256)  # every target that is refused asks for it, and searches that start apart meet
-def _smallest_sound(mesh, backend, frozen, weights, smallest):
+def _smallest_sound(mesh, backend, frozen, weights, smallest, free=None):
     """The lowest face count, from `smallest` up to the mesh's own, at which the backend gives a sound mesh.
 
-    frozen and weights: as of a backend, as bytes.
+    frozen, weights and free: as of a backend, as bytes.
     """
     if smallest >= len(mesh.faces):
         return len(mesh.faces)
     factors = None if weights is None else np.frombuffer(weights)
+    borders = {} if free is None else {"free": np.frombuffer(free, dtype=bool)}
     try:
-        return len(BACKENDS[backend](mesh, smallest, np.frombuffer(frozen, dtype=bool), factors).faces)
+        return len(BACKENDS[backend](mesh, smallest, np.frombuffer(frozen, dtype=bool), factors, **borders).faces)
     except InfeasibleTarget as error:
         higher = max(error.smallest, smallest + 1)
     except SimplifyError:
         higher = int(GROWTH * smallest) + 2
-    return _smallest_sound(mesh, backend, frozen, weights, higher)
+    return _smallest_sound(mesh, backend, frozen, weights, higher, free)
 
 
 def quadric_weights(saliency: np.ndarray) -> np.ndarray | None:

@@ -16,9 +16,18 @@ from . import clouds
 from .headers import MeshError, check_header
 from .materials import join_parts, merge_equal_rows, obj_vertices, texture_of, vertex_colors
 from .off import read_off
-from .up import UP_OF_FORMAT
+from .up import UP_OF_FORMAT, stated_up
 
-MeshLike = Mesh | str | Path | trimesh.Trimesh | trimesh.Scene | tuple[ArrayLike, ArrayLike]
+MeshLike = (
+    Mesh
+    | str
+    | Path
+    | trimesh.Trimesh
+    | trimesh.Scene
+    | trimesh.PointCloud
+    | clouds.Cloud
+    | tuple[ArrayLike, ArrayLike]
+)
 FORMATS = (".stl", ".obj", ".ply", ".off", ".glb", *clouds.FORMATS, clouds.DEPTH)
 
 
@@ -47,7 +56,7 @@ def load_unnamed(path: Path) -> Mesh:
 
 
 def as_mesh(given: MeshLike) -> Mesh:
-    """The Mesh of a path, of an object of trimesh, of (vertices (n, 3), faces (m, 3)), or the Mesh that is given.
+    """The Mesh of a path, an object of trimesh, (vertices (n, 3), faces (m, 3)) or a Cloud, or the Mesh that is given.
 
     Vertices keep their ids, but for a Scene, whose parts are joined as those of a GLB are. Colours and textures of
     trimesh are taken over. Only the path of a GLB says which axis points up; else it is z, and functions take `up`.
@@ -59,11 +68,13 @@ def as_mesh(given: MeshLike) -> Mesh:
         return load(given)
     if isinstance(given, trimesh.Scene):
         return join_parts(given, every_colour=True) or _to_mesh(None, False, False)
-    if isinstance(given, trimesh.Trimesh):
+    if isinstance(given, clouds.Cloud):
+        return clouds.surface_of(given)
+    if isinstance(given, trimesh.Trimesh | trimesh.PointCloud):
         return _to_mesh(given, False, every_colour=True)
     if isinstance(given, tuple) and len(given) == 2:
         return Mesh(np.asarray(given[0], dtype=np.float64), np.asarray(given[1]))
-    raise TypeError(f"no mesh: a {type(given).__name__}; give a path, a trimesh, (vertices, faces) or a Mesh")
+    raise TypeError(f"no mesh: a {type(given).__name__}; give a path, a trimesh, (vertices, faces), a Cloud or a Mesh")
 
 
 def parse(content: bytes, suffix: str, resolver: Resolver | None = None, every_colour: bool = False) -> Mesh:
@@ -78,7 +89,8 @@ def parse(content: bytes, suffix: str, resolver: Resolver | None = None, every_c
     check_header(content, suffix)
     try:
         mesh = _parsed(content, suffix, resolver, every_colour)
-        return replace(mesh, up=UP_OF_FORMAT[suffix]) if suffix in UP_OF_FORMAT else mesh
+        up = UP_OF_FORMAT.get(suffix) or stated_up(content)
+        return replace(mesh, up=up) if up else mesh
     except (MeshError, MissingExtra):
         raise
     except MemoryError:

@@ -1,6 +1,7 @@
 """Which axis of a mesh file points up: what its format says, or else what a person says with --up."""
 
 import argparse
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,7 +11,9 @@ from stages.kit import Mesh
 
 from .normalise import rotate_to_z_up
 
-UP_OF_FORMAT = {".glb": "y"}  # glTF 2.0, section 3.4; the other formats do not say
+UP_OF_FORMAT = {".glb": "y"}  # glTF 2.0, section 3.4; the other formats do not say, but in a comment of ours
+STATED = re.compile(rb"(?:comment|#) haptic-glance: ([xyz]) points up")
+HEAD = 1000  # bytes of a file in which that comment is looked for
 Y_UP = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])  # from z up to y up, as Blender and others turn a glTF back
 
 
@@ -27,7 +30,38 @@ def upright_by(mesh: Mesh, path: Path, up: str | None) -> tuple[Mesh, str]:
     kind = path.suffix[1:].upper()
     if path.suffix.lower() in UP_OF_FORMAT:
         return mesh, f"{mesh.up} up, as in every {kind}"
+    if says_up(path, mesh):
+        return mesh, f"{mesh.up} up, as the file says"
     return mesh, f"{mesh.up} up, a guess, since {kind} does not say (another axis: --up)"
+
+
+def stated_up(content: bytes) -> str | None:
+    """The axis that a comment of ours at the head of a file names, None without one."""
+    found = STATED.search(content[:HEAD])
+    return found[1].decode() if found else None
+
+
+def says_up(path: Path, mesh: Mesh) -> bool:
+    """Whether a file says which axis of its mesh points up: by its format, or by a comment of ours."""
+    return path.suffix.lower() in UP_OF_FORMAT or mesh.up != "z"
+
+
+def with_stated_up(content: bytes, suffix: str, up: str) -> bytes:
+    """The content of a mesh file with a comment that names the axis, where that is not z and the format has comments.
+
+    An ASCII comment of ply, obj and off; the header of a binary stl.
+    """
+    said = b"haptic-glance: %s points up" % up.encode()
+    if up == "z" or suffix in UP_OF_FORMAT:
+        return content
+    if suffix == ".ply":
+        return re.sub(rb"^(ply\r?\nformat [^\n]*\n)", rb"\1comment " + said + b"\n", content, count=1)
+    if suffix == ".off":
+        head, _, rest = content.partition(b"\n")
+        return b"\n".join([head, b"# " + said, rest])
+    if suffix == ".stl":
+        return (b"# " + said).ljust(80, b" ") + content[80:]
+    return b"# " + said + b"\n" + content
 
 
 def upright_for(path: Path, mesh: Mesh) -> tuple[Mesh, str]:

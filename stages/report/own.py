@@ -15,7 +15,9 @@ from stages.kit.files import write_text
 from stages.lod import vertex_errors
 from stages.lod.export import write_any
 from stages.lod.look import coloured, look
-from stages.saliency import as_csv
+from stages.saliency import as_csv, points_of
+from stages.salient_points import Detection
+from stages.salient_points.find import scores_of
 
 from .results import NotRun, Results
 
@@ -35,12 +37,9 @@ def write_own_page(results: Results, pages: Sequence[str], out: Path) -> None:
             missing[name] = str(error)
     links = " ".join(f'<a href="site/{page}.html">{page.capitalize()}</a>' for page in pages)
     more = f'<section id="tables"><h2>Tables and charts</h2><p>{links}</p></section>' if links else ""
-    commands = [
-        "haptic-glance gallery " + (results.workspace.params[results.sets[0]]["meshes"].get("folder", "FOLDER"))
-    ]
-    write_text(
-        out / "index.html", build_page("Your meshes", made, missing, [f"haptic-glance gallery {folder}"], out, more)
-    )
+    folder = results.workspace.params[results.sets[0]]["meshes"].get("folder", "FOLDER")
+    text = build_page("Your meshes", made, missing, [f"haptic-glance gallery {folder}"], out, more)
+    write_text(out / "index.html", text)
 
 
 def exhibit_of(results: Results, name: str, folder: Path) -> Exhibit:
@@ -51,7 +50,7 @@ def exhibit_of(results: Results, name: str, folder: Path) -> Exhibit:
     mesh, found = results.mesh(name), results.saliency(name)
     model = MODEL if MODEL in found else found.those_of(list(found))[0]
     saliency, vertices = found[model], results.points(name)[model][:COUNT]
-    points = [(rank, int(v), *map(float, mesh.vertices[v]), float(saliency[v])) for rank, v in enumerate(vertices, 1)]
+    points = points_of(mesh, Detection(vertices, None, saliency, scores_of(mesh, vertices, saliency)))
     folder.mkdir(parents=True)
     write_any(folder / "saliency.ply", coloured(mesh, saliency))
     write_text(folder / "points.csv", as_csv(points))

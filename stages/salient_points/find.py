@@ -1,14 +1,16 @@
 """From a mesh to its saliency and its salient points, in one call each."""
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 
 import numpy as np
+from scipy.spatial import KDTree
 
 from stages.conspicuity import ViewMaps, conspicuity
 from stages.conspicuity.channels import mask_at_size
 from stages.conspicuity.surface_values import SMOOTHING
 from stages.kit import Mesh, Viewpoint
-from stages.meshes import normalise, rotate_to_z_up
+from stages.meshes import MeshError, clean, normalise, rotate_to_z_up
 from stages.meshes.orient import orient
 from stages.views import TWELVE, render
 from stages.weights import LearnedWeights
@@ -42,24 +44,24 @@ def saliency(
     detector = method_named(method)
     if not isinstance(detector, HasSaliency):
         raise ValueError(f"method {method!r} has no saliency: it only places points")
-    mesh = normalise(rotate_to_z_up(orient(mesh)[0], up))
+    mesh = _prepared(mesh, up)
     options = Options(_learned(method, weights), smoothing=smoothing)
     return detector.saliency(mesh, compute_maps(mesh, detector.channels, viewpoints), options)
 
 
 def find_points(
-    mesh: Mesh, method: str = GLANCE, count: int | None = None, *,
+    mesh: Mesh, method: str | int = GLANCE, count: int | None = None, *,
     weights: str | Mapping[str, float] | None = None, viewpoints: Iterable[Viewpoint] | None = None,
     selection: str = "suppression", radius: float = RADIUS, seed: int = 0, name: str = "", up: str | None = None,
 ) -> np.ndarray:  # fmt: skip
     """Vertex ids of the places that attract attention: (k,) i8, most salient first.
 
-    count: how many; None stops at the method's own threshold (T3.2.5 for maps), and only a mesh with fewer vertices
-    gives fewer than asked for. selection: for methods that select points in each view, `suppression` (T3.2.5) or
-    `centroid` (T3.1.2). radius: the least distance between points, in units of the normalised mesh; it shrinks only
-    where `count` points do not fit. seed and name: for `random` alone, whose draw depends on these two and not on
-    earlier calls. The other arguments are those of `saliency`. Raises ValueError for unknown names, an invalid count,
-    or `random` or `farthest` without a count.
+    `find_points(mesh, 10)` gives ten of the default method. count: how many; None stops at the method's own threshold
+    (T3.2.5 for maps), and only a mesh with fewer vertices gives fewer than asked for. selection: for methods that
+    select points in each view, `suppression` (T3.2.5) or `centroid` (T3.1.2). radius: the least distance between
+    points, in units of the normalised mesh; it shrinks only where `count` points do not fit. seed and name: for
+    `random` alone, whose draw depends on these two and not on earlier calls. The other arguments are those of
+    `saliency`. Raises ValueError for unknown names, an invalid count, or `random` or `farthest` without a count.
     """
     return detect(
         mesh, method, count, weights=weights, viewpoints=viewpoints, selection=selection, radius=radius, seed=seed,
@@ -68,17 +70,47 @@ def find_points(
 
 
 def detect(
-    mesh: Mesh, method: str = GLANCE, count: int | None = None, *,
+    mesh: Mesh, method: str | int = GLANCE, count: int | None = None, *,
     weights: str | Mapping[str, float] | None = None, viewpoints: Iterable[Viewpoint] | None = None,
     selection: str = "suppression", radius: float = RADIUS, seed: int = 0, name: str = "", up: str | None = None,
 ) -> Detection:  # fmt: skip
     """The points of `find_points` and the saliency of `saliency`, from one look. The arguments are those of these."""
+    if isinstance(method, int | np.integer) and count is None:
+        method, count = GLANCE, int(method)
     detector = method_named(method)
     if count is not None and (count != int(count) or count < 1):
         raise ValueError(f"count must be a whole number of at least 1, got {count}")
     options = Options(_learned(method, weights), selection, radius, SMOOTHING, seed, name)
-    mesh = normalise(rotate_to_z_up(orient(mesh)[0], up))
-    return detector.find(mesh, compute_maps(mesh, detector.channels, viewpoints), options, count)
+    mesh = _prepared(mesh, up)
+    found = detector.find(mesh, compute_maps(mesh, detector.channels, viewpoints), options, count)
+    return found if found.saliency is None else replace(found, scores=scores_of(mesh, found.points, found.saliency))
+
+
+def scores_of(mesh: Mesh, points: np.ndarray, saliency: np.ndarray) -> np.ndarray:
+    """(k,) f8 in 0..1: how strongly each of the points (k,) draws the eye, in their order; descending.
+
+    It is the mean of the saliency (n,) around a point of the normalised mesh, by area, over the length that smooths the
+    saliency before its peaks are taken. Attention inhibits what it has visited, so that a later place may lie beside a
+    high peak: its score is never more than that of the place before it.
+    """
+    place, radius = KDTree(mesh.vertices), 2 * SMOOTHING
+    near = [np.union1d(ids, point).astype(np.int64) for ids, point in zip(
+        place.query_ball_point(mesh.vertices[points], radius), points, strict=True)]  # fmt: skip
+    areas = [mesh.vertex_areas[ids] for ids in near]
+    means = [
+        np.average(saliency[ids], weights=own) if own.any() else saliency[point]
+        for ids, own, point in zip(near, areas, points, strict=True)
+    ]
+    return np.minimum.accumulate(np.array(means, dtype=np.float64))
+
+
+def _prepared(mesh, up):
+    """The mesh as the detectors take it; one that cannot be repaired is only turned outwards."""
+    try:
+        mesh = clean(mesh)[0]
+    except MeshError:
+        mesh = orient(mesh)[0]
+    return normalise(rotate_to_z_up(mesh, up))
 
 
 def compute_maps(

@@ -5,8 +5,9 @@ without which it cannot run, or None; and `find(mesh, sight, options, count=None
 place points (random, farthest) have `saliency(mesh, sight, options) -> (n,)` too.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from difflib import get_close_matches
 
 from stages.conspicuity import CHANNELS, ViewMaps
 from stages.kit import Mesh, Stopwatch
@@ -64,11 +65,29 @@ METHODS: dict[str, Detector] = {
 }
 
 
+MAIN = ("glance", "glance_any_pose", "enhanced", "thesis_ssim", "itti", "mesh_saliency")  # named where none is near
+MEANT = {  # in other words, and in the thesis's
+    "ours": "glance", "gaze": "glance", "default": "glance", "any_pose": "glance_any_pose",
+    "thesis": "thesis_ssim", "enhanced_attention": "thesis_ssim", "enhanced_visual_attention": "thesis_ssim",
+    "ssim": "thesis_ssim", "ed": "thesis_ed", "visual_attention": "itti", "attention": "itti", "classical": "itti",
+    "lee": "mesh_saliency", "fixations": "enhanced", "fixation": "enhanced", "hks": "heat_kernel",
+}  # fmt: skip
+
+
 def method_named(method: str) -> Detector:
-    """The entry of METHODS; ValueError that lists them for an unknown name."""
+    """The entry of METHODS; ValueError with the nearest name for an unknown one."""
     if method not in METHODS:
-        raise ValueError(f"unknown method {method!r}: choose one of {', '.join(METHODS)}")
+        near = meant(str(method).lower(), list(METHODS))
+        raise ValueError(f"unknown method {method!r}{near or ': choose one of ' + ', '.join(MAIN)}")
     return METHODS[method]
+
+
+def meant(said: str, usable: Sequence[str]) -> str:
+    """ " (did you mean NAME?)" for a name in other words or mistyped; else empty."""
+    lower = {name.lower(): name for name in usable}
+    close = get_close_matches(said, [*MEANT, *lower], 1)
+    found = MEANT.get(close[0], lower.get(close[0])) if close else None
+    return f" (did you mean {found}?)" if found in usable else ""
 
 
 def split_runnable(methods: Iterable[str], learned: LearnedWeights) -> tuple[list[str], list[str]]:

@@ -43,12 +43,14 @@ class Options:
 class Detection:
     """points (k,) i8, most salient first; strong: how many pass the threshold; saliency (n,) f8.
 
-    strong is None for a method without a threshold, saliency for one that only places points.
+    strong is None for a method without a threshold, saliency for one that only places points. scores (k,) f8: those of
+    `scores_of`, which `detect` adds.
     """
 
     points: np.ndarray
     strong: int | None
     saliency: np.ndarray | None
+    scores: np.ndarray | None = None
 
 
 class Detector(Protocol):

@@ -1,0 +1,215 @@
+"""The doors agree: commands, functions and studio give the same places, values and imprints, for a mesh in any form."""
+
+import inspect
+import json
+import pickle
+import re
+import warnings
+
+import numpy as np
+import pytest
+import trimesh
+
+import haptic_glance
+from haptic_glance import Mesh, detect, doors, find_points, load, press, press_many, saliency, show, simplify
+from haptic_glance.__main__ import run
+from haptic_glance.studio.specimen import open_file
+from stages.imprints.layout import Layout
+from stages.lod.export import write_any
+from stages.meshes.clouds import Cloud
+
+COUNT = 5
+
+
+@pytest.fixture(scope="module")
+def body():
+    """An egg with a nose and a tail, 40 across, far from the origin: arrays of a closed surface."""
+    ball = trimesh.creation.icosphere(3)
+    x, y, z = ball.vertices.T
+    bumps = 0.5 * np.exp(-12 * ((y + 1) ** 2 + (z - 0.3) ** 2)) + 0.3 * np.exp(-12 * ((y - 1) ** 2 + (x - 0.2) ** 2))
+    vertices = (1 + bumps)[:, None] * ball.vertices * [1, 1.2, 0.8]
+    return 20 * vertices + [100, -30, 7], np.asarray(ball.faces)
+
+
+@pytest.fixture
+def file(body, tmp_path, request):
+    """The body in a file of the format that a test names."""
+    path = tmp_path / f"body{request.param}"
+    trimesh.Trimesh(*body, process=False).export(path)
+    return path
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("file", [".stl", ".obj", ".ply", ".off", ".glb"], indirect=True)
+def test_all_doors_give_the_same_places_values_and_imprints(file, tmp_path, capsys):
+    mesh = load(file, up="y" if file.suffix == ".glb" else "z")
+    found = detect(mesh, count=COUNT)
+    assert (np.diff(found.scores) <= 0).all() and len(found.scores) == COUNT
+    assert find_points(mesh, COUNT).tolist() == find_points(mesh, count=COUNT).tolist() == found.points.tolist()
+    assert (found.saliency == saliency(mesh)).all()
+    for command in ("saliency", "points"):
+        run(command, [str(file), "--count", str(COUNT), "--json"])
+        rows = json.loads(capsys.readouterr().out)
+        assert [row["vertex"] for row in rows] == found.points.tolist()
+        assert [row["score"] for row in rows] == found.scores.tolist()
+    run("touch", [str(file), "--count", str(COUNT), "--out", str(tmp_path / "touched"), "--json"])
+    assert [row["vertex"] for row in json.loads(capsys.readouterr().out)] == found.points.tolist()
+    stored = np.load(tmp_path / "touched/imprints.npz")
+    assert np.allclose(stored["images"], press_many(mesh, found.points), atol=1e-5)
+    look = open_file(file, mesh.up).look("glance", COUNT)
+    assert [row[1] for row in look.points] == found.points.tolist()
+    assert [row[-1] for row in look.points] == found.scores.tolist()
+
+
+def test_an_array_stands_upright_on_the_axis_of_the_mesh(body):
+    mesh = Mesh(*body)
+    point = find_points(mesh, 1)[0]
+    turned = Mesh(mesh.vertices[:, [1, 2, 0]], mesh.faces, up="y")  # x, y, z become z, x, y
+    assert np.allclose(press(mesh, point), press(turned, point), atol=1e-6)
+    assert not np.allclose(press(mesh, point), press(Mesh(turned.vertices, turned.faces), point), atol=0.1)
+
+
+@pytest.mark.parametrize("scale", [1e-3, 1.0, 1000.0])
+def test_lengths_are_shares_of_the_diameter_or_have_a_unit(body, scale):
+    mesh = Mesh(*body)
+    image = press(Mesh(scale * mesh.vertices, mesh.faces), 7)
+    assert np.allclose(image, press(mesh, 7), atol=1e-5)
+    millimetres = press(mesh, 7, pitch=f"{0.01 * doors.centre_and_radius(mesh)[1] / 0.5}mm", unit="mm")
+    assert np.allclose(millimetres, image, atol=1e-5)
+    with pytest.raises(ValueError, match="pitch='1mm' needs unit"):
+        press(mesh, 7, pitch="1mm")
+    with pytest.raises(ValueError, match="pitch='wide': give a share"):
+        press(mesh, 7, pitch="wide")
+
+
+FORMS = {
+    "path": lambda mesh, path: path,
+    "arrays": lambda mesh, path: (mesh.vertices, mesh.faces),
+    "trimesh": lambda mesh, path: trimesh.Trimesh(mesh.vertices, mesh.faces, process=False),
+    "mesh": lambda mesh, path: mesh,
+}
+CALLS = {
+    "conspicuity": lambda f, m: f(m, haptic_glance.render(m, haptic_glance.Viewpoint(0, 0), (90, 120)), ["edge"]),
+    "detect": lambda f, m: f(m, count=2), "find_points": lambda f, m: f(m, 2),
+    "follow": lambda f, m: f(m, np.array([[100, -30, 7], [120, -30, 7], [100, -10, 7.0]]), 3, (4, 4)),
+    "gaps_at": lambda f, m: f(m, *PLACE, within=1.0, pitch=0.1),
+    "layout_forces": lambda f, m: f(m, *PLACE, haptic_glance.Layer(), LAYOUT, depth=0.001),
+    "metro": lambda f, m: f(m, m, 100), "normalise": lambda f, m: f(m),
+    "perceptual": lambda f, m: f(m, m, [haptic_glance.Viewpoint(0, 0)], (45, 60)),
+    "press": lambda f, m: f(m, 7), "press_forces": lambda f, m: f(m, *PLACE, haptic_glance.Layer(), depth=0.001),
+    "press_many": lambda f, m: f(m, [7]), "render": lambda f, m: f(m, haptic_glance.Viewpoint(0, 0), (45, 60)),
+    "saliency": lambda f, m: f(m), "sensor_normals": lambda f, m: f(m, [7]), "simplify": lambda f, m: f(m, "25%"),
+    "to_trimesh": lambda f, m: f(m), "write_any": lambda f, m: f("out.ply", m), "repair": lambda f, m: f(m),
+    "show": lambda f, m: f(m), "as_mesh": lambda f, m: f(m), "Surface": lambda f, m: f(m), "clean": lambda f, m: f(m),
+    "rotate_to_z_up": lambda f, m: f(m),
+}  # fmt: skip
+PLACE = np.array([[100.0, -30.0, 40.0]]), haptic_glance.sensor_axes([[0.0, 0.0, 1.0]])
+LAYOUT = Layout([[0, 0, 0], [0.1, 0, 0]], [[0, 0, -1], [0, 0, -1]], [1e-4, 1e-4])
+
+
+def test_every_function_with_a_mesh_is_called_here():
+    taking = {"mesh", "surface", "mesh_or_surface", "reference", "given"}
+    for name in haptic_glance.__all__:
+        function = getattr(haptic_glance, name)
+        if inspect.isfunction(function) and taking & set(inspect.signature(function).parameters):
+            assert name in CALLS, name
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore::UserWarning")
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("name", CALLS)
+def test_every_function_takes_a_mesh_in_every_form(body, tmp_path, monkeypatch, name, form):
+    monkeypatch.chdir(tmp_path)
+    mesh = Mesh(*body)
+    mesh = haptic_glance.normalise(mesh) if name in ("conspicuity", "perceptual", "render") else mesh
+    path = tmp_path / "body.ply"
+    write_any(path, mesh)
+    assert CALLS[name](getattr(haptic_glance, name), FORMS[form](mesh, path)) is not False
+
+
+@pytest.mark.slow
+def test_a_cloud_is_a_mesh_too(body):
+    cloud = Cloud(trimesh.Trimesh(*body, process=False).sample(3000, seed=0))
+    assert len(find_points(cloud, 3)) == 3
+
+
+@pytest.mark.parametrize("faces", ["25%", 0.25, 320, "320"])
+def test_faces_are_a_count_or_a_share(body, faces):
+    assert len(simplify(Mesh(*body), faces).faces) == 320
+
+
+def test_a_mistyped_method_is_answered_by_its_neighbour_alone(body):
+    with pytest.raises(ValueError, match=r"unknown method 'glanse' \(did you mean glance\?\)$"):
+        find_points(Mesh(*body), "glanse")
+    with pytest.raises(ValueError, match="choose one of glance, ") as error:
+        find_points(Mesh(*body), "zzzz")
+    assert len(str(error.value)) < 150
+
+
+def test_what_docstrings_name_can_be_imported():
+    named = set()
+    for name in haptic_glance.__all__:
+        text = inspect.getdoc(getattr(haptic_glance, name)) or ""
+        named |= set(re.findall(r"haptic_glance\.(\w+)", text))
+    assert all(hasattr(haptic_glance, name) for name in named - {"doors"})
+    assert haptic_glance.__version__[0].isdigit()
+
+
+def test_a_mesh_is_shown_in_a_notebook(body):
+    mesh = Mesh(*body)
+    page = show(mesh, mesh.vertices[:, 2])._repr_html_()
+    assert page.startswith("<iframe") and len(page) > 10_000 and len(show(mesh).html) > 10_000
+
+
+def test_a_mesh_compares_by_content_and_keeps_its_arrays_to_itself(body):
+    vertices, faces = body[0].copy(), body[1].copy()
+    mesh, diagonal = Mesh(vertices, faces), Mesh(*body).diagonal
+    vertices[:] = 0
+    assert mesh.diagonal == diagonal and mesh == Mesh(*body) and hash(mesh) == hash(Mesh(*body))
+    assert mesh != Mesh(body[0] + 1, body[1]) and mesh != Mesh(*body, up="y") and mesh != "mesh"
+    small = len(pickle.dumps(Mesh(*body)))
+    assert mesh.adjacency.nnz and len(pickle.dumps(mesh)) == small and pickle.loads(pickle.dumps(mesh)) == mesh
+
+
+@pytest.mark.parametrize("suffix", [".ply", ".obj", ".off", ".stl"])
+def test_the_axis_of_a_glb_outlives_another_format(body, tmp_path, suffix):
+    trimesh.Trimesh(*body, process=False).export(tmp_path / "body.glb")
+    out = tmp_path / f"small{suffix}"
+    run("simplify", [str(tmp_path / "body.glb"), "--faces", "300", "--out", str(out)])
+    assert load(out).up == "y"
+    assert trimesh.load(out, process=False).extents == pytest.approx(trimesh.Trimesh(*body).extents, rel=0.05)
+
+
+def test_a_guess_of_the_axis_is_said_once_and_no_other(body, tmp_path):
+    mesh = Mesh(*body)
+    write_any(tmp_path / "body.ply", mesh)
+    with pytest.warns(UserWarning, match="body.ply does not say which axis points up: z is taken"):
+        load(tmp_path / "body.ply")
+    with pytest.warns(UserWarning, match="does not say"):
+        saliency(tmp_path / "body.ply")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert len(load(tmp_path / "body.ply", up="z").faces) == len(mesh.faces)
+        saliency(tmp_path / "body.ply", up="z")
+
+
+def test_a_triangle_soup_and_an_open_patch_are_simplified(body):
+    mesh = Mesh(*body)
+    soup = Mesh(mesh.vertices[mesh.faces].reshape(-1, 3), np.arange(3 * len(mesh.faces)).reshape(-1, 3))
+    values = np.linspace(0, 1, len(soup.vertices))
+    assert len(simplify(soup, "25%", weights=values).faces) <= 320
+    patch = _sheet()
+    assert len(simplify(patch, 0.1).faces) <= 0.1 * len(patch.faces)
+    with pytest.raises(haptic_glance.InfeasibleTarget) as error:
+        simplify(patch, 0.1, free_borders=False)
+    assert len(simplify(patch, error.value.smallest, free_borders=False).faces) <= error.value.smallest
+
+
+def _sheet():
+    """A flat sheet of 20 x 2 squares, nearly all of it border."""
+    x, y = np.meshgrid(np.arange(21.0), np.arange(3.0))
+    vertices = np.stack([x.ravel(), y.ravel(), 0.1 * np.sin(x.ravel())], axis=1)
+    corner = (np.arange(20) + 21 * np.arange(2)[:, None]).ravel()
+    halves = (corner, corner + 1, corner + 22), (corner, corner + 22, corner + 21)
+    return Mesh(vertices, np.concatenate([np.stack(half, axis=1) for half in halves]))
