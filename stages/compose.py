@@ -197,7 +197,7 @@ def main() -> None:
     errors_in_one_line("compose")
     values = compose(overrides)
     missing = absent(values)
-    if len(missing) == len(values["sets"]):
+    if len(missing) == len(values["sets"]) and not any(path.startswith("conf/") for path in missing.values()):
         raise ParamsError("; ".join(f"{name}: {path} is not there: {_obtain(name)}" for name, path in missing.items()))
     for dataset, path in missing.items():
         print(f"compose: {dataset} is left out, {path} is not there: {_obtain(dataset)}", file=sys.stderr)

@@ -17,6 +17,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+import trimesh
+from scipy.spatial import KDTree
 
 from stages.kit import Mesh, Stopwatch
 from stages.kit.command import errors_in_one_line
@@ -26,10 +28,14 @@ from stages.lod.look import check_look, coloured, write_look
 from stages.lod.options import check_outputs
 from stages.meshes.colours import bake_texture
 from stages.meshes.load import load_unnamed
+from stages.meshes.normalise import centre_and_radius
 from stages.meshes.up import add_up, upright_by, upright_for
 from stages.salient_points import Detection, detect
+from stages.salient_points import saliency as saliency_of
 from stages.salient_points.names import HELP, check_name
+from stages.weights.published import GLANCE
 
+LONG, FINE = 0.1, 0.02  # shares of the diameter: an edge that is long, and the longest of the finer copy
 COLUMNS = ("rank", "vertex", "x", "y", "z", "score")
 
 
@@ -75,7 +81,10 @@ def look_at(chosen: argparse.Namespace) -> None:
     assert found.saliency is not None  # `check` lets no method pass that has none
     print(f"{chosen.name}: {len(mesh.faces):,} faces in {watch.seconds:.1f} s, {note}", file=sys.stderr)
     rows = points_of(mesh, found)
-    write(chosen, mesh, found.saliency, rows)  # first: what reads the lines may close the pipe
+    if chosen.out or chosen.picture:
+        write(chosen, *finely(bake_texture(mesh), found.saliency, chosen.method), rows)
+    elif chosen.points:
+        write(chosen, mesh, found.saliency, rows)  # before the lines, whose reader may close the pipe
     print(json.dumps([dict(zip(COLUMNS, row, strict=True)) for row in rows]) if chosen.json else as_csv(rows))
 
 
@@ -98,6 +107,27 @@ def points_of(mesh: Mesh, found: Detection) -> list[tuple]:
     return [(rank, vertex, *place, score) for rank, (vertex, place, score) in enumerate(rows, 1)]
 
 
+def finely(mesh: Mesh, saliency: np.ndarray, method: str = GLANCE) -> tuple[Mesh, np.ndarray]:
+    """(Mesh, saliency (n,)) to be drawn: the mesh, or a finer copy of one with long edges, as CAD programs write them.
+
+    Values at the ends of a long triangle say nothing of the middle, over which colours would be smeared.
+    """
+    diameter = 2 * centre_and_radius(mesh)[1]
+    ends = mesh.vertices[mesh.faces]
+    if np.linalg.norm(ends - np.roll(ends, 1, axis=1), axis=2).max() <= LONG * diameter:
+        return mesh, saliency
+    vertices, faces = trimesh.remesh.subdivide_to_size(mesh.vertices, mesh.faces, FINE * diameter, max_iter=20)
+    fine = Mesh(vertices, faces, up=mesh.up)
+    return fine, saliency_of(fine, method)
+
+
+def nearest_vertices(mesh: Mesh, rows: list[tuple]) -> np.ndarray:
+    """(k,) i8 the vertices of a mesh at the positions of rows of `points_of`."""
+    return np.asarray(
+        KDTree(mesh.vertices).query(np.array([row[2:5] for row in rows]).reshape(-1, 3))[1], dtype=np.int64
+    )
+
+
 def as_csv(rows: list[tuple]) -> str:
     """The points as lines of CSV, under a header."""
     lines = (f"{rank},{vertex},{x:.9g},{y:.9g},{z:.9g},{value:.6g}" for rank, vertex, x, y, z, value in rows)
@@ -112,7 +142,7 @@ def write(chosen: argparse.Namespace, mesh: Mesh, saliency: np.ndarray, rows: li
         if note:
             print(f"{chosen.name}: {note}", file=sys.stderr)
     if chosen.picture:
-        write_look(chosen.picture, mesh, saliency, np.array([row[1] for row in rows], dtype=np.int64))
+        write_look(chosen.picture, mesh, saliency, nearest_vertices(mesh, rows))
     if chosen.points:
         write_text(chosen.points, as_csv(rows) + "\n")
     written = [str(path) for path in (chosen.out, chosen.points, chosen.picture) if path]

@@ -13,6 +13,7 @@ from stages.imprints import sensor_axes, touchable
 from stages.imprints.command import ARRAYS, TABLE, places_rows, saved_arrays
 from stages.imprints.command import as_csv as places_csv
 from stages.imprints.distances import distances_at
+from stages.imprints.press import as_shown
 from stages.imprints.user_mesh import UserMesh
 from stages.kit import Mesh
 from stages.kit.files import write_arrays, write_text
@@ -28,7 +29,7 @@ from stages.lod.task import SimplificationTask, repaired
 from stages.meshes.colours import bake_texture
 from stages.meshes.load import load_unnamed
 from stages.meshes.up import upright_by, upright_for
-from stages.saliency import as_csv, points_of
+from stages.saliency import as_csv, finely, nearest_vertices, points_of
 from stages.salient_points import detect
 from stages.salient_points import saliency as saliency_of
 
@@ -84,9 +85,10 @@ def exhibit(
     found = detect(bake_texture(given), count=count)
     assert found.saliency is not None  # glance has one
     points = points_of(given, found)
-    picture = look(given, found.saliency, np.array([row[1] for row in points], dtype=np.int64))
+    shown, drawn = finely(given, found.saliency)
+    picture = look(shown, drawn, nearest_vertices(shown, points))
     folder.mkdir(parents=True, exist_ok=True)
-    write_any(folder / "saliency.ply", coloured(given, found.saliency))
+    write_any(folder / "saliency.ply", coloured(shown, drawn))
     write_text(folder / "points.csv", as_csv(points))
 
     ready()
@@ -133,7 +135,7 @@ def _reduced(task, faces):
 def touch(
     user_mesh: UserMesh, points: Sequence[tuple], folder: Path
 ) -> tuple[list[dict[str, Any]], np.ndarray]:  # fmt: skip
-    """(rows of places.csv, images (k, rows, cols)) of the array at those of the points that have a normal.
+    """(rows of places.csv, images (k, rows, cols) as shown) of the array at those of the points that have a normal.
 
     Both are written into the folder; the index of a row is the rank of its point.
     """
@@ -148,4 +150,4 @@ def touch(
         row["index"] = int(rank)
     write_arrays(folder / ARRAYS, **saved_arrays(user_mesh, places, axes, raw, images, PITCH))
     write_text(folder / TABLE, places_csv(rows, user_mesh.digits))
-    return rows, images
+    return rows, as_shown(images, [row["relief"] for row in rows], PITCH)

@@ -5,13 +5,14 @@
     name = exploration.finish()
 
 The belief is that of stages.exploration: of beliefs of 95 %, 95 in a hundred are correct.
-Public names: Belief, Exploration, Library, known_objects, learn, place_at, primitives, sample_places.
+Public names: Belief, Exploration, Library, known_objects, learn, place_at, primitives, sample_places,
+touched.
 """
 
 from .belief import Belief
 from .explore import Exploration
 from .known import known_objects, primitives
-from .library import Library, learn
+from .library import Library, learn, touched
 from .places import place_at, sample_places
 
 __all__ = [
@@ -23,4 +24,5 @@ __all__ = [
     "place_at",
     "primitives",
     "sample_places",
+    "touched",
 ]

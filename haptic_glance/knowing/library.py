@@ -40,6 +40,11 @@ def learn(meshes: Mapping[str, Mesh], placed: bool = True, seed: int = 0) -> "Li
     return _library(tuple(_Named(name, mesh, seed) for name, mesh in sorted(meshes.items())), placed)
 
 
+def touched(name: str, mesh: Mesh, seed: int = 0) -> np.ndarray:
+    """(TOUCHES, 41) features of the touches by which `learn` knows a mesh; ValueError where it cannot be touched."""
+    return _learned(_Named(name, mesh, seed))[0]
+
+
 @dataclass(frozen=True)
 class Expected:
     """What touches at k places may find, whatever is believed: predicted and probabilities of stages.exploration.State.

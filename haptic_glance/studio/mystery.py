@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
-from haptic_glance.knowing import Exploration, Library, known_objects, learn, primitives
+from haptic_glance.knowing import Exploration, Library, known_objects, learn, primitives, touched
 from stages.imprints.surface import as_surface
 from stages.kit import Mesh
+from stages.kit.extras import MissingExtra
 from stages.kit.rng import rng
-from stages.meshes import MeshError
 
 from .specimen import Specimen, open_file
 
@@ -57,10 +57,16 @@ def gather(
     for path in files[:MOST]:
         try:
             found[path.stem] = open_file(path, up).mesh
-        except (MeshError, ValueError, OSError) as error:
+        except (ValueError, OSError, MissingExtra) as error:
             notes.append(f"{path.name}: {error}")
     if table is not None:
         found[table.name] = table.mesh
+    for name, mesh in list(found.items()):
+        try:
+            touched(name, mesh)
+        except ValueError as error:
+            notes.append(str(error))
+            del found[name]
     return found, notes
 
 

@@ -11,12 +11,15 @@ from stages.kit.camera import project
 from stages.kit.files import whole_file
 from stages.views import render
 
+from .press import as_shown
+
 CANDIDATES = tuple(Viewpoint(az % 360, el) for el in (22, -22, 65) for az in range(305, 665, 30))  # the default first
 OBLIQUE_PENALTY = 0.6  # places: how many more a view from far above or below must show
 WELL_VISIBLE = 0.5  # cosine of the angle between normal and viewer, above which a place is fully visible
 MIN_GAIN = 0.4  # places: how many more a second view must show
 ROWS, SUPERSAMPLING = 560, 2  # rows of a view; rendered at twice the resolution and averaged
 MAX_IMPRINTS = 24  # in one picture
+RELIEF = "the imprint's relief"  # what 0 to 1 of an image stands for, unless it is a depth
 MARK, INK, GREY = "#C2185B", "#222222", "#767676"
 LABEL_GAP = 0.052  # of the rows: least distance of two numbers
 RAY_OFFSET = 2e-3  # units off the surface, so that no place hides itself
@@ -30,7 +33,7 @@ def write_picture(
     images: np.ndarray,
     reliefs: np.ndarray,
     pitch: float,
-    scale: str = "the imprint's relief",
+    scale: str = RELIEF,
     up: str = "z",
 ) -> None:
     """Writes the picture of `draw` as a PNG with the same bytes in every run; up: the axis that points up there."""
@@ -49,7 +52,7 @@ def draw(
     images: np.ndarray,
     reliefs: np.ndarray,
     pitch: float,
-    scale: str = "the imprint's relief",
+    scale: str = RELIEF,
 ) -> None:
     """Draws the mesh with numbered places and outlines of the array to scale, and the imprints beside it.
 
@@ -71,7 +74,9 @@ def draw(
     if len(hidden):
         note = f"not visible: {', '.join(map(str, hidden))}"
         left.text(0.02, 0.015, note, fontsize=8.5, color=GREY, va="bottom")
-    _draw_imprints(right, images, np.asarray(reliefs), scale, total)
+    reliefs = np.asarray(reliefs)[:count]
+    shown = as_shown(images, reliefs, pitch) if scale == RELIEF else images
+    _draw_imprints(right, shown, reliefs, scale, total)
 
 
 def best_views(mesh: Mesh, positions: np.ndarray, normals: np.ndarray) -> list[Viewpoint]:
@@ -151,7 +156,8 @@ def _draw_imprints(figure, images, reliefs, scale, total):
     bar = figure.colorbar(grid.flat[0].images[0], cax=place, ticks=[0, 0.25, 0.5, 0.75, 1])
     bar.ax.set_yticklabels(["0", "25", "50", "75", "100"], fontsize=8)
     bar.set_label(f"distance from the array, % of {scale} (black: first contact)", fontsize=8.5)
-    note = "relief: greatest minus least distance, in units (the object's bounding sphere is 1 across)"
+    note = "relief: greatest minus least distance, in units (the bounding sphere is 1 across)"
+    note += "; fainter below a tenth of the pitch"
     note += f"; the first {len(images)} of {total} places" if total > len(images) else ""
     figure.text(0.02, 0.012, note, fontsize=8.5, color=GREY, va="bottom")
 

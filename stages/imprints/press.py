@@ -9,6 +9,7 @@ from .distances import check_arrays, distances, distances_at
 from .surface import Surface
 
 FLAT = 1e-3  # of the pitch: relief below it is rounding of the mesh's coordinates
+FAINT = 0.1  # of the pitch: a relief below has less contrast in pictures
 BLOCK = 1 << 20  # cells scaled at once, 8 MB in double precision
 
 
@@ -52,6 +53,15 @@ def press_at(
 ) -> np.ndarray:
     """(k, rows, cols) f4 in 0..1: the imprints of arrays at centres (k, 3) with axes (k, 3, 3), see `distances_at`."""
     return normalise(distances_at(surface, centres, axes, cells, pitch, max_distance, contact), pitch)
+
+
+def as_shown(images: np.ndarray, reliefs: ArrayLike, pitch: float) -> np.ndarray:
+    """Imprints (k, rows, cols) in 0..1 for a picture: a relief (k,) below a tenth of the pitch has less contrast.
+
+    Scaled to the whole range, as recognition needs it, a flat place would look like a deep one.
+    """
+    contrast = np.minimum(np.asarray(reliefs, dtype=np.float64) / (FAINT * pitch), 1)
+    return images * contrast[:, None, None]
 
 
 def normalise(distances: ArrayLike, pitch: ArrayLike) -> np.ndarray:

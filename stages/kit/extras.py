@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 MODULES = {
     "pipeline": (
@@ -22,13 +23,17 @@ class MissingExtra(ModuleNotFoundError):
 
 
 @contextmanager
-def from_extra() -> Iterator[None]:
-    """Around the import of what a core install leaves out: raises MissingExtra where it is not installed."""
+def from_extra(need: str = "") -> Iterator[None]:
+    """Around the import of what a core install leaves out: raises MissingExtra where it is not installed.
+
+    need: why the package is needed, to go before "is not installed".
+    """
     try:
         yield
     except ModuleNotFoundError as error:
         module = (error.name or "").partition(".")[0]
         if module not in EXTRAS:
             raise
-        remedy = f"pip install 'haptic-glance[{EXTRAS[module]}]'"
-        raise MissingExtra(f"{module} is not installed: {remedy}", name=error.name) from None
+        here = Path(__file__).parents[2] / "pyproject.toml"  # beside the stages in a clone alone
+        remedy = f"pip install '{'.' if here.is_file() else 'haptic-glance'}[{EXTRAS[module]}]'"
+        raise MissingExtra(f"{need or f'{module} '}is not installed: {remedy}", name=error.name) from None

@@ -10,6 +10,7 @@ from .load import MeshError
 from .orient import orient
 
 MIN_AREA = 1e-12  # share of the squared diagonal; below it, rays in single precision find no surface
+BACK_TO_BACK = 0.5  # share of the faces from which on a surface is taken for one that was doubled
 MIN_VISIBLE_AREA = 1e-4  # share of the squared extent: about five pixels of the stored maps, which have 225 rows
 
 
@@ -17,8 +18,10 @@ def clean(mesh: Mesh) -> tuple[Mesh, list[str]]:
     """The repaired mesh and notes on what was repaired: (Mesh, list of str).
 
     Removes faces that repeat a vertex and duplicate faces, and turns the others outwards. Vertices keep their ids.
-    Faces without area that have three distinct vertices stay: they connect their neighbours, and removing them would
-    open a closed mesh. Raises MeshError when no face or no area is left.
+    Where most faces lie back to back, as SketchUp and games write surfaces to be seen from both sides, one of each two
+    is removed: together they would have no normal. Faces without area that have three distinct vertices stay: they
+    connect their neighbours, and removing them would open a closed mesh. Raises MeshError when no face or no area is
+    left.
     """
     ids, notes = np.arange(len(mesh.faces)), []
     a, b, c = mesh.faces.T
@@ -30,6 +33,12 @@ def clean(mesh: Mesh) -> tuple[Mesh, list[str]]:
     single = np.zeros(len(faces), dtype=bool)
     single[first] = True
     ids, notes = _keep(ids, single, notes, "duplicate")
+    ordered = np.sort(mesh.faces[ids], axis=1)
+    _, first, count = np.unique(ordered, axis=0, return_index=True, return_counts=True)
+    if count[count > 1].sum() > BACK_TO_BACK * len(ids):
+        front = np.zeros(len(ids), dtype=bool)
+        front[first] = True
+        ids, notes = _keep(ids, front, notes, "back-to-back")
     if len(ids) == 0:
         raise MeshError("no face has three different vertices")
     faces = mesh.faces[ids]

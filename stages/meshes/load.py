@@ -124,6 +124,8 @@ def _open(content, suffix, resolver, **options):
 def _to_mesh(loaded, merge, every_colour):
     if loaded is None:
         raise MeshError("the file holds no geometry")
+    if isinstance(loaded, trimesh.PointCloud) and (strips := _strips(loaded)) is not None:
+        return _checked(np.asarray(loaded.vertices, dtype=np.float64), strips)
     if isinstance(loaded, trimesh.PointCloud):
         return clouds.surface_of(clouds.cloud_of(loaded))
     if not isinstance(loaded, trimesh.Trimesh):
@@ -136,7 +138,7 @@ def _to_mesh(loaded, merge, every_colour):
     return Mesh(mesh.vertices[first], ids[mesh.faces])
 
 
-def _checked(vertices, faces, colors):
+def _checked(vertices, faces, colors=None):
     """The Mesh of arrays that a file holds; MeshError with what is wrong with them."""
     if len(faces) == 0:
         raise MeshError(f"no faces ({len(vertices)} vertices)")
@@ -146,6 +148,30 @@ def _checked(vertices, faces, colors):
     if faces.min() < 0 or faces.max() >= len(vertices):
         raise MeshError(f"faces name vertices that do not exist (0..{len(vertices) - 1})")
     return Mesh(vertices, faces, colors)
+
+
+def _strips(loaded):
+    """(m, 3) faces of the triangle strips of a PLY, whose parser takes it for a cloud; None where it has none.
+
+    -1 ends a strip; every other triangle of one is wound the other way.
+    """
+    element = loaded.metadata.get("_ply_raw", {}).get("tristrips")
+    if not element:
+        return None
+    data = element["data"]
+    if isinstance(data, dict):
+        ids = np.concatenate([np.ravel(values) for values in data.values()])
+    else:  # a structured array: of each row the list in its last field
+        ids = np.concatenate([np.ravel(row[-1][1] if len(row[-1]) == 2 else row[-1]) for row in data])
+    faces = []
+    for strip in np.split(ids.astype(np.int64), np.flatnonzero(ids == -1)):
+        strip = strip[strip >= 0]
+        found = np.stack([strip[:-2], strip[1:-1], strip[2:]], axis=1) if len(strip) > 2 else np.zeros((0, 3), int)
+        found[1::2] = found[1::2][:, ::-1]
+        faces.append(found)
+    faces = np.concatenate(faces)
+    a, b, c = faces.T
+    return faces[(a != b) & (b != c) & (c != a)]
 
 
 def _brief(error):

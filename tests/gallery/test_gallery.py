@@ -131,7 +131,7 @@ def test_errors_stand_at_the_vertices_that_have_them(scans):
 def test_each_imprint_has_its_place_and_how_salient_that_is(shown, scans):
     _, page, _, _ = shown("--levels", "300", meshes=scans / "pear.ply")
     rows = [line.split(",") for line in (scans.parent / "out/pear/points.csv").read_text().splitlines()[1:]]
-    captions = re.findall(r"<b>(\d+)</b> saliency ([\d.]+)", page)
+    captions = re.findall(r"<b>(\d+)</b> score ([\d.]+)", page)
     assert captions == [(row[0], f"{float(row[5]):.2f}") for row in rows] and len(captions) == 6
 
 

@@ -116,7 +116,7 @@ def test_neighbourhoods_shrink_until_the_backend_gives_in(monkeypatch):
         return mesh
 
     monkeypatch.setitem(BACKENDS, "fast", stubborn)
-    assert simplify(mesh, 900, keep, 2, shrink=True).vertices is mesh.vertices
+    assert np.array_equal(simplify(mesh, 900, keep, 2, shrink=True).vertices, mesh.vertices)
     assert (
         asked == sorted(asked, reverse=True) and asked[0] == frozen_faces(mesh, keep, 2).sum() and 0 < asked[-1] <= 40
     )

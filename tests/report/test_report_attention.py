@@ -266,7 +266,7 @@ def test_cost_counts_views_channels_and_points(seen):
 def test_chart_of_attention_leaves_out_those_that_have_seen_the_mesh(seen):
     chart = build_all("tradeoff", seen, [attention])
     assert "attention" in [item.name for item in chart.items]
-    rows = pd.read_csv(seen.reports / "tradeoff/attention.csv").set_index("method")
+    rows = pd.read_csv(seen.out / "tradeoff/attention.csv").set_index("method")
     assert not {"svm_object", "human"} & set(rows.index)
     assert rows.loc["itti", "cost_ratio"] == 1
     assert rows.loc["enhanced", "on_front"] and not rows.loc["itti", "on_front"]
@@ -277,7 +277,7 @@ def test_smallest_setting_that_loses_nothing_is_named(seen):
     chart = settings_chart(seen)
     assert "four, 450 rows, symmetry (10.0 times as fast" in chart.caption
     assert "one, 450 rows, none (" not in chart.caption
-    rows = pd.read_csv(seen.reports / "tradeoff/attention_settings.csv").set_index("name")
+    rows = pd.read_csv(seen.out / "tradeoff/attention_settings.csv").set_index("name")
     assert rows["loses_nothing"].to_dict() == {
         "twelve, 900 rows, nine": True, "four, 450 rows, symmetry": True, "one, 450 rows, none": False,
     }  # fmt: skip

@@ -312,7 +312,7 @@ def test_number_of_classes_is_told(gaze):
 @pytest.mark.slow
 def test_cost_is_teaching_once_and_looking_at_every_object(gaze):
     made = build_one(topic, "tradeoff", "fixation", gaze)
-    frame = pd.read_csv(gaze.reports / "tradeoff/fixation.csv").set_index("name")
+    frame = pd.read_csv(gaze.out / "tradeoff/fixation.csv").set_index("name")
     assert frame.loc["MobileNetV2, frozen", "seconds"] == pytest.approx(2 * 1 + 6 * 2)
     assert frame.loc["MobileNetV2, fine-tuned", "cost_ratio"] == pytest.approx((2 * 100 + 6 * 2) / 14, rel=1e-5)
     assert "MobileNetV2, fine-tuned minus frozen: PCC +0.0" in made.caption or "PCC -0.0" in made.caption

@@ -155,7 +155,7 @@ def test_a_longer_middle_is_held_against_the_first_on_the_same_items(two_middles
 def test_a_longer_middle_is_drawn_as_far_from_the_first_as_it_was(two_middles):
     made = build_one(hybrid, "tradeoff", "hybrid", two_middles)
     assert "layers 18:147 shared instead of 18:139" in made.caption
-    kept = pd.read_csv(two_middles.reports / "tradeoff/hybrid.csv")
+    kept = pd.read_csv(two_middles.out / "tradeoff/hybrid.csv")
     assert list(kept.loc[kept["shared_layers"] == LONGER, "network"].unique()) == ["hybrid"]
 
 

@@ -145,7 +145,7 @@ def test_gain_of_fine_tuning_is_paired(run):
 @pytest.mark.slow
 def test_chart_costs_are_seconds_of_training(run):
     build_one(transfer, "tradeoff", "networks", run)
-    frame = pd.read_csv(run.reports / "tradeoff/networks.csv").set_index("name")
+    frame = pd.read_csv(run.out / "tradeoff/networks.csv").set_index("name")
     assert frame.loc["MobileNetV2, ImageNet, fine-tuned", "cost_ratio"] == pytest.approx(6)
 
 

@@ -3,7 +3,8 @@
 import pytest
 
 from stages.salient_points import METHODS
-from stages.salient_points.names import MEANT, check_name
+from stages.salient_points.methods import MEANT
+from stages.salient_points.names import check_name
 
 
 @pytest.mark.parametrize(

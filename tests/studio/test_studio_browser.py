@@ -151,7 +151,7 @@ def test_a_mesh_is_looked_at_clicked_simplified_and_saved(window, studio, tmp_pa
     saved.save_as(tmp_path / "level.glb")
     assert saved.suggested_filename == "knob_512.glb" and len(load(tmp_path / "level.glb").faces) == 512
     table = hand.saved("CSV of the places")
-    assert Path(table.path()).read_text().startswith("rank,vertex,x,y,z,saliency\n1,")
+    assert Path(table.path()).read_text().startswith("rank,vertex,x,y,z,score\n1,")
 
 
 def test_a_broken_file_is_named_and_the_mesh_stays(window, tmp_path):

@@ -24,7 +24,7 @@ def surface_of(cloud: Cloud) -> Mesh:
     from the points than they lie from each other is cut away again. Colours are those of the nearest points. Raises
     MeshError for a cloud without a shape.
     """
-    with from_extra():
+    with from_extra("a point cloud is made a surface by pymeshlab, which "):
         import pymeshlab
 
     cloud = usable(cloud)

@@ -1,0 +1,103 @@
+"""Meshes as people find them: doubled faces, strips, files without faces, long triangles, flat places."""
+
+import struct
+
+import numpy as np
+import pytest
+import trimesh
+from PIL import Image
+
+from haptic_glance import Mesh, clean, find_points, load, press, simplify
+from haptic_glance.__main__ import run
+from haptic_glance.studio.mystery import gather
+from stages.imprints.press import as_shown
+from stages.saliency import finely
+
+
+@pytest.fixture
+def ball():
+    """A ball of 320 faces."""
+    found = trimesh.creation.icosphere(2)
+    return Mesh(found.vertices, found.faces)
+
+
+def doubled(mesh):
+    return Mesh(mesh.vertices, np.concatenate([mesh.faces, mesh.faces[:, ::-1]]))
+
+
+def test_a_surface_that_was_doubled_loses_one_of_its_sides(ball):
+    found, notes = clean(doubled(ball))
+    assert len(found.faces) == len(ball.faces) and "320 back-to-back faces removed" in notes[0]
+    assert found.face_crosses.sum(axis=0) == pytest.approx(0, abs=1e-9)
+    assert (np.einsum("ij,ij->i", found.face_normals, found.vertices[found.faces].mean(axis=1)) > 0).all()
+
+
+def test_a_thin_sheet_on_a_body_keeps_both_sides(ball):
+    faces = np.concatenate([ball.faces, ball.faces[:5, ::-1]])
+    assert len(clean(Mesh(ball.vertices, faces))[0].faces) == 325
+
+
+@pytest.mark.slow
+def test_a_doubled_mesh_is_looked_at_touched_simplified_and_shown(ball, tmp_path, capsys):
+    file = tmp_path / "sketch.obj"
+    trimesh.Trimesh(*(lambda m: (m.vertices, m.faces))(doubled(ball)), process=False).export(file)
+    mesh = load(file)
+    assert len(find_points(mesh, 3)) == 3 and len(simplify(mesh, 0.25).faces) <= 160
+    run("touch", [str(file), "--count", "2", "--out", str(tmp_path / "touched")])
+    assert run("gallery", [str(file), "--out", str(tmp_path / "page"), "--count", "2", "--levels", "50%"]) == 0
+
+
+@pytest.mark.parametrize("binary", [False, True])
+def test_strips_of_a_ply_are_faces(tmp_path, binary):
+    points = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0), (0, 2, 1)]
+    strip = [0, 1, 2, 3, -1, 2, 3, 4]
+    head = f"ply\nformat {'binary_little_endian' if binary else 'ascii'} 1.0\nelement vertex 5\n"
+    head += "".join(f"property float {axis}\n" for axis in "xyz")
+    head += "element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+    if binary:
+        body = b"".join(struct.pack("<3f", *point) for point in points) + struct.pack("<9i", 8, *strip)
+    else:
+        body = "".join(f"{x} {y} {z}\n" for x, y, z in points).encode() + f"8 {' '.join(map(str, strip))}\n".encode()
+    (tmp_path / "strips.ply").write_bytes(head.encode() + body)
+    assert load(tmp_path / "strips.ply", up="z").faces.tolist() == [[0, 1, 2], [3, 2, 1], [2, 3, 4]]
+
+
+def test_an_obj_without_faces_is_a_cloud(tmp_path):
+    points = trimesh.creation.icosphere(3).sample(2000, seed=0)
+    (tmp_path / "cloud.obj").write_text("\n".join("v " + " ".join(f"{x:.6f}" for x in point) for point in points))
+    assert len(load(tmp_path / "cloud.obj", up="z").faces) > 500
+
+
+@pytest.mark.slow
+def test_the_saliency_of_long_triangles_is_drawn_on_a_finer_copy(tmp_path):
+    box = trimesh.creation.box((1.0, 2.0, 0.5))
+    mesh = Mesh(box.vertices, box.faces)
+    shown, values = finely(mesh, np.zeros(8))
+    assert len(shown.faces) > 2000 and values.shape == (len(shown.vertices),) and values.max() == 1
+    assert shown.face_areas.sum() == pytest.approx(mesh.face_areas.sum())
+    fine = Mesh(shown.vertices, shown.faces)
+    assert finely(fine, values)[0] is fine
+    box.export(tmp_path / "box.stl")
+    run(
+        "saliency",
+        [str(tmp_path / "box.stl"), "--out", str(tmp_path / "look.ply"), "--picture", str(tmp_path / "a.png")],
+    )
+    assert len(load(tmp_path / "look.ply", up="z").faces) == len(shown.faces)
+    assert np.asarray(Image.open(tmp_path / "a.png")).std() > 10
+
+
+def test_a_flat_place_has_little_contrast_in_a_picture():
+    images = np.linspace(0, 1, 16).reshape(1, 4, 4).repeat(2, axis=0)
+    shown = as_shown(images, [0.0001, 0.05], 0.01)
+    assert shown[0].max() == pytest.approx(0.1) and shown[1].max() == 1
+
+
+def test_one_bad_file_leaves_the_others_known(ball, tmp_path):
+    (tmp_path / "broken.stl").write_bytes(b"solid nothing")
+    back = Mesh(np.r_[ball.vertices, [[9, 9, 9]]], ball.faces)
+    for name, mesh in (("good", ball), ("far", back)):
+        trimesh.Trimesh(mesh.vertices, mesh.faces, process=False).export(tmp_path / f"{name}.ply")
+    files = [tmp_path / name for name in ("broken.stl", "good.ply", "far.ply", "missing.ply")]
+    found, notes = gather(files, None, None, False, None)
+    assert "good" in found and [note.partition(":")[0] for note in notes] == ["broken.stl", "missing.ply"]
+    assert press(found["good"], 0).shape == (16, 16)
