@@ -6,7 +6,8 @@ import os
 import re
 import runpy
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from difflib import get_close_matches
 from importlib import import_module
 from pathlib import Path
@@ -42,12 +43,15 @@ by Ctrl-C. Results go to stdout, progress to stderr, a line each."""
 
 def main() -> None:
     """Runs the subcommand that the command line names; a package that is not installed ends in one line."""
+    from haptic_glance import __version__ as version
+
     parser = argparse.ArgumentParser(
         prog="haptic-glance",
         usage="haptic-glance COMMAND ...",
         description="Look at a 3D object, touch only the places that matter, and know what it is.",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
+    parser.add_argument("--version", action="version", version=f"haptic-glance {version}")
     parser.add_argument("command", help=argparse.SUPPRESS)
     parser.add_argument("rest", nargs=argparse.REMAINDER, help=argparse.SUPPRESS)
     if sys.argv[1:2] in ([], ["-h"], ["--help"]):
@@ -65,10 +69,26 @@ def main() -> None:
     from stages.kit.extras import MissingExtra, from_extra
 
     try:
-        with from_extra():
+        with from_extra(), quiet_pipe():
             sys.exit(run(chosen.command, chosen.rest))
     except MissingExtra as error:
+        if {"-h", "--help"} & set(chosen.rest):  # what it does can be read without what it needs
+            print(f"usage: haptic-glance {chosen.command} ...\n\n{about(chosen.command)}\n\n{error}")
+            return
         sys.exit(f"haptic-glance {chosen.command}: {error}")
+
+
+@contextmanager
+def quiet_pipe() -> Iterator[None]:
+    """Ends in silence where the reader of the output has gone, as after `| head`."""
+    try:
+        try:
+            yield
+        finally:
+            sys.stdout.flush()
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # Python flushes once more at its end
+        sys.exit(1)
 
 
 def run(command: str, argv: Sequence[str]) -> int:
@@ -122,6 +142,14 @@ def listing() -> str:
 def summary(text: str) -> str:
     """The first line of a docstring, without where the thesis or a shell has it."""
     return re.sub(r"(: `| \(T\d).*", "", text.splitlines()[0]).rstrip(".")
+
+
+def about(command: str) -> str:
+    """The docstring of a command, which is not imported."""
+    modules = {**OWN, **WHOLE, **SHELL}
+    if command in modules:
+        return (repro.__doc__ or "") if command == REPRO else docstring(modules[command])
+    return ast.get_docstring(ast.parse(commands()[command].read_bytes())) or ""
 
 
 def docstring(module: str) -> str:

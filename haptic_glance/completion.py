@@ -6,12 +6,15 @@ is completed as a file.
 """
 
 import argparse
+import json
 import re
 import subprocess
 import sys
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
+OPTIONS = Path(__file__).with_name("options.json")  # {command: its long options}, of `write_options`
 BASH = """\
 _haptic_glance() {{
   local word=${{COMP_WORDS[COMP_CWORD]}}
@@ -37,9 +40,8 @@ def run(argv: Sequence[str]) -> None:
     shell = parser.parse_args(argv).shell
     from .__main__ import OWN, SHELL, WHOLE
 
-    commands = list({**OWN, **WHOLE, **SHELL})
-    with ThreadPoolExecutor() as pool:
-        options = dict(zip(commands, pool.map(options_of, commands), strict=True))
+    known = json.loads(OPTIONS.read_text())
+    options = {command: known.get(command, []) for command in {**OWN, **WHOLE, **SHELL}}
     print(fish(options) if shell == "fish" else (ZSH if shell == "zsh" else "") + bash(options), end="")
 
 
@@ -47,6 +49,15 @@ def options_of(command: str) -> list[str]:
     """The long options that the --help of a command lists; none where it needs an extra that is not installed."""
     ran = subprocess.run([sys.executable, "-m", "haptic_glance", command, "--help"], capture_output=True, text=True)
     return sorted(set(re.findall(r"^  (?:-\w, )?(--[a-z-]+)", ran.stdout, flags=re.MULTILINE)))
+
+
+def write_options() -> None:
+    """Asks every command for its --help, half a minute, and keeps the options; a test says when that is due."""
+    from .__main__ import OWN, SHELL, WHOLE
+
+    with ThreadPoolExecutor() as pool:
+        found = dict(zip({**OWN, **WHOLE, **SHELL}, pool.map(options_of, {**OWN, **WHOLE, **SHELL}), strict=True))
+    OPTIONS.write_text(json.dumps(found, indent=1) + "\n")
 
 
 def bash(options: dict[str, list[str]]) -> str:

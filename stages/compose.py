@@ -49,14 +49,14 @@ def compose(overrides: Sequence[str] = ()) -> dict[str, Any]:
     """
     overrides = [_quoted(override) for override in overrides]
     general = [override for override in overrides if not _set_of(override)]
-    common = _composed(general)
+    common = composed(general)
     values = {key: common[key] for key in SHARED}
     values["graph"] = {stage: [] for stage in stage_names() if stage != "report"}
     check_section(schema_of("report"), values["report"])
     check_common(values)
     for dataset in common["sets"]:
         own = [override.partition(".")[2] for override in overrides if _set_of(override) == dataset]
-        config = _composed([f"data={dataset}", *general, *own])
+        config = composed([f"data={dataset}", *general, *own])
         values[dataset] = _sections(config, dataset)
         for stage in config["stages"]:
             values["graph"][stage].append(dataset)
@@ -101,8 +101,8 @@ def groups() -> dict[str, list[str]]:
     return {folder.name: sorted(path.stem for path in folder.glob("*.yaml")) for folder in folders}
 
 
-def _composed(overrides: Sequence[str]) -> dict[str, Any]:
-    """One composition by Hydra, as plain dicts."""
+def composed(overrides: Sequence[str]) -> dict[str, Any]:
+    """One composition by Hydra, as plain dicts; ParamsError that names the nearest right name of an unknown setting."""
     _check_options(overrides)
     try:
         with hydra.initialize_config_dir(str(CONF), version_base=None):
@@ -162,7 +162,7 @@ def _check_options(overrides: Sequence[str]) -> None:
 
 def _explain(overrides: Sequence[str], error: Exception) -> str:
     """The first override that names nothing known, and the nearest name; else what Hydra said."""
-    keys = [*groups(), *_dotted(_composed([]))] if overrides else []
+    keys = [*groups(), *_dotted(composed([]))] if overrides else []
     for override in overrides:
         name = override.partition("=")[0]
         if name[0] not in "+~" and name not in keys:
@@ -208,7 +208,7 @@ def main() -> None:
 
 
 def _obtain(dataset: str) -> str:
-    return _composed([f"data={dataset}"])["obtain"]
+    return composed([f"data={dataset}"])["obtain"]
 
 
 def leave_out(values: dict[str, Any], dataset: str) -> None:

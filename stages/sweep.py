@@ -4,11 +4,15 @@
 `python -m stages.sweep -m sensor=fsr_16,fsr_32 classifier=knn hydra/launcher=joblib`
 
 Every job finds the points, presses the array and recognises the objects of classification.sets, on the meshes and
-conspicuity maps that `dvc repro` left in data/SET; SET is household, or `data=SET`. Rows are appended to
-reports/sweeps/recognition.csv (a repeated job replaces its rows), and a table of the jobs ends the sweep.
+conspicuity maps of data/SET; SET is household, or `data=SET`. Where these are not there, `dvc repro` makes them first.
+Settings are those of params.yaml, where it has the set, but for what the command line says. Rows are appended to
+runs/sweeps/recognition.csv (a repeated job replaces its rows), and a table of the jobs ends the sweep.
 """
 
+import re
+import subprocess
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -21,28 +25,32 @@ from hydra.experimental.callback import Callback
 from omegaconf import DictConfig, OmegaConf
 
 from stages.classification import evaluate
+from stages.compose import composed
 from stages.conspicuity import read_view_maps
 from stages.imprints import press_many, touchable
 from stages.kit import Stopwatch
+from stages.kit.command import errors_in_one_line
 from stages.kit.conf import conf_folder
-from stages.kit.files import read_mesh, read_table, write_table
+from stages.kit.files import read_json, read_mesh, read_table, write_json, write_table
 from stages.kit.packs import is_there
-from stages.kit.params import ParamsError, check_section, schema_of
+from stages.kit.params import ParamsError, check_section, load_params, schema_of
 from stages.kit.split import Split
 from stages.kit.stats import interval
 from stages.salient_points.methods import find_all, method_named, split_runnable
 from stages.salient_points.options import Options
 from stages.weights import read_learned_weights
 
-OUT = Path("reports/sweeps/recognition.csv")
+OUT = Path("runs/sweeps/recognition.csv")
+BASES = Path("build/sweeps/bases.json")  # {set: its settings in params.yaml, and those of conf/}, for all jobs
+SECTIONS = ("salient_points", "imprints", "classification")
+NEEDED = "meshes", "conspicuity", "weights"  # stages whose results the jobs read
 ROWS = "rows.csv"  # what each job leaves in its own folder
 KEYS = ["job", "dataset", "group", "method", "classifier", "seed"]  # rows that agree in these are the same measurement
 
 
 def recognise(config: dict[str, Any], data: Path) -> list[dict[str, Any]]:
     """Rows of one job: every set, method and classifier of a composed configuration. data: data/SET."""
-    sections = ("salient_points", "imprints", "classification")
-    chosen = {name: check_section(schema_of(name), config[name]) for name in sections}
+    chosen = {name: check_section(schema_of(name), config[name]) for name in SECTIONS}
     rows = []
     touched = {}
     for objects in chosen["classification"].sets.values():
@@ -81,6 +89,57 @@ def _touch(name: str, config: dict[str, Any], chosen: dict[str, Any], data: Path
     }
 
 
+def based(values: dict[str, Any], dataset: str) -> dict[str, Any]:
+    """The settings of a job: those of params.yaml, but where the command line differs from what conf/ has."""
+    bases = read_json(BASES).get(dataset) if BASES.exists() else None
+    if bases is None:
+        return values
+    return values | {
+        name: _laid_over(bases["params"][name], bases["conf"][name], values[name]) for name in bases["conf"]
+    }
+
+
+def _laid_over(base: Any, default: Any, chosen: Any) -> Any:
+    """`chosen` where it differs from the default, else the base; dicts key by key."""
+    if isinstance(base, dict) and isinstance(default, dict) and isinstance(chosen, dict):
+        return {key: _laid_over(base.get(key, value), default.get(key), value) for key, value in chosen.items()}
+    return base if chosen == default else chosen
+
+
+def prepare(argv: Sequence[str]) -> None:
+    """Checks the overrides of a command line, keeps the settings of params.yaml, and makes what the jobs will read.
+
+    Raises ParamsError that names the nearest right name, and for a set that params.yaml does not switch on.
+    """
+    chosen = dict(word.split("=", 1) for word in argv if "=" in word and not word.startswith(("-", "hydra")))
+    for key, values in chosen.items():
+        for value in split_values(values):
+            composed([f"{key}={value}"])
+    params, bases = load_params(), {}
+    for dataset in split_values(chosen.get("data", "household")):
+        if dataset in params.get("sets", []) and all(name in params[dataset] for name in SECTIONS):
+            conf = composed([f"data={dataset}"])
+            bases[dataset] = {
+                "params": params[dataset] | {"seed": params["seed"]},
+                "conf": {name: conf[name] for name in (*SECTIONS, "seed")},
+            }
+        missing = [f"{stage}@{dataset}" for stage in NEEDED if not any(Path("data", dataset, stage).glob("*"))]
+        if missing:
+            if dataset not in params.get("sets", []):
+                raise ParamsError(
+                    f"{dataset} is not switched on: `python -m stages.compose 'sets=[{dataset}]'` does so"
+                )
+            print(f"sweep: {', '.join(missing)} first: `dvc repro` makes them", file=sys.stderr, flush=True)
+            if subprocess.run([sys.executable, "-m", "dvc", "repro", *missing]).returncode:
+                raise ParamsError(f"dvc repro {' '.join(missing)} failed, as said above")
+    write_json(BASES, bases)
+
+
+def split_values(text: str) -> list[str]:
+    """The values of a sweep `a,b`; a comma inside brackets splits nothing."""
+    return re.split(r",(?![^\[{]*[\]}])", text)
+
+
 @hydra.main(version_base=None, config_path=str(conf_folder()), config_name="config")
 def job(config: DictConfig) -> None:
     """One job of the sweep."""
@@ -89,7 +148,7 @@ def job(config: DictConfig) -> None:
     name = " ".join(sorted(HydraConfig.get().overrides.task)) or "defaults"
     try:
         with Stopwatch() as watch:
-            rows = recognise(values, Path("data") / dataset)
+            rows = recognise(based(values, dataset), Path("data") / dataset)
     except (ParamsError, ValueError) as error:
         sys.exit(f"sweep: {name}: {error}")
     frame = pd.DataFrame(rows)
@@ -137,5 +196,13 @@ def table(frame: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame(lines)
 
 
-if __name__ == "__main__":
+def main() -> None:
+    """Checks and prepares, then runs the jobs."""
+    errors_in_one_line("sweep")
+    if not {"-h", "--help"} & set(sys.argv):
+        prepare(sys.argv[1:])
     job()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,11 +1,14 @@
 """Shell completion: what is printed is what a shell then completes."""
 
+import json
 import shutil
 import subprocess
 
 import pytest
 
-from haptic_glance.completion import bash, fish, options_of
+from haptic_glance.__main__ import OWN, SHELL, WHOLE
+from haptic_glance.completion import OPTIONS, bash, fish, options_of, run
+from stages.kit import Stopwatch
 
 KNOWN = {"saliency": ["--count", "--out"], "gate": ["--update"]}
 
@@ -36,5 +39,14 @@ def test_fish_has_a_line_for_each_command_and_option():
 
 @pytest.mark.slow
 def test_the_options_are_those_that_help_lists():
-    assert {"--help", "--out", "--json", "--up"} <= set(options_of("points"))
-    assert options_of("nothing-of-this-name") == []
+    kept = json.loads(OPTIONS.read_text())
+    assert {"--help", "--out", "--json", "--up"} <= set(kept["points"]) and set(kept) == {*OWN, *WHOLE, *SHELL}
+    again = "python -c 'from haptic_glance.completion import write_options; write_options()'"
+    for command in ("points", "simplify", "touch", "gate", "studio"):
+        assert options_of(command) == kept[command], f"{command} has other options now: {again}"
+
+
+def test_the_script_is_printed_in_a_second(capsys):
+    with Stopwatch() as watch:
+        run(["bash"])
+    assert watch.seconds < 1 and "--neighbourhood" in capsys.readouterr().out

@@ -1,11 +1,16 @@
 """The sweep appends tidy rows, replaces those of a repeated job, and ends with a table."""
 
+import subprocess
+from types import SimpleNamespace
+
 import pandas as pd
 import pytest
+from omegaconf import OmegaConf
 
 from stages import sweep
-from stages.compose import compose
-from stages.kit.files import read_table, write_table
+from stages.compose import compose, composed
+from stages.kit.files import read_table, write_json, write_table
+from stages.kit.params import ParamsError
 
 
 def job_rows(job, classifier, value, seed=0):
@@ -54,3 +59,58 @@ def test_missing_upstream_results_are_named(tmp_path):
     values = {"seed": 0} | config["household_four"]
     with pytest.raises(SystemExit, match=r"elephant.npz is not there: run `dvc repro meshes@toys` first"):
         sweep.recognise(values, tmp_path / "data/toys")
+
+
+@pytest.fixture
+def root(tmp_path, monkeypatch):
+    """A folder with a params.yaml that has another number of repetitions, and the files that jobs read."""
+    monkeypatch.chdir(tmp_path)
+    values = compose(["sets=[household_four]", "profile=smoke", "classification.repetitions=3"])
+    (tmp_path / "params.yaml").write_text(OmegaConf.to_yaml(OmegaConf.create(values)))
+    for stage in sweep.NEEDED:
+        write_json(tmp_path / "data/household_four" / stage / "there.json", {})
+    return tmp_path
+
+
+@pytest.mark.slow
+def test_jobs_begin_with_the_settings_of_params_yaml(root):
+    sweep.prepare(["-m", "data=household_four", "classifier=knn,svm"])
+    values = composed(["data=household_four", "classifier=knn"])
+    found = sweep.based(values, "household_four")["classification"]
+    assert (
+        found["repetitions"] == 3 and found["classifiers"] == ["knn"] and values["classification"]["repetitions"] == 20
+    )
+    values = composed(["data=household_four", "classification.repetitions=7"])
+    assert sweep.based(values, "household_four")["classification"]["repetitions"] == 7
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("override", "hint"),
+    [
+        ("chanels=itti", "did you mean channels"),
+        ("channels=itti,al", "did you mean all"),
+        ("classification.repetitons=3", "did you mean classification.repetitions"),
+        ("data=household", "sets=.household."),
+    ],
+)
+def test_a_slip_of_the_pen_is_named_before_any_job(root, override, hint):
+    with pytest.raises(ParamsError, match=hint):
+        sweep.prepare(["-m", override])
+
+
+@pytest.mark.slow
+def test_what_jobs_read_is_made_first(root, monkeypatch, capsys):
+    (root / "data/household_four/weights/there.json").unlink()
+    asked = []
+    monkeypatch.setattr(
+        sweep.subprocess, "run", lambda command: asked.append(command[1:]) or SimpleNamespace(returncode=0)
+    )
+    sweep.prepare(["-m", "data=household_four"])
+    assert asked == [["-m", "dvc", "repro", "weights@household_four"]]
+    assert "weights@household_four first: `dvc repro` makes them" in capsys.readouterr().err
+
+
+def test_a_sweep_writes_to_no_tracked_file():
+    tracked = subprocess.run(["git", "check-ignore", str(sweep.OUT), str(sweep.BASES)], capture_output=True, text=True)
+    assert tracked.stdout.splitlines() == [str(sweep.OUT), str(sweep.BASES)]

@@ -2,15 +2,34 @@
 
 import difflib
 import importlib
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, TypeVar
 
+import numpy as np
 from omegaconf import OmegaConf
 from omegaconf.errors import OmegaConfBaseException
 from yaml import YAMLError
 
 FILE = Path("params.yaml")
 COMMON = {"profile": str, "out": str, "seed": int, "parallel": dict, "sets": list, "graph": dict, "report": dict}
+
+ABOVE_0 = np.nextafter(0, 1)
+RANGES = {  # the last part of a setting's name: the least and the greatest of its numbers, in every section
+    **dict.fromkeys(
+        ("azimuths", "batch", "cells", "coarse_cells", "combinations", "copies", "count", "draws", "epochs", "frames",
+         "hybrid_pictures", "image_epochs", "most", "new_object_touches", "normal_epochs", "parallels", "repetitions",
+         "samples", "screen", "search_epochs", "simulated", "size", "steps", "touches", "trainings", "views",
+         "viewer_count", "viewer_faces"), (1, np.inf)
+    ),
+    **dict.fromkeys(("drawn", "hold", "limit", "real", "rings", "slack", "smoothing"), (0, np.inf)),
+    **dict.fromkeys(
+        ("distances", "factors", "finetuned_rates", "frozen_rates", "hybrid_rate", "near", "penalties", "pitch",
+         "pitches", "radius", "rate", "rates", "tolerance", "width"), (ABOVE_0, np.inf)
+    ),
+    **dict.fromkeys(("confidences", "momentum", "train_share", "validation_share"), (0, 1)),
+    "folds": (2, np.inf), "angle": (ABOVE_0, 180),
+}  # fmt: skip
 
 Settings = TypeVar("Settings")
 
@@ -51,6 +70,7 @@ def check_section(schema: type[Settings], values: Any) -> Settings:
     typed = OmegaConf.structured(schema)
     known: Any = OmegaConf.to_container(typed, throw_on_missing=False)
     _check_keys(section, values, list(known))
+    _check_ranges(section, values)
     try:
         return OmegaConf.to_object(OmegaConf.merge(typed, values))  # type: ignore[return-value]  # of the schema's type
     except OmegaConfBaseException as error:
@@ -70,6 +90,27 @@ def check_common(values: dict[str, Any]) -> None:
             raise ParamsError(f"{key}: {values[key]!r} is not of type {kind.__name__}")
     if values.get("seed", 0) < 0:
         raise ParamsError(f"seed: {values['seed']} is negative")
+
+
+def _check_ranges(where: str, values: dict[str, Any]) -> None:
+    """ParamsError for a number outside the range of its setting; numbers may stand in lists, or one a name."""
+    for key, value in values.items():
+        if isinstance(value, dict) and key not in RANGES:
+            _check_ranges(f"{where}.{key}", value)
+            continue
+        least, most = RANGES.get(key, (-np.inf, np.inf))
+        for number in _numbers(value):
+            if not least <= number <= most:
+                low = "above 0" if least == ABOVE_0 else f"{least:g} or more"
+                said = low if most == np.inf else f"between {0 if least == ABOVE_0 else least:g} and {most:g}"
+                raise ParamsError(f"{where}.{key}: {number:g} must be {said}")
+
+
+def _numbers(value: Any) -> Iterator[float]:
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        yield value
+    for part in value.values() if isinstance(value, dict) else value if isinstance(value, list) else ():
+        yield from _numbers(part)
 
 
 def _check_keys(where: str, values: dict[str, Any], known: list[Any]) -> None:

@@ -15,7 +15,7 @@ from stages.salient_points.names import check_name
     ],
 )  # fmt: skip
 def test_another_name_is_answered_with_ours(said, name):
-    with pytest.raises(ValueError, match=f"--method {said}: there is no such method .did you mean {name}\\?.; choose"):
+    with pytest.raises(ValueError, match=f"--method {said}: there is no such method .did you mean {name}\\?.$"):
         check_name(said)
 
 
