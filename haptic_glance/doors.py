@@ -141,14 +141,16 @@ def simplify(
     `smallest`, a count that is feasible, SimplifyError, or ValueError.
     """
     work = import_module("stages.lod").simplify
-    share = isinstance(faces, float) and 0 < faces < 1
-    count = face_count(f"{100 * faces:.12g}%" if share else faces, len(mesh.faces), "faces")
+    asked = f"{100 * faces:.12g}%" if isinstance(faces, float) and 0 < faces < 1 else str(faces)
+    count = face_count(asked, len(mesh.faces), "faces")
     given = dict(keep=keep, weights=weights, rings=rings, backend=backend, shrink=shrink, attributes=attributes)
     borders = [False if free_borders is None else free_borders]
     if free_borders is None and not attributes and backend != "pymeshlab":
         borders.append(True)
     failures = []
-    named = np.ndim(free_borders) > 0  # vertex by vertex, which repairs would renumber
+    named = (
+        isinstance(free_borders, np.ndarray) and free_borders.ndim > 0
+    )  # vertex by vertex, which repairs would renumber
     for whole, own in [(mesh, given)] if named else _as_given_and_mended(mesh, given):
         for free in borders:
             try:

@@ -77,7 +77,9 @@ def own_folder(overrides: Sequence[str]) -> str:
 
 def _is_published(values: dict[str, Any]) -> bool:
     """Whether settings are those of the published configuration; how objects run side by side does not matter."""
-    free = {"parallel": None, "out": None}
+    common, free = composed([]), {"parallel": None, "out": None}
+    if any(values[key] != common[key] for key in ("profile", "sets")):  # before each set is composed again
+        return False
     return values | free == compose() | free
 
 

@@ -116,7 +116,7 @@ def finely(mesh: Mesh, saliency: np.ndarray, method: str = GLANCE) -> tuple[Mesh
     ends = mesh.vertices[mesh.faces]
     if np.linalg.norm(ends - np.roll(ends, 1, axis=1), axis=2).max() <= LONG * diameter:
         return mesh, saliency
-    vertices, faces = trimesh.remesh.subdivide_to_size(mesh.vertices, mesh.faces, FINE * diameter, max_iter=20)
+    vertices, faces = trimesh.remesh.subdivide_to_size(mesh.vertices, mesh.faces, FINE * diameter, max_iter=20)[:2]
     fine = Mesh(vertices, faces, up=mesh.up)
     return fine, saliency_of(fine, method)
 

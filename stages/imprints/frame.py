@@ -51,8 +51,8 @@ def sensor_axes(normals: ArrayLike, up: str = "z") -> np.ndarray:
         return sensor_axes(normals @ TO_Z_UP[up].T) @ TO_Z_UP[up]
     polar = np.abs(normals[:, 2:]) > POLE
     towards = np.where(polar, [[0.0, 1.0, 0.0]], [[0.0, 0.0, 1.0]])
-    up = unit(towards - np.sum(towards * normals, axis=1, keepdims=True) * normals)
-    return np.stack([np.cross(up, normals), up, normals], axis=1)
+    upwards = unit(towards - np.sum(towards * normals, axis=1, keepdims=True) * normals)
+    return np.stack([np.cross(upwards, normals), upwards, normals], axis=1)
 
 
 def check_vertices(mesh: Mesh, vertices: ArrayLike) -> np.ndarray:

@@ -75,8 +75,10 @@ def detect(
     selection: str = "suppression", radius: float = RADIUS, seed: int = 0, name: str = "", up: str | None = None,
 ) -> Detection:  # fmt: skip
     """The points of `find_points` and the saliency of `saliency`, from one look. The arguments are those of these."""
-    if isinstance(method, int | np.integer) and count is None:
-        method, count = GLANCE, int(method)
+    if not isinstance(method, str):
+        if count is not None:
+            raise ValueError(f"method {method!r} is not the name of a method")
+        method, count = GLANCE, method
     detector = method_named(method)
     if count is not None and (count != int(count) or count < 1):
         raise ValueError(f"count must be a whole number of at least 1, got {count}")

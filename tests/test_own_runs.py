@@ -1,0 +1,96 @@
+"""A run of one's own leaves the published results as they are, needs [pipeline] alone, and ends in a page."""
+
+import os
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import trimesh
+import yaml
+
+from stages.compose import compose
+from stages.kit.extras import MODULES
+from stages.kit.files import write_text
+
+ROOT = Path(__file__).parents[1]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+COMMANDS = re.findall(r"^(python -m stages\.compose .*?)(?: &&|  |$)", README, re.M)
+COMPOSED = [shlex.split(command)[3:] for command in COMMANDS]
+OTHERS = sorted({one for extra, modules in MODULES.items() if extra != "pipeline" for one in modules} - {"cloudpickle"})
+# An interpreter without what other extras bring, but for what joblib has a copy of; its children inherit that.
+BLOCKED = f"""
+import sys
+
+class Missing:
+    def find_spec(self, name, path=None, target=None):
+        if name.partition(".")[0] in {OTHERS}:
+            raise ModuleNotFoundError(f"No module named {{name!r}}", name=name)
+
+sys.meta_path.insert(0, Missing())
+"""
+
+
+def git(*arguments, cwd=ROOT):
+    return subprocess.run(["git", *arguments], cwd=cwd, capture_output=True, text=True, check=False).stdout
+
+
+def test_stages_write_to_the_folder_of_their_run_alone():
+    stages = yaml.safe_load((ROOT / "dvc.yaml").read_text())["stages"]
+    for stage in stages.values():
+        body = stage.get("do", stage)
+        written = [next(iter(one)) if isinstance(one, dict) else one for one in body["outs"] + body.get("metrics", [])]
+        assert all(path.startswith(("${out}/", "data/${", "build/")) for path in written), written
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("overrides", [[], *COMPOSED], ids=" ".join)
+def test_only_the_published_configuration_writes_to_reports(overrides):
+    assert len(COMPOSED) >= 4
+    out = compose([each.replace("=FOLDER", "=somewhere") for each in overrides])["out"]
+    assert (out == "reports") == (not overrides)
+    assert bool(git("check-ignore", f"{out}/index.html", f"{out}/tables/a.csv").count(out) == 2) == bool(overrides)
+
+
+def test_a_folder_of_results_can_be_named():
+    assert compose(["sets=[household]", "out=runs/mine"])["out"] == "runs/mine"
+    assert compose(["parallel=sequential"])["out"] == compose()["out"] == "reports"
+    assert compose(["lod.rings=2"])["out"] == "runs/own"
+
+
+@pytest.mark.slow
+def test_a_folder_ends_in_a_page_with_pipeline_alone(tmp_path):
+    tree, scans = tmp_path / "tree", tmp_path / "tree/scans"
+    for name in git("ls-files", "-co", "--exclude-standard").splitlines():
+        if (ROOT / name).is_file() and not name.startswith(("reports/figures", "reports/tradeoff")):
+            (tree / name).parent.mkdir(parents=True, exist_ok=True)
+            (tree / name).write_bytes((ROOT / name).read_bytes())
+    scans.mkdir()
+    for name, shape in (("teapot", trimesh.creation.icosphere(2)), ("cup", trimesh.creation.capsule(1, 0.4))):
+        shape.export(scans / f"{name}.obj")  # names of the project's own marks, which are of other meshes
+    (scans / "broken.stl").write_bytes(b"solid nothing")
+    for command in ("init -q", "add -A", "-c user.name=a -c user.email=a@b commit -qm all"):
+        git(*command.split(), cwd=tree)
+    write_text(tmp_path / "blocked/sitecustomize.py", BLOCKED)
+    environment = os.environ | {"PYTHONPATH": f"{tmp_path / 'blocked'}:{tree}"}
+    environment["PATH"] = f"{Path(sys.executable).parent}:{environment['PATH']}"
+    options = {"cwd": tree, "env": environment, "capture_output": True, "text": True}
+    with pytest.raises(AssertionError):
+        assert not subprocess.run([sys.executable, "-c", "import torch"], **options).returncode
+    quick = ["views.size=[150,200]", "conspicuity.size=[60,80]", "lod.targets=[50%]", "views.viewpoints=four"]
+    chosen = ["sets=[folder]", "meshes.folder=scans", *quick, "parallel=sequential"]
+    done = subprocess.run([sys.executable, "-m", "stages.compose", *chosen], **options)
+    assert done.returncode == 0, done.stderr
+    done = subprocess.run([sys.executable, "-m", "dvc", "repro"], **options)
+    assert done.returncode == 0, done.stdout + done.stderr
+    page = (tree / "runs/folder/index.html").read_text()
+    assert all(f"<h2>{name}</h2>" in page for name in ("cup", "teapot")) and "broken.stl" in page
+    addresses = re.findall(r'href="(site/[^"]+)"', page)
+    assert addresses and all((tree / "runs/folder" / address).exists() for address in addresses)
+    changed = {line[3:] for line in git("status", "--short", cwd=tree).splitlines()}
+    assert changed <= {"params.yaml", "dvc.lock"}
+    assert "0 of 2 objects have ground truth" in done.stdout
+    said = subprocess.run([sys.executable, "-m", "stages.gate"], **options)
+    assert said.returncode == 1 and said.stderr.count("\n") == 1 and "runs/folder/baseline.json" in said.stderr
