@@ -28,8 +28,8 @@ class Studio:
 
     @property
     def address(self) -> str:
-        """Where the page is."""
-        return f"http://{HOST}:{self.server.get_port()}/"
+        """Where the page is, with its token."""
+        return f"http://{HOST}:{self.server.get_port()}/?token={self.server.token}"
 
     def connected(self, client: viser.ClientHandle) -> None:
         """A browser window has opened the page, or comes back after a reload or a lost connection."""

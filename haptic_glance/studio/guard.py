@@ -1,13 +1,17 @@
-"""A viser server that pages of this machine alone can use: bound to loopback, of known hosts and origins, bounded."""
+"""A viser server for one person of this machine: bound to loopback, of known hosts and origins, with a token."""
 
 import functools
 import http
+import http.cookies
 import io
+import logging
+import secrets
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, redirect_stdout
 from pathlib import Path
 from typing import Any
+from urllib.parse import parse_qs
 
 import viser
 import websockets.asyncio.server as sockets
@@ -15,6 +19,7 @@ from viser import _messages as messages
 from websockets.http11 import Request, Response
 
 ALIVE = Path(__file__).with_name("alive.html")  # what the page says when the studio has ended
+COOKIE = "haptic-glance-"  # and the port: browsers share cookies between ports
 HOST = "127.0.0.1"  # not accessible from other machines
 MAX_UPLOAD = 300 * 2**20  # bytes of one file
 # The page is one file, which compiles the Markdown of its panels.
@@ -31,10 +36,15 @@ _patching = threading.Lock()
 
 
 class LocalServer(viser.ViserServer):
-    """viser's server, bound to 127.0.0.1, which answers only requests of its own page and shares nothing."""
+    """viser's server, bound to 127.0.0.1, which answers only requests of its own page and shares nothing.
+
+    token: what the address must hold, as Jupyter's does: other accounts of this machine reach the port, too.
+    """
 
     def __init__(self, port: int, label: str) -> None:
-        with guarded(), redirect_stdout(io.StringIO()):  # the command says where the page is
+        self.token = secrets.token_urlsafe(16)
+        logging.getLogger("websockets.server").setLevel(logging.CRITICAL)  # what is no request leaves no traceback
+        with guarded(self.token), redirect_stdout(io.StringIO()):  # the command says where the page is
             super().__init__(host=HOST, port=port, label=label, verbose=False)
 
     def request_share_url(self, verbose: bool = True) -> None:
@@ -42,12 +52,12 @@ class LocalServer(viser.ViserServer):
 
 
 @contextmanager
-def guarded() -> Iterator[None]:
-    """Inside, a server of websockets that starts looks at the host and the origin of every request first."""
+def guarded(token: str) -> Iterator[None]:
+    """Inside, a server of websockets that starts looks at the host, the origin and the token of every request first."""
     serve = sockets.serve
 
     def checked(*arguments: Any, process_request: Callable[..., Any], **options: Any) -> Any:
-        return serve(*arguments, process_request=functools.partial(answer, process_request), **options)
+        return serve(*arguments, process_request=functools.partial(answer, process_request, token), **options)
 
     with _patching:
         sockets.serve = checked
@@ -57,19 +67,31 @@ def guarded() -> Iterator[None]:
             sockets.serve = serve
 
 
-def answer(then: Callable[..., Any], connection: sockets.ServerConnection, request: Request) -> Response | None:
-    """403 for a request that does not come from the page itself, else what `then` answers."""
+def answer(
+    then: Callable[..., Any], token: str, connection: sockets.ServerConnection, request: Request
+) -> Response | None:
+    """403 for a request that does not come from the page itself, or without the token, else what `then` answers.
+
+    The token comes in the address of the page, which then keeps it as a cookie.
+    """
     port = connection.local_address[1]
     if not is_own(request.headers.get_all("Host"), request.headers.get_all("Origin"), port):
         text = f"this page is at http://{HOST}:{port}/ only\n"
+        response = connection.respond(http.HTTPStatus.FORBIDDEN, text)
+    elif not knows(request, token, port):
+        text = "this page needs the token of its address: open the address that the studio has printed\n"
         response = connection.respond(http.HTTPStatus.FORBIDDEN, text)
     elif request.path == "/alive":
         response = connection.respond(http.HTTPStatus.OK, "")
     else:
         if "Accept-Encoding" in request.headers:
             del request.headers["Accept-Encoding"]  # so that the page can be added to
+        path, _, asked = request.path.partition("?")
+        request.path = path if asked.startswith("token=") else request.path
         response = then(connection, request)
-        if request.path == "/" and response is not None and request.headers.get("Upgrade") is None:
+        if path == "/" and isinstance(response, Response):
+            response.headers["Set-Cookie"] = f"{COOKIE}{port}={token}; HttpOnly; SameSite=Strict; Path=/"
+        if path == "/" and response is not None and request.headers.get("Upgrade") is None:
             response.body = response.body.replace(b"<head>", b"<head>" + ALIVE.read_bytes(), 1)
             del response.headers["Content-Length"]  # or it would have two
             response.headers["Content-Length"] = str(len(response.body))
@@ -77,6 +99,15 @@ def answer(then: Callable[..., Any], connection: sockets.ServerConnection, reque
         for name, value in HEADERS.items():
             response.headers[name] = value
     return response
+
+
+def knows(request: Request, token: str, port: int) -> bool:
+    """Whether a request has the token, in its address or as the cookie that the page was given."""
+    given = parse_qs(request.path.partition("?")[2]).get("token", [])
+    cookies = http.cookies.SimpleCookie("; ".join(request.headers.get_all("Cookie")))
+    if kept := cookies.get(f"{COOKIE}{port}"):
+        given.append(kept.value)
+    return any(secrets.compare_digest(one.encode(), token.encode()) for one in given)
 
 
 def is_own(hosts: list[str], origins: list[str], port: int) -> bool:

@@ -31,21 +31,8 @@ def calibrate(sequences: np.ndarray, truth: np.ndarray, redundancy: bool = True)
 
     sequences (e, touches, classes): log likelihoods of touches, in the order of touching; truth (e,). All lengths of a
     sequence have equal weight. The touches must not be among those that the likelihood was fitted to. redundancy=False
-    keeps the redundancy at 0 and fits the weight to single touches: the plain product. Raises ValueError for sequences
-    that are empty or not finite, and for a truth that names no class.
+    keeps the redundancy at 0 and fits the weight to single touches: the plain product.
     """
-    sequences, truth = np.asarray(sequences, dtype=np.float64), np.asarray(truth)
-    if sequences.ndim != 3 or not sequences.size:
-        raise ValueError(f"sequences must be (e, touches, classes), of each at least one, got shape {sequences.shape}")
-    if not np.isfinite(sequences).all():
-        wrong = np.argwhere(~np.isfinite(sequences))[0]
-        raise ValueError(
-            f"sequences must be finite log likelihoods, got {sequences[tuple(wrong)]} in sequence {wrong[0]}"
-        )
-    last = sequences.shape[2] - 1
-    if truth.shape != sequences.shape[:1] or not ((truth >= 0) & (truth <= last)).all():
-        raise ValueError(f"truth must hold one class from 0 to {last} for each of the {len(sequences)} sequences")
-    truth = truth.astype(np.int64)
     log_likelihoods = np.cumsum(sequences if redundancy else sequences[:, :1], axis=1)
     touches = np.arange(1, log_likelihoods.shape[1] + 1)
 

@@ -82,16 +82,12 @@ def forces(
     gaps = np.asarray(gaps, dtype=np.float64)
     if (load is None) == (depth is None):
         raise ValueError("give either load, in newtons, or depth, in metres")
-    if gaps.ndim == 0:
-        raise ValueError("gaps must have shape (k, ...), a row a touch, got a number")
-    if np.isnan(gaps).any() or np.isneginf(gaps).any():
+    if np.isnan(gaps).any():
         raise ValueError("gaps must be numbers of metres, inf where nothing is in range")
     areas, cosines = (np.broadcast_to(np.asarray(values, np.float64), gaps.shape[1:]) for values in (areas, cosines))
     if not ((areas > 0) & np.isfinite(areas)).all():
         raise ValueError(f"areas must be above 0 m2, got {areas.min()}")
     least = gaps.min(axis=tuple(range(1, gaps.ndim)), initial=np.inf)
-    lifted = np.where(np.isfinite(least), least, 0.0).reshape(-1, *[1] * (gaps.ndim - 1))
-    gaps = gaps - lifted  # first, or of arrays far away the digits of an indentation would be lost
     if load is None:
         depths = _checked_depths(depth, len(gaps))
     else:
@@ -101,6 +97,7 @@ def forces(
     if len(deep := np.flatnonzero(depths > layer.thickness)):
         remedy = "press less, or take a thicker or stiffer layer"
         raise ValueError(f"touch {deep[0]} needs more than the layer's thickness of {layer.thickness:g} m: {remedy}")
+    depths = depths + np.where(np.isfinite(least), least, 0.0)
     pressed = np.subtract(depths.reshape(-1, *[1] * (gaps.ndim - 1)), gaps)
     np.maximum(pressed, 0.0, out=pressed)
     pressed *= layer.stiffness * areas * cosines

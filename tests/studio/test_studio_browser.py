@@ -68,7 +68,7 @@ class Hand:
         page.goto(address)
 
     def _asked(self, url, address):
-        if not url.startswith((address, "data:", "blob:")):
+        if not url.startswith((address.partition("?")[0], "data:", "blob:")):
             self.elsewhere.append(url)
 
     def reads(self, text):

@@ -1,6 +1,11 @@
 """Who can use the studio's server: pages of this machine that the server itself has sent, and no one else."""
 
+import re
+import signal
 import socket
+import subprocess
+import sys
+import time
 from contextlib import contextmanager
 from http.client import HTTPConnection
 
@@ -11,20 +16,28 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
 from haptic_glance.studio.app import Studio
-from haptic_glance.studio.guard import MAX_UPLOAD, bound_uploads, is_own
+from haptic_glance.studio.guard import COOKIE, MAX_UPLOAD, bound_uploads, is_own
 from haptic_glance.studio.session import Settings
+
+
+TOKENS = {}  # {port: the token of the studio there}
 
 
 @pytest.fixture(scope="module")
 def port():
     studio = Studio(Settings())
+    TOKENS[studio.server.get_port()] = studio.server.token
     yield studio.server.get_port()
     studio.stop()
 
 
-def ask(port, path="/", **headers):
+def cookie(port):
+    return {"Cookie": f"{COOKIE}{port}={TOKENS[port]}"}
+
+
+def ask(port, path="/", known=True, **headers):
     connection = HTTPConnection("127.0.0.1", port, timeout=10)
-    connection.request("GET", path, headers=headers)
+    connection.request("GET", path, headers=headers | (cookie(port) if known else {}))
     answer = connection.getresponse()
     return answer, answer.read()
 
@@ -33,6 +46,7 @@ def ask(port, path="/", **headers):
 def dialled(port, **options):
     address = f"ws://127.0.0.1:{port}/"
     protocols = [f"viser-v{viser.__version__}"]
+    options = {"additional_headers": cookie(port)} | options
     with connect(address, subprotocols=protocols, open_timeout=10, max_size=None, **options) as line:
         yield line
 
@@ -44,6 +58,38 @@ def test_the_page_is_served_and_names_no_other_machine(port):
     for name, value in {"X-Frame-Options": "DENY", "X-Content-Type-Options": "nosniff"}.items():
         assert answer.headers[name] == value
     assert b'src="http' not in body and b'href="http' not in body
+
+
+def test_another_account_of_this_machine_needs_the_token(port):
+    for path in ("/", "/alive", "/?token=", "/?token=guessed", "/index.html"):
+        answer, body = ask(port, path, known=False)
+        assert answer.status == 403 and b"open the address that the studio has printed" in body
+        assert "Set-Cookie" not in answer.headers
+    for headers in ({}, {"Cookie": f"{COOKIE}{port}=guessed"}):
+        with pytest.raises(InvalidStatus, match="403"), dialled(port, additional_headers=headers):
+            pass
+    answer, body = ask(port, f"/?token={TOKENS[port]}", known=False)
+    assert answer.status == 200 and b"<html" in body[:500].lower()
+    assert answer.headers["Set-Cookie"].startswith(cookie(port)["Cookie"] + "; HttpOnly; SameSite=Strict")
+
+
+@pytest.mark.slow
+def test_garbage_from_a_client_leaves_no_trace(tmp_path):
+    command = [sys.executable, "-m", "haptic_glance", "studio", "--port", "0", "--no-browser"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=(tmp_path / "said").open("w"), text=True) as studio:
+        port, token = re.search(r":(\d+)/\?token=(\S+)", studio.stdout.readline()).groups()
+        TOKENS[int(port)] = token
+        for garbage in (b"\x16\x03\x01 no request", b"GET", b"POST / HTTP/1.1\r\n\r\n", b"\r\n" * 50):
+            with socket.create_connection(("127.0.0.1", int(port)), timeout=10) as line:
+                line.sendall(garbage)
+        for garbage in (b"\xff\xfe not msgpack", "text", b"\x81\xa4type\xa7Unknown", b"\xc1" * 100):
+            with dialled(int(port)) as line:
+                line.send(garbage)
+                time.sleep(0.3)
+        answer, _ = ask(int(port))
+        studio.send_signal(signal.SIGINT)
+        studio.wait(20)
+    assert answer.status == 200 and (tmp_path / "said").read_text() == ""
 
 
 def test_only_this_machine_can_reach_it(port):

@@ -39,6 +39,7 @@ class LookPanel(Panel):
         self.method = gui.add_dropdown("Method", methods(), initial_value=session.method)
         self.other = gui.add_dropdown("Beside it", [NONE, *methods()], initial_value=session.other or NONE)
         hint = f"how many; {OWN}: those past the method's own threshold"
+        self.found = session.count or OWN  # places that are listed
         self.count = gui.add_slider("Places", OWN, MOST, 1, session.count or OWN, hint=hint)
         self.here = gui.add_markdown("Click the mesh to see why people look there, or not.")
         self.list = gui.add_markdown("")
@@ -56,9 +57,11 @@ class LookPanel(Panel):
     def choose(self) -> None:
         """Another method or count was chosen."""
         session = self.window.session
-        session.method, session.count = self.method.value, self.count.value or None
-        session.other = None if self.other.value == NONE else self.other.value
-        self.on_show()
+        count = None if session.count is None and self.count.value == self.found else self.count.value or None
+        other = None if self.other.value == NONE else self.other.value
+        if (self.method.value, count, other) != (session.method, session.count, session.other):
+            session.method, session.count, session.other = self.method.value, count, other
+            self.on_show()
 
     def on_mesh(self) -> None:
         """Another mesh: its views are not drawn yet."""
@@ -110,6 +113,9 @@ class LookPanel(Panel):
     def explain(self, specimen: Specimen, look: Look) -> None:
         """Lists the points; with the reasons, if the method has some, when they are known."""
         self.list.content = listing(look, [[]] * len(look.points))
+        self.found = min(len(look.points), MOST)
+        if self.count.value != self.found:  # of a method's own number it says which that is
+            self.count.value = self.found
         if look.method in GLANCES and look.points:
             self.window.work(
                 "Asking why",
