@@ -78,11 +78,11 @@ def answer(
     if not is_own(request.headers.get_all("Host"), request.headers.get_all("Origin"), port):
         text = f"this page is at http://{HOST}:{port}/ only\n"
         response = connection.respond(http.HTTPStatus.FORBIDDEN, text)
+    elif request.path == "/alive":
+        response = connection.respond(http.HTTPStatus.OK, "")
     elif not knows(request, token, port):
         text = "this page needs the token of its address: open the address that the studio has printed\n"
         response = connection.respond(http.HTTPStatus.FORBIDDEN, text)
-    elif request.path == "/alive":
-        response = connection.respond(http.HTTPStatus.OK, "")
     else:
         if "Accept-Encoding" in request.headers:
             del request.headers["Accept-Encoding"]  # so that the page can be added to

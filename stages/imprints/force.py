@@ -27,7 +27,9 @@ def press_forces(
     axes (k, 3, 3) rows right, up, normal; pitch: units of the mesh; unit: metres a unit of the mesh is long; load,
     depth: as in `forces`. Raises ValueError as `distances_at` and `forces` do.
     """
-    within = layer.thickness if depth is None else min(np.max(depth, initial=0.0), layer.thickness)
+    centres, axes = check_places(centres, axes)
+    depths = layer.thickness if depth is None else _checked_depths(depth, len(centres))
+    within = min(np.max(depths, initial=0.0), layer.thickness)
     gaps = gaps_at(surface, centres, axes, within, cells, pitch, unit)
     return forces(gaps, layer, (pitch * unit) ** 2, load, depth)
 
@@ -49,6 +51,8 @@ def gaps_at(
     """
     if not (np.isfinite(unit) and unit > 0):
         raise ValueError(f"unit must be a positive number of metres, got {unit}")
+    if not within >= 0:  # NaN fails as well
+        raise ValueError(f"within must be 0 m or more, got {within:g}")
     centres, axes = check_places(centres, axes)
     cells, pitches, reaches = check_arrays(cells, pitch, None, len(centres))
     starts = centres + reaches[:, None] * axes[:, 2]
@@ -82,23 +86,28 @@ def forces(
     gaps = np.asarray(gaps, dtype=np.float64)
     if (load is None) == (depth is None):
         raise ValueError("give either load, in newtons, or depth, in metres")
-    if np.isnan(gaps).any():
+    if gaps.ndim == 0:
+        raise ValueError("gaps must have shape (k, ...), a row for each touch, got a number")
+    if not (gaps > -np.inf).all():  # NaN fails as well
         raise ValueError("gaps must be numbers of metres, inf where nothing is in range")
     areas, cosines = (np.broadcast_to(np.asarray(values, np.float64), gaps.shape[1:]) for values in (areas, cosines))
-    if not ((areas > 0) & np.isfinite(areas)).all():
-        raise ValueError(f"areas must be above 0 m2, got {areas.min()}")
+    _check_areas(areas)
+    if len(wrong := cosines[~((cosines >= 0) & (cosines <= 1))]):
+        raise ValueError(f"cosines must lie in 0..1, got {wrong[0]:g}")
     least = gaps.min(axis=tuple(range(1, gaps.ndim)), initial=np.inf)
+    weights = (layer.stiffness * areas * cosines**2).ravel()
+    # From the first contact on: sums with the distance of an array that starts far away would round the depth off.
+    near = gaps - np.where(np.isfinite(least), least, 0.0).reshape(-1, *[1] * (gaps.ndim - 1))
     if load is None:
         depths = _checked_depths(depth, len(gaps))
     else:
-        weights = (layer.stiffness * areas * cosines**2).ravel()
-        rows = gaps.reshape(len(gaps), weights.size)
-        depths = depths_of_loads(rows, weights, _checked_loads(load, least), layer.thickness)
+        rows = near.reshape(len(gaps), weights.size)
+        facing = np.isfinite(rows[:, weights > 0]).any(axis=1)
+        depths = depths_of_loads(rows, weights, _checked_loads(load, facing), layer.thickness)
     if len(deep := np.flatnonzero(depths > layer.thickness)):
         remedy = "press less, or take a thicker or stiffer layer"
         raise ValueError(f"touch {deep[0]} needs more than the layer's thickness of {layer.thickness:g} m: {remedy}")
-    depths = depths + np.where(np.isfinite(least), least, 0.0)
-    pressed = np.subtract(depths.reshape(-1, *[1] * (gaps.ndim - 1)), gaps)
+    pressed = np.subtract(depths.reshape(-1, *[1] * (gaps.ndim - 1)), near, out=near)
     np.maximum(pressed, 0.0, out=pressed)
     pressed *= layer.stiffness * areas * cosines
     return pressed
@@ -115,10 +124,18 @@ def shear(normal: np.ndarray, slips: ArrayLike, layer: Layer, areas: ArrayLike) 
     normal, slips = np.asarray(normal, dtype=np.float64), np.asarray(slips, dtype=np.float64)
     if slips.shape not in ((len(normal), 2), (*normal.shape, 2)) or not np.isfinite(slips).all():
         raise ValueError(f"slips must be finite and of shape (k, 2) or {(*normal.shape, 2)}, got {slips.shape}")
+    if not ((normal >= 0) & np.isfinite(normal)).all():
+        raise ValueError("normal must hold newtons of 0 or more, as `forces` gives them")
+    _check_areas(areas := np.asarray(areas, dtype=np.float64))
     slips = slips.reshape(len(normal), *(normal.shape[1:] if slips.ndim > 2 else [1] * (normal.ndim - 1)), 2)
     distance = np.linalg.norm(slips, axis=-1)
-    held = np.minimum(layer.shear_stiffness * np.asarray(areas) * distance, layer.friction * normal)
+    held = np.minimum(layer.shear_stiffness * areas * distance, layer.friction * normal)
     return held[..., None] * np.divide(slips, distance[..., None], out=np.zeros_like(slips), where=slips != 0)
+
+
+def _check_areas(areas):
+    if not ((areas > 0) & np.isfinite(areas)).all():
+        raise ValueError(f"areas must be above 0 m2, got {areas.min()}")
 
 
 def _checked_depths(depth, count):
@@ -128,11 +145,11 @@ def _checked_depths(depth, count):
     return depths
 
 
-def _checked_loads(load, least):
-    loads = _per_touch("load", load, len(least))
+def _checked_loads(load, facing):
+    loads = _per_touch("load", load, len(facing))
     if len(wrong := np.flatnonzero(loads <= 0)):
         raise ValueError(f"load must be above 0 N, got {loads[wrong[0]]:g}: give newtons, or a depth in metres")
-    if len(lost := np.flatnonzero(np.isinf(least))):
+    if len(lost := np.flatnonzero(~facing)):
         remedy = "move the array over the object, or take more cells"
         raise ValueError(f"touch {lost[0]} touches nothing, so no load can be reached: {remedy}")
     return loads

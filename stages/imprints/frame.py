@@ -47,6 +47,8 @@ def sensor_axes(normals: ArrayLike, up: str = "z") -> np.ndarray:
     normals = np.asarray(normals, dtype=np.float64)
     if normals.ndim != 2 or normals.shape[1] != 3:
         raise ValueError(f"normals must have shape (k, 3), got {normals.shape}")
+    if len(wrong := np.flatnonzero(~(np.isfinite(normals).all(axis=1) & normals.any(axis=1)))):
+        raise ValueError(f"normals must be finite and not zero, got {normals[wrong[0]]} at place {wrong[0]}")
     if up != "z":
         return sensor_axes(normals @ TO_Z_UP[up].T) @ TO_Z_UP[up]
     polar = np.abs(normals[:, 2:]) > POLE

@@ -16,11 +16,17 @@ class Viewpoint:
 
     Azimuth 0 stands on +x and turns counter-clockwise seen from +z. At elevation +-90 the image's up is the limit of
     the elevations below, so that the poles have no jump. Roll turns the image counter-clockwise about the view axis.
+    Raises ValueError for an angle that is not finite.
     """
 
     azimuth: float
     elevation: float
     roll: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not np.isfinite([self.azimuth, self.elevation, self.roll]).all():
+            angles = f"azimuth {self.azimuth}, elevation {self.elevation}, roll {self.roll}"
+            raise ValueError(f"a viewpoint has finite angles in degrees, got {angles}")
 
     @property
     def name(self) -> str:

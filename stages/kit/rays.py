@@ -8,6 +8,8 @@ from embreex.mesh_construction import TriangleMesh
 
 from .mesh import Mesh
 
+FAR = 10.0  # of its longest side: farther from the origin a mesh is moved to it, or single precision would bend it
+
 
 @dataclass(frozen=True)
 class Hits:
@@ -32,7 +34,9 @@ class RayScene:
     def __init__(self, mesh: Mesh) -> None:
         self.mesh = mesh
         self._scene = rtcore_scene.EmbreeScene(robust=True)  # pyright: ignore[reportAttributeAccessIssue] (no stub)
-        triangles = mesh.vertices[mesh.faces].astype(np.float32)
+        corners = mesh.vertices[mesh.faces]
+        self._middle = _far_middle(corners.reshape(-1, 3))
+        triangles = (corners - self._middle).astype(np.float32)
         self._geometry = TriangleMesh(self._scene, triangles) if len(triangles) else None
         offsets = np.einsum("ij,ij->i", mesh.face_normals, mesh.vertices[mesh.faces[:, 0]])
         self._planes = np.column_stack([mesh.face_normals, offsets])  # one gather per hit instead of three
@@ -43,7 +47,8 @@ class RayScene:
         directions = np.ascontiguousarray(directions, dtype=np.float64)
         if self._geometry is None or len(origins) == 0:
             return Hits(np.full(len(origins), np.inf), np.full(len(origins), -1, dtype=np.int64))
-        face = self._scene.run(origins.astype(np.float32), directions.astype(np.float32)).astype(np.int64)
+        near = (origins - self._middle).astype(np.float32)
+        face = self._scene.run(near, directions.astype(np.float32)).astype(np.int64)
         distance = np.full(len(origins), np.inf)
         hit = np.flatnonzero(face >= 0)
         planes = self._planes[face[hit]]
@@ -54,6 +59,15 @@ class RayScene:
         face[hit[grazing]] = -1
         distance[hit[~grazing]] = height[~grazing] / along[~grazing]
         return Hits(distance, face)
+
+
+def _far_middle(points):
+    """The middle of the points, or 0 where they are near the origin."""
+    if not len(points):
+        return np.zeros(3)
+    low, high = points.min(axis=0), points.max(axis=0)
+    middle = (low + high) / 2
+    return middle if np.abs(middle).max() > FAR * (high - low).max() else np.zeros(3)
 
 
 def barycentric(mesh: Mesh, faces: np.ndarray, points: np.ndarray) -> np.ndarray:

@@ -38,8 +38,11 @@ def perceptual(
     pixels covers more of the object: at 225 x 300 four meshes had 0.7 to 1.5 times the ssim of the full size. Compare
     values of one size only.
 
-    Raises ValueError for meshes that exceed the frame (see stages.meshes.normalise), no viewpoint, or a size below 11.
+    Raises ValueError for meshes that exceed the frame (see stages.meshes.normalise), no viewpoint, a size below 11, or
+    a mesh without faces.
     """
+    if not (len(reference.faces) and len(mesh.faces)):
+        raise ValueError("a mesh without faces has no picture to compare")
     before, after = (take_pictures(each, viewpoints, size, renderer) for each in (reference, mesh))
     return picture_errors(before, after)
 

@@ -26,7 +26,9 @@ class Camera:
 
     def __post_init__(self) -> None:
         along = np.subtract(self.target, self.eye)
-        if not np.isfinite(along).all() or np.hypot(along[0], along[1]) <= 1e-6 * (1 + np.abs(along[2])):
+        if not np.isfinite(along).all():
+            raise ValueError(f"a camera at {self.eye} that looks at {self.target} is nowhere: give finite numbers")
+        if np.hypot(along[0], along[1]) <= 1e-6 * (1 + np.abs(along[2])):
             raise ValueError(f"a camera at {self.eye} cannot look at {self.target}: same place, or straight up or down")
         if not 1 <= self.angle <= 170:
             raise ValueError(f"the view angle is {self.angle} degrees: give the vertical one, from 1 to 170")
@@ -65,11 +67,13 @@ def fly(eyes: ArrayLike, targets: ArrayLike, frames: int, angle: float, size: Se
     """`frames` Cameras along keyframes: eyes and targets (k, 3), at equal times, joined by a smooth curve.
 
     The curve (Fritsch and Carlson 1980, monotone piecewise cubic) does not overshoot its keyframes.
-    Raises ValueError for no keyframe or no frame.
+    Raises ValueError for no keyframe or no frame, and for keyframes that are not finite.
     """
     eye, target = np.asarray(eyes, dtype=np.float64), np.asarray(targets, dtype=np.float64)
     if eye.ndim != 2 or eye.shape[1:] != (3,) or eye.shape != target.shape or not len(eye) or frames < 1:
         raise ValueError("a camera path needs at least one frame, and keyframes with x, y, z of an eye and a target")
+    if not (np.isfinite(eye).all() and np.isfinite(target).all()):
+        raise ValueError("the keyframes of a camera path must be finite: an eye or a target holds NaN or infinity")
     if len(eye) > 1:
         times = np.linspace(0, len(eye) - 1, frames)
         eye, target = (PchipInterpolator(range(len(points)), points)(times) for points in (eye, target))

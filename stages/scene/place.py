@@ -25,11 +25,17 @@ class Placed:
     size: float
 
     def pose(self, mesh: Mesh) -> "Pose":
-        """The Pose of this object's mesh. Raises ValueError for a size that is not above 0 or a mesh without faces."""
+        """The Pose of this object's mesh.
+
+        Raises ValueError for a size that is not above 0, numbers that are not finite, and a mesh without faces.
+        """
         if not len(mesh.faces):
             raise ValueError(f"{self.name} has no faces to show")
         if not self.size > 0:
             raise ValueError(f"{self.name} is {self.size} m large: give its longest side, above 0")
+        if not np.isfinite([*self.position, self.turn, self.size]).all():
+            place = f"position {self.position}, turn {self.turn} and size {self.size}"
+            raise ValueError(f"{self.name} has {place}: give finite numbers")
         low, high = bounds(mesh)
         foot = np.array([*((low + high) / 2)[:2], low[2]])
         cos, sin = np.cos(np.radians(self.turn)), np.sin(np.radians(self.turn))

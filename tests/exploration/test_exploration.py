@@ -110,6 +110,31 @@ def test_the_plain_product_is_overconfident_where_touches_share_and_the_calibrat
     assert abs(gaps[True]) < 0.02 and gaps[False] > 0.05
 
 
+TOUCHED = np.zeros((4, 3, 2)), np.array([0, 1, 0, 1])
+
+
+@pytest.mark.parametrize("change, words", [
+    (lambda x, t: (np.where(x == 0, np.nan, x), t), "sequences must be finite log likelihoods, got nan in sequence 0"),
+    (lambda x, t: (x - np.inf, t), "sequences must be finite log likelihoods, got -inf"),
+    (lambda x, t: (x[:0], t[:0]), r"sequences must .* of each at least one, got shape \(0, 3, 2\)"),
+    (lambda x, t: (x[:, :0], t), r"sequences must .* got shape \(4, 0, 2\)"),
+    (lambda x, t: (x[..., :0], t), r"sequences must .* got shape \(4, 3, 0\)"),
+    (lambda x, t: (x[0], t), r"sequences must .* got shape \(3, 2\)"),
+    (lambda x, t: (x, t[:2]), r"truth must hold one class from 0 to 1 for each of the 4 sequences"),
+    (lambda x, t: (x, t + 1), "truth must hold one class from 0 to 1"),
+    (lambda x, t: (x, t - 1), "truth must hold one class from 0 to 1"),
+    (lambda x, t: (x, t * np.nan), "truth must hold one class from 0 to 1"),
+])  # fmt: skip
+def test_touches_that_calibrate_nothing_are_named(change, words):
+    with pytest.raises(ValueError, match=words):
+        calibrate(*change(*TOUCHED))
+
+
+def test_lists_calibrate_as_arrays_do():
+    sequences, truth = gaussian_touches(0.3, 40)
+    assert calibrate(sequences.tolist(), truth.tolist()) == calibrate(sequences, truth)
+
+
 def test_belief_sums_to_one():
     log_belief = Calibration(0.7, 0.4).log_belief(random().normal(size=(5, 6)), 3)
     assert np.allclose(np.exp(log_belief).sum(axis=1), 1)

@@ -87,6 +87,31 @@ def test_touches_are_answered_one_by_one_and_from_any_height():
     assert np.allclose(forces(RANDOM.reshape(40, -1), LAYER, 1e-5, load=loads), felt.reshape(40, -1))
 
 
+@pytest.mark.parametrize("offset", [1.0, 1000.0, -1e6])
+@pytest.mark.parametrize("pressed", [{"load": 1e-6}, {"load": 1.0}, {"depth": 1e-4}])
+def test_gaps_from_far_away_lose_nothing(offset, pressed):
+    far = RANDOM + offset
+    near = far - far.min(axis=(1, 2), keepdims=True)  # exact, by Sterbenz
+    felt = forces(far, LAYER, 1e-5, **pressed)
+    assert np.array_equal(felt, forces(near, LAYER, 1e-5, **pressed))
+    assert "load" not in pressed or np.allclose(felt.sum(axis=(1, 2)), pressed["load"], rtol=1e-12)
+
+
+def test_taxels_of_which_none_can_touch_bear_nothing():
+    assert not forces(np.full((2, 3, 3), np.inf), LAYER, 1e-5, depth=0.001).any()
+
+
+@pytest.mark.parametrize("shift", [[0, 0, 1000], [1000, 0, 0], [-1000, 1000, 1000]])
+@pytest.mark.parametrize("pressed", [{"load": 0.5}, {"depth": 0.001}])
+def test_forces_of_an_object_do_not_depend_on_where_it_stands(shift, pressed):
+    ball, top = trimesh.creation.icosphere(4, radius=0.02), np.array([[0.0003, 0.0007, 0.02]])
+    felt = [
+        press_forces(Mesh(ball.vertices + by, ball.faces), top + by, ABOVE[1], LAYER, (17, 19), 0.001, **pressed)
+        for by in np.array([[0, 0, 0], shift])
+    ]
+    assert np.allclose(*felt, rtol=0, atol=1e-9 * felt[0].max())
+
+
 def test_units_of_the_mesh_change_no_force():
     ball = trimesh.creation.icosphere(4, radius=0.02)
     metres, millimetres = Mesh(ball.vertices, ball.faces), Mesh(1000 * ball.vertices, ball.faces)
@@ -198,3 +223,32 @@ def test_a_sensor_that_touches_nothing_is_named(punch):
         forces(RANDOM, LAYER, 0.0, load=1.0)
     with pytest.raises(ValueError, match=r"slips must be finite and of shape \(k, 2\)"):
         shear(RANDOM, [0.1, 0.2], LAYER, 1e-5)
+
+
+@pytest.mark.parametrize(
+    "work, words",
+    [
+        (lambda: forces(np.full((1, 2, 2), -np.inf), LAYER, 1e-5, depth=0.001), "gaps must be numbers of metres"),
+        (lambda: forces(np.array(0.1), LAYER, 1e-5, depth=0.001), r"gaps must have shape \(k, \.\.\.\)"),
+        (lambda: forces(RANDOM, LAYER, np.nan, depth=0.001), "areas must be above 0 m2, got nan"),
+        (lambda: forces(RANDOM, LAYER, 1e-5, depth=0.001, cosines=np.nan), "cosines must lie in 0..1, got nan"),
+        (lambda: forces(RANDOM, LAYER, 1e-5, load=1.0, cosines=-0.5), "cosines must lie in 0..1, got -0.5"),
+        (lambda: forces(RANDOM, LAYER, 1e-5, load=1.0, cosines=0), "touch 0 touches nothing"),
+        (lambda: shear(RANDOM * np.nan, np.ones((40, 2)), LAYER, 1e-5), "normal must hold newtons of 0 or more"),
+        (lambda: shear(-RANDOM, np.ones((40, 2)), LAYER, 1e-5), "normal must hold newtons of 0 or more"),
+        (lambda: shear(RANDOM, np.ones((40, 2)), LAYER, np.nan), "areas must be above 0 m2, got nan"),
+        (lambda: sensor_axes([[0, 0, np.nan]]), "normals must be finite and not zero, got .* at place 0"),
+        (lambda: sensor_axes([[0, 0, 1], [0, 0, 0]]), "normals must be finite and not zero, got .* at place 1"),
+    ],
+)
+def test_numbers_that_no_touch_has_are_named(work, words):
+    with pytest.raises(ValueError, match=words):
+        work()
+
+
+@pytest.mark.parametrize("within", [np.nan, -0.001])
+def test_a_reach_that_cannot_be_is_named(punch, within):
+    with pytest.raises(ValueError, match=f"within must be 0 m or more, got {within:g}"):
+        gaps_at(punch, *ABOVE, within)
+    with pytest.raises(ValueError, match="depth must be (finite|0 m or more)"):
+        press_forces(punch, *ABOVE, LAYER, depth=within)

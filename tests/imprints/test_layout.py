@@ -109,3 +109,12 @@ def test_a_layout_off_the_object_touches_nothing(table):
 def test_files_that_are_wrong_are_named_with_the_remedy(tmp_path, text, words):
     with pytest.raises(ValueError, match=words):
         read_layout(written(tmp_path / "layout.csv", text))
+
+
+def test_layouts_far_from_the_origin_feel_the_same():
+    ball, top = trimesh.creation.icosphere(4, radius=0.02), np.array([[0.0003, 0.0007, 0.02]])
+    felt = [
+        layout_forces(Mesh(ball.vertices + by, ball.faces), top + by, FRAME, LAYER, fingertip(200), load=0.5)
+        for by in np.array([[0, 0, 0], [1000, 1000, -1000]])
+    ]
+    assert np.allclose(*felt, rtol=0, atol=1e-8 * felt[0].max())

@@ -34,6 +34,12 @@ def test_projecting_a_point_on_a_pixel_s_ray_gives_the_pixel(viewpoint, row, col
     np.testing.assert_allclose([rows[0], columns[0], depths[0]], [row, column, depth], atol=1e-8)
 
 
+@pytest.mark.parametrize("angles", [(np.nan, 0), (0, np.inf), (0, 0, np.nan)])
+def test_a_viewpoint_at_no_angle_is_named(angles):
+    with pytest.raises(ValueError, match="a viewpoint has finite angles in degrees, got azimuth"):
+        Viewpoint(*angles)
+
+
 def test_up_is_up_and_left_turn_shows_the_right_side():
     rows, columns, _ = project(np.array([(0, 0, 0.4), (0, 0.4, 0)]), Viewpoint(0, 0), SIZE)
     assert rows[0] < 449 and columns[0] == pytest.approx(599.5)

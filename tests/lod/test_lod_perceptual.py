@@ -78,5 +78,9 @@ def test_bad_arguments_are_named():
         take_pictures(RING, (), SMALL)
     with pytest.raises(ValueError, match="11 pixels"):
         take_pictures(RING, FOUR, (8, 8))
+    empty = Mesh(np.zeros((0, 3)), np.zeros((0, 3)))
+    for pair in ((empty, RING), (RING, empty)):
+        with pytest.raises(ValueError, match="a mesh without faces has no picture to compare"):
+            perceptual(*pair, FOUR, SMALL)
     with pytest.raises(ValueError, match="compared"):
         picture_errors(np.zeros((2, 20, 20)), np.zeros((1, 20, 20)))

@@ -56,6 +56,16 @@ def test_a_camera_that_cannot_look_says_why(change):
         Camera(**{"eye": (0, -1, 0), "target": (0, 0, 0), "angle": 40, "size": (5, 5)} | change)
 
 
+def test_a_camera_or_an_object_at_no_number_is_named(meshes):
+    with pytest.raises(ValueError, match=r"at \(nan, -1, 0\) that looks at \(0, 0, 0\) is nowhere: give finite"):
+        Camera((np.nan, -1, 0), (0, 0, 0), 40, (5, 5))
+    with pytest.raises(ValueError, match="keyframes of a camera path must be finite"):
+        fly([[3, 0, 0], [np.inf, 0, 0]], [[0, 0, 0]] * 2, 3, 40, (5, 5))
+    for placed in (Placed("one", (np.nan, 0, 0), 0, 1), Placed("one", (0, 0, 0), np.nan, 1)):
+        with pytest.raises(ValueError, match="one has position .*nan.*: give finite numbers"):
+            placed.pose(meshes["one"])
+
+
 def test_a_placed_object_stands_on_its_foot_at_its_size(meshes):
     pose = Placed("one", (1.0, 2.0, 3.0), 90.0, 0.4).pose(meshes["one"])
     world = pose.to_world(meshes["one"].vertices)

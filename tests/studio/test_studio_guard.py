@@ -19,7 +19,6 @@ from haptic_glance.studio.app import Studio
 from haptic_glance.studio.guard import COOKIE, MAX_UPLOAD, bound_uploads, is_own
 from haptic_glance.studio.session import Settings
 
-
 TOKENS = {}  # {port: the token of the studio there}
 
 
@@ -61,7 +60,7 @@ def test_the_page_is_served_and_names_no_other_machine(port):
 
 
 def test_another_account_of_this_machine_needs_the_token(port):
-    for path in ("/", "/alive", "/?token=", "/?token=guessed", "/index.html"):
+    for path in ("/", "/?token=", "/?token=guessed", "/index.html"):
         answer, body = ask(port, path, known=False)
         assert answer.status == 403 and b"open the address that the studio has printed" in body
         assert "Set-Cookie" not in answer.headers
