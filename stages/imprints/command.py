@@ -9,7 +9,6 @@ positions, given and written, are in the file's coordinates. Writes into the fol
   places.csv    index, vertex (empty if it is none), position, normal, relief in units and in the file's units
 With --load a rigid array comes from above: imprints.npz also has forces (k, rows, cols) in newtons, and places.csv the
 highest of each place and how deep its layer is indented, in metres.
-imprints.png needs matplotlib, which pip install 'haptic-glance[pipeline]' brings.
 
 examples:
   haptic-glance touch bunny.stl --at salient
@@ -28,7 +27,6 @@ from typing import Any
 
 import numpy as np
 
-from stages.kit.extras import MissingExtra, from_extra
 from stages.kit.files import write_arrays, write_text
 
 from .distances import distances_at
@@ -48,8 +46,8 @@ def run(argv: list[str]) -> None:
     """Runs the command line `argv`, which excludes the program's name."""
     options = parse_options(__doc__ or "", argv)
     if options.show:
-        with from_extra():
-            from .pictures import check_window
+        from .pictures import check_window
+
         check_window()
     try:
         user_mesh = open_mesh(options)
@@ -74,10 +72,9 @@ def run(argv: list[str]) -> None:
     arrays = saved_arrays(user_mesh, places, axes, raw, images, options.pitch)
     write_arrays(options.out / ARRAYS, **arrays, **({"forces": pressed} if len(pressed) else {}))
     write_text(options.out / TABLE, as_csv(rows, user_mesh.digits))
-    drawn = draw_picture(options, user_mesh, places, axes, images, [row["relief"] for row in rows])
+    draw_picture(options, user_mesh, places, axes, images, [row["relief"] for row in rows])
     print(json.dumps(rows) if options.json else summary(user_mesh, rows, options))
-    names = (*([PICTURE] if drawn else []), ARRAYS, TABLE)
-    report_progress("written: " + ", ".join(str(options.out / name) for name in names))
+    report_progress("written: " + ", ".join(str(options.out / name) for name in (PICTURE, ARRAYS, TABLE)))
     if options.show:
         from .pictures import open_window
 
@@ -125,18 +122,13 @@ def press_load(user_mesh: UserMesh, positions: np.ndarray, axes: np.ndarray, opt
 def draw_picture(
     options: argparse.Namespace, user_mesh: UserMesh, places: Places, axes: np.ndarray, images: np.ndarray,
     reliefs: Sequence[float],
-) -> bool:  # fmt: skip
-    """Whether imprints.png is written: a core install has no matplotlib, which is reported."""
-    try:
-        with from_extra():
-            from .pictures import write_picture
-    except MissingExtra as error:
-        report_progress(f"no {PICTURE}: {error}")
-        return False
+) -> None:  # fmt: skip
+    """Writes imprints.png."""
+    from .pictures import write_picture  # brings matplotlib, which nothing else here needs
+
     scale = "the depth" if options.depth else "the imprint's relief"
     write_picture(options.out / PICTURE, user_mesh.mesh, places.positions, axes, images, np.asarray(reliefs),
                   options.pitch, scale, user_mesh.source.up)  # fmt: skip
-    return True
 
 
 def places_rows(user_mesh: UserMesh, places: Places, raw: np.ndarray) -> list[dict[str, Any]]:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 MODULES = {
     "pipeline": (
-        "diskcache", "dvc", "filelock", "hydra", "joblib", "laspy", "matplotlib", "omegaconf", "pandas",
+        "diskcache", "dvc", "filelock", "hydra", "joblib", "laspy", "omegaconf", "pandas",
         "point_cloud_utils", "pymeshlab", "pypcd4", "pyrender", "pywt", "robust_laplacian", "rtree", "skimage",
         "sklearn", "threadpoolctl", "tqdm", "yaml",
     ),

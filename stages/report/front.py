@@ -83,7 +83,7 @@ def _card(one: Finding, row, differences: pd.DataFrame) -> str:
     links = f'<a href="site/claims.html#{one.key}">The claim</a> '
     links += f'<a href="site/{one.topic}.html">{one.topic.capitalize()}</a>'
     return (
-        f'<li><h3>{escape(title)}</h3><p class="figure"><strong>{signed}{figure}</strong></p>{chart}'
+        f'<li><h3>{escape(title)}</h3><p class="figure"><strong>{signed}{figure}</strong> {escape(one.unit)}</p>{chart}'
         f'<p class="help">{row.pairs} {escape(row.over)}, 95 % interval. {links}</p></li>'
     )
 

@@ -124,7 +124,10 @@ def front_main(parts: dict[str, Any], mains: dict[str, str], leads: dict[str, st
 
     chart = next((drawn[name] for name in CHARTS if name in drawn), None)
     partly = {f"tables/{item.name}": "in part, as its cells say" for item in parts["tables"].items if lacks_cells(item)}
-    missing = "".join(f"<li><code>{escape(name)}</code>: {prose(why)}</li>" for name, why in (not_run | partly).items())
+    reasons: dict[str, list[str]] = {}
+    for name, why in (not_run | partly).items():
+        reasons.setdefault(why, []).append(f"<code>{escape(name)}</code>")
+    missing = "".join(f"<li>{', '.join(names)}: {prose(why)}</li>" for why, names in reasons.items())
     words = {
         "heading": "Your meshes" if own else "The pipeline on one object",
         "what": prose(" ".join(WHAT.split())),

@@ -64,7 +64,8 @@ def _draw(frame: pd.DataFrame, targets: list[str]) -> Drawing:
         columns = here[["method", "target", "cost_ratio", "mean", "low", "high"]]
         for method, target, cost, mean, *ends in columns.itertuples(index=False):
             axes.plot([cost] * 2, ends, color=tints[method], lw=1.2, alpha=0.5, zorder=2)
-            axes.plot(cost, mean, forms[target], color=tints[method], ms=7, mec="white", mew=0.8, zorder=3)
+            said = f"_{label(method)}, {target}"
+            axes.plot(cost, mean, forms[target], color=tints[method], ms=7, mec="white", mew=0.8, zorder=3, label=said)
         unit = "%" if metric == "ssim_error" else "% of the diagonal"
         axes.set(xscale="log", yscale="log", xlabel=f"cost, as a ratio to {label(PLAIN)}", ylabel=unit)
         axes.set_title(ERRORS[metric].removesuffix(", %"), fontsize=10)
