@@ -35,6 +35,7 @@ MESHES = {  # public function: its arguments that are meshes
     "follow": ("mesh_or_surface",),
 }  # fmt: skip
 LENGTHS = {"press": ("pitch", "max_distance"), "press_many": ("pitch", "max_distance"), "follow": ("pitch",)}
+TRIES = 8  # lower counts that are tried where one leaves a fold
 LOOKING = ("detect", "find_points", "saliency")  # what depends on the axis that points up
 
 
@@ -136,9 +137,9 @@ def simplify(
 
     The mesh is simplified by `stages.lod.simplify`, which has the other arguments. Where that is infeasible, the
     coincident vertices of the mesh are merged and its faces oriented, as `repair` does, and its borders are simplified,
-    too, unless free_borders says otherwise: None allows it, False does not. A refusal is then the last resort.
-    Without kept points even a count is tried near which the surface loses its shape. Raises InfeasibleTarget with
-    `smallest`, a count that is feasible, SimplifyError, or ValueError.
+    too, unless free_borders says otherwise: None allows it, False does not. A refusal is then the last resort. Where
+    the count leaves a fold, a few faces fewer do not. Without kept points even a count is tried near which the surface
+    loses its shape. Raises InfeasibleTarget with `smallest`, a count that is feasible, SimplifyError, or ValueError.
     """
     work = import_module("stages.lod").simplify
     asked = f"{100 * faces:.12g}%" if isinstance(faces, float) and 0 < faces < 1 else str(faces)
@@ -154,7 +155,7 @@ def simplify(
     for whole, own in [(mesh, given)] if named else _as_given_and_mended(mesh, given):
         for free in borders:
             try:
-                return work(whole, count, free_borders=free, **own)
+                return _around_folds(work, whole, count, free_borders=free, **own)
             except (InfeasibleTarget, SimplifyError) as error:
                 failures.append(error)
     if len(borders) > 1 and keep is None:
@@ -162,6 +163,17 @@ def simplify(
             return work(whole, count, free_borders=True, below=True, **own)
     infeasible = [error for error in failures if isinstance(error, InfeasibleTarget)]
     raise min(infeasible, key=lambda error: error.smallest) if infeasible else failures[0]
+
+
+def _around_folds(work: Callable[..., Mesh], mesh: Mesh, count: int, **given: Any) -> Mesh:
+    """The Mesh of at most `count` faces; where just that many leave a fold, of a few fewer, by other collapses."""
+    try:
+        return work(mesh, count, **given)
+    except SimplifyError:
+        for fewer in range(count - 2, max(count - 2 * TRIES, 1) - 1, -2):
+            with suppress(SimplifyError):
+                return work(mesh, fewer, **given)
+        raise
 
 
 def _as_given_and_mended(mesh: Mesh, given: dict[str, Any]) -> Iterator[tuple[Mesh, dict[str, Any]]]:

@@ -206,6 +206,23 @@ def test_a_triangle_soup_and_an_open_patch_are_simplified(body):
     assert len(simplify(patch, error.value.smallest, free_borders=False).faces) <= error.value.smallest
 
 
+def test_a_count_that_leaves_a_fold_is_answered_by_one_nearby(body, monkeypatch):
+    import stages.lod
+
+    inner, asked = stages.lod.simplify, []
+
+    def folding(mesh, faces, **options):
+        asked.append(faces)
+        if faces > 316:
+            raise haptic_glance.SimplifyError(f"{faces} faces leave 1 new folded pairs of faces: ask for more faces")
+        return inner(mesh, faces, **options)
+
+    monkeypatch.setattr(stages.lod, "simplify", folding)
+    assert len(simplify(Mesh(*body), 320).faces) == 316 and asked == [320, 318, 316]
+    with pytest.raises(haptic_glance.SimplifyError, match="400 faces leave"):
+        simplify(Mesh(*body), 400)
+
+
 def _sheet():
     """A flat sheet of 20 x 2 squares, nearly all of it border."""
     x, y = np.meshgrid(np.arange(21.0), np.arange(3.0))

@@ -304,3 +304,24 @@ def test_an_installed_compose_writes_params_in_an_empty_folder(installed, tmp_pa
     done = python(code, "compose", "profile=smoke", cwd=tmp_path, env=environment)
     assert done.returncode == 0, done.stderr
     assert "profile: smoke" in (tmp_path / "params.yaml").read_text()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [*command.WHOLE, "fixation", "lod", "sweep", "compose"])
+def test_help_needs_no_extra(name):
+    done = run_command(name, "--help", before=CORE)
+    assert done.returncode == 0 and len(done.stdout.splitlines()) > 2 and "Traceback" not in done.stderr
+
+
+@pytest.mark.slow
+def test_a_reader_that_goes_away_is_no_error(ball):
+    words = [sys.executable, "-m", "haptic_glance", "points", str(ball), "--count", "2000"]
+    with subprocess.Popen(words, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as done:
+        done.stdout.close()
+        said = done.stderr.read()
+    assert "Broken" not in said and "Traceback" not in said
+
+
+def test_the_version_is_that_of_the_package():
+    done = run_command("--version")
+    assert done.stdout == f"haptic-glance {haptic_glance.__version__}\n" == f"haptic-glance {PROJECT['version']}\n"
