@@ -16,7 +16,6 @@ help: ## this list
 
 repro: $(VENV)/ready ## run the pipeline: every table, figure and the page, on what params.yaml says
 	python -m stages.repro || { dvc repro --single-item report; exit 1; }
-	@echo "Open reports/index.html; the tables are in reports/tables."
 
 studio: $(VENV)/ready ## look at a mesh, simplify it, touch and mark it, on a local page (mesh=FILE_OR_FOLDER)
 	haptic-glance studio $(or $(mesh),samples/dromedary.glb)

@@ -12,7 +12,8 @@ runs/sweeps/recognition.csv (a repeated job replaces its rows), and a table of t
 import re
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -31,9 +32,9 @@ from stages.imprints import press_many, touchable
 from stages.kit import Stopwatch
 from stages.kit.command import errors_in_one_line
 from stages.kit.conf import conf_folder
-from stages.kit.files import read_json, read_mesh, read_table, write_json, write_table
+from stages.kit.files import read_json, read_mesh, read_table, write_json, write_table, write_text
 from stages.kit.packs import is_there
-from stages.kit.params import ParamsError, check_section, load_params, schema_of
+from stages.kit.params import FILE, ParamsError, check_section, load_params, schema_of
 from stages.kit.split import Split
 from stages.kit.stats import interval
 from stages.salient_points.methods import find_all, method_named, split_runnable
@@ -130,9 +131,22 @@ def prepare(argv: Sequence[str]) -> None:
                     f"{dataset} is not switched on: `python -m stages.compose 'sets=[{dataset}]'` does so"
                 )
             print(f"sweep: {', '.join(missing)} first: `dvc repro` makes them", file=sys.stderr, flush=True)
-            if subprocess.run([sys.executable, "-m", "dvc", "repro", *missing]).returncode:
+            with results_in(OUT.parent):
+                failed = subprocess.run([sys.executable, "-m", "dvc", "repro", *missing]).returncode
+            if failed:
                 raise ParamsError(f"dvc repro {' '.join(missing)} failed, as said above")
     write_json(BASES, bases)
+
+
+@contextmanager
+def results_in(folder: Path) -> Iterator[None]:
+    """Inside, params.yaml sends the rows of stages to a folder, and not to the published results."""
+    text = FILE.read_text()
+    write_text(FILE, re.sub(r"^out: .*$", f"out: {folder.as_posix()}", text, flags=re.MULTILINE))
+    try:
+        yield
+    finally:
+        write_text(FILE, text)
 
 
 def split_values(text: str) -> list[str]:

@@ -1,6 +1,7 @@
 """The sweep appends tidy rows, replaces those of a repeated job, and ends with a table."""
 
 import subprocess
+from pathlib import Path
 from types import SimpleNamespace
 
 import pandas as pd
@@ -10,7 +11,7 @@ from omegaconf import OmegaConf
 from stages import sweep
 from stages.compose import compose, composed
 from stages.kit.files import read_table, write_json, write_table
-from stages.kit.params import ParamsError
+from stages.kit.params import ParamsError, load_params
 
 
 def job_rows(job, classifier, value, seed=0):
@@ -102,12 +103,16 @@ def test_a_slip_of_the_pen_is_named_before_any_job(root, override, hint):
 @pytest.mark.slow
 def test_what_jobs_read_is_made_first(root, monkeypatch, capsys):
     (root / "data/household_four/weights/there.json").unlink()
-    asked = []
-    monkeypatch.setattr(
-        sweep.subprocess, "run", lambda command: asked.append(command[1:]) or SimpleNamespace(returncode=0)
-    )
+    asked, before = [], Path("params.yaml").read_text()
+
+    def run(command):
+        asked.append((command[1:], load_params()["out"]))
+        return SimpleNamespace(returncode=0)
+
+    monkeypatch.setattr(sweep.subprocess, "run", run)
     sweep.prepare(["-m", "data=household_four"])
-    assert asked == [["-m", "dvc", "repro", "weights@household_four"]]
+    assert asked == [(["-m", "dvc", "repro", "weights@household_four"], "runs/sweeps")]
+    assert Path("params.yaml").read_text() == before
     assert "weights@household_four first: `dvc repro` makes them" in capsys.readouterr().err
 
 
