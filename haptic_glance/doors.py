@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import wraps
 from html import escape
 from importlib import import_module
-from inspect import Parameter, signature
+from inspect import signature
 from pathlib import Path
 from typing import Any
 
@@ -41,8 +41,8 @@ LOOKING = ("detect", "find_points", "saliency")  # what depends on the axis that
 
 def door(name: str, function: Callable[..., Any]) -> Callable[..., Any]:
     """The public function of a name, made of the one of the stages."""
-    made = with_lengths(simplify if name == "simplify" else function, LENGTHS.get(name, ()))
-    return takes_any_mesh(made, MESHES[name], name in LOOKING)
+    made = takes_any_mesh(simplify if name == "simplify" else function, MESHES[name], name in LOOKING)
+    return with_lengths(made, LENGTHS[name]) if name in LENGTHS else made
 
 
 def takes_any_mesh(function: Callable[..., Any], names: Sequence[str], looking: bool = False) -> Callable[..., Any]:
@@ -72,23 +72,21 @@ def with_lengths(function: Callable[..., Any], names: Sequence[str]) -> Callable
     unit: what the coordinates of the mesh are in. The diameter is that of the bounding sphere about the middle of the
     bounding box, which is 1 for a normalised mesh.
     """
-    if not names:
-        return function
     known = signature(function)
 
     @wraps(function)
     def work(*args: Any, unit: str | None = None, **kwargs: Any) -> Any:
         given = known.bind(*args, **kwargs)
         given.apply_defaults()
-        whole = next(iter(given.arguments.values()))
-        diameter = centre_and_radius(as_mesh(getattr(whole, "mesh", whole)))[1] / RADIUS
+        name, whole = next(iter(given.arguments.items()))
+        if not isinstance(getattr(whole, "mesh", whole), Mesh):
+            given.arguments[name] = whole = as_mesh(whole)
+        diameter = centre_and_radius(getattr(whole, "mesh", whole))[1] / RADIUS
         for name in names:
             if given.arguments[name] is not None:
                 given.arguments[name] = in_units(name, given.arguments[name], diameter, unit)
         return function(*given.args, **given.kwargs)
 
-    more = Parameter("unit", Parameter.KEYWORD_ONLY, default=None, annotation="str | None")
-    work.__signature__ = known.replace(parameters=[*known.parameters.values(), more])  # type: ignore[attr-defined]
     return work
 
 

@@ -121,8 +121,8 @@ def test_non_manifold_mesh_is_taken_as_it_is(tmp_path):
 
 def test_duplicate_and_degenerate_faces_are_removed_and_noted():
     mesh, notes = clean(load_faces([(0, 1, 2), (1, 2, 0), (0, 0, 1), (2, 1, 0)]))
-    assert len(mesh.faces) == 2  # the face seen from the back stays: a thin sheet
-    assert notes == ["1 degenerate faces removed", "1 duplicate faces removed"]
+    assert len(mesh.faces) == 1  # the face seen from the back goes: all of the surface was doubled
+    assert notes == [f"1 {what} faces removed" for what in ("degenerate", "duplicate", "back-to-back")]
 
 
 def load_faces(faces):

@@ -142,7 +142,7 @@ def test_a_damaged_file_is_refused_by_name(name, content, reason, tmp_path):
 def test_a_core_install_says_what_point_clouds_need(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "pymeshlab", None)
     (tmp_path / "a.xyz").write_bytes(text(BALL))
-    with pytest.raises(MissingExtra, match=r"^pymeshlab is not installed: pip install 'haptic-glance\[pipeline\]'$"):
+    with pytest.raises(MissingExtra, match=r"by pymeshlab, which is not installed: pip install '\.\[pipeline\]'$"):
         load(tmp_path / "a.xyz")
 
 

@@ -23,7 +23,7 @@ def at(tmp_path):
     """A function (first set, own_meshes) -> the words of the figure and the bytes of its picture, written there."""
 
     def written(first, own=False):
-        results = SimpleNamespace(sets=[first], own_meshes=own, out=tmp_path, read=set())
+        results = SimpleNamespace(sets=[first], own_meshes=own, out=tmp_path, reports=tmp_path, read=set())
         figure = partial(as_printed, figure_x, PROTOCOL)(results)
         figure.name = "figure_x"
         figure.write(tmp_path / "figures")
