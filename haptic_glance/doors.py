@@ -133,11 +133,16 @@ def simplify(
 ) -> Mesh:  # fmt: skip
     """A Mesh of at most `faces` faces: a count, a share of the mesh's own such as 0.25, or a text, "25%" or "1500".
 
-    The mesh is simplified by `stages.lod.simplify`, which has the other arguments. Where that is infeasible, the
-    coincident vertices of the mesh are merged and its faces oriented, as `repair` does, and its borders are simplified,
-    too, unless free_borders says otherwise: None allows it, False does not. A refusal is then the last resort. Where
-    the count leaves a fold, a few faces fewer do not. Without kept points even a count is tried near which the surface
-    loses its shape. Raises InfeasibleTarget with `smallest`, a count that is feasible, SimplifyError, or ValueError.
+    keep: vertex ids, most salient first, whose neighbourhood of `rings` edges stays unchanged (T3.1.3). weights: (n,)
+    in 0..1, such as a saliency: the error counts more where it is high. attributes: weights of colors, normals and uv
+    in the error. free_borders: whether the boundary is simplified, too; None: where the count is infeasible without.
+    shrink: keep smaller neighbourhoods where the count needs it. The method is quadric edge collapse (Garland and
+    Heckbert 1997), of `stages.lod.simplify`.
+
+    Where the count is infeasible, the coincident vertices of the mesh are merged and its faces oriented, as `repair`
+    does, and its borders are simplified. Where the count leaves a fold, a few faces fewer do not. Without kept points
+    even a count is tried near which the surface loses its shape. So a refusal is the last resort. Raises
+    InfeasibleTarget with `smallest`, a count that is feasible, SimplifyError, or ValueError.
     """
     work = import_module("stages.lod").simplify
     asked = f"{100 * faces:.12g}%" if isinstance(faces, float) and 0 < faces < 1 else str(faces)
