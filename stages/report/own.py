@@ -43,7 +43,7 @@ def write_own_page(results: Results, pages: Sequence[str], out: Path) -> None:
 
 
 def exhibit_of(results: Results, name: str, folder: Path) -> Exhibit:
-    """What the pipeline found on one object; its files are written into a folder. NotRun where it found no places.
+    """The findings of the pipeline on one object; its files are written into a folder. NotRun where it has no places.
 
     Levels and imprints that were not made are named among the missing.
     """
