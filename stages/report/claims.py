@@ -42,6 +42,31 @@ def lowest_of(*names: str, but: tuple[str, ...] = ()) -> Pick:
     return Pick(names, True, but)
 
 
+@dataclass(frozen=True)
+class Reading:
+    """Another reasonable reading of an ambiguous protocol.
+
+    name: the reading in words. changes: the fields of the claim that differ; a mapping such as `where` is merged into
+    that of the claim.
+    """
+
+    name: str
+    changes: Mapping[str, Any]
+
+    def of(self, claim: "Claim") -> "Claim":
+        """The claim in this reading."""
+        merged = {
+            field: {**old, **value} if isinstance(old := getattr(claim, field), Mapping) else value
+            for field, value in self.changes.items()
+        }
+        return replace(claim, readings=(), **merged)
+
+
+def reading(name: str, **changes: Any) -> Reading:
+    """The Reading with these changes: `reading("15 imprints", where={"variant": "first_15"})`."""
+    return Reading(name, changes)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Claim:
     """One testable sentence: the paired differences of two sides of the rows of a stage, positive as it is claimed.
@@ -56,7 +81,11 @@ class Claim:
     the difference under the first of them minus that under the second. scale, then margin: from differences to `unit`.
     statistic: a name of stages.report.differences.STATISTICS. shared: test over training share (kit.split), or a
     function of the set; None: that of the split where the pairs are repetitions, else 0. phrases: {(column, value):
-    words} of the topic. note: words behind all others.
+    words} of the topic. note: words behind all others. printed: how many of the sets, from the first on, follow the
+    printed protocol: their rows alone give the verdict, and the other sets show whether it carries over; 0 for all.
+    None: 1 for the thesis's claims, 0 for ours. of: key of the primary claim whose sentence this claim tests elsewhere;
+    a later claim in the same words and chapter is secondary without being told. readings: other readings of the
+    protocol, in which the verdict must hold too. checked: whether rows that stages.report.validity refuses are out.
     """
 
     key: str
@@ -80,6 +109,21 @@ class Claim:
     shared: float | Callable[[str], float] | None = None
     phrases: Phrases = field(default_factory=dict)
     note: str = ""
+    of: str = ""  # key of the primary claim; this one asks whether its sentence carries over
+    printed: int | None = None
+    readings: tuple[Reading, ...] = ()
+    checked: bool = True
+
+    @property
+    def own(self) -> bool:
+        """Whether the claim is the project's own, and not the thesis's."""
+        return self.section == "ours"
+
+    @property
+    def judging(self) -> int:
+        """The number of leading sets whose rows give the verdict."""
+        printed = self.printed if self.printed is not None else 0 if self.own else 1
+        return printed or len(self.sets)
 
     @property
     def other(self) -> Side:

@@ -29,6 +29,9 @@ def claims_shown(claims: pd.DataFrame) -> pd.DataFrame:
     shown["holds"] = claims["holds"]
     shown["tested on"] = claims["tested_on"]
     shown["on each set"] = [sets_text(row) for row in claims.itertuples()]
+    shown["readings"] = claims["readings"].fillna("")
+    shown["invalid"] = claims["validity"].fillna("")
+    shown["carries over"] = [carries_text(row) for row in claims.itertuples()]
     shown["pairs"] = [over_text(row) if row.pairs else "–" for row in claims.itertuples()]
     shown["open"] = [open_text(row) for row in claims.itertuples()]
     return shown
@@ -44,6 +47,11 @@ def sets_text(row: Any) -> str:
     if row.by_set != row.by_set or not row.by_set:
         return ""
     return row.by_set + (f"; {100 * row.i2:.0f} % of the variation between sets" if row.i2 == row.i2 else "")
+
+
+def carries_text(row: Any) -> str:
+    """Whether the sentence holds on all sets together; of a secondary claim, the sentence that it tests elsewhere."""
+    return f"tests `{row.of}` elsewhere" if row.of else "" if row.carries != row.carries else row.carries
 
 
 def open_text(row: Any) -> str:
@@ -105,6 +113,9 @@ def _claim_html(
     facts = {
         "Tested on": prose(row.tested_on),
         "On each set": prose(sets_text(row)),
+        "Carries over": prose(carries_text(row)),
+        "Readings": prose("" if row.readings != row.readings else row.readings),
+        "Invalid": prose("" if row.validity != row.validity else row.validity),
         "Open": prose(open_text(row)),
         "Data": links if row.pairs else "not measured",
         "Holds among the claims of its chapter": row.holds,

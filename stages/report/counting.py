@@ -11,18 +11,9 @@ def counts(claims: pd.DataFrame) -> dict[str, int]:
 
 
 def sentences(claims: pd.DataFrame) -> pd.DataFrame:
-    """A row a sentence: section and verdict. One that is judged several times counts once.
-
-    It has the word that its measured verdicts share, is mixed where one supports and another contradicts it or where
-    one is mixed, and else is open. What was not run says nothing, unless nothing else is there. A sentence of the
-    thesis and one of our own are two, even in the same words.
-    """
-    own = claims["section"].eq("ours")
-    found = [
-        {"section": group["section"].iloc[0], "claim": group["claim"].iloc[0], "verdict": _shared_word(group)}
-        for _, group in claims.groupby([own, claims["claim"]], sort=False)
-    ]
-    return pd.DataFrame(found, columns=["section", "claim", "verdict"])
+    """A row a sentence: section, claim, verdict and pairs of its primary claim; other claims ask whether it carries."""
+    primary = claims["of"].eq("")
+    return claims.loc[primary, ["section", "claim", "verdict", "pairs"]].reset_index(drop=True)
 
 
 def counted(claims: pd.DataFrame) -> str:
@@ -31,9 +22,11 @@ def counted(claims: pd.DataFrame) -> str:
     once = sentences(claims)
     thesis = once[once["section"] != "ours"]
     return (
-        f"{len(claims)} verdicts: {_said(claims)}. Of the {decided} that are supported or contradicted, "
-        f"{(claims['holds'] == 'yes').sum()} hold among the claims of their chapter, at a false discovery rate of 5 %. "
-        f"They judge {len(once)} sentences: {_said(once)}. Of these {len(thesis)} are the thesis's: {_said(thesis)}."
+        f"Sentences of the thesis ({len(thesis)}): {_said(thesis)}. "
+        f"Sentences of this project ({len(once) - len(thesis)}): {_said(once[once['section'] == 'ours'])}. "
+        f"Verdicts, with {len(claims) - len(once)} that test a sentence elsewhere ({len(claims)}): {_said(claims)}. "
+        f"Of the {decided} that are supported or contradicted, {(claims['holds'] == 'yes').sum()} hold among the "
+        "claims of their chapter, at a false discovery rate of 5 %."
     )
 
 
@@ -44,15 +37,8 @@ def open_by_cause(claims: pd.DataFrame) -> str:
 
 
 def _said(frame: pd.DataFrame) -> str:
-    return ", ".join(f"{count} {word}" for word, count in counts(frame).items())
+    return ", ".join(f"{count} {word}" for word, count in counts(frame).items() if count) or "none"
 
 
 def _tally(column: pd.Series, words: tuple[str, ...] = WORDS) -> dict[str, int]:
     return {word: list(column).count(word) for word in words}
-
-
-def _shared_word(group: pd.DataFrame) -> str:
-    words = set(group.loc[group["pairs"] > 0, "verdict"])
-    if len(words) == 1:
-        return words.pop()
-    return "mixed" if "mixed" in words or {"supported", "contradicted"} <= words else "open"

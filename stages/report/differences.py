@@ -1,6 +1,6 @@
 """The paired differences of a claim, from its rows: one registry of statistics."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from fnmatch import fnmatch
 from importlib import import_module
@@ -9,6 +9,7 @@ import pandas as pd
 
 from .claims import Claim, Pick, Side
 from .results import Results, either, listed, some
+from .validity import CHECKS, causes
 
 STATISTICS: dict[str, Callable[[Results, Claim], pd.Series]] = {}
 
@@ -48,6 +49,53 @@ def side(results: Results, claim: Claim, own: Side, other: Side | float | None, 
 
     other: the other side, whose values a Pick leaves out. extra: further columns that both sides have in common.
     """
+    rows, several = _side_rows(results, claim, own, other, extra)
+    keys = [*claim.over, *claim.within]
+    if not keys:
+        return rows["value"]
+    if several:
+        table = rows.pivot_table(index=keys, columns=several, values="value", sort=False)
+        found = table.dropna().mean(axis=1)
+    else:
+        found = rows.groupby(keys, sort=False)["value"].mean()
+    return found.drop(invalid_pairs(results, claim, rows).index, errors="ignore")
+
+
+def invalid_pairs(results: Results, claim: Claim, rows: pd.DataFrame, keys: Sequence[str] = ()) -> pd.Series:
+    """Causes of the pairs of a claim of which one of the rows is invalid, indexed by keys, else by over and within."""
+    if not claim.checked or claim.stage not in CHECKS:
+        return pd.Series(dtype=object)
+    found = causes(results, claim.stage, str(rows["dataset"].iloc[0]), rows)
+    return found[found != ""].groupby([rows[key] for key in keys or (*claim.over, *claim.within)], sort=False).first()
+
+
+def invalid(results: Results, claim: Claim) -> tuple[pd.Series, int]:
+    """(the cause of each invalid pair, number of all pairs) of a claim on one set, before a unit's pairs are averaged.
+
+    A statistic of its own pairs by object and target, as stages.report.meshes.lod_claims does.
+    """
+    if not claim.checked or claim.stage not in CHECKS:
+        return pd.Series(dtype=object), 0
+    keys, found, count = [*claim.over, *claim.within], [], 0
+    if claim.statistic != "difference":
+        keys += ["target"] if claim.stage == "lod" and "target" not in keys else []
+    sides = [side for side in (claim.first, claim.second) if isinstance(side, Mapping)]
+    for extra in claim.contrast or ({},):
+        parts = [_side_rows(results, claim, own, sides[1 - k] if len(sides) > 1 else None, extra)[0]
+                 for k, own in enumerate(sides)]  # fmt: skip
+        pairs = [set(zip(*(part[key] for key in keys), strict=True)) for part in parts]
+        common = set.intersection(*pairs)
+        count += len(common)
+        bad = pd.concat([invalid_pairs(results, claim, part, keys) for part in parts])
+        bad = bad[~bad.index.duplicated()]
+        found.append(bad[[pair in common for pair in (bad.index if len(keys) > 1 else zip(bad.index, strict=True))]])
+    return pd.concat(found), count
+
+
+def _side_rows(
+    results: Results, claim: Claim, own: Side, other: Side | float | None, extra: Side | None
+) -> tuple[pd.DataFrame, list[str]]:
+    """(rows of one side, columns over whose several values the side is a mean)."""
     where = {**claim.where, **(extra or {}), **own}
     dataset = where.pop("dataset", claim.sets[0])
     picks = {column: wanted for column, wanted in where.items() if isinstance(wanted, Pick)}
@@ -58,14 +106,8 @@ def side(results: Results, claim: Claim, own: Side, other: Side | float | None, 
         rows = _some(rows[[fnmatch(str(name), wanted) for name in rows[column]]], claim, f"{column} like {wanted}")
     for column, wanted in picks.items():
         rows = rows[rows[column] == _picked(rows, claim, column, wanted, other)]
-    keys = [*claim.over, *claim.within]
-    if not keys:
-        return rows["value"]
-    several = [k for k, v in where.items() if k not in keys and (isinstance(v, tuple) or k in patterns)]
-    if not several:
-        return rows.groupby(keys, sort=False)["value"].mean()
-    table = rows.pivot_table(index=keys, columns=several, values="value", sort=False)
-    return table.dropna().mean(axis=1)
+    keys = (*claim.over, *claim.within)
+    return rows, [k for k, v in where.items() if k not in keys and (isinstance(v, tuple) or k in patterns)]
 
 
 def _difference(results: Results, claim: Claim, extra: Side) -> pd.Series:

@@ -1,7 +1,8 @@
 """The effect of a claim on each of its data sets, with its interval, and the pooled one."""
 
+from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -14,19 +15,38 @@ from stages.kit.stats import interval, p_value
 from stages.kit.units import by_unit
 
 from .claims import Claim
-from .differences import differences
+from .differences import differences, invalid
 from .results import NotRun, Results
+from .validity import TOO_MANY
 
 ALIKE = 0.05  # p-value of Cochran's Q below which sets differ
 
 
 @dataclass(frozen=True)
 class Effect:
-    """The differences of a claim on one set, indexed by its `over`, in its unit; share: as `Claim.share`."""
+    """The differences of a claim on one set, indexed by its `over`, in its unit; share: as `Claim.share`.
+
+    refused: the causes of invalid pairs; pairs: the number of all pairs, 0 where the rows of a stage have no check.
+    """
 
     dataset: str
     differences: pd.Series
     share: float
+    refused: tuple[str, ...] = ()
+    pairs: int = 0
+
+    @property
+    def testable(self) -> bool:
+        """Whether at most a fifth of the pairs is invalid; else the differences are those of all pairs."""
+        return len(self.refused) <= TOO_MANY * self.pairs
+
+    @property
+    def validity(self) -> str:
+        """`12 of 50 pairs invalid: no point found (10), less than one ring kept (2)`; empty where all are valid."""
+        if not self.refused:
+            return ""
+        causes = ", ".join(f"{cause} ({count})" for cause, count in Counter(self.refused).most_common())
+        return f"{len(self.refused)} of {self.pairs} pairs invalid: {causes}"
 
     @cached_property
     def units(self) -> pd.Series:
@@ -76,19 +96,19 @@ class PooledEffect:
 
     @property
     def interval(self) -> tuple[float, float, float]:
-        """(mean, low, high) of the pooled effect.
-
-        Where few sets differ it can be wider than all their own intervals together. Then it is cut to these: it is
-        about these sets alone, and sets that all say the same decide even where they say it by different amounts.
-        """
-        mean, low, high = self.pooled.interval()
-        _, lows, highs = zip(*(one.interval for one in self.sets), strict=True)
-        return mean, max(low, min(lows)), min(high, max(highs))
+        """(mean, low, high) of the pooled effect."""
+        return self.pooled.interval()
 
     @property
     def p_value(self) -> float:
-        """Two-sided, of no effect: of the pooled one, or of none in any of the sets where that is smaller."""
-        return min(self.pooled.p_value, max(one.p_value for one in self.sets))
+        """Two-sided, of no pooled effect."""
+        return self.pooled.p_value
+
+    @property
+    def in_each(self) -> bool:
+        """Whether the interval of each set excludes zero on the same side."""
+        _, low, high = np.transpose([one.interval for one in self.sets])
+        return bool((low > 0).all() or (high < 0).all())
 
     @property
     def units(self) -> pd.Series:
@@ -131,10 +151,8 @@ def effects(claim: Claim, results: Results) -> tuple[list[Effect], list[str]]:
     """
     found, missing = [], {}
     for name in sets_of(claim, results):
-        one = claim.on(name)
         try:
-            values = differences(results, one).map(lambda value: float(f"{value:.6g}"))  # as it is written in a CSV
-            found.append(Effect(name or "", values, one.share))
+            found.append(_effect(claim.on(name), results, name or ""))
         except NotRun as error:
             missing[name or ""] = error
     if not found:
@@ -143,7 +161,22 @@ def effects(claim: Claim, results: Results) -> tuple[list[Effect], list[str]]:
     return found, list(missing)
 
 
+def _effect(claim: Claim, results: Results, name: str) -> Effect:
+    """The effect on one set; of all pairs where too many of them are invalid."""
+    causes, pairs = invalid(results, claim)
+    if len(causes) > TOO_MANY * pairs:
+        claim = replace(claim, checked=False)
+    values = differences(results, claim).map(lambda value: float(f"{value:.6g}"))  # as it is written in a CSV
+    return Effect(name, values, claim.share, tuple(causes), pairs)
+
+
+def deciding(claim: Claim, found: Sequence[Effect], results: Results) -> list[Effect]:
+    """The effects that give the verdict: those on sets as printed, else the first that was measured."""
+    printed = sets_of(claim, results)[: claim.judging]
+    return [one for one in found if (one.dataset or None) in printed] or list(found[:1])
+
+
 def effect_of(found: Sequence[Effect]) -> Effect | PooledEffect:
-    """The pooled effect of all sets with an interval, or that of the only one."""
-    known = [one for one in found if np.isfinite(one.interval[1])]
+    """The pooled effect of all testable sets with an interval, or that of the only one."""
+    known = [one for one in found if one.testable and np.isfinite(one.interval[1])]
     return PooledEffect(known) if len(known) > 1 else (known or found)[0]

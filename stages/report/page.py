@@ -22,7 +22,10 @@ WIDEST = 900  # pixels of a picture on the page
 LONG_TEXT = 40  # characters of a cell from which its column is wide
 LONG = 30  # rows after which a table scrolls in its own box
 # Word -> class in the style sheet.
-WORDS = {"supported": "yes", "contradicted": "no", "no difference": "open", "mixed": "open", "open": "open"}
+WORDS = {
+    "supported": "yes", "contradicted": "no",
+    **dict.fromkeys(("no difference", "mixed", "depends on the reading", "not testable", "open"), "open"),
+}  # fmt: skip
 UP = "../"  # from a page of reports/site to reports/
 
 

@@ -1,6 +1,7 @@
 """The one word that a measurement says to each claim, with the differences that it rests on."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
@@ -8,12 +9,14 @@ import pandas as pd
 from stages.kit.stats import discoveries
 
 from .claims import POINTS, Claim
-from .effects import Effect, PooledEffect, effect_of, effects
+from .effects import Effect, PooledEffect, deciding, effect_of, effects
 from .markdown import number
 from .results import NotRun, Results, listed
 from .words import dataset_text, tested_on
 
-WORDS = ("supported", "contradicted", "no difference", "mixed", "open")
+DECIDED = ("supported", "contradicted", "no difference")
+DEPENDS, UNTESTABLE = "depends on the reading", "not testable"
+WORDS = (*DECIDED, "mixed", DEPENDS, UNTESTABLE, "open")
 # By unit: what nobody would act on. Stated before the claims were judged by it; other units have none.
 NEGLIGIBLE = {POINTS: 3.0, "% of the mean of both errors": 3.0, "PCC": 0.03, "NSS": 0.05, "AUC": 0.01}
 FEW, HUNDRED = 5, 100  # units
@@ -23,7 +26,7 @@ CAUSES = (  # of open verdicts
 )  # fmt: skip
 COLUMNS = [
     "section", "claim", "verdict", "effect", "low", "high", "unit", "p", "holds", "pairs", "over", "units", "shared",
-    "i2", "by_set", "needed", "needed_of", "cause", "tested_on", "key",
+    "i2", "by_set", "carries", "readings", "validity", "needed", "needed_of", "cause", "tested_on", "of", "key",
 ]  # fmt: skip
 
 
@@ -48,21 +51,24 @@ def judge(claims: Iterable[Claim], results: Results) -> pd.DataFrame:
 def judged(claims: Iterable[Claim], results: Results) -> tuple[pd.DataFrame, pd.DataFrame]:
     """(the frame of `judge`, the differences behind it: columns key, pair, difference in the claim's unit).
 
-    A verdict follows from its differences and `shared` alone. The pairs of a claim on several sets begin with the set.
+    A verdict follows from the differences on the sets as printed, `shared` and the readings. The pairs of a claim on
+    several sets begin with the set. Where the claim as it is written cannot be tested, its first reading that can be
+    gives the numbers. Column `of`: the key of the primary claim, empty for a primary claim itself.
     """
-    rows, pairs = [], []
+    rows, pairs, first = [], [], {}
     for claim in claims:
+        primary = claim.of or first.setdefault((claim.own, claim.sentence), claim.key)
         said = {"section": claim.section, "claim": claim.sentence, "unit": claim.unit, "key": claim.key}
+        said["of"] = primary if primary != claim.key else ""
         try:
-            found, missing = effects(claim, results)
+            judgements = _judgements(claim, results)
         except NotRun as absent:
             unmeasured = {"pairs": 0, "units": 0, "over": "", "tested_on": f"not run: {absent}", "cause": CAUSES[0]}
             rows.append(said | unmeasured | {"verdict": "open"})
             continue
-        effect = effect_of(found)
-        words = _words(claim, results, found, [] if results.own_meshes else missing)
-        rows.append(said | _numbers(claim, effect) | words | {"pairs": sum(len(one.differences) for one in found)})
-        for one in found:
+        judged_one = next((one for one in judgements if one.word != UNTESTABLE), judgements[0])
+        rows.append(said | _numbers(judged_one) | _words(judged_one, results) | _readings(judged_one, judgements))
+        for one in judged_one.found:
             start = f"{one.dataset}/" if len(claim.sets) > 1 else ""
             named = (start + "/".join(map(str, listed(pair))) for pair in one.differences.index)
             pairs += zip([claim.key] * len(one.differences), named, one.differences, strict=False)
@@ -71,13 +77,72 @@ def judged(claims: Iterable[Claim], results: Results) -> tuple[pd.DataFrame, pd.
     return frame, pd.DataFrame(pairs, columns=["key", "pair", "difference"])
 
 
-def _numbers(claim: Claim, effect: Effect | PooledEffect) -> dict[str, object]:
+@dataclass(frozen=True)
+class Judgement:
+    """A claim in one reading: its effects on all sets, on the sets that are judged, and the word."""
+
+    name: str
+    claim: Claim
+    found: list[Effect]
+    missing: list[str]
+    chosen: list[Effect]
+
+    @property
+    def word(self) -> str:
+        """The word that the judged sets come to."""
+        return word_of(self.chosen, self.claim.unit)
+
+
+def _judgements(claim: Claim, results: Results) -> list[Judgement]:
+    """The claim as it is written, then in its other readings that were run; NotRun where none was."""
+    judgements, absent = [], []
+    for name, one in [("as written", claim), *((reading.name, reading.of(claim)) for reading in claim.readings)]:
+        try:
+            found, missing = effects(one, results)
+        except NotRun as why:
+            absent.append(why)
+            continue
+        judgement = Judgement(name, one, found, missing, deciding(one, found, results))
+        if one is claim or np.isfinite(effect_of(judgement.chosen).interval[1]):
+            judgements.append(judgement)
+    if not judgements:
+        raise absent[0]
+    return judgements
+
+
+def word_of(effects: Sequence[Effect], unit: str) -> str:
+    """The word that the effects on one set or several come to."""
+    if not any(one.testable for one in effects):
+        return UNTESTABLE
+    effect = effect_of(effects)
+    if isinstance(effect, PooledEffect) and effect.disagree:
+        return "mixed"
+    return verdict(*effect.interval[1:], unit)
+
+
+def over_readings(words: Sequence[str]) -> str:
+    """The word of a claim from those of its readings: the first that can be tested, unless another contradicts it."""
+    words = [word for word in words if word != UNTESTABLE] or [UNTESTABLE]
+    return DEPENDS if words[0] in DECIDED and {*words} & {*DECIDED} != {words[0]} else words[0]
+
+
+def _readings(judged_one: Judgement, judgements: Sequence[Judgement]) -> dict[str, str]:
+    """Columns verdict and readings: the word and the effect in each reading, the judged one first."""
+    if len(judgements) == 1 and judged_one.name == "as written":
+        return {}
+    ordered = sorted(judgements, key=lambda one: one is not judged_one)
+    texts = [f"{one.name}: {one.word} {_interval_text(effect_of(one.chosen))}" for one in ordered]
+    return {"verdict": over_readings([one.word for one in judgements]), "readings": "; ".join(texts)}
+
+
+def _numbers(judgement: Judgement) -> dict[str, object]:
     """The word with its numbers, and where it is open what would decide it."""
+    effect, word, claim = effect_of(judgement.chosen), judgement.word, judgement.claim
     mean, low, high = effect.interval
     pooled = isinstance(effect, PooledEffect)
-    word = "mixed" if pooled and effect.disagree else verdict(low, high, claim.unit)
     found = {"verdict": word, "effect": mean, "low": low, "high": high, "p": effect.p_value, "over": claim.pairs}
     found |= {"units": len(effect.units), "shared": np.nan if pooled else effect.share}
+    found |= {"pairs": sum(len(one.differences) for one in judgement.chosen)}
     found |= {"i2": effect.pooled.i2} if pooled else {}
     return found | _open(claim, effect) if word == "open" else found
 
@@ -98,24 +163,43 @@ def _open(claim: Claim, effect: Effect | PooledEffect) -> dict[str, object]:
     return {"cause": CAUSES[rank], **known}
 
 
-def _words(claim: Claim, results: Results, found: list[Effect], missing: list[str]) -> dict[str, str]:
-    """Columns tested_on and by_set."""
-    words = tested_on(claim, results, [one.dataset for one in found])
+def _words(judgement: Judgement, results: Results) -> dict[str, str]:
+    """Columns tested_on, by_set, carries and validity."""
+    claim, found, chosen = judgement.claim, judgement.found, judgement.chosen
+    missing = [] if results.own_meshes else judgement.missing
+    words = tested_on(claim, results, [one.dataset for one in chosen])
     words += f"; not measured on {', '.join(map(dataset_text, missing))}" if missing else ""
-    for one in found:
+    refused = [f"{dataset_text(one.dataset)}: {one.validity}" for one in found if one.validity]
+    for one in chosen:
         if np.isnan(one.interval[1]):
             count = len(one.differences)
             why = f"all {count} differences are equal" if count > 1 else "fewer than two differences"
             words += f"; no interval{f' of {dataset_text(one.dataset)}' if len(found) > 1 else ''}: {why}"
-    return {"tested_on": words, "by_set": "; ".join(map(_set_text, found)) if len(found) > 1 else ""}
+    return {
+        "tested_on": words, "validity": "; ".join(refused), "carries": _carries(claim, chosen, found),
+        "by_set": "; ".join(map(_set_text, found)) if len(found) > 1 else "",
+    }  # fmt: skip
+
+
+def _carries(claim: Claim, chosen: Sequence[Effect], found: Sequence[Effect]) -> str:
+    """`supported +1.2 [0.4, 2.0]`: the word and the pooled effect of all sets; empty where all of them were judged."""
+    effect = effect_of(found)
+    if len(found) == len(chosen) or not isinstance(effect, PooledEffect):
+        return ""
+    word = word_of(found, claim.unit)
+    word += f", {verdict(*effect.sets[0].interval[1:])} in each set" if word == "open" and effect.in_each else ""
+    return f"{word} {_interval_text(effect)}"
+
+
+def _interval_text(effect: Effect | PooledEffect) -> str:
+    mean, low, high = map(number, effect.interval)
+    return f"{'+' if effect.interval[0] > 0 else ''}{mean} [{low}, {high}]"
 
 
 def _set_text(effect: Effect) -> str:
     """`psb +3.1 [1.0, 5.2] (38)`: a set's own effect, and its units."""
-    mean, low, high = map(number, effect.interval)
-    return f"{dataset_text(effect.dataset)} {'+' if effect.interval[0] > 0 else ''}{mean} [{low}, {high}] " + (
-        f"({len(effect.units)})"
-    )
+    refused = "" if effect.testable else ", not testable"
+    return f"{dataset_text(effect.dataset)} {_interval_text(effect)} ({len(effect.units)}{refused})"
 
 
 def holding(frame: pd.DataFrame) -> pd.Series:

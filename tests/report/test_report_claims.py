@@ -12,13 +12,13 @@ import pytest
 
 from stages.kit.stats import interval
 from stages.report.__main__ import write_claims
-from stages.report.claims import POINTS, Claim, highest_of, lowest_of
+from stages.report.claims import POINTS, Claim, highest_of, lowest_of, reading
 from stages.report.claims_page import effect, open_text, over_text
 from stages.report.counting import counted, sentences
 from stages.report.differences import differences
 from stages.report.results import SECTION_3_1, NotRun
 from stages.report.topics import CLAIMS, build_all
-from stages.report.verdict import holding, judge, judged, verdict
+from stages.report.verdict import holding, judge, judged, over_readings, verdict
 
 
 def of(results, key):
@@ -274,39 +274,18 @@ def test_transfer_that_was_left_out_hands_on_its_note(root, small):
 
 
 def frame_of(words, **columns):
-    """A frame of `judge` with these verdicts, each of a sentence of its own unless told."""
-    found = {"verdict": words, "section": "T3.1", "claim": [f"s{k}" for k in range(len(words))], "pairs": 5}
+    """A frame of `judge` with these verdicts, each of a primary claim."""
+    found = {"verdict": words, "section": "T3.1", "claim": "Sentence.", "pairs": 5, "of": ""}
     return pd.DataFrame(found | {"holds": ""} | columns)
 
 
 def test_verdicts_are_counted_with_those_that_hold_among_so_many():
     words = ["supported"] * 30 + ["contradicted"] * 10 + ["no difference"] * 5 + ["mixed"] * 2 + ["open"] * 45
     said = counted(frame_of(words, holds=["yes"] * 33 + ["no"] * 7 + [""] * 52))
-    assert said.startswith("92 verdicts: 30 supported, 10 contradicted, 5 no difference, 2 mixed, 45 open.")
+    words = "30 supported, 10 contradicted, 5 no difference, 2 mixed, 45 open"
+    assert said.startswith(f"Sentences of the thesis (92): {words}. Sentences of this project (0): none.")
+    assert f"that test a sentence elsewhere (92): {words}." in said
     assert "Of the 40 that are supported or contradicted, 33 hold" in said
-    assert "They judge 92 sentences: 30 supported" in said and "Of these 92 are the thesis's" in said
-
-
-@pytest.mark.parametrize(
-    ("words", "once"),
-    [
-        (["supported", "supported"], "supported"),
-        (["supported", "open"], "open"),
-        (["supported", "contradicted"], "mixed"),
-        (["supported", "mixed"], "mixed"),
-        (["contradicted", "no difference"], "open"),
-        (["no difference", "no difference"], "no difference"),
-    ],
-)
-def test_a_sentence_counts_once_by_the_word_that_its_verdicts_share(words, once):
-    assert sentences(frame_of(words, claim="Same."))["verdict"].tolist() == [once]
-
-
-def test_what_was_not_run_says_nothing_of_a_sentence_and_ours_is_another_than_the_thesis_s():
-    found = sentences(frame_of(["supported", "open"], claim="Same.", pairs=[5, 0]))
-    assert found["verdict"].tolist() == ["supported"]
-    assert sentences(frame_of(["open"], pairs=0))["verdict"].tolist() == ["open"]
-    assert len(sentences(frame_of(["open", "open"], claim="Same.", section=["T4.2", "ours"]))) == 2
 
 
 def sets_of_rows(root, small, **found):
@@ -323,7 +302,8 @@ def spread_about(mean, seed=0, count=12, spread=1.0):
 
 
 def pooled(results, *sets, **fields):
-    return judge([claim(second=0.0, dataset=sets, **fields)], results).iloc[0]
+    """The row of a claim of ours, which all its sets judge."""
+    return judge([claim(second=0.0, dataset=sets, **{"section": "ours"} | fields)], results).iloc[0]
 
 
 def test_sets_that_say_the_same_are_pooled_and_decide_what_none_decides_alone(root, small):
@@ -352,11 +332,64 @@ def test_sets_of_both_signs_that_differ_beyond_chance_are_mixed_and_others_are_n
     assert pooled(results, "one", "two")["verdict"] == "open"
 
 
-def test_sets_that_agree_by_different_amounts_still_decide(root, small):
+def test_sets_that_agree_by_different_amounts_are_open_together_and_decided_in_each(root, small):
     results = sets_of_rows(root, small, one=spread_about(1.0), two=spread_about(5.0), more=spread_about(20.0))
-    row, alone = pooled(results, "one", "two", "more"), interval(spread_about(1.0))
-    assert row["verdict"] == "supported" and row["i2"] > 0.9 and row["p"] < 0.05
-    assert row["low"] == pytest.approx(alone[1], rel=0.01)  # cut: by Hartung and Knapp's it would lie below zero
+    row = pooled(results, "one", "two", "more")
+    assert row["verdict"] == "open" and row["i2"] > 0.9 and row["low"] < 0 < row["effect"] and row["p"] > 0.05
+    thesis = pooled(results, "one", "two", "more", section="T9")
+    assert thesis["verdict"] == "supported" and thesis["carries"].startswith("open, supported in each set +8.67 [")
+
+
+def test_the_printed_set_judges_the_thesis_and_the_others_show_whether_it_carries_over(root, small):
+    results = sets_of_rows(root, small, one=spread_about(2.0), two=spread_about(-2.0, 1), more=spread_about(2.0, 2))
+    row = pooled(results, "one", "two", "more", section="T9")
+    assert (row["verdict"], row["units"], row["pairs"]) == ("supported", 12, 12)
+    assert row["carries"].startswith("mixed") and row["by_set"].count("(12)") == 3 and row["tested_on"] == "one"
+    both = pooled(results, "one", "two", "more", section="T9", printed=2)
+    assert both["verdict"] == "mixed" and both["units"] == 24
+    assert pooled(results, "absent", "one", section="T9")["verdict"] == "supported"  # as printed it was not run
+    assert pooled(results, "absent", "one", section="T9")["tested_on"] == "one; not measured on absent"
+
+
+def test_a_later_claim_in_the_same_words_tests_the_sentence_elsewhere(root, small):
+    results = sets_of_rows(root, small, one=spread_about(2.0), two=spread_about(-2.0))
+    claims = [claim(key="a", second=0.0, dataset="one"), claim(key="b", second=0.0, dataset="two"),
+              claim(key="c", second=0.0, dataset="two", section="ours"),
+              claim(key="d", sentence="Other words.", second=0.0, dataset="two", of="a")]  # fmt: skip
+    table = judge(claims, results)
+    assert table["of"].tolist() == ["", "a", "", "a"]
+    assert sentences(table)["verdict"].tolist() == ["supported", "contradicted"]
+    said = "Sentences of the thesis (1): 1 supported. Sentences of this project (1): 1 contradicted. Verdicts, with 2"
+    assert counted(table).startswith(said)
+
+
+@pytest.mark.parametrize(
+    ("words", "word"),
+    [
+        (["supported", "supported"], "supported"),
+        (["supported", "open"], "supported"),
+        (["supported", "contradicted"], "depends on the reading"),
+        (["supported", "open", "no difference"], "depends on the reading"),
+        (["open", "supported"], "open"),
+        (["not testable", "supported"], "supported"),
+        (["not testable", "supported", "contradicted"], "depends on the reading"),
+        (["not testable", "not testable"], "not testable"),
+        (["mixed", "supported"], "mixed"),
+    ],
+)
+def test_a_verdict_holds_in_each_reading_or_depends_on_the_reading(words, word):
+    assert over_readings(words) == word
+
+
+def test_readings_are_judged_by_their_own_rows_and_told(root, small):
+    frame = {"dataset": "test", "metric": "error", "item": [*range(12)] * 2, "way": ["a"] * 12 + ["b"] * 12}
+    small.write(root, "test", pd.DataFrame(frame | {"value": [*spread_about(2.0), *spread_about(-2.0)]}))
+    one = claim(second=0.0, where={"way": "a"}, readings=(reading("the other way", where={"way": "b"}),
+                                                          reading("absent", where={"way": "c"})))  # fmt: skip
+    row = judge([one], small.results(root)).iloc[0]
+    assert row["verdict"] == "depends on the reading" and row["effect"] == pytest.approx(2.0)
+    assert row["readings"].startswith("as written: supported +2.00 [") and row["readings"].count(";") == 1
+    assert "the other way: contradicted -2.00 [" in row["readings"] and row["holds"] == ""
 
 
 def test_a_set_without_rows_is_named_and_the_others_decide(root, small):

@@ -7,7 +7,7 @@ gaze on the meshes that have it. tables/lod_claims has them set by set. Statisti
 from functools import partial
 from typing import Any
 
-from stages.report.claims import Claim, Pick, highest_of, lowest_of
+from stages.report.claims import Claim, Pick, highest_of, lowest_of, reading
 from stages.report.results import COLOURED, GAZED, ON_GREY, ON_WHITE, SECTION_3_1, SECTION_3_2
 from stages.report.style import label
 
@@ -53,7 +53,9 @@ PHRASES = {
     ("target", LOW): "1,500 faces", ("target", HIGH): "3,000 faces", ("target", (LOW, HIGH)): "1,500 and 3,000 faces",
 }  # fmt: skip
 Methods = str | tuple[str, ...] | Pick
-claim = partial(Claim, stage="lod", dataset=OF_OURS, over=("item",), scale=1.0, phrases=PHRASES)
+# Neighbourhoods of three rings shrink where they leave no room for the target, or only cells where all three fit count.
+FIT = (reading("only where three rings fit", where={"shrunk": False}),)
+claim = partial(Claim, stage="lod", dataset=OF_OURS, over=("item",), scale=1.0, phrases=PHRASES, readings=FIT)
 of_3_2: dict[str, Any] = {"dataset": OF_3_2, "elsewhere": UNSEEN}
 
 

@@ -7,7 +7,7 @@ import pandas as pd
 
 from stages.kit.stats import interval
 from stages.report.claims import Claim
-from stages.report.differences import statistic
+from stages.report.differences import invalid_pairs, statistic
 from stages.report.items import Table
 from stages.report.results import SECTION_3_2, NotRun, Results, listed, some
 from stages.report.verdict import judge
@@ -54,6 +54,7 @@ def spread(results: Results, claim: Claim) -> pd.Series:
 def falls_with_faces(results: Results, claim: Claim) -> pd.Series:
     """Error at the fewest faces minus error at the largest number, of objects with several counts."""
     rows = results.measured(claim.stage, claim.sets[0], **claim.where, **claim.first).sort_values("faces")
+    rows = _valid(results, claim, rows)
     rows = rows[rows.groupby("item")["faces"].transform("nunique") > 1]
     some(rows, "no object that is taken to two face counts", claim.stage, runnable=False)
     errors = rows.groupby("item")["value"]
@@ -95,8 +96,14 @@ def ranks_agree(results: Results, claim: Claim) -> pd.Series:
 def _errors(results: Results, claim: Claim, methods: tuple[str, ...], **where: object) -> pd.DataFrame:
     """Frame (object, target) x methods, where all of the methods that were run reach the target."""
     rows = results.measured(claim.stage, claim.sets[0], **{**claim.where, **where}, method=methods)
-    table = rows.pivot(index=CELL, columns="method", values="value").dropna()
+    table = _valid(results, claim, rows).pivot(index=CELL, columns="method", values="value").dropna()
     return some(table, f"no target that all of {', '.join(methods)} reach", claim.stage, runnable=False)
+
+
+def _valid(results: Results, claim: Claim, rows: pd.DataFrame) -> pd.DataFrame:
+    """The rows without those of an object and target at which a method's row is invalid."""
+    bad = invalid_pairs(results, claim, rows, CELL).index
+    return rows[~pd.MultiIndex.from_frame(rows[CELL]).isin(bad)] if len(bad) else rows
 
 
 def _by_method(results: Results, claim: Claim, metric: str, column: str) -> pd.DataFrame:

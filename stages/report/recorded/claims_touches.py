@@ -4,8 +4,9 @@ from functools import partial
 from typing import Any
 
 from stages.kit.split import Split, shared_by
-from stages.report.claims import Claim, highest_of
+from stages.report.claims import Claim, highest_of, reading
 
+from .simulated_to_real import SIMULATIONS as KINDS
 from .table_4_4 import SELECTIONS, SETS
 
 SIMULATED = "resting_skin"  # the simulation that was meant to be the closest, before any result was seen
@@ -22,6 +23,12 @@ OF_TEN = {
     ("simulation", SIMULATED): "resting imprints with skin", ("aligned", False): "",
     **{("touches", count): f"{count} real of each class" for count in (1, 5, 20)},
 }  # fmt: skip
+SIMULATIONS = tuple(
+    reading(f"{words}{', aligned' if aligned else ''}", first={"simulation": name, "aligned": aligned})
+    for name, words in KINDS.items()
+    for aligned in (False, True)
+    if name != "none" and (name, aligned) != (SIMULATED, False)
+)
 touches = partial(Claim, section="T4.2.4", stage="recorded", dataset="pressure_images")
 
 
@@ -53,7 +60,7 @@ CLAIMS = [
         touches(key=f"simulation_helps_{count}", section="ours", stage="simulated_to_real", phrases=OF_TEN,
                 sentence="Simulated imprints help to recognise real touches.", shared=shared_by(Split.BLOCKS),
                 where=KNN | {"touches": count}, second={"training": "real"},
-                first={"training": "both", "simulation": SIMULATED, "aligned": False})
-        for count in (1, 5, 20)
+                first={"training": "both", "simulation": SIMULATED, "aligned": False}, readings=SIMULATIONS)
+        for count in (5, 1, 20)
     ),
 ]  # fmt: skip

@@ -1,0 +1,74 @@
+"""Checks of rows before a verdict: a method that found, kept or learned nothing is no evidence."""
+
+from collections.abc import Callable
+
+import pandas as pd
+
+from .results import NotRun, Results
+
+TOO_MANY = 0.2  # share of invalid pairs from which a claim cannot be tested
+SATURATED = 0.95  # training accuracy of a network that has learned its training part
+ONE_ANSWER = 0.95  # share of the commonest prediction from which a classifier answers without looking
+NO_POINT, NO_RING = "no point found", "less than one ring kept"
+UNTRAINED, ONE_CLASS = "training stopped before it was saturated", "one answer for nearly all samples"
+Check = Callable[[Results, str, pd.DataFrame], pd.Series]  # (results, dataset, rows) -> cause of each row, or ""
+CHECKS: dict[str, Check] = {}
+
+
+def check(stage: str) -> Callable[[Check], Check]:
+    """Registers a check of the rows of a stage."""
+    return lambda function: CHECKS.setdefault(stage, function)
+
+
+def causes(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
+    """(n,) causes why rows are invalid, empty text for valid rows, indexed as the rows."""
+    known = CHECKS.get(stage)
+    return known(results, dataset, rows) if known else pd.Series("", index=rows.index)
+
+
+@check("lod")
+def kept_neighbourhoods(results: Results, dataset: str, rows: pd.DataFrame) -> pd.Series:
+    """Rows of methods that keep neighbourhoods, and kept none: their mesh is that of plain simplification."""
+    found = pd.Series("", index=rows.index)
+    if "rings" in rows:
+        found[rows["rings"] < 1] = NO_RING
+        found[(rows["points"] == 0) & rows["rings"].notna()] = NO_POINT
+    return found
+
+
+@check("classification")
+def several_answers(results: Results, dataset: str, rows: pd.DataFrame) -> pd.Series:
+    """Rows of classifiers that give one answer for nearly all samples, where the stage measured that."""
+    share = _beside(results, "classification", dataset, rows, "commonest_share")
+    return (share > ONE_ANSWER).map({True: ONE_CLASS, False: ""})
+
+
+@check("transfer")
+def trained(results: Results, dataset: str, rows: pd.DataFrame) -> pd.Series:
+    """Rows of tuned networks whose training was stopped after some passes while it still improved."""
+    return _trained(results, "transfer", dataset, rows)
+
+
+@check("recorded_networks")
+def trained_on_recordings(results: Results, dataset: str, rows: pd.DataFrame) -> pd.Series:
+    """As `trained`, for recorded touches."""
+    return _trained(results, "recorded_networks", dataset, rows)
+
+
+def _trained(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
+    tuned = rows["mode"].notna() & (rows["mode"] != "frozen") & (rows["metric"] == "accuracy")
+    converged = rows["passes"] == "converged" if "passes" in rows else False
+    learned = _beside(results, stage, dataset, rows, "train_accuracy") >= SATURATED
+    return (tuned & ~converged & ~learned).map({True: UNTRAINED, False: ""})
+
+
+def _beside(results: Results, stage: str, dataset: str, rows: pd.DataFrame, metric: str) -> pd.Series:
+    """(n,) another metric of the same trials, NaN where it was not measured."""
+    try:
+        other = results.measured(stage, dataset, metric=metric)
+    except NotRun:
+        return pd.Series(float("nan"), index=rows.index)
+    apart = {"metric", "value", "seconds", "note", "imprints"}
+    keys = [column for column in rows if column in other and column not in apart]
+    known = other.drop_duplicates(keys)[[*keys, "value"]].rename(columns={"value": "_beside"})
+    return pd.Series(rows[keys].merge(known, on=keys, how="left")["_beside"].to_numpy(), index=rows.index)
