@@ -35,23 +35,36 @@ from .viewer import pack_viewer
 OUTPUTS = ("tables", "figures", "tradeoff", "claims", "site", "claims.md", "claims.csv", "index.html")
 OWN_NOTE = "this page is about a folder alone; `python -m stages.compose` switches the project's own data sets on"
 CLAIMS_NOTE = """Each effect is a paired difference, positive on the side that the thesis claims, with its 95 %
-interval. *supported*: the interval lies wholly on the claimed side; *contradicted*: wholly on the other; *no
-difference*: it covers zero and nothing that would matter (3 points of accuracy, 3 % of an error, 0.03 PCC, 0.05 NSS,
-0.01 AUC); *mixed*: the data sets disagree; *open*: it covers more, is unknown (equal differences show no spread), or
-nothing was measured. *holds*: whether a verdict that is decided holds among all claims of its chapter, at a false
-discovery rate of 5 % (Benjamini and Hochberg 1995), by p, which follows from the interval.
+interval. The words:
+
+- *supported*: the interval lies wholly on the claimed side; *contradicted*: wholly on the other side.
+- *no difference*: the interval covers zero and nothing that would matter (3 points of accuracy, 3 % of an error,
+  0.03 PCC, 0.05 NSS, 0.01 AUC).
+- *mixed*: the data sets disagree. Each side of zero has a set whose own interval excludes it, or sets of both signs
+  differ by Cochran's Q (p below 0.05).
+- *depends on the reading*: another reasonable reading of the protocol decides the claim differently. The column
+  *readings* has the word and the effect in each reading.
+- *not testable*: more than a fifth of the pairs is invalid. The column *invalid* counts the causes. Otherwise invalid
+  pairs are left out. A pair is invalid where a method found no point, kept less than one ring of a neighbourhood, gave
+  one answer for nearly all samples, or was tuned by a training that stopped while it still improved.
+- *open*: the interval covers more, its ends are unknown (equal differences show no spread), or nothing was measured.
+
+The set that follows the printed protocol judges a sentence of the thesis. The column *carries over* has the word that
+all sets together come to. A later claim in the same words, or with another set, metric or model, is secondary: it asks
+whether the sentence carries over, and does not count as a sentence. Section *ours*: sentences of this project about its
+own model, judged by all their sets.
 
 An interval is a bootstrap over the outermost units: classes with their objects, objects with their draws. Copies of a
-shape are one unit. Over objects it carries to other objects of this kind. Over repetitions it is a bootstrap over
-repeated splits of the same imprints, widened for what they share (Nadeau and Bengio 2003): it is about these few
-objects alone. A claim on several data sets is judged by their pooled effect, by random effects. Three sets or more that
-differ have the interval of Hartung and Knapp, which carries to other sets. Sets disagree where each side of zero has a
-set whose own interval excludes it, or where sets of both signs differ by Cochran's Q (p below 0.05).
+shape are one unit. An interval over objects carries to other objects of this kind. An interval over repetitions is a
+bootstrap over repeated splits of the same imprints, widened for the imprints that the splits share (Nadeau and Bengio
+2003): it is about these few objects alone. Several sets are pooled by random effects; three sets or more that differ
+have the interval of Hartung and Knapp, which carries to other sets. *In each set* says that the interval of each set
+excludes zero on the same side while the pooled interval does not.
 
-Of an open claim the last column says why it is open, and how many units would decide it at its present effect and
-spread, by Student's interval. Where sets differ, these are sets. Section *ours*: what this project says of its own
-model, and not the thesis. A sentence that is judged several times counts once: with the word that all its measured
-verdicts share, as mixed where they contradict each other, else as open."""
+The column *holds* says whether a decided verdict holds among all claims of its chapter, at a false discovery rate of
+5 % (Benjamini and Hochberg 1995), by p, which follows from the interval. The last column says why an open claim is
+open, and how many units would decide it at its present effect and spread, by Student's interval; where sets differ,
+the units are sets."""
 
 
 def main() -> None:
