@@ -13,6 +13,7 @@ from .style import label
 PLACE = re.compile(r"\{(\S+) ((?:[^:{}]|:(?! ))*): ([^{}]+)\}")
 PAIR = re.compile(r"(\w+)(!?=)(.*?)(?=\s+\w+!?=|\s*$)")
 CLAIMS = "claims"  # reports/claims.csv; all others are KIND/NAME
+QUALIFIED = ("depends on the reading", "not testable")  # verdicts without which a figure of a claim would mislead
 ROWS = "rows"  # in place of columns: how many rows there are
 ENDS = {"highest": pd.Series.idxmax, "lowest": pd.Series.idxmin}  # in place of a column: picks a row by the one named
 PREFIXES: dict[str, Callable[[float], float]] = {  # before a column's name -> what is shown of its number
@@ -55,12 +56,13 @@ def _figure(reports: Path, name: str, where: str, what: str) -> str:
         return label(row[columns[0]])
     known = ends and all(end == end for end in ends)
     low, high = sorted(ends) if known else (float("nan"),) * 2
+    word = f" ({row['verdict']})" if name == CLAIMS and row.get("verdict") in QUALIFIED else ""
     if mean != mean or (words and not known):
         raise LookupError(f"{name} {where} has no {'interval' if mean == mean else 'value'}")
     show = (lambda value: f"{value:,.{places}f}") if places else _shown
     if words:
-        return _difference(mean, low, high, words, show)
-    return show(mean) if low != low else f"{show(mean)} [{show(low)}, {show(high)}]"
+        return _difference(mean, low, high, words, show) + word
+    return (show(mean) if low != low else f"{show(mean)} [{show(low)}, {show(high)}]") + word
 
 
 def parts_of(what: str) -> tuple[list[str], list[str], str]:

@@ -12,9 +12,9 @@ def reports(tmp_path):
     """A folder with one table and the claims."""
     frame = pd.DataFrame({"method": ["one", "two", "two"], "note": ["", "", "x"], "mean": [1234.5, 0.5, None]})
     write_table(tmp_path / "tables/rates.csv", frame.assign(low=[1000.0, 0.25, 0], high=[2000.0, 0.75, 1]))
-    write_table(
-        tmp_path / "claims.csv", pd.DataFrame({"key": ["kept"], "effect": [-100.0], "low": [-120.0], "high": [0.0]})
-    )
+    claims = {"key": ["kept", "read", "untested"], "effect": -100.0, "low": -120.0, "high": 0.0}
+    claims["verdict"] = ["contradicted", "depends on the reading", "not testable"]
+    write_table(tmp_path / "claims.csv", pd.DataFrame(claims))
     signs = {"kind": ["none of both", "open"], "mean": [1, 1], "low": [-2, None], "high": [4, 2]}
     write_table(tmp_path / "tables/signs.csv", pd.DataFrame(signs))
     return tmp_path
@@ -28,6 +28,9 @@ def reports(tmp_path):
     ("tables/rates method=two note=: 1-mean", "0.500"),
     ("claims key=kept: times:effect times:low times:high .2f", "3.00 [1.00, 4.00]"),
     ("claims key=kept: -effect", "100"),
+    ("claims key=read: effect low high", "-100 [-120, 0] (depends on the reading)"),
+    ("claims key=untested: effect low high more|less .0f",
+     "neither more nor less beyond chance (-100 [-120, 0]) (not testable)"),
     ("tables/rates method=o*: mean", "1,234"),
     ("tables/rates note=x method!=one: rows", "1"),
     ("tables/rates : rows", "3"),
