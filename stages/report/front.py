@@ -11,11 +11,12 @@ import pandas as pd
 from matplotlib.figure import Figure as Drawing
 
 from .cells import CLAIMS, PREFIXES, filled
-from .counting import counts
+from .counting import counts, sentences
 from .markdown import with_interval
 from .page import box, part, prose
 from .style import CYCLE, INK, SETTINGS, plt
 from .vector import vector
+from .verdict import DEPENDS, UNTESTABLE
 
 ROWS = 5  # heights of the dots of a chart: pairs of like values lie beside each other
 
@@ -53,9 +54,10 @@ FINDINGS = (
     Finding("simulation_helps_5", "contradicted", "Fails: simulated imprints make real touches harder to recognise",
             "points of accuracy more than without them", "recorded"),
 )  # fmt: skip
-UNCLEAR = """<li><h3>Most claims are not that clear</h3><p>Of {count} claims, <strong>{contradicted}</strong> are
-contradicted and <strong>{open}</strong> open: their intervals hold effects of both signs, or nothing was measured. Each
-opens to its pairs, its data and its command.</p><p><a href="site/claims.html">All claims</a></p></li>"""
+UNCLEAR = """<li><h3>Most sentences of the thesis are not that clear</h3><p>Of {count} sentences of the thesis,
+<strong>{supported}</strong> are supported and <strong>{contradicted}</strong> contradicted. {untestable} cannot be
+tested or depend on how the protocol is read; the others are open. Each opens to its pairs, its data and its command.</p>
+<p><a href="site/claims.html">All claims</a></p></li>"""
 ANSWER = '<li><h3>{asked}</h3><p>{answer} <a href="{address}">{kind}</a></p></li>'
 
 
@@ -65,7 +67,9 @@ def findings_html(claims: pd.DataFrame, differences: pd.DataFrame) -> str:
     cards = [_card(one, rows[one.key], differences) for one in FINDINGS if one.key in rows]
     if not cards:
         return ""
-    rest = UNCLEAR.format(count=len(claims), **counts(claims))
+    thesis = sentences(claims[claims["section"] != "ours"])
+    found = counts(thesis)
+    rest = UNCLEAR.format(count=len(thesis), untestable=found[UNTESTABLE] + found[DEPENDS], **found)
     return f'<section id="findings"><h2>Five findings</h2><ul class="cards">{"".join(cards)}{rest}</ul></section>\n'
 
 
@@ -75,7 +79,7 @@ def _card(one: Finding, row, differences: pd.DataFrame) -> str:
     low, high = sorted(ends)
     figure = with_interval(mean, low, high, places=one.places)
     signed = "+" if mean > 0 and one.shown == "" else ""
-    found = differences[differences["key"] == one.key]
+    found = differences[(differences["key"] == one.key) & differences["judged"]]
     alt = f"{title}: {figure} {one.unit}; a dot for each of {len(found)} {row.over}"
     values = dict(zip(found["pair"].astype(str), map(one.of, found["difference"]), strict=True))
     drawing = strip(values, (mean, low, high), one.of(0.0), one.unit)

@@ -49,11 +49,12 @@ def judge(claims: Iterable[Claim], results: Results) -> pd.DataFrame:
 
 
 def judged(claims: Iterable[Claim], results: Results) -> tuple[pd.DataFrame, pd.DataFrame]:
-    """(the frame of `judge`, the differences behind it: columns key, pair, difference in the claim's unit).
+    """(the frame of `judge`, the differences behind it: columns key, pair, difference in the claim's unit, judged).
 
     A verdict follows from the differences on the sets as printed, `shared` and the readings. The pairs of a claim on
-    several sets begin with the set. Where the claim as it is written cannot be tested, its first reading that can be
-    gives the numbers. Column `of`: the key of the primary claim, empty for a primary claim itself.
+    several sets begin with the set; `judged` tells those of the sets that give the verdict. Where the claim as it is
+    written cannot be tested, its first reading that can be gives the numbers. Column `of`: the key of the primary
+    claim, empty for a primary claim itself.
     """
     rows, pairs, first = [], [], {}
     for claim in claims:
@@ -71,10 +72,11 @@ def judged(claims: Iterable[Claim], results: Results) -> tuple[pd.DataFrame, pd.
         for one in judged_one.found:
             start = f"{one.dataset}/" if len(claim.sets) > 1 else ""
             named = (start + "/".join(map(str, listed(pair))) for pair in one.differences.index)
-            pairs += zip([claim.key] * len(one.differences), named, one.differences, strict=False)
+            decides = one in judged_one.chosen
+            pairs += ((claim.key, name, value, decides) for name, value in zip(named, one.differences, strict=True))
     frame = pd.DataFrame(rows, columns=COLUMNS)
     frame["holds"] = holding(frame)
-    return frame, pd.DataFrame(pairs, columns=["key", "pair", "difference"])
+    return frame, pd.DataFrame(pairs, columns=["key", "pair", "difference", "judged"])
 
 
 @dataclass(frozen=True)
