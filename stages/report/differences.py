@@ -9,7 +9,7 @@ import pandas as pd
 
 from .claims import Claim, Pick, Side
 from .results import Results, either, listed, some
-from .validity import CHECKS, causes
+from .validity import CHECKS, SAME, causes
 
 STATISTICS: dict[str, Callable[[Results, Claim], pd.Series]] = {}
 
@@ -87,9 +87,21 @@ def invalid(results: Results, claim: Claim) -> tuple[pd.Series, int]:
         common = set.intersection(*pairs)
         count += len(common)
         bad = pd.concat([invalid_pairs(results, claim, part, keys) for part in parts])
+        if len(parts) > 1 and claim.statistic == "difference":
+            means = [part.groupby(keys, sort=False)["value"].mean() for part in parts]
+            both = pd.concat(dict(zip(("first", "second"), means, strict=True)), axis=1, join="inner")
+            same = both.index[_same_mesh(claim, both)]
+            bad = pd.concat([bad, pd.Series(SAME, index=same, dtype=object)])
         bad = bad[~bad.index.duplicated()]
         found.append(bad[[pair in common for pair in (bad.index if len(keys) > 1 else zip(bad.index, strict=True))]])
     return pd.concat(found), count
+
+
+def _same_mesh(claim: Claim, both: pd.DataFrame) -> pd.Series:
+    """(pairs,) whether two simplifications have errors that are equal to the last digit, and not zero."""
+    if claim.stage != "lod" or not claim.checked:
+        return pd.Series(False, index=both.index)
+    return (both["first"] == both["second"]) & (both["first"] > 0)
 
 
 def _side_rows(
@@ -123,6 +135,7 @@ def _difference(results: Results, claim: Claim, extra: Side) -> pd.Series:
             found = first.mean() - second if claim.mean_of == "first" else first - second.mean()
         else:
             joined = pd.concat({"first": first, "second": second}, axis=1, join="inner").dropna()
+            joined = joined[~_same_mesh(claim, joined)]
             names = " and ".join(" ".join(map(either, one.values())) for one in (claim.first, claim.other))
             some(joined, f"no pairs of {names}", claim.stage, runnable=False)
             found = joined["first"] - joined["second"]

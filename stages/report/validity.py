@@ -4,13 +4,15 @@ from collections.abc import Callable
 
 import pandas as pd
 
-from .results import NotRun, Results
+from .results import NUMBERS, NotRun, Results
 
 TOO_MANY = 0.2  # share of invalid pairs from which a claim cannot be tested
 SATURATED = 0.95  # training accuracy of a network that has learned its training part
 ONE_ANSWER = 0.95  # share of the commonest prediction from which a classifier answers without looking
 NO_POINT, NO_RING = "no point found", "less than one ring kept"
 UNTRAINED, ONE_CLASS = "training stopped before it was saturated", "one answer for nearly all samples"
+GUESSING, SAME = "less accurate than guessing", "both sides are the same mesh"
+TRIAL = ("group", "method", "split", "variant", "classifier", "scaling", "data", "weights", "mode", "size", "passes")
 Check = Callable[[Results, str, pd.DataFrame], pd.Series]  # (results, dataset, rows) -> cause of each row, or ""
 CHECKS: dict[str, Check] = {}
 
@@ -40,7 +42,10 @@ def kept_neighbourhoods(results: Results, dataset: str, rows: pd.DataFrame) -> p
 def several_answers(results: Results, dataset: str, rows: pd.DataFrame) -> pd.Series:
     """Rows of classifiers that give one answer for nearly all samples, where the stage measured that."""
     share = _beside(results, "classification", dataset, rows, "commonest_share")
-    return (share > ONE_ANSWER).map({True: ONE_CLASS, False: ""})
+    found = (share > ONE_ANSWER).map({True: ONE_CLASS, False: ""})
+    if "group" in rows:
+        found[_below(rows, 1 / rows["group"].map(NUMBERS))] = GUESSING
+    return found
 
 
 @check("transfer")
@@ -59,7 +64,16 @@ def _trained(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> 
     tuned = rows["mode"].notna() & (rows["mode"] != "frozen") & (rows["metric"] == "accuracy")
     converged = rows["passes"] == "converged" if "passes" in rows else False
     learned = _beside(results, stage, dataset, rows, "train_accuracy") >= SATURATED
-    return (tuned & ~converged & ~learned).map({True: UNTRAINED, False: ""})
+    found = (tuned & ~converged & ~learned).map({True: UNTRAINED, False: ""})
+    found[_below(rows, _beside(results, stage, dataset, rows, "chance"))] = GUESSING
+    return found
+
+
+def _below(rows: pd.DataFrame, guess: pd.Series) -> pd.Series:
+    """(n,) whether the mean accuracy of a row's kind of trial is below guessing; False where guessing is unknown."""
+    kinds = [column for column in TRIAL if column in rows]
+    lead = (rows["value"] - guess).where(rows["metric"] == "accuracy")
+    return lead.groupby([rows[kind].astype(str) for kind in kinds]).transform("mean").lt(0) if kinds else lead.lt(0)
 
 
 def _beside(results: Results, stage: str, dataset: str, rows: pd.DataFrame, metric: str) -> pd.Series:
@@ -68,7 +82,7 @@ def _beside(results: Results, stage: str, dataset: str, rows: pd.DataFrame, metr
         other = results.measured(stage, dataset, metric=metric)
     except NotRun:
         return pd.Series(float("nan"), index=rows.index)
-    apart = {"metric", "value", "seconds", "note", "imprints"}
+    apart = {"metric", "value", "seconds", "note", "imprints", "clock"}
     keys = [column for column in rows if column in other and column not in apart]
     known = other.drop_duplicates(keys)[[*keys, "value"]].rename(columns={"value": "_beside"})
     return pd.Series(rows[keys].merge(known, on=keys, how="left")["_beside"].to_numpy(), index=rows.index)

@@ -8,7 +8,7 @@ import pytest
 
 from stages.report.claims import Claim
 from stages.report.differences import differences, invalid
-from stages.report.validity import NO_POINT, NO_RING, ONE_CLASS, UNTRAINED, causes
+from stages.report.validity import GUESSING, NO_POINT, NO_RING, ONE_CLASS, SAME, UNTRAINED, causes
 from stages.report.verdict import judge
 
 OVER = Claim(
@@ -64,6 +64,19 @@ def test_a_mean_over_methods_needs_each_of_them(root, small):
     assert len(found) == COUNT - 1 and found.max() < 2
 
 
+def test_two_sides_with_the_same_mesh_are_no_evidence(root, small):
+    results = simplified(root, small)
+    rows = results.rows("lod")
+    same = (rows["item"] == "o00") & (rows["method"] == "plain")
+    rows.loc[same, "value"] = rows.loc[(rows["item"] == "o00") & (rows["method"] == "x"), "value"].to_numpy()
+    zero = rows["item"] == "o01"  # two errors of zero say that both meshes are exact
+    rows.loc[zero, "value"] = 0.0
+    small.write(root, "lod", rows)
+    row = judge([OVER], small.results(root)).iloc[0]
+    assert row["validity"] == f"test: 2 of 24 pairs invalid: {SAME} (2)" and row["units"] == COUNT - 1
+    assert differences(small.results(root), OVER)["o01"] == 0
+
+
 def test_a_statistic_of_its_own_leaves_the_same_pairs_out(root, small):
     results = simplified(root, small, without_points=2)
     falls = replace(OVER, statistic="falls_with_faces", second=None)
@@ -80,6 +93,21 @@ def test_a_classifier_with_one_answer_for_nearly_all_is_invalid(root, small):
     results = small.results(root)
     accuracy = results.rows("classification", metric="accuracy")
     assert causes(results, "classification", "test", accuracy).tolist() == [ONE_CLASS, ""]
+
+
+def test_a_kind_of_trial_that_is_less_accurate_than_guessing_is_invalid(root, small):
+    rows = pd.DataFrame({"dataset": "test", "group": "six", "metric": "accuracy", "repetition": [0, 1] * 2})
+    rows = rows.assign(classifier=["svm", "svm", "knn", "knn"], value=[0.18, 0.12, 0.1, 0.9])
+    small.write(root, "classification", rows)
+    results = small.results(root)
+    assert (
+        causes(results, "classification", "test", results.rows("classification")).tolist() == [GUESSING] * 2 + [""] * 2
+    )
+    network = rows.assign(mode="frozen", method="net", value=[0.3, 0.3, 0.6, 0.6]).drop(columns="group")
+    small.write(root, "transfer", pd.concat([network, network.assign(metric="chance", value=0.5)]))
+    results = small.results(root)
+    accuracy = results.rows("transfer", metric="accuracy")
+    assert causes(results, "transfer", "test", accuracy).tolist() == [GUESSING] * 2 + [""] * 2
 
 
 @pytest.mark.parametrize("stage", ["transfer", "recorded_networks"])
