@@ -349,6 +349,7 @@ def test_the_printed_set_judges_the_thesis_and_the_others_show_whether_it_carrie
     assert both["verdict"] == "mixed" and both["units"] == 24
     assert pooled(results, "absent", "one", section="T9")["verdict"] == "supported"  # as printed it was not run
     assert pooled(results, "absent", "one", section="T9")["tested_on"] == "one; not measured on absent"
+    assert pooled(results, "absent", "one", "two", section="T9")["units"] == 12  # of the first that was measured
 
 
 def test_a_later_claim_in_the_same_words_tests_the_sentence_elsewhere(root, small):

@@ -259,7 +259,8 @@ def test_one_place_from_all_sides_is_judged_on_both_kinds_of_objects(gaze, small
                   "value": 0.05 + 0.01 * (k % 3)} for k, name in enumerate(names)]  # fmt: skip
         small.write(gaze.data.parent, "fixation", pd.DataFrame(frame), dataset)
     found = one(small.results(gaze.data.parent), "same_place_over_chance")
-    assert found["verdict"] == "supported" and found["units"] == 14 and 5 < found["effect"] < 7
+    assert found["verdict"] == "supported" and found["units"] == 6 and 5 < found["effect"] < 7  # the first set judges
+    assert found["carries"].startswith("supported") and found["by_set"].endswith("(8)")
     assert one(gaze, "same_place_over_middle")["verdict"] == "open"  # without such rows
 
 

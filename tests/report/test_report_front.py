@@ -18,8 +18,9 @@ def of_claim(one, effect=10.0, low=5.0, high=15.0):
     """(claims, differences) of a single finding with its verdict."""
     verdict = "supported" if low > 0 else "contradicted" if high < 0 else "open"
     row = {"key": one.key, "claim": "The sentence.", "verdict": verdict, "effect": effect, "low": low, "high": high}
-    pairs = pd.DataFrame({"key": one.key, "pair": ["a<b", "c"], "difference": [low, high]})
-    return pd.DataFrame([row | {"pairs": 2, "over": "objects"}]), pairs
+    pairs = pd.DataFrame({"key": one.key, "pair": ["a<b", "c", "other set"], "difference": [low, high, 1.0]})
+    row |= {"pairs": 2, "over": "objects", "section": "ours", "of": ""}
+    return pd.DataFrame([row]), pairs.assign(judged=[True, True, False])
 
 
 def test_findings_are_claims_of_their_topics_and_two_of_them_fail():

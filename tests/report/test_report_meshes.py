@@ -44,7 +44,7 @@ def measured(dataset="test", seed=0, objects=OBJECTS):
                 error = level * (3 / faces) * (1 + points / 100 * 3000 / faces) * (0.95 if way else 1)
                 error *= 1 + 0.001 * random.normal()
                 cell = {"dataset": dataset, "item": name, "method": method, "target": target, "asked": faces}
-                cell |= {"faces": faces, "points": points, "kept": points, "rings": 3.0}
+                cell |= {"faces": faces, "points": points, "kept": points, "rings": 3.0 if points else np.nan}
                 cell |= {"shrunk": points == 60 and target == "1500", "infeasible": False}
                 values = {"faces": faces, "metro_mean": error, "metro_rms": 2 * error, "metro_max": 9 * error}
                 values |= {"ssim_error": 10 * error, "dlap": 100 * error, "dnor": 30 * error, "salient_error": error}

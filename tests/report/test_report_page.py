@@ -180,10 +180,11 @@ def test_the_front_page_carries_the_meshes(front):
 
 
 def test_verdicts_are_counted_beside_the_claims(run):
-    said = re.search(r"\d+ verdicts: .*rate of 5 %\.", (run / "reports/claims.md").read_text())[0]
+    said = re.search(r"Sentences of the thesis .*rate of 5 %\.", (run / "reports/claims.md").read_text())[0]
     claims = pd.read_csv(run / "reports/claims.csv")
-    assert said.startswith(f"{len(claims)} verdicts: {(claims['verdict'] == 'supported').sum()} supported")
-    assert f"<p>{said} They judge" in (run / "reports/site/claims.html").read_text()
+    supported = (claims["verdict"] == "supported").sum()
+    assert f"that test a sentence elsewhere ({len(claims)}): {supported} supported" in said
+    assert f"<p>{said}</p>" in (run / "reports/site/claims.html").read_text()
 
 
 def test_equal_runs_give_equal_bytes_with_any_number_of_workers(run, small):

@@ -40,6 +40,7 @@ def sensed(root, results, small):
         "value": 0.46,
     }
     small.write(root, "sensor_size", pd.concat([pressed(), pd.DataFrame([again])]))
+    small.write(root, "sensor_size", pressed().assign(dataset="princeton_eight"), "princeton_eight")
     return results
 
 
@@ -66,6 +67,7 @@ def test_claims_know_the_truth_of_the_rows(sensed):
     words = judged["verdict"]
     better = [
         "more_cells_help_all",
+        "more_cells_help_more",
         "larger_pitch_helps_16",
         "larger_pitch_helps_32",
         "more_cells_help",
