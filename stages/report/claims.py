@@ -80,6 +80,7 @@ class Claim:
     shared: float | Callable[[str], float] | None = None
     phrases: Phrases = field(default_factory=dict)
     note: str = ""
+    of: str = ""  # key of the primary claim; this one asks whether its sentence carries over
 
     @property
     def other(self) -> Side:
