@@ -50,6 +50,13 @@ def test_boxes_are_those_of_the_text(ring, seconds):
     assert np.array_equal(found, by_boxes(saliency, picture, mesh, viewpoint) * seen) and np.ptp(found[seen]) > 0.5
 
 
+def test_hidden_vertices_belong_to_the_box(ring, seconds):
+    (mesh, viewpoint, _), (picture, saliency) = ring, seconds
+    low = mesh.vertices[:, 2] < 0
+    part, whole = (project_by_boxes(saliency[None], mesh, viewpoint, seen, picture)[0] for seen in (low, low | ~low))
+    assert np.array_equal(part[low], whole[low]) and not part[~low].any()
+
+
 def test_boxes_and_the_camera_agree_to_a_pixel(ring, seconds):
     (mesh, viewpoint, seen), (picture, _) = ring, seconds
     places = np.mgrid[:SIZE, :SIZE].astype(float)

@@ -371,6 +371,13 @@ def test_no_interval_of_a_correlation_leaves_its_range(gaze, small):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("name", ["figure_3_32", "figure_3_35"])
+def test_correlation_as_printed_is_drawn_and_what_noise_has_by_it_is_told(gaze, name):
+    made = figure(gaze, name)
+    assert "noise has 0.200 on human gaze, 6 meshes" in made.caption.replace("\n", " ")
+
+
+@pytest.mark.slow
 def test_number_of_classes_is_told(gaze):
     assert "convexity 4, curvature 4, eccentricity 4" in figure(gaze, "figure_3_28").caption
 
