@@ -59,6 +59,7 @@ PHRASES = {
     **{("task", one.task): one.text for one in (LEE, PRIOR, NOISE)},
     **{("task", task): task_text(task) for task in RIVALS.values()},
     **{("method", each): network_text(each) for one in (*PRINTED, *FROZEN) for each in (one, with_random_weights(one))},
+    ("method", VGG): f"{network_text(VGG)} from random fully connected layers",
 }  # fmt: skip
 claim = partial(Claim, stage="fixation", dataset=GAZED, over=("item",), scale=1, unit="PCC", phrases=PHRASES)
 
