@@ -8,7 +8,7 @@ import numpy as np
 from stages.kit import Mesh
 from stages.weights.agreement import GroundTruth, auc, cc, nss
 
-from .centres import centre_distance, centres
+from .centres import centre_distance
 from .concentration import half_share
 
 ALL_VIEWS = "all"  # all views together
@@ -30,7 +30,7 @@ def agreement_rows(
     the hidden vertices set to zero, so that visibility alone gives some correlation. distances: adds the distance
     between fixation centres in each view (T figure 3.36): the least in units, the same as a share of the diagonal
     (distance_share), the mean over the pairs (distance_mean), and that of the maxima to the letter (distance_maximum);
-    and how concentrated the saliency is: its number of centres (regions) and half_share of what the view sees.
+    and how concentrated the saliency is: half_share of what the view sees.
     """
     rows = []
     for view, (mask, values) in enumerate(zip(visible, by_view, strict=True)):
@@ -45,7 +45,6 @@ def agreement_rows(
             least, mean = centre_distance(mesh.vertices, fixations["density"], values, mask)
             found |= {"distance": least, "distance_mean": mean, "distance_share": least / mesh.diagonal}
             found["distance_maximum"] = centre_distance(mesh.vertices, fixations["density"], values, mask, top=1)[0]
-            found["regions"] = len(centres(mesh.vertices, values, mask)) or np.nan
             found["half_share"] = half_share(values[mask], fixations["areas"][mask])
         rows += [{"view": view, "metric": metric, "value": none_if_nan(value)} for metric, value in found.items()]
     truth = GroundTruth(fixations["amounts"], fixations["density"], fixations["areas"])

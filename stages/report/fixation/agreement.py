@@ -20,8 +20,7 @@ from .rows import detectors, networks, no_people, scores, sources
 
 METRICS = {"pcc": "PCC", "pcc_masked": "PCC, the thesis's way", "nss": "NSS", "auc": "AUC",
            "distance": "distance, %", "distance_maximum": "distance of the maxima, %",
-           "distance_mean": "distance, mean of pairs, %", "half_share": "half of it on, %",
-           "regions": "regions"}  # fmt: skip
+           "distance_mean": "distance, mean of pairs, %", "half_share": "half of it on, %"}  # fmt: skip
 RANGES = {"half_share": (0, 100), "pcc": (-1, 1), "pcc_masked": (-1, 1), "nss": (-np.inf, np.inf), "auc": (0, 1)}
 OPPONENTS = {"weights": "random weights", "prior": "centre prior", "lee": "mesh saliency"}
 SPLITS = {"views": "known objects", "objects": "objects never seen"}

@@ -50,7 +50,6 @@ PHRASES = {
     "centres)", ("metric", "distance_mean"): "distance (mean of all pairs)",
     ("metric", "distance_maximum"): "distance (of the maxima to the letter)",
     ("metric", "half_share"): "share of the surface that holds half of the saliency",
-    ("metric", "regions"): "regions of maximal saliency a view",
     ("task", FUSED_TASKS): "mean of the four tasks that are fused,", ("task", tuple(NAMED)): "mean of the other two,",
     ("task", AVERAGE): "equal weights,",
     ("task", OURS.task): "ours, learned on the other meshes,", ("task", CLASSICAL): task_text(CLASSICAL),
@@ -124,14 +123,14 @@ def same_place(other: str, words: str, note: str, of: str = "") -> Claim:
                  note=note, of=of)  # fmt: skip
 
 
-def spreads(key: str, sentence: str, metric: str, unit: str, scale: float, method: str, **more: Any) -> Claim:
-    """The claim that a measure of how far a saliency spreads is higher of the classical model than of a network."""
-    return claim(key=key, section="T3.4", sentence=sentence, where={"metric": metric, "view": VIEWS}, scale=scale,
-                 first={"task": CLASSICAL, "method": "rival"}, second={"task": FUSED, "method": method}, unit=unit,
-                 **more)  # fmt: skip
+def spreads(key: str, task: str, method: str, of: str) -> Claim:
+    """The claim that half of the classical model's saliency lies on more of the surface than that of a network."""
+    return claim(key=key, section="T3.4", sentence="Fused Grad-CAM has its saliency in small regions, classical "
+                 "attention has it all over the surface.", where={"metric": "half_share", "view": VIEWS}, scale=100,
+                 first={"task": CLASSICAL, "method": "rival"}, second={"task": task, "method": method},
+                 unit="% of the surface", of=of)  # fmt: skip
 
 
-CONCENTRATES = "Fused Grad-CAM has its saliency in small regions, classical attention has it all over the surface."
 CLAIMS = [
     claim(key="test_accuracy", section="T3.3.2", sentence="Networks that learned the tasks name 96 to 100 % of the "
           "test pictures right.", where={"metric": "accuracy", "split": "views"}, first={"method": lowest_of(*PRINTED)},
@@ -183,12 +182,9 @@ CLAIMS = [
             "the middle of the picture does.", NEAREST, PRIOR),
     *nearer("ewigc_nearer_than_noise", "Fused Grad-CAM finds centres nearer to fixations than noise does.",
             NEAREST, NOISE, "ewigc_nearer_than_middle_least"),
-    spreads("deep_concentrates", CONCENTRATES, "half_share", "% of the surface", 100, TUNED),
-    spreads("deep_concentrates_frozen", CONCENTRATES, "half_share", "% of the surface", 100, "*-frozen",
-            of="deep_concentrates"),
-    spreads("deep_few_regions", CONCENTRATES, "regions", "regions", 1, TUNED, of="deep_concentrates"),
-    spreads("deep_few_regions_frozen", CONCENTRATES, "regions", "regions", 1, "*-frozen",
-            of="deep_concentrates"),
+    *[spreads(f"deep_concentrates{key}{suffix}", task, method, "deep_concentrates" if key or suffix else "")
+      for key, task in {"": FUSED, "_narrowed": NARROWED}.items()
+      for suffix, method in {"": TUNED, "_frozen": "*-frozen"}.items()],
     *each_network("ewigc_over_random_weights", "What a network learned from photographs makes its attention like "
                   "people's.", lambda method: (with_random_weights(method), FUSED), metrics=OUR_METRICS),
     *each_network("ewigc_over_centre", "Fused Grad-CAM predicts gaze better than the middle of the picture.",
