@@ -12,8 +12,10 @@ _MODULES = {  # public name -> its module
     "fuse": "fusion",
     "highest_level": "fusion",
     "project_to_vertices": "vertices",
+    "project_by_boxes": "vertices",
     "mean_over_views": "vertices",
     "centre_distance": "centres",
+    "half_share": "concentration",
     "subtractive_clusters": "subtractive",
     "read_attention": "files",
 }

@@ -9,6 +9,7 @@ from stages.kit import Mesh
 from stages.weights.agreement import GroundTruth, auc, cc, nss
 
 from .centres import centre_distance
+from .concentration import half_share
 
 ALL_VIEWS = "all"  # all views together
 
@@ -28,7 +29,8 @@ def agreement_rows(
     visible vertex by its area. pcc_masked is the thesis's number: over all vertices, with both maps scaled to 0..1 and
     the hidden vertices set to zero, so that visibility alone gives some correlation. distances: adds the distance
     between fixation centres in each view (T figure 3.36): the least in units, the same as a share of the diagonal
-    (distance_share), and the mean over the pairs (distance_mean).
+    (distance_share), the mean over the pairs (distance_mean), and that of the maxima to the letter (distance_maximum);
+    and how concentrated the saliency is: half_share of what the view sees.
     """
     rows = []
     for view, (mask, values) in enumerate(zip(visible, by_view, strict=True)):
@@ -42,6 +44,8 @@ def agreement_rows(
         if distances:
             least, mean = centre_distance(mesh.vertices, fixations["density"], values, mask)
             found |= {"distance": least, "distance_mean": mean, "distance_share": least / mesh.diagonal}
+            found["distance_maximum"] = centre_distance(mesh.vertices, fixations["density"], values, mask, top=1)[0]
+            found["half_share"] = half_share(values[mask], fixations["areas"][mask])
         rows += [{"view": view, "metric": metric, "value": none_if_nan(value)} for metric, value in found.items()]
     truth = GroundTruth(fixations["amounts"], fixations["density"], fixations["areas"])
     return rows + [

@@ -1,6 +1,6 @@
 """The attention of the networks on one object, compared with human fixations, rivals and controls."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
@@ -26,7 +26,7 @@ from .pictures import read_pictures
 from .places import ITSELF, nearer
 from .schema import Params
 from .tasks import FUSED_TASKS, TASKS
-from .vertices import mean_over_views, project_to_vertices
+from .vertices import mean_over_views, project_by_boxes, project_to_vertices
 from .viewpoints import evaluated_views, viewpoint_sphere
 
 MODELS = {
@@ -57,11 +57,13 @@ def measure_attention(
     seen, evaluated = facing(mesh, viewpoints) > 0, evaluated_views(settings.parallels, settings.azimuths)
     ground_truth = GroundTruth(data, name, mesh, seen, evaluated)
     stored, rows = {"seen": seen.any(axis=0), "visible": seen[evaluated]}, []
-    rendering_seconds = read_pictures(made, name)[1]
+    pictures, rendering_seconds = read_pictures(made, name)
+    renders = pictures if settings.projection == "boxes" else None
+    place = partial(to_surface, mesh=mesh, viewpoints=viewpoints, seen=seen, renders=renders)
     for method in methods:
         with Stopwatch() as watch:
             cams, network_seconds = object_cams(made, method, name, list(tasks))
-            values, bits = project_maps(cams, mesh, viewpoints, seen, settings.size, method.network)
+            values, bits = project_maps(cams, place, settings.size, method.network)
             whole = mean_over_views(values, seen)
         names = [*cams, *(MODELS if set(FUSED_TASKS) & set(cams) else ())]
         seconds = rendering_seconds + network_seconds + watch.seconds
@@ -71,17 +73,22 @@ def measure_attention(
             rows += ground_truth.rows(method.name, task, values[evaluated, k], whole[k], seconds)
         stored[f"{method.name}.maps"] = np.stack([cam[evaluated] for cam in cams.values()], axis=1).astype(np.float16)
         row = {"item": name, "method": method.name}
-        if method.mode == "frozen" and ITSELF in cams:
+        if method.mode != "random" and ITSELF in cams:
             looks = values[evaluated, names.index(ITSELF)].astype(np.float16)
             apart = nearer(mesh, [viewpoints[view] for view in evaluated], seen[evaluated], looks)
             rows += [row | {"task": ITSELF, "metric": metric, "value": value} for metric, value in apart.items()]
         rows.append(row | {"metric": "views", "value": len(viewpoints), "seconds": network_seconds})
         rows += [row | one for one in task_correlations(values[:, : len(cams)], seen, list(cams))]
-        rows += [
-            row | {"task": task, "view": ALL_VIEWS, "metric": "entropy", "value": bit} for task, bit in bits.items()
-        ]
+        row["view"] = ALL_VIEWS
+        rows += [row | {"task": task, "metric": "entropy", "value": bit} for task, bit in bits.items()]
+        rows += [row | {"task": task, "metric": "alive", "value": alive(cam)} for task, cam in cams.items()]
     write_arrays(folder / f"{name}.npz", **stored)
-    return rows + baseline_rows(ground_truth, data, viewpoints, settings.size, seed)
+    return rows + baseline_rows(ground_truth, data, place, settings.size, seed)
+
+
+def alive(cams: np.ndarray) -> float:
+    """The share of Grad-CAM maps (v, i, j) that are not constant: a constant one looks nowhere."""
+    return float((np.ptp(cams, axis=(1, 2)) > 0).mean())
 
 
 def object_cams(folder: Path, method: Method, name: str, tasks: Sequence[str]) -> tuple[dict[str, np.ndarray], float]:
@@ -101,34 +108,38 @@ def linear_scores(maps: torch.Tensor, weights: torch.Tensor, bias: torch.Tensor)
 
 
 def project_maps(
-    cams: Mapping[str, np.ndarray],
-    mesh: Mesh,
-    viewpoints: Sequence[Viewpoint],
-    seen: np.ndarray,
-    size: int,
-    network: str,
+    cams: Mapping[str, np.ndarray], place: Callable[[int, np.ndarray], np.ndarray], size: int, network: str
 ) -> tuple[np.ndarray, dict[str, float]]:
-    """((v, tasks and models, n) f4 at the vertices in each view, dict task -> mean entropy of its maps in bits)."""
+    """((v, tasks and models, n) f4 at the vertices in each view, dict task -> mean entropy of its maps in bits).
+
+    place: to_surface of the number of a view and its pictures.
+    """
     fused = [k for k, task in enumerate(cams) if task in FUSED_TASKS]
     values, bits = [], []
-    for view, viewpoint in enumerate(viewpoints):
+    for view in range(len(next(iter(cams.values())))):
         pictures = resize_cams(np.stack([cam[view] for cam in cams.values()]), size, network)
         models = [model(pictures[fused]) for model in MODELS.values()] if fused else []
-        values.append(
-            project_to_vertices(np.stack([*pictures, *models]), mesh, viewpoint, seen[view]).astype(np.float32)
-        )
+        values.append(place(view, np.stack([*pictures, *models])).astype(np.float32))
         bits.append([entropy(picture) for picture in pictures])
     return np.stack(values), dict(zip(cams, np.mean(bits, axis=0).tolist(), strict=True))
 
 
+def to_surface(
+    view: int, pictures: np.ndarray, mesh: Mesh, viewpoints: Sequence[Viewpoint], seen: np.ndarray,
+    renders: np.ndarray | None,
+) -> np.ndarray:  # fmt: skip
+    """(t, n): pictures (t, h, w) of a view at the vertices; by bounding boxes where there are renders (v, h, w)."""
+    if renders is None:
+        return project_to_vertices(pictures, mesh, viewpoints[view], seen[view])
+    return project_by_boxes(pictures, mesh, viewpoints[view], seen[view], renders[view])
+
+
 def baseline_rows(
-    ground_truth: "GroundTruth", data: Path, viewpoints: Sequence[Viewpoint], size: int, seed: int
+    ground_truth: "GroundTruth", data: Path, place: Callable[[int, np.ndarray], np.ndarray], size: int, seed: int
 ) -> list[dict]:
-    """Rows of the rivals and controls, compared with the ground truth in the same way."""
+    """Rows of the rivals and controls, compared with the ground truth in the same way; place: as in project_maps."""
     mesh = ground_truth.mesh
-    prior = [project_to_vertices(centre_prior(size)[None], mesh, viewpoint, seen)
-             for viewpoint, seen in zip(viewpoints, ground_truth.seen, strict=True)]  # fmt: skip
-    prior = np.stack(prior)
+    prior = np.stack([place(view, centre_prior(size)[None]) for view in range(len(ground_truth.seen))])
     rows = ground_truth.rows(
         "control", "centre_prior", prior[ground_truth.evaluated, 0], mean_over_views(prior, ground_truth.seen)[0], None
     )

@@ -9,6 +9,7 @@ from stages.networks.device import choose_device
 from stages.networks.network import published_layers
 
 from .schema import Params
+from .vertices import PROJECTIONS
 
 MODES = {  # mode -> the network's initial weights
     "frozen": "imagenet",  # the network keeps ImageNet's weights, a new head per task is trained
@@ -47,6 +48,8 @@ def method_named(name: str) -> Method:
 def check(settings: Params) -> None:
     """Raises ValueError for settings that cannot be run."""
     choose_device(settings.device)
+    if settings.projection not in PROJECTIONS:
+        raise ValueError(f"fixation.projection must be {' or '.join(PROJECTIONS)}, got {settings.projection!r}")
     if settings.size < 32 or settings.folds < 2 or not (settings.penalties and settings.rates and settings.methods):
         raise ValueError(
             "fixation: size must be 32 or more, folds 2 or more, and penalties, rates and methods must not be empty"

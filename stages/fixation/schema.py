@@ -18,6 +18,7 @@ class Params:
     parallels: int  # circles of viewpoints between the poles, an odd number (T3.3.2: 9)
     azimuths: int  # viewpoints on each circle, a multiple of three (T3.3.2: 24)
     size: int  # pixels a side of the pictures
+    projection: str  # of maps to vertices: camera (to a fraction of a pixel) or boxes (as T3.3.5 prints)
     methods: list[str]  # NETWORK-MODE; modes: frozen (a new head alone learns), last_block, finetuned (all), random
     source: str  # where ImageNet's weights come from: package (by hash), download (torchvision's) or auto
     device: str  # what the networks run on: cpu, cuda, or auto (a CUDA card where there is one)

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.fixation import centre_distance, subtractive_clusters
+from stages.fixation import centre_distance, half_share, subtractive_clusters
 from stages.fixation.agreement import agreement_rows, task_correlations
 from stages.fixation.centres import centres
 from stages.fixation.controls import centre_prior
@@ -27,6 +27,12 @@ def test_clusters_ignore_scale_and_order(blobs):
     order = np.random.default_rng(1).permutation(len(blobs))
     stretched = (blobs * [3, 50] - 7)[order]
     assert np.allclose(stretched[subtractive_clusters(stretched)], (blobs * [3, 50] - 7)[subtractive_clusters(blobs)])
+
+
+def test_one_round_place_has_many_centres_whatever_its_size():
+    points = np.random.default_rng(0).uniform(-1, 1, (1000, 2))
+    inside = points[(points**2).sum(axis=1) < 1]
+    assert len(subtractive_clusters(inside)) == len(subtractive_clusters(inside / 1000)) > 5  # so they count no regions
 
 
 def test_one_place_is_one_cluster():
@@ -79,6 +85,29 @@ def test_a_constant_map_has_no_centre(shapes):
         assert np.isnan(centre_distance(ball.vertices, bump(ball, [0.5, 0, 0]), even, seen)).all()
 
 
+def test_maximum_to_the_letter_is_one_place_where_the_regions_are_two(shapes):
+    ball, seen = shapes["ball"], np.ones(len(shapes["ball"].vertices), dtype=bool)
+    one, two = bump(ball, [0.5, 0, 0]), bump(ball, [0, 0.5, 0])
+    both = one + 1.01 * two
+    assert len(centres(ball.vertices, both, seen)) == 2 and len(centres(ball.vertices, both, seen, top=1)) == 1
+    assert centre_distance(ball.vertices, one, both, seen)[0] < 0.05
+    assert centre_distance(ball.vertices, one, both, seen, top=1)[0] == pytest.approx(np.sqrt(0.5), abs=0.06)
+
+
+def test_an_even_saliency_has_half_on_half_of_the_surface_and_a_small_one_on_less():
+    areas = np.random.default_rng(0).random(4000)
+    even = np.where(np.arange(4000) < 3999, 1.0, 0.0)
+    assert half_share(even, areas) == pytest.approx(0.5, abs=0.01)
+    tenth = (np.cumsum(areas) < areas.sum() / 10).astype(float)
+    assert half_share(tenth, areas) == pytest.approx(0.05, abs=0.002)
+    assert half_share(tenth, areas) == pytest.approx(half_share(3 * tenth + 7, areas))  # of no zero and no unit
+    assert np.isnan(half_share(np.ones(4000), areas)) and np.isnan(half_share(even, np.zeros(4000)))
+
+
+def test_half_is_of_the_area_and_not_of_the_vertices():
+    assert half_share(np.array([1.0, 1.0, 0.0]), np.array([3.0, 3.0, 6.0])) == pytest.approx(0.25)
+
+
 @pytest.fixture
 def lesson(shapes):
     ball = shapes["ball"]
@@ -98,6 +127,8 @@ def test_the_truth_agrees_with_itself_and_noise_does_not(shapes, lesson):
     for view in range(3):
         assert found(same, "pcc", view) == pytest.approx(1) and found(same, "distance", view) == 0
         assert abs(found(noise, "pcc", view)) < 0.1
+        assert found(same, "half_share", view) < 0.1 < 0.25 < found(noise, "half_share", view) < 0.35
+        assert found(same, "distance_maximum", view) == 0
     assert found(same, "auc", "all") > 0.95 > 0.6 > found(noise, "auc", "all")
     assert found(same, "nss", "all") > 3 > abs(found(noise, "nss", "all"))
 

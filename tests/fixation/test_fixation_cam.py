@@ -8,7 +8,7 @@ import torch
 
 from stages.conspicuity import facing
 from stages.fixation import entropy, fuse, grad_cam, highest_level, mean_over_views, project_to_vertices
-from stages.fixation.attention import MODELS, linear_scores, project_maps
+from stages.fixation.attention import MODELS, alive, linear_scores, project_maps, to_surface
 from stages.fixation.backbone import folded_network, last_maps, state_path, write_state
 from stages.fixation.heads import fit_head, scores
 from stages.fixation.options import method_named
@@ -181,7 +181,8 @@ def test_what_every_task_sees_at_one_place_lies_there_on_the_surface(shapes):
         r, c = np.mgrid[:14, :14]
         cams.append(np.exp(-((r - row) ** 2 + (c - column) ** 2) / 4))
     seen = facing(ball, views) > 0
-    values, bits = project_maps(dict.fromkeys(tasks, np.stack(cams)), ball, views, seen, 224, "vgg16")
+    place_on = partial(to_surface, mesh=ball, viewpoints=views, seen=seen, renders=None)
+    values, bits = project_maps(dict.fromkeys(tasks, np.stack(cams)), place_on, 224, "vgg16")
     whole = mean_over_views(values, seen)
     assert (
         values.shape == (8, len(tasks) + len(MODELS), len(ball.vertices))
@@ -191,3 +192,9 @@ def test_what_every_task_sees_at_one_place_lies_there_on_the_surface(shapes):
     for one in whole:
         assert np.linalg.norm(ball.vertices[one.argmax()] - place) < 0.1
     assert (whole[6] > 0).mean() < (whole[5] > 0).mean()  # four levels leave less
+
+
+def test_constant_maps_are_not_alive():
+    cams = np.zeros((4, 7, 7))
+    cams[0, 3, 3], cams[1] = 1, 0.5
+    assert alive(cams) == 0.25

@@ -14,7 +14,8 @@ from stages.networks import build, recalibrate
 from stages.networks.architectures.vgg16 import fully_connected
 
 SETTINGS = Params(
-    parallels=1, azimuths=3, size=64, methods=[], source="package", device="cpu", penalties=[], folds=2,
+    parallels=1, azimuths=3, size=64, projection="camera", methods=[], source="package", device="cpu",
+    penalties=[], folds=2,
     rate=0.01, rates=[0.01], epochs=1, batch=4, momentum=0.9,
 )  # fmt: skip
 

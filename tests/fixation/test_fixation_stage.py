@@ -18,7 +18,8 @@ from stages.kit.rows import read_rows
 
 METHOD = "mobilenet_v2-random"
 SETTINGS = {
-    "parallels": 1, "azimuths": 3, "size": 64, "methods": [METHOD], "source": "package", "device": "cpu",
+    "parallels": 1, "azimuths": 3, "size": 64, "projection": "camera",
+    "methods": [METHOD], "source": "package", "device": "cpu",
     "penalties": [0.01], "folds": 2, "rate": 0.01, "rates": [0.01, 0.03], "epochs": 1, "batch": 4, "momentum": 0.9,
 }  # fmt: skip
 
@@ -129,7 +130,9 @@ def test_an_unknown_method_is_named(name):
         method_named(name)
 
 
-@pytest.mark.parametrize("changed", [{"size": 8}, {"folds": 1}, {"methods": []}, {"device": "abacus"}])
+@pytest.mark.parametrize(
+    "changed", [{"size": 8}, {"folds": 1}, {"methods": []}, {"device": "abacus"}, {"projection": "map"}]
+)
 def test_settings_that_no_run_can_have_are_refused(changed):
     with pytest.raises(ValueError):
         options.check(Params(**SETTINGS | changed))

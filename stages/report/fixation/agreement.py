@@ -19,8 +19,9 @@ from .detectors import FUSED, LEE, PRIOR, Detector, network_text, untrained, wit
 from .rows import detectors, networks, no_people, scores, sources
 
 METRICS = {"pcc": "PCC", "pcc_masked": "PCC, the thesis's way", "nss": "NSS", "auc": "AUC",
-           "distance": "distance, %", "distance_mean": "distance, mean of pairs, %"}  # fmt: skip
-RANGES = {"pcc": (-1, 1), "pcc_masked": (-1, 1), "nss": (-np.inf, np.inf), "auc": (0, 1)}
+           "distance": "distance, %", "distance_maximum": "distance of the maxima, %",
+           "distance_mean": "distance, mean of pairs, %", "half_share": "half of it on, %"}  # fmt: skip
+RANGES = {"half_share": (0, 100), "pcc": (-1, 1), "pcc_masked": (-1, 1), "nss": (-np.inf, np.inf), "auc": (0, 1)}
 OPPONENTS = {"weights": "random weights", "prior": "centre prior", "lee": "mesh saliency"}
 SPLITS = {"views": "known objects", "objects": "objects never seen"}
 REFERENCE = "mobilenet_v2-frozen"
@@ -39,7 +40,7 @@ def build(results: Results) -> Table:
         "not_run": "\n".join(f"Not run here: {network_text(row.method)}: {row.note}." for row in records(absent)),
     }
     shown = _wide(frame)
-    hidden = [METRICS[name] for name in ("pcc_masked", "distance", "distance_mean")] + ["it − mesh saliency, PCC"]
+    hidden = [METRICS[name] for name in ("pcc_masked", *list(METRICS)[4:])] + ["it − mesh saliency, PCC"]
     answer = [name for name in map(str, shown) if name not in hidden]
     return Table(frame, shown, words, Ranking("PCC", among=["truth"]), answer)
 
@@ -85,7 +86,7 @@ def _accuracy(source: str, rows: pd.DataFrame) -> str:
 
 
 def _wide(frame: pd.DataFrame) -> pd.DataFrame:
-    text = [with_interval(row.mean, row.low, row.high, places=1 if row.metric.startswith("distance") else 2)
+    text = [with_interval(row.mean, row.low, row.high, places=1 if row.metric in list(METRICS)[4:] else 2)
             for row in records(frame[["metric", "mean", "low", "high"]])]  # fmt: skip
     wide = frame.assign(text=text).pivot(index=["truth", "detector"], columns="metric", values="text")
     wide = wide.reindex(columns=list(METRICS)).fillna("–").rename(columns=METRICS).rename_axis(columns=None)

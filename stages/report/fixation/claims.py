@@ -1,4 +1,9 @@
-"""Claims of T3.3: where networks look, against where people look."""
+"""Claims of T3.3: where networks look, against where people look.
+
+Each sentence of the thesis has one primary claim, as printed: meshes with human gaze, networks with their last block
+trained, the four tasks that are fused, and Pearson's correlation over all vertices with the hidden ones as zeros, or
+the least distance of a view. Its other claims name it in `of`.
+"""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -8,37 +13,52 @@ from typing import Any
 from stages.fixation.agreement import ALL_VIEWS
 from stages.fixation.places import ITSELF
 from stages.fixation.tasks import FUSED_TASKS
-from stages.report.claims import Claim
+from stages.report.claims import POINTS, Claim, highest_of, lowest_of
 from stages.report.results import GAZED
 
 from .detectors import FUSED, LEE, NARROWED, NOISE, OURS, PRIOR, RIVALS, network_text, task_text, with_random_weights
+from .quantiles import MEDIAN, UPPER_QUARTILE
 from .rows import WHOLE
 
 # The thesis's (T3.3.2), but that ResNet101's weights come with no package; then ours, with new heads alone.
-PRINTED = VGG, RESNET = ("vgg16-last_block", "resnet50-last_block")
+PRINTED = RESNET, VGG = ("resnet50-last_block", "vgg16-last_block")
 FROZEN = ("vgg16-frozen", "resnet50-frozen", "mobilenet_v2-frozen")
 TUNED = "*-last_block"
-EWIGC, EWIGC_L4 = (TUNED, FUSED), (TUNED, NARROWED)
+EWIGC, EWIGC_L4 = (TUNED, FUSED), (TUNED, NARROWED)  # of both networks
+NEAREST = RESNET, FUSED  # to the thesis's best
 BOTH = (RESNET, FUSED), (VGG, FUSED)
 NAMED = {ITSELF: "the object itself", "convexity": "the convexity"}  # tasks that are not fused
 AVERAGE = "average"  # the same four maps with equal weights
-Pair = tuple[str, str | tuple[str, ...]]  # method and task, or tasks
+CLASSICAL = "thesis_ssim"  # the enhanced model of T3.2
+LITERATURE = (LEE.task, *RIVALS.values())  # of T figures 3.35 and 3.36
+LEIFMAN, (SONG, TASSE) = LITERATURE[1], LITERATURE[2:]
+REST = (LEE.task, SONG, TASSE)  # of the literature, without Leifman, whom T3.3.6 praises too
+AS_PRINTED = "pcc_masked"
+METRICS = (AS_PRINTED, "pcc", *WHOLE)
+OUR_METRICS = ("pcc", *WHOLE, AS_PRINTED)  # visible vertices first, since knowing what is hidden is no merit
+Pair = tuple[str, Any]  # method and task, or tasks
 DIAMETER = "% of the bounding sphere's diameter"
-SEEN = "household", "princeton", "gaze_clouds"  # sets of whose objects networks were asked for the most salient place
+SEEN = (*GAZED, "household", "princeton")  # sets of whose objects networks were asked for the most salient place
 VIEWS = ("0", "1", "2")  # the three views of which an object's score is the mean
+SHORT = {RESNET: "ResNet", VGG: "VGG16"}
 PHRASES = {
     ("method", TUNED): "mean of the networks", ("method", "rival"): "", ("method", "control"): "",
-    ("method", "*-frozen"): "", ("metric", "nearer_than_chance"): "", ("metric", "nearer_than_middle"): "",
-    ("view", VIEWS): "", ("view", ALL_VIEWS): "",
-    ("metric", "pcc_masked"): "PCC the thesis's way, hidden vertices as zeros",
+    ("method", "*-frozen"): "frozen networks,", ("metric", "nearer_than_chance"): "",
+    ("metric", "nearer_than_middle"): "", ("view", VIEWS): "", ("view", ALL_VIEWS): "", ("over", "task"): "tasks",
+    ("metric", AS_PRINTED): "PCC the thesis's way, hidden vertices as zeros",
     ("metric", "pcc_tasks"): "PCC between tasks", ("metric", "distance"): "distance (nearest, which favours many "
     "centres)", ("metric", "distance_mean"): "distance (mean of all pairs)",
-    ("task", FUSED_TASKS): "mean of the four tasks that are fused,", ("task", AVERAGE): "equal weights,",
-    ("task", OURS.task): "ours, learned on the other meshes,",
+    ("metric", "distance_maximum"): "distance (of the maxima to the letter)",
+    ("metric", "half_share"): "share of the surface that holds half of the saliency",
+    ("task", FUSED_TASKS): "mean of the four tasks that are fused,", ("task", tuple(NAMED)): "mean of the other two,",
+    ("task", AVERAGE): "equal weights,",
+    ("task", OURS.task): "ours, learned on the other meshes,", ("task", CLASSICAL): task_text(CLASSICAL),
     **{("task", one): f"{task_text(one)}," for one in (FUSED, NARROWED, *NAMED)},
+    **{("task", task): f"{task_text(task)}," for task in FUSED_TASKS},
     **{("task", one.task): one.text for one in (LEE, PRIOR, NOISE)},
     **{("task", task): task_text(task) for task in RIVALS.values()},
     **{("method", each): network_text(each) for one in (*PRINTED, *FROZEN) for each in (one, with_random_weights(one))},
+    ("method", VGG): f"{network_text(VGG)} from random fully connected layers",
 }  # fmt: skip
 claim = partial(Claim, stage="fixation", dataset=GAZED, over=("item",), scale=1, unit="PCC", phrases=PHRASES)
 
@@ -52,79 +72,133 @@ def agrees(
                  second=other, **more)  # fmt: skip
 
 
-def in_each_metric(*args: Any, **more: Any) -> list[Claim]:
-    """The claim of `agrees` by PCC, the thesis's measure, and by NSS and AUC, which are of all views: one sentence."""
-    claim = agrees(*args, **more)
-    return [claim] + [
-        replace(claim, key=f"{claim.key}_{metric}", where={"metric": metric, "view": ALL_VIEWS}, unit=metric.upper())
-        for metric in WHOLE
-    ]
+def in_each_metric(*args: Any, metrics: tuple[str, ...] = METRICS, of: str = "", **more: Any) -> list[Claim]:
+    """The claim of `agrees` by each metric, the first of which is the primary claim unless `of` names another.
+
+    NSS and AUC are of all views together. The key of PCC over visible vertices has no suffix.
+    """
+    claim, found = agrees(*args, **more), []
+    for metric in metrics:
+        view, unit = (ALL_VIEWS, metric.upper()) if metric in WHOLE else (VIEWS, "PCC")
+        key = {"pcc": claim.key, AS_PRINTED: f"{claim.key}_masked"}.get(metric, f"{claim.key}_{metric}")
+        found.append(replace(claim, key=key, where={"metric": metric, "view": view}, unit=unit, of=of))
+        of = of or key
+    return found
 
 
-def each_network(key: str, sentence: str, other: Callable[[str], Pair]) -> list[Claim]:
+def each_network(
+    key: str, sentence: str, other: Callable[[str], Pair], section: str = "ours", **more: Any
+) -> list[Claim]:
     """The claims for each of PRINTED and FROZEN. other: of a method, what it is compared with."""
-    keys = {one: (f"{key}_{one.partition('-')[0]}", "T3.3.6") for one in PRINTED}
-    keys |= {one: (f"{key}_{one.replace('-', '_')}", "ours") for one in FROZEN}
-    return [
-        claim for one, (name, section) in keys.items()
-        for claim in in_each_metric(name, sentence, (one, FUSED), other(one), section)
-    ]  # fmt: skip
+    names = {one: f"{key}_{one.partition('-')[0]}" for one in PRINTED}
+    names |= {one: f"{key}_{one.replace('-', '_')}" for one in FROZEN}
+    found = []
+    for one, name in names.items():
+        known: dict[str, Any] = {"of": found[0].key if found else ""} | more
+        part = section if one in PRINTED else "ours"
+        found += in_each_metric(name, sentence, (one, FUSED), other(one), part, **known)
+    return found
 
 
-def nearer(key: str, sentence: str, near: Pair, far: Pair) -> list[Claim]:
-    """The claim that the centres of `near` are nearer: the mean of all pairs, and the nearest, the thesis's measure."""
-    pairs = agrees(key, sentence, far, near, metric="distance_mean", scale=100, unit=DIAMETER)
-    said, where = f"{sentence[:-1]}, each by its nearest.", {**pairs.where, "metric": "distance"}
-    return [pairs, replace(pairs, key=f"{key}_least", sentence=said, where=where)]
+def nearer(key: str, sentence: str, near: Pair, far: Pair, of: str = "", **more: Any) -> list[Claim]:
+    """The claim that the centres of `near` are nearer: the nearest of a view, the thesis's measure; the mean of all."""
+    mean = agrees(key, sentence, far, near, metric="distance_mean", scale=100, unit=DIAMETER, **more)
+    least = replace(mean, key=f"{key}_least", where={**mean.where, "metric": "distance"}, of=of)
+    return [least, replace(mean, of=of or least.key)]
 
 
-def same_place(other: str, words: str, note: str) -> Claim:
+def quartile(key: str, sentence: str, near: Pair, far: Pair, which: str, of: str = "") -> Claim:
+    """The claim that a quantile of the least distances of all views is lower. which: a statistic of .quantiles."""
+    words = which.replace("_", " ").replace("below", "of both")
+    return agrees(key, sentence, near, far, metric="distance", scale=100, unit="% of the views", within=("view",),
+                  statistic=which, of=of, note=f"share of views below the {words}")  # fmt: skip
+
+
+def same_place(other: str, words: str, note: str, of: str = "") -> Claim:
     """The claim that the maxima of two views lie nearer to each other than other places: "chance" or "middle"."""
     sentence = f"Changing the viewpoint moves the most salient place less than {words}."
-    note = f"{task_text(ITSELF)}, frozen networks: distance of {note} minus that of their maxima"
+    note = f"{task_text(ITSELF)}: distance of {note} minus that of their maxima"
     return claim(key=f"same_place_over_{other}", section="T3.3.3", sentence=sentence, dataset=SEEN, unit=DIAMETER,
                  where={"metric": f"nearer_than_{other}"}, first={"method": "*-frozen"}, second=0, scale=100,
-                 note=note)  # fmt: skip
+                 note=note, of=of)  # fmt: skip
+
+
+def spreads(key: str, task: str, method: str, of: str) -> Claim:
+    """The claim that half of the classical model's saliency lies on more of the surface than that of a network."""
+    return claim(key=key, section="T3.4", sentence="Fused Grad-CAM has its saliency in small regions, classical "
+                 "attention has it all over the surface.", where={"metric": "half_share", "view": VIEWS}, scale=100,
+                 first={"task": CLASSICAL, "method": "rival"}, second={"task": task, "method": method},
+                 unit="% of the surface", of=of)  # fmt: skip
 
 
 CLAIMS = [
-    *each_network("ewigc_over_lee", "Fused Grad-CAM predicts gaze better than Lee's mesh saliency.", lambda _: LEE),
-    *each_network("ewigc_over_random_weights", "What a network learned from photographs makes its attention like "
-                  "people's.", lambda method: (with_random_weights(method), FUSED)),
-    *each_network("ewigc_over_centre", "Fused Grad-CAM predicts gaze better than the middle of the picture.",
-                  lambda _: PRIOR),
-    *nearer("ewigc_nearer_than_lee", "Fused Grad-CAM finds centres nearer to fixations than mesh saliency does.",
-            EWIGC, LEE),
-    *[one for name, task in RIVALS.items()
-      for one in in_each_metric(f"ewigc_over_{task}", f"Fused Grad-CAM predicts gaze better than {name}.", EWIGC,
-                                ("rival", task))],
-    *[one for name, task in RIVALS.items()
-      for one in nearer(f"ewigc_nearer_than_{task}", f"Fused Grad-CAM finds centres nearer to fixations than {name}.",
-                        EWIGC, ("rival", task))],
-    *nearer("ewigc_nearer_than_noise", "Fused Grad-CAM finds centres nearer to fixations than noise does.",
-            EWIGC, NOISE),
-    *[one for task, name in NAMED.items()
-      for one in in_each_metric(f"{task}_least", f"Attention is less like people's where a network names {name} than "
-                                "in the tasks that are fused.", (TUNED, FUSED_TASKS), (TUNED, task), "T3.3.3",
-                                within=("method",))],
+    claim(key="test_accuracy", section="T3.3.2", sentence="Networks that learned the tasks name 96 to 100 % of the "
+          "test pictures right.", where={"metric": "accuracy", "split": "views"}, first={"method": lowest_of(*PRINTED)},
+          second=0.96, over=("task",), scale=100, unit=POINTS),
+    same_place("chance", "chance would", "random places that two views see"),
+    same_place("middle", "the middle of the picture", "what two views show in the middle", "same_place_over_chance"),
     claim(key="resnet_more_alike", section="T3.3.3", where={"metric": "pcc_tasks"},
           sentence="The tasks' maps of ResNet are more alike than those of VGG16.",
           first={"method": RESNET}, second={"method": VGG}),
-    same_place("chance", "chance would", "random places that two views see"),
-    same_place("middle", "the middle of the picture", "what two views show in the middle"),
+    *in_each_metric("excluded_least", "Attention is less like people's where a network names the object itself or its "
+                    "convexity than in the tasks that are fused.", (TUNED, FUSED_TASKS), (TUNED, tuple(NAMED)),
+                    "T3.3.3", within=("method",)),
+    *[one for task, name in NAMED.items()
+      for one in in_each_metric(f"{task}_least", f"Attention is less like people's where a network names {name} than "
+                                "in the tasks that are fused.", (TUNED, FUSED_TASKS), (TUNED, task), "T3.3.3",
+                                within=("method",), of="excluded_least_masked")],
     *in_each_metric("entropy_over_average", "Weighing maps by their entropy beats averaging them.", EWIGC,
                     (TUNED, AVERAGE), "T3.3.4", within=("method",)),
-    *in_each_metric("resnet_over_vgg", "Fused Grad-CAM of ResNet predicts gaze better than that of VGG16.", *BOTH),
-    *nearer("resnet_nearer_than_vgg", "Fused Grad-CAM of ResNet finds centres nearer to fixations than that of VGG16.",
-            *BOTH),
+    *[one for method, name in SHORT.items()
+      for one in in_each_metric(f"ewigc_over_rest_{method.partition('-')[0]}", f"Fused Grad-CAM of {name} correlates "
+                                "more with fixations than the models of Lee, Song and Tasse.", (method, FUSED),
+                                ("rival", highest_of(*REST)))],
+    *in_each_metric("leifman_over_rest", "Leifman's regions of interest correlate more with fixations than the models "
+                    "of Lee, Song and Tasse.", ("rival", LEIFMAN), ("rival", highest_of(*REST))),
+    *each_network("ewigc_over_lee", "Fused Grad-CAM predicts gaze better than Lee's mesh saliency.", lambda _: LEE,
+                  "T3.3.6", of="ewigc_over_rest_resnet50_masked"),
+    *[one for name, task in RIVALS.items()
+      for one in in_each_metric(f"ewigc_over_{task}", f"Fused Grad-CAM predicts gaze better than {name}.", NEAREST,
+                                ("rival", task), of="ewigc_over_rest_resnet50_masked")],
     *in_each_metric("fused_over_narrowed", "The whole map correlates more with gaze than its highest levels alone.",
                     EWIGC, EWIGC_L4, within=("method",)),
+    *nearer("ewigc_nearer_than_literature", "Fused Grad-CAM finds centres nearer to fixations than the best model of "
+            "the literature.", NEAREST, ("rival", lowest_of(*LITERATURE))),
+    *[one for name, task in {"mesh saliency": LEE.task, **RIVALS}.items()
+      for one in nearer(f"ewigc_nearer_than_{'lee' if task == LEE.task else task}", "Fused Grad-CAM finds centres "
+                        f"nearer to fixations than {name}.", NEAREST, ("rival", task),
+                        "ewigc_nearer_than_literature_least")],
+    *[quartile(f"ewigc_{key}_{method.partition('-')[0]}", f"The {words} of the distances to fixations is lower by "
+               f"fused Grad-CAM of {name} than by the best model of the literature.", (method, FUSED),
+               ("rival", lowest_of(*LITERATURE)), which)
+      for key, words, which in (("median_nearer", "median", MEDIAN),
+                                ("upper_quartile_nearer", "75th percentile", UPPER_QUARTILE))
+      for method, name in SHORT.items()],
+    *nearer("leifman_nearer_than_rest", "Leifman's regions of interest lie nearer to fixations than those of Lee, Song "
+            "and Tasse.", ("rival", LEIFMAN), ("rival", lowest_of(*REST))),
     *nearer("fused_nearer_than_narrowed", "The whole map's centres lie nearer than those of its highest levels.",
             EWIGC, EWIGC_L4),
-    agrees("fused_over_narrowed_masked", "The whole map correlates more with gaze than its highest levels, hidden "
-           "vertices counted as zero.", EWIGC, EWIGC_L4, metric="pcc_masked", within=("method",)),
-    agrees("ewigc_over_lee_masked", "Fused Grad-CAM predicts gaze better than Lee's mesh saliency, hidden vertices "
-           "counted as zero.", EWIGC, LEE, metric="pcc_masked"),
+    *nearer("ewigc_nearer_than_middle", "Fused Grad-CAM tells the place of fixations, if not their extent: better than "
+            "the middle of the picture does.", NEAREST, PRIOR),
+    *nearer("ewigc_nearer_than_noise", "Fused Grad-CAM finds centres nearer to fixations than noise does.",
+            NEAREST, NOISE, "ewigc_nearer_than_middle_least"),
+    *[spreads(f"deep_concentrates{key}{suffix}", task, method, "deep_concentrates" if key or suffix else "")
+      for key, task in {"": FUSED, "_narrowed": NARROWED}.items()
+      for suffix, method in {"": TUNED, "_frozen": "*-frozen"}.items()],
+    *each_network("ewigc_over_random_weights", "What a network learned from photographs makes its attention like "
+                  "people's.", lambda method: (with_random_weights(method), FUSED), metrics=OUR_METRICS),
+    *each_network("ewigc_over_centre", "Fused Grad-CAM predicts gaze better than the middle of the picture.",
+                  lambda _: PRIOR, metrics=OUR_METRICS),
+    *in_each_metric("resnet_over_vgg", "Fused Grad-CAM of ResNet predicts gaze better than that of VGG16.", *BOTH,
+                    "ours", metrics=OUR_METRICS),
+    *nearer("resnet_nearer_than_vgg", "Fused Grad-CAM of ResNet finds centres nearer to fixations than that of VGG16.",
+            *BOTH, section="ours"),
+    *[claim(key=key, section="ours", sentence="Noise correlates with gaze where hidden vertices count as zeros.", of=of,
+            where={"metric": metric, "view": VIEWS}, first=NOISE._asdict(), second=0)
+      for key, metric, of in (("noise_correlates_masked", AS_PRINTED, ""),
+                              ("noise_correlates", "pcc", "noise_correlates_masked"))],
+    *in_each_metric("ewigc_over_noise", "Fused Grad-CAM correlates more with fixations than noise does.", NEAREST,
+                    NOISE, "ours"),
     *in_each_metric("ours_over_ewigc", "Our model of gaze predicts where people look better than fused Grad-CAM.",
-                    OURS, EWIGC, "ours"),
+                    OURS, (highest_of(but=("*-random",)), FUSED), "ours", metrics=OUR_METRICS),
 ]  # fmt: skip

@@ -1,7 +1,7 @@
 """T figures 3.29, 3.30 and 3.34: where networks look, on this run's objects and on meshes with human gaze."""
 
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from itertools import chain
 
@@ -22,10 +22,12 @@ from stages.report.prose import add_words
 from stages.report.results import NotRun, Results, some
 from stages.report.style import label
 
-from .detectors import LEE, NARROWED, OURS, TASKS, network_text, task_text, untrained
+from .detectors import LEE, NARROWED, OURS, RIVALS, TASKS, network_text, task_text
 from .rows import VIEWPOINTS, stored
 
 ROWS, SMALL = 420, 260  # pixels a side of a picture; of the small ones of figure 3.34
+MOST_TAUGHT = ("last_block", "finetuned", "frozen")  # modes of networks that learned, the thesis's first
+FROZEN = "Networks are frozen, with new heads; the thesis trains them."
 VEIL = 0.72  # of a map's colour over the picture
 Images = Mapping[str, Sequence[np.ndarray]]
 Views = dict[str, list[dict[str, np.ndarray]]]
@@ -45,7 +47,7 @@ def on_gaze(build: Callable[..., Figure], results: Results) -> Kept:
 def figure_3_29(results: Results, dataset: str | None = None) -> Figure:
     """Where a network looks for the object itself, from three sides."""
     mesh, _, maps, words = _look(results, dataset)
-    named = {method: views for method, views in maps.items() if not untrained(method) and ITSELF in views[0]}
+    named = {method: views for method, views in maps.items() if ITSELF in views[0]}
     some(named, f"no network named {words['name']} itself", "fixation", runnable=False)
     renders = [picture(mesh, viewpoint=viewpoint, rows=ROWS) for viewpoint in VIEWPOINTS]
     images = {
@@ -53,7 +55,7 @@ def figure_3_29(results: Results, dataset: str | None = None) -> Figure:
         for method, views in named.items()
     }
     figure = _panels(images, 1.9, [0.93, 0.15, 0.014, 0.7], "over its maximum")
-    return Figure(figure, words | {"task": label(ITSELF), "networks": "; ".join(images)})
+    return Figure(figure, words | {"task": label(ITSELF), "networks": "; ".join(images), "taught": _taught(named)})
 
 
 def figure_3_30(results: Results, dataset: str | None = None) -> Figure:
@@ -68,7 +70,8 @@ def figure_3_30(results: Results, dataset: str | None = None) -> Figure:
         layers["fused (EWIGC)"] = _fused(views[view])
         images[network_text(method)] = [_veiled(render, layer) for layer in layers.values()]
     figure = _panels(images, 1.6, [0.945, 0.15, 0.012, 0.7], "Grad-CAM over its maximum", list(layers))
-    return Figure(figure, words | {"tasks": ", ".join(list(layers)[:-1]), "networks": "; ".join(images)})
+    named = {"tasks": ", ".join(list(layers)[:-1]), "networks": "; ".join(images), "taught": _taught(maps)}
+    return Figure(figure, words | named)
 
 
 def figure_3_34(results: Results, dataset: str | None = None) -> Figure:
@@ -82,7 +85,8 @@ def figure_3_34(results: Results, dataset: str | None = None) -> Figure:
     methods = _networks(files[names[0]], NARROWED)
     some(methods, f"no fused maps of {names[0]}", "fixation", runnable=False)
     truth = "human gaze" if results.folder("fixation", dataset).parent.name == "gaze" else "marks"
-    rivals, images, columns = results.saliency(names[0], dataset).those_of((OURS.task, LEE.task)), {}, {}
+    known = (LEE.task, *RIVALS.values(), OURS.task)
+    rivals, images, columns = results.saliency(names[0], dataset).those_of(known), {}, {}
     for name, arrays in files.items():
         mesh, saliency = results.mesh(name, dataset), results.saliency(name, dataset)
         columns = {truth: marked[name]} if marked else {}
@@ -94,7 +98,7 @@ def figure_3_34(results: Results, dataset: str | None = None) -> Figure:
     words = {
         "names": ", ".join(names),
         "columns": ", ".join(title.replace("\n", " ").replace(", ", " ") for title in columns),
-        "control": " Random weights: a control." if any(map(untrained, methods)) else "",
+        "taught": _taught(methods),
         "marks": " Marks: by a vision model, no human subjects; spread along the surface."
         if "marks" in columns
         else "",
@@ -123,8 +127,15 @@ def _ready(results: Results, dataset: str | None) -> list[str]:
 
 
 def _networks(arrays: dict[str, np.ndarray], what: str) -> list[str]:
-    """The networks of which a file holds METHOD.what, those that learned from photographs first."""
-    return sorted((key.removesuffix(f".{what}") for key in arrays if key.endswith(f".{what}")), key=untrained)
+    """The methods of which a file holds METHOD.what: of each network the one that was taught most; no controls."""
+    networks = dict.fromkeys(key.rpartition("-")[0] for key in arrays if key.endswith(f".{what}"))
+    known = ([f"{one}-{mode}" for mode in MOST_TAUGHT if f"{one}-{mode}.{what}" in arrays] for one in networks)
+    return [methods[0] for methods in known if methods]
+
+
+def _taught(methods: Iterable[str]) -> str:
+    """A sentence that no network was trained as the thesis's are, where that is so."""
+    return f" {FROZEN}" if not any(method.endswith(MOST_TAUGHT[:2]) for method in methods) else ""
 
 
 def large(cams: np.ndarray, method: str) -> np.ndarray:

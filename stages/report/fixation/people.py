@@ -11,10 +11,11 @@ from matplotlib.axes import Axes
 
 from stages.kit.stats import interval
 from stages.report.items import Figure
+from stages.report.markdown import number
 from stages.report.results import Results
 from stages.report.style import GREY, INK, PALE, colours, plain_logarithm, plt
 
-from .detectors import FUSED, KINDS, TASKS, Detector, network_text, task_text, untrained
+from .detectors import FUSED, KINDS, NOISE, TASKS, Detector, network_text, task_text, untrained
 from .rows import detectors, networks, no_people, scores, sources
 
 LINES = (*TASKS, FUSED)
@@ -26,7 +27,7 @@ DIAMOND = DOT | {"marker": "D", "color": "white", "ms": 4.5}
 
 
 def figure_3_32(results: Results) -> Figure:
-    """Correlation of each task's map with people, a row a task, a colour a network."""
+    """Correlation of each task's map with people as T3.3.6 prints it, a row a task, a colour a network."""
     found = sources(results)
     methods = sorted(dict.fromkeys(method for rows in found.values() for method in networks(rows)), key=untrained)
     parts = {method: method.rpartition("-") for method in methods}
@@ -36,7 +37,7 @@ def figure_3_32(results: Results) -> Figure:
     size = (4.0 * len(found) + 2.6, 1.2 + len(LINES) * max(0.42, 0.14 * len(methods)))
     grid = _panels(found, list(map(task_text, LINES)), "Pearson's correlation with people", size, 10)
     for axes, rows in zip(grid, found.values(), strict=True):
-        table = scores(rows, "pcc")
+        table = scores(rows, "pcc_masked")
         for (y, task), (down, method) in product(enumerate(LINES), zip(places, methods, strict=True)):
             if (method, task) in table:
                 _span(axes, table[method, task], y + down, lw=1.5, **marks[method])
@@ -45,17 +46,24 @@ def figure_3_32(results: Results) -> Figure:
         axes.hlines(np.arange(len(TASKS) - 1) + 0.5, 0, 1, transform=axes.get_yaxis_transform(), color=PALE, lw=0.5)
     for method, mark in marks.items():
         grid[-1].plot([], [], label=network_text(method), **mark)
-    return _with_legend(grid, found)
+    return _with_noise(_with_legend(grid, found), found)
 
 
 def figure_3_35(results: Results) -> Figure:
-    """Correlation of detectors with people, best mean first."""
-    found = {source: (scores(rows, "pcc"), scores(rows, "pcc_masked")) for source, rows in sources(results).items()}
+    """Correlation of detectors with people as T3.3.6 prints it, best mean first."""
+    found = {source: (scores(rows, "pcc_masked"), scores(rows, "pcc")) for source, rows in sources(results).items()}
     draw, zero = partial(_span, lw=1.6, mec="white", mew=0.5, **DOT), partial(Axes.axvline, color=INK, lw=0.8)
     grid = _ranked(found, "mean", "Pearson's correlation with people", draw, zero, zorder=1.9)
     for words, tint in KINDS.values():
         grid[-1].plot([], [], color=tint, label=words, **DOT)
-    return _with_legend(grid, found, "hidden vertices as zeros\n(the thesis's way)")
+    return _with_noise(_with_legend(grid, found, "over visible vertices alone"), sources(results))
+
+
+def _with_noise(figure: Figure, found: dict[str, pd.DataFrame]) -> Figure:
+    """The figure, with what noise has by its correlation on the first truth among its words."""
+    source, rows = next(iter(found.items()))
+    figure.words["noise"] = f"{number(scores(rows, 'pcc_masked')[NOISE].mean())} on {source}"
+    return figure
 
 
 def figure_3_36(results: Results) -> Figure:

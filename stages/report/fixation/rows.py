@@ -36,11 +36,11 @@ def no_people(found: Iterable[str]) -> str:
 
 
 def scores(rows: pd.DataFrame, metric: str, by: Sequence[str] = ("item",)) -> pd.DataFrame:
-    """Frame `by` x (method, task) of a metric: means over the three views (WHOLE: of all); distances in per cent."""
+    """Frame `by` x (method, task) of a metric: means of three views (WHOLE: of all); distances, shares in per cent."""
     whole = rows["view"].astype(str) == ALL_VIEWS
     found = rows[(rows["metric"] == metric) & (whole == (metric in WHOLE))]
     table = found.pivot_table(index=list(by), columns=["method", "task"], values="value", sort=False)
-    return 100 * table if metric.startswith("distance") else table
+    return 100 * table if metric.startswith("distance") or metric == "half_share" else table
 
 
 def detectors(table: pd.DataFrame) -> list[Detector]:

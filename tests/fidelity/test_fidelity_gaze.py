@@ -1,0 +1,105 @@
+"""T3.3.5 and T3.3.6 to the letter, beside the stage: bounding boxes, hidden vertices as zeros, pairs of centres."""
+
+import numpy as np
+import pytest
+import trimesh
+
+from stages.conspicuity import facing
+from stages.fixation import project_by_boxes, project_to_vertices
+from stages.fixation.agreement import agreement_rows
+from stages.fixation.centres import centres
+from stages.kit import Mesh, Viewpoint
+from stages.views import render
+
+SIZE = 224
+
+
+@pytest.fixture(scope="module")
+def ring():
+    """A torus off the middle, taller than wide in the picture, and its vertices seen from one side."""
+    torus = trimesh.creation.torus(0.3, 0.1, major_sections=64, minor_sections=32)
+    mesh, viewpoint = Mesh(torus.vertices[:, [2, 0, 1]] * [1, 0.7, 1] + [0, 0.1, -0.05], torus.faces), Viewpoint(30, 20)
+    return mesh, viewpoint, facing(mesh, [viewpoint])[0] > 0
+
+
+@pytest.fixture(scope="module")
+def seconds(ring):
+    """(render (h, w), a smooth map (h, w)) of the ring."""
+    mesh, viewpoint, _ = ring
+    down, right = np.mgrid[:SIZE, :SIZE] / SIZE
+    return render(mesh, viewpoint, (SIZE, SIZE), "raster").rgb.mean(axis=2), np.sin(5 * down) ** 2 + right
+
+
+def by_boxes(saliency, picture, mesh, viewpoint):
+    """T3.3.5: project the vertices, plot them as an image, resize one bounding box to the other, pixel to pixel."""
+    rows, columns = np.nonzero(picture)
+    box = saliency[rows.min() : rows.max() + 1, columns.min() : columns.max() + 1]
+    right, up = viewpoint.axes[:2] @ mesh.vertices.T
+    found = []
+    for values, pixels in ((-up, box.shape[0]), (right, box.shape[1])):  # plotted on as many pixels as the other box
+        found.append(np.rint((values - values.min()) / (values.max() - values.min()) * (pixels - 1)).astype(int))
+    plotted = np.zeros(box.shape)
+    plotted[found[0], found[1]] = 1
+    assert plotted.any(axis=1)[[0, -1]].all() and plotted.any(axis=0)[[0, -1]].all()  # its box is the whole image
+    return box[found[0], found[1]]
+
+
+def test_boxes_are_those_of_the_text(ring, seconds):
+    (mesh, viewpoint, seen), (picture, saliency) = ring, seconds
+    found = project_by_boxes(saliency[None], mesh, viewpoint, seen, picture)[0]
+    assert np.array_equal(found, by_boxes(saliency, picture, mesh, viewpoint) * seen) and np.ptp(found[seen]) > 0.5
+
+
+def test_hidden_vertices_belong_to_the_box(ring, seconds):
+    (mesh, viewpoint, _), (picture, saliency) = ring, seconds
+    low = mesh.vertices[:, 2] < 0
+    part, whole = (project_by_boxes(saliency[None], mesh, viewpoint, seen, picture)[0] for seen in (low, low | ~low))
+    assert np.array_equal(part[low], whole[low]) and not part[~low].any()
+
+
+def test_boxes_and_the_camera_agree_to_a_pixel(ring, seconds):
+    (mesh, viewpoint, seen), (picture, _) = ring, seconds
+    places = np.mgrid[:SIZE, :SIZE].astype(float)
+    boxes = project_by_boxes(places, mesh, viewpoint, seen, picture)[:, seen]
+    off = np.abs(boxes - project_to_vertices(places, mesh, viewpoint, seen)[:, seen])
+    assert 0.1 < off.mean() < 0.5 and off.max() < 1.6
+
+
+def test_an_empty_picture_has_no_box(ring):
+    mesh, viewpoint, seen = ring
+    with pytest.raises(ValueError, match="render must show"):
+        project_by_boxes(np.ones((1, 9, 9)), mesh, viewpoint, seen, np.zeros((9, 9)))
+
+
+@pytest.fixture(scope="module")
+def judged(ring):
+    """(people's density (n,), saliency (n,), seen (n,), the rows of their agreement by metric) of the ring."""
+    mesh, _, seen = ring
+    people, model = (
+        sum(np.exp(-((mesh.vertices - place) ** 2).sum(axis=1) / 0.01) for place in mesh.vertices[ids])
+        for ids in ([3, 900, 1500], [40, 1000])
+    )
+    people, model = 5 * people + 2, model + 0.1  # neither begins at zero nor ends at one
+    lesson = {"amounts": people, "density": people, "areas": mesh.vertex_areas}
+    rows = agreement_rows(mesh, lesson, seen[None], model[None], model)
+    return people, model, seen, {row["metric"]: row["value"] for row in rows if row["view"] == 0}
+
+
+def test_correlation_has_both_between_zero_and_one_times_the_visibility(judged):
+    people, model, seen, found = judged
+    one, other = ((values - values.min()) / (values.max() - values.min()) * seen for values in (people, model))
+    assert found["pcc_masked"] == pytest.approx(np.corrcoef(one, other)[0, 1])
+    assert abs(found["pcc_masked"] - found["pcc"]) > 0.02  # it is another number
+
+
+def test_distance_is_the_least_of_the_pairs_of_the_pseudocode(ring, judged):
+    mesh, (people, model, seen, found) = ring[0], judged
+    ours = [centre for centre in centres(mesh.vertices, model, seen)]
+    distances = []
+    for centre in centres(mesh.vertices, people, seen):
+        if ours:
+            nearest = min(ours, key=lambda one: float(((one - centre) ** 2).sum()))
+            distances.append(np.linalg.norm(nearest - centre))
+            ours = [one for one in ours if one is not nearest]
+    assert found["distance"] == pytest.approx(min(distances)) and found["distance"] > 0
+    assert found["distance_mean"] == pytest.approx(np.mean(distances))
