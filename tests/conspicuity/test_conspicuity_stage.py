@@ -46,6 +46,15 @@ def test_maps_of_all_views_and_their_measurements(workspace):
     assert metrics == {"maps": 8, "silhouette_share": pytest.approx(found.value.mean(), rel=1e-5)}
 
 
+@pytest.mark.parametrize(("setting", "shown"), [("perceived", False), ("strongest", True)])
+def test_a_brick_has_a_radial_map_where_its_strongest_axis_counts(make_workspace, setting, shown):
+    section = SECTION | {"channels": ["symmetry_radial"], "symmetry": setting}
+    workspace = make_workspace({"views": VIEWS, "conspicuity": section})
+    write_object(workspace, "brick", (0.2, 0.4, 0.6))
+    stage.run(workspace)
+    assert read_maps(workspace.data / "conspicuity" / "brick.npz")[0].any() == shown
+
+
 def test_one_object_more_costs_one_object(workspace, monkeypatch):
     stage.run(workspace)
     measured = []

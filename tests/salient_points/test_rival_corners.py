@@ -6,7 +6,6 @@ import pytest
 from stages.kit import Mesh
 from stages.salient_points.rivals import corners
 
-
 TOPS = [[0, 0, 1], [0, 1, 0]]
 
 
@@ -31,6 +30,16 @@ def test_a_weak_corner_is_a_point_beside_a_strong_one(raised, sphere):
     assert values[0] < 0.6 * values[1]
     near = directions[corners.points(mesh)] @ np.transpose(TOPS) > np.cos(0.1)
     assert near.any(axis=0).all() and near[0, 1]
+
+
+def test_a_peak_that_is_higher_at_the_next_scale_is_no_point(raised):
+    mesh = raised(TOPS, [0.1, 0.2], [0.3, 0.6], subdivisions=4)
+    responses = corners._responses(mesh)
+    points = corners.points(mesh)
+    best = responses[:, points].max(axis=0)
+    assert len(points) and (np.abs(responses[:, points] - best) < 1e-12).any(axis=1).sum() > 1
+    every = np.unique(np.concatenate([corners.ring_maxima(mesh, own, 1) for own in responses]))
+    assert len(points) < 0.7 * len(every)
 
 
 def test_points_do_not_depend_on_the_scale_of_the_values(cube):

@@ -40,8 +40,8 @@ def saliency(mesh: Mesh) -> np.ndarray:
 def points(mesh: Mesh, values: np.ndarray | None = None) -> np.ndarray:
     """(k,) i8 vertex ids, most salient first: peaks over the surface at a scale that is no worse than its neighbours.
 
-    That is a corner at its own scale, however weak beside others: only NOISE is left out. Meshes of 20,000 vertices have
-    100 to 200 such points, those of 3,000 some 30; a round body has a few where its mesh is uneven.
+    That is a corner at its own scale, however weak beside others: only NOISE is left out. Meshes of 20,000 vertices
+    have 100 to 200 such points, those of 3,000 some 30; a round body has a few where its mesh is uneven.
     values: saliency(mesh) up to a factor, by which the points are ordered; computed where None.
     """
     values = saliency(mesh) if values is None else np.asarray(values)
