@@ -17,7 +17,7 @@ from stages.kit.workspace import Workspace
 from stages.views import read_view
 
 from .background import FILLED, check_background
-from .channels import check_channels, mask_at_size
+from .channels import check_channels, check_symmetry, mask_at_size
 from .measure import background_rows, hue_rows, measured_maps
 from .schema import COLUMNS, Params
 
@@ -34,13 +34,14 @@ def process(name: str, folder: Path, data: Path, settings: Params) -> Rows:
     rows = []
     for k, viewpoint in enumerate(viewpoints):
         view = read_view(data / "views" / name / f"{viewpoint}.npz")
-        found, measured = measured_maps(mesh, view, channels, size, settings.background == FILLED)
+        filled = settings.background == FILLED
+        found, measured = measured_maps(mesh, view, channels, size, filled, settings.symmetry)
         maps[k] = [found[channel] for channel in channels]
         mask[k] = mask_at_size(view.mask, size)
         rows += measured
         if k == 0 and settings.compare_background:
             rows += background_rows(mesh, view, channels, size)
-            rows += hue_rows(mesh, view, found, size, settings.background == FILLED)
+            rows += hue_rows(mesh, view, found, size, filled)
     write_arrays(folder / f"{name}.npz", maps=maps, mask=mask, viewpoints=viewpoints, channels=channels)
     return [{"item": name} | row for row in rows]
 
@@ -50,6 +51,7 @@ def run(workspace: Workspace) -> None:
     settings = workspace.settings(Params)
     check_channels(settings.channels)
     check_background(settings.background)
+    check_symmetry(settings.symmetry)
     with StageRun(workspace, "conspicuity", COLUMNS, inputs=("meshes", "views")) as stage:
         work = functools.partial(process, data=workspace.data, settings=settings)
         rows = stage.each(work, stage.objects, reads=("meshes/{}.npz", "views/{}", "views/viewpoints.csv"))

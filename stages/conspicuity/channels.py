@@ -19,7 +19,14 @@ from .intensity import intensity
 from .operators import OUTPUT_SCALE
 from .orientation import orientation
 from .spectral_residual import spectral_residual
-from .symmetry import symmetry, symmetry_lateral, symmetry_radial
+from .symmetry import (
+    symmetry,
+    symmetry_lateral,
+    symmetry_radial,
+    symmetry_strongest,
+    symmetry_strongest_lateral,
+    symmetry_strongest_radial,
+)
 from .weak_cache import weak_cache
 
 CHANNELS = {
@@ -40,6 +47,14 @@ OTHERS = {
     "spectral_residual": spectral_residual,
     "fine_grained": fine_grained,
 }
+# In place of the channels of symmetry where `conspicuity.symmetry` is `strongest`.
+STRONGEST = {
+    "symmetry": symmetry_strongest,
+    "symmetry_lateral": symmetry_strongest_lateral,
+    "symmetry_radial": symmetry_strongest_radial,
+}
+PERCEIVED = "perceived"
+SYMMETRIES = {PERCEIVED: {}, "strongest": STRONGEST}  # setting: the channels that it replaces
 REDUCTION = 4  # the default size of a map is the view's over this
 
 
@@ -49,13 +64,15 @@ def conspicuity(
     channels: Iterable[str] | None = None,
     size: Sequence[int] | None = None,
     filled: bool = True,
+    symmetry: str = PERCEIVED,
 ) -> dict[str, np.ndarray]:
     """The conspicuity maps of a view: {channel: (h', w') f4 in 0..1}, zero off the object.
 
     view: of this mesh. channels: names out of CHANNELS and OTHERS, None for the nine of CHANNELS. size: (rows,
     columns) of the maps, by default a quarter of the view's. filled: True keeps the background out of the filters
     (stages.conspicuity.background), False leaves it in, for comparison. The two maps of OpenCV use the image as
-    rendered in either case.
+    rendered in either case. symmetry: `perceived`, only symmetries that people see, or `strongest`, the best plane and
+    axis of each object, however weak.
 
     Finally N(.) is applied to each map as a whole, as Itti 1998 brings channels to one scale before their sum, so that
     the highest value of a map says how much it stands out. Raises ValueError for an unknown channel, a size without
@@ -66,7 +83,7 @@ def conspicuity(
     if len(size) != 2 or min(size) < 1:
         raise ValueError(f"the size of the maps must be (rows, columns), each at least 1, got {size}")
     inside = mask_at_size(view.mask, size)
-    maps = CHANNELS | OTHERS
+    maps = CHANNELS | OTHERS | SYMMETRIES[check_symmetry(symmetry)]
     return {name: resize_map(maps[name](mesh, view, filled), view.mask.shape, size) * inside for name in names}
 
 
@@ -77,6 +94,13 @@ def check_channels(names: Iterable[str]) -> list[str]:
     if unknown:
         raise ValueError(f"unknown channel {', '.join(map(str, unknown))}: choose from {', '.join(known)}")
     return list(names)
+
+
+def check_symmetry(setting: str) -> str:
+    """The setting; ValueError for one that is not among SYMMETRIES."""
+    if setting not in SYMMETRIES:
+        raise ValueError(f"unknown conspicuity.symmetry {setting!r}: choose one of {', '.join(SYMMETRIES)}")
+    return setting
 
 
 @weak_cache  # the channels of a view share its mask

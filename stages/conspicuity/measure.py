@@ -9,12 +9,17 @@ import numpy as np
 from stages.kit import Mesh, Stopwatch
 from stages.views import View
 
-from .channels import conspicuity, mask_at_size
+from .channels import PERCEIVED, conspicuity, mask_at_size
 from .silhouette import silhouette_share
 
 
 def measured_maps(
-    mesh: Mesh, view: View, channels: Iterable[str], size: tuple[int, int], filled: bool = True
+    mesh: Mesh,
+    view: View,
+    channels: Iterable[str],
+    size: tuple[int, int],
+    filled: bool = True,
+    symmetry: str = PERCEIVED,
 ) -> tuple[dict[str, np.ndarray], list[dict]]:
     """({channel: map}, rows): the maps of a view, and one row per map with metric `silhouette_share`.
 
@@ -24,7 +29,7 @@ def measured_maps(
     maps, rows = {}, []
     for channel in channels:
         with Stopwatch() as watch:
-            maps |= conspicuity(mesh, view, [channel], size, filled)
+            maps |= conspicuity(mesh, view, [channel], size, filled, symmetry)
         rows.append(_row(channel, view, "silhouette_share", maps[channel], watch.seconds))
     return maps, rows
 

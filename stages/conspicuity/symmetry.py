@@ -40,30 +40,49 @@ def symmetry_radial(mesh: Mesh, view: View, filled: bool = True) -> np.ndarray:
     return _conspicuity(mesh, view, filled, ("radial",))
 
 
-def _conspicuity(mesh, view, filled, kinds):
+def symmetry_strongest(mesh: Mesh, view: View, filled: bool = True) -> np.ndarray:
+    """The map as in `symmetry` of the strongest plane and axis, however weak: each object has points, as in T3.1.5."""
+    return _conspicuity(mesh, view, filled, KINDS, strongest=True)
+
+
+def symmetry_strongest_lateral(mesh: Mesh, view: View, filled: bool = True) -> np.ndarray:
+    """The map as in `symmetry_strongest` of bilateral symmetry alone."""
+    return _conspicuity(mesh, view, filled, ("lateral",), strongest=True)
+
+
+def symmetry_strongest_radial(mesh: Mesh, view: View, filled: bool = True) -> np.ndarray:
+    """The map as in `symmetry_strongest` of radial symmetry alone."""
+    return _conspicuity(mesh, view, filled, ("radial",), strongest=True)
+
+
+def _conspicuity(mesh, view, filled, kinds, strongest=False):
     image = cropped_view(view, filled)
     if image.empty:
         return image.zero_map()
-    response = np.max([_seen_symmetry(view, mesh, kind) for kind in kinds], axis=0)
+    response = np.max([_seen_symmetry(view, mesh, kind, strongest) for kind in kinds], axis=0)
     return surface_conspicuity(response, mesh, view, filled)
 
 
 @weak_cache
-def _seen_symmetry(view, mesh, kind):
+def _seen_symmetry(view, mesh, kind, strongest):
     """symmetric_points of one kind at the points of visible_surface, which two channels use."""
     seen = visible_surface(view, mesh)
-    return symmetric_points(mesh, seen.points, seen.back, (kind,))
+    return symmetric_points(mesh, seen.points, seen.back, (kind,), strongest)
 
 
 def symmetric_points(
-    mesh: Mesh, points: np.ndarray, back: np.ndarray | None = None, kinds: Sequence[str] = KINDS
+    mesh: Mesh,
+    points: np.ndarray,
+    back: np.ndarray | None = None,
+    kinds: Sequence[str] = KINDS,
+    strongest: bool = False,
 ) -> np.ndarray:
     """(k,) f8 in 0..1: how near points (k, 3) of the surface are to a plane or an axis of symmetry.
 
     back (3,): the unit direction to the camera, by which planes and axes are weighted; None weights all equally.
-    kinds: which of KINDS count.
+    kinds: which of KINDS count. strongest: as in `shape_symmetries`.
     """
-    found = symmetries(mesh)
+    found = symmetries(mesh, strongest)
     spread = 2 * (BAND * mesh.diagonal) ** 2
     response = np.zeros(len(points))
     for normal, offset, weight in weighted_planes(found, back) if "lateral" in kinds else ():
@@ -77,9 +96,9 @@ def symmetric_points(
 
 
 @weak_cache
-def symmetries(mesh: Mesh) -> Symmetries:
-    """The Symmetries of a mesh, cached."""
-    return shape_symmetries(mesh)
+def symmetries(mesh: Mesh, strongest: bool = False) -> Symmetries:
+    """The Symmetries of a mesh, cached; strongest: as in `shape_symmetries`."""
+    return shape_symmetries(mesh, strongest)
 
 
 def weighted_planes(found: Symmetries, back: np.ndarray | None) -> list[tuple[np.ndarray, float, float]]:

@@ -1,6 +1,7 @@
 """The planes and axes of symmetry of a shape, exact or approximate."""
 
 from dataclasses import dataclass
+from operator import itemgetter
 
 import numpy as np
 from scipy.spatial import KDTree
@@ -33,8 +34,10 @@ class Symmetries:
     axes: tuple
 
 
-def shape_symmetries(mesh: Mesh) -> Symmetries:
+def shape_symmetries(mesh: Mesh, strongest: bool = False) -> Symmetries:
     """The Symmetries of a mesh: planes of bilateral and axes of radial symmetry that score at least MIN_SCORE.
+
+    strongest: where no plane or no axis scores that much, the best one counts, and all scores are 1.
 
     Candidate planes go through the centre of the surface. Their normals are the principal axes and directions spread
     over the half sphere, the best of which are refined (`_refine`); after Podolak et al., A planar-reflective symmetry
@@ -48,12 +51,18 @@ def shape_symmetries(mesh: Mesh) -> Symmetries:
     dense = sample_surface(mesh, DENSE)
     surface = SampledSurface(dense, mesh.diagonal, sample_surface(mesh, SPARSE))
     principal = np.linalg.eigh(_products(dense, dense))[1].T
-    planes = _mirror_planes(surface, principal)
-    axes = _axes(surface, principal, planes)
+    found = _mirror_planes(surface, principal)
+    planes = [plane for plane in found if plane[2] >= MIN_SCORE]
+    candidates = _axes(surface, principal, planes)
+    axes = [axis for axis in candidates if axis[1] >= MIN_SCORE]
     revolution = [(axis, score) for axis, score, revolves in axes if revolves]
     if len(revolution) > 1:
         return Symmetries(surface.centre, (), ())
     distinct = [p for p in planes if not any(_through_axis(p, *axis) for axis in revolution)]
+    if strongest:
+        axes = axes or [max(candidates, key=itemgetter(1))]
+        distinct = [(n, d, 1.0) for n, d, _ in distinct or ([] if revolution else found[:1])]
+        axes = [(axis, 1.0, revolves) for axis, _, revolves in axes]
     return Symmetries(surface.centre, tuple(distinct), tuple(axes))
 
 
@@ -114,7 +123,7 @@ def _mirror_planes(surface, principal):
     starts = _distinct(directions[np.argsort(errors, kind="stable")])[:STARTS]
     found = [_refine(surface, few, normal) for normal in [*principal, *starts]]
     scores = [surface.score(mirror(surface.sparse, n, d)) for n, d in found]
-    ranked = [(*found[k], scores[k]) for k in np.argsort(scores, kind="stable")[::-1] if scores[k] >= MIN_SCORE]
+    ranked = [(*found[k], scores[k]) for k in np.argsort(scores, kind="stable")[::-1]]
     chosen = _distinct([n for n, _, _ in ranked], positions=True)
     return [ranked[k] for k in chosen]
 
@@ -148,8 +157,7 @@ def _axes(surface, principal, planes):
         revolves = score >= MIN_SCORE
         if not revolves:
             score = max(_rotation_score(surface, axis, 360 / n) for n in ORDERS)
-        if score >= MIN_SCORE:
-            found.append((axis, score, revolves))
+        found.append((axis, score, revolves))
     return found
 
 

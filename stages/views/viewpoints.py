@@ -2,8 +2,10 @@
 
 from stages.kit import Viewpoint
 
-# T figure 3.2. Its caption repeats (b) as (k), while the text on the four principal views places (k) and (l) at the two
-# ends of one axis. The only axis without another view is z, so (k) and (l) are taken as top and bottom.
+# T figure 3.2. Its caption says of (k) `90 degrees around z`, which is (b) again, and of (l) `180 degrees around x`,
+# which is (c) upside down. The text (T3.1.2) has cameras at +-y and +-z in (a), (b), (k) and (l), but turns about z
+# reach no place at z. No reading fits both. Turns of (k) and (l) about x by 90 and -90 degrees give the two places at z
+# that the text asks for: top and bottom. The other ten are as printed.
 TWELVE = tuple(
     Viewpoint(azimuth, elevation)
     for elevation, azimuths in (

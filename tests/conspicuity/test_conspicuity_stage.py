@@ -13,7 +13,7 @@ from stages.views.__main__ import run as run_views
 
 VIEWS = {"viewpoints": "four", "size": [90, 120], "renderer": "raster", "background": "black",
          "compare_sets": False}  # fmt: skip
-SECTION = {"channels": ["intensity", "edge"], "size": [45, 60], "background": "filled",
+SECTION = {"channels": ["intensity", "edge"], "size": [45, 60], "background": "filled", "symmetry": "perceived",
            "compare_background": True}  # fmt: skip
 
 
@@ -44,6 +44,15 @@ def test_maps_of_all_views_and_their_measurements(workspace):
     assert found.value.notna().all() and (found.seconds > 0).all() and set(found.method) == set(channels)
     metrics = read_json(workspace.metrics / "conspicuity.json")
     assert metrics == {"maps": 8, "silhouette_share": pytest.approx(found.value.mean(), rel=1e-5)}
+
+
+@pytest.mark.parametrize(("setting", "shown"), [("perceived", False), ("strongest", True)])
+def test_a_brick_has_a_radial_map_where_its_strongest_axis_counts(make_workspace, setting, shown):
+    section = SECTION | {"channels": ["symmetry_radial"], "symmetry": setting}
+    workspace = make_workspace({"views": VIEWS, "conspicuity": section})
+    write_object(workspace, "brick", (0.2, 0.4, 0.6))
+    stage.run(workspace)
+    assert read_maps(workspace.data / "conspicuity" / "brick.npz")[0].any() == shown
 
 
 def test_one_object_more_costs_one_object(workspace, monkeypatch):

@@ -7,6 +7,7 @@ import pytest
 import trimesh
 
 from stages.conspicuity import CHANNELS, conspicuity
+from stages.conspicuity.channels import SYMMETRIES
 from stages.conspicuity.curvature import capped_curvature, mean_curvature
 from stages.conspicuity.symmetry import symmetric_points
 from stages.conspicuity.symmetry_search import mirror, rotate, shape_symmetries
@@ -124,6 +125,48 @@ def test_a_cone_has_one_axis_and_its_tip_is_white():
 def test_a_box_has_three_planes():
     normals = np.abs([n for n, _, _ in shape_symmetries(kit_mesh(trimesh.creation.box((1, 0.7, 0.4)))).planes])
     np.testing.assert_allclose(normals[normals.argmax(axis=1).argsort()], np.eye(3), atol=0.02)
+
+
+@pytest.mark.slow
+def test_the_strongest_plane_and_axis_of_a_lopsided_shape_count_in_full():
+    found = shape_symmetries(lopsided(), strongest=True)
+    assert [score for _, _, score in found.planes] == [1.0]
+    assert [(score, revolves) for _, score, revolves in found.axes] == [(1.0, False)]
+    (axis, _, _), *_ = found.axes
+    away = lopsided().vertices - found.centre
+    pierced = lopsided().vertices[[(away @ axis / np.linalg.norm(away, axis=1)).argmax()]]
+    assert symmetric_points(lopsided(), pierced, kinds=["radial"], strongest=True)[0] > 0.5
+    assert not symmetric_points(lopsided(), pierced, kinds=["radial"]).any()
+
+
+def test_what_people_see_is_the_strongest_too():
+    box, cone = trimesh.creation.box((1, 0.7, 0.4)), trimesh.creation.revolve([[0, 0], [0.3, 0], [0, 0.8]], sections=64)
+    for mesh in map(kit_mesh, (box, cone)):
+        seen, best = shape_symmetries(mesh), shape_symmetries(mesh, strongest=True)
+        assert [n.tolist() for n, *_ in best.planes] == [n.tolist() for n, *_ in seen.planes]
+        assert len(best.axes) == 1 and (not seen.axes or (best.axes[0][0] == seen.axes[0][0]).all())
+
+
+def test_a_cylinder_has_one_radial_axis_and_a_sphere_none_in_either_setting():
+    tin, ball = trimesh.creation.cylinder(0.2, 1.0, sections=64), trimesh.creation.icosphere(subdivisions=3)
+    for strongest in (False, True):
+        ((axis, score, revolves),) = shape_symmetries(kit_mesh(tin), strongest).axes
+        assert abs(axis[2]) > 0.999 and score > 0.9 and revolves
+        none = shape_symmetries(kit_mesh(ball), strongest)
+        assert not none.planes and not none.axes
+
+
+def test_the_setting_replaces_the_maps_of_symmetry_alone():
+    channels, along_axis = (
+        ["symmetry", "symmetry_radial", "intensity"],
+        render(lopsided(), Viewpoint(-84, 33), SIZE, "raster"),
+    )
+    perceived, strongest = (conspicuity(lopsided(), along_axis, channels, symmetry=each) for each in SYMMETRIES)
+    assert [perceived[name].any() for name in channels] == [False, False, True]
+    assert all(strongest[name].any() for name in channels)
+    np.testing.assert_array_equal(perceived["intensity"], strongest["intensity"])
+    with pytest.raises(ValueError, match="conspicuity.symmetry 'all'"):
+        conspicuity(lopsided(), bumpy_view(), channels, symmetry="all")
 
 
 def test_a_mirror_plane_shows_where_it_is_seen_edge_on():

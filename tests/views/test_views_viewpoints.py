@@ -31,3 +31,27 @@ def test_principal_views_are_both_ends_of_y_and_z():
 def test_unknown_set_names_the_known_ones():
     with pytest.raises(ValueError, match="twelve, four, principal"):
         viewpoint_set("thirteen")
+
+
+CAPTION = {  # T figure 3.2: turns of the object in degrees, around z, then around x
+    "a": (0, 0), "b": (90, 0), "c": (180, 0), "d": (270, 0), "e": (0, 45), "f": (120, 45), "g": (240, 45),
+    "h": (0, -45), "i": (120, -45), "j": (240, -45), "k": (90, 0), "l": (0, 180),
+}  # fmt: skip
+
+
+def camera_after(around_z, around_x):
+    """Where the first camera stands as seen from the object, once that has turned; x: to the right of the image."""
+    right, _, back = TWELVE[0].axes
+    z, x = np.radians([around_z, around_x])
+    up = np.array([0.0, 0.0, 1.0])
+    tilted = np.cos(x) * back - np.sin(x) * np.cross(right, back)
+    return np.cos(z) * tilted - np.sin(z) * np.cross(up, tilted) + (1 - np.cos(z)) * (up @ tilted) * up
+
+
+def test_ten_viewpoints_are_as_captioned_and_two_are_not():
+    found = {letter: camera_after(*turns).round(9) + 0.0 for letter, turns in CAPTION.items()}
+    ours = {tuple(viewpoint.axes[2].round(9) + 0.0) for viewpoint in TWELVE[:10]}
+    assert ours == {tuple(found[letter]) for letter in "abcdefghij"}
+    assert (found["k"] == found["b"]).all() and (found["l"] == found["c"]).all()  # as printed: no view of top or bottom
+    turned = {tuple(camera_after(0, turn).round(9) + 0.0) for turn in (90, -90)}
+    assert {tuple(viewpoint.axes[2].round(9) + 0.0) for viewpoint in TWELVE[10:]} == turned
