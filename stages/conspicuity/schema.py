@@ -12,4 +12,5 @@ class Params:
     channels: list[str]  # which of the nine to work out, in this order
     size: list[int]  # rows, columns of the stored maps
     background: str  # filled: kept out of every filter; kept: filtered as rendered, as in the thesis
+    formulas: str  # ours; printed: those of the thesis to the letter; mended: the same without its two slips
     compare_background: bool  # also measure, on one view an object, the background left as rendered, and hues left out
