@@ -62,8 +62,8 @@ def conspicuity(
     background left in (stages.conspicuity.printed).
 
     With our formulas, N(.) is finally applied to each map as a whole, as Itti 1998 brings channels to one scale before
-    their sum, so that the highest value of a map says how much it stands out. Raises ValueError for an unknown channel, a size without
-    pixels, formulas that do not go with the background, or a view of another mesh.
+    their sum, so that the highest value of a map says how much it stands out. Raises ValueError for an unknown channel,
+    a size without pixels, formulas that do not go with the background, or a view of another mesh.
     """
     check_formulas(formulas, filled)
     names = list(CHANNELS) if channels is None else check_channels(channels)

@@ -26,7 +26,8 @@ from .edge import SIGMA, laplacian_of_gaussian
 from .entropy import MEDIAN, SIDE
 from .kernels import mean_of_maxima, mean_of_other_maxima, window_entropy
 from .operators import CENTRES, DELTAS, expand, pyramid, reduce
-from .orientation import ANGLES, RADIUS, SIGMA as GABOR_SIGMA, WAVELENGTH
+from .orientation import ANGLES, RADIUS, WAVELENGTH
+from .orientation import SIGMA as GABOR_SIGMA
 from .symmetry import symmetry, symmetry_lateral, symmetry_radial
 
 OURS, PRINTED, MENDED = FORMULAS = ("ours", "printed", "mended")

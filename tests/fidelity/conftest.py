@@ -1,43 +1,20 @@
 """Each test here compares the library with the letter of the thesis; the fidelity table states how well they agree."""
 
-import re
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
 
+from stages.report.fidelity.agreement import matches
+
 ROOT = Path(__file__).parents[2]
 TABLE = pd.read_csv(ROOT / "data/reference/thesis/fidelity.csv").fillna("")
-ROUNDING = 0.51  # of the last digit that the table states
-FORMS = {  # kind of agreement -> its text in the table
-    "r": r"r = (-?[\d.]+)",
-    "difference": r"difference < ([\d.e-]+)",
-    "settings": r"(\d+) of (\d+) settings",
-    "pixels": r"([\d.]+) pixels",
-    "share": r"([\d.]+) % apart",
-}
-
-
-def check(rows, kind, value):
-    """Fails with the name of the row whose `agreement` is not what its test measures."""
-    for row in rows.itertuples():
-        stated = re.fullmatch(FORMS[kind], row.agreement)
-        assert stated, f"{row.thesis}: the table states {row.agreement!r}, the test measures {kind} {value}"
-        numbers = [float(number) for number in stated.groups()]
-        if kind == "difference":
-            agree = value < numbers[0]
-        elif kind == "settings":
-            agree = numbers == list(value)
-        else:
-            decimals = len(stated[1].partition(".")[2])
-            agree = abs(value - numbers[0]) <= ROUNDING * 10.0**-decimals
-        assert agree, f"{row.thesis}: the table states {row.agreement}, the test measures {value}"
 
 
 @pytest.fixture
 def agreement(request):
-    """A function of a kind of FORMS and what the test measured, which compares it with the rows that name the test.
+    """A function of a kind of agreement.FORMS and what the test measures: compares it with the rows that name the test.
 
     Kinds: r, a correlation; difference, the largest absolute one; settings, (that hold, of how many); pixels; share, in
     percent.
@@ -47,7 +24,9 @@ def agreement(request):
 
     def measured(kind, value):
         assert len(rows), f"no row of the fidelity table names {name}, which measures {kind} {value}"
-        check(rows, kind, value)
+        for row in rows.itertuples():
+            message = f"{row.thesis}: the table states {row.agreement!r}, {name} measures {kind} {value}"
+            assert matches(row.agreement, kind, value), message
 
     return measured
 
