@@ -3,7 +3,7 @@
 The other modules of this package hold our own formulas. Two readings of the letter are here:
 
 - `printed`: N multiplies by (M - m)^2, where m is the mean of all local maxima, the highest included. T eq. 3.3 and 3.4
-  subtract the surround's G - R from the centre's R - G, so that uniform red responds.
+  subtract the surround's G - R from the centre's R - G, so that red amid red responds.
 - `mended`: m is the mean of all other maxima, and the surround's R - G is subtracted, as T [41] means both.
 
 N first scales a map to 0..1, as in T [41]: the units of the maps differ, and T states no other scale. A sum of N is

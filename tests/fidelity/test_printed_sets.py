@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import cv2
 import numpy as np
 import pandas as pd
 
@@ -12,6 +13,9 @@ from stages.kit.rows import read_rows
 from stages.networks.images import to_images
 from stages.sequences.classifiers import MAP_DIMENSIONS, NEIGHBOURS, svm
 from stages.views.viewpoints import PRINCIPAL
+from stages.weights.svm_pixels import SIDE, pixel_samples
+from stages.weights.svm_validation import FOLDS as SVM_FOLDS
+from stages.weights.train import AREAS, PIXELS
 
 ROOT = Path(__file__).parents[2]
 TWENTY = {
@@ -90,6 +94,23 @@ def test_table_3_2(settings, agreement):
         "lod.shrink": False,
     }  # fmt: skip
     agreement("settings", settings("gaze_3_2", printed))
+
+
+def test_svm(settings, agreement):
+    """T3.2.3: all pixels of 200 x 200 pictures, balanced, 30 % of them, ten folds; of the object's own SVM."""
+    bright = np.random.default_rng(0).random((225, 300))
+    truth = np.where(bright > 0.9, 1.0, 0.0)
+    features, labels = pixel_samples({"edge": bright, "color": bright**2}, truth, 0, "any")
+    salient = cv2.resize(truth, (200, 200), interpolation=cv2.INTER_AREA) > np.exp(-2)
+    held, count = settings("gaze_3_2", {"weights.svm": "picture"})
+    more = [
+        SIDE == 200,
+        len(features) == 2 * np.ceil(0.3 * min(salient.sum(), (~salient).sum())),
+        labels.sum() == (~labels).sum(),
+        SVM_FOLDS == 10,
+        PIXELS["picture"] == AREAS["image"],
+    ]
+    agreement("settings", (held + int(sum(more)), count + len(more)))
 
 
 def test_section_4_2(settings, agreement):
