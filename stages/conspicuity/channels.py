@@ -71,7 +71,7 @@ def conspicuity(
     if len(size) != 2 or min(size) < 1:
         raise ValueError(f"the size of the maps must be (rows, columns), each at least 1, got {size}")
     inside = mask_at_size(view.mask, size)
-    maps = CHANNELS | OTHERS | ({} if formulas == OURS else printed_channels(formulas))
+    maps = {**CHANNELS, **OTHERS, **({} if formulas == OURS else printed_channels(formulas))}
     return {name: resize_map(maps[name](mesh, view, filled), view.mask.shape, size) * inside for name in names}
 
 
