@@ -19,6 +19,7 @@ from stages.views import read_view
 from .background import FILLED, check_background
 from .channels import check_channels, check_symmetry, mask_at_size
 from .measure import background_rows, hue_rows, measured_maps
+from .printed import check_formulas
 from .schema import COLUMNS, Params
 
 
@@ -27,6 +28,7 @@ def process(name: str, folder: Path, data: Path, settings: Params) -> Rows:
     cv2.setNumThreads(1)  # a worker is one core, and `seconds` are of one core
     mesh = read_mesh(data / "meshes" / f"{name}.npz")
     channels, (height, width) = list(settings.channels), settings.size
+    filled = settings.background == FILLED
     size = (height, width)
     viewpoints = list(read_table(data / "views" / "viewpoints.csv")["viewpoint"])
     maps = np.zeros((len(viewpoints), len(channels), *size), dtype=np.float16)
@@ -34,14 +36,13 @@ def process(name: str, folder: Path, data: Path, settings: Params) -> Rows:
     rows = []
     for k, viewpoint in enumerate(viewpoints):
         view = read_view(data / "views" / name / f"{viewpoint}.npz")
-        filled = settings.background == FILLED
-        found, measured = measured_maps(mesh, view, channels, size, filled, settings.symmetry)
+        found, measured = measured_maps(mesh, view, channels, size, filled, settings.symmetry, settings.formulas)
         maps[k] = [found[channel] for channel in channels]
         mask[k] = mask_at_size(view.mask, size)
         rows += measured
         if k == 0 and settings.compare_background:
-            rows += background_rows(mesh, view, channels, size)
-            rows += hue_rows(mesh, view, found, size, filled)
+            rows += background_rows(mesh, view, channels, size, settings.formulas)
+            rows += hue_rows(mesh, view, found, size, filled, settings.formulas)
     write_arrays(folder / f"{name}.npz", maps=maps, mask=mask, viewpoints=viewpoints, channels=channels)
     return [{"item": name} | row for row in rows]
 
@@ -52,6 +53,7 @@ def run(workspace: Workspace) -> None:
     check_channels(settings.channels)
     check_background(settings.background)
     check_symmetry(settings.symmetry)
+    check_formulas(settings.formulas, settings.background == FILLED)
     with StageRun(workspace, "conspicuity", COLUMNS, inputs=("meshes", "views")) as stage:
         work = functools.partial(process, data=workspace.data, settings=settings)
         rows = stage.each(work, stage.objects, reads=("meshes/{}.npz", "views/{}", "views/viewpoints.csv"))

@@ -18,6 +18,8 @@ from .fine_grained import fine_grained
 from .intensity import intensity
 from .operators import OUTPUT_SCALE
 from .orientation import orientation
+from .printed import OURS, check_formulas
+from .printed import channels as printed_channels
 from .spectral_residual import spectral_residual
 from .symmetry import (
     symmetry,
@@ -65,6 +67,7 @@ def conspicuity(
     size: Sequence[int] | None = None,
     filled: bool = True,
     symmetry: str = PERCEIVED,
+    formulas: str = OURS,
 ) -> dict[str, np.ndarray]:
     """The conspicuity maps of a view: {channel: (h', w') f4 in 0..1}, zero off the object.
 
@@ -72,18 +75,21 @@ def conspicuity(
     columns) of the maps, by default a quarter of the view's. filled: True keeps the background out of the filters
     (stages.conspicuity.background), False leaves it in, for comparison. The two maps of OpenCV use the image as
     rendered in either case. symmetry: `perceived`, only symmetries that people see, or `strongest`, the best plane and
-    axis of each object, however weak.
+    axis of each object, however weak. formulas: `ours`, or `printed` or `mended`, which are T's to the letter and want
+    the background left in (stages.conspicuity.printed).
 
-    Finally N(.) is applied to each map as a whole, as Itti 1998 brings channels to one scale before their sum, so that
-    the highest value of a map says how much it stands out. Raises ValueError for an unknown channel, a size without
-    pixels, or a view of another mesh.
+    With our formulas, N(.) is finally applied to each map as a whole, as Itti 1998 brings channels to one scale before
+    their sum, so that the highest value of a map says how much it stands out. Raises ValueError for an unknown channel,
+    a size without pixels, formulas that do not go with the background, or a view of another mesh.
     """
+    check_formulas(formulas, filled)
     names = list(CHANNELS) if channels is None else check_channels(channels)
     size = tuple(max(side // REDUCTION, 1) for side in view.mask.shape) if size is None else tuple(size)
     if len(size) != 2 or min(size) < 1:
         raise ValueError(f"the size of the maps must be (rows, columns), each at least 1, got {size}")
     inside = mask_at_size(view.mask, size)
-    maps = CHANNELS | OTHERS | SYMMETRIES[check_symmetry(symmetry)]
+    named = CHANNELS | OTHERS | SYMMETRIES[check_symmetry(symmetry)]
+    maps = named if formulas == OURS else printed_channels(formulas, named)
     return {name: resize_map(maps[name](mesh, view, filled), view.mask.shape, size) * inside for name in names}
 
 

@@ -10,6 +10,7 @@ from stages.kit import Mesh, Stopwatch
 from stages.views import View
 
 from .channels import PERCEIVED, conspicuity, mask_at_size
+from .printed import OURS
 from .silhouette import silhouette_share
 
 
@@ -20,6 +21,7 @@ def measured_maps(
     size: tuple[int, int],
     filled: bool = True,
     symmetry: str = PERCEIVED,
+    formulas: str = OURS,
 ) -> tuple[dict[str, np.ndarray], list[dict]]:
     """({channel: map}, rows): the maps of a view, and one row per map with metric `silhouette_share`.
 
@@ -29,19 +31,26 @@ def measured_maps(
     maps, rows = {}, []
     for channel in channels:
         with Stopwatch() as watch:
-            maps |= conspicuity(mesh, view, [channel], size, filled, symmetry)
+            maps |= conspicuity(mesh, view, [channel], size, filled, symmetry, formulas)
         rows.append(_row(channel, view, "silhouette_share", maps[channel], watch.seconds))
     return maps, rows
 
 
-def background_rows(mesh: Mesh, view: View, channels: Iterable[str], size: tuple[int, int]) -> list[dict]:
+def background_rows(
+    mesh: Mesh, view: View, channels: Iterable[str], size: tuple[int, int], formulas: str = OURS
+) -> list[dict]:
     """Rows with metric `silhouette_share_unfilled`: the same with the background as rendered."""
-    maps = conspicuity(mesh, view, channels, size, filled=False)
+    maps = conspicuity(mesh, view, channels, size, False, formulas=formulas)
     return [_row(channel, view, "silhouette_share_unfilled", maps[channel], None) for channel in channels]
 
 
 def hue_rows(
-    mesh: Mesh, view: View, maps: Mapping[str, np.ndarray], size: tuple[int, int], filled: bool = True
+    mesh: Mesh,
+    view: View,
+    maps: Mapping[str, np.ndarray],
+    size: tuple[int, int],
+    filled: bool = True,
+    formulas: str = OURS,
 ) -> list[dict]:
     """Rows of a view with hues, none of a grey one: what they change in its maps, {channel: map}.
 
@@ -51,7 +60,7 @@ def hue_rows(
     if (view.rgb == view.rgb[..., :1]).all():
         return []
     grey = np.rint(view.rgb.mean(axis=2, keepdims=True)).astype(np.uint8).repeat(3, axis=2)
-    in_grey = conspicuity(mesh, replace(view, rgb=grey), maps, size, filled)
+    in_grey = conspicuity(mesh, replace(view, rgb=grey), maps, size, filled, formulas=formulas)
     inside, rows = mask_at_size(view.mask, size), []
     for channel, values in maps.items():
         others = {"grey_likeness": in_grey[channel], "intensity_likeness": maps.get("intensity", values)}

@@ -26,7 +26,7 @@ from .ground_truth import digest, ground_truth_amounts, ground_truth_files
 from .ground_truth.source import Files
 from .schema import COLUMNS, Params
 from .table import weight_rows, weight_table
-from .train import train_all, train_object
+from .train import check_pixels, train_all, train_object
 from .training_data import collect_training_data, read_training_data
 
 GROUND_TRUTH = "ground_truth"  # the folder of the training data in data/SET/weights
@@ -54,7 +54,8 @@ def process(item: tuple[str, Files], folder: Path, data: Path, source: str, seed
 
 def run(workspace: Workspace) -> None:
     """Runs the stage on the data set of a workspace."""
-    chosen, meshes = workspace.settings(Params).method, workspace.settings(MeshesParams)
+    settings, meshes = workspace.settings(Params), workspace.settings(MeshesParams)
+    check_pixels(settings.svm)
     marks = workspace.root / "data" / "annotations"
     with StageRun(workspace, "weights", COLUMNS, inputs=("meshes", "conspicuity")) as stage:
         # Objects without ground truth are no items: what is trained on the others does not depend on them.
@@ -69,17 +70,19 @@ def run(workspace: Workspace) -> None:
                 print(f"weights: {row['item']} is left out: {row['note']}", file=sys.stderr)
         convexities = [(row["item"], row["_convexity"]) for row in rows if "_convexity" in row]
         training_data = read_training_data(stage.folder / GROUND_TRUTH)
-        table = weight_table(training_data, chosen)
+        table = weight_table(training_data, settings.method)
         write_table(stage.folder / "weights.csv", table)
         stage.rows += weight_rows(table)
         if training_data:
             write_table(stage.folder / "convexity.csv", pd.DataFrame(convexities, columns=["object", "convexity"]))
             stage.rows += train_all(stage.folder, training_data, stage.seed)
-            train = functools.partial(train_object, made=stage.folder / GROUND_TRUTH, seed=stage.seed)
+            train = functools.partial(
+                train_object, made=stage.folder / GROUND_TRUTH, seed=stage.seed, trained_on=settings.svm
+            )
             stage.each(train, list(training_data), reads=[f"weights/{GROUND_TRUTH}"])
         stage.metrics({"objects": len(training_data)} | accuracies(stage.rows))
     count = f"{len(training_data)} of {len(stage.objects)} objects"
-    print(f"weights: {count} have ground truth; enhanced takes {chosen}")
+    print(f"weights: {count} have ground truth; enhanced takes {settings.method}")
 
 
 def accuracies(rows: Rows) -> dict[str, float]:

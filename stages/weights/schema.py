@@ -14,6 +14,7 @@ COLUMNS = {
 
 @dataclass
 class Params:
-    """Which weights the methods `enhanced` and `glance` take."""
+    """Which weights the methods `enhanced` and `glance` take, and what the SVMs are trained on."""
 
     method: str  # gaze (learned from human gaze, comes with the package) or fixations (learned from this data set)
+    svm: str  # pixels of an object's own SVMs: object (at most 1,000 of them) or picture (all that T3.2.3 draws)

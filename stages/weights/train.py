@@ -1,8 +1,9 @@
 """Trains the SVMs of T3.2.3: one for all objects, one per object, one per viewpoint; and one for all but each object.
 
-They are trained on pixels of the object. Pixels of the whole image, as in the thesis, give a higher accuracy, but
-almost all of it is due to separating the object from the background, and a worse ranking within the object. Both are
-measured.
+They are trained on at most 1,000 pixels of the object. Pixels of the whole picture, as in the thesis, give a higher
+accuracy, but almost all of it is due to separating the object from the background, and a worse ranking within the
+object. Both are measured. With `picture` the SVMs of an object and of its views are trained as T3.2.3 prints it, on all
+that `pixel_samples` draws from pictures of 200 x 200 pixels.
 """
 
 from pathlib import Path
@@ -12,27 +13,35 @@ import numpy as np
 from stages.kit.run import Rows
 
 from .learned_weights import write_models
-from .svm import fit_svm
+from .svm import MAX_ROWS, fit_svm
 from .svm_validation import cross_validated, grouped_validated
 from .training_data import read_training_data
 
 AREAS = {"image": "image_", "object": ""}  # area that the pixels were drawn from -> prefix of their arrays
+PIXELS = {"object": "", "picture": "image_"}  # what an object's own SVMs are trained on -> prefix of their arrays
 MIN_ROWS = 40  # per model, so that each of ten folds has two of either class
 
 
-def train_object(name: str, folder: Path, made: Path, seed: int) -> Rows:
+def check_pixels(name: str) -> None:
+    """Raises ValueError unless `name` is one of PIXELS."""
+    if name not in PIXELS:
+        raise ValueError(f"weights.svm={name!r}: choose one of {', '.join(PIXELS)}")
+
+
+def train_object(name: str, folder: Path, made: Path, seed: int, trained_on: str = "object") -> Rows:
     """Trains and stores the SVMs of one object, folder/svm/NAME.npz; returns rows with their accuracy.
 
     The models are `object`, trained on its own pixels, `view`, on those of one view each, and `without`, on all other
-    objects. made: the folder with the training data of all objects.
+    objects. made: the folder with the training data of all objects; trained_on: one of PIXELS, of the first two.
     """
     training_data = read_training_data(made)
     own = training_data[name]
-    features, labels, views = own["pixels"], own["labels"], own["views"]
-    per_view = [_fit(features[views == k], labels[views == k], seed) for k in range(len(own["distances"]))]
+    features, labels, views = (own[f"{PIXELS[trained_on]}{key}"] for key in ("pixels", "labels", "views"))
+    most = MAX_ROWS if trained_on == "object" else len(labels)
+    per_view = [_fit(features[views == k], labels[views == k], seed, most) for k in range(len(own["distances"]))]
     others = [arrays for other, arrays in training_data.items() if other != name]
     without = [_fit(*_joined_rows(others), seed)] if others else []
-    models = {"object": [_fit(features, labels, seed)], "view": per_view, "without": without}
+    models = {"object": [_fit(features, labels, seed, most)], "view": per_view, "without": without}
     write_models(folder / "svm" / f"{name}.npz", models)
     rows = []
     for area, prefix in AREAS.items():
@@ -65,9 +74,9 @@ def _joined_rows(objects, prefix=""):
     return np.concatenate(pixels), np.concatenate(labels)
 
 
-def _fit(features, labels, seed):
+def _fit(features, labels, seed, max_rows=MAX_ROWS):
     """A model, or None if a class is missing."""
-    return fit_svm(features, labels, seed) if 0 < labels.sum() < len(labels) else None
+    return fit_svm(features, labels, seed, max_rows) if 0 < labels.sum() < len(labels) else None
 
 
 def _row(name, area, training, validation, validate, features, labels, *rest):

@@ -14,7 +14,7 @@ from stages.views.__main__ import run as run_views
 VIEWS = {"viewpoints": "four", "size": [90, 120], "renderer": "raster", "background": "black",
          "compare_sets": False}  # fmt: skip
 SECTION = {"channels": ["intensity", "edge"], "size": [45, 60], "background": "filled", "symmetry": "perceived",
-           "compare_background": True}  # fmt: skip
+           "formulas": "ours", "compare_background": True}  # fmt: skip
 
 
 def write_object(workspace, name, size):

@@ -7,12 +7,14 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
+from stages.report.fidelity.agreement import is_printed, matches
 from stages.report.fidelity.table import PRINTED, RUNS
 from stages.report.topics import KINDS, TOPICS
 
 ROOT = Path(__file__).parents[2]
 FRAME = pd.read_csv(ROOT / "data/reference/thesis/fidelity.csv").fillna("")
 ROWS = list(FRAME.itertuples())
+FIDELITY = ROOT / "tests/fidelity"
 NUMBERED = {  # what the thesis numbers: chapter -> the last number of each
     "eq.": {3: 25}, "table": {3: 2, 4: 9, 5: 6}, "figure": {3: 36, 4: 19, 5: 6},
 }  # fmt: skip
@@ -46,6 +48,48 @@ def test_each_row_names_code_sets_and_twins_that_exist(row):
     assert not row.sets or (ROOT / "conf/data" / f"{row.sets}.yaml").is_file()
     assert row.twin in ("", "claims", *TWINS)
     assert row.run in RUNS and (row.run == PRINTED) <= (not row.differs)
+
+
+def test_what_is_as_printed_agrees_by_a_test():
+    for row in ROWS:
+        assert bool(row.test) == bool(row.agreement), f"{row.thesis}: a test without its agreement, or the reverse"
+        printed = bool(row.agreement) and is_printed(row.agreement)
+        assert row.run != PRINTED or printed, f"{row.thesis}: {row.agreement!r} is not as printed"
+
+
+@pytest.mark.parametrize(
+    ("text", "kind", "measured", "same", "printed"),
+    [
+        ("r = 0.997", "r", 0.9974, True, True),
+        ("r = 0.997", "r", 0.9981, False, True),
+        ("r = 0.89", "r", 0.8949, True, False),
+        ("difference < 1e-6", "difference", 9e-7, True, True),
+        ("difference < 1e-6", "difference", 2e-6, False, True),
+        ("difference < 0.1", "difference", 0.05, True, False),
+        ("5 of 5 settings", "settings", (5, 5), True, True),
+        ("4 of 5 settings", "settings", (5, 5), False, False),
+        ("429.0 pixels", "pixels", 429.04, True, False),
+        ("0.0 % apart", "share", 0.2, False, True),
+        ("r = 1.000", "difference", 1.0, False, True),
+    ],
+)
+def test_an_agreement_is_compared_to_its_last_digit(text, kind, measured, same, printed):
+    assert matches(text, kind, measured) is same and is_printed(text) is printed
+
+
+@pytest.mark.parametrize("row", [row for row in ROWS if row.test], ids=lambda row: row.thesis)
+def test_each_named_test_exists_and_is_never_skipped(row):
+    file, _, name = row.test.partition("::")
+    tree = ast.parse((FIDELITY / file).read_text())
+    found = {node.name: node for node in tree.body if isinstance(node, ast.FunctionDef)}
+    assert name in found, f"{row.thesis}: no test {row.test}"
+    marked = [ast.unparse(mark) for mark in found[name].decorator_list]
+    marked += [ast.unparse(node) for node in tree.body if isinstance(node, ast.Assign)]
+    assert not any(re.search("skip|xfail|slow|pytestmark", text) for text in marked), (
+        f"{row.thesis}: {row.test} is left out"
+    )
+    measured = "agreement" in [argument.arg for argument in found[name].args.args]
+    assert measured, f"{row.thesis}: {row.test} measures no agreement"
 
 
 def test_what_was_run_has_a_twin_and_measured_rows():

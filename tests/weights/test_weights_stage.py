@@ -9,9 +9,11 @@ from stages.kit.rows import read_rows
 from stages.views import FOUR
 from stages.weights import METHODS, read_learned_weights
 from stages.weights import __main__ as stage
+from stages.weights.learned_weights import read_models
+from stages.weights.train import train_object
 
 SECTIONS = {
-    "weights": {"method": "fixations"},
+    "weights": {"method": "fixations", "svm": "object"},
     "meshes": {"source": "folder", "folder": "", "up": "z", "unit": "m", "objects": [], "strict": False, "classes": {}},
 }
 CHANNELS = ["edge", "symmetry"]
@@ -65,9 +67,9 @@ def run(workspace, monkeypatch):
         collected.append(name)
         return collect(name, *rest)
 
-    def noted_train(name, folder, made, seed):
+    def noted_train(name, *rest, **more):
         trained.append(name)
-        return fit(name, folder, made, seed)
+        return fit(name, *rest, **more)
 
     noted_train.__module__, noted_train.__qualname__ = fit.__module__, fit.__qualname__
     with monkeypatch.context() as patch:
@@ -145,15 +147,35 @@ def test_maps_without_a_feature_of_our_model_leave_the_object_out_with_a_note(
 ):
     monkeypatch.setitem(globals(), "CHANNELS", ["edge"])
     add_object("ball", 1, [3, 4, 5])
-    stage.run(make_workspace(SECTIONS | {"weights": {"method": "gaze"}}))
+    stage.run(make_workspace(SECTIONS | {"weights": {"method": "gaze", "svm": "object"}}))
     assert "ball is left out: conspicuity.channels lacks symmetry" in capsys.readouterr().err
 
 
 def test_without_ground_truth_only_the_published_weights_are_written(add_object, make_workspace):
     add_object("plain", 0.6)
-    workspace = make_workspace(SECTIONS | {"weights": {"method": "gaze"}})
+    workspace = make_workspace(SECTIONS | {"weights": {"method": "gaze", "svm": "object"}})
     stage.run(workspace)
     assert [path.name for path in (workspace.data / "weights").iterdir()] == ["weights.csv"]
     rows = read_rows(workspace.measurements / "weights.csv.gz")
     assert set(rows.metric) == {"weight"} and set(rows.method) == {*METHODS, "enhanced"} and rows.item.isna().all()
     assert read_json(workspace.metrics / "weights.json") == {"objects": 0}
+
+
+@pytest.mark.parametrize(("trained_on", "prefix"), [("object", ""), ("picture", "image_")])
+def test_svms_of_an_object_learn_from_its_own_pixels_or_from_all_of_the_picture(tmp_path, trained_on, prefix):
+    generator, arrays = np.random.default_rng(0), {"distances": np.zeros((2, 3))}
+    for kind, shift in (("", 0.0), ("image_", 5.0)):
+        labels = np.arange(1400) % 2 == 0
+        arrays[f"{kind}pixels"] = generator.normal(shift, 1, (1400, 3)) + labels[:, None]
+        arrays |= {f"{kind}labels": labels, f"{kind}views": np.arange(1400) // 700}
+    write_arrays(tmp_path / "made/ball.npz", **arrays)
+    train_object("ball", tmp_path, tmp_path / "made", 0, trained_on)
+    model = read_models(tmp_path / "svm/ball.npz", "object")[0]
+    own = arrays[f"{prefix}pixels"]
+    whole = np.abs(model.center - own.mean(axis=0)).max() < 1e-9
+    assert np.abs(model.center - own.mean(axis=0)).max() < 0.2 and whole == (trained_on == "picture")
+
+
+def test_other_pixels_are_refused(make_workspace):
+    with pytest.raises(ValueError, match=r"weights\.svm='views': choose one of object, picture"):
+        stage.run(make_workspace(SECTIONS | {"weights": {"method": "gaze", "svm": "views"}}))

@@ -7,9 +7,21 @@ from stages.kit.jit import kernel_of
 kernel = kernel_of(__file__)
 
 
-@kernel
 def mean_of_other_maxima(values: np.ndarray, least: float) -> float:
-    """The mean of the local maxima above `least` of values (h, w) f4, without the highest; 0 if there is no other.
+    """The mean of the local maxima above `least` of values (h, w) f4, without the highest; 0 if there is no other."""
+    total, highest, count = _maxima(values, least)
+    return (total - highest) / (count - 1) if count > 1 else 0.0
+
+
+def mean_of_maxima(values: np.ndarray) -> float:
+    """The mean of all local maxima of values (h, w) f4, 0 or more; 0 of an even map, which has none above zero."""
+    total, _, count = _maxima(values, 0.0)
+    return total / count if count else 0.0
+
+
+@kernel
+def _maxima(values: np.ndarray, least: float) -> tuple[float, float, int]:
+    """(sum, highest, number) of the local maxima above `least` of values (h, w) f4.
 
     A local maximum is at least as high as its eight neighbours; a plateau counts as one.
     """
@@ -29,7 +41,7 @@ def mean_of_other_maxima(values: np.ndarray, least: float) -> float:
                         if values[r, c] == values[i, j] and not counted[r, c] and _is_peak(values, r, c):
                             counted[r, c] = True
                             plateau.append((r, c))
-    return (total - highest) / (count - 1) if count > 1 else 0.0
+    return total, highest, count
 
 
 @kernel

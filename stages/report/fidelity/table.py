@@ -5,18 +5,18 @@ from stages.report.results import NotRun, Results
 from stages.report.words import dataset_text
 
 PRINTED = "as printed"
-RUNS = (PRINTED, "differs", "no data", "illustration")  # how a row is run; all but the first say what differs
-HEADS = {"code": "in stages/", "run": "run as printed?", "sets": "on", "twin": "table or figure"}
+RUNS = (PRINTED, "differs", "no data", "not measured", "illustration")  # all but the first say what differs
+HEADS = {"code": "in stages/", "run": "run as printed?", "sets": "on", "twin": "table or figure", "test": "test"}
 
 
 def build(results: Results) -> Table:
-    """One row each: where it is in the code, whether it runs as printed and on which set, and what differs."""
+    """One row each: where it is in the code, whether it runs as printed, by which test and how well, what differs."""
     if results.own_meshes:
         raise NotRun("the thesis is not about a folder of one's own", "report", runnable=False)
     frame = results.thesis("fidelity").fillna("")
     said = (frame["run"] + ": " + frame["differs"]).str.removesuffix(": ").replace(PRINTED, "yes")
     said = said.str.replace(r"\b(\w+_\w+)\b", r"`\1`", regex=True)  # names of files and columns
-    files = {name: frame[name].map(lambda text: text and f"`{text}`") for name in ("code", "twin")}
+    files = {name: frame[name].map(lambda text: text and f"`{text}`") for name in ("code", "twin", "test")}
     shown = frame.assign(run=said, sets=frame["sets"].map(dataset_text), **files).drop(columns="differs")
     counts = {str(name).replace(" ", "_"): count for name, count in frame["run"].value_counts().items()}
     words = dict.fromkeys((run.replace(" ", "_") for run in RUNS), 0) | counts

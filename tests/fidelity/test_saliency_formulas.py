@@ -1,0 +1,234 @@
+"""T3.1.1 and T3.2, eq. 3.1 to 3.9: conspicuity maps and their averages, in plain loops of numpy and scipy."""
+
+from pathlib import Path
+
+import numpy as np
+from scipy import ndimage
+
+from stages.conspicuity import conspicuity
+from stages.conspicuity.channels import mask_at_size
+from stages.conspicuity.dkl import LINEAR, MECHANISMS
+from stages.kit import Mesh, Viewpoint
+from stages.meshes import load, normalise
+from stages.salient_points.fuse import COMBINATIONS, fuse
+from stages.views import View, render
+
+ROOT = Path(__file__).parents[2]
+MESH = Mesh([[0, -0.5, -0.5], [0, 0.5, -0.5], [0, 0, 0.5]], [[0, 1, 2]])
+BINOMIAL = np.array([1, 4, 6, 4, 1]) / 16  # the dyadic Gaussian pyramid of Burt and Adelson
+PAIRS = [(c, c + delta) for c in (2, 3, 4) for delta in (3, 4)]
+
+
+def smaller(image):
+    for axis in (0, 1):
+        image = ndimage.convolve1d(image, BINOMIAL, axis=axis, mode="nearest")
+    return image[::2, ::2]
+
+
+def pyramid(image):
+    levels = [np.asarray(image, dtype=np.float64)]
+    for _ in range(8):
+        levels.append(smaller(levels[-1]))
+    return levels
+
+
+def at_scale(image, fine, steps):
+    """The coarse image interpolated to the pixels of the fine one: pixel k of scale s lies on pixel k 2^s."""
+    for step in range(steps, 0, -1):
+        rows, columns = (-(-side // 2 ** (step - 1)) for side in fine)
+        doubled = np.zeros((2 * image.shape[0], 2 * image.shape[1]))
+        doubled[::2, ::2] = image
+        doubled = np.pad(doubled, 2, mode="edge")[2:-2, 2:-2]
+        weight = np.zeros_like(doubled)
+        weight[::2, ::2] = 1
+        for axis in (0, 1):
+            doubled = ndimage.convolve1d(doubled, BINOMIAL, axis=axis, mode="constant")
+            weight = ndimage.convolve1d(weight, BINOMIAL, axis=axis, mode="constant")
+        image = (doubled / weight)[:rows, :columns]
+    return image
+
+
+def local_maxima(image):
+    """One value for each regional maximum above zero: pixels that no neighbour exceeds, plateaus counted once."""
+    highest = image == ndimage.maximum_filter(image, 3, mode="nearest")
+    labels, count = ndimage.label(highest & (image > 0), np.ones((3, 3)))
+    values = []
+    for k in range(1, count + 1):
+        values += list(np.unique(image[labels == k]))
+    return np.array(values)
+
+
+def n(image, mended=False):
+    """N(.): the image times (M - m)^2, M its maximum and m the mean of all (mended: all other) local maxima."""
+    scaled = ((image - image.min()) / np.ptp(image)).astype(np.float32)
+    maxima = np.sort(local_maxima(scaled))
+    counted = maxima[:-1] if mended else maxima
+    return scaled * (scaled.max() - (counted.mean() if len(counted) else 0)) ** 2
+
+
+def across_scales(levels, surround=None, mended=False):
+    """The sums over c and s of N(|I(c) - I(s)|), reduced to scale 4 and added point by point (eq. 3.1)."""
+    total = 0
+    for c, s in PAIRS:
+        other = at_scale((surround or levels)[s], levels[c].shape, s - c)
+        term = n(np.abs(levels[c] - other), mended)
+        for _ in range(c, 4):
+            term = smaller(term)
+        total = total + term
+    return total
+
+
+def gabor_energy(image, degrees):
+    y, x = np.mgrid[4:-5:-1, -4:5]
+    across = y * np.cos(np.radians(degrees)) - x * np.sin(np.radians(degrees))
+    wave = np.exp(-(x**2 + y**2) / (2 * 1.5**2)) * np.exp(2j * np.pi * across / 4)
+    even, odd = (ndimage.correlate(image, part, mode="nearest") for part in (wave.real, wave.imag))
+    return np.hypot(even, odd)
+
+
+def printed(picture, channel, mended=False):
+    """The library's map with the printed formulas, on the scale of its sum."""
+    rgb, mask = picture
+    view = View(rgb, np.full(mask.shape, 10, np.float32), np.where(mask, 0, -1).astype(np.int32), Viewpoint(0, 0))
+    formulas = "mended" if mended else "printed"
+    size = tuple(side // 4 for side in mask.shape)
+    return conspicuity(MESH, view, [channel], size, filled=False, formulas=formulas)[channel]
+
+
+def correlation(found, literal, mask):
+    """Of two maps over the object; pixel k of the library's, a quarter of the picture, lies at 4 k + 1.5 of it."""
+    scale = round(mask.shape[0] / literal.shape[0])
+    places = np.stack(np.mgrid[: found.shape[0], : found.shape[1]]) * 4 + 1.5
+    literal = ndimage.map_coordinates(np.asarray(literal, dtype=np.float64), places / scale, order=1, mode="nearest")
+    inside = found > 0
+    return float(np.corrcoef(found[inside], literal[inside])[0, 1])
+
+
+def test_normalisation(picture, agreement):
+    from stages.conspicuity import printed as library
+
+    rgb, _ = picture
+    images = [
+        rgb.mean(axis=2),
+        ndimage.gaussian_filter(np.random.default_rng(0).random((60, 80)), 2),
+        rgb[..., 0] / 255,
+    ]
+    apart = [np.abs(library.normalise(np.float32(image), mended) - n(np.float32(image), mended)).max()
+             for image in images for mended in (False, True)]  # fmt: skip
+    agreement("difference", max(apart))
+
+
+def test_intensity(picture, agreement):
+    rgb, mask = picture
+    literal = across_scales(pyramid(rgb.mean(axis=2) / 255))
+    agreement("r", correlation(printed(picture, "intensity"), literal, mask))
+
+
+def test_orientation(picture, agreement):
+    rgb, mask = picture
+    levels = pyramid(rgb.mean(axis=2) / 255)
+    literal = sum(n(across_scales([gabor_energy(level, angle) for level in levels])) for angle in (0, 45, 90, 135))
+    agreement("r", correlation(printed(picture, "orientation"), literal, mask))
+
+
+def opponents(rgb):
+    r, g, b = np.moveaxis(rgb / 255, 2, 0)
+    red, green, blue = r - (g + b) / 2, g - (r + b) / 2, b - (r + g) / 2
+    yellow = (r + g) / 2 - np.abs(r - g) / 2 - b
+    return (red, green), (blue, yellow)
+
+
+def color_likeness(picture, mended):
+    rgb, mask = picture
+    literal = 0
+    for first, second in opponents(rgb):
+        centre, surround = pyramid(first - second), pyramid(first - second if mended else second - first)
+        literal = literal + across_scales(centre, surround, mended)
+    return correlation(printed(picture, "color", mended), literal, mask)
+
+
+def test_color(picture, agreement):
+    """eq. 3.3 to 3.5: |(R(c) - G(c)) - (G(s) - R(s))|, and blue and yellow likewise."""
+    agreement("r", color_likeness(picture, mended=False))
+
+
+def test_mended_color(picture, agreement):
+    """The same as T [41] means it: |(R(c) - G(c)) - (R(s) - G(s))|, and N without the highest maximum."""
+    agreement("r", color_likeness(picture, mended=True))
+
+
+def test_the_sign_of_color(picture):
+    """The map with the printed sign beside the mended one: two readings, not one."""
+    inside = picture[1][2::4, 2::4]
+    maps = [printed(picture, "color", mended)[inside] for mended in (False, True)]
+    assert round(np.corrcoef(*maps)[0, 1], 2) == 0.86
+
+
+def test_dkl(picture, agreement):
+    rgb, mask = picture
+    planes = np.moveaxis(LINEAR[rgb] @ MECHANISMS.T, 2, 0)
+    literal = sum(across_scales(pyramid(plane)) for plane in planes)
+    agreement("r", correlation(printed(picture, "dkl"), literal, mask))
+
+
+def luminance(rgb):
+    return np.rint(rgb @ [0.299, 0.587, 0.114])
+
+
+def test_contrast(picture, agreement):
+    """The variance of the luminance in windows of 80 x 80 pixels of 900 rows, the background counted."""
+    rgb, mask = picture
+    side = round(80 * len(rgb) / 900)
+    grey = luminance(rgb)
+    mean = ndimage.uniform_filter(grey, side, mode="constant")
+    literal = n(ndimage.uniform_filter(grey**2, side, mode="constant") - mean**2)
+    agreement("r", correlation(printed(picture, "contrast"), smaller(smaller(literal)), mask))
+
+
+def test_entropy(picture, agreement):
+    """eq. 3.7 in 9 x 9 pixels behind a median filter, the background counted."""
+    rgb, mask = picture
+    grey = ndimage.median_filter(luminance(rgb).astype(np.uint8), 3, mode="nearest")
+
+    def bits(window):
+        shares = np.unique(window, return_counts=True)[1] / len(window)
+        return -(shares * np.log2(shares)).sum()
+
+    literal = n(ndimage.generic_filter(grey.astype(np.float64), bits, 9, mode="reflect"))
+    agreement("r", correlation(printed(picture, "entropy"), smaller(smaller(literal)), mask))
+
+
+def test_edge(picture, agreement):
+    """The second derivatives of the picture smoothed by a Gaussian (T3.2)."""
+    rgb, mask = picture
+    sigma = max(2 * len(rgb) / 900, 0.7)
+    literal = n(np.abs(ndimage.laplace(ndimage.gaussian_filter(luminance(rgb), sigma, mode="nearest"), mode="nearest")))
+    agreement("r", correlation(printed(picture, "edge"), smaller(smaller(literal)), mask))
+
+
+def test_average(agreement):
+    """eq. 3.8: the sum of the maps over their number, for i = {I, O, RG, DKL, Sym, Con, Ent} and curvature."""
+    maps = {name: np.random.default_rng(k).random((20, 30)) for k, name in enumerate(COMBINATIONS["VisAttAll"])}
+    assert len(maps) == 8
+    agreement("difference", np.abs(fuse(maps) - sum(maps.values()) / len(maps)).max())
+
+
+def test_weighted_average(agreement):
+    """eq. 3.9: the weighted sum of nine maps over the sum of their weights."""
+    names = [*COMBINATIONS["VisAttAll"], "edge"]
+    maps = {name: np.random.default_rng(k).random((20, 30)) for k, name in enumerate(names)}
+    weights = {name: 0.1 + k / 9 for k, name in enumerate(names)}
+    literal = sum(weights[name] * maps[name] for name in names) / sum(weights.values())
+    agreement("difference", np.abs(fuse(maps, weights) - literal).max())
+
+
+def test_our_formulas(agreement):
+    """Nine maps of a dromedary by our own formulas, background filled, beside the printed ones: the least likeness."""
+    mesh = normalise(load(ROOT / "samples/dromedary.glb"))
+    view = render(mesh, Viewpoint(90, 0), (450, 600), renderer="raster")
+    ours = conspicuity(mesh, view)
+    letter = conspicuity(mesh, view, filled=False, formulas="printed")
+    inside = mask_at_size(view.mask, ours["intensity"].shape)
+    likeness = [np.corrcoef(ours[name][inside], letter[name][inside])[0, 1] for name in ours if letter[name].any()]
+    assert len(likeness) == 9
+    agreement("r", float(min(likeness)))
