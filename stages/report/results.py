@@ -1,9 +1,9 @@
 """What was measured, set by set, beside what the thesis says; a missing measurement is NotRun, never a crash."""
 
-from collections.abc import Callable, Iterable, Sequence, Sized
+from collections.abc import Callable, Hashable, Iterable, Sequence, Sized
 from functools import cached_property
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 import pandas as pd
@@ -84,6 +84,7 @@ class Results:
         self.sets = workspace.sets  # the names of the data sets that are switched on, in order
         self.read: set[str] = set()  # the data sets that were read since somebody cleared this
         self._tables: dict[Path, pd.DataFrame] = {}
+        self._known: dict[Hashable, Any] = {}
 
     @classmethod
     def published(cls, workspace: Workspace, settings: Params) -> "Results":
@@ -161,6 +162,12 @@ class Results:
         if path not in self._tables:
             self._tables[path] = read(path)
         return self._tables[path]
+
+    def once(self, name: Hashable, work: Callable[[], Any]) -> Any:
+        """The result of some work on the rows, computed at the first call."""
+        if name not in self._known:
+            self._known[name] = work()
+        return self._known[name]
 
     def bench(self, name: str) -> pd.DataFrame:
         """Rows of reports/bench/NAME.csv (or .csv.gz): what `make bench` measured; times are ratios to a named peer."""

@@ -9,7 +9,6 @@ from .results import NUMBERS, NotRun, Results
 TOO_MANY = 0.2  # share of invalid pairs from which a claim cannot be tested
 SATURATED = 0.95  # training accuracy of a network that has learned its training part
 ONE_ANSWER = 0.95  # share of the commonest prediction from which a classifier answers without looking
-NO_POINT, NO_RING = "no point found", "less than one ring kept"
 UNTRAINED, ONE_CLASS = "training stopped before it was saturated", "one answer for nearly all samples"
 GUESSING, SAME = "less accurate than guessing", "both sides are the same mesh"
 TRIAL = ("group", "method", "split", "variant", "classifier", "scaling", "data", "weights", "mode", "size", "passes")
@@ -31,11 +30,11 @@ def causes(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd
 @check("lod")
 def kept_neighbourhoods(results: Results, dataset: str, rows: pd.DataFrame) -> pd.Series:
     """Rows of methods that keep neighbourhoods, and kept none: their mesh is that of plain simplification."""
-    found = pd.Series("", index=rows.index)
-    if "rings" in rows:
-        found[rows["rings"] < 1] = NO_RING
-        found[(rows["points"] == 0) & rows["rings"].notna()] = NO_POINT
-    return found
+    from .meshes.valid import UNIT, invalid_units  # the topic imports this module
+
+    known = results.once(("invalid units", dataset), lambda: invalid_units(results.rows("lod", dataset)))
+    cells = pd.MultiIndex.from_frame(rows[UNIT])
+    return pd.Series(known.reindex(cells).fillna("").to_numpy(), index=rows.index, dtype=object)
 
 
 @check("classification")

@@ -8,12 +8,13 @@ import pytest
 
 from stages.report.claims import Claim
 from stages.report.differences import differences, invalid
-from stages.report.validity import GUESSING, NO_POINT, NO_RING, ONE_CLASS, SAME, UNTRAINED, causes
+from stages.report.meshes.valid import NO_POINT, NO_RING
+from stages.report.validity import GUESSING, ONE_CLASS, SAME, UNTRAINED, causes
 from stages.report.verdict import judge
 
 OVER = Claim(
     key="one", section="T9", sentence="Sentence.", stage="lod", dataset="test", over=("item",), within=("target",),
-    first={"method": "x"}, second={"method": "plain"}, where={"metric": "error"}, scale=1.0, unit="units",
+    first={"method": "x"}, second={"method": "qem"}, where={"metric": "error"}, scale=1.0, unit="units",
 )  # fmt: skip
 COUNT = 12  # objects, each at two targets: a fifth of 24 pairs is 4.8
 
@@ -24,7 +25,7 @@ def simplified(root, small, without_points=0, without_rings=0, value=2.0):
     x = x.assign(method="x", points=9, rings=3.0, value=value + np.linspace(0, 0.1, 2 * COUNT))
     x.loc[x.index[:without_points], ["points", "value"]] = 0, 100.0
     x.loc[x.index[without_points : without_points + without_rings], ["rings", "value"]] = 0.9, 100.0
-    plain = x.assign(method="plain", points=0, rings=np.nan, value=1.0)
+    plain = x.assign(method="qem", points=0, rings=np.nan, value=1.0)
     small.write(root, "lod", pd.concat([x, plain]).assign(dataset="test", metric="error"))
     return small.results(root)
 
@@ -65,16 +66,19 @@ def test_a_mean_over_methods_needs_each_of_them(root, small):
 
 
 def test_two_sides_with_the_same_mesh_are_no_evidence(root, small):
-    results = simplified(root, small)
-    rows = results.rows("lod")
-    same = (rows["item"] == "o00") & (rows["method"] == "plain")
-    rows.loc[same, "value"] = rows.loc[(rows["item"] == "o00") & (rows["method"] == "x"), "value"].to_numpy()
-    zero = rows["item"] == "o01"  # two errors of zero say that both meshes are exact
-    rows.loc[zero, "value"] = 0.0
-    small.write(root, "lod", rows)
-    row = judge([OVER], small.results(root)).iloc[0]
+    rows = simplified(root, small).rows("lod")
+    other = rows[rows["method"] == "x"].assign(method="y")
+    other.loc[other["item"] != "o00", "value"] = 1.5
+    zero = rows.assign(value=rows["value"].where(rows["item"] != "o01", 0.0))  # two exact meshes
+    other.loc[other["item"] == "o01", "value"] = 0.0
+    small.write(root, "lod", pd.concat([zero.assign(value=zero["value"] + 9 * (zero["method"] == "qem")), other]))
+    one = replace(OVER, second={"method": "y"})
+    row = judge([one], small.results(root)).iloc[0]
     assert row["validity"] == f"test: 2 of 24 pairs invalid: {SAME} (2)" and row["units"] == COUNT - 1
-    assert differences(small.results(root), OVER)["o01"] == 0
+    assert differences(small.results(root), one)["o01"] == 0
+    same_as_plain = replace(OVER, first={"method": "y"}, second={"method": "qem"})
+    small.write(root, "lod", pd.concat([rows, other.assign(value=1.0)]))
+    assert judge([same_as_plain], small.results(root))["verdict"].iloc[0] == "not testable"
 
 
 def test_a_statistic_of_its_own_leaves_the_same_pairs_out(root, small):
