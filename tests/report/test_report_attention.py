@@ -9,10 +9,11 @@ import pytest
 from stages.kit.files import read_arrays, write_arrays
 from stages.kit.stats import interval
 from stages.report import attention, meshes, stability
-from stages.report.attention.rows import agreement, difference, rivals
+from stages.report.attention.agreement import against_gaze
+from stages.report.attention.rows import agreement, difference, method_text, rivals
 from stages.report.costs import attention_seconds
 from stages.report.drawing import vivid
-from stages.report.markdown import signed
+from stages.report.markdown import number, signed
 from stages.report.meshes.methods import COMBINATIONS
 from stages.report.meshes.rows import paired_cells
 from stages.report.meshes.simplification import METHODS
@@ -260,6 +261,11 @@ def test_cost_counts_views_channels_and_points(seen):
     cost = attention_seconds(seen, "gaze")
     assert cost["itti"] == pytest.approx(2 + 3 + 0.5)
     assert cost["facing_viewer"] == pytest.approx(0.5)
+
+
+def test_table_counts_pictures_and_maps_too(seen):
+    shown = against_gaze(seen).text.set_index("method")["seconds"]
+    assert shown[method_text("itti")] == number(2 + 3 + 0.5)
 
 
 @pytest.mark.slow
