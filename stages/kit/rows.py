@@ -17,7 +17,7 @@ import pandas as pd
 
 from .files import read_table, whole_file
 from .split import Split
-from .timing import CLOCK
+from .timing import clock
 
 COMMON = {
     "dataset": "the data set",
@@ -28,7 +28,7 @@ COMMON = {
     "metric": "the name of the number",
     "value": "the number; empty where there is none, and `note` says why",
     "seconds": "how long it took on one core",
-    "clock": "of the seconds: processor, or empty in rows measured before, which have wall time",
+    "clock": "of the seconds: processor, and its model; absent in older rows, which have wall time",
     "seed": "of all random numbers",
     "note": "why there is no value, or what a reader must know of it",
 }
@@ -52,8 +52,8 @@ def write_rows(
         table.writerow(names)
         for number, row in enumerate(rows):
             _check(path, number, row, names)
-            clock = None if _empty(row.get("seconds")) else CLOCK
-            known = {**row, "dataset": dataset, "clock": clock, "seed": seed}
+            measured = None if _empty(row.get("seconds")) else clock()
+            known = {**row, "dataset": dataset, "clock": measured, "seed": seed}
             table.writerow([_cell(name, known.get(name)) for name in names])
 
 

@@ -1,9 +1,21 @@
 """Seconds of a block: of the processor, for rows; on the wall, for people who wait."""
 
+import platform
+import re
 import time
+from functools import cache
+from pathlib import Path
 
 CLOCK = "processor"  # of the seconds that rows get from a Stopwatch
-WALL = "wall, parallel"  # of rows measured before that: wall time while other workers ran
+WALL = "wall time beside other workers, 2 cores, x86_64"  # of rows without a clock, which were measured before
+
+
+@cache
+def clock() -> str:
+    """CLOCK and the model of this machine's processor."""
+    described = Path("/proc/cpuinfo")
+    models = re.findall(r"^model name\s*: (.+)", described.read_text(), re.M) if described.exists() else []
+    return f"{CLOCK}, {(*models, platform.processor(), platform.machine())[0]}"
 
 
 class Stopwatch:

@@ -16,6 +16,7 @@ from stages.kit.files import read_arrays, read_mesh, read_table
 from stages.kit.packs import files_below, is_there, object_files
 from stages.kit.params import load_params
 from stages.kit.rows import SUFFIX, read_rows
+from stages.kit.timing import CLOCK, WALL
 from stages.kit.workspace import Workspace
 from stages.salient_points import read_points, read_saliency, read_strong_points
 from stages.weights import read_learned_weights
@@ -29,6 +30,7 @@ SETS_4_2 = "household_4_2_sets", "princeton_4_2_sets"  # random sets of six obje
 GAZED = "gaze", "gaze_clouds"  # sets with recorded human gaze; no object is in both
 COLOURED = "furniture_coloured"  # the set whose objects have several hues
 ON_GREY, ON_WHITE, ON_BLACK = "household_on_grey", "household_on_white", "gaze_on_black"  # other backgrounds
+ALWAYS_PROCESSOR = ("front",)  # stages whose rows had processor time before the column `clock` said so
 NUMBERS = {"four": 4, "six": 6}  # names of groups that tell how many objects they hold
 
 
@@ -132,6 +134,11 @@ class Results:
             notes = self.notes(stage, dataset, **where) or [f"{stage} has rows of this, but no value"]
             raise NotRun("; ".join(notes[:2]), stage, runnable=False)
         return frame
+
+    def clock(self, stage: str, dataset: str | None = None) -> str:
+        """What the seconds of a stage's rows are: processor time of a named machine, or wall time in older rows."""
+        said = self._read(stage, dataset).get("clock", pd.Series(dtype=str)).dropna()
+        return said.iloc[0] if len(said) else CLOCK if stage in ALWAYS_PROCESSOR else WALL
 
     def notes(self, stage: str, dataset: str | None = None, **where: object) -> list[str]:
         """Why rows of a stage have no value, each reason one time; an empty cell of a row stands for any value."""

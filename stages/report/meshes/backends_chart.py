@@ -19,7 +19,6 @@ from .growth import FITTED, Growth, growth
 
 ERRORS = {"error": ("Metro mean", "time and distance"), "seen": ("1 − SSIM", "time and error as seen")}
 KEPT = {False: ("o", "nothing kept"), True: ("D", "points kept")}
-ROOM = 60  # free above the seconds for the legend, as a factor
 
 
 def build(results: Results) -> Figure:
@@ -95,9 +94,9 @@ def _growing(axes: Axes, rows: pd.DataFrame, fits: dict[str, Growth | None], tin
         axes.plot([], [], "o", color=tint, ms=5, label=label(backend) + power)
     axes.plot([], [], color=INK, lw=0.9, ls="--", label="n log n")
     axes.set(xscale="log", yscale="log", xlabel="faces of the mesh, n", ylabel="seconds", title="growth with the mesh")
-    axes.set_ylim(top=axes.get_ylim()[1] * ROOM)
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter(lambda value, _: f"{value:,g}" if value < 1e6 else f"{value / 1e6:g} M")
         axis.set_minor_formatter(NullFormatter())
     axes.grid(True)
-    axes.legend(loc="upper left", fontsize=8)
+    where = {"loc": "center left", "bbox_to_anchor": (1.02, 0.5), "fontsize": 8}
+    axes.legend(**where, title="power of the growth p [95 %]", title_fontsize=8, alignment="left")

@@ -50,5 +50,6 @@ def chart(results: Results) -> Figure:
     title = f"{int(rows['classes'].max())} classes by following contours, {label(strategy)}, frames x cells x cells"
     return pareto_chart(
         frame, "mean", title=title, reference=reference, quality_label=f"accuracy, {TESTED[split]}", cost="cost",
+        clock=results.clock(STAGE),
         colour="of", marker="film", legends={"of": "classifier", "film": "length of a contour"},
     )  # fmt: skip
