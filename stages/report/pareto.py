@@ -124,7 +124,8 @@ def pareto_chart(
         axes.set(xscale="log", xlabel=f"cost, as a ratio to {reference}", ylabel=quality_label)
         axes.set_title(title if tints else fill(f"{title}. {_finding(front, quality)}", WIDE), pad=12)
         axes.grid(True)
-        axes.step(certain["cost_ratio"], certain[quality], where="post", color=INK, lw=1, zorder=1, label=CERTAINLY)
+        if len(certain):
+            axes.step(certain["cost_ratio"], certain[quality], where="post", color=INK, lw=1, zorder=1, label=CERTAINLY)
         _draw(axes, rows, quality, colour, marker, tints)
         axes.margins(x=0.12, y=0.1)
         if better == "low":
@@ -147,9 +148,10 @@ def pareto_chart(
     words = {
         "title": title,
         "alt": f"{quality_label} against cost as a ratio to {reference}; the Pareto front is {said}.",
-        "caption": f"{'Up' if better == 'high' else 'Down'} and left is better. On the line: the choices that no other "
-        f"beats in at least 95 % of the resamples (of the units behind the intervals{moved}): {said}. Perhaps on the "
-        f"front: {maybe}. Cost 1 is {reference}, {first}. Bars: 95 % intervals.",
+        "caption": f"{'Up' if better == 'high' else 'Down'} and left is better. On the line, with a dark rim: the "
+        "choices that no other beats in at least 95 % of the resamples (of the units behind the "
+        f"intervals{moved}): {said}. Perhaps on the front: {maybe}. Cost 1 is {reference}, {first}. "
+        "Bars: 95 % intervals.",
     }
     return Figure(drawing, words, rows)
 
@@ -205,7 +207,7 @@ def _legend(axes: Axes, titles: Sequence[str]) -> None:
 def _finding(front: pd.DataFrame, quality: str) -> str:
     """What is best, and what costs least of all that its interval holds; front: from the cheapest to the best."""
     best = front.iloc[-1]
-    said = f"Best: {best['name']} ({number(best[quality])})"
+    said = f"Best: {best['name']}" + (f" ({number(best[quality])})" if best[quality] else "")
     if "low" not in front or len(front) < 2:
         return said
     near = front[:-1][front[quality][:-1].between(best["low"], best["high"])]

@@ -10,7 +10,7 @@ from matplotlib.ticker import NullFormatter
 
 from stages.report.items import Figure
 from stages.report.names import Spot, place_names
-from stages.report.pareto import pareto_front
+from stages.report.pareto import ON, noise_of, placed
 from stages.report.results import NotRun, Results
 from stages.report.style import GREY, INK, colours, label, plain_logarithm, plt
 
@@ -32,7 +32,10 @@ def build(results: Results) -> Figure:
     for axes, (kind, (name, title)) in zip(panels, ERRORS.items(), strict=False):
         frame[f"{kind}_front"] = False
         for _, group in frame.groupby("with_points"):  # the task without points to keep is another than the one with
-            frame.loc[group.index, f"{kind}_front"] = pareto_front(group["time_ratio"], group[f"{kind}_ratio"], "low")
+            parts = {part: np.log(group[f"{kind}_{part}"]) for part in ("ratio", "low", "high")}
+            own = group.assign(name=group["backend"], **parts)
+            found = placed(own, "time_ratio", "ratio", "low", noise_of(group["time_low"], group["time_high"]))
+            frame.loc[group.index, f"{kind}_front"] = found["on_front"] == ON
         _against(axes, frame, kind, tints)
         axes.set(ylabel=f"{name}, ratio to {REFERENCE}", title=title)
     fits = {name: growth(paired[paired["backend"] == name]) for name in dict.fromkeys(rows["backend"])}

@@ -29,14 +29,15 @@ def build(results: Results) -> Figure:
         for (network, data, weights), own in grouped(rows, ["method", "data", "weights"])
     ])  # fmt: skip
     figure, (above, below) = plt.subplots(2, 1, figsize=(9.2, 7.4), height_ratios=[3, 3.8])
-    figure.subplots_adjust(hspace=0.55)
+    figure.subplots_adjust(hspace=0.4)
     _draw_networks(above, printed)
     _draw_layers(below, results)
+    for axes, columns in ((above, 2), (below, 3)):
+        axes.legend(fontsize=8, loc="lower left", bbox_to_anchor=(0, 1), ncols=columns)
     for axes in (above, below):
         axes.set_yscale("log")
         axes.set_ylabel("mean squared change of weights,\neach layer's scaled to 0..1")
         axes.grid(axis="y")
-        axes.legend(fontsize=8, loc="lower left", bbox_to_anchor=(0, 1), ncols=3)
     means = [f"{label(row.network)} {row.mean:.2g} ({row.on}, {row.trainings} trainings)" for row in records(printed)]
     return Figure(figure, {"means": "; ".join(means)}, printed)
 
