@@ -31,6 +31,7 @@ GAZED = "gaze", "gaze_clouds"  # sets with recorded human gaze; no object is in 
 COLOURED = "furniture_coloured"  # the set whose objects have several hues
 ON_GREY, ON_WHITE, ON_BLACK = "household_on_grey", "household_on_white", "gaze_on_black"  # other backgrounds
 ALWAYS_PROCESSOR = ("front",)  # stages whose rows had processor time before the column `clock` said so
+BENCH = "bench"
 NUMBERS = {"four": 4, "six": 6}  # names of groups that tell how many objects they hold
 
 
@@ -84,8 +85,14 @@ class Results:
         self.data, self.reports = workspace.root / "data", workspace.reports
         self.out = workspace.build / "partial/report"  # where the report is made before it takes its place
         self.sets = workspace.sets  # the names of the data sets that are switched on, in order
-        self.read: set[str] = set()  # the data sets that were read since somebody cleared this
+        self.read: set[str] = set()  # the data sets that were read since `forget`
+        self.sources: dict[str, list[pd.DataFrame]] = {}  # SET/STAGE or bench/NAME -> rows that were read since then
         self._tables: dict[Path, pd.DataFrame] = {}
+
+    def forget(self) -> None:
+        """Begins anew to note what is read."""
+        self.read.clear()
+        self.sources.clear()
 
     @classmethod
     def published(cls, workspace: Workspace, settings: Params) -> "Results":
@@ -113,6 +120,7 @@ class Results:
         dataset: None for the first of `datasets(stage)`. Raises NotRun when the rows are absent, lack the column, or
         none is left; with the stage's own note on why it left them out, where there is one.
         """
+        dataset = self._first(stage, dataset)
         frame = self._read(stage, dataset)
         for column, wanted in where.items():
             if column in frame:
@@ -125,6 +133,8 @@ class Results:
             if column not in frame:
                 raise NotRun(f"no column {column} in the rows of {stage}", stage)
             raise NotRun(f"{column} {either(wanted)} is not among those that {stage} measured", stage, runnable=False)
+        self.read.add(dataset)
+        self.sources.setdefault(f"{dataset}/{stage}", []).append(frame)
         return frame
 
     def measured(self, stage: str, dataset: str | None = None, **where: object) -> pd.DataFrame:
@@ -155,11 +165,13 @@ class Results:
         """`notes` as sentences for a table's prose, a line each."""
         return "\n".join(f"Not run: {note}." for note in self.notes(stage, dataset, **where))
 
+    def _first(self, stage: str, dataset: str | None) -> str:
+        return dataset or some(self.datasets(stage), f"no measurements of {stage}", stage)[0]
+
     def _read(self, stage: str, dataset: str | None) -> pd.DataFrame:
-        dataset = dataset or some(self.datasets(stage), f"no measurements of {stage}", stage)[0]
+        dataset = self._first(stage, dataset)
         if self.own_meshes and dataset not in self.sets:
             raise NotRun(f"{dataset} is not switched on", stage, runnable=False)
-        self.read.add(dataset)
         path = self.reports / "measurements" / dataset / f"{stage}{SUFFIX}"
         there(path, f"no measurements of {stage} on {dataset}", stage, dataset in self.sets)
         return self._table(path, read_rows)
@@ -174,9 +186,14 @@ class Results:
         if self.own_meshes:
             raise NotRun("benchmarks are not about a folder of one's own", "bench", runnable=False)
         what = f"no bench/{name}.csv: `make bench` writes it"
+        found = self._table(there(self.bench_path(name), what, BENCH, runnable=False), read_table)
+        self.sources.setdefault(f"{BENCH}/{name}", []).append(found)
+        return found
+
+    def bench_path(self, name: str) -> Path:
+        """reports/bench/NAME.csv, or .csv.gz where that is packed."""
         path = self.workspace.published / "bench" / f"{name}.csv"
-        path = path if is_there(path) else path.with_name(f"{path.name}.gz")
-        return self._table(there(path, what, "bench", runnable=False), read_table)
+        return path if is_there(path) else path.with_name(f"{path.name}.gz")
 
     def thesis(self, name: str) -> pd.DataFrame:
         """One of the thesis's own tables, data/reference/thesis/NAME.csv."""

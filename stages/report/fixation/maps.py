@@ -1,7 +1,7 @@
 """T figures 3.29, 3.30 and 3.34: where networks look, on this run's objects and on meshes with human gaze."""
 
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from itertools import chain
 
@@ -39,6 +39,7 @@ def on_gaze(build: Callable[..., Figure], results: Results) -> Kept:
         add_words(figure, sys.modules[__package__ or ""], "figures", name)
         title = f"{figure.title}, on meshes with human gaze"
         return Kept(figure.drawing, {"title": title, "alt": figure.alt, "caption": figure.caption}, dpi=figure.dpi)
+    results.read.add("gaze")
     return last_drawn(results, f"{name}_gaze", "fixation")
 
 
@@ -53,7 +54,7 @@ def figure_3_29(results: Results, dataset: str | None = None) -> Figure:
         for method, views in named.items()
     }
     figure = _panels(images, 1.9, [0.93, 0.15, 0.014, 0.7], "over its maximum")
-    return Figure(figure, words | {"task": label(ITSELF), "networks": "; ".join(images)})
+    return Figure(figure, words | {"task": label(ITSELF), **_named(images)})
 
 
 def figure_3_30(results: Results, dataset: str | None = None) -> Figure:
@@ -68,7 +69,7 @@ def figure_3_30(results: Results, dataset: str | None = None) -> Figure:
         layers["fused (EWIGC)"] = _fused(views[view])
         images[network_text(method)] = [_veiled(render, layer) for layer in layers.values()]
     figure = _panels(images, 1.6, [0.945, 0.15, 0.012, 0.7], "Grad-CAM over its maximum", list(layers))
-    return Figure(figure, words | {"tasks": ", ".join(list(layers)[:-1]), "networks": "; ".join(images)})
+    return Figure(figure, words | {"tasks": ", ".join(list(layers)[:-1]), **_named(images)})
 
 
 def figure_3_34(results: Results, dataset: str | None = None) -> Figure:
@@ -98,8 +99,15 @@ def figure_3_34(results: Results, dataset: str | None = None) -> Figure:
         "marks": " Marks: by a vision model, no human subjects; spread along the surface."
         if "marks" in columns
         else "",
+        **_named(map(network_text, methods)),
     }
     return Figure(figure, words, dpi=115)
+
+
+def _named(networks: Iterable[str]) -> dict[str, str]:
+    """The networks in words, and how much of them was trained where some are frozen."""
+    said = "; ".join(networks)
+    return {"networks": said, "frozen": " Frozen: only the last layer is trained." if "frozen" in said else ""}
 
 
 def _look(results: Results, dataset: str | None) -> tuple[Mesh, np.ndarray, Views, dict[str, str]]:
