@@ -53,7 +53,7 @@ def placed(
     cost: str,
     quality: str,
     better: str = "high",
-    noise: ArrayLike = NOISE[WALL],
+    noise: float | np.ndarray = NOISE[WALL],
     units: pd.DataFrame | None = None,
 ) -> pd.DataFrame:
     """The rows, a choice each, with `front_share`: in how many of the resamples no other beats it; and `on_front`.
@@ -110,10 +110,10 @@ def pareto_chart(
     legend gives. better: "high" for accuracies, "low" for errors. NotRun where the reference was not measured.
     """
     rows = frame.loc[np.isfinite(frame[cost]) & np.isfinite(frame[quality])].copy()
-    unit = rows.loc[rows["name"] == reference, cost]
-    if len(unit) != 1 or not unit.iloc[0] > 0:
+    known = rows.loc[rows["name"] == reference, cost]
+    if len(known) != 1 or not known.iloc[0] > 0:
         raise NotRun(f"the reference {reference} is not measured", "report", runnable=False)
-    unit = float(unit.iloc[0])
+    unit = float(known.iloc[0])
     rows["cost_ratio"] = rows[cost] / unit
     noise = rows["noise"].to_numpy() if "noise" in rows else noise_by(clock)
     rows = placed(rows, "cost_ratio", quality, better, noise, units)
@@ -131,7 +131,9 @@ def pareto_chart(
         if better == "low":
             axes.set_ylim(bottom=0)
         plain_logarithm(axes.xaxis)
-        above = axes.secondary_xaxis("top", functions=(lambda ratio: ratio * unit, lambda value: value / unit))
+        above = axes.secondary_xaxis(
+            "top", functions=(lambda ratio: np.multiply(ratio, unit), lambda value: np.divide(value, unit))
+        )
         counted = (legends or {}).get(cost, cost)
         above.set_xlabel(f"seconds, {clock}" if clock else counted, fontsize=9)
         plain_logarithm(above.xaxis)

@@ -127,7 +127,8 @@ def test_a_commit_is_told_only_of_an_unchanged_file_that_git_knows(rows, tmp_pat
     assert known() == {"sha256": sha256(path)[:DIGITS], "clock": WALL}  # as in a tarball
     git("init")
     assert "commit" not in known()
-    git("add", "."), git("commit", "-m", "rows")
+    git("add", ".")
+    git("commit", "-m", "rows")
     assert known()["commit"] == git("log", "-1", "--format=%h").stdout.strip()
     path.write_bytes(path.read_bytes() + b" ")
     records.commit.cache_clear()
@@ -136,4 +137,5 @@ def test_a_commit_is_told_only_of_an_unchanged_file_that_git_knows(rows, tmp_pat
 
 def test_a_built_item_has_its_record(results):
     table = build_one(touch, "tables", "table_4_1", results)
+    assert isinstance(table, Table)
     assert table.record["sets"] == table.sets and table.record["rows"] == len(table.frame)
