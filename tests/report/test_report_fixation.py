@@ -372,7 +372,8 @@ def test_a_picture_on_gaze_is_kept_with_its_words_where_the_meshes_are_absent(ba
     def figure_3_34(results, dataset=None):
         drawing, axes = plt.subplots()
         axes.plot([0, 1])
-        return Figure(drawing, {"names": dataset, "columns": "marks", "control": "", "marks": ""})
+        words = {"names": dataset, "columns": "marks", "networks": "a net", "frozen": "", "control": "", "marks": ""}
+        return Figure(drawing, words)
 
     monkeypatch.setitem(topic.FIGURES, "figure_3_34_gaze", partial(maps.on_gaze, figure_3_34))
     results = small.results(bare)
@@ -384,7 +385,8 @@ def test_a_picture_on_gaze_is_kept_with_its_words_where_the_meshes_are_absent(ba
     for one in (drawn, kept):
         assert one.title == "Figure 3.34: fused attention on the surface, on meshes with human gaze"
         assert one.alt == "Meshes of gaze, coloured from dark (low) to yellow (high): marks."
-        assert one.caption.startswith("EWIGC_L4: the highest") and one.caption.endswith("98 % quantile.")
+        assert one.caption.startswith("EWIGC_L4: the highest")
+        assert one.caption.endswith("98 % quantile. Networks: a net.")
     assert [path.name for path in kept.paths] == ["figure_3_34_gaze.png", "figure_3_34_gaze.json"]
     assert kept.paths == drawn.paths and kept.paths[0].read_bytes() == content
     kept.paths[0].unlink()
