@@ -30,7 +30,8 @@ def measure():
 
     from stages.conspicuity import conspicuity
     from stages.conspicuity.batch import conspicuity_batch
-    from stages.kit import Stopwatch, Viewpoint
+    from stages.kit import Viewpoint
+    from stages.kit.timing import WallClock
     from stages.views import render
 
     ball = icosphere(5, radius=0.5)  # 20,480 faces
@@ -39,13 +40,13 @@ def measure():
         mesh = wavy(ball)
         conspicuity(mesh, render(mesh, Viewpoint(0, 0)))  # what the twelve views of a mesh share is done once
         view = render(mesh, Viewpoint(30 * run, 20))
-        with Stopwatch() as watch:
+        with WallClock() as watch:
             conspicuity(mesh, view)
         ours.append(watch.seconds)
-        with Stopwatch() as watch:
+        with WallClock() as watch:
             entropy(view.rgb[..., 0], np.ones((9, 9), dtype=np.uint8))
         peer.append(watch.seconds)
-        with Stopwatch() as watch:
+        with WallClock() as watch:
             conspicuity_batch(mesh, [view])
         torch.append(watch.seconds)
     seconds, other, batch = (statistics.median(times) for times in (ours, peer, torch))
@@ -62,7 +63,7 @@ def saliency_rows():
     """Rows of the time from a mesh of 39,600 faces to its saliency, by our model and by mesh saliency (Lee 2005)."""
     from trimesh.creation import uv_sphere
 
-    from stages.kit import Stopwatch
+    from stages.kit.timing import WallClock
     from stages.salient_points import saliency
 
     ball = uv_sphere(radius=0.5, count=[100, 100])
@@ -70,7 +71,7 @@ def saliency_rows():
     for _ in range(RUNS):
         for method, seconds in times.items():
             mesh = wavy(ball)  # anew: nothing that an earlier call worked out is there
-            with Stopwatch() as watch:
+            with WallClock() as watch:
                 saliency(mesh, method)
             seconds.append(watch.seconds)
     ours, lee = (statistics.median(seconds) for seconds in times.values())

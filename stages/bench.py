@@ -15,14 +15,13 @@ import argparse
 import importlib.util
 import json
 import sys
-import time
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from stages.kit import Mesh
+from stages.kit import Mesh, Stopwatch
 from stages.kit.command import errors_in_one_line
 from stages.kit.extras import from_extra
 from stages.kit.parallel import progress
@@ -81,14 +80,13 @@ def judged(method: Saliency, archive: Path) -> list[dict[str, Any]]:
 
     rows = []
     for name, mesh, truth in gazed(archive):
-        began = time.perf_counter()
-        values = method(mesh)
-        seconds = time.perf_counter() - began
+        with Stopwatch() as watch:
+            values = method(mesh)
         try:
             found = agreement(np.asarray(values, dtype=np.float64), truth)
         except (TypeError, ValueError) as error:
             raise ValueError(f"{name}: {error}") from None
-        row = {"item": name, "method": OWN, "seconds": seconds}
+        row = {"item": name, "method": OWN, "seconds": watch.seconds}
         rows += [row | {"metric": metric, "value": found[metric]} for metric in SCORES]
     return rows
 

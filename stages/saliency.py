@@ -20,9 +20,10 @@ import numpy as np
 import trimesh
 from scipy.spatial import KDTree
 
-from stages.kit import Mesh, Stopwatch
+from stages.kit import Mesh
 from stages.kit.command import errors_in_one_line
 from stages.kit.files import write_text
+from stages.kit.timing import WallClock
 from stages.lod.export import FORMATS, write_any
 from stages.lod.look import check_look, coloured, write_look
 from stages.lod.options import check_outputs
@@ -74,7 +75,7 @@ def look_at(chosen: argparse.Namespace) -> None:
     check(chosen)
     try:
         mesh, note = upright_by(load_unnamed(chosen.mesh), chosen.mesh, chosen.up)
-        with Stopwatch() as watch:
+        with WallClock() as watch:
             found = detect(bake_texture(mesh), chosen.method, chosen.count)
     except ValueError as error:
         raise ValueError(f"{chosen.mesh}: {error}").with_traceback(error.__traceback__) from None

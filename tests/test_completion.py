@@ -8,7 +8,7 @@ import pytest
 
 from haptic_glance.__main__ import OWN, SHELL, WHOLE
 from haptic_glance.completion import OPTIONS, bash, fish, options_of, run
-from stages.kit import Stopwatch
+from stages.kit.timing import WallClock
 
 KNOWN = {"saliency": ["--count", "--out"], "gate": ["--update"]}
 
@@ -47,6 +47,6 @@ def test_the_options_are_those_that_help_lists():
 
 
 def test_the_script_is_printed_in_a_second(capsys):
-    with Stopwatch() as watch:
+    with WallClock() as watch:
         run(["bash"])
     assert watch.seconds < 1 and "--neighbourhood" in capsys.readouterr().out

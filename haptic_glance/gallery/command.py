@@ -19,9 +19,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from stages.imprints.options import check_folder
-from stages.kit import Stopwatch
 from stages.kit.command import DEBUG
 from stages.kit.files import write_text
+from stages.kit.timing import WallClock
 from stages.lod.levels import levels
 from stages.meshes.own import mesh_files, names_of
 from stages.meshes.up import add_up
@@ -73,7 +73,7 @@ def show(name: str, title: str, chosen: argparse.Namespace, out: Path) -> int:
         for number, (file, each) in enumerate(zip(files, names_of(files), strict=True), 1):
             report(name, f"{number} of {len(files)}: {file.name}")
             try:
-                with Stopwatch() as watch:
+                with WallClock() as watch:
                     made.append(exhibit(file, each, out / each, chosen.up, chosen.count, chosen.levels, compiled))
                 report(name, f"{file.name}: {watch.seconds:.1f} s")
             except Exception as error:  # one mesh must not cost the others theirs

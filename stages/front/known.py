@@ -8,12 +8,12 @@ from sklearn import config_context
 from threadpoolctl import threadpool_limits
 
 from stages.classification import classifier, draw_combinations, region_holdout
+from stages.kit import Stopwatch
 from stages.kit.rng import rng
 from stages.kit.run import Rows
 from stages.kit.split import Split
 from stages.sensor_size.protocol import majority
 
-from .clock import CoreSeconds
 from .objects import Objects
 from .senses import Felt, Senses
 from .space import WIDTH, Choice, settings_of
@@ -119,10 +119,10 @@ def _ask(choice, learned, truth, asked, owners, names, answers, random) -> Answe
     Each touch is asked about once with `choice.touches` - 1 others of its object; what most of them say is the answer.
     """
     model = classifier(settings_of(choice).classification.classifiers[0], int(random.integers(2**31)))
-    with CoreSeconds() as learning:
+    with Stopwatch() as learning:
         model.fit(learned, truth)
     together = draw_combinations(owners, choice.touches, random)
-    with CoreSeconds() as asking:
+    with Stopwatch() as asking:
         said = majority(model.predict(asked)[together].ravel(), choice.touches)
     right = {name: float((said[owners == k] == k).mean()) for k, name in enumerate(names)}
     return Answers(right, learning.seconds, choice.touches * asking.seconds / len(asked))

@@ -7,12 +7,11 @@ import numpy as np
 
 from stages.conspicuity import ViewMaps, conspicuity
 from stages.conspicuity.channels import mask_at_size
-from stages.kit import Mesh, Viewpoint
+from stages.kit import Mesh, Stopwatch, Viewpoint
 from stages.salient_points.methods import METHODS
 from stages.salient_points.options import Options
 from stages.views import TWELVE, render, viewpoint_set
 
-from .clock import CoreSeconds
 from .space import SPACE, Choice, settings_of
 
 MOST = max(SPACE["points"])  # places that are looked for; fewer are the first of these
@@ -33,11 +32,11 @@ def looks(mesh: Mesh, choice: Choice, options: Options) -> Iterator[tuple[str, n
         viewpoints = viewpoint_set(name)
         maps = {channel: np.stack([pictures[one][channel] for one in viewpoints]) for channel in CHANNELS}
         mask = np.stack([pictures[one]["mask"] for one in viewpoints])
-        with CoreSeconds() as lines:
+        with Stopwatch() as lines:
             sight = ViewMaps(replace(mesh), viewpoints, maps, mask)
             sight.vertex_values(sight.maps[CHANNELS[0]])  # factors the equations of the smoothing, which all need
         for method in LOOKING:
-            with CoreSeconds() as finding:
+            with Stopwatch() as finding:
                 points = METHODS[method].find(sight.mesh, sight, options, MOST).points
             parts = ("picture", *METHODS[method].channels)
             seconds = sum(cost[one][part] for one in viewpoints for part in parts)
@@ -48,12 +47,12 @@ def looks(mesh: Mesh, choice: Choice, options: Options) -> Iterator[tuple[str, n
 def _picture(mesh: Mesh, viewpoint: Viewpoint, settings) -> tuple[dict[str, np.ndarray], dict[str, float]]:
     """({channel: its map, "mask"}, {"picture", channel: seconds}) of one view."""
     size = tuple(settings.conspicuity.size)
-    with CoreSeconds() as watch:
+    with Stopwatch() as watch:
         view = render(mesh, viewpoint, settings.views.size, settings.views.renderer)
         maps = {"mask": mask_at_size(view.mask, size)}
     seconds = {"picture": watch.seconds}
     for channel in CHANNELS:
-        with CoreSeconds() as watch:
+        with Stopwatch() as watch:
             maps |= conspicuity(mesh, view, [channel], size)
         seconds[channel] = watch.seconds
     return maps, seconds

@@ -8,9 +8,8 @@ from scipy.spatial import KDTree
 
 from stages.classification import features
 from stages.imprints import Surface, press_many, touchable
-from stages.kit import Mesh
+from stages.kit import Mesh, Stopwatch
 
-from .clock import CoreSeconds
 from .space import Choice, settings_of
 
 
@@ -23,12 +22,12 @@ def press_both(
     """
     sensor = settings_of(choice).imprints
     cells = sensor.cells[0], sensor.cells[1]
-    with CoreSeconds() as once:
+    with Stopwatch() as once:
         surface = Surface(replace(whole))
         near = whole.used[KDTree(whole.vertices[whole.used]).query(mesh.vertices[points])[1]]
         can = touchable(surface.mesh, near)
     rank = np.flatnonzero(can & touchable(mesh, points))
-    with CoreSeconds() as each:
+    with Stopwatch() as each:
         asked = features(press_many(surface, near[rank], cells, sensor.pitch, contact=sensor.contact))
     learned = asked
     if mesh is not whole:

@@ -11,13 +11,13 @@ from pathlib import Path
 import cv2
 import numpy as np
 
+from stages.kit import Stopwatch
 from stages.kit.files import read_arrays, read_json, read_mesh, write_arrays, write_json
 from stages.lod import InfeasibleTarget, simplify
 from stages.lod.targets import face_count
 from stages.salient_points.methods import METHODS, method_named
 from stages.salient_points.options import Options
 
-from .clock import CoreSeconds
 from .looking import MOST, looks
 from .pressing import press_both
 from .space import SPACE, WHOLE, Choice, settings_of
@@ -75,7 +75,7 @@ class Senses:
         mesh, path = _mesh(self.files[name]), self.folder / name / f"{_folder(level)}.json"
         if level == WHOLE:
             return mesh, 0.0
-        with CoreSeconds() as watch:
+        with Stopwatch() as watch:
             simple = _simplified(replace(mesh), face_count(level, len(mesh.faces)))
         if not path.exists():
             write_json(path, watch.seconds)
@@ -87,7 +87,7 @@ class Senses:
         options = Options(selection=settings.selection, radius=settings.radius, smoothing=settings.smoothing,
                           seed=self.seed, name=name)  # fmt: skip
         if not choice.image_rows:
-            with CoreSeconds() as watch:
+            with Stopwatch() as watch:
                 points = METHODS[choice.method].find(replace(mesh), None, options, MOST).points
             return points, watch.seconds
         path = self.folder / name / f"{_folder(choice.level)}-{choice.image_rows}.npz"

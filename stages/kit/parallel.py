@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 
 from joblib import Parallel, delayed, parallel_config
 from joblib.externals.loky import process_executor
+from threadpoolctl import threadpool_limits
 from tqdm import tqdm
 
 from .cores import core
@@ -92,7 +93,7 @@ def _finished(function, tasks, root, desc, backend, workers, stage) -> Iterator[
 
 
 def _on_a_core(function, task, root):
-    with core():
+    with core(), threadpool_limits(1):  # as workers of joblib have it: spinning threads would count as its cost
         return function(task, root)
 
 

@@ -17,6 +17,7 @@ import pandas as pd
 
 from .files import read_table, whole_file
 from .split import Split
+from .timing import clock
 
 COMMON = {
     "dataset": "the data set",
@@ -26,11 +27,12 @@ COMMON = {
     "split": "how training and test parts were drawn: a name of stages.kit.split.Split",
     "metric": "the name of the number",
     "value": "the number; empty where there is none, and `note` says why",
-    "seconds": "wall time of one core that it took",
+    "seconds": "how long it took on one core",
+    "clock": "of the seconds: processor, and its model; absent in older rows, which have wall time",
     "seed": "of all random numbers",
     "note": "why there is no value, or what a reader must know of it",
 }
-FIRST, LAST = ("dataset", "item", "group", "method", "split"), ("metric", "value", "seconds", "seed", "note")
+FIRST, LAST = ("dataset", "item", "group", "method", "split"), ("metric", "value", "seconds", "clock", "seed", "note")
 SUFFIX = ".csv.gz"
 
 
@@ -50,7 +52,8 @@ def write_rows(
         table.writerow(names)
         for number, row in enumerate(rows):
             _check(path, number, row, names)
-            known = {**row, "dataset": dataset, "seed": seed}
+            measured = None if _empty(row.get("seconds")) else clock()
+            known = {**row, "dataset": dataset, "clock": measured, "seed": seed}
             table.writerow([_cell(name, known.get(name)) for name in names])
 
 

@@ -25,8 +25,9 @@ from typing import Any
 
 import numpy as np
 
-from stages.kit import Mesh, Stopwatch
+from stages.kit import Mesh
 from stages.kit.extras import MissingExtra
+from stages.kit.timing import WallClock
 from stages.meshes.colours import bake_texture
 from stages.meshes.load import load_unnamed
 from stages.meshes.own import mesh_files, names_of
@@ -141,7 +142,7 @@ def prepare(mesh: Mesh, chosen: Namespace, name: str) -> SimplificationTask:
     rendered = bake_texture(mesh)
     report("looking at it")
     method = "glance" if chosen.method == PLAIN else chosen.method
-    with Stopwatch() as watch:
+    with WallClock() as watch:
         values = saliency(rendered, method)
     report(f"saliency by {method} in {watch.seconds:.1f} s")
     points = np.zeros(0, dtype=np.int64)

@@ -5,7 +5,6 @@ part. The test part is asked one time by each method.
 """
 
 import functools
-import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -143,6 +142,6 @@ def _again(
 
 
 def _seconds(act: Callable[[], object]) -> float:
-    start = time.perf_counter()
-    act()
-    return time.perf_counter() - start
+    with Stopwatch() as watch:
+        act()
+    return watch.seconds

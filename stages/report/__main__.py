@@ -25,6 +25,7 @@ from .counting import counted, counts, open_by_cause
 from .items import Built
 from .markdown import as_text, markdown_table
 from .own import write_own_page
+from .records import write_records
 from .results import NotRun, Results
 from .schema import Params
 from .site import write_site
@@ -109,6 +110,7 @@ def build(results: Results, out: Path) -> dict[str, Any]:
     own = results.own_meshes
     built, (claims, differences) = side_by_side(results)
     remove_older(built, out)
+    write_records(built, results, out)
     not_run = {f"{kind}/{name}": why for kind, found in built.items() for name, why in found.not_run.items()}
     if own:  # what would need other data sets is left out
         claims, not_run = claims[claims["pairs"] > 0], {"what needs other data sets": OWN_NOTE}

@@ -21,13 +21,14 @@ from .style import save
 class Item:
     """What tables and figures have in common.
 
-    sets: the data sets that it was read from; paths: its files; html: its section of the page.
+    sets: the data sets that it was read from; record: see `records`; paths: its files; html: its section of the page.
     """
 
     name: str = ""
     topic: str = ""
     title: str = ""
     sets: list[str] = field(default_factory=list)
+    record: dict[str, Any] = field(default_factory=dict)
     paths: list[Path] = field(default_factory=list)
     html: str = ""
 

@@ -34,7 +34,7 @@ def last_drawn(results: Results, name: str, stage: str) -> Kept:
     return Kept(Drawing(), read_json(there(words, why, stage, runnable=False)))
 
 
-def as_printed(build: Callable[[Results], Figure], dataset: str, results: Results) -> Figure:
+def as_printed(build: Callable[[Results], Figure], dataset: str, results: Results, stage: str = "lod") -> Figure:
     """The figure on the set of a protocol as printed, where that set is the first; else as it was drawn there.
 
     Where it never was, or of one's own meshes, it is of the first set. `build` has the figure's name.
@@ -44,7 +44,7 @@ def as_printed(build: Callable[[Results], Figure], dataset: str, results: Result
         return Kept(figure.drawing, figure.words, dpi=figure.dpi)
     if not results.own_meshes:
         with suppress(NotRun):
-            found = last_drawn(results, build.__name__, "lod")
+            found = last_drawn(results, build.__name__, stage)
             results.read.add(dataset)
             return found
     return build(results)

@@ -11,12 +11,22 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import Locator, LogLocator, MaxNLocator
 from numpy.typing import ArrayLike
 
+from stages.kit.timing import CLOCK, WALL
+
 from .items import Figure
 from .markdown import number
 from .names import Spot, place_names
 from .results import NotRun
 from .style import CYCLE, INK, MARKERS, SETTINGS, colours, label, plain_logarithm, plt
 
+ON, PERHAPS, OFF = "yes", "perhaps", "no"  # of a choice: whether it is on the front
+CERTAIN, RESAMPLES, NORMAL = 0.95, 1000, 1.96
+# Deviation of the logarithm of a cost from run to run: of wall time, whose ratios between two runs of one commit lie
+# within 0.41 to 2.57 for 166 choices; and of processor time of the same work in other processes of a busy machine.
+NOISE = {WALL: 0.25, CLOCK: 0.05}
+CERTAINLY = "on the front in 95 % of resamples"
+ALPHA = {ON: 0.8, PERHAPS: 0.6, OFF: 0.4}  # of intervals
+RIMS = {name: {"mec": INK if name == ON else "white", "mew": 1.2 if name == ON else 0.8} for name in ALPHA}
 WIDE = 76  # letters of a line of a title
 LISTED = 8  # names of the front that a caption lists at most
 FEW = 12  # choices that are all named where there is room; of more only the front, where legends tell the others
@@ -38,6 +48,41 @@ def pareto_front(cost: ArrayLike, quality: ArrayLike, better: str = "high") -> n
     return np.isfinite(cost) & np.isfinite(loss) & ~(no_worse & one_better).any(axis=1)
 
 
+def placed(
+    rows: pd.DataFrame,
+    cost: str,
+    quality: str,
+    better: str = "high",
+    noise: float | np.ndarray = NOISE[WALL],
+    units: pd.DataFrame | None = None,
+) -> pd.DataFrame:
+    """The rows, a choice each, with `front_share`: in how many of the resamples no other beats it; and `on_front`.
+
+    on_front: ON in 95 % of the resamples or more, OFF in 5 % or less, else PERHAPS. noise: the deviation of the
+    logarithm of a cost from run to run, one or (k,). units (u, k): the values behind the qualities, a column for each
+    `name`; units are then drawn for all choices together. The qualities vary as much as `low` to `high` say.
+    """
+    draw, qualities = np.random.default_rng(0), rows[quality].to_numpy(float)
+    costs = rows[cost].to_numpy(float) * np.exp(noise * draw.standard_normal((RESAMPLES, len(rows))))
+    if units is None:
+        off = draw.standard_normal(costs.shape)
+    else:
+        values = units.reindex(columns=rows["name"]).to_numpy(float)
+        values = np.nan_to_num(values - np.nanmean(values, axis=0))
+        off = values[draw.integers(len(values), size=(RESAMPLES, len(values)))].mean(axis=1)
+        off /= np.maximum(off.std(axis=0), np.finfo(float).tiny)
+    spread = np.ptp(rows.reindex(columns=["low", "high"]).to_numpy(float), axis=1) / (2 * NORMAL)
+    resampled = qualities + off * np.nan_to_num(spread)
+    share = np.mean([pareto_front(*pair, better) for pair in zip(costs, resampled, strict=True)], axis=0)
+    said = np.select([share >= CERTAIN, share > 1 - CERTAIN], [ON, PERHAPS], OFF)
+    return rows.assign(front_share=share, on_front=said)
+
+
+def noise_of(low: pd.Series, high: pd.Series) -> np.ndarray:
+    """(k,) `noise` of costs with a 95 % interval; 0 where it is unknown."""
+    return np.nan_to_num(np.log(high / low) / (2 * NORMAL))
+
+
 def pareto_chart(
     frame: pd.DataFrame,
     quality: str,
@@ -46,6 +91,8 @@ def pareto_chart(
     reference: str,
     quality_label: str,
     cost: str = "seconds",
+    clock: str = WALL,
+    units: pd.DataFrame | None = None,
     better: str = "high",
     colour: str | None = None,
     marker: str | None = None,
@@ -54,46 +101,72 @@ def pareto_chart(
 ) -> Figure:
     """Quality against cost with the Pareto front; its words are title, alt and caption.
 
-    frame: one row a choice, with its `name`; cost: its column of seconds; quality: its column, with `low` and `high`
-    beside it where there is an interval. reference: the name whose cost, timed in the same run, is the unit of the
-    logarithmic cost axis. colour, marker: columns that choose colour and shape, each shown in a legend; legends: dict
-    column -> its title, where the column's name is none. tints: dict value -> colour of the column `colour`, where the
-    charts beside it have such; the front then goes without names, which the legend gives. better: "high" for
-    accuracies, "low" for errors. NotRun where the reference was not measured.
+    frame: one row a choice, with its `name`; cost: its column, of seconds unless clock is empty; quality: its column,
+    with `low` and `high` beside it where there is an interval. reference: the name whose cost, timed in the same run,
+    is the unit of the logarithmic cost axis. clock: as `Results.clock` says it, empty for a cost that is counted.
+    units: as of `placed`; a column `noise` stands for that of the clock. colour, marker: columns that choose colour and
+    shape, each shown in a legend; legends: dict column -> its title, where the column's name is none. tints: dict value
+    -> colour of the column `colour`, where the charts beside it have such; the front then goes without names, which the
+    legend gives. better: "high" for accuracies, "low" for errors. NotRun where the reference was not measured.
     """
     rows = frame.loc[np.isfinite(frame[cost]) & np.isfinite(frame[quality])].copy()
-    unit = rows.loc[rows["name"] == reference, cost]
-    if len(unit) != 1 or not unit.iloc[0] > 0:
+    known = rows.loc[rows["name"] == reference, cost]
+    if len(known) != 1 or not known.iloc[0] > 0:
         raise NotRun(f"the reference {reference} is not measured", "report", runnable=False)
-    rows["cost_ratio"] = rows[cost] / unit.iloc[0]
-    rows["on_front"] = pareto_front(rows["cost_ratio"], rows[quality], better)
-    front = rows.loc[rows["on_front"]].sort_values("cost_ratio")
+    unit = float(known.iloc[0])
+    rows["cost_ratio"] = rows[cost] / unit
+    noise = rows["noise"].to_numpy() if "noise" in rows else noise_by(clock)
+    rows = placed(rows, "cost_ratio", quality, better, noise, units)
+    front = rows.loc[pareto_front(rows["cost_ratio"], rows[quality], better)].sort_values("cost_ratio")
+    certain = rows.loc[rows["on_front"] == ON].sort_values("cost_ratio")
     with plt.rc_context(SETTINGS):
         drawing, axes = plt.subplots(figsize=(7.2, 4.6))
         axes.set(xscale="log", xlabel=f"cost, as a ratio to {reference}", ylabel=quality_label)
         axes.set_title(title if tints else fill(f"{title}. {_finding(front, quality)}", WIDE), pad=12)
         axes.grid(True)
-        axes.step(front["cost_ratio"], front[quality], where="post", color=INK, lw=1, zorder=1, label="Pareto front")
+        if len(certain):
+            axes.step(certain["cost_ratio"], certain[quality], where="post", color=INK, lw=1, zorder=1, label=CERTAINLY)
         _draw(axes, rows, quality, colour, marker, tints)
         axes.margins(x=0.12, y=0.1)
         if better == "low":
             axes.set_ylim(bottom=0)
         plain_logarithm(axes.xaxis)
-        axes.xaxis.set_major_locator(ticks(rows["cost_ratio"].max() / rows["cost_ratio"].min()))
+        above = axes.secondary_xaxis(
+            "top", functions=(lambda ratio: np.multiply(ratio, unit), lambda value: np.divide(value, unit))
+        )
+        counted = (legends or {}).get(cost, cost)
+        above.set_xlabel(f"seconds, {clock}" if clock else counted, fontsize=9)
+        plain_logarithm(above.xaxis)
+        for axis in (axes.xaxis, above.xaxis):
+            axis.set_major_locator(ticks(rows["cost_ratio"].max() / rows["cost_ratio"].min()))
         if colour:
             _legend(axes, [(legends or {}).get(column, column) for column in (colour, marker) if column])
         if not tints:
             named = _names(front if colour and marker and len(rows) > FEW else rows, quality, better)
-            place_names(axes, named, rows[["cost_ratio", quality]].to_numpy(), _lines(rows, front, quality))
-    names = list(front["name"])  # from the cheapest to the best; of a long front its ends
-    said = "; ".join(names) if len(names) <= LISTED else f"{len(names)} choices, from {names[0]} to {names[-1]}"
+            place_names(axes, named, rows[["cost_ratio", quality]].to_numpy(), _lines(rows, certain, quality))
+    said, maybe = _listed(certain), _listed(rows.loc[rows["on_front"] == PERHAPS].sort_values("cost_ratio"))
+    moved = f"; the costs vary by {100 * np.mean(noise):.2g} %" if clock else ""
+    first = f"{unit:.3g} s in the median case ({clock})" if clock else f"{unit:,.0f} {counted}"
     words = {
         "title": title,
         "alt": f"{quality_label} against cost as a ratio to {reference}; the Pareto front is {said}.",
-        "caption": f"{'Up' if better == 'high' else 'Down'} and left is better. Nothing beats the choices on the line: "
-        f"{said}. Cost 1 is {reference}, {unit.iloc[0]:.3g} s in the median case of this run. Bars: 95 % intervals.",
+        "caption": f"{'Up' if better == 'high' else 'Down'} and left is better. On the line, with a dark rim: the "
+        "choices that no other beats in at least 95 % of the resamples (of the units behind the "
+        f"intervals{moved}): {said}. Perhaps on the front: {maybe}. Cost 1 is {reference}, {first}. "
+        "Bars: 95 % intervals.",
     }
     return Figure(drawing, words, rows)
+
+
+def noise_by(clock: str) -> float:
+    """The NOISE of a clock as `Results.clock` says it; 0 without one."""
+    return next((noise for name, noise in NOISE.items() if clock.startswith(name)), 0.0)
+
+
+def _listed(rows: pd.DataFrame) -> str:
+    """The names of choices, from the cheapest to the dearest; of many the ends."""
+    names = list(rows["name"])
+    return "; ".join(names) or "none" if len(names) <= LISTED else f"{len(names)}, from {names[0]} to {names[-1]}"
 
 
 def _draw(
@@ -111,8 +184,8 @@ def _draw(
         tint, form = paint[row[colour]] if colour else CYCLE[0], shape[row[marker]] if marker else "o"
         if "low" in row and np.isfinite([row["low"], row["high"]]).all():
             axes.plot([row["cost_ratio"]] * 2, [row["low"], row["high"]], color=tint, lw=1.2, zorder=2,
-                      alpha=0.7 if row["on_front"] else 0.2)  # fmt: skip
-        axes.plot(row["cost_ratio"], row[quality], form, color=tint, ms=7, mec="white", mew=0.8, zorder=3,
+                      alpha=ALPHA[row["on_front"]])  # fmt: skip
+        axes.plot(row["cost_ratio"], row[quality], form, color=tint, ms=7, zorder=3, **RIMS[row["on_front"]],
                   label=f"_{row['name']}")  # fmt: skip
     for column, entries in ((colour, paint), (marker, shape)):
         if column:
@@ -136,7 +209,7 @@ def _legend(axes: Axes, titles: Sequence[str]) -> None:
 def _finding(front: pd.DataFrame, quality: str) -> str:
     """What is best, and what costs least of all that its interval holds; front: from the cheapest to the best."""
     best = front.iloc[-1]
-    said = f"Best: {best['name']} ({number(best[quality])})"
+    said = f"Best: {best['name']}" + (f" ({number(best[quality])})" if best[quality] else "")
     if "low" not in front or len(front) < 2:
         return said
     near = front[:-1][front[quality][:-1].between(best["low"], best["high"])]
@@ -158,7 +231,7 @@ def ticks(span: float) -> Locator:
 
 def _names(rows: pd.DataFrame, quality: str, better: str) -> list[tuple[str, Spot]]:
     """Names with their points: the front, the reference and the best come first, since the last may find no room."""
-    first = rows["on_front"] | (rows["cost_ratio"] == 1)
+    first = (rows["on_front"] == ON) | (rows["cost_ratio"] == 1)
     order = rows.assign(first=first).sort_values(["first", quality], ascending=[False, better == "low"])
     return list(zip(order["name"], zip(order["cost_ratio"], order[quality], strict=True), strict=True))
 

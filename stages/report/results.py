@@ -16,6 +16,7 @@ from stages.kit.files import read_arrays, read_mesh, read_table
 from stages.kit.packs import files_below, is_there, object_files
 from stages.kit.params import load_params
 from stages.kit.rows import SUFFIX, read_rows
+from stages.kit.timing import CLOCK, WALL
 from stages.kit.workspace import Workspace
 from stages.salient_points import read_points, read_saliency, read_strong_points
 from stages.weights import read_learned_weights
@@ -29,6 +30,8 @@ SETS_4_2 = "household_4_2_sets", "princeton_4_2_sets"  # random sets of six obje
 GAZED = "gaze", "gaze_clouds"  # sets with recorded human gaze; no object is in both
 COLOURED = "furniture_coloured"  # the set whose objects have several hues
 ON_GREY, ON_WHITE, ON_BLACK = "household_on_grey", "household_on_white", "gaze_on_black"  # other backgrounds
+ALWAYS_PROCESSOR = ("front",)  # stages whose rows had processor time before the column `clock` said so
+BENCH = "bench"
 NUMBERS = {"four": 4, "six": 6}  # names of groups that tell how many objects they hold
 
 
@@ -82,9 +85,15 @@ class Results:
         self.data, self.reports = workspace.root / "data", workspace.reports
         self.out = workspace.build / "partial/report"  # where the report is made before it takes its place
         self.sets = workspace.sets  # the names of the data sets that are switched on, in order
-        self.read: set[str] = set()  # the data sets that were read since somebody cleared this
+        self.read: set[str] = set()  # the data sets that were read since `forget`
+        self.sources: dict[str, list[pd.DataFrame]] = {}  # SET/STAGE or bench/NAME -> rows that were read since then
         self._tables: dict[Path, pd.DataFrame] = {}
         self._known: dict[Hashable, Any] = {}
+
+    def forget(self) -> None:
+        """Begins anew to note what is read."""
+        self.read.clear()
+        self.sources.clear()
 
     @classmethod
     def published(cls, workspace: Workspace, settings: Params) -> "Results":
@@ -112,6 +121,7 @@ class Results:
         dataset: None for the first of `datasets(stage)`. Raises NotRun when the rows are absent, lack the column, or
         none is left; with the stage's own note on why it left them out, where there is one.
         """
+        dataset = self._first(stage, dataset)
         frame = self._read(stage, dataset)
         for column, wanted in where.items():
             if column in frame:
@@ -124,6 +134,8 @@ class Results:
             if column not in frame:
                 raise NotRun(f"no column {column} in the rows of {stage}", stage)
             raise NotRun(f"{column} {either(wanted)} is not among those that {stage} measured", stage, runnable=False)
+        self.read.add(dataset)
+        self.sources.setdefault(f"{dataset}/{stage}", []).append(frame)
         return frame
 
     def measured(self, stage: str, dataset: str | None = None, **where: object) -> pd.DataFrame:
@@ -133,6 +145,11 @@ class Results:
             notes = self.notes(stage, dataset, **where) or [f"{stage} has rows of this, but no value"]
             raise NotRun("; ".join(notes[:2]), stage, runnable=False)
         return frame
+
+    def clock(self, stage: str, dataset: str | None = None) -> str:
+        """What the seconds of a stage's rows are: processor time of a named machine, or wall time in older rows."""
+        said = self._read(stage, dataset).get("clock", pd.Series(dtype=str)).dropna()
+        return said.iloc[0] if len(said) else CLOCK if stage in ALWAYS_PROCESSOR else WALL
 
     def notes(self, stage: str, dataset: str | None = None, **where: object) -> list[str]:
         """Why rows of a stage have no value, each reason one time; an empty cell of a row stands for any value."""
@@ -149,11 +166,13 @@ class Results:
         """`notes` as sentences for a table's prose, a line each."""
         return "\n".join(f"Not run: {note}." for note in self.notes(stage, dataset, **where))
 
+    def _first(self, stage: str, dataset: str | None) -> str:
+        return dataset or some(self.datasets(stage), f"no measurements of {stage}", stage)[0]
+
     def _read(self, stage: str, dataset: str | None) -> pd.DataFrame:
-        dataset = dataset or some(self.datasets(stage), f"no measurements of {stage}", stage)[0]
+        dataset = self._first(stage, dataset)
         if self.own_meshes and dataset not in self.sets:
             raise NotRun(f"{dataset} is not switched on", stage, runnable=False)
-        self.read.add(dataset)
         path = self.reports / "measurements" / dataset / f"{stage}{SUFFIX}"
         there(path, f"no measurements of {stage} on {dataset}", stage, dataset in self.sets)
         return self._table(path, read_rows)
@@ -174,9 +193,14 @@ class Results:
         if self.own_meshes:
             raise NotRun("benchmarks are not about a folder of one's own", "bench", runnable=False)
         what = f"no bench/{name}.csv: `make bench` writes it"
+        found = self._table(there(self.bench_path(name), what, BENCH, runnable=False), read_table)
+        self.sources.setdefault(f"{BENCH}/{name}", []).append(found)
+        return found
+
+    def bench_path(self, name: str) -> Path:
+        """reports/bench/NAME.csv, or .csv.gz where that is packed."""
         path = self.workspace.published / "bench" / f"{name}.csv"
-        path = path if is_there(path) else path.with_name(f"{path.name}.gz")
-        return self._table(there(path, what, "bench", runnable=False), read_table)
+        return path if is_there(path) else path.with_name(f"{path.name}.gz")
 
     def thesis(self, name: str) -> pd.DataFrame:
         """One of the thesis's own tables, data/reference/thesis/NAME.csv."""

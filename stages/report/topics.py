@@ -22,6 +22,7 @@ from . import (
 from .items import Built, Figure, Table
 from .page import item_html
 from .prose import add_words
+from .records import record_of
 from .results import NotRun, Results
 from .style import SETTINGS, plt
 
@@ -52,10 +53,11 @@ def build_all(kind: str, results: Results, topics: Iterable[ModuleType] = TOPICS
 
 def build_one(topic: ModuleType, kind: str, name: str, results: Results) -> Table | Figure:
     """One table, figure or chart, with its words, written to OUT/KIND; NotRun where it lacks its measurement."""
-    results.read.clear()
+    results.forget()
     with plt.rc_context(SETTINGS):
         item = getattr(topic, KINDS[kind])[name](results)
         add_words(item, topic, kind, name)
+        item.topic, item.sets = topic.__name__.rpartition(".")[2], results.in_order(results.read)
+        item.record = record_of(item, results, kind)
         item.write(results.out / kind)
-    item.topic, item.sets = topic.__name__.rpartition(".")[2], results.in_order(results.read)
     return item

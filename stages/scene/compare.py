@@ -1,6 +1,5 @@
 """One scene at one tolerance: our plan, and those of other methods at the same error of the rendered frames."""
 
-import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -153,10 +152,9 @@ def _by_surface(setup, item, chain, name):
 
 
 def _planned(method, make: Callable[[], Plan]) -> MethodPlan:
-    start = time.process_time()
     with Stopwatch() as watch:
         plan = make()
-    return MethodPlan(method, "", plan, watch.seconds, planning=time.process_time() - start)
+    return MethodPlan(method, "", plan, watch.seconds, planning=watch.seconds)
 
 
 def _timed(method, matched, make: Callable[[], Plan]) -> MethodPlan:

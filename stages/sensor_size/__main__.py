@@ -43,21 +43,23 @@ def process(item: str, folder: Path, data: Path, classes: Mapping[str, list[str]
     arrays = [parts(one) for one in array.split("+")]
     (cells, pitch), fine = arrays[0], "+".join(array.split("+")[1:])
     warm_up()
-    with Stopwatch() as watch:
-        imprints = {
-            label: [touch(name, data, arrays, extent, settings, seed) for name in names]
-            for label, names in classes.items()
-        }
-    count = sum(len(images) for objects in imprints.values() for images in objects)
-    rows = [{"metric": "seconds_a_touch", "value": watch.seconds / count, "seconds": watch.seconds}]
+    imprints: dict[str, list[np.ndarray]] = {}
+    costs = []
+    for label, names in classes.items():
+        for name in names:
+            with Stopwatch() as watch:
+                images = touch(name, data, arrays, extent, settings, seed)
+            imprints.setdefault(label, []).append(images)
+            cost = {"metric": "seconds_a_touch", "value": watch.seconds / len(images), "seconds": watch.seconds}
+            costs.append({"group": label, "item": name, **cost})
     # One thread gives equal sums on any number of cores. The fits of trees are so small that checks would take longer.
     with threadpool_limits(1), config_context(assume_finite=True, skip_parameter_validation=True):
-        rows += evaluate(imprints, settings.classifiers, seed, TOUCHES if extent else 1)
-    for row in rows[1:]:
+        rows = evaluate(imprints, settings.classifiers, seed, TOUCHES if extent else 1)
+    for row in rows:
         row["item"] = classes[row["group"]][row["item"]]
     common = {"method": settings.method, "cells": cells, "pitch": pitch, "touches": settings.touches}
     common |= {"fine": fine or None, "extent": extent or None}
-    return [common | row for row in rows]
+    return [common | row for row in [*costs, *rows]]
 
 
 def parts(item: str) -> tuple[int, float]:

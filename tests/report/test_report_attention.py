@@ -9,10 +9,11 @@ import pytest
 from stages.kit.files import read_arrays, write_arrays
 from stages.kit.stats import interval
 from stages.report import attention, meshes, stability
-from stages.report.attention.rows import agreement, difference, rivals
+from stages.report.attention.agreement import against_gaze
+from stages.report.attention.rows import agreement, difference, method_text, rivals
 from stages.report.costs import attention_seconds
 from stages.report.drawing import vivid
-from stages.report.markdown import signed
+from stages.report.markdown import number, signed
 from stages.report.meshes.methods import COMBINATIONS
 from stages.report.meshes.rows import paired_cells
 from stages.report.meshes.simplification import METHODS
@@ -262,6 +263,11 @@ def test_cost_counts_views_channels_and_points(seen):
     assert cost["facing_viewer"] == pytest.approx(0.5)
 
 
+def test_table_counts_pictures_and_maps_too(seen):
+    shown = against_gaze(seen).text.set_index("method")["seconds"]
+    assert shown[method_text("itti")] == number(2 + 3 + 0.5)
+
+
 @pytest.mark.slow
 def test_chart_of_attention_leaves_out_those_that_have_seen_the_mesh(seen):
     chart = build_all("tradeoff", seen, [attention])
@@ -269,7 +275,7 @@ def test_chart_of_attention_leaves_out_those_that_have_seen_the_mesh(seen):
     rows = pd.read_csv(seen.out / "tradeoff/attention.csv").set_index("method")
     assert not {"svm_object", "human"} & set(rows.index)
     assert rows.loc["itti", "cost_ratio"] == 1
-    assert rows.loc["enhanced", "on_front"] and not rows.loc["itti", "on_front"]
+    assert rows["on_front"][["enhanced", "itti"]].tolist() == ["yes", "no"]
 
 
 @pytest.mark.slow
@@ -348,5 +354,5 @@ def test_each_method_of_the_chart_of_simplification_has_its_own_colour():
 @pytest.mark.slow
 def test_long_front_is_told_by_its_ends():
     frame = pd.DataFrame({"name": [f"n{k}" for k in range(12)], "seconds": range(1, 13), "mean": range(12)})
-    caption = pareto_chart(frame, "mean", title="T", reference="n3", quality_label="q").words["caption"]
-    assert "12 choices, from n0 to n11" in caption and "n5" not in caption
+    caption = pareto_chart(frame, "mean", title="T", reference="n3", quality_label="q", clock="").words["caption"]
+    assert "12, from n0 to n11" in caption and "n5" not in caption

@@ -8,7 +8,7 @@ import pytest
 from matplotlib.text import Text
 
 from stages.report.names import place_names
-from stages.report.pareto import pareto_chart, pareto_front, ticks
+from stages.report.pareto import OFF, ON, PERHAPS, pareto_chart, pareto_front, placed, ticks
 from stages.report.results import NotRun
 from stages.report.style import plt
 
@@ -59,6 +59,56 @@ def frame():
     return pd.DataFrame(rows | {"low": [0.8, 0.4, np.nan], "high": [1.0, 0.6, np.nan]})
 
 
+def choices(accuracy, spread, seconds=(1.0, 2.0)):
+    """Two choices with intervals of a half-width."""
+    mean = np.array(accuracy)
+    ends = {"low": mean - spread, "high": mean + spread}
+    return pd.DataFrame({"name": ["cheap", "dear"], "seconds": seconds, "mean": mean, **ends})
+
+
+def test_a_choice_is_on_the_front_where_resamples_agree():
+    assert placed(choices([0.5, 0.9], 0.1), "seconds", "mean")["on_front"].tolist() == [ON, ON]
+    assert placed(choices([0.9, 0.5], 0.1), "seconds", "mean")["on_front"].tolist() == [ON, OFF]
+
+
+def test_a_choice_whose_gain_is_within_chance_is_perhaps_on_the_front():
+    found = placed(choices([0.5, 0.51], 0.1), "seconds", "mean")
+    assert found["on_front"].tolist() == [ON, PERHAPS]
+    assert found["front_share"].iloc[1] == pytest.approx(0.56, abs=0.05)  # half, and a little for the 0.01
+
+
+def test_equal_costs_are_told_apart_by_no_noise_alone():
+    """With noise either of two choices is cheaper half of the time; without it only the better one is on the front."""
+    equal = choices([0.5, 0.6], 0.01, seconds=(1.0, 1.0))
+    assert placed(equal, "seconds", "mean", noise=0.0)["on_front"].tolist() == [OFF, ON]
+    assert placed(equal, "seconds", "mean", noise=0.25)["on_front"].tolist() == [PERHAPS, ON]
+
+
+def test_units_drawn_together_tell_a_small_gain_from_chance():
+    """Two choices vary by far more between objects than they differ on each."""
+    objects = np.random.default_rng(0).normal(0.5, 0.2, 40)
+    units = pd.DataFrame({"cheap": objects, "dear": objects + 0.02})
+    frame = choices(units.mean().to_list(), 0.06)
+    assert placed(frame, "seconds", "mean")["on_front"].tolist() == [ON, PERHAPS]
+    assert placed(frame, "seconds", "mean", units=units)["on_front"].tolist() == [ON, ON]
+
+
+def test_errors_are_better_where_they_are_low():
+    assert placed(choices([0.5, 0.9], 0.01), "seconds", "mean", "low")["on_front"].tolist() == [ON, OFF]
+
+
+@pytest.mark.slow
+def test_the_cost_axis_has_seconds_of_a_named_clock(tmp_path):
+    figure = pareto_chart(
+        frame(), "mean", title="T", reference="fast", quality_label="accuracy", clock="processor, Model X"
+    )
+    above = figure.drawing.axes[0].child_axes[0]
+    assert above.get_xlabel() == "seconds, processor, Model X" and "processor, Model X" in figure.words["caption"]
+    low, high = figure.drawing.axes[0].get_xlim()
+    figure.drawing.draw_without_rendering()
+    assert above.get_xlim() == pytest.approx((2 * low, 2 * high))  # the reference takes two seconds
+
+
 def chart(folder, reference="fast"):
     figure = pareto_chart(frame(), "mean", title="Title", reference=reference, quality_label="accuracy")
     figure.name = "chart"
@@ -82,7 +132,7 @@ def test_cost_is_a_ratio_to_the_named_reference(tmp_path):
     figure = chart(tmp_path)
     table = pd.read_csv(tmp_path / "chart.csv").set_index("name")
     assert table["cost_ratio"].to_dict() == {"slow": 2.0, "fast": 1.0, "poor": 4.0}
-    assert table["on_front"].to_dict() == {"slow": True, "fast": True, "poor": False}
+    assert table["on_front"].to_dict() == {"slow": ON, "fast": ON, "poor": OFF}
     assert "fast" in figure.words["alt"] and "poor" not in figure.words["alt"]
 
 

@@ -4,6 +4,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from stages.kit.stats import interval
+from stages.kit.timing import WALL
 from stages.report import sensor
 from stages.report.results import NotRun
 from stages.report.sensor import claims
@@ -54,12 +56,25 @@ def test_the_table_tells_guessing_and_how_often_the_smallest_array_is_chosen_aga
 
 
 @pytest.mark.slow
-def test_the_chart_is_drawn_and_its_ratios_are_plain_numbers(sensed):
+def test_the_chart_shows_milliseconds_with_intervals(sensed):
     figure = build_one(sensor, "tradeoff", "sensor_size", sensed)
-    assert figure.paths[0].exists()
+    assert figure.paths[0].exists() and WALL in figure.caption
     axes = figure.drawing.axes[-1]
-    labels = [tick.get_text() for tick in axes.get_ymajorticklabels() + axes.get_yminorticklabels()]
-    assert {"1", "2", "5", "10"} <= set(labels) and not any("10^" in text for text in labels)
+    drawn = [line.get_ydata() for line in axes.lines]
+    assert np.concatenate(drawn).max() == pytest.approx(1.2)  # 32 cells, six times as dear at the finest pitch
+    low, high = axes.collections[0].get_segments()[0][:, 1]
+    assert low < drawn[0][0] < high
+
+
+def test_a_cost_has_the_interval_of_its_objects(sensed, root, small):
+    rows = pressed()
+    timed = rows[rows["metric"] == "seconds_a_touch"]
+    objects = [timed.assign(item=f"o{k}", value=timed["value"] * factor) for k, factor in enumerate((0.9, 1.0, 1.1))]
+    small.write(root, "sensor_size", pd.concat([rows[rows["metric"] != "seconds_a_touch"], *objects]))
+    axes = build_one(sensor, "tradeoff", "sensor_size", small.results(root)).drawing.axes[-1]
+    low, high = axes.collections[-1].get_segments()[0][:, 1]
+    mean, *ends = interval([0.09, 0.1, 0.11])
+    assert [low, high] == pytest.approx(ends)
 
 
 def test_claims_know_the_truth_of_the_rows(sensed):

@@ -54,6 +54,7 @@ def changes():
         about |= {"dataset": "furniture", "split": "random", "repetition": number, "metric": "layer_weight_change"}
         for depth, (layer, part) in enumerate(LAYERS.items()):
             found.append(about | {"layer": layer, "part": part, "value": 0.1 ** (depth + 0.1 * number)})
+        found.append(about | {"metric": "weight_change", "value": 0.01 * (number + 1)})
     return pd.DataFrame(found)
 
 
@@ -131,7 +132,7 @@ def test_figures_are_drawn(run, figure):
 @pytest.mark.slow
 def test_a_figure_tells_the_mean_change_of_each_network(run):
     assert (
-        "Mean over the convolutions of a network: MobileNetV2 from ImageNet 0."
+        "Mean over the convolutions of a network: MobileNetV2 0.015 (furniture, 128 x 128, from ImageNet, 2 trainings)."
         in build_one(transfer, "figures", "figure_5_4", run).caption
     )
 

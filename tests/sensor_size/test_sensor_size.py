@@ -159,8 +159,9 @@ def test_the_stage_tests_each_object_of_the_classes(make_workspace):
     assert dict(zip(tested["item"], tested["group"], strict=True)) == dict(
         zip(table["object"], table["class"], strict=True)
     )
-    assert (rows["metric"] == "smallest_chosen_again").sum() == 1 and len(rows) == 3 * (1 + 4 + 4) + 1
-    assert (rows["fine"] == "3-0.01").sum() == (rows["extent"] == "region").sum() == 9
+    assert (rows["metric"] == "smallest_chosen_again").sum() == 1 and len(rows) == 3 * (4 + 4 + 4) + 1
+    assert (rows["fine"] == "3-0.01").sum() == (rows["extent"] == "region").sum() == 12
+    assert rows.loc[rows["metric"] == "seconds_a_touch", "item"].tolist() == 3 * list(sizes)
 
 
 def test_the_svm_stops_where_its_steps_run_in_a_circle(monkeypatch):

@@ -6,6 +6,7 @@ from contextlib import suppress
 import pandas as pd
 
 from stages.kit.stats import interval
+from stages.report.costs import attention_seconds
 from stages.report.grid import records
 from stages.report.items import Table
 from stages.report.markdown import number, signed, with_interval
@@ -47,13 +48,13 @@ def against_gaze(results: Results) -> Table:
     with suppress(NotRun):
         black = results.rows("salient_points", ON_BLACK, method=list(FILTERED))
         black = black.assign(method=black["method"] + BLACK)
-    return _table(rows, list(MEANS), {"count": rows["item"].nunique()}, black)
+    return _table(results, rows, list(MEANS), {"count": rows["item"].nunique()}, black)
 
 
 def against_clouds(results: Results) -> Table:
     """The point clouds with human gaze, each left out of the learning; how their surfaces are made costs apart."""
     rows = results.rows("salient_points", "gaze_clouds")
-    return _table(rows, list(MEANS), {"count": rows["item"].nunique()})
+    return _table(results, rows, list(MEANS), {"count": rows["item"].nunique()})
 
 
 def against_marks(results: Results) -> Table:
@@ -62,23 +63,28 @@ def against_marks(results: Results) -> Table:
     dataset, count = rows["dataset"].iloc[0], rows.loc[rows["metric"] == "nss", "item"].nunique()
     other = f"The truth is what comes with the data set {dataset}."
     truth = shared_notes(__package__, "marks") if dataset == MARKED else other
-    return _table(rows, [COUNTED, "fne@0.05", "fpe@0.05"], {"count": count, "truth": truth})
+    return _table(results, rows, [COUNTED, "fne@0.05", "fpe@0.05"], {"count": count, "truth": truth})
 
 
-def _table(rows: pd.DataFrame, beside: Sequence[str], words: dict, more: pd.DataFrame | None = None) -> Table:
+def _table(
+    results: Results, rows: pd.DataFrame, beside: Sequence[str], words: dict, more: pd.DataFrame | None = None
+) -> Table:
     """The judged rows, with those of MEANS that stand beside NSS and AUC; words: without those that the numbers say.
 
-    more: rows that stand in the table too, of which nothing is said.
+    more: rows that stand in the table too, of which nothing is said. The seconds are those from the pictures to the
+    points; of a set without rows of pictures or maps there are none.
     """
+    cost: dict[str, float] = {}
+    with suppress(NotRun):
+        cost = attention_seconds(results, rows["dataset"].iloc[0])
     shown = rows if more is None else pd.concat([rows, more])
     frame = agreement(shown, [*ALONE, *beside])
-    timed = shown.dropna(subset=["seconds"]).drop_duplicates(["item", "method", "seconds"])
-    cost = timed.groupby("method")["seconds"].median().map(number)
     names, lines = list(ALONE.values()), {}
-    columns = ["method", *names, *(f"ours − it, {name}" for name in names), *map(MEANS.get, beside), "seconds"]
+    columns = ["method", *names, *(f"ours − it, {name}" for name in names), *map(MEANS.get, beside)]
+    columns += ["seconds"] if cost else []
     for row in records(frame.reindex(columns=frame.columns.union(GAIN))):
         line = lines.setdefault(row.method, dict.fromkeys(columns, "–"))
-        line |= {"method": method_text(row.method), "seconds": cost.get(row.method, "–")}
+        line |= {"method": method_text(row.method), "seconds": number(cost[row.method]) if row.method in cost else "–"}
         if row.metric in ALONE:
             line[ALONE[row.metric]] = with_interval(row.mean, row.low, row.high, places=2)
         elif row.mean == row.mean:

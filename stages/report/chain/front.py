@@ -3,10 +3,11 @@
 import pandas as pd
 from matplotlib.axes import Axes
 
+from stages.kit.timing import CLOCK
 from stages.report.grid import records
 from stages.report.items import Figure, Table
 from stages.report.markdown import with_interval
-from stages.report.pareto import pareto_front
+from stages.report.pareto import NOISE, ON, placed
 from stages.report.results import Results
 from stages.report.style import CYCLE, GREY, PALE, plain_logarithm, plt
 
@@ -97,8 +98,11 @@ def _draw(axes: Axes, searched: pd.DataFrame, confirmed: pd.DataFrame, name: str
     axes.plot(
         searched["seconds"], 100 * searched[name], "o", color="none", mec=GREY, ms=4.5, label="on objects of the search"
     )
-    front = searched[pareto_front(searched["seconds"], searched[name])].sort_values("seconds")
-    axes.step(front["seconds"], 100 * front[name], where="post", color=GREY, lw=1, zorder=1, label="their Pareto front")
+    own = searched.assign(low=searched[f"{name}_low"], high=searched[f"{name}_high"])
+    found = placed(own, "seconds", name, noise=NOISE[CLOCK])
+    front = found[found["on_front"] == ON].sort_values("seconds")
+    said = "on their front in 95 % of resamples"
+    axes.step(front["seconds"], 100 * front[name], where="post", color=GREY, lw=1, zorder=1, label=said)
     pairs = confirmed.merge(searched, on="number", suffixes=("", "_before"))
     for row in records(pairs):
         ends = [[getattr(row, f"{one}_before"), getattr(row, one)] for one in ("seconds", name)]

@@ -1,6 +1,5 @@
 """Accuracy against the number of touches, and against the stated belief."""
 
-import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 
@@ -10,7 +9,7 @@ from stages.report.items import Figure
 from stages.report.results import Results
 from stages.report.style import CYCLE, GREY, label, plt
 
-from .exploration import GROUP, HEADLINE, HELD_OUT, LIKELIHOODS, STAGE, WAYS
+from .exploration import GROUP, HELD_OUT, LIKELIHOODS, STAGE, WAYS
 
 METHODS = ("thesis_ssim", "enhanced", "random")
 PANELS = ((Split.RANDOM, "imprint"), (Split.RANDOM, "imprint_place"), (Split.REGIONS, "imprint"))
@@ -25,16 +24,22 @@ def exploration(results: Results) -> Figure:
     methods = [method for method in METHODS if method in set(rows["method"])] or list(dict.fromkeys(rows["method"]))
     frame = _points(rows, ["split", "likelihood", "method", "way", "stop", "level"])
     figure, grid = plt.subplots(
-        len(PANELS), len(methods), figsize=(3.15 * len(methods) + 0.6, 2.5 * len(PANELS) + 0.8), squeeze=False,
+        len(PANELS), len(methods), figsize=(3.15 * len(methods) + 0.6, 2.6 * len(PANELS) + 0.8), squeeze=False,
         sharex=True, sharey=True,
     )  # fmt: skip
     for row, (split, likelihood) in zip(grid, PANELS, strict=True):
         panel = frame[(frame["split"] == split) & (frame["likelihood"] == likelihood)]
         for axes, method in zip(row, methods, strict=True):
             _draw_touches(axes, panel[panel["method"] == method])
-        row[0].set_ylabel(f"accuracy\n{LIKELIHOODS[likelihood]}, {HELD_OUT[split]}")
+        row[0].set_ylabel("accuracy, %")
+        row[0].annotate(
+            f"{LIKELIHOODS[likelihood].capitalize()}, {HELD_OUT[split]}",
+            (0, 1.06),
+            xycoords="axes fraction",
+            fontsize=9.5,
+        )
     for above, below, method in zip(grid[0], grid[-1], methods, strict=True):
-        above.set_title(label(method), fontsize=10)
+        above.set_title(label(method), fontsize=10, pad=22)
         below.set_xlabel("mean number of touches")
     handles, names = grid[0, 0].get_legend_handles_labels()
     figure.legend(handles, names, loc="lower center", ncol=3, bbox_to_anchor=(0.5, -0.06), fontsize=9)
@@ -57,13 +62,12 @@ def _draw_touches(axes: Axes, panel: pd.DataFrame) -> None:
     for way, words in WAYS.items():
         own, tint = panel[panel["way"] == way].sort_values("level"), TINTS[way]
         sure, fixed = own[own["stop"] == "confidence"], own[own["stop"] == "fixed"]
-        told = sure[np.isclose(sure["level"], HEADLINE)]
-        axes.plot([told["touches"]] * 2, [told["low"], told["high"]], color=tint, lw=1, alpha=0.55)
+        axes.fill_between(fixed["touches"], 100 * fixed["low"], 100 * fixed["high"], color=tint, alpha=0.1, lw=0)
         dots, dashes = {"marker": "o", "ms": 4, "lw": 1.5, "zorder": 3}, {"ls": "--", "lw": 1.0}
-        axes.plot(sure["touches"], sure["accuracy"], color=tint, label=f"{words}, stops when sure", **dots)
-        axes.plot(fixed["touches"], fixed["accuracy"], color=tint, label=f"{words}, a fixed number", **dashes)
+        axes.plot(sure["touches"], 100 * sure["accuracy"], color=tint, label=f"{words}, stops when sure", **dots)
+        axes.plot(fixed["touches"], 100 * fixed["accuracy"], color=tint, label=f"{words}, a fixed number", **dashes)
     axes.grid()
-    axes.set(xscale="log", ylim=(0.3, 1.02))
+    axes.set(xscale="log", ylim=(20, 102))
     axes.set_xticks(TICKS, map(str, TICKS))
     axes.minorticks_off()
 

@@ -115,6 +115,8 @@ def chart(results: Results) -> Figure:
     figure = pareto_chart(
         frame, "mean", title="Where networks look: what training costs",
         reference=network_text(REFERENCE), quality_label=f"PCC, {source}",
+        clock=results.clock("fixation", rows["dataset"].iloc[0]),
+        units=pd.DataFrame(maps).rename(columns=network_text),
     )  # fmt: skip
     figure.words |= {"source": source, "saved": _saved(maps)}
     return figure

@@ -10,7 +10,7 @@ from matplotlib.ticker import NullFormatter
 
 from stages.report.items import Figure
 from stages.report.names import Spot, place_names
-from stages.report.pareto import pareto_front
+from stages.report.pareto import ON, noise_of, placed
 from stages.report.results import NotRun, Results
 from stages.report.style import GREY, INK, colours, label, plain_logarithm, plt
 
@@ -19,7 +19,6 @@ from .growth import FITTED, Growth, growth
 
 ERRORS = {"error": ("Metro mean", "time and distance"), "seen": ("1 − SSIM", "time and error as seen")}
 KEPT = {False: ("o", "nothing kept"), True: ("D", "points kept")}
-ROOM = 60  # free above the seconds for the legend, as a factor
 
 
 def build(results: Results) -> Figure:
@@ -33,7 +32,10 @@ def build(results: Results) -> Figure:
     for axes, (kind, (name, title)) in zip(panels, ERRORS.items(), strict=False):
         frame[f"{kind}_front"] = False
         for _, group in frame.groupby("with_points"):  # the task without points to keep is another than the one with
-            frame.loc[group.index, f"{kind}_front"] = pareto_front(group["time_ratio"], group[f"{kind}_ratio"], "low")
+            parts = {part: np.log(group[f"{kind}_{part}"]) for part in ("ratio", "low", "high")}
+            own = group.assign(name=group["backend"], **parts)
+            found = placed(own, "time_ratio", "ratio", "low", noise_of(group["time_low"], group["time_high"]))
+            frame.loc[group.index, f"{kind}_front"] = found["on_front"] == ON
         _against(axes, frame, kind, tints)
         axes.set(ylabel=f"{name}, ratio to {REFERENCE}", title=title)
     fits = {name: growth(paired[paired["backend"] == name]) for name in dict.fromkeys(rows["backend"])}
@@ -95,9 +97,9 @@ def _growing(axes: Axes, rows: pd.DataFrame, fits: dict[str, Growth | None], tin
         axes.plot([], [], "o", color=tint, ms=5, label=label(backend) + power)
     axes.plot([], [], color=INK, lw=0.9, ls="--", label="n log n")
     axes.set(xscale="log", yscale="log", xlabel="faces of the mesh, n", ylabel="seconds", title="growth with the mesh")
-    axes.set_ylim(top=axes.get_ylim()[1] * ROOM)
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter(lambda value, _: f"{value:,g}" if value < 1e6 else f"{value / 1e6:g} M")
         axis.set_minor_formatter(NullFormatter())
     axes.grid(True)
-    axes.legend(loc="upper left", fontsize=8)
+    where = {"loc": "center left", "bbox_to_anchor": (1.02, 0.5), "fontsize": 8}
+    axes.legend(**where, title="power of the growth p [95 %]", title_fontsize=8, alignment="left")

@@ -87,7 +87,7 @@ def figure_3_8(results: Results) -> Figure:
     name, levels = some(found, what, "lod", runnable=False)[0]
     (method, kept), (_, plain) = levels.items()
     mesh, points, rows = results.mesh(name), results.strong_points(name)[method], ROWS["figure_3_8"]
-    targets = sorted(set(kept) & set(plain), key=size)[-LEVELS:]
+    targets = sorted(set(kept) & set(plain), key=lambda target: -len(kept[target].faces))[-LEVELS:]
     fields = [[errors(mesh, level[target]) for target in targets] for level in (kept, plain)]
     top = float(np.quantile(np.concatenate(sum(fields, [])), TOP)) or 1.0
     drawing, grid = square_grid(3, len(targets) + 1, side=1.9, right=0.9, gap=0.25)

@@ -6,7 +6,7 @@ from matplotlib.figure import Figure as Drawing
 from stages.report.costs import attention_seconds
 from stages.report.grid import means
 from stages.report.items import Figure
-from stages.report.pareto import pareto_front
+from stages.report.pareto import ON, noise_by, placed
 from stages.report.results import NotRun, Results
 from stages.report.style import INK, MARKERS, WAYS, colours, label, plain_logarithm, plt
 
@@ -24,7 +24,7 @@ def build(results: Results) -> Figure:
     rows = rows[rows["target"].str.endswith("%")]
     if PLAIN not in set(rows["method"]):
         raise NotRun("no share of the faces that plain QEM and all methods reach on the same object", "lod")
-    frame = _costed(rows, attention_seconds(results))
+    frame = _costed(rows, attention_seconds(results), noise_by(results.clock("lod")))
     targets = sorted(set(frame["target"]), key=size)
     objects = rows.groupby("target")["item"].nunique()
     plain = frame.query("method == @PLAIN and target == @targets[0]")["seconds"].iloc[0]
@@ -36,7 +36,7 @@ def build(results: Results) -> Figure:
     return Figure(_draw(frame, targets), words, frame, dpi=100)
 
 
-def _costed(rows: pd.DataFrame, search: dict[str, float]) -> pd.DataFrame:
+def _costed(rows: pd.DataFrame, search: dict[str, float], noise: float) -> pd.DataFrame:
     """A row a metric, method and share: mean error in its unit, cost with the seconds of the search, and front."""
     frame = pd.DataFrame(means(rows, ["metric", "method", "target"]))
     base = frame["method"].str.replace(f"-({'|'.join(WAYS)})$", "", regex=True)
@@ -47,7 +47,7 @@ def _costed(rows: pd.DataFrame, search: dict[str, float]) -> pd.DataFrame:
     ends = ["mean", "low", "high"]
     frame[ends] = frame[ends].mul(frame["metric"].map(UNITS), axis=0)
     for _, group in frame.groupby(["metric", "target"]):
-        frame.loc[group.index, "on_front"] = pareto_front(group["cost_ratio"], group["mean"], "low")
+        frame.loc[group.index, "on_front"] = placed(group, "cost_ratio", "mean", "low", noise)["on_front"] == ON
     return frame.astype({"on_front": bool})
 
 
@@ -77,7 +77,7 @@ def _draw(frame: pd.DataFrame, targets: list[str]) -> Drawing:
         axes.plot([], [], "o", color=tint, ms=6, label=label(method))
     for target, form in forms.items():
         axes.plot([], [], form, color="none", mec=INK, ms=6, label=f"{target} of the faces")
-    axes.plot([], [], color=INK, lw=0.9, label="Pareto front of a share")
+    axes.plot([], [], color=INK, lw=0.9, label="on the front of a share in 95 % of resamples")
     axes.legend(loc="center left", bbox_to_anchor=(1.02, 0.5), fontsize=9)
     drawing.subplots_adjust(wspace=0.32)
     return drawing

@@ -7,12 +7,13 @@ from matplotlib.axes import Axes
 
 from stages.kit.split import Split, shared_by
 from stages.kit.stats import interval
+from stages.kit.timing import CLOCK
 from stages.report.grid import percent, records
 from stages.report.items import Figure, Table
 from stages.report.markdown import signed, with_interval
 from stages.report.names import place_names
 from stages.report.networks import MODES, PRINTED, STARTS, origin
-from stages.report.pareto import pareto_front, ticks
+from stages.report.pareto import NOISE, ON, placed, ticks
 from stages.report.ranking import Ranking
 from stages.report.results import Results, some
 from stages.report.style import INK, label, plain_logarithm, plt
@@ -101,7 +102,8 @@ def _gain(*points: float) -> str:
 def _draw(axes: Axes, frame: pd.DataFrame) -> None:
     """frame: accuracy, low and high in per cent, cost and name."""
     axes.set_xscale("log")
-    front = frame[pareto_front(frame["cost"], frame["accuracy"])].sort_values("cost")
+    found = placed(frame, "cost", "accuracy", noise=NOISE[CLOCK])
+    front = found[found["on_front"] == ON].sort_values("cost")
     axes.step(front["cost"], front["accuracy"], where="post", color=INK, lw=1, zorder=1)
     across, up = front[["cost", "accuracy"]].to_numpy().repeat(2, axis=0).T
     steps = pairwise(zip(across[1:], up[:-1], strict=True))

@@ -1,13 +1,17 @@
 """A scene along a camera path: faces and errors of every way to choose the levels of its objects."""
 
-from stages.report.grid import percent, records
+import pandas as pd
+
+from stages.kit.stats import interval
+from stages.report.grid import grouped, percent, records
 from stages.report.items import Figure, Table
 from stages.report.markdown import number
 from stages.report.pareto import pareto_chart
 from stages.report.results import Results
 from stages.report.style import GREY
 
-from .rows import COLOURS, NAMES, OURS, amount, left_of, savings, scene_rows
+from .random import EQUAL, drawing, planning
+from .rows import COLOURS, NAMES, OURS, RANDOM, UNITS, amount, left_of, savings, scene_rows
 
 MATCHED = {"": "", "error": "mean frame error", "displacement": "mean displacement", "held": "every frame holds",
            "asked": "nothing: as it answers", "limit": "limit of half our faces"}  # fmt: skip
@@ -50,19 +54,33 @@ def build(results: Results) -> Table:
 
 
 def chart(results: Results) -> Figure:
-    """The error of the rendered frames against the faces that they take, by every way to choose the levels."""
-    rows, scene, _, unit = scene_rows(results, frame="all", metric=["faces", "error"])
-    rows = rows[rows["matched"].isin(["", "error"]) & rows["method"].isin(NAMES)]
-    wide = rows.pivot_table(index=["method", "tolerance"], columns="metric", values="value", sort=False).reset_index()
-    wide = wide.sort_values("tolerance", kind="stable")  # the legend's order
-    wide["tolerance"] = [amount(value, unit) for value in wide["tolerance"]]
-    wide["way"] = wide["method"].map(NAMES)
-    wide.insert(4, "name", (wide["way"] + ", " + wide["tolerance"]).where(wide["method"] != REFERENCE, wide["way"]))
+    """The error of the rendered frames against the faces that they take, by every way to choose the levels.
+
+    Means over the scenes drawn at random; without these, of the one scene that was measured.
+    """
+    rows = results.measured("scene", results.printed(RANDOM, "scene"), frame="all", metric=["faces", "error"])
+    rows = rows.fillna({"matched": ""})
+    rows = rows[rows["matched"].isin(EQUAL) & rows["method"].isin(NAMES)].dropna(subset=["tolerance"])
+    unit, scenes = UNITS[rows["kind"].iloc[0]], list(dict.fromkeys(rows["group"]))
+    lines, errors = [], {}
+    for (tolerance, method, matched), own in grouped(rows, ["tolerance", "method", "matched"]):
+        way = NAMES[method]
+        name = way if method == REFERENCE else ", ".join(filter(None, (way, amount(tolerance, unit), EQUAL[matched])))
+        wide = own.pivot(index="group", columns="metric", values="value")
+        errors[name], ends = wide["error"], dict(zip(("error", "low", "high"), interval(wide["error"]), strict=True))
+        lines.append({"method": method, "way": way, "name": name, "tolerance": tolerance, "matched": EQUAL[matched],
+                      "faces": wide["faces"].mean(), **ends})  # fmt: skip
+    frame = pd.DataFrame(lines).sort_values("tolerance", kind="stable").drop_duplicates("name")
+    marker = "tolerance" if frame["tolerance"].nunique() > 1 else "matched"
+    frame["tolerance"] = [amount(value, unit) for value in frame["tolerance"]]
+    frame["matched"] = frame["matched"].replace("", "nothing: as planned")
+    what = f"{len(scenes)} random scenes" if len(scenes) > 1 else f"Scene {scenes[0]}"
     figure = pareto_chart(
-        wide, "error", title=f"Scene {scene}: faces against what shows", reference=NAMES[REFERENCE],
+        frame, "error", title=f"{what}: faces against what shows", reference=NAMES[REFERENCE],
         quality_label=f"error of the rendered frames, mean, {unit}", cost="faces", better="low", colour="way",
-        marker="tolerance",
-        tints={name: COLOURS.get(method, GREY) for method, name in NAMES.items() if method in set(wide["method"])},
+        marker=marker, clock="", units=pd.DataFrame(errors),
+        legends={"matched": "equal to ours in", "faces": "faces a frame"},
+        tints={name: COLOURS.get(method, GREY) for method, name in NAMES.items() if method in set(frame["method"])},
     )  # fmt: skip
-    figure.words["full"] = wide.loc[wide["method"] == REFERENCE, "faces"].iloc[0]
+    figure.words |= {"drawing": drawing(results), "planning": planning(results) if len(scenes) > 1 else ""}
     return figure

@@ -7,6 +7,7 @@ from stages.report.items import Table
 from stages.report.markdown import number
 from stages.report.results import Results
 
+from .random import planning
 from .rows import NAMES, OURS, UNIFORM, UNITS, amount, left_of, savings
 
 WAYS = [("full", ""), ("uniform", "error"), ("uniform_size", "error"), ("network", "error"), (OURS, ""),
@@ -37,7 +38,11 @@ def build(results: Results) -> Table:
         "worst jump": frame["step_worst"],
         "faces that ours saves, %": frame["text"].fillna("–"),
     }
-    words = {"scenes": "\n".join(map(_said, scenes.values())), "left": left_of(savings(rows))}
+    words = {
+        "scenes": "\n".join(map(_said, scenes.values())),
+        "left": left_of(savings(rows)),
+        "planning": planning(results),
+    }
     return Table(frame.drop(columns="text"), pd.DataFrame(shown), words)
 
 

@@ -4,11 +4,13 @@ import numpy as np
 import pandas as pd
 
 from stages.kit.split import Split
-from stages.report.grid import blocks, everywhere, grid, means, records
+from stages.kit.stats import interval
+from stages.report.grid import blocks, everywhere, grid, grouped, means, over_items, records
 from stages.report.items import Figure, Table
+from stages.report.pareto import NORMAL, noise_by
 from stages.report.ranking import Ranking
 from stages.report.results import Results
-from stages.report.style import CYCLE, GREY, MARKERS, label, plain_logarithm, plt
+from stages.report.style import CYCLE, GREY, MARKERS, label, plt
 from stages.report.words import dataset_text
 
 from .claims import COARSE, LARGE, STAGE, UNSEEN
@@ -86,8 +88,16 @@ def chart(results: Results) -> Figure:
     """Accuracy on unseen objects against the number of sensels, for each distance, and the cost of a touch."""
     rows = results.measured(STAGE, **UNSEEN)
     found = _cells(rows, ["cells", "pitch", "classifier"])
-    costs = results.measured(STAGE, metric="seconds_a_touch").set_index(["cells", "pitch"])["value"].sort_index()
-    ratios = costs / costs.min()
+    touched = results.measured(STAGE, metric="seconds_a_touch")
+    costs = 1e3 * pd.DataFrame([
+        dict(zip(("cells", "pitch", "mean", "low", "high"), (*key, *interval(over_items(own))), strict=True))
+        for key, own in grouped(touched, ["cells", "pitch"])
+    ]).set_index(["cells", "pitch"]).sort_index()  # fmt: skip
+    clock = results.clock(STAGE)
+    spread = np.exp(NORMAL * noise_by(clock))  # of a cost without objects of its own, from run to run
+    costs = costs.assign(
+        low=costs["low"].fillna(costs["mean"] / spread), high=costs["high"].fillna(costs["mean"] * spread)
+    )
     names = list(dict.fromkeys(found["classifier"]))
     pitches, sizes = sorted(set(found["pitch"])), sorted(set(found["cells"]))
     figure, panels = plt.subplots(1, len(names) + 1, figsize=(1.95 * (len(names) + 1), 3.4))
@@ -99,25 +109,25 @@ def chart(results: Results) -> Figure:
             x = own["cells"] * 1.03 ** (k - (len(pitches) - 1) / 2)  # apart, so that no interval hides another
             axes.vlines(x, 100 * own["low"], 100 * own["high"], color=CYCLE[k], lw=1, alpha=0.5)
             axes.plot(x, 100 * own["accuracy"], label=f"cells {pitch:g} units apart", **style)
-        cost.plot(ratios.xs(pitch, level="pitch"), **style)
+        own = costs.xs(pitch, level="pitch")
+        x = own.index * 1.06 ** (k - (len(pitches) - 1) / 2)
+        cost.vlines(x, own["low"], own["high"], color=CYCLE[k], lw=1, alpha=0.5)
+        cost.plot(x, own["mean"], **style)
     for name, axes in accuracies.items():
         axes.axhline(100 / rows["group"].nunique(), color=GREY, lw=0.8, ls=":")
         axes.set(title=label(name), ylim=(0, min(100 * found["high"].fillna(found["accuracy"]).max() + 5, 100)))
         axes.tick_params(labelleft=axes is panels[0])
-    cheapest = f"{1e3 * costs.min():.2g} ms"
-    cost.set(title="cost of a touch", yscale="log", ylim=(None, 1.2 * np.ceil(ratios.max())))
-    cost.set_ylabel(f"times the cheapest, {cheapest}")
-    plain_logarithm(cost.yaxis)
+    cost.set(title="cost of a touch", ylim=(0, None), ylabel="milliseconds")
     for axes in panels:
         axes.set_xscale("log", base=2)
         axes.set_xticks(sizes, [f"{size}²" for size in sizes])
         axes.grid(axis="y")
     panels[0].set_ylabel("accuracy on unseen objects, %")
-    figure.supxlabel("cells of the array", fontsize=10, y=0.09)
+    figure.supxlabel("cells of the array", fontsize=10, y=0.12)
     figure.suptitle(_best(found), x=0.01, ha="left", fontsize=11, fontweight="bold")
-    figure.tight_layout(w_pad=1.2, rect=(0, 0.09, 1, 1))
+    figure.tight_layout(w_pad=1.2, rect=(0, 0.1, 1, 1))
     figure.legend(*panels[0].get_legend_handles_labels(), loc="lower center", ncol=len(pitches), fontsize=9)
-    return Figure(figure)
+    return Figure(figure, {"clock": clock, "on": dataset_text(str(rows["dataset"].iloc[0]))})
 
 
 def _best(found: pd.DataFrame) -> str:

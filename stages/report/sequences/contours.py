@@ -14,6 +14,7 @@ from stages.report.drawing import VIEWPOINT, name_panels, picture, squared
 from stages.report.items import Figure
 from stages.report.results import Results, some
 from stages.report.style import CYCLE, INK, PALE, label, plt
+from stages.report.words import dataset_text
 
 from .rows import BLIND, GUIDED
 
@@ -40,6 +41,7 @@ def figure_4_14(results: Results) -> Figure:
     name_panels(grid, [], map(label, strategies))
     figure.subplots_adjust(wspace=0.03, hspace=0.03)
     words = {"names": ", ".join(map(label, found)), "count": PATHS, "strategies": " and ".join(map(label, strategies))}
+    words["on"] = dataset_text(results.folder("contours").parent.name)
     return Figure(figure, words)
 
 

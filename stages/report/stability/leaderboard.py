@@ -76,6 +76,7 @@ def chart(results: Results) -> Figure:
     drawn = pareto_chart(
         frame, "found", title="Stability against the cost of a look", reference=label(REFERENCE),
         quality_label="points found again beyond chance, %", colour="band", legends={"band": "NSS on gaze"},
+        clock=results.clock("salient_points", GAZE),
     )  # fmt: skip
     sharp = frame[frame["band"] == frame["band"].iloc[0]].sort_values("found", ascending=False).iloc[0]
     said = f"{sharp['name']}, {with_interval(sharp['found'], sharp['low'], sharp['high'], places=0)} %"

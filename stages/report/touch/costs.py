@@ -27,7 +27,7 @@ def by_classifier(results: Results) -> Figure:
     """Accuracy against the seconds to fit and ask a classifier; the reference is the thesis's best, blind."""
     by, title = ["classifier", "method"], f"Recognising {results.group_text('six')} by one touch"
     frame = _timed(results, by, variant="plain", method=[*OURS.values(), MODEL])
-    return _chart(frame, title, by, f"{label('knn')}, {label('random')}", colour="classifier", marker="method")
+    return _chart(results, frame, title, by, f"{label('knn')}, {label('random')}", colour="classifier", marker="method")
 
 
 def by_features(results: Results) -> Figure:
@@ -37,14 +37,16 @@ def by_features(results: Results) -> Figure:
     frame["seconds"] += frame["variant"].replace(MADE_OF).map(making).fillna(0.0)
     frame["samples"] = frame["variant"].map(KINDS)
     title = f"Recognising {results.group_text('six')} by one touch and more"
-    return _chart(frame, title, ["classifier", "samples"], "kNN, 41 features", colour="samples", marker="classifier")
+    by = ["classifier", "samples"]
+    return _chart(results, frame, title, by, "kNN, 41 features", colour="samples", marker="classifier")
 
 
 def by_saliency(results: Results) -> Figure:
     """What a second spent on saliency is worth to the touch that follows."""
     frame = _timed(results, ["method"], classifier="knn", variant="plain")
     frame["seconds"] = frame["method"].map(attention_seconds(results))
-    return _chart(frame, f"Looking before touching: {results.group_text('six')}, kNN", ["method"], label(MODEL))
+    title = f"Looking before touching: {results.group_text('six')}, kNN"
+    return _chart(results, frame, title, ["method"], label(MODEL))
 
 
 def _timed(results: Results, by: list[str], **where: Any) -> pd.DataFrame:
@@ -53,8 +55,9 @@ def _timed(results: Results, by: list[str], **where: Any) -> pd.DataFrame:
     return pd.DataFrame(means(rows, by, shared_by(Split.RANDOM), top=1.0))
 
 
-def _chart(frame: pd.DataFrame, title: str, named: list[str], reference: str, **style: Any) -> Figure:
+def _chart(results: Results, frame: pd.DataFrame, title: str, named: list[str], reference: str, **style: Any) -> Figure:
     """named: columns that make up the name of a choice."""
     frame = frame.assign(name=frame[named].map(label).agg(", ".join, axis=1)).dropna(subset=["seconds"])
     return pareto_chart(frame, "mean", title=title, reference=reference, quality_label="hold-out accuracy",
+                        clock=results.clock(STAGE),
                         legends={"method": "touched by", "samples": "a sample"}, **style)  # fmt: skip

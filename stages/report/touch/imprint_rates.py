@@ -11,7 +11,7 @@ from stages.report.grid import records
 from stages.report.items import Figure, Table
 from stages.report.markdown import with_interval
 from stages.report.names import place_names
-from stages.report.pareto import pareto_front
+from stages.report.pareto import ON, noise_of, placed
 from stages.report.ranking import Ranking
 from stages.report.results import NotRun, Results
 from stages.report.style import CYCLE, INK, MARKERS, plain_logarithm, plt
@@ -86,7 +86,8 @@ def chart(results: Results) -> Figure:
     methods = [method for method in NAMES if method in set(rates["method"])]
     wide = frame[(frame["cells"] == WIDE) & frame["rate"].notna()]
     wide = wide.assign(seconds=1 / wide["rate"], cell_error=wide["error"] / wide["pitch"])
-    wide["on_front"] = pareto_front(wide["seconds"], np.maximum(wide["cell_error"], ROUNDING), "low")
+    wide["shown"] = np.maximum(wide["cell_error"], ROUNDING)
+    wide = placed(wide, "seconds", "shown", "low", noise_of(wide["rate_low"], wide["rate_high"]))
     figure, (left, right) = plt.subplots(1, 2, figsize=(11.4, 4.4), gridspec_kw={"wspace": 0.28})
     _draw_exactness(left, wide)
     _draw_growth(right, rates, methods)
@@ -95,8 +96,7 @@ def chart(results: Results) -> Figure:
 
 
 def _draw_exactness(axes: Axes, wide: pd.DataFrame) -> None:
-    wide = wide.assign(shown=np.maximum(wide["cell_error"], ROUNDING))
-    front = wide[wide["on_front"]].sort_values("seconds")
+    front = wide[wide["on_front"] == ON].sort_values("seconds")
     axes.step(front["seconds"], front["shown"], where="post", color=INK, lw=1, zorder=1)
     names, lines = [], []
     for row in records(wide):

@@ -142,8 +142,8 @@ def draw_bars(
 def figure_4_1(results: Results) -> Figure:
     """Table 4.1 as a picture, a panel a protocol."""
     parts = list(table_4_1(results).frame.groupby("protocol", sort=False))
-    figure, panels = plt.subplots(len(parts), 1, figsize=(8.4, 3.6 * len(parts) + 0.6), squeeze=False)
-    figure.subplots_adjust(hspace=0.35)
+    figure, panels = plt.subplots(len(parts), 1, figsize=(8.4, 4.1 * len(parts)), squeeze=False)
+    figure.subplots_adjust(hspace=0.52)
     for axes, (protocol, frame) in zip(panels[:, 0], parts, strict=True):
         draw_bars(axes, frame, CLASSIFIERS, chance=1 / results.classes("six"), regions=True)
         axes.set_title(f"Recognising {results.group_text('six')} by one touch, {protocol}", pad=42)

@@ -1,0 +1,141 @@
+"""The record beside each table and figure: what it was made of, and that it agrees with the table of the thesis."""
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from stages.kit.files import read_json, sha256
+from stages.kit.timing import WALL, clock
+from stages.report import records, touch
+from stages.report.items import Built, Figure, Table
+from stages.report.records import DIGITS, FILE, record_of, write_records
+from stages.report.results import NotRun
+from stages.report.style import plt
+from stages.report.topics import KINDS, build_one
+
+ROOT = Path(__file__).parents[2]
+ROWS = pd.read_csv(ROOT / "data/reference/thesis/fidelity.csv").fillna("")
+TWINNED = [row for row in ROWS.itertuples() if row.sets and row.twin not in ("", "claims") and row.run != "no data"]
+KNOWN = {kind: read_json(path) for kind in KINDS if (path := ROOT / "reports" / kind / FILE).is_file()}
+
+
+def disagreement(row, known):
+    """What is wrong between a row of the table of the thesis and the records of the item that it names as twin."""
+    found = [part["items"][row.twin]["sets"] for part in known.values() if row.twin in part["items"]]
+    if not found:
+        return f"{row.twin} has no record"
+    if any(row.sets in sets for sets in found):
+        return ""
+    return f"{row.thesis}: the row says {row.sets}, {row.twin} shows {', '.join(dict.fromkeys(sum(found, [])))}"
+
+
+@pytest.mark.parametrize("row", TWINNED, ids=[f"{row.thesis} {row.twin}" for row in TWINNED])
+def test_the_row_of_the_thesis_names_a_set_that_its_twin_shows(row):
+    assert not disagreement(row, KNOWN)
+
+
+def test_a_row_of_another_set_is_told_with_both_names():
+    row = next(iter(pd.DataFrame([{"thesis": "T figure 1", "sets": "psb", "twin": "figure_1"}]).itertuples()))
+    known = {"figures": {"items": {"figure_1": {"sets": ["furniture"]}}}}
+    assert disagreement(row, known) == "T figure 1: the row says psb, figure_1 shows furniture"
+    assert disagreement(row, {"figures": {"items": {}}}) == "figure_1 has no record"
+    assert not disagreement(row, {"figures": {"items": {"figure_1": {"sets": ["furniture", "psb"]}}}})
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_each_published_file_has_a_record(kind):
+    written = {path.stem for path in (ROOT / "reports" / kind).iterdir() if path.name != FILE}
+    assert written == set(KNOWN[kind]["items"])
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_rows_behind_the_published_items_are_those_that_are_committed(kind):
+    for name, known in KNOWN[kind]["files"].items():
+        dataset, _, stage = name.partition("/")
+        folder = ROOT / "reports" / ("" if dataset == "bench" else "measurements") / dataset
+        (path,) = (path for path in folder.glob(f"{stage}.csv*") if path.name in (f"{stage}.csv", f"{stage}.csv.gz"))
+        assert sha256(path)[:DIGITS] == known["sha256"], f"{name} was changed after {kind} that show it"
+
+
+@pytest.fixture
+def rows(root, small):
+    """A function that writes rows of a stage and gives the results of the run."""
+
+    def written(**columns):
+        common = {"dataset": "test", "item": ["ball", "ball", "cube"], "method": ["a", "b", "a"], "metric": "faces"}
+        frame = pd.DataFrame(common | {"value": 1.0, "seconds": 0.1, "target": ["25%", "1500", "25%"]} | columns)
+        small.write(root, "lod", frame)
+        return small.results(root)
+
+    return written
+
+
+def test_a_record_tells_sets_methods_objects_sizes_and_rows(rows):
+    results = rows()
+    results.rows("lod", "test", method="a")
+    item = Table(pd.DataFrame({"x": [1, 2]}), sets=["test"])
+    found = record_of(item, results, "tables")
+    assert found == {"sets": ["test"], "files": ["test/lod"], "rows": 2, "objects": 2, "methods": ["a"],
+                     "sizes": {"target": ["25%"]}}  # fmt: skip
+    assert record_of(Table(pd.DataFrame({"method": ["b"]})), results, "tables")["methods"] == ["b"]
+
+
+def test_rows_of_another_item_are_forgotten_and_rows_not_found_are_no_source(rows):
+    results = rows()
+    results.rows("lod", "test")
+    results.forget()
+    with pytest.raises(NotRun):
+        results.rows("lod", "test", method="nobody")
+    assert not results.read and not results.sources
+
+
+def test_the_clock_of_older_rows_is_the_wall(rows):
+    assert rows().clock("lod", "test") == WALL
+    assert rows(clock=clock()).clock("lod", "test") == clock()
+
+
+def test_a_figure_of_an_earlier_run_keeps_its_record(rows):
+    results = rows()
+    (results.reports / "figures").mkdir(parents=True, exist_ok=True)
+    kept = '{"items": {"figure_1": {"sets": ["old"], "methods": ["m"]}}}'
+    (results.reports / "figures" / FILE).write_text(kept)
+    drawing = plt.figure()
+    found = record_of(Figure(drawing, name="figure_1", sets=["test"]), results, "figures")
+    plt.close(drawing)
+    assert found == {"drawn": "in an earlier run", "sets": ["test"], "methods": ["m"]}
+
+
+@pytest.mark.skipif(shutil.which("git") is None, reason="git is not installed")
+def test_a_commit_is_told_only_of_an_unchanged_file_that_git_knows(rows, tmp_path):
+    results = rows()
+    results.rows("lod", "test")
+    path = records.path_of(results, "test/lod")
+    item = Table(pd.DataFrame({"x": [1]}), name="table", record=record_of(Table(pd.DataFrame()), results, "tables"))
+
+    def known():
+        records.commit.cache_clear()
+        write_records({"tables": Built([item])}, results, tmp_path / "out")
+        return read_json(tmp_path / "out/tables" / FILE)["files"]["test/lod"]
+
+    def git(*words):
+        who = ("-c", "user.name=a", "-c", "user.email=a@b.c")
+        return subprocess.run(["git", "-C", str(path.parent), *who, *words], check=True, capture_output=True, text=True)
+
+    assert known() == {"sha256": sha256(path)[:DIGITS], "clock": WALL}  # as in a tarball
+    git("init")
+    assert "commit" not in known()
+    git("add", ".")
+    git("commit", "-m", "rows")
+    assert known()["commit"] == git("log", "-1", "--format=%h").stdout.strip()
+    path.write_bytes(path.read_bytes() + b" ")
+    records.commit.cache_clear()
+    assert records.commit(path) == ""
+
+
+def test_a_built_item_has_its_record(results):
+    table = build_one(touch, "tables", "table_4_1", results)
+    assert isinstance(table, Table)
+    assert table.record["sets"] == table.sets and table.record["rows"] == len(table.frame)
