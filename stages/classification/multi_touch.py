@@ -42,7 +42,8 @@ class MultiTouchTrials:
             yield from self._split_trials(touched, parts, random_state, Split.REGIONS, ("",))
         if self.all_variants:
             yield from self._mixed_trials("touches_{}_mixed", touched, random_state)
-            yield from self._mixed_trials("first_15_touches_{}_mixed", touched.first_of_each(), random_state)
+            few = touched.first_of_each()
+            yield from self._mixed_trials("first_15_touches_{}_mixed", few, random_state, **CLOSER)
 
     def _split_trials(self, touched, parts, random_state, split, variants):
         """Combinations within each side of a split; the map is fitted to the training side."""
@@ -72,14 +73,14 @@ class MultiTouchTrials:
             combinations = np.take_along_axis(combinations, touched.places[combinations, 2].argsort(axis=1), axis=1)
         return combinations
 
-    def _mixed_trials(self, name, touched, random_state):
+    def _mixed_trials(self, name, touched, random_state, **further):
         """Combinations of all imprints, split afterwards: imprints of test combinations also occur in training."""
         everything = np.arange(len(touched.truth))
         numbers, seconds = _map_and_positions(touched, everything)
         for count in self.counts:
             combinations = self._combine(touched, everything, count, "", np.random.default_rng([random_state, count]))
             sides = [combinations[side] for side in random_holdout(touched.truth[combinations[:, 0]], random_state)]
-            yield _trial(name.format(count), Split.RANDOM, numbers, touched.truth, sides, seconds, **CLOSER)
+            yield _trial(name.format(count), Split.RANDOM, numbers, touched.truth, sides, seconds, **further)
 
 
 def _map_and_positions(touched, train):

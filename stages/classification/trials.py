@@ -33,7 +33,7 @@ from stages.kit.split import Split
 from .features import IMAGE
 from .protocol import random_holdout, region_holdout
 from .scaling import BEFOREHAND, MIN_MAX, SCALINGS, TRAINING
-from .similarity import confusable, similarity
+from .similarity import as_many, confusable, similarity
 
 THESIS_COUNT = 15  # imprints per object in the thesis, see above
 NO_DISTANT_TOUCH = "an object has no touch farther than the array's width from its held-out region"
@@ -143,7 +143,7 @@ def selection_trials(touched: TouchSet, random_state: int) -> Iterator[Trial]:
         random = np.random.default_rng([random_state, len(part.truth)])
         for end, whole, training in (
             ("", kept, own),
-            ("_control", _as_many(part.truth, kept, random), _as_many(part.truth[train], own, random)),
+            ("_control", as_many(part.truth, kept, random), as_many(part.truth[train], own, random)),
         ):
             yield from _selected(f"{prefix}selected{end}", part, whole, random_state)
             yield _selected_train(f"{prefix}selected_train{end}", part, (train[training], test))
@@ -164,14 +164,6 @@ def _selected_train(variant, part, parts):
     every = len(np.unique(part.truth[parts[0]])) == part.truth.max() + 1
     note = None if every else "selection leaves an object no imprint to train on"
     return Trial(variant, Split.RANDOM, part.samples, part.truth, parts if every else None, note=note)
-
-
-def _as_many(truth, kept, random):
-    """(k,) boolean: as many random imprints of each object as the mask `kept` has."""
-    chosen = np.zeros_like(kept)
-    for one in np.unique(truth):
-        chosen[random.permutation(np.flatnonzero(truth == one))[: kept[truth == one].sum()]] = True
-    return chosen
 
 
 def _both_splits(variant, touched, samples, random_state, kind="features", scalings=(TRAINING,), validity=False):
