@@ -12,7 +12,7 @@ from threadpoolctl import threadpool_limits
 from stages.classification import CLASSIFIERS, classifier, features
 from stages.classification.prepared import Prepared
 from stages.classification.protocol import FOLDS, MIN_IMPRINTS
-from stages.classification.scaling import SCALINGS, TRAINING
+from stages.classification.scaling import SCALINGS, TRAINING, TWICE
 from stages.classification.similarity import as_many, confusable, similarity
 from stages.kit.rng import rng
 from stages.kit.run import Rows, StageRun
@@ -20,6 +20,7 @@ from stages.kit.split import Split
 
 from .splits import SPLITS, random_split, split_number
 
+WITHOUT_TWICE = tuple(scaling for scaling in SCALINGS if scaling != TWICE)
 COUNTS = {"six": 6, "four": 4}  # the first by the alphabet; as many at random; and those most alike
 
 
@@ -53,9 +54,9 @@ def measure(run: StageRun, images: dict[str, np.ndarray], repetitions: int) -> N
     the split as in the thesis; selected_control: without as many of each class, at random; selected_training: taken out
     of the training part alone, tested on all others. metric: accuracy by split (folds: within the training part of the
     random split), share_similar (touches that resemble one of another class), and what finds a dead classifier
-    (train_accuracy, commonest_share). The random split is run by all scalings. Groups: `six_drawn` and `four_drawn` are
-    drawn anew in each repetition; `six_alike` and `four_alike` are the classes with the largest share of touches that
-    resemble one of any other class.
+    (train_accuracy, commonest_share; of all touches). The random split is run by all scalings but on the first six and
+    four. Groups: `six_drawn` and `four_drawn` are drawn anew in each repetition; `six_alike` and `four_alike` are the
+    classes with the largest share of touches that resemble one of any other class.
     """
     with threadpool_limits(1):  # equal sums on any number of cores
         touches = describe(images)
@@ -134,24 +135,26 @@ def _set_rows(one: ClassSet, touches: Touches, seed: int) -> Iterator[dict]:
             number = split_number(seed, repetition)
             if method == "selected_control":
                 own = touches.of(as_many(touches.labels, kept, np.random.default_rng(number)))
-            rows = _split_rows(own, method == "selected_training", number, one.folds)
+            scalings = (TRAINING,) if one.group in COUNTS else SCALINGS if method == "all" else WITHOUT_TWICE
+            rows = _split_rows(own, method, number, one.folds, scalings)
             yield from ({**common, "method": method, "repetition": repetition, **row} for row in rows)
 
 
-def _split_rows(touches: Touches, selected: bool, number: int, folds: bool) -> Iterator[dict]:
-    samples, labels = touches.samples, touches.labels
+def _split_rows(touches: Touches, method: str, number: int, folds: bool, scalings: tuple[str, ...]) -> Iterator[dict]:
+    samples, labels, selected = touches.samples, touches.labels, method == "selected_training"
     for split, draw in SPLITS.items():
         train, test = draw(labels, number)
         if selected:
             train = train[~confusable(touches.alike[np.ix_(train, train)], labels[train])]
-        for scaling in SCALINGS if split == Split.RANDOM else (TRAINING,):
+        validity = split == Split.RANDOM and method == "all"
+        for scaling in scalings if split == Split.RANDOM else (TRAINING,):
             prepared = Prepared.from_split(samples, labels, (train, test), scaling=scaling)
             for name in CLASSIFIERS:
-                answers = prepared.predict(name, number, with_training=split == Split.RANDOM)
+                answers = prepared.predict(name, number, with_training=validity)
                 row = {"classifier": name, "scaling": scaling, "split": split, "train": len(train), "test": len(test)}
                 value = float((answers.predicted == labels[test]).mean())
                 yield {**row, "metric": "accuracy", "value": value, "seconds": answers.seconds}
-                if split == Split.RANDOM:
+                if validity:
                     yield from ({**row, **one} for one in answers.validity)
     if folds and not selected:
         for name in CLASSIFIERS:

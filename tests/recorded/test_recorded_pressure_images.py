@@ -30,11 +30,16 @@ def test_bars_at_places_of_their_own_are_recognised_and_none_is_left_out(recogni
     assert set(rows["group"]) == {"all", *(f"{n}{end}" for n in ("six", "four") for end in ("", "_alike", "_drawn"))}
     assert rows.loc[rows["group"] == "four", "chosen"].dropna().tolist() == ["a b c d"]
     assert set(accuracy["split"]) == {"random", "blocks", "folds"}
-    scalings = rows.dropna(subset=["classifier"]).groupby("split")["scaling"].unique().map(list)
-    assert scalings["random"] == ["training", "beforehand", "components", "min_max"]
-    assert scalings["blocks"] == scalings["folds"] == ["training"]
+    scalings = accuracy.groupby(["group", "method", "split"])["scaling"].unique().map(list)
+    assert scalings["six_alike", "all", "random"] == ["training", "beforehand", "components", "min_max"]
+    assert scalings["six_drawn", "selected_control", "random"] == ["training", "beforehand", "min_max"]
+    assert scalings["six", "all", "random"] == scalings["all", "all", "blocks"] == ["training"]
     dead = rows[rows["metric"].isin(["train_accuracy", "commonest_share"])]
-    assert set(dead["split"]) == {"random"} and dead["value"].between(1 / len(recordings.touches()), 1).all()
+    assert (
+        set(dead["split"]) == {"random"}
+        and set(dead["method"]) == {"all"}
+        and dead["value"].between(1 / len(recordings.touches()), 1).all()
+    )
     assert set(accuracy.loc[accuracy["group"] == "six_drawn", "split"]) == {"random", "blocks"}
 
 
