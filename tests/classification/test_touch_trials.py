@@ -82,6 +82,11 @@ def test_scalings_are_run_of_plain_few_and_joined_touches(bumps):
     assert (
         scalings["touches_2_ordered", "random"] == scalings["touches_2_mixed", "random"] == [("training", "accuracy")]
     )
+    rows = evaluate_variants(touched(bumps, jitter=2.5), ["svm"], 1)
+    values = {
+        row["scaling"]: row["value"] for row in rows if (row["variant"], row["metric"]) == ("first_15", "accuracy")
+    }
+    assert values["training"] < values["min_max"]
     shares = [row["value"] for row in rows if row["metric"] == "commonest_share"]
     assert min(shares) >= 1 / 3 - 1e-9 and all(row.get("seconds") is None for row in rows if row["metric"] in valid[1:])
 

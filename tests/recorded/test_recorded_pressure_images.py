@@ -54,6 +54,8 @@ def test_touches_that_resemble_another_class_leave_training_or_the_whole_set(rec
     assert set(whole.loc["selected_control", "test"]) == set(whole.loc["selected", "test"])
     assert set(whole.loc["selected_training", "test"]) == set(whole.loc["all", "test"])
     assert whole.loc["selected_training", "train"].max() < whole.loc["all", "train"].min()
+    right = rows[(rows["group"] == "all") & (rows["method"] == "all") & (rows["metric"] == "accuracy")]
+    assert right[right["split"] == "random"].groupby("scaling")["value"].mean().nunique() > 1
     similar = rows[(rows["group"] == "four_alike") & (rows["metric"] == "share_similar")]
     assert similar["chosen"].str.startswith("a b").all() and similar["value"].item() > 0.2
 
