@@ -9,6 +9,7 @@ import numpy as np
 from stages.kit import Stopwatch
 from stages.kit.split import Split
 
+from .prepared import VALIDITY
 from .protocol import random_holdout, region_holdout
 from .scaling import TOUCH, TRAINING
 from .touches import concatenate_touches, draw_combinations, touch_map
@@ -18,7 +19,7 @@ from .trials import NO_DISTANT_TOUCH, OTHERS, TouchSet, Trial
 VARIANTS = ("_unplaced", "_ordered", "_disjoint", "_many")
 
 MANY_FACTOR = 5  # times as many combinations in the variant `_many`
-CLOSER: dict[str, Any] = {"scalings": (TRAINING, *OTHERS), "validity": True}  # of the trials of all_variants
+CLOSER: dict[str, Any] = {"scalings": (TRAINING, *OTHERS), "validity": VALIDITY[1:]}  # of the trials of all_variants
 QUADRATIC_TIME = ("svm",)  # in the number of samples: not run on many
 
 

@@ -10,6 +10,8 @@ from stages.kit import Stopwatch
 from .classifiers import CLASSIFIERS
 from .scaling import TRAINING, scaled
 
+VALIDITY = ("train_accuracy", "commonest_share")  # metrics that find a dead classifier
+
 
 class Answers(NamedTuple):
     """Predictions for the test part, seconds, and the accuracy on the training part where it was asked for."""
@@ -22,8 +24,8 @@ class Answers(NamedTuple):
     def validity(self) -> list[dict]:
         """Rows that find a dead classifier: the accuracy on the training part, the share of the commonest answer."""
         share = np.unique(self.predicted, return_counts=True)[1].max() / len(self.predicted)
-        values = {"train_accuracy": self.train_accuracy, "commonest_share": float(share)}
-        return [{"metric": metric, "value": value} for metric, value in values.items()]
+        values = zip(VALIDITY, (self.train_accuracy, float(share)), strict=True)
+        return [{"metric": metric, "value": value} for metric, value in values]
 
 
 @dataclass(frozen=True)

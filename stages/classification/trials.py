@@ -23,7 +23,7 @@ T4.2.4 removes 33.33, 40, 6.67, 26.67, 13.33 and 20 % of the six objects' imprin
 cannot give five different touches, so the thesis's combinations seem to be drawn before the split.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -31,6 +31,7 @@ import numpy as np
 from stages.kit.split import Split
 
 from .features import IMAGE
+from .prepared import VALIDITY
 from .protocol import random_holdout, region_holdout
 from .scaling import BEFOREHAND, MIN_MAX, SCALINGS, TRAINING
 from .similarity import as_many, confusable, similarity
@@ -38,6 +39,7 @@ from .similarity import as_many, confusable, similarity
 THESIS_COUNT = 15  # imprints per object in the thesis, see above
 NO_DISTANT_TOUCH = "an object has no touch farther than the array's width from its held-out region"
 OTHERS = (BEFOREHAND, MIN_MAX)  # scalings beside that of the training part; `components` for a closer look alone
+NARROW = ("knn", "svm")  # whose answers depend on the scale most
 MIN_TO_SPLIT = 4  # imprints per object of which a quarter can be held out
 
 
@@ -85,7 +87,8 @@ class Trial:
     """Samples, and the parts to train and test on as a split draws them; without parts `note` has the reason.
 
     parts: (train, test) indices; seconds: the time to compute the samples; skipped: classifiers that are not run;
-    scalings: names in SCALINGS, by each of which it is run; validity: whether further rows find dead classifiers.
+    scalings: names in SCALINGS, by each of which it is run; narrow: by those other than TRAINING, the SVM and kNN alone
+    are run; validity: metrics of dead classifiers that further rows have.
     """
 
     variant: str
@@ -98,22 +101,29 @@ class Trial:
     skipped: tuple[str, ...] = ()
     note: str | None = None
     scalings: tuple[str, ...] = (TRAINING,)
-    validity: bool = False
+    narrow: bool = False
+    validity: tuple[str, ...] = ()
+
+    def classifiers(self, names: Iterable[str], scaling: str) -> list[str]:
+        """Those of the names that are run by a scaling."""
+        narrow = self.narrow and scaling != TRAINING
+        return [name for name in names if name not in self.skipped and (not narrow or name in NARROW)]
 
 
 def single_touch_trials(touched: TouchSet, random_state: int, closer: bool = False) -> Iterator[Trial]:
     """Trials of one touch: other scalings and features, fewer imprints, locations.
 
-    closer: with each reading of the scaling; otherwise plain and first_15 alone, without `components`.
+    closer: with each reading of the scaling. Otherwise some have those but `components`, fewer with all classifiers.
     """
     every = (TRAINING, *OTHERS)
     plain = Trial("plain", Split.RANDOM, touched.samples, touched.truth, random_holdout(touched.truth, random_state))
-    yield replace(plain, scalings=SCALINGS[1:] if closer else OTHERS, validity=True)
-    yield replace(_region_trial("plain", touched, touched.samples, random_state, "features", False), scalings=OTHERS)
+    yield replace(plain, scalings=SCALINGS[1:] if closer else OTHERS, validity=VALIDITY if closer else ())
+    regions = _region_trial("plain", touched, touched.samples, random_state, "features", side=False)
+    yield replace(regions, scalings=OTHERS, narrow=True)
     yield from _feature_trials(touched, plain.parts)
     located = np.hstack([touched.samples, touched.places])
     first_few = touched.first_of_each()
-    yield from _both_splits("first_15", first_few, first_few.samples, random_state, scalings=every, validity=closer)
+    yield from _both_splits("first_15", first_few, first_few.samples, random_state, scalings=every, narrow=not closer)
     yield from _both_splits("locations", touched, located, random_state, "located", every if closer else (TRAINING,))
     yield _region_trial("plain_side", touched, touched.samples, random_state, "features", side=True)
     parts = random_holdout(touched.truth, random_state)
@@ -145,7 +155,8 @@ def selection_trials(touched: TouchSet, random_state: int) -> Iterator[Trial]:
             ("", kept, own),
             ("_control", as_many(part.truth, kept, random), as_many(part.truth[train], own, random)),
         ):
-            yield from _selected(f"{prefix}selected{end}", part, whole, random_state)
+            selected = list(_selected(f"{prefix}selected{end}", part, whole, random_state))
+            yield from selected[:1] if end else selected
             yield _selected_train(f"{prefix}selected_train{end}", part, (train[training], test))
 
 
@@ -156,7 +167,8 @@ def _selected(variant, part, chosen, random_state):
         note = f"selection leaves an object fewer than {MIN_TO_SPLIT} of its {len(part.truth)} imprints"
         yield Trial(variant, Split.RANDOM, note=note)
     else:
-        yield from _both_splits(variant, kept, kept.samples, random_state, scalings=(TRAINING, *OTHERS))
+        scalings = (TRAINING,) if variant.startswith("first") else (TRAINING, *OTHERS)
+        yield from _both_splits(variant, kept, kept.samples, random_state, scalings=scalings)
 
 
 def _selected_train(variant, part, parts):
@@ -166,10 +178,10 @@ def _selected_train(variant, part, parts):
     return Trial(variant, Split.RANDOM, part.samples, part.truth, parts if every else None, note=note)
 
 
-def _both_splits(variant, touched, samples, random_state, kind="features", scalings=(TRAINING,), validity=False):
+def _both_splits(variant, touched, samples, random_state, kind="features", scalings=(TRAINING,), narrow=False):
     """The random hold-out, by all scalings, and the held-out regions of one kind of samples, by the first."""
     parts = random_holdout(touched.truth, random_state)
-    yield Trial(variant, Split.RANDOM, samples, touched.truth, parts, kind, scalings=scalings, validity=validity)
+    yield Trial(variant, Split.RANDOM, samples, touched.truth, parts, kind, scalings=scalings, narrow=narrow)
     yield _region_trial(variant, touched, samples, random_state, kind, side=kind == "located")
 
 

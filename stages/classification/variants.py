@@ -5,7 +5,7 @@ import numpy as np
 from stages.kit.split import Split
 
 from .multi_touch import MultiTouchTrials
-from .prepared import Prepared
+from .prepared import VALIDITY, Prepared
 from .protocol import repetition_seed
 from .scaling import COMPONENTS
 from .trials import TouchSet, selection_trials, single_touch_trials
@@ -65,8 +65,8 @@ def _trial_rows(trial, scaling, classifiers, random_state):
     """
     rows, prepared = [], Prepared.from_split(trial.samples, trial.truth, trial.parts, trial.kind, scaling)
     truth = prepared.test_truth
-    for name in [name for name in classifiers if name not in trial.skipped]:
-        answers = prepared.predict(name, random_state, trial.validity)
+    for name in trial.classifiers(classifiers, scaling):
+        answers = prepared.predict(name, random_state, VALIDITY[0] in trial.validity)
         correct = answers.predicted == truth
         common = {"variant": trial.variant, "scaling": scaling, "classifier": name, "split": trial.split, "note": None}
         common |= {"imprints": len(prepared.train) + len(truth), "seconds": answers.seconds + trial.seconds}
@@ -74,6 +74,5 @@ def _trial_rows(trial, scaling, classifiers, random_state):
         if trial.variant.endswith(("selected", "selected_control")) and trial.split == Split.RANDOM:
             recall = np.mean([correct[truth == one].mean() for one in np.unique(truth)])
             rows.append({**common, "metric": "recall", "value": float(recall)})
-        if trial.validity:
-            rows += [{**common, "seconds": None, **one} for one in answers.validity]
+        rows += [{**common, "seconds": None, **one} for one in answers.validity if one["metric"] in trial.validity]
     return rows
