@@ -7,7 +7,7 @@ from stages.kit.split import Split
 from .multi_touch import MultiTouchTrials
 from .prepared import VALIDITY, Prepared
 from .protocol import repetition_seed
-from .scaling import COMPONENTS
+from .scaling import COMPONENTS, TRAINING
 from .trials import TouchSet, selection_trials, single_touch_trials
 
 
@@ -69,7 +69,8 @@ def _trial_rows(trial, scaling, classifiers, random_state):
         answers = prepared.predict(name, random_state, VALIDITY[0] in trial.validity)
         correct = answers.predicted == truth
         common = {"variant": trial.variant, "scaling": scaling, "classifier": name, "split": trial.split, "note": None}
-        common |= {"imprints": len(prepared.train) + len(truth), "seconds": answers.seconds + trial.seconds}
+        seconds = answers.seconds + trial.seconds if scaling == TRAINING else None  # the scale costs nothing
+        common |= {"imprints": len(prepared.train) + len(truth), "seconds": seconds}
         rows.append({**common, "metric": "accuracy", "value": float(correct.mean())})
         if trial.variant.endswith(("selected", "selected_control")) and trial.split == Split.RANDOM:
             recall = np.mean([correct[truth == one].mean() for one in np.unique(truth)])

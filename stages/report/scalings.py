@@ -5,7 +5,7 @@ import pandas as pd
 from stages.classification.scaling import BEFOREHAND, MIN_MAX, TRAINING, TWICE
 
 READINGS = {  # beside ours, TRAINING
-    BEFOREHAND: "z-transform of all data beforehand, as T4.2.4 prints", TWICE: "components z-transformed, too",
+    BEFOREHAND: "all data standardised beforehand (T4.2.4)", TWICE: "components standardised, too",
     MIN_MAX: "all data from 0 to 1",
 }  # fmt: skip
 CLASSIFIERS = ("knn", "svm", "decision_tree", "naive_bayes", "deep_learning")  # the thesis's order, reversed
