@@ -72,7 +72,7 @@ class Library:
         with from_extra():
             from sklearn.pipeline import make_pipeline
 
-            from stages.classification.classifiers import reduction
+            from stages.classification.scaling import reduction
         self.names, self.placed, (classes, self._each) = names, placed, samples.shape[:2]
         self._owners = np.repeat(np.arange(classes), self._each)
         self._reduction = make_pipeline(*reduction()).fit(flat := samples.reshape(-1, samples.shape[2]))

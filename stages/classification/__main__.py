@@ -34,6 +34,7 @@ from .drawn import drawn_sets, set_of
 from .gather import feature_cost_rows, gather, similar_share_rows
 from .multi_touch import MultiTouchTrials
 from .protocol import check_counts, evaluate_prepared, prepare
+from .scaling import TRAINING
 from .schema import COLUMNS, Params
 from .trials import TouchSet
 from .variants import evaluate_variants
@@ -45,6 +46,7 @@ METRICS = {  # (metric, split): the name of their mean in reports/metrics
     ("accuracy", Split.RANDOM_FEWER): "accuracy_fewer",
     ("recall", Split.RANDOM): "recall_holdout",
 }
+MEANS = {metric for metric, _ in METRICS}
 ONE_SIDE = ("plain_side", "locations", "touches_")  # variants whose regions are one side of all objects
 
 
@@ -101,7 +103,8 @@ def process(item: str, folder: Path, data: Path, planned: Mapping[str, int | str
                 found[0]["note"] = f"{classifier} failed: {error}"
             else:
                 confusions[f"{classifier}.confusion"] = confusion
-            rows += [{**common, "variant": "plain", "imprints": len(labels), "note": None, **row} for row in found]
+            plain = {**common, "variant": "plain", "scaling": TRAINING, "imprints": len(labels), "note": None}
+            rows += [{**plain, **row} for row in found]
         able = [key.removesuffix(".confusion") for key in confusions]
         rows += [{**common, **row} for row in further(name, sampling, touched, able, settings, seed)]
     rows += [
@@ -125,11 +128,12 @@ def further(name: str, sampling: str, touched: TouchSet, classifiers: list[str],
 def summary(rows: Rows, seed: int, closest: tuple[str, str] | None = None) -> dict[str, Any]:
     """{group: {sampling: {classifier: {metric: {mean, low, high}}}}} over the repetitions.
 
-    closest: (sampling, classifier) whose variants are summarised too, under {"variants": {group: {variant: ...}}}.
+    Of the scaling `training` alone. closest: (sampling, classifier) whose variants are summarised too, under
+    {"variants": {group: {variant: ...}}}.
     """
     values = defaultdict(list)
     for row in rows:
-        if row["value"] is None or not row.get("classifier"):
+        if row["value"] is None or row.get("scaling") != TRAINING or row["metric"] not in MEANS:
             continue
         metric = metric_name(row)
         if row["variant"].startswith("plain"):

@@ -1,16 +1,27 @@
-"""The five classifiers of T tables 4.1 and 4.2 with the thesis's settings (T4.2.4)."""
+"""The five classifiers of T tables 4.1 and 4.2 with the thesis's settings (T4.2.4).
+
+| setting | T4.2.4 | here |
+|---|---|---|
+| tool | RapidMiner Studio | scikit-learn; the network is our own |
+| kNN | k = 1, Euclidean distance | the same |
+| SVM | RBF kernel, gamma = 1, epsilon = 0.001, C = 1.5 | the same; epsilon is the optimiser's tolerance |
+| decision tree | splits by accuracy, depth at most 10 | splits by Gini impurity, depth at most 10, no pruning |
+| naive Bayes | no settings | one normal density per feature and class |
+| deep learning | feed-forward, rectified, gradient descent, Adadelta, 10 epochs | the same, two layers of 50 units |
+| scale | "The entire data is standardized beforehand using z-transform" | the readings of `scaling` |
+| validation | a quarter held out, five folds of the rest | the same, many times |
+"""
 
 import difflib
 from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from .scaling import TRAINING, reduction
+
 if TYPE_CHECKING:
     from sklearn.base import ClassifierMixin
     from sklearn.pipeline import Pipeline
-
-COMPONENTS = 12  # T4.2.3.4
-KINDS = ("features", "located", "reduced")  # of samples
 
 
 def knn(seed: int = 0) -> "ClassifierMixin":
@@ -23,7 +34,8 @@ def knn(seed: int = 0) -> "ClassifierMixin":
 def svm(seed: int = 0) -> "ClassifierMixin":
     """Support vector machine with radial basis functions; the thesis's epsilon is the optimiser's tolerance.
 
-    Gamma 1 is narrow for twelve components whose variances add up to about 40: most samples are far from all others.
+    Gamma 1 is narrow for twelve components whose variances add up to 35: of a test sample, the nearest training sample
+    has a kernel value of 0.06 at the median, and more than half of the test samples fall to one class. See `scaling`.
     The kernel is computed for all pairs at once, in a third of the time that libsvm takes pair by pair.
     """
     from sklearn.metrics.pairwise import rbf_kernel
@@ -37,6 +49,7 @@ def decision_tree(seed: int = 0) -> "ClassifierMixin":
     """A decision tree of depth 10 with Gini impurity.
 
     The thesis uses RapidMiner's criterion `accuracy`, which scikit-learn does not have; Gini impurity is its default.
+    On twelve random sets of household shapes a tree that splits by accuracy is 0.0 [-2.9, 2.8] points better.
     """
     from sklearn.tree import DecisionTreeClassifier
 
@@ -66,40 +79,17 @@ CLASSIFIERS: dict[str, Callable[[int], Any]] = {
 }
 
 
-def classifier(name: str, seed: int = 0, kind: str = "features") -> "Pipeline":
+def classifier(name: str, seed: int = 0, kind: str = "features", scaling: str = TRAINING) -> "Pipeline":
     """The scikit-learn pipeline of one classifier: the steps of `reduction`, then the classifier.
+
+    All steps are fitted to what `fit` is given, whatever the scaling.
 
     Raises ValueError for a name that is not in CLASSIFIERS, or another kind.
     """
     from sklearn.pipeline import make_pipeline
 
     check_name(name)
-    return make_pipeline(*reduction(kind), CLASSIFIERS[name](seed))
-
-
-def reduction(kind: str = "features") -> list[Any]:
-    """The scikit-learn transformers before all classifiers: z-transform, 12 principal components.
-
-    kind: of the samples. "features": those of `features`, at least 12 samples. "located": the same with the
-    position of the touch in three more columns, the last ones. They are standardised too and appended to the principal
-    components, since the PCA would spread them over all components. "reduced": numbers that need no further
-    reduction, such as the two of `touch_map`; they are only standardised.
-    The thesis standardises the entire data beforehand (T4.2.4). Here the z-transform and the components are fitted to
-    the samples that `fit` is given, so that nothing of the hold-out leaks into training. Raises ValueError for another
-    kind.
-    """
-    from sklearn.compose import make_column_transformer
-    from sklearn.decomposition import PCA
-    from sklearn.pipeline import make_pipeline
-    from sklearn.preprocessing import StandardScaler
-
-    if kind not in KINDS:
-        raise ValueError(f"kind must be one of {', '.join(KINDS)}, got {kind!r}")
-    components = [StandardScaler(), PCA(COMPONENTS, svd_solver="full")]
-    if kind == "located":
-        touch, place = (make_pipeline(*components), slice(0, -3)), (StandardScaler(), slice(-3, None))
-        return [make_column_transformer(touch, place)]
-    return components[:1] if kind == "reduced" else components
+    return make_pipeline(*reduction(kind, scaling), CLASSIFIERS[name](seed))
 
 
 def check_name(name: str) -> None:

@@ -2,20 +2,24 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from stages.kit import Stopwatch
 from stages.kit.split import Split
 
+from .prepared import VALIDITY
 from .protocol import random_holdout, region_holdout
+from .scaling import TOUCH, TRAINING
 from .touches import concatenate_touches, draw_combinations, touch_map
-from .trials import NO_DISTANT_TOUCH, TouchSet, Trial
+from .trials import NO_DISTANT_TOUCH, OTHERS, TouchSet, Trial
 
 # Of combining the touches of one side of a split, see trials.py.
 VARIANTS = ("_unplaced", "_ordered", "_disjoint", "_many")
 
 MANY_FACTOR = 5  # times as many combinations in the variant `_many`
+CLOSER: dict[str, Any] = {"scalings": (TRAINING, *OTHERS), "validity": VALIDITY[1:]}  # of the trials of all_variants
 QUADRATIC_TIME = ("svm",)  # in the number of samples: not run on many
 
 
@@ -39,7 +43,8 @@ class MultiTouchTrials:
             yield from self._split_trials(touched, parts, random_state, Split.REGIONS, ("",))
         if self.all_variants:
             yield from self._mixed_trials("touches_{}_mixed", touched, random_state)
-            yield from self._mixed_trials("first_15_touches_{}_mixed", touched.first_of_each(), random_state)
+            few = touched.first_of_each()
+            yield from self._mixed_trials("first_15_touches_{}_mixed", few, random_state, **CLOSER)
 
     def _split_trials(self, touched, parts, random_state, split, variants):
         """Combinations within each side of a split; the map is fitted to the training side."""
@@ -54,8 +59,9 @@ class MultiTouchTrials:
                     continue
                 sides = [self._combine(touched, side, count, variant, random) for side in parts]
                 columns = numbers[:, :2] if variant == "_unplaced" else numbers
-                skipped = QUADRATIC_TIME if variant == "_many" else ()
-                yield _trial(f"touches_{count}{variant}", split, columns, touched.truth, sides, seconds, skipped)
+                further = {"skipped": QUADRATIC_TIME if variant == "_many" else ()}
+                further |= CLOSER if self.all_variants and variant == "" and split == Split.RANDOM else {}
+                yield _trial(f"touches_{count}{variant}", split, columns, touched.truth, sides, seconds, **further)
 
     def _combine(self, touched, side, count, variant, random):
         """(m, count) indices of the imprints of one side."""
@@ -68,14 +74,14 @@ class MultiTouchTrials:
             combinations = np.take_along_axis(combinations, touched.places[combinations, 2].argsort(axis=1), axis=1)
         return combinations
 
-    def _mixed_trials(self, name, touched, random_state):
+    def _mixed_trials(self, name, touched, random_state, **further):
         """Combinations of all imprints, split afterwards: imprints of test combinations also occur in training."""
         everything = np.arange(len(touched.truth))
         numbers, seconds = _map_and_positions(touched, everything)
         for count in self.counts:
             combinations = self._combine(touched, everything, count, "", np.random.default_rng([random_state, count]))
             sides = [combinations[side] for side in random_holdout(touched.truth[combinations[:, 0]], random_state)]
-            yield _trial(name.format(count), Split.RANDOM, numbers, touched.truth, sides, seconds)
+            yield _trial(name.format(count), Split.RANDOM, numbers, touched.truth, sides, seconds, **further)
 
 
 def _map_and_positions(touched, train):
@@ -94,9 +100,10 @@ def _disjoint(truth, count, random):
     return np.concatenate(combinations)
 
 
-def _trial(variant, split, numbers, truth, sides, seconds, skipped=()):
+def _trial(variant, split, numbers, truth, sides, seconds, **further):
     train, test = sides
     combinations = np.concatenate(sides)
     parts = (np.arange(len(train)), len(train) + np.arange(len(test)))
     samples, labels = concatenate_touches(numbers, combinations), truth[combinations[:, 0]]
-    return Trial(variant, split, samples, labels, parts, "reduced", seconds, skipped)
+    kind = "joined" if numbers.shape[1] == TOUCH else "reduced"
+    return Trial(variant, split, samples, labels, parts, kind, seconds, **further)

@@ -5,9 +5,10 @@ import numpy as np
 from stages.kit.rng import rng
 from stages.kit.split import Split
 
-from .classifiers import COMPONENTS, check_name
+from .classifiers import check_name
 from .features import features
 from .prepared import Prepared
+from .scaling import COMPONENTS
 
 HOLDOUT = 0.25  # T4.2.4
 FOLDS = 5  # T4.2.4
@@ -31,7 +32,8 @@ def evaluate(
     check_counts(counts)
     count = min(counts.values())
     samples = np.concatenate([features(images_by_object[name][:count]) for name in names])
-    return evaluate_features(samples, np.repeat(names, count), classifier, repetitions, seed)[0]
+    rows, _ = evaluate_features(samples, np.repeat(names, count), classifier, repetitions, seed)
+    return [row for row in rows if row["metric"] == "accuracy"]
 
 
 def evaluate_features(
@@ -45,6 +47,7 @@ def evaluate_features(
 ) -> tuple[list[dict], np.ndarray]:
     """The protocol on features (k, d) with labels (k,): (rows as `evaluate` gives them, confusion (n, n) i8).
 
+    Further rows say whether a classifier is dead on the random hold-out: metrics train_accuracy and commonest_share.
     The confusion matrix sums the hold-outs of all repetitions, true classes in rows, both in alphabetical order.
     places: (k, 3) positions of the imprints. With them two more splits show how optimistic the random hold-out is, see
     `draw_splits`; their values are None if an object has no touch far enough.
@@ -83,11 +86,13 @@ def evaluate_prepared(
             rows.append({**row, "value": None, "seconds": None})
             if not parts:
                 continue
-            answers, seconds = zip(*(part.predict(name, random_state) for part in parts), strict=True)
-            right = [(answer == part.test_truth).mean() for answer, part in zip(answers, parts, strict=True)]
-            rows[-1] |= {"value": float(np.mean(right)), "seconds": sum(seconds)}
-            if split == Split.RANDOM:
-                np.add.at(confusion, (parts[0].test_truth, answers[0]), 1)
+            held_out = split == Split.RANDOM
+            found = [part.predict(name, random_state, held_out) for part in parts]
+            right = [(one.predicted == part.test_truth).mean() for one, part in zip(found, parts, strict=True)]
+            rows[-1] |= {"value": float(np.mean(right)), "seconds": sum(one.seconds for one in found)}
+            if held_out:
+                rows += [{**row, **one} for one in found[0].validity]
+                np.add.at(confusion, (parts[0].test_truth, found[0].predicted), 1)
     return rows, confusion
 
 

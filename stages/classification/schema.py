@@ -5,6 +5,7 @@ from dataclasses import dataclass
 COLUMNS = {
     "variant": "plain, or the name of a further experiment: see stages/classification/trials.py",
     "set": "number of a random set of objects, of those that are drawn",
+    "scaling": "of samples before the classifier: a name of stages.classification.scaling.SCALINGS",
     "classifier": "a name of stages.classification.CLASSIFIERS",
     "repetition": "number of the random split",
     "imprints": "samples that were trained and tested on",

@@ -35,6 +35,14 @@ def confusable(similarities: np.ndarray, labels: ArrayLike, among: ArrayLike | N
     return ((similarities[:, among] >= SIMILARITY_THRESHOLD) & other_object).any(axis=1)
 
 
+def as_many(labels: ArrayLike, kept: np.ndarray, random: np.random.Generator) -> np.ndarray:
+    """(k,) boolean: of each object as many random imprints as the mask `kept` (k,) has, a control of selection."""
+    labels, chosen = np.asarray(labels), np.zeros(len(kept), dtype=bool)
+    for one in np.unique(labels):
+        chosen[random.permutation(np.flatnonzero(labels == one))[: kept[labels == one].sum()]] = True
+    return chosen
+
+
 def _unit(images):
     """((k, cells): images minus their mean, of length 1, or 0 if flat; (k,) boolean: flat)."""
     images = np.asarray(images, dtype=np.float64)

@@ -4,12 +4,14 @@
 |---|---|---|
 | pixels | the imprints themselves instead of their features | none |
 | wavelet_features, image_features | one part of the features alone | none |
+| plain | further readings of the scaling, see scaling.py | tables 4.1 and 4.2 |
 | plain_side | split `regions` with one side of all objects held out, to compare `locations` with | none |
 | first_15 | the first 15 imprints of each object, as in the thesis | shares of T4.2.4 |
 | locations | with the positions of the touches | table 4.5 |
 | locations_turned | the same, tested on objects rotated about the vertical | none |
 | selected | imprints that correlate with another object's removed, before the split | table 4.3 |
 | selected_train | removed from the training part alone, by its own correlations | none |
+| selected_control, selected_train_control | as many of each object removed, at random | none |
 | touches_N | N touches and their positions, concatenated | table 4.6 |
 | touches_N_unplaced | without the positions | none |
 | touches_N_ordered | the touches of a combination in the order of their height | none |
@@ -21,19 +23,23 @@ T4.2.4 removes 33.33, 40, 6.67, 26.67, 13.33 and 20 % of the six objects' imprin
 cannot give five different touches, so the thesis's combinations seem to be drawn before the split.
 """
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from stages.kit.split import Split
 
 from .features import IMAGE
+from .prepared import VALIDITY
 from .protocol import random_holdout, region_holdout
-from .similarity import confusable, similarity
+from .scaling import BEFOREHAND, MIN_MAX, SCALINGS, TRAINING
+from .similarity import as_many, confusable, similarity
 
 THESIS_COUNT = 15  # imprints per object in the thesis, see above
 NO_DISTANT_TOUCH = "an object has no touch farther than the array's width from its held-out region"
+OTHERS = (BEFOREHAND, MIN_MAX)  # scalings beside that of the training part; `components` for a closer look alone
+NARROW = ("knn", "svm")  # whose answers depend on the scale most
 MIN_TO_SPLIT = 4  # imprints per object of which a quarter can be held out
 
 
@@ -80,7 +86,9 @@ class TouchSet:
 class Trial:
     """Samples, and the parts to train and test on as a split draws them; without parts `note` has the reason.
 
-    parts: (train, test) indices; seconds: the time to compute the samples; skipped: classifiers that are not run.
+    parts: (train, test) indices; seconds: the time to compute the samples; skipped: classifiers that are not run;
+    scalings: names in SCALINGS, by each of which it is run; narrow: by those other than TRAINING, the SVM and kNN alone
+    are run; validity: metrics of dead classifiers that further rows have.
     """
 
     variant: str
@@ -92,15 +100,31 @@ class Trial:
     seconds: float = 0.0
     skipped: tuple[str, ...] = ()
     note: str | None = None
+    scalings: tuple[str, ...] = (TRAINING,)
+    narrow: bool = False
+    validity: tuple[str, ...] = ()
+
+    def classifiers(self, names: Iterable[str], scaling: str) -> list[str]:
+        """Those of the names that are run by a scaling."""
+        narrow = self.narrow and scaling != TRAINING
+        return [name for name in names if name not in self.skipped and (not narrow or name in NARROW)]
 
 
-def single_touch_trials(touched: TouchSet, random_state: int) -> Iterator[Trial]:
-    """Trials of one touch: other features, fewer imprints, locations."""
-    yield from _feature_trials(touched, random_holdout(touched.truth, random_state))
+def single_touch_trials(touched: TouchSet, random_state: int, closer: bool = False) -> Iterator[Trial]:
+    """Trials of one touch: other scalings and features, fewer imprints, locations.
+
+    closer: with each reading of the scaling. Otherwise some have those but `components`, fewer with all classifiers.
+    """
+    every = (TRAINING, *OTHERS)
+    plain = Trial("plain", Split.RANDOM, touched.samples, touched.truth, random_holdout(touched.truth, random_state))
+    yield replace(plain, scalings=SCALINGS[1:] if closer else OTHERS, validity=VALIDITY if closer else ())
+    regions = _region_trial("plain", touched, touched.samples, random_state, "features", side=False)
+    yield replace(regions, scalings=OTHERS, narrow=True)
+    yield from _feature_trials(touched, plain.parts)
     located = np.hstack([touched.samples, touched.places])
     first_few = touched.first_of_each()
-    yield from _both_splits("first_15", first_few, first_few.samples, random_state)
-    yield from _both_splits("locations", touched, located, random_state, "located")
+    yield from _both_splits("first_15", first_few, first_few.samples, random_state, scalings=every, narrow=not closer)
+    yield from _both_splits("locations", touched, located, random_state, "located", every if closer else (TRAINING,))
     yield _region_trial("plain_side", touched, touched.samples, random_state, "features", side=True)
     parts = random_holdout(touched.truth, random_state)
     turned = _rotated_positions(touched, parts, random_state)
@@ -123,22 +147,41 @@ def _feature_trials(touched, parts):
 def selection_trials(touched: TouchSet, random_state: int) -> Iterator[Trial]:
     """Trials without confusable imprints: removed from all data, or from the training part alone."""
     for prefix, part in (("", touched), ("first_15_", touched.first_of_each())):
-        kept = part.subset(~part.confusable)
-        if min(np.bincount(kept.truth, minlength=part.truth.max() + 1)) < MIN_TO_SPLIT:
-            note = f"selection leaves an object fewer than {MIN_TO_SPLIT} of its {len(part.truth)} imprints"
-            yield Trial(f"{prefix}selected", Split.RANDOM, note=note)
-        else:
-            yield from _both_splits(f"{prefix}selected", kept, kept.samples, random_state)
+        kept = ~part.confusable
         train, test = random_holdout(part.truth, random_state)
-        own = train[~confusable(part.similarities, part.truth, train)[train]]
-        parts = (own, test) if len(np.unique(part.truth[own])) == part.truth.max() + 1 else None
-        note = None if parts else "selection leaves an object no imprint to train on"
-        yield Trial(f"{prefix}selected_train", Split.RANDOM, part.samples, part.truth, parts, note=note)
+        own = ~confusable(part.similarities, part.truth, train)[train]
+        random = np.random.default_rng([random_state, len(part.truth)])
+        for end, whole, training in (
+            ("", kept, own),
+            ("_control", as_many(part.truth, kept, random), as_many(part.truth[train], own, random)),
+        ):
+            selected = list(_selected(f"{prefix}selected{end}", part, whole, random_state))
+            yield from selected[:1] if end else selected
+            yield _selected_train(f"{prefix}selected_train{end}", part, (train[training], test))
 
 
-def _both_splits(variant, touched, samples, random_state, kind="features"):
-    """The random hold-out and the held-out regions of one kind of samples."""
-    yield Trial(variant, Split.RANDOM, samples, touched.truth, random_holdout(touched.truth, random_state), kind)
+def _selected(variant, part, chosen, random_state):
+    """The trials of the imprints of a mask, drawn before the split."""
+    kept = part.subset(chosen)
+    if min(np.bincount(kept.truth, minlength=part.truth.max() + 1)) < MIN_TO_SPLIT:
+        note = f"selection leaves an object fewer than {MIN_TO_SPLIT} of its {len(part.truth)} imprints"
+        yield Trial(variant, Split.RANDOM, note=note)
+    else:
+        scalings = (TRAINING,) if variant.startswith("first") else (TRAINING, *OTHERS)
+        yield from _both_splits(variant, kept, kept.samples, random_state, scalings=scalings)
+
+
+def _selected_train(variant, part, parts):
+    """The trial of a training part that selection leaves."""
+    every = len(np.unique(part.truth[parts[0]])) == part.truth.max() + 1
+    note = None if every else "selection leaves an object no imprint to train on"
+    return Trial(variant, Split.RANDOM, part.samples, part.truth, parts if every else None, note=note)
+
+
+def _both_splits(variant, touched, samples, random_state, kind="features", scalings=(TRAINING,), narrow=False):
+    """The random hold-out, by all scalings, and the held-out regions of one kind of samples, by the first."""
+    parts = random_holdout(touched.truth, random_state)
+    yield Trial(variant, Split.RANDOM, samples, touched.truth, parts, kind, scalings=scalings, narrow=narrow)
     yield _region_trial(variant, touched, samples, random_state, kind, side=kind == "located")
 
 

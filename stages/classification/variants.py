@@ -4,10 +4,10 @@ import numpy as np
 
 from stages.kit.split import Split
 
-from .classifiers import COMPONENTS
 from .multi_touch import MultiTouchTrials
-from .prepared import Prepared
+from .prepared import VALIDITY, Prepared
 from .protocol import repetition_seed
+from .scaling import COMPONENTS, TRAINING
 from .trials import TouchSet, selection_trials, single_touch_trials
 
 
@@ -19,11 +19,11 @@ def evaluate_variants(
     multi_touch: MultiTouchTrials | None = None,
     with_selection: bool = False,
 ) -> list[dict]:
-    """Rows (variant, classifier, repetition, split, metric, value, seconds, imprints, note) of all trials in trials.py.
+    """Rows (variant, scaling, classifier, repetition, split, metric, value, seconds, imprints, note) of all trials.
 
-    classifiers: names in CLASSIFIERS; multi_touch: for trials of several touches; with_selection: also trials of
-    selection. Splits are those of `evaluate_features` in the same repetition. A trial that cannot be run gives one row
-    with the reason.
+    Those of trials.py. classifiers: names in CLASSIFIERS; multi_touch: for trials of several touches; with_selection:
+    also trials of selection, and more readings of the scaling. Splits are those of `evaluate_features` in the same
+    repetition. A trial that cannot be run gives one row with the reason.
     """
     rows, reported = [], set()
     for repetition in range(repetitions):
@@ -36,12 +36,14 @@ def evaluate_variants(
                     row = {"variant": trial.variant, "classifier": None, "split": trial.split, "metric": "accuracy"}
                     rows.append({**row, "value": None, "note": note})
                 continue
-            rows += [{**row, "repetition": repetition} for row in _trial_rows(trial, classifiers, random_state)]
+            for scaling in trial.scalings:
+                found = _trial_rows(trial, scaling, classifiers, random_state)
+                rows += [{**row, "repetition": repetition} for row in found]
     return rows
 
 
 def _trials(touched, random_state, multi_touch, with_selection):
-    yield from single_touch_trials(touched, random_state)
+    yield from single_touch_trials(touched, random_state, with_selection)
     if with_selection:
         yield from selection_trials(touched, random_state)
     if multi_touch:
@@ -50,26 +52,28 @@ def _trials(touched, random_state, multi_touch, with_selection):
 
 def _reason_to_skip(trial):
     """The reason why a trial cannot be run, or None."""
-    if trial.parts is not None and trial.kind != "reduced" and len(trial.parts[0]) < COMPONENTS:
+    if trial.parts is not None and trial.kind in ("features", "located") and len(trial.parts[0]) < COMPONENTS:
         return f"{len(trial.parts[0])} imprints to train on are too few for {COMPONENTS} components"
     return trial.note
 
 
-def _trial_rows(trial, classifiers, random_state):
-    """Rows of the classifiers on one trial.
+def _trial_rows(trial, scaling, classifiers, random_state):
+    """Rows of the classifiers on one trial, its samples scaled one way.
 
     Selection leaves objects with unequal numbers of imprints, so that guessing the most frequent object is accurate. So
     the mean over the objects of their recall is another metric, recall.
     """
-    rows, prepared = [], Prepared.from_split(trial.samples, trial.truth, trial.parts, trial.kind)
+    rows, prepared = [], Prepared.from_split(trial.samples, trial.truth, trial.parts, trial.kind, scaling)
     truth = prepared.test_truth
-    for name in [name for name in classifiers if name not in trial.skipped]:
-        predicted, seconds = prepared.predict(name, random_state)
-        correct = predicted == truth
-        common = {"variant": trial.variant, "classifier": name, "split": trial.split, "note": None}
-        common |= {"imprints": len(prepared.train) + len(truth), "seconds": seconds + trial.seconds}
+    for name in trial.classifiers(classifiers, scaling):
+        answers = prepared.predict(name, random_state, VALIDITY[0] in trial.validity)
+        correct = answers.predicted == truth
+        common = {"variant": trial.variant, "scaling": scaling, "classifier": name, "split": trial.split, "note": None}
+        seconds = answers.seconds + trial.seconds if scaling == TRAINING else None  # the scale costs nothing
+        common |= {"imprints": len(prepared.train) + len(truth), "seconds": seconds}
         rows.append({**common, "metric": "accuracy", "value": float(correct.mean())})
-        if trial.variant.endswith("selected") and trial.split == Split.RANDOM:
+        if trial.variant.endswith(("selected", "selected_control")) and trial.split == Split.RANDOM:
             recall = np.mean([correct[truth == one].mean() for one in np.unique(truth)])
             rows.append({**common, "metric": "recall", "value": float(recall)})
+        rows += [{**common, "seconds": None, **one} for one in answers.validity if one["metric"] in trial.validity]
     return rows

@@ -17,7 +17,7 @@ from sklearn.pipeline import make_pipeline
 from sklearn.svm import SVC
 
 from stages.classification import CLASSIFIERS, classifier
-from stages.classification.classifiers import COMPONENTS
+from stages.classification.scaling import COMPONENTS
 
 BINS = (1, 5, 10, 20, 40)  # tried: the whole touch to parts of 6 to 8 steps
 FOLDS = 5

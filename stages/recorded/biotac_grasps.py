@@ -13,8 +13,8 @@ from sklearn.preprocessing import StandardScaler
 from threadpoolctl import threadpool_limits
 
 from stages.classification import CLASSIFIERS
-from stages.classification.classifiers import COMPONENTS
 from stages.classification.recorded import PALMS, Grasps
+from stages.classification.scaling import COMPONENTS
 from stages.kit import Stopwatch
 from stages.kit.rng import rng
 from stages.kit.run import Rows, StageRun

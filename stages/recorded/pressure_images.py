@@ -10,15 +10,17 @@ from sklearn.model_selection import StratifiedKFold, cross_val_score
 from threadpoolctl import threadpool_limits
 
 from stages.classification import CLASSIFIERS, classifier, features
+from stages.classification.prepared import Prepared
 from stages.classification.protocol import FOLDS, MIN_IMPRINTS
-from stages.classification.similarity import confusable, similarity
-from stages.kit import Stopwatch
+from stages.classification.scaling import SCALINGS, TRAINING, TWICE
+from stages.classification.similarity import as_many, confusable, similarity
 from stages.kit.rng import rng
 from stages.kit.run import Rows, StageRun
 from stages.kit.split import Split
 
 from .splits import SPLITS, random_split, split_number
 
+WITHOUT_TWICE = tuple(scaling for scaling in SCALINGS if scaling != TWICE)
 COUNTS = {"six": 6, "four": 4}  # the first by the alphabet; as many at random; and those most alike
 
 
@@ -49,10 +51,12 @@ def measure(run: StageRun, images: dict[str, np.ndarray], repetitions: int) -> N
     """Adds rows of the five classifiers on {class: (k, rows, cols)}: all classes, the first six and four, and others.
 
     method: all touches; selected: without those that resemble a touch of another class of the set, taken out before
-    the split as in the thesis; selected_training: taken out of the training part alone, tested on all others.
-    metric: accuracy by split (folds: within the training part of the random split), share_similar (touches that
-    resemble one of another class). Groups: `six_drawn` and `four_drawn` are drawn anew in each repetition; `six_alike`
-    and `four_alike` are the classes with the largest share of touches that resemble one of any other class.
+    the split as in the thesis; selected_control: without as many of each class, at random; selected_training: taken out
+    of the training part alone, tested on all others. metric: accuracy by split (folds: within the training part of the
+    random split), share_similar (touches that resemble one of another class), and what finds a dead classifier
+    (train_accuracy, commonest_share; of all touches). The random split is run by all scalings but on the first six and
+    four. Groups: `six_drawn` and `four_drawn` are drawn anew in each repetition; `six_alike` and `four_alike` are the
+    classes with the largest share of touches that resemble one of any other class.
     """
     with threadpool_limits(1):  # equal sums on any number of cores
         touches = describe(images)
@@ -107,17 +111,19 @@ def summary(rows: Rows) -> dict[str, float]:
     whole = [row for row in rows if row["group"] == "all" and row["method"] == "all" and row.get("value") is not None]
     found = {"share_similar": whole[0]["value"]}
     for split in (*SPLITS, Split.FOLDS):
-        own = [row["value"] for row in whole if row.get("split") == split and row["classifier"] == "knn"]
+        wanted = {"split": split, "classifier": "knn", "scaling": TRAINING, "metric": "accuracy"}
+        own = [row["value"] for row in whole if wanted.items() <= row.items()]
         found[f"accuracy_{split}"] = round(float(np.mean(own)), 6)
     return found
 
 
 def _set_rows(one: ClassSet, touches: Touches, seed: int) -> Iterator[dict]:
     common, chosen = {"group": one.group, "classes": len(one.classes)}, " ".join(sorted(one.classes))
-    kept = np.flatnonzero(~confusable(touches.alike, touches.labels))
-    share = {"metric": "share_similar", "value": 1 - len(kept) / len(touches.labels)}
+    kept = ~confusable(touches.alike, touches.labels)
+    share = {"metric": "share_similar", "value": 1 - kept.sum() / len(kept)}
     yield {**common, "chosen": chosen, "method": "all", **share, "repetition": one.repetitions[0]}
-    for method, own in (("all", touches), ("selected", touches.of(kept)), ("selected_training", touches)):
+    parts = {"all": touches, "selected": touches.of(kept), "selected_training": touches}
+    for method, own in (parts | {"selected_control": touches.of(kept)}).items():
         counts = {name: int((own.labels == name).sum()) for name in sorted(one.classes)}
         poorest = min(counts, key=lambda name: counts[name])
         if counts[poorest] < MIN_IMPRINTS:
@@ -127,25 +133,35 @@ def _set_rows(one: ClassSet, touches: Touches, seed: int) -> Iterator[dict]:
             continue
         for repetition in one.repetitions:
             number = split_number(seed, repetition)
-            rows = _split_rows(own, method == "selected_training", number, one.folds)
+            if method == "selected_control":
+                own = touches.of(as_many(touches.labels, kept, np.random.default_rng(number)))
+            scalings = (TRAINING,) if one.group in COUNTS else SCALINGS if method == "all" else WITHOUT_TWICE
+            rows = _split_rows(own, method, number, one.folds, scalings)
             yield from ({**common, "method": method, "repetition": repetition, **row} for row in rows)
 
 
-def _split_rows(touches: Touches, selected: bool, number: int, folds: bool) -> Iterator[dict]:
-    samples, labels = touches.samples, touches.labels
+def _split_rows(touches: Touches, method: str, number: int, folds: bool, scalings: tuple[str, ...]) -> Iterator[dict]:
+    samples, labels, selected = touches.samples, touches.labels, method == "selected_training"
     for split, draw in SPLITS.items():
         train, test = draw(labels, number)
         if selected:
             train = train[~confusable(touches.alike[np.ix_(train, train)], labels[train])]
-        for name in CLASSIFIERS:
-            with Stopwatch() as watch:
-                answers = classifier(name, number).fit(samples[train], labels[train]).predict(samples[test])
-            row = {"split": split, "metric": "accuracy", "value": float((answers == labels[test]).mean())}
-            yield {"classifier": name, **row, "seconds": watch.seconds, "train": len(train), "test": len(test)}
+        validity = split == Split.RANDOM and method == "all"
+        for scaling in scalings if split == Split.RANDOM else (TRAINING,):
+            prepared = Prepared.from_split(samples, labels, (train, test), scaling=scaling)
+            for name in CLASSIFIERS:
+                answers = prepared.predict(name, number, with_training=validity)
+                row = {"classifier": name, "scaling": scaling, "split": split, "train": len(train), "test": len(test)}
+                value = float((answers.predicted == labels[test]).mean())
+                seconds = answers.seconds if scaling == TRAINING else None  # the scale costs nothing
+                yield {**row, "metric": "accuracy", "value": value, "seconds": seconds}
+                if validity:
+                    yield from ({**row, **one} for one in answers.validity)
     if folds and not selected:
         for name in CLASSIFIERS:
             value = _cross_validated(name, samples, labels, number)
-            yield {"classifier": name, "split": Split.FOLDS, "metric": "accuracy", "value": value}
+            row = {"classifier": name, "scaling": TRAINING, "split": Split.FOLDS}
+            yield {**row, "metric": "accuracy", "value": value}
 
 
 def _cross_validated(name: str, samples: np.ndarray, labels: np.ndarray, number: int) -> float:

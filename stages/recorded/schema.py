@@ -5,6 +5,7 @@ from pathlib import Path
 
 COLUMNS = {
     "classifier": "a name of stages.classification.CLASSIFIERS, or majority: always the commonest answer",
+    "scaling": "of pressure images before the classifier: a name of stages.classification.scaling.SCALINGS",
     "repetition": "number of the random split, or of the drawn set of classes",
     "train": "touches trained on",
     "test": "touches tested on",

@@ -53,6 +53,7 @@ LABELS = {
     "knn": "kNN",
     "svm": "SVM",
     "naive_bayes": "naive Bayes",
+    "mean_without_svm": "mean without the SVM",
     "discriminant": "linear discriminant",
     "linear_svm": "linear SVM",
     "heat_kernel": "heat kernel signature",

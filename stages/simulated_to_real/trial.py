@@ -11,7 +11,7 @@ from sklearn.preprocessing import StandardScaler
 from threadpoolctl import threadpool_limits
 
 from stages.classification import CLASSIFIERS
-from stages.classification.classifiers import COMPONENTS
+from stages.classification.scaling import COMPONENTS
 from stages.kit import Stopwatch
 from stages.kit.run import Rows
 from stages.kit.split import Split

@@ -11,6 +11,7 @@ from stages.kit.files import read_arrays, read_json
 from stages.kit.rows import read_rows
 
 NAMES = ("cup", "duck", "hand")
+PLAIN = ("plain", "training", "accuracy")
 
 
 @pytest.fixture
@@ -71,7 +72,7 @@ def test_stage_agrees_with_evaluate_and_writes_equal_bytes(imprints, tmp_path, b
     assert (tmp_path / "a/three.random.npz").read_bytes() == (tmp_path / "b/three.random.npz").read_bytes()
     images = {name: stack[:12].astype("f4") for name, stack in bumps(NAMES, 16, jitter=2.0).items()}
     expected = [row["value"] for name in ("knn", "naive_bayes") for row in evaluate(images, name, 2, seed=7)]
-    plain = [row for row in rows if row["variant"] == "plain"]
+    plain = [row for row in rows if (row["variant"], row.get("scaling"), row["metric"]) == PLAIN]
     assert [row["value"] for row in plain if row.get("split") in ("random", "folds")] == expected
     stored = read_arrays(tmp_path / "a/three.random.npz")
     assert stored["objects"].tolist() == list(NAMES) and stored["knn.confusion"].sum() == 2 * 9
@@ -89,7 +90,9 @@ def test_a_failing_classifier_does_not_lose_the_others(imprints, tmp_path, monke
 
 def test_summary_holds_mean_and_interval_of_the_repetitions():
     common = {"group": "three", "method": "itti", "classifier": "knn", "variant": "plain"}
-    common |= {"split": "random", "metric": "accuracy"}
+    common |= {"split": "random", "metric": "accuracy", "scaling": "training"}
+    other = [{**common, "value": 0.0, "scaling": "min_max"}, {**common, "value": 0.0, "metric": "commonest_share"}]
+    assert summary(other, seed=0) == {}
     tree = summary([{**common, "value": value} for value in (0.5, 0.7, None)], seed=0)
     assert tree["three"]["itti"]["knn"]["accuracy_holdout"] == {"mean": 0.6, "low": -0.316817, "high": 1.516817}
     variants = [{**common, "value": 0.9, "variant": name} for name in ("locations", "touches_2")]

@@ -71,7 +71,7 @@ def test_reduction_is_fitted_to_the_training_part_alone():
     random = np.random.default_rng(0)
     samples, truth = random.normal(size=(60, 44)), np.repeat([0, 1], 30)
     train, test = np.arange(0, 60, 2), np.arange(1, 60, 2)
-    for kind, width in (("features", 12), ("located", 15), ("reduced", 44)):
+    for kind, width in (("features", 12), ("located", 15), ("reduced", 44), ("joined", 44)):
         far = samples.copy()
         far[test] += 100
         one, other = (Prepared.from_split(those, truth, (train, test), kind) for those in (samples, far))
@@ -79,7 +79,48 @@ def test_reduction_is_fitted_to_the_training_part_alone():
         assert not np.allclose(one.test, other.test) and np.array_equal(one.test_truth, truth[test])
 
 
-@pytest.mark.parametrize("kind", ["features", "located", "reduced"])
+def test_other_scalings_are_of_all_data():
+    random = np.random.default_rng(0)
+    samples, truth = random.normal(3, 5, size=(80, 45)), np.repeat([0, 1], 40)
+    train, test = protocol.random_holdout(truth, 3)
+
+    def both(kind, scaling):
+        one = Prepared.from_split(samples, truth, (train, test), kind, scaling)
+        return np.concatenate([one.train, one.test]), samples[np.concatenate([train, test])]
+
+    standard = (samples - samples.mean(axis=0)) / samples.std(axis=0)
+    largest = np.linalg.svd(standard, compute_uv=False)[:12] ** 2 / 80
+    assert both("features", "beforehand")[0].var(axis=0) == pytest.approx(largest)
+    assert both("features", "components")[0].var(axis=0) == pytest.approx(np.ones(12))
+    ranged = (samples - samples.min(axis=0)) / np.ptp(samples, axis=0)
+    largest = np.linalg.svd(ranged - ranged.mean(axis=0), compute_uv=False)[:12] ** 2 / 80
+    assert both("features", "min_max")[0].var(axis=0) == pytest.approx(largest)
+    for scaling in ("beforehand", "components", "min_max"):
+        features_alone = Prepared.from_split(samples[:, :-3], truth, (train, test), "features", scaling)
+        assert both("located", scaling)[0][: len(train), :12] == pytest.approx(features_alone.train)
+    joined, raw = both("joined", "beforehand")
+    assert joined[:, :27].std(axis=0) == pytest.approx(np.ones(27))  # the positions of nine touches
+    assert joined[:, 27:] == pytest.approx(raw[:, [column for column in range(45) if column % 5 < 2]])
+    assert np.ptp(both("joined", "min_max")[0], axis=0) == pytest.approx(np.ones(45))
+
+
+def test_unknown_scaling_is_named():
+    with pytest.raises(ValueError, match="scaling must be one of training, .*, min_max, got 'none'"):
+        classifier("knn", scaling="none")
+
+
+def test_a_dead_classifier_shows_in_its_rows():
+    near, truth = 100 * np.eye(12), np.repeat([0, 1, 2], 4)
+    dead = Prepared(near, truth, -near, truth, 0.0).predict("svm", 0, with_training=True)  # all far from each other
+    assert dead.validity == [
+        {"metric": "train_accuracy", "value": 1.0},
+        {"metric": "commonest_share", "value": 1.0},
+    ]
+    alive = Prepared(near, truth, near[:6], truth[:6], 0.0).predict("knn", 0)
+    assert [row["value"] for row in alive.validity] == [None, pytest.approx(4 / 6)]
+
+
+@pytest.mark.parametrize("kind", ["features", "located", "reduced", "joined"])
 def test_shared_preparation_answers_as_the_pipeline_does(kind):
     random = np.random.default_rng(0)
     samples, truth = random.normal(size=(80, 20)), np.repeat([0, 1], 40)

@@ -5,6 +5,7 @@ import pytest
 from skimage.feature import match_template
 
 from stages.classification import confusable, similarity
+from stages.classification.similarity import as_many
 
 RANDOM = np.random.default_rng(0)
 IMAGES = RANDOM.random((5, 9, 7))
@@ -40,6 +41,14 @@ def test_shared_are_those_that_another_object_has_too():
 def test_what_is_no_stack_of_imprints_is_refused(bad):
     with pytest.raises(ValueError, match="images must be finite"):
         similarity(bad)
+
+
+def test_a_control_of_selection_keeps_as_many_of_each_object():
+    labels = np.array(["a"] * 5 + ["b"] * 5)
+    kept = np.array([True, True, False, False, False] + [True] * 4 + [False])
+    drawn = [as_many(labels, kept, np.random.default_rng(seed)) for seed in range(20)]
+    assert {(one[:5].sum(), one[5:].sum()) for one in drawn} == {(2, 4)}
+    assert len({tuple(one) for one in drawn}) > 5
 
 
 def test_imprints_of_two_arrays_cannot_be_compared():

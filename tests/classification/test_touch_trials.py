@@ -50,6 +50,49 @@ def test_selection_removes_before_the_split_or_from_training_alone(bumps):
     assert not (similarities & (data.truth[train][:, None] != data.truth[train])).any()
     rows = evaluate_variants(data, ["knn"], 2, with_selection=True)
     assert {row["metric"] for row in rows if row["variant"] == "selected"} == {"accuracy", "recall"}
+    assert {row["metric"] for row in rows if row["variant"] == "selected_control"} == {"accuracy", "recall"}
+
+
+def test_control_of_selection_has_as_many_imprints_of_each_object_but_others(bumps):
+    data = touched(bumps, jitter=2.5)
+    trials = by_name(selection_trials(data, 3))
+    for variant in ("selected", "first_15_selected"):
+        kept, control = (trials[name, "random"] for name in (variant, f"{variant}_control"))
+        assert np.array_equal(kept.truth, control.truth) and not np.array_equal(kept.samples, control.samples)
+    trained, control = (trials[name, "random"] for name in ("selected_train", "selected_train_control"))
+    assert np.array_equal(trained.parts[1], control.parts[1])
+    kept, drawn = trained.parts[0], control.parts[0]
+    assert np.array_equal(np.bincount(data.truth[kept]), np.bincount(data.truth[drawn])) and {*kept} != {*drawn}
+    assert not np.isin(drawn, control.parts[1]).any()
+
+
+def test_scalings_are_run_of_plain_few_and_joined_touches(bumps):
+    data = touched(bumps)
+    few = MultiTouchTrials((2,), 1, True)
+    rows = evaluate_variants(data, ["knn"], 1, multi_touch=few, with_selection=True)
+    scalings = {}
+    for row in rows:
+        scalings.setdefault((row["variant"], row["split"]), []).append((row["scaling"], row["metric"]))
+    every, valid = ("training", "beforehand", "min_max"), ("accuracy", "train_accuracy", "commonest_share")
+    further = [(scaling, metric) for scaling in ("beforehand", "components", "min_max") for metric in valid]
+    assert scalings["plain", "random"] == further  # `evaluate_features` has those of the scaling `training`
+    assert scalings["plain", "regions"] == [(scaling, "accuracy") for scaling in every[1:]]
+    assert scalings["first_15", "random"] == [(scaling, "accuracy") for scaling in every]
+    for variant in ("touches_2", "first_15_touches_2_mixed"):
+        assert scalings[variant, "random"] == [(scaling, metric) for scaling in every for metric in valid[::2]]
+    assert (
+        scalings["touches_2_ordered", "random"] == scalings["touches_2_mixed", "random"] == [("training", "accuracy")]
+    )
+    shares = [row["value"] for row in rows if row["metric"] == "commonest_share"]
+    assert min(shares) >= 1 / 3 - 1e-9 and all(row.get("seconds") is None for row in rows if row["metric"] in valid[1:])
+    rows = evaluate_variants(touched(bumps, jitter=2.5), ["naive_bayes", "svm"], 1)
+    narrow = [row["classifier"] for row in rows if (row["variant"], row["scaling"]) == ("first_15", "min_max")]
+    assert narrow == ["svm"]
+    rows = [row for row in rows if row["classifier"] == "svm"]
+    values = {
+        row["scaling"]: row["value"] for row in rows if (row["variant"], row["metric"]) == ("first_15", "accuracy")
+    }
+    assert values["training"] < values["min_max"]
 
 
 @pytest.mark.slow
@@ -72,7 +115,9 @@ def test_no_touch_is_on_both_sides(bumps, way):
         train, test = (trial.samples[side][:, 2::5] for side in trial.parts)  # the x of each touch is its number
         assert train.shape[1] == 3 and not np.isin(train, test).any()
         assert (data.truth[train.astype(int)] == trial.truth[trial.parts[0]][:, None]).all()
-    assert trial.samples.shape[1] == (6 if way == "_unplaced" else 15) and trial.kind == "reduced"
+    assert trial.samples.shape[1] == (6 if way == "_unplaced" else 15) and trial.kind == (
+        "reduced" if way == "_unplaced" else "joined"
+    )
     assert len(trial.parts[0]) == {"_disjoint": 18, "_many": 540}.get(way, 2 * 3 * 18)
     assert trial.skipped == (("svm",) if way == "_many" else ())
 

@@ -30,6 +30,16 @@ def test_bars_at_places_of_their_own_are_recognised_and_none_is_left_out(recogni
     assert set(rows["group"]) == {"all", *(f"{n}{end}" for n in ("six", "four") for end in ("", "_alike", "_drawn"))}
     assert rows.loc[rows["group"] == "four", "chosen"].dropna().tolist() == ["a b c d"]
     assert set(accuracy["split"]) == {"random", "blocks", "folds"}
+    scalings = accuracy.groupby(["group", "method", "split"])["scaling"].unique().map(list)
+    assert scalings["six_alike", "all", "random"] == ["training", "beforehand", "components", "min_max"]
+    assert scalings["six_drawn", "selected_control", "random"] == ["training", "beforehand", "min_max"]
+    assert scalings["six", "all", "random"] == scalings["all", "all", "blocks"] == ["training"]
+    dead = rows[rows["metric"].isin(["train_accuracy", "commonest_share"])]
+    assert (
+        set(dead["split"]) == {"random"}
+        and set(dead["method"]) == {"all"}
+        and dead["value"].between(1 / len(recordings.touches()), 1).all()
+    )
     assert set(accuracy.loc[accuracy["group"] == "six_drawn", "split"]) == {"random", "blocks"}
 
 
@@ -41,8 +51,11 @@ def test_touches_that_resemble_another_class_leave_training_or_the_whole_set(rec
     whole = rows[(rows["group"] == "all") & (rows["metric"] == "accuracy") & (rows["split"] == "random")]
     whole = whole.set_index("method")
     assert whole.loc["selected", "test"].max() < whole.loc["all", "test"].min()  # the test part shrinks as well
+    assert set(whole.loc["selected_control", "test"]) == set(whole.loc["selected", "test"])
     assert set(whole.loc["selected_training", "test"]) == set(whole.loc["all", "test"])
     assert whole.loc["selected_training", "train"].max() < whole.loc["all", "train"].min()
+    right = rows[(rows["group"] == "all") & (rows["method"] == "all") & (rows["metric"] == "accuracy")]
+    assert right[right["split"] == "random"].groupby("scaling")["value"].mean().nunique() > 1
     similar = rows[(rows["group"] == "four_alike") & (rows["metric"] == "share_similar")]
     assert similar["chosen"].str.startswith("a b").all() and similar["value"].item() > 0.2
 

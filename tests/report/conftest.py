@@ -65,7 +65,7 @@ def classification(enhanced=0.8, rivals=0.5):
                     value = accuracy + 0.01 * rng.normal()
                     row = {"dataset": "test", "group": objects, "method": method, "variant": "plain"}
                     row |= {"classifier": classifier, "repetition": repetition, "split": "random", "metric": "accuracy"}
-                    row |= {"value": value}
+                    row |= {"value": value, "scaling": "training"}
                     rows.append(row | {"seconds": seconds, "seed": 0})
     return pd.DataFrame(rows)
 

@@ -21,8 +21,11 @@ def test_table_holds_every_cell_of_the_thesis(results):
     frame = table_4_1(results).frame
     thesis = results.thesis("table_4_1_six_virtual_objects").set_index("sampling")
     theirs = frame[frame["sampling"].isin(thesis.index)]
-    assert len(theirs) == thesis.size
-    assert frame.loc[~frame.index.isin(theirs.index), "sampling"].unique().tolist() == ["enhanced"]  # ours, below
+    means = theirs[theirs["classifier"].str.startswith("mean")]
+    theirs = theirs.drop(means.index)
+    assert len(theirs) == thesis.size and means["accuracy"].isna().all()  # two of five classifiers were run
+    assert means["thesis"].iloc[1] == pytest.approx(thesis.iloc[0].drop("svm").mean())
+    assert frame.loc[~frame["sampling"].isin(thesis.index), "sampling"].unique().tolist() == ["enhanced"]  # ours, below
     for row in theirs.itertuples():
         assert row.thesis == thesis.loc[row.sampling, row.classifier]
 

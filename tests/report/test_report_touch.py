@@ -37,7 +37,7 @@ def rows(best="VisAttAll", dataset=PRINTED):
                 for classifier in ("knn", "deep_learning", "naive_bayes"):
                     for repetition in range(6):
                         row = common | {"variant": variant, "classifier": classifier, "repetition": repetition}
-                        row |= {"imprints": 360, "seconds": 0.01}
+                        row |= {"imprints": 360, "seconds": 0.01, "scaling": "training"}
                         value = min(accuracy + 0.002 * random.normal(), 1.0)
                         right = row | {"metric": "accuracy"}
                         found += [right | {"split": "random", "value": value}]
@@ -73,6 +73,23 @@ def glance(root, small):
     for name in SETS_4_2:
         small.write(root, "classification", drawn(name), name)
     small.write(root, "classification", rows("enhanced", "test"))
+    return small.results(root)
+
+
+def scaled(scaling, gain):
+    """The same rows by another scaling, with all five classifiers, the SVM dead where the gain is 0."""
+    found = drawn(SETS_4_2[0]).dropna(subset=["classifier"])
+    knn = found[found["classifier"] == "knn"]
+    others = [knn.assign(classifier=name, value=knn["value"] * (name != "svm" or gain > 0))
+              for name in ("svm", "decision_tree")]  # fmt: skip
+    return pd.concat([found, *others]).assign(scaling=scaling)
+
+
+@pytest.fixture
+def read_again(root, small):
+    """Results on random sets, scaled in two ways: the SVM is dead in one of them."""
+    rows_by = [scaled("training", 0.0), scaled("min_max", 0.1)]
+    small.write(root, "classification", pd.concat([drawn(SETS_4_2[0]), *rows_by]).drop_duplicates(), SETS_4_2[0])
     return small.results(root)
 
 
@@ -112,7 +129,7 @@ def test_selection_has_a_column_for_each_group_and_way(glance):
     assert np.isnan(cells.loc[("knn", "six", "selected_train"), "thesis"])
     assert cells.loc[("knn", "six", "selected"), "recall"] == pytest.approx(0.69, abs=0.01)
     assert cells.loc[("knn, 15 imprints", "six", "selected"), "accuracy"] == pytest.approx(0.6, abs=0.01)
-    assert built.shown.shape[1] == 8 and "kNN, 15 imprints" in set(built.shown["classifier"])
+    assert built.shown.shape[1] == 10 and "kNN, 15 imprints" in set(built.shown["classifier"])
     printed = built.shown.set_index(["protocol", "classifier"]).loc[("the thesis", "kNN")]
     assert printed["six, selection, %"] == "76" and printed["six, selection in training alone, %"] == "–"
 
@@ -156,6 +173,22 @@ def test_table_of_touches_holds_the_thesis_and_the_other_ways(glance):
 def test_table_of_touches_without_touches_is_not_run(results):
     with pytest.raises(NotRun):
         table("table_4_6", results)
+
+
+def test_readings_stand_below_with_means_that_leave_out_the_svm(read_again):
+    shown = table("table_4_1", read_again).shown
+    protocols = ["as printed, 6 random sets", "as printed, 6 random sets: all data from 0 to 1"]
+    assert [name for name in shown["protocol"].unique() if "6 random" in name and "unseen" not in name] == protocols
+    cells = shown.set_index(["protocol", "sampling"])
+    dead, alive = (cells.loc[(name, "enhanced visual attention")] for name in protocols)
+    assert dead["SVM, %"].startswith("0") and alive["SVM, %"].startswith("60 [")
+    assert dead["mean of all, %"].startswith("48 [") and alive["mean of all, %"].startswith("60 [")
+    assert dead["mean without the SVM, %"][:4] == alive["mean without the SVM, %"][:4] == "60 ["
+    joined = table("table_4_6", read_again).shown.set_index(["protocol", "classifier"])
+    assert joined.loc[(protocols[0], "mean of all"), "5 touches, %"].startswith("79 [")
+    assert joined.loc[(protocols[1], "mean of all"), "5 touches, %"].startswith("99 [")
+    assert joined.loc[(protocols[0], "SVM, combinations drawn before the split"), "5 touches, %"].startswith("0")
+    assert joined.loc[("the thesis", "mean without the SVM"), "5 touches, %"] == "85"
 
 
 @pytest.mark.slow

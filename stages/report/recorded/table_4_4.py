@@ -12,6 +12,7 @@ from stages.report.items import Table
 from stages.report.markdown import with_interval
 from stages.report.ranking import Ranking
 from stages.report.results import Results
+from stages.report.scalings import MEANS, READINGS, scaled, with_means
 from stages.report.style import label
 
 SETS = {
@@ -19,20 +20,29 @@ SETS = {
     "six": "first six classes", "six_drawn": "six classes at random", "six_alike": "six most alike",
     "all": "all 22 classes",
 }  # fmt: skip
-SELECTIONS = {"all": "no selection", "selected": "selection", "selected_training": "selection in training alone"}
+SELECTIONS = {
+    "all": "no selection", "selected": "selection", "selected_control": "as many left out at random",
+    "selected_training": "selection in training alone",
+}  # fmt: skip
 PRINTED = {name: f"the thesis, {name} toys" for name in ("four", "six")}
+COLUMNS = {"group": "set", "method": "selection"}
 KEYS = ["set", "selection", "classifier"]
 VALUES = ["accuracy", "low", "high", "thesis", "accuracy_folds", "accuracy_blocks"]
 
 
 def build(results: Results) -> Table:
     """Accuracy by set of classes, selection and classifier, beside the thesis's where it has one."""
-    rows = results.rows("recorded", "pressure_images").rename(columns={"group": "set", "method": "selection"})
+    every = results.rows("recorded", "pressure_images")
     thesis = results.thesis("table_4_4_imprint_selection_real").set_index("classifier")
-    scores = {key: own["value"] for key, own in rows[rows["metric"] == "accuracy"].groupby([*KEYS, "split"])}
-    lines = [_line(scores, thesis, *key) for key in product(SETS, SELECTIONS, thesis.index)]
-    frame = pd.DataFrame(lines, columns=[*KEYS, *VALUES])
-    names = {"set": lambda name: SETS.get(name, name), "selection": SELECTIONS.get}
+    means = pd.DataFrame({name: thesis.loc[list(several)].mean() for name, several in MEANS.items()})
+    thesis = pd.concat([thesis, means.T])
+    rows = scaled(every).rename(columns=COLUMNS)
+    scores = _scores(scaled(every))
+    frame = pd.DataFrame(
+        [_line(scores, thesis, *key) for key in product(SETS, SELECTIONS, thesis.index)] + _readings(every, thesis),
+        columns=[*KEYS, *VALUES],
+    )
+    names = {"set": lambda name: SETS.get(name, name), "selection": lambda name: SELECTIONS.get(name, name)}
     cells = blocks(frame, KEYS[:2], KEYS[2], {"thesis": PRINTED.__getitem__})
     shown = grid(cells, KEYS[:2], KEYS[2], names=names, head=lambda name: f"{label(name)}, %")
     by_metric = dict(list(rows.groupby("metric")))
@@ -48,6 +58,23 @@ def build(results: Results) -> Table:
         "knn": lost["knn"], "least": lost.min(), "most": lost.max(),
     }  # fmt: skip
     return Table(frame, shown, words, Ranking("kNN, %", among=["set"], exempt=PRINTED.values()))
+
+
+def _scores(rows: pd.DataFrame) -> dict[tuple, pd.Series]:
+    """{(set, selection, classifier, split): accuracies}, with the means over classifiers."""
+    rows = with_means(rows[rows["metric"] == "accuracy"]).rename(columns=COLUMNS)
+    return {key: own["value"] for key, own in rows.groupby([*KEYS, "split"])}
+
+
+def _readings(rows: pd.DataFrame, thesis: pd.DataFrame) -> list[tuple]:
+    """Lines of all touches of the sets that were scaled otherwise, their selection said as that reading."""
+    lines = []
+    for scaling, said in READINGS.items():
+        scores = _scores(scaled(rows, scaling))
+        sets = [name for name in SETS if any(key[:2] == (name, "all") for key in scores)]
+        found = [_line(scores, thesis, name, "all", classifier) for name in sets for classifier in thesis.index]
+        lines += [(line[0], f"no selection: {said}", *line[2:6], np.nan, *line[7:]) for line in found]
+    return lines
 
 
 def _line(scores: dict[tuple, pd.Series], thesis: pd.DataFrame, *key: str) -> tuple:

@@ -4,6 +4,7 @@ from typing import Any
 
 import pandas as pd
 
+from stages.classification.scaling import TRAINING
 from stages.kit.split import Split, shared_by
 from stages.report.costs import attention_seconds
 from stages.report.grid import means
@@ -51,7 +52,8 @@ def by_saliency(results: Results) -> Figure:
 
 def _timed(results: Results, by: list[str], **where: Any) -> pd.DataFrame:
     """Mean accuracies on touches of six objects drawn at random, and their seconds."""
-    rows = results.measured(STAGE, metric="accuracy", split=Split.RANDOM, group="six", **where)
+    where |= {"metric": "accuracy", "split": Split.RANDOM, "group": "six", "scaling": TRAINING}
+    rows = results.measured(STAGE, **where)
     return pd.DataFrame(means(rows, by, shared_by(Split.RANDOM), top=1.0))
 
 

@@ -8,7 +8,8 @@ import pandas as pd
 
 from stages.kit.split import Split, shared_by
 from stages.report.grid import everywhere, within
-from stages.report.results import SECTION_4_2, SETS_4_2, Results
+from stages.report.results import SECTION_4_2, SETS_4_2, Results, some
+from stages.report.scalings import TRAINING, scaled
 from stages.report.style import label
 
 STAGE = "classification"
@@ -42,12 +43,15 @@ class Protocol:
         return {ours: theirs for theirs, ours in (OURS | {"enhanced_visual_attention": model}).items()}
 
 
-def protocols(results: Results, on_sets: bool = False, **where: Any) -> Iterator[Protocol]:
+def protocols(results: Results, on_sets: bool = False, scaling: str = TRAINING, **where: Any) -> Iterator[Protocol]:
     """The protocol as printed, where it was run, then ours on the first other set; NotRun where neither has rows.
 
-    on_sets: also that as printed on random sets of objects.
+    on_sets: also that as printed on random sets of objects. scaling: of the samples; rows about no classifier
+    have none.
     """
     found = everywhere(results, STAGE, **where)
+    found = {name: own for name, rows in found.items() if not (own := scaled(rows, scaling)).empty}
+    some(found, f"no rows of the scaling {scaling}", STAGE)
     if PRINTED in found:
         yield Protocol(PRINTED, found.pop(PRINTED), "as printed", PLAIN_AVERAGE)
     if (drawn := {name: found.pop(name) for name in SETS_4_2 if name in found}) and on_sets:

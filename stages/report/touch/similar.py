@@ -18,7 +18,10 @@ from stages.report.words import dataset_text
 from .rows import ENHANCED, PLAIN_AVERAGE, PRINTED, STAGE, Protocol, accuracies, fifteen, protocols, sampling_text
 
 THESIS = "the thesis"
-WAYS = {"plain": "no selection", "selected": "selection", "selected_train": "selection in training alone"}
+WAYS = {
+    "plain": "no selection", "selected": "selection", "selected_control": "as many left out at random",
+    "selected_train": "selection in training alone",
+}  # fmt: skip
 PRINTED_WAYS = {"plain": "all", "selected": "selected"}  # column of the thesis's table, behind the group
 # T4.2.4, enhanced visual attention; of the thesis's cow, dromedary, glasses, hand, plane and cup.
 BY_OBJECT = {

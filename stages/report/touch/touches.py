@@ -1,5 +1,6 @@
 """T tables 4.1, 4.2, 4.5 and 4.6: recognition by one touch and by several, beside the thesis's; 4.1 is drawn too."""
 
+from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
@@ -13,19 +14,21 @@ from stages.report.grid import blocks, grid
 from stages.report.items import Figure, Table
 from stages.report.prose import shared_notes
 from stages.report.ranking import Ranking
-from stages.report.results import NotRun, Results, some
+from stages.report.results import SETS_4_2, NotRun, Results, some
+from stages.report.scalings import CLASSIFIERS, MEANS, READINGS, with_means
 from stages.report.style import INK, colours, label, plt
 
 from .rows import ENHANCED, MODEL, STAGE, Protocol, accuracies, fifteen, protocols, sampling_text
 
 DRAWN = {"random": "blind_touch", "itti": "visual_attention", ENHANCED: "enhanced_visual_attention", MODEL: MODEL}
-CLASSIFIERS = ["knn", "svm", "decision_tree", "naive_bayes", "deep_learning"]  # the thesis's order, reversed
 FURTHER = ["deep_learning", "naive_bayes", "knn"]  # shown in the further rows; all are in the CSV
+JUDGED = ["svm", "knn", *MEANS]  # shown where the SVM is not dead
 WAYS = {
     "": "", "_unplaced": "without positions", "_ordered": "touches in the order of their height",
     "_disjoint": "each imprint in one combination", "_many": "five times as many combinations",
     "_mixed": "combinations drawn before the split", "first_15_mixed": "drawn before the split, 15 imprints per object",
 }  # fmt: skip
+MIXED = ["_mixed", "first_15_mixed"]
 KEYS = ["sampling", "way", "classifier", "touches"]
 DOWN, PRINTED = ["protocol", "sampling"], "the thesis"
 BELOW = {"accuracy_regions": "{}, unseen regions".format, "thesis": lambda protocol: PRINTED}
@@ -33,16 +36,23 @@ RANKING = Ranking("kNN, %", among=["protocol"], exempt=[PRINTED])
 
 
 def beside_thesis(results: Results, group: str, printed: str, variant: str = "plain") -> Table:
-    """The Table of one group of objects beside the thesis's, by protocol; below, samplings of this project alone."""
+    """The Table of one group of objects beside the thesis's, by protocol; below, samplings of this project alone.
+
+    Then the readings of the scale of the samples, each as a protocol.
+    """
     thesis = results.thesis(printed).set_index("sampling")
+    thesis = thesis.assign(**{name: thesis[list(several)].mean(axis=1) for name, several in MEANS.items()})
     parts, few = [], []
     for protocol in protocols(results, on_sets=True, group=group, variant=variant):
         parts.append(_cells(protocol, thesis, whole=not parts))
-        with suppress(NotRun):
-            first = results.measured(STAGE, protocol.dataset, group=group, variant=fifteen(variant))
-            few.append(_cells(replace(protocol, rows=first), thesis, ", 15 imprints"))
-    frame = pd.concat([*parts, *few]).sort_values("protocol", kind="stable", ignore_index=True)
+    with suppress(NotRun):
+        for protocol in protocols(results, on_sets=True, group=group, variant=fifteen(variant)):
+            few.append(_cells(protocol, thesis, ", 15 imprints"))
+    scaled = [_cells(one, thesis) for one in readings(results, group=group, variant=variant)]
+    frame = pd.concat([*parts, *few]).sort_values("protocol", kind="stable")
+    frame = pd.concat([frame, *scaled], ignore_index=True)
     once = frame.assign(thesis=frame["thesis"].mask(frame["sampling"].str.contains(", ")))  # not beside 15 imprints too
+    once["accuracy_regions"] = once["accuracy_regions"].mask(once["protocol"].str.contains(": "))
     shown = grid(
         blocks(once, DOWN, "classifier", BELOW), DOWN, "classifier",
         names={"sampling": sampling_text}, head=lambda name: f"{label(name)}, %",
@@ -53,9 +63,18 @@ def beside_thesis(results: Results, group: str, printed: str, variant: str = "pl
     return Table(frame, shown, words, RANKING)
 
 
+def readings(results: Results, **where: Any) -> Iterator[Protocol]:
+    """The readings of the scale: of the protocol as printed on random sets, or else of the first that has them."""
+    for scaling, said in READINGS.items():
+        with suppress(NotRun):
+            found = list(protocols(results, True, scaling, **where))
+            chosen = next((one for one in found if one.dataset in SETS_4_2), found[0])
+            yield replace(chosen, name=f"{chosen.name}: {said}")
+
+
 def _cells(protocol: Protocol, thesis: pd.DataFrame, few: str = "", whole: bool = False) -> pd.DataFrame:
     """whole: whether the thesis's samplings that were not run have cells too."""
-    rows = protocol.rows.replace({"method": protocol.samplings})
+    rows = with_means(protocol.rows).replace({"method": protocol.samplings})
     run = set(rows["method"])
     names = [name for name in [*thesis.index, *sorted(run - {*thesis.index})] if whole or name in run]
     thesis = thesis.reindex(names)
@@ -77,16 +96,21 @@ table_4_5 = partial(beside_thesis, group="six", printed="table_4_5_six_objects_w
 
 def table_4_6(results: Results) -> Table:
     """Recognition by one to five touches, beside the thesis, by protocol."""
-    thesis = results.thesis("table_4_6_number_of_imprints").melt("classifier", var_name="touches", value_name="thesis")
-    found = protocols(results, on_sets=True, group="six")
+    thesis = results.thesis("table_4_6_number_of_imprints").set_index("classifier")
+    means = {name: thesis.loc[list(several)].mean() for name, several in MEANS.items()}
+    thesis = pd.concat([thesis, pd.DataFrame(means).T]).rename_axis("classifier").reset_index()
+    thesis = thesis.melt("classifier", var_name="touches", value_name="thesis")
+    found = [*protocols(results, on_sets=True, group="six"), *readings(results, group="six")]
     frame = pd.concat([_by_touches(one, thesis) for one in found], ignore_index=True)
     some(frame, "no several touches", STAGE)
-    plain = frame["best"] & (frame["way"] == "")
+    scaled = frame["protocol"].str.contains(": ")
+    plain = frame["best"] & (frame["way"] == "") & ~scaled
+    judged = (scaled | frame["way"].isin(MIXED)) & frame["best"] & frame["classifier"].isin(JUDGED)
     others = frame["sampling"].map(label).mask(frame["best"], "")
     words = zip(frame["classifier"].map(label), frame["way"].map(WAYS), others, strict=True)
     names = pd.Series([", ".join(filter(None, said)) for said in words])
     named = frame.assign(name=names)
-    down, rest = ["protocol", "name"], named[~plain & frame["classifier"].isin(FURTHER)]
+    down, rest = ["protocol", "name"], named[~plain & (judged | (frame["classifier"].isin(FURTHER) & ~scaled))]
     cells = pd.concat([blocks(named[plain], down, "touches", BELOW), rest])
     wide = grid(cells, down, "touches", head=lambda n: f"{n} touch{'es' if n > 1 else ''}, %", printed=PRINTED)
     wide = wide.rename(columns={"name": "classifier"})
@@ -96,14 +120,16 @@ def table_4_6(results: Results) -> Table:
 
 def _by_touches(protocol: Protocol, thesis: pd.DataFrame) -> pd.DataFrame:
     """Accuracies of one protocol by sampling, way to join touches, classifier and their number, with the thesis's."""
-    touches = protocol.rows["variant"].str.extract(r"touches_(\d+)", expand=False).dropna().astype(int)
-    ways = protocol.rows["variant"].str.replace(r"_?touches_\d+", "", regex=True)
-    groups = protocol.rows.loc[touches.index].assign(sampling=protocol.rows["method"], way=ways, touches=touches)
+    rows = with_means(protocol.rows)
+    touches = rows["variant"].str.extract(r"touches_(\d+)", expand=False).dropna().astype(int)
+    ways = rows["variant"].str.replace(r"_?touches_\d+", "", regex=True)
+    groups = rows.loc[touches.index].assign(sampling=rows["method"], way=ways, touches=touches)
     frame = pd.DataFrame([dict(zip(KEYS, key, strict=True)) | accuracies(group) for key, group in groups.groupby(KEYS)])
     if frame.empty:
         return frame
     samplings = [protocol.best, *sorted({*frame["sampling"]} - {protocol.best})]
-    orders: dict[Any, list[str]] = {"way": list(WAYS), "sampling": samplings, "classifier": CLASSIFIERS[::-1]}
+    classifiers = [*CLASSIFIERS[::-1], *MEANS]
+    orders: dict[Any, list[str]] = {"way": list(WAYS), "sampling": samplings, "classifier": classifiers}
     frame = frame.sort_values(list(orders), key=lambda column: column.map(orders[column.name].index), ignore_index=True)
     best = frame["sampling"] == protocol.best
     printed = frame.merge(thesis.astype({"touches": int}), how="left")["thesis"].where(best & (frame["way"] == ""))
@@ -141,11 +167,12 @@ def draw_bars(
 
 def figure_4_1(results: Results) -> Figure:
     """Table 4.1 as a picture, a panel a protocol."""
-    parts = list(table_4_1(results).frame.groupby("protocol", sort=False))
+    found = table_4_1(results).frame
+    parts = list(found[~found["protocol"].str.contains(": ")].groupby("protocol", sort=False))
     figure, panels = plt.subplots(len(parts), 1, figsize=(8.4, 4.1 * len(parts)), squeeze=False)
     figure.subplots_adjust(hspace=0.52)
     for axes, (protocol, frame) in zip(panels[:, 0], parts, strict=True):
-        draw_bars(axes, frame, CLASSIFIERS, chance=1 / results.classes("six"), regions=True)
+        draw_bars(axes, frame, [*CLASSIFIERS], chance=1 / results.classes("six"), regions=True)
         axes.set_title(f"Recognising {results.group_text('six')} by one touch, {protocol}", pad=42)
         handles, names = axes.get_legend_handles_labels()
         axes.legend(
