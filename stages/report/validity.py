@@ -8,7 +8,8 @@ from .results import NUMBERS, NotRun, Results
 
 TOO_MANY = 0.2  # share of invalid pairs from which a claim cannot be tested
 SATURATED = 0.95  # training accuracy of a network that has learned its training part
-ONE_ANSWER = 0.95  # share of the commonest prediction from which a classifier answers without looking
+ONE_ANSWER = 2.0  # times guessing: a share of the commonest answer that no classifier has that looks at the samples
+MOST = 0.5  # the same share where the number of classes is not known by the name of their group
 UNTRAINED, ONE_CLASS = "training stopped before it was saturated", "one answer for nearly all samples"
 GUESSING, SAME = "less accurate than guessing", "both sides are the same mesh"
 TRIAL = ("group", "method", "split", "variant", "classifier", "scaling", "data", "weights", "mode", "size", "passes")
@@ -40,11 +41,13 @@ def kept_neighbourhoods(results: Results, dataset: str, rows: pd.DataFrame) -> p
 @check("classification")
 def several_answers(results: Results, dataset: str, rows: pd.DataFrame) -> pd.Series:
     """Rows of classifiers that give one answer for nearly all samples, where the stage measured that."""
-    share = _beside(results, "classification", dataset, rows, "commonest_share")
-    found = (share > ONE_ANSWER).map({True: ONE_CLASS, False: ""})
-    if "group" in rows:
-        found[_below(rows, 1 / rows["group"].map(NUMBERS))] = GUESSING
-    return found
+    return _answers(results, "classification", dataset, rows)
+
+
+@check("recorded")
+def several_answers_to_recordings(results: Results, dataset: str, rows: pd.DataFrame) -> pd.Series:
+    """As `several_answers`, for recorded touches."""
+    return _answers(results, "recorded", dataset, rows)
 
 
 @check("transfer")
@@ -57,6 +60,15 @@ def trained(results: Results, dataset: str, rows: pd.DataFrame) -> pd.Series:
 def trained_on_recordings(results: Results, dataset: str, rows: pd.DataFrame) -> pd.Series:
     """As `trained`, for recorded touches."""
     return _trained(results, "recorded_networks", dataset, rows)
+
+
+def _answers(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
+    groups = rows["group"].astype(str).str.partition("_")[0] if "group" in rows else pd.Series("", index=rows.index)
+    guess = 1 / groups.map(NUMBERS)  # four of four_drawn
+    share = _beside(results, stage, dataset, rows, "commonest_share")
+    found = (share > (ONE_ANSWER * guess).fillna(MOST)).map({True: ONE_CLASS, False: ""})
+    found[_below(rows, guess)] = GUESSING
+    return found
 
 
 def _trained(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:

@@ -92,11 +92,14 @@ def test_a_statistic_of_its_own_leaves_the_same_pairs_out(root, small):
 
 def test_a_classifier_with_one_answer_for_nearly_all_is_invalid(root, small):
     rows = pd.DataFrame({"dataset": "test", "method": "m", "classifier": ["svm", "knn"] * 2, "repetition": 0})
-    rows = rows.assign(metric=["accuracy"] * 2 + ["commonest_share"] * 2, value=[0.2, 0.8, 0.96, 0.2])
-    small.write(root, "classification", rows)
-    results = small.results(root)
-    accuracy = results.rows("classification", metric="accuracy")
-    assert causes(results, "classification", "test", accuracy).tolist() == [ONE_CLASS, ""]
+    rows = rows.assign(metric=["accuracy"] * 2 + ["commonest_share"] * 2, value=[0.3, 0.8, 0.4, 0.3])
+    for group, words in (("six", [ONE_CLASS, ""]), ("four", ["", ""]), ("some", ["", ""])):
+        small.write(root, "classification", rows.assign(group=group))
+        small.write(root, "recorded", rows.assign(group=f"{group}_drawn"))
+        results = small.results(root)
+        for stage in ("classification", "recorded"):
+            accuracy = results.rows(stage, metric="accuracy")
+            assert causes(results, stage, "test", accuracy).tolist() == words
 
 
 def test_a_kind_of_trial_that_is_less_accurate_than_guessing_is_invalid(root, small):

@@ -9,7 +9,8 @@ from stages.report.results import SETS_4_2
 
 from .rows import BLIND, ENHANCED, MODEL, PLAIN_AVERAGE, STAGE
 
-EVERY: dict[str, Any] = {"group": "six", "metric": "accuracy", "split": Split.RANDOM}  # the mean of all classifiers
+SCALE = {"scaling": "training"}  # z-transform fitted to the training part; other scalings are readings
+EVERY: dict[str, Any] = {"group": "six", "metric": "accuracy", "split": Split.RANDOM} | SCALE  # mean of all classifiers
 SIX: dict[str, Any] = {"classifier": "knn"} | EVERY
 FOUR, APART, NETWORK = SIX | {"group": "four"}, SIX | {"split": Split.REGIONS}, SIX | {"classifier": "deep_learning"}
 GLANCE = "glance"
@@ -36,6 +37,17 @@ MIXED = (
 BEFORE_SPLIT = tuple(
     reading(name, first={"variant": five}, second={"variant": one}) for name, five, one in MIXED
 )  # fmt: skip
+SCALED = (  # of "The entire data is standardized beforehand using z-transform", and gamma 1 at its own scale
+    reading("z-transform of all data beforehand", where={"scaling": "beforehand"}),
+    reading("all data from 0 to 1", where={"scaling": "min_max"}),
+)
+JOINED = (  # of all classifiers
+    *(reading(f"without the SVM, {name}", where={"classifier": ALIVE}, first={"variant": five}, second={"variant": one})
+      for name, five, one in MIXED),
+    reading("15 imprints, combined before the split, all data from 0 to 1", where={"scaling": "min_max"},
+            first={"variant": MIXED[1][1]}, second={"variant": MIXED[1][2]}),
+)  # fmt: skip
+AS_MANY = reading("beside as many imprints removed at random", second={"variant": "selected_control"})
 FIFTEEN = reading("15 imprints of each object", where=FEW)
 PHRASES = {
     ("method", MODEL): "our model of gaze", ("method", PLAIN_AVERAGE): "the thesis's attention",
@@ -46,6 +58,9 @@ PHRASES = {
     ("variant", "plain_side"): "all imprints",  # split regions: one side of all objects, not a region of each
     ("variant", "first_15"): "the first 15 imprints of each object, as the thesis had",
     ("variant", "selected"): "similar imprints removed from training and test part",
+    ("variant", "selected_control"): "as many imprints of each object removed at random",
+    ("variant", "selected_train_control"): "as many removed from the training part at random",
+    ("scaling", "training"): "",
     ("variant", "selected_train"): "similar imprints removed from the training part",
     ("variant", "locations"): "imprints with positions",
     ("variant", "locations_turned"): "imprints with positions, tested on objects turned about the vertical,",
@@ -61,7 +76,7 @@ PHRASES = {
 def by_points(key: str, sentence: str, end: str = "", of: str = "") -> Claim:
     """A claim that touch at the first points of its key is better than at the second; end: of the key, for the ROWS."""
     first, second = ({"method": POINTS.get(name, name)} for name in key.split("_over_"))
-    readings = (NO_SVM,) if end == "_all" else () if end == "_apart" else (FIFTEEN,)
+    readings = (*SCALED, *((NO_SVM,) if end == "_all" else () if end == "_apart" else (FIFTEEN,)))
     section = "ours" if key.startswith(("glance", "ours", "weighted")) else "T4.2.4"
     own = {} if key.startswith(("ours", "weighted")) else SETS  # those were pressed in our protocol alone
     return Claim(
@@ -84,43 +99,51 @@ def at(best: str, end: str = "", **common: Any) -> list[Claim]:
     def variant(key: str, sentence: str, one: str, other: str = "plain", where: Side = SIX, **further: Any) -> Claim:
         return claim(key, sentence, where, {"variant": one}, {"variant": other}, **further)
 
-    four_to_six = partial(claim, where={"classifier": "knn", "metric": "accuracy", "split": Split.RANDOM} | PLAIN,
-                          first={"group": "four"}, second={"group": "six"})  # fmt: skip
+    knn = {"classifier": "knn", "metric": "accuracy", "split": Split.RANDOM} | SCALE | PLAIN
+    four_to_six = partial(claim, where=knn, first={"group": "four"}, second={"group": "six"}, readings=SCALED)
     return [
         claim("knn_best", "kNN is the best classifier.", EVERY | PLAIN, {"classifier": "knn"},
-              {"classifier": highest_of()}),
+              {"classifier": highest_of()}, readings=(*SCALED, FIFTEEN)),
         claim("network_poor", "The small network does worse than kNN, having few imprints to learn from.",
-              EVERY | PLAIN, {"classifier": "knn"}, {"classifier": "deep_learning"}),
+              EVERY | PLAIN, {"classifier": "knn"}, {"classifier": "deep_learning"}, readings=SCALED),
         four_to_six("four_easier", "Four objects are easier than six."),
         four_to_six("four_easier_beyond_chance", statistic="beyond_chance",
                     sentence="Similar objects degrade the performance: four are easier even beyond chance.",
                     note="guessing scaled to 0 and certainty to 100"),
-        variant("selection_helps", "Removing imprints that other objects have enhances recognition.", "selected"),
+        variant("selection_helps", "Removing imprints that other objects have enhances recognition.", "selected",
+                readings=(*SCALED, AS_MANY)),
+        variant("selection_over_control", "Removing imprints that other objects have is better than as many at random.",
+                "selected", "selected_control", section="ours", readings=SCALED),
         claim("selection_helps_all", "Selection enhances recognition by all classifiers.",
-              {"group": "six", "split": Split.RANDOM}, {"variant": "selected", "metric": "recall"},
-              PLAIN | {"metric": "accuracy"}, note=ALL, readings=(NO_SVM,)),
+              {"group": "six", "split": Split.RANDOM} | SCALE, {"variant": "selected", "metric": "recall"},
+              PLAIN | {"metric": "accuracy"}, note=ALL, readings=(NO_SVM, *SCALED)),
         variant("selection_helps_train", "Selection enhances recognition where the test part is whole.",
                 "selected_train"),
-        variant("locations_help", "Adding the position of the touch enhances recognition.", "locations"),
+        variant("selection_train_over_control", "Where the test part is whole, selection is better than as many "
+                "imprints removed at random.", "selected_train", "selected_train_control", section="ours"),
+        variant("locations_help", "Adding the position of the touch enhances recognition.", "locations",
+                readings=SCALED),
         variant("locations_help_side", "Adding the position enhances recognition on a side not touched before.",
                 "locations", "plain_side", APART),
         variant("locations_help_turned", "Adding the position still helps when the objects have been turned.",
                 "locations_turned", section="ours"),
         variant("more_touches", "Five touches joined into one sample are better than one.", "touches_5", "touches_1",
-                readings=BEFORE_SPLIT),
+                readings=(*SCALED, *BEFORE_SPLIT)),
+        variant("more_touches_svm", "Five joined touches are better than one for the SVM.", "touches_5", "touches_1",
+                SIX | {"classifier": "svm"}, readings=(*SCALED, *BEFORE_SPLIT)),
         variant("more_touches_all", "Five joined touches are better than one over all classifiers.",
-                "touches_5", "touches_1", EVERY, note=ALL, readings=(NO_SVM, *BEFORE_SPLIT)),
+                "touches_5", "touches_1", EVERY, note=ALL, readings=(NO_SVM, *SCALED, *BEFORE_SPLIT, *JOINED)),
         variant("more_touches_bayes", "Five joined touches are better than one for naive Bayes.",
                 "touches_5", "touches_1", SIX | {"classifier": "naive_bayes"}, readings=BEFORE_SPLIT),
         variant("more_touches_many", "Five joined touches are better than one with many combinations to train on.",
                 "touches_5_many", "touches_1_many"),
         claim("certain_at_five", "Recognition is near certain with five touches.",
               SIX | {"variant": "touches_5"}, {}, 0.95,  # "up to 100 % accuracy"
-              readings=tuple(reading(name, where={"variant": five}) for name, five, _ in MIXED)),
+              readings=(*SCALED, *(reading(name, where={"variant": five}) for name, five, _ in MIXED))),
         variant("mixed_flatters", "Combinations drawn before the split flatter.", "touches_5_mixed", "touches_5",
                 section="ours"),
         variant("network_dips", "The network does worse with five touches than with three.", "touches_3", "touches_5",
-                NETWORK),
+                NETWORK, readings=SCALED),
         variant("network_dips_disjoint", "The network does worse with five touches where samples get fewer.",
                 "touches_3_disjoint", "touches_5_disjoint", NETWORK),
     ]  # fmt: skip
