@@ -20,7 +20,6 @@ from stages.kit import Mesh
 from stages.views import View
 
 from .contrast import WINDOW, local_variance
-from .curvature import curvature
 from .dkl import LINEAR, mechanisms
 from .edge import SIGMA, laplacian_of_gaussian
 from .entropy import MEDIAN, SIDE
@@ -28,7 +27,6 @@ from .kernels import mean_of_maxima, mean_of_other_maxima, window_entropy
 from .operators import CENTRES, DELTAS, expand, pyramid, reduce
 from .orientation import ANGLES, RADIUS, WAVELENGTH
 from .orientation import SIGMA as GABOR_SIGMA
-from .symmetry import symmetry, symmetry_lateral, symmetry_radial
 
 OURS, PRINTED, MENDED = FORMULAS = ("ours", "printed", "mended")
 STORED = 2  # the scale of a map of a whole picture, a quarter of its size
@@ -120,19 +118,21 @@ def gabor(image: np.ndarray, angle: float) -> np.ndarray:
     return np.sqrt(even * even + odd * odd)
 
 
-def channels(formulas: str) -> Mapping[str, Channel]:
-    """The channels by name with the formulas `printed` or `mended`: functions of (mesh, view, filled)."""
+def printed_channels(channels: Mapping[str, Channel], formulas: str) -> dict[str, Channel]:
+    """The channels by name, functions of (mesh, view, filled), with the formulas `printed` or `mended`.
+
+    Of a channel of the surface T prints no formula but C = N(map).
+    """
     mended = formulas == MENDED
-    own = {name: _bound(channel, mended) for name, channel in PICTURE.items()}
-    return own | {name: _renormalised(channel, mended) for name, channel in SURFACE.items()}
+    own = {name: _of_picture(PICTURE[name], mended) for name in channels if name in PICTURE}
+    return {**channels, **own, **{name: _renormalised(channels[name], mended) for name in channels if name in SURFACE}}
 
 
-def _bound(channel, mended):
+def _of_picture(channel, mended):
     return lambda mesh, view, _filled: channel(mesh, view, mended) * view.mask.any()
 
 
 def _renormalised(channel, mended):
-    """A channel of the surface, for which T prints no formula but C = N(map)."""
     return lambda mesh, view, _filled: normalise(channel(mesh, view, False), mended)
 
 
@@ -157,9 +157,4 @@ PICTURE = {
     "intensity": intensity,
     "orientation": orientation,
 }
-SURFACE = {
-    "curvature": curvature,
-    "symmetry": symmetry,
-    "symmetry_lateral": symmetry_lateral,
-    "symmetry_radial": symmetry_radial,
-}
+SURFACE = ("curvature", "symmetry", "symmetry_lateral", "symmetry_radial")
