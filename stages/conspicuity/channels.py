@@ -18,8 +18,7 @@ from .fine_grained import fine_grained
 from .intensity import intensity
 from .operators import OUTPUT_SCALE
 from .orientation import orientation
-from .printed import OURS, check_formulas
-from .printed import channels as printed_channels
+from .printed import OURS, Channel, check_formulas, printed_channels
 from .spectral_residual import spectral_residual
 from .symmetry import (
     symmetry,
@@ -88,8 +87,8 @@ def conspicuity(
     if len(size) != 2 or min(size) < 1:
         raise ValueError(f"the size of the maps must be (rows, columns), each at least 1, got {size}")
     inside = mask_at_size(view.mask, size)
-    named = CHANNELS | OTHERS | SYMMETRIES[check_symmetry(symmetry)]
-    maps = named if formulas == OURS else printed_channels(formulas, named)
+    maps: dict[str, Channel] = {**CHANNELS, **OTHERS, **SYMMETRIES[check_symmetry(symmetry)]}
+    maps = maps if formulas == OURS else printed_channels(maps, formulas)
     return {name: resize_map(maps[name](mesh, view, filled), view.mask.shape, size) * inside for name in names}
 
 

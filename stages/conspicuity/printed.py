@@ -118,22 +118,21 @@ def gabor(image: np.ndarray, angle: float) -> np.ndarray:
     return np.sqrt(even * even + odd * odd)
 
 
-def channels(formulas: str, known: Mapping[str, Channel]) -> Mapping[str, Channel]:
-    """The channels by name with the formulas `printed` or `mended`: functions of (mesh, view, filled).
+def printed_channels(channels: Mapping[str, Channel], formulas: str) -> dict[str, Channel]:
+    """The channels by name, functions of (mesh, view, filled), with the formulas `printed` or `mended`.
 
-    known: the other channels, those of the surface among them.
+    Of a channel of the surface T prints no formula but C = N(map).
     """
     mended = formulas == MENDED
-    own = {name: _bound(channel, mended) for name, channel in PICTURE.items()}
-    return {**known, **own, **{name: _renormalised(known[name], mended) for name in SURFACE}}
+    own = {name: _of_picture(PICTURE[name], mended) for name in channels if name in PICTURE}
+    return {**channels, **own, **{name: _renormalised(channels[name], mended) for name in channels if name in SURFACE}}
 
 
-def _bound(channel, mended):
+def _of_picture(channel, mended):
     return lambda mesh, view, _filled: channel(mesh, view, mended) * view.mask.any()
 
 
 def _renormalised(channel, mended):
-    """A channel of the surface, for which T prints no formula but C = N(map)."""
     return lambda mesh, view, _filled: normalise(channel(mesh, view, False), mended)
 
 

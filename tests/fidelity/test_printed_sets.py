@@ -6,8 +6,8 @@ import cv2
 import numpy as np
 import pandas as pd
 
-from stages.classification.classifiers import CLASSIFIERS, COMPONENTS
-from stages.classification.protocol import FOLDS, HOLDOUT
+from stages.classification.classifiers import CLASSIFIERS
+from stages.classification.protocol import COMPONENTS, FOLDS, HOLDOUT
 from stages.fixation.viewpoints import viewpoint_sphere
 from stages.kit.rows import read_rows
 from stages.networks.images import to_images

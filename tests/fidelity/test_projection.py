@@ -120,8 +120,6 @@ def test_headlight(ball, agreement):
 def test_viewpoints(agreement):
     """Figure 3.2: rotations (a) to (l) of the object about z and x; how many viewpoints stand where it prints them."""
     printed = [(0, 0), (90, 0), (180, 0), (270, 0), (0, 45), (120, 45), (240, 45), (0, -45), (120, -45), (240, -45)]
-    printed += [(90, 0), (180, "x")]  # (k) repeats (b); (l) is half a turn about x
-    library = [(view.azimuth, view.elevation) for view in TWELVE]
-    held = [place == own for place, own in zip(printed[:10], library[:10], strict=True)]
-    held += [printed[10] == library[10], library[11] == (0, -90)]
+    printed = [(*place, 0) for place in printed] + [(90, 0, 0), (180, 0, 180)]  # (k) is (b); (l) is (c) upside down
+    held = [place == (view.azimuth, view.elevation, view.roll) for place, view in zip(printed, TWELVE, strict=True)]
     agreement("settings", (sum(held), len(held)))
