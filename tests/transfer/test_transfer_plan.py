@@ -29,6 +29,24 @@ def test_a_trials_name_is_its_file_and_gives_it_back():
     assert Trial.parse(trial.name) == trial
 
 
+def test_a_training_to_convergence_has_a_name_of_its_own():
+    trial = Trial("imprints128", "mobilenet_v2", "imagenet", "18:139", "objects", 2, "converged")
+    assert trial.name == "imprints128.mobilenet_v2.imagenet.18-139.objects.2.converged"
+    assert Trial.parse(trial.name) == trial
+
+
+def test_passes_are_a_dimension_and_initial_statistics_are_for_frozen_networks_with_a_normalisation(small, weights):
+    networks = {"mobilenet_v2": ["frozen", "finetuned"], "alexnet": ["frozen"]}
+    changes = {"weights": ["random", "random_initial"], "passes": ["printed", "converged"], "splits": {"random": 1}}
+    trials = plan(CLASSES, ENOUGH, small.settings(networks=networks, coarse_cells=[], **changes)).trials
+    kinds = [(one.network, one.weights, one.mode) for one in trials if one.passes == "converged"]
+    assert kinds == [(one.network, one.weights, one.mode) for one in trials if one.passes == "printed"]
+    assert kinds == [
+        ("mobilenet_v2", "random", "frozen"), ("mobilenet_v2", "random", "finetuned"),
+        ("mobilenet_v2", "random_initial", "frozen"), ("alexnet", "random", "frozen"),
+    ]  # fmt: skip
+
+
 def test_controls_and_ranges_are_trained_on_the_fine_array_alone(small, weights):
     networks = {"mobilenet_v2": ["frozen", "finetuned", "18:139"], "alexnet": ["frozen", "finetuned"]}
     both = small.settings(weights=["imagenet", "random"], networks=networks, splits={"random": 1})
