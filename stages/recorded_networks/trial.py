@@ -160,7 +160,7 @@ def _train(trial: Trial, one: Run, recording: Recording, features: torch.Tensor,
     return rows + class_rows(found, labels[test], recording.touches.classes)
 
 
-def class_rows(found: torch.Tensor, labels: np.ndarray, classes: Sequence[str]) -> Rows:
+def class_rows(found: torch.Tensor, labels: np.ndarray, classes: Sequence[str]) -> list[dict]:
     """Rows of the accuracy on the test touches of each class; an object of its own in most recordings."""
     return [
         {"group": name, "metric": "class_accuracy", "value": accuracy(found[torch.as_tensor(own)], labels[own])}

@@ -2,7 +2,6 @@
 
 from collections import defaultdict
 from collections.abc import Mapping
-from typing import Any
 
 from stages.kit.stats import interval_metrics
 from stages.networks.device import choose_device, precision
@@ -28,14 +27,14 @@ def trial_row(row: dict, pretrained: Mapping[str, str | None], settings: Params)
     return about | {key: value for key, value in row.items() if key != "trial"}
 
 
-def summary(rows: list[dict[str, Any]], seed: int) -> dict[str, dict]:
+def summary(rows: list[dict], seed: int) -> dict[str, dict]:
     """{data: {split: {network: {MODE_WEIGHTS: {mean, low, high}}}}} of the accuracy, and the chance of each split.
 
     The key of trainings until nothing improves ends with _converged.
     """
     values, tree = defaultdict(list), {}
     for row in rows:
-        if row["metric"] == "accuracy" and row["value"] is not None:
+        if row["metric"] == "accuracy" and not row.get("note"):
             end = "_converged" if row.get("passes") == CONVERGED else ""
             key = row["data"], row["split"], row["method"], f"{row['mode']}_{row['weights']}{end}"
             values[key].append(row["value"])

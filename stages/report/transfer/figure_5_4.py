@@ -3,7 +3,7 @@
 import numpy as np
 
 from stages.report.items import Figure
-from stages.report.networks import COARSE, FINE, NETWORK
+from stages.report.networks import COARSE, FINE, NETWORK, of_passes
 from stages.report.results import Results
 from stages.report.style import GREY, INK, label, plt, start
 
@@ -17,7 +17,7 @@ SHARED = ("block_2", "block_15")  # the ends of the middle that the hybrid netwo
 def build(results: Results) -> Figure:
     """Change of each convolution of MobileNetV2, by the array and the weights that it started from."""
     where = {"metric": "layer_weight_change", "split": "random", "mode": "finetuned"}
-    mine = results.measured("transfer", **where, method=NETWORK)
+    mine = of_passes(results.measured("transfer", **where, method=NETWORK))
     parts = mine.groupby("layer", sort=False)["part"].first()
     figure, axes = plt.subplots(figsize=(9.2, 3.8))
     for (data, weights), tint in TINTS.items():
@@ -38,6 +38,7 @@ def build(results: Results) -> Figure:
     axes.set_xlabel("convolutions of MobileNetV2, from the image to the classes")
     axes.grid(axis="y")
     axes.legend(fontsize=8.5, loc="lower left", bbox_to_anchor=(0, 1), ncols=3)
-    kinds = results.measured("transfer", **where, data=FINE).groupby(["method", "weights"], sort=False)["value"]
+    every = of_passes(results.measured("transfer", **where, data=FINE))
+    kinds = every.groupby(["method", "weights"], sort=False)["value"]
     said = [f"{label(network)} from {start(str(weights))} {one.mean():.2g}" for (network, weights), one in kinds]
     return Figure(figure, {"means": "; ".join(said)})
