@@ -29,9 +29,9 @@ def linear(points=POINTS):
     return Task(model, lambda ids: points[ids], lambda ids: points[ids], lambda *_: None, lambda others: others)
 
 
-def learn(task, learning, rate=0.1, **other):
+def learn(task, learning, rate=0.1, labels=LABELS, **other):
     with repeatable(1):
-        return train_model(task, LABELS, FIT, rate, learning=learning, **(TRAINING | other))
+        return train_model(task, labels, FIT, rate, learning=learning, **(TRAINING | other))
 
 
 def right(task, model, ids):
@@ -77,10 +77,8 @@ def test_the_weights_that_are_returned_are_those_of_the_best_pass():
     wrong = LABELS.copy()
     wrong[VALIDATION] = 1 - wrong[VALIDATION]
     learning = Learning(VALIDATION, 5)
-    with repeatable(1):
-        model = train_model(linear(), wrong, FIT, 0.1, learning=learning, **TRAINING)
-    with repeatable(1):
-        first = train_model(linear(), wrong, FIT, 0.1, **(TRAINING | {"epochs": learning.best_pass}))
+    model = learn(linear(), learning, labels=wrong)
+    first = learn(linear(), None, labels=wrong, epochs=learning.best_pass)
     assert learning.best_pass < len(learning.curve) < 60
     assert torch.equal(model.weight, first.weight)
 
@@ -92,10 +90,12 @@ def test_without_validation_every_pass_is_made_and_the_weights_are_those_without
     assert torch.equal(model.weight, learn(linear(), None, epochs=7).weight)
 
 
+@pytest.mark.parametrize("labels", [LABELS, np.where(np.isin(np.arange(120), VALIDATION), 1 - LABELS, LABELS)])
 @pytest.mark.parametrize("steps", [1, 20, 33])
-def test_a_killed_training_goes_on_to_the_same_weights_and_curve(tmp_path, steps):
+def test_a_killed_training_goes_on_to_the_same_weights_and_curve(tmp_path, steps, labels):
+    """Also where the best weights are older than the kill: validation touches that contradict the others."""
     task, path, whole = linear(), tmp_path / "training.pt", Learning(VALIDATION, 8)
-    expected, left = learn(task, whole), iter(range(steps))
+    expected, left = learn(task, whole, labels=labels), iter(range(steps))
 
     def until_killed(ids):
         if next(left, None) is None:
@@ -103,10 +103,11 @@ def test_a_killed_training_goes_on_to_the_same_weights_and_curve(tmp_path, steps
         return task.inputs(ids)
 
     with pytest.raises(Killed):
-        learn(replace(task, training_inputs=until_killed), Learning(VALIDATION, 8), checkpoint=path)
+        other = replace(task, training_inputs=until_killed)
+        learn(other, Learning(VALIDATION, 8), labels=labels, checkpoint=path)
     assert path.exists() == (steps > 6)
     again = Learning(VALIDATION, 8)
-    model = learn(task, again, checkpoint=path)
+    model = learn(task, again, labels=labels, checkpoint=path)
     assert torch.equal(model.weight, expected.weight) and torch.equal(model.bias, expected.bias)
     assert again.curve == whole.curve and again.best_pass == whole.best_pass
     assert not list(tmp_path.iterdir())
@@ -129,11 +130,16 @@ def test_a_checkpoint_of_another_patience_is_not_taken(tmp_path, capsys):
 
 
 def test_a_training_that_diverges_says_in_which_pass_and_leaves_no_checkpoint(tmp_path):
-    points = POINTS.clone()
-    points[FIT[3]] = float("inf")
-    with pytest.raises(Diverged, match="diverged: loss is not finite in pass 1"):
-        learn(linear(points), Learning(VALIDATION, 8), checkpoint=tmp_path / "training.pt")
+    task, steps = linear(), iter(range(1000))
+
+    def grows(ids):
+        return task.inputs(ids) * (float("inf") if next(steps) == 14 else 1.0)
+
+    with pytest.raises(Diverged, match="diverged: loss is not finite in pass 3"):
+        other = replace(task, training_inputs=grows)
+        learn(other, Learning(VALIDATION, 8), checkpoint=tmp_path / "training.pt")
     assert not list(tmp_path.iterdir())
+    points = torch.where(torch.arange(120)[:, None] == FIT[3], float("inf"), POINTS)
     assert not bool(learn(linear(points), None).weight.isfinite().all())  # as before where nobody asks for the curve
 
 

@@ -117,18 +117,25 @@ CONVERGED = FROZEN._replace(passes="converged")
 
 
 def test_a_training_to_convergence_has_its_curve_its_best_pass_and_the_accuracy_on_each_object(folder, small):
-    settings = small.settings(most_epochs=40, patience=3, frozen_rates=[0.03])
+    settings = small.settings(most_epochs=60, patience=6, frozen_rates=[0.01], search_epochs=1)
     rows = pd.DataFrame(run(folder, settings, CONVERGED))
     values = rows.drop_duplicates("metric").set_index("metric")["value"]
     curve = rows.dropna(subset=["epoch"]).pivot(index="epoch", columns="metric", values="value")
-    assert curve.index.tolist() == list(range(1, int(values["epochs"]) + 1)) and values["epochs"] < 40
+    assert curve.index.tolist() == list(range(1, int(values["epochs"]) + 1)) and values["epochs"] < 60
     assert values["validation_accuracy"] == curve["curve_validation_accuracy"].max()
-    assert values["train_accuracy"] > 0.8
+    assert values["train_accuracy"] > 0.7
     objects = rows[rows["metric"] == "object_accuracy"]
     assert objects["item"].tolist() == ["low", "steep", "narrow", "wide"]
     assert objects["group"].tolist() == ["ramp", "ramp", "stripes", "stripes"]
     assert objects["value"].mean() == pytest.approx(values["accuracy"])  # as many test touches of each
     assert "disturbed_accuracy" not in set(rows["metric"])
+
+
+def test_an_object_s_accuracy_is_that_of_its_own_test_touches(folder):
+    touches, test = read_touches(folder, CLASSES, "imprints32"), np.array([0, 1, 8, 9, 16, 17])
+    found = torch.tensor([[0.9, 0.1], [0.2, 0.8], [0.9, 0.1], [0.8, 0.2], [0.9, 0.1], [0.7, 0.3]])
+    rows = list(trial.object_rows(found, touches, test, CLASSES))
+    assert [(row["item"], row["value"]) for row in rows] == [("low", 0.5), ("steep", 1.0), ("narrow", 0.0)]
 
 
 def test_the_printed_training_has_a_training_accuracy_over_all_training_touches(folder, small, monkeypatch):
