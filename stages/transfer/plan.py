@@ -80,7 +80,9 @@ def check(settings: Params) -> None:
     if min(counts) < 1 or max(counts) >= settings.touches:
         raise ValueError(f"transfer.new_object_touches: {settings.new_object_touches} must be 1 or more and less than "
                          f"transfer.touches ({settings.touches}), so that some are left to ask about")  # fmt: skip
-    choose_device(settings.device)
+    if choose_device(settings.device).type == "cuda" and "random_initial" in settings.weights:
+        raise ValueError("transfer.weights: features of random_initial are too small for a card's half precision, "
+                         "take transfer.device=cpu for it")  # fmt: skip
     disturbed.check(settings.severities)
     hybrid_damage.check(settings.hybrid_severities)
     for layers in settings.hybrid_middles:

@@ -99,10 +99,10 @@ def object_rows(
 
 
 def curve_rows(learning: Learning) -> Iterator[dict]:
-    """Rows of the curve of a training, pass by pass."""
-    for number, values in enumerate(learning.curve, start=1):
-        for name, value in values.items():
-            yield {"epoch": number, "metric": f"curve_{name}", "value": value}
+    """Rows of the curve of a training until nothing improves, pass by pass."""
+    for number, values in enumerate(learning.curve if learning.validation is not None else [], start=1):
+        for name in ("loss", "train_accuracy", "validation_accuracy"):
+            yield {"epoch": number, "metric": f"curve_{name}", "value": values[name]}
 
 
 def store(

@@ -1,6 +1,7 @@
 """What is trained, and what has to be left out."""
 
 import pytest
+import torch
 
 from stages.kit.fetch import FetchError
 from stages.transfer import plan as planning
@@ -45,6 +46,22 @@ def test_passes_are_a_dimension_and_initial_statistics_are_for_frozen_networks_w
         ("mobilenet_v2", "random", "frozen"), ("mobilenet_v2", "random", "finetuned"),
         ("mobilenet_v2", "random_initial", "frozen"), ("alexnet", "random", "frozen"),
     ]  # fmt: skip
+
+
+def test_initial_statistics_are_refused_in_half_precision(small, monkeypatch):
+    monkeypatch.setattr(planning, "choose_device", lambda name: torch.device("cuda"))
+    check(small.settings())
+    with pytest.raises(ValueError, match="too small for a card's half precision"):
+        check(small.settings(weights=["random_initial"]))
+
+
+@pytest.mark.parametrize(("key", "value", "said"), [
+    ("passes", ["all"], "transfer.passes: all not known, choose from printed, converged"),
+    ("patience", 0, "patience and most_epochs must be 1 or more"),
+])  # fmt: skip
+def test_passes_that_cannot_be_made_are_named(small, key, value, said):
+    with pytest.raises(ValueError, match=said):
+        check(small.settings(**{key: value}))
 
 
 def test_controls_and_ranges_are_trained_on_the_fine_array_alone(small, weights):
