@@ -138,9 +138,10 @@ def _shown(cells: pd.DataFrame, down: list[str], heads: dict[tuple, str]) -> pd.
     late = {"accuracy": "converged", "low": "converged_low", "high": "converged_high", "training": "converged_training"}
     parts = [cells.assign(passes="printed")]
     if cells["converged"].notna().any():
-        asked = cells["converged"].notna() | (
-            cells["thesis"].groupby([cells[name] for name in down]).transform("max") > 0
-        )
+        setting = [cells[name] for name in down]
+        tried = cells[["accuracy", "converged"]].notna().any(axis=1).groupby(setting).transform("any")
+        theirs = cells["thesis"].groupby(setting).transform("max").notna()
+        asked = cells["converged"].notna() | (tried & theirs)
         again = cells[asked].assign(**{name: cells[own] for name, own in late.items()}, passes="converged")
         parts.append(again)
     every, keys = pd.concat(parts).sort_index(kind="stable"), [*down, "passes"]
