@@ -15,7 +15,9 @@ from .architectures.vgg16 import vgg16
 from .images import Transform
 from .weights import available_weights, imagenet_state, resolve_source
 
-WEIGHTS = ("imagenet", "random")
+# `random` gets the statistics of its normalisation from the images, `random_initial` keeps those it begins with.
+WEIGHTS = ("imagenet", "random", "random_initial")
+UNNORMALISED = ("alexnet", "vgg16")  # networks without normalisation, whose two kinds of random weights are the same
 SMALLEST = 32  # pixels a side: with fewer, the last feature maps of some networks are empty
 
 
@@ -79,10 +81,11 @@ def build(
 ) -> Network:
     """A Network for `classes` classes, in evaluation mode.
 
-    name: one of NETWORKS. weights: `imagenet`, or `random` for the control. source: where the weights come from, one of
-    stages.networks.weights.SOURCES; it also decides the variant of ResNet50, for the control too. The seed decides the
-    initial head and, for `random`, the convolutions; the caller's random numbers are left unchanged. fully_connected:
-    keeps the fully connected layers of VGG16, which are random where the source has none (see published_layers).
+    name: one of NETWORKS. weights: one of WEIGHTS, the random ones for the control. source: where the weights come
+    from, one of stages.networks.weights.SOURCES; it also decides the variant of ResNet50, for the control too. The seed
+    decides the initial head and, for random weights, the convolutions; the caller's random numbers are left unchanged.
+    fully_connected: keeps the fully connected layers of VGG16, which are random where the source has none (see
+    published_layers).
     Raises ValueError for an unknown name, FetchError for weights that are not available.
     """
     if weights not in WEIGHTS:
@@ -148,9 +151,9 @@ def recalibrate(
     fewer than two touches.
 
     At the end of a training this replaces the running means, which lag behind the weights in a short training; Matlab's
-    trainNetwork, which the thesis used, does the same. An untrained network needs it too, since in evaluation mode an
-    untrained MobileNetV2 maps every image to features below 1e-8, and the control would fail for a reason unrelated to
-    transfer. AlexNet and VGG16 have no normalisation layers (see architectures.architecture.he_initialise).
+    trainNetwork, which the thesis used, does the same. An untrained MobileNetV2 maps every image to features below 1e-8
+    without it. With it each layer magnifies small differences, so that the deep features of similar images have little
+    in common; both are controls (see WEIGHTS). AlexNet and VGG16 have no normalisation layers.
     """
     if len(ids) < 2:
         raise ValueError(f"statistics need two touches or more, got {len(ids)}")

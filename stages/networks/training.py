@@ -12,7 +12,10 @@ import torch
 from .checkpoint import resume, save
 from .device import device_of, explain_out_of_memory, mixed_precision
 from .images import Transform
+from .learning import Diverged, Learning
 from .modes import Task
+
+SMALLEST = 1e-12  # probability: the logarithm of less is cut off
 
 
 def train_model(
@@ -25,6 +28,7 @@ def train_model(
     momentum: float,
     seed: int | None = None,
     checkpoint: Path | None = None,
+    learning: Learning | None = None,
 ) -> torch.nn.Module:
     """A copy of task.model trained on the touches `ids`, in evaluation mode; the task's own model stays unchanged.
 
@@ -35,6 +39,9 @@ def train_model(
     checkpoint: a path where the state is saved after every epoch and removed at the end. A training that finds one
     there continues from it and ends with the same weights, bit for bit on one CPU thread. Raises ValueError, with a
     remedy, when there is too little memory.
+
+    learning: collects the curve; with validation touches, `epochs` is the most that are made, and the copy has the best
+    weights. Raises Diverged where the loss is not finite. Without it a diverged model is returned as it is.
     """
     if seed is not None:
         torch.manual_seed(seed)
@@ -47,24 +54,41 @@ def train_model(
     settings = {"rate": rate, "epochs": epochs, "batch": batch, "momentum": momentum, "touches": _digest(ids, labels)}
     settings |= {"seed": seed, "device": device.type}
     settings["learning"] = [name for name, value in model.named_parameters() if value.requires_grad]
-    parts, done = {"model": model, "optimiser": optimiser, "scaler": scaler}, 0
+    settings |= learning.settings() if learning else {}
+    parts: dict[str, Any] = {"model": model, "optimiser": optimiser, "scaler": scaler}
+    parts, done = parts | ({"learning": learning} if learning else {}), 0
     if checkpoint is not None:
         settings["images"] = list(task.inputs(ids[:1]).shape)
         done = resume(Path(checkpoint), settings, **parts)
-    with explain_out_of_memory():
-        for epoch in range(done, epochs):
-            _one_epoch(model, task, labels, ids, batch, optimiser, scaler)
-            if checkpoint is not None:
-                save(checkpoint, epoch + 1, settings, **parts)
-        model.eval()
-        task.finish(model, ids)
-    if checkpoint is not None:
-        Path(checkpoint).unlink(missing_ok=True)
+    try:
+        with explain_out_of_memory():
+            for epoch in range(done, epochs):
+                if learning and learning.finished:
+                    break
+                course = _one_epoch(model, task, labels, ids, batch, optimiser, scaler)
+                if learning:
+                    learning.add(model, **course, **_validated(model, task, labels, learning.validation))
+                if checkpoint is not None:
+                    save(checkpoint, epoch + 1, settings, **parts)
+            if learning:
+                learning.restore(model)
+            model.eval()
+            task.finish(model, ids)
+    except Diverged:
+        _remove(checkpoint)
+        raise
+    _remove(checkpoint)
     return model
 
 
+def _remove(checkpoint):
+    if checkpoint is not None:
+        Path(checkpoint).unlink(missing_ok=True)
+
+
 def _one_epoch(model, task, labels, ids, batch, optimiser, scaler):
-    device = device_of(model)
+    """{loss, train_accuracy}: means over the touches that were learned from."""
+    device, losses, right = device_of(model), [], []
     model.train()
     for name in task.fixed:
         model.get_submodule(name).eval()
@@ -73,11 +97,25 @@ def _one_epoch(model, task, labels, ids, batch, optimiser, scaler):
         part = shuffled[start : start + batch]
         inputs, targets = task.training_inputs(part), labels[part].to(device)
         with mixed_precision(device):
-            loss = torch.nn.functional.cross_entropy(model(inputs), targets)
+            scores = model(inputs)
+            loss = torch.nn.functional.cross_entropy(scores, targets)
+        losses.append(loss.detach())
+        right.append((scores.detach().argmax(dim=1) == targets).float().mean())
         optimiser.zero_grad()
         scaler.scale(loss).backward()
         scaler.step(optimiser)
         scaler.update()
+    return {"loss": float(torch.stack(losses).mean()), "train_accuracy": float(torch.stack(right).mean())}
+
+
+def _validated(model, task, labels, validation):
+    """{validation_accuracy, validation_loss} of the touches that decide which weights are best; empty without them."""
+    if validation is None:
+        return {}
+    model.eval()
+    found, truth = predict_probabilities(model, task.inputs, validation), labels[torch.as_tensor(validation)]
+    loss = torch.nn.functional.nll_loss(found.clamp_min(SMALLEST).log(), truth)
+    return {"validation_accuracy": accuracy(found, truth), "validation_loss": float(loss)}
 
 
 @torch.no_grad()

@@ -16,6 +16,7 @@ from stages.kit.command import workspace_of_arguments
 from stages.kit.fetch import FetchError
 from stages.kit.run import Rows, StageRun
 from stages.kit.workspace import Workspace
+from stages.networks.learning import CONVERGED, check_passes
 from stages.networks.weights import imagenet_state
 from stages.recorded.schema import Params as RecordedParams
 
@@ -32,12 +33,15 @@ def run(workspace: Workspace) -> None:
         raise ValueError(f"recorded.kind={recorded.kind!r} is not one of {', '.join(SOURCES)}")
     recordings = SOURCES[recorded.kind](recorded.path(workspace.root))
     with StageRun(workspace, "recorded_networks", COLUMNS) as stage:
+        check_passes(settings.passes, "recorded_networks.passes")
         absent = {method: why for method in settings.networks if (why := why_absent(method, settings))}
         wanted = trials(recordings, settings)
-        possible = {one.name: one for one in wanted if one.weights == "random" or one.method not in absent}
+        possible = {one.name: one for one in wanted if one.weights != "imagenet" or one.method not in absent}
         for method, why in absent.items():
             print(f"recorded_networks: {method}: {why}", file=sys.stderr)
-        each = dataclasses.replace(settings, networks={}, weights=[], repetitions={})  # a trial itself says these
+        each = dataclasses.replace(
+            settings, networks={}, weights=[], repetitions={}, passes=[]
+        )  # a trial itself says these
         work = functools.partial(process, recordings=recordings, settings=each, seed=stage.seed)
         stage.each(work, possible, made_of={name: repr(one) for name, one in possible.items()})
         stage.metrics(summary(stage.rows))
@@ -57,19 +61,22 @@ def why_absent(method: str, settings: Params) -> str:
 
 
 def absent_rows(left_out: list[Trial]) -> Rows:
-    """A row without a value per network, mode and what it was to recognise."""
-    columns = ("method", "weights", "mode", "data")
-    about = dict.fromkeys((one.method, one.weights, one.mode, run.data) for one in left_out for run in one.runs)
+    """A row without a value per network, mode, number of passes and data."""
+    columns = ("method", "weights", "mode", "data", "passes")
+    about = dict.fromkeys(
+        (one.method, one.weights, one.mode, run.data, run.passes) for one in left_out for run in one.runs
+    )
     note = {"metric": "accuracy", "value": None, "note": "not run: weights not at hand"}
     return [dict(zip(columns, values, strict=True)) | note for values in about]
 
 
 def summary(rows: Rows) -> dict[str, float]:
-    """{data.split.method.mode.weights: the mean accuracy}."""
+    """{data.split.method.mode.weights: the mean accuracy}; the name of trainings to convergence ends with it."""
     found: dict[str, list[float]] = {}
     for row in rows:
-        if row["metric"] == "accuracy" and "item" not in row:
+        if row["metric"] == "accuracy" and "item" not in row and row["value"] is not None:
             name = ".".join(row[column] for column in ("data", "split", "method", "mode", "weights"))
+            name += ".converged" if row["passes"] == CONVERGED else ""
             found.setdefault(name, []).append(row["value"])
     return {name: round(float(np.mean(values)), 6) for name, values in found.items()}
 

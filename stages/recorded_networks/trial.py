@@ -1,6 +1,7 @@
 """Trainings of one network on recorded touches."""
 
 import itertools
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
@@ -13,7 +14,8 @@ from stages.kit.repeatable import repeatable
 from stages.kit.rng import rng
 from stages.kit.run import Rows
 from stages.networks.device import explain_out_of_memory
-from stages.networks.network import count_parameters
+from stages.networks.learning import CONVERGED, PRINTED, Diverged, Learning
+from stages.networks.network import UNNORMALISED, count_parameters
 from stages.networks.training import accuracy, predict_probabilities, search_rate, train_model
 from stages.networks.weights import available_weights
 from stages.recorded.splits import split_number
@@ -27,11 +29,12 @@ MODES = ("frozen", "finetuned")
 
 
 class Run(NamedTuple):
-    """One training: what is recognised, how it is split, and the number of the split."""
+    """One training: what is recognised, how it is split, the number of the split, and how many passes are made."""
 
     data: str
     split: str
     repetition: int
+    passes: str = PRINTED
 
 
 @dataclass(frozen=True)
@@ -50,19 +53,22 @@ class Trial:
     @property
     def name(self) -> str:
         """Tells the trial apart from all others of the stage."""
-        own = () if (self.weights, self.mode) == ("imagenet", "frozen") else self.runs[0]
-        return "-".join(map(str, (self.method, self.weights, self.mode, *own)))
+        own = () if (self.weights, self.mode) == ("imagenet", "frozen") else self.runs[0][:3]
+        ends = {one.passes for one in self.runs} - {PRINTED}
+        return "-".join(map(str, (self.method, self.weights, self.mode, *own, *sorted(ends))))
 
 
 def trials(recordings: dict[str, Recording], settings: Params) -> list[Trial]:
     """All that is trained. ValueError for a mode that is not one of MODES."""
     found = []
     for method, modes in settings.networks.items():
-        for mode, weights in itertools.product(modes, settings.weights):
+        for mode, weights, passes in itertools.product(modes, settings.weights, settings.passes):
             if mode not in MODES:
                 raise ValueError(f"recorded_networks.networks.{method}: {mode!r} is not one of {', '.join(MODES)}")
+            if weights == "random_initial" and (mode != "frozen" or method in UNNORMALISED):
+                continue  # training sets the statistics anew
             runs = [
-                Run(data, str(split), repetition)
+                Run(data, str(split), repetition, passes)
                 for data, recording in recordings.items()
                 for split in recording.splits
                 for repetition in range(settings.repetitions[mode])
@@ -86,7 +92,8 @@ def process(trial: Trial, folder: Path, recordings: dict[str, Recording], settin
     for one in trial.runs:
         features, seconds = cached.get(one.data, (torch.empty(0), 0.0))
         found = _train(trial, one, recordings[one.data], features, settings, seed)
-        found[0]["seconds"] += seconds  # of the features, shared by several runs and counted in each
+        if "seconds" in found[0]:
+            found[0]["seconds"] += seconds  # of the features, shared by several runs and counted in each
         rows += [common | one._asdict() | row for row in found]
     return rows
 
@@ -111,40 +118,55 @@ def frozen_features_by_data(
 
 
 def _train(trial: Trial, one: Run, recording: Recording, features: torch.Tensor, settings: Params, seed: int) -> Rows:
-    """Rows of one training, the accuracy first."""
+    """Rows of one training, the accuracy first; of one that diverged a row with a note."""
     mode, labels, classes = trial.mode, recording.touches.labels, len(recording.touches.classes)
     fit, validation, test = parts(recording, one.split, split_number(seed, one.repetition))
-    train = np.sort(np.concatenate([fit, validation]))
+    train, converged = np.sort(np.concatenate([fit, validation])), one.passes == CONVERGED
+    learned, learning = fit if converged else train, Learning(validation if converged else None, settings.patience)
     head, order = (int(value) for value in rng(seed, f"{one.data} {one.repetition}").integers(2**31, size=2))
     with repeatable(order), Stopwatch() as watch:
         if mode == "frozen":
-            network, task = frozen(features, classes, train, trial.method, head)
+            network, task = frozen(features, classes, learned, trial.method, head)
         else:
-            network, task = finetuned(recording, train, trial.method, trial.weights, head, settings)
+            network, task = finetuned(recording, learned, trial.method, trial.weights, head, settings)
         training = {"batch": settings.batch[mode], "momentum": settings.momentum}
         epochs = passes(mode, len(train), settings)
         tried = max(1, round(settings.search_epochs[mode] * epochs / settings.epochs[mode]))
         rate, validated = search_rate(task, labels, fit, validation, settings.rates[mode], epochs=tried, **training)
-        model = train_model(task, labels, train, rate, epochs=epochs, **training)
-        found = predict_probabilities(model, task.inputs, test)
+        most = settings.most_epochs if converged else epochs
+        try:
+            model = train_model(task, labels, learned, rate, epochs=most, learning=learning, **training)
+        except Diverged as error:
+            return [{"metric": "accuracy", "value": None, "note": str(error)}]
+        found, known, kept = (predict_probabilities(model, task.inputs, ids) for ids in (test, learned, validation))
     commonest = np.bincount(labels[train], minlength=classes).argmax()
     values = {
         "accuracy": accuracy(found, labels[test]),
+        "train_accuracy": accuracy(known, labels[learned]),
         "chance": 1 / classes,
         "majority": float((labels[test] == commonest).mean()),
-        "validation_accuracy": validated,
+        "validation_accuracy": accuracy(kept, labels[validation]) if converged else validated,
         "learning_rate": rate,
-        "epochs": epochs,
+        "epochs": len(learning.curve),
         "parameters": count_parameters(network),
         "trained_parameters": count_parameters(model, trained=True),
     }
-    rows = [{"metric": key, "value": value} for key, value in values.items()]
+    rows: list[dict] = [{"metric": key, "value": value} for key, value in values.items()]
     rows[0]["seconds"] = watch.seconds
     for name in recording.test_objects:
         own = groups_of(recording)[test] == name
         value = accuracy(found[torch.as_tensor(own)], labels[test][own])
         rows.append({"item": name, "metric": "accuracy", "value": value})
-    return rows
+    return rows + class_rows(found, labels[test], recording.touches.classes)
+
+
+def class_rows(found: torch.Tensor, labels: np.ndarray, classes: Sequence[str]) -> list[dict]:
+    """Rows of the accuracy on the test touches of each class; an object of its own in most recordings."""
+    return [
+        {"group": name, "metric": "class_accuracy", "value": accuracy(found[torch.as_tensor(own)], labels[own])}
+        for name, own in ((name, labels == number) for number, name in enumerate(classes))
+        if own.any()
+    ]
 
 
 def passes(mode: str, touches: int, settings: Params) -> int:

@@ -11,7 +11,7 @@ from stages.kit.split import shared_by
 
 from . import grid
 from .claims import Claim
-from .results import Results
+from .results import NotRun, Results
 from .style import label, start
 
 # As the thesis calls them, in its order.
@@ -22,21 +22,36 @@ SPLITS = {"random": "touches at random", "objects": "unseen objects"}
 THEIRS = "princeton_six"  # the set of the thesis's classes
 SETS = (THEIRS, None)  # of a claim: that, and the first of the others, the furniture
 OF_CLASS = {THEIRS: 5}  # objects of each class; of the other sets three
-STARTS, MODES = ("imagenet", "random"), ("finetuned", "frozen")
+STARTS, MODES = ("imagenet", "random", "random_initial"), ("finetuned", "frozen")
+PASSES = {"printed": "10, as printed", "converged": "until nothing improves"}  # of the trainings, over the touches
 PRETRAINED = {"complete": "", "convolutions": "its convolutions", "converted": "converted from Keras"}
 NETWORK = "mobilenet_v2"
 SEEN = ("size", "touches")  # columns of what a network saw: a claim compares only what saw the same
 GUESS = 7.6  # points over chance that frozen filters have in T table 5.3, which calls that around a random guess
 
 
-def measured(results: Results, dataset: str | None = None, **where: object) -> pd.DataFrame:
-    """Accuracies on one set; NotRun where there is none."""
-    return results.measured("transfer", dataset, metric="accuracy", **where)
+def measured(results: Results, dataset: str | None = None, passes: str = "printed", **where: object) -> pd.DataFrame:
+    """Accuracies on one set after as many passes as `passes` says; NotRun where there is none."""
+    rows = of_passes(results.measured("transfer", dataset, metric="accuracy", **where), passes)
+    if rows.empty:
+        raise NotRun(f"no training with passes {passes}", "transfer", runnable=False)
+    return rows
 
 
-def everywhere(results: Results, **where: Any) -> dict[str, pd.DataFrame]:
-    """{set: accuracies}: of all sets that have them; NotRun where none has."""
-    return grid.everywhere(results, "transfer", metric="accuracy", **where)
+def everywhere(results: Results, *passes: str, metric: str = "accuracy", **where: Any) -> dict[str, pd.DataFrame]:
+    """{set: accuracies}: of all sets that have them; NotRun where none has. passes: printed without any."""
+    found = grid.everywhere(results, "transfer", metric=metric, **where)
+    kept = {source: mine for source, rows in found.items() if len(mine := of_passes(rows, *passes))}
+    if not kept:
+        raise NotRun(f"no training with passes {' or '.join(passes)}", "transfer", runnable=False)
+    return kept
+
+
+def of_passes(rows: pd.DataFrame, *passes: str) -> pd.DataFrame:
+    """The rows of trainings with some of PASSES, printed without any; rows that do not say theirs are printed."""
+    known = rows.reindex(columns=[*rows.columns.drop("passes", errors="ignore"), "passes"])
+    known["passes"] = known["passes"].fillna("printed")
+    return known[known["passes"].isin(passes or ("printed",))]
 
 
 def shared(split: str, dataset: str | None = None) -> float:

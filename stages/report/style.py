@@ -109,7 +109,8 @@ def label(name: object) -> str:
 
 def start(weights: str) -> str:
     """What a network starts from, in words."""
-    return "ImageNet" if weights == "imagenet" else f"{weights} weights"
+    own = {"imagenet": "ImageNet", "random_initial": "random weights, initial statistics"}
+    return own.get(weights) or f"{weights} weights"
 
 
 def colours(names: Sequence[str]) -> dict[str, str]:

@@ -44,7 +44,7 @@ def train_all(stage: StageRun, planned: Plan, settings: Params) -> dict[str, dic
     members, data = planned.members, stage.workspace.data
     objects = [name for names in members["random"].values() for name in names]
     # What says only which trainings there are is left out: one training more repeats no other.
-    each = dataclasses.replace(settings, networks={}, weights=[], uncontrolled=[], splits={})
+    each = dataclasses.replace(settings, networks={}, weights=[], uncontrolled=[], splits={}, passes=[])
     press = functools.partial(touches.process, data=data, settings=each, seed=stage.seed)
     stage.each(press, objects, reads=("meshes/{}.npz", "salient_points/{}.npz"))
     hybrids = hybrid_trial.trials(settings, members)

@@ -7,8 +7,9 @@ from typing import NamedTuple, Self
 from stages.kit.fetch import FetchError
 from stages.networks.device import choose_device
 from stages.networks.layers import is_range, parse_range
+from stages.networks.learning import PRINTED, check_passes
 from stages.networks.modes import MODES
-from stages.networks.network import NETWORKS, SMALLEST, WEIGHTS
+from stages.networks.network import NETWORKS, SMALLEST, UNNORMALISED, WEIGHTS
 from stages.networks.weights import available_weights, imagenet_state
 
 from . import disturbed, hybrid_damage
@@ -19,7 +20,10 @@ from .touches import sensor_arrays
 
 
 class Trial(NamedTuple):
-    """The settings of one training; its name is DATA.NETWORK.WEIGHTS.MODE.SPLIT.REPETITION, with - for a colon."""
+    """The settings of one training; its name is DATA.NETWORK.WEIGHTS.MODE.SPLIT.REPETITION.PASSES, with - for a colon.
+
+    The name of a training with as many passes as printed ends with the repetition.
+    """
 
     data: str
     network: str
@@ -27,16 +31,18 @@ class Trial(NamedTuple):
     mode: str
     split: str
     repetition: int
+    passes: str = PRINTED
 
     @property
     def name(self) -> str:
-        return ".".join(map(str, self)).replace(":", "-")
+        known = self[:-1] if self.passes == PRINTED else self
+        return ".".join(map(str, known)).replace(":", "-")
 
     @classmethod
     def parse(cls, name: str) -> Self:
         """The trial with this name."""
-        data, network, weights, mode, split, repetition = name.split(".")
-        return cls(data, network, weights, mode.replace("-", ":"), split, int(repetition))
+        data, network, weights, mode, split, repetition, *passes = name.split(".")
+        return cls(data, network, weights, mode.replace("-", ":"), split, int(repetition), *passes)
 
 
 class Plan(NamedTuple):
@@ -65,13 +71,18 @@ def check(settings: Params) -> None:
         _check_modes(network, modes)
     if min(max(settings.splits.values()), settings.touches - 1, settings.cells, *settings.coarse_cells) < 1:
         raise ValueError("transfer: of one split and of cells there must be 1 or more, of touches 2")
+    check_passes(settings.passes, "transfer.passes")
+    if min(settings.patience, settings.most_epochs) < 1:
+        raise ValueError("transfer: patience and most_epochs must be 1 or more")
     if settings.size < SMALLEST:
         raise ValueError(f"transfer.size: {settings.size} is too small, networks see {SMALLEST} pixels a side or more")
     counts = settings.new_object_touches or [0]
     if min(counts) < 1 or max(counts) >= settings.touches:
         raise ValueError(f"transfer.new_object_touches: {settings.new_object_touches} must be 1 or more and less than "
                          f"transfer.touches ({settings.touches}), so that some are left to ask about")  # fmt: skip
-    choose_device(settings.device)
+    if choose_device(settings.device).type == "cuda" and "random_initial" in settings.weights:
+        raise ValueError("transfer.weights: features of random_initial are too small for a card's half precision, "
+                         "take transfer.device=cpu for it")  # fmt: skip
     disturbed.check(settings.severities)
     hybrid_damage.check(settings.hybrid_severities)
     for layers in settings.hybrid_middles:
@@ -94,7 +105,8 @@ def plan(classes: Mapping[str, Sequence[str]], vertices: Mapping[str, int], sett
 
     On the first data all weights and all modes of each network are trained, in every split. On the others, which are
     for comparing resolutions, only ImageNet's weights and no range of layers. A range of layers has no control, nor has
-    a network that is `uncontrolled`. There are no trials where fewer than two classes are left.
+    a network that is `uncontrolled`. random_initial is for frozen networks that have a normalisation: training sets its
+    statistics anew. There are no trials where fewer than two classes are left.
     """
     members, notes = _members(classes, vertices, settings.touches)
     if len(members["random"]) < 2:
@@ -106,8 +118,8 @@ def plan(classes: Mapping[str, Sequence[str]], vertices: Mapping[str, int], sett
     splits = {split: count for split, count in settings.splits.items() if len(members[split]) > 1}
     if settings.splits.get("objects") and "objects" not in splits:
         left_out.append(({"split": "objects"}, "fewer than two classes have a second object: none is left out"))
-    kinds = itertools.product(_kinds(settings, found), splits.items())
-    trials = [Trial(*kind, split, number) for kind, (split, count) in kinds for number in range(count)]
+    kinds = itertools.product(_kinds(settings, found), splits.items(), settings.passes)
+    trials = [Trial(*kind, split, number, passes) for kind, (split, count), passes in kinds for number in range(count)]
     return Plan(trials, members, found, notes + left_out)
 
 
@@ -135,8 +147,9 @@ def _kinds(settings, networks):
     first = main_data(settings)
     for data, network, weights in itertools.product(sensor_arrays(settings), networks, settings.weights):
         for mode in settings.networks[network]:
-            control, ranged = weights == "random", is_range(mode)
+            control, ranged = weights != "imagenet", is_range(mode)
             left_out = control and (ranged or network in settings.uncontrolled)
+            left_out |= weights == "random_initial" and (mode != "frozen" or network in UNNORMALISED)
             if not left_out and (data == first or not (control or ranged)):
                 yield data, network, weights, mode
 

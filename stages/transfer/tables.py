@@ -5,6 +5,7 @@ from collections.abc import Mapping
 
 from stages.kit.stats import interval_metrics
 from stages.networks.device import choose_device, precision
+from stages.networks.learning import CONVERGED
 
 from .plan import Trial
 from .schema import Params
@@ -21,17 +22,21 @@ def trial_row(row: dict, pretrained: Mapping[str, str | None], settings: Params)
     trial = Trial.parse(row["trial"])
     about: dict = {"data": trial.data, "method": trial.network, "weights": trial.weights}
     about["pretrained"] = pretrained[trial.network] if trial.weights == "imagenet" else None
-    about |= {"mode": trial.mode, "split": trial.split, "repetition": trial.repetition}
+    about |= {"mode": trial.mode, "split": trial.split, "repetition": trial.repetition, "passes": trial.passes}
     about |= seen(settings)
     return about | {key: value for key, value in row.items() if key != "trial"}
 
 
 def summary(rows: list[dict], seed: int) -> dict[str, dict]:
-    """{data: {split: {network: {MODE_WEIGHTS: {mean, low, high}}}}} of the accuracy, and the chance of each split."""
+    """{data: {split: {network: {MODE_WEIGHTS: {mean, low, high}}}}} of the accuracy, and the chance of each split.
+
+    The key of trainings until nothing improves ends with _converged.
+    """
     values, tree = defaultdict(list), {}
     for row in rows:
-        if row["metric"] == "accuracy":
-            key = row["data"], row["split"], row["method"], f"{row['mode']}_{row['weights']}"
+        if row["metric"] == "accuracy" and not row.get("note"):
+            end = "_converged" if row.get("passes") == CONVERGED else ""
+            key = row["data"], row["split"], row["method"], f"{row['mode']}_{row['weights']}{end}"
             values[key].append(row["value"])
         if row["metric"] == "chance":
             tree.setdefault("chance", {})[row["split"]] = round(row["value"], 6)

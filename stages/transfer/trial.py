@@ -13,6 +13,7 @@ from stages.kit.repeatable import repeatable
 from stages.kit.rng import rng
 from stages.networks.device import choose_device, explain_out_of_memory
 from stages.networks.images import normalise, to_images
+from stages.networks.learning import CONVERGED, PRINTED, Diverged, Learning
 from stages.networks.modes import MODES, Task, mode_named
 from stages.networks.network import Network, build, count_parameters, recalibrate
 from stages.networks.training import accuracy, predict_probabilities, search_rate, train_model
@@ -33,7 +34,8 @@ def process(
 
     made: the folder of the touches; members: {split: {class: its objects}}. The split, the head's initial weights and
     the random numbers of the training depend on split and repetition alone, so that weights, modes and arrays are
-    compared on the same touches. Returns rows; `seconds` covers features, search and training, without the test.
+    compared on the same touches. A training that diverges gives one row with a note. Returns rows; `seconds` covers
+    features, search and training, without the test.
     """
     trial = Trial.parse(name)
     touches = read_touches(made, members[trial.split], trial.data)
@@ -41,33 +43,66 @@ def process(
     split = split_touches(touches, trial, settings, random)
     first_weights, training_seed = (int(number) for number in random.integers(2**31, size=2))
     searched, checkpoint = folder / "rate.json", folder / "training.pt"  # an interrupted training goes on from these
+    learning = Learning(split.validation if trial.passes == CONVERGED else None, settings.patience)
+    learned = split.fit if trial.passes == CONVERGED else split.train
     with repeatable(training_seed):
         with Stopwatch() as watch:
             network, task = prepare(trial, touches, split.train, settings, first_weights)
             rate, validation_accuracy = learning_rate(
                 task, touches.labels, split, trial, settings, training_seed, searched
             )
-            training = _settings(settings, settings.epochs, training_seed)
-            model = train_model(task, touches.labels, split.train, rate, **training, checkpoint=checkpoint)
+            most = settings.most_epochs if trial.passes == CONVERGED else settings.epochs
+            training = _settings(settings, most, training_seed) | {"checkpoint": checkpoint, "learning": learning}
+            try:
+                model = train_model(task, touches.labels, learned, rate, **training)
+            except Diverged as error:
+                searched.unlink()
+                return [{"trial": name, "metric": "accuracy", "value": None, "note": str(error)}]
         found = predict_probabilities(model, task.inputs, split.test)
         rows = [*change_rows(network, model)] if task.model is network else []
         if is_disturbed(trial, settings):
             rows += disturbed_rows(trial, task, model, touches, split, settings, seed)
             rows += fewer_touches_rows(task, touches, split, rate, settings, training_seed)
+        if learning.validation is not None:
+            validation_accuracy = _accuracy_on(task, model, touches, split.validation)
+        train_accuracy = _accuracy_on(task, model, touches, learned)
     store(name, folder, model, touches.labels, split.test, found, weights=trial.repetition == 0)
     values = {
         "accuracy": accuracy(found, touches.labels[split.test]),
-        "chance": 1 / len(touches.classes),
+        "train_accuracy": train_accuracy,
         "validation_accuracy": validation_accuracy,
+        "chance": 1 / len(touches.classes),
         "learning_rate": rate,
+        "epochs": len(learning.curve),
         "parameters": count_parameters(network),
         "trained_parameters": count_parameters(model, trained=True),
         "weight_change": float(np.mean([row["value"] for row in rows if "layer" in row] or [0.0])),
     }
     seconds = {"accuracy": watch.seconds}
     rows += [{"metric": key, "value": value, "seconds": seconds.get(key)} for key, value in values.items()]
+    rows += object_rows(found, touches, split.test, members[trial.split])
+    rows += curve_rows(learning)
     searched.unlink(missing_ok=True)
     return [{"trial": name} | row for row in rows]
+
+
+def object_rows(
+    found: torch.Tensor, touches: Touches, test: np.ndarray, members: Mapping[str, Sequence[str]]
+) -> Iterator[dict]:
+    """Rows of the accuracy on the test touches of each object."""
+    for label, (group, objects) in enumerate(members.items()):
+        for rank, item in enumerate(objects):
+            own = (touches.labels[test] == label) & (touches.ranks[test] == rank)
+            if own.any():
+                value = accuracy(found[torch.as_tensor(own)], touches.labels[test][own])
+                yield {"item": item, "group": group, "metric": "object_accuracy", "value": value}
+
+
+def curve_rows(learning: Learning) -> Iterator[dict]:
+    """Rows of the curve of a training until nothing improves, pass by pass."""
+    for number, values in enumerate(learning.curve if learning.validation is not None else [], start=1):
+        for name in ("loss", "train_accuracy", "validation_accuracy"):
+            yield {"epoch": number, "metric": f"curve_{name}", "value": values[name]}
 
 
 def store(
@@ -115,8 +150,9 @@ def learning_rate(
 
 
 def is_disturbed(trial: Trial, settings: Params) -> bool:
-    """Whether a trial is tested on disturbed touches: with the fine array, the random split and no layer range."""
-    return trial.data == main_data(settings) and trial.split == "random" and trial.mode in MODES
+    """Whether a trial is tested on disturbed touches: the fine array, the random split, no layer range, as printed."""
+    whole = trial.mode in MODES and trial.passes == PRINTED
+    return trial.data == main_data(settings) and trial.split == "random" and whole
 
 
 def disturbed_rows(
@@ -156,6 +192,10 @@ def change_rows(network: torch.nn.Module, model: torch.nn.Module) -> Iterator[di
     belongs = network_parts(network)
     for layer, value in weight_changes(network, model).items():
         yield {"layer": layer, "part": belongs[layer], "metric": "layer_weight_change", "value": value}
+
+
+def _accuracy_on(task, model, touches, ids):
+    return accuracy(predict_probabilities(model, task.inputs, ids), touches.labels[ids])
 
 
 def _settings(settings, epochs, seed):

@@ -25,6 +25,7 @@ SMALL = {
     "steps": 600, "copies": 1, "size": 32, "repetitions": {"frozen": 1, "finetuned": 1},
     "rates": {"frozen": [0.001, 0.003, 0.01, 0.03], "finetuned": [0.001]}, "epochs": {"frozen": 20, "finetuned": 1},
     "search_epochs": {"frozen": 8, "finetuned": 1}, "batch": {"frozen": 32, "finetuned": 16},
+    "passes": ["printed"], "patience": 3, "most_epochs": 9,
 }  # fmt: skip
 
 
@@ -188,3 +189,25 @@ def test_weights_that_are_not_at_hand_are_named_and_the_control_runs(workspace, 
     assert absent["mode"].tolist() == ["frozen", "finetuned"] and set(absent["data"]) == {"tiny"}
     assert set(found.loc[found["value"].notna(), "weights"]) == {"random"}
     assert "googlenet: no package registry has" in capsys.readouterr().err
+
+
+def test_a_training_to_convergence_learns_from_fewer_touches_and_stops_by_itself():
+    settings = small(passes=["printed", "converged"], patience=3, most_epochs=60)
+    found = {one.name: one for one in trials({"toy": recording()}, settings)}
+    assert list(found) == ["alexnet-random-frozen-toy-random-0", "alexnet-random-frozen-toy-random-0-converged"]
+    rows = pd.DataFrame(
+        process(found["alexnet-random-frozen-toy-random-0-converged"], None, {"toy": recording()}, settings, 0)
+    )
+    values = rows[rows["group"].isna()].set_index("metric")["value"]
+    assert values["epochs"] < 60 and values["train_accuracy"] == 1.0
+    assert rows["passes"].unique().tolist() == ["converged"]
+    classes = rows[rows["metric"] == "class_accuracy"].set_index("group")["value"]
+    assert classes.index.tolist() == ["left", "right"] and classes.mean() == pytest.approx(values["accuracy"])
+
+
+def test_a_training_that_diverges_is_a_row_with_a_note_and_the_others_run():
+    settings = small(rates={"frozen": [1e38], "finetuned": [0.001]}, passes=["printed", "converged"])
+    for one in trials({"toy": recording()}, settings):
+        rows = process(one, None, {"toy": recording()}, settings, 0)
+        assert [row["value"] for row in rows] == [None] and "diverged" in rows[0]["note"]
+    assert stage.summary(rows) == {}

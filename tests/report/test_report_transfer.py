@@ -1,5 +1,7 @@
 """The tables, figures, chart and claims of chapter 5, on trainings whose truth is known."""
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -24,6 +26,7 @@ MEANS = {  # (data, weights, mode) -> accuracy
     ("imprints16", "imagenet", "finetuned"): 0.7,
     ("imprints16", "imagenet", "frozen"): 0.4,
 }
+TEN = "10, as printed"
 LOOKED = "{} touches an object at {} px"
 LAYERS = {"conv1": "Conv1", "b2": "block_2", "b9": "block_9", "b15": "block_15", "last": "Conv_1"}
 
@@ -43,7 +46,7 @@ def rows(dataset="furniture", unseen=-0.2, repetitions=4):
                 values = {"accuracy": mean + loss + 0.005 * random.normal(), "chance": 0.125}
                 seconds = 10.0 if mode == "frozen" else 60.0
                 found += [common | {"metric": key, "value": v, "seconds": seconds} for key, v in values.items()]
-    return pd.DataFrame(found).assign(size=80, touches=20, seed=0, note=None)
+    return pd.DataFrame(found).assign(size=80, touches=20, seed=0, note=None, passes="printed")
 
 
 def changes():
@@ -55,13 +58,28 @@ def changes():
         for depth, (layer, part) in enumerate(LAYERS.items()):
             found.append(about | {"layer": layer, "part": part, "value": 0.1 ** (depth + 0.1 * number)})
         found.append(about | {"metric": "weight_change", "value": 0.01 * (number + 1)})
-    return pd.DataFrame(found)
+    return pd.DataFrame(found).assign(passes="printed")
+
+
+def converged(dataset="princeton_six", repetitions=3):
+    """Trainings until nothing improves, at random: fine-tuning ends at 95 %, having learned all; frozen at 70 %."""
+    found = []
+    for mode, mean in (("finetuned", 0.95), ("frozen", 0.7)):
+        for number in range(repetitions):
+            about = {"data": "imprints128", "method": "mobilenet_v2", "weights": "imagenet", "mode": mode}
+            about |= {"dataset": dataset, "split": "random", "repetition": number, "pretrained": "complete"}
+            values = {"accuracy": mean + 0.01 * number, "train_accuracy": mean + 0.04, "epochs": 30 + number}
+            found += [about | {"metric": key, "value": value, "seconds": 9.0} for key, value in values.items()]
+            curves = {"curve_train_accuracy": mean, "curve_validation_accuracy": mean - 0.1}
+            steps = [(metric, epoch, value) for metric, value in curves.items() for epoch in range(1, 31)]
+            found += [about | {"metric": m, "epoch": k, "value": v * (1 - 0.5**k)} for m, k, v in steps]
+    return pd.DataFrame(found).assign(size=80, touches=20, seed=0, note=None, passes="converged")
 
 
 @pytest.fixture
 def run(bare, small):
     """Results of a run that has trained MobileNetV2."""
-    small.write(bare, "transfer", pd.concat([rows(), changes()]))
+    small.write(bare, "transfer", pd.concat([rows(), changes(), converged("furniture")]))
     return small.results(bare)
 
 
@@ -78,8 +96,8 @@ def test_twin_of_table_5_4_stands_beside_the_thesis_s_figures(run):
     found = only(table.frame, network="mobilenet_v2", weights="imagenet", mode="frozen", split="random")
     assert found["accuracy"] == pytest.approx(0.6, abs=0.01) and found["thesis"] == 0.4381
     assert found["above_chance"] == pytest.approx(found["accuracy"] - 0.125)
-    line = only(table.shown, network="MobileNetV2", filters="frozen", **{"starts from": "ImageNet"})
-    assert line["furniture, touches at random, %"].startswith("59.7 [") and line["thesis, %"] == "43.8"
+    line = only(table.shown, network="MobileNetV2", filters="frozen", passes=TEN, **{"starts from": "ImageNet"})
+    assert line["furniture, touches at random, 80 px, 4 splits, %"].startswith("59.7 [") and line["thesis, %"] == "43.8"
     assert table.shown.loc[table.best_rows, "network"].tolist() == ["MobileNetV2"]
 
 
@@ -105,8 +123,8 @@ def test_the_coarse_table_holds_the_coarse_array_alone(run):
 
 def test_networks_of_the_thesis_that_were_not_run_say_so(run):
     shown = build_one(transfer, "tables", "table_5_4", run).shown
-    line = only(shown, network="ResNet50", filters="frozen")
-    assert line["furniture, unseen objects, %"] == "not run" and line["thesis, %"] == "52.4"
+    line = only(shown, network="ResNet50", filters="frozen", passes=TEN)
+    assert line["furniture, unseen objects, 80 px, 4 folds, %"] == "not run" and line["thesis, %"] == "52.4"
 
 
 def test_frozen_layers_go_by_the_thesis_s_numbers(run):
@@ -119,7 +137,39 @@ def test_frozen_layers_go_by_the_thesis_s_numbers(run):
 def test_rows_on_the_thesis_s_classes_stand_beside_the_run_s(bare, run, small):
     small.write(bare, "transfer", rows("princeton_six"))
     shown = build_one(transfer, "tables", "table_5_4", small.results(bare)).shown
-    assert "psb, the thesis's 6 classes, touches at random, %" in shown
+    assert "psb, the thesis's 6 classes, touches at random, 80 px, 4 splits, %" in shown
+
+
+def test_trainings_until_nothing_improves_stand_below_those_of_the_printed_passes(bare, small):
+    small.write(bare, "transfer", pd.concat([rows("princeton_six"), converged()]))
+    made = build_one(transfer, "tables", "table_5_4", small.results(bare))
+    found = only(made.frame, network="mobilenet_v2", weights="imagenet", mode="finetuned", split="random")
+    assert found["accuracy"] == pytest.approx(0.9, abs=0.01) and found["converged"] == pytest.approx(0.96)
+    assert found["converged_training"] == pytest.approx(0.99) and found["converged_epochs"] == 31
+    assert np.isnan(found["training"]) and found["converged_values"] == 3
+    head = "psb, the thesis's 6 classes, touches at random, 80 px, 4 splits, %"
+    mine = made.shown[made.shown["network"] == "MobileNetV2"]
+    mine = mine[(mine["starts from"] == "ImageNet") & (mine["filters"] == "fine-tuned")].set_index("passes")
+    assert list(mine.index) == [TEN, "until nothing improves"]
+    assert [cell[:2] for cell in mine[head]] == ["90", "96"]
+    assert list(mine["training touches, %"]) == ["–", "99.0"]
+    counts = made.shown["network"].value_counts()
+    assert counts["VGG16"] == 2 and counts["MobileNetV2"] == 6  # a network without any training is named one time
+    shown = build_one(transfer, "tables", "table_5_6", small.results(bare)).shown.set_index(["frozen layers", "passes"])
+    late = shown.xs("until nothing improves", level="passes")[head]
+    assert late["none"].startswith("96.0") and late["18:139"] == "not run" and "1:150" not in late
+
+
+def test_passes_are_not_mixed(bare, small):
+    small.write(bare, "transfer", pd.concat([rows("princeton_six"), converged()]))
+    results = small.results(bare)
+    gains = figure_5_3.gains(_transfer.everywhere(results, *_transfer.PASSES)["princeton_six"])
+    assert only(gains, split="random", data="imprints128", passes="printed")["mean"] == pytest.approx(30, abs=1)
+    assert only(gains, split="random", data="imprints128", passes="converged")["mean"] == pytest.approx(25)
+    claim = next(one for one in chapter_5.CLAIMS if one.key == "tuned_over_frozen_random")
+    assert differences(results, claim).mean() == pytest.approx(30, abs=1)
+    late = {**claim.where, "passes": "converged"}
+    assert differences(results, replace(claim, where=late)).mean() == pytest.approx(25)
 
 
 @pytest.mark.slow

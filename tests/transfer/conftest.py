@@ -12,6 +12,7 @@ SETTINGS = {
     "source": "package",
     "splits": {"random": 1, "objects": 1}, "size": 32, "copies": 1, "train_share": 0.75, "validation_share": 0.25,
     "frozen_rates": [0.003, 0.01], "finetuned_rates": [0.003], "search_epochs": 2, "epochs": 4, "batch": 8,
+    "passes": ["printed"], "patience": 2, "most_epochs": 6,
     "momentum": 0.9, "device": "cpu",
     "severities": {"noise": [0.01, 0.5], "few_touches": [0.5]}, "hybrid_middles": [],
     "hybrid_pictures": 4, "hybrid_colour": False, "hybrid_rate": 0.003, "hybrid_onnx": False,

@@ -1,6 +1,7 @@
 """What is trained, and what has to be left out."""
 
 import pytest
+import torch
 
 from stages.kit.fetch import FetchError
 from stages.transfer import plan as planning
@@ -27,6 +28,40 @@ def test_a_trials_name_is_its_file_and_gives_it_back():
     trial = Trial("imprints128", "mobilenet_v2", "imagenet", "18:139", "objects", 2)
     assert trial.name == "imprints128.mobilenet_v2.imagenet.18-139.objects.2"
     assert Trial.parse(trial.name) == trial
+
+
+def test_a_training_to_convergence_has_a_name_of_its_own():
+    trial = Trial("imprints128", "mobilenet_v2", "imagenet", "18:139", "objects", 2, "converged")
+    assert trial.name == "imprints128.mobilenet_v2.imagenet.18-139.objects.2.converged"
+    assert Trial.parse(trial.name) == trial
+
+
+def test_passes_are_a_dimension_and_initial_statistics_are_for_frozen_networks_with_a_normalisation(small, weights):
+    networks = {"mobilenet_v2": ["frozen", "finetuned"], "alexnet": ["frozen"]}
+    changes = {"weights": ["random", "random_initial"], "passes": ["printed", "converged"], "splits": {"random": 1}}
+    trials = plan(CLASSES, ENOUGH, small.settings(networks=networks, coarse_cells=[], **changes)).trials
+    kinds = [(one.network, one.weights, one.mode) for one in trials if one.passes == "converged"]
+    assert kinds == [(one.network, one.weights, one.mode) for one in trials if one.passes == "printed"]
+    assert kinds == [
+        ("mobilenet_v2", "random", "frozen"), ("mobilenet_v2", "random", "finetuned"),
+        ("mobilenet_v2", "random_initial", "frozen"), ("alexnet", "random", "frozen"),
+    ]  # fmt: skip
+
+
+def test_initial_statistics_are_refused_in_half_precision(small, monkeypatch):
+    monkeypatch.setattr(planning, "choose_device", lambda name: torch.device("cuda"))
+    check(small.settings())
+    with pytest.raises(ValueError, match="too small for a card's half precision"):
+        check(small.settings(weights=["random_initial"]))
+
+
+@pytest.mark.parametrize(("key", "value", "said"), [
+    ("passes", ["all"], "transfer.passes: all not known, choose from printed, converged"),
+    ("patience", 0, "patience and most_epochs must be 1 or more"),
+])  # fmt: skip
+def test_passes_that_cannot_be_made_are_named(small, key, value, said):
+    with pytest.raises(ValueError, match=said):
+        check(small.settings(**{key: value}))
 
 
 def test_controls_and_ranges_are_trained_on_the_fine_array_alone(small, weights):

@@ -113,6 +113,61 @@ def test_too_little_memory_for_the_cached_features_names_the_remedy(folder, smal
         run(folder, small.settings())
 
 
+CONVERGED = FROZEN._replace(passes="converged")
+
+
+def test_a_training_to_convergence_has_its_curve_its_best_pass_and_the_accuracy_on_each_object(folder, small):
+    settings = small.settings(most_epochs=60, patience=6, frozen_rates=[0.01], search_epochs=1)
+    rows = pd.DataFrame(run(folder, settings, CONVERGED))
+    values = rows.drop_duplicates("metric").set_index("metric")["value"]
+    curve = rows.dropna(subset=["epoch"]).pivot(index="epoch", columns="metric", values="value")
+    assert curve.index.tolist() == list(range(1, int(values["epochs"]) + 1)) and values["epochs"] < 60
+    assert values["validation_accuracy"] == curve["curve_validation_accuracy"].max()
+    assert values["train_accuracy"] > 0.7
+    objects = rows[rows["metric"] == "object_accuracy"]
+    assert objects["item"].tolist() == ["low", "steep", "narrow", "wide"]
+    assert objects["group"].tolist() == ["ramp", "ramp", "stripes", "stripes"]
+    assert objects["value"].mean() == pytest.approx(values["accuracy"])  # as many test touches of each
+    assert "disturbed_accuracy" not in set(rows["metric"])
+
+
+def test_an_object_s_accuracy_is_that_of_its_own_test_touches(folder):
+    touches, test = read_touches(folder, CLASSES, "imprints32"), np.array([0, 1, 8, 9, 16, 17])
+    found = torch.tensor([[0.9, 0.1], [0.2, 0.8], [0.9, 0.1], [0.8, 0.2], [0.9, 0.1], [0.7, 0.3]])
+    rows = list(trial.object_rows(found, touches, test, CLASSES))
+    assert [(row["item"], row["value"]) for row in rows] == [("low", 0.5), ("steep", 1.0), ("narrow", 0.0)]
+
+
+def test_the_printed_training_has_a_training_accuracy_over_all_training_touches(folder, small, monkeypatch):
+    learned = []
+    train_model = trial.train_model
+    monkeypatch.setattr(
+        trial, "train_model", lambda *given, **other: learned.append(given[2]) or train_model(*given, **other)
+    )
+    values = plain(run(folder, small.settings(severities={})))
+    run(folder, small.settings(), CONVERGED)
+    assert values["epochs"] == 4 and 0 <= values["train_accuracy"] <= 1
+    assert [len(ids) for ids in learned] == [24, 16]  # a third of eight touches of each object validates
+
+
+def test_a_training_that_diverges_is_one_row_with_a_note(folder, small):
+    rows = run(folder, small.settings(frozen_rates=[1e38]), CONVERGED)
+    assert len(rows) == 1 and rows[0]["value"] is None and "diverged: loss is not finite in pass" in rows[0]["note"]
+    assert {path.name for path in folder.iterdir()} == {"imprints"}
+    row = trial_row(rows[0], {"mobilenet_v2": None}, small.settings())
+    assert row["passes"] == "converged"
+    assert summary([row], 0) == {}
+
+
+def test_a_control_with_the_statistics_it_begins_with_has_other_features(folder, small):
+    touches = read_touches(folder, CLASSES, "imprints32")
+    features = [
+        trial.prepare(one, touches, np.arange(24), small.settings(), 0)[1].inputs(torch.arange(4))
+        for one in (FROZEN, FROZEN._replace(weights="random_initial"))
+    ]
+    assert features[0].std(dim=0).max() > 1e-3 > 1e-6 > features[1].std(dim=0).max() > 0
+
+
 def test_summary_has_an_interval_over_repetitions_and_none_for_a_single_one():
     known = {"data": "imprints128", "method": "alexnet", "weights": "random", "mode": "frozen", "split": "objects"}
     rows = [known | {"metric": "chance", "value": 0.5}]

@@ -8,6 +8,7 @@ import pandas as pd
 from stages.kit.split import Split, shared_by
 from stages.kit.stats import interval
 from stages.report.grid import everywhere, grouped, within
+from stages.report.networks import of_passes
 from stages.report.results import NotRun, Results
 
 STAGE = "recorded_networks"
@@ -37,13 +38,13 @@ CLASSICAL = ("features_knn", "", "", "")  # the control without a network: neith
 
 
 def measured(results: Results, *metrics: str) -> pd.DataFrame:
-    """Rows of some metrics that have a value, of all recorded data sets, with "" for what they have not of KEYS.
+    """Rows of some metrics that have a value after the printed passes, of all recorded data sets; "" where KEYS lack.
 
     unit: the repetition, whose number is the same split for all, or the object where OVER. NotRun without any.
     """
     what = f"no {' or '.join(metrics)} of networks on recorded touches"
     found = everywhere(results, STAGE, what, metric=list(metrics))
-    rows = pd.concat(found.values(), ignore_index=True).astype({"size": "Int64"})
+    rows = of_passes(pd.concat(found.values(), ignore_index=True)).astype({"size": "Int64"})
     rows = rows[rows["item"].notna() == rows["split"].isin(OVER)].astype(dict.fromkeys(["item", *KEYS], object))
     return rows.fillna(dict.fromkeys(KEYS, "")).assign(unit=rows["item"].fillna(rows["repetition"]))
 

@@ -13,7 +13,7 @@ from stages.report.style import label, start
 
 from .panels import ACCURACY, CLEAN, Curves, broken, degradation
 
-TINTS = dict(zip(product(STARTS, MODES), ("#0072B2", "#56B4E9", "#767676", "#c4c4c4"), strict=True))
+TINTS = dict(zip(product(STARTS[:2], MODES), ("#0072B2", "#56B4E9", "#767676", "#c4c4c4"), strict=True))
 UNITS = {
     "noise": "sigma, share of full scale",
     "blur": "sigma in cells of 128",

@@ -4,7 +4,7 @@ from functools import partial
 
 from stages.report.networks import COARSE, FINE
 
-from . import claims, coarse_imprints, figure_5_3, figure_5_4, network_tables, networks_chart
+from . import claims, coarse_imprints, figure_5_3, figure_5_4, network_tables, networks_chart, training_curves
 
 TABLES = {
     "table_5_3": partial(network_tables.networks, data=COARSE),
@@ -12,6 +12,10 @@ TABLES = {
     "table_5_6": network_tables.frozen_layers,
     "coarse_imprints": coarse_imprints.build,
 }
-FIGURES = {"figure_5_3": figure_5_3.build, "figure_5_4": figure_5_4.build}
+FIGURES = {
+    "figure_5_3": figure_5_3.build,
+    "figure_5_4": figure_5_4.build,
+    "training_curves": training_curves.build,
+}
 CHARTS = {"networks": networks_chart.build}
 CLAIMS = claims.CLAIMS

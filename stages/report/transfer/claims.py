@@ -18,8 +18,9 @@ PHRASES = {
     ("mode", "finetuned"): "fine-tuned", ("mode", "frozen"): "frozen",
     ("mode", "18:139"): "layers 18 to 139 frozen", ("mode", "1:134"): "layers 1 to 134 frozen",
     ("metric", "accuracy"): "accuracy", ("metric", "chance"): "guessing",
+    ("passes", "printed"): "", ("passes", "converged"): "trained until nothing improves",
 }  # fmt: skip
-SETTING = {"method": NETWORK, "metric": "accuracy", "data": FINE, "weights": "imagenet"}
+SETTING = {"method": NETWORK, "metric": "accuracy", "data": FINE, "weights": "imagenet", "passes": "printed"}
 
 
 def claim(
@@ -71,7 +72,8 @@ CHANGES = Claim(
     key="earlier_change_more", section="T5.4", stage="transfer", dataset=SETS, phrases=PHRASES, scale=1.0,
     shared=shared_by("random"),
     sentence="Earlier convolutions are altered more for touch than later ones.", unit="rank correlation",
-    where={"method": NETWORK, "mode": "finetuned", "split": "random", "data": FINE, "weights": "imagenet"},
+    where={"method": NETWORK, "mode": "finetuned", "split": "random", "data": FINE, "weights": "imagenet",
+           "passes": "printed"},
     statistic="later_convolutions_change_less", note="minus the rank correlation of depth and change",
 )  # fmt: skip
 CLAIMS = [*OWN, *EARLY, CHANGES]

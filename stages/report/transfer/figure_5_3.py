@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from stages.kit.stats import interval
 from stages.report.grid import grouped
 from stages.report.items import Figure
-from stages.report.networks import COARSE, FINE, MODES, PRINTED, SPLITS, THESIS, everywhere, shared
+from stages.report.networks import COARSE, FINE, MODES, PASSES, PRINTED, SPLITS, THESIS, everywhere, shared
 from stages.report.results import Results, some
 from stages.report.style import GREY, INK, PALE, label, plt
 from stages.report.words import dataset_text
@@ -15,11 +15,12 @@ from stages.report.words import dataset_text
 TINTS = {("random", FINE): "#0072B2", ("objects", FINE): "#56B4E9", ("random", COARSE): "#D55E00",
          ("objects", COARSE): "#E69F00"}  # fmt: skip
 CELLS = {FINE: "128 x 128", COARSE: "16 x 16"}
+MARKS = {"printed": "o", "converged": "s"}
 
 
 def build(results: Results) -> Figure:
     """Accuracy of fine-tuned minus frozen networks, a panel for each set."""
-    found = {source: frame for source, rows in everywhere(results).items() if len(frame := gains(rows))}
+    found = {source: frame for source, rows in everywhere(results, *PASSES).items() if len(frame := gains(rows))}
     some(found, "no network was both fine-tuned and frozen", "transfer")
     networks = list(pd.concat(found)["network"].unique())
     size = (4.6 * len(found) + 2.2, len(networks) + 1.9)
@@ -31,6 +32,8 @@ def build(results: Results) -> Figure:
     panels[0].set_ylim(len(networks) - 0.4, -0.6)
     for (split, data), tint in TINTS.items():
         panels[-1].plot([], [], "o", color=tint, ms=5, label=f"{CELLS[data]}, {SPLITS[split]}")
+    for passes, mark in MARKS.items():
+        panels[-1].plot([], [], mark, color=GREY, ms=5, label=f"passes: {PASSES[passes]}")
     panels[-1].plot([], [], "D", color="white", mec=GREY, ms=5, mew=1.2, label="the thesis's figure")
     panels[-1].legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=8.5)
     figure.tight_layout()
@@ -38,24 +41,25 @@ def build(results: Results) -> Figure:
 
 
 def gains(rows: pd.DataFrame) -> pd.DataFrame:
-    """Points that fine-tuning adds, with mean, low and high, for each network, split and data with pairs of both."""
+    """Points that fine-tuning adds, with mean, low and high, by network, split, data and passes with pairs of both."""
     found = []
     seen = rows[(rows["weights"] == "imagenet") & rows["data"].isin(CELLS)]
-    for (network, split, data), group in grouped(seen, ["method", "split", "data"]):
+    for (network, split, data, passes), group in grouped(seen, ["method", "split", "data", "passes"]):
         sides = group.pivot_table(index="repetition", columns="mode", values="value").reindex(columns=MODES).dropna()
         if len(sides):
             ends = interval(100 * (sides["finetuned"] - sides["frozen"]), shared(split, group["dataset"].iloc[0]))
-            found.append((network, split, data, *ends))
-    return pd.DataFrame(found, columns=["network", "split", "data", "mean", "low", "high"])
+            found.append((network, split, data, passes, *ends))
+    return pd.DataFrame(found, columns=["network", "split", "data", "passes", "mean", "low", "high"])
 
 
 def _draw(axes: Axes, frame: pd.DataFrame, networks: list[str], results: Results) -> None:
-    for network, split, data, mean, low, high in frame.itertuples(index=False):
+    for network, split, data, passes, mean, low, high in frame.itertuples(index=False):
         tint = TINTS[split, data]
         place = networks.index(network) + 0.17 * (list(TINTS).index((split, data)) - 1.5)
+        place += 0.08 * (passes == "converged")
         axes.plot([low, high], [place] * 2, color=tint, lw=1.6, alpha=0.5)
-        axes.plot(mean, place, "o", color=tint, ms=5, mec="white", mew=0.5)
-        if split == "random" and network in PRINTED:
+        axes.plot(mean, place, MARKS[passes], color=tint, ms=5, mec="white", mew=0.5)
+        if passes == "printed" and split == "random" and network in PRINTED:
             row = results.thesis(THESIS[data]).set_index("network").loc[PRINTED[network]]
             gap = 100 * (row["acc_finetuned"] - row["acc_frozen"])
             axes.plot(gap, place, "D", color="white", mec=tint, ms=5, mew=1.2)

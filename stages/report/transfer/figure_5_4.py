@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 
 from stages.report.grid import everywhere, grouped, records
 from stages.report.items import Figure
-from stages.report.networks import COARSE, FINE, NETWORK
+from stages.report.networks import COARSE, FINE, NETWORK, of_passes
 from stages.report.results import Results
 from stages.report.style import CYCLE, GREY, INK, MARKERS, label, plt, start
 from stages.report.words import dataset_text
@@ -26,7 +26,7 @@ def build(results: Results) -> Figure:
         {"on": f"{dataset_text(dataset)}, {CELLS[data]}, from {start(weights)}", "network": network,
          "mean": own["value"].mean(), "low": own["value"].min(), "high": own["value"].max(), "trainings": len(own)}
         for dataset, rows in found.items()
-        for (network, data, weights), own in grouped(rows, ["method", "data", "weights"])
+        for (network, data, weights), own in grouped(of_passes(rows), ["method", "data", "weights"])
     ])  # fmt: skip
     figure, (above, below) = plt.subplots(2, 1, figsize=(9.2, 7.4), height_ratios=[3, 3.8])
     figure.subplots_adjust(hspace=0.4)
@@ -55,7 +55,7 @@ def _draw_networks(axes: Axes, frame: pd.DataFrame) -> None:
 
 def _draw_layers(axes: Axes, results: Results) -> None:
     """Change of each convolution of MobileNetV2, by the array and the weights that it started from."""
-    mine = results.measured("transfer", metric="layer_weight_change", method=NETWORK, **WHERE)
+    mine = of_passes(results.measured("transfer", metric="layer_weight_change", method=NETWORK, **WHERE))
     parts = mine.groupby("layer", sort=False)["part"].first()
     for (data, weights), tint in TINTS.items():
         one = mine[(mine["data"] == data) & (mine["weights"] == weights)]
