@@ -15,8 +15,8 @@ def centres(vertices: np.ndarray, values: np.ndarray, seen: np.ndarray, top: flo
     values, ids = np.asarray(values, dtype=np.float64)[seen], np.flatnonzero(seen)
     if not len(values) or values.max() <= max(values.min(), 0):
         return np.zeros((0, 3))
-    top = np.asarray(vertices)[ids[values >= top * values.max()]]
-    return top[subtractive_clusters(top)]
+    highest = np.asarray(vertices)[ids[values >= top * values.max()]]
+    return highest[subtractive_clusters(highest)]
 
 
 def centre_distance(

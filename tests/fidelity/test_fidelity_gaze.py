@@ -40,7 +40,7 @@ def by_boxes(saliency, picture, mesh, viewpoint):
         found.append(np.rint((values - values.min()) / (values.max() - values.min()) * (pixels - 1)).astype(int))
     plotted = np.zeros(box.shape)
     plotted[found[0], found[1]] = 1
-    assert plotted.any(axis=1)[[0, -1]].all() and plotted.any(axis=0)[[0, -1]].all()  # its box is the whole image
+    assert all(edge.any() for edge in (plotted[0], plotted[-1], plotted[:, 0], plotted[:, -1]))  # its box is all of it
     return box[found[0], found[1]]
 
 
@@ -76,7 +76,7 @@ def judged(ring):
     """(people's density (n,), saliency (n,), seen (n,), the rows of their agreement by metric) of the ring."""
     mesh, _, seen = ring
     people, model = (
-        sum(np.exp(-((mesh.vertices - place) ** 2).sum(axis=1) / 0.01) for place in mesh.vertices[ids])
+        np.exp(-((mesh.vertices - mesh.vertices[ids][:, None]) ** 2).sum(axis=2) / 0.01).sum(axis=0)
         for ids in ([3, 900, 1500], [40, 1000])
     )
     people, model = 5 * people + 2, model + 0.1  # neither begins at zero nor ends at one
