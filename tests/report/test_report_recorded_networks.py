@@ -66,9 +66,11 @@ def _trained(said, level, random, repetitions):
         if "mode" in said:
             yield common | {"metric": "chance", "value": CHANCE}
             yield common | {"metric": "majority", "value": MAJORITY}
+            yield common | {"metric": "train_accuracy", "value": 1.0}
         for k, name in enumerate(kept):
             value = level - 0.1 * k + 0.001 * random.normal()
             yield common | {"item": name, "metric": "accuracy", "value": value}
+            yield common | {"item": name, "metric": "train_accuracy", "value": 1.0}
 
 
 def majority():

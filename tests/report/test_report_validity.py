@@ -8,7 +8,7 @@ import pytest
 
 from stages.report.claims import Claim
 from stages.report.differences import differences, invalid
-from stages.report.meshes.valid import NO_POINT, NO_RING
+from stages.report.simplified import NO_POINT, NO_RING
 from stages.report.validity import GUESSING, ONE_CLASS, SAME, UNTRAINED, causes
 from stages.report.verdict import judge
 
@@ -110,11 +110,6 @@ def test_a_kind_of_trial_that_is_less_accurate_than_guessing_is_invalid(root, sm
     assert (
         causes(results, "classification", "test", results.rows("classification")).tolist() == [GUESSING] * 2 + [""] * 2
     )
-    network = rows.assign(mode="frozen", method="net", value=[0.3, 0.3, 0.6, 0.6]).drop(columns="group")
-    small.write(root, "transfer", pd.concat([network, network.assign(metric="chance", value=0.5)]))
-    results = small.results(root)
-    accuracy = results.rows("transfer", metric="accuracy")
-    assert causes(results, "transfer", "test", accuracy).tolist() == [GUESSING] * 2 + [""] * 2
 
 
 @pytest.mark.parametrize("stage", ["transfer", "recorded_networks"])

@@ -4,12 +4,12 @@ import numpy as np
 import pandas as pd
 
 from stages.report.items import Table
-from stages.report.results import SECTION_3_1, Results
+from stages.report.results import SECTION_3_1, NotRun, Results
+from stages.report.simplified import UNIT, as_plain
 from stages.report.words import dataset_text
 
 from .methods import PLAIN, QSLIM, fixed, ordered, short
 from .rows import data_sets, face_counts, said
-from .valid import UNIT, as_plain
 
 BY = ["data", "method", "target"]
 SHARES = {"without_points": "without a point, %", "three_rings": "three rings, %", "as_plain": "as plain, %"}
@@ -19,6 +19,8 @@ def build(results: Results) -> Table:
     """A row a data set, method and target: median points, median rings, shares of objects without or with all."""
     sets = data_sets(results)
     first = results.printed(SECTION_3_1, "lod") or sets[0]
+    if "rings" not in results.rows("lod", first):
+        raise NotRun("no rings in the rows of lod", "lod")
     frames = {name: counted(results.rows("lod", name)) for name in sorted(sets, key=lambda name: name != first)}
     frame = pd.concat({dataset_text(name): found for name, found in frames.items()}, names=["data", None])
     frame = frame.reset_index("data").reset_index(drop=True)

@@ -7,7 +7,7 @@ import pandas as pd
 from scipy.stats import spearmanr
 
 from stages.kit.split import shared_by
-from stages.report.claims import Claim
+from stages.report.claims import Claim, reading
 from stages.report.differences import statistic
 from stages.report.networks import COARSE, FINE, GUESS, NETWORK, SEEN, SETS, THEIRS, both
 from stages.report.results import Results
@@ -21,6 +21,7 @@ PHRASES = {
     ("passes", "printed"): "", ("passes", "converged"): "trained until nothing improves",
 }  # fmt: skip
 SETTING = {"method": NETWORK, "metric": "accuracy", "data": FINE, "weights": "imagenet", "passes": "printed"}
+CONVERGED = reading("trained until nothing improves", where={"passes": "converged"})
 
 
 def claim(
@@ -31,6 +32,7 @@ def claim(
     return Claim(
         key=key, section=section, sentence=sentence, stage="transfer", first={column: first}, second={column: second},
         where=common, margin=margin, phrases=PHRASES, within=SEEN, dataset=SETS,
+        readings=(CONVERGED,),
     )  # fmt: skip
 
 

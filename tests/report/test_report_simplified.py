@@ -9,8 +9,8 @@ import pytest
 
 from stages.report import meshes
 from stages.report.meshes import points
-from stages.report.meshes.valid import AS_PLAIN, NO_POINT, NO_RING, UNIT, invalid_units, whole_neighbourhoods
 from stages.report.results import SECTION_3_1
+from stages.report.simplified import AS_PLAIN, NO_POINT, NO_RING, UNIT, invalid_units, whole_neighbourhoods
 from stages.report.topics import build_one
 
 ERRORS = ("metro_mean", "ssim_error")

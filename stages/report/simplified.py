@@ -2,8 +2,7 @@
 
 import pandas as pd
 
-from .methods import PLAIN, QSLIM
-
+PLAIN, QSLIM = "qem", "qslim"  # plain simplification: with and without the fit of ours
 UNIT = ["item", "method", "target"]
 NO_POINT, AS_PLAIN, NO_RING = "no point found", "equal to plain simplification", "less than one ring kept"
 
