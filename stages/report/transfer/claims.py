@@ -21,7 +21,10 @@ PHRASES = {
     ("passes", "printed"): "", ("passes", "converged"): "trained until nothing improves",
 }  # fmt: skip
 SETTING = {"method": NETWORK, "metric": "accuracy", "data": FINE, "weights": "imagenet", "passes": "printed"}
-CONVERGED = reading("trained until nothing improves", where={"passes": "converged"})
+CONVERGED = reading(  # of these trainings the accuracy of each object was kept
+    "trained until nothing improves, over objects", where={"passes": "converged", "metric": "object_accuracy"},
+    over=("item",), within=("repetition", *SEEN), shared=0.0,
+)  # fmt: skip
 
 
 def claim(
