@@ -41,6 +41,7 @@ def on_gaze(build: Callable[..., Figure], results: Results) -> Kept:
         add_words(figure, sys.modules[__package__ or ""], "figures", name)
         title = f"{figure.title}, on meshes with human gaze"
         return Kept(figure.drawing, {"title": title, "alt": figure.alt, "caption": figure.caption}, dpi=figure.dpi)
+    results.read.add("gaze")
     return last_drawn(results, f"{name}_gaze", "fixation")
 
 
