@@ -22,7 +22,7 @@ def work(rounds: int = 600_000) -> float:
 def test_sleep_costs_nothing():
     with WallClock() as wall, Stopwatch() as watch:
         time.sleep(0.2)
-    assert wall.seconds >= 0.2 and watch.seconds < 0.02
+    assert wall.seconds >= 0.2 and watch.seconds < 0.1  # other threads of the process may compute
 
 
 def test_computing_costs_its_time():

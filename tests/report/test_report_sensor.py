@@ -42,7 +42,6 @@ def sensed(root, results, small):
         "value": 0.46,
     }
     small.write(root, "sensor_size", pd.concat([pressed(), pd.DataFrame([again])]))
-    small.write(root, "sensor_size", pressed().assign(dataset="princeton_eight"), "princeton_eight")
     return results
 
 
@@ -77,7 +76,8 @@ def test_a_cost_has_the_interval_of_its_objects(sensed, root, small):
     assert [low, high] == pytest.approx(ends)
 
 
-def test_claims_know_the_truth_of_the_rows(sensed):
+def test_claims_know_the_truth_of_the_rows(root, sensed, small):
+    small.write(root, "sensor_size", pressed().assign(dataset="princeton_eight"), "princeton_eight")
     judged = judge(claims.CLAIMS, sensed).set_index("key")
     words = judged["verdict"]
     better = [
