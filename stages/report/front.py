@@ -56,7 +56,8 @@ FINDINGS = (
 )  # fmt: skip
 UNCLEAR = """<li><h3>Most sentences of the thesis are not that clear</h3><p>Of {count} sentences of the thesis,
 <strong>{supported}</strong> are supported and <strong>{contradicted}</strong> contradicted. {untestable} cannot be
-tested or depend on how the protocol is read; the others are open. Each opens to its pairs, data and command.</p>
+tested or depend on how the protocol is read; the others are open,
+mixed or show no difference. Each opens to its pairs, data and command.</p>
 <p><a href="site/claims.html">All claims</a></p></li>"""
 ANSWER = '<li><h3>{asked}</h3><p>{answer} <a href="{address}">{kind}</a></p></li>'
 
