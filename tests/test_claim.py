@@ -18,7 +18,7 @@ def test_the_committed_verdicts_follow_from_the_committed_rows(capsys):
     found = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
     assert {one["key"] for one in found} == set(KEYS)
     for one in found:
-        assert len(one["differences"]) == one["pairs"] and all(map(Path.exists, map(Path, one["rows"])))
+        assert len(one["differences"]) >= one["pairs"] and all(map(Path.exists, map(Path, one["rows"])))
     (soft,) = (one for one in found if one["key"] == "ours_soft_gaze")
     anew = "python -m stages.compose experiment=attention && dvc repro lod@gaze lod@gaze_clouds report"
     assert soft["command"] == anew

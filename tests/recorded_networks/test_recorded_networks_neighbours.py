@@ -41,7 +41,7 @@ def test_pressure_images(images, split, monkeypatch, tmp_path):
     found = neighbour_rows("pressure_images", tmp_path, 2, seed=0)
     touches = describe(images)
     same = image_rows(class_sets(touches, 2, 0)["all"], tmp_path, touches, 0)
-    where = {"classifier": "knn", "method": "all", "metric": "accuracy", "split": split}
+    where = {"classifier": "knn", "method": "all", "metric": "accuracy", "split": split, "scaling": "training"}
     assert values(found, split=split) == values(same, **where) and len(values(found, split=split)) == 2
     assert {row["method"] for row in found} == {"features_knn"}
 

@@ -70,7 +70,8 @@ def _trained(said, level, random, repetitions):
         for k, name in enumerate(kept):
             value = level - 0.1 * k + 0.001 * random.normal()
             yield common | {"item": name, "metric": "accuracy", "value": value}
-            yield common | {"item": name, "metric": "train_accuracy", "value": 1.0}
+            if "mode" in said:
+                yield common | {"item": name, "metric": "train_accuracy", "value": 1.0}
 
 
 def majority():

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 
 from stages.report.items import Table
-from stages.report.results import SECTION_3_1, NotRun, Results
+from stages.report.results import SECTION_3_1, NotRun, Results, some
 from stages.report.simplified import UNIT, as_plain
 from stages.report.words import dataset_text
 
@@ -26,6 +26,7 @@ def build(results: Results) -> Table:
     frame = frame.reset_index("data").reset_index(drop=True)
     own = frame[frame["data"] == dataset_text(first)]
     targets = face_counts(results.rows("lod", first))[:2]
+    some(targets, "no target is a number of faces", "lod", runnable=False)
     return Table(
         frame, _wide(own, targets), {"set": dataset_text(first)}
     )  # no ranking: numbers of points do not compete
