@@ -64,7 +64,7 @@ class Learning:
         return {"patience": self.patience, "validation": torch.as_tensor(self.validation).tolist()}
 
     def state_dict(self) -> dict[str, Any]:
-        """What a checkpoint keeps."""
+        """The state that a checkpoint keeps."""
         return {"curve": self.curve, "best": self.best, "best_pass": self.best_pass}
 
     def load_state_dict(self, state: dict[str, Any]) -> None:

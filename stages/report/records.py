@@ -1,4 +1,4 @@
-"""What every table, figure and chart was made of: KIND/records.json, one line an item.
+"""The data behind every table, figure and chart: KIND/records.json, one line an item.
 
 An item's record has its data sets, the files of rows that it read, the methods, sizes and number of objects in them,
 and how many rows it shows. `files` has of each file of rows its hash, its commit where git knows it unchanged, and the

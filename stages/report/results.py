@@ -147,7 +147,7 @@ class Results:
         return frame
 
     def clock(self, stage: str, dataset: str | None = None) -> str:
-        """What the seconds of a stage's rows are: processor time of a named machine, or wall time in older rows."""
+        """The clock of the seconds of a stage's rows: processor time of a named machine, or wall time in older rows."""
         said = self._read(stage, dataset).get("clock", pd.Series(dtype=str)).dropna()
         return said.iloc[0] if len(said) else CLOCK if stage in ALWAYS_PROCESSOR else WALL
 

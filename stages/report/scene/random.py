@@ -134,7 +134,7 @@ def _times(results: Results) -> dict[tuple[str, str], tuple[float, float, float]
 
 
 def planning(results: Results) -> str:
-    """What planning a frame costs, beside the drawing time that our levels save over uniform ones; empty if unknown."""
+    """The cost of planning a frame beside the drawing time that our levels save over uniform ones; empty if unknown."""
     try:
         wide, _ = plans(results)
         drawn = results.bench("frame_times").pivot(index="scene", columns="method", values="ms")
