@@ -18,7 +18,10 @@ def test_the_committed_verdicts_follow_from_the_committed_rows(capsys):
     found = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
     assert {one["key"] for one in found} == set(KEYS)
     for one in found:
-        assert len(one["differences"]) >= one["pairs"] and all(map(Path.exists, map(Path, one["rows"])))
+        judged = [
+            pair for pair in one["differences"] if one["key"] != "equal_over_itti_gaze" or pair.startswith("gaze/")
+        ]
+        assert len(judged) == one["pairs"] and all(map(Path.exists, map(Path, one["rows"])))
     (soft,) = (one for one in found if one["key"] == "ours_soft_gaze")
     anew = "python -m stages.compose experiment=attention && dvc repro lod@gaze lod@gaze_clouds report"
     assert soft["command"] == anew

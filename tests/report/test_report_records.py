@@ -23,7 +23,7 @@ KNOWN = {kind: read_json(path) for kind in KINDS if (path := ROOT / "reports" / 
 
 
 def disagreement(row, known):
-    """What is wrong between a row of the table of the thesis and the records of the item that it names as twin."""
+    """The disagreement of a row of the table of the thesis with the record of its twin; empty text for none."""
     found = [part["items"][row.twin]["sets"] for part in known.values() if row.twin in part["items"]]
     if not found:
         return f"{row.twin} has no record"

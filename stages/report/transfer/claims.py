@@ -21,9 +21,10 @@ PHRASES = {
     ("passes", "printed"): "", ("passes", "converged"): "trained until nothing improves",
 }  # fmt: skip
 SETTING = {"method": NETWORK, "metric": "accuracy", "data": FINE, "weights": "imagenet", "passes": "printed"}
-CONVERGED = reading(  # of these trainings the accuracy of each object was kept
-    "trained until nothing improves, over objects", where={"passes": "converged", "metric": "object_accuracy"},
-    over=("item",), within=("repetition", *SEEN), shared=0.0,
+CONVERGED = (  # splits first: objects share the trainings, so that their interval is too narrow
+    reading("trained until nothing improves", where={"passes": "converged"}),
+    reading("trained until nothing improves, over objects", where={"passes": "converged", "metric": "object_accuracy"},
+            over=("item",), within=("repetition", *SEEN), shared=0.0),
 )  # fmt: skip
 
 
@@ -35,7 +36,7 @@ def claim(
     return Claim(
         key=key, section=section, sentence=sentence, stage="transfer", first={column: first}, second={column: second},
         where=common, margin=margin, phrases=PHRASES, within=SEEN, dataset=SETS,
-        readings=(CONVERGED,),
+        readings=CONVERGED,
     )  # fmt: skip
 
 
