@@ -42,7 +42,7 @@ class MultiTouchTrials:
         else:
             yield from self._split_trials(touched, parts, random_state, Split.REGIONS, ("",))
         if self.all_variants:
-            yield from self._mixed_trials("touches_{}_mixed", touched, random_state)
+            yield from self._mixed_trials("touches_{}_mixed", touched, random_state, validity=VALIDITY[1:])
             few = touched.first_of_each()
             yield from self._mixed_trials("first_15_touches_{}_mixed", few, random_state, **CLOSER)
 

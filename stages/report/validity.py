@@ -14,7 +14,8 @@ MOST = 0.5  # the same share where the number of classes is not known by the nam
 UNTRAINED, ONE_CLASS = "training stopped before it was saturated", "one answer for nearly all samples"
 GUESSING, SAME = "less accurate than guessing", "both sides are the same mesh"
 TRIAL = ("group", "method", "split", "variant", "classifier", "scaling")
-Check = Callable[[Results, str, pd.DataFrame], pd.Series]  # (results, dataset, rows) -> cause of each row, or ""
+NETWORK = ("method", "data", "weights", "mode", "split", "passes", "sense", "perturbation", "severity", "size")
+Check = Callable[[Results, str, str, pd.DataFrame], pd.Series]  # (results, stage, dataset, rows) -> causes, or ""
 CHECKS: dict[str, Check] = {}
 
 
@@ -26,62 +27,51 @@ def check(stage: str) -> Callable[[Check], Check]:
 def causes(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
     """(n,) causes why rows are invalid, empty text for valid rows, indexed as the rows."""
     known = CHECKS.get(stage)
-    return known(results, dataset, rows) if known else pd.Series("", index=rows.index)
+    return known(results, stage, dataset, rows) if known else pd.Series("", index=rows.index)
 
 
 @check("lod")
-def kept_neighbourhoods(results: Results, dataset: str, rows: pd.DataFrame) -> pd.Series:
+def kept_neighbourhoods(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
     """Rows of methods that keep neighbourhoods, and kept none: their mesh is that of plain simplification."""
     if not {"points", "rings"} <= set(rows):  # rows of a run before these were counted
         return pd.Series("", index=rows.index)
-    known = results.once(("invalid units", dataset), lambda: invalid_units(results.rows("lod", dataset)))
+    known = results.once(("invalid units", dataset), lambda: invalid_units(results.rows(stage, dataset)))
     cells = pd.MultiIndex.from_frame(rows[UNIT])
     return pd.Series(known.reindex(cells).fillna("").to_numpy(), index=rows.index, dtype=object)
 
 
 @check("classification")
-def several_answers(results: Results, dataset: str, rows: pd.DataFrame) -> pd.Series:
-    """Rows of classifiers that give one answer for nearly all samples, where the stage measured that."""
-    return _answers(results, "classification", dataset, rows)
-
-
 @check("recorded")
-def several_answers_to_recordings(results: Results, dataset: str, rows: pd.DataFrame) -> pd.Series:
-    """As `several_answers`, for recorded touches."""
-    return _answers(results, "recorded", dataset, rows)
-
-
-@check("transfer")
-def trained(results: Results, dataset: str, rows: pd.DataFrame) -> pd.Series:
-    """Rows of tuned networks whose training was stopped after some passes while it still improved."""
-    return _trained(results, "transfer", dataset, rows)
-
-
-@check("recorded_networks")
-def trained_on_recordings(results: Results, dataset: str, rows: pd.DataFrame) -> pd.Series:
-    """As `trained`, for recorded touches."""
-    return _trained(results, "recorded_networks", dataset, rows)
-
-
-def _answers(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
+def several_answers(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
+    """Rows of classifiers that give one answer for nearly all samples, where the stage measured that."""
     groups = rows["group"].astype(str).str.partition("_")[0] if "group" in rows else pd.Series("", index=rows.index)
     guess = 1 / groups.map(NUMBERS)  # four of four_drawn
     share = _beside(results, stage, dataset, rows, "commonest_share")
     found = (share > (ONE_ANSWER * guess).fillna(MOST)).map({True: ONE_CLASS, False: ""})
-    found[_below(rows, guess)] = GUESSING
+    found[_below(rows, guess, TRIAL)] = GUESSING
     return found
 
 
-def _trained(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
+@check("transfer")
+@check("recorded_networks")
+def trained(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
+    """Rows of tuned networks whose training stopped while it still improved, and of networks that only guess.
+
+    Disturbed inputs may fool a network that works, so that their rows are not held against guessing.
+    """
     tuned = rows["mode"].notna() & (rows["mode"] != "frozen") & (rows["metric"] == "accuracy")
     converged = rows["passes"] == "converged" if "passes" in rows else False
     learned = _beside(results, stage, dataset, rows, "train_accuracy") >= SATURATED
-    return (tuned & ~converged & ~learned).map({True: UNTRAINED, False: ""})
+    found = (tuned & ~converged & ~learned).map({True: UNTRAINED, False: ""})
+    disturbed = rows["perturbation"].fillna("none") != "none" if "perturbation" in rows else False
+    chance = _beside(results, stage, dataset, rows, "chance")
+    found[_below(rows, chance, NETWORK) & ~pd.Series(disturbed, index=rows.index)] = GUESSING
+    return found
 
 
-def _below(rows: pd.DataFrame, guess: pd.Series) -> pd.Series:
+def _below(rows: pd.DataFrame, guess: pd.Series, trial: tuple[str, ...]) -> pd.Series:
     """(n,) whether the mean accuracy of a row's kind of trial is below guessing; False where guessing is unknown."""
-    kinds = [column for column in TRIAL if column in rows]
+    kinds = [column for column in trial if column in rows]
     lead = (rows["value"] - guess).where(rows["metric"] == "accuracy")
     return lead.groupby([rows[kind].astype(str) for kind in kinds]).transform("mean").lt(0) if kinds else lead.lt(0)
 

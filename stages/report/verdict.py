@@ -184,12 +184,17 @@ def _words(judgement: Judgement, results: Results) -> dict[str, str]:
 
 
 def _carries(claim: Claim, chosen: Sequence[Effect], found: Sequence[Effect]) -> str:
-    """`supported +1.2 [0.4, 2.0]`: the word and the pooled effect of all sets; empty where all of them were judged."""
-    effect = effect_of(found)
-    if len(found) == len(chosen) or not isinstance(effect, PooledEffect):
+    """`supported +1.2 [0.4, 2.0]`: the word and the pooled effect of all sets.
+
+    Empty where all sets were judged, unless the pooled effect is open and each set by itself is decided the same way.
+    """
+    effect, word = effect_of(found), word_of(found, claim.unit)
+    if not isinstance(effect, PooledEffect):
         return ""
-    word = word_of(found, claim.unit)
-    word += f", {verdict(*effect.sets[0].interval[1:])} in each set" if word == "open" and effect.in_each else ""
+    alike = word == "open" and effect.in_each
+    if len(found) == len(chosen) and not alike:
+        return ""
+    word += f", {verdict(*effect.sets[0].interval[1:])} in each set" if alike else ""
     return f"{word} {_interval_text(effect)}"
 
 

@@ -329,13 +329,15 @@ def test_sets_of_both_signs_that_differ_beyond_chance_are_mixed_and_others_are_n
     results = sets_of_rows(root, small, one=spread_about(2.0), two=spread_about(-0.1))
     assert pooled(results, "one", "two")["verdict"] == "mixed"
     results = sets_of_rows(root, small, one=spread_about(0.2), two=spread_about(-0.1))
-    assert pooled(results, "one", "two")["verdict"] == "open"
+    row = pooled(results, "one", "two")
+    assert row["verdict"] == "open" and row["carries"] == ""  # both were judged, and are open
 
 
 def test_sets_that_agree_by_different_amounts_are_open_together_and_decided_in_each(root, small):
     results = sets_of_rows(root, small, one=spread_about(1.0), two=spread_about(5.0), more=spread_about(20.0))
     row = pooled(results, "one", "two", "more")
     assert row["verdict"] == "open" and row["i2"] > 0.9 and row["low"] < 0 < row["effect"] and row["p"] > 0.05
+    assert row["carries"].startswith("open, supported in each set +8.67 [")
     thesis = pooled(results, "one", "two", "more", section="T9")
     assert thesis["verdict"] == "supported" and thesis["carries"].startswith("open, supported in each set +8.67 [")
 
