@@ -1,6 +1,7 @@
 """What the report says of where people look: tables, figures, charts and claims, on rows with a known truth."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -18,7 +19,7 @@ from stages.report.meshes.methods import COMBINATIONS
 from stages.report.meshes.rows import paired_cells
 from stages.report.meshes.simplification import METHODS
 from stages.report.pareto import pareto_chart
-from stages.report.results import COLOURED, ON_BLACK, NotRun
+from stages.report.results import COLOURED, ON_BLACK, SECTION_3_2, NotRun
 from stages.report.style import colours
 from stages.report.topics import CLAIMS, TOPICS, build_all, build_one
 from stages.report.verdict import judge
@@ -137,7 +138,23 @@ def test_intervals_of_learned_weights_are_those_of_the_objects(seen, small):
 def test_learned_weights_of_all_sets_make_the_table_and_gaze_comes_first(seen, root, small):
     assert set(table_of(seen, "table_3_1").frame["dataset"]) == {"gaze"}
     small.write(root, "weights", seen.rows("weights", "gaze"), "household")
-    assert list(dict.fromkeys(table_of(small.results(root), "table_3_1").frame["dataset"])) == ["gaze", "household"]
+    small.write(root, "weights", seen.rows("weights", "gaze"), SECTION_3_2)
+    sets = list(dict.fromkeys(table_of(small.results(root), "table_3_1").frame["dataset"]))
+    assert sets == [SECTION_3_2, "gaze", "household"]
+
+
+@pytest.mark.parametrize(("channel", "word"), [("color", "supported"), ("edge", "contradicted")])
+def test_a_channel_has_the_least_weight_where_each_object_says_so(root, small, channel, word):
+    own = {"color": np.array([0.1, 0.12, 0.09, 0.11]), "edge": np.array([0.5, 0.7, 0.6, 0.4]), "dkl": np.full(4, 0.45)}
+    rows = [
+        {"item": item, "channel": name, "value": values.mean() if item is None else np.delete(values, item).mean()}
+        for name, values in own.items() for item in (None, 0, 1, 2, 3)
+    ]  # fmt: skip
+    small.write(root, "weights", pd.DataFrame(rows).assign(method="guided_ssim", metric="weight"), SECTION_3_2)
+    claim = next(one for one in CLAIMS if one.key == "colour_least_ssim")
+    found = judge([replace(claim, first={"channel": channel})], small.results(root)).iloc[0]
+    lowest = {"color": own["dkl"], "edge": own["color"]}[channel]
+    assert found["verdict"] == word and found["effect"] == pytest.approx(float((lowest - own[channel]).mean()))
 
 
 def test_what_hues_change_stands_beside_the_weights_and_a_flat_map_has_none(seen, root, small):

@@ -3,8 +3,8 @@
 from functools import partial
 
 from stages.kit.breaking_point import BROKEN
-from stages.report.claims import POINTS, Claim, Pick, highest_of
-from stages.report.results import COLOURED, GAZED, ON_BLACK
+from stages.report.claims import POINTS, Claim, Pick, highest_of, reading
+from stages.report.results import COLOURED, GAZED, MENDED_3_2, ON_BLACK, SECTION_3_2
 
 from .rows import ANY_POSE, CLASSICAL, GLANCE, NO_RIVALS, OURS, PER_OBJECT, SAME
 
@@ -15,6 +15,7 @@ PHRASES = {
     ("method", OURS): "our model of gaze", ("method", GLANCE): "our glance",
     ("method", ANY_POSE): "our glance in any pose", ("method", "VisAttAll"): "VisAttAll",
     ("rows", 900): "pictures of 900 rows", ("channels", "nine"): "nine channels", ("method", "equal"): "equal weights",
+    ("metric", "weight"): "weights", ("method", "guided_ssim"): "",
     ("views", "best"): "four to eight best viewpoints", ("views", "four"): "four around the object",
     ("views", "twelve"): "twelve",
     ("metric", "repeatability"): "points found again", ("perturbation", "clay"): "with the colours taken away",
@@ -69,6 +70,11 @@ CLAIMS = [
           first={"method": "dkl"}, second=ONE_HUE, scale=1, unit="correlation with intensity", phrases=PHRASES),
     *(in_colour(f"colour_{key}", f"Half of the points or more are found again without the colours ({name}).", method)
       for key, name, method in (("classical", "VisAtt", CLASSICAL), ("all", "VisAttAll", "VisAttAll"))),
+    on_gaze(key="colour_least_ssim", section="T3.2.9", stage="weights", scale=1, unit="SSIM", dataset=SECTION_3_2,
+            sentence="Colour gets the least weight by similarity where each object has one colour.",
+            where={"metric": "weight", "method": "guided_ssim"}, first={"channel": "color"}, statistic="least_weight",
+            note="the lowest weight of the other channels minus that of colour",
+            readings=(reading("formulas mended", dataset=MENDED_3_2),)),
     svm_per_object("svm_per_object", "One SVM for each object is more accurate than one for all.",
                    "image", "pixels", "pixels"),
     svm_per_object("svm_per_object_unseen", "One SVM for each object is more accurate on what it has not seen, too.",

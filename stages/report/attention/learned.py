@@ -6,11 +6,13 @@ from typing import Any
 import pandas as pd
 
 from stages.kit.stats import interval
+from stages.report.claims import Claim
+from stages.report.differences import statistic
 from stages.report.grid import everywhere, grouped, over_items, percent, records
 from stages.report.items import Table
 from stages.report.markdown import number, with_interval
 from stages.report.ranking import Ranking
-from stages.report.results import COLOURED, NotRun, Results, some
+from stages.report.results import COLOURED, MENDED_3_2, SECTION_3_2, NotRun, Results, some
 from stages.report.style import label
 from stages.report.words import dataset_text
 
@@ -24,6 +26,7 @@ AREA = {"image": "whole image", "object": "the object"}
 LIKENESS = {"grey_likeness": "in colour: r with itself in grey", "intensity_likeness": "in colour: r with intensity"}
 THESIS = {"one_svm_for_all_objects": "one_for_all", "one_svm_per_object": "one_per_object"}
 KEYS = ["dataset", "area", "training", "validation"]
+FIRST = {name: place for place, name in enumerate((SECTION_3_2, MENDED_3_2, "gaze"))}
 ORDER = {name: place for place, name in enumerate([*AREA, *TRAINING, *VALIDATION])}
 
 
@@ -73,18 +76,40 @@ def _in_colour(results: Results) -> dict[str, pd.Series]:
 
 
 def _gaze_first(results: Results, metric: str, missing: str) -> pd.DataFrame:
-    """Measured rows of the weights of all sets that have them, those of the people's gaze first."""
+    """Measured rows of the weights of all sets that have them: as printed, mended, then on grey objects with gaze."""
     rows = pd.concat(everywhere(results, "weights", missing, metric=metric).values())
-    return rows.sort_values("dataset", key=lambda names: names != "gaze", kind="stable")
+    return rows.sort_values("dataset", key=lambda names: names.map(FIRST).fillna(len(FIRST)), kind="stable")
 
 
 def _over_objects(group: pd.DataFrame) -> dict[str, float]:
-    """One learned weight from all objects, with its interval over the objects' own values, n m - (n - 1) m_without."""
+    """One learned weight from all objects, with its interval over the objects' own values."""
+    own = own_values(group)
+    _, low, high = interval(own)
+    return {
+        "mean": group.loc[group["item"].isna(), "value"].iloc[0],
+        "low": low,
+        "high": high,
+        "objects": max(len(own), 1),
+    }
+
+
+def own_values(group: pd.DataFrame) -> pd.Series:
+    """(objects,) each object's part in one learned weight, the jackknife's pseudo-values: n m - (n - 1) m_without."""
     of_all = group["item"].isna()
     mean, without = group.loc[of_all, "value"].iloc[0], group[~of_all].set_index("item")["value"]
-    n = len(without)
-    _, low, high = interval(n * mean - (n - 1) * without)
-    return {"mean": mean, "low": low, "high": high, "objects": max(n, 1)}
+    return len(without) * mean - (len(without) - 1) * without
+
+
+@statistic("least_weight")
+def least_weight(results: Results, claim: Claim) -> pd.Series:
+    """The lowest weight of the other channels minus that of the channel of the first side, by object."""
+    side = {**claim.where, **claim.first}
+    channel = side.pop("channel")
+    rows = results.measured(claim.stage, claim.sets[0], **side)
+    of_all = rows[rows["item"].isna() & (rows["channel"] != channel)].set_index("channel")["value"]
+    own = {name: own_values(rows[rows["channel"] == name]) for name in (of_all.idxmin(), channel)}
+    lowest, first = own.values()
+    return lowest - first
 
 
 def _ranks(frame: pd.DataFrame) -> str:
