@@ -170,10 +170,13 @@ def _effect(claim: Claim, results: Results, name: str) -> Effect:
     return Effect(name, values, claim.share, tuple(causes), pairs)
 
 
-def deciding(claim: Claim, found: Sequence[Effect], results: Results) -> list[Effect]:
-    """The effects that give the verdict: those on sets as printed, else the first that was measured."""
+def deciding(claim: Claim, found: Sequence[Effect], results: Results, strict: bool = False) -> list[Effect]:
+    """The effects that give the verdict: those on sets as printed, else the first that was measured.
+
+    strict: only those on sets as printed, of which there may be none.
+    """
     printed = sets_of(claim, results)[: claim.judging]
-    return [one for one in found if (one.dataset or None) in printed] or list(found[:1])
+    return [one for one in found if (one.dataset or None) in printed] or ([] if strict else list(found[:1]))
 
 
 def effect_of(found: Sequence[Effect]) -> Effect | PooledEffect:

@@ -96,7 +96,10 @@ class Judgement:
 
 
 def _judgements(claim: Claim, results: Results) -> list[Judgement]:
-    """The claim as it is written, then in its other readings that were run; NotRun where none was."""
+    """The claim as it is written, then in its other readings that were run; NotRun where none was.
+
+    A reading on data sets of its own was run where the first of them was.
+    """
     judgements, absent = [], []
     for name, one in [("as written", claim), *((reading.name, reading.of(claim)) for reading in claim.readings)]:
         try:
@@ -104,8 +107,9 @@ def _judgements(claim: Claim, results: Results) -> list[Judgement]:
         except NotRun as why:
             absent.append(why)
             continue
-        judgement = Judgement(name, one, found, missing, deciding(one, found, results))
-        if one is claim or np.isfinite(effect_of(judgement.chosen).interval[1]):
+        chosen = deciding(one, found, results, strict=one.dataset != claim.dataset)
+        judgement = Judgement(name, one, found, missing, chosen)
+        if one is claim or (chosen and np.isfinite(effect_of(chosen).interval[1])):
             judgements.append(judgement)
     if not judgements:
         raise absent[0]

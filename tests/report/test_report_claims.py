@@ -525,3 +525,12 @@ def test_a_process_that_imported_no_topic_knows_the_statistic_of_a_claim():
     root = Path(__file__).parents[2]
     done = subprocess.run([sys.executable, "-c", program], input=one, cwd=root, capture_output=True, check=True)
     assert done.stdout.strip()
+
+
+def test_a_reading_on_sets_of_its_own_is_judged_by_their_rows_alone(root, small):
+    results = sets_of_rows(root, small, one=spread_about(2.0), two=spread_about(-2.0), more=spread_about(2.0))
+    absent, there = (reading("elsewhere", dataset=(name, "two")) for name in ("absent", "more"))
+    row = pooled(results, "one", "two", section="T9", readings=(absent,))
+    assert row["verdict"] == "supported" and pd.isna(row["readings"])
+    row = pooled(results, "one", "two", section="T9", readings=(there,))
+    assert row["verdict"] == "supported" and "elsewhere: supported +2" in row["readings"]

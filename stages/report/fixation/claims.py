@@ -13,7 +13,7 @@ from typing import Any
 from stages.fixation.agreement import ALL_VIEWS
 from stages.fixation.places import ITSELF
 from stages.fixation.tasks import FUSED_TASKS
-from stages.report.claims import POINTS, Claim, highest_of, lowest_of
+from stages.report.claims import POINTS, Claim, highest_of, lowest_of, reading
 from stages.report.results import GAZED
 
 from .detectors import FUSED, LEE, NARROWED, NOISE, OURS, PRIOR, RIVALS, network_text, task_text, with_random_weights
@@ -103,7 +103,8 @@ def each_network(
 def nearer(key: str, sentence: str, near: Pair, far: Pair, of: str = "", **more: Any) -> list[Claim]:
     """The claim that the centres of `near` are nearer: the nearest of a view, the thesis's measure; the mean of all."""
     mean = agrees(key, sentence, far, near, metric="distance_mean", scale=100, unit=DIAMETER, **more)
-    least = replace(mean, key=f"{key}_least", where={**mean.where, "metric": "distance"}, of=of)
+    letter = reading("maxima to the letter", where={"metric": "distance_maximum"})
+    least = replace(mean, key=f"{key}_least", where={**mean.where, "metric": "distance"}, of=of, readings=(letter,))
     return [least, replace(mean, of=of or least.key)]
 
 
