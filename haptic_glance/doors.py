@@ -16,14 +16,14 @@ from scipy.spatial import KDTree
 
 from stages.imprints.options import METRES, Metres, length
 from stages.kit import Mesh
+from stages.kit.axes import AUTO, Axis, axis_named
 from stages.lod.feasibility import InfeasibleTarget, SimplifyError
 from stages.lod.look import coloured
 from stages.lod.targets import face_count
 from stages.lod.task import repaired
-from stages.meshes import load as read
-from stages.meshes.load import MeshLike, as_mesh
+from stages.meshes.load import MeshLike, as_mesh, as_stated
 from stages.meshes.normalise import RADIUS, centre_and_radius
-from stages.meshes.up import says_up
+from stages.meshes.up import assumed
 
 MESHES = {  # public function: its arguments that are meshes
     **dict.fromkeys(
@@ -48,7 +48,7 @@ def door(name: str, function: Callable[..., Any]) -> Callable[..., Any]:
 def takes_any_mesh(function: Callable[..., Any], names: Sequence[str], looking: bool = False) -> Callable[..., Any]:
     """The function, its arguments of these names converted by `as_mesh`, but a Surface, which holds a Mesh.
 
-    looking: whether the function depends on the axis that points up, which is then warned of where nobody has said it.
+    looking: whether the function depends on the axis that points up, which is then warned of where the shape chose it.
     """
     known = signature(function)
 
@@ -58,9 +58,8 @@ def takes_any_mesh(function: Callable[..., Any], names: Sequence[str], looking: 
         for name in names:
             mesh = given.arguments[name]
             if not isinstance(getattr(mesh, "mesh", mesh), Mesh):
-                given.arguments[name] = as_mesh(mesh)
-                if looking and not given.arguments.get("up") and isinstance(mesh, str | Path):
-                    _warn_of_axis(Path(mesh), given.arguments[name])
+                silent = not looking or given.arguments.get("up") is not None
+                given.arguments[name] = as_mesh(mesh) if silent else _settled(mesh, "up={!r}")
         return function(*given.args, **given.kwargs)
 
     return work
@@ -107,23 +106,28 @@ def in_units(name: str, value: float | str, diameter: float, unit: str | None) -
     return float(found) / METRES[unit]
 
 
-def load(path: str | Path, up: str | None = None) -> Mesh:
-    """The Mesh of a file, see `stages.meshes.load`. up: the axis that points up, x, y or z.
+def load(path: str | Path, up: Axis | None = None) -> Mesh:
+    """The Mesh of a file, see `stages.meshes.load`. up: the axis that points up: x, -y, Z, or a vector as (0, 1, 1).
 
-    None: the axis that the file states, as every GLB does; else z, with a warning, since people look at the upper part
-    of things.
+    None: the axis that the file states, as every GLB does; else y or z, whichever the shape suggests, with a warning
+    that has the probability, since people look at the upper part of things. "auto": the shape's, whatever the file
+    says.
     """
-    mesh = read(path)
     if up is None:
-        _warn_of_axis(Path(path), mesh)
+        return _settled(path, "load(path, up={!r})")
+    mesh = replace(as_stated(path), up=axis_named(up))
+    return _settled(mesh, "load(path, up={!r})", Path(path).name) if mesh.up == AUTO else mesh
+
+
+def _settled(given: MeshLike, remedy: str, name: str = "") -> Mesh:
+    """The Mesh of what is given; where nothing says which axis points up, a warning says which one is assumed."""
+    mesh = as_stated(given)
+    if mesh.up != AUTO:
         return mesh
-    return replace(mesh, up=up)
-
-
-def _warn_of_axis(path: Path, mesh: Mesh) -> None:
-    if not says_up(path, mesh):
-        said = f"{path.name} does not say which axis points up: z is taken; load(path, up='y') takes another"
-        warnings.warn(said, stacklevel=3)
+    name = name or (Path(given).name if isinstance(given, str | Path) else "the mesh")
+    mesh, note = assumed(mesh, f"{name} does not say which axis points up", remedy)
+    warnings.warn(note, stacklevel=3)
+    return mesh
 
 
 def simplify(

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from stages.kit.axes import AXES
 from stages.meshes.own import names_of
 
 from .guard import MAX_UPLOAD
@@ -31,7 +32,7 @@ class Opening:
             self.choice = gui.add_dropdown("Open", [*self.files] or [NOTHING], visible=len(self.files) > 1)
             self.upload = gui.add_upload_button("Upload a file", hint=f"at most {MAX_UPLOAD >> 20} MB")
             self.dark = gui.add_checkbox("Dark", False)
-            self.axis = gui.add_dropdown("Up axis", ["x", "y", "z"], initial_value=self.up or "z")
+            self.axis = gui.add_dropdown("Up axis", AXES, initial_value="z")
         window.on(self.choice.on_update, lambda: self.open(self.files[self.choice.value]))
         window.on(self.upload.on_upload, self.uploaded)
         window.on(self.axis.on_update, self.turn)
@@ -75,6 +76,7 @@ class Opening:
         """Says what is on the table."""
         count, note = f"{len(specimen.given.faces):,} faces", specimen.note.partition(" (")[0]
         self.about.content = f"**{escaped(specimen.name)}**: {count}, {escaped(note)}"
+        self.axis.options = tuple(dict.fromkeys((*AXES, specimen.given.up)))  # with a vector of --up
         self.axis.value = specimen.given.up
 
     def refuse(self, name: str, size: int) -> None:

@@ -12,8 +12,8 @@ from .specimen import Look, Specimen
 class Settings:
     """What the person said when the studio was started, for all windows.
 
-    files: what can be opened besides uploads. up: their axis, None for the files' own. marks: the folder of the marks.
-    panel: the one that is shown first, by its title.
+    files: what can be opened besides uploads. up: their axis, None for the files' own, or their shapes'. marks: the
+    folder of the marks. panel: the one that is shown first, by its title.
     """
 
     files: Sequence[Path] = ()

@@ -7,10 +7,11 @@ from pathlib import Path
 import numpy as np
 
 from stages.kit import Mesh
+from stages.kit.axes import to_z_up
 from stages.meshes import clean, normalise, rotate_to_z_up
 from stages.meshes.colours import bake_texture
 from stages.meshes.load import load_unnamed
-from stages.meshes.normalise import RADIUS, TO_Z_UP, centre_and_radius
+from stages.meshes.normalise import RADIUS, centre_and_radius
 from stages.meshes.up import upright_by
 from stages.salient_points import find_points
 
@@ -67,11 +68,11 @@ class UserMesh:
 
     def to_file_directions(self, directions: np.ndarray) -> np.ndarray:
         """Directions (k, 3) in the mesh's frame, converted to the file's axes."""
-        return directions @ TO_Z_UP[self.source.up]
+        return directions @ to_z_up(self.source.up)
 
     def from_file(self, positions: np.ndarray) -> np.ndarray:
         """Positions (k, 3) in the file's coordinates, converted to the mesh's frame."""
-        return (positions - centre_and_radius(self.source)[0]) / self.unit @ TO_Z_UP[self.source.up].T
+        return (positions - centre_and_radius(self.source)[0]) / self.unit @ to_z_up(self.source.up).T
 
     def places(self, at: list[str], count: int | None = None, method: str | None = None, seed: int = 0) -> Places:
         """The Places for the arguments of --at: `salient`, `random`, ids of vertices, positions x,y,z of the file."""

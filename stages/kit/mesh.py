@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from scipy import sparse
 
+from .axes import axis_named
 from .texture import Texture
 
 
@@ -16,7 +17,8 @@ class Mesh:
 
     vertices (n, 3) f8, faces (m, 3) i8 into vertices, counter-clockwise seen from outside, colors (n, 3) u1 or None,
     texture: a Texture of the m faces or None (the stages of the pipeline store and use none). up: the axis that points
-    up, x, y or z. What makes a mesh of a mesh keeps it (`dataclasses.replace`); stored meshes are z up.
+    up, as `axis_named` takes it: y, -z, a vector; `auto` where nobody has said. What makes a mesh of a mesh keeps it
+    (`dataclasses.replace`); stored meshes are z up.
 
     The arrays are the mesh's own: those of the caller are copied where they can still be written to. Two meshes are
     equal where all of this is, and equal meshes have one hash; a pickled mesh leaves what it has computed behind.
@@ -51,8 +53,7 @@ class Mesh:
             object.__setattr__(self, "colors", colors)
         if self.texture is not None and len(self.texture.image) != len(faces):
             raise ValueError(f"the texture must be of {len(faces)} faces, got {len(self.texture.image)}")
-        if self.up not in ("x", "y", "z"):
-            raise ValueError(f"unknown up axis {self.up!r}: choose one of x, y, z")
+        object.__setattr__(self, "up", axis_named(self.up))
 
     def __repr__(self) -> str:
         return f"Mesh({len(self.vertices):,} vertices, {len(self.faces):,} faces, {self.up} up)"

@@ -1,12 +1,14 @@
 """Turns one mesh file of a source into a mesh that the later stages can use, and a row of its metadata."""
 
 import hashlib
+from dataclasses import replace
 
 import numpy as np
 from scipy.sparse.csgraph import connected_components
 from trimesh.resolvers import ZipResolver
 
 from stages.kit import Mesh
+from stages.kit.axes import AUTO
 from stages.kit.fetch import FetchError
 
 from .clean import clean
@@ -16,6 +18,7 @@ from .load import MeshError, parse
 from .normalise import normalise, rotate_to_z_up
 from .plane import remove_plane
 from .sources import MeshFile
+from .upright import settled
 
 
 def prepare_mesh(item: MeshFile, remove_table: bool = False, colours: str = "vertex") -> tuple[Mesh, dict]:
@@ -30,11 +33,12 @@ def prepare_mesh(item: MeshFile, remove_table: bool = False, colours: str = "ver
         needed = painted or item.suffix == DEPTH
         beside = item.beside() if needed else {}
         there = ZipResolver({name: data for name, data in beside.items() if data})
-        raw, notes = clean(parse(content, item.suffix, there if needed else None, every_colour=painted))
+        parsed = parse(content, item.suffix, there if needed else None, every_colour=painted)
+        raw, notes = clean(settled(parsed if item.up == AUTO else replace(parsed, up=item.up)))
         notes += [f"{name}, which it names, is not there" for name, data in beside.items() if not data]
         if remove_table:
             raw, notes = _without_table(raw, notes)
-        mesh = normalise(rotate_to_z_up(raw, item.up))
+        mesh = normalise(rotate_to_z_up(raw))
         mesh = coloured(mesh, item.name, colours, item.suffix) if painted else mesh
     except (FetchError, ValueError, OSError) as error:
         raise MeshError(str(error)) from error
@@ -43,7 +47,7 @@ def prepare_mesh(item: MeshFile, remove_table: bool = False, colours: str = "ver
     components = connected_components(mesh.adjacency[used][:, used])[0]
     return mesh, {
         "object": item.name, "file": item.file, "licence": item.licence, "creator": item.creator, "unit": item.unit,
-        "up": item.up, "size": float(np.ptp(raw.vertices[np.unique(raw.faces)], axis=0).max()),
+        "up": raw.up, "size": float(np.ptp(raw.vertices[np.unique(raw.faces)], axis=0).max()),
         "vertices": len(mesh.vertices), "faces": len(mesh.faces), "parts": int(components),
         "watertight": mesh.watertight, "open_edges": int((counts == 1).sum()),
         "nonmanifold_edges": int((counts > 2).sum()), "colors": mesh.colors is not None,

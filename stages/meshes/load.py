@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from trimesh.resolvers import FilePathResolver, Resolver
 
 from stages.kit import Mesh
+from stages.kit.axes import AUTO
 from stages.kit.extras import MissingExtra
 
 from . import clouds
@@ -17,6 +18,7 @@ from .headers import MeshError, check_header
 from .materials import join_parts, merge_equal_rows, obj_vertices, texture_of, vertex_colors
 from .off import read_off
 from .up import UP_OF_FORMAT, stated_up
+from .upright import settled
 
 MeshLike = (
     Mesh
@@ -39,9 +41,15 @@ def load(path: str | Path) -> Mesh:
     scene are transformed and joined. The materials of a GLB, and those of an OBJ whose material files lie next to it,
     become the texture of the mesh. Of a point cloud (PLY without faces, XYZ, PTS, PCD, LAS), with or without normals,
     the vertices are those of the surface that stages.meshes.clouds makes of it; so they are of a depth image, which a
-    .depth file names together with its camera. A GLB is y up; the other formats do not say,
-    and `up` is z. Raises MeshError with the file and the reason when it holds no usable mesh.
+    .depth file names together with its camera. A GLB is y up, a .depth file z up. The other formats do not say, but in
+    a comment of ours: `up` is then y or z, whichever the shape suggests (stages.meshes.upright). Raises MeshError with
+    the file and the reason when it holds no usable mesh.
     """
+    return settled(load_as_stated(path))
+
+
+def load_as_stated(path: str | Path) -> Mesh:
+    """As `load`; `up` is `auto` where the file does not say which axis points up."""
     try:
         return load_unnamed(Path(path))
     except MeshError as error:
@@ -49,7 +57,7 @@ def load(path: str | Path) -> Mesh:
 
 
 def load_unnamed(path: Path) -> Mesh:
-    """As `load`; the message of a MeshError is the reason alone, for a caller that names the file in all its errors."""
+    """As `load_as_stated`; the message of a MeshError is the reason alone, for a caller that names the file itself."""
     if not path.is_file():
         raise MeshError("is a folder, not a mesh" if path.is_dir() else "no such file")
     return parse(path.read_bytes(), path.suffix.lower(), FilePathResolver(str(path)))
@@ -59,13 +67,24 @@ def as_mesh(given: MeshLike) -> Mesh:
     """The Mesh of a path, an object of trimesh, (vertices (n, 3), faces (m, 3)) or a Cloud, or the Mesh that is given.
 
     Vertices keep their ids, but for a Scene, whose parts are joined as those of a GLB are. Colours and textures of
-    trimesh are taken over. Only the path of a GLB says which axis points up; else it is z, and functions take `up`.
-    Raises MeshError as `load` does, ValueError for arrays of another shape, TypeError for anything else.
+    trimesh are taken over. Only a Mesh and some files say which axis points up; of the others `up` is y or z, whichever
+    the shape suggests, as of `load`, so that a file and its arrays have one answer. A Mesh is z up unless it is made
+    with another `up`. Raises MeshError as `load` does, ValueError for arrays of another shape, TypeError for anything
+    else.
     """
+    return settled(as_stated(given))
+
+
+def as_stated(given: MeshLike) -> Mesh:
+    """As `as_mesh`; `up` is `auto` where nothing says which axis points up."""
     if isinstance(given, Mesh):
         return given
     if isinstance(given, str | Path):
-        return load(given)
+        return load_as_stated(given)
+    return replace(_converted(given), up=AUTO)
+
+
+def _converted(given):
     if isinstance(given, trimesh.Scene):
         return join_parts(given, every_colour=True) or _to_mesh(None, False, False)
     if isinstance(given, clouds.Cloud):
@@ -78,7 +97,7 @@ def as_mesh(given: MeshLike) -> Mesh:
 
 
 def parse(content: bytes, suffix: str, resolver: Resolver | None = None, every_colour: bool = False) -> Mesh:
-    """As `load`, from the bytes of a file and its suffix (`.stl`, ...). Without a resolver, no other file is read.
+    """As `load_as_stated`, from the bytes of a file and its suffix (`.stl`, ...). Without a resolver, reads no other.
 
     every_colour: also the colours of faces, as those of the vertices, and the picture of a PLY, as a texture.
     """
@@ -89,8 +108,7 @@ def parse(content: bytes, suffix: str, resolver: Resolver | None = None, every_c
     check_header(content, suffix)
     try:
         mesh = _parsed(content, suffix, resolver, every_colour)
-        up = UP_OF_FORMAT.get(suffix) or stated_up(content)
-        return replace(mesh, up=up) if up else mesh
+        return replace(mesh, up=UP_OF_FORMAT.get(suffix) or stated_up(content) or AUTO)
     except (MeshError, MissingExtra):
         raise
     except MemoryError:

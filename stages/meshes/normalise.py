@@ -5,15 +5,11 @@ from dataclasses import replace
 import numpy as np
 
 from stages.kit import Mesh
+from stages.kit.axes import Axis, axis_named, to_z_up
+
+from .upright import settled
 
 RADIUS = 0.5  # the sphere then spans 859 of the 900 image rows of the thesis's camera
-
-# Rows are the new x, y, z in terms of the old axes. Each matrix is a rotation, so no mesh is mirrored.
-TO_Z_UP = {
-    "x": np.array([[0, 1, 0], [0, 0, 1], [1, 0, 0]]),
-    "y": np.array([[0, 0, 1], [1, 0, 0], [0, 1, 0]]),
-    "z": np.eye(3, dtype=int),
-}
 
 
 def normalise(mesh: Mesh) -> Mesh:
@@ -38,9 +34,10 @@ def centre_and_radius(mesh: Mesh) -> tuple[np.ndarray, float]:
     return centre, radius
 
 
-def rotate_to_z_up(mesh: Mesh, up: str | None = None) -> Mesh:
-    """The mesh rotated so that its axis `up` (x, y or z; None: its own) becomes +z; ValueError for another axis."""
-    up = up or mesh.up
-    if up not in TO_Z_UP:
-        raise ValueError(f"unknown up axis {up!r}: choose one of {', '.join(TO_Z_UP)}")
-    return replace(mesh, vertices=mesh.vertices @ TO_Z_UP[up].T, up="z")
+def rotate_to_z_up(mesh: Mesh, up: Axis | None = None) -> Mesh:
+    """The mesh rotated so that its axis `up` (see `axis_named`; None: its own) becomes +z; ValueError for no axis.
+
+    `auto` stands for the axis that the shape suggests (`probable_up`).
+    """
+    mesh = settled(mesh if up is None else replace(mesh, up=axis_named(up)))
+    return replace(mesh, vertices=mesh.vertices @ to_z_up(mesh.up).T, up="z")

@@ -56,7 +56,7 @@ def _refuse(error):
 class MeshFile:
     """One mesh of a source: its name and file, a function that reads the bytes of the file, and metadata.
 
-    suffix: the format, for example `.stl`; up: the axis that points up, x, y or z; unit: of the coordinates; beside: a
+    suffix: the format, for example `.stl`; up: the axis that points up, or `auto`; unit: of the coordinates; beside: a
     function that reads the files of its materials (files_beside).
     """
 

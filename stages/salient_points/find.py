@@ -10,6 +10,7 @@ from stages.conspicuity import ViewMaps, conspicuity
 from stages.conspicuity.channels import mask_at_size
 from stages.conspicuity.surface_values import SMOOTHING
 from stages.kit import Mesh, Viewpoint
+from stages.kit.axes import Axis
 from stages.meshes import MeshError, clean, normalise, rotate_to_z_up
 from stages.meshes.orient import orient
 from stages.views import TWELVE, render
@@ -26,11 +27,12 @@ MAP_SIZE = (225, 300)  # rows, columns of the maps: a quarter of the views', so 
 
 def saliency(
     mesh: Mesh, method: str = GLANCE, weights: str | Mapping[str, float] | None = None,
-    viewpoints: Iterable[Viewpoint] | None = None, smoothing: float = SMOOTHING, up: str | None = None,
+    viewpoints: Iterable[Viewpoint] | None = None, smoothing: float = SMOOTHING, up: Axis | None = None,
 ) -> np.ndarray:  # fmt: skip
     """How much each vertex attracts attention: (n,) f8 in 0..1, 1 at the maximum, whatever the mesh's place and size.
 
-    up: the axis of the mesh that points up, x, y or z; None: its own, `mesh.up`, which only a GLB states and is else z.
+    up: the axis of the mesh that points up: x, -y, a vector of three numbers, or `auto`, which chooses y or z by the
+    shape; None: its own, `mesh.up`.
     People look at the upper part of things and walk around them, so `glance`, `enhanced` and `height` need the right
     one. method: a name of METHODS that has a saliency
     (all but `random` and `farthest`). `glance`, the default, is the fixation density per unit of area that a log-linear
@@ -52,7 +54,7 @@ def saliency(
 def find_points(
     mesh: Mesh, method: str | int = GLANCE, count: int | None = None, *,
     weights: str | Mapping[str, float] | None = None, viewpoints: Iterable[Viewpoint] | None = None,
-    selection: str = "suppression", radius: float = RADIUS, seed: int = 0, name: str = "", up: str | None = None,
+    selection: str = "suppression", radius: float = RADIUS, seed: int = 0, name: str = "", up: Axis | None = None,
 ) -> np.ndarray:  # fmt: skip
     """Vertex ids of the places that attract attention: (k,) i8, most salient first.
 
@@ -72,7 +74,7 @@ def find_points(
 def detect(
     mesh: Mesh, method: str | int = GLANCE, count: int | None = None, *,
     weights: str | Mapping[str, float] | None = None, viewpoints: Iterable[Viewpoint] | None = None,
-    selection: str = "suppression", radius: float = RADIUS, seed: int = 0, name: str = "", up: str | None = None,
+    selection: str = "suppression", radius: float = RADIUS, seed: int = 0, name: str = "", up: Axis | None = None,
 ) -> Detection:  # fmt: skip
     """The points of `find_points` and the saliency of `saliency`, from one look. The arguments are those of these."""
     if not isinstance(method, str):

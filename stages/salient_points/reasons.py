@@ -6,6 +6,7 @@ import numpy as np
 
 from stages.glance import samples_of_mesh, standardised
 from stages.kit import Mesh
+from stages.kit.axes import Axis, axis_named
 from stages.meshes import normalise, rotate_to_z_up
 from stages.meshes.orient import orient
 from stages.weights.published import GLANCE, GLANCES
@@ -36,7 +37,7 @@ WORDS = {
 
 
 def contributions(
-    mesh: Mesh, vertices: np.ndarray, method: str = GLANCE, up: str | None = None
+    mesh: Mesh, vertices: np.ndarray, method: str = GLANCE, up: Axis | None = None
 ) -> dict[str, np.ndarray]:
     """dict feature -> (k,) f8: its weight times its standardised value at the vertices (k,).
 
@@ -45,7 +46,7 @@ def contributions(
     """
     if method not in GLANCES:
         raise ValueError(f"method {method!r} is no sum of features: only {' and '.join(GLANCES)} are")
-    mesh, samples, values = _seen(mesh, up)
+    mesh, samples, values = _seen(mesh, None if up is None else axis_named(up))
     near, shares = samples.interpolation(mesh.vertices[vertices], mesh.vertex_normals[vertices])
     return {name: weight * (values[name][near] * shares).sum(axis=1) for name, weight in GLANCES[method].items()}
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from stages.glance import samples_of_mesh, samples_of_points, standardised
+from stages.kit.axes import TO_Z_UP
 from stages.kit.mesh import unit
 from stages.meshes import normalise, rotate_to_z_up
 from stages.meshes.load import parse
-from stages.meshes.normalise import TO_Z_UP
 from stages.weights import fit_fixations
 from stages.weights.ground_truth.gaze import gaze_on_vertices, read_gaze
 from stages.weights.published import GLANCES

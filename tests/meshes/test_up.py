@@ -1,5 +1,6 @@
 """The axis that points up: known from a GLB, guessed elsewhere, kept by whatever makes a mesh of a mesh."""
 
+import argparse
 from pathlib import Path
 
 import numpy as np
@@ -7,16 +8,19 @@ import pytest
 import trimesh
 
 from stages.kit import Mesh
+from stages.kit.axes import axis_named, to_z_up
 from stages.kit.texture import Texture
 from stages.lod import simplify
 from stages.lod.borders import close_borders, cut_borders
+from stages.lod.export import write_any
 from stages.lod.look import coloured
 from stages.lod.task import SimplificationTask, repaired
 from stages.meshes import clean, load, normalise, rotate_to_z_up
 from stages.meshes.colours import bake_texture
+from stages.meshes.load import load_as_stated
 from stages.meshes.orient import orient
 from stages.meshes.plane import _submesh
-from stages.meshes.up import upright_by, upright_for
+from stages.meshes.up import add_up, upright_by, upright_for
 
 BALL = trimesh.creation.icosphere(2)
 PLAIN = Texture(np.zeros((len(BALL.faces), 3, 2)), np.zeros(len(BALL.faces), int), (np.full((1, 1, 4), 255, np.uint8),))
@@ -61,16 +65,85 @@ def test_turned_upright_a_mesh_is_z_up_by_its_own_axis():
     assert np.array_equal(rotate_to_z_up(LYING, "x").vertices[:, 2], LYING.vertices[:, 0])
 
 
-def test_there_are_three_axes():
-    with pytest.raises(ValueError, match="up axis 'w'"):
-        Mesh(BALL.vertices, BALL.faces, up="w")
+ALL = "x, y, z, -x, -y, -z, auto, or a vector of three numbers that is not zero, such as 0,1,1"
+NONE = ["w", "", "--y", "0,0,0", "1,2", "1,2,3,4", "nan,0,1", (0, 0, 0), (0, 1), (0, 1, "a"), None, 3, [[0, 0, 1]]]
+
+
+@pytest.mark.parametrize("up", NONE, ids=str)
+def test_what_is_no_axis_is_answered_by_the_axes_there_are(up):
+    with pytest.raises(ValueError, match="unknown up axis .*: choose one of") as error:
+        Mesh(BALL.vertices, BALL.faces, up=up)
+    assert str(error.value).endswith(ALL) and "\n" not in str(error.value)
+
+
+NAMES = {
+    "Y": "y", "+z": "z", " -X ": "-x", "Auto": "auto", (0, 2, 0): "y", (0, 0, -1e-9): "-z", "0,-3,0": "-y",
+    (0.6, 0, 0.8): "0.6,0,0.8", "3,0,4": "0.6,0,0.8", (0, 1, 1): "0,0.707107,0.707107", (1e300, 0, 0): "x",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("up", "name"), NAMES.items(), ids=str)
+def test_an_axis_has_one_name(up, name):
+    assert axis_named(up) == name == axis_named(name) == Mesh(BALL.vertices, BALL.faces, up=up).up
+    assert axis_named(np.array(up) if isinstance(up, tuple) else up) == name
+
+
+@pytest.mark.parametrize("up", ["x", "y", "z", "-x", "-y", "-z", "0.6,0,0.8", "-0.48,0.6,0.64"])
+def test_any_axis_becomes_z_without_a_mirror(up):
+    turn = to_z_up(up)
+    vector = [float(part) for part in up.split(",")] if "," in up else {"xyz".index(up[-1]): -1 if "-" in up else 1}
+    vector = [vector.get(k, 0) for k in range(3)] if isinstance(vector, dict) else vector
+    assert turn @ vector == pytest.approx([0, 0, 1], abs=1e-9)
+    assert turn @ turn.T == pytest.approx(np.eye(3)) and np.linalg.det(turn) == pytest.approx(1)
+    assert rotate_to_z_up(LYING, up) == rotate_to_z_up(LYING, vector) and rotate_to_z_up(LYING, up).up == "z"
 
 
 def test_a_guess_is_told_from_what_a_file_says():
-    flat = Mesh(BALL.vertices, BALL.faces)
+    cone = trimesh.creation.cone(0.4, 1)
+    known, stated = Mesh(cone.vertices, cone.faces, up="auto"), Mesh(cone.vertices, cone.faces, up="-y")
     assert upright_by(LYING, Path("a.glb"), None) == (LYING, "y up, as in every GLB")
-    assert upright_by(flat, Path("a.stl"), None) == (flat, "z up, a guess, since STL does not say (another axis: --up)")
-    assert upright_by(flat, Path("a.stl"), "x")[0].up == "x"
+    assert upright_by(stated, Path("a.stl"), None) == (stated, "-y up, as the file says")
+    sure = "assuming z is up (probability 0.99; STL files do not store it; --up y for the other)"
+    assert upright_by(known, Path("a.stl"), None) == (Mesh(cone.vertices, cone.faces), sure)
+    assert upright_by(stated, Path("a.stl"), "auto") == (Mesh(cone.vertices, cone.faces), sure)
+    ball = Mesh(BALL.vertices, BALL.faces, up="auto")
+    hardly = "z is up, but the shape hardly tells (probability 0.50; OBJ files do not store it; say --up z or --up y)"
+    assert upright_by(ball, Path("a.obj"), None)[1] == f"assuming {hardly}"
+    assert upright_by(known, Path("a.stl"), "x") == (Mesh(cone.vertices, cone.faces, up="x"), "x up")
+
+
+@pytest.mark.parametrize("suffix", ["stl", "obj", "ply", "off"])
+@pytest.mark.parametrize("up", ["z", "-y", "-0.48,0.6,0.64"])
+def test_a_file_of_ours_states_its_axis(tmp_path, suffix, up):
+    mesh = Mesh(BALL.vertices, BALL.faces, up=up)
+    write_any(tmp_path / f"ball.{suffix}", mesh)
+    assert load_as_stated(tmp_path / f"ball.{suffix}").up == up
+    assert upright_by(load_as_stated(tmp_path / f"ball.{suffix}"), Path(f"a.{suffix}"), None)[1].endswith(
+        "the file says"
+    )
+
+
+def command(argv):
+    parser = argparse.ArgumentParser("prog")
+    add_up(parser)
+    parser.add_argument("--count", type=int)
+    return parser.parse_args(argv)
+
+
+@pytest.mark.parametrize("text", ["-y", "-Y", "-0.5,0,1", "0,1,1", "Z", "auto"])
+def test_a_command_takes_every_axis(text):
+    assert command(["--up", text, "--count", "3"]).up == axis_named(text) == command([f"--up={text}"]).up
+    assert command(["--count", "3"]).up is None and command(["--up", text, "--count", "3"]).count == 3
+
+
+@pytest.mark.parametrize("text", ["w", "0,0,0", "-w"])
+def test_a_command_refuses_what_is_no_axis(text, capsys):
+    with pytest.raises(SystemExit):
+        command([f"--up={text}"])
+    assert (
+        capsys.readouterr().err.splitlines()[-1]
+        == f"prog: error: argument --up: unknown up axis {text!r}: choose one of {ALL}"
+    )
 
 
 def test_a_mesh_is_turned_for_a_glb_alone_and_as_other_programs_turn_it_back():
