@@ -57,7 +57,7 @@ def takes_any_mesh(function: Callable[..., Any], names: Sequence[str], looking: 
         given = known.bind(*args, **kwargs)
         for name in names:
             mesh = given.arguments[name]
-            if not isinstance(getattr(mesh, "mesh", mesh), Mesh):
+            if not isinstance(getattr(mesh, "mesh", mesh), Mesh) or getattr(mesh, "up", "") == AUTO:
                 silent = not looking or given.arguments.get("up") is not None
                 given.arguments[name] = as_mesh(mesh) if silent else _settled(mesh, "up={!r}")
         return function(*given.args, **given.kwargs)

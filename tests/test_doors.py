@@ -40,9 +40,10 @@ def file(body, tmp_path, request):
 
 
 @pytest.mark.slow
+@pytest.mark.filterwarnings("ignore:assuming")
 @pytest.mark.parametrize("file", [".stl", ".obj", ".ply", ".off", ".glb"], indirect=True)
 def test_all_doors_give_the_same_places_values_and_imprints(file, tmp_path, capsys):
-    mesh = load(file, up="y" if file.suffix == ".glb" else "z")
+    mesh = load(file)
     found = detect(mesh, count=COUNT)
     assert (np.diff(found.scores) <= 0).all() and len(found.scores) == COUNT
     assert find_points(mesh, COUNT).tolist() == find_points(mesh, count=COUNT).tolist() == found.points.tolist()
@@ -56,7 +57,7 @@ def test_all_doors_give_the_same_places_values_and_imprints(file, tmp_path, caps
     assert [row["vertex"] for row in json.loads(capsys.readouterr().out)] == found.points.tolist()
     stored = np.load(tmp_path / "touched/imprints.npz")
     assert np.allclose(stored["images"], press_many(mesh, found.points), atol=1e-5)
-    look = open_file(file, mesh.up).look("glance", COUNT)
+    look = open_file(file).look("glance", COUNT)
     assert [row[1] for row in look.points] == found.points.tolist()
     assert [row[-1] for row in look.points] == found.scores.tolist()
 
@@ -184,14 +185,40 @@ def test_the_axis_of_a_glb_outlives_another_format(body, tmp_path, suffix):
 def test_a_guess_of_the_axis_is_said_once_and_no_other(body, tmp_path):
     mesh = Mesh(*body)
     write_any(tmp_path / "body.ply", mesh)
-    with pytest.warns(UserWarning, match="body.ply does not say which axis points up: z is taken"):
-        load(tmp_path / "body.ply")
-    with pytest.warns(UserWarning, match="does not say"):
-        saliency(tmp_path / "body.ply")
+    trimesh.Trimesh(*body, process=False).export(tmp_path / "plain.ply")
+    with pytest.warns(UserWarning, match=r"assuming z is up.*plain.ply does not say.*load\(path, up='y'\)") as told:
+        load(tmp_path / "plain.ply")
+    with pytest.warns(UserWarning, match=r"assuming z is up.*plain.ply does not say.* up='y'"):
+        saliency(tmp_path / "plain.ply")
+    with pytest.warns(UserWarning, match="the mesh does not say which axis points up"):
+        find_points(body, 1)
+    assert [one.filename for one in told] == [__file__]
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        assert len(load(tmp_path / "body.ply", up="z").faces) == len(mesh.faces)
-        saliency(tmp_path / "body.ply", up="z")
+        assert load(tmp_path / "body.ply").up == "z"  # as its comment says
+        assert len(load(tmp_path / "plain.ply", up="z").faces) == len(mesh.faces)
+        saliency(tmp_path / "plain.ply", up="z")
+        press(body, 7)
+
+
+@pytest.mark.filterwarnings("ignore:assuming")
+def test_a_file_its_arrays_and_its_command_have_one_axis(body, tmp_path, capsys):
+    lying = body[0][:, [1, 2, 0]], body[1]  # y up
+    trimesh.Trimesh(*lying, process=False).export(tmp_path / "lying.obj")
+    expected = find_points(Mesh(*lying, up="y"), COUNT).tolist()
+    forms = tmp_path / "lying.obj", lying, trimesh.Trimesh(*lying, process=False), load(tmp_path / "lying.obj")
+    assert all(find_points(form, COUNT).tolist() == expected for form in forms)
+    assert find_points(Mesh(*lying), COUNT, up="auto").tolist() == expected
+    assert find_points(Mesh(*lying), COUNT).tolist() != expected  # a Mesh is z up unless it is told
+    run("points", [str(tmp_path / "lying.obj"), "--count", str(COUNT), "--json"])
+    out, progress = capsys.readouterr()
+    assert [row["vertex"] for row in json.loads(out)] == expected
+    assert re.search(r"assuming y is up.*\(probability 0\.\d\d; OBJ files do not store it; .*--up z", progress)
+    run("points", [str(tmp_path / "lying.obj"), "--count", str(COUNT), "--json", "--up", "-Y"])
+    turned = capsys.readouterr()
+    assert "-y up" in turned.err
+    upside_down = find_points(Mesh(*lying), COUNT, up=(0, -2, 0)).tolist()
+    assert [row["vertex"] for row in json.loads(turned.out)] == upside_down != expected
 
 
 def test_a_triangle_soup_and_an_open_patch_are_simplified(body):

@@ -40,17 +40,18 @@ write_any(folder / "scan.stl", scanned)
 # -------------
 #
 # ``load`` reads STL, OBJ, PLY, OFF, GLB and point clouds. An STL repeats each vertex at every face; equal ones are
-# merged. The file is y up, which an STL cannot say, so we say it. A look takes about a second.
+# merged. Where a file does not say which axis points up, ``load`` asks the shape and warns; we say it. A look takes
+# about a second.
 
-mesh = load(folder / "scan.stl")
-found = detect(mesh, count=10, up="y")
+mesh = load(folder / "scan.stl", up="y")
+found = detect(mesh, count=10)
 print(mesh)
 print(
     f"{found.strong} places pass the method's own threshold; the first three are vertices {found.points[:3].tolist()}"
 )
 
 plt.figure(figsize=(4.6, 4.4), layout="constrained")
-plt.imshow(look(normalise(type(mesh)(mesh.vertices, mesh.faces, up="y")), found.saliency, found.points)[90:530, 60:560])
+plt.imshow(look(normalise(mesh), found.saliency, found.points)[90:530, 60:560])
 plt.axis("off")
 plt.show()
 
@@ -61,7 +62,7 @@ plt.show()
 # The mean error is a share of the diagonal of the bounding box. With weights it falls where the saliency is high and
 # rises elsewhere.
 
-weights = saliency(mesh, up="y")
+weights = saliency(mesh)
 for faces in (4000, 2000, 1000):
     small = simplify(mesh, faces, weights=weights)
     print(f"{len(small.faces):5,} faces, mean error {100 * metro(mesh, small)['mean']:.3f} % of the diagonal")

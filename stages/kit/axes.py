@@ -6,7 +6,7 @@ import numpy as np
 
 Axis = str | Sequence[float] | np.ndarray
 AUTO = "auto"  # nobody has said which axis points up: the shape decides (stages.meshes.upright)
-AXES = ("x", "y", "z", "-x", "-y", "-z")
+AXES: tuple[str, ...] = ("x", "y", "z", "-x", "-y", "-z")
 ALLOWED = f"{', '.join(AXES)}, {AUTO}, or a vector of three numbers that is not zero, such as 0,1,1"
 SNAP = 1e-6  # of a unit vector: an axis that differs by less from a coordinate axis is that axis
 

@@ -36,7 +36,7 @@ def add_up(command: argparse.ArgumentParser, remark: str = "") -> None:
                 words[place - 1 : place + 1] = [f"--up={words[place]}"]
         return parse(words if args is not None else None, namespace)
 
-    command.parse_known_args = joined
+    command.parse_known_args = joined  # type: ignore[method-assign]  # of the same use
 
 
 def _axis(text: str) -> str:

@@ -23,27 +23,17 @@ EVEN = 0.05  # log of the odds below which the axes are equal: so much a coarse 
 SURE = 0.8  # probability from which a choice is right about nine times in ten, below it about two times in three
 # Lengths in units of the object's diameter.
 PIECE = 0.03  # longest edge of a piece of a face
+MOST = 200_000  # about as many pieces, but for a mesh of more faces
 CELL = 0.035  # side of the cells whose means stand for the surface where points are compared
 PIXEL = 0.04  # of the depth pictures from below and above
 STEEP = 0.1  # |z| of a normal below which a surface faces to the side
 THIN, LOW, SLAB = 0.02, 0.06, 0.12  # heights above the lowest point: of the support, of feet, of legs
 # feature -> weight of its difference between two axes in the log of the odds
 WEIGHTS = {
-    "base": 2.51,
-    "margin": 1.32,
-    "low_margin": 0.68,
-    "tilt": -0.85,
-    "gap_below": 1.13,
-    "gap_above": 2.11,
-    "legs": 0.44,
-    "mirror": 9.53,
-    "turn": -1.95,
-    "tall": 0.33,
-    "flat": -0.46,
-    "centre": 0.87,
-    "taper": -0.30,
-    "vertical": -0.42,
-}
+    "base": 2.36, "margin": 1.4, "low_margin": 0.8, "tilt": -0.99, "gap_below": 1.37, "gap_above": 2.05,
+    "legs": 0.4, "mirror": 10.82, "turn": -1.68, "tall": 0.4, "flat": -0.48,
+    "centre": -0.27, "taper": -0.51, "vertical": -0.54,
+}  # fmt: skip
 
 
 def settled(mesh: Mesh) -> Mesh:
@@ -68,11 +58,16 @@ def probable_up(mesh: Mesh) -> tuple[str, float]:
 
 def features(mesh: Mesh, axes: tuple[str, ...] = CANDIDATES) -> dict[str, dict[str, float]]:
     """{axis: {feature: value}} of a Mesh, in any place, size and tessellation; empty for one without area."""
-    points, areas, normals = _pieces(mesh)
+    corners = mesh.vertices[mesh.used]
+    with np.errstate(over="ignore"):
+        extent = np.ptp(corners, axis=0).max() if len(corners) else 0.0
+    if not (extent > 0 and np.isfinite(extent)):
+        return {}
+    points, areas, normals = _pieces(mesh.vertices[mesh.faces] / extent - corners[0] / extent)
     if not len(points):
         return {}
     middle = areas @ points
-    corners = mesh.vertices[mesh.used] - middle
+    corners = corners / extent - corners[0] / extent - middle
     diameter = 2 * np.linalg.norm(corners, axis=1).max()
     points, corners = (points - middle) / diameter, corners / diameter
     hull = _hull(corners)
@@ -81,30 +76,26 @@ def features(mesh: Mesh, axes: tuple[str, ...] = CANDIDATES) -> dict[str, dict[s
     found = {}
     for axis in axes:
         turn = to_z_up(axis).astype(np.float64)
-        turned = np.column_stack([faces[:, :3] @ turn.T, faces[:, 3]])
-        found[axis] = _of_axis(
-            points @ turn.T,
-            areas,
-            np.abs(normals @ turn[2]) < STEEP,
-            (cells[0] @ turn.T, cells[1]),
-            corners @ turn.T,
-            turned,
-        )
+        turned, steep = np.column_stack([faces[:, :3] @ turn.T, faces[:, 3]]), np.abs(normals @ turn[2]) < STEEP
+        means = cells[0] @ turn.T, cells[1]
+        found[axis] = _of_axis(points @ turn.T, areas, steep, means, corners @ turn.T, turned)
     return found
 
 
-def _pieces(mesh):
-    """(middles (k, 3), shares of the area (k,), unit normals (k, 3)) of faces cut into pieces with short edges.
+def _pieces(corners):
+    """(middles (k, 3), shares of the area (k,), unit normals (k, 3)) of faces (m, 3, 3) cut into pieces.
 
     A face is halved across its longest edge until that is short, so that a sliver is cut along its length alone.
     """
-    corners, done = mesh.vertices[mesh.faces], []
-    longest = PIECE * np.linalg.norm(np.ptp(mesh.vertices[mesh.used], axis=0)) if len(corners) else 0.0
+    edges = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
+    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum()
+    least = np.sqrt(area / MOST), edges.max(axis=1).sum() / MOST  # of a tangle, whose pieces would fill the memory
+    longest, done = max(PIECE * np.linalg.norm(np.ptp(corners, axis=(0, 1))), *least), []
     while len(corners):
         edges = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
         edge = edges.argmax(axis=1)
         rows = np.arange(len(corners))
-        long = edges[rows, edge] > longest if longest else np.zeros(len(corners), dtype=bool)
+        long = edges[rows, edge] > longest
         done.append(corners[~long])
         a, b, c = (corners[rows[long], (edge[long] + k) % 3] for k in range(3))
         corners = np.concatenate([np.stack([a, (a + b) / 2, c], axis=1), np.stack([(a + b) / 2, b, c], axis=1)])

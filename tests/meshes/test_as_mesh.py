@@ -14,13 +14,14 @@ EGG.vertices *= [1, 1, 1.4]
 def forms(folder):
     EGG.export(folder / "egg.ply")
     arrays = (EGG.vertices.tolist(), EGG.faces.tolist())
-    return [folder / "egg.ply", str(folder / "egg.ply"), EGG, arrays, Mesh(EGG.vertices, EGG.faces)]
+    return [folder / "egg.ply", str(folder / "egg.ply"), EGG, arrays, Mesh(EGG.vertices, EGG.faces, up="auto")]
 
 
 def test_each_form_gives_the_same_mesh_in_the_order_of_its_vertices(tmp_path):
     for form in forms(tmp_path):
         mesh = as_mesh(form)
         assert np.allclose(mesh.vertices, EGG.vertices, atol=1e-6) and (mesh.faces == EGG.faces).all()
+        assert mesh.up in ("y", "z") and mesh.up == as_mesh(EGG).up
     assert as_mesh(mesh) is mesh
 
 
@@ -51,6 +52,7 @@ def test_arrays_are_checked_as_those_of_a_mesh():
         as_mesh((np.zeros((4, 3)), [[0.0, 1, 2]]))
 
 
+@pytest.mark.filterwarnings("ignore:assuming")
 @pytest.mark.parametrize(
     "call",
     [
@@ -69,5 +71,5 @@ def test_every_door_takes_every_form(tmp_path, call):
 
 
 def test_a_surface_is_pressed_as_it_is(tmp_path):
-    mesh = normalise(load(forms(tmp_path)[0]))
+    mesh = normalise(load(forms(tmp_path)[0], up="z"))
     assert (haptic_glance.press(Surface(mesh), 7) == haptic_glance.press(mesh, 7)).all()
