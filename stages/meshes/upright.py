@@ -23,7 +23,7 @@ EVEN = 0.05  # log of the odds below which the axes are equal: so much a coarse 
 SURE = 0.8  # probability from which a choice is right about nine times in ten, below it about two times in three
 # Lengths in units of the object's diameter.
 PIECE = 0.03  # longest edge of a piece of a face
-MOST = 200_000  # about as many pieces, but for a mesh of more faces
+MOST = 200_000  # about a third of the most pieces, but for a mesh of more faces
 CELL = 0.035  # side of the cells whose means stand for the surface where points are compared
 PIXEL = 0.04  # of the depth pictures from below and above
 STEEP = 0.1  # |z| of a normal below which a surface faces to the side

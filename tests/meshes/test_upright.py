@@ -1,6 +1,7 @@
 """The axis that points up, chosen by the shape: known objects, laid on another side, told in any way."""
 
 import warnings
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,8 +10,11 @@ from trimesh import creation
 from trimesh.transformations import rotation_matrix
 
 from stages.kit import Mesh
-from stages.meshes import as_mesh, load, rotate_to_z_up
-from stages.meshes.upright import CANDIDATES, SURE, WEIGHTS, features, probable_up
+from stages.lod import write_any
+from stages.meshes import as_mesh, load, normalise, rotate_to_z_up
+from stages.meshes.collect import prepare_mesh
+from stages.meshes.sources import SOURCES
+from stages.meshes.upright import CANDIDATES, MOST, SURE, WEIGHTS, _pieces, features, probable_up
 
 TURNS = {"z": [0, 1, 2], "y": [1, 2, 0]}  # columns of a mesh whose third axis is then that one
 
@@ -120,3 +124,22 @@ def test_a_mesh_in_every_form_has_one_axis(tmp_path):
         assert load(tmp_path / f"table.{suffix}").up == as_mesh(tmp_path / f"table.{suffix}").up == "y"
     assert as_mesh(shape).up == as_mesh((shape.vertices, shape.faces)).up == as_mesh(trimesh.Scene(shape)).up == "y"
     assert as_mesh(Mesh(shape.vertices, shape.faces)).up == "z"
+
+
+@pytest.mark.parametrize("setting", ["auto", "x"])
+def test_a_folder_of_the_pipeline_has_what_the_setting_a_file_or_the_shape_says(tmp_path, setting):
+    lying = laid(OBJECTS["table"], "y")
+    trimesh.Trimesh(lying.vertices, lying.faces, process=False).export(tmp_path / "plain.stl")
+    write_any(tmp_path / "stated.ply", Mesh(lying.vertices, lying.faces, up="-y"))
+    items = SOURCES["folder"](SimpleNamespace(folder=str(tmp_path), objects=[], up=setting, unit="m"))
+    found = {item.name: prepare_mesh(item) for item in items}
+    expected = {"plain": "y", "stated": "-y"} if setting == "auto" else {"plain": "x", "stated": "x"}
+    assert {name: row["up"] for name, (_, row) in found.items()} == expected
+    if setting == "auto":
+        own = normalise(rotate_to_z_up(load(tmp_path / "plain.stl"))).vertices
+        assert np.ptp(found["plain"][0].vertices, axis=0) == pytest.approx(np.ptp(own, axis=0))
+
+
+def test_a_tangle_of_large_faces_is_cut_into_as_few_pieces_as_fit():
+    corners = np.random.default_rng(0).random((6000, 3))
+    assert len(_pieces(corners.reshape(-1, 3, 3))[0]) < 4 * MOST
