@@ -76,7 +76,8 @@ class Opening:
         """Says what is on the table."""
         count, note = f"{len(specimen.given.faces):,} faces", specimen.note.partition(" (")[0]
         self.about.content = f"**{escaped(specimen.name)}**: {count}, {escaped(note)}"
-        self.axis.options = tuple(dict.fromkeys((*AXES, specimen.given.up)))  # with a vector of --up
+        if specimen.given.up not in self.axis.options:  # a vector
+            self.axis.options = (*self.axis.options, specimen.given.up)
         self.axis.value = specimen.given.up
 
     def refuse(self, name: str, size: int) -> None:

@@ -235,7 +235,7 @@ def test_open_borders_that_stay_are_counted_with_what_they_allow(simplified, tmp
 
 @pytest.mark.slow
 def test_the_axis_taken_as_up_is_reported(simplified):
-    assert "z up, a guess, since OBJ does not say (another axis: --up)" in simplified("--faces", 300)[2]
+    assert "z up, as the file says" in simplified("--faces", 300)[2]
     assert "x up\n" in simplified("--faces", 300, "--up", "x")[2]
 
 
