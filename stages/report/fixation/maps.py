@@ -72,7 +72,7 @@ def figure_3_30(results: Results, dataset: str | None = None) -> Figure:
         images[network_text(method)] = [_veiled(render, layer) for layer in layers.values()]
     figure = _panels(images, 1.6, [0.945, 0.15, 0.012, 0.7], "Grad-CAM over its maximum", list(layers))
     named = {"tasks": ", ".join(list(layers)[:-1]), "networks": "; ".join(images), "taught": _taught(maps)}
-    return Figure(figure, words | named)
+    return Figure(figure, words | named, dpi=95)
 
 
 def figure_3_34(results: Results, dataset: str | None = None) -> Figure:
