@@ -67,7 +67,7 @@ def saliency_rows():
     from stages.salient_points import saliency
 
     ball = uv_sphere(radius=0.5, count=[100, 100])
-    times = {"enhanced": [], "mesh_saliency": []}
+    times = {"glance": [], "mesh_saliency": []}
     for _ in range(RUNS):
         for method, seconds in times.items():
             mesh = wavy(ball)  # anew: nothing that an earlier call worked out is there
