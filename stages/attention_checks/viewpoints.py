@@ -39,6 +39,7 @@ def process(name: str, folder: Path, data: Path, views: Sequence[str]) -> Rows:
         viewpoints = VIEWS[one](mesh)
         with Stopwatch() as watch:
             maps = compute_maps(mesh, CHANNELS, viewpoints, "raster")
+            assert maps is not None  # there are channels
             saliency = np.add.reduce([maps.vertex_values(maps.maps[channel]) for channel in CHANNELS])
         rows += [
             {"item": name, "views": one, "method": "equal", "metric": metric.__name__, "seconds": watch.seconds}
