@@ -105,7 +105,7 @@ def test_rows_hold_points_weights_and_accuracies(workspace, objects):
         == weights[["item", "method", "channel"]].values.tolist()
     )
     assert weights.value.tolist() == pytest.approx(table.weight.tolist())
-    assert set(weights[weights.method == "fixations"].item) == {"", "ball", "egg"}
+    assert set(weights[weights.method == "glance"].item) == {"", "ball", "egg"}
     accuracies = rows[rows.metric == "accuracy"]
     assert {"", "ball", "egg"} == set(accuracies.item) and accuracies[
         ["area", "training", "validation"]
