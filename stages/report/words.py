@@ -26,7 +26,7 @@ METRICS = {  # "" where the claim's unit says it
 }  # fmt: skip
 DATASETS = {
     SECTION_3_1: "household as in T3.1", SECTION_3_2: "meshes with human gaze as in T3.2",
-    PSB_3_1: "psb as in T3.1", MENDED_3_2: "meshes with human gaze as in T3.2, formulas mended",
+    MENDED_3_2: "meshes with human gaze as in T3.2, formulas mended",
     SECTION_4_2: "household as in T4.2", SETS_4_2[0]: "random sets of household shapes as in T4.2",
     SETS_4_2[1]: "random sets of psb as in T4.2", COLOURED: "furniture in colour",
     ON_BLACK: "the same with the black background filtered", ON_GREY: "on grey", ON_WHITE: "on white",

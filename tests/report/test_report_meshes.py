@@ -17,7 +17,7 @@ from stages.report.meshes.claims import BOTH, CLAIMS, FEW_MINUS_MANY, claim, low
 from stages.report.meshes.errors import BOXES
 from stages.report.meshes.methods import UNSEEN, ordered, short
 from stages.report.meshes.rows import data_sets, face_counts, paired_cells
-from stages.report.results import PSB_3_1, SECTION_3_1, SECTION_3_2, NotRun
+from stages.report.results import SECTION_3_1, SECTION_3_2, NotRun
 from stages.report.style import label
 from stages.report.topics import KINDS, build_all, build_one
 from stages.report.verdict import judge
@@ -268,7 +268,7 @@ DECIDED = [{"supported"}, {"contradicted"}]
 @pytest.mark.slow
 def test_every_claim_on_meshes_is_judged_on_every_set(run):
     own_truth = measured(SECTION_3_2, 3).replace({"method": {name: seen for seen, name in UNSEEN.items()}})
-    printed = {"printed": measured(SECTION_3_1, 2), "psb_printed": measured(PSB_3_1, 4), "own_truth": own_truth}
+    printed = {"printed": measured(SECTION_3_1, 2), "own_truth": own_truth}
     results = run(measured(), princeton=measured("princeton", 1), **printed)
     built = table(results, "lod_claims")
     within = [claim for claim in CLAIMS if "dataset" not in claim.first]
