@@ -12,7 +12,6 @@ from .results import (
     ON_BLACK,
     ON_GREY,
     ON_WHITE,
-    PSB_3_1,
     SECTION_3_1,
     SECTION_3_2,
     SECTION_4_2,
