@@ -27,10 +27,11 @@ FIXED = tuple(GLANCES[GLANCE])  # the features by the choice that was made once,
 
 
 class Seen(NamedTuple):
-    """What the glance is fitted to, of one object: features {name: (n,)} of even samples, amounts of gaze (n,)."""
+    """What the glance is fitted to, of one object: features {name: (n,)} of samples, amounts of gaze and areas (n,)."""
 
     features: dict[str, np.ndarray]
     amounts: np.ndarray
+    areas: np.ndarray
 
     def stacked(self, names: tuple[str, ...]) -> np.ndarray:
         """(n, len(names)) of these features."""
@@ -86,7 +87,7 @@ def _quadratic(
     slopes, bends = [], []
     for one in objects.values():
         features = one.stacked(names).astype(np.float64)
-        score = features @ around
+        score = features @ around + np.log(np.maximum(one.areas, 1e-300))
         likely = np.exp(score - np.logaddexp.reduce(score))
         mean = likely @ features
         bends.append(features.T @ (likely[:, None] * features) - np.outer(mean, mean))
@@ -108,13 +109,14 @@ def _left_out(slopes: np.ndarray, bends: np.ndarray, chosen: list[int]) -> tuple
 
 
 def _fit(objects: Mapping[str, Seen], names: tuple[str, ...], ridge: float) -> np.ndarray:
-    found = [(one.stacked(names), one.amounts, np.ones(len(one.amounts))) for one in objects.values()]
+    found = [(one.stacked(names), one.amounts, one.areas) for one in objects.values()]
     features, amounts, areas = zip(*found, strict=True)
     return fit_fixations(features, amounts, areas, ridge)
 
 
 def _seen(gaze: dict[str, np.ndarray]) -> Seen:
-    return Seen(dict(zip(map(str, gaze["glance_names"]), gaze["glance"].T, strict=True)), gaze["glance_amounts"])
+    features = dict(zip(map(str, gaze["glance_names"]), gaze["glance"].T, strict=True))
+    return Seen(features, gaze["glance_amounts"], gaze["glance_areas"])
 
 
 def _saliency(path: Path, weights: dict[str, float]) -> np.ndarray:

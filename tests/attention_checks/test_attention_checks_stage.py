@@ -26,6 +26,7 @@ def gaze_at_the_tip(mesh):
         "amounts": amounts, "density": spread_on_surface(mesh, amounts, 0.03), "areas": mesh.vertex_areas,
         "glance": np.stack(list(glance.values()), axis=1), "glance_names": np.array(list(glance)),
         "glance_amounts": np.bincount(samples.tree.query(mesh.vertices)[1], amounts, minlength=len(samples.points)),
+        "glance_areas": samples.areas,
     }  # fmt: skip
 
 

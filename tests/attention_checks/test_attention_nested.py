@@ -16,7 +16,7 @@ def objects(count=8, points=400, seed=0):
     for k in range(count):
         features = {f"f{j}": random.normal(size=points) for j in range(6)}
         shares = np.exp(features["f3"])
-        found[f"o{k}"] = Seen(features, random.multinomial(200, shares / shares.sum()).astype(float))
+        found[f"o{k}"] = Seen(features, random.multinomial(200, shares / shares.sum()).astype(float), np.ones(points))
     return found
 
 
@@ -50,7 +50,12 @@ def judged(tmp_path, monkeypatch):
         for name, one in found.items():
             arrays = {"amounts": one.amounts, "density": one.amounts + 0.01, "areas": np.ones(len(one.amounts))}
             arrays |= {"glance": one.stacked(tuple(one.features)), "glance_names": np.array(list(one.features))}
-            write_arrays(tmp_path / f"weights/ground_truth/{name}.npz", **arrays, glance_amounts=one.amounts)
+            write_arrays(
+                tmp_path / f"weights/ground_truth/{name}.npz",
+                **arrays,
+                glance_amounts=one.amounts,
+                glance_areas=one.areas,
+            )
         return pd.DataFrame(nested.process("glance", tmp_path, tmp_path, list(found)))
 
     return rows
