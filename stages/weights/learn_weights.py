@@ -26,6 +26,7 @@ def learned_weight_rows(training_data: dict[str, dict[str, np.ndarray]]) -> list
             "guided_ed": average([per_object[name][0] for name in kept]),
             "guided_ssim": average([per_object[name][1] for name in kept]),
             "guided_ssim_object": average([per_object[name][2] for name in kept]),
+            "fixations": _fixations([training_data[name] for name in kept]),
             **{method: _glance([training_data[name] for name in kept], method) for method in GLANCES},
         }
         rows += [
@@ -48,10 +49,17 @@ def _dicts(arrays, kind):
     return [dict(zip(channels, row, strict=True)) if np.isfinite(row).all() else {} for row in arrays[kind]]
 
 
+def _fixations(objects):
+    features, amounts, areas = ([one[key] for one in objects] for key in ("features", "amounts", "areas"))
+    weights = fit_fixations(features, amounts, areas)
+    return dict(zip((str(name) for name in objects[0]["names"]), weights.tolist(), strict=True))
+
+
 def _glance(objects, method):
-    """The weights of a method of GLANCES."""
-    names = list(GLANCES[method])
+    """The weights of a method of GLANCES; the samples are even, so that each has the same area."""
+    names, amounts = list(GLANCES[method]), [one["glance_amounts"] for one in objects]
     columns = [objects[0]["glance_names"].tolist().index(name) for name in names]
-    amounts, areas = ([one[key] for one in objects] for key in ("glance_amounts", "glance_areas"))
-    weights = fit_fixations([one["glance"][:, columns] for one in objects], amounts, areas)
+    weights = fit_fixations(
+        [one["glance"][:, columns] for one in objects], amounts, [np.ones(len(one)) for one in amounts]
+    )
     return dict(zip(names, weights.tolist(), strict=True))

@@ -1,0 +1,1 @@
+"""How many pictures and channels the model of where people look needs."""
