@@ -18,6 +18,7 @@ from stages.weights import LearnedWeights
 from stages.weights import weights as published
 from stages.weights.published import GLANCE
 
+from .inhibition import tied
 from .methods import SVMS, method_named
 from .options import RADIUS, Detection, HasSaliency, Options
 
@@ -87,7 +88,10 @@ def detect(
     options = Options(_learned(method, weights), selection, radius, SMOOTHING, seed, name)
     mesh = _prepared(mesh, up)
     found = detector.find(mesh, compute_maps(mesh, detector.channels, viewpoints), options, count)
-    return found if found.saliency is None else replace(found, scores=scores_of(mesh, found.points, found.saliency))
+    if found.saliency is None:
+        return found
+    scores = scores_of(mesh, found.points, found.saliency)
+    return replace(found, scores=scores, ties=tied(scores))
 
 
 def scores_of(mesh: Mesh, points: np.ndarray, saliency: np.ndarray) -> np.ndarray:
