@@ -25,7 +25,7 @@ def symmetry(samples: Samples) -> tuple[np.ndarray, np.ndarray]:
     ranges = (-np.pi, np.pi), (0, max(radius.max(), 1e-9)), (z.min() - 1e-9, z.max() + 1e-9)
     places, bins = np.stack([turn, radius, z], axis=1), (TURNS, RADII, HEIGHTS)
     amounts = np.histogramdd(places, bins, ranges, weights=samples.shares)[0]
-    amounts = ndimage.gaussian_filter(amounts, BLUR, mode=("wrap", "nearest", "nearest"))
+    amounts = ndimage.gaussian_filter(ndimage.gaussian_filter1d(amounts, BLUR, axis=0, mode="wrap"), (0, BLUR, BLUR))
     waves = np.fft.rfft(amounts, axis=0)
     alike = np.fft.irfft((waves**2).sum(axis=(1, 2)), TURNS) / (amounts**2).sum()
     fits = np.exp((alike - 1) / EQUAL)

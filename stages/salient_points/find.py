@@ -77,7 +77,10 @@ def detect(
     weights: str | Mapping[str, float] | None = None, viewpoints: Iterable[Viewpoint] | None = None,
     selection: str = "suppression", radius: float = RADIUS, seed: int = 0, name: str = "", up: Axis | None = None,
 ) -> Detection:  # fmt: skip
-    """The points of `find_points` and the saliency of `saliency`, from one look. The arguments are those of these."""
+    """The points of `find_points` and the saliency of `saliency`, from one look, with the points that are equally good.
+
+    The arguments are those of these two functions.
+    """
     if not isinstance(method, str):
         if count is not None:
             raise ValueError(f"method {method!r} is not the name of a method")
