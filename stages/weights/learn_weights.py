@@ -56,9 +56,10 @@ def _fixations(objects):
 
 
 def _glance(objects, method):
-    """The weights of a method of GLANCES."""
-    names = list(GLANCES[method])
+    """The weights of a method of GLANCES; the samples are even, so that each has the same area."""
+    names, amounts = list(GLANCES[method]), [one["glance_amounts"] for one in objects]
     columns = [objects[0]["glance_names"].tolist().index(name) for name in names]
-    amounts, areas = ([one[key] for one in objects] for key in ("glance_amounts", "glance_areas"))
-    weights = fit_fixations([one["glance"][:, columns] for one in objects], amounts, areas)
+    weights = fit_fixations(
+        [one["glance"][:, columns] for one in objects], amounts, [np.ones(len(one)) for one in amounts]
+    )
     return dict(zip(names, weights.tolist(), strict=True))

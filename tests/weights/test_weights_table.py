@@ -36,7 +36,6 @@ def arrays(best, seed):
         "glance": glance,
         "glance_names": np.array(list(FEATURES)),
         "glance_amounts": np.exp(glance[:, list(FEATURES).index("seen")]),
-        "glance_areas": np.ones(len(glance)),
     }
 
 
