@@ -14,7 +14,6 @@ MOST = 0.5  # the same share where the number of classes is not known by the nam
 UNTRAINED, ONE_CLASS = "training stopped before it was saturated", "one answer for nearly all samples"
 GUESSING, SAME = "less accurate than guessing", "both sides are the same mesh"
 TRIAL = ("group", "method", "split", "variant", "classifier", "scaling")
-NETWORK = ("method", "data", "weights", "mode", "split", "passes", "sense", "perturbation", "severity", "size")
 Check = Callable[[Results, str, str, pd.DataFrame], pd.Series]  # (results, stage, dataset, rows) -> causes, or ""
 CHECKS: dict[str, Check] = {}
 
@@ -48,30 +47,23 @@ def several_answers(results: Results, stage: str, dataset: str, rows: pd.DataFra
     guess = 1 / groups.map(NUMBERS)  # four of four_drawn
     share = _beside(results, stage, dataset, rows, "commonest_share")
     found = (share > (ONE_ANSWER * guess).fillna(MOST)).map({True: ONE_CLASS, False: ""})
-    found[_below(rows, guess, TRIAL)] = GUESSING
+    found[_below(rows, guess)] = GUESSING
     return found
 
 
 @check("transfer")
 @check("recorded_networks")
 def trained(results: Results, stage: str, dataset: str, rows: pd.DataFrame) -> pd.Series:
-    """Rows of tuned networks whose training stopped while it still improved, and of networks that only guess.
-
-    Disturbed inputs may fool a network that works, so that their rows are not held against guessing.
-    """
+    """Rows of tuned networks whose training was stopped after some passes while it still improved."""
     tuned = rows["mode"].notna() & (rows["mode"] != "frozen") & (rows["metric"] == "accuracy")
     converged = rows["passes"] == "converged" if "passes" in rows else False
     learned = _beside(results, stage, dataset, rows, "train_accuracy") >= SATURATED
-    found = (tuned & ~converged & ~learned).map({True: UNTRAINED, False: ""})
-    disturbed = rows["perturbation"].fillna("none") != "none" if "perturbation" in rows else False
-    chance = _beside(results, stage, dataset, rows, "chance")
-    found[_below(rows, chance, NETWORK) & ~pd.Series(disturbed, index=rows.index)] = GUESSING
-    return found
+    return (tuned & ~converged & ~learned).map({True: UNTRAINED, False: ""})
 
 
-def _below(rows: pd.DataFrame, guess: pd.Series, trial: tuple[str, ...]) -> pd.Series:
+def _below(rows: pd.DataFrame, guess: pd.Series) -> pd.Series:
     """(n,) whether the mean accuracy of a row's kind of trial is below guessing; False where guessing is unknown."""
-    kinds = [column for column in trial if column in rows]
+    kinds = [column for column in TRIAL if column in rows]
     lead = (rows["value"] - guess).where(rows["metric"] == "accuracy")
     return lead.groupby([rows[kind].astype(str) for kind in kinds]).transform("mean").lt(0) if kinds else lead.lt(0)
 

@@ -124,14 +124,3 @@ def test_a_tuned_network_is_valid_once_it_has_learned_its_training_part_or_stopp
     small.write(root, stage, rows.drop(columns="passes"))  # nobody knows how far these were trained
     results = small.results(root)
     assert causes(results, stage, "test", results.rows(stage)).tolist() == [UNTRAINED, UNTRAINED, "", UNTRAINED]
-
-
-@pytest.mark.parametrize("stage", ["transfer", "recorded_networks"])
-def test_a_network_that_only_guesses_is_invalid_unless_its_inputs_were_disturbed(root, small, stage):
-    rows = pd.DataFrame({"dataset": "test", "metric": "accuracy", "mode": "frozen", "method": list("aabbbb")})
-    rows = rows.assign(repetition=[0, 1] * 3, perturbation=["none"] * 4 + ["noise"] * 2)
-    rows = rows.assign(value=[0.1, 0.2, 0.15, 0.9, 0.1, 0.1])
-    small.write(root, stage, pd.concat([rows, rows.assign(metric="chance", value=1 / 6)]))
-    results = small.results(root)
-    found = causes(results, stage, "test", results.rows(stage, metric="accuracy"))
-    assert found.tolist() == [GUESSING] * 2 + [""] * 4
