@@ -17,8 +17,8 @@ class Mesh:
 
     vertices (n, 3) f8, faces (m, 3) i8 into vertices, counter-clockwise seen from outside, colors (n, 3) u1 or None,
     texture: a Texture of the m faces or None (the stages of the pipeline store and use none). up: the axis that points
-    up, as `axis_named` takes it: y, -z, a vector; `auto` where nobody has said. What makes a mesh of a mesh keeps it
-    (`dataclasses.replace`); stored meshes are z up.
+    up, in the form of `axis_named`: y, -z or a vector, and `auto` where the axis is unknown. Functions that derive a
+    mesh from another one keep its axis (`dataclasses.replace`). Stored meshes are z up.
 
     The arrays are the mesh's own: those of the caller are copied where they can still be written to. Two meshes are
     equal where all of this is, and equal meshes have one hash; a pickled mesh leaves what it has computed behind.
