@@ -121,7 +121,7 @@ def _fit(objects: Mapping[str, Seen], names: tuple[str, ...], ridge: float) -> n
 
 def _seen_samples(name: str, gaze: dict[str, np.ndarray], made: Path) -> Seen:
     features = dict(zip(map(str, gaze["glance_names"]), gaze["glance"].T, strict=True))
-    return Seen(features, gaze["glance_amounts"], np.ones(len(gaze["glance"])))
+    return Seen(features, gaze["glance_amounts"], gaze["glance_areas"])
 
 
 def _seen_vertices(name: str, gaze: dict[str, np.ndarray], made: Path) -> Seen:

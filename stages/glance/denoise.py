@@ -1,5 +1,7 @@
 """Samples of a rough surface, moved onto the smooth one that they scatter about."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from stages.kit.mesh import unit
@@ -39,9 +41,10 @@ def _on_patches(samples, normals):
     x, y, z = np.einsum("nij,nkj->ink", frame, samples.points[near] - samples.points[:, None]) / samples.spacing
     weight = np.exp(-((distance / (WIDTH * samples.spacing)) ** 2) / 2)
     weight *= np.einsum("nkj,nj->nk", normals[near], normals) > SAME_SIDE
+    weight *= np.sqrt(samples.areas[near]) / samples.spacing
     terms = np.stack([np.ones_like(x), x, y, x * x, x * y, y * y], axis=2) * weight[:, :, None]
     inner = np.einsum("nki,nkj->nij", terms, terms) + RIDGE * np.eye(terms.shape[2])
     found = np.linalg.solve(inner, np.einsum("nki,nk->ni", terms, z * weight)[:, :, None])[:, :, 0]
     steps = found[:, :1].clip(-FARTHEST, FARTHEST) * samples.spacing
     slopes = np.einsum("ni,nij->nj", found[:, 1:3].clip(-STEEPEST, STEEPEST), frame[:, :2])
-    return Samples(samples.points + steps * normals, unit(normals - slopes))
+    return replace(samples, points=samples.points + steps * normals, normals=unit(normals - slopes))

@@ -1,29 +1,38 @@
-"""The upright plane in which a surface is most symmetric: people look along it."""
+"""The upright planes in which a surface is symmetric: people look along them."""
 
 import numpy as np
+from scipy import ndimage
 
 from .samples import Samples
 
-STEP = 7.5  # degrees between two planes that are tried
-MIRRORED = 500  # about as many of the points are mirrored
-TOLERANCE = 0.02  # mean distance of the mirrored points from the surface at which a plane fits 1 / e
-NARROW = 0.05  # distance from the plane at which its effect has fallen to 1 / e
+TURNS, RADII, HEIGHTS = 120, 12, 24  # bins around the axis, across it and along it
+BLUR = 1.0  # deviation of the Gaussian over the bins
+EQUAL = 0.1  # lack of correlation at which a plane counts 1 / e as much as a perfect one
+LEAST = 0.1  # of the share of the best plane, below which one is left out
+NARROW = 0.05  # distance from the plane, in units of the size, at which its effect has fallen to 1 / e
 
 
 def symmetry(samples: Samples) -> tuple[np.ndarray, np.ndarray]:
     """(distance from the mirror plane, nearness to it) of each point, each (s,), both 0 without a symmetry.
 
-    The planes go through the z axis of the points' mean. Both are multiplied by how much better the best one fits than
-    the median, so that a body of revolution, which has no plane of its own, has 0.
+    The planes go through the z axis of the points' mean. A plane counts by how well the surface, in bins of turn,
+    radius and height, correlates with its mirror image; the correlations at all planes are one Fourier transform. Both
+    values are means over the planes, times how much better these fit than a plane does on average, so that a body of
+    revolution, which has no plane of its own, has 0.
     """
-    angles = np.radians(np.arange(0, 180, STEP))
-    normals = np.stack([np.cos(angles), np.sin(angles), np.zeros(len(angles))], axis=1)
-    few, centre = samples.points[:: max(len(samples.points) // MIRRORED, 1)], samples.points.mean(axis=0)
-    heights = (few - centre) @ normals.T  # (few, planes)
-    mirrored = few[None] - 2 * heights.T[:, :, None] * normals[:, None]
-    errors = samples.tree.query(mirrored)[0].mean(axis=1)
-    best = int(errors.argmin())
-    fits = np.exp(-((errors / TOLERANCE) ** 2))
-    score = fits[best] - np.median(fits)
-    away = np.abs((samples.points - centre) @ normals[best])
-    return score * away, score * np.exp(-((away / NARROW) ** 2))
+    x, y, z = samples.local.T
+    radius, turn = np.hypot(x, y), np.arctan2(y, x)
+    ranges = (-np.pi, np.pi), (0, max(radius.max(), 1e-9)), (z.min() - 1e-9, z.max() + 1e-9)
+    places, bins = np.stack([turn, radius, z], axis=1), (TURNS, RADII, HEIGHTS)
+    amounts = np.histogramdd(places, bins, ranges, weights=samples.shares)[0]
+    amounts = ndimage.gaussian_filter(ndimage.gaussian_filter1d(amounts, BLUR, axis=0, mode="wrap"), (0, BLUR, BLUR))
+    waves = np.fft.rfft(amounts, axis=0)
+    alike = np.fft.irfft((waves**2).sum(axis=(1, 2)), TURNS) / (amounts**2).sum()
+    fits = np.exp((alike - 1) / EQUAL)
+    share = fits / fits.sum()
+    score = max(float(share @ fits - fits.mean()), 0.0)
+    kept = np.flatnonzero(share > LEAST * share.max())
+    angles = np.pi * (kept + 1) / TURNS - np.pi  # bin k of one image lies over bin j of the other: half of their sum
+    away = np.abs(np.outer(x, np.sin(angles)) - np.outer(y, np.cos(angles)))
+    share = share[kept] / share[kept].sum()
+    return score * (away @ share), score * (np.exp(-((away / NARROW) ** 2)) @ share)

@@ -5,7 +5,7 @@ from scipy import ndimage
 
 from .samples import Samples
 
-FINE, COARSE = 2, 6  # steps over the graph of the finest relief, and of a coarser one
+FINE, COARSE = 1, 6  # steps over the graph of the finest relief, and of a coarser one
 AROUND = 18  # steps over which relief is averaged: how rich in relief the neighbourhood is
 VOXELS = 48  # in a unit of length, in which the surface around a point is counted
 CUT = 3.0  # deviations at which the Gaussian of that count ends
@@ -30,17 +30,17 @@ def relief(samples: Samples) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def fullness(samples: Samples, radius: float) -> np.ndarray:
-    """(s,) log of the surface around each point over that of a disc of the size of the object.
+    """(s,) log of the share of the surface around each point over that of a disc of the size of the object.
 
     The surface is weighted by a Gaussian with the second moment of a ball of this radius. High where a part is thin or
     folded, low at a tip: an integral invariant, which noise does not move (Pottmann et al., Integral invariants for
     robust geometry processing, CAGD 2009).
     """
     deviation = radius / np.sqrt(5)
-    places = (samples.points - samples.points.min(axis=0)) * VOXELS
-    shape = np.ceil(places.max(axis=0)).astype(np.int64) + 1
+    reach = np.ceil(np.abs(samples.local).max(axis=0) * VOXELS).astype(np.int64)
+    places, shape = samples.local * VOXELS + reach, 2 * reach + 1
     voxels = np.ravel_multi_index(np.rint(places).astype(np.int64).T, shape)
-    amounts = np.bincount(voxels, minlength=shape.prod()).reshape(shape).astype(np.float32) / len(places)
+    amounts = np.bincount(voxels, samples.shares, minlength=shape.prod()).reshape(shape).astype(np.float32)
     around = ndimage.gaussian_filter(amounts, deviation * VOXELS, mode="constant", truncate=CUT)
     found = ndimage.map_coordinates(around, places.T, order=1) * (np.sqrt(2 * np.pi) * deviation * VOXELS) ** 3
-    return np.log(np.maximum(found * np.ptp(samples.points, axis=0).max() ** 2 / radius**2, 1e-6))
+    return np.log(np.maximum(found / radius**2, 1e-6))

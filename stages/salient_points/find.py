@@ -18,6 +18,7 @@ from stages.weights import LearnedWeights
 from stages.weights import weights as published
 from stages.weights.published import GLANCE
 
+from .inhibition import tied
 from .methods import SVMS, method_named
 from .options import RADIUS, Detection, HasSaliency, Options
 
@@ -76,7 +77,10 @@ def detect(
     weights: str | Mapping[str, float] | None = None, viewpoints: Iterable[Viewpoint] | None = None,
     selection: str = "suppression", radius: float = RADIUS, seed: int = 0, name: str = "", up: Axis | None = None,
 ) -> Detection:  # fmt: skip
-    """The points of `find_points` and the saliency of `saliency`, from one look. The arguments are those of these."""
+    """The points of `find_points` and the saliency of `saliency`, from one look, with the points that are equally good.
+
+    The arguments are those of these two functions.
+    """
     if not isinstance(method, str):
         if count is not None:
             raise ValueError(f"method {method!r} is not the name of a method")
@@ -87,7 +91,10 @@ def detect(
     options = Options(_learned(method, weights), selection, radius, SMOOTHING, seed, name)
     mesh = _prepared(mesh, up)
     found = detector.find(mesh, compute_maps(mesh, detector.channels, viewpoints), options, count)
-    return found if found.saliency is None else replace(found, scores=scores_of(mesh, found.points, found.saliency))
+    if found.saliency is None:
+        return found
+    scores = scores_of(mesh, found.points, found.saliency)
+    return replace(found, scores=scores, ties=tied(scores))
 
 
 def scores_of(mesh: Mesh, points: np.ndarray, saliency: np.ndarray) -> np.ndarray:

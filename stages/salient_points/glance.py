@@ -1,4 +1,4 @@
-"""The methods `glance` and `glance_any_pose`: the fixation density of points spread evenly over the surface."""
+"""The methods `glance` and `glance_any_pose`: the fixation density of points spread over the surface."""
 
 from typing import Any
 
@@ -8,8 +8,9 @@ from scipy.spatial import KDTree
 from stages.glance import samples_of_mesh, standardised
 from stages.kit import Mesh
 from stages.weights import fixation_density
+from stages.weights.features import standardise
 
-from .inhibition import visited
+from .inhibition import by_place, tied, visited
 from .merge import continue_on_surface
 from .options import Detection, Options
 from .rivals.maxima import local_maxima
@@ -40,9 +41,10 @@ class GlanceDetector:
             return Detection(none, 0, np.zeros(len(mesh.vertices)))
         samples = samples_of_mesh(mesh)
         density = self._density(samples, options)
-        smooth = samples.smoothed(density, options.smoothing)
+        smooth = np.exp(samples.smoothed(np.log(density), options.smoothing))  # noise moves this less than a mean
         peaks = local_maxima(Mesh(samples.points, NO_FACES), smooth, options.radius)
-        peaks = peaks[smooth[peaks] > smooth.mean() + smooth.std()]
+        peaks = peaks[standardise(smooth, samples.areas)[peaks] > 1]
+        peaks = peaks[by_place(tied(smooth[peaks]), samples.points[peaks])]
         order = peaks if count is None else visited(samples.points, smooth, options.radius, count)
         is_peak = np.isin(order, peaks)
         places = samples.points[np.r_[order[is_peak], order[~is_peak]]]

@@ -43,14 +43,17 @@ class Options:
 class Detection:
     """points (k,) i8, most salient first; strong: how many pass the threshold; saliency (n,) f8.
 
-    strong is None for a method without a threshold, saliency for one that only places points. scores (k,) f8: those of
-    `scores_of`, which `detect` adds.
+    strong is None for a method without a threshold, saliency for one that only places points. `detect` adds scores
+    (k,) f8, those of `scores_of`, and ties (k,) i8: points with the same number have the same score within 2 %, so
+    that none of them is the better one; it is the rank, from 0, of the first of them. On a sphere, a box or two equal
+    parts their order is only a convention: higher ones first, then those farther from the middle.
     """
 
     points: np.ndarray
     strong: int | None
     saliency: np.ndarray | None
     scores: np.ndarray | None = None
+    ties: np.ndarray | None = None
 
 
 class Detector(Protocol):

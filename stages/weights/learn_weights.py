@@ -56,10 +56,9 @@ def _fixations(objects):
 
 
 def _glance(objects, method):
-    """The weights of a method of GLANCES; the samples are even, so that each has the same area."""
-    names, amounts = list(GLANCES[method]), [one["glance_amounts"] for one in objects]
+    """The weights of a method of GLANCES."""
+    names = list(GLANCES[method])
     columns = [objects[0]["glance_names"].tolist().index(name) for name in names]
-    weights = fit_fixations(
-        [one["glance"][:, columns] for one in objects], amounts, [np.ones(len(one)) for one in amounts]
-    )
+    amounts, areas = ([one[key] for one in objects] for key in ("glance_amounts", "glance_areas"))
+    weights = fit_fixations([one["glance"][:, columns] for one in objects], amounts, areas)
     return dict(zip(names, weights.tolist(), strict=True))

@@ -58,14 +58,14 @@ GAZE = {
 # features without an up axis are a model of their own, for what lies in any pose.
 GLANCES = {
     "glance": {
-        "rank": 0.474, "middle": 0.282, "upward": 0.127, "upward_high": -0.304, "seen": 0.051, "above": -0.101,
-        "above_high": -0.049, "below": -0.123, "log_below": 0.161, "log_side": 0.576, "convexity": 0.618,
-        "detail": -0.025, "relief": 0.065, "fullness_0.12": -0.045, "fullness_0.24": 0.199, "distance": -0.037,
-        "distance_squared": 0.106, "outward": 0.206, "off_plane": -0.153, "on_plane": 0.12,
+        "rank": 0.44, "middle": 0.309, "upward": 0.128, "upward_high": -0.344, "seen": 0.08, "above": 0.019,
+        "above_high": 0.004, "below": -0.06, "log_below": 0.178, "log_side": 0.612, "convexity": 0.601,
+        "detail": -0.013, "relief": 0.066, "fullness_0.12": -0.036, "fullness_0.24": 0.226, "distance": -0.031,
+        "distance_squared": 0.131, "outward": 0.199, "off_plane": -0.212, "on_plane": 0.097,
     },
     "glance_any_pose": {
-        "seen": 0.314, "convexity": 0.637, "detail": -0.036, "relief": -0.011, "fullness_0.12": -0.05,
-        "fullness_0.24": 0.319, "distance": -0.09, "distance_squared": 0.116, "outward": 0.16,
+        "seen": 0.441, "convexity": 0.627, "detail": -0.016, "relief": 0.007, "fullness_0.12": -0.035,
+        "fullness_0.24": 0.334, "distance": -0.101, "distance_squared": 0.106, "outward": 0.147,
     },
 }  # fmt: skip
 

@@ -28,7 +28,8 @@ def collect_training_data(
 
     path: its file in data/SET/conspicuity; amounts (n,): of ground_truth_amounts. The arrays are amounts, density (n,)
     per unit of area, areas (n,); points (k,) vertex ids and shares (k,) of the attention; features (n, d) f4 and names
-    (d,); glance (s, e) f4, the features of s even samples, glance_names (e,) and glance_amounts (s,); distances,
+    (d,); glance (s, e) f4, the features of s samples, glance_names (e,), glance_amounts and
+    glance_areas (s,); distances,
     similarities and on_object (v, channels), the last being similarities without the background, NaN for a view
     without points; for the SVM pixels (p, channels) f4, labels (p,) and views (p,) drawn on the object, and
     image_pixels, image_labels and image_views drawn from the whole image as in the thesis. Raises ValueError for an
@@ -71,6 +72,7 @@ def collect_training_data(
         "names": np.array(list(features)),
         "glance": np.stack(list(glance.values()), axis=1).astype(np.float32),
         "glance_amounts": np.bincount(samples.tree.query(mesh.vertices)[1], amounts, minlength=len(samples.points)),
+        "glance_areas": samples.areas,
         "glance_names": np.array(list(glance)),
         "channels": np.array(channels),
         **{kind: _table([view[kind] for view in tables], channels) for kind in tables[0]},

@@ -44,8 +44,8 @@ def test_a_hollow_counts_against_a_place():
 
 
 def test_words_follow_the_feature_where_its_weight_is_negative():
-    assert reasons({"above": np.array([0.5])}) == [[("hidden from above", 0.5)]]
-    assert reasons({"above": np.array([-0.5])}, against=True) == [[("seen from above", -0.5)]]
+    assert reasons({"below": np.array([0.5])}) == [[("hidden from below", 0.5)]]
+    assert reasons({"below": np.array([-0.5])}, against=True) == [[("seen from below", -0.5)]]
 
 
 def test_the_axis_that_points_up_decides_what_is_high(knob):

@@ -36,6 +36,7 @@ def arrays(best, seed):
         "glance": glance,
         "glance_names": np.array(list(FEATURES)),
         "glance_amounts": np.exp(glance[:, list(FEATURES).index("seen")]),
+        "glance_areas": np.ones(len(glance)),
     }
 
 
