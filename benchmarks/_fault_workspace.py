@@ -24,7 +24,7 @@ STAGES = ("meshes", "views", "conspicuity", "weights", "salient_points", "lod", 
 SETTINGS = (
     "profile=smoke", "parallel=sequential", "sets=[folder]", "meshes.folder=own", "views.size=[150,200]",
     "views.viewpoints=four", "conspicuity.size=[75,100]", "salient_points.count=4", "lod.size=[75,100]",
-    "lod.samples=500", 'lod.targets=["50%"]', "lod.methods=[qem,enhanced]", "imprints.cells=[8,8]",
+    "lod.samples=500", 'lod.targets=["50%"]', "lod.methods=[qem,glance]", "imprints.cells=[8,8]",
 )  # fmt: skip
 CODE = Path.cwd()
 ROOT = CODE / "build/faults"

@@ -34,8 +34,8 @@ NOISE = 0.005  # standard deviation, units of shapes about 2 wide
 STAGES = ("meshes", "views", "conspicuity", "weights", "salient_points", "lod", "imprints")
 SETTINGS = (
     "profile=smoke", "sets=[folder]", "meshes.folder=own", "views.size=[150,200]", "views.viewpoints=four",
-    "conspicuity.size=[75,100]", "salient_points.methods=[enhanced]", "salient_points.count=8", "lod.samples=500",
-    "lod.size=[75,100]", 'lod.targets=["50%"]', "lod.methods=[qem,enhanced]", "imprints.methods=[enhanced]",
+    "conspicuity.size=[75,100]", "salient_points.methods=[glance]", "salient_points.count=8", "lod.samples=500",
+    "lod.size=[75,100]", 'lod.targets=["50%"]', "lod.methods=[qem,glance]", "imprints.methods=[glance]",
 )  # fmt: skip
 STATUS, MIB = "dvc status", 2**20
 

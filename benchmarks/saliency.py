@@ -4,10 +4,9 @@ Meshes: those of benchmarks.imprints (the least, the middle and the most faces o
 Princeton segmentation benchmark), and bumpy spheres of 41,000 to 1,300,000 faces. Methods take turns, on one core;
 `seconds` are those of the process, the least of three rounds, after one to warm up.
 
-Writes reports/bench/saliency.csv. Rows `warm`: `method` is that of `saliency`, `ratio` the seconds of `enhanced`, which
-renders twelve views, over its own; `enhanced` is left out above 100,000 faces. Rows `cold`: seconds of a fresh process
-from its start to the first answer of `method`, `saliency`, `simplify` or `press`, on 20,480 faces; `cache` says whether
-the compiled kernels were there.
+Writes reports/bench/saliency.csv. Rows `warm`: `method` is that of `saliency`. Rows `cold`: seconds of a fresh
+process from its start to the first answer of `method`, `saliency`, `simplify` or `press`, on 20,480 faces; `cache` says
+whether the compiled kernels were there.
 """
 
 import os
@@ -28,8 +27,7 @@ from stages.kit.files import write_table
 from stages.salient_points import saliency
 
 OUT = Path("reports/bench/saliency.csv")
-METHODS, REFERENCE = ("glance", "glance_any_pose", "enhanced"), "enhanced"
-LARGEST = 100_000  # faces that the reference is timed on
+METHODS = ("glance", "glance_any_pose")
 ROUNDS = 3
 BUMPY = {"bumpy_sphere_6": 6, "bumpy_sphere_7": 7, "bumpy_sphere_8": 8}  # subdivisions
 FIRST = """
@@ -56,16 +54,14 @@ def objects(archive):
 
 def warm_rows(name, mesh):
     """Rows `warm` of one object."""
-    taken = {method: [] for method in METHODS if method != REFERENCE or len(mesh.faces) <= LARGEST}
+    taken = {method: [] for method in METHODS}
     for turn in range(ROUNDS + 1):
         for method, seconds in taken.items():
             start = time.process_time()
             saliency(Mesh(mesh.vertices, mesh.faces), method)  # a new Mesh: nothing is cached
             seconds += [time.process_time() - start] if turn else []
-    reference = min(taken[REFERENCE]) if REFERENCE in taken else np.nan
     common = {"what": "warm", "object": name, "faces": len(mesh.faces), "cache": "full"}
-    return [common | {"method": method, "seconds": min(found), "ratio": reference / min(found)}
-            for method, found in taken.items()]  # fmt: skip
+    return [common | {"method": method, "seconds": min(found)} for method, found in taken.items()]
 
 
 def cold_rows():
@@ -88,7 +84,7 @@ def main():
     rows = cold_rows()
     for name, mesh in objects(chosen.archive):
         rows += warm_rows(name, mesh)
-    frame = pd.DataFrame(rows, columns=["what", "object", "faces", "method", "cache", "seconds", "ratio"])
+    frame = pd.DataFrame(rows, columns=["what", "object", "faces", "method", "cache", "seconds"])
     write_table(OUT, frame)
     print(frame.to_string())
 

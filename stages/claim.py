@@ -1,10 +1,10 @@
 """Judges claims again from the rows that they rest on: `python -m stages.claim KEY ...`
 
-KEY is a claim's key in reports/claims.csv, or a pattern such as 'ours_*'. Prints each claim with its effect, its
+KEY is a claim's key in reports/claims.csv, or a pattern such as 'glance_*'. Prints each claim with its effect, its
 interval, the difference of each pair, the rows it was read from, and the command that measures these rows anew. Works
 in a fresh clone, from the rows in reports/measurements. Exits with 1 where a verdict is not that of reports/claims.csv.
 
-Examples: `python -m stages.claim ours_soft_gaze`, `python -m stages.claim 'ours_*' --json`,
+Examples: `python -m stages.claim glance_soft_gaze`, `python -m stages.claim 'glance_*' --json`,
 `python -m stages.claim contrast_household --measure`.
 """
 

@@ -9,7 +9,7 @@ import pytest
 from stages.claim import run
 from stages.kit.workspace import Workspace
 
-KEYS = ["ours_soft_gaze", "equal_over_itti_gaze", "four_easier_beyond_chance_ours"]
+KEYS = ["fit_gaze", "equal_over_itti_gaze", "four_easier_beyond_chance"]
 
 
 @pytest.mark.slow
@@ -22,28 +22,28 @@ def test_the_committed_verdicts_follow_from_the_committed_rows(capsys):
             pair for pair in one["differences"] if one["key"] != "equal_over_itti_gaze" or pair.startswith("gaze/")
         ]
         assert len(judged) == one["pairs"] and all(map(Path.exists, map(Path, one["rows"])))
-    (soft,) = (one for one in found if one["key"] == "ours_soft_gaze")
+    (fit,) = (one for one in found if one["key"] == "fit_gaze")
     anew = "python -m stages.compose experiment=attention && dvc repro lod@gaze lod@gaze_clouds report"
-    assert soft["command"] == anew
+    assert fit["command"] == anew
 
 
 @pytest.mark.slow
 def test_a_verdict_that_is_not_the_committed_one_is_named(monkeypatch, capsys):
     judging = import_module("stages.report.verdict")
     monkeypatch.setattr(judging, "verdict", lambda low, high, unit: "contradicted")
-    assert run(["ours_soft_gaze"]) == 1
+    assert run(["fit_gaze"]) == 1
     said = capsys.readouterr()
-    assert "ours_soft_gaze: contradicted, in reports/claims.csv supported" in said.err
-    assert "32 objects" in said.out and "measure anew" in said.out
+    assert "fit_gaze: contradicted, in reports/claims.csv supported" in said.err
+    assert "31 objects" in said.out and "measure anew" in said.out
 
 
 def test_a_key_without_a_claim_is_answered_by_its_neighbour():
-    with pytest.raises(ValueError, match="there is no claim ours_soft_gase: try ours_soft_gaze"):
-        run(["ours_soft_gase"])
+    with pytest.raises(ValueError, match="there is no claim fit_gase: try fit_gaze"):
+        run(["fit_gase"])
 
 
 @pytest.mark.slow
 def test_a_set_that_is_not_switched_on_is_not_measured():
     assert "gaze" not in Workspace(Path(".")).params["graph"]["lod"]
     with pytest.raises(ValueError, match=r"lod is not switched on for gaze: `python -m stages.compose 'sets=\[gaze\]'"):
-        run(["ours_soft_gaze", "--measure"])
+        run(["fit_gaze", "--measure"])

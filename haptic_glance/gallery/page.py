@@ -3,7 +3,6 @@
 import base64
 import io
 import json
-import re
 from collections.abc import Mapping, Sequence
 from html import escape
 from importlib import resources
@@ -41,7 +40,7 @@ def build_page(
     colours = viridis(np.linspace(0, 1, SHADES))
     report = resources.files("stages") / "report" / "page"  # not stages.report, which imports what the pipeline has
     own = resources.files(__package__ or "")
-    viewer = re.sub('data-first="(enhanced|error)"', 'data-first="glance"', (report / "viewer.html").read_text("utf-8"))
+    viewer = (report / "viewer.html").read_text("utf-8").replace('data-first="error"', 'data-first="glance"')
     words = {
         "title": escape(title),
         "style": (report / "page.css").read_text("utf-8") + (own / "page.css").read_text("utf-8"),

@@ -34,7 +34,7 @@ MODELS = {
     "ewigc_l4": lambda pictures: fuse(highest_level(pictures)),  # T eq. 3.25
     "average": lambda pictures: pictures.mean(axis=0),  # the baseline without weighting by entropy
 }
-RIVALS = ("mesh_saliency", "leifman", "song", "tasse", "enhanced", "thesis_ssim", "height")  # of stages.salient_points
+RIVALS = ("mesh_saliency", "leifman", "song", "tasse", "glance", "thesis_ssim", "height")  # of stages.salient_points
 
 
 def measure_attention(

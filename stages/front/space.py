@@ -18,7 +18,7 @@ from stages.views.schema import Params as Views
 WIDTH = 0.16  # units, of every array: that of 16 cells at 0.01 (T4.3.1), so that cells mean resolution alone
 WHOLE = "100%"  # the mesh as it is
 SPACE: dict[str, tuple[Any, ...]] = {
-    "method": ("enhanced", "glance", "thesis_ssim", "itti", "harris", "farthest", "random"),
+    "method": ("glance", "thesis_ssim", "itti", "harris", "farthest", "random"),
     "viewpoints": ("twelve", "four"),
     "image_rows": (450, 225),  # the default's 900 take most of an hour of a search; it is asked about as it is
     "points": (60, 40, 20),
@@ -62,7 +62,7 @@ def choice_of(options: Mapping[str, Any]) -> Choice:
     return choice if method_named(choice.method).channels else replace(choice, viewpoints="", image_rows=0)
 
 
-DEFAULT = Choice("enhanced", "twelve", 900, 60, 16, WHOLE, 1, "knn")  # what the pipeline does, T table 4.1
+DEFAULT = Choice("glance", "", 0, 60, 16, WHOLE, 1, "knn")  # what the pipeline does, T table 4.1
 
 
 def one_choice_changed(choice: Choice) -> Iterator[Choice]:

@@ -2,14 +2,14 @@
 
 from stages.kit import Mesh, Stopwatch
 from stages.views import viewpoint_set
-from stages.weights.published import ENHANCED
+from stages.weights.published import GLANCE
 
 from .inputs import ObjectInputs
 from .metro import surface_errors
 from .perceptual import picture_errors, take_pictures
 from .schema import Params
 
-SALIENCY_METHOD = ENHANCED  # its saliency weights the salient error of all methods
+SALIENCY_METHOD = GLANCE  # its saliency weights the salient error of all methods
 
 
 def measure_errors(inputs: ObjectInputs, mesh: Mesh, settings: Params, seed: int) -> list[dict]:

@@ -21,5 +21,5 @@ def face_count(target: str | int, total: int, name: str = "lod.targets") -> int:
 
 
 def file_name(method: str, target: str) -> str:
-    """The name of a mesh's file, for example `enhanced_25pct.npz`."""
+    """The name of a mesh's file, for example `glance_25pct.npz`."""
     return f"{method}_{str(target).strip().replace('%', 'pct')}.npz"

@@ -25,7 +25,7 @@ class Variant:
 
 
 def variant(name: str) -> Variant:
-    """The Variant of a name: `qem`, `qslim`, `enhanced` (three rings), `enhanced-adaptive`, `-area` or `-soft`.
+    """The Variant of a name: `qem`, `qslim`, `glance` (three rings), `glance-adaptive`, `-area` or `-soft`.
 
     Raises ValueError that names the wrong part.
     """

@@ -45,7 +45,7 @@ class Finding:
 FINDINGS = (
     Finding("glance_over_best_gaze", "supported", "Our glance predicts where people look better than any rival",
             "NSS more than the best other", "attention", places=2),
-    Finding("ours_soft_gaze", "supported", "Saliency as a weight keeps meshes closer where people looked",
+    Finding("glance_soft_gaze", "supported", "Saliency as a weight keeps meshes closer where people looked",
             "% less error where people looked", "meshes", "less:", 1),
     Finding("glance_over_blind", "supported", "One touch where our glance expects gaze tells more than a blind one",
             "points of accuracy more than blind touch", "touch"),

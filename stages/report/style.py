@@ -24,20 +24,18 @@ CYCLE = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#7A6
 LABELS = {
     "random": "blind touch",
     "itti": "Itti's attention",
-    "thesis_ssim": "thesis's attention (SSIM)",
-    "thesis_ed": "thesis's attention (ED)",
-    "enhanced": "ours (views)",
-    "glance": "ours (glance)",
-    "glance_any_pose": "ours (glance, any pose)",
-    "fixations_seen": "ours (views)",
+    "VisAttAll": "thesis, equal weights",
+    "equal": "thesis, nine equal weights",
+    "thesis_ssim": "thesis, SSIM",
+    "thesis_ed": "thesis, ED",
+    "glance_any_pose": "glance, any pose",
     "human": "the truth itself",
     "guided_ssim": "guided by SSIM",
     "guided_ed": "guided by ED",
     "guided_ssim_object": "guided by SSIM on the object",
-    "equal": "equal weights",
-    "svm_nearest": "SVM, nearest object's",
-    "svm_object": "SVM of the object",
-    "svm_viewpoint": "SVM of each view",
+    "svm_nearest": "thesis, SVM of the nearest object",
+    "svm_object": "thesis, SVM of the object",
+    "svm_viewpoint": "thesis, SVM of each view",
     "leifman": "regions of interest",
     "song": "spectral saliency",
     "tasse": "cluster-based saliency",
@@ -74,7 +72,7 @@ LABELS = {
     "vtk": "VTK",
 }
 WAYS = ("adaptive", "area", "soft")  # of keeping a neighbourhood; behind a method's name
-METHOD_COLOURS = {"random": "#E69F00", "itti": "#56B4E9", "thesis_ssim": "#009E73", "enhanced": "#0072B2", "qem": GREY}
+METHOD_COLOURS = {"random": "#E69F00", "itti": "#56B4E9", "thesis_ssim": "#009E73", "glance": "#0072B2", "qem": GREY}
 MARKERS = "osD^vPX*"
 PALETTE = 160  # colours of a picture: a fourth of the bytes, and the shading of meshes still looks smooth
 SETTLED = 1_000  # pixels that still change their colour: to go on until all stay takes five times as long

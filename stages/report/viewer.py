@@ -16,7 +16,7 @@ from .results import NotRun, Results, some
 from .style import label
 
 METHODS = [  # those that the page offers, as far as they were run: each costs an object up to 5 kB
-    "enhanced", "itti", "thesis_ssim", "mesh_saliency", "salient_points", "heat_kernel", "random",
+    "glance", "itti", "thesis_ssim", "mesh_saliency", "salient_points", "heat_kernel", "random",
 ]  # fmt: skip
 FINEST = 0.6  # of the object's faces: a finer level looks like the object itself and costs the page most
 STEP = 0.75  # of the faces of the finer level before it: a closer one looks the same

@@ -8,7 +8,7 @@ from scipy.spatial import KDTree
 from stages.glance import samples_of_mesh, standardised
 from stages.kit import Mesh
 from stages.weights import fixation_density
-from stages.weights.features import standardise
+from stages.weights.standardise import standardise
 
 from .inhibition import by_place, tied, visited
 from .merge import continue_on_surface

@@ -12,8 +12,7 @@ from difflib import get_close_matches
 from stages.conspicuity import CHANNELS, ViewMaps
 from stages.kit import Mesh, Stopwatch
 from stages.weights import LearnedWeights
-from stages.weights.features import CHANNEL_FEATURES
-from stages.weights.published import ENHANCED, GLANCES
+from stages.weights.published import GLANCES
 
 from .farthest import FarthestPoints
 from .fuse import COMBINATIONS, WITHOUT_COLOUR
@@ -23,7 +22,7 @@ from .options import Detection, Detector, Options
 from .positions import centre_distance, facing_viewer, height
 from .random_points import RandomPoints
 from .rivals import corners, harris, heat_kernel, leifman, mesh_saliency, salient_points, sift, song, tasse
-from .surface import FixationDetector, SurfaceDetector
+from .surface import SurfaceDetector
 
 SYMMETRIES = {"SymLat": "symmetry_lateral", "SymRad": "symmetry_radial", "2Sym": "symmetry"}  # T3.1.5
 WEIGHTED = (
@@ -44,7 +43,6 @@ PUBLISHED = {
 
 METHODS: dict[str, Detector] = {
     **{name: GlanceDetector(name) for name in GLANCES},
-    ENHANCED: FixationDetector(ENHANCED, CHANNEL_FEATURES),
     "itti": FusedDetector(COMBINATIONS["VisAtt"]),
     "random": RandomPoints(),
     **{f"random_{draw}": RandomPoints(draw) for draw in range(2, 6)},
@@ -54,7 +52,6 @@ METHODS: dict[str, Detector] = {
     **{name: FusedDetector([channel]) for name, channel in SYMMETRIES.items()},
     **{name: WeightedDetector(name, CHANNELS) for name in WEIGHTED},
     **{name: SvmDetector(name, CHANNELS) for name in SVMS},
-    "fixations_seen": FixationDetector("fixations_seen", CHANNEL_FEATURES),
     **{name: SurfaceDetector(paper.saliency, paper.points) for name, paper in PUBLISHED.items()},
     "spectral_residual": FusedDetector(["spectral_residual"]),
     "fine_grained": FusedDetector(["fine_grained"]),
@@ -65,12 +62,12 @@ METHODS: dict[str, Detector] = {
 }
 
 
-MAIN = ("glance", "glance_any_pose", "enhanced", "thesis_ssim", "itti", "mesh_saliency")  # named where none is near
+MAIN = ("glance", "glance_any_pose", "thesis_ssim", "itti", "mesh_saliency")  # named where none is near
 MEANT = {  # in other words, and in the thesis's
     "ours": "glance", "gaze": "glance", "default": "glance", "any_pose": "glance_any_pose",
     "thesis": "thesis_ssim", "enhanced_attention": "thesis_ssim", "enhanced_visual_attention": "thesis_ssim",
     "ssim": "thesis_ssim", "ed": "thesis_ed", "visual_attention": "itti", "attention": "itti", "classical": "itti",
-    "lee": "mesh_saliency", "fixations": "enhanced", "fixation": "enhanced", "hks": "heat_kernel",
+    "enhanced": "thesis_ssim", "lee": "mesh_saliency", "hks": "heat_kernel",
 }  # fmt: skip
 
 

@@ -7,8 +7,8 @@ from stages.weights import LearnedWeights
 from .methods import MAIN, METHODS, meant, split_runnable
 
 HELP = (
-    "glance, our model of human gaze (default); enhanced, our earlier one, from rendered views; thesis_ssim, the "
-    "thesis's enhanced attention; itti, plain visual attention; haptic_glance.METHODS has the rest"
+    "glance, our model of human gaze (default); thesis_ssim, the thesis's attention; itti, plain visual attention; "
+    "haptic_glance.METHODS has the rest"
 )
 
 

@@ -1,14 +1,13 @@
 """Methods that work on the surface: a value per vertex, and its peaks as points."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from stages.conspicuity.surface_values import smoother
 from stages.kit import Mesh
-from stages.weights import fixation_density, vertex_features
-from stages.weights.features import standardise
+from stages.weights.standardise import standardise
 
 from .merge import continue_on_surface
 from .options import Detection, Options
@@ -39,20 +38,6 @@ class SurfaceDetector:
         own = peaks(mesh, saliency, options) if self._points is None else self._points(mesh, saliency)
         points = own if count is None else continue_on_surface(mesh, own, saliency, options.radius, count)
         return Detection(points, min(len(own), len(points)), saliency)
-
-
-class FixationDetector(SurfaceDetector):
-    """The fixation density that the log-linear model predicts (stages.weights.fixations)."""
-
-    def __init__(self, name: str, channels: Iterable[str]) -> None:
-        self._points = None
-        self.required_weights, self._name, self.channels = name, name, tuple(channels)
-
-    def saliency(self, mesh: Mesh, sight: Any, options: Options) -> np.ndarray:
-        channels = {name: sight.vertex_values(sight.maps[name], options.smoothing) for name in self.channels}
-        weights = options.learned.weights[self._name]
-        features = vertex_features(mesh, sight.viewpoints, sight.facing, channels)
-        return scaled(np.where(mesh.vertex_areas > 0, fixation_density(features, weights), 0))
 
 
 def scaled(values: np.ndarray) -> np.ndarray:

@@ -5,7 +5,7 @@ from scipy.spatial import KDTree
 
 from stages.kit import Mesh
 from stages.salient_points.random_points import random_vertices
-from stages.weights.features import standardise
+from stages.weights.standardise import standardise
 
 from .perturbations import Perturbed
 

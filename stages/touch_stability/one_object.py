@@ -8,28 +8,29 @@ from stages.kit.files import read_mesh, write_arrays
 from stages.kit.packs import files_below
 from stages.kit.run import Rows
 from stages.salient_points import read_saliency
+from stages.weights.published import GLANCE
 
 from .perturbations import PERTURBATIONS
+from .perturbations.coarse_mesh import SOFT
 from .recognition import perturbation_severities
 from .schema import Params
 from .touches import Touches
 
 DRAWS = 3  # of a random perturbation; the repetitions use them in turn
 STORED_IMPRINTS = 4  # touches per perturbation whose imprints are stored for the figure
-SALIENCY = "enhanced"  # detector whose saliency weights the simplification, as lod's enhanced-soft
 
 
 def touches_of(name: str, data: Path, settings: Params, count: int, seed: int) -> Touches:
     """The first `count` Touches of an object, with the simplified meshes that exist. data: data/SET."""
     found = read_imprints(data / "imprints" / f"{name}.npz")[settings.method]
     levels = {path.stem: read_mesh(path) for path in files_below(data / "lod" / name) if _is_used_level(path.stem)}
-    saliency = read_saliency(data / "salient_points" / f"{name}.npz").get(SALIENCY)
+    saliency = read_saliency(data / "salient_points" / f"{name}.npz").get(GLANCE)
     mesh, cells = read_mesh(data / "meshes" / f"{name}.npz"), found.images.shape[1:]
     return Touches(name, mesh, found.vertices[:count], cells, float(found.pitch), saliency, levels, seed)
 
 
 def _is_used_level(level):
-    return level.rpartition("_")[0] in ("qem", "enhanced-soft")
+    return level.rpartition("_")[0] in ("qem", SOFT)
 
 
 def process(name: str, folder: Path, data: Path, settings: Params, count: int, seed: int) -> Rows:

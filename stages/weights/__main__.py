@@ -14,7 +14,6 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from stages.conspicuity import read_view_maps
 from stages.kit.command import workspace_of_arguments
 from stages.kit.files import read_mesh, write_arrays, write_table
 from stages.kit.run import Rows, StageRun
@@ -44,7 +43,7 @@ def process(item: tuple[str, Files], folder: Path, data: Path, source: str, seed
         amounts = ground_truth_amounts(name, source, mesh, files)
         if amounts is None or not amounts.any():
             return []
-        found = collect_training_data(name, mesh, read_view_maps(path, mesh), path, amounts, seed)
+        found = collect_training_data(name, mesh, path, amounts, seed)
         row = {"item": name, "metric": "points", "value": len(found["points"]), "_convexity": convexity(mesh)}
     except ValueError as error:  # marks of another mesh of this name, for example: the other objects are trained on
         return [{"item": name, "metric": "points", "value": None, "note": str(error)}]
@@ -82,7 +81,7 @@ def run(workspace: Workspace) -> None:
             stage.each(train, list(training_data), reads=[f"weights/{GROUND_TRUTH}"])
         stage.metrics({"objects": len(training_data)} | accuracies(stage.rows))
     count = f"{len(training_data)} of {len(stage.objects)} objects"
-    print(f"weights: {count} have ground truth; enhanced takes {settings.method}")
+    print(f"weights: {count} have ground truth; the glance takes {settings.method}")
 
 
 def accuracies(rows: Rows) -> dict[str, float]:

@@ -26,7 +26,6 @@ def learned_weight_rows(training_data: dict[str, dict[str, np.ndarray]]) -> list
             "guided_ed": average([per_object[name][0] for name in kept]),
             "guided_ssim": average([per_object[name][1] for name in kept]),
             "guided_ssim_object": average([per_object[name][2] for name in kept]),
-            "fixations": _fixations([training_data[name] for name in kept]),
             **{method: _glance([training_data[name] for name in kept], method) for method in GLANCES},
         }
         rows += [
@@ -47,12 +46,6 @@ def _dicts(arrays, kind):
     """One dict channel -> value per view; empty for a view that shows no ground truth."""
     channels = [str(channel) for channel in arrays["channels"]]
     return [dict(zip(channels, row, strict=True)) if np.isfinite(row).all() else {} for row in arrays[kind]]
-
-
-def _fixations(objects):
-    features, amounts, areas = ([one[key] for one in objects] for key in ("features", "amounts", "areas"))
-    weights = fit_fixations(features, amounts, areas)
-    return dict(zip((str(name) for name in objects[0]["names"]), weights.tolist(), strict=True))
 
 
 def _glance(objects, method):

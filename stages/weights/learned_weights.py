@@ -4,20 +4,22 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import numpy as np
+
 from stages.kit import Mesh
 from stages.kit.files import read_arrays, read_table, write_arrays
 
 from .convexity import convexity, nearest_convexity
 from .learn_weights import ALL
-from .published import ENHANCED, GLANCES, METHODS, weights
+from .published import GLANCE, GLANCES, METHODS, weights
 from .svm import SVMModel
 
 SEEN_SUFFIX = "_seen"  # of methods whose weights were learned from all objects, the same one included, as in the thesis
 
 
 def published_weights() -> dict[str, dict[str, float]]:
-    """The published weights, and `enhanced` with those learned from human gaze."""
-    return {method: weights(method) for method in METHODS} | {ENHANCED: weights("gaze")}
+    """{method: its published weights}."""
+    return {method: weights(method) for method in METHODS}
 
 
 @dataclass(frozen=True)
@@ -43,8 +45,8 @@ def read_learned_weights(folder: str | Path, name: str, mesh: Mesh) -> LearnedWe
     every = _by_method(from_all)
     found = every | _by_method(own)
     if own.empty and (Path(folder) / "ground_truth" / f"{name}.npz").exists():
-        alone = every[ENHANCED] == every["fixations"]
-        usable = {*METHODS} - {*GLANCES} if alone else {*METHODS, ENHANCED}
+        published = np.allclose([*every[GLANCE].values()], [*weights(GLANCE).values()])
+        usable = {*METHODS} if published else {*METHODS} - {*GLANCES}
         found = {method: values for method, values in every.items() if method in usable}
     seen = {f"{method}{SEEN_SUFFIX}": values for method, values in every.items() if method not in METHODS}
     return LearnedWeights(found | seen, _svms(Path(folder), name, mesh))

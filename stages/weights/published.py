@@ -19,7 +19,6 @@ TABLE = {
 
 
 GLANCE = "glance"  # the default method
-ENHANCED = "enhanced"  # the method whose weights are chosen by the setting weights.method
 
 
 def equal() -> dict[str, float]:
@@ -41,21 +40,8 @@ def thesis_ed() -> dict[str, float]:
     return {channel: nearness for channel, (_, nearness) in TABLE.items()}
 
 
-# Of the fixation model (stages.weights.fixations), learned from 32 people's gaze on 19 meshes, the data set `gaze`.
-GAZE = {
-    "symmetry": 0.23,
-    "height": 0.35,
-    "height_squared": -0.393,
-    "upright": -0.247,
-    "sideways": 0.409,
-    "visible": 0.209,
-    "convexity": 0.521,
-    "detail": 0.336,
-}
-
-
-# Of the features of stages.glance, learned from the gaze on these meshes and on 14 point clouds, `gaze_clouds`. The
-# features without an up axis are a model of their own, for what lies in any pose.
+# Of the features of stages.glance, learned from 32 people's gaze on the 19 meshes of the data set `gaze` and on the 14
+# point clouds of `gaze_clouds`. The features without an up axis are a model of their own, for what lies in any pose.
 GLANCES = {
     "glance": {
         "rank": 0.44, "middle": 0.309, "upward": 0.128, "upward_high": -0.344, "seen": 0.08, "above": 0.019,
@@ -70,13 +56,8 @@ GLANCES = {
 }  # fmt: skip
 
 
-def gaze() -> dict[str, float]:
-    """Weights of the features in a log-linear density of fixations: for `enhanced`, not for T eq. 3.9."""
-    return dict(GAZE)
-
-
 METHODS: dict[str, Callable[[], dict[str, float]]] = {
-    "equal": equal, "thesis_ssim": thesis_ssim, "thesis_ed": thesis_ed, "gaze": gaze,
+    "equal": equal, "thesis_ssim": thesis_ssim, "thesis_ed": thesis_ed,
     **{name: functools.partial(dict, found) for name, found in GLANCES.items()},
 }  # fmt: skip
 
@@ -84,9 +65,8 @@ METHODS: dict[str, Callable[[], dict[str, float]]] = {
 def weights(method: str) -> dict[str, float]:
     """The weight of each channel by a method of METHODS: dict channel -> weight, not normalised.
 
-    The methods give weights of all nine channels, for T eq. 3.9, which divides by their sum; `gaze` gives those of the
-    features of stages.weights.features, GLANCES those of the features of stages.glance. Raises ValueError for an
-    unknown method.
+    The methods give weights of all nine channels, for T eq. 3.9, which divides by their sum; GLANCES give those of the
+    features of stages.glance. Raises ValueError for an unknown method.
     """
     if method not in METHODS:
         raise ValueError(f"unknown weights {method!r}: choose one of {', '.join(METHODS)}")

@@ -6,19 +6,21 @@ import pandas as pd
 from stages.kit.run import Rows
 
 from .learn_weights import ALL, learned_weight_rows
-from .published import ENHANCED, GLANCES, METHODS, weights
+from .published import GLANCES, METHODS, weights
 
-FEATURE_METHODS = ("gaze", "fixations")  # published weights of the fixation models, or those learned from the data set
+CHOICES = ("gaze", "fixations")  # published weights of GLANCES, or those learned from the data set
 
 
 def weight_table(training_data: dict[str, dict[str, np.ndarray]], chosen: str) -> pd.DataFrame:
-    """Frame with columns method, channel, weight, left_out; the rows of `enhanced` repeat those of the chosen method.
+    """Frame with columns method, channel, weight, left_out.
 
-    Those of GLANCES are published or learned by the same choice. training_data: dict name -> arrays of
-    collect_training_data, may be empty. The choice is stored in the table, so that later stages do not read the
-    settings of another stage. Raises ValueError for a choice that is not in
-    FEATURE_METHODS, or whose weights were not learned for lack of ground truth.
+    training_data: dict name -> arrays of collect_training_data, may be empty. chosen: of CHOICES, whether the weights
+    of GLANCES are the published ones or learned. Raises ValueError for another choice, or for weights that cannot be
+    learned for lack of ground truth.
     """
+    if chosen not in CHOICES or (chosen == "fixations" and not training_data):
+        reason = "" if training_data else "; no object has ground truth to learn from"
+        raise ValueError(f"weights.method {chosen!r} is not available: choose {', '.join(CHOICES)}{reason}")
     rows = [
         {"method": method, "channel": channel, "weight": weight, "left_out": ALL}
         for method in METHODS
@@ -27,11 +29,7 @@ def weight_table(training_data: dict[str, dict[str, np.ndarray]], chosen: str) -
     ]
     learned = learned_weight_rows(training_data) if training_data else []
     rows += [row for row in learned if row["method"] not in GLANCES or chosen == "fixations"]
-    repeated = [row | {"method": ENHANCED} for row in rows if row["method"] == chosen and chosen in FEATURE_METHODS]
-    if not repeated:
-        reason = "" if training_data else "; no object has ground truth to learn from"
-        raise ValueError(f"weights.method {chosen!r} is not available: choose {', '.join(FEATURE_METHODS)}{reason}")
-    return pd.DataFrame(rows + repeated)
+    return pd.DataFrame(rows)
 
 
 def weight_rows(table: pd.DataFrame) -> Rows:

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from stages.conspicuity import CHANNELS, ViewMaps
+from stages.conspicuity import CHANNELS
 from stages.conspicuity.storage import read_maps
 from stages.glance import samples_of_mesh, standardised
 from stages.kit import Mesh
@@ -12,7 +12,6 @@ from stages.kit.files import read_arrays
 
 from .agreement import gaze_peaks
 from .euclidean import view_distances
-from .features import CHANNEL_FEATURES, vertex_features
 from .ground_truth import gts_map, spread_on_surface, visible_points
 from .similarity import view_similarities
 from .svm_pixels import pixel_samples
@@ -22,29 +21,22 @@ MAX_MARKS = 200  # more vertices than this are gaze, whose peaks are the points;
 
 
 def collect_training_data(
-    name: str, mesh: Mesh, view_maps: ViewMaps, path: str | Path, amounts: np.ndarray, seed: int
+    name: str, mesh: Mesh, path: str | Path, amounts: np.ndarray, seed: int
 ) -> dict[str, np.ndarray]:
     """The training data of an object with n vertices and v views: dict name -> array.
 
     path: its file in data/SET/conspicuity; amounts (n,): of ground_truth_amounts. The arrays are amounts, density (n,)
-    per unit of area, areas (n,); points (k,) vertex ids and shares (k,) of the attention; features (n, d) f4 and names
-    (d,); glance (s, e) f4, the features of s samples, glance_names (e,), glance_amounts and
-    glance_areas (s,); distances,
-    similarities and on_object (v, channels), the last being similarities without the background, NaN for a view
-    without points; for the SVM pixels (p, channels) f4, labels (p,) and views (p,) drawn on the object, and
-    image_pixels, image_labels and image_views drawn from the whole image as in the thesis. Raises ValueError for an
-    empty ground truth, and for maps without a channel that our model has as a feature.
+    per unit of area, areas (n,); points (k,) vertex ids and shares (k,) of the attention; glance (s, e) f4, the
+    features of s samples, glance_names (e,), glance_amounts and glance_areas (s,); distances, similarities and
+    on_object (v, channels), the last being similarities without the background, NaN for a view without points; for the
+    SVM pixels (p, channels) f4, labels (p,) and views (p,) drawn on the object, and image_pixels, image_labels and
+    image_views drawn from the whole image as in the thesis. Raises ValueError for an empty ground truth.
     """
-    missing = [channel for channel in CHANNEL_FEATURES if channel not in view_maps.maps]
-    if missing:
-        raise ValueError(f"conspicuity.channels lacks {', '.join(missing)}, a feature of our model: add it")
     density = spread_on_surface(mesh, amounts, SPREAD * mesh.diagonal)
     points, shares = ground_truth_points(mesh, amounts, density)
     maps, mask, viewpoints, stored = read_maps(path)
     channels = [channel for channel in CHANNELS if channel in stored]
     maps = maps[:, [stored.index(channel) for channel in channels]]
-    on_vertices = {channel: view_maps.vertex_values(view_maps.maps[channel]) for channel in CHANNEL_FEATURES}
-    features = vertex_features(mesh, view_maps.viewpoints, view_maps.facing, on_vertices)
     samples = samples_of_mesh(mesh)
     glance = standardised(samples)
     found = [
@@ -68,8 +60,6 @@ def collect_training_data(
         "areas": mesh.vertex_areas,
         "points": points,
         "shares": shares,
-        "features": np.stack(list(features.values()), axis=1).astype(np.float32),
-        "names": np.array(list(features)),
         "glance": np.stack(list(glance.values()), axis=1).astype(np.float32),
         "glance_amounts": np.bincount(samples.tree.query(mesh.vertices)[1], amounts, minlength=len(samples.points)),
         "glance_areas": samples.areas,

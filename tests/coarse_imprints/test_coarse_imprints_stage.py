@@ -75,5 +75,5 @@ def test_a_run_trains_each_variant_on_every_split(workspace):
 def test_strange_names_are_named(workspace, make_workspace):
     with pytest.raises(ValueError, match="coarse_imprints.variants: coarse is not one of plain"):
         run(make_workspace({"coarse_imprints": SETTINGS | {"variants": ["coarse"]}}))
-    with pytest.raises(ValueError, match="detector=enhanced is not one of thesis_ssim"):
-        run(make_workspace({"coarse_imprints": SETTINGS | {"detector": "enhanced"}}))
+    with pytest.raises(ValueError, match="detector=glance is not one of thesis_ssim"):
+        run(make_workspace({"coarse_imprints": SETTINGS | {"detector": "glance"}}))

@@ -45,12 +45,12 @@ def figure(name, results):
 
 @pytest.mark.slow
 def test_the_figures_show_blind_and_guided_contours_and_what_is_felt(tmp_path):
-    write(tmp_path, ["a", "b"], ["enhanced", "random", "thesis_ssim"])
+    write(tmp_path, ["a", "b"], ["glance", "random", "thesis_ssim"])
     run = results(tmp_path, ["b"])
     contours, felt = figure("figure_4_14", run), figure("figure_4_15", run)
     assert [one.paths[0].name for one in (contours, felt)] == ["figure_4_14.png", "figure_4_15.png"]
     assert all(one.paths[0].stat().st_size > 10_000 for one in (contours, felt))
-    assert "b, a" in contours.alt and "blind touch and thesis's attention (SSIM)" in contours.alt
+    assert "b, a" in contours.alt and "blind touch and thesis, SSIM" in contours.alt
     assert "first contour of b" in felt.caption
 
 

@@ -17,7 +17,7 @@ from stages.scene import build_lod_chain
 from stages.scene.lod_chain import finest
 from stages.scene.storage import write_chain
 
-SETTINGS = Params([0.5, 2.0], 3, [60, 80], 40.0, 1.0, "enhanced", 12, [16, 16], 0.01, [0.02, 0.1], 0.02, 3, 2)
+SETTINGS = Params([0.5, 2.0], 3, [60, 80], 40.0, 1.0, "glance", 12, [16, 16], 0.01, [0.02, 0.1], 0.02, 3, 2)
 
 
 def ball(bumps=0.05, seed=0):
@@ -97,7 +97,7 @@ def test_the_stage_has_a_row_an_object_task_and_condition(make_workspace, chain,
         write_mesh(workspace.data / f"meshes/{name}.npz", own)
         write_chain(workspace.data / "scene/levels" / name, "ours", chain if name == "one" else build_lod_chain(own))
         points = np.arange(0, 2400, 200)
-        write_arrays(workspace.data / f"salient_points/{name}.npz", **{"enhanced.points": points, "enhanced.strong": 2})
+        write_arrays(workspace.data / f"salient_points/{name}.npz", **{"glance.points": points, "glance.strong": 2})
     write_table(workspace.data / "meshes/manifest.csv", pd.DataFrame({"object": [*meshes], "size": 0.15}))
     run(workspace)
     rows = read_rows(workspace.measurements / "face_needs.csv.gz")

@@ -38,7 +38,7 @@ def run(shapes, make_workspace):
             mesh = shapes[name]
             write_mesh(workspace.data / f"meshes/{name}.npz", mesh)
             values = np.linspace(0, 1, len(mesh.vertices)).astype(np.float32)
-            write_arrays(workspace.data / f"salient_points/{name}.npz", **{"enhanced.saliency": values})
+            write_arrays(workspace.data / f"salient_points/{name}.npz", **{"glance.saliency": values})
             lines.append(f"test,{name},{'yes' if number < 2 else 'no'},{'round' if number < 2 else 'hollow'}")
         ball = shapes["ball"]
         density = np.exp(-20 * ((ball.vertices - [0.5, 0, 0]) ** 2).sum(axis=1))
@@ -91,7 +91,7 @@ def test_stage_judges_models_rivals_and_controls_where_people_looked(run, capsys
     rows = rows_of(run())
     judged = rows[rows["metric"] == "pcc"]
     assert set(judged["item"]) == {"ball"} and set(judged["view"]) == {"0", "1", "2", "all"}
-    assert {("control", "centre_prior"), ("control", "random"), ("rival", "enhanced"), (METHOD, "ewigc")} <= set(
+    assert {("control", "centre_prior"), ("control", "random"), ("rival", "glance"), (METHOD, "ewigc")} <= set(
         zip(judged["method"], judged["task"], strict=True)
     )
     accuracy = rows[rows["metric"] == "accuracy"]

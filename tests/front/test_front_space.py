@@ -10,11 +10,11 @@ from stages.kit.params import ParamsError
 from stages.salient_points.methods import METHODS
 
 OPTIONS = {name: options[0] for name, options in SPACE.items()}
-BLIND = choice_of(OPTIONS | {"method": "random"})
+BLIND, ITTI = (choice_of(OPTIONS | {"method": method}) for method in ("random", "itti"))
 
 
 def test_a_method_without_channels_looks_at_no_picture():
-    assert (BLIND.viewpoints, BLIND.image_rows) == ("", 0) and choice_of(OPTIONS).image_rows == 450
+    assert (BLIND.viewpoints, BLIND.image_rows) == ("", 0) and ITTI.image_rows == 450
     assert choice_of(OPTIONS | {"method": "random", "viewpoints": "four"}) == BLIND
     assert BLIND.columns["image_rows"] is None and BLIND.columns["cells"] == 16
     assert BLIND.name == "random-60-16-100pct-1-knn"
@@ -28,7 +28,7 @@ def test_every_option_is_one_of_its_stage():
 
 
 def test_settings_are_those_of_the_choice():
-    choice = replace(DEFAULT, viewpoints="four", image_rows=225, cells=8, level="500", touches=3, classifier="svm")
+    choice = replace(ITTI, viewpoints="four", image_rows=225, cells=8, level="500", touches=3, classifier="svm")
     settings = settings_of(choice)
     assert (settings.views.viewpoints, settings.views.size, settings.conspicuity.size) == ("four", [225, 300], [56, 75])
     assert settings.lod.targets == ["500"] and settings.classification.touches == [3]
@@ -38,7 +38,7 @@ def test_settings_are_those_of_the_choice():
 
 
 def test_the_default_is_that_of_the_project():
-    settings, usual = settings_of(DEFAULT), settings_of(replace(BLIND, method="enhanced"))
+    settings, usual = settings_of(DEFAULT), settings_of(replace(BLIND, method="glance"))
     assert settings.views == usual.views and settings.conspicuity == usual.conspicuity
     assert settings.imprints.pitch == 0.01
 
@@ -57,6 +57,6 @@ def test_one_choice_changed_differs_in_one_stage():
         changed = {key for key, value in asdict(other).items() if value != asdict(BLIND)[key]}
         assert len(changed - {"viewpoints", "image_rows"}) == 1
     pictures = [other for other in found if other.image_rows]
-    assert {other.method for other in pictures} == {"enhanced", "thesis_ssim", "itti"}
+    assert {other.method for other in pictures} == {"thesis_ssim", "itti"}
     assert {(other.viewpoints, other.image_rows) for other in pictures} == {("twelve", 450)}
     assert len(found) == sum(map(len, SPACE.values())) - len(SPACE) - (2 + 2 - 2)

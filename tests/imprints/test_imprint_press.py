@@ -92,22 +92,20 @@ def test_files_keep_methods_images_and_places(tmp_path):
 
 @pytest.mark.slow
 def test_stage_presses_every_method_and_counts_what_it_refuses(shapes, make_workspace):
-    settings = {"methods": ["itti", "random", "enhanced"], "cells": [15, 15], "pitch": 0.01, "contact": "tangent"}
+    settings = {"methods": ["itti", "random", "glance"], "cells": [15, 15], "pitch": 0.01, "contact": "tangent"}
     workspace = make_workspace({"imprints": settings})
     mesh, vertex = shapes.solid(shapes.sphere)
     mesh = Mesh(np.r_[mesh.vertices, [[1, 1, 1]]], mesh.faces)
     lone = len(mesh.vertices) - 1
     write_mesh(workspace.data / "meshes/ball.npz", mesh)
-    points = {"random": np.array([vertex, lone]), "itti": np.array([vertex]), "enhanced": np.zeros(0, "i8")}
+    points = {"random": np.array([vertex, lone]), "itti": np.array([vertex]), "glance": np.zeros(0, "i8")}
     arrays = {f"{method}.points": ids for method, ids in points.items()}
     arrays |= {f"{method}.strong": np.int64(len(ids)) for method, ids in points.items()}
     write_arrays(workspace.data / "salient_points/ball.npz", **arrays)
     run(workspace)
     rows = read_rows(workspace.measurements / "imprints.csv.gz")
     value = rows.set_index(["method", "metric"])["value"]
-    assert (
-        value["random", "imprints"] == 1 and value["random", "refused"] == 1 and np.isnan(value["enhanced", "relief"])
-    )
+    assert value["random", "imprints"] == 1 and value["random", "refused"] == 1 and np.isnan(value["glance", "relief"])
     assert (
         value["itti", "relief"] == pytest.approx(0.3 - shapes.sphere(0.07, 0.07), rel=1e-5)
         and value["itti", "missed"] == 0

@@ -47,9 +47,9 @@ def look(event, arguments):
 sys.addaudithook(look)
 """
 SMALL = {
-    "lod": {"methods": ["qem", "enhanced"], "targets": ["50%"], "rings": 1, "backend": "pymeshlab", "samples": 200,
+    "lod": {"methods": ["qem", "glance"], "targets": ["50%"], "rings": 1, "backend": "pymeshlab", "samples": 200,
             "viewpoints": "four", "size": [48, 64], "shrink": True},
-    "transfer": {"touches": 8, "new_object_touches": [1], "detector": "enhanced", "coarse_cells": [8],
+    "transfer": {"touches": 8, "new_object_touches": [1], "detector": "glance", "coarse_cells": [8],
                  "weights": ["random"], "size": 32, "networks": {"mobilenet_v2": ["frozen"]},
                  "splits": {"random": 3, "objects": 3}, "copies": 1, "epochs": 2, "search_epochs": 1,
                  "severities": {}, "hybrid_middles": [], "device": "cpu"},
@@ -74,7 +74,7 @@ def make_workspace(root, backend):
         write_mesh(data / f"meshes/{name}.npz", mesh)
         saliency = np.linspace(0, 1, len(mesh.vertices), dtype=np.float32)
         found = {"points": np.arange(4), "strong": np.int64(4), "saliency": saliency}
-        write_arrays(data / f"salient_points/{name}.npz", **{f"enhanced.{key}": one for key, one in found.items()})
+        write_arrays(data / f"salient_points/{name}.npz", **{f"glance.{key}": one for key, one in found.items()})
     write_text(data / "meshes/classes.csv", "class,object\nround,ball\nround,egg\nsquare,brick\nsquare,plank\n")
     write_text(data / "weights/weights.csv", "none")
     return Workspace(root, "toys")

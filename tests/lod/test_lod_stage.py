@@ -25,7 +25,7 @@ from stages.views import viewpoint_set
 from stages.weights.ground_truth import spread_on_surface
 
 SETTINGS = Params(
-    methods=["qem", "enhanced", "enhanced-soft", "itti", "random-area"], targets=["50%", "10%", "4000"], rings=3,
+    methods=["qem", "glance", "glance-soft", "itti", "random-area"], targets=["50%", "10%", "4000"], rings=3,
     backend="pymeshlab", samples=500, viewpoints="four", size=[48, 64], shrink=False,
 )  # fmt: skip
 SHRINKING = dataclasses.replace(SETTINGS, shrink=True)
@@ -35,8 +35,8 @@ def new_subject():
     ball = trimesh.creation.icosphere(subdivisions=3, radius=0.5)
     mesh = Mesh(ball.vertices, ball.faces)
     pictures = take_pictures(mesh, viewpoint_set("four"), (48, 64))
-    points = {"enhanced": np.array([0, 300]), "random": np.array([5])}
-    saliency = {"enhanced": ((mesh.vertices[:, 2] + 0.5).clip(0, 1)).astype(np.float32)}
+    points = {"glance": np.array([0, 300]), "random": np.array([5])}
+    saliency = {"glance": ((mesh.vertices[:, 2] + 0.5).clip(0, 1)).astype(np.float32)}
     return ObjectInputs("ball", mesh, points, saliency, pictures)
 
 
@@ -57,24 +57,24 @@ def cell(rows, method, target):
 
 def test_a_feasible_cell_has_its_mesh_and_all_metrics(rows):
     folder, rows = rows
-    found = cell(rows, "enhanced", "50%")
+    found = cell(rows, "glance", "50%")
     assert set(found) >= {"faces", "metro_mean", "metro_rms", "metro_max", "ssim_error", "salient_error"}
-    mesh = read_mesh(folder / "ball" / "enhanced_50pct.npz")
+    mesh = read_mesh(folder / "ball" / "glance_50pct.npz")
     assert len(mesh.faces) == found["faces"]["value"] == found["ssim_error"]["faces"] <= 640
     assert all(row["value"] > 0 and row["seconds"] > 0 and row["points"] == 2 for row in found.values())
     assert all((row["kept"], row["rings"], row["shrunk"]) == (2, 3.0, False) for row in found.values())
 
 
 def test_shrinking_makes_it_feasible_and_says_what_is_kept(subject, tmp_path):
-    found = cell(measure_cells(subject, "enhanced", tmp_path, SHRINKING, 0), "enhanced", "10%")["faces"]
+    found = cell(measure_cells(subject, "glance", tmp_path, SHRINKING, 0), "glance", "10%")["faces"]
     assert found["value"] <= 128 < found["smallest_feasible"] and not found["infeasible"] and found["note"] == ""
     assert found["shrunk"] and found["points"] == 2
-    rings = shrunk_rings(subject.mesh, 128, subject.points["enhanced"])
+    rings = shrunk_rings(subject.mesh, 128, subject.points["glance"])
     assert (found["kept"], found["rings"]) == ((rings >= 0).sum(), rings[rings >= 0].mean())
 
 
 def test_the_soft_variant_keeps_no_point_and_needs_no_room(rows):
-    found = cell(rows[1], "enhanced-soft", "10%")
+    found = cell(rows[1], "glance-soft", "10%")
     assert (found["faces"]["points"], found["faces"]["kept"], found["faces"]["rings"]) == (0, 0, None)
     assert found["faces"]["value"] == 128
     assert found["salient_error"]["value"] < cell(rows[1], "qem", "10%")["salient_error"]["value"]
@@ -84,8 +84,8 @@ def test_equal_kept_sets_are_simplified_once(tmp_path, monkeypatch):
     subject, calls = new_subject(), []
     monkeypatch.setattr("stages.lod.cell.simplify", lambda *a, **k: calls.append(a) or simplify(*a, **k))
     settings = dataclasses.replace(SETTINGS, targets=["50%", "640"])
-    subject.points["itti"] = subject.points["enhanced"][::-1]
-    rows = [row for method in ("enhanced", "itti") for row in measure_cells(subject, method, tmp_path, settings, 0)]
+    subject.points["itti"] = subject.points["glance"][::-1]
+    rows = [row for method in ("glance", "itti") for row in measure_cells(subject, method, tmp_path, settings, 0)]
     assert len(calls) == 1
     assert len({row["value"] for row in rows if row["metric"] == "metro_mean"}) == 1
     assert len(list((tmp_path / "ball").glob("*.npz"))) == 4
@@ -180,10 +180,10 @@ def test_curve_has_the_rows_without_what_differs_from_run_to_run(workspace):
 
 def test_an_infeasible_cell_says_so_and_names_the_smallest_count(rows):
     folder, rows = rows
-    found = cell(rows, "enhanced", "10%")["faces"]
+    found = cell(rows, "glance", "10%")["faces"]
     assert found["value"] is None and found["infeasible"]
     assert found["smallest_feasible"] > 128 and str(found["smallest_feasible"]) in found["note"]
-    assert not (folder / "ball" / "enhanced_10pct.npz").exists()
+    assert not (folder / "ball" / "glance_10pct.npz").exists()
 
 
 def test_a_target_above_the_mesh_and_a_missing_method_leave_a_note(rows):
@@ -228,8 +228,8 @@ def test_summary_compares_only_cells_that_all_methods_reach():
 @pytest.mark.parametrize(
     ("name", "method", "way"),
     [
-        ("qem", None, None), ("enhanced", "enhanced", "fixed"), ("guided_ssim-adaptive", "guided_ssim", "adaptive"),
-        ("enhanced-area", "enhanced", "area"), ("2Sym-soft", "2Sym", "soft"),
+        ("qem", None, None), ("glance", "glance", "fixed"), ("guided_ssim-adaptive", "guided_ssim", "adaptive"),
+        ("glance-area", "glance", "area"), ("2Sym-soft", "2Sym", "soft"),
     ],
 )  # fmt: skip
 def test_names_of_methods_mean_points_and_a_way(name, method, way):
@@ -239,8 +239,8 @@ def test_names_of_methods_mean_points_and_a_way(name, method, way):
 @pytest.mark.parametrize(
     ("name", "message"),
     [
-        ("", "unknown method ''"), ("enhancd", "unknown method 'enhancd'"), ("enhanced-", "endings are"),
-        ("enhanced-fixed", "endings are -adaptive, -area, -soft"), ("enhanced-soft-area", "ends in 'soft-area'"),
+        ("", "unknown method ''"), ("glanc", "unknown method 'glanc'"), ("glance-", "endings are"),
+        ("glance-fixed", "endings are -adaptive, -area, -soft"), ("glance-soft-area", "ends in 'soft-area'"),
         ("qem-soft", "unknown method 'qem'"), ("-area", "unknown method ''"),
     ],
 )  # fmt: skip
@@ -261,4 +261,4 @@ def test_bad_targets_are_named(target):
 
 
 def test_file_names_hold_no_percent_sign():
-    assert file_name("enhanced", "25%") == "enhanced_25pct.npz"
+    assert file_name("glance", "25%") == "glance_25pct.npz"

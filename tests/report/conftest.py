@@ -22,14 +22,14 @@ SETS = ("test", "household", "furniture")  # switched on in the small run
 OBJECTS = ["ball", "cube"]
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "microsoft-edge")
 SOFTWARE_GL = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")  # WebGL without a card
-FOUND = ["enhanced", "itti", "VisAttAll", "guided_ssim", "height"]  # methods with points and saliency
+FOUND = ["glance", "itti", "VisAttAll", "guided_ssim", "height"]  # methods with points and saliency
 
 
 def settings(**changes):
     """The report's settings for the small run."""
     values = {
         "hero_object": "ball", "figure_objects": ["ball"], "viewer_objects": ["ball"], "viewer_count": 2,
-        "viewer_faces": 10000, "viewer_lod_methods": ["qem", "enhanced"], "viewer_kilobytes": 1000,
+        "viewer_faces": 10000, "viewer_lod_methods": ["qem", "glance"], "viewer_kilobytes": 1000,
     }  # fmt: skip
     return Params(**values | changes)
 
@@ -49,14 +49,14 @@ def ball(rings=12):
     return Mesh(vertices, np.concatenate([sides, top, bottom]))
 
 
-def classification(enhanced=0.8, rivals=0.5):
-    """Rows with known accuracies: the enhanced model, and ours, are better by a margin far over the noise."""
+def classification(thesis=0.8, rivals=0.5):
+    """Rows with known accuracies: the thesis's model, and ours, are better by a margin far over the noise."""
     rng = np.random.default_rng(0)
     rows = []
     for objects in ("six", "four"):
         for method, accuracy in (
-            ("thesis_ssim", enhanced),
-            ("enhanced", enhanced),
+            ("thesis_ssim", thesis),
+            ("glance", thesis),
             ("itti", rivals),
             ("random", rivals),
         ):
@@ -71,10 +71,10 @@ def classification(enhanced=0.8, rivals=0.5):
 
 
 def lod():
-    """Rows in which plain QEM has exactly half the error of the enhanced model and of ours; a cell is infeasible."""
+    """Rows in which plain QEM has exactly half the error of the thesis's model and of ours; a cell is infeasible."""
     rows = []
     for name in OBJECTS:
-        for method, factor in (("qem", 1.0), ("thesis_ssim", 2.0), ("enhanced", 2.0)):
+        for method, factor in (("qem", 1.0), ("thesis_ssim", 2.0), ("glance", 2.0)):
             for target, error in (("50%", 0.01), ("25%", 0.03)):
                 infeasible = (name, target) == ("cube", "25%") and method != "qem"
                 cell = {"dataset": "test", "item": name, "method": method, "target": target, "faces": 100}
@@ -101,7 +101,7 @@ def write_measurements(root, stage, frame, dataset=None):
 def write_set(root, name, count):
     """Leaves behind what the classification does of a group of so many objects."""
     write_arrays(
-        root / "data/test/classification" / f"{name}.enhanced.npz", objects=np.array([f"o{k}" for k in range(count)])
+        root / "data/test/classification" / f"{name}.glance.npz", objects=np.array([f"o{k}" for k in range(count)])
     )
 
 
@@ -115,7 +115,7 @@ def left_out(frame, note, **where):
 def judged(offsets=None):
     """Rows of agreement with a known truth: each mesh adds its own level to every method, and a little noise."""
     means = {
-        "enhanced": 1.5, "itti": 0.2, "VisAtt": 0.2, "VisAttAll": 0.2, "equal": 0.3, "guided_ssim": 0.1,
+        "glance": 1.5, "itti": 0.2, "VisAtt": 0.2, "VisAttAll": 0.2, "equal": 0.3, "guided_ssim": 0.1,
         "guided_ed": 0.5, "thesis_ssim": 0.3, "facing_viewer": 0.7, "svm_object": 0.9, "human": 2.0,
     }  # fmt: skip
     random, rows = np.random.default_rng(0), []
@@ -138,7 +138,7 @@ def learned_weights(count=6):
             mean = np.delete(own, fold, axis=0).mean(axis=0) if fold >= 0 else own.mean(axis=0)
             left_out = "abcdef"[fold] if fold >= 0 else ""
             rows += [(method, channel, value, left_out) for channel, value in zip(CHANNELS, mean, strict=True)]
-    rows += [(method, "height", 0.3, fold) for method in ("fixations", "enhanced") for fold in ("", *"abcdef"[:count])]
+    rows += [("glance", "rank", 0.3, fold) for fold in ("", *"abcdef"[:count])]
     return pd.DataFrame(rows, columns=["method", "channel", "weight", "left_out"]), own
 
 
@@ -153,26 +153,6 @@ def svm_accuracies():
                 row = {"item": name, "method": "svm", "area": area, "training": training, "validation": validation}
                 row |= {"deviation": 0.03, "background_alone": 0.85, "metric": "accuracy"}
                 rows.append(row | {"value": mean + 0.001 * (k - (len(names) - 1) / 2), "seconds": None})
-    return pd.DataFrame(rows)
-
-
-def settings_of_sight():
-    """Rows of three settings: the full one, a small one that is as good, and a smaller one that is worse."""
-    random, rows = np.random.default_rng(2), []
-    for views, size, channels, loss, seconds in (
-        ("twelve", 900, "nine", 0.0, 10.0), ("four", 450, "symmetry", 0.001, 1.0), ("one", 450, "none", 0.3, 0.5),
-    ):  # fmt: skip
-        for name in "abcdef":
-            nss = 1.5 - loss + 0.002 * random.normal()
-            row = {
-                "item": name,
-                "views": views,
-                "rows": size,
-                "channels": channels,
-                "method": "fixations",
-                "seconds": seconds,
-            }
-            rows += [row | {"metric": "nss", "value": nss}, row | {"metric": "auc", "value": 0.8}]
     return pd.DataFrame(rows)
 
 
@@ -207,7 +187,7 @@ def write_attention(root):
     weights = table.rename(columns={"weight": "value", "left_out": "item"}).assign(metric="weight")
     frames = {
         "salient_points": judged(), "weights": pd.concat([svm_accuracies(), weights]),
-        "attention_settings": settings_of_sight(), "annotations": agreed_marks(),
+        "annotations": agreed_marks(),
         "conspicuity": pd.DataFrame(seconds),
         "views": pd.DataFrame([{"item": "a", "method": "raster", "metric": "coverage", "seconds": 2.0}]),
     }  # fmt: skip
@@ -258,7 +238,7 @@ def make_root(root):
         write_mesh(root / "data/test/meshes" / f"{name}.npz", mesh)
         points = np.array([3, 50, 100])
         found = {"points": points, "strong": np.int64(2), "saliency": np.linspace(0, 1, len(mesh.vertices))}
-        arrays = {f"enhanced.{key}": value for key, value in found.items()}
+        arrays = {f"glance.{key}": value for key, value in found.items()}
         write_arrays(root / "data/test/salient_points" / f"{name}.npz", **arrays)
         write_mesh(root / "data/test/lod" / name / "qem_50pct.npz", ball(8))
     write_measurements(root, "classification", classification())

@@ -49,10 +49,6 @@ def figure_of(results, name):
     return build_one(attention, "figures", name, results)
 
 
-def settings_chart(results):
-    return build_one(attention, "tradeoff", "attention_settings", results)
-
-
 def time_spent(results):
     return build_one(stability, "tables", "time_spent", results).frame.set_index(["stage", "method"])
 
@@ -80,7 +76,7 @@ def test_gain_is_paired_so_that_hard_meshes_do_not_widen_it(seen):
 @pytest.mark.slow
 def test_methods_that_have_seen_the_object_are_starred_and_are_no_rivals(seen):
     table = table_of(seen, "attention_gaze")
-    assert "SVM of the object *" in set(table.shown["method"])
+    assert "thesis, SVM of the object *" in set(table.shown["method"])
     assert rivals(seen.rows("salient_points", "gaze"), "nss")[0] == "facing_viewer"
     assert any("facing viewer: ours − it NSS +0.8" in note for note in table.notes)
 
@@ -88,20 +84,21 @@ def test_methods_that_have_seen_the_object_are_starred_and_are_no_rivals(seen):
 @pytest.mark.slow
 def test_sentences_follow_from_the_numbers(seen, small):
     assert any("higher than 7 of the 7 others" in note for note in table_of(seen, "attention_gaze").notes)
-    worse = again(seen, small, "salient_points", small.judged({"enhanced": 0.25}))
+    worse = again(seen, small, "salient_points", small.judged({"glance": 0.25}))
     notes = " ".join(table_of(worse, "attention_gaze").notes)
     assert "In NSS ours is higher than 3 of the 7 others" in notes
     assert "not than facing viewer" in notes
     for pair, word in (
-        ("guided by ED − equal weights", "higher"), ("guided by SSIM − equal weights", "lower"),
-        ("VisAttAll − Itti's attention", "not told apart"),
+        ("guided by ED − thesis, nine equal weights", "higher"),
+        ("guided by SSIM − thesis, nine equal weights", "lower"),
+        ("thesis, equal weights − Itti's attention", "not told apart"),
     ):  # fmt: skip
         assert re.search(rf"{pair}: NSS [-+.\d]+ \[[-., \d]+\] \({word}\)", notes)
 
 
 def test_table_of_gaze_stands_without_our_method_or_the_ceiling(seen, small):
     rows = small.judged()
-    others = rows[~rows["method"].isin(["enhanced", "human"])]
+    others = rows[~rows["method"].isin(["glance", "human"])]
     table = table_of(again(seen, small, "salient_points", others), "attention_gaze")
     assert table.frame["method"].iloc[0] == "svm_object"
     assert (table.shown["ours − it, NSS"] == "–").all()
@@ -204,7 +201,7 @@ def test_figure_is_drawn_and_says_what_it_shows(seen, name):
 @pytest.mark.parametrize(
     ("kind", "names"),
     [("tables", ["attention_gaze", "attention_marks", "table_3_1", "section_3_2_3", "annotations"]),
-     ("figures", [*FIGURES, "saliency", "figure_3_4"]), ("tradeoff", ["attention", "attention_settings"])],
+     ("figures", [*FIGURES, "saliency", "figure_3_4"]), ("tradeoff", ["attention"])],
 )  # fmt: skip
 def test_without_attention_its_pieces_are_not_run(bare, small, kind, names):
     assert set(names) <= set(build_all(kind, small.results(bare)).not_run)
@@ -231,7 +228,7 @@ def test_maps_without_a_channel_are_not_run_but_no_crash(seen, root):
 
 def test_errors_of_combinations_are_over_what_all_of_them_reach(seen, root, small):
     rows = small.lod()
-    itti, reaches_less = (rows[rows["method"] == "enhanced"].assign(method=name) for name in ("itti", "VisAttAll"))
+    itti, reaches_less = (rows[rows["method"] == "glance"].assign(method=name) for name in ("itti", "VisAttAll"))
     reaches_less.loc[reaches_less["target"] == "50%", "value"] = np.nan
     small.write(root, "lod", pd.concat([rows, itti, reaches_less]))
     found = paired_cells(small.results(root), methods=COMBINATIONS)
@@ -243,7 +240,7 @@ def test_errors_of_combinations_are_over_what_all_of_them_reach(seen, root, smal
 @pytest.mark.slow
 def test_figure_of_combinations_is_drawn(seen, root, small):
     rows = pd.concat([small.lod().replace({"ball": f"ball{k}", "cube": f"cube{k}"}) for k in range(2)])
-    others = [rows[rows["method"] == "enhanced"].assign(method=name) for name in ("itti", "VisAttCon")]
+    others = [rows[rows["method"] == "glance"].assign(method=name) for name in ("itti", "VisAttCon")]
     small.write(root, "lod", pd.concat([rows, *others]))
     figure = build_one(meshes, "figures", "figure_3_4", small.results(root))
     assert "50%: 4 objects" in figure.caption and "25%" not in figure.caption  # two objects reach it
@@ -251,7 +248,7 @@ def test_figure_of_combinations_is_drawn(seen, root, small):
 
 def test_the_time_spent_names_stages_and_methods_in_words(seen):
     table = build_one(stability, "tables", "time_spent", seen)
-    assert "ours (views)" in set(table.text["method"]) and "enhanced" in set(table.frame["method"])
+    assert "glance" in set(table.text["method"]) and "glance" in set(table.frame["method"])
     assert not table.text[["stage", "method"]].stack().str.contains("_").any()
 
 
@@ -292,40 +289,13 @@ def test_chart_of_attention_leaves_out_those_that_have_seen_the_mesh(seen):
     rows = pd.read_csv(seen.out / "tradeoff/attention.csv").set_index("method")
     assert not {"svm_object", "human"} & set(rows.index)
     assert rows.loc["itti", "cost_ratio"] == 1
-    assert rows["on_front"][["enhanced", "itti"]].tolist() == ["yes", "no"]
-
-
-@pytest.mark.slow
-def test_smallest_setting_that_loses_nothing_is_named(seen):
-    chart = settings_chart(seen)
-    assert "four, 450 rows, symmetry (10.0 times as fast" in chart.caption
-    assert "one, 450 rows, none (" not in chart.caption
-    rows = pd.read_csv(seen.out / "tradeoff/attention_settings.csv").set_index("name")
-    assert rows["loses_nothing"].to_dict() == {
-        "twelve, 900 rows, nine": True, "four, 450 rows, symmetry": True, "one, 450 rows, none": False,
-    }  # fmt: skip
-
-
-@pytest.mark.slow
-def test_a_setting_that_loses_in_auc_alone_is_not_named(seen, small):
-    rows = seen.rows("attention_settings")
-    loss = rows["item"].map(dict(zip("abcdef", np.linspace(0.04, 0.06, 6), strict=True)))
-    loss *= (rows["views"] == "four") & (rows["metric"] == "auc")
-    worse = again(seen, small, "attention_settings", rows.assign(value=rows["value"] - loss))
-    assert "four, 450 rows" not in settings_chart(worse).caption.split("Smallest")[1]
-
-
-def test_one_setting_alone_is_not_run(seen, small):
-    rows = seen.rows("attention_settings")
-    less = again(seen, small, "attention_settings", rows[rows["views"] == "four"])
-    with pytest.raises(NotRun, match="fewer than two settings"):
-        settings_chart(less)
+    assert rows["on_front"][["glance", "itti"]].tolist() == ["yes", "no"]
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("key", "word"),
-    [("ours_over_best_gaze", "supported"), ("guided_ed_gaze", "supported"), ("guided_ssim_gaze", "contradicted"),
+    [("glance_over_best_gaze", "supported"), ("guided_ed_gaze", "supported"), ("guided_ssim_gaze", "contradicted"),
      ("equal_over_itti_gaze", "no difference"), ("svm_per_object", "supported")],
 )  # fmt: skip
 def test_claims_on_gaze_follow_from_the_rows(seen, key, word):
@@ -339,7 +309,7 @@ def test_claim_on_svms_takes_the_thesis_way(seen):
 
 def test_method_that_was_not_judged_is_named(seen):
     with pytest.raises(NotRun, match="sift"):
-        difference(seen.rows("salient_points", "gaze"), "nss", "enhanced", "sift")
+        difference(seen.rows("salient_points", "gaze"), "nss", "glance", "sift")
 
 
 def test_zero_has_no_minus():
@@ -357,7 +327,7 @@ def test_colours_keep_the_order_and_are_not_spoilt_by_one_peak():
 
 
 def test_page_offers_few_methods_and_any_where_none_of_those_ran(seen, root):
-    assert list(pack_viewer(seen)["objects"][0]["saliency"]) == ["enhanced", "itti"]
+    assert list(pack_viewer(seen)["objects"][0]["saliency"]) == ["glance", "itti"]
     for path in (root / "data/test/salient_points").glob("*.npz"):
         write_arrays(path, **{key: values for key, values in read_arrays(path).items() if key.startswith("height")})
     assert list(pack_viewer(seen)["objects"][0]["saliency"]) == ["height"]

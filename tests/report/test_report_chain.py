@@ -10,7 +10,7 @@ from stages.report.results import NotRun
 from stages.report.topics import build_one
 
 BLIND = {"method": "random", "points": 40, "cells": 8, "level": "500", "touches": 3, "classifier": "knn"}
-LOOKING = BLIND | {"method": "enhanced", "viewpoints": "twelve", "image_rows": 900, "level": "100%", "touches": 1}
+LOOKING = BLIND | {"method": "thesis_ssim", "viewpoints": "twelve", "image_rows": 900, "level": "100%", "touches": 1}
 OTHERS = [BLIND | {"points": 20}, BLIND | {"classifier": "svm"}]
 
 
@@ -55,9 +55,7 @@ def test_confirmed_choices_stand_beside_what_the_search_found(measured):
 
 def test_a_choice_is_said_in_words():
     looking = pd.Series(LOOKING)
-    assert words(looking) == (
-        "ours (views) (twelve views of 900 rows), 40 places, 8 x 8 cells, all faces, 1 touch, kNN"
-    )
+    assert words(looking) == "thesis, SSIM (twelve views of 900 rows), 40 places, 8 x 8 cells, all faces, 1 touch, kNN"
     assert (
         words(pd.Series({"image_rows": None} | BLIND))
         == "blind touch, 40 places, 8 x 8 cells, 500 faces, 3 touches, kNN"

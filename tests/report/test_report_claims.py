@@ -84,19 +84,19 @@ def test_a_side_may_be_of_another_set(root, small):
 
 
 def test_clear_effect_is_supported(results):
-    row = of(results, "ours_over_blind")
+    row = of(results, "glance_over_blind_ours")
     assert row["verdict"] == "supported"
     assert row["effect"] == pytest.approx(30, abs=2)
     assert row["pairs"] == 6
 
 
 def test_reversed_effect_is_contradicted(root, small):
-    small.write(root, "classification", small.classification(enhanced=0.4, rivals=0.7))
-    assert of(small.results(root), "ours_over_blind")["verdict"] == "contradicted"
+    small.write(root, "classification", small.classification(thesis=0.4, rivals=0.7))
+    assert of(small.results(root), "glance_over_blind_ours")["verdict"] == "contradicted"
 
 
 def test_no_effect_shows_no_difference(results):
-    assert of(results, "ours_over_weighted")["verdict"] == "no difference"
+    assert of(results, "glance_over_ssim_ours")["verdict"] == "no difference"
 
 
 def test_unmeasured_claim_is_open_and_names_the_stage(results):
@@ -106,7 +106,7 @@ def test_unmeasured_claim_is_open_and_names_the_stage(results):
 
 
 def test_errors_are_compared_in_pairs_and_relative_to_their_size(results):
-    row = of(results, "ours_keep_metro")
+    row = of(results, "glance_keep_metro")
     assert row["effect"] == pytest.approx(100 * (1 - 2) / 1.5)
     assert row["pairs"] == 2
 
@@ -114,7 +114,7 @@ def test_errors_are_compared_in_pairs_and_relative_to_their_size(results):
 def test_more_faces_claim_takes_fewest_minus_most(root, small):
     frame = small.results(root).rows("lod").copy()
     frame.loc[frame["target"] == "25%", "faces"] = 50
-    rows = frame[(frame["item"] == "ball") & (frame["method"] == "enhanced")]
+    rows = frame[(frame["item"] == "ball") & (frame["method"] == "glance")]
     small.write(root, "lod", rows.assign(method="itti"), SECTION_3_1)
     assert of(small.results(root), "more_faces")["effect"] == pytest.approx(100 * (0.06 - 0.02))
 
@@ -129,7 +129,7 @@ def test_beyond_chance_takes_guessing_off(root, small):
 
 
 def test_pairs_match_by_repetition_not_by_row(root, results, small):
-    one = next(claim for claim in CLAIMS if claim.key == "ours_over_weighted")
+    one = next(claim for claim in CLAIMS if claim.key == "glance_over_ssim_ours")
     before = differences(results, one)
     small.write(root, "classification", results.rows("classification").iloc[::-1])
     after = differences(small.results(root), one)
@@ -137,7 +137,7 @@ def test_pairs_match_by_repetition_not_by_row(root, results, small):
 
 
 def test_side_that_was_not_measured_is_not_run(results):
-    one = next(claim for claim in CLAIMS if claim.key == "ours_over_weighted")
+    one = next(claim for claim in CLAIMS if claim.key == "glance_over_ssim_ours")
     with pytest.raises(NotRun, match="heat_kernel"):
         differences(results, replace(one, second={"method": "heat_kernel"}))
 
@@ -216,17 +216,17 @@ def test_equal_differences_are_open_and_say_why(root, small):
 
 
 def test_words_are_written_from_the_fields(root, results, small):
-    said = "test, kNN, six objects, test part drawn at random, all imprints, our model of gaze minus blind touch, "
+    said = "test, kNN, six objects, test part drawn at random, all imprints, our glance minus blind touch, "
     said += "five draws"
-    assert of(results, "ours_over_blind")["tested_on"] == said
+    assert of(results, "glance_over_blind_ours")["tested_on"] == said
     small.write_set(root, "six", 4)
-    assert of(results, "ours_over_blind")["tested_on"] == said.replace("six objects", "4 objects (group six)")
+    assert of(results, "glance_over_blind_ours")["tested_on"] == said.replace("six objects", "4 objects (group six)")
     rivals = of(results, "knn_best_ours")["tested_on"]
     assert rivals.endswith("kNN minus the highest of the others")
 
 
 def test_a_change_of_a_field_changes_the_words(results):
-    one = next(claim for claim in CLAIMS if claim.key == "ours_over_blind")
+    one = next(claim for claim in CLAIMS if claim.key == "glance_over_blind_ours")
     other = replace(one, where=one.where | {"classifier": "deep_learning"}, note="so")
     words = [judge([claim], results)["tested_on"][0] for claim in (one, other)]
     assert words[1] == words[0].replace("kNN", "deep learning") + ", so"
@@ -243,7 +243,7 @@ def test_chance_follows_the_objects_that_the_group_held(root, small):
 def test_group_that_was_left_out_hands_on_its_note(root, small):
     small.write(root, "classification", small.left_out(small.classification(), "six: no duck", group="six"))
     results = small.results(root)
-    for key in ("ours_over_blind", "knn_best_ours", "four_easier_ours"):
+    for key in ("glance_over_blind_ours", "knn_best_ours", "four_easier_ours"):
         assert of(results, key)["tested_on"] == "not run: six: no duck"
 
 
@@ -252,8 +252,8 @@ def test_sampling_or_classifier_that_was_left_out_hands_on_its_note(root, small)
     failed = {"group": "six", "method": "random", "classifier": "knn", "metric": "accuracy"}
     small.write(root, "classification", small.left_out(frame, "knn failed: why", **failed))
     results = small.results(root)
-    assert of(results, "ours_over_weighted")["tested_on"] == "not run: too few touches"
-    assert of(results, "ours_over_blind")["tested_on"] == "not run: knn failed: why"
+    assert of(results, "glance_over_ssim_ours")["tested_on"] == "not run: too few touches"
+    assert of(results, "glance_over_blind_ours")["tested_on"] == "not run: knn failed: why"
 
 
 def test_absent_group_is_called_a_group(root, small):

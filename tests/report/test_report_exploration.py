@@ -106,7 +106,7 @@ def disturbed():
     generator, rows = np.random.default_rng(0), []
     for repetition in range(8):
         for (perturbation, severity), loss in lost.items():
-            row = {"dataset": "test", "group": "six", "method": "enhanced", "split": "random", "features": "imprint"}
+            row = {"dataset": "test", "group": "six", "method": "glance", "split": "random", "features": "imprint"}
             row |= {"classifier": "knn", "repetition": repetition, "perturbation": perturbation, "severity": severity}
             value = 0.8 - loss + 0.002 * generator.normal()
             rows.append(row | {"chance": 0.2, "metric": "accuracy", "value": value, "seconds": 1e-3, "note": None})

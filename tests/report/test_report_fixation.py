@@ -27,9 +27,9 @@ NETWORKS = ["mobilenet_v2-frozen", "mobilenet_v2-finetuned", "vgg16-frozen", "re
             "resnet50-last_block", "mobilenet_v2-random", "vgg16-random", "resnet50-random"]  # fmt: skip
 TASKS = {"level_1": 0.35, "level_2": 0.35, "level_3": 0.1, "convexity": 0.15, "curvature": 0.35, "eccentricity": 0.35,
          "ewigc": 0.4, "ewigc_l4": 0.3}  # fmt: skip
-OTHERS = {("rival", "mesh_saliency"): 0.15, ("rival", "enhanced"): 0.6, ("control", "centre_prior"): 0.2,
+OTHERS = {("rival", "mesh_saliency"): 0.15, ("rival", "glance"): 0.6, ("control", "centre_prior"): 0.2,
           ("control", "random"): 0.0}  # fmt: skip
-DISTANCES = {"ewigc": 0.1, "ewigc_l4": 0.15, "mesh_saliency": 0.2, "enhanced": 0.08, "centre_prior": 0.2,
+DISTANCES = {"ewigc": 0.1, "ewigc_l4": 0.15, "mesh_saliency": 0.2, "glance": 0.08, "centre_prior": 0.2,
              "random": 0.05}  # fmt: skip
 ALIKE = {"vgg16-last_block": 0.5, "resnet50-last_block": 0.7}  # mean correlation of two tasks' maps; 0.4 for others
 FIGURES = ["figure_3_28", "figure_3_31", "figure_3_32", "figure_3_35", "figure_3_36"]
@@ -183,7 +183,7 @@ def test_detectors_stand_in_the_order_of_their_correlation(gaze):
     made = table(gaze)
     for _, group in made.frame[made.frame["metric"] == "pcc"].groupby("truth"):
         assert group["mean"].is_monotonic_decreasing
-    assert made.shown["detector"].iloc[0] == "ours (views)"
+    assert made.shown["detector"].iloc[0] == "glance"
     assert line(made.shown, truth="marks, 4 objects", detector="noise")["it − random weights, PCC"] == "–"
 
 
@@ -222,7 +222,7 @@ VERDICTS = {
     "fused_over_narrowed": ("supported", 0.1),
     "fused_nearer_than_narrowed": ("supported", 10),
     "fused_nearer_than_narrowed_least": ("supported", 5),
-    "ours_over_ewigc": ("supported", 0.2),
+    "glance_over_ewigc": ("supported", 0.2),
     "excluded_least_masked": ("supported", 0.225),
     "ewigc_over_rest_resnet50_masked": ("supported", 0.25),
     "ewigc_over_rest_vgg16_masked": ("supported", 0.25),
@@ -349,7 +349,7 @@ def test_a_network_that_was_not_run_leaves_its_claim_open_and_is_named(gaze, sma
 def test_claims_of_t_3_3_stand_between_those_of_attention_and_of_meshes():
     sections = [claim.key for claim in CLAIMS]
     first, last = (sections.index(chapter_3_fixation.CLAIMS[end].key) for end in (0, -1))
-    assert sections[first - 1] == "ours_over_enhanced_gaze"
+    assert sections[first - 1] == "any_pose_over_best_gaze"
     assert last - first == len(chapter_3_fixation.CLAIMS) - 1
     assert len(set(sections)) == len(sections)
 
@@ -447,7 +447,7 @@ def test_fused_attention_stands_beside_models_where_nobody_marked_anything(looke
     for path in (looked.data / "test/weights/ground_truth").glob("*.npz"):
         path.unlink()
     made = figure(looked, "figure_3_34")
-    assert "marks" not in made.alt.lower() and "mesh saliency" not in made.alt and "ours" in made.alt
+    assert "marks" not in made.alt.lower() and "mesh saliency" not in made.alt and "glance" in made.alt
 
 
 def test_a_picture_on_gaze_is_kept_with_its_words_where_the_meshes_are_absent(bare, small, monkeypatch):

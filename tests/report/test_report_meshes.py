@@ -25,7 +25,7 @@ from stages.report.words import dataset_text
 
 OBJECTS = ["a", "b", "c", "d"]
 POINTS = {"heat_kernel": 3, "SymRad": 4, "itti": 15, "guided_ssim": 16, "guided_ed": 17, "svm": 18, "harris": 50,
-          "corners": 60, "VisAttAll": 20, "VisAttCurvSymCon": 14, "VisAttCon": 13, "enhanced": 12}  # fmt: skip
+          "corners": 60, "VisAttAll": 20, "VisAttCurvSymCon": 14, "VisAttCon": 13, "glance": 12}  # fmt: skip
 WAYS = ["guided_ssim-adaptive", "guided_ed-adaptive", "svm-adaptive"]
 TARGETS = {"25%": 2000, "3000": 3000, "1500": 1500}
 
@@ -151,12 +151,12 @@ def test_every_detector_has_all_errors_in_the_thesis_order(run):
 
 def test_a_way_is_said_behind_the_method():
     assert label("guided_ssim-adaptive") == "guided by SSIM, adaptive"
-    assert label("enhanced-soft") == "ours (views), soft"
+    assert label("glance-soft") == "glance, soft"
     assert short("heat_kernel-area") == "HKS, area"
 
 
 def test_methods_stand_in_the_thesis_order_before_ways_and_others():
-    names = ["harris", "random", "enhanced-soft", "a", "b", "qem"]
+    names = ["harris", "random", "glance-soft", "a", "b", "qem"]
     assert ordered(sorted(names)) == names
 
 
@@ -292,7 +292,7 @@ def with_people():
     """Rows of the meshes with gaze, on which people judge ours, unlike our model, better than plain QEM."""
     rows = measured("gaze", 2)
     people = rows[rows["metric"] == "salient_error"].assign(metric="gaze_error")
-    ours = people["method"] == "enhanced"
+    ours = people["method"] == "glance"
     people.loc[ours, "value"] *= np.linspace(0.1, 0.2, ours.sum())
     return pd.concat([rows, people])
 
@@ -302,12 +302,12 @@ def with_people():
 def test_where_people_look_is_judged_on_the_meshes_with_gaze(run, own):
     results = run(with_people()) if own else run(measured(), gaze=with_people())
     found = judge(CLAIMS, results).set_index("key")
-    assert found.loc["ours_keep_gaze", "verdict"] == "supported"
-    assert found.loc["ours_keep_gaze", "tested_on"].startswith("meshes with human gaze, error weighted by human gaze")
-    assert found.loc["ours_keep_salient", "verdict"] == "contradicted"  # the model and people differ
+    assert found.loc["glance_keep_gaze", "verdict"] == "supported"
+    assert found.loc["glance_keep_gaze", "tested_on"].startswith("meshes with human gaze, error weighted by human gaze")
+    assert found.loc["glance_keep_salient", "verdict"] == "contradicted"  # the model and people differ
     found = table(results, "lod_claims").frame.set_index(["key", "data"])["verdict"]
-    assert found["ours_keep_gaze", "meshes with human gaze"] == "supported"
-    assert own or found["ours_keep_gaze", "test"] == "open"
+    assert found["glance_keep_gaze", "meshes with human gaze"] == "supported"
+    assert own or found["glance_keep_gaze", "test"] == "open"
 
 
 @pytest.mark.slow

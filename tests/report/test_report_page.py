@@ -13,7 +13,7 @@ import pytest
 from PIL import Image
 
 from stages.kit import Mesh, Viewpoint
-from stages.kit.files import write_arrays, write_mesh, write_text
+from stages.kit.files import write_mesh, write_text
 from stages.kit.packing import SHADES, STEPS, Store, ordered
 from stages.report.__main__ import dataset_line, write_report
 from stages.report.drawing import VIEWPOINT, picture, visible
@@ -58,11 +58,8 @@ def pages(run):
 
 @pytest.fixture(scope="module")
 def own(tmp_path_factory, small):
-    """The results of a run on a folder of one's own, in which the enhanced model was not run, with its report."""
+    """The results of a run on a folder of one's own, with its report."""
     root = small.root(tmp_path_factory.mktemp("own"))
-    for stage in ("salient_points", "imprints"):
-        for path in (root / f"data/test/{stage}").glob("*.npz"):
-            write_arrays(path, **{key.replace("enhanced", "glance"): value for key, value in np.load(path).items()})
     text = (root / "params.yaml").read_text() + "test: {meshes: {source: folder}}\n"
     (root / "params.yaml").write_text(text)
     small.write(root, "lod", small.lod(), "elsewhere")

@@ -18,7 +18,7 @@ def pressed():
     random, rows = np.random.default_rng(0), []
     for cells in (16, 32):
         for pitch in (0.002, 0.01, 0.02):
-            common = {"dataset": "furniture", "method": "enhanced", "cells": cells, "pitch": pitch, "touches": 60}
+            common = {"dataset": "furniture", "method": "glance", "cells": cells, "pitch": pitch, "touches": 60}
             seconds = 1e-4 * cells / 16 * (6 if pitch == 0.002 else 1)
             rows.append(common | {"metric": "seconds_a_touch", "value": seconds, "seconds": 1.0})
             for k, one in enumerate(np.repeat(["chair", "vase", "lamp", "sofa"], 2)):

@@ -30,7 +30,7 @@ def rows(guided=0.08, unseen=-0.2, folds=3, splits=("random", "objects"), datase
     """Rows whose truth is known: guided is better by a margin, unseen objects are harder, smaller films are worse."""
     random, found = np.random.default_rng(0), []
     films = [(25, 32, 0.0), (13, 32, -0.05), (25, 16, -0.01)]
-    for method, gain in (("random", 0.0), ("thesis_ssim", guided), ("enhanced", guided)):
+    for method, gain in (("random", 0.0), ("thesis_ssim", guided), ("glance", guided)):
         for frames, cells, loss in films if method == "thesis_ssim" else films[:1]:
             for split in splits if loss == 0 else splits[-1:]:
                 for name, mean in MEANS.items():
@@ -81,9 +81,9 @@ def test_twin_stands_beside_the_thesis_s_figures(run):
     assert row["accuracy"] == pytest.approx(0.98, abs=0.01) and row["thesis"] == 0.9897
     assert cell(table.frame, split="random", classifier="svm", strategy="random")["thesis"] == 0.7721
     assert np.isnan(cell(table.frame, split="objects", classifier="cnn", strategy="thesis_ssim")["thesis"])
-    assert np.isnan(cell(table.frame, split="random", classifier="cnn", strategy="enhanced")["thesis"])
+    assert np.isnan(cell(table.frame, split="random", classifier="cnn", strategy="glance")["thesis"])
     line = cell(table.shown, objects="the thesis", split="sequences drawn at random", classifier="CNNs")
-    assert line["thesis's attention (SSIM), %"] == "99.0" and line["ours (views), %"] == "–"
+    assert line["thesis, SSIM, %"] == "99.0" and line["glance, %"] == "–"
     assert "Guessing: furniture 33.3 %." in " ".join(table.notes)
 
 
@@ -146,7 +146,7 @@ def test_confusions_are_drawn_for_every_strategy_of_the_thesis(bare, small):
             "metric": "confusion",
             "value": 9 * (one == other) + 1,
         }
-        for method in ("random", "thesis_ssim", "enhanced")
+        for method in ("random", "thesis_ssim", "glance")
         for split in SPLITS
         for name in MEANS
         for one in CLASSES
@@ -205,8 +205,8 @@ def test_a_rival_without_the_map_is_another_reading(bare, small):
 @pytest.mark.slow
 def test_claims_without_their_strategy_are_open_and_say_so(bare, small):
     frame = rows()
-    words, found = verdicts(bare, small, frame[frame["method"] != "enhanced"])
-    assert words["contours_ours_unseen"] == "open" and "enhanced" in found.loc["contours_ours_unseen", "tested_on"]
+    words, found = verdicts(bare, small, frame[frame["method"] != "glance"])
+    assert words["contours_glance_unseen"] == "open" and "glance" in found.loc["contours_glance_unseen", "tested_on"]
     assert words["contours_guided_unseen"] == "supported"
 
 

@@ -46,12 +46,12 @@ def test_a_method_without_a_point_is_invalid_whatever_its_error():
 
 def test_plain_simplification_and_weights_keep_nothing_by_design():
     assert not len(invalid_units(pd.DataFrame(QEM)))
-    assert cause("enhanced-soft", points=0, kept=0, rings=np.nan) is None
+    assert cause("glance-soft", points=0, kept=0, rings=np.nan) is None
 
 
 def test_a_mesh_with_all_errors_of_plain_is_invalid_and_with_one_other_it_is_not():
     assert cause("itti", errors=PLAIN["errors"]) == AS_PLAIN
-    assert cause("enhanced-soft", points=0, kept=0, rings=np.nan, errors=PLAIN["errors"]) == AS_PLAIN
+    assert cause("glance-soft", points=0, kept=0, rings=np.nan, errors=PLAIN["errors"]) == AS_PLAIN
     assert cause("itti", errors=(PLAIN["errors"][0], 0.2)) is None
 
 

@@ -21,7 +21,7 @@ GLANCE = {
     "image_features": 0.4, "pixels": 0.55, "wavelet_features": 0.5,
 }  # fmt: skip
 MEASURED = [  # claims that the small run has the rows of
-    "ours_over_blind", "ours_over_weighted", "weighted_over_blind", "knn_best_ours", "network_poor_ours",
+    "glance_over_blind_ours", "glance_over_ssim_ours", "ssim_over_blind_ours", "knn_best_ours", "network_poor_ours",
     "four_easier_ours", "four_easier_beyond_chance_ours",
 ]  # fmt: skip
 SHARES = {"random": 0.6, "itti": 0.5}
@@ -72,7 +72,7 @@ def glance(root, small):
     small.write(root, "classification", rows(), PRINTED)
     for name in SETS_4_2:
         small.write(root, "classification", drawn(name), name)
-    small.write(root, "classification", rows("enhanced", "test"))
+    small.write(root, "classification", rows("glance", "test"))
     return small.results(root)
 
 
@@ -107,7 +107,7 @@ def test_twin_shows_the_regions_and_the_first_fifteen(glance):
     below = [f"{name}, unseen regions" for name in protocols]
     assert shown["protocol"].unique().tolist() == [*protocols, *below, "the thesis"]
     knn = shown.set_index(["protocol", "sampling"])["kNN, %"]
-    attention = [knn[protocol, "enhanced visual attention"] for protocol in (protocols[0], below[0], "the thesis")]
+    attention = [knn[protocol, "thesis, equal weights"] for protocol in (protocols[0], below[0], "the thesis")]
     assert attention[0].startswith("60 [") and attention[1:] == ["40", "73"]
     assert knn["as printed", "blind touch, 15 imprints"].startswith("50 [")
     assert ("the thesis", "blind touch, 15 imprints") not in knn and knn.index.is_unique
@@ -116,7 +116,7 @@ def test_twin_shows_the_regions_and_the_first_fifteen(glance):
 def test_positions_stand_beside_the_thesis_with_the_side_held_out(glance):
     built = table("table_4_5", glance)
     cells = built.frame.set_index(["protocol", "sampling", "classifier"])
-    cell = cells.loc["as printed", "enhanced_visual_attention", "knn"]
+    cell = cells.loc["as printed", "VisAttAll", "knn"]
     assert cell["accuracy"] == pytest.approx(0.8, abs=0.01) and cell["thesis"] == 0.85
     assert cell["accuracy_regions"] == pytest.approx(0.7, abs=0.01) and "one side" in built.notes[1]
 
@@ -151,8 +151,8 @@ def test_selection_that_was_not_run_says_why(root, small):
 
 def test_shares_stand_beside_those_of_the_thesis_by_sampling_and_by_object(glance):
     frame = table("section_4_2_4", glance).frame.set_index(["protocol", "name"]).loc["as printed"]
-    assert frame.loc["blind_touch", ["all", "thesis"]].tolist() == pytest.approx([0.6, 0.5889])
-    assert frame.loc["enhanced_visual_attention", "first_15"] == pytest.approx(0.4)
+    assert frame.loc["random", ["all", "thesis"]].tolist() == pytest.approx([0.6, 0.5889])
+    assert frame.loc["VisAttAll", "first_15"] == pytest.approx(0.4)
     assert frame.loc["duck", "thesis"] == 0.4 and frame.loc["duck", "all"] == pytest.approx(0.36)
 
 
@@ -180,7 +180,7 @@ def test_readings_stand_below_with_means_that_leave_out_the_svm(read_again):
     protocols = ["as printed, 6 random sets", "as printed, 6 random sets: all data from 0 to 1"]
     assert [name for name in shown["protocol"].unique() if "6 random" in name and "unseen" not in name] == protocols
     cells = shown.set_index(["protocol", "sampling"])
-    dead, alive = (cells.loc[(name, "enhanced visual attention")] for name in protocols)
+    dead, alive = (cells.loc[(name, "thesis, equal weights")] for name in protocols)
     assert dead["SVM, %"].startswith("0") and alive["SVM, %"].startswith("60 [")
     assert dead["mean of all, %"].startswith("48 [") and alive["mean of all, %"].startswith("60 [")
     assert dead["mean without the SVM, %"][:4] == alive["mean without the SVM, %"][:4] == "60 ["
@@ -254,6 +254,6 @@ def test_bars_are_those_of_the_samplings_that_ran(root, small):
         draw = touches.draw_bars
         patch.setattr(touches, "draw_bars", lambda *args, **kw: places.update(draw(*args, **kw)) or places)
         build_one(touch, "figures", "table_4_1", results)
-    assert list(places) == ["random", "itti", "enhanced"]
+    assert list(places) == ["random", "itti", "glance"]
     assert sum(places.values()) == pytest.approx(0)
     assert set(pictures.NEEDED) <= set(places)

@@ -155,7 +155,7 @@ def test_faces_are_those_of_the_original_where_a_coarser_one_is_drawn(browser, l
 def test_one_can_look_at_saliency_and_shading_instead(shown):
     shown.page.locator("#points").select_option("")
     seen = [shown.canvas()]
-    for choice in ("enhanced", ""):
+    for choice in ("glance", ""):
         shown.page.locator("#colour").select_option(choice)
         seen.append(shown.canvas())
     assert (seen[0] != seen[1]).any() and (seen[1] != seen[2]).any()

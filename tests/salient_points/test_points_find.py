@@ -191,7 +191,7 @@ def test_points_and_saliency_from_a_bare_mesh_do_not_depend_on_its_place_and_siz
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("method", ["enhanced", "height"])
+@pytest.mark.parametrize("method", ["glance", "height"])
 def test_the_axis_that_points_up_may_be_named(method):
     profile = [[0, -0.4], [0.3, -0.3], [0.1, 0.4], [0, 0.45]]
     shape = trimesh.creation.revolve(profile, sections=24)
@@ -224,7 +224,7 @@ def test_more_random_points_than_vertices_are_all_vertices(ball):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("method", ["enhanced", "mesh_saliency", "salient_points", "harris"])
+@pytest.mark.parametrize("method", ["glance", "mesh_saliency", "salient_points", "harris"])
 def test_a_vertex_in_no_face_changes_nothing(method, ball):
     nose = trimesh.creation.icosphere(subdivisions=2, radius=0.12)
     vertices = np.r_[ball.vertices, nose.vertices + [0.45, 0, 0.2]]
@@ -254,13 +254,13 @@ def test_random_gets_as_many_strong_points_as_the_first_method(sight, ball):
 
 
 def test_file_gives_back_points_strong_points_and_saliency(sight, ball, tmp_path):
-    found, _ = find_all(ball, sight, ["enhanced", "random"], Options(), 30)
+    found, _ = find_all(ball, sight, ["glance", "random"], Options(), 30)
     write_points(tmp_path / "ball.npz", found)
     points, strong = read_points(tmp_path / "ball.npz"), read_strong_points(tmp_path / "ball.npz")
-    assert list(points) == ["enhanced", "random"]
-    assert (points["enhanced"] == found["enhanced"].points).all()
-    assert len(strong["enhanced"]) == found["enhanced"].strong
-    assert list(read_saliency(tmp_path / "ball.npz")) == ["enhanced"]
+    assert list(points) == ["glance", "random"]
+    assert (points["glance"] == found["glance"].points).all()
+    assert len(strong["glance"]) == found["glance"].strong
+    assert list(read_saliency(tmp_path / "ball.npz")) == ["glance"]
 
 
 @pytest.mark.parametrize("viewpoint", TWELVE, ids=lambda viewpoint: viewpoint.name)
@@ -274,19 +274,19 @@ def test_a_viewpoint_comes_back_from_its_name(viewpoint):
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda mesh: find_points(mesh, "enhancd"), "unknown method 'enhancd'.*enhanced"),
+        (lambda mesh: find_points(mesh, "glanc"), "unknown method 'glanc'.*glance"),
         (lambda mesh: find_points(mesh, "random"), "give a count"),
         (lambda mesh: find_points(mesh, "random", 0), "at least 1"),
         (lambda mesh: find_points(mesh, "random", 2.5), "whole number"),
         (lambda mesh: find_points(mesh, "random", 5, selection="brightest"), "unknown selection 'brightest'"),
         (lambda mesh: find_points(mesh, "random", 5, radius=0), "radius must be positive"),
-        (lambda mesh: find_points(mesh, "enhanced", weights="ssim"), "unknown weights 'ssim'"),
+        (lambda mesh: find_points(mesh, "glance", weights="ssim"), "unknown weights 'ssim'"),
         (lambda mesh: find_points(mesh, "itti", weights="equal"), "'itti' has no weights"),
         (lambda mesh: saliency(mesh, "guided_ssim"), "needs weights that the stage `weights` learns"),
-        (lambda mesh: saliency(mesh, "enhanced", weights={"shine": 1.0}), "no feature shine"),
+        (lambda mesh: saliency(mesh, "glance", weights={"shine": 1.0}), "no feature shine"),
         (lambda mesh: saliency(mesh, "svm", weights="equal"), "run the pipeline for it"),
         (lambda mesh: saliency(mesh, "itti", viewpoints=[]), "no viewpoints"),
-        (lambda mesh: best_viewpoints(mesh, "gaze"), "unknown channel"),
+        (lambda mesh: best_viewpoints(mesh, "glance"), "unknown channel"),
         (lambda mesh: saliency(mesh, "random"), "has no saliency"),
         (lambda mesh: find_points(Mesh(np.zeros((3, 3)), [[0, 1, 2]]), "random", 5), "no extent"),
         (lambda mesh: random_vertices(Mesh(np.zeros((3, 3)), [[0, 1, 2]]), 5, rng(0, "")), "no area"),

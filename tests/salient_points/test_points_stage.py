@@ -16,7 +16,7 @@ from stages.salient_points.schema import Params
 from stages.views import TWELVE
 from stages.weights.table import weight_table
 
-METHODS = ["enhanced", "itti", "random"]
+METHODS = ["glance", "itti", "random"]
 SETTINGS = Params(METHODS, 30, "suppression", 0.058, 0.02)
 
 
@@ -62,10 +62,10 @@ def test_stage_writes_the_contract(run, tmp_path, ball):
     assert set(stored) == kinds - {"random.saliency"}
     assert all(stored[f"{method}.points"].shape == (30,) for method in METHODS)
     assert all(stored[f"{method}.points"].dtype == np.int64 for method in METHODS)
-    assert stored["enhanced.saliency"].shape == (len(ball.vertices),)
-    assert stored["enhanced.saliency"].dtype == np.float32
+    assert stored["glance.saliency"].shape == (len(ball.vertices),)
+    assert stored["glance.saliency"].dtype == np.float32
     strong = read_strong_points(tmp_path / "out/ball.npz")
-    assert len(strong["random"]) == len(strong["enhanced"]) == stored["enhanced.strong"]
+    assert len(strong["random"]) == len(strong["glance"]) == stored["glance.strong"]
     assert (read_points(tmp_path / "out/ball.npz")["itti"][: len(strong["itti"])] == strong["itti"]).all()
 
 
@@ -82,8 +82,8 @@ def test_stage_measures_every_method(run):
     }
     assert all(row["item"] == "ball" and row["seconds"] > 0 for row in rows)
     means = summary(rows)
-    assert means["enhanced.points"] == 30
-    assert means["enhanced.saliency_at_points"] > means["random.saliency_at_points"]
+    assert means["glance.points"] == 30
+    assert means["glance.saliency_at_points"] > means["random.saliency_at_points"]
 
 
 def test_what_does_not_apply_stays_out_of_the_summary(ball):

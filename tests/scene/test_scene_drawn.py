@@ -13,7 +13,7 @@ from stages.scene.schema import Params
 NAMES = [f"thing {number}" for number in range(20)]
 BOXES = {name: (np.array([-0.5, -0.1 - 0.02 * k, -0.2]), np.array([0.5, 0.1, 0.3])) for k, name in enumerate(NAMES)}
 SIZES = {name: 0.1 + 0.01 * k for k, name in enumerate(NAMES)}
-SETTINGS = Params("random", [], [], 12, [90, 160], 40.0, 1.0, "pixels", 0, 3, "enhanced-soft", [], 30, True)
+SETTINGS = Params("random", [], [], 12, [90, 160], 40.0, 1.0, "pixels", 0, 3, "glance-soft", [], 30, True)
 
 
 def draw(number=0, seed=0, boxes=BOXES):

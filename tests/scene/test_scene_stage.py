@@ -27,7 +27,7 @@ from stages.scene.schema import COLUMNS, Params
 pytestmark = pytest.mark.slow
 
 SCENES = sorted((Path(__file__).parents[2] / "conf/scene").glob("*.yaml"))
-COMMON = {"limit": 0, "hold": 2, "method": "enhanced-soft", "factors": [1.0], "msft_lod": True, "random": 0}
+COMMON = {"limit": 0, "hold": 2, "method": "glance-soft", "factors": [1.0], "msft_lod": True, "random": 0}
 
 
 def settings_of(path, **changes):
@@ -50,7 +50,7 @@ def root(meshes, tmp_path_factory):
     for name, mesh in (meshes | {"third": meshes["two"]}).items():
         write_mesh(root / f"meshes/{name}.npz", mesh)
         saliency = np.linspace(0, 1, len(mesh.vertices)).astype(np.float32)
-        found = {"enhanced.points": np.array([0, 5]), "enhanced.strong": np.int64(2), "enhanced.saliency": saliency}
+        found = {"glance.points": np.array([0, 5]), "glance.strong": np.int64(2), "glance.saliency": saliency}
         found |= {"itti.points": np.array([0, 5]), "itti.strong": np.int64(2)}
         write_arrays(root / f"salient_points/{name}.npz", **found)
     return root

@@ -135,7 +135,7 @@ def test_loading_code_is_no_part_of_a_touchs_seconds(monkeypatch, tmp_path):
     done = []
     monkeypatch.setattr(stage, "warm_up", lambda: done.append("loaded"))
     monkeypatch.setattr(stage, "touch", lambda *_: done.append("touched") or np.random.default_rng(0).random((9, 8, 8)))
-    settings = SimpleNamespace(method="enhanced", touches=9, classifiers=["knn"])
+    settings = SimpleNamespace(method="glance", touches=9, classifiers=["knn"])
     stage.process("8-0.01", tmp_path, tmp_path, {"a": ["a1", "a2"], "b": ["b1", "b2"]}, settings, 0)
     assert done[0] == "loaded" and done.count("touched") == 4
 

@@ -193,7 +193,7 @@ def test_points_are_listed_with_reasons(mesh):
 
 
 def test_every_method_offered_has_a_saliency(mesh):
-    assert {"glance", "enhanced", "itti", "height"} <= set(methods()) and "random" not in methods()
+    assert {"glance", "itti", "height"} <= set(methods()) and "random" not in methods()
 
 
 def test_the_twelve_views_show_the_object(mesh):

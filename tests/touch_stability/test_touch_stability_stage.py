@@ -38,7 +38,7 @@ def run(tmp_path, make_workspace):
             {"here": Imprints(press_many(mesh, ids, (16, 16), 0.01), ids, mesh.vertices[ids], 0.01)},
         )
         saliency = np.linspace(0, 1, len(mesh.vertices))
-        found = {"enhanced.points": ids, "enhanced.strong": np.int64(2), "enhanced.saliency": saliency}
+        found = {"glance.points": ids, "glance.strong": np.int64(2), "glance.saliency": saliency}
         write_arrays(data / f"salient_points/{name}.npz", **found)
         write_mesh(data / f"lod/{name}/qem_50pct.npz", mesh)
 

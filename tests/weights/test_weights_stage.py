@@ -82,7 +82,7 @@ def run(workspace, monkeypatch):
 @pytest.mark.slow
 def test_the_stage_writes_weights_ground_truth_and_svms(workspace, objects, capsys):
     stage.run(workspace)
-    assert "2 of 3 objects have ground truth; enhanced takes fixations" in capsys.readouterr().out
+    assert "2 of 3 objects have ground truth; the glance takes fixations" in capsys.readouterr().out
     folder = workspace.data / "weights"
     files = {str(path.relative_to(folder)) for path in folder.rglob("*.*")}
     names = {f"{part}/{name}.npz" for part in ("ground_truth", "svm") for name in ("ball", "egg")}
@@ -90,7 +90,7 @@ def test_the_stage_writes_weights_ground_truth_and_svms(workspace, objects, caps
     assert set(read_arrays(folder / "ground_truth/ball.npz")["points"]) == set(objects[:6])
     assert list(read_table(folder / "convexity.csv").object) == ["ball", "egg"]
     found = read_learned_weights(folder, "plain", Mesh(np.eye(3), [(0, 1, 2)]))
-    assert "fixations" in found.weights and "svm" in found.svms
+    assert "guided_ed" in found.weights and "svm" in found.svms
 
 
 @pytest.mark.slow
@@ -105,7 +105,7 @@ def test_rows_hold_points_weights_and_accuracies(workspace, objects):
         == weights[["item", "method", "channel"]].values.tolist()
     )
     assert weights.value.tolist() == pytest.approx(table.weight.tolist())
-    assert set(weights[weights.method == "fixations"].item) == {"", "ball", "egg"}
+    assert set(weights[weights.method == "glance"].item) == {"", "ball", "egg"}
     accuracies = rows[rows.metric == "accuracy"]
     assert {"", "ball", "egg"} == set(accuracies.item) and accuracies[
         ["area", "training", "validation"]
@@ -142,22 +142,13 @@ def test_marks_of_another_mesh_leave_the_object_out_with_a_note(workspace, objec
     assert not (workspace.data / "weights/svm/egg.npz").exists()
 
 
-def test_maps_without_a_feature_of_our_model_leave_the_object_out_with_a_note(
-    add_object, make_workspace, capsys, monkeypatch
-):
-    monkeypatch.setitem(globals(), "CHANNELS", ["edge"])
-    add_object("ball", 1, [3, 4, 5])
-    stage.run(make_workspace(SECTIONS | {"weights": {"method": "gaze", "svm": "object"}}))
-    assert "ball is left out: conspicuity.channels lacks symmetry" in capsys.readouterr().err
-
-
 def test_without_ground_truth_only_the_published_weights_are_written(add_object, make_workspace):
     add_object("plain", 0.6)
     workspace = make_workspace(SECTIONS | {"weights": {"method": "gaze", "svm": "object"}})
     stage.run(workspace)
     assert [path.name for path in (workspace.data / "weights").iterdir()] == ["weights.csv"]
     rows = read_rows(workspace.measurements / "weights.csv.gz")
-    assert set(rows.metric) == {"weight"} and set(rows.method) == {*METHODS, "enhanced"} and rows.item.isna().all()
+    assert set(rows.metric) == {"weight"} and set(rows.method) == {*METHODS} and rows.item.isna().all()
     assert read_json(workspace.metrics / "weights.json") == {"objects": 0}
 
 

@@ -9,30 +9,23 @@ import pytest
 from stages.conspicuity import CHANNELS
 from stages.glance import FEATURES
 from stages.kit.files import write_table
-from stages.kit.rows import read_rows
 from stages.weights import METHODS, LearnedWeights, read_learned_weights, weights
-from stages.weights.features import CHANNEL_FEATURES, POSITION_FEATURES
 from stages.weights.learn_weights import learned_weight_rows
 from stages.weights.published import GLANCES
 from stages.weights.table import weight_table
 
-GAZE = Path(__file__).parents[2] / "reports/measurements/gaze/weights.csv.gz"
 THESIS = Path(__file__).parents[2] / "data/reference/thesis/table_3_1_channel_weights.csv"
 
 
 def arrays(best, seed):
-    """One object in whose views the channel `best` stands on the points, and whose looks follow its first feature."""
+    """One object in whose views the channel `best` stands on the points, and whose looks follow what is seen."""
     random = np.random.default_rng(seed)
-    features, glance = random.normal(size=(400, 3)), random.normal(size=(400, len(FEATURES)))
+    glance = random.normal(size=(400, len(FEATURES)))
     return {
         "channels": np.array(["edge", "color"]),
-        "names": np.array(["edge", "color", "height"]),
         "distances": np.array([[1.0, 9.0], [np.nan, np.nan]] if best == "edge" else [[9.0, 1.0], [8.0, 2.0]]),
         "similarities": np.array([[0.9, 0.2], [np.nan, np.nan]] if best == "edge" else [[0.2, 0.9], [0.1, 0.8]]),
         "on_object": np.array([[0.5, -0.2], [np.nan, np.nan]] if best == "edge" else [[-0.2, 0.5], [0.0, 0.4]]),
-        "features": features,
-        "amounts": np.exp(2 * features[:, 0]),
-        "areas": np.ones(400),
         "glance": glance,
         "glance_names": np.array(list(FEATURES)),
         "glance_amounts": np.exp(glance[:, list(FEATURES).index("seen")]),
@@ -61,15 +54,7 @@ def test_equal_weights_are_equal():
 
 @pytest.mark.parametrize("method", METHODS)
 def test_every_method_weighs_every_channel_in_their_order(method):
-    features = {"gaze": [*CHANNEL_FEATURES, *POSITION_FEATURES]} | {name: list(GLANCES[name]) for name in GLANCES}
-    assert list(weights(method)) == features.get(method, list(CHANNELS))
-
-
-def test_the_published_gaze_weights_are_those_that_the_gaze_taught():
-    table = read_rows(GAZE)
-    table = table[(table["metric"] == "weight") & (table["method"] == "fixations") & table["item"].isna()]
-    learned = dict(zip(table["channel"], table["value"].round(3), strict=True))
-    assert weights("gaze") == learned
+    assert list(weights(method)) == list(GLANCES.get(method, CHANNELS))
 
 
 def test_a_changed_copy_leaves_the_weights_alone():
@@ -85,8 +70,7 @@ def test_unknown_method_is_named_with_the_known_ones():
 def test_without_ground_truth_only_what_is_published_is_there(tmp_path):
     write_table(tmp_path / "weights.csv", weight_table({}, "gaze"))
     found = read_learned_weights(tmp_path, "cup", None)
-    assert set(found.weights) == {*METHODS, "enhanced", "enhanced_seen"} and found.svms == {}
-    assert found.weights["enhanced"] == pytest.approx(weights("gaze"))
+    assert set(found.weights) == {*METHODS} and found.svms == {}
     assert LearnedWeights().weights["thesis_ed"] == found.weights["thesis_ed"]
 
 
@@ -103,8 +87,6 @@ def test_the_nearer_channel_and_the_likelier_feature_win(table):
     found = read_learned_weights(table, "hand", None).weights
     assert found["guided_ed"] == pytest.approx({"edge": 1, "color": 0})
     assert found["guided_ssim_object"] == pytest.approx({"edge": 0.5, "color": 0})  # what is unlike gets no say
-    assert found["fixations"]["edge"] == pytest.approx(2, abs=0.4) and abs(found["fixations"]["height"]) < 0.2
-    assert found["enhanced"] == found["fixations"]
     for method, others in GLANCES.items():
         assert list(found[method]) == list(others)
         assert found[method].pop("seen") == pytest.approx(1, abs=0.3)
@@ -127,9 +109,16 @@ def test_the_only_object_with_ground_truth_takes_nothing_that_was_learned_from_i
     (tmp_path / "ground_truth").mkdir()
     (tmp_path / "ground_truth/cup.npz").touch()
     found = read_learned_weights(tmp_path, "cup", None).weights
-    assert not {"enhanced", "fixations", "guided_ed", *GLANCES} & set(found)
+    assert not {"guided_ed", *GLANCES} & set(found)
     assert {"guided_ed_seen", "equal"} <= set(found)
-    assert "enhanced" in read_learned_weights(tmp_path, "duck", None).weights
+    assert {*GLANCES} <= set(read_learned_weights(tmp_path, "duck", None).weights)
+
+
+def test_published_weights_have_not_seen_the_only_object_with_ground_truth(tmp_path):
+    write_table(tmp_path / "weights.csv", weight_table({"cup": TRAINING_DATA["cup"]}, "gaze"))
+    (tmp_path / "ground_truth").mkdir()
+    (tmp_path / "ground_truth/cup.npz").touch()
+    assert {*GLANCES} <= set(read_learned_weights(tmp_path, "cup", None).weights)
 
 
 @pytest.mark.parametrize("choice", ["equal", "guided_ssim"])

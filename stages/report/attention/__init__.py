@@ -19,5 +19,5 @@ FIGURES = {
     "saliency": maps.saliency,
     "views_seen": views_seen.build,
 }
-CHARTS = {"attention": charts.by_method, "attention_settings": charts.by_setting}
+CHARTS = {"attention": charts.by_method}
 CLAIMS = claims.CLAIMS

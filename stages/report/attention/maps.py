@@ -87,7 +87,7 @@ def figure_3_10(results: Results) -> Figure:
 def figure_3_12(results: Results) -> Figure:
     """Saliency by the classical model, by equal and learned weights, and by our model, beside the truth."""
     names = results.with_ground_truth(results.settings.figure_objects, 4)
-    methods = results.saliency(names[0]).those_of(["itti", "VisAttAll", "guided_ed", "guided_ssim", "enhanced"])
+    methods = results.saliency(names[0]).those_of(["itti", "VisAttAll", "guided_ed", "guided_ssim", "glance"])
     figure, grid = square_grid(len(names), len(methods) + 1, side=1.7, right=0.9)
     for row, name in zip(grid, names, strict=True):
         mesh, ground_truth, found = results.mesh(name), results.ground_truth(name), results.saliency(name)
@@ -137,7 +137,7 @@ def figure_3_13(results: Results) -> Figure:
 def saliency(results: Results) -> Figure:
     """Saliency and the strongest points."""
     names = results.choose(results.settings.figure_objects, 6)
-    methods = results.saliency(names[0]).those_of(["itti", "enhanced"])
+    methods = results.saliency(names[0]).those_of(["itti", "glance"])
     figure, grid = square_grid(len(methods), len(names), side=1.7, right=0.9)
     for column, name in zip(grid.T, names, strict=True):
         mesh, found, points = results.mesh(name), results.saliency(name), results.strong_points(name)

@@ -8,12 +8,13 @@ from stages.kit.stats import interval
 from stages.report.results import NotRun, some
 from stages.report.style import label
 
-OURS, GLANCE, ANY_POSE, HUMAN = "enhanced", "glance", "glance_any_pose", "human"
+OURS, ANY_POSE, HUMAN = "glance", "glance_any_pose", "human"
 CLASSICAL, THESIS = "itti", "VisAttAll"
-NO_RIVALS = (OURS, GLANCE, ANY_POSE, HUMAN)  # our models, and the ceiling
+NO_RIVALS = (OURS, ANY_POSE, HUMAN)  # our models, and the ceiling
 PER_OBJECT = ("svm_object", "svm_viewpoint")  # T3.2.3: an SVM for the object itself
 BLACK = "-black"  # behind the name of a method: with the black background filtered together with the object
 SAME = ("VisAtt",)  # the classical model under the thesis's name
+NAMES = {"random": "random points", "svm": "thesis, SVM"}  # elsewhere blind touch, and a classifier
 ALONE = {"nss": "NSS", "auc": "AUC"}  # shown with their interval, and in which ours is compared with each other method
 MEAN, GAIN = ["mean", "low", "high"], ["gain", "gain_low", "gain_high"]  # columns: of a method, and over another
 
@@ -27,7 +28,7 @@ def method_text(method: str) -> str:
     """A method's name as a person says it, with a star where it has seen the object."""
     if method.endswith(BLACK):
         return f"{label(method.removesuffix(BLACK))}, black background"
-    name = "random points" if method == "random" else label(method)  # nobody touches here
+    name = NAMES.get(method) or label(method)
     return f"{name} *" if has_seen(method) else name
 
 

@@ -11,7 +11,7 @@ from stages.report.style import CYCLE, GREY, label, plt
 
 from .exploration import GROUP, HELD_OUT, LIKELIHOODS, STAGE, WAYS
 
-METHODS = ("thesis_ssim", "enhanced", "random")
+METHODS = ("thesis_ssim", "glance", "random")
 PANELS = ((Split.RANDOM, "imprint"), (Split.RANDOM, "imprint_place"), (Split.REGIONS, "imprint"))
 TINTS = {"gain": "#0072B2", "saliency": "#009E73", "random": "#E69F00"}
 TICKS = (1, 2, 3, 5, 8, 12)

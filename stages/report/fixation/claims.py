@@ -29,7 +29,7 @@ NEAREST = RESNET, FUSED  # to the thesis's best
 BOTH = (RESNET, FUSED), (VGG, FUSED)
 NAMED = {ITSELF: "the object itself", "convexity": "the convexity"}  # tasks that are not fused
 AVERAGE = "average"  # the same four maps with equal weights
-CLASSICAL = "thesis_ssim"  # the enhanced model of T3.2
+CLASSICAL = "thesis_ssim"  # the weighted average of T3.2
 LITERATURE = (LEE.task, *RIVALS.values())  # of T figures 3.35 and 3.36
 LEIFMAN, (SONG, TASSE) = LITERATURE[1], LITERATURE[2:]
 REST = (LEE.task, SONG, TASSE)  # of the literature, without Leifman, whom T3.3.6 praises too
@@ -200,6 +200,6 @@ CLAIMS = [
                               ("noise_correlates", "pcc", "noise_correlates_masked"))],
     *in_each_metric("ewigc_over_noise", "Fused Grad-CAM correlates more with fixations than noise does.", NEAREST,
                     NOISE, "ours"),
-    *in_each_metric("ours_over_ewigc", "Our model of gaze predicts where people look better than fused Grad-CAM.",
+    *in_each_metric("glance_over_ewigc", "Our glance predicts where people look better than fused Grad-CAM.",
                     OURS, (highest_of(but=("*-random",)), FUSED), "ours", metrics=OUR_METRICS),
 ]  # fmt: skip

@@ -30,7 +30,7 @@ class Detector(NamedTuple):
         return name if self.method in KINDS else f"{name}, {network_text(self.method)}"
 
 
-LEE, OURS = Detector("rival", "mesh_saliency"), Detector("rival", "enhanced")
+LEE, OURS = Detector("rival", "mesh_saliency"), Detector("rival", "glance")
 RIVALS = {"Leifman's regions of interest": "leifman", "Song's spectral saliency": "song", "Tasse's clusters": "tasse"}
 PRIOR, NOISE = Detector("control", "centre_prior"), Detector("control", "random")
 

@@ -15,7 +15,6 @@ from .methods import (
     BY_AREA,
     CLASSICAL,
     COMBINATIONS,
-    ENHANCED,
     HKS,
     OURS,
     PLAIN,
@@ -25,6 +24,7 @@ from .methods import (
     RIVALS,
     SYMMETRIES,
     UNSEEN,
+    WEIGHTED,
 )
 
 REST = tuple(name for name in COMBINATIONS if name not in ("VisAttCurvSymCon", "VisAttCon"))
@@ -46,7 +46,7 @@ OF_OURS = (None, *MORE, COLOURED)
 PHRASES = {
     ("metric", METRO): "Metro mean error", ("metric", "metro_max"): "Metro max",
     ("metric", SEEN): "SSIM error", ("metric", "dlap"): "DLap", ("metric", "dnor"): "Dnor",
-    ("metric", "salient_error"): "error weighted by our own model of gaze",
+    ("metric", "salient_error"): "error weighted by our glance",
     ("metric", "gaze_error"): "error weighted by human gaze",
     ("metric", (SEEN, "dlap", "dnor")): "SSIM error, DLap and Dnor",
     ("method", RIVALS): "mean of the literature's detectors but HKS",
@@ -81,13 +81,13 @@ printed: dict[str, Any] = {"dataset": OF_3_1, "target": (LOW, HIGH)}
 metro, seen = (partial(lower, "T3.1.5", metric, **printed) for metric in (METRO, SEEN))
 KEEPING = (
     ("keep", "T3.2.8", "Keeping what draws the eye", "guided_ssim_seen"),
-    ("ours_keep", "ours", "Keeping what our model finds", OURS),
-    ("ours_soft", "ours", "Weighing by what our model finds, keeping nothing whole,", f"{OURS}-soft"),
+    ("glance_keep", "ours", "Keeping what our glance finds", OURS),
+    ("glance_soft", "ours", "Weighing by what our glance finds, keeping nothing whole,", f"{OURS}-soft"),
 )
 BETTER = (
     ("metro", METRO, "distance", None), ("ssim", SEEN, "as seen", None), ("dlap", "dlap", "Laplacian distance", None),
     ("dnor", "dnor", "normalised Laplacian distance", None),
-    ("salient", "salient_error", "where our own model looks", None),
+    ("salient", "salient_error", "where our glance looks", None),
     ("gaze", "gaze_error", "where people look", GAZED),
 )  # fmt: skip
 CLAIMS = [
@@ -156,7 +156,7 @@ CLAIMS = [
               elsewhere=UNSEEN if start == "keep" else {})
         for start, section, who, method in KEEPING
         for short, metric, how, dataset in BETTER
-        if (start, short) != ("keep", "salient")  # our own model's, of which the thesis says nothing
+        if (start, short) != ("keep", "salient")  # our glance's, of which the thesis says nothing
     ),
     *(
         lower("ours", metric, f"fit_{short}", f"Fitting the vertices to the surface improves on QSlim ({how}).", QSLIM,
@@ -165,11 +165,11 @@ CLAIMS = [
         if short in ("metro", "ssim", "gaze")
     ),
     lower("T3.1", METRO, "blind_metro",
-          "Attention places the kept points better than chance does (distance).", "random", ENHANCED),
+          "Attention places the kept points better than chance does (distance).", "random", WEIGHTED),
     lower("T3.1", SEEN, "blind_ssim",
-          "Attention places the kept points better than chance does (as seen).", "random", ENHANCED),
-    lower("ours", SEEN, "ours_blind_ssim",
-          "Our model of gaze places the kept points better than chance does (as seen).", "random", OURS),
+          "Attention places the kept points better than chance does (as seen).", "random", WEIGHTED),
+    lower("ours", SEEN, "glance_blind_ssim",
+          "Our glance places the kept points better than chance does (as seen).", "random", OURS),
 ]  # fmt: skip
 
 metro, seen = (
@@ -199,5 +199,5 @@ CLAIMS += [
     seen("ssim_over_all", "Weights by similarity beat equal weights (VisAttAll) as seen.", "VisAttAll", SSIM),
     seen("ed_over_all", "Weights by Euclidean distance beat equal weights (VisAttAll) as seen.", "VisAttAll", ED),
     lower("T3.2.9.2", SEEN, "learned_weights", "Weights learned from ground truth beat equal weights.",
-          "VisAttAll", ENHANCED),
+          "VisAttAll", WEIGHTED),
 ]  # fmt: skip

@@ -3,10 +3,11 @@
 from collections.abc import Iterable
 
 from stages.report.style import WAYS, label
+from stages.weights.published import GLANCE
 
-PLAIN, QSLIM, OURS = "qem", "qslim", "enhanced"  # QSLIM: plain QEM without the fit of ours, the thesis's
+PLAIN, QSLIM, OURS = "qem", "qslim", GLANCE  # QSLIM: plain QEM without the fit of ours, the thesis's
 CLASSICAL = "itti"  # the classical model, VisAtt in the thesis
-ENHANCED = "thesis_ssim"  # the thesis's own: the average weighted with its SSIM weights
+WEIGHTED = "thesis_ssim"  # the thesis's own: the average weighted with its SSIM weights
 HKS = "heat_kernel"
 COMBINATIONS = (  # of channels, as the stages call them, in the order of T3.1.5
     CLASSICAL, "VisAttCurvP", "VisAttCurv", "Curv", "VisAttSymP", "VisAttSym", "SymLat", "SymRad", "2Sym",
@@ -29,7 +30,7 @@ NAMES = {  # short, the thesis's, in the order of its figure 3.6; then those of 
     "Curv": "Curv", "VisAttCurv": "VisAttCurv", "VisAttCurvSym": "VisAttCurvSym", "VisAttSym": "VisAttSym",
     "VisAttCurvSymCon": "VisAttCurvSymCon", CLASSICAL: "VisAtt", "VisAttCon": "VisAttCon", "2Sym": "2Sym",
     "SymLat": "SymLat", HKS: "HKS", "SymRad": "SymRad", "guided_ed": "ED", "guided_ssim": "SSIM",
-    ENHANCED: "SSIM, table 3.1", "thesis_ed": "ED, table 3.1", "svm": "SVM", OURS: "ours", "random": "blind",
+    WEIGHTED: label(WEIGHTED), "thesis_ed": label("thesis_ed"), "svm": "SVM", OURS: label(OURS), "random": "blind",
 }  # fmt: skip
 
 

@@ -10,11 +10,11 @@ from stages.report.pareto import ON, noise_by, placed
 from stages.report.results import NotRun, Results
 from stages.report.style import INK, MARKERS, WAYS, colours, label, plain_logarithm, plt
 
-from .methods import CLASSICAL, ENHANCED, HKS, OURS, PLAIN
+from .methods import CLASSICAL, HKS, OURS, PLAIN, WEIGHTED
 from .rows import ERRORS, METRICS, UNITS, paired_cells, size
 
 # As many as have a colour of their own; the other methods are in figures 3.4 and 3.5.
-METHODS = [PLAIN, OURS, f"{OURS}-soft", CLASSICAL, ENHANCED, f"{ENHANCED}-adaptive", "random", HKS]
+METHODS = [PLAIN, OURS, f"{OURS}-soft", CLASSICAL, WEIGHTED, f"{WEIGHTED}-adaptive", "random", HKS]
 DRAWN = (*METRICS, "salient_error")
 
 

@@ -15,13 +15,13 @@ from stages.report.style import label
 from stages.report.words import dataset_text
 from stages.salient_points import METHODS
 
-from .methods import COMBINATIONS, ENHANCED, FIXED_ADAPTIVE, HKS, OF_T3_2, OURS, PLAIN, QSLIM, ordered, short
+from .methods import COMBINATIONS, FIXED_ADAPTIVE, HKS, OF_T3_2, OURS, PLAIN, QSLIM, WEIGHTED, ordered, short
 from .rows import ERRORS, FEWEST, METRICS, UNITS, cell, compared, data_sets, face_counts, paired_cells, said, size, wide
 
 COUNTS = ["points", "kept"]  # beside the errors of every detector
-GUIDED = [*FIXED_ADAPTIVE, "thesis_ed", "thesis_ed-adaptive", ENHANCED, f"{ENHANCED}-adaptive", "VisAttAll", HKS,
+GUIDED = [*FIXED_ADAPTIVE, "thesis_ed", "thesis_ed-adaptive", WEIGHTED, f"{WEIGHTED}-adaptive", "VisAttAll", HKS,
           OURS, PLAIN, QSLIM]  # fmt: skip
-THESIS = {"guided_ed": "ed", "thesis_ed": "ed", "guided_ssim": "ssim", ENHANCED: "ssim", "svm": "svm"}
+THESIS = {"guided_ed": "ed", "thesis_ed": "ed", "guided_ssim": "ssim", WEIGHTED: "ssim", "svm": "svm"}
 BLOCK = ["target", "nothing_shrunk"]
 KEEP_NOTHING = [label(PLAIN), label(QSLIM)]  # what the others are held against
 

@@ -14,7 +14,7 @@ from stages.stability.summary import middle_severity
 
 from .score import BENCHMARK, STAGE, points_lost
 
-SHOWN = ("glance", "glance_any_pose", "enhanced", "itti", "mesh_saliency", "harris")  # the CSV has all
+SHOWN = ("glance", "glance_any_pose", "itti", "mesh_saliency", "harris")  # the CSV has all
 
 
 def table(results: Results) -> Table:

@@ -14,7 +14,7 @@ from stages.stability.subject import UNPERTURBED
 
 from .score import STAGE, of_gaze, scores
 
-REFERENCE = "enhanced"  # Itti's attention was not disturbed on these sets
+REFERENCE = "glance"  # Itti's attention was not disturbed on these sets
 
 
 def table(results: Results) -> Table:

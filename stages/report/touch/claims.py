@@ -7,27 +7,26 @@ from stages.kit.split import Split
 from stages.report.claims import Claim, Side, highest_of, reading
 from stages.report.results import SETS_4_2
 
-from .rows import BLIND, ENHANCED, MODEL, PLAIN_AVERAGE, STAGE
+from .rows import BLIND, EQUAL, MODEL, SSIM, STAGE
 
 SCALE = {"scaling": "training"}  # z-transform fitted to the training part; other scalings are readings
 EVERY: dict[str, Any] = {"group": "six", "metric": "accuracy", "split": Split.RANDOM} | SCALE  # mean of all classifiers
 SIX: dict[str, Any] = {"classifier": "knn"} | EVERY
 FOUR, APART, NETWORK = SIX | {"group": "four"}, SIX | {"split": Split.REGIONS}, SIX | {"classifier": "deep_learning"}
-GLANCE = "glance"
 SETS: dict[str, Any] = {"dataset": SETS_4_2, "over": ("set",), "printed": 2}  # as printed, on random sets of objects
 PLAIN, FEW = dict[str, Any](variant="plain"), dict[str, Any](variant="first_15")
 ALL = "mean of all classifiers"
-RIVAL = highest_of("itti", "mesh_saliency", "salient_points", "heat_kernel", PLAIN_AVERAGE)
+RIVAL = highest_of("itti", "mesh_saliency", "salient_points", "heat_kernel", EQUAL)
 # In the keys of claims: two points, and behind them the rows.
 POINTS: dict[str, Any] = {
-    "enhanced": PLAIN_AVERAGE,
-    "glance": GLANCE,
-    "ours": MODEL,
-    "weighted": ENHANCED,
+    "equal": EQUAL,
+    "glance": MODEL,
+    "ssim": SSIM,
     "blind": BLIND,
     "best_touch": RIVAL,
 }
 ROWS = {"": SIX | PLAIN, "_four": FOUR | PLAIN, "_all": EVERY | PLAIN, "_apart": APART | PLAIN}
+ROWS |= {"_ours": ROWS[""], "_apart_ours": ROWS["_apart"]}  # of our protocol, not of the printed one
 ALIVE = ("knn", "decision_tree", "naive_bayes", "deep_learning")
 NO_SVM = reading("without the SVM", where={"classifier": ALIVE})
 MIXED = (
@@ -50,9 +49,9 @@ JOINED = (  # of all classifiers
 AS_MANY = reading("beside as many imprints removed at random", second={"variant": "selected_control"})
 FIFTEEN = reading("15 imprints of each object", where=FEW)
 PHRASES = {
-    ("method", MODEL): "our model of gaze", ("method", PLAIN_AVERAGE): "the thesis's attention",
-    ("method", ENHANCED): "the thesis's attention with weights", ("method", BLIND): "blind touch, five draws",
-    ("method", GLANCE): "our model of gaze (glance)", ("over", "set"): "random sets of six objects",
+    ("method", MODEL): "our glance", ("method", EQUAL): "the thesis's attention (equal weights)",
+    ("method", SSIM): "the thesis's attention (SSIM)", ("method", BLIND): "blind touch, five draws",
+    ("over", "set"): "random sets of six objects",
     ("metric", "similar_share"): "share of imprints that correlate by 0.85 or more with one of another object",
     ("variant", "plain"): "all imprints",
     ("variant", "plain_side"): "all imprints",  # split regions: one side of all objects, not a region of each
@@ -77,8 +76,8 @@ def by_points(key: str, sentence: str, end: str = "", of: str = "") -> Claim:
     """A claim that touch at the first points of its key is better than at the second; end: of the key, for the ROWS."""
     first, second = ({"method": POINTS.get(name, name)} for name in key.split("_over_"))
     readings = (*SCALED, *((NO_SVM,) if end == "_all" else () if end == "_apart" else (FIFTEEN,)))
-    section = "ours" if key.startswith(("glance", "ours", "weighted")) else "T4.2.4"
-    own = {} if key.startswith(("ours", "weighted")) else SETS  # those were pressed in our protocol alone
+    section = "ours" if key.startswith("glance") or end.endswith("_ours") else "T4.2.4"
+    own = {} if end.endswith("_ours") else SETS
     return Claim(
         key=key + end, sentence=sentence, first=first, second=second, where=ROWS[end], stage=STAGE, phrases=PHRASES,
         note=ALL if end == "_all" else "", section=section, of=of, readings=readings if own else (), **own,
@@ -150,40 +149,41 @@ def at(best: str, end: str = "", **common: Any) -> list[Claim]:
 
 
 CLAIMS = [
-    by_points("enhanced_over_itti", "Touch guided by the enhanced model is better than by the classical one."),
+    by_points("equal_over_itti", "Touch guided by the thesis's attention is better than by the classical one."),
     by_points("itti_over_blind", "Touch guided by the classical model is better than blind touch."),
-    by_points("enhanced_over_blind", "Touch guided by the enhanced model is better than blind touch."),
-    by_points("enhanced_over_blind", "Enhanced beats blind touch with four objects too.", "_four"),
-    by_points("enhanced_over_blind", "Enhanced beats blind touch over all classifiers.", "_all"),
-    by_points("enhanced_over_blind", "Enhanced beats blind touch where no training touch overlaps.", "_apart",
-              of="enhanced_over_blind"),
-    by_points("enhanced_over_heat_kernel",
-              "Touch guided by the enhanced model is better than by heat kernel signatures."),
-    by_points("enhanced_over_salient_points", "Touch guided by the enhanced model is better than by salient points."),
-    by_points("enhanced_over_mesh_saliency", "Touch guided by the enhanced model is better than by mesh saliency."),
-    by_points("enhanced_over_itti",
-              "Touch guided by the enhanced model is better than by the classical one, on new regions.", "_apart",
-              of="enhanced_over_itti"),
+    by_points("equal_over_blind", "Touch guided by the thesis's attention is better than blind touch."),
+    by_points("equal_over_blind", "The thesis's attention beats blind touch with four objects too.", "_four"),
+    by_points("equal_over_blind", "The thesis's attention beats blind touch over all classifiers.", "_all"),
+    by_points("equal_over_blind", "The thesis's attention beats blind touch where no training touch overlaps.",
+              "_apart", of="equal_over_blind"),
+    by_points("equal_over_heat_kernel",
+              "Touch guided by the thesis's attention is better than by heat kernel signatures."),
+    by_points("equal_over_salient_points", "Touch guided by the thesis's attention is better than by salient points."),
+    by_points("equal_over_mesh_saliency", "Touch guided by the thesis's attention is better than by mesh saliency."),
+    by_points("equal_over_itti",
+              "Touch guided by the thesis's attention is better than by the classical one, on new regions.", "_apart",
+              of="equal_over_itti"),
     by_points("itti_over_blind",
               "Touch guided by the classical model is better than blind touch, on new regions.", "_apart",
               of="itti_over_blind"),
-    by_points("ours_over_blind", "Touch guided by our model of gaze is better than blind touch."),
-    by_points("ours_over_blind", "Touch guided by our model of gaze beats blind touch, on new regions.", "_apart"),
     by_points("glance_over_blind", "Touch guided by our glance is better than blind touch."),
     by_points("glance_over_blind", "Touch guided by our glance beats blind touch, on new regions.", "_apart"),
     by_points("glance_over_best_touch", "Touch guided by our glance is better than at the best rival's points."),
     by_points("glance_over_best_touch", "Touch guided by our glance is better than at the best rival's points, on new "
               "regions.", "_apart"),
-    by_points("ours_over_weighted", "Touch guided by our model of gaze is better than by the weighted model."),
-    by_points("weighted_over_blind", "Touch guided by the weighted model is better than blind touch."),
+    by_points("glance_over_blind", "Touch guided by our glance beats blind touch in our protocol.", "_ours"),
+    by_points("glance_over_blind", "Touch guided by our glance beats blind touch in our protocol, on new regions.",
+              "_apart_ours"),
+    by_points("glance_over_ssim", "Touch guided by our glance is better than by the thesis's SSIM weights.", "_ours"),
+    by_points("ssim_over_blind", "Touch guided by the thesis's SSIM weights is better than blind touch.", "_ours"),
     *(
         Claim(key=f"dissimilar_{rival}{end}", section="T4.2.4", stage=STAGE, phrases=PHRASES, within=("item",), **SETS,
-              sentence=f"Enhanced attention gives fewer imprints that others have than {words}.",
-              first={"method": BLIND if rival == "random" else rival}, second={"method": PLAIN_AVERAGE},
+              sentence=f"The thesis's attention gives fewer imprints that others have than {words}.",
+              first={"method": BLIND if rival == "random" else rival}, second={"method": EQUAL},
               where={"group": "six", "metric": "similar_share"} | variant, unit="points of the share")
         for variant, end in ((PLAIN, ""), (FEW, "_first_15"))
         for rival, words in (("itti", "the classical model"), ("random", "blind touch"))
     ),
-    *at(PLAIN_AVERAGE, section="T4.2.4", **SETS),
+    *at(EQUAL, section="T4.2.4", **SETS),
     *at(MODEL, "_ours", section="ours"),
 ]  # fmt: skip

@@ -13,7 +13,7 @@ from stages.report.pareto import pareto_chart
 from stages.report.results import Results
 from stages.report.style import label
 
-from .rows import MODEL, OURS, STAGE
+from .rows import METHODS, MODEL, SSIM, STAGE
 
 COUNTS = (1, 2, 5)  # touches; with the five kinds of features as many as there are colours
 KINDS = {
@@ -27,7 +27,7 @@ MADE_OF = {"locations": "plain", **{f"touches_{count}": "plain" for count in COU
 def by_classifier(results: Results) -> Figure:
     """Accuracy against the seconds to fit and ask a classifier; the reference is the thesis's best, blind."""
     by, title = ["classifier", "method"], f"Recognising {results.group_text('six')} by one touch"
-    frame = _timed(results, by, variant="plain", method=[*OURS.values(), MODEL])
+    frame = _timed(results, by, variant="plain", method=[*METHODS.values(), SSIM, MODEL])
     return _chart(results, frame, title, by, f"{label('knn')}, {label('random')}", colour="classifier", marker="method")
 
 

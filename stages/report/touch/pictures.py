@@ -30,7 +30,7 @@ def pipeline(results: Results) -> Figure:
     if results.own_meshes:
         raise NotRun("a folder of one's own has no recognition by touch", "classification", runnable=False)
     name = results.choose([results.settings.hero_object], 1, stage="imprints")[0]
-    mesh, (_, coarse) = results.mesh(name), results.lods(name, "enhanced-soft")[-1]
+    mesh, (_, coarse) = results.mesh(name), results.lods(name, f"{MODEL}-soft")[-1]
     accuracy, classes = _accuracy(results)
     points = results.strong_points(name)[MODEL]
     figure = plt.figure(figsize=SIZE)

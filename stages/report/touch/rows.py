@@ -11,15 +11,16 @@ from stages.report.grid import everywhere, within
 from stages.report.results import SECTION_4_2, SETS_4_2, Results, some
 from stages.report.scalings import TRAINING, scaled
 from stages.report.style import label
+from stages.weights.published import GLANCE
 
 STAGE = "classification"
-OURS = {  # sampling of the thesis: method of ours
+PRINTED = SECTION_4_2
+EQUAL, SSIM = "VisAttAll", "thesis_ssim"  # the thesis's models of T3.1, and of T3.2 with its SSIM weights
+MODEL = GLANCE  # this project's model of gaze
+METHODS = {  # sampling of the thesis: its method; enhanced visual attention is SSIM in our protocol
     "blind_touch": "random", "hks": "heat_kernel", "salient_points": "salient_points",
-    "mesh_saliency": "mesh_saliency", "visual_attention": "itti", "enhanced_visual_attention": "thesis_ssim",
+    "mesh_saliency": "mesh_saliency", "visual_attention": "itti", "enhanced_visual_attention": EQUAL,
 }  # fmt: skip
-ENHANCED = OURS["enhanced_visual_attention"]  # the thesis's later model: the average weighted with its SSIM weights
-MODEL = "enhanced"  # this project's model of gaze
-PRINTED, PLAIN_AVERAGE = SECTION_4_2, "VisAttAll"  # the model of T3.1
 BLIND = ("random", *(f"random_{draw}" for draw in range(2, 6)))  # draws of blind touch
 
 
@@ -38,9 +39,8 @@ class Protocol:
 
     @property
     def samplings(self) -> dict[str, str]:
-        """{method: sampling of the thesis}."""
-        model = PLAIN_AVERAGE if self.best == PLAIN_AVERAGE else ENHANCED
-        return {ours: theirs for theirs, ours in (OURS | {"enhanced_visual_attention": model}).items()}
+        """{sampling of the thesis: method}."""
+        return METHODS | ({} if self.best == EQUAL else {"enhanced_visual_attention": SSIM})
 
 
 def protocols(results: Results, on_sets: bool = False, scaling: str = TRAINING, **where: Any) -> Iterator[Protocol]:
@@ -53,11 +53,11 @@ def protocols(results: Results, on_sets: bool = False, scaling: str = TRAINING, 
     found = {name: own for name, rows in found.items() if not (own := scaled(rows, scaling)).empty}
     some(found, f"no rows of the scaling {scaling}", STAGE)
     if PRINTED in found:
-        yield Protocol(PRINTED, found.pop(PRINTED), "as printed", PLAIN_AVERAGE)
+        yield Protocol(PRINTED, found.pop(PRINTED), "as printed", EQUAL)
     if (drawn := {name: found.pop(name) for name in SETS_4_2 if name in found}) and on_sets:
         rows = pd.concat(drawn.values(), ignore_index=True).replace({"method": dict.fromkeys(BLIND, BLIND[0])})
         count = len(rows[["dataset", "set"]].drop_duplicates())
-        yield Protocol(next(iter(drawn)), rows, f"as printed, {count} random sets", PLAIN_AVERAGE)
+        yield Protocol(next(iter(drawn)), rows, f"as printed, {count} random sets", EQUAL)
     for dataset, rows in list(found.items())[:1]:
         yield Protocol(dataset, rows, "ours", MODEL)
 

@@ -12,10 +12,10 @@ from stages.report.grid import blocks, grid
 from stages.report.items import Figure, Table
 from stages.report.ranking import Ranking
 from stages.report.results import Results, some
-from stages.report.style import GREY, INK, colours, plt
+from stages.report.style import GREY, INK, colours, label, plt
 from stages.report.words import dataset_text
 
-from .rows import ENHANCED, PLAIN_AVERAGE, PRINTED, STAGE, Protocol, accuracies, fifteen, protocols, sampling_text
+from .rows import EQUAL, PRINTED, SSIM, STAGE, Protocol, accuracies, fifteen, protocols, sampling_text
 
 THESIS = "the thesis"
 WAYS = {
@@ -77,10 +77,8 @@ def section_4_2_4(results: Results) -> Table:
 def _shares(protocol: Protocol, thesis: pd.Series) -> pd.DataFrame:
     """The shares of one protocol: of each sampling, then of each object at the points of its model."""
     rows = protocol.rows[protocol.rows["item"].isna() | (protocol.rows["method"] == protocol.best)]
-    rows = rows.assign(
-        of=np.where(rows["item"].isna(), "sampling", "object"),
-        name=rows["item"].fillna(rows["method"].replace(protocol.samplings)),
-    )
+    rows = rows.assign(of=np.where(rows["item"].isna(), "sampling", "object"), name=rows["item"].fillna(rows["method"]))
+    thesis = thesis.rename(index=protocol.samplings)
     wide = rows.pivot_table(index=["of", "name"], columns="variant", values=["imprints", "value"], sort=False)
     columns = {"imprints": ("imprints", "plain"), "all": ("value", "plain"), "first_15": ("value", "first_15")}
     frame = wide.reindex(columns=list(columns.values())).set_axis(list(columns), axis=1).reset_index()
@@ -91,15 +89,15 @@ def _shares(protocol: Protocol, thesis: pd.Series) -> pd.DataFrame:
 
 
 def figure_4_4(results: Results) -> Figure:
-    """Correlations of the imprints of each two objects, for blind touch and enhanced attention."""
+    """Correlations of the imprints of each two objects, for blind touch and the thesis's attention."""
     folder = results.folder("classification")
     dataset = folder.parent.name
-    best = PLAIN_AVERAGE if dataset == PRINTED else ENHANCED
+    best = EQUAL if dataset == PRINTED else SSIM
     groups = sorted(folder.glob("six.*.npz")) or sorted(folder.glob("four.*.npz"))
     first = some(groups, "no groups in data/classification", "classification")[0]
     pairs = list(combinations(map(str, read_arrays(first)["objects"]), 2))
     images = {name: results.imprints(name, dataset) for pair in pairs for name in pair}
-    samplings = {"random": "blind touch", best: "thesis's attention"}
+    samplings = {method: label(method) for method in ("random", best)}
     found = {way: [similarity(images[a][way], images[b][way]) for a, b in pairs] for way in samplings}
     order = np.argsort([np.median(values) for values in found[best]], kind="stable")
     paint = colours(list(samplings))

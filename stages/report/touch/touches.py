@@ -18,9 +18,9 @@ from stages.report.results import SETS_4_2, NotRun, Results, some
 from stages.report.scalings import CLASSIFIERS, MEANS, READINGS, with_means
 from stages.report.style import INK, colours, label, plt
 
-from .rows import ENHANCED, MODEL, STAGE, Protocol, accuracies, fifteen, protocols, sampling_text
+from .rows import EQUAL, MODEL, SSIM, STAGE, Protocol, accuracies, fifteen, protocols, sampling_text
 
-DRAWN = {"random": "blind_touch", "itti": "visual_attention", ENHANCED: "enhanced_visual_attention", MODEL: MODEL}
+DRAWN = ("random", "itti", EQUAL, SSIM, MODEL)  # samplings
 FURTHER = ["deep_learning", "naive_bayes", "knn"]  # shown in the further rows; all are in the CSV
 JUDGED = ["svm", "knn", *MEANS]  # shown where the SVM is not dead
 WAYS = {
@@ -74,7 +74,7 @@ def readings(results: Results, **where: Any) -> Iterator[Protocol]:
 
 def _cells(protocol: Protocol, thesis: pd.DataFrame, few: str = "", whole: bool = False) -> pd.DataFrame:
     """whole: whether the thesis's samplings that were not run have cells too."""
-    rows = with_means(protocol.rows).replace({"method": protocol.samplings})
+    rows, thesis = with_means(protocol.rows), thesis.rename(index=protocol.samplings)
     run = set(rows["method"])
     names = [name for name in [*thesis.index, *sorted(run - {*thesis.index})] if whole or name in run]
     thesis = thesis.reindex(names)
@@ -144,14 +144,14 @@ def draw_bars(
     frame: the tidy table 4.1 or 4.2. regions: whether accuracies on unseen regions are drawn too.
     """
     measured = set(frame.dropna(subset=["accuracy"])["sampling"])
-    paint = colours([method for method, sampling in DRAWN.items() if sampling in measured])
+    paint = colours([method for method in DRAWN if method in measured])
     width = 0.8 / max(len(paint), 1)
     places = {method: (k - (len(paint) - 1) / 2) * width for k, method in enumerate(paint)}
     for k, (method, place) in enumerate(places.items()):
-        rows, x = frame[frame["sampling"] == DRAWN[method]].set_index("classifier"), np.arange(len(classifiers)) + place
+        rows, x = frame[frame["sampling"] == method].set_index("classifier"), np.arange(len(classifiers)) + place
         cells = 100 * rows.loc[classifiers, ["accuracy", "low", "high", "accuracy_regions", "thesis"]]
         diamonds, dashes = (None, None) if k else ("the thesis's figure", "regions not touched before")
-        axes.bar(x, cells["accuracy"], width * 0.92, color=paint[method], label=sampling_text(DRAWN[method]))
+        axes.bar(x, cells["accuracy"], width * 0.92, color=paint[method], label=label(method))
         axes.vlines(x, cells["low"], cells["high"], color=INK, lw=1)
         axes.plot(x, cells["thesis"], "D", color="white", mec=INK, ms=5, mew=1.1, label=diamonds)
         if regions:

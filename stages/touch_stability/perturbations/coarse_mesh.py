@@ -10,7 +10,7 @@ from stages.lod import simplify
 from ..touches import Touches
 from .perturbation import PerturbedTouches
 
-SOFT = "enhanced-soft"  # of lod.methods: errors have more weight where the object is salient
+SOFT = "glance-soft"  # of lod.methods: errors have more weight where the object is salient
 
 
 def touch_simplified(touches: Touches, severity: float, draw: int, way: str) -> PerturbedTouches:

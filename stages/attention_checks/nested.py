@@ -1,4 +1,4 @@
-"""The model of gaze with all its choices made without the object that it is judged on: features, channels, ridge.
+"""The glance with all its choices made without the object that it is judged on: features and ridge.
 
 A model that leaves an object out of its fit may still have features and a ridge that were chosen by looking at it.
 Here they are chosen anew for each object from all the others. That takes thousands of fits, so each of them is a step
@@ -17,22 +17,17 @@ from stages.kit.files import read_arrays, read_mesh
 from stages.kit.run import Rows
 from stages.salient_points.glance import GlanceDetector
 from stages.salient_points.options import Options
-from stages.weights import LearnedWeights, fit_fixations, fixation_density
+from stages.weights import LearnedWeights, fit_fixations
 from stages.weights.agreement import GroundTruth, auc, nss
-from stages.weights.features import CHANNEL_FEATURES, POSITION_FEATURES
 from stages.weights.fixations import RIDGE
 from stages.weights.published import GLANCE, GLANCES
 
-from .measure import stored
-
 RIDGES = (0.0003, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3)
-PICTURES = "twelve-900"  # of attention_settings.pictures: what `fixations` is taken from
-# model -> the features that it has by the choice that was made once, on all objects
-FIXED = {GLANCE: tuple(GLANCES[GLANCE]), "fixations": (*CHANNEL_FEATURES, *POSITION_FEATURES)}
+FIXED = tuple(GLANCES[GLANCE])  # the features by the choice that was made once, on all objects
 
 
 class Seen(NamedTuple):
-    """What a model is fitted to, of one object: features {name: (n,)}, amounts of gaze (n,), areas (n,)."""
+    """What the glance is fitted to, of one object: features {name: (n,)} of samples, amounts of gaze and areas (n,)."""
 
     features: dict[str, np.ndarray]
     amounts: np.ndarray
@@ -43,26 +38,26 @@ class Seen(NamedTuple):
         return np.stack([self.features[name] for name in names], axis=1)
 
 
-def process(model: str, folder: Path, data: Path, made: Path, names: list[str]) -> Rows:
-    """Rows of one of FIXED for each object, left out: with the features and ridge chosen once, and chosen without it.
+def process(method: str, folder: Path, data: Path, names: list[str]) -> Rows:
+    """Rows for each object, left out: with the features and ridge chosen once, and chosen without it.
 
-    made: where measure.process has written. The methods are MODEL_once and MODEL_nested; metrics nss and auc, the
-    number of `features` and the `ridge`; the column channels names the features.
+    The methods are METHOD_once and METHOD_nested; metrics nss and auc, the number of `features` and the `ridge`; the
+    column chosen names the features.
     """
     gaze = {name: read_arrays(data / "weights/ground_truth" / f"{name}.npz") for name in names}
-    seen = {name: SEEN[model](name, one, made) for name, one in gaze.items()}
+    seen = {name: _seen(one) for name, one in gaze.items()}
     rows = []
     for name, own in gaze.items():
         others = {other: one for other, one in seen.items() if other != name}
         truth = GroundTruth(own["amounts"], own["density"], own["areas"])
         fit = functools.cache(functools.partial(_fit, others))  # the fixed choice may be all features
         chosen = choose(others, fit(tuple(seen[name].features), RIDGE))
-        for method, (features, ridge) in {f"{model}_once": (FIXED[model], RIDGE), f"{model}_nested": chosen}.items():
+        for way, (features, ridge) in {"once": (FIXED, RIDGE), "nested": chosen}.items():
             weights = dict(zip(features, fit(features, ridge).tolist(), strict=True))
-            saliency = SALIENCY[model](data / "meshes" / f"{name}.npz", seen[name], weights)
+            saliency = _saliency(data / "meshes" / f"{name}.npz", weights)
             values = {metric.__name__: float(metric(saliency, truth)) for metric in (nss, auc)}
             values |= {"features": len(features), "ridge": ridge}
-            common = {"item": name, "method": method, "channels": ", ".join(features)}
+            common = {"item": name, "method": f"{method}_{way}", "chosen": ", ".join(features)}
             rows += [common | {"metric": metric, "value": value} for metric, value in values.items()]
     return rows
 
@@ -119,22 +114,10 @@ def _fit(objects: Mapping[str, Seen], names: tuple[str, ...], ridge: float) -> n
     return fit_fixations(features, amounts, areas, ridge)
 
 
-def _seen_samples(name: str, gaze: dict[str, np.ndarray], made: Path) -> Seen:
+def _seen(gaze: dict[str, np.ndarray]) -> Seen:
     features = dict(zip(map(str, gaze["glance_names"]), gaze["glance"].T, strict=True))
     return Seen(features, gaze["glance_amounts"], gaze["glance_areas"])
 
 
-def _seen_vertices(name: str, gaze: dict[str, np.ndarray], made: Path) -> Seen:
-    return Seen(stored(made / PICTURES / f"{name}.npz", "feature"), gaze["amounts"], gaze["areas"])
-
-
-def _saliency_of_samples(path: Path, seen: Seen, weights: dict[str, float]) -> np.ndarray:
+def _saliency(path: Path, weights: dict[str, float]) -> np.ndarray:
     return GlanceDetector(GLANCE).saliency(read_mesh(path), None, Options(LearnedWeights({GLANCE: weights})))
-
-
-def _saliency_of_vertices(path: Path, seen: Seen, weights: dict[str, float]) -> np.ndarray:
-    return fixation_density(seen.features, weights)
-
-
-SEEN = {GLANCE: _seen_samples, "fixations": _seen_vertices}
-SALIENCY = {GLANCE: _saliency_of_samples, "fixations": _saliency_of_vertices}

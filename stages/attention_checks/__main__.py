@@ -1,0 +1,53 @@
+"""Checks on meshes with human gaze: the thesis's choice of viewpoints (T3.2.4), and how far choices flatter the glance.
+
+Reads data/SET/meshes and data/SET/weights of objects with human gaze. Writes
+reports/measurements/SET/attention_checks.csv.gz: NSS and AUC of equal weights from the most salient of 62 viewpoints,
+from four and from twelve; and of the glance with features and ridge chosen once (glance_once), and chosen anew without
+the object (glance_nested).
+"""
+
+import functools
+
+import numpy as np
+
+from stages.kit.command import workspace_of_arguments
+from stages.kit.run import Rows, StageRun
+from stages.kit.workspace import Workspace
+from stages.weights.published import GLANCE
+
+from . import nested, viewpoints
+from .schema import COLUMNS, Params
+
+
+def run(workspace: Workspace) -> None:
+    """Runs the stage on the data set of a workspace."""
+    views = list(workspace.settings(Params).views)
+    viewpoints.check_views(views)
+    with StageRun(workspace, "attention_checks", COLUMNS, inputs=("meshes", "weights")) as stage:
+        names = sorted(path.stem for path in (workspace.data / "weights/ground_truth").glob("*.npz"))
+        if len(names) < 2:
+            raise ValueError(f"{workspace.dataset} has {len(names)} objects with ground truth; two are needed")
+        work = functools.partial(viewpoints.process, data=workspace.data, views=views)
+        stage.each(work, names, ["meshes/{}.npz", "weights/ground_truth/{}.npz"])
+        work = functools.partial(nested.process, data=workspace.data, names=names)
+        stage.each(work, [GLANCE], ["meshes", "weights/ground_truth"])
+        stage.metrics(summary(stage.rows))
+    print(f"attention_checks: {workspace.dataset}, {len(names)} objects, viewpoints {', '.join(views)}")
+
+
+def summary(rows: Rows) -> dict[str, float]:
+    """{METHOD, or METHOD.VIEWS: its mean NSS}."""
+    found: dict[str, list[float]] = {}
+    for row in rows:
+        if row["metric"] == "nss":
+            found.setdefault(".".join([row["method"], *filter(None, [row.get("views")])]), []).append(row["value"])
+    return {name: round(float(np.mean(values)), 6) for name, values in found.items()}
+
+
+def main() -> None:
+    """Runs the stage on the data set that the command line names."""
+    run(workspace_of_arguments(__doc__, "attention_checks"))
+
+
+if __name__ == "__main__":
+    main()

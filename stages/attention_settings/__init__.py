@@ -1,1 +1,0 @@
-"""How many pictures and channels the model of where people look needs."""

@@ -1,0 +1,78 @@
+"""The glance whose choices never saw the object: what is chosen, and from what."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from stages.attention_checks import nested
+from stages.attention_checks.nested import Seen, choose
+from stages.kit.files import write_arrays
+from stages.weights import fit_fixations, fixation_density
+
+
+def objects(count=8, points=400, seed=0):
+    """Objects with gaze that one of six features draws, and noise in the others."""
+    random, found = np.random.default_rng(seed), {}
+    for k in range(count):
+        features = {f"f{j}": random.normal(size=points) for j in range(6)}
+        shares = np.exp(features["f3"])
+        found[f"o{k}"] = Seen(features, random.multinomial(200, shares / shares.sum()).astype(float), np.ones(points))
+    return found
+
+
+def around(found):
+    names = tuple(found["o0"].features)
+    amounts = [one.amounts for one in found.values()]
+    return fit_fixations([one.stacked(names) for one in found.values()], amounts, [np.ones(len(a)) for a in amounts])
+
+
+def test_the_feature_that_draws_gaze_is_chosen_and_little_else():
+    found = objects()
+    features, ridge = choose(found, around(found))
+    assert "f3" in features and len(features) <= 3 and ridge in nested.RIDGES and ridge < 0.1
+
+
+def test_pure_noise_is_held_down_by_the_strongest_ridge():
+    found = {name: one._replace(amounts=np.roll(one.amounts, 57)) for name, one in objects().items()}
+    assert choose(found, around(found))[1] >= 0.1
+
+
+@pytest.fixture
+def judged(tmp_path, monkeypatch):
+    """A function from objects to their rows, without meshes to be looked at."""
+    monkeypatch.setattr(nested, "FIXED", ("f0", "f3"))
+
+    def rows(found):
+        def saliency(path, weights):
+            return fixation_density(found[path.stem].features, weights)
+
+        monkeypatch.setattr(nested, "_saliency", saliency)
+        for name, one in found.items():
+            arrays = {"amounts": one.amounts, "density": one.amounts + 0.01, "areas": np.ones(len(one.amounts))}
+            arrays |= {"glance": one.stacked(tuple(one.features)), "glance_names": np.array(list(one.features))}
+            write_arrays(
+                tmp_path / f"weights/ground_truth/{name}.npz",
+                **arrays,
+                glance_amounts=one.amounts,
+                glance_areas=one.areas,
+            )
+        return pd.DataFrame(nested.process("glance", tmp_path, tmp_path, list(found)))
+
+    return rows
+
+
+def test_an_objects_own_gaze_changes_nothing_that_is_chosen_for_it(judged):
+    found = objects(count=5)
+    before = judged(found).set_index(["item", "method", "metric"])
+    found["o2"] = found["o2"]._replace(amounts=np.roll(found["o2"].amounts, 31))
+    after = judged(found).set_index(["item", "method", "metric"])
+    chosen = ["features", "ridge"]
+    assert before.loc["o2"].loc["glance_nested"].loc[chosen].equals(after.loc["o2"].loc["glance_nested"].loc[chosen])
+    assert (
+        before.loc[("o2", "glance_nested", "features"), "chosen"]
+        == after.loc[("o2", "glance_nested", "features"), "chosen"]
+    )
+    assert not before.loc["o1"]["value"].equals(after.loc["o1"]["value"])  # of the others it was learned from
+    assert before.loc[("o0", "glance_nested", "nss"), "value"] > 0.3
+    assert set(before.reset_index()["method"]) == {"glance_once", "glance_nested"}
+    assert (before.xs("glance_once", level="method").xs("features", level="metric")["value"] == 2).all()
