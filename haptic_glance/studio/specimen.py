@@ -18,7 +18,7 @@ from stages.meshes.normalise import RADIUS, centre_and_radius
 from stages.meshes.orient import orient
 from stages.meshes.own import mesh_files
 from stages.meshes.up import upright_by
-from stages.saliency import points_of
+from stages.saliency import finely, points_of
 from stages.salient_points import METHODS, detect
 
 STORED = ".npz"  # a mesh as the pipeline keeps it in data/SET/meshes
@@ -29,12 +29,14 @@ RENDERING = ThreadPoolExecutor(1)  # what renders views: an OpenGL context belon
 class Look:
     """What a method found: saliency (n,) f8 in 0..1, and the points.
 
-    points: rows of stages.saliency.COLUMNS, most salient first; positions in the file's coordinates.
+    points: rows of stages.saliency.COLUMNS, most salient first; positions in the file's coordinates. drawn: the mesh
+    and saliency to be drawn, finer than Specimen.mesh where that has long edges.
     """
 
     method: str
     saliency: np.ndarray
     points: list[tuple]
+    drawn: tuple[Mesh, np.ndarray]
 
     @property
     def vertices(self) -> np.ndarray:
@@ -115,7 +117,9 @@ class Specimen:
         found = RENDERING.submit(detect, *arguments).result() if rendered else detect(*arguments)
         if found.saliency is None:
             raise ValueError(f"method {method!r} has no saliency: it only places points")
-        return Look(method, found.saliency, points_of(self.given, found))
+        fine = self.mesh, found.saliency, method
+        drawn = RENDERING.submit(finely, *fine).result() if rendered else finely(*fine)
+        return Look(method, found.saliency, points_of(self.given, found), drawn)
 
 
 def files_at(place: Path) -> list[Path]:

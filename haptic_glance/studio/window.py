@@ -11,7 +11,6 @@ import numpy as np
 import viser
 
 from stages.kit.command import DEBUG
-from stages.lod.look import viridis, vivid
 
 from .guard import bound_uploads
 from .jobs import Job, Report
@@ -128,11 +127,11 @@ class Window:
             self.run(panel.title, panel.on_mesh)
         self.run(self.panel.title, self.panel.on_show)
 
-    def show(self, values: np.ndarray | None) -> None:
-        """The mesh on the table coloured by values (n,) >= 0; None: in its own colours, or grey."""
+    def show(self) -> None:
+        """The mesh on the table in its own colours, or grey."""
         mesh = self.session.on_table.mesh
         own = np.full((len(mesh.vertices), 3), GREY, dtype=np.uint8) if mesh.colors is None else mesh.colors
-        self.scene.mesh(MESH, mesh, own if values is None else viridis(vivid(values)))
+        self.scene.mesh(MESH, mesh, own)
 
     def clicked(self, origin: np.ndarray, direction: np.ndarray) -> None:
         """A click on the picture."""

@@ -7,12 +7,14 @@ from threading import Event
 
 import numpy as np
 import pytest
+import trimesh
 
 from haptic_glance.studio.jobs import Job
 from haptic_glance.studio.levels import HARD, SOFT, Levels
 from haptic_glance.studio.panels.look import for_and_against, listing, methods, views_of
 from haptic_glance.studio.session import Session
 from haptic_glance.studio.specimen import Specimen, files_at, open_content, open_file, turned
+from stages.kit import Mesh
 from stages.kit.files import write_mesh
 from stages.meshes import MeshError, load, normalise, rotate_to_z_up
 from stages.salient_points import detect
@@ -51,6 +53,16 @@ def test_a_look_is_that_of_the_library_and_is_computed_once(knob_file):
     assert all(look is looks[0] for look in looks)
     found = detect(load(knob_file), "glance", 3)
     assert np.array_equal(looks[0].saliency, found.saliency) and set(looks[0].vertices) == set(found.points)
+
+
+def test_a_mesh_of_long_edges_is_drawn_on_a_finer_copy(mesh):
+    box = trimesh.creation.box((1.0, 2.0, 0.5))
+    look = Specimen(Mesh(box.vertices, box.faces), "box").look()
+    fine, values = look.drawn
+    assert len(look.saliency) == 8 and len(values) == len(fine.vertices) > 1000
+    assert np.ptp(fine.vertices, axis=0) == pytest.approx(np.array([1, 2, 0.5]) / np.sqrt(5.25))
+    round_one = Specimen(mesh, "ball")
+    assert round_one.look().drawn[0] is round_one.mesh
 
 
 def test_a_click_and_a_known_look_do_not_wait_for_another_method(mesh, monkeypatch):

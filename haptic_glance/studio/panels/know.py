@@ -227,7 +227,7 @@ class KnowPanel(Panel):
         self.name.visible = self.reveal.visible = hides
         if one is None or not one.hidden:
             if self.window.session.specimen is not None:
-                self.window.show(None)
+                self.window.show()
         else:
             scene.clear(MESH)
         if one is None:

@@ -18,7 +18,7 @@ from stages.weights.published import GLANCES
 from ..files import as_bytes
 from ..jobs import Report
 from ..panel import Panel
-from ..scene import BESIDE
+from ..scene import BESIDE, MESH
 from ..specimen import Hit, Look, Specimen
 
 POINTS, OTHER, NAMES = "/points", "/other", "/names"
@@ -97,10 +97,10 @@ class LookPanel(Panel):
         if (scene.has(OTHER)) != (len(looks) > 1):
             scene.aim(wide=len(looks) > 1)
         self.on_hide()
-        self.window.show(first.saliency)
+        scene.mesh(MESH, first.drawn[0], colours(*first.drawn))
         self.number(POINTS, mesh, first)
         if len(looks) > 1:
-            scene.mesh(OTHER, mesh, colours(mesh, looks[1].saliency), at=BESIDE)
+            scene.mesh(OTHER, looks[1].drawn[0], colours(*looks[1].drawn), at=BESIDE)
             self.number(f"{OTHER}/points", mesh, looks[1])
             scene.labels(NAMES, np.array([ABOVE, BESIDE + ABOVE]), [look.method for look in looks])
         self.explain(specimen, first)

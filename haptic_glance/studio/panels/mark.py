@@ -38,7 +38,7 @@ class MarkPanel(Panel):
     def on_show(self) -> None:
         """Shows the mesh and the points that were saved under this name."""
         specimen, name = self.window.session.on_table, self.name.value.strip()
-        self.window.show(None)
+        self.window.show()
         self.marking = None
         if name:
             self.marking = Marking(specimen.mesh, specimen.name, self.window.settings.marks, name)

@@ -56,7 +56,7 @@ class PathPanel(Panel):
 
     def on_show(self) -> None:
         """Shows the mesh in grey, and the path."""
-        self.window.show(None)
+        self.window.show()
         self.draw()
 
     def on_hide(self) -> None:

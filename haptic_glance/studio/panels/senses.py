@@ -46,7 +46,7 @@ class SensesPanel(Panel):
 
     def on_show(self) -> None:
         """Loads the network, or says how one is made."""
-        self.window.show(None)
+        self.window.show()
         path = newest_network()
         if path is None:
             self.about.content = MISSING

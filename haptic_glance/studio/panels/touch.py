@@ -63,7 +63,7 @@ class TouchPanel(Panel):
     def on_show(self) -> None:
         """Shows the mesh in grey, and the last touch."""
         mesh = self.window.session.on_table.mesh
-        self.window.show(None)
+        self.window.show()
         self.window.work("Preparing the mesh for touch", lambda _: prepare(mesh), lambda _: self.again())
 
     def on_hide(self) -> None:
