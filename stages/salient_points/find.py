@@ -36,7 +36,7 @@ def saliency(
     shape; None: its own, `mesh.up`.
     People look at the upper part of things and walk around them, so `glance` and `height` need the right one. method:
     a name of METHODS that has a saliency (all but `random` and `farthest`). `glance`, the default, is the fixation
-    density per unit of area that a log-linear model, fitted to human gaze, predicts from points spread over the
+    density per unit of area that a log-linear model, fitted to human gaze, predicts from small cells of the
     surface, `glance_any_pose` the same without the features that need an up axis, for what lies in any pose;
     `thesis_ssim` is the thesis's own weighted average (eq. 3.9), `itti` the classical model. weights: for a method with
     weights, a name that stages.weights has or a dict name -> weight, instead of its own. viewpoints: Viewpoints, None

@@ -1,4 +1,4 @@
-"""The methods `glance` and `glance_any_pose`: the fixation density of points spread over the surface."""
+"""The methods `glance` and `glance_any_pose`: the fixation density of small cells of the surface."""
 
 from typing import Any
 
@@ -20,7 +20,7 @@ NO_FACES = np.zeros((0, 3), dtype=np.int64)
 
 
 class GlanceDetector:
-    """It looks at samples of the surface, so that neither the faces nor noise decide what it finds."""
+    """Looks at cells of the surface, so that neither the faces nor noise decide what it finds."""
 
     channels: tuple[str, ...] = ()
 
