@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
-from matplotlib.ticker import LogLocator, NullFormatter
+from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
 from stages.kit.stats import interval
 from stages.report.items import Figure
@@ -73,6 +73,7 @@ def figure_3_5(results: Results) -> Figure:
         _draw_dots(panels[1], errors, tint, PLAIN, said(target).removesuffix(" faces"), down)
     for axes, metric in zip(panels[2:5], ("ssim_error", "dlap", "dnor"), strict=True):
         _draw_dots(axes, by_object(rows, methods, metric), CYCLE[0], PLAIN)
+        axes.xaxis.set_major_locator(MaxNLocator(3))
     _draw_dots(panels[5], rows.pivot_table(index="item", columns="method", values="points")[methods], CYCLE[0])
     panels[0].set_xscale("log")
     panels[0].xaxis.set_major_formatter(lambda value, _: f"{value:g}")
@@ -110,6 +111,7 @@ def figure_3_23(results: Results) -> Figure:
 def _draw_boxes(axes: Axes, errors: pd.DataFrame) -> None:
     """Draws the errors objects x methods as boxes, the first method on top."""
     tints, y, plain = [TINTS[str(method)] for method in errors], np.arange(errors.shape[1]), errors[PLAIN].median()
+    axes.set_xscale("log")
     if plain > 0:  # a data set may not reach a face count
         quantiles = errors.clip(lower=FLOOR * plain).quantile([0.05, 0.25, 0.5, 0.75, 0.95])
         low, left, middle, right, high = quantiles.to_numpy()
@@ -117,7 +119,7 @@ def _draw_boxes(axes: Axes, errors: pd.DataFrame) -> None:
         axes.barh(y, right - left, 0.62, left, color=tints, alpha=0.45)
         axes.plot([middle, middle], [y - 0.31, y + 0.31], color=INK, lw=1.3)
         axes.axvline(plain, color=GREY, lw=0.9, ls="--", zorder=0)
-    axes.set(xscale="log", xlim=(FLOOR * plain if plain > 0 else None, None))
+        axes.set_xlim(left=max(FLOOR * plain, 0.7 * low.min()))
     axes.xaxis.set_major_locator(LogLocator(numticks=4))
     axes.xaxis.set_minor_formatter(NullFormatter())
     axes.tick_params(axis="x", labelsize=8, which="both")
