@@ -1,21 +1,26 @@
 """Judges a saliency of your own by human gaze, beside every method of this project: `python -m stages.bench [METHOD]`
 
 METHOD is FILE.py:FUNCTION, a function of a mesh (vertices (n, 3), faces (m, 3), +z up) that returns (n,) values, not
-negative. It is asked about 19 meshes with the gaze of 32 people; --gaze names their archive or folder. The others are
-not run again: their rows are in reports/measurements/gaze. Without METHOD, the list of these alone. NSS and AUC are by
-area, means over the meshes with a 95 % interval; `lead`: METHOD's NSS less theirs, on the same meshes.
+negative. With --train it is a function of a list of (mesh, density) that returns such a function: it is called once for
+each object, with all other objects. The gaze is that of 32 people on 19 meshes, or on 14 point clouds with --set
+gaze_clouds; --gaze names its archive or folder. Other methods are not run again: their rows are in the repository.
+Without METHOD, the list of these alone. Metrics are means over the objects with a 95 % interval, by area; less KL is
+better. `lead` is by how much METHOD is better, on the same objects; * marks a method that has learned from the object.
+An object on which METHOD fails is named and left out. docs/judging.md describes the splits.
 
 examples:
   haptic-glance bench
   haptic-glance bench my_method.py:saliency --gaze gaze.zip
-  haptic-glance bench my_method.py:saliency --json > results.json
+  haptic-glance bench my_method.py:saliency --set gaze_clouds --by kl --objects
+  haptic-glance bench my_method.py:fit --train --json > results.json
 """
 
 import argparse
 import importlib.util
 import json
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -25,14 +30,23 @@ from stages.kit import Mesh, Stopwatch
 from stages.kit.command import errors_in_one_line
 from stages.kit.extras import from_extra
 from stages.kit.parallel import progress
+from stages.kit.timing import WALL, clock
 
-ROWS = Path("reports/measurements/gaze/salient_points.csv.gz")
-GAZE = Path("../shared/data/gaze.zip")  # as conf/data/gaze.yaml has it
-SCORES = ("nss", "auc")
+ROWS = "reports/measurements/{}/salient_points.csv.gz"
+GAZE = "../shared/data/{}.zip"  # as conf/data has it
+SETS = ("gaze", "gaze_clouds")
+SCORES = {"nss": 1, "auc": 1, "cc": 1, "sim": 1, "kl": -1}  # metric: 1 where more is better, -1 where less is
 OWN = "yours"
-HUMAN = "human"  # the gaze itself: what no method can exceed
+HUMAN = "human"  # the gaze itself, spread over the surface: no method
+COST = "seconds: of the median object, without the pictures that some methods read"
+PER_OBJECT = ("svm_object", "svm_viewpoint")  # T3.2.3: an SVM for the object itself
 
-Saliency = Callable[[Mesh], np.ndarray]
+Gazed = dict[str, tuple[Mesh, Any]]
+
+
+def has_seen(method: str) -> bool:
+    """True for a method that learned from the very object that it is judged on."""
+    return method in PER_OBJECT or method.endswith("_seen")
 
 
 def run(argv: Sequence[str]) -> None:
@@ -41,24 +55,35 @@ def run(argv: Sequence[str]) -> None:
         prog="haptic-glance bench", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("method", nargs="?", metavar="FILE.py:FUNCTION", help="the saliency to judge")
-    parser.add_argument("--gaze", type=Path, default=GAZE, help="archive or folder of the gaze (default: %(default)s)")
-    parser.add_argument("--rows", type=Path, default=ROWS, help="rows of the other methods (default: %(default)s)")
-    parser.add_argument("--json", action="store_true", help="print a JSON list of the methods, best first")
-    given = parser.parse_args(argv)
+    parser.add_argument("--train", action="store_true", help="FUNCTION learns from the other objects")
+    parser.add_argument("--set", choices=SETS, default=SETS[0], help="data set (default: %(default)s)")
+    parser.add_argument("--gaze", type=Path, help=f"archive or folder of the set (default: {GAZE.format('SET')})")
+    parser.add_argument("--rows", type=Path, help=f"rows of the other methods (default: {ROWS.format('SET')})")
+    parser.add_argument("--by", choices=SCORES, default="nss", help="metric of order and lead (default: %(default)s)")
+    parser.add_argument("--objects", action="store_true", help="also list each object, of METHOD or of all methods")
+    parser.add_argument("--json", action="store_true", help="print a JSON list of the methods, with each object")
+    options = parser.parse_args(argv)
     with from_extra():
         import pandas as pd
 
         from stages.kit.rows import read_rows
-    if not given.rows.exists():
-        raise ValueError(f"no {given.rows}: run it in a clone of the project, or name the rows by --rows")
-    scores = read_rows(given.rows)[lambda frame: frame["metric"].isin(SCORES)]
-    if given.method:
-        scores = pd.concat([scores, pd.DataFrame(judged(function_of(given.method), given.gaze))])
-    found = leaderboard(scores)
-    print(json.dumps(found, indent=1) if given.json else as_text(found))
+    path = options.rows or Path(ROWS.format(options.set))
+    if not path.exists():
+        raise ValueError(f"no {path}: run it in a clone of the project, or name the rows by --rows")
+    scores = read_rows(path)[lambda frame: frame["metric"].isin(SCORES)]
+    if options.method:
+        archive = options.gaze or Path(GAZE.format(options.set))
+        rows = judged(function_of(options.method), gazed(options.set, archive), options.train)
+        scores = pd.concat([scores, pd.DataFrame(rows)])
+    methods = leaderboard(scores, options.by)
+    if options.json:
+        return print(json.dumps(methods, indent=1))
+    print(as_text(methods, options.by))
+    if options.objects:
+        print(f"\n{objects_text([row for row in methods if not options.method or row['method'] == OWN])}")
 
 
-def function_of(text: str) -> Saliency:
+def function_of(text: str) -> Callable:
     """The function that FILE.py:FUNCTION names; ValueError where there is none."""
     file, _, name = text.rpartition(":")
     path = Path(file)
@@ -74,76 +99,151 @@ def function_of(text: str) -> Saliency:
     return getattr(module, name)
 
 
-def judged(method: Saliency, archive: Path) -> list[dict[str, Any]]:
-    """Rows of SCORES of a method on all meshes with gaze. ValueError where its values are no saliency of a mesh."""
+def judged(method: Callable, objects: Gazed, train: bool = False) -> list[dict[str, Any]]:
+    """Rows of SCORES of a method on objects with gaze.
+
+    Parameters
+    ----------
+    method
+        A function of a mesh; with `train`, a function of [(mesh, density)] that returns one.
+    objects
+        {name: (mesh, GroundTruth)}, of `gazed`.
+    train
+        Whether the method learns, for each object, from all others. Seconds do not include the training.
+
+    Raises
+    ------
+    ValueError
+        If the method fails on every object. One on which it fails is named on stderr; its rows have a note, no value.
+    """
     from stages.weights.agreement import agreement
 
-    rows = []
-    for name, mesh, truth in gazed(archive):
-        with Stopwatch() as watch:
-            values = method(mesh)
+    rows, failed = [], {}
+    for name, (mesh, truth) in progress(objects.items(), "bench"):
+        row: dict[str, Any] = {"item": name, "method": OWN, "clock": clock()}
+        found: dict[str, float] = {}
         try:
+            others = [(mesh, truth.density) for other, (mesh, truth) in objects.items() if other != name]
+            saliency, fresh = method(others) if train else method, replace(mesh)  # without what the truth has cached
+            with Stopwatch() as watch:
+                values = saliency(fresh)
             found = agreement(np.asarray(values, dtype=np.float64), truth)
-        except (TypeError, ValueError) as error:
-            raise ValueError(f"{name}: {error}") from None
-        row = {"item": name, "method": OWN, "seconds": watch.seconds}
-        rows += [row | {"metric": metric, "value": found[metric]} for metric in SCORES]
+            row["seconds"] = watch.seconds
+        except Exception as error:  # a method may raise anything; the other objects are judged
+            row["note"] = failed[name] = f"{type(error).__name__}: {error}"
+            print(f"bench: {name} is left out: {failed[name]}", file=sys.stderr)
+        rows += [row | {"metric": metric, "value": found.get(metric, np.nan)} for metric in SCORES]
+    if len(failed) == len(objects):
+        raise ValueError(f"the method failed on every object, on {name} by {failed[name]}")
     return rows
 
 
-def gazed(archive: Path) -> Iterator[tuple[str, Mesh, Any]]:
-    """Yields (name, Mesh, GroundTruth) of every mesh with gaze."""
+def gazed(dataset: str, archive: Path, only: Sequence[str] = ()) -> Gazed:
+    """{name: (Mesh, GroundTruth)} of the objects of one of SETS; `only` names some of them, none stands for all."""
     from stages.meshes.collect import prepare_mesh
     from stages.meshes.schema import Params
-    from stages.meshes.sources import gaze
+    from stages.meshes.sources import SOURCES
     from stages.weights.agreement import GroundTruth
     from stages.weights.ground_truth import ground_truth_amounts, spread_on_surface
     from stages.weights.ground_truth.source import published_files
     from stages.weights.training_data import SPREAD
 
-    files = published_files("gaze", archive)
-    for item in progress(gaze(Params("gaze", str(archive), "y", "unknown", [], {}, False)), "bench"):
+    files, objects = published_files(dataset, archive), {}
+    settings = Params(dataset, str(archive), "y", "unknown", list(only), {}, False)
+    for item in progress(SOURCES[dataset](settings), "meshes"):
         mesh, _ = prepare_mesh(item)
-        amounts = ground_truth_amounts(item.name, "gaze", mesh, files.get(item.name, []))
+        amounts = ground_truth_amounts(item.name, dataset, mesh, files.get(item.name, []))
         if amounts is not None:
             density = spread_on_surface(mesh, amounts, SPREAD * mesh.diagonal)
-            yield item.name, mesh, GroundTruth(amounts, density, mesh.vertex_areas)
+            objects[item.name] = mesh, GroundTruth(amounts, density, mesh.vertex_areas)
+    return objects
 
 
-def leaderboard(scores: Any) -> list[dict[str, Any]]:
-    """A dict a method, best NSS first: method, objects, nss, nss_low, nss_high, auc and so on, seconds, lead and so on.
+def leaderboard(scores: Any, by: str = "nss") -> list[dict[str, Any]]:
+    """Rank methods by the mean of a metric, best first.
 
-    scores: frame of item, method, metric, value, seconds.
+    Parameters
+    ----------
+    scores
+        Frame of item, method, metric, value, seconds, and where known clock and note.
+    by
+        One of SCORES.
+
+    Returns
+    -------
+    list
+        A dict a method: method, has_seen, objects (how many), each metric with its `_low` and `_high`, seconds (of the
+        median object), clock, values {object: {metric: value, seconds}}, failed {object: reason}; and, where OWN is
+        among the methods, `nss_lead` with its `_low` and `_high` and so on: by how much OWN is better, also in KL.
     """
     from stages.kit.stats import interval
 
+    scores = scores.reindex(columns=["item", "method", "metric", "value", "seconds", "clock", "note"])
     table = scores.pivot_table(index="item", columns=["metric", "method"], values="value")
-    seconds = scores.dropna(subset=["value"]).groupby("method")["seconds"].median()
-    found = []
-    for method in table["nss"].columns:
-        row: dict[str, Any] = {"method": method, "objects": int(table["nss"][method].notna().sum())}
-        for metric in SCORES:
-            row |= dict(zip([metric, f"{metric}_low", f"{metric}_high"], interval(table[metric][method]), strict=True))
-        row["seconds"] = float(seconds[method])
-        if OWN in table["nss"] and method != OWN:
-            lead = interval(table["nss"][OWN] - table["nss"][method])
-            row |= dict(zip(["lead", "lead_low", "lead_high"], lead, strict=True))
-        found.append({key: None if value != value else value for key, value in row.items()})
-    return sorted(found, key=lambda row: -row["nss"])
+    methods = []
+    for method in table[by].columns:
+        rows = scores[scores["method"] == method]
+        measured = rows.dropna(subset=["value"])
+        row: dict[str, Any] = {"method": method, "has_seen": has_seen(method), "objects": measured["item"].nunique()}
+        for metric, better in SCORES.items():
+            compared = {metric: table[metric][method]}
+            if OWN in table[metric] and method != OWN:
+                compared[f"{metric}_lead"] = better * (table[metric][OWN] - table[metric][method])
+            for name, values in compared.items():
+                row |= zip((name, f"{name}_low", f"{name}_high"), interval(values), strict=True)
+        row["seconds"] = float(measured["seconds"].median())
+        row["clock"] = np.nan if np.isnan(row["seconds"]) else next(iter(measured["clock"].dropna()), WALL)
+        row["values"] = {
+            item: _without_nan(dict(zip(own["metric"], own["value"], strict=True), seconds=own["seconds"].iloc[0]))
+            for item, own in measured.groupby("item")
+        }
+        row["failed"] = rows[rows["value"].isna()].groupby("item")["note"].first().to_dict()
+        methods.append(_without_nan(row))
+    return sorted(methods, key=lambda row: -SCORES[by] * row[by])
 
 
-def as_text(found: Sequence[dict[str, Any]]) -> str:
-    """The leaderboard as lines."""
-    lines = [f"{'':>3} {'method':26} {'NSS':>20} {'AUC':>6} {'seconds':>8}  lead"]
+def _without_nan(row: dict[str, Any]) -> dict[str, Any]:
+    return {key: None if value != value else value for key, value in row.items()}
+
+
+def as_text(methods: Sequence[dict[str, Any]], by: str = "nss") -> str:
+    """The leaderboard as lines, with the rank of each method by a metric and the clocks of the seconds below."""
+    heads = [f"{_name(metric):>20}" for metric in SCORES]
+    lines = [f"{'':>3} {'method':26} objects {' '.join(heads)} {'seconds':>8} {'clock':9}  lead in {by.upper()}"]
     rank = 0
-    for row in found:
+    for row in methods:
         rank += row["method"] not in (HUMAN, OWN)
         place = ">" if row["method"] == OWN else "" if row["method"] == HUMAN else f"{rank}"
-        nss = f"{row['nss']:.2f} [{row['nss_low']:.2f}, {row['nss_high']:.2f}]"
-        cost = "" if row["seconds"] is None else f"{row['seconds']:.2f}"
-        lead = "" if row.get("lead") is None else f"{row['lead']:+.2f} [{row['lead_low']:.2f}, {row['lead_high']:.2f}]"
-        lines.append(f"{place:>3} {row['method']:26} {nss:>20} {row['auc']:6.2f} {cost:>8}  {lead}".rstrip())
+        name = f"{row['method']} *" if row["has_seen"] else row["method"]
+        cells = [f"{_bracketed(row, metric):>20}" for metric in SCORES]
+        cost = "" if row["seconds"] is None else f"{row['seconds']:.3g}"
+        measured = (row["clock"] or "").partition(",")[0].partition(" ")[0]
+        lead = "" if row.get(f"{by}_lead") is None else f"  {_bracketed(row, f'{by}_lead', '+')}"
+        lines.append(f"{place:>3} {name:26} {row['objects']:7} {' '.join(cells)} {cost:>8} {measured:9}{lead}".rstrip())
+    clocks = dict.fromkeys(row["clock"] for row in methods if row["clock"])
+    return "\n".join([*lines, *(f"clock: {measured}" for measured in clocks), COST])
+
+
+def objects_text(methods: Sequence[dict[str, Any]]) -> str:
+    """The values of each object as lines, and the objects on which a method failed, with the reason."""
+    lines = [f"{'method':26} {'object':16} {' '.join(f'{metric.upper():>6}' for metric in SCORES)}  seconds"]
+    for row in methods:
+        for item, values in row["values"].items():
+            cells = " ".join(f"{values[metric]:6.2f}" for metric in SCORES)
+            cost = "" if values["seconds"] is None else f"{values['seconds']:8.3g}"
+            lines.append(f"{row['method']:26} {item:16} {cells} {cost}".rstrip())
+        lines += [f"{row['method']:26} {item:16} {reason}" for item, reason in row["failed"].items()]
     return "\n".join(lines)
+
+
+def _name(metric: str) -> str:
+    return metric.upper() if SCORES[metric] > 0 else f"{metric.upper()} (less is better)"
+
+
+def _bracketed(row: dict[str, Any], name: str, sign: str = "") -> str:
+    """`1.64 [1.41, 1.88]`; the mean alone where there is no interval."""
+    mean, low, high = (row[key] for key in (name, f"{name}_low", f"{name}_high"))
+    return f"{mean:{sign}.2f}" + ("" if low is None else f" [{low:.2f}, {high:.2f}]")
 
 
 def main() -> None:

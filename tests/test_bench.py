@@ -1,6 +1,7 @@
 """A saliency of one's own is judged as the stages judge theirs, and what is no saliency is named."""
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -10,14 +11,31 @@ import pytest
 from stages import bench
 from stages.kit import Mesh
 from stages.kit.rows import read_rows
-from stages.weights.agreement import GroundTruth
+from stages.weights.agreement import METRICS, GroundTruth
 
+PAGE = (Path(__file__).parents[1] / "docs/judging.md").read_text(encoding="utf-8")
+EXAMPLES = re.findall(r"^```python\n(.*?)^```$", PAGE, re.M | re.S)
+SHORT = 20  # lines of a new method
+OBJECTS = ("first", "second", "third")
 METHODS = """
+import numpy as np
+
 def height(mesh):
     return mesh.vertices[:, 2] - mesh.vertices[:, 2].min()
 
 def positions(mesh):
     return mesh.vertices
+
+def moody(mesh):
+    values, size = height(mesh), mesh.vertices[:, 0].max()
+    if size == 1:
+        raise KeyError("no such part")
+    return values if size == 2 else values * np.nan
+
+def counts(training):
+    assert all(len(mesh.vertices) == len(density) for mesh, density in training)
+    sizes = {mesh.vertices[:, 0].max() for mesh, _ in training}
+    return lambda mesh: height(mesh) * (len(sizes) == 2 and mesh.vertices[:, 0].max() not in sizes)
 """
 
 
@@ -29,38 +47,118 @@ def file(tmp_path):
 
 
 @pytest.fixture
-def one_mesh(monkeypatch):
-    """One triangle pair with gaze at its highest vertex."""
-    mesh = Mesh(np.array([[0, 0, 0], [1, 0, 0.2], [0, 1, 0.5], [1, 1, 1.0]]), np.array([[0, 1, 2], [1, 3, 2]]))
-    truth = GroundTruth(np.array([0, 0, 0, 1.0]), np.array([0, 0, 0.1, 1.0]), mesh.vertex_areas)
-    monkeypatch.setattr(bench, "gazed", lambda archive: iter([("toy", mesh, truth)]))
+def toys(monkeypatch):
+    """Three pairs of triangles of width 1, 2 and 3, with gaze at their highest vertex."""
+    found = {}
+    for width, name in enumerate(OBJECTS, start=1):
+        corners = np.array([[0, 0, 0], [width, 0, 0.2], [0, 1, 0.5], [width, 1, 1.0]])
+        mesh = Mesh(corners, np.array([[0, 1, 2], [1, 3, 2]]))
+        found[name] = mesh, GroundTruth(np.array([0, 0, 0, 1.0]), np.array([0, 0, 0.1, 1.0]), mesh.vertex_areas)
+    monkeypatch.setattr(bench, "gazed", lambda dataset, archive: found)
+
+
+def listed(capsys, *options):
+    """{method: its row} as --json prints them."""
+    bench.run([*options, "--json"])
+    return {row["method"]: row for row in json.loads(capsys.readouterr().out)}
+
+
+def frame_of(rows):
+    frame = pd.DataFrame(rows, columns=["item", "method", "value"]).assign(seconds=0.5)
+    return pd.concat([frame.assign(metric=metric) for metric in bench.SCORES])
+
+
+ROWS = [("a", "glance", 2.0), ("b", "glance", 1.0), ("c", "glance", 9.0), ("a", "yours", 2.5), ("b", "yours", 1.1),
+        ("c", "yours", 1.2), ("a", "older", 0.1), ("b", "older", 0.3)]  # fmt: skip
+
+
+def test_all_metrics_of_agreement_are_printed():
+    assert set(bench.SCORES) == set(METRICS)
 
 
 def test_a_method_is_ranked_by_its_scores_and_compared_on_the_same_meshes():
-    rows = [("a", "glance", 2.0), ("b", "glance", 1.0), ("c", "glance", 9.0), ("a", "yours", 2.5), ("b", "yours", 1.1),
-            ("c", "yours", 1.2), ("a", "older", 0.1), ("b", "older", 0.3)]  # fmt: skip
-    frame = pd.DataFrame(rows, columns=["item", "method", "value"]).assign(seconds=0.5)
-    found = bench.leaderboard(pd.concat([frame.assign(metric=metric) for metric in bench.SCORES]))
+    found = bench.leaderboard(frame_of(ROWS))
     assert [row["method"] for row in found] == ["glance", "yours", "older"]
     older = found[2]
-    assert older["objects"] == 2 and older["lead"] == pytest.approx((2.4 + 0.8) / 2)
-    assert older["lead_low"] < older["lead"] < older["lead_high"] and "lead" not in found[1]
-    assert [line.split()[0] for line in bench.as_text(found).splitlines()[1:]] == ["1", ">", "2"]
+    assert older["objects"] == 2 and older["nss_lead"] == pytest.approx((2.4 + 0.8) / 2)
+    assert older["nss_lead_low"] < older["nss_lead"] < older["nss_lead_high"] and "nss_lead" not in found[1]
+    assert [line.split()[0] for line in bench.as_text(found).splitlines()[1:4]] == ["1", ">", "2"]
 
 
-def test_a_method_is_judged_beside_the_committed_rows(file, one_mesh, capsys):
-    bench.run([f"{file}:height", "--json"])
-    found = {row["method"]: row for row in json.loads(capsys.readouterr().out)}
-    assert found["yours"]["objects"] == 1 and found["yours"]["nss"] > 0 and found["yours"]["auc"] > 0.8
+def test_less_kl_is_better_in_order_and_lead():
+    found = bench.leaderboard(frame_of(ROWS), "kl")
+    assert [row["method"] for row in found] == ["older", "yours", "glance"]
+    assert found[0]["kl_lead"] == pytest.approx(-(2.4 + 0.8) / 2) and found[2]["kl_lead"] > 0
+    assert "KL (less is better)" in bench.as_text(found, "kl") and "  -1.60 [" in bench.as_text(found, "kl")
+
+
+def test_seconds_are_named_by_the_clock_that_measured_them():
+    frame = frame_of(ROWS)
+    frame.loc[frame["method"] == "glance", "clock"] = "processor, of a test"
+    frame.loc[frame["method"] == "older", "seconds"] = np.nan
+    found = {row["method"]: row for row in bench.leaderboard(frame)}
+    assert [found[method]["clock"] for method in ("glance", "yours", "older")] == [
+        "processor, of a test",
+        bench.WALL,
+        None,
+    ]
+    text = bench.as_text([*found.values()])
+    assert "clock: processor, of a test\n" in text and f"clock: {bench.WALL}\n" in text
+
+
+def test_a_method_is_judged_beside_the_committed_rows(file, toys, capsys):
+    found = listed(capsys, f"{file}:height")
+    assert found["yours"]["objects"] == 3 and found["yours"]["nss"] > 0 and found["yours"]["auc"] > 0.8
     assert found["glance"]["objects"] == 19 and found["glance"]["nss"] > found["itti"]["nss"]
+    assert all(low < found["glance"][metric] < high for metric in bench.SCORES
+               for low, high in [(found["glance"][f"{metric}_low"], found["glance"][f"{metric}_high"])])  # fmt: skip
+    assert found["glance"]["values"]["cow"].keys() == {*bench.SCORES, "seconds"}
+    assert found["svm_object"]["has_seen"] and not found["svm"]["has_seen"]
+
+
+def test_values_of_each_object_are_listed_on_request(file, toys, capsys):
+    bench.run([f"{file}:height", "--objects"])
+    text = capsys.readouterr().out
+    assert [re.findall(rf"^yours +({name}) ", text, re.M) for name in OBJECTS] == [[name] for name in OBJECTS]
+    bench.run([f"{file}:height"])
+    assert "first" not in capsys.readouterr().out
+
+
+def test_an_object_on_which_a_method_fails_is_named_and_the_others_are_judged(file, toys, capsys):
+    bench.run([f"{file}:moody", "--objects"])
+    out, err = capsys.readouterr()
+    assert "bench: first is left out: KeyError: 'no such part'" in err and "bench: third is left out" in err
+    assert re.search(r"^ +> yours +1 ", out, re.M) and re.search(r"^yours +third +ValueError: .*NaN", out, re.M)
+    yours = listed(capsys, f"{file}:moody")["yours"]
+    assert [*yours["values"]] == ["second"] and [*yours["failed"]] == ["first", "third"]
+
+
+def test_a_method_that_learns_never_gets_the_object_that_it_is_judged_on(file, toys, capsys):
+    options = listed(capsys, f"{file}:counts", "--train"), listed(capsys, f"{file}:height")
+    assert [found["yours"]["nss"] for found in options] == pytest.approx([options[1]["yours"]["nss"]] * 2)
+    assert options[0]["yours"]["nss"] > 0
 
 
 @pytest.mark.parametrize(
-    ("name", "said"), [("positions", "toy: saliency must have shape"), ("none", "has no function 'none'")]
+    ("name", "said"), [("positions", "failed on every object.*saliency must have shape"), ("none", "has no function")]
 )
-def test_what_is_no_saliency_is_named(file, one_mesh, name, said):
+def test_what_is_no_saliency_is_named(file, toys, name, said):
     with pytest.raises(ValueError, match=said):
         bench.run([f"{file}:{name}"])
+
+
+@pytest.mark.parametrize(("code", "options"), zip(EXAMPLES, ([], ["--train"]), strict=True))
+def test_a_new_method_takes_few_lines(code, options, tmp_path, toys, capsys):
+    (tmp_path / "my_method.py").write_text(code)
+    (name,) = re.findall(r"my_method\.py:(\w+).*" + (options[0] if options else "$"), PAGE, re.M)[:1]
+    found = listed(capsys, f"{tmp_path / 'my_method.py'}:{name}", *options)
+    assert len(code.splitlines()) <= SHORT and found["yours"]["objects"] == len(OBJECTS)
+
+
+@pytest.mark.parametrize("dataset", bench.SETS)
+def test_the_page_names_the_objects_of_each_split(dataset):
+    (names,) = re.findall(rf"^\| `{dataset}` \| (.+) \|$", PAGE, re.M)
+    assert names.split(", ") == sorted(read_rows(Path(bench.ROWS.format(dataset)))["item"].unique())
 
 
 def test_a_file_that_is_not_there_is_named():
@@ -74,14 +172,12 @@ def test_rows_that_are_not_there_are_named_with_the_remedy(tmp_path):
 
 
 @pytest.mark.slow
-def test_a_method_gets_the_scores_that_the_stage_gave_it(file, monkeypatch):
-    if not bench.GAZE.exists():
-        pytest.skip(f"{bench.GAZE} is not here")
-    from stages.meshes import sources
-
-    every = sources.gaze
-    monkeypatch.setattr(sources, "gaze", lambda settings: [item for item in every(settings) if item.name == "bunny"])
-    rows = read_rows(Path(bench.ROWS))
-    rows = rows[(rows["method"] == "height") & (rows["item"] == "bunny")].set_index("metric")["value"]
-    for row in bench.judged(bench.function_of(f"{file}:height"), bench.GAZE):
+@pytest.mark.parametrize(("dataset", "item"), [("gaze", "bunny"), ("gaze_clouds", "starfish")])
+def test_a_method_gets_the_scores_that_the_stage_gave_it(file, dataset, item):
+    archive = Path(bench.GAZE.format(dataset))
+    if not archive.exists():
+        pytest.skip(f"{archive} is not here")
+    rows = read_rows(Path(bench.ROWS.format(dataset)))
+    rows = rows[(rows["method"] == "height") & (rows["item"] == item)].set_index("metric")["value"]
+    for row in bench.judged(bench.function_of(f"{file}:height"), bench.gazed(dataset, archive, [item])):
         assert row["value"] == pytest.approx(rows[row["metric"]], abs=1e-5)

@@ -82,7 +82,8 @@ for method in ["thin_parts", "glance"]:
 # ------------------
 #
 # The gaze of 32 people on 19 meshes decides. One command asks a function in a file of yours about them, and lists it
-# beside all others, with the interval of its lead:
+# beside all others, with five metrics, their intervals and those of its lead. :doc:`/judging` has the splits, and how
+# to judge a method that learns:
 #
 # .. code-block:: sh
 #

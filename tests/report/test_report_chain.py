@@ -5,6 +5,7 @@ import pandas as pd
 import pytest
 
 from stages.report import chain
+from stages.report.chain.front import smallest_kept
 from stages.report.chain.rows import words
 from stages.report.results import NotRun
 from stages.report.topics import build_one
@@ -51,6 +52,17 @@ def test_confirmed_choices_stand_beside_what_the_search_found(measured):
     notes = " ".join(table.notes)
     assert "takes 10 ms, the default 100 times as long" in notes and "6 shapes and 6 objects" in notes
     assert words(pd.Series(small)) in notes and "in 50 and 50 % of the cases, the default in 55 and 55 %" in notes
+
+
+def test_defaults_follow_the_quickest_choice_that_is_as_good_as_the_best_in_both_accuracies(measured):
+    columns = ["regions", "regions_low", "objects", "objects_low", "seconds", "faces", "touches", "words"]
+    best, quick = (0.7, 0.6, 0.6, 0.5, 1.0, 500, 1, "best"), (0.6, 0.5, 0.5, 0.4, 0.2, 500, 1, "quick")
+    worse = [(0.59, 0.5, 0.6, 0.5, 0.1, 500, 1, "touched worse"), (0.8, 0.7, 0.49, 0.4, 0.1, 500, 1, "unseen worse")]
+    frame = pd.DataFrame([best, *worse, quick], columns=columns)
+    assert smallest_kept(frame)["words"] == "quick" and smallest_kept(frame[:3])["words"] == "best"
+    assert smallest_kept(frame.assign(seconds=1.0, faces=[500, 500, 500, 1000]))["words"] == "best"
+    table = build_one(chain, "tables", "front", measured)
+    assert f"It is {smallest_kept(table.frame)['words']}." in table.notes[-1]
 
 
 def test_a_choice_is_said_in_words():

@@ -8,7 +8,7 @@ import viser
 from stages.imprints.surface import as_surface
 
 from ..drawing import draw_array, draw_line
-from ..feeling import feel_by_rays
+from ..feeling import Sensor, feel_by_rays
 from ..grids import grid_html
 from ..jobs import Report
 from ..panel import Panel
@@ -39,8 +39,9 @@ class PathPanel(Panel):
         self.grid = gui.add_html("", visible=False)
         self.play = gui.add_button("Play", disabled=True)
         self.frame = gui.add_slider("Frame", 1, FRAMES, 1, 1, disabled=True)
-        self.cells = gui.add_slider("Cells", 4, 64, 1, 16, hint="of each side")
-        self.pitch = gui.add_slider("Pitch", 0.002, 0.03, 0.001, 0.01, hint="from cell to cell; the object is 1")
+        first = Sensor()
+        self.cells = gui.add_slider("Cells", 4, 64, 1, first.cells, hint="of each side")
+        self.pitch = gui.add_slider("Pitch", 0.002, 0.03, 0.001, first.pitch, hint="from cell to cell; the object is 1")
         self.clear = gui.add_button("Clear the path", color="gray")
         on = self.window.on
         on(self.how.on_update, self.begin)

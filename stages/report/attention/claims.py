@@ -2,11 +2,12 @@
 
 from functools import partial
 
+from stages.bench import PER_OBJECT
 from stages.kit.breaking_point import BROKEN
 from stages.report.claims import POINTS, Claim, Pick, highest_of, reading
 from stages.report.results import COLOURED, GAZED, MENDED_3_2, ON_BLACK, SECTION_3_2
 
-from .rows import ANY_POSE, CLASSICAL, NO_RIVALS, OURS, PER_OBJECT, SAME
+from .rows import ANY_POSE, CLASSICAL, NO_RIVALS, OURS, SAME
 
 BEST_RIVAL = highest_of(but=(*NO_RIVALS, *SAME, *PER_OBJECT, "*_seen"))
 ONE_HUE = 0.98  # the least correlation of DKL with intensity on four household objects, each in one colour of a palette

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import pandas as pd
 
+from stages.bench import has_seen
 from stages.kit.stats import interval
 from stages.report.results import NotRun, some
 from stages.report.style import label
@@ -11,17 +12,11 @@ from stages.report.style import label
 OURS, ANY_POSE, HUMAN = "glance", "glance_any_pose", "human"
 CLASSICAL, THESIS = "itti", "VisAttAll"
 NO_RIVALS = (OURS, ANY_POSE, HUMAN)  # our models, and the ceiling
-PER_OBJECT = ("svm_object", "svm_viewpoint")  # T3.2.3: an SVM for the object itself
 BLACK = "-black"  # behind the name of a method: with the black background filtered together with the object
 SAME = ("VisAtt",)  # the classical model under the thesis's name
 NAMES = {"random": "random points", "svm": "thesis, SVM"}  # elsewhere blind touch, and a classifier
 ALONE = {"nss": "NSS", "auc": "AUC"}  # shown with their interval, and in which ours is compared with each other method
 MEAN, GAIN = ["mean", "low", "high"], ["gain", "gain_low", "gain_high"]  # columns: of a method, and over another
-
-
-def has_seen(method: str) -> bool:
-    """True for a method that learned from the very object that it is judged on."""
-    return method in PER_OBJECT or method.endswith("_seen")
 
 
 def method_text(method: str) -> str:
