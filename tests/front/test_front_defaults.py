@@ -38,7 +38,7 @@ ROWS = "rows of household and furniture, and claims on them, rest on it: it chan
 DOORS = "one question has one answer: it changes together with imprints.cells of the pipeline"
 BELIEF = "`know` has a belief, not the front's classifier: with 40 learned places it takes half as many touches again"
 OPEN = {
-    ("pipeline", "points"): ROWS, ("pipeline", "cells"): ROWS, ("pipeline", "touches"): ROWS,
+    ("pipeline", "cells"): ROWS, ("pipeline", "touches"): ROWS,
     ("know", "points"): BELIEF, **{(door, "cells"): DOORS for door in DEFAULTS if door != "pipeline"},
 }  # fmt: skip
 
