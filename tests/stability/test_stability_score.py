@@ -243,7 +243,7 @@ def test_uses_are_shares_of_plain_simplification_and_touches_recognised(tmp_path
     built = build_one(stability, "tables", "stability_uses", results(tmp_path, [*used(), *used("itti", 3.0)]))
     shown = built.shown.set_index("disturbance")
     assert list(shown.index) == ["none", "noise"] and shown.loc["noise", "severity"].startswith("0.001 sigma")
-    error, known = "ours (glance), salient error, %", "ours (glance), recognised, %"
+    error, known = "glance, salient error, %", "glance, recognised, %"
     assert shown.loc["none", error].startswith("50") and shown.loc["noise", error].startswith("90")
     assert shown.loc["none", "Itti's attention, salient error, %"].startswith("50")  # of its own plain error
     assert shown.loc["none", known].startswith("90 [") and shown.loc["noise", known].startswith("60 [")
