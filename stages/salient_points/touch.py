@@ -26,6 +26,7 @@ ALIKE = 0.06  # root mean square difference of two imprints in 0..1 at which the
 FLAT = 1e-3  # relief below which an imprint is flat, in units: samples are no finer
 DISC = 1.1  # radius of a disc over the square root of the area that its sample stands for: discs leave no holes
 BITS = 10  # of a coordinate on the curve that orders samples
+ROUNDING = 1e-6  # smaller differences of skewness, steps and shares are rounding
 
 
 class TouchDetector(SampledDetector):
@@ -57,16 +58,15 @@ def spread(samples: Samples, count: int) -> np.ndarray:
     They follow one another at equal areas along a curve that fills space (Morton, A computer oriented geodetic data
     base, IBM 1966). Two sides of a sheet get as many each.
     """
-    x, y, _ = samples.local.T
-    turned = np.where([samples.shares @ x**3 < 0, samples.shares @ y**3 < 0, False], -1, 1)  # which way axes point
-    inside = samples.local * turned
-    low = inside.min(axis=0)
-    steps = ((inside - low) / max(np.ptp(inside, axis=0).max(), 1e-12) * (2**BITS - 1)).astype(np.int64)
+    skew = samples.shares @ samples.local**3
+    inside = samples.local * np.where(skew * [1, 1, 0] < -ROUNDING, -1, 1)  # either way of a horizontal axis
+    inside -= inside.min(axis=0)
+    steps = (inside / max(inside.max(), 1e-12) * (2**BITS - 1) + ROUNDING).astype(np.int64)
     code = sum((steps[:, axis] >> bit & 1) << (3 * bit + axis) for bit in range(BITS) for axis in range(3))
     has_side = np.flatnonzero(samples.normals.any(axis=1))
     order = has_side[np.argsort(np.asarray(code)[has_side], kind="stable")]
     passed = np.cumsum(samples.shares[order])
-    at = np.searchsorted(passed, (np.arange(count) + 0.5) / count * passed[-1])
+    at = np.searchsorted(passed, (np.arange(count) + 0.5) / count * passed[-1] - ROUNDING)
     return order[np.unique(at.clip(max=len(order) - 1))]
 
 

@@ -68,6 +68,8 @@ def test_small_arrays_feel_what_the_sensor_feels(bumpy):
     felt = imprints(pressed(samples.points, samples.normals, DISC * np.sqrt(samples.areas), axes, at, CELLS, WIDTH))
     meant = press_at(Surface(bumpy), samples.points[at], axes, (CELLS, CELLS), WIDTH / CELLS)
     assert np.abs(felt - meant.reshape(len(at), -1)).mean() < 0.02
+    assert imprints(np.array([[[0.1, 0.3], [0.2, 0.3]]])) == pytest.approx(np.array([[0, 1, 0.5, 1]]))
+    assert not imprints(0.1 + np.array([[[0, 5e-4], [0, 0]]])).any()  # rounding of a flat place is no relief
 
 
 def test_places_are_spread_by_area_over_both_sides_of_a_sheet():
