@@ -1,8 +1,7 @@
 """The method `touch`: places whose imprint recurs on the object, so that one touch there tells the object.
 
-A classifier names the object that has the nearest imprints. Where people look, at corners, tips and faces, the object
-has few imprints like that of the place. An imprint that recurs (on the other side, on another leg, all along a rim) has
-been met before, wherever the object was learned.
+A classifier names the object that has the nearest imprints. An imprint that recurs on the object (on the other side, on
+another leg, all along a rim) has been met before, wherever the object was learned.
 """
 
 from dataclasses import replace
