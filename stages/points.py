@@ -1,4 +1,4 @@
-"""Prints the places of one mesh that people look at first.
+"""Prints the places of one mesh that people look at first, or that are worth touching.
 
 They are those of `haptic-glance saliency`, most salient first: vertex, position in the file's coordinates, score
 from 0 to 1. Positions can be handed to `haptic-glance touch --at`.
@@ -7,6 +7,7 @@ examples:
   haptic-glance points scan.stl
   haptic-glance points chair.glb --count 5 --json
   haptic-glance points scan.stl --up y --out points.csv
+  haptic-glance points scan.stl --purpose touch --count 6
 """
 
 import sys

@@ -33,6 +33,7 @@ from stages.meshes.normalise import centre_and_radius
 from stages.meshes.up import add_up, upright_by, upright_for
 from stages.salient_points import Detection, detect
 from stages.salient_points import saliency as saliency_of
+from stages.salient_points.methods import PURPOSES, method_for
 from stages.salient_points.names import HELP, check_name
 from stages.weights.published import GLANCE
 
@@ -59,7 +60,9 @@ def shared_parser(name: str, about: str) -> argparse.ArgumentParser:
     command.set_defaults(name=name)
     command.add_argument("mesh", metavar="MESH", type=Path, help="the file to look at")
     command.add_argument("--count", metavar="N", type=int, help="how many points (default: those past the threshold)")
-    command.add_argument("--method", default="glance", help=HELP)
+    help_purpose = "look: where people look (default); touch: where one touch tells most of the object"
+    command.add_argument("--purpose", choices=list(PURPOSES), default="look", help=help_purpose)
+    command.add_argument("--method", help=HELP)
     add_up(command, "unknown: --method glance_any_pose")
     command.add_argument("--json", action="store_true", help="print the points as JSON")
     return command
@@ -96,7 +99,9 @@ def check(chosen: argparse.Namespace) -> None:
     check_outputs(chosen.mesh, chosen.out, chosen.points, chosen.picture)
     if chosen.picture:
         check_look(chosen.picture)
-    check_name(chosen.method)
+    if chosen.method is not None:
+        check_name(chosen.method)
+    chosen.method = method_for(chosen.purpose, chosen.method)
     if chosen.count is not None and chosen.count < 1:
         raise ValueError(f"--count {chosen.count}: give 1 or more")
 

@@ -33,6 +33,20 @@ def test_they_are_written_where_asked(pear, capsys):
     assert pear.with_suffix(".csv").read_text().splitlines()[1].startswith(f"1,{first['vertex']},")
 
 
+@pytest.mark.slow
+def test_places_to_touch_are_those_of_the_method(pear, capsys):
+    shown = []
+    for options in (["--purpose", "touch"], ["--method", "touch"], []):
+        points.run([str(pear), "--count", "3", *options])
+        shown.append(capsys.readouterr().out)
+    assert shown[0] == shown[1] != shown[2]
+    with pytest.raises(ValueError, match="'touch' chooses the method: leave out method 'itti'"):
+        points.run([str(pear), "--purpose", "touch", "--method", "itti"])
+    with pytest.raises(SystemExit):
+        points.run([str(pear), "--purpose", "lick"])
+    assert "look, touch" in capsys.readouterr().err.replace("'", "")
+
+
 def test_it_writes_no_mesh(pear, capsys):
     with pytest.raises(SystemExit):
         points.run([str(pear), "--picture", "look.png"])

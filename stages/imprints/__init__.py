@@ -6,13 +6,15 @@ read_layout, section, sensor_axes, sensor_normals, shear, snap_to_surface, touch
 Layer, Layout, SectionCurve, Sequence, Skin, Surface, CONTACTS.
 """
 
+from stages.kit.sensor_axes import sensor_axes
+
 from .adaptive import adaptive_distances
 from .contact import CONTACTS
 from .distances import distances, distances_at
 from .files import Imprints, read_imprints, write_imprints
 from .follow import contour, follow, follow_many
 from .force import forces, gaps_at, press_forces, shear
-from .frame import sensor_axes, sensor_normals, touchable
+from .frame import sensor_normals, touchable
 from .layer import Layer
 from .layout import Layout, layout_forces, read_layout
 from .press import normalise, press, press_at, press_many

@@ -28,10 +28,10 @@ from typing import Any
 import numpy as np
 
 from stages.kit.files import write_arrays, write_text
+from stages.kit.sensor_axes import sensor_axes
 
 from .distances import distances_at
 from .force import press_forces
-from .frame import sensor_axes
 from .options import lengths_in_units, parse_options
 from .press import normalise
 from .sensor import misfit

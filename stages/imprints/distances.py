@@ -6,9 +6,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from stages.kit import Mesh
+from stages.kit.sensor_axes import sensor_axes
 
 from .contact import contact_distances
-from .frame import check_vertices, sensor_axes, sensor_normals
+from .frame import check_vertices, sensor_normals
 from .surface import Surface, as_surface
 
 

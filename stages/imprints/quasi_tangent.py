@@ -5,9 +5,10 @@ from numpy.typing import ArrayLike
 
 from stages.kit import Mesh
 from stages.kit.mesh import unit
+from stages.kit.sensor_axes import sensor_axes
 
 from .distances import check_array, distances_at
-from .frame import check_vertices, sensor_axes, sensor_normals, touchable
+from .frame import check_vertices, sensor_normals, touchable
 from .surface import LIFT, Surface, as_surface
 
 DEPTH = 0.25  # of the array's longer side: how far the elastic skin yields

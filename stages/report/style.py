@@ -43,6 +43,7 @@ LABELS = {
     "harris": "3D-Harris",
     "corners": "scale-dependent corners",
     "farthest": "farthest points",
+    "touch": "places to touch",
     "centre_distance": "distance from the centre",
     "spectral_residual": "spectral residual (OpenCV)",
     "fine_grained": "fine-grained (OpenCV)",

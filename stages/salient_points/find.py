@@ -19,7 +19,7 @@ from stages.weights import weights as published
 from stages.weights.published import GLANCE
 
 from .inhibition import tied
-from .methods import SVMS, method_named
+from .methods import SVMS, method_for, method_named
 from .options import RADIUS, Detection, HasSaliency, Options
 
 VIEW_SIZE = (900, 1200)  # rows, columns of the views; T3.2.6
@@ -52,27 +52,30 @@ def saliency(
 
 
 def find_points(
-    mesh: Mesh, method: str | int = GLANCE, count: int | None = None, *,
+    mesh: Mesh, method: str | int | None = None, count: int | None = None, *, purpose: str = "look",
     weights: str | Mapping[str, float] | None = None, viewpoints: Iterable[Viewpoint] | None = None,
     selection: str = "suppression", radius: float = RADIUS, seed: int = 0, name: str = "", up: Axis | None = None,
 ) -> np.ndarray:  # fmt: skip
-    """Vertex ids of the places that attract attention: (k,) i8, most salient first.
+    """Vertex ids of the places that attract attention, or that are worth touching: (k,) i8, the best first.
 
-    `find_points(mesh, 10)` gives ten of the default method. count: how many; None stops at the method's own threshold
-    (T3.2.5 for maps), and only a mesh with fewer vertices gives fewer than asked for. selection: for methods that
-    select points in each view, `suppression` (T3.2.5) or `centroid` (T3.1.2). radius: the least distance between
+    `find_points(mesh, 10)` gives ten of the default method. purpose: `look`, the default, for the places that people
+    look at (method `glance`), or `touch` for those whose imprint by the array, 0.16 units wide, recurs on the object
+    (method `touch`); a method of METHODS may be named in its place. count: how many; None stops at the method's own
+    threshold (T3.2.5 for maps), and only a mesh with fewer vertices gives fewer than asked for. selection: for methods
+    that select points in each view, `suppression` (T3.2.5) or `centroid` (T3.1.2). radius: the least distance between
     points, in units of the normalised mesh; it shrinks only where `count` points do not fit. seed and name: for
     `random` alone, whose draw depends on these two and not on earlier calls. The other arguments are those of
-    `saliency`. Raises ValueError for unknown names, an invalid count, or `random` or `farthest` without a count.
+    `saliency`. Raises ValueError for unknown names, an invalid count, a method beside the purpose `touch`, or `random`
+    or `farthest` without a count.
     """
     return detect(
-        mesh, method, count, weights=weights, viewpoints=viewpoints, selection=selection, radius=radius, seed=seed,
-        name=name, up=up,
+        mesh, method, count, purpose=purpose, weights=weights, viewpoints=viewpoints, selection=selection,
+        radius=radius, seed=seed, name=name, up=up,
     ).points  # fmt: skip
 
 
 def detect(
-    mesh: Mesh, method: str | int = GLANCE, count: int | None = None, *,
+    mesh: Mesh, method: str | int | None = None, count: int | None = None, *, purpose: str = "look",
     weights: str | Mapping[str, float] | None = None, viewpoints: Iterable[Viewpoint] | None = None,
     selection: str = "suppression", radius: float = RADIUS, seed: int = 0, name: str = "", up: Axis | None = None,
 ) -> Detection:  # fmt: skip
@@ -80,10 +83,11 @@ def detect(
 
     The arguments are those of these two functions.
     """
-    if not isinstance(method, str):
+    if not isinstance(method, str | None):
         if count is not None:
             raise ValueError(f"method {method!r} is not the name of a method")
-        method, count = GLANCE, method
+        method, count = None, method
+    method = method_for(purpose, method)
     detector = method_named(method)
     if count is not None and (count != int(count) or count < 1):
         raise ValueError(f"count must be a whole number of at least 1, got {count}")

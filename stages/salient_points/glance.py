@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial import KDTree
 
-from stages.glance import samples_of_mesh, standardised
+from stages.glance import Samples, samples_of_mesh, standardised
 from stages.kit import Mesh
 from stages.weights import fixation_density
 from stages.weights.standardise import standardise
@@ -19,44 +19,58 @@ from .surface import scaled
 NO_FACES = np.zeros((0, 3), dtype=np.int64)
 
 
-class GlanceDetector:
-    """Looks at cells of the surface, so that neither the faces nor noise decide what it finds."""
+class SampledDetector:
+    """A detector that looks at cells of the surface, so that neither the faces nor noise decide what it finds."""
 
     channels: tuple[str, ...] = ()
+    required_weights: str | None = None
 
-    def __init__(self, weights: str) -> None:
-        self.required_weights = weights  # a key of stages.weights.published.GLANCES
+    def _values(self, mesh: Mesh, options: Options) -> tuple[Samples, np.ndarray, np.ndarray]:
+        """(samples, their values (s,), above 0, and the smooth values (s,) whose peaks are the points)."""
+        raise NotImplementedError
+
+    def _vertices(self, mesh: Mesh, samples: Samples, chosen: np.ndarray) -> np.ndarray:
+        """(k,) the vertices that stand for samples (k,)."""
+        return mesh.used[KDTree(mesh.vertices[mesh.used]).query(samples.points[chosen])[1]]
 
     def saliency(self, mesh: Mesh, sight: Any, options: Options) -> np.ndarray:
         """(n,) f8 in 0..1, the largest 1; zeros for a mesh without area."""
         if not mesh.face_areas.sum() > 0:
             return np.zeros(len(mesh.vertices))
-        samples = samples_of_mesh(mesh)
-        return _on_vertices(mesh, samples, self._density(samples, options))[0]
+        samples, values, _ = self._values(mesh, options)
+        return _on_vertices(mesh, samples, values)[0]
 
     def find(self, mesh: Mesh, sight: Any, options: Options, count: int | None = None) -> Detection:
-        """The Detection: strong points are high peaks of the smoothed density; a count visits more places."""
+        """The Detection: strong points are high peaks of the smooth values; a count visits more places."""
         none = np.zeros(0, dtype=np.int64)
         if not mesh.face_areas.sum() > 0:
             return Detection(none, 0, np.zeros(len(mesh.vertices)))
-        samples = samples_of_mesh(mesh)
-        density = self._density(samples, options)
-        smooth = np.exp(samples.smoothed(np.log(density), options.smoothing))  # noise moves this less than a mean
+        samples, values, smooth = self._values(mesh, options)
         peaks = local_maxima(Mesh(samples.points, NO_FACES), smooth, options.radius)
         peaks = peaks[standardise(smooth, samples.areas)[peaks] > 1]
         peaks = peaks[by_place(tied(smooth[peaks]), samples.points[peaks])]
         order = peaks if count is None else visited(samples.points, smooth, options.radius, count)
         is_peak = np.isin(order, peaks)
-        places = samples.points[np.r_[order[is_peak], order[~is_peak]]]
-        at = mesh.used[KDTree(mesh.vertices[mesh.used]).query(places)[1]] if len(order) else none
+        chosen = np.r_[order[is_peak], order[~is_peak]]
+        at = self._vertices(mesh, samples, chosen) if len(chosen) else none
         points = at[np.sort(np.unique(at, return_index=True)[1])]
-        saliency, smoothed = _on_vertices(mesh, samples, density, smooth)
+        saliency, smoothed = _on_vertices(mesh, samples, values, smooth)
         if count is not None:
             points = continue_on_surface(mesh, points, smoothed, options.radius, count)
         return Detection(points, min(int(is_peak.sum()), len(points)), saliency)
 
-    def _density(self, samples, options):
-        return fixation_density(standardised(samples), options.learned.weights[self.required_weights])
+
+class GlanceDetector(SampledDetector):
+    """The fixation density of a log-linear model that human gaze has taught."""
+
+    def __init__(self, weights: str) -> None:
+        self.required_weights = self._weights = weights  # a key of stages.weights.published.GLANCES
+
+    def _values(self, mesh: Mesh, options: Options) -> tuple[Samples, np.ndarray, np.ndarray]:
+        samples = samples_of_mesh(mesh)
+        density = fixation_density(standardised(samples), options.learned.weights[self._weights])
+        # noise moves this less than a mean
+        return samples, density, np.exp(samples.smoothed(np.log(density), options.smoothing))
 
 
 def _on_vertices(mesh, samples, *values):

@@ -12,7 +12,7 @@ from difflib import get_close_matches
 from stages.conspicuity import CHANNELS, ViewMaps
 from stages.kit import Mesh, Stopwatch
 from stages.weights import LearnedWeights
-from stages.weights.published import GLANCES
+from stages.weights.published import GLANCE, GLANCES
 
 from .farthest import FarthestPoints
 from .fuse import COMBINATIONS, WITHOUT_COLOUR
@@ -23,6 +23,7 @@ from .positions import centre_distance, facing_viewer, height
 from .random_points import RandomPoints
 from .rivals import corners, harris, heat_kernel, leifman, mesh_saliency, salient_points, sift, song, tasse
 from .surface import SurfaceDetector
+from .touch import TouchDetector
 
 SYMMETRIES = {"SymLat": "symmetry_lateral", "SymRad": "symmetry_radial", "2Sym": "symmetry"}  # T3.1.5
 WEIGHTED = (
@@ -56,11 +57,13 @@ METHODS: dict[str, Detector] = {
     "spectral_residual": FusedDetector(["spectral_residual"]),
     "fine_grained": FusedDetector(["fine_grained"]),
     "farthest": FarthestPoints(),
+    "touch": TouchDetector(),
     "height": SurfaceDetector(height),
     "centre_distance": SurfaceDetector(centre_distance),
     "facing_viewer": SurfaceDetector(facing_viewer),
 }
 
+PURPOSES = {"look": GLANCE, "touch": "touch"}  # what places are for: the method that finds them
 
 MAIN = ("glance", "glance_any_pose", "thesis_ssim", "itti", "mesh_saliency")  # named where none is near
 MEANT = {  # in other words, and in the thesis's
@@ -77,6 +80,15 @@ def method_named(method: str) -> Detector:
         near = meant(str(method).lower(), list(METHODS))
         raise ValueError(f"unknown method {method!r}{near or ': choose one of ' + ', '.join(MAIN)}")
     return METHODS[method]
+
+
+def method_for(purpose: str, method: str | None = None) -> str:
+    """The name of the method, None for the one of the purpose; ValueError for an unknown purpose, or for both."""
+    if purpose not in PURPOSES:
+        raise ValueError(f"unknown purpose {purpose!r}: choose one of {', '.join(PURPOSES)}")
+    if method is not None and purpose != "look":
+        raise ValueError(f"the purpose {purpose!r} chooses the method: leave out method {method!r}")
+    return PURPOSES[purpose] if method is None else method
 
 
 def meant(said: str, usable: Sequence[str]) -> str:

@@ -13,10 +13,11 @@ from stages.imprints.adaptive import adaptive_distances
 from stages.imprints.distances import distances
 from stages.imprints.face_centres import FaceCentres
 from stages.imprints.follow import follow
-from stages.imprints.frame import sensor_axes, sensor_normals
+from stages.imprints.frame import sensor_normals
 from stages.imprints.press import press_many
 from stages.imprints.quasi_tangent import quasi_tangent
 from stages.kit import Mesh
+from stages.kit.sensor_axes import sensor_axes
 from stages.meshes import load, normalise
 from stages.sequences.series import sequence_features
 
