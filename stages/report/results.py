@@ -26,6 +26,7 @@ from .schema import Params
 Found = TypeVar("Found", bound=Sized)
 # Sets with the settings of a section of the thesis.
 SECTION_3_1, SECTION_3_2, SECTION_4_2 = "household_3_1", "gaze_3_2", "household_4_2"
+SETS_3_1 = SECTION_3_1, "princeton_3_1"  # the protocol of T3.1 on objects of our own and on published ones
 MENDED_3_2 = "gaze_3_2_mended"  # T3.2 with mended formulas
 SETS_4_2 = "household_4_2_sets", "princeton_4_2_sets"  # random sets of six objects, as many as there are rows of
 GAZED = "gaze", "gaze_clouds"  # sets with recorded human gaze; no object is in both

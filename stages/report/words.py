@@ -15,6 +15,7 @@ from .results import (
     SECTION_3_1,
     SECTION_3_2,
     SECTION_4_2,
+    SETS_3_1,
     SETS_4_2,
     Results,
 )
@@ -24,8 +25,8 @@ METRICS = {  # "" where the claim's unit says it
     "accuracy": "", "recall": "mean of the objects' rates", "nss": "NSS", "auc": "AUC", "pcc": "PCC",
 }  # fmt: skip
 DATASETS = {
-    SECTION_3_1: "household as in T3.1", SECTION_3_2: "meshes with human gaze as in T3.2",
-    MENDED_3_2: "meshes with human gaze as in T3.2, formulas mended",
+    SECTION_3_1: "household as in T3.1", SETS_3_1[1]: "psb as in T3.1",
+    SECTION_3_2: "meshes with human gaze as in T3.2", MENDED_3_2: "meshes with human gaze as in T3.2, formulas mended",
     SECTION_4_2: "household as in T4.2", SETS_4_2[0]: "random sets of household shapes as in T4.2",
     SETS_4_2[1]: "random sets of psb as in T4.2", COLOURED: "furniture in colour",
     ON_BLACK: "the same with the black background filtered", ON_GREY: "on grey", ON_WHITE: "on white",

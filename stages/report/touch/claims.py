@@ -24,6 +24,7 @@ POINTS: dict[str, Any] = {
     "ssim": SSIM,
     "blind": BLIND,
     "best_touch": RIVAL,
+    "touch": "touch",  # places worth touching
 }
 ROWS = {"": SIX | PLAIN, "_four": FOUR | PLAIN, "_all": EVERY | PLAIN, "_apart": APART | PLAIN}
 ROWS |= {"_ours": ROWS[""], "_apart_ours": ROWS["_apart"]}  # of our protocol, not of the printed one
@@ -49,7 +50,8 @@ JOINED = (  # of all classifiers
 AS_MANY = reading("beside as many imprints removed at random", second={"variant": "selected_control"})
 FIFTEEN = reading("15 imprints of each object", where=FEW)
 PHRASES = {
-    ("method", MODEL): "our glance", ("method", EQUAL): "the thesis's attention (equal weights)",
+    ("method", MODEL): "our glance", ("method", "touch"): "places whose imprint recurs",
+    ("method", EQUAL): "the thesis's attention (equal weights)",
     ("method", SSIM): "the thesis's attention (SSIM)", ("method", BLIND): "blind touch, five draws",
     ("over", "set"): "random sets of six objects",
     ("metric", "similar_share"): "share of imprints that correlate by 0.85 or more with one of another object",
@@ -76,7 +78,7 @@ def by_points(key: str, sentence: str, end: str = "", of: str = "") -> Claim:
     """A claim that touch at the first points of its key is better than at the second; end: of the key, for the ROWS."""
     first, second = ({"method": POINTS.get(name, name)} for name in key.split("_over_"))
     readings = (*SCALED, *((NO_SVM,) if end == "_all" else () if end == "_apart" else (FIFTEEN,)))
-    section = "ours" if key.startswith("glance") or end.endswith("_ours") else "T4.2.4"
+    section = "ours" if key.startswith(("glance", "touch")) or end.endswith("_ours") else "T4.2.4"
     own = {} if end.endswith("_ours") else SETS
     return Claim(
         key=key + end, sentence=sentence, first=first, second=second, where=ROWS[end], stage=STAGE, phrases=PHRASES,
@@ -171,6 +173,10 @@ CLAIMS = [
     by_points("glance_over_best_touch", "Touch guided by our glance is better than at the best rival's points."),
     by_points("glance_over_best_touch", "Touch guided by our glance is better than at the best rival's points, on new "
               "regions.", "_apart"),
+    by_points("touch_over_best_touch", "Touch at places whose imprint recurs is better than at the best rival's points."),
+    by_points("touch_over_best_touch", "Touch at places whose imprint recurs is better than at the best rival's points, "
+              "on new regions.", "_apart"),
+    by_points("touch_over_glance", "Places whose imprint recurs are better to touch than places of our glance."),
     by_points("glance_over_blind", "Touch guided by our glance beats blind touch in our protocol.", "_ours"),
     by_points("glance_over_blind", "Touch guided by our glance beats blind touch in our protocol, on new regions.",
               "_apart_ours"),
