@@ -173,10 +173,10 @@ CLAIMS = [
     by_points("glance_over_best_touch", "Touch guided by our glance is better than at the best rival's points."),
     by_points("glance_over_best_touch", "Touch guided by our glance is better than at the best rival's points, on new "
               "regions.", "_apart"),
-    by_points("touch_over_best_touch", "Touch at places whose imprint recurs is better than at the best rival's points."),
-    by_points("touch_over_best_touch", "Touch at places whose imprint recurs is better than at the best rival's points, "
-              "on new regions.", "_apart"),
-    by_points("touch_over_glance", "Places whose imprint recurs are better to touch than places of our glance."),
+    by_points("touch_over_best_touch", "Touch where imprints recur is better than at the best rival's points."),
+    by_points("touch_over_best_touch", "Touch where imprints recur is better than at the best rival's points, on new "
+              "regions.", "_apart"),
+    by_points("touch_over_glance", "Touch where imprints recur is better than at the places of our glance."),
     by_points("glance_over_blind", "Touch guided by our glance beats blind touch in our protocol.", "_ours"),
     by_points("glance_over_blind", "Touch guided by our glance beats blind touch in our protocol, on new regions.",
               "_apart_ours"),
