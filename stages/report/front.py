@@ -47,7 +47,7 @@ FINDINGS = (
             "NSS more than the best other", "attention", places=2),
     Finding("glance_soft_gaze", "supported", "Saliency as a weight keeps meshes closer where people looked",
             "% less error where people looked", "meshes", "less:", 1),
-    Finding("touch_over_best_touch", "supported", "One touch where imprints recur tells more than at any rival's places",
+    Finding("touch_over_best_touch", "supported", "One touch where imprints recur tells more than at any rival",
             "points of accuracy more than the best other", "touch"),
     Finding("keep_metro", "contradicted", "Fails: neighbourhoods kept unchanged raise the error",
             "times the error of plain simplification", "meshes", "times:", 2),
