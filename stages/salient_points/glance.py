@@ -1,15 +1,17 @@
-"""The methods `glance` and `glance_any_pose`: the fixation density of small cells of the surface."""
+"""The methods `glance`, `glance_any_pose` and `glance_deep`: the fixation density of small cells of the surface."""
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 from scipy.spatial import KDTree
 
-from stages.glance import samples_of_mesh, standardised
+from stages.glance import Samples, samples_of_mesh, standardised
 from stages.kit import Mesh
 from stages.weights import fixation_density
 from stages.weights.standardise import standardise
 
+from .deep import standardised_maps
 from .inhibition import by_place, tied, visited
 from .merge import continue_on_surface
 from .options import Detection, Options
@@ -17,6 +19,17 @@ from .rivals.maxima import local_maxima
 from .surface import scaled
 
 NO_FACES = np.zeros((0, 3), dtype=np.int64)
+Features = Callable[[Mesh, Samples], dict[str, np.ndarray]]
+
+
+def cell_features(mesh: Mesh, samples: Samples) -> dict[str, np.ndarray]:
+    """dict name -> (s,) f8: the features of stages.glance."""
+    return standardised(samples)
+
+
+def deep_features(mesh: Mesh, samples: Samples) -> dict[str, np.ndarray]:
+    """dict name -> (s,) f8: the features of stages.glance and the maps of a network; needs the extra `deep`."""
+    return standardised_maps(mesh, samples) | standardised(samples)
 
 
 class GlanceDetector:
@@ -24,15 +37,16 @@ class GlanceDetector:
 
     channels: tuple[str, ...] = ()
 
-    def __init__(self, weights: str) -> None:
-        self.required_weights = weights  # a key of stages.weights.published.GLANCES
+    def __init__(self, weights: str, features: Features = cell_features) -> None:
+        self.required_weights = weights  # a key of stages.weights.published.GLANCES or DEEP
+        self._features = features
 
     def saliency(self, mesh: Mesh, sight: Any, options: Options) -> np.ndarray:
         """(n,) f8 in 0..1, the largest 1; zeros for a mesh without area."""
         if not mesh.face_areas.sum() > 0:
             return np.zeros(len(mesh.vertices))
         samples = samples_of_mesh(mesh)
-        return _on_vertices(mesh, samples, self._density(samples, options))[0]
+        return _on_vertices(mesh, samples, self._density(mesh, samples, options))[0]
 
     def find(self, mesh: Mesh, sight: Any, options: Options, count: int | None = None) -> Detection:
         """The Detection: strong points are high peaks of the smoothed density; a count visits more places."""
@@ -40,7 +54,7 @@ class GlanceDetector:
         if not mesh.face_areas.sum() > 0:
             return Detection(none, 0, np.zeros(len(mesh.vertices)))
         samples = samples_of_mesh(mesh)
-        density = self._density(samples, options)
+        density = self._density(mesh, samples, options)
         smooth = np.exp(samples.smoothed(np.log(density), options.smoothing))  # noise moves this less than a mean
         peaks = local_maxima(Mesh(samples.points, NO_FACES), smooth, options.radius)
         peaks = peaks[standardise(smooth, samples.areas)[peaks] > 1]
@@ -55,8 +69,8 @@ class GlanceDetector:
             points = continue_on_surface(mesh, points, smoothed, options.radius, count)
         return Detection(points, min(int(is_peak.sum()), len(points)), saliency)
 
-    def _density(self, samples, options):
-        return fixation_density(standardised(samples), options.learned.weights[self.required_weights])
+    def _density(self, mesh, samples, options):
+        return fixation_density(self._features(mesh, samples), options.learned.weights[self.required_weights])
 
 
 def _on_vertices(mesh, samples, *values):

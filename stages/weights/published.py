@@ -56,6 +56,29 @@ GLANCES = {
 }  # fmt: skip
 
 
+# Of the features of stages.glance and of the maps of a network (stages.salient_points.deep), learned from the same gaze
+# by benchmarks/deep_gaze.py. They are not in METHODS, since the stage `weights` does not learn them.
+MAP_WEIGHTS = (
+    0.017, 0.019, 0.022, -0.011, 0.056, -0.034, -0.037, -0.021, 0.027, 0.002, -0.023, 0.03, 0.048, -0.021, 0.013,
+    -0.01, -0.028, -0.028, -0.016, 0.002, 0.005, -0.004, 0.012, -0.025, 0.008, 0.005, -0.037, -0.005, 0, -0.03,
+    -0.013, 0.034, -0.033, 0.006, 0.001, -0.045, -0.02, -0.02, 0.034, -0.014, -0.056, 0.003, 0.038, -0.023, -0.042,
+    -0.001, -0.044, -0.014, 0.047, -0.031, 0.048, -0.009, 0.023, -0.011, 0.005, 0.024, -0.005, 0.008, -0.002,
+    -0.009, 0, -0.02, 0.028, 0.013, 0.005, 0.021, -0.013, 0.026, -0.011, 0.022, 0.026, 0.039, -0.008, -0.027, 0.017,
+    -0.022, -0.015, -0.039, -0.021, 0.069, -0.043, -0.003, -0.004, 0.007, 0.007, 0.012, 0.012, -0.023, -0.011,
+    -0.003, 0.019, -0.025, 0.012, -0.004, 0.026, -0.016,
+)  # fmt: skip
+MAPS = tuple(f"map_{k}" for k in range(len(MAP_WEIGHTS)))
+DEEP = {
+    "glance_deep": {
+        "rank": 0.335, "middle": 0.279, "upward": 0.122, "upward_high": -0.275, "seen": 0.073, "above": 0.033,
+        "above_high": 0.036, "below": -0.054, "log_below": 0.159, "log_side": 0.572, "convexity": 0.64,
+        "detail": -0.049, "relief": 0.105, "fullness_0.12": -0.065, "fullness_0.24": 0.174, "distance": -0.051,
+        "distance_squared": 0.072, "outward": 0.14, "off_plane": -0.164, "on_plane": 0.123,
+        **dict(zip(MAPS, MAP_WEIGHTS, strict=True)),
+    },
+}  # fmt: skip
+
+
 METHODS: dict[str, Callable[[], dict[str, float]]] = {
     "equal": equal, "thesis_ssim": thesis_ssim, "thesis_ed": thesis_ed,
     **{name: functools.partial(dict, found) for name, found in GLANCES.items()},
