@@ -29,6 +29,7 @@ LABELS = {
     "thesis_ssim": "thesis, SSIM",
     "thesis_ed": "thesis, ED",
     "glance_any_pose": "glance, any pose",
+    "glance_deep": "glance, deep",
     "human": "the truth itself",
     "guided_ssim": "guided by SSIM",
     "guided_ed": "guided by ED",

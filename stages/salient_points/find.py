@@ -38,6 +38,7 @@ def saliency(
     a name of METHODS that has a saliency (all but `random` and `farthest`). `glance`, the default, is the fixation
     density per unit of area that a log-linear model, fitted to human gaze, predicts from small cells of the
     surface, `glance_any_pose` the same without the features that need an up axis, for what lies in any pose;
+    `glance_deep` the same with the maps of a network that looks at pictures (extra `deep`), more accurate and slower;
     `thesis_ssim` is the thesis's own weighted average (eq. 3.9), `itti` the classical model. weights: for a method with
     weights, a name that stages.weights has or a dict name -> weight, instead of its own. viewpoints: Viewpoints, None
     for the twelve of T figure 3.2. smoothing: length in units of the normalised mesh (bounding sphere 0.5). Raises

@@ -1,5 +1,6 @@
-"""The methods `glance` and `glance_any_pose`: the fixation density of small cells of the surface."""
+"""The methods `glance`, `glance_any_pose` and `glance_deep`: the fixation density of small cells of the surface."""
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from stages.kit import Mesh
 from stages.weights import fixation_density
 from stages.weights.standardise import standardise
 
+from .deep import standardised_maps
 from .inhibition import by_place, tied, visited
 from .merge import continue_on_surface
 from .options import Detection, Options
@@ -17,6 +19,17 @@ from .rivals.maxima import local_maxima
 from .surface import scaled
 
 NO_FACES = np.zeros((0, 3), dtype=np.int64)
+Features = Callable[[Mesh, Samples], dict[str, np.ndarray]]
+
+
+def cell_features(mesh: Mesh, samples: Samples) -> dict[str, np.ndarray]:
+    """dict name -> (s,) f8: the features of stages.glance."""
+    return standardised(samples)
+
+
+def deep_features(mesh: Mesh, samples: Samples) -> dict[str, np.ndarray]:
+    """dict name -> (s,) f8: the features of stages.glance and the maps of a network; needs the extra `deep`."""
+    return standardised_maps(mesh, samples) | standardised(samples)
 
 
 class SampledDetector:
@@ -63,12 +76,13 @@ class SampledDetector:
 class GlanceDetector(SampledDetector):
     """The fixation density of a log-linear model that human gaze has taught."""
 
-    def __init__(self, weights: str) -> None:
-        self.required_weights = self._weights = weights  # a key of stages.weights.published.GLANCES
+    def __init__(self, weights: str, features: Features = cell_features) -> None:
+        self.required_weights = self._weights = weights  # a key of stages.weights.published.GLANCES, or DEEP
+        self._features = features
 
     def _values(self, mesh: Mesh, options: Options) -> tuple[Samples, np.ndarray, np.ndarray]:
         samples = samples_of_mesh(mesh)
-        density = fixation_density(standardised(samples), options.learned.weights[self._weights])
+        density = fixation_density(self._features(mesh, samples), options.learned.weights[self._weights])
         # noise moves this less than a mean
         return samples, density, np.exp(samples.smoothed(np.log(density), options.smoothing))
 

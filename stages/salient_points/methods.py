@@ -12,12 +12,12 @@ from difflib import get_close_matches
 from stages.conspicuity import CHANNELS, ViewMaps
 from stages.kit import Mesh, Stopwatch
 from stages.weights import LearnedWeights
-from stages.weights.published import GLANCE, GLANCES
+from stages.weights.published import DEEP, GLANCE, GLANCES
 
 from .farthest import FarthestPoints
 from .fuse import COMBINATIONS, WITHOUT_COLOUR
 from .fused import FusedDetector, MergedDetector, SvmDetector, WeightedDetector
-from .glance import GlanceDetector
+from .glance import GlanceDetector, deep_features
 from .options import Detection, Detector, Options
 from .positions import centre_distance, facing_viewer, height
 from .random_points import RandomPoints
@@ -44,6 +44,7 @@ PUBLISHED = {
 
 METHODS: dict[str, Detector] = {
     **{name: GlanceDetector(name) for name in GLANCES},
+    **{name: GlanceDetector(name, deep_features) for name in DEEP},
     "itti": FusedDetector(COMBINATIONS["VisAtt"]),
     "random": RandomPoints(),
     **{f"random_{draw}": RandomPoints(draw) for draw in range(2, 6)},
@@ -67,7 +68,7 @@ PURPOSES = {"look": GLANCE, "touch": "touch"}  # what places are for: the method
 
 MAIN = ("glance", "glance_any_pose", "thesis_ssim", "itti", "mesh_saliency")  # named where none is near
 MEANT = {  # in other words, and in the thesis's
-    "ours": "glance", "gaze": "glance", "default": "glance", "any_pose": "glance_any_pose",
+    "ours": "glance", "gaze": "glance", "default": "glance", "any_pose": "glance_any_pose", "deep": "glance_deep",
     "thesis": "thesis_ssim", "enhanced_attention": "thesis_ssim", "enhanced_visual_attention": "thesis_ssim",
     "ssim": "thesis_ssim", "ed": "thesis_ed", "visual_attention": "itti", "attention": "itti", "classical": "itti",
     "enhanced": "thesis_ssim", "lee": "mesh_saliency", "hks": "heat_kernel",

@@ -11,7 +11,7 @@ from stages.kit.files import read_arrays, read_table, write_arrays
 
 from .convexity import convexity, nearest_convexity
 from .learn_weights import ALL
-from .published import GLANCE, GLANCES, METHODS, weights
+from .published import DEEP, GLANCE, GLANCES, METHODS, weights
 from .svm import SVMModel
 
 SEEN_SUFFIX = "_seen"  # of methods whose weights were learned from all objects, the same one included, as in the thesis
@@ -19,7 +19,7 @@ SEEN_SUFFIX = "_seen"  # of methods whose weights were learned from all objects,
 
 def published_weights() -> dict[str, dict[str, float]]:
     """{method: its published weights}."""
-    return {method: weights(method) for method in METHODS}
+    return {method: weights(method) for method in METHODS} | _deep()
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,12 @@ def read_learned_weights(folder: str | Path, name: str, mesh: Mesh) -> LearnedWe
         usable = {*METHODS} if published else {*METHODS} - {*GLANCES}
         found = {method: values for method, values in every.items() if method in usable}
     seen = {f"{method}{SEEN_SUFFIX}": values for method, values in every.items() if method not in METHODS}
-    return LearnedWeights(found | seen, _svms(Path(folder), name, mesh))
+    gazed = (Path(folder) / "ground_truth" / f"{name}.npz").exists()  # weights of DEEP that leave it out do not exist
+    return LearnedWeights(found | seen | ({} if gazed else _deep()), _svms(Path(folder), name, mesh))
+
+
+def _deep():
+    return {method: dict(found) for method, found in DEEP.items()}
 
 
 def _by_method(table):

@@ -56,6 +56,29 @@ GLANCES = {
 }  # fmt: skip
 
 
+# Of the features of stages.glance and of the maps of a network (stages.salient_points.deep), learned from the same gaze
+# by benchmarks/deep_gaze.py. They are not in METHODS, since the stage `weights` does not learn them.
+MAP_WEIGHTS = (
+    0.015, 0.018, 0.027, -0.011, 0.053, -0.034, -0.042, -0.023, 0.027, 0, -0.025, 0.03, 0.051, -0.022, 0.013,
+    -0.012, -0.028, -0.03, -0.015, 0, 0.007, -0.002, 0.015, -0.028, 0.009, 0.007, -0.039, 0, 0.003, -0.027, -0.013,
+    0.031, -0.031, 0.004, 0.001, -0.041, -0.018, -0.022, 0.033, -0.014, -0.055, 0, 0.033, -0.024, -0.042, 0, -0.042,
+    -0.012, 0.051, -0.03, 0.046, -0.014, 0.02, -0.011, 0.001, 0.026, -0.008, 0.008, -0.002, -0.007, -0.002, -0.022,
+    0.029, 0.011, 0.005, 0.02, -0.013, 0.025, -0.01, 0.023, 0.027, 0.041, -0.012, -0.023, 0.018, -0.02, -0.015,
+    -0.037, -0.021, 0.069, -0.041, -0.002, -0.005, 0.006, 0.006, 0.011, 0.01, -0.022, -0.014, -0.002, 0.015, -0.027,
+    0.01, -0.006, 0.026, -0.017,
+)  # fmt: skip
+MAPS = tuple(f"map_{k}" for k in range(len(MAP_WEIGHTS)))
+DEEP = {
+    "glance_deep": {
+        "rank": 0.338, "middle": 0.277, "upward": 0.12, "upward_high": -0.277, "seen": 0.073, "above": 0.035,
+        "above_high": 0.036, "below": -0.053, "log_below": 0.159, "log_side": 0.571, "convexity": 0.64,
+        "detail": -0.049, "relief": 0.108, "fullness_0.12": -0.062, "fullness_0.24": 0.176, "distance": -0.049,
+        "distance_squared": 0.074, "outward": 0.141, "off_plane": -0.164, "on_plane": 0.124,
+        **dict(zip(MAPS, MAP_WEIGHTS, strict=True)),
+    },
+}  # fmt: skip
+
+
 METHODS: dict[str, Callable[[], dict[str, float]]] = {
     "equal": equal, "thesis_ssim": thesis_ssim, "thesis_ed": thesis_ed,
     **{name: functools.partial(dict, found) for name, found in GLANCES.items()},

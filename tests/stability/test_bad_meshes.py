@@ -54,6 +54,7 @@ def seen(name):
 
 
 @pytest.mark.slow
+@pytest.mark.filterwarnings("ignore:.torch.jit:DeprecationWarning")  # of kornia, where it is imported
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("method", RUNNING)
 @pytest.mark.parametrize("name", ODD)

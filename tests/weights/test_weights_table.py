@@ -11,7 +11,7 @@ from stages.glance import FEATURES
 from stages.kit.files import write_table
 from stages.weights import METHODS, LearnedWeights, read_learned_weights, weights
 from stages.weights.learn_weights import learned_weight_rows
-from stages.weights.published import GLANCES
+from stages.weights.published import DEEP, GLANCES
 from stages.weights.table import weight_table
 
 THESIS = Path(__file__).parents[2] / "data/reference/thesis/table_3_1_channel_weights.csv"
@@ -70,8 +70,15 @@ def test_unknown_method_is_named_with_the_known_ones():
 def test_without_ground_truth_only_what_is_published_is_there(tmp_path):
     write_table(tmp_path / "weights.csv", weight_table({}, "gaze"))
     found = read_learned_weights(tmp_path, "cup", None)
-    assert set(found.weights) == {*METHODS} and found.svms == {}
+    assert set(found.weights) == {*METHODS, *DEEP} and found.svms == {}
     assert LearnedWeights().weights["thesis_ed"] == found.weights["thesis_ed"]
+
+
+def test_an_object_with_ground_truth_has_no_weights_of_the_deep_glance(table):
+    (table / "ground_truth").mkdir()
+    (table / "ground_truth/hand.npz").touch()
+    assert "glance_deep" not in read_learned_weights(table, "hand", None).weights
+    assert read_learned_weights(table, "cup", None).weights["glance_deep"] == DEEP["glance_deep"]
 
 
 def test_an_object_with_ground_truth_takes_weights_that_have_not_seen_it(table):

@@ -1,0 +1,148 @@
+"""Learns the method glance_deep from human gaze and judges it on unseen objects: `python -m benchmarks.deep_gaze`.
+
+The objects of both sets with gaze, 19 meshes and 14 point clouds, are left out one at a time, and the model is learned
+from the 32 others. So are its rivals: the glance, and a model of three simple features, the height, how much a place
+faces viewers from the side, and the distance to the middle, which any learned model must beat. Prints the means, the
+paired differences with a 95 % interval over objects, and the weights learned from all objects, which are published
+(stages.weights.published). Writes reports/bench/deep_gaze.csv: set, item, method, metric, value, seconds (of the
+processor, for the saliency of an object, without the training). About 10 minutes on one core.
+"""
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+
+from benchmarks import arguments
+from stages.bench import gazed
+from stages.glance import Samples, samples_of_mesh
+from stages.glance.visibility import visibility
+from stages.kit import Mesh, Stopwatch
+from stages.kit.files import write_table
+from stages.kit.parallel import progress
+from stages.kit.stats import interval
+from stages.salient_points.glance import GlanceDetector, cell_features, deep_features
+from stages.salient_points.options import Options
+from stages.weights import LearnedWeights
+from stages.weights.agreement import auc, cc, kl, nss
+from stages.weights.fixations import RIDGE
+from stages.weights.published import MAPS
+from stages.weights.standardise import standardise
+
+OUT, SHARED = Path("reports/bench/deep_gaze.csv"), Path("../shared/data")
+SETS, METRICS = ("gaze", "gaze_clouds"), (nss, auc, cc, kl)
+MAPS_RIDGE = 0.3  # penalty on the squared weights of the maps: they are many
+STEPS, CLOSE = 30, 1e-3  # of Newton's method, and the change of a weight below which it ends
+LIMIT = 4.0  # standard deviations, as of the features of the glance
+
+
+class Gaze(NamedTuple):
+    """What a model is fitted to, of one object: features (s, d), shares of the gaze (s,) and areas (s,)."""
+
+    features: np.ndarray
+    shares: np.ndarray
+    areas: np.ndarray
+
+
+def simple_features(mesh: Mesh, samples: Samples) -> dict[str, np.ndarray]:
+    """dict name -> (s,) f8: standardised height, facing and distance."""
+    found = {
+        "height": samples.points[:, 2],
+        "facing": visibility(samples)[1],
+        "distance": np.linalg.norm(samples.local, axis=1),
+    }
+    return {name: standardise(values, samples.areas).clip(-LIMIT, LIMIT) for name, values in found.items()}
+
+
+FEATURES = {"glance": cell_features, "glance_deep": deep_features, "simple": simple_features}
+
+
+def quadratic(gaze: Gaze, weights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(slope (d,), bend (d, d)) of the loss of an object, see stages.weights.fit_fixations, at the weights (d,)."""
+    score = gaze.features @ weights + np.log(np.maximum(gaze.areas, 1e-300))
+    likely = np.exp(score - np.logaddexp.reduce(score))
+    mean = likely @ gaze.features
+    bend = (gaze.features.T * likely) @ gaze.features - np.outer(mean, mean)
+    return mean - gaze.shares @ gaze.features, bend
+
+
+def fitted(objects: Iterable[Gaze], ridge: np.ndarray, start: np.ndarray) -> np.ndarray:
+    """(d,) the weights of stages.weights.fit_fixations with a penalty (d,) for each weight, by Newton's method."""
+    weights, objects = start, list(objects)
+    for _ in range(STEPS):
+        slope, bend = (np.mean(part, axis=0) for part in zip(*(quadratic(g, weights) for g in objects), strict=True))
+        step = np.linalg.solve(bend + np.diag(2 * ridge), slope + 2 * ridge * weights)
+        weights = weights - step * min(1.0, 1 / np.abs(step).max())  # the first steps are long
+        if np.abs(step).max() < CLOSE:
+            break
+    return weights
+
+
+def left_out(method: str, objects: Mapping[tuple[str, str], Gaze], names: list[str]) -> dict[tuple[str, str], dict]:
+    """{object: {feature: weight}} learned from the others; that of ("", "") from all."""
+    ridge = np.where(np.isin(names, MAPS), MAPS_RIDGE, RIDGE)
+    everything = fitted(objects.values(), ridge, np.zeros(len(names)))
+    slopes, bends = (np.stack(part) for part in zip(*(quadratic(g, everything) for g in objects.values()), strict=True))
+    found = {("", ""): everything}
+    for k, item in enumerate(progress(objects, method)):
+        slope, bend = np.delete(slopes, k, axis=0).mean(axis=0), np.delete(bends, k, axis=0).mean(axis=0)
+        start = everything - np.linalg.solve(bend + np.diag(2 * ridge), slope + 2 * ridge * everything)
+        found[item] = fitted([gaze for other, gaze in objects.items() if other != item], ridge, start)
+    return {item: dict(zip(names, weights.tolist(), strict=True)) for item, weights in found.items()}
+
+
+def rows_of(method: str, objects: Mapping) -> tuple[list[dict], dict[str, float]]:
+    """(rows of METRICS of the objects, each left out; the weights learned from all)."""
+    seen, names = {}, []
+    for item, (mesh, truth) in progress(objects.items(), f"features of {method}"):
+        samples = samples_of_mesh(mesh)
+        features = FEATURES[method](mesh, samples)
+        names, gaze = (
+            list(features),
+            np.bincount(samples.tree.query(mesh.vertices)[1], truth.amounts, len(samples.areas)),
+        )
+        seen[item] = Gaze(np.stack([*features.values()], axis=1).astype(np.float32), gaze / gaze.sum(), samples.areas)
+    weights, rows = left_out(method, seen, names), []
+    detector = GlanceDetector(method, FEATURES[method])
+    for item, (mesh, truth) in progress(objects.items(), f"saliency of {method}"):
+        with Stopwatch() as watch:
+            saliency = detector.saliency(mesh, None, Options(LearnedWeights({method: weights[item]})))
+        row = {"set": item[0], "item": item[1], "method": method}
+        rows += [
+            row | {"metric": metric.__name__, "value": metric(saliency, truth), "seconds": watch.seconds}
+            for metric in METRICS
+        ]
+    return rows, weights["", ""]
+
+
+def summary(table: pd.DataFrame, method: str, than: str) -> pd.DataFrame:
+    """By set and metric: the mean of both methods, and the interval of their paired difference."""
+    wide = table.pivot(index=["set", "item", "metric"], columns="method", values="value").reset_index()
+    both = pd.concat([wide, wide.assign(set="both")])
+    rows = []
+    for (name, metric), group in both.groupby(["set", "metric"]):
+        mean, low, high = interval(group[method] - group[than])
+        means = {one: group[one].mean() for one in (method, than)}
+        rows.append({"set": name, "metric": metric, **means, "difference": mean, "low": low, "high": high})
+    return pd.DataFrame(rows).round(3)
+
+
+def main():
+    arguments(__doc__)
+    objects = {(name, item): found for name in SETS for item, found in gazed(name, SHARED / f"{name}.zip").items()}
+    rows = []
+    for method in FEATURES:
+        found, weights = rows_of(method, objects)
+        rows += found
+        print(method, {name: round(weight, 3) for name, weight in weights.items()})
+    table = pd.DataFrame(rows)
+    write_table(OUT, table.round({"value": 6, "seconds": 3}))
+    for method, than in (("glance_deep", "glance"), ("glance", "simple"), ("glance_deep", "simple")):
+        print(summary(table, method, than).to_string(index=False))
+    print(table.groupby("method")["seconds"].median())
+
+
+if __name__ == "__main__":
+    main()

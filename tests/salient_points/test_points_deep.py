@@ -1,0 +1,145 @@
+"""The maps of a network on the surface: where they land, what they do not depend on, and what is said without torch."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import trimesh
+
+from stages.glance import samples_of_mesh, standardised
+from stages.kit import Mesh
+from stages.meshes import normalise
+from stages.networks import build
+from stages.salient_points import METHODS, deep, saliency
+from stages.salient_points.glance import deep_features
+from stages.weights import fixation_density
+from stages.weights.published import DEEP, GLANCES, MAPS
+
+from ..test_package import CORE
+
+torch = pytest.importorskip("torch")
+
+
+@pytest.fixture
+def brightness(monkeypatch):
+    """In place of the network: one map for each of MAPS, all of them the brightness of 16 x 16 pixels."""
+
+    def trunk(images):
+        grey = torch.nn.functional.avg_pool2d(images.mean(dim=1, keepdim=True), 16)
+        return grey.expand(-1, len(MAPS), -1, -1)
+
+    monkeypatch.setattr(deep, "_trunk", lambda: trunk)
+
+
+def body():
+    """A box with a ball at one end, normalised."""
+    head = trimesh.creation.icosphere(4, radius=0.15).apply_translation([0.3, 0.1, 0.3])
+    shape = trimesh.util.concatenate([trimesh.creation.box((0.7, 0.3, 0.4)).subdivide_to_size(0.05), head])
+    return normalise(Mesh(shape.vertices, shape.faces))
+
+
+def first_map(mesh):
+    """(samples, (s,) the first map on them)."""
+    samples = samples_of_mesh(mesh)
+    return samples, deep.maps_on_surface(mesh, samples)[:, 0]
+
+
+def at(samples, values, places):
+    return values[samples.tree.query(places)[1]]
+
+
+def test_what_faces_the_views_is_bright_and_what_they_do_not_see_has_the_mean(brightness):
+    cylinder = trimesh.creation.cylinder(0.35, 0.6, sections=64)
+    samples, values = first_map(normalise(Mesh(cylinder.vertices, cylinder.faces)))
+    side, middle = np.abs(samples.normals[:, 2]) < 0.1, np.abs(samples.points[:, 2]) < 0.15
+    ends = np.abs(samples.normals[:, 2]) > 0.9
+    inner = ends & (np.linalg.norm(samples.points[:, :2], axis=1) < 0.25)
+    assert np.ptp(values[inner]) < 1e-9  # no view from the side sees them
+    mean = np.average(values[side], weights=samples.areas[side])
+    assert values[inner][0] == pytest.approx(mean, abs=0.02)
+    assert values[side & middle].std() < 0.15 * values[side & middle].mean()
+
+
+def test_neither_the_order_of_faces_nor_place_size_turn_or_mirror_changes_the_maps(brightness):
+    mesh = body()
+    samples, values = first_map(mesh)
+    order = np.random.default_rng(0).permutation(len(mesh.faces))
+    rolled = Mesh(mesh.vertices, np.roll(mesh.faces[order], 1, axis=1))
+    assert np.corrcoef(values, at(*first_map(rolled), samples.points))[0, 1] > 0.9999
+    turn = trimesh.transformations.rotation_matrix(0.35, [0, 0, 1])[:3, :3]
+    turned = Mesh(3 * mesh.vertices @ turn.T + [1, 2, 3], mesh.faces)
+    assert np.corrcoef(values, at(*first_map(turned), 3 * samples.points @ turn.T + [1, 2, 3]))[0, 1] > 0.9999
+    flipped = Mesh(mesh.vertices * [1, -1, 1], mesh.faces[:, ::-1])
+    assert np.corrcoef(values, at(*first_map(flipped), samples.points * [1, -1, 1]))[0, 1] > 0.999
+
+
+def test_colours_do_not_count(brightness):
+    mesh = body()
+    red = Mesh(mesh.vertices, mesh.faces, np.full((len(mesh.vertices), 3), [200, 0, 0], dtype=np.uint8))
+    assert (first_map(mesh)[1] == first_map(red)[1]).all()
+
+
+def test_a_map_that_hardly_varies_is_not_scaled_up(monkeypatch):
+    ball = trimesh.creation.icosphere(4, radius=0.5)
+    mesh = Mesh(ball.vertices, ball.faces)
+    samples = samples_of_mesh(mesh)
+    faint = np.linspace(0, 0.01, len(samples.points))[:, None] + np.zeros(len(MAPS))
+    monkeypatch.setattr(deep, "maps_on_surface", lambda mesh, samples: faint)
+    found = deep.standardised_maps(mesh, samples)
+    assert list(found) == list(MAPS)
+    assert np.ptp(found[MAPS[0]]) == pytest.approx(0.02 / deep.DEVIATION)
+    assert samples.shares @ found[MAPS[0]] == pytest.approx(0, abs=1e-12)
+
+
+def test_the_method_is_the_density_of_both_kinds_of_features(brightness):
+    mesh = body()
+    samples = samples_of_mesh(mesh)
+    features = deep_features(mesh, samples)
+    assert set(features) == set(DEEP["glance_deep"]) == {*GLANCES["glance"], *MAPS}
+    assert all((features[name] == values).all() for name, values in standardised(samples).items())
+    density = fixation_density(features, DEEP["glance_deep"])
+    found = saliency(mesh, "glance_deep")
+    near, shares = samples.interpolation(mesh.vertices, mesh.vertex_normals)
+    assert np.corrcoef(found, (density[near] * shares).sum(axis=1))[0, 1] > 0.9999
+    assert np.corrcoef(found, saliency(mesh, "glance"))[0, 1] < 0.999
+
+
+def test_a_picture_and_its_mirror_image_are_laid_over_each_other():
+    picture = torch.zeros(32, 32, 3, dtype=torch.uint8)
+    picture[:, :8] = 255
+    maps = deep._maps(lambda images: images.mean(dim=1, keepdim=True), picture)[0, 0]
+    assert maps[:, :8].min() > maps[:, 8:].max()
+
+
+@pytest.mark.slow
+def test_the_trunk_is_the_network_up_to_its_last_maps_of_a_sixteenth_of_the_side():
+    images = torch.rand(1, 3, 64, 96, generator=torch.Generator().manual_seed(0))
+    with torch.no_grad():
+        maps, blocks = deep._trunk()(images), build("mobilenet_v2", 2, "imagenet", 0).convolutions
+        assert maps.shape == (1, len(MAPS), 4, 6) and blocks[14](maps).shape == (1, 160, 2, 3)
+        assert torch.allclose(maps, blocks[:14](images), atol=1e-4)
+
+
+def test_without_torch_the_method_names_the_extra_and_the_others_run():
+    code = f"""{CORE}
+import trimesh
+from haptic_glance import Mesh, saliency
+ball = trimesh.creation.icosphere(2)
+mesh = Mesh(ball.vertices, ball.faces)
+assert saliency(mesh, "glance").max() == 1
+assert "torch" not in sys.modules
+try:
+    saliency(mesh, "glance_deep")
+except ModuleNotFoundError as error:
+    print(error)
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("glance_deep needs torch, which is not installed: pip install ")
+    assert done.stdout.strip().endswith("[deep]'") and done.stdout.count("\n") == 1
+
+
+def test_an_object_without_area_has_no_saliency():
+    point = Mesh(np.zeros((3, 3)), np.array([[0, 1, 2]]))
+    assert not METHODS["glance_deep"].saliency(point, None, None).any()
