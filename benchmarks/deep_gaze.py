@@ -5,7 +5,8 @@ from the 32 others. So are its rivals: the glance, and a model of three simple f
 faces viewers from the side, and the distance to the middle, which any learned model must beat. Prints the means, the
 paired differences with a 95 % interval over objects, and the weights learned from all objects, which are published
 (stages.weights.published). Writes reports/bench/deep_gaze.csv: set, item, method, metric, value, seconds (of the
-processor, for the saliency of an object, without the training). About 10 minutes on one core.
+processor, for the saliency of an object, without the training), and deep_gaze_means.csv with the means and
+differences. About 10 minutes on one core.
 """
 
 from collections.abc import Iterable, Mapping
@@ -118,14 +119,16 @@ def rows_of(method: str, objects: Mapping) -> tuple[list[dict], dict[str, float]
 
 
 def summary(table: pd.DataFrame, method: str, than: str) -> pd.DataFrame:
-    """By set and metric: the mean of both methods, and the interval of their paired difference."""
+    """By set and metric: means and median seconds of both methods, and the interval of their paired difference."""
+    seconds = table.groupby("method")["seconds"].median()
     wide = table.pivot(index=["set", "item", "metric"], columns="method", values="value").reset_index()
     both = pd.concat([wide, wide.assign(set="both")])
     rows = []
     for (name, metric), group in both.groupby(["set", "metric"]):
         mean, low, high = interval(group[method] - group[than])
-        means = {one: group[one].mean() for one in (method, than)}
-        rows.append({"set": name, "metric": metric, **means, "difference": mean, "low": low, "high": high})
+        means = {"mean": group[method].mean(), "seconds": seconds[method], "than_mean": group[than].mean()}
+        means |= {"than_seconds": seconds[than], "difference": mean, "low": low, "high": high}
+        rows.append({"method": method, "than": than, "set": name, "metric": metric, "objects": len(group)} | means)
     return pd.DataFrame(rows).round(3)
 
 
@@ -139,9 +142,10 @@ def main():
         print(method, {name: round(weight, 3) for name, weight in weights.items()})
     table = pd.DataFrame(rows)
     write_table(OUT, table.round({"value": 6, "seconds": 3}))
-    for method, than in (("glance_deep", "glance"), ("glance", "simple"), ("glance_deep", "simple")):
-        print(summary(table, method, than).to_string(index=False))
-    print(table.groupby("method")["seconds"].median())
+    pairs = ("glance_deep", "glance"), ("glance", "simple"), ("glance_deep", "simple")
+    means = pd.concat([summary(table, *pair) for pair in pairs])
+    write_table(OUT.with_name("deep_gaze_means.csv"), means)
+    print(means.to_string(index=False))
 
 
 if __name__ == "__main__":
