@@ -17,7 +17,7 @@ from stages.report.meshes.claims import BOTH, CLAIMS, FEW_MINUS_MANY, claim, low
 from stages.report.meshes.errors import BOXES
 from stages.report.meshes.methods import UNSEEN, ordered, short
 from stages.report.meshes.rows import data_sets, face_counts, paired_cells
-from stages.report.results import SECTION_3_1, SECTION_3_2, NotRun
+from stages.report.results import SECTION_3_1, SECTION_3_2, SETS_3_1, NotRun
 from stages.report.style import label
 from stages.report.topics import KINDS, build_all, build_one
 from stages.report.verdict import judge
@@ -268,8 +268,8 @@ DECIDED = [{"supported"}, {"contradicted"}]
 @pytest.mark.slow
 def test_every_claim_on_meshes_is_judged_on_every_set(run):
     own_truth = measured(SECTION_3_2, 3).replace({"method": {name: seen for seen, name in UNSEEN.items()}})
-    printed = {"printed": measured(SECTION_3_1, 2), "own_truth": own_truth}
-    results = run(measured(), princeton=measured("princeton", 1), **printed)
+    printed = {name: measured(name, seed) for seed, name in enumerate(SETS_3_1, 2)}
+    results = run(measured(), princeton=measured("princeton", 1), own_truth=own_truth, **printed)
     built = table(results, "lod_claims")
     within = [claim for claim in CLAIMS if "dataset" not in claim.first]
     assert len(built.shown) == len(within)
