@@ -17,7 +17,7 @@ from stages.report.meshes.claims import BOTH, CLAIMS, FEW_MINUS_MANY, claim, low
 from stages.report.meshes.errors import BOXES
 from stages.report.meshes.methods import UNSEEN, ordered, short
 from stages.report.meshes.rows import data_sets, face_counts, paired_cells
-from stages.report.results import SECTION_3_1, SECTION_3_2, SETS_3_1, NotRun
+from stages.report.results import SECTION_3_2, SETS_3_1, NotRun
 from stages.report.style import label
 from stages.report.topics import KINDS, build_all, build_one
 from stages.report.verdict import judge
