@@ -80,7 +80,7 @@ def ask(trained: Trained, picture: np.ndarray, imprint: np.ndarray, dark: float,
         from stages.transfer.disturbed import disturb
         from stages.transfer.hybrid import SENSES, join_senses
         from stages.transfer.hybrid_damage import damage_pictures
-        from stages.transfer.hybrid_data import as_images
+        from stages.transfer.pictures import as_images
     network, random = trained.network, rng(0, "studio")
     seen = damage_pictures(picture[None], "darkness", dark, random)
     felt = disturb(imprint[None], "dead_cells", dead, random) if dead < 1 else np.ones((1, *imprint.shape), np.float32)

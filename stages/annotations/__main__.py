@@ -15,11 +15,10 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from stages.kit import Mesh
-from stages.kit.command import workspace_of_arguments
 from stages.kit.files import read_arrays, read_mesh
 from stages.kit.rng import rng
 from stages.kit.run import Rows, StageRun
-from stages.kit.workspace import Workspace
+from stages.kit.workspace import Workspace, workspace_of_arguments
 from stages.meshes.schema import Params as MeshesParams
 from stages.salient_points.positions import height
 from stages.salient_points.random_points import random_vertices

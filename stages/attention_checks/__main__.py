@@ -10,9 +10,8 @@ import functools
 
 import numpy as np
 
-from stages.kit.command import workspace_of_arguments
 from stages.kit.run import Rows, StageRun
-from stages.kit.workspace import Workspace
+from stages.kit.workspace import Workspace, workspace_of_arguments
 from stages.weights.published import GLANCE
 
 from . import nested, viewpoints

@@ -21,13 +21,12 @@ from sklearn import config_context
 from threadpoolctl import threadpool_limits
 
 from stages.imprints import read_imprints
-from stages.kit.command import workspace_of_arguments
 from stages.kit.files import write_arrays
 from stages.kit.packs import is_there, object_files
 from stages.kit.run import Rows, StageRun
 from stages.kit.split import Split
 from stages.kit.stats import interval_metrics
-from stages.kit.workspace import Workspace
+from stages.kit.workspace import Workspace, workspace_of_arguments
 
 from .classifiers import check_name
 from .drawn import drawn_sets, set_of

@@ -12,9 +12,8 @@ import functools
 
 import numpy as np
 
-from stages.kit.command import workspace_of_arguments
 from stages.kit.run import Rows, StageRun
-from stages.kit.workspace import Workspace
+from stages.kit.workspace import Workspace, workspace_of_arguments
 from stages.meshes.classes import read_classes
 from stages.networks.weights import imagenet_state
 

@@ -10,10 +10,9 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from stages.kit.command import workspace_of_arguments
 from stages.kit.files import read_mesh, read_table, write_arrays
 from stages.kit.run import Rows, StageRun
-from stages.kit.workspace import Workspace
+from stages.kit.workspace import Workspace, workspace_of_arguments
 from stages.views import read_view
 
 from .background import FILLED, check_background

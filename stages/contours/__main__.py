@@ -16,12 +16,11 @@ import numpy as np
 
 from stages.imprints import Surface
 from stages.kit import Stopwatch
-from stages.kit.command import workspace_of_arguments
 from stages.kit.files import read_mesh
 from stages.kit.rng import rng
 from stages.kit.run import Rows, StageRun
 from stages.kit.stats import interval_metrics
-from stages.kit.workspace import Workspace
+from stages.kit.workspace import Workspace, workspace_of_arguments
 from stages.salient_points import read_points
 
 from .files import write_sequences

@@ -19,11 +19,10 @@ from collections.abc import Mapping
 from typing import Any
 
 from stages.classification.schema import Params as Classification
-from stages.kit.command import workspace_of_arguments
 from stages.kit.run import Rows, StageRun
 from stages.kit.split import Split
 from stages.kit.stats import interval_metrics
-from stages.kit.workspace import Workspace
+from stages.kit.workspace import Workspace, workspace_of_arguments
 
 from .one_sampling import process
 from .schema import COLUMNS, Params

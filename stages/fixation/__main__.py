@@ -19,10 +19,9 @@ from pathlib import Path
 
 import pandas as pd
 
-from stages.kit.command import workspace_of_arguments
 from stages.kit.files import write_table
 from stages.kit.run import Rows, StageRun
-from stages.kit.workspace import Workspace
+from stages.kit.workspace import Workspace, workspace_of_arguments
 from stages.meshes.schema import Params as Meshes
 
 from . import attention, backbone, finetune, heads, pictures, trunk

@@ -16,10 +16,10 @@ from pathlib import Path
 import numpy as np
 
 from stages.kit import Stopwatch
-from stages.kit.command import errors_in_one_line, names_a_mesh, workspace_of_arguments
+from stages.kit.command import errors_in_one_line, names_a_mesh
 from stages.kit.files import read_mesh
 from stages.kit.run import Rows, StageRun
-from stages.kit.workspace import Workspace
+from stages.kit.workspace import Workspace, workspace_of_arguments
 from stages.salient_points import read_points
 
 from .contact import check_contact

@@ -1,10 +1,12 @@
 """Where a run works: the repository root, its settings, and the data set that a stage runs on."""
 
+import argparse
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar
 
+from .command import errors_in_one_line
 from .params import FILE, ParamsError, check_common, check_section, load_params, section_of
 
 Settings = TypeVar("Settings")
@@ -93,3 +95,35 @@ class Workspace:
             where = f"{self.dataset}.{section}" if self.dataset else section
             raise ParamsError(f"{self.root / FILE} has no section {where}: run `python -m stages.compose` anew")
         return check_section(schema, values[section])
+
+
+def workspace_of_arguments(doc: str | None, stage: str) -> Workspace:
+    """The workspace that the command line of a stage names: `python -m stages.lod household`.
+
+    Answers --help with the stage's docstring, and lets errors of input and settings end in one line. A stage has no
+    other setting on its command line: they live in params.yaml. Without a set, the stage runs on the only one that it
+    is switched on for.
+    """
+    first, _, rest = (doc or "").partition("\n")
+    parser = argparse.ArgumentParser(
+        prog=f"python -m stages.{stage}",
+        description=first,
+        epilog=rest,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("dataset", nargs="?", default="", help="a data set that params.yaml names")
+    parser.add_argument("--root", type=Path, default=Path("."), help="the folder of params.yaml (default: this one)")
+    given = parser.parse_args()
+    errors_in_one_line(stage)
+    workspace = Workspace(given.root)
+    if stage not in workspace.params["graph"]:
+        return workspace  # a stage about all sets
+    return workspace.on(given.dataset or _only_set(workspace, stage))
+
+
+def _only_set(workspace: Workspace, stage: str) -> str:
+    known = list(workspace.params["graph"][stage])
+    if len(known) != 1:
+        choice = f"one of {', '.join(known)}" if known else "none is switched on: see `python -m stages.compose --help`"
+        raise ValueError(f"name the data set: {choice}")
+    return known[0]

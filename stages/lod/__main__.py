@@ -17,7 +17,8 @@ A mesh of your own, instead, from file to file:
 import sys
 from typing import TYPE_CHECKING
 
-from stages.kit.command import errors_in_one_line, names_a_mesh, workspace_of_arguments
+from stages.kit.command import errors_in_one_line, names_a_mesh
+from stages.kit.workspace import workspace_of_arguments
 from stages.meshes.schema import Params as MeshesParams
 
 from .schema import Params

@@ -15,10 +15,9 @@ from pathlib import Path
 import pandas as pd
 
 from stages.kit import Stopwatch
-from stages.kit.command import workspace_of_arguments
 from stages.kit.files import write_mesh, write_table
 from stages.kit.run import Rows, StageRun
-from stages.kit.workspace import Workspace
+from stages.kit.workspace import Workspace, workspace_of_arguments
 
 from .classes import CLASSES, chosen_objects, small_classes
 from .collect import prepare_mesh

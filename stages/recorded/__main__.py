@@ -6,9 +6,8 @@ of a fingertip, or grasps by pressure arrays over time.
 """
 
 from stages.classification.recorded import read_grasps, read_pressure_images
-from stages.kit.command import workspace_of_arguments
 from stages.kit.run import StageRun
-from stages.kit.workspace import Workspace
+from stages.kit.workspace import Workspace, workspace_of_arguments
 
 from . import biotac_grasps, pressure_images, schunk, touch_events
 from .schema import COLUMNS, Params

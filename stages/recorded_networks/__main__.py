@@ -12,10 +12,9 @@ import sys
 
 import numpy as np
 
-from stages.kit.command import workspace_of_arguments
 from stages.kit.fetch import FetchError
 from stages.kit.run import Rows, StageRun
-from stages.kit.workspace import Workspace
+from stages.kit.workspace import Workspace, workspace_of_arguments
 from stages.networks.learning import CONVERGED, check_passes
 from stages.networks.weights import imagenet_state
 from stages.recorded.schema import Params as RecordedParams

@@ -16,9 +16,9 @@ from typing import Any
 
 import pandas as pd
 
-from stages.kit.command import workspace_of_arguments
 from stages.kit.files import replace_folder, write_json, write_table, write_text
 from stages.kit.parallel import parallel_map
+from stages.kit.workspace import workspace_of_arguments
 
 from .claims_page import claims_shown
 from .counting import counted, counts, open_by_cause

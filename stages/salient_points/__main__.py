@@ -14,10 +14,9 @@ from pathlib import Path
 
 from stages.conspicuity import read_view_maps
 from stages.kit import Stopwatch
-from stages.kit.command import workspace_of_arguments
 from stages.kit.files import read_arrays, read_mesh
 from stages.kit.run import Rows, StageRun
-from stages.kit.workspace import Workspace
+from stages.kit.workspace import Workspace, workspace_of_arguments
 from stages.weights import read_learned_weights
 
 from .agreement import agreement_rows

@@ -12,10 +12,9 @@ import functools
 from pathlib import Path
 
 from stages.kit import Stopwatch
-from stages.kit.command import workspace_of_arguments
 from stages.kit.kept_rows import KeptRows
 from stages.kit.run import Rows, StageRun
-from stages.kit.workspace import Workspace
+from stages.kit.workspace import Workspace, workspace_of_arguments
 from stages.lod.variant import variant
 
 from .compare import OURS, PLAIN

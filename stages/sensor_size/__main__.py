@@ -18,13 +18,12 @@ from threadpoolctl import threadpool_limits
 
 from stages.imprints import press_many, touchable, warm_up
 from stages.kit import Stopwatch
-from stages.kit.command import workspace_of_arguments
 from stages.kit.files import read_mesh
 from stages.kit.rng import rng
 from stages.kit.run import Rows, StageRun
 from stages.kit.split import Split
 from stages.kit.stats import interval_metrics
-from stages.kit.workspace import Workspace
+from stages.kit.workspace import Workspace, workspace_of_arguments
 from stages.meshes.classes import read_classes
 from stages.salient_points import read_points, read_saliency
 

@@ -15,11 +15,10 @@ from typing import Any
 import numpy as np
 import torch
 
-from stages.kit.command import workspace_of_arguments
 from stages.kit.files import read_arrays
 from stages.kit.run import Rows, StageRun
 from stages.kit.stats import interval_metrics
-from stages.kit.workspace import Workspace
+from stages.kit.workspace import Workspace, workspace_of_arguments
 from stages.meshes.classes import read_classes
 
 from .networks import ImageNet, NormalNet, layers

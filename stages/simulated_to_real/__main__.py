@@ -13,11 +13,10 @@ from threadpoolctl import threadpool_limits
 
 from stages.classification import features
 from stages.classification.recorded import read_pressure_images
-from stages.kit.command import workspace_of_arguments
 from stages.kit.files import read_arrays, read_mesh, read_table, write_arrays
 from stages.kit.rng import rng
 from stages.kit.run import Rows, StageRun
-from stages.kit.workspace import Workspace
+from stages.kit.workspace import Workspace, workspace_of_arguments
 from stages.meshes.classes import read_classes
 from stages.recorded.schema import Params as RecordedParams
 

@@ -28,10 +28,9 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from stages.kit.command import workspace_of_arguments
 from stages.kit.files import read_arrays, read_mesh, write_arrays
 from stages.kit.run import Rows, StageRun
-from stages.kit.workspace import Workspace
+from stages.kit.workspace import Workspace, workspace_of_arguments
 from stages.salient_points.methods import method_named, split_runnable
 from stages.salient_points.options import Options
 from stages.weights import read_learned_weights

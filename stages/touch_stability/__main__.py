@@ -20,10 +20,9 @@ from stages.classification.schema import Params as Classification
 from stages.exploration import SPLITS
 from stages.imprints import read_imprints
 from stages.kit.breaking_point import breaking_point, lead_left
-from stages.kit.command import workspace_of_arguments
 from stages.kit.packs import is_there
 from stages.kit.run import Rows, StageRun
-from stages.kit.workspace import Workspace
+from stages.kit.workspace import Workspace, workspace_of_arguments
 
 from .denoisers import DENOISERS
 from .one_object import process

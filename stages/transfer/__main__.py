@@ -14,11 +14,10 @@ import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from stages.kit.command import workspace_of_arguments
 from stages.kit.files import read_mesh
 from stages.kit.kept_rows import KeptRows
 from stages.kit.run import Rows, StageRun
-from stages.kit.workspace import Workspace
+from stages.kit.workspace import Workspace, workspace_of_arguments
 from stages.meshes.classes import read_classes
 from stages.networks.weights import imagenet_state
 

@@ -11,8 +11,9 @@ from stages.networks.device import device_of
 from . import fusion
 from .hybrid import HybridNet, join_senses
 from .hybrid_damage import IMPRINT, MISSING, PICTURE, damage
-from .hybrid_data import SenseData, as_images, pair_pictures
+from .hybrid_data import SenseData, pair_pictures
 from .hybrid_scores import in_batches, row, sense_scores
+from .pictures import as_images
 from .schema import Params
 
 UNDAMAGED = "none"  # the perturbation in rows without any

@@ -9,14 +9,10 @@ import torch
 
 from stages.kit.files import read_arrays, read_mesh, write_arrays
 from stages.kit.rng import rng
-from stages.networks.images import to_images
 
-from .pictures import picture_images, take_pictures, viewpoints
+from .pictures import take_pictures, viewpoints
 from .schema import Params
-from .switch import present
 from .touches import Touches
-
-STEP = 1 / 255  # the smallest step of a grey value
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,24 +56,6 @@ def read_pictures(folder: Path, members: Mapping[str, Sequence[str]]) -> Touches
     labels, ranks = (np.repeat([one[i] for one in listed], counts) for i in range(2))
     indices = np.concatenate([np.arange(count) for count in counts])
     return Touches(np.concatenate(images), labels, ranks, indices, list(members))
-
-
-def as_images(raw: np.ndarray, size: int) -> torch.Tensor:
-    """Images (k, 3, size, size) f4 in 0..1 of pictures (k, h, w, 3) or imprints (k, r, c), u1 or f4 in 0..1."""
-    return picture_images(raw, size) if raw.ndim == 4 else imprint_images(raw, size)
-
-
-def imprint_images(imprints: np.ndarray, size: int) -> torch.Tensor:
-    """Images (k, 3, size, size) f4 of imprints (k, r, c), as by stages.networks.to_images, with full contact marked.
-
-    A flat face pressed against the array gives zeros everywhere (distance 0), which in the thesis also means an absent
-    sense: its switch would turn off the touch of a table top. So one corner pixel is raised by one grey step, and the
-    variance is not zero. An imprint of ones, without contact, stays constant: absent.
-    """
-    images = to_images(imprints, size)
-    flat = ~present(images) & (images[:, 0, 0, 0] < 1)
-    images[flat, 0, 0, 0] += STEP
-    return images
 
 
 def pair_pictures(picture_objects: np.ndarray, touch_objects: np.ndarray, random: np.random.Generator) -> np.ndarray:

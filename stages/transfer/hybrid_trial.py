@@ -26,11 +26,11 @@ from . import fusion
 from .hybrid import SENSES, HybridNet
 from .hybrid_both import fused_rows
 from .hybrid_compared import comparison_rows, onnx_rows
-from .hybrid_data import SenseData, as_images, read_pictures
+from .hybrid_data import SenseData, read_pictures
 from .hybrid_scores import sense_scores
 from .middle import middle_of
 from .new_object import TOUCH, new_object_rows
-from .pictures import picture_augmentation
+from .pictures import as_images, picture_augmentation
 from .schema import Params
 from .split import by_objects, by_touches, stratified_split
 from .touches import Touches, read_touches, sensor_arrays

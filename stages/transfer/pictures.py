@@ -8,10 +8,13 @@ from kornia import augmentation as kornia_augmentation
 from kornia.augmentation import AugmentationSequential
 
 from stages.kit import Mesh, Viewpoint
-from stages.networks.images import SCALE, SHIFT, check_one_size
+from stages.networks.images import SCALE, SHIFT, check_one_size, to_images
 from stages.views import render
 
+from .switch import present
+
 ELEVATIONS = (-10.0, 60.0)  # degrees: an object on a table, seen by a person who sits or stands, and never from below
+STEP = 1 / 255  # the smallest step of a grey value
 SAMPLES = 3  # rays per pixel and side; the pixel is their mean, so that thin parts are grey instead of dotted
 
 
@@ -57,6 +60,24 @@ def picture_images(pictures: np.ndarray, size: int) -> torch.Tensor:
     images = images.permute(0, 3, 1, 2).contiguous()
     if images.shape[2:] != (size, size):
         images = torch.nn.functional.interpolate(images, (size, size), mode="bilinear", antialias=True).clamp(0, 1)
+    return images
+
+
+def as_images(raw: np.ndarray, size: int) -> torch.Tensor:
+    """Images (k, 3, size, size) f4 in 0..1 of pictures (k, h, w, 3) or imprints (k, r, c), u1 or f4 in 0..1."""
+    return picture_images(raw, size) if raw.ndim == 4 else imprint_images(raw, size)
+
+
+def imprint_images(imprints: np.ndarray, size: int) -> torch.Tensor:
+    """Images (k, 3, size, size) f4 of imprints (k, r, c), as by stages.networks.to_images, with full contact marked.
+
+    A flat face pressed against the array gives zeros everywhere (distance 0), which in the thesis also means an absent
+    sense: its switch would turn off the touch of a table top. So one corner pixel is raised by one grey step, and the
+    variance is not zero. An imprint of ones, without contact, stays constant: absent.
+    """
+    images = to_images(imprints, size)
+    flat = ~present(images) & (images[:, 0, 0, 0] < 1)
+    images[flat, 0, 0, 0] += STEP
     return images
 
 

@@ -11,10 +11,9 @@ import numpy as np
 import pandas as pd
 
 from stages.kit import Mesh, Stopwatch
-from stages.kit.command import workspace_of_arguments
 from stages.kit.files import read_mesh, write_table
 from stages.kit.run import Rows, StageRun
-from stages.kit.workspace import Workspace
+from stages.kit.workspace import Workspace, workspace_of_arguments
 
 from . import VIEWPOINTS, cumulative_coverage, fewest_views, greedy_views, render, viewpoint_set, write_view
 from .renderer import resolve_renderer

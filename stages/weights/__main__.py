@@ -14,10 +14,9 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from stages.kit.command import workspace_of_arguments
 from stages.kit.files import read_mesh, write_arrays, write_table
 from stages.kit.run import Rows, StageRun
-from stages.kit.workspace import Workspace
+from stages.kit.workspace import Workspace, workspace_of_arguments
 from stages.meshes.schema import Params as MeshesParams
 
 from .convexity import convexity

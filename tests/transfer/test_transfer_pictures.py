@@ -6,8 +6,8 @@ import trimesh
 
 from stages.kit import Mesh
 from stages.transfer.hybrid_damage import PICTURES, check, damage, damage_pictures
-from stages.transfer.hybrid_data import imprint_images, pair_pictures
-from stages.transfer.pictures import ELEVATIONS, picture_images, take_pictures, viewpoints
+from stages.transfer.hybrid_data import pair_pictures
+from stages.transfer.pictures import ELEVATIONS, imprint_images, picture_images, take_pictures, viewpoints
 from stages.transfer.switch import present
 
 
