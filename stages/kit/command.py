@@ -4,7 +4,6 @@ import argparse
 import errno
 import os
 import sys
-from collections.abc import Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING
@@ -54,17 +53,6 @@ def _only_set(workspace: "Workspace", stage: str) -> str:
         choice = f"one of {', '.join(known)}" if known else "none is switched on: see `python -m stages.compose --help`"
         raise ValueError(f"name the data set: {choice}")
     return known[0]
-
-
-def names_a_mesh(arguments: Sequence[str]) -> bool:
-    """Whether a command line is about one mesh, with options of its own, rather than about a data set.
-
-    Names of data sets have no suffix, files of meshes have one. Reads no settings, which a core install cannot.
-    """
-    first = arguments[0] if arguments else "--help"
-    if first.startswith("-"):
-        return first not in ("-h", "--help") and not first.startswith("--root")
-    return bool(Path(first).suffix) or Path(first).is_file()
 
 
 def errors_in_one_line(name: str) -> None:
