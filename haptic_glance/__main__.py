@@ -35,7 +35,6 @@ WHOLE = {
     REPRO: "stages.repro",
 }
 SHELL = {"completion": "haptic_glance.completion"}
-ALIASES = {"lod": "simplify", "imprints": "touch"}  # older names, which are also stages of the pipeline
 ABOUT = """\
 exit status: 0 done; 1 something could not be done, which the last lines name; 2 the command line is wrong; 130 stopped
 by Ctrl-C. Results go to stdout, progress to stderr, a line each."""
@@ -93,10 +92,8 @@ def quiet_pipe() -> Iterator[None]:
 
 def run(command: str, argv: Sequence[str]) -> int:
     """Runs a command, or does what `python -m stages.COMMAND` does, or `dvc repro`; returns the exit status."""
-    from stages.kit.command import errors_in_one_line, names_a_mesh
+    from stages.kit.command import errors_in_one_line
 
-    if command in ALIASES and names_a_mesh(argv):
-        command = ALIASES[command]
     if command in {**OWN, **SHELL}:
         errors_in_one_line(command)  # before an import that takes a second, in which a person may press Ctrl-C
         work: Callable[[Sequence[str]], int | None] = import_module({**OWN, **SHELL}[command]).run
@@ -135,8 +132,7 @@ def listing() -> str:
     others = [name for name in commands() if name not in {**OWN, **WHOLE}]
     stages_of_pipeline = fill(", ".join(others), 100, initial_indent="  ", subsequent_indent="  ")
     lines += ["its stages, on a data set of params.yaml (python -m stages.NAME is the same):", stages_of_pipeline, ""]
-    hint = "COMMAND --help has options and examples. lod is an older name of simplify, imprints of touch."
-    return "\n".join([*lines, hint, "", ABOUT])
+    return "\n".join([*lines, "COMMAND --help has options and examples.", "", ABOUT])
 
 
 def summary(text: str) -> str:

@@ -10,11 +10,9 @@ examples:
   haptic-glance points scan.stl --purpose touch --count 6
 """
 
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from stages.kit.command import errors_in_one_line
 from stages.saliency import look_at, shared_parser
 
 
@@ -24,13 +22,3 @@ def run(argv: Sequence[str]) -> None:
     command.add_argument("--out", dest="points", metavar="FILE", type=Path, help="write the points as CSV, too")
     command.set_defaults(out=None, picture=None)
     look_at(command.parse_args(argv))
-
-
-def main() -> None:
-    """Runs the command line of the process."""
-    errors_in_one_line("points")
-    run(sys.argv[1:])
-
-
-if __name__ == "__main__":
-    main()

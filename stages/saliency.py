@@ -21,7 +21,6 @@ import trimesh
 from scipy.spatial import KDTree
 
 from stages.kit import Mesh
-from stages.kit.command import errors_in_one_line
 from stages.kit.files import write_text
 from stages.kit.timing import WallClock
 from stages.lod.export import FORMATS, write_any
@@ -154,13 +153,3 @@ def write(chosen: argparse.Namespace, mesh: Mesh, saliency: np.ndarray, rows: li
     written = [str(path) for path in (chosen.out, chosen.points, chosen.picture) if path]
     if written:
         print(f"{chosen.name}: written: {', '.join(written)}", file=sys.stderr)
-
-
-def main() -> None:
-    """Runs the command line of the process."""
-    errors_in_one_line("saliency")
-    run(sys.argv[1:])
-
-
-if __name__ == "__main__":
-    main()

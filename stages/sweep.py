@@ -33,7 +33,6 @@ from stages.kit import Stopwatch
 from stages.kit.command import errors_in_one_line
 from stages.kit.conf import conf_folder
 from stages.kit.files import read_json, read_mesh, read_table, write_json, write_table, write_text
-from stages.kit.packs import is_there
 from stages.kit.params import FILE, ParamsError, check_section, load_params, schema_of
 from stages.kit.split import Split
 from stages.kit.stats import interval
@@ -71,7 +70,7 @@ def _touch(name: str, config: dict[str, Any], chosen: dict[str, Any], data: Path
     """{method: imprints (k, rows, columns)} of one object."""
     settings = chosen["salient_points"]
     for folder, file in (("meshes", f"{name}.npz"), ("conspicuity", f"{name}.npz"), ("weights", "weights.csv")):
-        if not is_there(data / folder / file):
+        if not (data / folder / file).exists():
             sys.exit(f"sweep: {data / folder / file} is not there: run `dvc repro {folder}@{data.name}` first")
     mesh = read_mesh(data / "meshes" / f"{name}.npz")
     looking = any(method_named(method).channels for method in settings.methods)

@@ -8,7 +8,9 @@ import pytest
 
 from stages.claim import run
 from stages.kit.workspace import Workspace
+from stages.report.anew import command
 
+ROOT = Path(__file__).parents[1]
 KEYS = ["fit_gaze", "equal_over_itti_gaze", "four_easier_beyond_chance"]
 
 
@@ -47,3 +49,10 @@ def test_a_set_that_is_not_switched_on_is_not_measured():
     assert "gaze" not in Workspace(Path(".")).params["graph"]["lod"]
     with pytest.raises(ValueError, match=r"lod is not switched on for gaze: `python -m stages.compose 'sets=\[gaze\]'"):
         run(["fit_gaze", "--measure"])
+
+
+def test_the_command_knows_the_folder_not_its_relative_path(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert command(Path("conf"), "lod", ["gaze"]).startswith("python -m stages.compose 'sets=[gaze]'")
+    monkeypatch.chdir(ROOT)
+    assert command(Path("conf"), "lod", ["gaze"]).startswith("python -m stages.compose experiment=attention")

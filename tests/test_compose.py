@@ -107,7 +107,7 @@ def test_any_path_can_be_given_as_it_is(folder):
         ("seed: 0", "seed: -1", "seed: -1 is negative"),
         ("  views:\n", "  other:\n", "no section household.views"),
         ("parallel:", "paralel:", "did you mean parallel"),
-        ("sets:", "data:", "of an older layout: run `python -m stages.compose`"),
+        ("sets:", "data:", "lacks the section graph or sets: run `python -m stages.compose`"),
         ("    renderer: ", "    rendrer: ", "unknown setting views.rendrer: did you mean views.renderer"),
         ("    renderer: raster\n", "", "views.renderer"),
     ],

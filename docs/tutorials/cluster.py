@@ -18,7 +18,7 @@ from dask_jobqueue import SLURMCluster
 
 from haptic_glance.gallery.demo import sample
 
-# sphinx_gallery_thumbnail_path = "../reports/figures/growth.png"
+# sphinx_gallery_thumbnail_path = "../reports/figures/pipeline.png"
 
 # %%
 # By hand

@@ -21,8 +21,7 @@ from sklearn import config_context
 from threadpoolctl import threadpool_limits
 
 from stages.imprints import read_imprints
-from stages.kit.files import write_arrays
-from stages.kit.packs import is_there, object_files
+from stages.kit.files import object_files, write_arrays
 from stages.kit.run import Rows, StageRun
 from stages.kit.split import Split
 from stages.kit.stats import interval_metrics
@@ -57,7 +56,7 @@ def plan(sets: Mapping[str, list[str]], folder: Path) -> dict[str, int | str]:
     """
     planned: dict[str, int | str] = {}
     for name, objects in sets.items():
-        missing = [one for one in objects if not is_there(folder / f"{one}.npz")]
+        missing = [one for one in objects if not (folder / f"{one}.npz").exists()]
         if missing:
             there = ", ".join(object_files(folder)) or "nothing"
             remedy = f"name some of these in +classification.sets.NAME=[...]: {there}"

@@ -1,29 +1,8 @@
-"""Projects pixels of a view to vertices by exact rays (T3.2.6)."""
+"""The vertex that a place on the surface belongs to (T3.2.6)."""
 
 import numpy as np
 
-from stages.kit import Mesh, RayScene, Viewpoint, camera
-
-
-def project_pixels(
-    scene: RayScene, rows: np.ndarray, columns: np.ndarray, viewpoint: Viewpoint, size: tuple[int, int]
-) -> tuple[np.ndarray, np.ndarray]:
-    """Pixels of a view to vertices of the mesh: (vertices (k,) i8, positions (k, 3) f8 where the rays hit).
-
-    rows, columns (k,), may be fractional; size: (h, w) of the image that they index. A map of a reduced size needs no
-    correction, since camera.pixel_rays measures pixels of any image from its middle. Raises ValueError when a pixel
-    lies off the object.
-    """
-    origins, directions = camera.pixel_rays(rows, columns, viewpoint, size)
-    hits = scene.cast(origins, directions)
-    if not hits.hit.all():
-        miss = int(np.flatnonzero(~hits.hit)[0])
-        raise ValueError(
-            f"pixel (row {rows[miss]}, column {columns[miss]}) of view {viewpoint.name} is off the object: "
-            "set a map to zero where no ray meets the mesh before you select points from it"
-        )
-    positions = origins + hits.distance[:, None] * directions
-    return nearest_corners(scene.mesh, hits.face, positions), positions
+from stages.kit import Mesh
 
 
 def nearest_corners(mesh: Mesh, faces: np.ndarray, positions: np.ndarray) -> np.ndarray:

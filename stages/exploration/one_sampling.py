@@ -10,7 +10,6 @@ from stages.classification import classifier, features
 from stages.imprints import read_imprints
 from stages.kit import Stopwatch
 from stages.kit.files import write_arrays
-from stages.kit.packs import is_there
 from stages.kit.rng import rng
 from stages.kit.run import Rows
 from stages.kit.split import Split
@@ -38,7 +37,7 @@ def read_set(folder: Path, objects: list[str], method: str) -> tuple[np.ndarray,
 
     folder: data/SET/imprints. Raises ValueError with the reason if they cannot be compared.
     """
-    missing = [one for one in objects if not is_there(folder / f"{one}.npz")]
+    missing = [one for one in objects if not (folder / f"{one}.npz").exists()]
     if missing:
         raise ValueError(f"no imprints of {', '.join(missing)}")
     if len(objects) < 2:

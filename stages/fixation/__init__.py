@@ -17,7 +17,6 @@ _MODULES = {  # public name -> its module
     "centre_distance": "centres",
     "half_share": "concentration",
     "subtractive_clusters": "subtractive",
-    "read_attention": "files",
 }
 __all__ = list(_MODULES)  # pyright: ignore[reportUnsupportedDunderAll]
 __getattr__ = lazy_names(__name__, _MODULES)

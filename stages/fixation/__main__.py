@@ -4,10 +4,13 @@ Reads data/SET/meshes, data/SET/weights (people's attention), data/SET/salient_p
 data/reference/semantics.csv. Takes pictures of each object from all round, groups the objects by convexity, Gaussian
 curvature and eccentricity and by three levels of meaning, trains a head per task on each network of fixation.methods,
 or a network per task, and projects the maps of all tasks and of their entropy-weighted mean to the vertices. Writes
-data/SET/fixation: NAME.npz (see stages.fixation.read_attention), tasks.csv (the class of every object in every task,
-and its measures), elbow.csv (sums of squared distances over the number of clusters), heads/METHOD/TASK.npz of frozen
-and random networks. The rows are in reports/measurements/SET/fixation.csv.gz; they also hold the classes and the sums
-of squared distances.
+data/SET/fixation: NAME.npz (below), tasks.csv (the class of every object in every task, and its measures), elbow.csv
+(sums of squared distances over the number of clusters), heads/METHOD/TASK.npz of frozen and random networks. The rows
+are in reports/measurements/SET/fixation.csv.gz; they also hold the classes and the sums of squared distances.
+
+NAME.npz has METHOD.TASK (n,) f2, the attention at the vertices in 0..1; METHOD.TASK.views (3, n), that in each of the
+three evaluated views; METHOD.maps (3, t, i, j), their Grad-CAM maps in the order of the tasks in tasks.csv; visible
+(3, n), the vertices visible in each of them; seen (n,), the vertices visible in any view.
 """
 
 import dataclasses

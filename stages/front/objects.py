@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from stages.kit.packs import object_files
+from stages.kit.files import object_files
 from stages.kit.rng import rng
 from stages.meshes.classes import read_classes
 

@@ -4,9 +4,7 @@ Reads data/SET/meshes/NAME.npz and data/SET/salient_points/NAME.npz, writes data
 reports/measurements/SET/imprints.csv.gz: per object and method the number of imprints, their mean relief in units of
 the object, the share of cells without a surface in range, and the points that could not be touched.
 
-A mesh of your own, instead, with a picture of what the array measures and where:
-  haptic-glance touch bunny.stl --at salient
-  haptic-glance touch --help
+`haptic-glance touch` touches a mesh of your own.
 """
 
 import functools
@@ -16,7 +14,6 @@ from pathlib import Path
 import numpy as np
 
 from stages.kit import Stopwatch
-from stages.kit.command import errors_in_one_line, names_a_mesh
 from stages.kit.files import read_mesh
 from stages.kit.run import Rows, StageRun
 from stages.kit.workspace import Workspace, workspace_of_arguments
@@ -85,13 +82,7 @@ def run(workspace: Workspace) -> None:
 
 
 def main() -> None:
-    """Runs the stage on the data set that the command line names; with a mesh instead, the command in command.py."""
-    if names_a_mesh(sys.argv[1:]):
-        errors_in_one_line("touch")  # before an import that takes a second, in which a person may press Ctrl-C
-        from .command import run as run_command  # the pipeline needs neither its writers nor its pictures
-
-        run_command(sys.argv[1:])
-        return
+    """Runs the stage on the data set that the command line names."""
     run(workspace_of_arguments(__doc__, "imprints"))
 
 

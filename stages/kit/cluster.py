@@ -22,7 +22,6 @@ from joblib import cpu_count
 
 from .code import stage_digest
 from .extras import from_extra
-from .packs import opened
 from .parallel import Task
 
 with from_extra():
@@ -107,18 +106,14 @@ class _Sender:
         """The future of one task."""
         files = {path: digest for path, digest in task.files.items() if digest}
         common = {path: self._common(path, digest) for path, digest in files.items() if digest in self.common}
-        own = {path: self._read(path) for path in files if path not in common}
+        own = {path: (self.root / path).read_bytes() for path in files if path not in common}
         given = self.code, self.function, cloudpickle.dumps(task), own, list(common), *common.values()
         return self.client.submit(_work, *given, key=f"{self.desc}-{task.name}")
 
     def _common(self, path, digest):
         if digest not in self.sent:
-            self.sent[digest] = self.client.submit(_content, self._read(path), key=f"file-{digest}")
+            self.sent[digest] = self.client.submit(_content, (self.root / path).read_bytes(), key=f"file-{digest}")
         return self.sent[digest]
-
-    def _read(self, path):
-        with opened(self.root / path) as stream:
-            return stream.read()
 
 
 def _result(future: Future, running: Mapping[Any, tuple[Task, Future]]) -> Any:

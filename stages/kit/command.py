@@ -3,8 +3,6 @@
 import errno
 import os
 import sys
-from collections.abc import Sequence
-from pathlib import Path
 from types import TracebackType
 
 from .fetch import FetchError
@@ -14,17 +12,6 @@ REMEDIES = {
     errno.EROFS: ": make that place writable and run it again",
 }
 DEBUG = "HAPTIC_GLANCE_DEBUG"  # where it is set, every error keeps its traceback
-
-
-def names_a_mesh(arguments: Sequence[str]) -> bool:
-    """Whether a command line is about one mesh, with options of its own, rather than about a data set.
-
-    Names of data sets have no suffix, files of meshes have one. Reads no settings, which a core install cannot.
-    """
-    first = arguments[0] if arguments else "--help"
-    if first.startswith("-"):
-        return first not in ("-h", "--help") and not first.startswith("--root")
-    return bool(Path(first).suffix) or Path(first).is_file()
 
 
 def errors_in_one_line(name: str) -> None:

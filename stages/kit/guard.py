@@ -8,8 +8,6 @@ from contextvars import ContextVar
 from pathlib import Path
 from typing import Any
 
-from .packs import SUFFIX
-
 _allowed: ContextVar[tuple[list[Path], set[Path]] | None] = ContextVar("allowed", default=None)
 _hooked: list[bool] = []
 
@@ -40,7 +38,5 @@ def _check(event: str, arguments: tuple[Any, ...]) -> None:
         return
     guarded, declared = limits
     path = Path(arguments[0]).resolve()
-    if path.suffix == SUFFIX:  # stages.kit.packs tells which file of it is read
-        return
     if path not in declared and any(path.is_relative_to(folder) for folder in guarded):
         raise UndeclaredRead(f"{path} is read, but not declared: name it in `reads` of StageRun.each")

@@ -83,7 +83,7 @@ def check_section(schema: type[Settings], values: Any) -> Settings:
 def check_common(values: dict[str, Any]) -> None:
     """Checks the names of the sections and the settings that all stages share."""
     if "graph" not in values or "sets" not in values:
-        raise ParamsError(f"{FILE} is of an older layout: run `python -m stages.compose` to make it anew")
+        raise ParamsError(f"{FILE} lacks the section graph or sets: run `python -m stages.compose` to make it anew")
     _check_keys("", values, [*COMMON, *values["sets"]])
     for key, kind in COMMON.items():
         if key in values and not isinstance(values[key], kind):

@@ -10,11 +10,10 @@ from typing import Any, TypeVar
 
 from .alone import alone
 from .code import stage_digest
-from .files import replace_folder, sha256, write_json
+from .files import files_below, object_files, replace_folder, sha256, write_json
 from .kept_rows import ItemRows, KeptRows
 from .make import make, scratch
 from .objects import Objects, item_key, key_of
-from .packs import files_below, is_there, object_files, pack
 from .parallel import Task, finished, parallel_map, progress
 from .rows import SUFFIX, write_rows
 from .workspace import Workspace
@@ -130,7 +129,7 @@ class StageRun:
     def _tasks(
         self, call: str, values: Mapping[str, Any], reads: Sequence[str], made_of: Mapping[str, str]
     ) -> list[Task]:
-        digest = functools.cache(lambda path: sha256(path) if is_there(path) else "")  # many items read the same files
+        digest = functools.cache(lambda path: sha256(path) if path.exists() else "")  # many items read the same files
         tasks = []
         for name, value in values.items():
             files = {declared: path for pattern in reads for declared, path in self._files(pattern.format(name))}
@@ -143,10 +142,10 @@ class StageRun:
         """(name, path) of a file that an item reads, be it there or not, or of all files of a folder."""
         stage, _, rest = declared.partition("/")
         path = self.folder / rest if stage == self.stage else self.workspace.data / declared
-        files = [] if path.is_file() else files_below(path)
-        if not files and not path.is_dir():
+        if not path.is_dir():
             yield declared, path
-        for file in files:
+            return
+        for file in files_below(path):
             yield f"{declared}/{file.relative_to(path).as_posix()}", file
 
     def metrics(self, values: Mapping[str, Any]) -> None:
@@ -160,7 +159,6 @@ class StageRun:
             if error is None:
                 path = self.workspace.measurements / f"{self.stage}{SUFFIX}"
                 write_rows(path, self.rows, self.columns, self.dataset, self.seed)
-                pack(self.folder)
                 replace_folder(self.folder, self.target)
         finally:
             self._alone.__exit__(None, None, None)

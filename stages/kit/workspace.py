@@ -55,7 +55,7 @@ class Workspace:
 
     @cached_property
     def params(self) -> dict[str, Any]:
-        """The whole params.yaml; ParamsError where there is none or it is of an older layout."""
+        """The whole params.yaml; ParamsError where there is none or it lacks the common sections."""
         path = self.root / FILE
         if not path.exists():
             raise ParamsError(f"there is no {path}: change to the repository root, or run `python -m stages.compose`")

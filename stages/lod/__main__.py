@@ -9,31 +9,21 @@ simplification on rows `faces` (with the shrinking of neighbourhoods), elsewhere
 metric, pictures included (the object's own are made once). Where two methods keep the same faces the mesh is made and
 measured once. Settings: section `lod` of params.yaml.
 
-A mesh of your own, instead, from file to file:
-  haptic-glance simplify bunny.stl --faces 1500 --out small.glb
-  haptic-glance simplify --help
+`haptic-glance simplify` simplifies a mesh of your own.
 """
 
-import sys
-from typing import TYPE_CHECKING
-
-from stages.kit.command import errors_in_one_line, names_a_mesh
-from stages.kit.workspace import workspace_of_arguments
+from stages.kit.workspace import Workspace, workspace_of_arguments
 from stages.meshes.schema import Params as MeshesParams
 
+from .data_set import simplify_all
 from .schema import Params
 from .simplify import check_backend
 from .targets import face_count
 from .variant import variant
 
-if TYPE_CHECKING:
-    from stages.kit.workspace import Workspace
 
-
-def run(workspace: "Workspace") -> None:
+def run(workspace: Workspace) -> None:
     """Runs the stage on the data set of a workspace."""
-    from .data_set import simplify_all  # needs the pipeline's packages, which the command for one mesh does not
-
     settings = workspace.settings(Params)
     check_backend(settings.backend)
     for target in settings.targets:
@@ -46,14 +36,8 @@ def run(workspace: "Workspace") -> None:
 
 
 def main() -> None:
-    """Runs the stage on the data set that the command line names; with a mesh instead, the command of command.py."""
-    if names_a_mesh(sys.argv[1:]):
-        errors_in_one_line("simplify")  # before an import that takes a second, in which a person may press Ctrl-C
-        from .command import run as run_command
-
-        sys.exit(run_command(sys.argv[1:]))
-    else:
-        run(workspace_of_arguments(__doc__, "lod"))
+    """Runs the stage on the data set that the command line names."""
+    run(workspace_of_arguments(__doc__, "lod"))
 
 
 if __name__ == "__main__":

@@ -37,11 +37,6 @@ def load() -> ModuleType:
     return importlib.import_module("torchvision")
 
 
-def schemas_declared() -> bool:
-    """Whether this process declared the schemas, so that torchvision's own operators cannot be called."""
-    return bool(_declared)
-
-
 def _drop_half_imported():
     for name in [name for name in sys.modules if name.partition(".")[0] == "torchvision"]:
         del sys.modules[name]

@@ -27,6 +27,7 @@ def switch(conf: Path, dataset: str, stage: str) -> str:
 
 def command(conf: Path, stage: str, sets: Iterable[str]) -> str:
     """What measures a stage on all of the sets, and judges again."""
+    conf = conf.resolve()  # `switch` remembers folders, and the same relative one may be another folder later
     together: dict[str, list[str]] = {}
     for name in sets:
         together.setdefault(switch(conf, name, stage), []).append(f"{stage}@{name}")

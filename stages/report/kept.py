@@ -7,7 +7,6 @@ from pathlib import Path
 from matplotlib.figure import Figure as Drawing
 
 from stages.kit.files import read_json, write_json
-from stages.kit.packs import is_there
 
 from .items import Figure
 from .results import NotRun, Results, there
@@ -27,7 +26,7 @@ class Kept(Figure):
 
 def last_drawn(results: Results, name: str, stage: str) -> Kept:
     """The figure as it was drawn last time; NotRun where it never was."""
-    here = results.out if is_there(results.out / f"figures/{name}.json") else results.reports
+    here = results.out if (results.out / f"figures/{name}.json").exists() else results.reports
     words = here / f"figures/{name}.json"
     why = f"no figures/{name}.png: run the stage {stage} on its data set"
     there(words.with_suffix(".png"), why, stage, runnable=False)

@@ -12,8 +12,7 @@ from stages.conspicuity.storage import read_maps
 from stages.imprints import read_imprints
 from stages.kit import Mesh, Viewpoint
 from stages.kit.conf import conf_folder
-from stages.kit.files import read_arrays, read_mesh, read_table
-from stages.kit.packs import files_below, is_there, object_files
+from stages.kit.files import files_below, object_files, read_arrays, read_mesh, read_table
 from stages.kit.params import load_params
 from stages.kit.rows import SUFFIX, read_rows
 from stages.kit.timing import CLOCK, WALL
@@ -54,7 +53,7 @@ def some(found: Found, what: str, stage: str, runnable: bool = True) -> Found:
 
 def there(path: Path, what: str, stage: str, runnable: bool = True) -> Path:
     """The path of a file; NotRun of `what` where it is not there."""
-    if not is_there(path):
+    if not path.exists():
         raise NotRun(what, stage, runnable)
     return path
 
@@ -200,9 +199,9 @@ class Results:
         return found
 
     def bench_path(self, name: str) -> Path:
-        """reports/bench/NAME.csv, or .csv.gz where that is packed."""
+        """reports/bench/NAME.csv, or .csv.gz where the table is compressed."""
         path = self.workspace.published / "bench" / f"{name}.csv"
-        return path if is_there(path) else path.with_name(f"{path.name}.gz")
+        return path if path.exists() else path.with_name(f"{path.name}.gz")
 
     def thesis(self, name: str) -> pd.DataFrame:
         """One of the thesis's own tables, data/reference/thesis/NAME.csv."""
@@ -256,7 +255,7 @@ class Results:
     def choose(self, preferred: Sequence[str], count: int, stage: str = "salient_points") -> list[str]:
         """Up to `count` objects that `stage` has data for: the preferred ones first, then by the alphabet."""
         folder = self.folder(stage)
-        ready = [name for name in self.objects if is_there(folder / f"{name}.npz") or files_below(folder / name)]
+        ready = [name for name in self.objects if (folder / f"{name}.npz").exists() or files_below(folder / name)]
         some(ready, f"no objects in {stage}", stage)
         return sorted(ready, key=lambda name: [*preferred, name].index(name))[:count]
 

@@ -28,11 +28,6 @@ def invalid_units(rows: pd.DataFrame) -> pd.Series:
     return found.dropna()
 
 
-def whole_neighbourhoods(rows: pd.DataFrame) -> pd.DataFrame:
-    """The rows of meshes that keep all points with as many rings as were asked for, and of plain simplification."""
-    return rows[~rows["shrunk"].fillna(False).astype(bool)]
-
-
 def as_plain(rows: pd.DataFrame) -> pd.MultiIndex:
     """The units, item, method and target, whose errors all equal plain QEM's."""
     keys = ["item", "target", "metric"]

@@ -7,7 +7,6 @@ import numpy as np
 import pandas as pd
 
 from stages.kit.files import read_mesh, read_table
-from stages.kit.packs import is_there
 from stages.kit.run import Rows
 from stages.salient_points import read_strong_points
 
@@ -23,7 +22,7 @@ CURVE = "lod/{}/curve.csv"  # of an object, below data/SET
 def lod_rows(data: Path, objects: Sequence[str]) -> pd.DataFrame:
     """The rows of the lod stage for some objects. Raises ValueError where it has none."""
     paths = [data / CURVE.format(name) for name in objects]
-    tables = [read_table(path, {"item": str}) for path in paths if is_there(path)]
+    tables = [read_table(path, {"item": str}) for path in paths if path.exists()]
     if not tables:
         raise ValueError(f"no {data / CURVE.format('NAME')} to learn from: run `dvc repro lod@{data.name}`")
     return pd.concat(tables)

@@ -6,7 +6,6 @@ from pathlib import Path
 import numpy as np
 
 from stages.contours import read_sequences
-from stages.kit.packs import opened
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,7 +29,7 @@ class SequenceData:
 
 def count_sequences(path: Path) -> dict[str, int]:
     """{strategy: number of sequences} of a file of data/SET/contours, without reading their images."""
-    with opened(path) as stream, np.load(stream, allow_pickle=False) as stored:
+    with open(path, "rb") as stream, np.load(stream, allow_pickle=False) as stored:
         names = sorted({name.rpartition(".")[0] for name in stored.files})
         return {name: len(stored[f"{name}.planes"]) for name in names}
 

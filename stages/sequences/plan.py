@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import NamedTuple
 
 from stages.contours import read_sequences
-from stages.kit.packs import is_there
 from stages.kit.split import Split
 
 from .dataset import count_sequences, is_divisible
@@ -61,7 +60,7 @@ def _members(classes, folder):
     """({class: its objects that have sequences}, notes)."""
     members, notes = {}, []
     for name, objects in classes.items():
-        available = [one for one in objects if is_there(folder / f"{one}.npz")]
+        available = [one for one in objects if (folder / f"{one}.npz").exists()]
         missing = [one for one in objects if one not in available]
         if missing:
             notes.append(f"class {name}: no sequences of {', '.join(missing)}")

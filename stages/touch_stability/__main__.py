@@ -20,7 +20,6 @@ from stages.classification.schema import Params as Classification
 from stages.exploration import SPLITS
 from stages.imprints import read_imprints
 from stages.kit.breaking_point import breaking_point, lead_left
-from stages.kit.packs import is_there
 from stages.kit.run import Rows, StageRun
 from stages.kit.workspace import Workspace, workspace_of_arguments
 
@@ -75,7 +74,7 @@ def left_out(settings: Params, objects: list[str], folder: Path) -> tuple[str | 
     """
     if len(objects) < 2:
         return f"set {settings.set} left out: at least two objects are needed", 0, 0.0
-    missing = [name for name in objects if not is_there(folder / f"{name}.npz")]
+    missing = [name for name in objects if not (folder / f"{name}.npz").exists()]
     if missing:
         return f"set {settings.set} left out: no imprints of {', '.join(missing)}", 0, 0.0
     every = [read_imprints(folder / f"{name}.npz") for name in objects]

@@ -4,8 +4,7 @@ from pathlib import Path
 
 from stages.classification import features
 from stages.imprints import read_imprints
-from stages.kit.files import read_mesh, write_arrays
-from stages.kit.packs import files_below
+from stages.kit.files import files_below, read_mesh, write_arrays
 from stages.kit.run import Rows
 from stages.salient_points import read_saliency
 from stages.weights.published import GLANCE

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from stages.conspicuity.project import project_pixels
+from stages.conspicuity.project import nearest_corners
 from stages.kit import Mesh, RayScene, Viewpoint
 from stages.kit.camera import DISTANCE, pixel_rays, pixels_per_unit, project
 from stages.lod.neighbourhood import adaptive_rings
@@ -84,7 +84,8 @@ def test_vertex_of_a_face(dromedary, agreement):
     rows, columns = (part.ravel() for part in np.mgrid[:900:6, :1200:6])
     origins, directions = pixel_rays(rows, columns, viewpoint, SIZE)
     hits = scene.cast(origins, directions)
-    found, _ = project_pixels(scene, rows[hits.hit], columns[hits.hit], viewpoint, SIZE)
+    positions = origins[hits.hit] + hits.distance[hits.hit, None] * directions[hits.hit]
+    found = nearest_corners(dromedary, hits.face[hits.hit], positions)
     corners = dromedary.faces[hits.face[hits.hit]]
     centroids = dromedary.vertices[corners].mean(axis=1, keepdims=True)
     nearest = np.linalg.norm(dromedary.vertices[corners] - centroids, axis=2).argmin(axis=1)

@@ -1,4 +1,4 @@
-"""`python -m stages.imprints MESH`: a person's own mesh, from file to picture."""
+"""`haptic-glance touch MESH`: a person's own mesh, from file to picture."""
 
 import json
 import os
@@ -12,7 +12,7 @@ import pytest
 import trimesh
 from PIL import Image
 
-from stages.imprints import __main__, pictures, press_many, user_mesh
+from stages.imprints import pictures, press_many, user_mesh
 from stages.imprints.command import run
 from stages.imprints.layer import Layer
 from stages.imprints.options import POINT, parse_options, parse_skin
@@ -366,24 +366,15 @@ def test_folder_is_named_after_the_mesh(file):
 @pytest.mark.slow
 def test_command_runs_and_says_errors_in_one_line(file, tmp_path):
     root = Path(__file__).parents[2]
-    command = [sys.executable, "-m", "stages.imprints", str(file), "--at", "99999"]
+    command = [sys.executable, "-m", "haptic_glance", "touch", str(file), "--at", "99999"]
     done = subprocess.run(command, cwd=tmp_path, env=os.environ | {"PYTHONPATH": str(root)}, capture_output=True)
     lines = done.stderr.decode().splitlines()
     assert done.returncode == 1 and "Traceback" not in done.stderr.decode()
     assert lines[-1].startswith("touch: ") and "no such vertex" in lines[-1]
 
 
-def test_help_tells_of_units_and_has_examples(capsys, monkeypatch):
-    monkeypatch.setattr(sys, "argv", ["imprints", "ball.ply", "--help"])
-    monkeypatch.setattr(sys, "excepthook", sys.excepthook)
+def test_help_tells_of_units_and_has_examples(capsys):
     with pytest.raises(SystemExit) as done:
-        __main__.main()
+        run(["ball.ply", "--help"])
     said = capsys.readouterr().out
     assert done.value.code == 0 and "--at salient" in said and "bounding sphere is 1 unit across" in said
-
-
-def test_a_word_without_a_suffix_runs_the_stage_and_a_file_or_an_option_the_command():
-    for stage in ([], ["toys"], ["--help"], ["--root", "elsewhere"], ["toys", "--root", "elsewhere"]):
-        assert not __main__.names_a_mesh(stage)
-    for command in (["bunny.stl"], ["bunny.stl", "--help"], ["--at", "salient", "bunny.stl"]):
-        assert __main__.names_a_mesh(command)

@@ -1,4 +1,4 @@
-"""`python -m stages.lod MESH`: a person's own mesh, from file to file."""
+"""`haptic-glance simplify MESH`: a person's own mesh, from file to file."""
 
 import functools
 import os
@@ -17,7 +17,7 @@ from PIL import Image
 from stages.kit import Mesh
 from stages.kit.extras import MissingExtra
 from stages.kit.texture import Texture
-from stages.lod import __main__, colour_error, command, error_table, metro, simplify
+from stages.lod import colour_error, command, error_table, metro, simplify
 from stages.lod.command import run
 from stages.lod.export import FORMATS, to_trimesh, write_any
 from stages.lod.feasibility import SimplifyError
@@ -497,40 +497,12 @@ def test_pictures_that_fail_leave_dashes_and_the_reason(simplified, monkeypatch)
     assert told.count("no errors of the pictures with 300 faces: no light") == 2
 
 
-@pytest.mark.parametrize("words", [["--faces=100", "--out=x.glb"], ["--seed=1"], ["x.stl", "--help"]])
-def test_any_option_means_the_command_for_one_mesh(monkeypatch, capsys, words):
-    monkeypatch.setattr(sys, "argv", ["lod", *words])
-    monkeypatch.setattr(sys, "excepthook", sys.excepthook)  # put back afterwards
-    with pytest.raises(SystemExit):
-        __main__.main()
-    said = capsys.readouterr()
-    assert "MESH" in (said.out if "--help" in words else said.err.splitlines()[-1])
-
-
-@pytest.mark.parametrize("words", [["--help"], ["household", "--help"]])
-def test_help_without_a_mesh_is_that_of_the_stage(monkeypatch, capsys, words):
-    monkeypatch.setattr(sys, "argv", ["stages/lod/__main__.py", *words])
-    with pytest.raises(SystemExit):
-        __main__.main()
-    assert "Settings: section `lod`" in " ".join(capsys.readouterr().out.split())
-
-
-@pytest.mark.parametrize("words", [[], ["toys"], ["--root=there"], ["toys", "--root", "there"]])
-def test_a_word_without_a_suffix_is_a_data_set(monkeypatch, words):
-    ran = []
-    monkeypatch.setattr(sys, "argv", ["lod", *words])
-    monkeypatch.setattr(__main__, "workspace_of_arguments", lambda doc, stage: stage)
-    monkeypatch.setattr(__main__, "run", ran.append)
-    __main__.main()
-    assert ran == ["lod"]
-
-
 @pytest.mark.slow
 def test_interrupted_it_says_one_line_and_leaves_nothing(file, tmp_path):
     before = sorted(tmp_path.iterdir())
     words = [str(file), "--faces", "300", "--out", "x.glb", "--picture", "x.png"]
     ours = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
-    command_line = [sys.executable, "-m", "stages.lod", *words]
+    command_line = [sys.executable, "-m", "haptic_glance", "simplify", *words]
     heard = functools.partial(signal.signal, signal.SIGINT, signal.SIG_DFL)  # what runs in the background ignores it
     work = subprocess.Popen(command_line, cwd=tmp_path, env=ours, stderr=subprocess.PIPE, text=True, preexec_fn=heard)
     while "looking at it" not in (line := work.stderr.readline()):

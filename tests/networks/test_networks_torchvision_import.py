@@ -12,7 +12,7 @@ from stages.networks import torchvision_import as vision
 @pytest.mark.slow
 def test_models_build_and_run_in_a_fresh_process():
     code = (
-        "from stages.networks.torchvision_import import torchvision, schemas_declared\n"
+        "from stages.networks.torchvision_import import torchvision\n"
         "import torch\n"
         "net = torchvision.models.mobilenet_v2(num_classes=3).eval()\n"
         "print(tuple(net(torch.zeros(1, 3, 32, 32)).shape), len(torchvision.models.list_models()) > 50)\n"
@@ -25,7 +25,7 @@ def test_nothing_is_declared_where_the_import_works(monkeypatch):
     monkeypatch.setattr(vision, "_declared", [])
     monkeypatch.setattr(vision.importlib, "import_module", lambda name: name)
     assert vision.load() == "torchvision"
-    assert not vision.schemas_declared()
+    assert not vision._declared
 
 
 def test_schemas_are_declared_after_the_known_failure_only_and_half_modules_dropped(monkeypatch):

@@ -10,7 +10,7 @@ import pytest
 from stages.report import meshes
 from stages.report.meshes import points
 from stages.report.results import SECTION_3_1
-from stages.report.simplified import AS_PLAIN, NO_POINT, NO_RING, UNIT, invalid_units, whole_neighbourhoods
+from stages.report.simplified import AS_PLAIN, NO_POINT, NO_RING, UNIT, invalid_units
 from stages.report.topics import build_one
 
 ERRORS = ("metro_mean", "ssim_error")
@@ -72,11 +72,6 @@ def test_units_without_a_mesh_are_left_out():
     rows = pd.DataFrame(QEM + unit("a", "SymRad", points=0, rings=np.nan, errors=(np.nan, np.nan)))
     rows.loc[rows["method"] == "SymRad", "value"] = np.nan
     assert not len(invalid_units(rows))
-
-
-def test_whole_neighbourhoods_are_those_that_did_not_shrink():
-    rows = pd.DataFrame(QEM + unit("a", "itti") + unit("a", "harris", rings=2.9))
-    assert list(dict.fromkeys(whole_neighbourhoods(rows)["method"])) == ["qem", "qslim", "itti"]
 
 
 def test_causes_of_a_set_of_many_objects_take_a_moment():

@@ -13,7 +13,6 @@ from stages.scene.counts import (
     focal_length,
     read_curves,
     rebuild,
-    tolerated_error,
 )
 
 pytestmark = pytest.mark.slow
@@ -98,17 +97,14 @@ def test_curves_are_read_one_an_object_and_method():
         read_curves(frame.drop(columns="points"), {"a": 100})
 
 
-def test_twice_as_far_tolerates_twice_the_error():
-    assert tolerated_error(1, 8) == pytest.approx(2 * tolerated_error(1, 4))
+def test_the_focal_length_is_that_of_the_angle():
     assert focal_length(1000, 90) == pytest.approx(500)
-    assert tolerated_error(2, 5, focal=1000) == pytest.approx(0.01)  # a unit at distance 5 covers 200 pixels
 
 
-@pytest.mark.parametrize("call", [lambda: focal_length(0), lambda: focal_length(100, 180),
-                                  lambda: tolerated_error(0, 1), lambda: tolerated_error(1, np.nan)])  # fmt: skip
-def test_impossible_screens_and_tolerances_are_refused(call):
+@pytest.mark.parametrize("screen", [(0,), (100, 180)])
+def test_impossible_screens_are_refused(screen):
     with pytest.raises(ValueError):
-        call()
+        focal_length(*screen)
 
 
 @pytest.mark.parametrize("kind, off", [("linear", 0.01), ("network", 0.12)])

@@ -76,18 +76,21 @@ def test_another_account_of_this_machine_needs_the_token(port):
 def test_garbage_from_a_client_leaves_no_trace(tmp_path):
     command = [sys.executable, "-m", "haptic_glance", "studio", "--port", "0", "--no-browser"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=(tmp_path / "said").open("w"), text=True) as studio:
-        port, token = re.search(r":(\d+)/\?token=(\S+)", studio.stdout.readline()).groups()
-        TOKENS[int(port)] = token
-        for garbage in (b"\x16\x03\x01 no request", b"GET", b"POST / HTTP/1.1\r\n\r\n", b"\r\n" * 50):
-            with socket.create_connection(("127.0.0.1", int(port)), timeout=10) as line:
-                line.sendall(garbage)
-        for garbage in (b"\xff\xfe not msgpack", "text", b"\x81\xa4type\xa7Unknown", b"\xc1" * 100):
-            with dialled(int(port)) as line:
-                line.send(garbage)
-                time.sleep(0.3)
-        answer, _ = ask(int(port))
-        studio.send_signal(signal.SIGINT)
-        studio.wait(20)
+        try:
+            port, token = re.search(r":(\d+)/\?token=(\S+)", studio.stdout.readline()).groups()
+            TOKENS[int(port)] = token
+            for garbage in (b"\x16\x03\x01 no request", b"GET", b"POST / HTTP/1.1\r\n\r\n", b"\r\n" * 50):
+                with socket.create_connection(("127.0.0.1", int(port)), timeout=10) as line:
+                    line.sendall(garbage)
+            for garbage in (b"\xff\xfe not msgpack", "text", b"\x81\xa4type\xa7Unknown", b"\xc1" * 100):
+                with dialled(int(port)) as line:
+                    line.send(garbage)
+                    time.sleep(0.3)
+            answer, _ = ask(int(port))
+            studio.send_signal(signal.SIGINT)
+            studio.wait(20)
+        finally:
+            studio.kill()  # or a studio that does not end keeps the test waiting for ever
     assert answer.status == 200 and (tmp_path / "said").read_text() == ""
 
 

@@ -5,7 +5,7 @@ import pytest
 import trimesh
 
 from stages.kit import Mesh
-from stages.weights.agreement import TOLERANCES, annotators_near, gaze_peaks, interest_point_errors
+from stages.weights.agreement import TOLERANCES, gaze_peaks, interest_point_errors
 from stages.weights.agreement.geodesic import Geodesics
 
 
@@ -81,13 +81,6 @@ def test_weights_may_differ_by_tolerance():
     weights = [[1, 1], [1, 3]]
     errors = interest_point_errors(mesh, [0], [0, 10], weights, [0, 2 / mesh.diagonal])
     assert errors["wme"] == pytest.approx([1 / 2, 3 / 4])
-
-
-def test_people_are_counted_once_however_often_they_marked():
-    mesh = grid(21)
-    marks = [[0, 1, 2], [2], []]
-    found = annotators_near(mesh, [0, 10], marks, np.array([0, 1, 2, 8]) / mesh.diagonal)
-    assert found.tolist() == [[1, 1, 2, 2], [0, 0, 0, 2]]
 
 
 def test_no_detection_misses_everything_and_claims_nothing_wrong():

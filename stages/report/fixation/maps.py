@@ -13,7 +13,7 @@ from stages.fixation import fuse
 from stages.fixation.places import ITSELF
 from stages.fixation.tasks import FUSED_TASKS
 from stages.kit import Mesh
-from stages.kit.packs import object_files
+from stages.kit.files import object_files
 from stages.networks.grid import GRIDS, resize_cams
 from stages.report.drawing import colour_bar, colour_map, name_panels, picture, square_grid, squared, vivid
 from stages.report.items import Figure

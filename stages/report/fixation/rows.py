@@ -57,6 +57,6 @@ def networks(rows: pd.DataFrame) -> list[str]:
 
 
 def stored(results: Results, name: str, dataset: str | None = None) -> dict[str, np.ndarray]:
-    """Arrays of data/SET/fixation/NAME.npz, as stages.fixation.read_attention describes them."""
+    """Arrays of data/SET/fixation/NAME.npz, as stages.fixation.__main__ describes them."""
     path = results.folder("fixation", dataset) / f"{name}.npz"
     return read_arrays(there(path, f"no fixation/{name}.npz", "fixation"))

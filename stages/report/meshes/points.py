@@ -11,7 +11,6 @@ from stages.report.words import dataset_text
 from .methods import PLAIN, QSLIM, fixed, ordered, short
 from .rows import data_sets, face_counts, said
 
-BY = ["data", "method", "target"]
 SHARES = {"without_points": "without a point, %", "three_rings": "three rings, %", "as_plain": "as plain, %"}
 
 

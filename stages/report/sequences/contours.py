@@ -9,7 +9,7 @@ from stages.contours import Sequences, read_sequences
 from stages.imprints import SectionCurve, contour
 from stages.kit import Mesh, RayScene, Viewpoint
 from stages.kit.camera import project
-from stages.kit.packs import object_files
+from stages.kit.files import object_files
 from stages.report.drawing import VIEWPOINT, name_panels, picture, squared
 from stages.report.items import Figure
 from stages.report.results import Results, some

@@ -2,7 +2,6 @@
 
 from . import (
     claims,
-    growth,
     kernels,
     leaderboard,
     pairs,
@@ -37,7 +36,6 @@ FIGURES = {
     "touch_stability_imprints": touch_imprints.build,
     "transfer_stability": transfer.figure,
     "kernels": kernels.build,
-    "growth": growth.build,
 }
 CHARTS = {"stability": leaderboard.chart}
 CLAIMS = claims.CLAIMS

@@ -6,12 +6,11 @@ the object's own measured errors. `evaluate_counts` compares them on objects tha
 """
 
 from .curves import Curve, read_curves
-from .distance import focal_length, tolerated_error
+from .distance import focal_length
 from .evaluate import evaluate_counts
 from .models import Counts, fit_counts
 from .one_mesh import PowerLaw, fit_power_law
 
 __all__ = [
     "Counts", "Curve", "PowerLaw", "fit_counts", "fit_power_law", "focal_length", "evaluate_counts", "read_curves",
-    "tolerated_error",
 ]  # fmt: skip

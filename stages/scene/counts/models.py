@@ -87,7 +87,7 @@ def fit_counts(
     combinations: names of methods, of which those without a curve are left out. kind: `network` or `linear`. Inputs:
     logarithms of the tolerance in pixels, the distance, the initial faces and the points plus one; output: the
     logarithm of the share of the faces. Each measured point of a curve is used at all of DISTANCES, with the tolerance
-    of its error there (`tolerated_error`). Measured errors below FLOOR are left out. Equal seeds give equal models.
+    of its error there. Measured errors below FLOOR are left out. Equal seeds give equal models.
     Raises ValueError for an unknown kind or where no combination has a curve.
     """
     if kind not in KINDS:

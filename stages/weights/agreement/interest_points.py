@@ -4,8 +4,6 @@ Source: Dutagaci, Cheung and Godil, Evaluation of 3D interest point detection te
 truth, The Visual Computer 2012, section on evaluation measures (T's reference 7).
 """
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from stages.kit import Mesh
@@ -28,7 +26,7 @@ def interest_point_errors(
     geodesic distance r of it and no nearer to another point; a detected vertex finds at most one point.
     fne = 1 - found / g; fpe = 1 - found / a; wme = 1 - weight of the found / weight of all. tolerances (t,) are shares
     of the bounding-box diagonal. weights: the number of people who marked each point, (g,), or (g, t) if it is counted
-    at each tolerance as in the paper (`annotators_near`). Any other amount can be used; None weights all equally.
+    at each tolerance as in the paper. Any other amount can be used; None weights all equally.
 
     If two points are equally near, the heavier one gets the vertex. Without detections fpe is 0, fne 1 and wme 1.
     Raises ValueError for no points, a repeated point, ids outside the mesh, or bad weights.
@@ -46,20 +44,6 @@ def interest_point_errors(
         "fpe": 1 - count / len(detected) if len(detected) else np.zeros(len(tolerances)),
         "wme": 1 - (weights * found).sum(axis=0) / weights.sum(axis=0),
     }
-
-
-def annotators_near(
-    mesh: Mesh, points: np.ndarray, marks: Sequence[np.ndarray], tolerances: np.ndarray = TOLERANCES
-) -> np.ndarray:
-    """(g, t) the number of people who marked a vertex within each tolerance of each of points (g,).
-
-    The weights of the paper. marks: the marked vertex ids of each person, a list of arrays. tolerances (t,) are shares
-    of the diagonal. Raises ValueError for ids outside the mesh.
-    """
-    points, limits = _vertex_ids(mesh, points, "points"), _distance_limits(mesh, _checked_tolerances(tolerances))
-    distances = geodesics(mesh).distances(points, limits.max())
-    nearest = [distances[:, _vertex_ids(mesh, mark, "marks")].min(axis=1, initial=np.inf) for mark in marks]
-    return sum((one[:, None] <= limits for one in nearest), np.zeros((len(points), len(limits)), dtype=np.int64))
 
 
 def _nearest_detection(distances, weights):
