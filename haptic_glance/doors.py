@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial import KDTree
 
-from stages.imprints.options import METRES, Metres, length
+from stages.imprints.lengths import METRES, Metres, length
 from stages.kit import Mesh
 from stages.kit.axes import AUTO, Axis, axis_named
 from stages.lod.feasibility import InfeasibleTarget, SimplifyError

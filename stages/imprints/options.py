@@ -13,16 +13,12 @@ from stages.salient_points.names import HELP, check_name
 from .contact import CONTACTS
 from .distances import check_array
 from .layer import Layer
+from .lengths import METRES, Metres, length
 from .skin import Skin
+from .user_mesh import DEFAULT_COUNT
 
 SELECTIONS = ("salient", "random")  # of places, which --count applies to
-DEFAULT_COUNT = 6
-METRES = {"mm": 0.001, "cm": 0.01, "in": 0.0254, "m": 1.0}  # m last, as the others may end with it
 POINT = re.compile(r"-?[\d.][^,]*,[^,]+,[^,]+")  # a position, which may begin with a minus like an option
-
-
-class Metres(float):
-    """A length in metres, which becomes one in units of the mesh when its size is known."""
 
 
 def parser(description: str) -> argparse.ArgumentParser:
@@ -79,13 +75,6 @@ def parse_options(description: str, argv: list[str]) -> argparse.Namespace:
     options.out = options.out or Path(f"{options.mesh.stem}_imprints")
     check_folder(options.out)
     return options
-
-
-def length(text: str) -> float:
-    """A number of units of the mesh, or Metres from a length such as 1mm, 0.5cm or 0.1in."""
-    unit = next((name for name in METRES if text.strip().endswith(name)), "")
-    number = float(text.strip().removesuffix(unit))
-    return Metres(number * METRES[unit]) if unit else number
 
 
 def lengths_in_units(options: argparse.Namespace, unit: float) -> None:

@@ -16,9 +16,10 @@ from stages.meshes.up import upright_by
 from stages.salient_points import find_points
 
 from .frame import sensor_normals, touchable
-from .options import DEFAULT_COUNT
 from .snap_to_surface import MAX_OFFSET, snap_to_surface
 from .surface import Surface
+
+DEFAULT_COUNT = 6  # of the salient or random places, where a person names none
 
 
 @dataclass(frozen=True)
