@@ -19,13 +19,13 @@ from pathlib import Path
 import pandas as pd
 
 from benchmarks import arguments
-from stages.kit.fetch import cache_folder, debian_files, fetch_debian
-from stages.kit.files import write_table
+from haptic_glance.base.fetch import cache_folder, debian_files, fetch_debian
+from haptic_glance.base.files import write_table
+from haptic_glance.lod import BACKENDS
+from haptic_glance.mesh import load
+from haptic_glance.mesh.files import FORMATS
 from stages.kit.parallel import progress
-from stages.lod import BACKENDS
 from stages.lod.warm_up import warm_up
-from stages.meshes import load
-from stages.meshes.load import FORMATS
 from stages.stability.qem_error_curve import QemErrorCurve
 from stages.stability.simplification import run_cases
 from stages.stability.specimen import Case, Specimen

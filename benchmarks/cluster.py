@@ -21,8 +21,8 @@ from pathlib import Path
 import pandas as pd
 
 from benchmarks import arguments
+from haptic_glance.base.files import write_table
 from stages.kit import cluster, run
-from stages.kit.files import write_table
 from stages.kit.parallel import Task, finished
 from stages.kit.workspace import Workspace
 

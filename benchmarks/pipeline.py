@@ -21,7 +21,7 @@ import pandas as pd
 import psutil
 
 from benchmarks import arguments, reference_seconds
-from stages.kit.files import write_table
+from haptic_glance.base.files import write_table
 
 from .maps import nine_maps_rows
 

@@ -13,8 +13,8 @@ import pandas as pd
 from omegaconf import OmegaConf
 
 from benchmarks import arguments
+from haptic_glance.base.files import write_table, write_text
 from stages.compose import compose
-from stages.kit.files import write_table, write_text
 from stages.kit.parallel import progress
 from stages.kit.params import FILE, load_params
 from stages.kit.rows import SUFFIX, read_rows

@@ -10,20 +10,19 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from difflib import get_close_matches
 from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from textwrap import fill
-
-import stages
 
 REPRO = "repro"
 # Command -> the module that runs it; the first line of its docstring is what --help says of it.
 OWN = {
     "demo": "haptic_glance.gallery.demo",
     "gallery": "haptic_glance.gallery.command",
-    "saliency": "stages.saliency",
-    "points": "stages.points",
-    "simplify": "stages.lod.command",
-    "touch": "stages.imprints.command",
+    "saliency": "haptic_glance.cli.saliency",
+    "points": "haptic_glance.cli.points",
+    "simplify": "haptic_glance.cli.simplify",
+    "touch": "haptic_glance.cli.touch",
     "studio": "haptic_glance.studio.command",
 }
 WHOLE = {
@@ -34,10 +33,11 @@ WHOLE = {
     "gate": "stages.gate",
     REPRO: "stages.repro",
 }
-SHELL = {"completion": "haptic_glance.completion"}
+SHELL = {"completion": "haptic_glance.cli.completion"}
 ABOUT = """\
 exit status: 0 done; 1 something could not be done, which the last lines name; 2 the command line is wrong; 130 stopped
 by Ctrl-C. Results go to stdout, progress to stderr, a line each."""
+CLONE = "belongs to the pipeline, which needs a clone of the repository: there, pip install -e '.[pipeline]'"
 
 
 def main() -> None:
@@ -63,9 +63,11 @@ def main() -> None:
     if chosen.command not in names:
         close = " or ".join(get_close_matches(chosen.command, names)) or "one of those that --help lists"
         parser.error(f"there is no command {chosen.command!r}: try {close}")
+    if chosen.command in WHOLE and pipeline() is None:
+        sys.exit(f"haptic-glance {chosen.command}: {CLONE}")
     sys.argv[1:] = chosen.rest
 
-    from stages.kit.extras import MissingExtra, from_extra
+    from haptic_glance.base.extras import MissingExtra, from_extra
 
     try:
         with from_extra(), quiet_pipe():
@@ -92,7 +94,7 @@ def quiet_pipe() -> Iterator[None]:
 
 def run(command: str, argv: Sequence[str]) -> int:
     """Runs a command, or does what `python -m stages.COMMAND` does, or `dvc repro`; returns the exit status."""
-    from stages.kit.command import errors_in_one_line
+    from haptic_glance.base.errors import errors_in_one_line
 
     if command in {**OWN, **SHELL}:
         errors_in_one_line(command)  # before an import that takes a second, in which a person may press Ctrl-C
@@ -113,9 +115,18 @@ def repro() -> None:
     sys.exit(dvc([REPRO, *sys.argv[1:]]))
 
 
+def pipeline() -> Path | None:
+    """The folder of the pipeline's stages, which a clone has and an installed package has not."""
+    found = find_spec("stages")
+    folders = found.submodule_search_locations if found else None
+    return next((Path(folder) for folder in folders or () if (Path(folder) / "compose.py").is_file()), None)
+
+
 def commands() -> dict[str, Path]:
     """{name: the file that `python -m stages.NAME` runs}, in alphabetical order; nothing is imported."""
-    folder = Path(stages.__path__[0])
+    folder = pipeline()
+    if folder is None:
+        return {}
     files = {".".join(path.relative_to(folder).parts[:-1]): path for path in folder.rglob("__main__.py")}
     files |= {path.stem: path for path in folder.glob("*.py") if path.stem != "__init__"}
     return dict(sorted(files.items()))
@@ -123,15 +134,15 @@ def commands() -> dict[str, Path]:
 
 def listing() -> str:
     """The commands with the first line of their docstrings; of the other stages the names alone."""
-    pipeline = "with the pipeline (pip install 'haptic-glance[pipeline]')"
-    groups = {"with a mesh of your own": OWN, pipeline: WHOLE, "for the shell": SHELL}
+    whole = {"with the pipeline (pip install -e '.[pipeline]')": WHOLE} if pipeline() else {}
+    groups = {"with a mesh of your own": OWN, **whole, "for the shell": SHELL}
     wide, lines = max(len(name) for group in groups.values() for name in group), []
     for title, group in groups.items():
         texts = {name: repro.__doc__ or "" if name == REPRO else docstring(module) for name, module in group.items()}
         lines += [f"{title}:", *(f"  {name:{wide}}  {summary(text)}" for name, text in texts.items()), ""]
-    others = [name for name in commands() if name not in {**OWN, **WHOLE}]
-    stages_of_pipeline = fill(", ".join(others), 100, initial_indent="  ", subsequent_indent="  ")
-    lines += ["its stages, on a data set of params.yaml (python -m stages.NAME is the same):", stages_of_pipeline, ""]
+    if others := [name for name in commands() if name not in {**OWN, **WHOLE}]:
+        names = fill(", ".join(others), 100, initial_indent="  ", subsequent_indent="  ")
+        lines += ["its stages, on a data set of params.yaml (python -m stages.NAME is the same):", names, ""]
     return "\n".join([*lines, "COMMAND --help has options and examples.", "", ABOUT])
 
 
@@ -151,7 +162,9 @@ def about(command: str) -> str:
 def docstring(module: str) -> str:
     """That of a module of `stages` or of this package, which is not imported."""
     package, _, rest = module.partition(".")
-    folder = Path(stages.__path__[0]) if package == "stages" else Path(__file__).parent
+    folder = pipeline() if package == "stages" else Path(__file__).parent
+    if folder is None:
+        return f"This command {CLONE}"
     return ast.get_docstring(ast.parse((folder / f"{rest.replace('.', '/')}.py").read_bytes())) or ""
 
 

@@ -5,17 +5,17 @@ those of haptic_glance.knowing at the places that people look at first."""
 from pathlib import Path
 
 import numpy as np
+from haptic_glance.knowing import Exploration, known_objects, learn, place_at
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from PIL import Image
+from stages.kit.rng import rng
+from stages.lod.look import vivid
 
 from haptic_glance import find_points, saliency, simplify
 from haptic_glance.gallery.demo import sample
-from haptic_glance.knowing import Exploration, known_objects, learn, place_at
 from stages.imprints import Surface
 from stages.kit import Mesh, Viewpoint
-from stages.kit.rng import rng
-from stages.lod.look import vivid
 from stages.meshes import load, normalise, rotate_to_z_up
 from stages.report.drawing import picture, visible
 

@@ -26,11 +26,11 @@ from typing import Any
 
 import numpy as np
 
-from stages.kit import Mesh, Stopwatch
-from stages.kit.command import errors_in_one_line
-from stages.kit.extras import from_extra
+from haptic_glance.base.errors import errors_in_one_line
+from haptic_glance.base.extras import from_extra
+from haptic_glance.base.timing import WALL, Stopwatch, clock
+from haptic_glance.mesh.mesh import Mesh
 from stages.kit.parallel import progress
-from stages.kit.timing import WALL, clock
 
 ROWS = "reports/measurements/{}/salient_points.csv.gz"
 GAZE = "../shared/data/{}.zip"  # as conf/data has it
@@ -116,7 +116,7 @@ def judged(method: Callable, objects: Gazed, train: bool = False) -> list[dict[s
     ValueError
         If the method fails on every object. One on which it fails is named on stderr; its rows have a note, no value.
     """
-    from stages.weights.agreement import agreement
+    from haptic_glance.look.agreement import agreement
 
     rows, failed = [], {}
     for name, (mesh, truth) in progress(objects.items(), "bench"):
@@ -140,10 +140,10 @@ def judged(method: Callable, objects: Gazed, train: bool = False) -> list[dict[s
 
 def gazed(dataset: str, archive: Path, only: Sequence[str] = ()) -> Gazed:
     """{name: (Mesh, GroundTruth)} of the objects of one of SETS; `only` names some of them, none stands for all."""
+    from haptic_glance.look.agreement import GroundTruth
     from stages.meshes.collect import prepare_mesh
     from stages.meshes.schema import Params
     from stages.meshes.sources import SOURCES
-    from stages.weights.agreement import GroundTruth
     from stages.weights.ground_truth import ground_truth_amounts, spread_on_surface
     from stages.weights.ground_truth.source import published_files
     from stages.weights.training_data import SPREAD

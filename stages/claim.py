@@ -18,9 +18,9 @@ from fnmatch import fnmatch
 from pathlib import Path
 from typing import Any
 
-from stages.kit.command import errors_in_one_line
-from stages.kit.extras import from_extra
-from stages.kit.files import read_table
+from haptic_glance.base.errors import errors_in_one_line
+from haptic_glance.base.extras import from_extra
+from haptic_glance.base.files import read_table
 from stages.kit.rows import SUFFIX
 from stages.kit.workspace import Workspace
 

@@ -6,8 +6,8 @@ A changed comment, docstring or type annotation changes none of them; see stages
 import argparse
 from pathlib import Path
 
+from haptic_glance.base.files import write_text
 from stages.kit.code import PACKAGE, ROOT, stage_digests
-from stages.kit.files import write_text
 
 
 def stage_names() -> list[str]:

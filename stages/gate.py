@@ -22,8 +22,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from stages.kit.command import errors_in_one_line
-from stages.kit.files import read_json, write_json
+from haptic_glance.base.errors import errors_in_one_line
+from haptic_glance.base.files import read_json, write_json
 from stages.kit.tolerances import Tolerances, compare, read_tolerances, widest_moves
 from stages.kit.workspace import Workspace
 

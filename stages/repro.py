@@ -21,9 +21,9 @@ from typing import Any
 
 from tqdm import tqdm
 
+from haptic_glance.base.errors import errors_in_one_line
 from stages.kit import cores
 from stages.kit.alone import alone
-from stages.kit.command import errors_in_one_line
 from stages.kit.dvc_files import keep_lock, mend_dvc_files
 
 AT_ONCE = 2  # stages: each has a worker a core; with more, memory is needed for no time gained

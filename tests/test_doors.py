@@ -13,10 +13,10 @@ import trimesh
 import haptic_glance
 from haptic_glance import Mesh, detect, doors, find_points, load, press, press_many, saliency, show, simplify
 from haptic_glance.__main__ import run
+from haptic_glance.lod.export import write_any
+from haptic_glance.mesh.clouds import Cloud
 from haptic_glance.studio.specimen import open_file
-from stages.imprints.layout import Layout
-from stages.lod.export import write_any
-from stages.meshes.clouds import Cloud
+from haptic_glance.touch.layout import Layout
 
 COUNT = 5
 
@@ -236,7 +236,7 @@ def test_a_triangle_soup_and_an_open_patch_are_simplified(body):
 def test_a_count_that_leaves_a_fold_is_answered_by_one_nearby(body, monkeypatch):
     import stages.lod
 
-    inner, asked = stages.lod.simplify, []
+    inner, asked = haptic_glance.lod.simplify, []
 
     def folding(mesh, faces, **options):
         asked.append(faces)

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from haptic_glance.base.files import read_json, write_json
 from stages import gate
-from stages.kit.files import read_json, write_json
 from stages.kit.tolerances import Rule, Tolerances, compare
 
 ROOT = Path(__file__).parents[1]

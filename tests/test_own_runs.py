@@ -11,9 +11,9 @@ import pytest
 import trimesh
 import yaml
 
+from haptic_glance.base.extras import MODULES
+from haptic_glance.base.files import write_text
 from stages.compose import compose
-from stages.kit.extras import MODULES
-from stages.kit.files import write_text
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")

@@ -15,8 +15,8 @@ import pytest
 
 import haptic_glance
 from haptic_glance import __main__ as command
+from haptic_glance.base.extras import EXTRAS, MODULES, MissingExtra, from_extra
 from stages.kit.conf import conf_folder
-from stages.kit.extras import EXTRAS, MODULES, MissingExtra, from_extra
 
 ROOT = Path(__file__).parents[1]
 OURS = sys.stdlib_module_names | {"stages", "haptic_glance"}

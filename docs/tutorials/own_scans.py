@@ -28,7 +28,7 @@ from haptic_glance import (
     write_any,
 )
 from haptic_glance.gallery.demo import sample
-from stages.lod.look import look
+from haptic_glance.lod.pictures import look
 from stages.stability.perturbations import PERTURBATIONS
 
 folder = Path(tempfile.mkdtemp())

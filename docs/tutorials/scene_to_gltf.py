@@ -14,9 +14,9 @@ import matplotlib.pyplot as plt
 
 from haptic_glance import Placed, Scene, budget, fly, load, saliency, simplify
 from haptic_glance.gallery.demo import sample
-from stages.lod.look import draw
-from stages.meshes import normalise, rotate_to_z_up
-from stages.scene import build_lod_chain
+from haptic_glance.lod.pictures import draw
+from haptic_glance.lod.scene import build_lod_chain
+from haptic_glance.mesh import normalise, rotate_to_z_up
 from stages.scene.export import describe, metres_per_unit, write_lod
 from stages.scene.loaded_back import read_lod
 

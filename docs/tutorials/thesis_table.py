@@ -11,7 +11,7 @@ import matplotlib.pyplot as plt
 import pandas as pd
 
 from haptic_glance.gallery.demo import sample
-from stages.kit.split import Split, shared_by
+from haptic_glance.know.split import Split, shared_by
 from stages.kit.stats import interval
 from stages.report.verdict import verdict
 

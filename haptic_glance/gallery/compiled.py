@@ -7,11 +7,11 @@ from collections.abc import Callable
 import numpy as np
 import trimesh
 
-from stages.imprints.warm_up import warm_up as warm_up_touch
-from stages.kit import Mesh
-from stages.lod import simplify
-from stages.lod.attributes import closest
-from stages.lod.kernels.jit import FOLDER
+from haptic_glance.lod import simplify
+from haptic_glance.lod.attributes import closest
+from haptic_glance.lod.kernels.jit import FOLDER
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.touch.warm_up import warm_up as warm_up_touch
 
 
 def compile_beside(report: Callable[[str], None]) -> Callable[[], object]:

@@ -10,9 +10,9 @@ import functools
 
 import numpy as np
 
+from haptic_glance.look.weights.weights import GLANCE
 from stages.kit.run import Rows, StageRun
 from stages.kit.workspace import Workspace, workspace_of_arguments
-from stages.weights.published import GLANCE
 
 from . import nested, viewpoints
 from .schema import COLUMNS, Params

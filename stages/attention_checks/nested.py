@@ -13,14 +13,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stages.kit.files import read_arrays, read_mesh
+from haptic_glance.base.files import read_arrays, read_mesh
+from haptic_glance.look.agreement import GroundTruth, auc, nss
+from haptic_glance.look.points.glance import GlanceDetector
+from haptic_glance.look.points.options import Options
+from haptic_glance.look.weights import LearnedWeights, fit_fixations
+from haptic_glance.look.weights.attention import RIDGE
+from haptic_glance.look.weights.weights import GLANCE, GLANCES
 from stages.kit.run import Rows
-from stages.salient_points.glance import GlanceDetector
-from stages.salient_points.options import Options
-from stages.weights import LearnedWeights, fit_fixations
-from stages.weights.agreement import GroundTruth, auc, nss
-from stages.weights.fixations import RIDGE
-from stages.weights.published import GLANCE, GLANCES
 
 RIDGES = (0.0003, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3)
 FIXED = tuple(GLANCES[GLANCE])  # the features by the choice that was made once, on all objects

@@ -6,13 +6,15 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from stages.conspicuity import CHANNELS
-from stages.kit import Mesh, Stopwatch, Viewpoint
-from stages.kit.files import read_arrays, read_mesh
+from haptic_glance.base.files import read_arrays, read_mesh
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.look.agreement import GroundTruth, auc, nss
+from haptic_glance.look.camera import Viewpoint
+from haptic_glance.look.channels import CHANNELS
+from haptic_glance.look.points import best_viewpoints, compute_maps
+from haptic_glance.look.views import FOUR, TWELVE
+from haptic_glance.mesh.mesh import Mesh
 from stages.kit.run import Rows
-from stages.salient_points import best_viewpoints, compute_maps
-from stages.views import FOUR, TWELVE
-from stages.weights.agreement import GroundTruth, auc, nss
 
 VIEWS: dict[str, Callable[[Mesh], Sequence[Viewpoint]]] = {
     "best": best_viewpoints,

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 
-from stages.kit.rng import rng
+from haptic_glance.base.rng import rng
 
 
 def drawn_sets(

@@ -4,10 +4,10 @@ from pathlib import Path
 
 import numpy as np
 
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.know.features import features, image_features, wavelet_features
 from stages.imprints import read_imprints
-from stages.kit import Stopwatch
 
-from .features import features, image_features, wavelet_features
 from .trials import THESIS_COUNT, TouchSet
 
 

@@ -6,13 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from stages.kit import Stopwatch
-from stages.kit.split import Split
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.know.classifiers import TOUCH, TRAINING
+from haptic_glance.know.protocol import VALIDITY, random_holdout, region_holdout
+from haptic_glance.know.split import Split
+from haptic_glance.know.touches import concatenate_touches, draw_combinations, touch_map
 
-from .prepared import VALIDITY
-from .protocol import random_holdout, region_holdout
-from .scaling import TOUCH, TRAINING
-from .touches import concatenate_touches, draw_combinations, touch_map
 from .trials import NO_DISTANT_TOUCH, OTHERS, TouchSet, Trial
 
 # Of combining the touches of one side of a split, see trials.py.

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from stages.kit.picture import open_picture
+from haptic_glance.base.files import open_picture
 
 FINGERS = ("ff", "mf", "th")  # first and middle finger, thumb
 ELECTRODES = [f"{finger}_biotac_{k}" for finger in FINGERS for k in range(1, 25)]

@@ -28,13 +28,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from stages.kit.split import Split
-
-from .features import IMAGE
-from .prepared import VALIDITY
-from .protocol import random_holdout, region_holdout
-from .scaling import BEFOREHAND, MIN_MAX, SCALINGS, TRAINING
-from .similarity import as_many, confusable, similarity
+from haptic_glance.know.classifiers import BEFOREHAND, MIN_MAX, SCALINGS, TRAINING
+from haptic_glance.know.features import IMAGE, as_many, confusable, similarity
+from haptic_glance.know.protocol import VALIDITY, random_holdout, region_holdout
+from haptic_glance.know.split import Split
 
 THESIS_COUNT = 15  # imprints per object in the thesis, see above
 NO_DISTANT_TOUCH = "an object has no touch farther than the array's width from its held-out region"
@@ -195,8 +192,8 @@ def _region_trial(variant, touched, samples, random_state, kind, side):
 def _rotated_positions(touched, parts, random_state):
     """Located samples whose test part is rotated about the vertical, each object by its own angle.
 
-    The array is upright (stages.imprints.sensor_axes), so such a rotation changes positions and not imprints, except
-    for touches within 18 degrees of the poles.
+    The array is upright (haptic_glance.touch.sensor_axes), so such a rotation changes positions and not imprints,
+    except for touches within 18 degrees of the poles.
     """
     angles = np.random.default_rng(random_state).uniform(0, 2 * np.pi, size=touched.truth.max() + 1)[touched.truth]
     angles[parts[0]] = 0

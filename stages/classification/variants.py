@@ -2,12 +2,11 @@
 
 import numpy as np
 
-from stages.kit.split import Split
+from haptic_glance.know.classifiers import COMPONENTS, TRAINING
+from haptic_glance.know.protocol import VALIDITY, Prepared, repetition_seed
+from haptic_glance.know.split import Split
 
 from .multi_touch import MultiTouchTrials
-from .prepared import VALIDITY, Prepared
-from .protocol import repetition_seed
-from .scaling import COMPONENTS, TRAINING
 from .trials import TouchSet, selection_trials, single_touch_trials
 
 

@@ -12,10 +12,10 @@ import functools
 
 import numpy as np
 
+from haptic_glance.deep.weights import imagenet_state
 from stages.kit.run import Rows, StageRun
 from stages.kit.workspace import Workspace, workspace_of_arguments
 from stages.meshes.classes import read_classes
-from stages.networks.weights import imagenet_state
 
 from . import press, trial
 from .schema import COLUMNS, Params

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import numpy as np
 
-from stages.imprints import press_many
-from stages.kit.files import read_arrays, read_mesh, write_arrays
-from stages.kit.rng import rng
+from haptic_glance.base.files import read_arrays, read_mesh, write_arrays
+from haptic_glance.base.rng import rng
+from haptic_glance.touch import press_many
 from stages.kit.run import Rows
 from stages.salient_points import read_points
 from stages.transfer.touches import choose_vertices

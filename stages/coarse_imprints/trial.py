@@ -5,15 +5,15 @@ from pathlib import Path
 import numpy as np
 import torch
 
+from haptic_glance.base.rng import rng
+from haptic_glance.deep.images import normalise
+from haptic_glance.deep.modes import Task, features
+from haptic_glance.deep.network import build, recalibrate
+from haptic_glance.deep.training import accuracy, predict_probabilities, search_rate, train_model
+from haptic_glance.know.split import Split
 from stages.kit.holdout import Split as Parts
 from stages.kit.repeatable import repeatable
-from stages.kit.rng import rng
 from stages.kit.run import Rows
-from stages.kit.split import Split
-from stages.networks.images import normalise
-from stages.networks.modes import Task, features
-from stages.networks.network import build, recalibrate
-from stages.networks.training import accuracy, predict_probabilities, search_rate, train_model
 from stages.transfer.split import by_touches, stratified_split
 
 from .press import read_imprints

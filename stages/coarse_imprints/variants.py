@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 import torch
 
-from stages.imprints import Skin
-from stages.networks.images import to_images
+from haptic_glance.deep.images import to_images
+from haptic_glance.touch import Skin
 
 RATES = (1e-4, 3e-4, 1e-3, 3e-3, 1e-2)
 

@@ -10,15 +10,15 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from stages.kit.files import read_mesh, read_table, write_arrays
+from haptic_glance.base.files import read_mesh, read_table, write_arrays
+from haptic_glance.look.channels.channels import check_channels, check_symmetry, mask_at_size
+from haptic_glance.look.channels.cropped_view import FILLED, check_background
+from haptic_glance.look.channels.printed import check_formulas
 from stages.kit.run import Rows, StageRun
 from stages.kit.workspace import Workspace, workspace_of_arguments
 from stages.views import read_view
 
-from .background import FILLED, check_background
-from .channels import check_channels, check_symmetry, mask_at_size
 from .measure import background_rows, hue_rows, measured_maps
-from .printed import check_formulas
 from .schema import COLUMNS, Params
 
 

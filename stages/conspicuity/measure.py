@@ -6,11 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from stages.kit import Mesh, Stopwatch
-from stages.views import View
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.look.channels.channels import PERCEIVED, conspicuity, mask_at_size
+from haptic_glance.look.channels.printed import OURS
+from haptic_glance.look.views import View
+from haptic_glance.mesh.mesh import Mesh
 
-from .channels import PERCEIVED, conspicuity, mask_at_size
-from .printed import OURS
 from .silhouette import silhouette_share
 
 

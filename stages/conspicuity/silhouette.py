@@ -3,7 +3,7 @@
 import cv2
 import numpy as np
 
-from .weak_cache import weak_cache
+from haptic_glance.base.weak_cache import weak_cache
 
 BAND = 12 / 900  # of the image's rows: 12 pixels in the thesis's 1200 x 900
 

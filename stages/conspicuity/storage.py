@@ -5,10 +5,10 @@ from pathlib import Path
 
 import numpy as np
 
-from stages.kit import Mesh, Viewpoint
-from stages.kit.files import read_arrays
-
-from .view_maps import ViewMaps
+from haptic_glance.base.files import read_arrays
+from haptic_glance.look.camera import Viewpoint
+from haptic_glance.look.channels.view_maps import ViewMaps
+from haptic_glance.mesh.mesh import Mesh
 
 
 def read_maps(path: str | Path) -> tuple[np.ndarray, np.ndarray, list[Viewpoint], list[str]]:

@@ -14,10 +14,10 @@ from typing import Any
 
 import numpy as np
 
-from stages.imprints import Surface
-from stages.kit import Stopwatch
-from stages.kit.files import read_mesh
-from stages.kit.rng import rng
+from haptic_glance.base.files import read_mesh
+from haptic_glance.base.rng import rng
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.touch import Surface
 from stages.kit.run import Rows, StageRun
 from stages.kit.stats import interval_metrics
 from stages.kit.workspace import Workspace, workspace_of_arguments

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from stages.imprints import Surface, follow_many
+from haptic_glance.touch import Surface, follow_many
 
 from .files import PARTS, Sequences
 from .planes import draw_pairs

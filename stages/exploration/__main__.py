@@ -18,9 +18,9 @@ from collections import defaultdict
 from collections.abc import Mapping
 from typing import Any
 
+from haptic_glance.know.split import Split
 from stages.classification.schema import Params as Classification
 from stages.kit.run import Rows, StageRun
-from stages.kit.split import Split
 from stages.kit.stats import interval_metrics
 from stages.kit.workspace import Workspace, workspace_of_arguments
 

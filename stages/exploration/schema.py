@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 COLUMNS = {
-    "likelihood": "what the belief is computed from: a name of stages.exploration.LIKELIHOODS",
-    "way": "how the next place is chosen: a name of stages.exploration.STRATEGIES",
+    "likelihood": "what the belief is computed from: a name of haptic_glance.know.LIKELIHOODS",
+    "way": "how the next place is chosen: a name of haptic_glance.know.STRATEGIES",
     "stop": "fixed: after `level` touches; confidence: at a belief of `level`",
     "level": "touches or belief at which touching stops",
     "repetition": "number of the random split",

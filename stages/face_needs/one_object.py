@@ -5,15 +5,15 @@ from pathlib import Path
 
 import numpy as np
 
-from stages.classification import features
-from stages.imprints import Surface, press_at, sensor_axes, sensor_normals
-from stages.kit import Mesh
-from stages.kit.files import read_mesh, read_table, write_arrays
+from haptic_glance.base.files import read_mesh, read_table, write_arrays
+from haptic_glance.know import features
+from haptic_glance.lod.scene import Camera, Frames, Level, Placed, Scene
+from haptic_glance.lod.scene.chain import finest
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.touch import Surface, press_at, sensor_axes, sensor_normals
 from stages.kit.run import Rows
 from stages.salient_points import read_points
-from stages.scene import Camera, Frames, Level, Placed, Scene
 from stages.scene.compare import OURS
-from stages.scene.lod_chain import finest
 from stages.scene.storage import read_chain
 
 from .need import coarsest

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 from sklearn.model_selection import StratifiedKFold
 
-from stages.classification import classifier
-from stages.kit.files import read_arrays
+from haptic_glance.base.files import read_arrays
+from haptic_glance.know import classifier
 from stages.kit.run import Rows
 
 from .need import coarsest

@@ -22,7 +22,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from stages.kit.files import write_table
+from haptic_glance.base.files import write_table
 from stages.kit.run import Rows, StageRun
 from stages.kit.workspace import Workspace, workspace_of_arguments
 from stages.meshes.schema import Params as Meshes

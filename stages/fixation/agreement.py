@@ -5,8 +5,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from stages.kit import Mesh
-from stages.weights.agreement import GroundTruth, auc, cc, nss
+from haptic_glance.look.agreement import GroundTruth, auc, cc, nss
+from haptic_glance.mesh.mesh import Mesh
 
 from .centres import centre_distance
 from .concentration import half_share

@@ -7,16 +7,17 @@ from pathlib import Path
 import numpy as np
 import torch
 
-from stages.conspicuity import facing
-from stages.kit import Mesh, Stopwatch, Viewpoint
-from stages.kit.files import read_arrays, read_mesh, write_arrays
-from stages.kit.rng import rng
-from stages.networks.grid import resize_cams
+from haptic_glance.base.files import read_arrays, read_mesh, write_arrays
+from haptic_glance.base.rng import rng
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.deep.cam import grad_cam, resize_cams
+from haptic_glance.look.camera import Viewpoint
+from haptic_glance.look.channels import facing
+from haptic_glance.mesh.mesh import Mesh
 from stages.salient_points import read_saliency
 
 from .agreement import ALL_VIEWS, agreement_rows, task_correlations
 from .backbone import read_maps
-from .cam import grad_cam
 from .controls import centre_prior, random_saliency
 from .finetune import read_cams
 from .fusion import entropy, fuse, highest_level

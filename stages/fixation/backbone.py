@@ -8,11 +8,11 @@ import numpy as np
 import torch
 from torch.fx.experimental.optimization import fuse
 
-from stages.kit import Stopwatch
-from stages.kit.files import read_arrays, sha256, write_arrays
+from haptic_glance.base.files import read_arrays, sha256, write_arrays
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.deep import Network, build, recalibrate
+from haptic_glance.deep.device import choose_device, device_of, explain_out_of_memory, mixed_precision
 from stages.kit.repeatable import repeatable
-from stages.networks import Network, build, recalibrate
-from stages.networks.device import choose_device, device_of, explain_out_of_memory, mixed_precision
 
 from .options import MODES, Method
 from .pictures import network_inputs, read_pictures

@@ -6,17 +6,17 @@ from pathlib import Path
 import numpy as np
 import torch
 
-from stages.kit import Stopwatch
-from stages.kit.files import read_arrays, write_arrays
+from haptic_glance.base.files import read_arrays, write_arrays
+from haptic_glance.base.rng import rng
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.deep import build, normalise, recalibrate, search_rate, train_model
+from haptic_glance.deep.cam import grad_cam
+from haptic_glance.deep.device import choose_device, device_of, explain_out_of_memory, mixed_precision
+from haptic_glance.deep.modes import Task
+from haptic_glance.deep.network import Network
 from stages.kit.repeatable import repeatable
-from stages.kit.rng import rng
-from stages.networks import build, normalise, recalibrate, search_rate, train_model
-from stages.networks.device import choose_device, device_of, explain_out_of_memory, mixed_precision
-from stages.networks.modes import Task
-from stages.networks.network import Network
 
 from .backbone import BATCH
-from .cam import grad_cam
 from .heads import majority_accuracy
 from .options import MODES, Method
 from .pictures import augmentation, network_inputs, read_pictures, to_images

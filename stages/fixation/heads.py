@@ -9,9 +9,9 @@ from sklearn.exceptions import ConvergenceWarning
 from sklearn.linear_model import LogisticRegression
 from threadpoolctl import threadpool_limits
 
-from stages.kit import Stopwatch
-from stages.kit.files import read_arrays, write_arrays
-from stages.kit.rng import rng
+from haptic_glance.base.files import read_arrays, write_arrays
+from haptic_glance.base.rng import rng
+from haptic_glance.base.timing import Stopwatch
 
 from .backbone import read_pooled
 from .options import Method

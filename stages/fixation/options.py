@@ -3,10 +3,10 @@
 import sys
 from dataclasses import dataclass
 
-from stages.kit.fetch import FetchError
-from stages.networks import build
-from stages.networks.device import choose_device
-from stages.networks.network import published_layers
+from haptic_glance.base.fetch import FetchError
+from haptic_glance.deep import build
+from haptic_glance.deep.device import choose_device
+from haptic_glance.deep.network import published_layers
 
 from .schema import Params
 from .vertices import PROJECTIONS

@@ -6,11 +6,11 @@ import numpy as np
 import torch
 from kornia import augmentation as kornia_augmentation
 
-from stages.kit import Stopwatch
-from stages.kit.files import read_arrays, read_mesh, write_arrays
-from stages.networks import normalise
-from stages.views import render
-from stages.weights.convexity import convexity
+from haptic_glance.base.files import read_arrays, read_mesh, write_arrays
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.deep import normalise
+from haptic_glance.look.views import render
+from haptic_glance.look.weights.convexity import convexity
 
 from .schema import Params
 from .shape import curvature_shares, eccentricity

@@ -5,8 +5,9 @@ from itertools import combinations
 
 import numpy as np
 
-from stages.kit import Mesh, Viewpoint
-from stages.kit.rng import rng
+from haptic_glance.base.rng import rng
+from haptic_glance.look.camera import Viewpoint
+from haptic_glance.mesh.mesh import Mesh
 
 ITSELF = "level_3"  # the task to name the object itself
 PLACES = 2000  # random places of a view; their mean distance is then known to one per cent

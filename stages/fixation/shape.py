@@ -1,12 +1,13 @@
 """Measures of an object's shape: Gaussian curvature and eccentricity (T eq. 3.21 to 3.23).
 
-The third measure, convexity (T eq. 3.20), is in stages.weights.convexity, which closes the holes of open meshes.
+The third measure, convexity (T eq. 3.20), is in haptic_glance.look.weights.convexity, which closes the holes of open
+meshes.
 """
 
 import numpy as np
 
-from stages.conspicuity.surface_values import MIN_AREA, smoother
-from stages.kit import Mesh
+from haptic_glance.look.channels.surface import MIN_AREA, smoother
+from haptic_glance.mesh.mesh import Mesh
 
 SMOOTHING_RADIUS = 0.01  # of the diagonal: smaller bumps are noise or tessellation, as for the mean curvature
 FLAT = 1.0  # times 1 / diagonal^2: smaller curvatures count as zero; a ball in the object's bounding box has 12

@@ -8,7 +8,7 @@ import numpy as np
 from sklearn.cluster import KMeans
 from threadpoolctl import threadpool_limits
 
-from stages.kit.files import read_table
+from haptic_glance.base.files import read_table
 
 SHAPE_MEASURES = {  # task -> the measures by which its objects are clustered into classes
     "convexity": ["convexity"],

@@ -8,15 +8,15 @@ import numpy as np
 import torch
 from torch.fx.experimental.optimization import fuse
 
-from stages.kit import Stopwatch
-from stages.kit.files import read_arrays, write_arrays
+from haptic_glance.base.files import read_arrays, write_arrays
+from haptic_glance.base.rng import rng
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.deep import build, normalise, recalibrate
+from haptic_glance.deep.device import choose_device, device_of, explain_out_of_memory
+from haptic_glance.deep.images import Transform
+from haptic_glance.deep.modes import Task
+from haptic_glance.deep.network import Network
 from stages.kit.repeatable import repeatable
-from stages.kit.rng import rng
-from stages.networks import build, normalise, recalibrate
-from stages.networks.device import choose_device, device_of, explain_out_of_memory
-from stages.networks.images import Transform
-from stages.networks.modes import Task
-from stages.networks.network import Network
 
 from .backbone import BATCH, LARGEST
 from .options import LAST_BLOCK, MODES, Method

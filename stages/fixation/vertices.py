@@ -3,8 +3,8 @@
 import numpy as np
 from scipy.ndimage import map_coordinates
 
-from stages.kit import Mesh, Viewpoint
-from stages.kit.camera import project
+from haptic_glance.look.camera import Viewpoint, project
+from haptic_glance.mesh.mesh import Mesh
 
 PROJECTIONS = ("camera", "boxes")  # ours, and T3.3.5 as printed
 
@@ -13,7 +13,8 @@ def project_to_vertices(pictures: np.ndarray, mesh: Mesh, viewpoint: Viewpoint, 
     """(t, n) f8: maps (t, h, w) of one view at its visible vertices, seen (n,) boolean; zero at the others.
 
     The camera gives the position of each vertex in the image to a fraction of a pixel, and rays
-    (stages.conspicuity.facing) decide which vertices are visible. Interpolates bilinearly between pixels.
+    (haptic_glance.look.channels.cropped_view) decide which vertices are visible. Interpolates bilinearly between
+    pixels.
     """
     pictures, seen = _checked(pictures, mesh, seen)
     found = np.zeros((len(pictures), len(seen)))

@@ -1,6 +1,6 @@
 """The viewpoints around an object from which its pictures are rendered (T3.3.2)."""
 
-from stages.kit import Viewpoint
+from haptic_glance.look.camera import Viewpoint
 
 
 def viewpoint_sphere(parallels: int, azimuths: int) -> tuple[Viewpoint, ...]:

@@ -22,10 +22,10 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from haptic_glance.base.errors import errors_in_one_line
+from haptic_glance.base.extras import from_extra
+from haptic_glance.base.files import sha256
 from stages.kit.code import stage_digest
-from stages.kit.command import errors_in_one_line
-from stages.kit.extras import from_extra
-from stages.kit.files import sha256
 
 SHAPES = "household"
 TRIALS = 96  # choices that are proposed: four generations

@@ -10,8 +10,8 @@ from typing import Any, Literal, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from haptic_glance.know.split import Split
 from stages.kit.run import Rows
-from stages.kit.split import Split
 
 from .known import Effort
 

@@ -7,11 +7,11 @@ import numpy as np
 from sklearn import config_context
 from threadpoolctl import threadpool_limits
 
-from stages.classification import classifier, draw_combinations, region_holdout
-from stages.kit import Stopwatch
-from stages.kit.rng import rng
+from haptic_glance.base.rng import rng
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.know import classifier, draw_combinations, region_holdout
+from haptic_glance.know.split import Split
 from stages.kit.run import Rows
-from stages.kit.split import Split
 from stages.sensor_size.protocol import majority
 
 from .objects import Objects

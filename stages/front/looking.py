@@ -5,12 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from stages.conspicuity import ViewMaps, conspicuity
-from stages.conspicuity.channels import mask_at_size
-from stages.kit import Mesh, Stopwatch, Viewpoint
-from stages.salient_points.methods import METHODS
-from stages.salient_points.options import Options
-from stages.views import TWELVE, render, viewpoint_set
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.look.camera import Viewpoint
+from haptic_glance.look.channels import ViewMaps, conspicuity
+from haptic_glance.look.channels.channels import mask_at_size
+from haptic_glance.look.points.methods import METHODS
+from haptic_glance.look.points.options import Options
+from haptic_glance.look.views import TWELVE, render, viewpoint_set
+from haptic_glance.mesh.mesh import Mesh
 
 from .space import SPACE, Choice, settings_of
 

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from stages.kit.files import object_files
-from stages.kit.rng import rng
+from haptic_glance.base.files import object_files
+from haptic_glance.base.rng import rng
 from stages.meshes.classes import read_classes
 
 SIZES = ("medium", "small")  # of five basic shapes, which are equal to the large one once they are scaled

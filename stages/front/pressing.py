@@ -6,9 +6,10 @@ from dataclasses import replace
 import numpy as np
 from scipy.spatial import KDTree
 
-from stages.classification import features
-from stages.imprints import Surface, press_many, touchable
-from stages.kit import Mesh, Stopwatch
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.know import features
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.touch import Surface, press_many, touchable
 
 from .space import Choice, settings_of
 

@@ -3,9 +3,9 @@
 from collections.abc import Iterable
 from pathlib import Path
 
+from haptic_glance.know.split import Split
 from stages.kit.rows import SUFFIX, write_rows
 from stages.kit.run import Rows
-from stages.kit.split import Split
 
 COLUMNS = {
     "rung": "a name of stages.front.halving.RUNGS, `confirmation` or `one_choice`",
@@ -18,7 +18,7 @@ COLUMNS = {
     "level": "faces that the model of an object was to have: a number, or 100% for all",
     "faces": "faces that it has",
     "touches": "touches of one answer",
-    "classifier": "a name of stages.classification.CLASSIFIERS",
+    "classifier": "a name of haptic_glance.know.CLASSIFIERS",
     "simplifying": "seconds, the first part of the column `seconds`",
     "looking": "seconds: pictures, maps, saliency and the choice of the places",
     "pressing": "seconds: the array on the object, once for each touch, and the features",

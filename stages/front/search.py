@@ -5,9 +5,9 @@ import time
 from pathlib import Path
 from typing import Any
 
-from stages.kit.extras import from_extra
-from stages.kit.files import read_json, write_json
-from stages.kit.rng import rng
+from haptic_glance.base.extras import from_extra
+from haptic_glance.base.files import read_json, write_json
+from haptic_glance.base.rng import rng
 from stages.kit.run import Rows
 
 from .halving import CONFIRMATION, DIRECTIONS, RUNGS, aims, best_share, losses, ranks, smallest_of

@@ -11,12 +11,12 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from stages.kit import Stopwatch
-from stages.kit.files import read_arrays, read_json, read_mesh, write_arrays, write_json
-from stages.lod import InfeasibleTarget, simplify
-from stages.lod.targets import face_count
-from stages.salient_points.methods import METHODS, method_named
-from stages.salient_points.options import Options
+from haptic_glance.base.files import read_arrays, read_json, read_mesh, write_arrays, write_json
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.lod import InfeasibleTarget, simplify
+from haptic_glance.lod.export import face_count
+from haptic_glance.look.points.methods import METHODS, method_named
+from haptic_glance.look.points.options import Options
 
 from .looking import MOST, looks
 from .pressing import press_both

@@ -5,13 +5,13 @@ from dataclasses import asdict, dataclass, fields, replace
 from functools import lru_cache
 from typing import Any
 
+from haptic_glance.look.points.methods import method_named
 from stages.classification.schema import Params as Classification
 from stages.compose import compose
 from stages.conspicuity.schema import Params as Conspicuity
 from stages.imprints.schema import Params as Imprints
 from stages.kit.params import check_section
 from stages.lod.schema import Params as Lod
-from stages.salient_points.methods import method_named
 from stages.salient_points.schema import Params as SalientPoints
 from stages.views.schema import Params as Views
 

@@ -2,10 +2,9 @@
 
 import numpy as np
 
-from stages.kit import RayScene
-from stages.meshes.load import MeshLike
-
-from .surface import LIFT, Surface
+from haptic_glance.mesh.files import MeshLike
+from haptic_glance.mesh.rays import RayScene
+from haptic_glance.touch.surface import LIFT, Surface
 
 
 class FaceCentres(Surface):

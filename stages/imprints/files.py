@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from stages.kit.files import read_arrays, write_arrays
+from haptic_glance.base.files import read_arrays, write_arrays
 
 PARTS = ("images", "vertices", "positions", "pitch")
 

@@ -20,8 +20,9 @@ from typing import Any
 
 from joblib import cpu_count
 
+from haptic_glance.base.extras import from_extra
+
 from .code import stage_digest
-from .extras import from_extra
 from .parallel import Task
 
 with from_extra():

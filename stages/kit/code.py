@@ -12,12 +12,13 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]  # the folder that holds the package `stages`
 PACKAGE = "stages"
+PACKAGES = PACKAGE, "haptic_glance"  # what a stage may import
 
 
 def stage_files(stage: str) -> list[Path]:
     """The files that `python -m stages.STAGE` may run or read as part of its code, in alphabetical order."""
     found: set[Path] = set()
-    ahead = {_module(f"{PACKAGE}.{stage}.__main__"), _module(f"{PACKAGE}.{stage}.schema")} - {None}
+    ahead = {_module(f"stages.{stage}.__main__"), _module(f"stages.{stage}.schema")} - {None}
     if not ahead:
         raise ValueError(f"there is no stage {stage}: stages/{stage}/__main__.py is missing")
     while ahead:
@@ -69,7 +70,7 @@ def code_text(text: str) -> str:
 
 @cache
 def imported_files(path: Path) -> set[Path]:
-    """The files of `stages` that one file imports, anywhere in it, and the data files beside it that it reads."""
+    """The files of both packages that one file imports, anywhere in it, and the data files beside it that it reads."""
     tree = ast.parse(path.read_text(encoding="utf-8")) if path.suffix == ".py" else ast.Module([], [])
     here = _package(path)
     found: set[Path] = set()
@@ -86,7 +87,7 @@ def imported_files(path: Path) -> set[Path]:
 
 def _files_behind(source: str, name: str) -> set[Path]:
     """The files behind `from source import name`."""
-    if source.split(".")[0] != PACKAGE:
+    if source.split(".")[0] not in PACKAGES:
         return set()
     submodule = _module(f"{source}.{name}")
     if submodule is not None:
@@ -104,7 +105,7 @@ def _files_behind(source: str, name: str) -> set[Path]:
 
 def _files_of(module: str) -> set[Path]:
     """The files behind `import module`."""
-    path = _module(module) if module.split(".")[0] == PACKAGE else None
+    path = _module(module) if module.split(".")[0] in PACKAGES else None
     return {path} if path else set()
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import yaml
 
-from .files import write_text
+from haptic_glance.base.files import write_text
 
 KEPT = "build/dvc.lock"  # the last sound copy
 

@@ -21,7 +21,7 @@ import diskcache
 import joblib
 from diskcache.core import MODE_PICKLE
 
-from .files import files_below
+from haptic_glance.base.files import files_below
 
 ROWS = "rows.json"  # in the archive of an object, beside its files
 FILES = "files/"

@@ -15,16 +15,16 @@ from typing import Any
 
 import pandas as pd
 
-from .files import read_table, whole_file
-from .split import Split
-from .timing import clock
+from haptic_glance.base.files import read_table, whole_file
+from haptic_glance.base.timing import clock
+from haptic_glance.know.split import Split
 
 COMMON = {
     "dataset": "the data set",
     "item": "the object that the row is about; empty where it is about several",
     "group": "the set, class or scene that the item belongs to, or that the row as a whole is about",
     "method": "what was measured: a detector, channel, network, backend or strategy",
-    "split": "how training and test parts were drawn: a name of stages.kit.split.Split",
+    "split": "how training and test parts were drawn: a name of haptic_glance.know.split.Split",
     "metric": "the name of the number",
     "value": "the number; empty where there is none, and `note` says why",
     "seconds": "how long it took on one core",

@@ -8,9 +8,10 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, TypeVar
 
+from haptic_glance.base.files import files_below, object_files, replace_folder, sha256, write_json
+
 from .alone import alone
 from .code import stage_digest
-from .files import files_below, object_files, replace_folder, sha256, write_json
 from .kept_rows import ItemRows, KeptRows
 from .make import make, scratch
 from .objects import Objects, item_key, key_of

@@ -26,10 +26,10 @@ def interval(
     the Bootstrap, 1993, chapter 13) is too narrow for few values (Hesterberg, What teachers should know about the
     bootstrap, The American Statistician 2015, section 3.3). Then by sqrt(1 + n * shared) where the values are repeated
     splits of the same data: without it an interval shrinks to nothing by splitting more often (Nadeau and Bengio,
-    Inference for the generalization error, 2003). shared: test over training share of a split (stages.kit.split); 0 for
-    values of independent items. Fewer than two values, or values without spread: no interval (NaN), since a resample of
-    equal values says nothing of how others would differ. statistic: np.median, say, in the mean's place. Raises
-    ValueError for values of another shape.
+    Inference for the generalization error, 2003). shared: test over training share of a split
+    (haptic_glance.know.split); 0 for values of independent items. Fewer than two values, or values without spread: no
+    interval (NaN), since a resample of equal values says nothing of how others would differ. statistic: np.median,
+    say, in the mean's place. Raises ValueError for values of another shape.
     """
     values = of_units(values)
     n = len(values)

@@ -6,7 +6,8 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar
 
-from .command import errors_in_one_line
+from haptic_glance.base.errors import errors_in_one_line
+
 from .params import FILE, ParamsError, check_common, check_section, load_params, section_of
 
 Settings = TypeVar("Settings")

@@ -6,18 +6,18 @@ from pathlib import Path
 
 import numpy as np
 
-from stages.kit import Mesh, Stopwatch
-from stages.kit.files import write_mesh
+from haptic_glance.base.files import write_mesh
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.lod.export import face_count, file_name
+from haptic_glance.lod.feasibility import InfeasibleTarget, frozen_faces, smallest_feasible
+from haptic_glance.lod.neighbourhood import neighbourhoods, shrunk_rings
+from haptic_glance.lod.simplify import simplify
+from haptic_glance.lod.task import SOFT, Variant, variant
+from haptic_glance.mesh.mesh import Mesh
 
 from .errors import measure_errors
-from .feasibility import InfeasibleTarget, frozen_faces, smallest_feasible
 from .inputs import ObjectInputs
-from .neighbourhood import neighbourhoods
 from .schema import Params
-from .shrink import shrunk_rings
-from .simplify import simplify
-from .targets import face_count, file_name
-from .variant import SOFT, Variant, variant
 
 
 @dataclass(frozen=True)

@@ -6,15 +6,15 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from stages.kit.files import read_arrays, read_mesh, write_table
+from haptic_glance.base.files import read_arrays, read_mesh, write_table
+from haptic_glance.lod.perceptual import take_pictures
+from haptic_glance.look.views import viewpoint_set
 from stages.kit.run import Rows, StageRun
 from stages.kit.workspace import Workspace
 from stages.salient_points import read_saliency, read_strong_points
-from stages.views import viewpoint_set
 
 from .cell import measure_cells
 from .inputs import ObjectInputs
-from .perceptual import take_pictures
 from .schema import COLUMNS, Params
 from .summary import summarise
 from .warm_up import warm_up

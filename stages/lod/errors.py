@@ -1,12 +1,13 @@
 """All errors of one simplified mesh, each with its cost."""
 
-from stages.kit import Mesh, Stopwatch
-from stages.views import viewpoint_set
-from stages.weights.published import GLANCE
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.lod.errors import surface_errors
+from haptic_glance.lod.perceptual import picture_errors, take_pictures
+from haptic_glance.look.views import viewpoint_set
+from haptic_glance.look.weights.weights import GLANCE
+from haptic_glance.mesh.mesh import Mesh
 
 from .inputs import ObjectInputs
-from .metro import surface_errors
-from .perceptual import picture_errors, take_pictures
 from .schema import Params
 
 SALIENCY_METHOD = GLANCE  # its saliency weights the salient error of all methods

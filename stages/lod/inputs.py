@@ -5,9 +5,8 @@ from functools import cached_property
 
 import numpy as np
 
-from stages.kit import Mesh
-
-from .perceptual import Analysis, analyse
+from haptic_glance.lod.perceptual import Analysis, analyse
+from haptic_glance.mesh.mesh import Mesh
 
 
 @dataclass(frozen=True)

@@ -5,10 +5,9 @@ import functools
 import numpy as np
 import trimesh
 
-from stages.kit import Mesh
-
-from .metro import metro
-from .simplify import BACKEND, simplify
+from haptic_glance.lod.errors import metro
+from haptic_glance.lod.simplify import BACKEND, simplify
+from haptic_glance.mesh.mesh import Mesh
 
 FACES = 200  # of 1,280: few enough that every step of the backends runs
 

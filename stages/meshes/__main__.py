@@ -14,15 +14,15 @@ from pathlib import Path
 
 import pandas as pd
 
-from stages.kit import Stopwatch
-from stages.kit.files import write_mesh, write_table
+from haptic_glance.base.files import write_mesh, write_table
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.mesh.headers import MeshError
+from haptic_glance.mesh.materials import COLOURS
 from stages.kit.run import Rows, StageRun
 from stages.kit.workspace import Workspace, workspace_of_arguments
 
 from .classes import CLASSES, chosen_objects, small_classes
 from .collect import prepare_mesh
-from .colours import COLOURS
-from .load import MeshError
 from .schema import Params
 from .sources import SOURCES, MeshFile
 

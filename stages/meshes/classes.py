@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from stages.kit.files import read_table
+from haptic_glance.base.files import read_table
 
 CLASSES = "classes.csv"  # in data/SET/meshes: the class of each object, in the order of meshes.classes
 

@@ -7,18 +7,18 @@ import numpy as np
 from scipy.sparse.csgraph import connected_components
 from trimesh.resolvers import ZipResolver
 
-from stages.kit import Mesh
-from stages.kit.axes import AUTO
-from stages.kit.fetch import FetchError
+from haptic_glance.base.fetch import FetchError
+from haptic_glance.mesh.axes import AUTO
+from haptic_glance.mesh.clouds import DEPTH
+from haptic_glance.mesh.files import parse
+from haptic_glance.mesh.headers import MeshError
+from haptic_glance.mesh.materials import coloured
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.plane import remove_plane
+from haptic_glance.mesh.repair import clean, normalise, rotate_to_z_up
+from haptic_glance.mesh.upright import settled
 
-from .clean import clean
-from .clouds import DEPTH
-from .colours import coloured
-from .load import MeshError, parse
-from .normalise import normalise, rotate_to_z_up
-from .plane import remove_plane
 from .sources import MeshFile
-from .upright import settled
 
 
 def prepare_mesh(item: MeshFile, remove_table: bool = False, colours: str = "vertex") -> tuple[Mesh, dict]:

@@ -12,11 +12,11 @@ from pathlib import Path, PurePosixPath
 
 import numpy as np
 
-from stages.kit.fetch import FetchError, cache_folder, debian_files, fetch_debian, read_members, zipped
-from stages.kit.files import whole_file
+from haptic_glance.base.fetch import FetchError, cache_folder, debian_files, fetch_debian, read_members, zipped
+from haptic_glance.base.files import whole_file
+from haptic_glance.mesh.materials import obj_vertices
 
 from .beside import files_named
-from .materials import obj_vertices
 
 PACKAGE = "sweethome3d-furniture_1.8-1_all.deb"
 HASH = "3ccb90c63f9525e887a767b9cd5c8b6933b8b6b2973a615a5359ee68a2118668"

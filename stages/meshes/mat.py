@@ -11,9 +11,8 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from stages.kit.fetch import LARGEST
-
-from .headers import MeshError
+from haptic_glance.base.fetch import LARGEST
+from haptic_glance.mesh.headers import MeshError
 
 MATRIX, COMPRESSED, CELLS, TEXT = 14, 15, 1, 4
 NUMBERS = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 9: "f8", 12: "i8", 13: "u8"}

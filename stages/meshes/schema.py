@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from stages.kit.axes import axis_named
+from haptic_glance.mesh.axes import axis_named
 
 
 @dataclass

@@ -9,11 +9,12 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from stages.kit.fetch import FetchError, fetch_package, read_members, zipped
+from haptic_glance.base.fetch import FetchError, fetch_package, read_members, zipped
+from haptic_glance.mesh.files import FORMATS
+from haptic_glance.mesh.headers import MeshError
 
 from .beside import files_beside
 from .furniture import FURNITURE, LICENCES, furniture_files, material_files
-from .load import FORMATS, MeshError
 from .mat import read_mat
 from .schema import Params
 
@@ -110,7 +111,7 @@ def _furniture_file(extract, name, creator, unit):
 
 
 def folder(settings: Params) -> list[MeshFile]:
-    """The user's own meshes: every mesh, point cloud and depth image below a folder (stages.meshes.load)."""
+    """The user's own meshes: every mesh, point cloud and depth image below a folder (haptic_glance.mesh.files)."""
     root = Path(settings.folder).expanduser()
     if not settings.folder or not root.is_dir():
         raise MeshError(f"meshes.folder={settings.folder!r} is not a folder: set it to the folder of your meshes")

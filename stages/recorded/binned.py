@@ -16,8 +16,8 @@ from sklearn.model_selection import RepeatedStratifiedKFold
 from sklearn.pipeline import make_pipeline
 from sklearn.svm import SVC
 
-from stages.classification import CLASSIFIERS, classifier
-from stages.classification.scaling import COMPONENTS
+from haptic_glance.know import CLASSIFIERS, classifier
+from haptic_glance.know.classifiers import COMPONENTS
 
 BINS = (1, 5, 10, 20, 40)  # tried: the whole touch to parts of 6 to 8 steps
 FOLDS = 5

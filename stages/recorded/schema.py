@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 COLUMNS = {
-    "classifier": "a name of stages.classification.CLASSIFIERS, or majority: always the commonest answer",
-    "scaling": "of pressure images before the classifier: a name of stages.classification.scaling.SCALINGS",
+    "classifier": "a name of haptic_glance.know.CLASSIFIERS, or majority: always the commonest answer",
+    "scaling": "of pressure images before the classifier: a name of haptic_glance.know.classifiers.SCALINGS",
     "repetition": "number of the random split, or of the drawn set of classes",
     "train": "touches trained on",
     "test": "touches tested on",

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from haptic_glance.know.split import Split
 from stages.kit.run import Rows, StageRun
-from stages.kit.split import Split
 
 from .binned import binned, choose
 from .touch_series import TouchSeries

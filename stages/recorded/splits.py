@@ -3,9 +3,9 @@
 import numpy as np
 from sklearn.model_selection import train_test_split
 
-from stages.classification.protocol import HOLDOUT
-from stages.kit.rng import rng
-from stages.kit.split import Split
+from haptic_glance.base.rng import rng
+from haptic_glance.know.protocol import HOLDOUT
+from haptic_glance.know.split import Split
 
 
 def split_number(seed: int, repetition: int) -> int:

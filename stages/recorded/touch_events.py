@@ -11,10 +11,10 @@ from pathlib import Path
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from stages.kit import Stopwatch
-from stages.kit.rng import rng
+from haptic_glance.base.rng import rng
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.know.split import Split
 from stages.kit.run import Rows, StageRun
-from stages.kit.split import Split
 
 from .binned import METHODS, Choice, binned, choose, foldings
 from .touch_series import TouchSeries, spread_taxels

@@ -12,11 +12,11 @@ import sys
 
 import numpy as np
 
-from stages.kit.fetch import FetchError
+from haptic_glance.base.fetch import FetchError
+from haptic_glance.deep.training import CONVERGED, check_passes
+from haptic_glance.deep.weights import imagenet_state
 from stages.kit.run import Rows, StageRun
 from stages.kit.workspace import Workspace, workspace_of_arguments
-from stages.networks.learning import CONVERGED, check_passes
-from stages.networks.weights import imagenet_state
 from stages.recorded.schema import Params as RecordedParams
 
 from .neighbours import neighbour_rows

@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from stages.classification import classifier
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.know import classifier
 from stages.classification.recorded import read_grasps, read_pressure_images
-from stages.kit import Stopwatch
 from stages.recorded.biotac_grasps import Model, publisher_split_rows, recognition_rows
 from stages.recorded.pressure_images import describe
 from stages.recorded.splits import SPLITS, split_number

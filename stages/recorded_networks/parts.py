@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from stages.kit.split import Split
+from haptic_glance.know.split import Split
 from stages.recorded.splits import SPLITS
 
 from .sources import Recording

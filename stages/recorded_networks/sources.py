@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
+from haptic_glance.know.split import Split
 from stages.classification.recorded import read_grasps, read_pressure_images
-from stages.kit.split import Split
 from stages.transfer.recorded import (
     Recorded,
     grasp_images,

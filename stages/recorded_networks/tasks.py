@@ -6,10 +6,10 @@ from collections.abc import Callable
 import numpy as np
 import torch
 
-from stages.networks.device import choose_device
-from stages.networks.images import augmentation, normalise, to_images
-from stages.networks.modes import Task
-from stages.networks.network import Network, build, recalibrate
+from haptic_glance.deep.device import choose_device
+from haptic_glance.deep.images import augmentation, normalise, to_images
+from haptic_glance.deep.modes import Task
+from haptic_glance.deep.network import Network, build, recalibrate
 
 from .schema import Params
 from .sources import Recording

@@ -16,7 +16,7 @@ from typing import Any
 
 import pandas as pd
 
-from stages.kit.files import replace_folder, write_json, write_table, write_text
+from haptic_glance.base.files import replace_folder, write_json, write_table, write_text
 from stages.kit.parallel import parallel_map
 from stages.kit.workspace import workspace_of_arguments
 

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from stages.kit.split import shared_by
+from haptic_glance.know.split import shared_by
 
 Phrases = Mapping[tuple[str, Any], str]  # (column, value) -> words
 Side = Mapping[str, Any]  # column -> value; a tuple: the mean of several; a Pick: one of several, by its mean

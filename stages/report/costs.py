@@ -2,7 +2,7 @@
 
 import pandas as pd
 
-from stages.salient_points import METHODS
+from haptic_glance.look.points import METHODS
 
 from .results import NotRun, Results
 

@@ -10,10 +10,9 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from stages.kit import Mesh, RayScene, Viewpoint
-from stages.kit.camera import pixel_rays, pixels_per_unit, project
-from stages.kit.mesh import unit
-from stages.kit.rays import barycentric
+from haptic_glance.look.camera import Viewpoint, pixel_rays, pixels_per_unit, project
+from haptic_glance.mesh.mesh import Mesh, unit
+from haptic_glance.mesh.rays import RayScene, barycentric
 
 from .style import GREY, MAP, plt
 

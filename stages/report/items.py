@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure as Drawing
 
-from stages.kit.files import write_table, write_text
+from haptic_glance.base.files import write_table, write_text
 
 from .cells import filled
 from .markdown import as_text, markdown_table

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from matplotlib.figure import Figure as Drawing
 
-from stages.kit.files import read_json, write_json
+from haptic_glance.base.files import read_json, write_json
 
 from .items import Figure
 from .results import NotRun, Results, there

@@ -7,7 +7,7 @@ from typing import Any
 
 import pandas as pd
 
-from stages.kit.split import shared_by
+from haptic_glance.know.split import shared_by
 
 from . import grid
 from .claims import Claim

@@ -7,17 +7,17 @@ from pathlib import Path
 
 import numpy as np
 
+from haptic_glance.base.files import write_text
+from haptic_glance.cli.saliency import as_csv, points_of
 from haptic_glance.gallery.exhibit import Exhibit, Level
 from haptic_glance.gallery.page import build_page
+from haptic_glance.lod import vertex_errors
+from haptic_glance.lod.export import write_any
+from haptic_glance.lod.pictures import coloured, look
+from haptic_glance.look.points import Detection
+from haptic_glance.look.points.find import scores_of
+from haptic_glance.touch.places import UserMesh
 from stages.imprints import read_imprints
-from stages.imprints.user_mesh import UserMesh
-from stages.kit.files import write_text
-from stages.lod import vertex_errors
-from stages.lod.export import write_any
-from stages.lod.look import coloured, look
-from stages.saliency import as_csv, points_of
-from stages.salient_points import Detection
-from stages.salient_points.find import scores_of
 
 from .results import NotRun, Results
 

@@ -73,8 +73,9 @@ def prose(text: str) -> str:
 
 
 def part(name: str) -> str:
-    """A file of the package's page folder."""
-    return resources.files(__package__ or "").joinpath("page", name).read_text(encoding="utf-8")
+    """A file of the package's page folder, or of the viewer of meshes that the library's gallery has."""
+    folders = resources.files(__package__ or "") / "page", resources.files("haptic_glance.gallery") / "viewer"
+    return next(folder / name for folder in folders if (folder / name).is_file()).read_text(encoding="utf-8")
 
 
 def script_json(value: object) -> str:

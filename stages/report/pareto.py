@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import Locator, LogLocator, MaxNLocator
 from numpy.typing import ArrayLike
 
-from stages.kit.timing import CLOCK, WALL
+from haptic_glance.base.timing import CLOCK, WALL
 
 from .items import Figure
 from .markdown import number

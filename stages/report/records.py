@@ -14,7 +14,7 @@ from typing import Any
 
 import pandas as pd
 
-from stages.kit.files import read_json, sha256, write_text
+from haptic_glance.base.files import read_json, sha256, write_text
 from stages.kit.rows import SUFFIX
 
 from .items import Built, Figure, Table

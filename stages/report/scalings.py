@@ -2,7 +2,7 @@
 
 import pandas as pd
 
-from stages.classification.scaling import BEFOREHAND, MIN_MAX, TRAINING, TWICE
+from haptic_glance.know.classifiers import BEFOREHAND, MIN_MAX, TRAINING, TWICE
 
 READINGS = {  # beside ours, TRAINING
     BEFOREHAND: "all data standardised beforehand (T4.2.4)", TWICE: "components standardised, too",

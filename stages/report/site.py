@@ -7,7 +7,7 @@ from string import Template
 from types import ModuleType
 from typing import Any
 
-from stages.kit.files import write_text
+from haptic_glance.base.files import write_text
 
 from .cells import CLAIMS
 from .claims_page import claims_main

@@ -9,7 +9,7 @@ from typing import Any
 import matplotlib
 from PIL import Image
 
-from stages.kit.files import whole_file
+from haptic_glance.base.files import whole_file
 
 matplotlib.use("Agg")  # no screen where pipelines run
 import matplotlib.pyplot as plt  # noqa: E402

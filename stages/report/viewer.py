@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 from scipy.spatial import KDTree
 
-from stages.kit import Mesh
-from stages.kit.packing import SHADES, Level, ordered, pack, viewer_data
-from stages.lod import vertex_errors
-from stages.lod.shown import shown_mesh
+from haptic_glance.base.packing import SHADES, Level, ordered, pack, viewer_data
+from haptic_glance.lod import vertex_errors
+from haptic_glance.lod.export import shown_mesh
+from haptic_glance.mesh.mesh import Mesh
 
 from .drawing import colour_map, vivid
 from .results import NotRun, Results, some

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from stages.kit.split import Split
+from haptic_glance.know.split import Split
 
 from .claims import Claim, Pick, Side
 from .markdown import number

@@ -12,17 +12,17 @@ import functools
 import sys
 from pathlib import Path
 
+from haptic_glance.base.files import read_arrays, read_mesh
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.look.points.methods import find_all, method_named, split_runnable
+from haptic_glance.look.points.options import Options
+from haptic_glance.look.weights import read_learned_weights
 from stages.conspicuity import read_view_maps
-from stages.kit import Stopwatch
-from stages.kit.files import read_arrays, read_mesh
 from stages.kit.run import Rows, StageRun
 from stages.kit.workspace import Workspace, workspace_of_arguments
-from stages.weights import read_learned_weights
 
 from .agreement import agreement_rows
 from .measure import measurement_rows, summary
-from .methods import find_all, method_named, split_runnable
-from .options import Options
 from .schema import Params
 from .storage import write_points
 

@@ -4,12 +4,11 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from stages.kit import Mesh
-from stages.weights.agreement import GroundTruth, agreement, interest_point_errors
+from haptic_glance.look.agreement import GroundTruth, agreement, interest_point_errors
+from haptic_glance.look.points.options import Detection
+from haptic_glance.mesh.mesh import Mesh
 from stages.weights.ground_truth import spread_on_surface
 from stages.weights.training_data import SPREAD
-
-from .options import Detection
 
 TOLERANCES = (0.02, 0.05, 0.1)  # of the diagonal: where the errors of the points are measured
 HUMAN = "human"  # the ground truth scored against itself: the best that a density of this smoothness can reach

@@ -6,10 +6,9 @@ import numpy as np
 import pandas as pd
 from scipy.spatial import cKDTree  # pyright: ignore[reportAttributeAccessIssue] (compiled, without a stub)
 
-from stages.kit import Mesh
+from haptic_glance.look.points.options import Detection
+from haptic_glance.mesh.mesh import Mesh
 from stages.kit.rows import some_rows
-
-from .options import Detection
 
 SUMMARISED = ("points", "points_strong", "spread", "saliency_at_points", "nss", "auc")  # metrics that the gate checks
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 class Params:
     """What finds the points, and how many."""
 
-    methods: list[str]  # names of METHODS in stages/salient_points/methods.py
+    methods: list[str]  # names of METHODS in haptic_glance/look/points/methods.py
     count: int  # points an object and method
     selection: str  # how points are taken from a saliency map: suppression (T3.2.5) or centroid (T3.1.2)
     radius: float  # least distance between points, in units of the mesh (bounding sphere 0.5)

@@ -5,9 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from stages.kit.files import read_arrays, write_arrays
-
-from .options import Detection
+from haptic_glance.base.files import read_arrays, write_arrays
+from haptic_glance.look.points.options import Detection
 
 
 def write_points(path: Path, found: Mapping[str, Detection]) -> None:

@@ -11,15 +11,15 @@ rendered is not rendered again, but for the network, which starts anew. Settings
 import functools
 from pathlib import Path
 
-from stages.kit import Stopwatch
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.lod.scene.chain import build_lod_chain
+from haptic_glance.lod.task import variant
 from stages.kit.kept_rows import KeptRows
 from stages.kit.run import Rows, StageRun
 from stages.kit.workspace import Workspace, workspace_of_arguments
-from stages.lod.variant import variant
 
 from .compare import OURS, PLAIN
 from .export import export
-from .lod_chain import build_lod_chain
 from .measure import Case, measure, measure_network
 from .network import CURVE, evaluation_rows
 from .read import MESH, POINTS, read_object, report_missing, scene_of, scenes_of

@@ -6,17 +6,15 @@ from pathlib import Path
 
 import numpy as np
 
-from stages.kit import Stopwatch
-from stages.kit.mesh import Mesh
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.lod.scene.budget import budget, cheapest
+from haptic_glance.lod.scene.camera import Scene
+from haptic_glance.lod.scene.chain import ERRORS, Level
+from haptic_glance.lod.scene.frames import Frames, Plan
+from haptic_glance.mesh.mesh import Mesh
 
 from . import rivals
-from .budget import budget
-from .frames import Frames
-from .levels import Plan
-from .lod_chain import ERRORS, Level
 from .online import online
-from .place import Scene
-from .plan import cheapest
 from .storage import finest_levels, read_chains
 
 OURS, PLAIN = "ours", "plain"  # kinds of LOD chain: with the salient regions spared, and without

@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from stages.kit.rng import rng
+from haptic_glance.base.rng import rng
+from haptic_glance.lod.scene.camera import Box
 
-from .place import Box
 from .schema import Item, Keyframe, Params
 
 GROUND = 0.6, 2.0  # metres a side, from a small table to a rug

@@ -15,14 +15,14 @@ import pandas as pd
 import trimesh
 from trimesh.exchange.gltf import export_glb
 
-from stages.kit import Mesh
-from stages.kit.files import read_mesh, read_table, whole_file, write_json
-from stages.meshes.up import Y_UP
+from haptic_glance.base.files import read_mesh, read_table, whole_file, write_json
+from haptic_glance.lod.scene.camera import Scene, world_mesh
+from haptic_glance.lod.scene.chain import Level, finest
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.up import Y_UP
 
 from .compare import OURS
 from .loaded_back import EXTENSION, check_glb, read_lod
-from .lod_chain import Level, finest
-from .place import Scene, world_mesh
 from .read import MESH
 from .schema import Params
 from .storage import read_chain

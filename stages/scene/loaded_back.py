@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import trimesh
 
-from stages.kit import Mesh
+from haptic_glance.mesh.mesh import Mesh
 
 EXTENSION = "MSFT_lod"
 SINGLE = 1e-6  # of the largest coordinate: glTF stores 4 bytes a number

@@ -10,15 +10,15 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from stages.kit.files import write_arrays, write_table
+from haptic_glance.base.files import write_arrays, write_table
+from haptic_glance.lod.scene.frames import Plan
+from haptic_glance.lod.scene.pictures import displacement_picture, shaded
 from stages.kit.run import Rows
 from stages.salient_points import read_strong_points
 
 from .compare import ASKED, MATCHED, OTHERS, OURS, MethodPlan, SceneSetup, compare, compare_network, load_setup
 from .counts.evaluate import COMBINED
-from .levels import Plan
 from .network import fit_network, predicted_counts
-from .pictures import displacement_picture, shaded
 from .read import POINTS, read_object, scene_of
 from .rows import frame_rows, object_rows, plan_rows, saved_rows
 from .schema import Params

@@ -6,14 +6,14 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from stages.kit.files import read_mesh, read_table
+from haptic_glance.base.files import read_mesh, read_table
+from haptic_glance.lod.scene.frames import Frames
 from stages.kit.run import Rows
 from stages.salient_points import read_strong_points
 
 from .counts import Counts, evaluate_counts, fit_counts, read_curves
 from .counts.evaluate import Map
 from .counts.models import Points
-from .frames import Frames
 from .read import MESH, POINTS
 
 CURVE = "lod/{}/curve.csv"  # of an object, below data/SET

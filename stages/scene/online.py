@@ -4,9 +4,8 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from .frames import Frames
-from .levels import Plan
-from .lod_chain import Level
+from haptic_glance.lod.scene.chain import Level
+from haptic_glance.lod.scene.frames import Frames, Plan
 
 BEHIND = 1e-9  # metres: the depth of what reaches behind the camera
 Error = Callable[[int, int], float]  # (frame, level) -> error on the screen

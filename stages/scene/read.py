@@ -7,16 +7,15 @@ from typing import Any
 
 import numpy as np
 
-from stages.kit import Mesh
-from stages.kit.files import read_mesh, read_table
+from haptic_glance.base.files import read_mesh, read_table
+from haptic_glance.lod.scene.camera import Placed, Scene, bounds, fly
+from haptic_glance.lod.task import variant
+from haptic_glance.mesh.mesh import Mesh
 from stages.lod.cell import keep_rule
 from stages.lod.inputs import ObjectInputs
-from stages.lod.variant import variant
 from stages.salient_points import read_saliency, read_strong_points
 
-from .camera import fly
 from .drawn import draw_scene
-from .place import Placed, Scene, bounds
 from .schema import Params
 
 MESH, POINTS = "meshes/{}.npz", "salient_points/{}.npz"  # of an object, below data/SET

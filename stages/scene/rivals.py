@@ -4,9 +4,8 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from .frames import Frames
-from .levels import Plan
-from .lod_chain import Level
+from haptic_glance.lod.scene.chain import Level
+from haptic_glance.lod.scene.frames import Frames, Plan
 
 HALVINGS = 14  # of the span of the tuned factor, which is then known to 0.1 %
 SPAN = (1e-3, 1e3)

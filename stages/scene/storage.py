@@ -6,10 +6,9 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from stages.kit import Mesh
-from stages.kit.files import read_arrays, read_mesh, read_table, write_arrays, write_mesh, write_table
-
-from .lod_chain import Level, finest
+from haptic_glance.base.files import read_arrays, read_mesh, read_table, write_arrays, write_mesh, write_table
+from haptic_glance.lod.scene.chain import Level, finest
+from haptic_glance.mesh.mesh import Mesh
 
 DIGITS = 9  # decimals of an error, enough for a mesh of unit size
 

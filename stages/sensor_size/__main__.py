@@ -16,12 +16,12 @@ import numpy as np
 from sklearn import config_context
 from threadpoolctl import threadpool_limits
 
-from stages.imprints import press_many, touchable, warm_up
-from stages.kit import Stopwatch
-from stages.kit.files import read_mesh
-from stages.kit.rng import rng
+from haptic_glance.base.files import read_mesh
+from haptic_glance.base.rng import rng
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.know.split import Split
+from haptic_glance.touch import press_many, touchable, warm_up
 from stages.kit.run import Rows, StageRun
-from stages.kit.split import Split
 from stages.kit.stats import interval_metrics
 from stages.kit.workspace import Workspace, workspace_of_arguments
 from stages.meshes.classes import read_classes

@@ -6,7 +6,7 @@ from sklearn.pipeline import Pipeline, make_pipeline
 from sklearn.preprocessing import StandardScaler
 from sklearn.svm import SVC
 
-from stages.classification.network import FeedForward
+from haptic_glance.know.network import FeedForward
 
 TREES = 50  # T4.3.1 bags its trees and gives no number
 ITERATIONS = 100_000  # of the SVM; a thousand touches usually need a few thousand

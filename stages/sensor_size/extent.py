@@ -3,8 +3,8 @@
 import numpy as np
 from scipy.sparse.csgraph import connected_components
 
-from stages.imprints import touchable
-from stages.kit import Mesh
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.touch import touchable
 
 EXTENTS = ("points", "region", "disc")
 ARRAY = "16-0.01"  # CELLS-PITCH of the array that they are tried with

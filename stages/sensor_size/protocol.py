@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from stages.kit import Stopwatch
-from stages.kit.rng import rng
-from stages.kit.split import Split
+from haptic_glance.base.rng import rng
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.know.split import Split
 
 from .classifiers import classifier
 

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import torch
 
-from stages.kit.files import read_arrays
+from haptic_glance.base.files import read_arrays
 from stages.kit.run import Rows, StageRun
 from stages.kit.stats import interval_metrics
 from stages.kit.workspace import Workspace, workspace_of_arguments

@@ -9,8 +9,8 @@ from sklearn.pipeline import make_pipeline
 from sklearn.preprocessing import StandardScaler
 from sklearn.svm import SVC
 
-from stages.kit import Stopwatch
-from stages.kit.self_organising_map import NEURONS, SelfOrganisingMap
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.know.self_organising_map import NEURONS, SelfOrganisingMap
 
 from .reduction import MostInformative
 

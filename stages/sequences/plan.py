@@ -4,8 +4,8 @@ import re
 from pathlib import Path
 from typing import NamedTuple
 
+from haptic_glance.know.split import Split
 from stages.contours import read_sequences
-from stages.kit.split import Split
 
 from .dataset import count_sequences, is_divisible
 from .networks import SHORTEST, SMALLEST

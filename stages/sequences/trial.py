@@ -6,12 +6,12 @@ from typing import NamedTuple
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from stages.kit import Stopwatch
-from stages.kit.files import write_arrays
+from haptic_glance.base.files import write_arrays
+from haptic_glance.base.rng import rng
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.know.split import Split
 from stages.kit.holdout import Split as Parts
-from stages.kit.rng import rng
 from stages.kit.run import Rows
-from stages.kit.split import Split
 
 from .classifiers import CONVENTIONAL, Reduced, choose_dimensions
 from .dataset import SequenceData, downsample, read_sequence_data

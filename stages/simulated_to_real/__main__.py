@@ -11,10 +11,10 @@ from pathlib import Path
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from stages.classification import features
+from haptic_glance.base.files import read_arrays, read_mesh, read_table, write_arrays
+from haptic_glance.base.rng import rng
+from haptic_glance.know import features
 from stages.classification.recorded import read_pressure_images
-from stages.kit.files import read_arrays, read_mesh, read_table, write_arrays
-from stages.kit.rng import rng
 from stages.kit.run import Rows, StageRun
 from stages.kit.workspace import Workspace, workspace_of_arguments
 from stages.meshes.classes import read_classes

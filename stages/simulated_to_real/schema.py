@@ -8,7 +8,7 @@ COLUMNS = {
     "aligned": "whether simulated and real features were each scaled by their own mean and deviation",
     "touches": "real touches of each class trained on",
     "repetition": "number of the split",
-    "classifier": "a name of stages.classification.CLASSIFIERS",
+    "classifier": "a name of haptic_glance.know.CLASSIFIERS",
 }
 
 

@@ -3,9 +3,8 @@
 import numpy as np
 import trimesh
 
-from stages.imprints import Skin, Surface, distances_at, indent, press_many, sensor_axes, touchable
-from stages.kit import Mesh
-from stages.kit.mesh import corner_sum
+from haptic_glance.mesh.mesh import Mesh, corner_sum
+from haptic_glance.touch import Skin, Surface, distances_at, indent, press_many, sensor_axes, touchable
 
 PITCH = 1.9  # mm: Tekscan 6077, 27.6 sensels a square centimetre
 LARGE_PITCH = 3.4  # mm, as if the objects were of 56 % of their size: most real ones are smaller than those simulated

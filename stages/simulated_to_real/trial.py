@@ -10,11 +10,11 @@ from sklearn.pipeline import make_pipeline
 from sklearn.preprocessing import StandardScaler
 from threadpoolctl import threadpool_limits
 
-from stages.classification import CLASSIFIERS
-from stages.classification.scaling import COMPONENTS
-from stages.kit import Stopwatch
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.know import CLASSIFIERS
+from haptic_glance.know.classifiers import COMPONENTS
+from haptic_glance.know.split import Split
 from stages.kit.run import Rows
-from stages.kit.split import Split
 from stages.recorded.splits import block_split, split_number
 
 

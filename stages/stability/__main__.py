@@ -28,13 +28,13 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from stages.kit.files import read_arrays, read_mesh, write_arrays
+from haptic_glance.base.files import read_arrays, read_mesh, write_arrays
+from haptic_glance.look.agreement import GroundTruth
+from haptic_glance.look.points.methods import method_named, split_runnable
+from haptic_glance.look.points.options import Options
+from haptic_glance.look.weights import read_learned_weights
 from stages.kit.run import Rows, StageRun
 from stages.kit.workspace import Workspace, workspace_of_arguments
-from stages.salient_points.methods import method_named, split_runnable
-from stages.salient_points.options import Options
-from stages.weights import read_learned_weights
-from stages.weights.agreement import GroundTruth
 
 from .disturbance import AND, Disturbance, disturbances, parts_of
 from .draws import mean_of_draws

@@ -10,7 +10,7 @@ from functools import partial
 
 import numpy as np
 
-from stages.kit import Mesh
+from haptic_glance.mesh.mesh import Mesh
 
 from .broken_faces import (
     burrs,

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from stages.kit import Mesh
+from haptic_glance.mesh.mesh import Mesh
 
 SLIVER_HEIGHT = 1e-6  # height of a sliver over its length
 TETRAHEDRON = np.array([[1.0, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])

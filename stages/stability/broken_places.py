@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from stages.kit import Mesh
+from haptic_glance.mesh.mesh import Mesh
 
 
 def unreferenced(mesh: Mesh, generator: np.random.Generator) -> Mesh:

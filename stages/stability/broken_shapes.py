@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from stages.kit import Mesh
+from haptic_glance.mesh.mesh import Mesh
 
 
 def flat_sheet(_mesh: Mesh, _generator: np.random.Generator) -> Mesh:

@@ -4,7 +4,7 @@ import numpy as np
 import point_cloud_utils as pcu
 import trimesh
 
-from stages.kit import Mesh
+from haptic_glance.mesh.mesh import Mesh
 
 from .surface import FLAT, Surface
 

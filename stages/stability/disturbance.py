@@ -5,9 +5,9 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from stages.kit import Mesh
-from stages.kit.rng import rng
-from stages.lod.nearest import surface_index
+from haptic_glance.base.rng import rng
+from haptic_glance.lod.errors import surface_index
+from haptic_glance.mesh.mesh import Mesh
 
 from .perturbations import PERTURBATIONS, Conditions, Perturbed
 

@@ -4,12 +4,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from stages.conspicuity import ViewMaps, conspicuity
-from stages.conspicuity.channels import REDUCTION, mask_at_size
-from stages.kit import Mesh, camera
-from stages.kit.rays import barycentric
-from stages.views import TWELVE, View, render
-from stages.views.shading import corner_groups, shade
+from haptic_glance.look import camera
+from haptic_glance.look.channels import ViewMaps, conspicuity
+from haptic_glance.look.channels.channels import REDUCTION, mask_at_size
+from haptic_glance.look.views import TWELVE, View, render
+from haptic_glance.look.views.shading import corner_groups, shade
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.rays import barycentric
 
 from .perturbations import Conditions
 

@@ -3,9 +3,9 @@
 import numpy as np
 from scipy.spatial import KDTree
 
-from stages.kit import Mesh
-from stages.salient_points.random_points import random_vertices
-from stages.weights.standardise import standardise
+from haptic_glance.look.points.detectors import random_vertices
+from haptic_glance.look.weights.attention import standardise
+from haptic_glance.mesh.mesh import Mesh
 
 from .perturbations import Perturbed
 

@@ -5,8 +5,8 @@
 import numpy as np
 import pymeshlab
 
-from stages.kit import Mesh
-from stages.lod.targets import face_count
+from haptic_glance.lod.export import face_count
+from haptic_glance.mesh.mesh import Mesh
 
 from .checks import surface_error
 

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
-from stages.classification import classifier
-from stages.kit.files import read_arrays
-from stages.kit.rng import rng
+from haptic_glance.base.files import read_arrays
+from haptic_glance.base.rng import rng
+from haptic_glance.know import classifier
 from stages.kit.run import Rows
 
 from .uses import LEARNED

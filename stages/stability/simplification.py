@@ -11,9 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stages.kit import Mesh, Stopwatch
-from stages.lod import simplify
-from stages.lod.targets import face_count
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.lod import simplify
+from haptic_glance.lod.export import face_count
+from haptic_glance.mesh.mesh import Mesh
 from stages.lod.warm_up import warm_up
 
 from .broken import DAMAGES

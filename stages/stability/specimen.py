@@ -5,8 +5,8 @@ from functools import cached_property
 
 import numpy as np
 
-from stages.kit import Mesh
-from stages.kit.rng import rng
+from haptic_glance.base.rng import rng
+from haptic_glance.mesh.mesh import Mesh
 
 from .broken import DAMAGES
 from .qem_error_curve import QemErrorCurve

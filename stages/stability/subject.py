@@ -5,13 +5,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from stages.kit import Mesh, Stopwatch
-from stages.kit.rng import rng
-from stages.meshes import normalise
-from stages.meshes.orient import orient
-from stages.salient_points.methods import find_all, method_named
-from stages.salient_points.options import Detection, Options
-from stages.weights.agreement import METRICS, GroundTruth
+from haptic_glance.base.rng import rng
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.look.agreement import METRICS, GroundTruth
+from haptic_glance.look.points.methods import find_all, method_named
+from haptic_glance.look.points.options import Detection, Options
+from haptic_glance.mesh import normalise
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.repair import orient
 
 from .disturbance import Disturbance
 from .maps import maps_under_conditions

@@ -11,7 +11,7 @@ import trimesh
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
-from stages.kit import Mesh
+from haptic_glance.mesh.mesh import Mesh
 
 FOLDED = 0.99  # cosine between two neighbours seen along their edge: at most 8 degrees apart
 FLAT = 1e-8  # height of a face over the diagonal, below which it counts as without area

@@ -5,11 +5,11 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.spatial import KDTree
 
-from stages.classification import features
-from stages.imprints import Surface, press_many, touchable
-from stages.kit import Mesh
-from stages.kit.rng import rng
-from stages.lod import simplify, surface_errors
+from haptic_glance.base.rng import rng
+from haptic_glance.know import features
+from haptic_glance.lod import simplify, surface_errors
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.touch import Surface, press_many, touchable
 
 from .disturbance import Disturbance
 from .subject import UNPERTURBED, Findings, Subject

@@ -15,9 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from stages.classification import CLASSIFIERS
+from haptic_glance.know import CLASSIFIERS, SPLITS
 from stages.classification.schema import Params as Classification
-from stages.exploration import SPLITS
 from stages.imprints import read_imprints
 from stages.kit.breaking_point import breaking_point, lead_left
 from stages.kit.run import Rows, StageRun

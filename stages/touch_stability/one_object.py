@@ -2,12 +2,12 @@
 
 from pathlib import Path
 
-from stages.classification import features
+from haptic_glance.base.files import files_below, read_mesh, write_arrays
+from haptic_glance.know import features
+from haptic_glance.look.weights.weights import GLANCE
 from stages.imprints import read_imprints
-from stages.kit.files import files_below, read_mesh, write_arrays
 from stages.kit.run import Rows
 from stages.salient_points import read_saliency
-from stages.weights.published import GLANCE
 
 from .perturbations import PERTURBATIONS
 from .perturbations.coarse_mesh import SOFT

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from sklearn.pipeline import Pipeline
 
-from stages.classification import classifier
-from stages.kit import Stopwatch
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.know import classifier
 
 from .perturbations import PERTURBATIONS
 

@@ -5,9 +5,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from stages.imprints import Surface, press_at, sensor_axes, sensor_normals
-from stages.kit import Mesh
-from stages.kit.rng import rng
+from haptic_glance.base.rng import rng
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.touch import Surface, press_at, sensor_axes, sensor_normals
 
 
 class Touches:

@@ -7,10 +7,10 @@ import numpy as np
 from sklearn import config_context
 from threadpoolctl import threadpool_limits
 
-from stages.classification import features as features_of
-from stages.exploration import SPLITS, split_touches
-from stages.kit.files import read_arrays
-from stages.kit.rng import rng
+from haptic_glance.base.files import read_arrays
+from haptic_glance.base.rng import rng
+from haptic_glance.know import SPLITS, split_touches
+from haptic_glance.know import features as features_of
 from stages.kit.run import Rows
 
 from .denoisers import DENOISERS

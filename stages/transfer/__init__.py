@@ -1,9 +1,8 @@
-"""From vision to touch: networks trained on photographs classify imprints (T chapter 5)."""
+"""Trains networks on the touches of a data set (T chapter 5)."""
 
-from stages.kit.lazy import lazy_names
+from haptic_glance.base.lazy import lazy_names
 
-_MODULES = {  # public name -> its module
-    "HybridNet": "hybrid",
+_MODULES = {
     "Touches": "touches",
     "press_touches": "touches",
     "stratified_split": "split",

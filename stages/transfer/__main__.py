@@ -14,12 +14,12 @@ import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from stages.kit.files import read_mesh
+from haptic_glance.base.files import read_mesh
+from haptic_glance.deep.weights import imagenet_state
 from stages.kit.kept_rows import KeptRows
 from stages.kit.run import Rows, StageRun
 from stages.kit.workspace import Workspace, workspace_of_arguments
 from stages.meshes.classes import read_classes
-from stages.networks.weights import imagenet_state
 
 from . import hybrid_data, hybrid_trial, touches, trial
 from .plan import Plan, check, plan

@@ -5,15 +5,15 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 import torch
 
-from stages.kit.rng import rng
-from stages.networks.device import device_of
+from haptic_glance.base.rng import rng
+from haptic_glance.deep.device import device_of
+from haptic_glance.deep.hybrid import HybridNet, join_senses
+from haptic_glance.deep.pictures import as_images
+from haptic_glance.disturb.picture import IMPRINT, MISSING, PICTURE, damage
 
 from . import fusion
-from .hybrid import HybridNet, join_senses
-from .hybrid_damage import IMPRINT, MISSING, PICTURE, damage
 from .hybrid_data import SenseData, pair_pictures
 from .hybrid_scores import in_batches, row, sense_scores
-from .pictures import as_images
 from .schema import Params
 
 UNDAMAGED = "none"  # the perturbation in rows without any

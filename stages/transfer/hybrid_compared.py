@@ -5,18 +5,16 @@ from pathlib import Path
 
 import numpy as np
 
-from stages.kit.files import write_arrays
-from stages.networks.device import device_of
-from stages.networks.images import normalise
-from stages.networks.network import Network, count_parameters
+from haptic_glance.base.files import write_arrays
+from haptic_glance.deep.device import device_of
+from haptic_glance.deep.hybrid import PRECISIONS, SENSES, HybridNet, load, save, state_arrays
+from haptic_glance.deep.images import normalise
+from haptic_glance.deep.network import Network, count_parameters
 
 from . import fusion
-from .hybrid import SENSES, HybridNet
 from .hybrid_data import SenseData
-from .hybrid_file import load, save, state_arrays
 from .hybrid_scores import in_batches, row, sense_scores, single_sense
 from .onnx_export import export_onnx, onnx_scores
-from .precision import PRECISIONS
 from .schema import Params
 
 

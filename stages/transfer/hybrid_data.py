@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import torch
 
-from stages.kit.files import read_arrays, read_mesh, write_arrays
-from stages.kit.rng import rng
+from haptic_glance.base.files import read_arrays, read_mesh, write_arrays
+from haptic_glance.base.rng import rng
+from haptic_glance.deep.pictures import take_pictures, viewpoints
 
-from .pictures import take_pictures, viewpoints
 from .schema import Params
 from .touches import Touches
 

@@ -6,9 +6,8 @@ from typing import Any
 import numpy as np
 import torch
 
-from stages.networks.device import device_of, explain_out_of_memory
-
-from .hybrid import SENSES, HybridNet, Scores, join_senses
+from haptic_glance.deep.device import device_of, explain_out_of_memory
+from haptic_glance.deep.hybrid import SENSES, HybridNet, Scores, join_senses
 
 BATCH = 64  # images
 

@@ -9,28 +9,27 @@ from typing import NamedTuple, Self
 import numpy as np
 import torch
 
-from stages.kit import Stopwatch
-from stages.kit.files import read_arrays
+from haptic_glance.base.files import read_arrays
+from haptic_glance.base.rng import rng
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.deep.device import choose_device, device_of, explain_out_of_memory
+from haptic_glance.deep.hybrid import SENSES, HybridNet
+from haptic_glance.deep.images import augmentation
+from haptic_glance.deep.modes import finetuned_except, frozen_modules
+from haptic_glance.deep.network import Network, build
+from haptic_glance.deep.pictures import as_images, picture_augmentation
+from haptic_glance.deep.training import train_model
+from haptic_glance.deep.weights import available_weights
 from stages.kit.repeatable import repeatable
-from stages.kit.rng import rng
 from stages.kit.stats import interval_metrics
-from stages.networks.device import choose_device, device_of, explain_out_of_memory
-from stages.networks.images import augmentation
-from stages.networks.layers import frozen_modules
-from stages.networks.modes import finetuned_except
-from stages.networks.network import Network, build
-from stages.networks.training import train_model
-from stages.networks.weights import available_weights
 
 from . import fusion
-from .hybrid import SENSES, HybridNet
 from .hybrid_both import fused_rows
 from .hybrid_compared import comparison_rows, onnx_rows
 from .hybrid_data import SenseData, read_pictures
 from .hybrid_scores import sense_scores
 from .middle import middle_of
 from .new_object import TOUCH, new_object_rows
-from .pictures import as_images, picture_augmentation
 from .schema import Params
 from .split import by_objects, by_touches, stratified_split
 from .touches import Touches, read_touches, sensor_arrays

@@ -1,7 +1,7 @@
 """The shared middle of two networks, in the layer numbers of Matlab and torchvision (T5.5)."""
 
-from stages.networks.layers import frozen_modules
-from stages.networks.network import build
+from haptic_glance.deep.modes import frozen_modules
+from haptic_glance.deep.network import build
 
 
 def middle_of(layers: str) -> tuple[int, int]:

@@ -9,9 +9,8 @@ from pathlib import Path
 import numpy as np
 import torch
 
-from stages.kit.files import whole_file
-
-from .hybrid import SENSES, HybridNet
+from haptic_glance.base.files import whole_file
+from haptic_glance.deep.hybrid import SENSES, HybridNet
 
 OPSET = 18  # of 2022, the oldest that torch's exporter writes without conversion
 INPUT = "images"

@@ -4,15 +4,14 @@ import itertools
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple, Self
 
-from stages.kit.fetch import FetchError
-from stages.networks.device import choose_device
-from stages.networks.layers import is_range, parse_range
-from stages.networks.learning import PRINTED, check_passes
-from stages.networks.modes import MODES
-from stages.networks.network import NETWORKS, SMALLEST, UNNORMALISED, WEIGHTS
-from stages.networks.weights import available_weights, imagenet_state
+from haptic_glance.base.fetch import FetchError
+from haptic_glance.deep.device import choose_device
+from haptic_glance.deep.modes import MODES, is_range, parse_range
+from haptic_glance.deep.network import NETWORKS, SMALLEST, UNNORMALISED, WEIGHTS
+from haptic_glance.deep.training import PRINTED, check_passes
+from haptic_glance.deep.weights import available_weights, imagenet_state
+from haptic_glance.disturb import imprint, picture
 
-from . import disturbed, hybrid_damage
 from .middle import middle_of
 from .schema import Params
 from .split import SPLITS
@@ -83,8 +82,8 @@ def check(settings: Params) -> None:
     if choose_device(settings.device).type == "cuda" and "random_initial" in settings.weights:
         raise ValueError("transfer.weights: features of random_initial are too small for a card's half precision, "
                          "take transfer.device=cpu for it")  # fmt: skip
-    disturbed.check(settings.severities)
-    hybrid_damage.check(settings.hybrid_severities)
+    imprint.check(settings.severities)
+    picture.check(settings.hybrid_severities)
     for layers in settings.hybrid_middles:
         middle_of(layers)
 

@@ -3,9 +3,9 @@
 from collections import defaultdict
 from collections.abc import Mapping
 
+from haptic_glance.deep.device import choose_device, precision
+from haptic_glance.deep.training import CONVERGED
 from stages.kit.stats import interval_metrics
-from stages.networks.device import choose_device, precision
-from stages.networks.learning import CONVERGED
 
 from .plan import Trial
 from .schema import Params

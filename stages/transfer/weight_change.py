@@ -5,7 +5,7 @@ import re
 import numpy as np
 import torch
 
-from stages.networks.layers import is_mobilenet_v2, layers
+from haptic_glance.deep.modes import is_mobilenet_v2, layers
 
 
 def weight_changes(before: torch.nn.Module, after: torch.nn.Module) -> dict[str, float]:

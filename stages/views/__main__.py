@@ -10,13 +10,15 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from stages.kit import Mesh, Stopwatch
-from stages.kit.files import read_mesh, write_table
+from haptic_glance.base.files import read_mesh, write_table
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.look.views import VIEWPOINTS, cumulative_coverage, fewest_views, greedy_views, render, viewpoint_set
+from haptic_glance.look.views.render import resolve_renderer
+from haptic_glance.mesh.mesh import Mesh
 from stages.kit.run import Rows, StageRun
 from stages.kit.workspace import Workspace, workspace_of_arguments
 
-from . import VIEWPOINTS, cumulative_coverage, fewest_views, greedy_views, render, viewpoint_set, write_view
-from .renderer import resolve_renderer
+from . import write_view
 from .schema import COLUMNS, Params
 
 

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 
-from .material import Material
+from haptic_glance.look.views.view import Material
 
 COLUMNS = {"viewpoint": "name of the viewpoint", "views": "how many views together, this one the last"}
 

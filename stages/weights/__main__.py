@@ -14,12 +14,12 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from stages.kit.files import read_mesh, write_arrays, write_table
+from haptic_glance.base.files import read_mesh, write_arrays, write_table
+from haptic_glance.look.weights.convexity import convexity
 from stages.kit.run import Rows, StageRun
 from stages.kit.workspace import Workspace, workspace_of_arguments
 from stages.meshes.schema import Params as MeshesParams
 
-from .convexity import convexity
 from .ground_truth import digest, ground_truth_amounts, ground_truth_files
 from .ground_truth.source import Files
 from .schema import COLUMNS, Params

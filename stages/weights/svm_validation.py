@@ -6,9 +6,8 @@ The difference between the two accuracies measures this leakage.
 
 import numpy as np
 
-from stages.kit.rng import rng
-
-from .svm import MAX_ROWS, balanced_rows, checked_rows, fit_rows
+from haptic_glance.base.rng import rng
+from haptic_glance.look.weights.svm import MAX_ROWS, balanced_rows, checked_rows, fit_rows
 
 FOLDS = 10  # T3.2.3
 

@@ -3,10 +3,8 @@
 import numpy as np
 import pandas as pd
 
+from haptic_glance.look.weights.weights import ALL, GLANCES, METHODS, learned_weight_rows, weights
 from stages.kit.run import Rows
-
-from .learn_weights import ALL, learned_weight_rows
-from .published import GLANCES, METHODS, weights
 
 CHOICES = ("gaze", "fixations")  # published weights of GLANCES, or those learned from the data set
 

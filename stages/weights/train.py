@@ -10,10 +10,10 @@ from pathlib import Path
 
 import numpy as np
 
+from haptic_glance.look.weights.svm import MAX_ROWS, fit_svm
+from haptic_glance.look.weights.weights import write_models
 from stages.kit.run import Rows
 
-from .learned_weights import write_models
-from .svm import MAX_ROWS, fit_svm
 from .svm_validation import cross_validated, grouped_validated
 from .training_data import read_training_data
 

@@ -4,17 +4,16 @@ from pathlib import Path
 
 import numpy as np
 
-from stages.conspicuity import CHANNELS
+from haptic_glance.base.files import read_arrays
+from haptic_glance.look.agreement import gaze_peaks
+from haptic_glance.look.channels import CHANNELS
+from haptic_glance.look.glance import samples_of_mesh, standardised
+from haptic_glance.look.weights.attention import view_distances, view_similarities
+from haptic_glance.look.weights.svm import pixel_samples
+from haptic_glance.mesh.mesh import Mesh
 from stages.conspicuity.storage import read_maps
-from stages.glance import samples_of_mesh, standardised
-from stages.kit import Mesh
-from stages.kit.files import read_arrays
 
-from .agreement import gaze_peaks
-from .euclidean import view_distances
 from .ground_truth import gts_map, spread_on_surface, visible_points
-from .similarity import view_similarities
-from .svm_pixels import pixel_samples
 
 SPREAD = 0.025  # of the diagonal: deviation of the Gaussian that spreads gaze and marks over the surface
 MAX_MARKS = 200  # more vertices than this are gaze, whose peaks are the points; fewer are marks, which are the points

@@ -4,10 +4,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from haptic_glance.base.files import write_arrays
+from haptic_glance.look.weights import fit_fixations, fixation_density
 from stages.attention_checks import nested
 from stages.attention_checks.nested import Seen, choose
-from stages.kit.files import write_arrays
-from stages.weights import fit_fixations, fixation_density
 
 
 def objects(count=8, points=400, seed=0):

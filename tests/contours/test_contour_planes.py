@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from haptic_glance.base.rng import rng
 from stages.contours import draw_pairs
-from stages.kit.rng import rng
 
 
 def as_sets(pairs):

@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 import trimesh
 
+from haptic_glance.base.files import sha256, write_arrays, write_mesh
+from haptic_glance.base.rng import rng
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.touch import Surface, follow
 from stages.contours import Sequences, read_sequences, sample_contours, write_sequences
 from stages.contours import __main__ as stage
 from stages.contours.schema import Params
-from stages.imprints import Surface, follow
-from stages.kit import Mesh
-from stages.kit.files import sha256, write_arrays, write_mesh
-from stages.kit.rng import rng
 from stages.kit.rows import read_rows
 
 SHAPE = trimesh.creation.torus(0.35, 0.15, major_sections=40, minor_sections=20)

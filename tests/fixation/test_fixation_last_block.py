@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 import torch
 
+from haptic_glance.base.files import write_arrays
+from haptic_glance.deep import build, recalibrate
+from haptic_glance.deep.architectures import fully_connected
 from stages.fixation import options, trunk
 from stages.fixation.finetune import divided, labels_of
 from stages.fixation.options import Method, method_named
 from stages.fixation.pictures import network_inputs
 from stages.fixation.schema import Params
-from stages.kit.files import write_arrays
-from stages.networks import build, recalibrate
-from stages.networks.architectures.vgg16 import fully_connected
 
 SETTINGS = Params(
     parallels=1, azimuths=3, size=64, projection="camera", methods=[], source="package", device="cpu",

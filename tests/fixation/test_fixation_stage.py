@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 import torch
 
+from haptic_glance.base.fetch import FetchError
+from haptic_glance.base.files import read_arrays, read_table, sha256, write_arrays, write_mesh, write_text
 from stages.fixation import __main__ as stage
 from stages.fixation import options
 from stages.fixation.backbone import last_maps
 from stages.fixation.options import method_named
 from stages.fixation.schema import Params
 from stages.fixation.tasks import SEMANTICS
-from stages.kit.fetch import FetchError
-from stages.kit.files import read_arrays, read_table, sha256, write_arrays, write_mesh, write_text
 from stages.kit.rows import read_rows
 
 METHOD = "mobilenet_v2-random"

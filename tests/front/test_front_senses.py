@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 import trimesh
 
+from haptic_glance.base.files import write_mesh, write_text
+from haptic_glance.mesh import normalise
+from haptic_glance.mesh.mesh import Mesh
 from stages.front import senses as module
 from stages.front.senses import Senses
 from stages.front.space import SPACE, WHOLE, choice_of
-from stages.kit import Mesh
-from stages.kit.files import write_mesh, write_text
 from stages.kit.rows import read_rows
-from stages.meshes import normalise
 
 SMALL = {"method": "random", "viewpoints": "four", "image_rows": 225, "points": 20, "cells": 8, "level": "500",
          "touches": 1, "classifier": "knn"}  # fmt: skip

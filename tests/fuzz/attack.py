@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from stages.kit.fetch import FetchError
+from haptic_glance.base.fetch import FetchError
 
 from .damage import damaged
 from .readers import READERS, Reader

@@ -11,7 +11,7 @@ from pathlib import Path
 import diskcache
 import pytest
 
-from stages.kit.fetch import LARGEST, FetchError, debian_files, read_members, read_tar_members
+from haptic_glance.base.fetch import LARGEST, FetchError, debian_files, read_members, read_tar_members
 from stages.kit.objects import FILES, ROWS, Objects
 from stages.meshes.sources import GAZE, collection_files
 

@@ -11,16 +11,16 @@ import numpy as np
 import pytest
 import trimesh
 
+from haptic_glance.base.packing import ordered
+from haptic_glance.cli import saliency
+from haptic_glance.cli.simplify import run as simplify
+from haptic_glance.cli.touch import run as touch
 from haptic_glance.gallery import command, compiled, demo
 from haptic_glance.gallery.command import run
 from haptic_glance.gallery.exhibit import exhibit
 from haptic_glance.gallery.page import turnable
-from stages import saliency
-from stages.imprints.command import run as touch
-from stages.kit.packing import ordered
-from stages.lod import vertex_errors
-from stages.lod.command import run as simplify
-from stages.meshes import load, rotate_to_z_up
+from haptic_glance.lod import vertex_errors
+from haptic_glance.mesh import load, rotate_to_z_up
 
 pytestmark = pytest.mark.slow
 

@@ -17,9 +17,9 @@ from pathlib import Path
 
 import pytest
 
-from stages.kit import fetch, files
+from haptic_glance.base import fetch, files
+from haptic_glance.base.errors import errors_in_one_line
 from stages.kit.alone import alone
-from stages.kit.command import errors_in_one_line
 from stages.kit.dvc_files import forget_killed
 from stages.kit.objects import Objects, archive
 from stages.kit.run import StageRun
@@ -30,7 +30,7 @@ TWICE = """
 import sys, time
 from pathlib import Path
 from stages.kit.dvc_files import forget_killed
-from stages.kit.files import write_text
+from haptic_glance.base.files import write_text
 from stages.kit.run import StageRun
 from stages.kit.workspace import Workspace
 def item(name, folder):
@@ -146,7 +146,7 @@ def test_a_folder_reaches_another_disk_whole_and_replaces_what_is_there(tmp_path
 
 def test_another_disk_that_is_full_keeps_what_was_there(tmp_path, monkeypatch):
     monkeypatch.setattr(Path, "rename", other_disk)
-    monkeypatch.setattr("stages.kit.files.shutil.copyfile", full)
+    monkeypatch.setattr("haptic_glance.base.files.shutil.copyfile", full)
     files.write_text(tmp_path / "a/lod/x", "new")
     files.write_text(tmp_path / "b/lod/x", "old")
     with pytest.raises(OSError, match="No space left"):

@@ -7,7 +7,7 @@ import numba
 import numba.extending
 import pytest
 
-SOURCE = """from stages.kit.jit import kernel_of
+SOURCE = """from haptic_glance.base.jit import kernel_of
 
 
 @kernel_of(__file__)

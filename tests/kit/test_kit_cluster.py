@@ -13,10 +13,10 @@ import pytest
 import trimesh
 from omegaconf import OmegaConf
 
+from haptic_glance.base.fetch import cache_folder
+from haptic_glance.base.files import write_arrays, write_mesh, write_text
+from haptic_glance.mesh.mesh import Mesh
 from stages.compose import compose
-from stages.kit import Mesh
-from stages.kit.fetch import cache_folder
-from stages.kit.files import write_arrays, write_mesh, write_text
 from stages.kit.parallel import Task, finished, parallel_map
 from stages.kit.params import check_section
 from stages.kit.rows import read_rows

@@ -11,12 +11,12 @@ from pathlib import Path
 import pytest
 from joblib.externals.loky import process_executor
 
+from haptic_glance.base.files import read_json, write_json, write_text
+from haptic_glance.base.rng import rng
 from stages.kit.code import code_text
-from stages.kit.files import read_json, write_json, write_text
 from stages.kit.guard import UndeclaredRead
 from stages.kit.objects import Objects, archive
 from stages.kit.parallel import GROWTH, parallel_map
-from stages.kit.rng import rng
 from stages.kit.rows import read_rows, write_rows
 from stages.kit.run import StageRun
 from stages.kit.workspace import Workspace
@@ -248,7 +248,7 @@ def test_missing_input_names_the_stage_to_run(workspace):
     ],
 )
 def test_what_a_person_did_ends_in_one_line(raised, lines, code):
-    program = f"from stages.kit.command import errors_in_one_line\nerrors_in_one_line('demo')\nraise {raised}"
+    program = f"from haptic_glance.base.errors import errors_in_one_line\nerrors_in_one_line('demo')\nraise {raised}"
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, text=True)
     assert (done.stderr.splitlines(), done.returncode) == (lines, code)
@@ -260,7 +260,7 @@ def test_what_a_person_did_ends_in_one_line(raised, lines, code):
 KILLED = """
 import os, signal, sys
 from pathlib import Path
-from stages.kit.files import write_text
+from haptic_glance.base.files import write_text
 from stages.kit.run import StageRun
 from stages.kit.workspace import Workspace
 def item(name, folder):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from stages.kit.split import Split, shared_by
+from haptic_glance.know.split import Split, shared_by
 from stages.kit.stats import discoveries, interval, interval_metrics, p_value
 
 

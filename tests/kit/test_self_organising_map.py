@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from sklearn.metrics import mutual_info_score
 
-from stages.kit.self_organising_map import NEURONS, SelfOrganisingMap
+from haptic_glance.know.self_organising_map import NEURONS, SelfOrganisingMap
 from stages.sequences.classifiers import CONVENTIONAL, ESTIMATORS, MAP_DIMENSIONS, Reduced, choose_dimensions, svm
 from stages.sequences.reduction import MostInformative, mutual_information
 

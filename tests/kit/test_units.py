@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.kit.files import read_mesh
+from haptic_glance.base.files import read_mesh
 from stages.kit.stats import interval, p_value
 from stages.kit.units import by_unit, unit
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.meshes import MeshError, clean, load
+from haptic_glance.mesh import MeshError, clean, load
 
 CUBE = trimesh.creation.box()
 
@@ -126,6 +126,6 @@ def test_duplicate_and_degenerate_faces_are_removed_and_noted():
 
 
 def load_faces(faces):
-    from stages.kit import Mesh
+    from haptic_glance.mesh.mesh import Mesh
 
     return Mesh(np.array(TRIANGLE, dtype=float), np.array(faces))

@@ -2,7 +2,7 @@
 
 import pytest
 
-from stages.kit.files import write_text
+from haptic_glance.base.files import write_text
 from stages.meshes.classes import chosen_objects, read_classes, small_classes
 
 CLASSES = {"vase": ["urn", "jar"], "animal": ["dog", "61"]}

@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.kit.files import read_arrays, write_arrays
+from haptic_glance.base.files import read_arrays, write_arrays
 from stages.kit.stats import interval
 from stages.report import attention, meshes, stability
 from stages.report.attention.agreement import against_gaze

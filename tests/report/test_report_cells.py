@@ -3,7 +3,7 @@
 import pandas as pd
 import pytest
 
-from stages.kit.files import write_table
+from haptic_glance.base.files import write_table
 from stages.report.cells import filled
 
 

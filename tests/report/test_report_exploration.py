@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.kit.files import write_arrays
+from haptic_glance.base.files import write_arrays
 from stages.report import exploration, stability
 from stages.report.exploration import claims
 from stages.report.exploration.exploration import needed

@@ -7,7 +7,7 @@ from types import ModuleType
 import pandas as pd
 import pytest
 
-from stages.kit.files import write_table
+from haptic_glance.base.files import write_table
 from stages.report import topics
 from stages.report.cells import CLAIMS, ENDS, PAIR, PLACE, PREFIXES, ROWS, filled, parts_of
 from stages.report.items import Table

@@ -8,10 +8,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from haptic_glance.base.files import write_arrays
 from stages.fixation.agreement import ALL_VIEWS
 from stages.fixation.tasks import SHAPE_MEASURES
 from stages.fixation.viewpoints import evaluated_views, viewpoint_sphere
-from stages.kit.files import write_arrays
 from stages.kit.stats import interval
 from stages.report import fixation as topic
 from stages.report.differences import differences

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.kit.files import write_arrays, write_mesh
+from haptic_glance.base.files import write_arrays, write_mesh
 from stages.kit.stats import interval
 from stages.report import meshes
 from stages.report.claims import highest_of, lowest_of

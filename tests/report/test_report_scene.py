@@ -3,7 +3,7 @@
 import pandas as pd
 import pytest
 
-from stages.kit.files import write_table
+from haptic_glance.base.files import write_table
 from stages.report import scene as topic
 from stages.report.results import NotRun
 from stages.report.scene import scenes

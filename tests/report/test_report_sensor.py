@@ -4,8 +4,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from haptic_glance.base.timing import WALL
 from stages.kit.stats import interval
-from stages.kit.timing import WALL
 from stages.report import sensor
 from stages.report.results import NotRun
 from stages.report.sensor import claims

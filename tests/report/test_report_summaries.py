@@ -7,7 +7,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from stages.kit.files import write_table
+from haptic_glance.base.files import write_table
 from stages.report import topics
 from stages.report.cells import PAIR, PLACE, filled
 from stages.report.items import Table

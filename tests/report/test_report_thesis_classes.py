@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.kit.split import shared_by
+from haptic_glance.know.split import shared_by
 from stages.report import networks as _transfer
 from stages.report import transfer
 from stages.report.results import NotRun

@@ -4,8 +4,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from haptic_glance.base.files import write_arrays
 from stages.imprints import Imprints, write_imprints
-from stages.kit.files import write_arrays
 from stages.report import touch
 from stages.report.results import SECTION_4_2, SETS_4_2, NotRun
 from stages.report.topics import CLAIMS, build_one

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.kit.files import write_table
+from haptic_glance.base.files import write_table
 from stages.report import networks as _transfer
 from stages.report import recorded as recorded_topic
 from stages.report import transfer

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from stages.kit import Mesh
-from stages.kit.files import write_mesh
-from stages.kit.packing import SHADES, ordered
+from haptic_glance.base.files import write_mesh
+from haptic_glance.base.packing import SHADES, ordered
+from haptic_glance.mesh.mesh import Mesh
 from stages.report.page import part, script_json
 from stages.report.site import page
 from stages.report.viewer import FINEST, apart, pack_object, pack_viewer

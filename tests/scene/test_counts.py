@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.kit import Mesh
+from haptic_glance.mesh.mesh import Mesh
 from stages.scene.counts import (
     Curve,
     evaluate_counts,

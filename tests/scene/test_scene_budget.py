@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from stages.kit import Mesh
-from stages.scene import Frames, Level, Placed, budget, rivals
-from stages.scene.lod_chain import ERRORS, finest
-from stages.scene.pictures import picture_error
+from haptic_glance.lod.scene import Frames, Level, Placed, budget
+from haptic_glance.lod.scene.chain import ERRORS, finest
+from haptic_glance.lod.scene.pictures import picture_error
+from haptic_glance.mesh.mesh import Mesh
+from stages.scene import rivals
 from stages.scene.rows import saved
 
 
@@ -131,8 +132,8 @@ def test_the_full_scene_has_no_error(frames_of, make_scene):
 
 
 def test_joined_frames_show_what_one_ray_cast_of_the_whole_scene_shows(meshes, frames_of, make_scene):
-    from stages.kit import RayScene
-    from stages.scene.place import world_mesh
+    from haptic_glance.lod.scene.camera import world_mesh
+    from haptic_glance.mesh.rays import RayScene
 
     scene = make_scene(frames=2)
     frames = frames_of(scene)

@@ -5,8 +5,8 @@ import dataclasses
 import numpy as np
 import pytest
 
+from haptic_glance.lod.scene.camera import Scene
 from stages.scene.drawn import LOWEST, draw_scene
-from stages.scene.place import Scene
 from stages.scene.read import scene_of
 from stages.scene.schema import Params
 

@@ -10,7 +10,7 @@ import pytest
 import yaml
 
 from benchmarks import scenes
-from stages.kit.files import read_arrays, read_table, write_arrays, write_mesh, write_table
+from haptic_glance.base.files import read_arrays, read_table, write_arrays, write_mesh, write_table
 from stages.kit.params import check_section
 from stages.kit.rows import read_rows, write_rows
 from stages.scene import __main__

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh
+from haptic_glance.mesh.mesh import Mesh
 from stages.sensor_size.extent import EXTENTS, disc, salient_region, sample_vertices
 
 SOLID = trimesh.creation.icosphere(subdivisions=4, radius=0.5)

@@ -8,8 +8,8 @@ import pytest
 import trimesh
 from sklearn.exceptions import ConvergenceWarning
 
-from stages.kit import Mesh
-from stages.kit.files import write_arrays, write_mesh, write_table
+from haptic_glance.base.files import write_arrays, write_mesh, write_table
+from haptic_glance.mesh.mesh import Mesh
 from stages.kit.rows import read_rows
 from stages.sensor_size import CLASSIFIERS, choice_repeatability, classifier, evaluate, smallest_sufficient
 from stages.sensor_size import __main__ as stage

@@ -7,8 +7,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from haptic_glance.base.files import read_arrays
 from stages.contours import Sequences, write_sequences
-from stages.kit.files import read_arrays
 from stages.sequences import trial as trials
 from stages.sequences.__main__ import confusion_rows, layer_rows, summary
 from stages.sequences.classifiers import CONVENTIONAL

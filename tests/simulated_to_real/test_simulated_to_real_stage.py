@@ -6,8 +6,8 @@ import pytest
 import trimesh
 from PIL import Image
 
-from stages.kit import Mesh
-from stages.kit.files import read_arrays, write_mesh, write_table
+from haptic_glance.base.files import read_arrays, write_mesh, write_table
+from haptic_glance.mesh.mesh import Mesh
 from stages.kit.rows import read_rows
 from stages.simulated_to_real.__main__ import run, shares
 from stages.simulated_to_real.simulations import simulate

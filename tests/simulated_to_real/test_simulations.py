@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh
+from haptic_glance.mesh.mesh import Mesh
 from stages.simulated_to_real import simulations
 from stages.simulated_to_real.simulations import LARGE_PITCH, PITCH, SIMULATIONS, simulate
 

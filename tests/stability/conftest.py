@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh
-from stages.kit.files import write_mesh, write_table
-from stages.meshes import normalise
+from haptic_glance.base.files import write_mesh, write_table
+from haptic_glance.mesh import normalise
+from haptic_glance.mesh.mesh import Mesh
 from stages.stability.__main__ import process
 from stages.stability.schema import Params
 from stages.stability.simplification import simplification_rows

@@ -5,9 +5,9 @@ import dataclasses
 import numpy as np
 import pytest
 
-from stages.kit import Mesh
-from stages.kit.files import read_arrays, write_mesh, write_table
-from stages.kit.rng import rng
+from haptic_glance.base.files import read_arrays, write_mesh, write_table
+from haptic_glance.base.rng import rng
+from haptic_glance.mesh.mesh import Mesh
 from stages.kit.rows import read_rows
 from stages.stability import PERTURBATIONS, Conditions
 from stages.stability.__main__ import check, process, run

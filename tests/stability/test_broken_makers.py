@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh
-from stages.kit.rng import rng
+from haptic_glance.base.rng import rng
+from haptic_glance.mesh.mesh import Mesh
 from stages.stability.broken import DAMAGES
 from stages.stability.broken_faces import SLIVER_HEIGHT
 from stages.stability.surface import Surface

@@ -5,9 +5,9 @@ import pandas as pd
 import pytest
 import trimesh
 
-from stages.kit import Mesh
-from stages.kit.rng import rng
-from stages.lod import InfeasibleTarget
+from haptic_glance.base.rng import rng
+from haptic_glance.lod import InfeasibleTarget
+from haptic_glance.mesh.mesh import Mesh
 from stages.stability import simplification
 from stages.stability.broken import DAMAGES
 from stages.stability.checks import find_faults, surface_error

@@ -5,13 +5,13 @@ import pandas as pd
 import pytest
 import trimesh
 
-from stages.kit import Mesh
+from haptic_glance.look.weights.svm import select_far_points
+from haptic_glance.mesh.mesh import Mesh
 from stages.kit.breaking_point import breaking_point
 from stages.stability import chance_repeatability, drift, repeatability
 from stages.stability.measures import at_original_vertices
 from stages.stability.perturbations.perturbed import Perturbed
 from stages.stability.summary import breaking_points, middle_severity, summarise
-from stages.weights.svm_pixels import select_far_points
 
 GRID = np.stack([*np.mgrid[:4, :5].reshape(2, -1), np.zeros(20)], axis=1).astype(float)
 

@@ -3,7 +3,7 @@
 import pandas as pd
 import pytest
 
-from stages.kit.files import write_text
+from haptic_glance.base.files import write_text
 from stages.kit.rows import write_rows
 from stages.kit.workspace import Workspace
 from stages.report import stability

@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from stages.kit.files import read_arrays, read_json, sha256, write_mesh, write_table
+from haptic_glance.base.files import read_arrays, read_json, sha256, write_mesh, write_table
 from stages.kit.rows import read_rows
 from stages.stability.__main__ import check, chosen, process, run
 from stages.stability.summary import summarise

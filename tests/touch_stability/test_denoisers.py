@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from stages.imprints import Skin
+from haptic_glance.touch import Skin
 from stages.touch_stability.denoisers import DENOISERS
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh
+from haptic_glance.mesh.mesh import Mesh
 from stages.kit.breaking_point import breaking_point, lead_left
 from stages.touch_stability import PERTURBATIONS, Touches
 from stages.touch_stability.perturbations.localisation import snap_with_blended_normals

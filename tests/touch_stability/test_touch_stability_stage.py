@@ -5,10 +5,11 @@ import pandas as pd
 import pytest
 import trimesh
 
-from stages.imprints import Imprints, press_many, write_imprints
-from stages.kit import Mesh
+from haptic_glance.base.files import read_json, write_arrays, write_mesh
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.touch import press_many
+from stages.imprints import Imprints, write_imprints
 from stages.kit.breaking_point import lead_left
-from stages.kit.files import read_json, write_arrays, write_mesh
 from stages.kit.rows import read_rows
 from stages.touch_stability import CLEAN, recognition_rows
 from stages.touch_stability import __main__ as stage

@@ -6,13 +6,21 @@ import numpy as np
 import pytest
 import torch
 
-from stages.kit.files import read_arrays, sha256, write_arrays
-from stages.networks.images import normalise
-from stages.networks.network import build, recalibrate
-from stages.transfer.hybrid import HybridNet, join_senses
-from stages.transfer.hybrid_file import load, save, state_arrays
+from haptic_glance.base.files import read_arrays, sha256, write_arrays
+from haptic_glance.deep.hybrid import (
+    LEVELS,
+    HybridNet,
+    dequantise,
+    join_senses,
+    load,
+    quantise,
+    save,
+    state_arrays,
+    to_half,
+)
+from haptic_glance.deep.images import normalise
+from haptic_glance.deep.network import build, recalibrate
 from stages.transfer.onnx_export import export_onnx, onnx_scores
-from stages.transfer.precision import LEVELS, dequantise, quantise, to_half
 
 SIZE, NAMES = 32, ["cup", "dog", "sofa"]
 

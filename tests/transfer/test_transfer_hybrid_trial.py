@@ -6,10 +6,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.kit.files import read_arrays, write_arrays
-from stages.networks.network import build
+from haptic_glance.base.files import read_arrays, write_arrays
+from haptic_glance.deep.hybrid import load
+from haptic_glance.deep.network import build
 from stages.transfer import hybrid_compared, hybrid_trial
-from stages.transfer.hybrid_file import load
 from stages.transfer.middle import middle_of
 from stages.transfer.new_object import METRIC
 

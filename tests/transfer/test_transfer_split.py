@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from stages.kit.mesh import Mesh
+from haptic_glance.mesh.mesh import Mesh
 from stages.transfer.split import by_objects, by_touches, stratified_split
 from stages.transfer.touches import choose_vertices
 

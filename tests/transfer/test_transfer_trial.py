@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 import torch
 
-from stages.kit.files import read_arrays, sha256, write_arrays
+from haptic_glance.base.files import read_arrays, sha256, write_arrays
 from stages.transfer import tables, trial
 from stages.transfer.plan import Trial
 from stages.transfer.tables import summary, trial_row
@@ -108,7 +108,7 @@ def test_too_little_memory_for_the_cached_features_names_the_remedy(folder, smal
     def full(*_):
         raise RuntimeError("[enforce fail] DefaultCPUAllocator: can't allocate memory: you tried to allocate 9 bytes")
 
-    monkeypatch.setattr("stages.networks.modes.torch.stack", full)
+    monkeypatch.setattr("haptic_glance.deep.modes.torch.stack", full)
     with pytest.raises(ValueError, match="too little memory: .*fewer cached copies .the stage's `batch`, `size`"):
         run(folder, small.settings())
 

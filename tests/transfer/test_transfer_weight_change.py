@@ -5,7 +5,7 @@ import copy
 import pytest
 import torch
 
-from stages.networks.network import Network, build
+from haptic_glance.deep.network import Network, build
 from stages.transfer.weight_change import network_parts, weight_changes
 
 

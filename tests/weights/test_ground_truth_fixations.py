@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from stages.kit import Mesh
-from stages.kit.fetch import FetchError
+from haptic_glance.base.fetch import FetchError
+from haptic_glance.mesh.mesh import Mesh
 from stages.meshes.sources import FIXATION_MAPS, SOURCES, collection_files
 from stages.weights.ground_truth import (
     fixation_files,

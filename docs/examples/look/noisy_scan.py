@@ -11,7 +11,7 @@ import numpy as np
 
 from haptic_glance import find_points, load, normalise
 from haptic_glance.gallery.demo import sample
-from stages.meshes import rotate_to_z_up
+from haptic_glance.mesh import rotate_to_z_up
 from stages.stability.measures import TOLERANCE, repeatability
 from stages.stability.perturbations import PERTURBATIONS
 

@@ -5,6 +5,7 @@ from contextlib import suppress
 
 import pandas as pd
 
+from stages.bench import has_seen
 from stages.kit.stats import interval
 from stages.report.costs import attention_seconds
 from stages.report.grid import records
@@ -15,21 +16,7 @@ from stages.report.ranking import Ranking
 from stages.report.results import ON_BLACK, NotRun, Results
 from stages.report.style import label
 
-from .rows import (
-    ALONE,
-    BLACK,
-    CLASSICAL,
-    GAIN,
-    HUMAN,
-    OURS,
-    THESIS,
-    agreement,
-    difference,
-    has_seen,
-    method_text,
-    rivals,
-    scores,
-)
+from .rows import ALONE, BLACK, CLASSICAL, GAIN, HUMAN, OURS, THESIS, agreement, difference, method_text, rivals, scores
 
 COUNTED = "points_strong"
 MEANS = {

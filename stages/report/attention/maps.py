@@ -5,15 +5,16 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from matplotlib.axes import Axes
 
-from stages.conspicuity import CHANNELS
-from stages.kit import Mesh, Viewpoint
+from haptic_glance.look.camera import Viewpoint
+from haptic_glance.look.channels import CHANNELS
+from haptic_glance.look.points import COMBINATIONS, fuse
+from haptic_glance.look.weights.svm import SALIENT_LEVEL
+from haptic_glance.mesh.mesh import Mesh
 from stages.report.drawing import VIEWPOINT, colour_bar, name_panels, picture, show, square_grid, vivid
 from stages.report.items import Figure
 from stages.report.results import Results, some
 from stages.report.style import MAP, label, plt
-from stages.salient_points import COMBINATIONS, fuse
 from stages.weights.ground_truth import gts_map, visible_points
-from stages.weights.svm_pixels import SALIENT_LEVEL
 
 COLOUR = ("color", "dkl")  # the thesis's RGB and DKL features
 KEPT = 0.3  # of the object's pixels: the thesis retains 30 % of the highest values (T3.1.1)

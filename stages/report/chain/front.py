@@ -3,7 +3,7 @@
 import pandas as pd
 from matplotlib.axes import Axes
 
-from stages.kit.timing import CLOCK
+from haptic_glance.base.timing import CLOCK
 from stages.report.grid import records
 from stages.report.items import Figure, Table
 from stages.report.markdown import with_interval

@@ -4,7 +4,7 @@ from typing import Any
 
 import pandas as pd
 
-from stages.kit.split import Split
+from haptic_glance.know.split import Split
 from stages.kit.stats import interval
 from stages.report.grid import everywhere, within
 from stages.report.markdown import number

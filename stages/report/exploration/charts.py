@@ -3,7 +3,7 @@
 import pandas as pd
 from matplotlib.axes import Axes
 
-from stages.kit.split import Split, shared_by
+from haptic_glance.know.split import Split, shared_by
 from stages.report.grid import grouped, within
 from stages.report.items import Figure
 from stages.report.results import Results

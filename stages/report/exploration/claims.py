@@ -5,7 +5,7 @@ from functools import partial
 import numpy as np
 import pandas as pd
 
-from stages.kit.split import Split
+from haptic_glance.know.split import Split
 from stages.report.claims import Claim, Side
 from stages.report.differences import side, statistic
 from stages.report.results import Results

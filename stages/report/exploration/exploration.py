@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from stages.kit.split import Split, shared_by
+from haptic_glance.know.split import Split, shared_by
 from stages.report.grid import grouped, percent, records, within
 from stages.report.items import Table
 from stages.report.markdown import number, with_interval

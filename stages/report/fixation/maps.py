@@ -9,12 +9,12 @@ import cv2
 import numpy as np
 from matplotlib.figure import Figure as Drawing
 
+from haptic_glance.base.files import object_files
+from haptic_glance.deep.cam import GRIDS, resize_cams
+from haptic_glance.mesh.mesh import Mesh
 from stages.fixation import fuse
 from stages.fixation.places import ITSELF
 from stages.fixation.tasks import FUSED_TASKS
-from stages.kit import Mesh
-from stages.kit.files import object_files
-from stages.networks.grid import GRIDS, resize_cams
 from stages.report.drawing import colour_bar, colour_map, name_panels, picture, square_grid, squared, vivid
 from stages.report.items import Figure
 from stages.report.kept import Kept, last_drawn

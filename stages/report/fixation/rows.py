@@ -5,9 +5,9 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 import pandas as pd
 
+from haptic_glance.base.files import read_arrays
 from stages.fixation import viewpoint_sphere
 from stages.fixation.agreement import ALL_VIEWS
-from stages.kit.files import read_arrays
 from stages.report.results import GAZED, Results, some, there
 
 from .detectors import FUSED, KINDS, NARROWED, Detector, untrained

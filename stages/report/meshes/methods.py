@@ -2,8 +2,8 @@
 
 from collections.abc import Iterable
 
+from haptic_glance.look.weights.weights import GLANCE
 from stages.report.style import WAYS, label
-from stages.weights.published import GLANCE
 
 PLAIN, QSLIM, OURS = "qem", "qslim", GLANCE  # QSLIM: plain QEM without the fit of ours, the thesis's
 CLASSICAL = "itti"  # the classical model, VisAtt in the thesis

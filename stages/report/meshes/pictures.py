@@ -9,14 +9,14 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 
-from stages.kit import Mesh
-from stages.lod.metro import vertex_errors
+from haptic_glance.lod.errors import vertex_errors
+from haptic_glance.look.views import render
+from haptic_glance.mesh.mesh import Mesh
 from stages.report.drawing import THIN, VIEWPOINT, colour_bar, filled, name_panels, show, square_grid, squared
 from stages.report.items import Figure
 from stages.report.results import SECTION_3_2, NotRun, Results, some
 from stages.report.style import GREY, label
 from stages.report.words import dataset_text
-from stages.views import render
 
 from .apart import TINTS, against_the_mean, faces_an_area
 from .methods import FIXED_ADAPTIVE, HKS, NAMES, OURS, PLAIN, PRINTED, UNSEEN, WEIGHTED, short

@@ -6,6 +6,7 @@ from contextlib import suppress
 import numpy as np
 import pandas as pd
 
+from haptic_glance.look.points import METHODS
 from stages.report.grid import means
 from stages.report.items import Table
 from stages.report.markdown import number
@@ -13,7 +14,6 @@ from stages.report.ranking import Ranking
 from stages.report.results import SECTION_3_1, SECTION_3_2, NotRun, Results, some
 from stages.report.style import label
 from stages.report.words import dataset_text
-from stages.salient_points import METHODS
 
 from .methods import COMBINATIONS, FIXED_ADAPTIVE, HKS, OF_T3_2, OURS, PLAIN, QSLIM, WEIGHTED, ordered, short
 from .rows import ERRORS, FEWEST, METRICS, UNITS, cell, compared, data_sets, face_counts, paired_cells, said, size, wide

@@ -3,7 +3,7 @@
 from functools import partial
 from typing import Any
 
-from stages.kit.split import Split, shared_by
+from haptic_glance.know.split import Split, shared_by
 from stages.report.claims import Claim, highest_of, reading
 
 from .simulated_to_real import SIMULATIONS as KINDS

@@ -5,9 +5,9 @@ from itertools import pairwise
 import pandas as pd
 from matplotlib.axes import Axes
 
-from stages.kit.split import Split, shared_by
+from haptic_glance.base.timing import CLOCK
+from haptic_glance.know.split import Split, shared_by
 from stages.kit.stats import interval
-from stages.kit.timing import CLOCK
 from stages.report.grid import percent, records
 from stages.report.items import Figure, Table
 from stages.report.markdown import signed, with_interval

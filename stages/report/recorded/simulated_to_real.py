@@ -4,7 +4,7 @@ from typing import Any
 
 import pandas as pd
 
-from stages.kit.split import Split, shared_by
+from haptic_glance.know.split import Split, shared_by
 from stages.report.grid import grid, means
 from stages.report.items import Figure, Table
 from stages.report.ranking import Ranking

@@ -5,7 +5,7 @@ from itertools import product
 import numpy as np
 import pandas as pd
 
-from stages.kit.split import Split, shared_by
+from haptic_glance.know.split import Split, shared_by
 from stages.kit.stats import interval
 from stages.report.grid import blocks, grid, within
 from stages.report.items import Table

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import SubFigure
 
-from stages.kit.files import read_arrays
+from haptic_glance.base.files import read_arrays
 from stages.report.items import Figure
 from stages.report.markdown import number
 from stages.report.results import Results, there

@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from stages.kit.split import Split
+from haptic_glance.know.split import Split
 from stages.kit.stats import interval
 from stages.report.grid import blocks, everywhere, grid, grouped, means, over_items, records
 from stages.report.items import Figure, Table

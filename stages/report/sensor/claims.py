@@ -3,7 +3,7 @@
 from dataclasses import replace
 from functools import partial
 
-from stages.kit.split import Split
+from haptic_glance.know.split import Split
 from stages.report.claims import Claim, highest_of
 
 STAGE = "sensor_size"

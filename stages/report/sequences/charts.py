@@ -2,7 +2,7 @@
 
 import pandas as pd
 
-from stages.kit.split import Split
+from haptic_glance.know.split import Split
 from stages.report.confusion import draw_matrices
 from stages.report.items import Figure
 from stages.report.pareto import pareto_chart

@@ -6,7 +6,7 @@ from functools import partial
 
 import pandas as pd
 
-from stages.kit.split import Split
+from haptic_glance.know.split import Split
 from stages.report.claims import Claim, highest_of, reading
 from stages.report.differences import difference, statistic
 from stages.report.results import Results

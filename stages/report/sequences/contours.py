@@ -5,11 +5,12 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
+from haptic_glance.base.files import object_files
+from haptic_glance.look.camera import Viewpoint, project
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.rays import RayScene
+from haptic_glance.touch import SectionCurve, contour
 from stages.contours import Sequences, read_sequences
-from stages.imprints import SectionCurve, contour
-from stages.kit import Mesh, RayScene, Viewpoint
-from stages.kit.camera import project
-from stages.kit.files import object_files
 from stages.report.drawing import VIEWPOINT, name_panels, picture, squared
 from stages.report.items import Figure
 from stages.report.results import Results, some

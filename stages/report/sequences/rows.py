@@ -2,7 +2,7 @@
 
 import pandas as pd
 
-from stages.kit.split import Split
+from haptic_glance.know.split import Split
 from stages.report.grid import within
 
 STAGE = "sequences"

@@ -5,7 +5,7 @@ from itertools import product
 import numpy as np
 import pandas as pd
 
-from stages.kit.split import Split
+from haptic_glance.know.split import Split
 from stages.report.grid import blocks, everywhere, grid, percent, records
 from stages.report.items import Table
 from stages.report.ranking import Ranking

@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from stages.kit import Mesh
+from haptic_glance.base.files import read_arrays
+from haptic_glance.mesh.mesh import Mesh
 from stages.kit.breaking_point import BROKEN
-from stages.kit.files import read_arrays
 from stages.report.drawing import name_panels, show, square_grid
 from stages.report.grid import percent, within
 from stages.report.items import Figure, Table

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
+from haptic_glance.know.split import shared_by
 from stages.kit.breaking_point import breaking_point, lead_left
-from stages.kit.split import shared_by
 from stages.kit.stats import interval
 from stages.report.grid import grouped, records
 from stages.report.items import Figure, Table

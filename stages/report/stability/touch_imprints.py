@@ -4,7 +4,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from stages.kit.files import read_arrays
+from haptic_glance.base.files import read_arrays
 from stages.report.items import Figure
 from stages.report.results import Results
 from stages.report.style import PALE, label, plt

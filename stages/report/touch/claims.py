@@ -3,7 +3,7 @@
 from functools import partial
 from typing import Any
 
-from stages.kit.split import Split
+from haptic_glance.know.split import Split
 from stages.report.claims import Claim, Side, highest_of, reading
 from stages.report.results import SETS_4_2
 

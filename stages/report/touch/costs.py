@@ -4,8 +4,8 @@ from typing import Any
 
 import pandas as pd
 
-from stages.classification.scaling import TRAINING
-from stages.kit.split import Split, shared_by
+from haptic_glance.know.classifiers import TRAINING
+from haptic_glance.know.split import Split, shared_by
 from stages.report.costs import attention_seconds
 from stages.report.grid import means
 from stages.report.items import Figure

@@ -6,8 +6,8 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 
-from stages.imprints import Surface, distances, normalise, sensor_axes, sensor_normals, touchable
-from stages.imprints.pictures import draw
+from haptic_glance.touch import Surface, distances, normalise, sensor_axes, sensor_normals, touchable
+from haptic_glance.touch.pictures import draw
 from stages.report.drawing import show, vivid
 from stages.report.items import Figure
 from stages.report.results import NotRun, Results

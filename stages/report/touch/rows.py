@@ -6,12 +6,13 @@ from typing import Any
 
 import pandas as pd
 
-from stages.kit.split import Split, shared_by
+from haptic_glance.know.classifiers import TRAINING
+from haptic_glance.know.split import Split, shared_by
+from haptic_glance.look.weights.weights import GLANCE
 from stages.report.grid import everywhere, within
 from stages.report.results import SECTION_4_2, SETS_4_2, Results, some
-from stages.report.scalings import TRAINING, scaled
+from stages.report.scalings import scaled
 from stages.report.style import label
-from stages.weights.published import GLANCE
 
 STAGE = "classification"
 PRINTED = SECTION_4_2

@@ -5,9 +5,9 @@ from itertools import combinations, product
 import numpy as np
 import pandas as pd
 
-from stages.classification.similarity import SIMILARITY_THRESHOLD, similarity
-from stages.kit.files import read_arrays
-from stages.kit.split import Split
+from haptic_glance.base.files import read_arrays
+from haptic_glance.know.features import SIMILARITY_THRESHOLD, similarity
+from haptic_glance.know.split import Split
 from stages.report.grid import blocks, grid
 from stages.report.items import Figure, Table
 from stages.report.ranking import Ranking

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 from scipy.stats import spearmanr
 
-from stages.kit.split import shared_by
+from haptic_glance.know.split import shared_by
 from stages.report.claims import Claim, reading
 from stages.report.differences import statistic
 from stages.report.networks import COARSE, FINE, GUESS, NETWORK, SEEN, SETS, THEIRS, both

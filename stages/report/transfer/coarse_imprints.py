@@ -2,7 +2,7 @@
 
 import pandas as pd
 
-from stages.kit.split import shared_by
+from haptic_glance.know.split import shared_by
 from stages.kit.stats import interval
 from stages.report.grid import cell_texts, percent
 from stages.report.items import Table

@@ -2,7 +2,7 @@
 
 import pandas as pd
 
-from stages.kit.split import shared_by
+from haptic_glance.know.split import shared_by
 from stages.report.grid import means
 from stages.report.items import Figure
 from stages.report.networks import FINE, THEIRS, measured

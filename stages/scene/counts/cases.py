@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stages.kit.rng import rng
+from haptic_glance.base.rng import rng
 
 from .curves import Curve
 from .distance import focal_length

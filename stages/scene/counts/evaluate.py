@@ -7,8 +7,9 @@ import numpy as np
 import pandas as pd
 from sklearn.model_selection import KFold
 
-from stages.kit import Mesh, Stopwatch
-from stages.salient_points import COMBINATIONS
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.look.points import COMBINATIONS
+from haptic_glance.mesh.mesh import Mesh
 
 from .cases import between, flat, is_informative
 from .curves import Curve

@@ -7,8 +7,8 @@ import numpy as np
 import pandas as pd
 from sklearn.model_selection import KFold
 
-from stages.kit import Mesh
-from stages.kit.rng import rng
+from haptic_glance.base.rng import rng
+from haptic_glance.mesh.mesh import Mesh
 
 from .cases import between, beyond, is_informative, side
 from .curves import Curve

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from stages.kit import Stopwatch
-from stages.kit.rng import rng
-from stages.lod import metro, simplify
+from haptic_glance.base.rng import rng
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.lod import metro, simplify
 
 from .cases import Case
 

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import pandas as pd
 
-from stages.kit.rng import rng
+from haptic_glance.base.rng import rng
 
 from .cases import Case
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from stages.kit import Mesh
+from haptic_glance.mesh.mesh import Mesh
 
 from .perturbed import Conditions, Perturbed, in_range, under_conditions
 
@@ -10,7 +10,7 @@ WHAT = "the background's brightness"
 
 
 def background(mesh: Mesh, severity: float, _generator: np.random.Generator) -> Perturbed:
-    """Another background, which is kept out of the maps (stages.conspicuity.background)."""
+    """Another background, which is kept out of the maps (haptic_glance.look.channels.cropped_view)."""
     return under_conditions(mesh, Conditions(background=in_range(severity, 0, 1, WHAT)))
 
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from stages.kit import Mesh
-from stages.lod import simplify
+from haptic_glance.lod import simplify
+from haptic_glance.mesh.mesh import Mesh
 
 from .perturbed import Perturbed, in_range
 

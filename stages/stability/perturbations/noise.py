@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from stages.kit import Mesh
+from haptic_glance.mesh.mesh import Mesh
 
 from .perturbed import Perturbed, in_range
 

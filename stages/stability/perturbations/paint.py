@@ -4,8 +4,8 @@ import colorsys
 
 import numpy as np
 
-from stages.kit import Mesh
-from stages.views.shading import GREY
+from haptic_glance.look.views.shading import GREY
+from haptic_glance.mesh.mesh import Mesh
 
 from .perturbed import Perturbed, in_range
 

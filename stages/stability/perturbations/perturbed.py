@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stages.kit import Mesh
+from haptic_glance.mesh.mesh import Mesh
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ import numpy as np
 import pymeshlab
 from scipy.spatial import KDTree
 
-from stages.kit import Mesh
+from haptic_glance.mesh.mesh import Mesh
 
 from .perturbed import Perturbed, in_range
 

@@ -3,12 +3,12 @@
 import numpy as np
 from scipy.spatial import KDTree
 
-from stages.kit import Mesh, Viewpoint
-from stages.kit.camera import pixel_rays
-from stages.lod import simplify
-from stages.meshes import Cloud, surface_of
-from stages.meshes.clouds.normals import normals_of
-from stages.views import render
+from haptic_glance.lod import simplify
+from haptic_glance.look.camera import Viewpoint, pixel_rays
+from haptic_glance.look.views import render
+from haptic_glance.mesh import Cloud, surface_of
+from haptic_glance.mesh.clouds import normals_of
+from haptic_glance.mesh.mesh import Mesh
 
 from .perturbed import Perturbed, in_range
 
@@ -21,8 +21,8 @@ NOISE = 0.001  # sigma along the line of sight, share of the diagonal
 def scan(mesh: Mesh, severity: float, generator: np.random.Generator) -> Perturbed:
     """The surface that depth images reconstruct, `severity` degrees apart around the object: 90 are four, 360 is one.
 
-    A camera is as in T3.2.6, its readings are noisy, and what none sees is a hole (stages.meshes.surface_of). Salient
-    points that lay there count as lost. Raises ValueError where no surface is left.
+    A camera is as in T3.2.6, its readings are noisy, and what none sees is a hole (haptic_glance.mesh.surface_of).
+    Salient points that lay there count as lost. Raises ValueError where no surface is left.
     """
     in_range(severity, 10, 360, "the degrees between cameras")
     azimuths = generator.uniform(0, 360) + np.arange(0, 360, severity)

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.ndimage import median_filter
 
-from stages.kit.extras import from_extra
+from haptic_glance.base.extras import from_extra
 
 Denoiser = Callable[[np.ndarray], np.ndarray]  # imprints (k, rows, cols) in 0..1 -> the same shape, cleaner
 

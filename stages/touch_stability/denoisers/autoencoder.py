@@ -6,13 +6,13 @@ import numpy as np
 import torch
 from torch.nn import functional
 
-from stages.imprints import Skin
+from haptic_glance.touch import Skin
 from stages.kit.repeatable import repeatable
 
 from . import Denoiser
 
-# What it learns to undo: harshest severity of each property of stages.imprints.Skin. Severities are drawn between 0 and
-# these; the harshest ones of touch_stability.severities lie beyond.
+# What it learns to undo: harshest severity of each property of haptic_glance.touch.Skin. Severities are drawn between
+# 0 and these; the harshest ones of touch_stability.severities lie beyond.
 UNDONE = {"noise": 0.3, "dead": 0.3, "blur": 3.0}
 CHANNELS = (16, 32, 64)
 PASSES = 150

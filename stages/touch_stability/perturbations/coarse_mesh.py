@@ -4,8 +4,8 @@ from functools import partial
 
 import numpy as np
 
-from stages.imprints import Surface, sensor_axes, snap_to_surface
-from stages.lod import simplify
+from haptic_glance.lod import simplify
+from haptic_glance.touch import Surface, sensor_axes, snap_to_surface
 
 from ..touches import Touches
 from .perturbation import PerturbedTouches

@@ -3,9 +3,8 @@
 import numpy as np
 import point_cloud_utils
 
-from stages.imprints import sensor_axes, sensor_normals, touchable
-from stages.kit import Mesh
-from stages.kit.mesh import unit
+from haptic_glance.mesh.mesh import Mesh, unit
+from haptic_glance.touch import sensor_axes, sensor_normals, touchable
 
 from ..touches import Touches
 from .perturbation import PerturbedTouches, check_range

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from stages.imprints import sensor_axes
+from haptic_glance.touch import sensor_axes
 
 from ..touches import Touches, rotations_about
 from .perturbation import PerturbedTouches, check_range

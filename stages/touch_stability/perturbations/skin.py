@@ -1,8 +1,8 @@
-"""The sensor is not ideal: each perturbation is one property of stages.imprints.Skin."""
+"""The sensor is not ideal: each perturbation is one property of haptic_glance.touch.Skin."""
 
 from functools import partial
 
-from stages.imprints import Skin
+from haptic_glance.touch import Skin
 
 from .perturbation import PerturbedTouches
 

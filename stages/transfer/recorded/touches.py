@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from stages.kit.picture import open_picture
+from haptic_glance.base.files import open_picture
 
 PICTURES = (".jpg", ".jpeg", ".png", ".bmp")
 SIZE = 224  # pixels a side to which camera pictures are resized: the input size of the networks

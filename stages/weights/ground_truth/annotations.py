@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from stages.kit import Mesh
-from stages.weights.annotate import read_marks
+from haptic_glance.look.marks import read_marks
+from haptic_glance.mesh.mesh import Mesh
 
 TOLERANCE = 0.01  # of the diagonal, between the position of a mark and its vertex; larger if the mesh was changed
 
@@ -15,7 +15,7 @@ TOLERANCE = 0.01  # of the diagonal, between the position of a mark and its vert
 def annotations_on_vertices(mesh: Mesh, path: str | Path, content: bytes | None = None) -> np.ndarray:
     """(n,) f8: how many annotators marked each vertex of the normalised mesh.
 
-    path: a CSV with columns annotator, time, vertex, x, y, z (stages.weights.annotate); content: what it holds, where
+    path: a CSV with columns annotator, time, vertex, x, y, z (haptic_glance.look.marks); content: what it holds, where
     that is known. Since vertices are stored by
     id, marks would move on a mesh that was changed. Raises ValueError with the file, the rows and their distances when
     a vertex does not exist or is farther than 1 % of the diagonal from the position of the mark.

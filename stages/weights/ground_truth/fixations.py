@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from stages.kit import Mesh
+from haptic_glance.mesh.mesh import Mesh
 
 VIEWS = ("300", "413", "599")
 DENSITY, VISIBLE = "FixationMaps/{}_{}norm.txt", "CentricityAndVisibilityMaps/{}_{}_visibility.txt"

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial import KDTree
 
-from stages.kit import Mesh
+from haptic_glance.mesh.mesh import Mesh
 
 COLUMNS = 8
 MIN_MATCHED = 0.5  # of the rows; the published file with most padding (sofa) has 0.758

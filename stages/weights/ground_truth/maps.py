@@ -4,8 +4,9 @@ from functools import lru_cache
 
 import numpy as np
 
-from stages.kit import Mesh, RayScene, Viewpoint
-from stages.kit.camera import pixel_rays, project
+from haptic_glance.look.camera import Viewpoint, pixel_rays, project
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.rays import RayScene
 
 ROWS = 900  # of the thesis's images, for which the kernel size is stated
 KERNEL = 50  # pixels per side at 900 rows; T3.2.1.3

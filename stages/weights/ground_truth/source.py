@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial import KDTree
 
-from stages.kit import Mesh
-from stages.meshes.load import parse
+from haptic_glance.mesh.files import parse
+from haptic_glance.mesh.mesh import Mesh
 from stages.meshes.sources import FIXATION_MAPS, GAZE, GAZE_CLOUDS, INTEREST_POINTS, collection_files, match_files
 
 from .annotations import annotations_on_vertices, marked_files

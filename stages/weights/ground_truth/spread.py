@@ -5,7 +5,7 @@ import robust_laplacian
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-from stages.kit import Mesh
+from haptic_glance.mesh.mesh import Mesh
 
 STEPS = 32  # errors on a plane: 4 % at the peak and 2.4 % in L1; with 8 steps 15 % and 8 %
 MIN_AREA = 1e-12  # of the squared diagonal; for vertices between faces without area

@@ -1,0 +1,1 @@
+"""Disturbances of pictures and imprints, by name and severity."""
