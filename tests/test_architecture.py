@@ -16,21 +16,37 @@ ROOT = Path(__file__).parents[1]
 PIPELINE = yaml.safe_load((ROOT / "dvc.yaml").read_text())["stages"]
 ORDER = [stage for stage in PIPELINE if stage != "code"]
 STAGES = {stage: PIPELINE[stage].get("do", PIPELINE[stage]) for stage in ORDER}
-SHARED = {"kit", "networks", "glance"}  # packages that are no stages
+SHARED = {"kit"}  # packages that are no stages
+LIBRARY = {  # package of the library: the packages that it may import
+    "base": {"mesh"},  # its files hold meshes
+    "mesh": {"base"},
+    "look": {"base", "mesh", "touch", "deep"},  # places worth touching, and deep features, imported late
+    "touch": {"base", "mesh", "look"},  # salient places of a mesh
+    "lod": {"base", "mesh", "look"},
+    "know": {"base", "mesh", "touch"},
+    "deep": {"base", "mesh", "look"},
+    "disturb": {"touch"},
+}
 SECTIONS = sorted(path.parent.name for path in ROOT.glob("stages/*/schema.py"))
+
+
+def names_imported(path):
+    """The absolute names that a file imports, anywhere in it."""
+    names, package = [], path.relative_to(ROOT).parts[:-1]
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            names += [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            above = package[: len(package) - node.level + 1] if node.level else ()
+            module = ".".join([*above, *([node.module] if node.module else [])])
+            names += [module, *(f"{module}.{alias.name}" for alias in node.names)]
+    return names
 
 
 def imported(package):
     """The stage packages (and kit) that the files of a package import, itself left out."""
-    found = set()
-    for path in (ROOT / "stages" / package).rglob("*.py"):
-        for node in ast.walk(ast.parse(path.read_text())):
-            names = []
-            if isinstance(node, ast.Import):
-                names = [alias.name for alias in node.names]
-            elif isinstance(node, ast.ImportFrom) and node.level == 0:
-                names = [node.module, *(f"{node.module}.{alias.name}" for alias in node.names)]
-            found |= {match[1] for name in names if (match := re.match(r"stages\.(\w+)", name))}
+    names = [name for path in (ROOT / "stages" / package).rglob("*.py") for name in names_imported(path)]
+    found = {match[1] for name in names if (match := re.match(r"stages\.(\w+)", name))}
     return {name for name in found if (ROOT / "stages" / name).is_dir()} - {package}
 
 
@@ -52,9 +68,17 @@ def test_kit_imports_no_stage():
     assert imported("kit") == set()
 
 
-@pytest.mark.parametrize("package", sorted(SHARED - {"kit"}))
-def test_shared_packages_import_the_kit_alone(package):
-    assert imported(package) == {"kit"}
+def test_the_library_knows_nothing_of_the_pipeline():
+    files = [*(ROOT / "haptic_glance").rglob("*.py")]
+    assert len(files) > 100
+    assert {name for path in files for name in names_imported(path) if name.split(".")[0] == "stages"} == set()
+
+
+@pytest.mark.parametrize("package", sorted(LIBRARY))
+def test_packages_of_the_library_import_one_way(package):
+    names = {name for path in (ROOT / "haptic_glance" / package).rglob("*.py") for name in names_imported(path)}
+    found = {name.split(".")[1] for name in names if name.startswith("haptic_glance.")}
+    assert found - {package} <= LIBRARY[package]
 
 
 @pytest.mark.slow
@@ -105,7 +129,7 @@ def test_every_setting_is_documented_and_read(section):
 
 @pytest.mark.slow
 def test_every_file_says_what_it_is_for():
-    for path in [*ROOT.glob("stages/**/*.py"), *ROOT.glob("benchmarks/*.py")]:
+    for path in [*ROOT.glob("haptic_glance/**/*.py"), *ROOT.glob("stages/**/*.py"), *ROOT.glob("benchmarks/*.py")]:
         assert ast.get_docstring(ast.parse(path.read_text())), f"{path} has no docstring"
 
 
