@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from haptic_glance.look.views import View, render
     from haptic_glance.mesh import (
         Cloud,
+        Mesh,
         MeshError,
         as_mesh,
         clean,
@@ -32,7 +33,6 @@ if TYPE_CHECKING:
         rotate_to_z_up,
         surface_of,
     )
-    from haptic_glance.mesh.mesh import Mesh
     from haptic_glance.touch import (
         Layer,
         Sequence,

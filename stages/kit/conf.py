@@ -1,10 +1,8 @@
-"""Where the settings lie that ship with the code."""
+"""The folder of the settings."""
 
 from pathlib import Path
 
 
 def conf_folder() -> Path:
-    """The folder conf/: inside `stages` where a wheel is installed, beside it in a checkout."""
-    stages = Path(__file__).parents[1]
-    installed = stages / "conf"
-    return installed if installed.is_dir() else stages.parent / "conf"
+    """The folder conf/ of the clone."""
+    return Path(__file__).parents[2] / "conf"

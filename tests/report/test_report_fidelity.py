@@ -41,7 +41,7 @@ def test_every_formula_table_and_figure_of_the_thesis_has_a_row(kind):
 @pytest.mark.parametrize("row", ROWS, ids=FRAME["thesis"])
 def test_each_row_names_code_sets_and_twins_that_exist(row):
     path, _, name = row.code.partition(":")
-    source = ROOT / "stages" / path
+    source = ROOT / path
     assert source.is_file()
     defined = [node.name for node in ast.parse(source.read_text()).body if hasattr(node, "name")]
     assert not name or name in defined

@@ -6,7 +6,7 @@ from stages.report.words import dataset_text
 
 PRINTED = "as printed"
 RUNS = (PRINTED, "differs", "no data", "not measured", "illustration")  # all but the first say what differs
-HEADS = {"code": "in stages/", "run": "run as printed?", "sets": "on", "twin": "table or figure", "test": "test"}
+HEADS = {"code": "in", "run": "run as printed?", "sets": "on", "twin": "table or figure", "test": "test"}
 
 
 def build(results: Results) -> Table:
