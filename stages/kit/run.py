@@ -171,4 +171,4 @@ def object_names(workspace: Workspace) -> list[str]:
 
 
 def _is_of_stages(function: Callable[..., Any]) -> bool:
-    return function.__module__.split(".")[0] in ("stages", "__main__")
+    return function.__module__.split(".")[0] in ("haptic_glance", "stages", "__main__")

@@ -8,6 +8,7 @@ import traceback
 import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -22,6 +23,7 @@ from .checks import find_faults, surface_error
 from .qem_error_curve import QemErrorCurve
 from .specimen import KEPT, RINGS, WEIGHTS, Case, Specimen
 
+OURS = [Path(__file__).parents[2] / package for package in ("haptic_glance", "stages")]
 OUTCOMES = ("valid", "refused", "ruined", "crash")
 BUDGETS = ("4", "16", "64", "256", "1024", "50%", "90%")
 SMALLEST = "smallest"  # the budget that an InfeasibleTarget names, which must be feasible
@@ -129,7 +131,7 @@ def _rows(name, damage, backend, case, result):
 def _no_mesh(error, asked, seconds):
     """The Result without a mesh: a ValueError of this project with a reason is a refusal, all else a crash."""
     place, note = traceback.extract_tb(error.__traceback__)[-1], " ".join(str(error).split())
-    if isinstance(error, ValueError) and "stages" in place.filename and note:
+    if isinstance(error, ValueError) and any(map(Path(place.filename).is_relative_to, OURS)) and note:
         return Result("refused", note, asked, seconds, smallest=getattr(error, "smallest", 0))
     return Result("crash", f"{type(error).__name__}: {note}", asked, seconds)
 
