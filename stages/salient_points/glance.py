@@ -1,5 +1,6 @@
 """The methods `glance`, `glance_any_pose` and `glance_deep`: the fixation density of small cells of the surface."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from typing import Any
 
@@ -32,15 +33,15 @@ def deep_features(mesh: Mesh, samples: Samples) -> dict[str, np.ndarray]:
     return standardised_maps(mesh, samples) | standardised(samples)
 
 
-class SampledDetector:
+class SampledDetector(ABC):
     """A detector that looks at cells of the surface, so that neither the faces nor noise decide what it finds."""
 
     channels: tuple[str, ...] = ()
     required_weights: str | None = None
 
+    @abstractmethod
     def _values(self, mesh: Mesh, options: Options) -> tuple[Samples, np.ndarray, np.ndarray]:
         """(samples, their values (s,), above 0, and the smooth values (s,) whose peaks are the points)."""
-        raise NotImplementedError
 
     def _vertices(self, mesh: Mesh, samples: Samples, chosen: np.ndarray) -> np.ndarray:
         """(k,) the vertices that stand for samples (k,)."""
