@@ -40,7 +40,7 @@ LIMIT = 4.0  # standard deviations, as of the features of the glance
 
 
 class Gaze(NamedTuple):
-    """What a model is fitted to, of one object: features (s, d), shares of the gaze (s,) and areas (s,)."""
+    """The training data of one object: features (s, d), shares of the gaze (s,) and areas (s,)."""
 
     features: np.ndarray
     shares: np.ndarray

@@ -1,14 +1,11 @@
-"""The glance as a detector, and its deep features.
+"""The methods `glance`, `glance_any_pose` and `glance_deep`: the fixation density of small cells of the surface.
 
-The methods `glance`, `glance_any_pose` and `glance_deep`: the fixation density of small cells of the surface.
-
-Maps of a network for photographs on the surface: MobileNetV2 looks at pictures from around the object.
-
-They are further features of the method `glance_deep`. The weights of the network are those of ImageNet (Sandler et al.,
-MobileNetV2: Inverted Residuals and Linear Bottlenecks, CVPR 2018). Needs the extra `deep`; the weights are
-fetched once.
+`glance_deep` adds maps of a network for photographs: MobileNetV2 (Sandler et al., MobileNetV2: Inverted Residuals and
+Linear Bottlenecks, CVPR 2018) with the weights of ImageNet looks at pictures from around the object. It needs the extra
+`deep`; the weights are fetched once.
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from functools import cache
 from typing import Any
@@ -47,15 +44,15 @@ def deep_features(mesh: Mesh, samples: Samples) -> dict[str, np.ndarray]:
     return standardised_maps(mesh, samples) | standardised(samples)
 
 
-class SampledDetector:
+class SampledDetector(ABC):
     """A detector that looks at cells of the surface, so that neither the faces nor noise decide what it finds."""
 
     channels: tuple[str, ...] = ()
     required_weights: str | None = None
 
+    @abstractmethod
     def _values(self, mesh: Mesh, options: Options) -> tuple[Samples, np.ndarray, np.ndarray]:
         """(samples, their values (s,), above 0, and the smooth values (s,) whose peaks are the points)."""
-        raise NotImplementedError
 
     def _vertices(self, mesh: Mesh, samples: Samples, chosen: np.ndarray) -> np.ndarray:
         """(k,) the vertices that stand for samples (k,)."""
