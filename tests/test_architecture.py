@@ -136,7 +136,7 @@ def test_every_file_says_what_it_is_for():
 def test_the_code_of_a_stage_is_what_it_imports():
     files = {path.relative_to(ROOT).as_posix() for path in code.stage_files("views")}
     assert {
-        "haptic_glance/look/views/render.py",
+        "haptic_glance/look/views/renderer.py",
         "haptic_glance/look/views/shaders/segmentation.frag",
         "stages/kit/run.py",
     } <= files

@@ -101,7 +101,7 @@ class HybridNet(torch.nn.Module):
         )
         self.register_buffer("mean", torch.tensor(MEAN * 2).view(6, 1, 1))
         self.register_buffer("std", torch.tensor(STD * 2).view(6, 1, 1))
-        self.register_buffer("temperature", torch.ones(2))  # of each head's softmax, from stages.transfer.fusion
+        self.register_buffer("temperature", torch.ones(2))  # of each head's softmax, fitted by the stage transfer
         self.requires_grad_(False).eval().to(device_of(vision))
 
     def forward(self, images: torch.Tensor) -> Scores:

@@ -134,7 +134,7 @@ def touched(name: str, mesh: Mesh, seed: int = 0) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Expected:
-    """What touches at k places may find, whatever is believed: predicted and probabilities of stages.exploration.State.
+    """The outcomes that touches at k places may have, for each possible object: the planner's prediction.
 
     predicted (k, classes, outcomes, classes): log likelihoods of possible touches if it is this object;
     probabilities (k, classes, outcomes): of each, if it is this object.
@@ -148,7 +148,7 @@ class Library:
     """Objects known by touch.
 
     names: of the objects; samples (classes, touches, 41) their features; positions (classes, touches, 3) where they
-    were touched. The likelihood of an imprint is that of stages.exploration: a kernel density of its components; if the
+    were touched. The likelihood of an imprint is that of T4.2: a kernel density of its components; if the
     objects are `placed`, that is, stand as they were learned, of the touches near its place. A learned touch is used
     like a new one when it is compared with all others but itself; that calibrates the belief.
     """
@@ -181,7 +181,7 @@ class Library:
     def expect(self, places: Places) -> Expected:
         """What touches at places may find: if it were object c, one of the learned touches of c near the place.
 
-        Near in the frame in which c was learned, even where the objects are not `placed`, as in stages.exploration.
+        Near in the frame in which c was learned, even where the objects are not `placed`, as in the stage exploration.
         """
         distances = np.linalg.norm(places.positions[:, None] - self._positions[None], axis=2)
         outcomes, probabilities = nearest_outcomes(distances, self._owners)

@@ -40,7 +40,7 @@ _SHARED = {
 
 
 def shared_by(split: str, of_class: int | None = None) -> float:
-    """Test over training share of repeated splits of the same data, for stages.kit.stats.interval.
+    """Test over training share of repeated splits of the same data, for an interval of their mean.
 
     of_class: objects of each class, where the repetitions are folds that leave one object of each class out. Without
     it, unseen objects or views count as independent: 0. Raises ValueError for a name that is no Split.

@@ -122,7 +122,9 @@ class SurfaceIndex:
         self.extent = high - low
         self.diagonal = float(np.linalg.norm(self.extent))
         if self.diagonal > MAX_COORDINATE or 0 < self.extent.max() < 1 / MAX_COORDINATE:
-            raise ValueError(f"a mesh of diagonal {self.diagonal:.3g} is out of range: scale it, see stages.meshes")
+            raise ValueError(
+                f"a mesh of diagonal {self.diagonal:.3g} is out of range: scale it, see haptic_glance.mesh.normalise"
+            )
         self.low = low - MARGIN * self.extent.max()
         self.planes, self.areas = planes_of(mesh.vertices, mesh.faces, self.low)
         self.grid = self._build_grid(CELLS_PER_FACE)

@@ -73,7 +73,9 @@ def simplify(
     if faces < 1 or len(mesh.faces) == 0:
         raise ValueError(f"cannot simplify {len(mesh.faces)} faces to {faces}: both must be 1 or more")
     if not 1 / MAX_DIAGONAL < (mesh.diagonal or 1.0) < MAX_DIAGONAL:
-        raise ValueError(f"a mesh of diagonal {mesh.diagonal:.3g} is out of range: scale it, see stages.meshes")
+        raise ValueError(
+            f"a mesh of diagonal {mesh.diagonal:.3g} is out of range: scale it, see haptic_glance.mesh.normalise"
+        )
     rings = check_rings(check_keep(mesh, keep), rings)
     multipliers = None if weights is None else quadric_weights(_check_weights(mesh, weights))
     counted = check_attributes(mesh, attributes)

@@ -2,7 +2,7 @@
 
 Pictures on a surface: texture coordinates per face corner, so that a seam splits the picture and not the surface.
 
-The triangle mesh as arrays, and the few facts of it that several stages ask for.
+The triangle mesh as arrays, and the few facts of it that several modules ask for.
 """
 
 from dataclasses import dataclass, fields
@@ -68,7 +68,7 @@ class Mesh:
     """A triangle mesh; vertex order is identity, nothing is ever reordered behind the caller's back.
 
     vertices (n, 3) f8, faces (m, 3) i8 into vertices, counter-clockwise seen from outside, colors (n, 3) u1 or None,
-    texture: a Texture of the m faces or None (the stages of the pipeline store and use none). up: the axis that points
+    texture: a Texture of the m faces or None (the pipeline stores none). up: the axis that points
     up, in the form of `axis_named`: y, -z or a vector, and `auto` where the axis is unknown. Functions that derive a
     mesh from another one keep its axis (`dataclasses.replace`). Stored meshes are z up.
 

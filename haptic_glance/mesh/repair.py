@@ -4,7 +4,7 @@ Repairs what can be repaired without moving a vertex, and refuses the rest.
 
 Makes the winding of faces consistent, and turns closed surfaces outwards.
 
-The coordinate frame of all later stages: +z up, centred, a bounding sphere of radius 0.5.
+The coordinate frame of all other modules: +z up, centred, a bounding sphere of radius 0.5.
 """
 
 from dataclasses import replace

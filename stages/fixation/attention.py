@@ -10,7 +10,8 @@ import torch
 from haptic_glance.base.files import read_arrays, read_mesh, write_arrays
 from haptic_glance.base.rng import rng
 from haptic_glance.base.timing import Stopwatch
-from haptic_glance.deep.cam import grad_cam, resize_cams
+from haptic_glance.deep.cam import grad_cam
+from haptic_glance.deep.resize import resize_cams
 from haptic_glance.look.camera import Viewpoint
 from haptic_glance.look.channels import facing
 from haptic_glance.mesh.mesh import Mesh

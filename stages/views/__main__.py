@@ -13,7 +13,7 @@ import pandas as pd
 from haptic_glance.base.files import read_mesh, write_table
 from haptic_glance.base.timing import Stopwatch
 from haptic_glance.look.views import VIEWPOINTS, cumulative_coverage, fewest_views, greedy_views, render, viewpoint_set
-from haptic_glance.look.views.render import resolve_renderer
+from haptic_glance.look.views.renderer import resolve_renderer
 from haptic_glance.mesh.mesh import Mesh
 from stages.kit.run import Rows, StageRun
 from stages.kit.workspace import Workspace, workspace_of_arguments

@@ -8,7 +8,7 @@ import torch
 
 from haptic_glance.base.files import sha256
 from haptic_glance.deep import Network, build, grad_cam
-from haptic_glance.deep.cam import resize_cams
+from haptic_glance.deep.resize import resize_cams
 from haptic_glance.look.camera import Viewpoint, project
 from haptic_glance.look.channels import facing
 from stages.fixation import entropy, fuse, highest_level, mean_over_views, project_to_vertices

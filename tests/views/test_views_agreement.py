@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from haptic_glance.look.camera import Viewpoint, pixels_per_unit
-from haptic_glance.look.views import gl, render
-from haptic_glance.look.views import render as renderer
+from haptic_glance.look.views import gl, render, renderer
 
 SIZE = (300, 400)
 FOOTPRINT = 1 / pixels_per_unit(SIZE[0])

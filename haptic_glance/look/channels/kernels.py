@@ -97,7 +97,7 @@ def locate_pixels(
 ) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
     """(points (k, 3), barycentric weights (k, 3) in 0..1) of k pixels that show the faces `shown` (k,).
 
-    right, up, heights (k,): the coordinates of a point along the camera's axes (3, 3), see stages.kit.Viewpoint.axes.
+    right, up, heights (k,): the coordinates of a point along the camera's axes (3, 3), see Viewpoint.axes.
     vertices (n, 3) and faces (m, 3) of the mesh; crosses (m, 3): the faces' normals, of twice their area.
     """
     count = len(shown)

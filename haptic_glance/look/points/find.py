@@ -45,9 +45,9 @@ def saliency(
     surface, `glance_any_pose` the same without the features that need an up axis, for what lies in any pose;
     `glance_deep` the same with the maps of a network that looks at pictures (extra `deep`), more accurate and slower;
     `thesis_ssim` is the thesis's own weighted average (eq. 3.9), `itti` the classical model. weights: for a method with
-    weights, a name that stages.weights has or a dict name -> weight, instead of its own. viewpoints: Viewpoints, None
-    for the twelve of T figure 3.2. smoothing: length in units of the normalised mesh (bounding sphere 0.5). Raises
-    ValueError for unknown names or invalid weights.
+    weights, the name of a set of weights (haptic_glance.look.weights) or a dict name -> weight, instead of its own.
+    viewpoints: Viewpoints, None for the twelve of T figure 3.2. smoothing: length in units of the normalised
+    mesh (bounding sphere 0.5). Raises ValueError for unknown names or invalid weights.
     """
     detector = method_named(method)
     if not isinstance(detector, HasSaliency):

@@ -1,9 +1,9 @@
 """Mesh saliency: centre-surround differences of the mean curvature.
 
 Lee, Varshney, Jacobs: Mesh saliency, ACM Transactions on Graphics 24(3) (SIGGRAPH), 2005, section 3. Differences from
-the paper: curvature is the robust one of stages.conspicuity instead of Taubin's one-ring fit, spread over one epsilon;
-averages are taken over the surface instead of over the vertices; a scale whose contrast stays under FLOOR is left
-out, where the paper's normalisation would raise rounding to full saliency; and the sum is divided by its weights.
+the paper: curvature is the robust one of haptic_glance.look.channels instead of Taubin's one-ring fit, spread over one
+epsilon; averages are taken over the surface instead of over the vertices; a scale whose contrast stays under FLOOR is
+left out, where the paper's normalisation would raise rounding to full saliency; and the sum is divided by its weights.
 The paper selects no points: local maxima above the mean of all local maxima follow Dutagaci, Cheung, Godil, Evaluation
 of 3D interest point detection techniques via human-generated ground truth, The Visual Computer 28, 2012.
 """

@@ -11,7 +11,7 @@ from .best import (
     hidden_surface,
     point_visibility,
 )
-from .render import render
+from .renderer import render
 from .view import Material, View
 from .viewpoints import FOUR, TWELVE, VIEWPOINTS, viewpoint_set
 

@@ -22,7 +22,7 @@ class View:
     """A rendered image of a mesh.
 
     rgb (h, w, 3) u1; depth (h, w) f4, distance from the camera plane in units of the mesh, inf off the object;
-    face (h, w) i4, the id of the visible face, -1 off the object; viewpoint, the stages.kit.Viewpoint.
+    face (h, w) i4, the id of the visible face, -1 off the object; viewpoint, the haptic_glance.look.camera.Viewpoint.
     """
 
     rgb: np.ndarray

@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure as Drawing
 
 from haptic_glance.base.files import object_files
-from haptic_glance.deep.cam import GRIDS, resize_cams
+from haptic_glance.deep.resize import GRIDS, resize_cams
 from haptic_glance.mesh.mesh import Mesh
 from stages.fixation import fuse
 from stages.fixation.places import ITSELF
