@@ -24,11 +24,10 @@ from haptic_glance.base.files import write_table
 from haptic_glance.lod import BACKENDS
 from haptic_glance.mesh import load
 from haptic_glance.mesh.files import FORMATS
-from stages.kit.parallel import progress
-from stages.lod.warm_up import warm_up
-from stages.stability.qem_error_curve import QemErrorCurve
+from stages.engine.parallel import progress
+from stages.lod.cell import warm_up
 from stages.stability.simplification import run_cases
-from stages.stability.specimen import Case, Specimen
+from stages.stability.surface import Case, QemErrorCurve, Specimen
 
 OUT = Path("reports/bench/broken_meshes.csv.gz")
 PACKAGE = "libcgal-demo_5.5.1-2_all.deb"

@@ -29,8 +29,8 @@ from haptic_glance.look.weights.attention import RIDGE, standardise
 from haptic_glance.look.weights.weights import MAPS
 from haptic_glance.mesh.mesh import Mesh
 from stages.bench import gazed
-from stages.kit.parallel import progress
-from stages.kit.stats import interval
+from stages.engine.parallel import progress
+from stages.engine.statistics import interval
 
 OUT, SHARED = Path("reports/bench/deep_gaze.csv"), Path("../shared/data")
 SETS, METRICS = ("gaze", "gaze_clouds"), (nss, auc, cc, kl)

@@ -40,7 +40,7 @@ from haptic_glance.mesh import normalise
 from haptic_glance.mesh.files import parse
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.touch import Surface, distances_at, press_many, sensor_axes, sensor_normals, touchable
-from stages.kit.parallel import progress
+from stages.engine.parallel import progress
 from stages.meshes.sources import PRINCETON, collection_files
 
 OUT, MESHES, PSB = Path("reports/bench/imprints.csv"), Path("data/household/meshes"), "../shared/data/psb.zip"

@@ -20,8 +20,8 @@ from haptic_glance.base.rng import rng
 from haptic_glance.know import Exploration, known_objects, learn
 from haptic_glance.know.exploration import MOST
 from haptic_glance.touch import Surface
-from stages.kit.parallel import progress
-from stages.kit.stats import interval
+from stages.engine.parallel import progress
+from stages.engine.statistics import interval
 
 OUT, MESHES, DRAWS = Path("reports/bench/knowing.csv"), Path("data/household/meshes"), 5
 METRICS = ("right", "wrong", "touches")

@@ -14,7 +14,7 @@ from benchmarks import arguments
 from haptic_glance.base.files import write_table
 from haptic_glance.deep.device import cost
 from haptic_glance.deep.network import NETWORKS, build
-from stages.kit.parallel import progress
+from stages.engine.parallel import progress
 
 OUT = Path("reports/bench/networks.csv")
 SIZES = (96, 224)  # pixels a side: of the recorded touches here, of the thesis

@@ -26,7 +26,7 @@ from benchmarks.salient_simplification import GAZE, subjects
 from haptic_glance.base.files import write_table
 from haptic_glance.lod import InfeasibleTarget, SimplifyError, colour_error, metro, simplify
 from haptic_glance.mesh.mesh import Mesh
-from stages.kit.parallel import progress
+from stages.engine.parallel import progress
 
 OUT = Path("reports/bench/painted_simplification.csv")
 WEIGHTS = (0.1, 1.0)

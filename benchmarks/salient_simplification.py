@@ -25,8 +25,8 @@ from haptic_glance.lod import InfeasibleTarget, SimplifyError, metro, salient_er
 from haptic_glance.mesh import normalise
 from haptic_glance.mesh.files import parse
 from haptic_glance.mesh.mesh import Mesh
-from stages.kit.parallel import progress
-from stages.lod.warm_up import warm_up
+from stages.engine.parallel import progress
+from stages.lod.cell import warm_up
 from stages.weights.ground_truth import ground_truth_amounts, published_files, spread_on_surface
 
 OUT = Path("reports/bench/salient_simplification.csv")

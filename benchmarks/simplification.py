@@ -43,8 +43,8 @@ from haptic_glance.look.weights.svm import select_far_points
 from haptic_glance.mesh import normalise
 from haptic_glance.mesh.files import parse
 from haptic_glance.mesh.mesh import Mesh
-from stages.kit.parallel import progress
-from stages.lod.warm_up import warm_up
+from stages.engine.parallel import progress
+from stages.lod.cell import warm_up
 from stages.meshes.sources import PRINCETON, collection_files
 
 OUT = Path("reports/bench/simplification.csv.gz")

@@ -30,7 +30,7 @@ from haptic_glance.base.errors import errors_in_one_line
 from haptic_glance.base.extras import from_extra
 from haptic_glance.base.timing import WALL, Stopwatch, clock
 from haptic_glance.mesh.mesh import Mesh
-from stages.kit.parallel import progress
+from stages.engine.parallel import progress
 
 ROWS = "reports/measurements/{}/salient_points.csv.gz"
 GAZE = "../shared/data/{}.zip"  # as conf/data has it
@@ -66,7 +66,7 @@ def run(argv: Sequence[str]) -> None:
     with from_extra():
         import pandas as pd
 
-        from stages.kit.rows import read_rows
+        from stages.engine.rows import read_rows
     path = options.rows or Path(ROWS.format(options.set))
     if not path.exists():
         raise ValueError(f"no {path}: run it in a clone of the project, or name the rows by --rows")
@@ -141,12 +141,11 @@ def judged(method: Callable, objects: Gazed, train: bool = False) -> list[dict[s
 def gazed(dataset: str, archive: Path, only: Sequence[str] = ()) -> Gazed:
     """{name: (Mesh, GroundTruth)} of the objects of one of SETS; `only` names some of them, none stands for all."""
     from haptic_glance.look.agreement import GroundTruth
+    from stages.meshes import Params
     from stages.meshes.collect import prepare_mesh
-    from stages.meshes.schema import Params
     from stages.meshes.sources import SOURCES
-    from stages.weights.ground_truth import ground_truth_amounts, spread_on_surface
-    from stages.weights.ground_truth.source import published_files
-    from stages.weights.training_data import SPREAD
+    from stages.weights.ground_truth import ground_truth_amounts, published_files, spread_on_surface
+    from stages.weights.training import SPREAD
 
     files, objects = published_files(dataset, archive), {}
     settings = Params(dataset, str(archive), "y", "unknown", list(only), {}, False)
@@ -176,7 +175,7 @@ def leaderboard(scores: Any, by: str = "nss") -> list[dict[str, Any]]:
         median object), clock, values {object: {metric: value, seconds}}, failed {object: reason}; and, where OWN is
         among the methods, `nss_lead` with its `_low` and `_high` and so on: by how much OWN is better, also in KL.
     """
-    from stages.kit.stats import interval
+    from stages.engine.statistics import interval
 
     scores = scores.reindex(columns=["item", "method", "metric", "value", "seconds", "clock", "note"])
     table = scores.pivot_table(index="item", columns=["metric", "method"], values="value")

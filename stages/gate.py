@@ -24,8 +24,8 @@ from typing import Any
 
 from haptic_glance.base.errors import errors_in_one_line
 from haptic_glance.base.files import read_json, write_json
-from stages.kit.tolerances import Tolerances, compare, read_tolerances, widest_moves
-from stages.kit.workspace import Workspace
+from stages.engine.settings import Workspace
+from stages.engine.tolerances import Tolerances, compare, read_tolerances, widest_moves
 
 TOLERANCES = Path("reports/tolerances.yaml")
 REPORT = "report."  # metrics that count tables and verdicts: no measurements, whose luck is to be known

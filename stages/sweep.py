@@ -35,10 +35,9 @@ from haptic_glance.look.points.options import Options
 from haptic_glance.look.weights import read_learned_weights
 from haptic_glance.touch import press_many, touchable
 from stages.compose import composed
-from stages.conspicuity import read_view_maps
-from stages.kit.conf import conf_folder
-from stages.kit.params import FILE, ParamsError, check_section, load_params, schema_of
-from stages.kit.stats import interval
+from stages.conspicuity.measure import read_view_maps
+from stages.engine.settings import FILE, ParamsError, check_section, conf_folder, load_params, schema_of
+from stages.engine.statistics import interval
 
 OUT = Path("runs/sweeps/recognition.csv")
 BASES = Path("build/sweeps/bases.json")  # {set: its settings in params.yaml, and those of conf/}, for all jobs

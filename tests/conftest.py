@@ -13,7 +13,7 @@ from haptic_glance.look.channels.channels import OTHERS
 from haptic_glance.look.views import TWELVE
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.rays import RayScene
-from stages.kit.workspace import Workspace
+from stages.engine.settings import Workspace
 
 SIZE = (75, 100)
 CHANNELS = (*NINE, *OTHERS)

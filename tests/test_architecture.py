@@ -9,14 +9,14 @@ import pytest
 import yaml
 
 from stages.code import stage_names
-from stages.kit import code
-from stages.kit.params import schema_of
+from stages.engine import code
+from stages.engine.settings import schema_of
 
 ROOT = Path(__file__).parents[1]
 PIPELINE = yaml.safe_load((ROOT / "dvc.yaml").read_text())["stages"]
 ORDER = [stage for stage in PIPELINE if stage != "code"]
 STAGES = {stage: PIPELINE[stage].get("do", PIPELINE[stage]) for stage in ORDER}
-SHARED = {"kit"}  # packages that are no stages
+SHARED = {"engine"}  # packages that are no stages
 LIBRARY = {  # package of the library: the packages that it may import
     "base": {"mesh"},  # its files hold meshes
     "mesh": {"base"},
@@ -25,9 +25,9 @@ LIBRARY = {  # package of the library: the packages that it may import
     "lod": {"base", "mesh", "look"},
     "know": {"base", "mesh", "touch"},
     "deep": {"base", "mesh", "look"},
-    "disturb": {"touch"},
+    "disturb": {"base", "mesh", "look", "lod", "touch"},
 }
-SECTIONS = sorted(path.parent.name for path in ROOT.glob("stages/*/schema.py"))
+SECTIONS = stage_names()
 
 
 def names_imported(path):
@@ -44,7 +44,7 @@ def names_imported(path):
 
 
 def imported(package):
-    """The stage packages (and kit) that the files of a package import, itself left out."""
+    """The stage packages (and the engine) that the files of a package import, itself left out."""
     names = [name for path in (ROOT / "stages" / package).rglob("*.py") for name in names_imported(path)]
     found = {match[1] for name in names if (match := re.match(r"stages\.(\w+)", name))}
     return {name for name in found if (ROOT / "stages" / name).is_dir()} - {package}
@@ -57,15 +57,15 @@ def settings_read(stage):
     calls = [node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.Call)]
     asked = [call for call in calls if getattr(call.func, "attr", "") == "settings"]
     schemas = [getattr(module, ast.unparse(call.args[0]).partition(".")[0]) for call in asked]
-    return {schema.__module__.split(".")[-2] for schema in schemas}
+    return {schema.__module__.split(".")[-1] for schema in schemas}
 
 
 def test_every_stage_is_in_the_pipeline():
     assert sorted(ORDER) == stage_names()
 
 
-def test_kit_imports_no_stage():
-    assert imported("kit") == set()
+def test_the_engine_imports_no_stage():
+    assert imported("engine") == set()
 
 
 def test_the_library_knows_nothing_of_the_pipeline():
@@ -118,8 +118,8 @@ def test_dvc_yaml_reads_like_a_table_of_contents():
 @pytest.mark.parametrize("section", SECTIONS)
 def test_every_setting_is_documented_and_read(section):
     folder = ROOT / "stages" / section
-    others = [path.read_text() for path in (ROOT / "stages").rglob("*.py") if path != folder / "schema.py"]
-    text = (folder / "schema.py").read_text()
+    others = [path.read_text() for path in (ROOT / "stages").rglob("*.py") if path != folder / "__init__.py"]
+    text = (folder / "__init__.py").read_text()
     fields = re.findall(r"^    (\w+): [^\n]*$", text[text.index("class Params") :], re.M)
     documented = re.findall(r"^    (\w+): [^#\n]+# \S", text[text.index("class Params") :], re.M)
     assert fields == documented == list(schema_of(section).__dataclass_fields__)
@@ -138,7 +138,7 @@ def test_the_code_of_a_stage_is_what_it_imports():
     assert {
         "haptic_glance/look/views/renderer.py",
         "haptic_glance/look/views/shaders/segmentation.frag",
-        "stages/kit/run.py",
+        "stages/engine/run.py",
     } <= files
     assert not any(name.startswith(("stages/lod/", "stages/report/")) for name in files)
 
@@ -162,9 +162,8 @@ def test_only_changed_work_changes_the_digest(tmp_path, old, new, changes):
 def test_code_that_is_imported_late_or_handed_on_is_found(tmp_path, monkeypatch):
     files = {
         "stages/__init__.py": "",
-        "stages/a/__init__.py": "",
+        "stages/a/__init__.py": "class Params: ...\n",
         "stages/a/__main__.py": "from stages.b import work\ndef late():\n    from stages.c.deep import more\n",
-        "stages/a/schema.py": "",
         "stages/b/__init__.py": "from .inner import work\nfrom .unused import other\n",
         "stages/b/inner.py": "from .helper import help\n",
         "stages/b/helper.py": "", "stages/b/unused.py": "",
@@ -180,7 +179,6 @@ def test_code_that_is_imported_late_or_handed_on_is_found(tmp_path, monkeypatch)
     code._module.cache_clear()
     assert found == set(files) - {
         "stages/__init__.py",
-        "stages/a/__init__.py",
         "stages/b/__init__.py",
         "stages/b/unused.py",
     }

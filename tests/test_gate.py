@@ -9,7 +9,7 @@ import pytest
 
 from haptic_glance.base.files import read_json, write_json
 from stages import gate
-from stages.kit.tolerances import Rule, Tolerances, compare
+from stages.engine.tolerances import Rule, Tolerances, compare
 
 ROOT = Path(__file__).parents[1]
 PROFILES = ["smoke", "laptop"]

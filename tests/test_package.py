@@ -16,7 +16,7 @@ import pytest
 import haptic_glance
 from haptic_glance import __main__ as command
 from haptic_glance.base.extras import EXTRAS, MODULES, MissingExtra, from_extra
-from stages.kit.conf import conf_folder
+from stages.engine.settings import conf_folder
 
 ROOT = Path(__file__).parents[1]
 OURS = sys.stdlib_module_names | {"stages", "haptic_glance"}

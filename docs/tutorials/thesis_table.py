@@ -12,7 +12,7 @@ import pandas as pd
 
 from haptic_glance.gallery.demo import sample
 from haptic_glance.know.split import Split, shared_by
-from stages.kit.stats import interval
+from stages.engine.statistics import interval
 from stages.report.verdict import verdict
 
 ROOT = sample().parents[1]  # of the checkout

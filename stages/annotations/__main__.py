@@ -20,13 +20,13 @@ from haptic_glance.look.agreement import GroundTruth, auc, nss
 from haptic_glance.look.marks import check_on_mesh, read_marks
 from haptic_glance.look.points.detectors import height, random_vertices
 from haptic_glance.mesh.mesh import Mesh
-from stages.kit.run import Rows, StageRun
-from stages.kit.workspace import Workspace, workspace_of_arguments
-from stages.meshes.schema import Params as MeshesParams
+from stages.engine.run import Rows, StageRun
+from stages.engine.settings import Workspace, workspace_of_arguments
+from stages.meshes import Params as MeshesParams
 from stages.weights.ground_truth import spread_on_surface
-from stages.weights.training_data import SPREAD
+from stages.weights.training import SPREAD
 
-from .schema import Params
+from . import Params
 
 
 def process(name: str, folder: Path, data: Path, marks: Path, gaze: bool, settings: Params, seed: int) -> Rows:

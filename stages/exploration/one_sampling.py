@@ -13,10 +13,10 @@ from haptic_glance.know import classifier, features
 from haptic_glance.know.explore import STRATEGIES, explore, stop
 from haptic_glance.know.split import Split
 from haptic_glance.know.trial import SPLITS, Trial, split_touches
-from stages.imprints import read_imprints
-from stages.kit.run import Rows
+from stages.engine.run import Rows
+from stages.imprints.imprints import read_imprints
 
-from .schema import Params
+from . import Params
 
 # With places, `regions` would measure the split alone: only the true object has no training touch near the place.
 EXPERIMENTS = {

@@ -25,7 +25,7 @@ from pathlib import Path
 from haptic_glance.base.errors import errors_in_one_line
 from haptic_glance.base.extras import from_extra
 from haptic_glance.base.files import sha256
-from stages.kit.code import stage_digest
+from stages.engine.code import stage_digest
 
 SHAPES = "household"
 TRIALS = 96  # choices that are proposed: four generations
@@ -43,8 +43,8 @@ def run(argv: Sequence[str], root: Path = Path(".")) -> int:
     parser.add_argument("--classes", default="furniture", help="data set of the classes (default: %(default)s)")
     given = parser.parse_args(argv)
     with from_extra():
-        from . import rows
-        from .objects import halves, read_objects
+        from . import known
+        from .known import halves, read_objects
         from .search import OutOfTime, Search
         from .senses import Senses
     shapes, classes, files = read_objects(root / "data", SHAPES, given.classes)
@@ -58,7 +58,7 @@ def run(argv: Sequence[str], root: Path = Path(".")) -> int:
     except OutOfTime:
         print(f"front: {given.minutes:g} minutes are over; run it again to go on", file=sys.stderr)
         return 1
-    paths = rows.write(root / "reports/measurements", (SHAPES, given.classes), found, given.seed)
+    paths = known.write(root / "reports/measurements", (SHAPES, given.classes), found, given.seed)
     print(f"front: {len(found)} rows in {' and '.join(map(str, paths))}; `python -m stages.report` shows them")
     return 0
 

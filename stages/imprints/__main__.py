@@ -19,12 +19,12 @@ from haptic_glance.touch.distances import check_array, check_contact
 from haptic_glance.touch.quasi_tangent import SENSORS, Touched, misfit, touch
 from haptic_glance.touch.surface import Surface
 from haptic_glance.touch.warm_up import warm_up
-from stages.kit.run import Rows, StageRun
-from stages.kit.workspace import Workspace, workspace_of_arguments
-from stages.salient_points import read_points
+from stages.engine.run import Rows, StageRun
+from stages.engine.settings import Workspace, workspace_of_arguments
+from stages.salient_points.measure import read_points
 
-from .files import Imprints, write_imprints
-from .schema import Params
+from . import Params
+from .imprints import Imprints, write_imprints
 
 
 def process(name: str, folder: Path, data: Path, settings: Params) -> Rows:

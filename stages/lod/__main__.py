@@ -15,11 +15,11 @@ measured once. Settings: section `lod` of params.yaml.
 from haptic_glance.lod.export import face_count
 from haptic_glance.lod.simplify import check_backend
 from haptic_glance.lod.task import variant
-from stages.kit.workspace import Workspace, workspace_of_arguments
-from stages.meshes.schema import Params as MeshesParams
+from stages.engine.settings import Workspace, workspace_of_arguments
+from stages.meshes import Params as MeshesParams
 
+from . import Params
 from .data_set import simplify_all
-from .schema import Params
 
 
 def run(workspace: Workspace) -> None:

@@ -18,7 +18,7 @@ from haptic_glance.know import CLASSIFIERS
 from haptic_glance.know.classifiers import COMPONENTS
 from haptic_glance.know.split import Split
 from stages.classification.recorded import PALMS, Grasps
-from stages.kit.run import Rows, StageRun
+from stages.engine.run import Rows, StageRun
 
 from .splits import SPLITS, split_number
 

@@ -15,7 +15,7 @@ from haptic_glance.know.classifiers import SCALINGS, TRAINING, TWICE
 from haptic_glance.know.features import as_many, confusable, similarity
 from haptic_glance.know.protocol import FOLDS, MIN_IMPRINTS, Prepared
 from haptic_glance.know.split import Split
-from stages.kit.run import Rows, StageRun
+from stages.engine.run import Rows, StageRun
 
 from .splits import SPLITS, random_split, split_number
 

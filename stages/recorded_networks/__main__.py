@@ -15,13 +15,12 @@ import numpy as np
 from haptic_glance.base.fetch import FetchError
 from haptic_glance.deep.training import CONVERGED, check_passes
 from haptic_glance.deep.weights import imagenet_state
-from stages.kit.run import Rows, StageRun
-from stages.kit.workspace import Workspace, workspace_of_arguments
-from stages.recorded.schema import Params as RecordedParams
+from stages.engine.run import Rows, StageRun
+from stages.engine.settings import Workspace, workspace_of_arguments
+from stages.recorded import Params as RecordedParams
 
-from .neighbours import neighbour_rows
-from .schema import COLUMNS, Params
-from .sources import SOURCES
+from . import COLUMNS, Params
+from .data import SOURCES, neighbour_rows
 from .trial import Trial, process, trials
 
 

@@ -13,6 +13,7 @@ from haptic_glance.base.rng import rng
 from haptic_glance.base.timing import Stopwatch
 from haptic_glance.deep.device import explain_out_of_memory
 from haptic_glance.deep.network import UNNORMALISED, count_parameters
+from haptic_glance.deep.repeatable import repeatable
 from haptic_glance.deep.training import (
     CONVERGED,
     PRINTED,
@@ -24,14 +25,11 @@ from haptic_glance.deep.training import (
     train_model,
 )
 from haptic_glance.deep.weights import available_weights
-from stages.kit.repeatable import repeatable
-from stages.kit.run import Rows
+from stages.engine.run import Rows
 from stages.recorded.splits import split_number
 
-from .parts import groups_of, parts
-from .schema import Params
-from .sources import Recording
-from .tasks import finetuned, frozen, frozen_features
+from . import Params
+from .data import Recording, finetuned, frozen, frozen_features, groups_of, parts
 
 MODES = ("frozen", "finetuned")
 

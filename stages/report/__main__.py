@@ -17,21 +17,19 @@ from typing import Any
 import pandas as pd
 
 from haptic_glance.base.files import replace_folder, write_json, write_table, write_text
-from stages.kit.parallel import parallel_map
-from stages.kit.workspace import workspace_of_arguments
+from stages.engine.parallel import parallel_map
+from stages.engine.settings import workspace_of_arguments
 
+from . import Params
 from .claims_page import claims_shown
-from .counting import counted, counts, open_by_cause
 from .items import Built
-from .markdown import as_text, markdown_table
-from .own import write_own_page
-from .records import write_records
+from .page import pack_viewer
+from .records import write_own_page, write_records
 from .results import NotRun, Results
-from .schema import Params
 from .site import write_site
+from .tables import as_text, markdown_table
 from .topics import CLAIMS, KINDS, TOPICS, build_all
-from .verdict import judged
-from .viewer import pack_viewer
+from .verdict import counted, counts, judged, open_by_cause
 
 OUTPUTS = ("tables", "figures", "tradeoff", "claims", "site", "claims.md", "claims.csv", "index.html")
 OWN_NOTE = "this page is about a folder alone; `python -m stages.compose` switches the project's own data sets on"

@@ -13,15 +13,13 @@ from haptic_glance.base.timing import CLOCK, WALL
 from haptic_glance.look.camera import Viewpoint
 from haptic_glance.look.weights import read_learned_weights
 from haptic_glance.mesh.mesh import Mesh
-from stages.conspicuity.storage import read_maps
-from stages.imprints import read_imprints
-from stages.kit.conf import conf_folder
-from stages.kit.params import load_params
-from stages.kit.rows import SUFFIX, read_rows
-from stages.kit.workspace import Workspace
-from stages.salient_points import read_points, read_saliency, read_strong_points
+from stages.conspicuity.measure import read_maps
+from stages.engine.rows import SUFFIX, read_rows
+from stages.engine.settings import Workspace, conf_folder, load_params
+from stages.imprints.imprints import read_imprints
+from stages.salient_points.measure import read_points, read_saliency, read_strong_points
 
-from .schema import Params
+from . import Params
 
 Found = TypeVar("Found", bound=Sized)
 # Sets with the settings of a section of the thesis.
@@ -297,7 +295,7 @@ class Results:
         return maps[:, [stored.index(channel) for channel in wanted]], mask, viewpoints, list(wanted)
 
     def ground_truth(self, name: str, dataset: str | None = None) -> dict[str, np.ndarray]:
-        """Arrays of data/SET/weights/ground_truth/NAME.npz: density, points and more (stages.weights.training_data)."""
+        """Arrays of data/SET/weights/ground_truth/NAME.npz: density, points and more (stages.weights.training)."""
         path = self.folder("weights", dataset) / "ground_truth" / f"{name}.npz"
         what = f"no weights/ground_truth/{name}.npz: no ground truth of {name}, or not run"
         return read_arrays(there(path, what, "weights"))

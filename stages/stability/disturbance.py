@@ -6,10 +6,10 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from haptic_glance.base.rng import rng
+from haptic_glance.disturb.objects import PERTURBATIONS
+from haptic_glance.disturb.perturbed import Conditions, Perturbed
 from haptic_glance.lod.errors import surface_index
 from haptic_glance.mesh.mesh import Mesh
-
-from .perturbations import PERTURBATIONS, Conditions, Perturbed
 
 AND = "+"  # between the names of a pair
 

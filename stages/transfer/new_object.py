@@ -16,8 +16,7 @@ from haptic_glance.deep.hybrid import SENSES, HybridNet
 from haptic_glance.deep.images import normalise
 from haptic_glance.deep.network import Network
 
-from .hybrid_data import SenseData
-from .hybrid_scores import in_batches, single_sense
+from .hybrid_data import SenseData, in_batches, single_sense
 
 TOUCH = SENSES.index("touch")
 DRAWS = 20  # random choices of the touches that are learned

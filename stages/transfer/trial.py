@@ -13,6 +13,7 @@ from haptic_glance.deep.device import choose_device, explain_out_of_memory
 from haptic_glance.deep.images import normalise, to_images
 from haptic_glance.deep.modes import MODES, Task, mode_named
 from haptic_glance.deep.network import Network, build, count_parameters, recalibrate
+from haptic_glance.deep.repeatable import repeatable
 from haptic_glance.deep.training import (
     CONVERGED,
     PRINTED,
@@ -24,14 +25,12 @@ from haptic_glance.deep.training import (
     train_model,
 )
 from haptic_glance.disturb.imprint import FEW_TOUCHES, PERTURBATIONS, disturb
-from stages.kit.holdout import Split
-from stages.kit.repeatable import repeatable
+from stages.engine.statistics import Split
 
-from .plan import Trial, main_data
-from .schema import Params
-from .split import by_objects, by_touches, stratified_split
+from . import Params
+from .export import network_parts, weight_changes
+from .plan import Trial, by_objects, by_touches, main_data, stratified_split
 from .touches import Touches, read_touches
-from .weight_change import network_parts, weight_changes
 
 
 @explain_out_of_memory()

@@ -15,11 +15,11 @@ from haptic_glance.base.timing import Stopwatch
 from haptic_glance.look.views import VIEWPOINTS, cumulative_coverage, fewest_views, greedy_views, render, viewpoint_set
 from haptic_glance.look.views.renderer import resolve_renderer
 from haptic_glance.mesh.mesh import Mesh
-from stages.kit.run import Rows, StageRun
-from stages.kit.workspace import Workspace, workspace_of_arguments
+from stages.engine.run import Rows, StageRun
+from stages.engine.settings import Workspace, workspace_of_arguments
 
-from . import write_view
-from .schema import COLUMNS, Params
+from . import COLUMNS, Params
+from .storage import write_view
 
 
 def process(name: str, folder: Path, data: Path, settings: Params, renderer: str) -> Rows:

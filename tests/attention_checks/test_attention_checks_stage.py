@@ -9,7 +9,7 @@ from haptic_glance.look.glance import samples_of_mesh, standardised
 from haptic_glance.mesh import normalise
 from haptic_glance.mesh.mesh import Mesh
 from stages.attention_checks.__main__ import run
-from stages.kit.rows import read_rows
+from stages.engine.rows import read_rows
 from stages.weights.ground_truth import spread_on_surface
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from haptic_glance.base.rng import rng
-from stages.contours import draw_pairs
+from stages.contours.contours import draw_pairs
 
 
 def as_sets(pairs):

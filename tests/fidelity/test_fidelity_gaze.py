@@ -8,9 +8,8 @@ from haptic_glance.look.camera import Viewpoint
 from haptic_glance.look.channels import facing
 from haptic_glance.look.views import render
 from haptic_glance.mesh.mesh import Mesh
-from stages.fixation import project_by_boxes, project_to_vertices
 from stages.fixation.agreement import agreement_rows
-from stages.fixation.centres import centres
+from stages.fixation.places import centres, project_by_boxes, project_to_vertices
 
 SIZE = 224
 

@@ -15,7 +15,7 @@ from haptic_glance.look.weights.attention import (
     view_similarities,
 )
 from haptic_glance.look.weights.svm import select_far_points
-from stages.weights.ground_truth.maps import gts_map
+from stages.weights.ground_truth import gts_map
 
 
 def smooth_map(seed, shape=(90, 120), width=4.0):

@@ -15,7 +15,7 @@ from haptic_glance.touch.follow import follow
 from haptic_glance.touch.press import press_many
 from haptic_glance.touch.quasi_tangent import quasi_tangent
 from haptic_glance.touch.surface import sensor_axes, sensor_normals
-from stages.imprints.face_centres import FaceCentres
+from stages.imprints.imprints import FaceCentres
 from stages.sequences.series import sequence_features
 
 ROOT = Path(__file__).parents[2]

@@ -11,12 +11,12 @@ from haptic_glance.deep import Network, build, grad_cam
 from haptic_glance.deep.resize import resize_cams
 from haptic_glance.look.camera import Viewpoint, project
 from haptic_glance.look.channels import facing
-from stages.fixation import entropy, fuse, highest_level, mean_over_views, project_to_vertices
 from stages.fixation.attention import MODELS, alive, linear_scores, project_maps, to_surface
-from stages.fixation.backbone import folded_network, last_maps, state_path, write_state
-from stages.fixation.heads import fit_head, scores
-from stages.fixation.options import method_named
-from stages.fixation.viewpoints import viewpoint_sphere
+from stages.fixation.backbone import folded_network, last_maps, method_named, state_path, write_state
+from stages.fixation.finetune import fit_head, scores
+from stages.fixation.fusion import entropy, fuse, highest_level
+from stages.fixation.places import mean_over_views, project_to_vertices
+from stages.fixation.tasks import viewpoint_sphere
 
 pytestmark = pytest.mark.slow
 

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from haptic_glance.base.rng import rng
-from stages.front.known import PARTS, Effort, known
-from stages.front.objects import Objects
+from stages.front.known import PARTS, Effort, Objects, known
 from stages.front.senses import Felt
 from stages.front.space import SPACE, choice_of
 

@@ -27,16 +27,13 @@ from haptic_glance.look.marks import read_marks, write_marks
 from haptic_glance.mesh import clean, load, normalise
 from haptic_glance.mesh.mesh import Mesh
 from stages.classification.recorded import ELECTRODES, PALMS, read_grasps, read_pressure_images
-from stages.kit.params import load_params
+from stages.engine.settings import load_params
 from stages.meshes.sources import FIXATION_MAPS, GAZE, collection_files
-from stages.recorded.touch_series import read_touch_events
-from stages.scene.loaded_back import read_lod
-from stages.transfer.recorded.bigs import read_bigs
-from stages.transfer.recorded.schunk import read_schunk
-from stages.transfer.recorded.touches import read_picture
-from stages.weights.ground_truth.fixations import fixation_files, fixations_on_vertices
-from stages.weights.ground_truth.gaze import read_gaze
-from stages.weights.ground_truth.interest_points import read_interest_points
+from stages.recorded.series import read_touch_events
+from stages.scene.export import read_lod
+from stages.transfer.recorded import read_bigs, read_picture, read_schunk
+from stages.weights.gaze import fixation_files, fixations_on_vertices, read_gaze
+from stages.weights.ground_truth import read_interest_points
 
 BALL = trimesh.creation.icosphere(subdivisions=1)
 COLORS = np.arange(126).reshape(42, 3)

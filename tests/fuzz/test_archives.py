@@ -12,7 +12,7 @@ import diskcache
 import pytest
 
 from haptic_glance.base.fetch import LARGEST, FetchError, debian_files, read_members, read_tar_members
-from stages.kit.objects import FILES, ROWS, Objects
+from stages.engine.objects import FILES, ROWS, Objects
 from stages.meshes.sources import GAZE, collection_files
 
 ROOT = Path(__file__).parents[2]

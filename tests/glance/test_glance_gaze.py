@@ -14,7 +14,7 @@ from haptic_glance.mesh import normalise, rotate_to_z_up
 from haptic_glance.mesh.axes import TO_Z_UP
 from haptic_glance.mesh.files import parse
 from haptic_glance.mesh.mesh import unit
-from stages.weights.ground_truth.gaze import gaze_on_vertices, read_gaze
+from stages.weights.gaze import gaze_on_vertices, read_gaze
 
 SHARED = Path(__file__).parents[2] / "../shared/data"
 

@@ -8,9 +8,9 @@ import pytest
 from haptic_glance.base.files import write_arrays, write_mesh
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.touch import indent, normalise, press, press_many, touchable
-from stages.imprints import Imprints, read_imprints, write_imprints
+from stages.engine.rows import read_rows
 from stages.imprints.__main__ import run
-from stages.kit.rows import read_rows
+from stages.imprints.imprints import Imprints, read_imprints, write_imprints
 
 
 def test_plane_gives_flat_imprint(shapes):

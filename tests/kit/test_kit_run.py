@@ -13,13 +13,12 @@ from joblib.externals.loky import process_executor
 
 from haptic_glance.base.files import read_json, write_json, write_text
 from haptic_glance.base.rng import rng
-from stages.kit.code import code_text
-from stages.kit.guard import UndeclaredRead
-from stages.kit.objects import Objects, archive
-from stages.kit.parallel import GROWTH, parallel_map
-from stages.kit.rows import read_rows, write_rows
-from stages.kit.run import StageRun
-from stages.kit.workspace import Workspace
+from stages.engine.code import code_text
+from stages.engine.objects import Objects, archive
+from stages.engine.parallel import GROWTH, parallel_map
+from stages.engine.rows import read_rows, write_rows
+from stages.engine.run import StageRun, UndeclaredRead
+from stages.engine.settings import Workspace
 
 ROOT = Path(__file__).parents[2]
 
@@ -123,8 +122,8 @@ def test_a_changed_input_or_setting_is_made_again_and_a_removed_object_is_gone(w
 
 def test_changed_code_is_made_again(workspace, monkeypatch):
     run_items(workspace)
-    monkeypatch.setattr("stages.kit.run.stage_digest", lambda stage: "other")
-    monkeypatch.setattr("stages.kit.run._is_of_stages", lambda function: True)
+    monkeypatch.setattr("stages.engine.run.stage_digest", lambda stage: "other")
+    monkeypatch.setattr("stages.engine.run._is_of_stages", lambda function: True)
     assert run_items(workspace) == ["a", "b", "c"]
 
 
@@ -261,8 +260,8 @@ KILLED = """
 import os, signal, sys
 from pathlib import Path
 from haptic_glance.base.files import write_text
-from stages.kit.run import StageRun
-from stages.kit.workspace import Workspace
+from stages.engine.run import StageRun
+from stages.engine.settings import Workspace
 def item(name, folder):
     with open("log", "a") as log:
         log.write(name)

@@ -5,7 +5,7 @@ import pytest
 from scipy import stats
 
 from haptic_glance.know.split import Split, shared_by
-from stages.kit.stats import discoveries, interval, interval_metrics, p_value
+from stages.engine.statistics import discoveries, interval, interval_metrics, p_value
 
 
 @pytest.mark.slow

@@ -16,8 +16,8 @@ from haptic_glance.mesh import MeshError
 from haptic_glance.mesh.materials import PALETTE, coloured
 from haptic_glance.mesh.mesh import Mesh
 from stages.meshes import __main__ as stage
-from stages.meshes.beside import files_beside
 from stages.meshes.collect import prepare_mesh
+from stages.meshes.furniture import files_beside
 from stages.meshes.sources import HOUSEHOLD, Content, MeshFile
 
 RED, GREEN, BLUE, GOLD = (255, 0, 0), (0, 255, 0), (0, 0, 255), (200, 160, 20)

@@ -3,7 +3,7 @@
 import pytest
 
 from haptic_glance.base.files import write_text
-from stages.meshes.classes import chosen_objects, read_classes, small_classes
+from stages.meshes.collect import chosen_objects, read_classes, small_classes
 
 CLASSES = {"vase": ["urn", "jar"], "animal": ["dog", "61"]}
 

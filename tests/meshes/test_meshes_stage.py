@@ -8,9 +8,9 @@ from haptic_glance.base.files import read_json, read_mesh, read_table
 from haptic_glance.mesh import normalise
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.repair import rotate_to_z_up
-from stages.kit.rows import read_rows
+from stages.engine.rows import read_rows
 from stages.meshes import __main__ as stage
-from stages.meshes.classes import read_classes
+from stages.meshes.collect import read_classes
 
 
 @pytest.fixture

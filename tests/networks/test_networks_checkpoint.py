@@ -8,8 +8,8 @@ import torch
 
 from haptic_glance.deep.modes import MODES
 from haptic_glance.deep.network import Network
+from haptic_glance.deep.repeatable import repeatable
 from haptic_glance.deep.training import resume, save, train_model
-from stages.kit.repeatable import repeatable
 
 SIZE = 32
 LABELS = np.arange(24) % 2

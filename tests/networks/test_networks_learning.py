@@ -7,6 +7,7 @@ import pytest
 import torch
 
 from haptic_glance.deep.modes import Task
+from haptic_glance.deep.repeatable import repeatable
 from haptic_glance.deep.training import (
     Diverged,
     Learning,
@@ -16,7 +17,6 @@ from haptic_glance.deep.training import (
     save,
     train_model,
 )
-from stages.kit.repeatable import repeatable
 
 FIT, VALIDATION, TEST = np.arange(60), np.arange(60, 80), np.arange(80, 120)
 POINTS = torch.randn((120, 4), generator=torch.Generator().manual_seed(0))

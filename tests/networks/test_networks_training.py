@@ -10,8 +10,8 @@ from haptic_glance.deep.device import choose_device
 from haptic_glance.deep.images import normalise, to_images
 from haptic_glance.deep.modes import MODES, frozen_modules, mode_named
 from haptic_glance.deep.network import Network, build, count_parameters, recalibrate
+from haptic_glance.deep.repeatable import repeatable
 from haptic_glance.deep.training import accuracy, predict_probabilities, search_rate, train_model
-from stages.kit.repeatable import repeatable
 
 SIZE = 32
 LABELS = np.arange(32) % 2

@@ -5,7 +5,7 @@ import pytest
 
 from haptic_glance.base.files import read_json
 from stages.classification.recorded import ELECTRODES, PALMS
-from stages.kit.rows import read_rows
+from stages.engine.rows import read_rows
 from stages.recorded.__main__ import run
 
 

@@ -13,9 +13,9 @@ from haptic_glance.look.channels import CHANNELS
 from haptic_glance.look.weights.svm import fit_svm
 from haptic_glance.look.weights.weights import write_models
 from haptic_glance.mesh.mesh import Mesh
-from stages.kit.workspace import Workspace
+from stages.engine.settings import Workspace
+from stages.report import Params
 from stages.report.results import Results
-from stages.report.schema import Params
 
 THESIS = Path(__file__).parents[2] / "data/reference/thesis"
 SETS = ("test", "household", "furniture")  # switched on in the small run

@@ -6,7 +6,7 @@ import pytest
 
 from haptic_glance.base.files import write_table
 from stages.report import meshes
-from stages.report.meshes.growth import growth
+from stages.report.meshes.levels import growth
 from stages.report.results import NotRun
 from stages.report.topics import build_one
 

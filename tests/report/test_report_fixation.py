@@ -9,12 +9,11 @@ import pandas as pd
 import pytest
 
 from haptic_glance.base.files import write_arrays
+from stages.engine.statistics import interval
 from stages.fixation.agreement import ALL_VIEWS
-from stages.fixation.tasks import SHAPE_MEASURES
-from stages.fixation.viewpoints import evaluated_views, viewpoint_sphere
-from stages.kit.stats import interval
+from stages.fixation.tasks import SHAPE_MEASURES, evaluated_views, viewpoint_sphere
 from stages.report import fixation as topic
-from stages.report.differences import differences
+from stages.report.effects import differences
 from stages.report.fixation import claims as chapter_3_fixation
 from stages.report.fixation import maps
 from stages.report.fixation import rows as _fixation

@@ -6,7 +6,7 @@ import pytest
 
 from haptic_glance.base.files import write_table
 from stages.report import scene as topic
-from stages.report.differences import differences
+from stages.report.effects import differences
 from stages.report.results import NotRun
 from stages.report.scene.claims import CLAIMS
 from stages.report.scene.random import planning, plans, saving

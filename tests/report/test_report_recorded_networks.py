@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from haptic_glance.know.split import shared_by
-from stages.kit.stats import interval
+from stages.engine.statistics import interval
 from stages.report import recorded as topic
 from stages.report.recorded.claims_networks import CLAIMS, SETTINGS
 from stages.report.results import NotRun

@@ -11,12 +11,12 @@ from matplotlib.figure import Figure as Drawing
 
 from stages.compose import compose
 from stages.report.__main__ import write_report
-from stages.report.anew import command
 from stages.report.claims_page import sets_read
 from stages.report.items import Figure, Table
 from stages.report.page import frame_html, item_html
-from stages.report.ranking import Ranking
+from stages.report.records import command
 from stages.report.site import page
+from stages.report.tables import Ranking
 from stages.report.topics import CLAIMS
 
 CONF = Path(__file__).parents[2] / "conf"

@@ -17,9 +17,8 @@ from haptic_glance.look.views import FOUR, TWELVE
 from haptic_glance.look.weights import LearnedWeights, weights
 from haptic_glance.mesh import normalise
 from haptic_glance.mesh.mesh import Mesh
-from stages.conspicuity.storage import parse_viewpoint
-from stages.salient_points import read_points, read_saliency, read_strong_points
-from stages.salient_points.storage import write_points
+from stages.conspicuity.measure import parse_viewpoint
+from stages.salient_points.measure import read_points, read_saliency, read_strong_points, write_points
 
 RUNS, _ = split_runnable(METHODS, LearnedWeights())  # the others need a run of the stage `weights`
 FUSED = [name for name in RUNS if isinstance(METHODS[name], FusedDetector)]

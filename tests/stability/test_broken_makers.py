@@ -6,8 +6,7 @@ import trimesh
 
 from haptic_glance.base.rng import rng
 from haptic_glance.mesh.mesh import Mesh
-from stages.stability.broken import DAMAGES
-from stages.stability.broken_faces import SLIVER_HEIGHT
+from stages.stability.broken import DAMAGES, SLIVER_HEIGHT
 from stages.stability.surface import Surface
 
 BALL = trimesh.creation.icosphere(subdivisions=3)

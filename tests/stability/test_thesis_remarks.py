@@ -14,7 +14,7 @@ from haptic_glance.look.channels.texture import local_entropy
 from haptic_glance.look.views import render
 from haptic_glance.look.weights.svm import fit_svm, information_gains
 from haptic_glance.mesh.mesh import Mesh
-from stages.conspicuity.silhouette import silhouette_share
+from stages.conspicuity.measure import silhouette_share
 
 SIZE, MAP = (450, 600), (112, 150)
 VIEWPOINTS = (Viewpoint(-32, 17), Viewpoint(60, 20), Viewpoint(200, -30))

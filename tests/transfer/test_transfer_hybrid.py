@@ -10,7 +10,7 @@ from haptic_glance.deep.hybrid import MIDDLE, HybridNet, Switch, join_senses, pr
 from haptic_glance.deep.images import normalise
 from haptic_glance.deep.network import build, count_parameters, recalibrate
 from haptic_glance.deep.weights import PACKAGES
-from stages.transfer.hybrid_scores import in_batches
+from stages.transfer.hybrid_data import in_batches
 
 SIZE, CLASSES = 32, 3
 

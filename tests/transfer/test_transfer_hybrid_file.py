@@ -20,7 +20,7 @@ from haptic_glance.deep.hybrid import (
 )
 from haptic_glance.deep.images import normalise
 from haptic_glance.deep.network import build, recalibrate
-from stages.transfer.onnx_export import export_onnx, onnx_scores
+from stages.transfer.export import export_onnx, onnx_scores
 
 SIZE, NAMES = 32, ["cup", "dog", "sofa"]
 

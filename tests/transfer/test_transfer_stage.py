@@ -9,7 +9,7 @@ import trimesh
 
 from haptic_glance.base.files import sha256, write_arrays, write_mesh, write_text
 from haptic_glance.mesh.mesh import Mesh
-from stages.kit.rows import read_rows
+from stages.engine.rows import read_rows
 from stages.transfer import __main__ as stage
 from stages.transfer import trial
 

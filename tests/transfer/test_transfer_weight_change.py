@@ -6,7 +6,7 @@ import pytest
 import torch
 
 from haptic_glance.deep.network import Network, build
-from stages.transfer.weight_change import network_parts, weight_changes
+from stages.transfer.export import network_parts, weight_changes
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ from haptic_glance.look.camera import Viewpoint
 from haptic_glance.look.views import TWELVE, View, render
 from haptic_glance.look.views.view import DEPTH_STEP
 from haptic_glance.mesh.mesh import Mesh
-from stages.views import read_view, write_view
+from stages.views.storage import read_view, write_view
 
 
 def assert_equal(one, other):

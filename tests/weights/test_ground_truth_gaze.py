@@ -10,7 +10,7 @@ import trimesh
 
 from haptic_glance.mesh.files import parse
 from haptic_glance.mesh.mesh import Mesh
-from stages.weights.ground_truth import gaze_on_vertices, match_rows, read_gaze
+from stages.weights.gaze import gaze_on_vertices, match_rows, read_gaze
 
 ARCHIVE = Path(__file__).parents[2] / "../shared/data/gaze.zip"
 BALL = trimesh.creation.icosphere(2)

@@ -8,9 +8,9 @@ from haptic_glance.look.views import FOUR
 from haptic_glance.look.weights import METHODS, read_learned_weights
 from haptic_glance.look.weights.weights import read_models
 from haptic_glance.mesh.mesh import Mesh
-from stages.kit.rows import read_rows
+from stages.engine.rows import read_rows
 from stages.weights import __main__ as stage
-from stages.weights.train import train_object
+from stages.weights.training import train_object
 
 SECTIONS = {
     "weights": {"method": "fixations", "svm": "object"},

@@ -17,7 +17,7 @@ from haptic_glance.look.weights.svm import (
     pixel_samples,
     select_far_points,
 )
-from stages.weights.svm_validation import cross_validated, grouped_validated
+from stages.weights.training import cross_validated, grouped_validated
 
 CHANNELS = tuple("abcdef")
 SHAPE = (45, 60)

@@ -11,7 +11,7 @@ from haptic_glance.look.channels import CHANNELS
 from haptic_glance.look.glance import FEATURES
 from haptic_glance.look.weights import METHODS, LearnedWeights, read_learned_weights, weights
 from haptic_glance.look.weights.weights import DEEP, GLANCES, learned_weight_rows
-from stages.weights.table import weight_table
+from stages.weights.training import weight_table
 
 THESIS = Path(__file__).parents[2] / "data/reference/thesis/table_3_1_channel_weights.csv"
 

@@ -6,10 +6,10 @@ import numpy as np
 import pandas as pd
 
 from haptic_glance.know.split import Split, shared_by
-from stages.kit.stats import interval
-from stages.report.grid import everywhere, grouped, within
+from stages.engine.statistics import interval
 from stages.report.networks import of_passes
 from stages.report.results import NotRun, Results
+from stages.report.tables import everywhere, grouped, within
 
 STAGE = "recorded_networks"
 DATA = {
