@@ -22,11 +22,11 @@ from haptic_glance.base.errors import DEBUG
 from haptic_glance.base.files import write_text
 from haptic_glance.base.timing import WallClock
 from haptic_glance.cli.touch import check_folder
+from haptic_glance.lod.compiled import compile_beside
 from haptic_glance.lod.export import levels
 from haptic_glance.mesh.files import mesh_files, names_of
 from haptic_glance.mesh.up import add_up
 
-from .compiled import compile_beside
 from .exhibit import Exhibit, exhibit
 from .page import build_page
 

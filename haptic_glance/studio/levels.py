@@ -77,7 +77,7 @@ class Levels:
 
     def _made(self, faces, kind, report):
         first = not any(FOLDER.rglob("*.nbc"))
-        report(0.1, "compiling, the first time on this machine: up to a minute" if first else "simplifying")
+        report(0.1, "compiling, the first time on this machine: about ten seconds" if first else "simplifying")
         task = self.tasks[kind]
         try:
             mesh = task.simplified(faces) if faces < len(task.mesh.faces) else task.mesh

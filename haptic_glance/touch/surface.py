@@ -7,6 +7,7 @@ The normal of the array's plane at a vertex.
 The directions of the rows and columns of an array on an object.
 """
 
+import math
 from functools import lru_cache
 
 import numpy as np
@@ -17,7 +18,7 @@ from haptic_glance.mesh.files import MeshLike, as_mesh
 from haptic_glance.mesh.mesh import Mesh, corner_sum, unit
 
 from .kernels.faces import face_tree
-from .kernels.measure import first_below, measure
+from .kernels.measure import FIRST_BELOW, MEASURE
 
 LIFT = 1e-6  # of the mesh's diagonal: a face within this distance of the plane is at it; 16 steps in f4
 
@@ -39,7 +40,7 @@ class Surface:
 
         centres (k, 3), axes (k, 3, 3), pitches (k,), all f8. The result for an array does not depend on the others.
         """
-        return self._run(measure, centres, axes, cells, pitches)
+        return self._run(MEASURE, centres, axes, cells, pitches)
 
     def first_below(
         self, centres: np.ndarray, axes: np.ndarray, cells: tuple[int, int], pitches: np.ndarray, window: float
@@ -49,14 +50,15 @@ class Surface:
         inf where there is none, or where it is more than `window` units below the nearest of its array. Arguments as of
         `measure`, of which this takes a fraction of the time.
         """
-        return self._run(first_below, centres, axes, cells, pitches, window)
+        return self._run(FIRST_BELOW, centres, axes, cells, pitches, window)
 
     def _run(self, kernel, centres, axes, cells, pitches, *more):
         if not len(self._tree[0]):
             return np.full((len(centres), *cells), np.inf)
         # Writeable: for a read-only array numba would compile everything again.
         places = [np.require(values, np.float64, ["C", "W"]) for values in (centres, axes, pitches)]
-        return kernel(*self._tree, self.mesh.diagonal, LIFT * self.mesh.diagonal, cells, *places, *more)
+        run = kernel.for_work(len(centres) * math.prod(cells))
+        return run(*self._tree, self.mesh.diagonal, LIFT * self.mesh.diagonal, cells, *places, *more)
 
 
 @lru_cache(maxsize=2)  # for touching one mesh, or two in turn, point by point

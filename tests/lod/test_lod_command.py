@@ -241,8 +241,8 @@ def test_the_axis_taken_as_up_is_reported(simplified):
 @pytest.mark.slow
 def test_a_first_run_that_compiles_says_so(simplified, tmp_path, monkeypatch):
     simplify(bumpy(), 300)
-    assert "compiles the simplifier" not in simplified("--faces", 300)[2]
-    monkeypatch.setattr("haptic_glance.cli.simplify.FOLDER", tmp_path / "empty")
+    assert "compiles its kernels" not in simplified("--faces", 300)[2]
+    monkeypatch.setattr("haptic_glance.lod.compiled.FOLDER", tmp_path / "empty")
     assert "compiles" in simplified("--faces", 300)[2].splitlines()[0]
 
 

@@ -9,9 +9,7 @@ import math
 
 import numpy as np
 
-from haptic_glance.base.jit import inlined
-
-from .jit import allocating_kernel
+from .jit import allocating_kernel, helper
 from .quadrics import NUMBERS, bound_to, set_planes, square_to
 
 # Grid: starts and entries of the cells (see fill_cells), lower corner, width and counts of the cells.
@@ -19,13 +17,13 @@ Grid = tuple[np.ndarray, np.ndarray, np.ndarray, float, np.ndarray]
 EQUAL = 1 + 1e-9  # smaller ratios are rounding
 
 
-@inlined
+@helper
 def _clipped(place, cells):
     """The cell at a position along an axis, or the nearest one."""
     return int(place) if 0.0 <= place < cells else (0 if place < 0.0 else cells - 1)
 
 
-@inlined
+@helper
 def _nearest_in_cell(x, y, z, first, last, low, vertices, faces, entries, planes, enough):
     """(squared distance, face) of the nearest face in one cell; face -1 in an empty one.
 
@@ -56,7 +54,7 @@ def _nearest_in_cell(x, y, z, first, last, low, vertices, faces, entries, planes
     return best, face
 
 
-@inlined
+@helper
 def _search_one(points, i, vertices, faces, starts, entries, low, cell, shape, planes, enough, far):
     """(squared distance, face, whether it is the nearest) of one point: in its cell, then in ever wider boxes of cells.
 

@@ -23,8 +23,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from haptic_glance.base.jit import inlined
-
 from .jit import Id, allocating_kernel, between, cross, dot, helper, kernel, point
 from .mesh import after
 
@@ -114,7 +112,7 @@ SLIM = 1e-3  # height of a face over the position of its foot: below, the axes a
 SLIVER = 1e-12  # height of a face over its length: a flatter face has no interior
 
 
-@inlined
+@helper
 def _frame_of(vertices, a, b, c):
     """Two axes in the plane of a face, then length, cx, cy: its corners in them are (0, 0), (length, 0), (cx, cy)."""
     ax, ay, az = vertices[a, 0], vertices[a, 1], vertices[a, 2]
@@ -146,7 +144,7 @@ def _frame_of(vertices, a, b, c):
     return (ux, uy, uz), (wx, wy, wz), length, cx, max(vx * wx + vy * wy + vz * wz, 0.0)
 
 
-@inlined
+@helper
 def set_planes(vertices: np.ndarray, a: Id, b: Id, c: Id, low: np.ndarray, planes: np.ndarray, f: Id) -> float:
     """Writes the planes of a face, offsets relative to `low`; returns twice its area."""
     (ux, uy, uz), (wx, wy, wz), length, cx, cy = _frame_of(vertices, a, b, c)
@@ -167,7 +165,7 @@ def set_planes(vertices: np.ndarray, a: Id, b: Id, c: Id, low: np.ndarray, plane
     return length * cy
 
 
-@inlined
+@helper
 def bound_to(planes: np.ndarray, f: Id, x: float, y: float, z: float) -> float:
     """Lower bound of the squared distance of a point, relative to `low`, to a face: that to its planes."""
     w = planes[f, 0] * x + planes[f, 4] * y + planes[f, 8] * z + planes[f, 12]
@@ -180,7 +178,7 @@ def bound_to(planes: np.ndarray, f: Id, x: float, y: float, z: float) -> float:
     return w * w + beyond * beyond
 
 
-@inlined
+@helper
 def _square_to_side(x, y, z, dx, dy, dz):
     """Squared distance of a point to the segment from the origin to d."""
     size = dx * dx + dy * dy + dz * dz
@@ -191,7 +189,7 @@ def _square_to_side(x, y, z, dx, dy, dz):
     return x * x + y * y + z * z
 
 
-@inlined
+@helper
 def square_to(
     vertices: np.ndarray, faces: np.ndarray, planes: np.ndarray, f: Id, x: float, y: float, z: float
 ) -> float:

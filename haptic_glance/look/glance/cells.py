@@ -49,7 +49,9 @@ def cut(corners: np.ndarray) -> np.ndarray:
                 continue
             if found == len(rows):
                 more = np.empty((2 * found, 8))
-                more[:found] = rows
+                for i in range(found):  # numba compiles the assignment of a slice, with its error messages, for 2 s
+                    for k in range(8):
+                        more[i, k] = rows[i, k]
                 rows = more
             rows[found, 0] = f
             for k in range(3):

@@ -16,7 +16,7 @@ from collections import namedtuple
 
 import numpy as np
 
-from haptic_glance.base.jit import helper, kernel_of
+from haptic_glance.base.jit import UntilWorthCompiling, helper, kernel_of
 
 kernel = kernel_of(__file__)
 
@@ -84,7 +84,8 @@ def face_tree(corners: np.ndarray, doubled: np.ndarray) -> tuple[np.ndarray, np.
     order, ranges = np.arange(count * LANES), np.zeros((max(2 * count - 1, 0), 2), dtype=np.int64)
     children = np.empty(len(ranges), dtype=np.int64)
     ranges[:1, 1] = count
-    order_faces(np.einsum("fcx->fx", corners), order, ranges, children)  # a sixth of the time of sum(axis=1)
+    order_kernel = ORDER.for_work(size)
+    order_kernel(np.einsum("fcx->fx", corners), order, ranges, children)  # a sixth of the time of sum(axis=1)
     order[size:] = order[size - 1 : size]  # until the boxes are made
     blocks = np.empty((count, NUMBERS, LANES))
     blocks[:, :9] = np.take(corners.reshape(-1, 9), order, axis=0).reshape(count, LANES, 9).transpose(0, 2, 1)
@@ -127,6 +128,9 @@ def order_faces(middles: np.ndarray, order: np.ndarray, ranges: np.ndarray, chil
         ranges[used + 1, 0], ranges[used + 1, 1] = middle, last
         children[node] = used
         used += 2
+
+
+ORDER = UntilWorthCompiling(order_faces, __file__, budget=15_000)  # faces
 
 
 @helper

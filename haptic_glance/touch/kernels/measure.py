@@ -11,7 +11,7 @@ How deep a bed of springs is pressed by a load, compiled by numba.
 
 import numpy as np
 
-from haptic_glance.base.jit import helper
+from haptic_glance.base.jit import UntilWorthCompiling, helper
 
 from .faces import LANES, ROWS, Frame, along, frame_of, half_width, kernel, project, raise_cells
 
@@ -82,6 +82,10 @@ def first_below(
             for j in range(columns):
                 below[i, j] = -below[i, j] if below[i, j] >= lowest else np.inf
     return found
+
+
+MEASURE = UntilWorthCompiling(measure, __file__, budget=12_800)  # cells: 50 arrays of 16 x 16
+FIRST_BELOW = UntilWorthCompiling(first_below, __file__, budget=12_800)
 
 
 @helper
