@@ -20,5 +20,5 @@ def run(argv: Sequence[str]) -> None:
     """Runs the command line `argv`, without the program's name."""
     command = shared_parser("points", __doc__ or "")
     command.add_argument("--out", dest="points", metavar="FILE", type=Path, help="write the points as CSV, too")
-    command.set_defaults(out=None, picture=None)
+    command.set_defaults(out=None, picture=None, weights=None)
     look_at(command.parse_args(argv))

@@ -8,6 +8,7 @@ examples:
   haptic-glance saliency scan.stl
   haptic-glance saliency scan.stl --out look.ply --points points.csv --picture look.png
   haptic-glance saliency chair.glb --count 5 --json
+  haptic-glance saliency chair.glb --weights chair_weights.ply
 """
 
 import argparse
@@ -24,6 +25,7 @@ from haptic_glance.base.files import write_text
 from haptic_glance.base.timing import WallClock
 from haptic_glance.lod.export import FORMATS, write_any
 from haptic_glance.lod.pictures import check_look, coloured, write_look
+from haptic_glance.lod.weight_files import check_suffix, write_weights
 from haptic_glance.look.points import Detection, detect
 from haptic_glance.look.points import saliency as saliency_of
 from haptic_glance.look.points.find import HELP, check_name
@@ -47,6 +49,9 @@ def parser() -> argparse.ArgumentParser:
     command.add_argument(
         "--out", metavar="FILE", type=Path, help=f"the coloured mesh: {', '.join(FORMATS[:2])} or .ply"
     )
+    help_weights = "the mesh with the saliency of each vertex, as weights for other tools: .ply (Blender), .glb, .usda,"
+    help_weights += " or .npz (meshoptimizer)"
+    command.add_argument("--weights", metavar="FILE", type=Path, help=help_weights)
     command.add_argument("--points", metavar="FILE", type=Path, help="the points, as CSV")
     command.add_argument("--picture", metavar="FILE", type=Path, help="a picture of the saliency with the points")
     return command
@@ -85,6 +90,9 @@ def look_at(chosen: argparse.Namespace) -> None:
     assert found.saliency is not None  # `check` lets no method pass that has none
     print(f"{chosen.name}: {len(mesh.faces):,} faces in {watch.seconds:.1f} s, {note}", file=sys.stderr)
     rows = points_of(mesh, found)
+    if chosen.weights:
+        write_weights(chosen.weights, upright_for(chosen.weights, mesh)[0], found.saliency)
+        print(f"{chosen.name}: written: {chosen.weights}", file=sys.stderr)
     if chosen.out or chosen.picture:
         write(chosen, *finely(bake_texture(mesh), found.saliency, chosen.method), rows)
     elif chosen.points:
@@ -96,7 +104,9 @@ def check(chosen: argparse.Namespace) -> None:
     """Raises ValueError for files that cannot be written, and for methods and counts that cannot be."""
     if chosen.out and chosen.out.suffix.lower() not in (".glb", ".obj", ".ply"):
         raise ValueError(f"--out {chosen.out}: a coloured mesh is written as .glb, .obj or .ply")
-    check_outputs(chosen.mesh, chosen.out, chosen.points, chosen.picture)
+    if chosen.weights:
+        check_suffix(chosen.weights)
+    check_outputs(chosen.mesh, chosen.out, chosen.points, chosen.picture, chosen.weights)
     if chosen.picture:
         check_look(chosen.picture)
     if chosen.method is not None:

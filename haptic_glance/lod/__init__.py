@@ -7,9 +7,11 @@ from .feasibility import InfeasibleTarget, SimplifyError, frozen_faces, smallest
 from .neighbourhood import neighbourhoods, shrunk_rings
 from .perceptual import perceptual, picture_errors, take_pictures
 from .simplify import BACKENDS, quadric_weights, simplify
+from .weight_files import write_weights
 
 __all__ = [
     "BACKENDS", "InfeasibleTarget", "SimplifyError", "carry", "colour_error", "frozen_faces", "metro",
     "neighbourhoods", "perceptual", "picture_errors", "quadric_weights", "salient_error", "shrunk_rings",
     "simplify", "smallest_feasible", "surface_errors", "take_pictures", "to_trimesh", "vertex_errors", "write_any",
+    "write_weights",
 ]  # fmt: skip
