@@ -9,10 +9,10 @@ better. `lead` is by how much METHOD is better, on the same objects; * marks a m
 An object on which METHOD fails is named and left out. docs/judging.md describes the splits.
 
 examples:
-  haptic-glance bench
-  haptic-glance bench my_method.py:saliency --gaze gaze.zip
-  haptic-glance bench my_method.py:saliency --set gaze_clouds --by kl --objects
-  haptic-glance bench my_method.py:fit --train --json > results.json
+  python -m stages.bench
+  python -m stages.bench my_method.py:saliency --gaze gaze.zip
+  python -m stages.bench my_method.py:saliency --set gaze_clouds --by kl --objects
+  python -m stages.bench my_method.py:fit --train --json > results.json
 """
 
 import argparse
@@ -52,7 +52,7 @@ def has_seen(method: str) -> bool:
 def run(argv: Sequence[str]) -> None:
     """Judges a method, or lists those that were."""
     parser = argparse.ArgumentParser(
-        prog="haptic-glance bench", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+        prog="python -m stages.bench", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("method", nargs="?", metavar="FILE.py:FUNCTION", help="the saliency to judge")
     parser.add_argument("--train", action="store_true", help="FUNCTION learns from the other objects")

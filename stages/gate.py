@@ -9,10 +9,10 @@ with the seed, the threads or the machine is measured by --spread, which writes 
 move, whatever its rule. Exits with 1 and names what moved, by how much.
 
 examples:
-  haptic-glance gate
-  haptic-glance gate train.json eval.json --baseline baseline.json --tolerances tolerances.yaml
-  haptic-glance gate train.json --baseline baseline.json --update
-  haptic-glance gate --spread runs/seed_1/reports/metrics runs/two_threads/reports/metrics
+  python -m stages.gate
+  python -m stages.gate train.json eval.json --baseline baseline.json --tolerances tolerances.yaml
+  python -m stages.gate train.json --baseline baseline.json --update
+  python -m stages.gate --spread runs/seed_1/reports/metrics runs/two_threads/reports/metrics
 """
 
 import argparse
@@ -109,7 +109,7 @@ def write_spread(runs: Sequence[Mapping[str, float]], baseline: Path) -> str:
 def run(argv: Sequence[str]) -> None:
     """Compares, updates the baseline, or measures how far runs differ."""
     parser = argparse.ArgumentParser(
-        prog="haptic-glance gate", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+        prog="python -m stages.gate", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("metrics", nargs="*", type=Path, metavar="METRICS.json", help="metrics of any project")
     parser.add_argument("--baseline", type=Path, help="default: reports/baselines/PROFILE.json")

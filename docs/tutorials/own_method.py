@@ -87,7 +87,7 @@ for method in ["thin_parts", "glance"]:
 #
 # .. code-block:: sh
 #
-#    haptic-glance bench my_method.py:thin_parts --gaze gaze.zip
+#    python -m stages.bench my_method.py:thin_parts --gaze gaze.zip
 #
 # With the name in the registry, and in ``salient_points.methods`` of the settings, the experiment ``attention``
 # measures

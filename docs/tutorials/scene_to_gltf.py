@@ -75,5 +75,5 @@ tree = json.loads(content[20 : 20 + int.from_bytes(content[12:16], "little")])
 print(json.dumps(tree["nodes"][0], indent=1))
 
 # %%
-# For scenes of a data set, the stage ``scene`` does all of this: ``haptic-glance scene`` writes a GLB per level, one
+# For scenes of a data set, the stage ``scene`` does all of this: ``python -m stages.scene`` writes a GLB per level, one
 # per object with ``MSFT_lod``, one of the fullest frame, and a manifest to ``data/SET/scene/export``.

@@ -38,10 +38,10 @@ def run(argv: Sequence[str]) -> None:
     )
     parser.add_argument("shell", choices=["bash", "zsh", "fish"])
     shell = parser.parse_args(argv).shell
-    from haptic_glance.__main__ import OWN, SHELL, WHOLE
+    from haptic_glance.__main__ import OWN, SHELL
 
     known = json.loads(OPTIONS.read_text())
-    options = {command: known.get(command, []) for command in {**OWN, **WHOLE, **SHELL}}
+    options = {command: known.get(command, []) for command in {**OWN, **SHELL}}
     print(fish(options) if shell == "fish" else (ZSH if shell == "zsh" else "") + bash(options), end="")
 
 
@@ -53,10 +53,10 @@ def options_of(command: str) -> list[str]:
 
 def write_options() -> None:
     """Asks every command for its --help, half a minute, and keeps the options; a test says when that is due."""
-    from haptic_glance.__main__ import OWN, SHELL, WHOLE
+    from haptic_glance.__main__ import OWN, SHELL
 
     with ThreadPoolExecutor() as pool:
-        found = dict(zip({**OWN, **WHOLE, **SHELL}, pool.map(options_of, {**OWN, **WHOLE, **SHELL}), strict=True))
+        found = dict(zip({**OWN, **SHELL}, pool.map(options_of, {**OWN, **SHELL}), strict=True))
     OPTIONS.write_text(json.dumps(found, indent=1) + "\n")
 
 

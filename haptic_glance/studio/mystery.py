@@ -15,7 +15,7 @@ from haptic_glance.touch.surface import as_surface
 
 from .specimen import Specimen, open_file
 
-HOUSEHOLD = Path("data") / "household" / "meshes"  # where `haptic-glance repro` puts them, below the current folder
+HOUSEHOLD = Path("data") / "household" / "meshes"  # where `make repro` puts them, below the current folder
 MOST = 60  # objects
 
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 NETWORKS = "data/*/transfer/hybrid/networks/*.npz"  # below the current folder, where the stage transfer puts them
 MISSING = (
     "There is no hybrid network below data/ yet. `python -m stages.compose experiment=transfer`, then "
-    "`haptic-glance repro`, trains one on classes of furniture in half an hour."
+    "`make repro`, trains one on classes of furniture in half an hour."
 )
 SIZE, CELLS, PITCH = 80, 128, 0.00125  # transfer.size, .cells and .pitch of conf/config.yaml
 LOWEST, HIGHEST = -10.0, 60.0  # degrees of elevation from which the network has seen objects

@@ -11,9 +11,9 @@ Reads data/SET/meshes of household and of a set with classes; writes reports/mea
 Keeps its study in build/front and goes on where it stopped. `dvc repro` does not run it.
 
 examples:
-  haptic-glance front
-  haptic-glance front --minutes 10
-  haptic-glance front --trials 300 --classes princeton_eight
+  python -m stages.front
+  python -m stages.front --minutes 10
+  python -m stages.front --trials 300 --classes princeton_eight
 """
 
 import argparse
@@ -35,7 +35,7 @@ MINUTES = 60.0
 def run(argv: Sequence[str], root: Path = Path(".")) -> int:
     """Runs or continues the search of a repository root; 1 where the minutes were over before its end."""
     parser = argparse.ArgumentParser(
-        prog="haptic-glance front", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+        prog="python -m stages.front", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--trials", type=int, default=TRIALS, help="choices to propose (default: %(default)s)")
     parser.add_argument("--minutes", type=float, default=MINUTES, help="stop after these; a later call goes on (60)")

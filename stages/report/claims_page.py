@@ -142,7 +142,7 @@ def _claim_html(
         "Open": prose(open_text(row)),
         "Data": links if row.pairs else "not measured",
         "Holds among the claims of its chapter": row.holds,
-        "Judged again from its rows": f"<code>haptic-glance claim {row.key}</code>",
+        "Judged again from its rows": f"<code>python -m stages.claim {row.key}</code>",
         "Measured again": command and f"<code>{escape(command)}</code>",
     }
     said = "".join(f"<dt>{name}</dt><dd>{text}</dd>" for name, text in facts.items() if text)
