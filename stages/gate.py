@@ -12,6 +12,7 @@ examples:
   python -m stages.gate
   python -m stages.gate train.json eval.json --baseline baseline.json --tolerances tolerances.yaml
   python -m stages.gate train.json --baseline baseline.json --update
+  python -m stages.gate --markdown >> "$GITHUB_STEP_SUMMARY"
   python -m stages.gate --spread runs/seed_1/reports/metrics runs/two_threads/reports/metrics
 """
 
@@ -117,6 +118,7 @@ def run(argv: Sequence[str]) -> None:
     parser.add_argument("--update", action="store_true", help="write the baseline from the metrics at hand")
     about = "folders of metrics of runs with other seeds or threads: write how far each metric moves"
     parser.add_argument("--spread", nargs="+", type=Path, metavar="FOLDER", help=about)
+    parser.add_argument("--markdown", action="store_true", help="print Markdown, for the summary of a run on GitHub")
     given = parser.parse_args(argv)
     if given.metrics and (given.spread or not given.baseline):
         parser.error("METRICS.json needs --baseline, and --spread is of runs of this project")
@@ -130,8 +132,28 @@ def run(argv: Sequence[str]) -> None:
         others = [name for file in path.parent.glob("*.json") for name in read_json(file)]
     if given.spread:
         print(write_spread([measured(workspace, folder) for folder in given.spread], path))
+    elif given.update:
+        print(update(metrics, path))
     else:
-        print(update(metrics, path) if given.update else hold(metrics, path, allowed(rules, path), others))
+        try:
+            text = hold(metrics, path, allowed(rules, path), others)
+        except SystemExit as moved:
+            raise SystemExit(markdown(str(moved)) if given.markdown else moved.code) from None
+        print(markdown(text) if given.markdown else text)
+
+
+def markdown(text: str) -> str:
+    """The message of the gate under a heading, with an item for each metric that moved."""
+    first, *moved = text.splitlines()
+    return "\n".join(
+        [
+            "## Metrics against their baseline",
+            "",
+            first.removeprefix("gate: "),
+            "",
+            *(f"- {line.strip()}" for line in moved),
+        ]
+    )
 
 
 def baseline_of(workspace: Workspace) -> Path:
