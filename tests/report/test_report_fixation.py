@@ -365,7 +365,7 @@ def test_no_interval_of_a_correlation_leaves_its_range(gaze, small):
     frame = rows(count=4)
     alike = frame["metric"] == "pcc_tasks"
     frame.loc[alike, "value"] = frame.loc[alike, "item"].map(dict(zip("abcd", wild, strict=True)))
-    drawn = topic.tasks.figure_3_31(again(gaze, small, frame)).drawing
+    drawn = topic.agreement.figure_3_31(again(gaze, small, frame)).drawing
     assert drawn.axes[0].get_title().endswith(", 1.00]")
     plt.close(drawn)
 
