@@ -4,6 +4,7 @@ import json
 import re
 import struct
 
+MOST_PRIMITIVES = 20_000  # of a GLB, counted at each node that shows them: the parser needs milliseconds for each
 DENSEST = 100  # bytes that one compressed byte of a PCD can hold: LZF writes three bytes for 264
 
 
@@ -27,10 +28,16 @@ def _glb(content):
         tree = json.loads(content[20 : 20 + chunk])
         counts = [accessor["count"] for accessor in tree.get("accessors", [])]
         stated = max((int(count) for count in counts), default=0)
-    except (ValueError, KeyError, TypeError, AttributeError, RecursionError, OverflowError) as error:
+        sizes = [len(mesh["primitives"]) for mesh in tree.get("meshes", [])]
+        primitives = sum(sizes[node["mesh"]] for node in tree.get("nodes", []) if "mesh" in node)
+    except (ValueError, LookupError, TypeError, AttributeError, RecursionError, OverflowError) as error:
         raise MeshError(f"unreadable as GLB ({type(error).__name__} in its JSON part)") from None
     if stated > len(content):
         raise MeshError(f"truncated: its header states {stated} numbers, the file has {len(content)} bytes")
+    if primitives > MOST_PRIMITIVES:
+        raise MeshError(
+            f"{primitives:,} primitives are more than {MOST_PRIMITIVES:,}: join its parts in the program that wrote it"
+        )
 
 
 def _stl(content):

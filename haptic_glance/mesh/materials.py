@@ -21,6 +21,7 @@ from trimesh.visual.material import color_image
 from .headers import MeshError
 from .mesh import Mesh, Texture
 
+MAX_TEXTURE = 8192  # pixels, of a square texture
 MADE_UP: Any = color_image()  # what trimesh paints a material with whose file is not there
 
 
@@ -106,6 +107,7 @@ def _stated(part):
     if any(getattr(material, name, None) is not None for name in ("baseColorTexture", "baseColorFactor")):
         return True
     image = getattr(material, "image", None)
+    _check_size(image)
     made_up = image is None or np.array_equal(image.convert("RGBA"), MADE_UP)
     return not made_up or "kd" in getattr(material, "kwargs", {})
 
@@ -115,9 +117,17 @@ def _image(part):
     material = getattr(part.visual, "material", None) if _stated(part) else None
     image = getattr(material, "baseColorTexture", None) or getattr(material, "image", None)
     if image is not None and getattr(part.visual, "uv", None) is not None:
+        _check_size(image)
         return np.asarray(image.convert("RGBA"))
     color = getattr(material, "main_color", None)
     return np.asarray([204, 204, 204, 255] if color is None else color, dtype=np.uint8).reshape(1, 1, 4)
+
+
+def _check_size(image):
+    """Raises MeshError for a picture that would fill the memory; only its header was read so far."""
+    if image is not None and image.width * image.height > MAX_TEXTURE**2:
+        size = f"{image.width:,} x {image.height:,} pixels"
+        raise MeshError(f"a texture of {size} is larger than {MAX_TEXTURE:,} x {MAX_TEXTURE:,}: scale it down")
 
 
 def _corners(part):
