@@ -7,5 +7,5 @@ from dataclasses import dataclass
 class Params:
     """Section `annotations` of params.yaml."""
 
-    near: float  # distance, share of the diagonal, within which two marks are of the same place
-    draws: int  # random draws of as many vertices, for what chance gives
+    near: float
+    draws: int

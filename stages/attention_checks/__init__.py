@@ -12,4 +12,4 @@ COLUMNS = {
 class Params:
     """Section `attention_checks` of params.yaml."""
 
-    views: list[str]  # sets of viewpoints: best (T3.2.4), four or twelve
+    views: list[str]

@@ -17,9 +17,9 @@ class Params:
     """Section `classification` of params.yaml."""
 
     sets: dict[str, list[str]]  # name of the set: its objects, each with imprints in data/SET/imprints
-    drawn: int  # random sets of objects, each with groups as large as those of `sets`, in their place; 0: those named
+    drawn: int
     classifiers: list[str]  # names of haptic_glance.know.CLASSIFIERS
-    repetitions: int  # random hold-outs and foldings, the same for every sampling and classifier
-    closer: list[str]  # samplings studied closer: selection, and several touches of the first set; the first in full
-    touches: list[int]  # how many touches make one sample
-    combinations: int  # samples of several touches that start with the same imprint
+    repetitions: int
+    closer: list[str]
+    touches: list[int]
+    combinations: int

@@ -17,12 +17,12 @@ COLUMNS = {
 class Params:
     """Section `coarse_imprints` of params.yaml."""
 
-    variants: list[str]  # names of stages.coarse_imprints.trial.VARIANTS
-    detector: str  # which salient points are touched first, one of salient_points.methods
-    touches: int  # imprints per object
-    width: float  # of every array, in units
-    repetitions: int  # random splits
-    epochs: int  # passes of the final training
-    search_epochs: int  # passes of each tried learning rate
-    batch: int  # images a step
-    momentum: float  # of the stochastic gradient descent (T5.3)
+    variants: list[str]
+    detector: str
+    touches: int
+    width: float
+    repetitions: int
+    epochs: int
+    search_epochs: int
+    batch: int
+    momentum: float

@@ -12,16 +12,16 @@ COLUMNS = {
 class Params:
     """Section `face_needs` of params.yaml."""
 
-    distances: list[float]  # metres from which an object is seen, all round
-    views: int  # cameras around the object
-    screen: list[int]  # rows, columns of the screen in pixels
-    angle: float  # vertical view angle in degrees
-    tolerance: float  # pixels that the picture may be displaced
-    detector: str  # whose places are touched, one of salient_points.methods
-    touches: int  # places an object, at most
-    cells: list[int]  # rows, columns of the pressure array
-    pitch: float  # distance of two sensels
-    readings: list[float]  # root mean square differences of the reading that pass for the same, share of full scale
-    slack: float  # accuracy that the simplified model may lack of the full one's
-    folds: int  # parts of the places, of which each is held out once
-    repetitions: int  # foldings
+    distances: list[float]
+    views: int
+    screen: list[int]
+    angle: float
+    tolerance: float
+    detector: str
+    touches: int
+    cells: list[int]
+    pitch: float
+    readings: list[float]
+    slack: float
+    folds: int
+    repetitions: int

@@ -20,10 +20,10 @@ class Params:
     """Section `lod` of params.yaml."""
 
     methods: list[str]  # qem, qslim, or a method of salient_points, also with -adaptive, -area or -soft behind it
-    targets: list[str]  # face counts, absolute ("1500") or as a share of the object's own ("25%")
-    rings: int  # edges around a kept point within which every face is frozen; T3.1.3 takes 3
-    backend: str  # who simplifies: fast; qslim, without its fit, as in the thesis; or pymeshlab, the reference
-    samples: int  # points on each surface for the Metro error
-    viewpoints: str  # named set for the picture errors: twelve (T figure 3.2) or four
-    size: list[int]  # rows, columns of the pictures for the picture errors
-    shrink: bool  # where the target is too low, keep smaller neighbourhoods, the least salient points first
+    targets: list[str]
+    rings: int
+    backend: str
+    samples: int
+    viewpoints: str
+    size: list[int]
+    shrink: bool

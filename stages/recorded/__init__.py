@@ -30,9 +30,9 @@ COLUMNS = {
 class Params:
     """Section `recorded` of params.yaml; also what the other stages on recorded touches read."""
 
-    kind: str  # what was recorded: a name of stages.recorded.__main__.KINDS; of other stages also vitac, vt60, bigs
-    folder: str  # the folder or zip archive of the recordings
-    repetitions: int  # random splits, and sets of classes drawn at random; of touches over time the foldings
+    kind: str
+    folder: str
+    repetitions: int
 
     def path(self, root: Path) -> Path:
         """Where the recordings lie; a relative folder counts from the repository root."""

@@ -18,19 +18,19 @@ COLUMNS = {
 class Params:
     """Section `recorded_networks` of params.yaml. Those with braces: {mode: value}, the modes frozen and finetuned."""
 
-    networks: dict[str, list[str]]  # {network: its modes}
-    weights: list[str]  # what each starts from: imagenet, or as controls random (statistics of images), random_initial
-    source: str  # ImageNet's weights: package, download or auto, as in transfer
-    size: int  # pixels a side of the images, frozen and fine-tuned alike
-    repetitions: dict[str, int]  # {mode: splits, each with a draw of random weights}
-    rates: dict[str, list[float]]  # {mode: learning rates tried}
-    passes: list[str]  # printed: `epochs` over all training touches; converged: until nothing improves
-    epochs: dict[str, int]  # {mode: passes of the final training as printed}
-    patience: int  # converged: passes without a better validation accuracy after which a training ends
-    most_epochs: int  # converged: passes at most
-    search_epochs: dict[str, int]  # {mode: passes of each tried rate}
-    batch: dict[str, int]  # {mode: images a step}
-    momentum: float  # of the stochastic gradient descent (T5.3)
-    steps: int  # of fine-tuning as printed at most, in whole passes
-    copies: int  # augmented copies of each image whose frozen features are cached
-    device: str  # where networks are trained: auto, cpu or cuda; cuda: with parallel=sequential
+    networks: dict[str, list[str]]
+    weights: list[str]
+    source: str
+    size: int
+    repetitions: dict[str, int]
+    rates: dict[str, list[float]]
+    passes: list[str]
+    epochs: dict[str, int]
+    patience: int
+    most_epochs: int
+    search_epochs: dict[str, int]
+    batch: dict[str, int]
+    momentum: float
+    steps: int
+    copies: int
+    device: str

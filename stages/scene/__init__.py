@@ -48,9 +48,9 @@ class Params:
     angle: float  # vertical view angle in degrees
     tolerance: float  # of the error on the screen: pixels, or with kind ssim a share of the structure lost
     kind: str  # what the tolerance is of: pixels or ssim
-    limit: int  # faces that all objects in view may have together; 0 for no limit
-    hold: int  # frames that a level stays at least, so that nothing flickers
-    method: str  # how the levels mind the salient places: a name of lod.methods, say glance-soft
-    factors: list[float]  # times the tolerance: what the chart of faces against error is measured at
-    random: int  # scenes to draw at random from all objects of the set, in place of objects and camera; 0 for none
-    msft_lod: bool  # also write one GLB per object that holds all its levels (MSFT_lod)
+    limit: int
+    hold: int
+    method: str
+    factors: list[float]
+    random: int
+    msft_lod: bool

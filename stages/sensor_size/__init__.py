@@ -17,12 +17,12 @@ COLUMNS = {
 class Params:
     """Section `sensor_size` of params.yaml."""
 
-    classes: list[str]  # of meshes.classes, which to recognise; all when empty
-    method: str  # where to touch: a method of salient_points.methods
-    touches: int  # imprints per object, at its most salient points
-    cells: list[int]  # sensels a side that are tried
-    pitches: list[float]  # distances of two sensels that are tried, in units of the mesh
-    pairs: list[str]  # two arrays of one hand, pressed at the same place: CELLS-PITCH+CELLS-PITCH, the fine one last
-    extents: list[str]  # where the touches of a sample lie, which vote: names of stages.sensor_size.protocol.EXTENTS
-    classifiers: list[str]  # names of stages.sensor_size.CLASSIFIERS
-    slack: float  # accuracy that the smallest sensor may lack of the best one's
+    classes: list[str]
+    method: str
+    touches: int
+    cells: list[int]
+    pitches: list[float]
+    pairs: list[str]
+    extents: list[str]
+    classifiers: list[str]
+    slack: float

@@ -21,10 +21,10 @@ COLUMNS = {
 class Params:
     """Section `sequences` of params.yaml."""
 
-    repetitions: int  # random splits of the sequences, 80:20 (T4.4.10); the folds of objects are as many as objects
-    trainings: int  # for each fold of objects
-    image_epochs: int  # passes of the 3D network over its training sequences (T4.4.8)
-    normal_epochs: int  # passes of the 1D network (T4.4.8)
-    smaller_strategy: str  # the strategy that fewer frames and smaller imprints are tried on
-    smaller: list[str]  # FRAMESxCELLS that kNN and SVM try
-    smaller_networks: list[str]  # FRAMESxCELLS that the networks try, which cost a hundred times as much
+    repetitions: int
+    trainings: int
+    image_epochs: int
+    normal_epochs: int
+    smaller_strategy: str
+    smaller: list[str]
+    smaller_networks: list[str]

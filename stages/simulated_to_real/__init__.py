@@ -16,7 +16,7 @@ COLUMNS = {
 class Params:
     """Section `simulated_to_real` of params.yaml."""
 
-    simulations: list[str]  # ways to press: array, resting, resting_skin, resting_grain, resting_small
-    simulated: int  # imprints of each class, shared by its objects
-    real: list[int]  # real touches of each class that are trained on
-    repetitions: int  # splits, each with a run of neighbouring touches held out
+    simulations: list[str]
+    simulated: int
+    real: list[int]
+    repetitions: int

@@ -20,14 +20,14 @@ COLUMNS = {
 class Params:
     """Section `stability` of params.yaml."""
 
-    broken: list[str]  # objects whose broken copies are simplified, of those below
-    objects: list[str]  # objects to disturb; the first `most` of all where none of these is there
-    most: int  # how many objects at most
-    methods: list[str]  # names of METHODS in haptic_glance/look/points/methods.py
-    count: int  # points an object and method: the same number for all, since chance hits grow with it
-    size: list[int]  # rows, columns of the views
-    perturbations: list[str]  # names of stages.stability.PERTURBATIONS
-    severities: dict[str, list[float]]  # of each perturbation, in its own unit, from mild to harsh
-    draws: int  # of a disturbance that draws random numbers; what is measured is their mean
-    pairs: list[str]  # perturbations one after the other at their middle severities, in one draw: noise+tilt
-    used: list[str]  # methods whose points are used to simplify and to touch the undisturbed object
+    broken: list[str]
+    objects: list[str]
+    most: int
+    methods: list[str]
+    count: int
+    size: list[int]
+    perturbations: list[str]
+    severities: dict[str, list[float]]
+    draws: int
+    pairs: list[str]
+    used: list[str]

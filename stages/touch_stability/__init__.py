@@ -16,9 +16,9 @@ COLUMNS = {
 class Params:
     """Section `touch_stability` of params.yaml."""
 
-    set: str  # the set of classification.sets whose objects are recognised
-    method: str  # where they are touched: a method of imprints.methods
-    classifiers: list[str]  # names of haptic_glance.know.CLASSIFIERS
-    severities: dict[str, list[float]]  # of each perturbation, in its own unit, from mild to harsh
-    repetitions: int  # random hold-outs of places
-    denoisers: list[str]  # what also cleans all touches first: names of stages.touch_stability.denoisers.DENOISERS
+    set: str
+    method: str
+    classifiers: list[str]
+    severities: dict[str, list[float]]
+    repetitions: int
+    denoisers: list[str]

@@ -16,5 +16,5 @@ COLUMNS = {
 class Params:
     """Which weights the methods `glance` and `glance_any_pose` take, and what the SVMs are trained on."""
 
-    method: str  # gaze (learned from human gaze, comes with the package) or fixations (learned from this data set)
-    svm: str  # pixels of an object's own SVMs: object (at most 1,000 of them) or picture (all that T3.2.3 draws)
+    method: str
+    svm: str
