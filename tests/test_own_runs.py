@@ -48,7 +48,7 @@ def test_stages_write_to_the_folder_of_their_run_alone():
 @pytest.mark.slow
 @pytest.mark.parametrize("overrides", [[], *COMPOSED], ids=" ".join)
 def test_only_the_published_configuration_writes_to_reports(overrides):
-    assert len(COMPOSED) >= 4
+    assert len(COMPOSED) >= 3
     out = compose([each.replace("=FOLDER", "=somewhere") for each in overrides])["out"]
     assert (out == "reports") == (not overrides)
     assert bool(git("check-ignore", f"{out}/index.html", f"{out}/tables/a.csv").count(out) == 2) == bool(overrides)
