@@ -105,7 +105,7 @@ def damaged_checkpoint():
     """A training of three epochs, killed after two, whose checkpoint is cut in half."""
     import torch
 
-    from stages.networks import checkpoint
+    from haptic_glance.deep import training
 
     path = ROOT / "checkpoint.pt"
 
@@ -113,11 +113,11 @@ def damaged_checkpoint():
         torch.manual_seed(0)
         model = torch.nn.Linear(4, 2)
         steps = torch.optim.SGD(model.parameters(), lr=0.1, momentum=0.9)
-        for epoch in range(checkpoint.resume(path, {}, model=model, steps=steps), epochs):
+        for epoch in range(training.resume(path, {}, model=model, steps=steps), epochs):
             steps.zero_grad()
             model(torch.rand(8, 4)).square().sum().backward()
             steps.step()
-            checkpoint.save(path, epoch + 1, {}, model=model, steps=steps)
+            training.save(path, epoch + 1, {}, model=model, steps=steps)
         return model.state_dict()
 
     reference = train(3)
@@ -184,8 +184,8 @@ def cut_network():
         handler = functools.partial(_Index, name, content, cut := [True])
         server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler)
         threading.Thread(target=server.serve_forever, daemon=True).start()
-        asks = "from stages.kit.command import errors_in_one_line as e; "
-        asks += "from stages.kit.fetch import fetch_package; "
+        asks = "from haptic_glance.base.errors import errors_in_one_line as e; "
+        asks += "from haptic_glance.base.fetch import fetch_package; "
         asks += f"e('fetch'); fetch_package('faults-wheel==1.0', {name!r}, {digest!r})"
         more = {
             "PIP_INDEX_URL": f"http://127.0.0.1:{server.server_port}/simple",
@@ -197,7 +197,7 @@ def cut_network():
             done = subprocess.run(whole, env=environment() | more, capture_output=True, text=True, timeout=300)
             there = sorted(path.name for path in Path(folder, "kept").iterdir())
             tried = f"fetch_package from a local index that {state}"
-            yield "network cut", "stages.kit.fetch", tried, f"{said(done)}; in the cache: {there}", "nothing"
+            yield "network cut", "haptic_glance.base.fetch", tried, f"{said(done)}; in the cache: {there}", "nothing"
             cut.clear()
         server.shutdown()
 

@@ -17,7 +17,7 @@ import pandas as pd
 import trimesh
 import yaml
 
-from stages.kit.workspace import Workspace
+from stages.engine.settings import Workspace
 
 SET = "folder"
 STAGES = ("meshes", "views", "conspicuity", "weights", "salient_points", "lod", "imprints")

@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pandas as pd
 
-from stages.kit.code import file_digest
-from stages.kit.files import read_table
+from haptic_glance.base.files import read_table
+from stages.engine.code import file_digest
 
 HISTORY = Path("reports/bench/history.csv")
 COLUMNS = ["commit", "date", "what", "peer", "ratio", "low", "high", "limit", "seconds", "machine"]

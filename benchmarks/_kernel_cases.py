@@ -11,7 +11,8 @@ from collections.abc import Callable
 import numpy as np
 import trimesh
 
-from stages.kit import Mesh, Viewpoint
+from haptic_glance.look.camera import Viewpoint
+from haptic_glance.mesh.mesh import Mesh
 
 from .errors import fresh, hausdorff
 from .imprints import by_trimesh
@@ -24,8 +25,8 @@ def nine_maps() -> tuple[Call, Call]:
     """All channels of one view; the peer is the slowest of the nine in a common library, 9 x 9 and 256 levels."""
     from skimage.filters.rank import entropy
 
-    from stages.conspicuity import conspicuity
-    from stages.views import render
+    from haptic_glance.look.channels import conspicuity
+    from haptic_glance.look.views import render
 
     mesh = ball(5)
     view = render(mesh, Viewpoint(30, 20))
@@ -34,7 +35,7 @@ def nine_maps() -> tuple[Call, Call]:
 
 def saliency_of_a_mesh() -> tuple[Call, Call]:
     """From the mesh to a value a vertex, by our gaze model and by curvature at five scales."""
-    from stages.salient_points import saliency
+    from haptic_glance.look.points import saliency
 
     mesh = ball(3)
     return lambda: saliency(fresh(mesh)), lambda: saliency(fresh(mesh), "mesh_saliency")
@@ -44,7 +45,7 @@ def simplification() -> tuple[Call, Call]:
     """A tenth of the faces, nothing kept; both by quadric edge collapse."""
     import fast_simplification
 
-    from stages.lod import simplify
+    from haptic_glance.lod import simplify
 
     mesh = ball(5)
     target, faces = len(mesh.faces) // 10, mesh.faces.astype(np.int32)
@@ -54,7 +55,7 @@ def simplification() -> tuple[Call, Call]:
 
 def surface_error() -> tuple[Call, Call]:
     """10,000 samples and the vertices against the other surface, both ways; the reference is known."""
-    from stages.lod import metro, simplify
+    from haptic_glance.lod import metro, simplify
 
     mesh = ball(5)
     small = simplify(mesh, len(mesh.faces) // 10)
@@ -63,9 +64,9 @@ def surface_error() -> tuple[Call, Call]:
 
 def picture_error() -> tuple[Call, Call]:
     """Two meshes in four views of 225 x 300, rendered and compared; the peer casts the same rays and no more."""
-    from stages.kit.camera import pixel_rays
-    from stages.lod import perceptual, simplify
-    from stages.views import VIEWPOINTS
+    from haptic_glance.lod import perceptual, simplify
+    from haptic_glance.look.camera import pixel_rays
+    from haptic_glance.look.views import VIEWPOINTS
 
     mesh = ball(4)
     small = simplify(mesh, len(mesh.faces) // 4)
@@ -81,7 +82,7 @@ def picture_error() -> tuple[Call, Call]:
 
 def imprints() -> tuple[Call, Call]:
     """100 imprints of 32 x 32 cells on a mesh that is ready to be touched."""
-    from stages.imprints import Surface, press_many, sensor_axes, sensor_normals
+    from haptic_glance.touch import Surface, press_many, sensor_axes, sensor_normals
 
     mesh = ball(5)
     vertices = np.arange(100) * (len(mesh.vertices) // 100)
@@ -97,7 +98,7 @@ def touch_map() -> tuple[Call, Call]:
     """The map on which several touches become one sample; the peer is given as many centres and passes."""
     from sklearn.cluster import KMeans
 
-    from stages.kit.self_organising_map import PASSES, SelfOrganisingMap
+    from haptic_glance.know.self_organising_map import PASSES, SelfOrganisingMap
 
     samples = np.random.default_rng(0).normal(size=(3000, 41))
     peer = KMeans(100, init="random", n_init=1, max_iter=PASSES, tol=0, random_state=0)
@@ -108,7 +109,7 @@ def training() -> tuple[Call, Call]:
     """Two hidden layers of 50 units, one epoch, a step a sample."""
     from sklearn.neural_network import MLPClassifier
 
-    from stages.classification.network import FeedForward
+    from haptic_glance.know.network import FeedForward
 
     samples = np.random.default_rng(0).normal(size=(500, 12))
     labels = np.arange(500) % 6
@@ -120,7 +121,7 @@ def choice_of_touch() -> tuple[Call, Call]:
     """Ten touches of sixty explorations by expected information; the peer takes the same entropies and no more."""
     from scipy.stats import entropy
 
-    from stages.exploration import Calibration, explore
+    from haptic_glance.know import Calibration, explore
 
     random = np.random.default_rng(0)
     observed, predicted = random.normal(size=(6, 30, 6)), random.normal(size=(6, 30, 6, 8, 6))
@@ -138,7 +139,7 @@ def network() -> tuple[Call, Call]:
     import onnxruntime
     import torch
 
-    from stages.networks.network import build
+    from haptic_glance.deep.network import build
 
     ours, images, written = build("mobilenet_v2", 10, "random", 0), torch.rand(8, 3, 96, 96), io.BytesIO()
     _quiet(torch.onnx.export, ours, (images,), written, input_names=["images"], dynamo=False)

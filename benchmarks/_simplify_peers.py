@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from stages.kit import Mesh
+from haptic_glance.mesh.mesh import Mesh
 
 LOCK, PRIORITY = 1, 4  # bits of a vertex in meshoptimizer
 NO_LIMIT = 1e30  # of the error: the target alone decides

@@ -19,16 +19,15 @@ from pathlib import Path
 import pandas as pd
 
 from benchmarks import arguments
-from stages.kit.fetch import cache_folder, debian_files, fetch_debian
-from stages.kit.files import write_table
-from stages.kit.parallel import progress
-from stages.lod import BACKENDS
-from stages.lod.warm_up import warm_up
-from stages.meshes import load
-from stages.meshes.load import FORMATS
-from stages.stability.qem_error_curve import QemErrorCurve
+from haptic_glance.base.fetch import cache_folder, debian_files, fetch_debian
+from haptic_glance.base.files import write_table
+from haptic_glance.lod import BACKENDS
+from haptic_glance.mesh import load
+from haptic_glance.mesh.files import FORMATS
+from stages.engine.parallel import progress
+from stages.lod.cell import warm_up
 from stages.stability.simplification import run_cases
-from stages.stability.specimen import Case, Specimen
+from stages.stability.surface import Case, QemErrorCurve, Specimen
 
 OUT = Path("reports/bench/broken_meshes.csv.gz")
 PACKAGE = "libcgal-demo_5.5.1-2_all.deb"

@@ -21,10 +21,10 @@ from pathlib import Path
 import pandas as pd
 
 from benchmarks import arguments
-from stages.kit import cluster, run
-from stages.kit.files import write_table
-from stages.kit.parallel import Task, finished
-from stages.kit.workspace import Workspace
+from haptic_glance.base.files import write_table
+from stages.engine import cluster, run
+from stages.engine.parallel import Task, finished
+from stages.engine.settings import Workspace
 
 OUT, COPY = Path("reports/bench/cluster.csv"), Path("build/cluster")
 STAGES = ("views", "conspicuity", "salient_points", "lod", "imprints")  # those that a new mesh goes through

@@ -4,8 +4,8 @@ The objects of both sets with gaze, 19 meshes and 14 point clouds, are left out 
 from the 32 others. So are its rivals: the glance, and a model of three simple features, the height, how much a place
 faces viewers from the side, and the distance to the middle, which any learned model must beat. Prints the means, the
 paired differences with a 95 % interval over objects, and the weights learned from all objects, which are published
-(stages.weights.published). Writes reports/bench/deep_gaze.csv: set, item, method, metric, value, seconds (of the
-processor, for the saliency of an object, without the training), and deep_gaze_means.csv with the means and
+(haptic_glance.look.weights.weights). Writes reports/bench/deep_gaze.csv: set, item, method, metric, value, seconds (of
+the processor, for the saliency of an object, without the training), and deep_gaze_means.csv with the means and
 differences. About 10 minutes on one core.
 """
 
@@ -17,20 +17,20 @@ import numpy as np
 import pandas as pd
 
 from benchmarks import arguments
+from haptic_glance.base.files import write_table
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.look.agreement import auc, cc, kl, nss
+from haptic_glance.look.glance import Samples, samples_of_mesh
+from haptic_glance.look.glance.cells import visibility
+from haptic_glance.look.points.glance import GlanceDetector, cell_features, deep_features
+from haptic_glance.look.points.options import Options
+from haptic_glance.look.weights import LearnedWeights
+from haptic_glance.look.weights.attention import RIDGE, standardise
+from haptic_glance.look.weights.weights import MAPS
+from haptic_glance.mesh.mesh import Mesh
 from stages.bench import gazed
-from stages.glance import Samples, samples_of_mesh
-from stages.glance.visibility import visibility
-from stages.kit import Mesh, Stopwatch
-from stages.kit.files import write_table
-from stages.kit.parallel import progress
-from stages.kit.stats import interval
-from stages.salient_points.glance import GlanceDetector, cell_features, deep_features
-from stages.salient_points.options import Options
-from stages.weights import LearnedWeights
-from stages.weights.agreement import auc, cc, kl, nss
-from stages.weights.fixations import RIDGE
-from stages.weights.published import MAPS
-from stages.weights.standardise import standardise
+from stages.engine.parallel import progress
+from stages.engine.statistics import interval
 
 OUT, SHARED = Path("reports/bench/deep_gaze.csv"), Path("../shared/data")
 SETS, METRICS = ("gaze", "gaze_clouds"), (nss, auc, cc, kl)
@@ -61,7 +61,9 @@ FEATURES = {"glance": cell_features, "glance_deep": deep_features, "simple": sim
 
 
 def quadratic(gaze: Gaze, weights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(slope (d,), bend (d, d)) of the loss of an object, see stages.weights.fit_fixations, at the weights (d,)."""
+    """(slope (d,), bend (d, d)) of the loss of an object, see haptic_glance.look.weights.fit_fixations, at the weights
+    (d,).
+    """
     score = gaze.features @ weights + np.log(np.maximum(gaze.areas, 1e-300))
     likely = np.exp(score - np.logaddexp.reduce(score))
     mean = likely @ gaze.features
@@ -70,7 +72,9 @@ def quadratic(gaze: Gaze, weights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def fitted(objects: Iterable[Gaze], ridge: np.ndarray, start: np.ndarray) -> np.ndarray:
-    """(d,) the weights of stages.weights.fit_fixations with a penalty (d,) for each weight, by Newton's method."""
+    """(d,) the weights of haptic_glance.look.weights.fit_fixations with a penalty (d,) for each weight, by Newton's
+    method.
+    """
     weights, objects = start, list(objects)
     for _ in range(STEPS):
         slope, bend = (np.mean(part, axis=0) for part in zip(*(quadratic(g, weights) for g in objects), strict=True))

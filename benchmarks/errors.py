@@ -17,8 +17,8 @@ import numpy as np
 import pandas as pd
 
 from benchmarks import arguments
-from stages.kit.files import read_mesh, write_table
-from stages.kit.rng import rng
+from haptic_glance.base.files import read_mesh, write_table
+from haptic_glance.base.rng import rng
 
 OUT = Path("reports/bench/errors.csv")
 MESHES, PSB = Path("data/household/meshes"), Path("../shared/data/psb.zip")
@@ -33,7 +33,7 @@ CHOICES = 200  # random choices of views
 
 def meshes():
     """dict name -> Mesh."""
-    from stages.meshes import load, normalise
+    from haptic_glance.mesh import load, normalise
 
     found = {name: read_mesh(MESHES / f"{name}.npz") for name in HOUSEHOLD if (MESHES / f"{name}.npz").exists()}
     if PSB.exists():
@@ -48,7 +48,7 @@ def meshes():
 
 
 def coarser(mesh, share):
-    from stages.lod import simplify, smallest_feasible
+    from haptic_glance.lod import simplify, smallest_feasible
 
     return simplify(mesh, max(int(len(mesh.faces) * share), smallest_feasible(mesh)), backend="pymeshlab")
 
@@ -91,7 +91,7 @@ def speed_rows(name, mesh):
 
     metro always measures the vertices, for max; `from arrays`: the meshes have to be handed over as well.
     """
-    from stages.lod import metro
+    from haptic_glance.lod import metro
 
     rows = []
     for share in SHARES:
@@ -142,15 +142,15 @@ def sample_rows(name, mesh):
 
 
 def _mean_error(reference, mesh, samples, seed):
-    from stages.lod import metro
+    from haptic_glance.lod import metro
 
     return metro(reference, mesh, samples, seed)["mean"]
 
 
 def view_rows(name, mesh):
     """Relative error of the picture errors over fewer views, against all 62; by chance, and for the named sets."""
-    from stages.lod import picture_errors, take_pictures
-    from stages.views import CANDIDATES, VIEWPOINTS
+    from haptic_glance.lod import picture_errors, take_pictures
+    from haptic_glance.look.views import CANDIDATES, VIEWPOINTS
 
     small, rows = coarser(mesh, 0.1), []
     taken = [take_pictures(each, CANDIDATES) for each in (mesh, small)]
@@ -179,8 +179,8 @@ def _places(views, candidates):
 
 def _mean(values, picked, mesh, small, metric):
     """The error over the views picked: by place, or pictures taken anew."""
-    from stages.lod import perceptual
-    from stages.views import Viewpoint
+    from haptic_glance.lod import perceptual
+    from haptic_glance.look.views import Viewpoint
 
     if isinstance(picked[0], Viewpoint):
         return perceptual(mesh, small, picked)[metric]

@@ -19,7 +19,7 @@ import pandas as pd
 
 from benchmarks import arguments
 from benchmarks._fault_workspace import DATA, SET, STAGES, command, content, forget, forked, prepare, run_here, started
-from stages.kit.files import write_table
+from haptic_glance.base.files import write_table
 
 OUT = Path("reports/bench/faults.csv").resolve()
 

@@ -19,18 +19,15 @@ import numpy as np
 import pandas as pd
 
 from benchmarks import arguments
-from stages.kit.files import read_mesh, write_table
-from stages.kit.parallel import progress
-from stages.kit.params import load_params
-from stages.kit.run import object_names
-from stages.kit.workspace import Workspace
-from stages.scene.compare import OURS
-from stages.scene.lod_chain import finest
-from stages.scene.measure import Case
-from stages.scene.place import world_mesh
-from stages.scene.read import scene_of, scenes_of
-from stages.scene.schema import Params
-from stages.scene.storage import read_chain, read_plans
+from haptic_glance.base.files import read_mesh, write_table
+from haptic_glance.lod.scene.camera import world_mesh
+from haptic_glance.lod.scene.chain import finest
+from stages.engine.parallel import progress
+from stages.engine.run import object_names
+from stages.engine.settings import Workspace, load_params
+from stages.scene import Params
+from stages.scene.compare import OURS, read_chain, read_plans
+from stages.scene.measure import Case, scene_of, scenes_of
 
 OUT, SET = Path("reports/bench/frame_times.csv"), "household_scenes"
 PLANS = {"full": "full", "uniform": "uniform.displacement", "ours": OURS, "online": "online"}

@@ -34,13 +34,13 @@ import pandas as pd
 import trimesh
 
 from benchmarks import arguments
-from stages.imprints import Surface, distances_at, press_many, sensor_axes, sensor_normals, touchable
-from stages.kit import Mesh
-from stages.kit.files import read_mesh, write_arrays, write_table
-from stages.kit.parallel import progress
-from stages.kit.rng import rng
-from stages.meshes import normalise
-from stages.meshes.load import parse
+from haptic_glance.base.files import read_mesh, write_arrays, write_table
+from haptic_glance.base.rng import rng
+from haptic_glance.mesh import normalise
+from haptic_glance.mesh.files import parse
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.touch import Surface, distances_at, press_many, sensor_axes, sensor_normals, touchable
+from stages.engine.parallel import progress
 from stages.meshes.sources import PRINCETON, collection_files
 
 OUT, MESHES, PSB = Path("reports/bench/imprints.csv"), Path("data/household/meshes"), "../shared/data/psb.zip"

@@ -21,14 +21,14 @@ import pandas as pd
 import trimesh
 
 from benchmarks import arguments
-from stages.kit import Mesh
-from stages.kit.fetch import cache_folder
-from stages.kit.files import write_table
-from stages.kit.rng import rng
-from stages.lod.simplify import simplify
-from stages.meshes import normalise, rotate_to_z_up
-from stages.meshes.load import load_unnamed, parse
-from stages.salient_points import detect
+from haptic_glance.base.fetch import cache_folder
+from haptic_glance.base.files import write_table
+from haptic_glance.base.rng import rng
+from haptic_glance.lod.simplify import simplify
+from haptic_glance.look.points import detect
+from haptic_glance.mesh import normalise, rotate_to_z_up
+from haptic_glance.mesh.files import load_unnamed, parse
+from haptic_glance.mesh.mesh import Mesh
 from stages.stability.measures import repeatability
 
 OUT, SHARED = Path("reports/bench/invariance.csv"), Path("../shared/data")

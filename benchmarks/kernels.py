@@ -19,7 +19,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from benchmarks import arguments, reference_seconds
-from stages.kit.files import write_table
+from haptic_glance.base.files import write_table
 
 from ._history import HISTORY, TOLERANCE, committed, machine, slower, updated, version
 from ._kernel_cases import CASES

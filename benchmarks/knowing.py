@@ -15,13 +15,13 @@ import numpy as np
 import pandas as pd
 
 from benchmarks import arguments
-from haptic_glance.knowing import Exploration, known_objects, learn
-from haptic_glance.knowing.explore import MOST
-from stages.imprints import Surface
-from stages.kit.files import write_table
-from stages.kit.parallel import progress
-from stages.kit.rng import rng
-from stages.kit.stats import interval
+from haptic_glance.base.files import write_table
+from haptic_glance.base.rng import rng
+from haptic_glance.know import Exploration, known_objects, learn
+from haptic_glance.know.exploration import MOST
+from haptic_glance.touch import Surface
+from stages.engine.parallel import progress
+from stages.engine.statistics import interval
 
 OUT, MESHES, DRAWS = Path("reports/bench/knowing.csv"), Path("data/household/meshes"), 5
 METRICS = ("right", "wrong", "touches")

@@ -1,7 +1,8 @@
 """Millions of faces: `python -m benchmarks.large_simplification [--faces N]`
 
 Simplifies a rippled torus, of 10,000,000 faces unless --faces says otherwise, to 1 %: as a whole, and thinned out block
-by block first (stages/lod/blocks.py), on all cores. Each runs in a process of its own, so that its memory is its own.
+by block first (haptic_glance/lod/blocks.py), on all cores. Each runs in a process of its own, so that its memory is
+its own.
 
 Writes reports/bench/large_simplification.csv: a row a way, with the wall-clock and processor seconds, the most memory
 that the process held in GB (with the mesh, before the errors are measured), and the Metro mean and maximum. `ratio` is
@@ -18,11 +19,11 @@ import numpy as np
 import pandas as pd
 
 from benchmarks import arguments
-from stages.kit import Mesh
-from stages.kit.files import write_table
-from stages.lod import metro
-from stages.lod.blocks import collapse
-from stages.lod.fast import collapse as collapse_whole
+from haptic_glance.base.files import write_table
+from haptic_glance.lod import metro
+from haptic_glance.lod.blocks import collapse
+from haptic_glance.lod.fast import collapse as collapse_whole
+from haptic_glance.mesh.mesh import Mesh
 
 OUT = Path("reports/bench/large_simplification.csv")
 WAYS = {"whole": collapse_whole, "blocks": collapse}

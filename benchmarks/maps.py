@@ -28,10 +28,10 @@ def measure():
     from skimage.filters.rank import entropy
     from trimesh.creation import icosphere
 
-    from stages.conspicuity import conspicuity
-    from stages.kit import Viewpoint
-    from stages.kit.timing import WallClock
-    from stages.views import render
+    from haptic_glance.base.timing import WallClock
+    from haptic_glance.look.camera import Viewpoint
+    from haptic_glance.look.channels import conspicuity
+    from haptic_glance.look.views import render
 
     ball = icosphere(5, radius=0.5)  # 20,480 faces
     ours, peer = [], []
@@ -58,8 +58,8 @@ def saliency_rows():
     """Rows of the time from a mesh of 39,600 faces to its saliency, by our model and by mesh saliency (Lee 2005)."""
     from trimesh.creation import uv_sphere
 
-    from stages.kit.timing import WallClock
-    from stages.salient_points import saliency
+    from haptic_glance.base.timing import WallClock
+    from haptic_glance.look.points import saliency
 
     ball = uv_sphere(radius=0.5, count=[100, 100])
     times = {"glance": [], "mesh_saliency": []}
@@ -81,7 +81,7 @@ def wavy(ball):
     """A trimesh ball of radius 0.5 as a new Mesh with bumps, which lie inside of the ball: in the camera's frame."""
     import numpy as np
 
-    from stages.kit import Mesh
+    from haptic_glance.mesh.mesh import Mesh
 
     return Mesh(ball.vertices * (0.9 + 0.1 * np.sin(20 * ball.vertices).prod(axis=1, keepdims=True)), ball.faces)
 

@@ -11,10 +11,10 @@ from pathlib import Path
 import pandas as pd
 
 from benchmarks import arguments
-from stages.kit.files import write_table
-from stages.kit.parallel import progress
-from stages.networks.cost import cost
-from stages.networks.network import NETWORKS, build
+from haptic_glance.base.files import write_table
+from haptic_glance.deep.device import cost
+from haptic_glance.deep.network import NETWORKS, build
+from stages.engine.parallel import progress
 
 OUT = Path("reports/bench/networks.csv")
 SIZES = (96, 224)  # pixels a side: of the recorded touches here, of the thesis

@@ -8,7 +8,7 @@ simplifyWithUpdate, which moves them, at the same weights. Without meshopt_simpl
 ours run.
 
 Writes reports/bench/painted_simplification.csv: a row a surface, face count, method and weight, with the error of the
-colours (stages.lod.colour_error, of 255), Metro mean, and the processor seconds (the least of ROUNDS, each call with a
+colours (haptic_glance.lod.errors, of 255), Metro mean, and the processor seconds (the least of ROUNDS, each call with a
 mesh not seen before). `ratio` is the error of the colours over the smaller one of meshoptimizer's two at that weight,
 where errors below UNSEEN count as equal; `shape_ratio` the Metro mean over the one of the same result.
 """
@@ -23,10 +23,10 @@ import trimesh
 from benchmarks import arguments
 from benchmarks._simplify_peers import peers
 from benchmarks.salient_simplification import GAZE, subjects
-from stages.kit import Mesh
-from stages.kit.files import write_table
-from stages.kit.parallel import progress
-from stages.lod import InfeasibleTarget, SimplifyError, colour_error, metro, simplify
+from haptic_glance.base.files import write_table
+from haptic_glance.lod import InfeasibleTarget, SimplifyError, colour_error, metro, simplify
+from haptic_glance.mesh.mesh import Mesh
+from stages.engine.parallel import progress
 
 OUT = Path("reports/bench/painted_simplification.csv")
 WEIGHTS = (0.1, 1.0)

@@ -21,7 +21,7 @@ import pandas as pd
 import psutil
 
 from benchmarks import arguments, reference_seconds
-from stages.kit.files import write_table
+from haptic_glance.base.files import write_table
 
 from .maps import nine_maps_rows
 
@@ -82,7 +82,7 @@ def main():
     """Runs the pipeline and writes the table."""
     arguments(__doc__)
     fresh_copy()
-    compiling = "from stages.lod.warm_up import warm_up; warm_up()"
+    compiling = "from stages.lod.cell import warm_up; warm_up()"
     subprocess.run([sys.executable, "-c", compiling], cwd=COPY, check=True, env={**os.environ, "PYTHONPATH": ""})
     loop = reference_seconds()
     rows = [{"what": "reference loop", "metric": "processor time", "value": loop, "unit": "s"}, *nine_maps_rows()]

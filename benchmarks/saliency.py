@@ -22,9 +22,9 @@ import trimesh
 
 from benchmarks import arguments
 from benchmarks.imprints import PSB, meshes
-from stages.kit import Mesh
-from stages.kit.files import write_table
-from stages.salient_points import saliency
+from haptic_glance.base.files import write_table
+from haptic_glance.look.points import saliency
+from haptic_glance.mesh.mesh import Mesh
 
 OUT = Path("reports/bench/saliency.csv")
 METHODS = ("glance", "glance_any_pose")

@@ -7,7 +7,7 @@ meshopt_simplifier.js (see _simplify_peers.py) only ours run.
 
 Writes reports/bench/salient_simplification.csv: a row a mesh, share and method, with the processor seconds (the least
 of ROUNDS, in turns, each call with a mesh not seen before), Metro mean, and the error weighted by gaze
-(stages.lod.salient_error). `bar` is the least of that over meshoptimizer's ways in the same cell, `salient_ratio` the
+(haptic_glance.lod.errors). `bar` is the least of that over meshoptimizer's ways in the same cell, `salient_ratio` the
 error over it.
 """
 
@@ -20,13 +20,13 @@ import pandas as pd
 
 from benchmarks import arguments
 from benchmarks._simplify_peers import LOCK, PRIORITY, peers
-from stages.kit import Mesh
-from stages.kit.files import write_table
-from stages.kit.parallel import progress
-from stages.lod import InfeasibleTarget, SimplifyError, metro, salient_error, simplify
-from stages.lod.warm_up import warm_up
-from stages.meshes import normalise
-from stages.meshes.load import parse
+from haptic_glance.base.files import write_table
+from haptic_glance.lod import InfeasibleTarget, SimplifyError, metro, salient_error, simplify
+from haptic_glance.mesh import normalise
+from haptic_glance.mesh.files import parse
+from haptic_glance.mesh.mesh import Mesh
+from stages.engine.parallel import progress
+from stages.lod.cell import warm_up
 from stages.weights.ground_truth import ground_truth_amounts, published_files, spread_on_surface
 
 OUT = Path("reports/bench/salient_simplification.csv")

@@ -13,16 +13,15 @@ import pandas as pd
 from omegaconf import OmegaConf
 
 from benchmarks import arguments
+from haptic_glance.base.files import write_table, write_text
 from stages.compose import compose
-from stages.kit.files import write_table, write_text
-from stages.kit.parallel import progress
-from stages.kit.params import FILE, load_params
-from stages.kit.rows import SUFFIX, read_rows
-from stages.kit.run import object_names
-from stages.kit.workspace import Workspace
+from stages.engine.parallel import progress
+from stages.engine.rows import SUFFIX, read_rows
+from stages.engine.run import object_names
+from stages.engine.settings import FILE, Workspace, load_params
+from stages.scene import Params
 from stages.scene.__main__ import run
-from stages.scene.read import scene_of
-from stages.scene.schema import Params
+from stages.scene.measure import scene_of
 
 OUT, FOLDER = Path("reports/bench/scenes.csv"), Path("build/scenes")
 SCENES = sorted(path.stem for path in Path("conf/scene").glob("*.yaml"))

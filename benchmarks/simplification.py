@@ -32,20 +32,20 @@ import trimesh
 
 from benchmarks import arguments
 from benchmarks._simplify_peers import UNABLE, peers
-from stages.kit import Mesh
-from stages.kit.files import write_table
-from stages.kit.parallel import progress
-from stages.lod import InfeasibleTarget, SimplifyError, frozen_faces, metro, perceptual, simplify
-from stages.lod.fast import collapse as fast
-from stages.lod.feasibility import smallest_with
-from stages.lod.qem import ATTEMPTS, decimated
-from stages.lod.qem import collapse as pymeshlab
-from stages.lod.topology import faults, topology
-from stages.lod.warm_up import warm_up
-from stages.meshes import normalise
-from stages.meshes.load import parse
+from haptic_glance.base.files import write_table
+from haptic_glance.lod import InfeasibleTarget, SimplifyError, frozen_faces, metro, perceptual, simplify
+from haptic_glance.lod.fast import collapse as fast
+from haptic_glance.lod.feasibility import smallest_with
+from haptic_glance.lod.qem import ATTEMPTS, decimated
+from haptic_glance.lod.qem import collapse as pymeshlab
+from haptic_glance.lod.topology import faults, topology
+from haptic_glance.look.weights.svm import select_far_points
+from haptic_glance.mesh import normalise
+from haptic_glance.mesh.files import parse
+from haptic_glance.mesh.mesh import Mesh
+from stages.engine.parallel import progress
+from stages.lod.cell import warm_up
 from stages.meshes.sources import PRINCETON, collection_files
-from stages.weights.svm_pixels import select_far_points
 
 OUT = Path("reports/bench/simplification.csv.gz")
 PSB = "../shared/data/psb.zip"

@@ -26,7 +26,10 @@ import trimesh
 
 from benchmarks import arguments
 from benchmarks.imprints import PSB, meshes, timed
-from stages.imprints import (
+from haptic_glance.base.files import write_table
+from haptic_glance.base.rng import rng
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.touch import (
     Layer,
     Layout,
     Surface,
@@ -38,9 +41,6 @@ from stages.imprints import (
     touchable,
     warm_up,
 )
-from stages.kit import Mesh
-from stages.kit.files import write_table
-from stages.kit.rng import rng
 
 OUT = Path("reports/bench/tactile.csv")
 SIDE, PITCH, DEPTH, TOUCHES, ROUNDS = 32, 0.001, 0.0005, 40, 7

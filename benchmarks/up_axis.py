@@ -1,4 +1,5 @@
-"""Which axis points up: learns stages.meshes.upright.WEIGHTS and tests them: `python -m benchmarks.up_axis`, 4 minutes.
+"""Which axis points up: learns haptic_glance.mesh.upright.WEIGHTS and tests them: `python -m benchmarks.up_axis`, 4
+minutes.
 
 Learns from the catalogue of furniture, the household and the objects of psb that stand upright (inspected one by one),
 with equal weight for each set, and within a set the root of its number for each class of objects. Each object is laid
@@ -17,11 +18,11 @@ import numpy as np
 import pandas as pd
 
 from benchmarks import arguments
-from stages.kit.files import write_table
-from stages.meshes import MeshError, rotate_to_z_up
-from stages.meshes.load import parse
+from haptic_glance.base.files import write_table
+from haptic_glance.mesh import MeshError, rotate_to_z_up
+from haptic_glance.mesh.files import parse
+from haptic_glance.mesh.upright import features
 from stages.meshes.sources import SOURCES
-from stages.meshes.upright import features
 
 OUT, SHARED = Path("reports/bench/up_axis.csv"), Path("../shared/data")
 # set: (source, file, the axis that another convention would take, once the object is turned z up: the front of a y-up

@@ -16,6 +16,7 @@ extensions = [
     "_extensions.docstrings",
     "_extensions.mathml",
     "_extensions.measured",
+    "_extensions.settings",
     "_extensions.tables",
 ]
 exclude_patterns = ["_extensions", "**/GALLERY_HEADER.rst", "tutorials", "examples"]

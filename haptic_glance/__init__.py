@@ -7,7 +7,7 @@
     small = simplify(mesh, 1500, keep=points)
     images = [press(mesh, point) for point in points]
 
-A thin package over `stages`, which is the pipeline's own. A name is imported when it is first asked for. A function
+A name is imported when it is first asked for. A function
 that takes a mesh takes a path, `(vertices, faces)`, an object of trimesh or a point cloud as well, see `as_mesh`.
 Lengths of `press`, `press_many` and `follow` are shares of the object's diameter.
 """
@@ -16,8 +16,24 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from stages.conspicuity import CHANNELS, conspicuity
-    from stages.imprints import (
+    from haptic_glance.lod import InfeasibleTarget, SimplifyError, metro, perceptual, to_trimesh, write_any
+    from haptic_glance.lod.scene import Camera, Placed, Scene, budget, fly
+    from haptic_glance.look.camera import Viewpoint
+    from haptic_glance.look.channels import CHANNELS, conspicuity
+    from haptic_glance.look.points import METHODS, Detection, detect, find_points, saliency
+    from haptic_glance.look.views import View, render
+    from haptic_glance.mesh import (
+        Cloud,
+        Mesh,
+        MeshError,
+        as_mesh,
+        clean,
+        cloud_of_depth,
+        normalise,
+        rotate_to_z_up,
+        surface_of,
+    )
+    from haptic_glance.touch import (
         Layer,
         Sequence,
         Surface,
@@ -33,12 +49,6 @@ if TYPE_CHECKING:
         sensor_normals,
         shear,
     )
-    from stages.kit import Mesh, Viewpoint
-    from stages.lod import InfeasibleTarget, SimplifyError, metro, perceptual, to_trimesh, write_any
-    from stages.meshes import Cloud, MeshError, as_mesh, clean, cloud_of_depth, normalise, rotate_to_z_up, surface_of
-    from stages.salient_points import METHODS, Detection, detect, find_points, saliency
-    from stages.scene import Camera, Placed, Scene, budget, fly
-    from stages.views import View, render
 
     from .doors import Shown, load, repair, show, simplify
 
@@ -52,19 +62,21 @@ __all__ = [
 ]  # fmt: skip
 
 _NAMES = {
-    "stages.conspicuity": ("CHANNELS", "conspicuity"),
-    "stages.imprints": (
+    "haptic_glance.look.channels": ("CHANNELS", "conspicuity"),
+    "haptic_glance.touch": (
         "Layer", "Sequence", "Surface", "follow", "forces", "gaps_at", "layout_forces", "press", "press_forces",
         "press_many", "read_layout", "sensor_axes", "sensor_normals", "shear",
     ),
-    "stages.kit": ("Mesh", "Viewpoint"),
-    "stages.lod": ("InfeasibleTarget", "SimplifyError", "metro", "perceptual", "simplify", "to_trimesh", "write_any"),
-    "stages.meshes": (
-        "Cloud", "MeshError", "as_mesh", "clean", "cloud_of_depth", "normalise", "rotate_to_z_up", "surface_of",
+    "haptic_glance.look.camera": ("Viewpoint",),
+    "haptic_glance.lod": (
+        "InfeasibleTarget", "SimplifyError", "metro", "perceptual", "simplify", "to_trimesh", "write_any",
     ),
-    "stages.salient_points": ("METHODS", "Detection", "detect", "find_points", "saliency"),
-    "stages.scene": ("Camera", "Placed", "Scene", "budget", "fly"),
-    "stages.views": ("View", "render"),
+    "haptic_glance.mesh": (
+        "Cloud", "Mesh", "MeshError", "as_mesh", "clean", "cloud_of_depth", "normalise", "rotate_to_z_up", "surface_of",
+    ),
+    "haptic_glance.look.points": ("METHODS", "Detection", "detect", "find_points", "saliency"),
+    "haptic_glance.lod.scene": ("Camera", "Placed", "Scene", "budget", "fly"),
+    "haptic_glance.look.views": ("View", "render"),
     "haptic_glance.doors": ("Shown", "load", "repair", "show"),
 }  # fmt: skip
 _MODULES = {name: module for module, names in _NAMES.items() for name in names}

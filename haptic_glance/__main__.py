@@ -1,43 +1,31 @@
-"""The command `haptic-glance`: what can be done with a mesh of one's own, and every stage of the pipeline."""
+"""The command `haptic-glance`: what can be done with a mesh of one's own."""
 
 import argparse
 import ast
 import os
 import re
-import runpy
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from difflib import get_close_matches
 from importlib import import_module
 from pathlib import Path
-from textwrap import fill
 
-import stages
-
-REPRO = "repro"
 # Command -> the module that runs it; the first line of its docstring is what --help says of it.
 OWN = {
     "demo": "haptic_glance.gallery.demo",
     "gallery": "haptic_glance.gallery.command",
-    "saliency": "stages.saliency",
-    "points": "stages.points",
-    "simplify": "stages.lod.command",
-    "touch": "stages.imprints.command",
+    "saliency": "haptic_glance.cli.saliency",
+    "points": "haptic_glance.cli.points",
+    "simplify": "haptic_glance.cli.simplify",
+    "touch": "haptic_glance.cli.touch",
     "studio": "haptic_glance.studio.command",
 }
-WHOLE = {
-    "scene": "stages.scene.__main__",
-    "bench": "stages.bench",
-    "front": "stages.front.__main__",
-    "claim": "stages.claim",
-    "gate": "stages.gate",
-    REPRO: "stages.repro",
-}
-SHELL = {"completion": "haptic_glance.completion"}
+SHELL = {"completion": "haptic_glance.cli.completion"}
 ABOUT = """\
 exit status: 0 done; 1 something could not be done, which the last lines name; 2 the command line is wrong; 130 stopped
 by Ctrl-C. Results go to stdout, progress to stderr, a line each."""
+PIPELINE = ("bench", "claim", "front", "gate", "scene")  # modules of stages that a person runs alone
 
 
 def main() -> None:
@@ -59,20 +47,23 @@ def main() -> None:
         parser.print_help(sys.stderr)
         sys.exit(2)
     chosen = parser.parse_args()
-    names = {**OWN, **WHOLE, **SHELL, **commands()}
+    names = {**OWN, **SHELL}
+    if chosen.command in PIPELINE:
+        in_clone = f"run `python -m stages.{chosen.command}` in a clone of the repository"
+        parser.error(f"{chosen.command} belongs to the pipeline: {in_clone}")
     if chosen.command not in names:
         close = " or ".join(get_close_matches(chosen.command, names)) or "one of those that --help lists"
         parser.error(f"there is no command {chosen.command!r}: try {close}")
     sys.argv[1:] = chosen.rest
 
-    from stages.kit.extras import MissingExtra, from_extra
+    from haptic_glance.base.extras import MissingExtra, from_extra
 
     try:
         with from_extra(), quiet_pipe():
             sys.exit(run(chosen.command, chosen.rest))
     except MissingExtra as error:
         if {"-h", "--help"} & set(chosen.rest):  # what it does can be read without what it needs
-            print(f"usage: haptic-glance {chosen.command} ...\n\n{about(chosen.command)}\n\n{error}")
+            print(f"usage: haptic-glance {chosen.command} ...\n\n{docstring(names[chosen.command])}\n\n{error}")
             return
         sys.exit(f"haptic-glance {chosen.command}: {error}")
 
@@ -91,47 +82,19 @@ def quiet_pipe() -> Iterator[None]:
 
 
 def run(command: str, argv: Sequence[str]) -> int:
-    """Runs a command, or does what `python -m stages.COMMAND` does, or `dvc repro`; returns the exit status."""
-    from stages.kit.command import errors_in_one_line
+    """Runs a command; returns the exit status."""
+    from haptic_glance.base.errors import errors_in_one_line
 
-    if command in {**OWN, **SHELL}:
-        errors_in_one_line(command)  # before an import that takes a second, in which a person may press Ctrl-C
-        work: Callable[[Sequence[str]], int | None] = import_module({**OWN, **SHELL}[command]).run
-        return work(argv) or 0
-    if command == REPRO:
-        repro()
-    runpy.run_module(f"stages.{command}", run_name="__main__", alter_sys=True)
-    return 0
-
-
-def repro() -> None:
-    """Runs the pipeline, or what of it has changed: `dvc repro` in the current folder."""
-    from dvc.cli import main as dvc
-
-    # The stages' own `python` is this one.
-    os.environ["PATH"] = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
-    sys.exit(dvc([REPRO, *sys.argv[1:]]))
-
-
-def commands() -> dict[str, Path]:
-    """{name: the file that `python -m stages.NAME` runs}, in alphabetical order; nothing is imported."""
-    folder = Path(stages.__path__[0])
-    files = {".".join(path.relative_to(folder).parts[:-1]): path for path in folder.rglob("__main__.py")}
-    files |= {path.stem: path for path in folder.glob("*.py") if path.stem != "__init__"}
-    return dict(sorted(files.items()))
+    errors_in_one_line(command)  # before an import that takes a second, in which a person may press Ctrl-C
+    work: Callable[[Sequence[str]], int | None] = import_module({**OWN, **SHELL}[command]).run
+    return work(argv) or 0
 
 
 def listing() -> str:
-    """The commands with the first line of their docstrings; of the other stages the names alone."""
-    pipeline = "with the pipeline (pip install 'haptic-glance[pipeline]')"
-    groups = {"with a mesh of your own": OWN, pipeline: WHOLE, "for the shell": SHELL}
-    wide, lines = max(len(name) for group in groups.values() for name in group), []
-    for title, group in groups.items():
-        texts = {name: repro.__doc__ or "" if name == REPRO else docstring(module) for name, module in group.items()}
-        lines += [f"{title}:", *(f"  {name:{wide}}  {summary(text)}" for name, text in texts.items()), ""]
-    others = [name for name in commands() if name not in {**OWN, **WHOLE}]
-    stages_of_pipeline = fill(", ".join(others), 100, initial_indent="  ", subsequent_indent="  ")
-    lines += ["its stages, on a data set of params.yaml (python -m stages.NAME is the same):", stages_of_pipeline, ""]
+    """The commands with the first line of their docstrings."""
+    wide, lines = max(map(len, {**OWN, **SHELL})), []
+    for title, group in {"with a mesh of your own": OWN, "for the shell": SHELL}.items():
+        lines += [f"{title}:", *(f"  {name:{wide}}  {summary(docstring(group[name]))}" for name in group), ""]
     return "\n".join([*lines, "COMMAND --help has options and examples.", "", ABOUT])
 
 
@@ -140,19 +103,10 @@ def summary(text: str) -> str:
     return re.sub(r"(: `| \(T\d).*", "", text.splitlines()[0]).rstrip(".")
 
 
-def about(command: str) -> str:
-    """The docstring of a command, which is not imported."""
-    modules = {**OWN, **WHOLE, **SHELL}
-    if command in modules:
-        return (repro.__doc__ or "") if command == REPRO else docstring(modules[command])
-    return ast.get_docstring(ast.parse(commands()[command].read_bytes())) or ""
-
-
 def docstring(module: str) -> str:
-    """That of a module of `stages` or of this package, which is not imported."""
-    package, _, rest = module.partition(".")
-    folder = Path(stages.__path__[0]) if package == "stages" else Path(__file__).parent
-    return ast.get_docstring(ast.parse((folder / f"{rest.replace('.', '/')}.py").read_bytes())) or ""
+    """The docstring of a module of this package, which is not imported."""
+    path = Path(__file__).parent.joinpath(*module.split(".")[1:]).with_suffix(".py")
+    return ast.get_docstring(ast.parse(path.read_bytes())) or ""
 
 
 if __name__ == "__main__":

@@ -14,16 +14,16 @@ from typing import Any
 import numpy as np
 from scipy.spatial import KDTree
 
-from stages.imprints.options import METRES, Metres, length
-from stages.kit import Mesh
-from stages.kit.axes import AUTO, Axis, axis_named
-from stages.lod.feasibility import InfeasibleTarget, SimplifyError
-from stages.lod.look import coloured
-from stages.lod.targets import face_count
-from stages.lod.task import repaired
-from stages.meshes.load import MeshLike, as_mesh, as_stated
-from stages.meshes.normalise import RADIUS, centre_and_radius
-from stages.meshes.up import assumed
+from haptic_glance.lod.export import face_count
+from haptic_glance.lod.feasibility import InfeasibleTarget, SimplifyError
+from haptic_glance.lod.pictures import coloured
+from haptic_glance.lod.task import repaired
+from haptic_glance.mesh.axes import AUTO, Axis, axis_named
+from haptic_glance.mesh.files import MeshLike, as_mesh, as_stated
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.repair import RADIUS, centre_and_radius
+from haptic_glance.mesh.up import assumed
+from haptic_glance.touch.skin import METRES, Metres, length
 
 MESHES = {  # public function: its arguments that are meshes
     **dict.fromkeys(
@@ -107,7 +107,8 @@ def in_units(name: str, value: float | str, diameter: float, unit: str | None) -
 
 
 def load(path: str | Path, up: Axis | None = None) -> Mesh:
-    """The Mesh of a file, see `stages.meshes.load`. up: the axis that points up: x, -y, Z, or a vector as (0, 1, 1).
+    """The Mesh of a file, see `haptic_glance.mesh.files`. up: the axis that points up: x, -y, Z, or a vector as (0, 1,
+    1).
 
     None: the axis that the file states, as every GLB does; else y or z, whichever the shape suggests, with a warning
     that has the probability, since people look at the upper part of things. "auto": the shape's, whatever the file
@@ -141,14 +142,14 @@ def simplify(
     in 0..1, such as a saliency: the error counts more where it is high. attributes: weights of colors, normals and uv
     in the error. free_borders: whether the boundary is simplified, too; None: where the count is infeasible without.
     shrink: keep smaller neighbourhoods where the count needs it. The method is quadric edge collapse (Garland and
-    Heckbert 1997), of `stages.lod.simplify`.
+    Heckbert 1997), of `haptic_glance.lod.simplify`.
 
     Where the count is infeasible, the coincident vertices of the mesh are merged and its faces oriented, as `repair`
     does, and its borders are simplified. Where the count leaves a fold, a few faces fewer do not. Without kept points
     even a count is tried near which the surface loses its shape. So a refusal is the last resort. Raises
     InfeasibleTarget with `smallest`, a count that is feasible, SimplifyError, or ValueError.
     """
-    work = import_module("stages.lod").simplify
+    work = import_module("haptic_glance.lod").simplify
     asked = f"{100 * faces:.12g}%" if isinstance(faces, float) and 0 < faces < 1 else str(faces)
     count = face_count(asked, len(mesh.faces), "faces")
     given = dict(keep=keep, weights=weights, rings=rings, backend=backend, shrink=shrink, attributes=attributes)
@@ -211,7 +212,7 @@ class Shown:
     def __init__(self, mesh: Mesh) -> None:
         from trimesh.viewer.notebook import scene_to_html
 
-        scene = import_module("stages.lod").to_trimesh(mesh)
+        scene = import_module("haptic_glance.lod").to_trimesh(mesh)
         self.html: str = scene_to_html(scene.scene() if hasattr(scene, "scene") else scene)
 
     def _repr_html_(self) -> str:

@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 from skimage.measure import marching_cubes
 
-from stages.kit import Mesh
-from stages.lod import simplify, write_any
+from haptic_glance import simplify
+from haptic_glance.lod import write_any
+from haptic_glance.mesh import Mesh
 
 OUT = Path(__file__).with_name("dromedary.glb")
 CELL = 0.011  # metres between two samples of the field

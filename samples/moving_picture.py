@@ -1,6 +1,6 @@
 """Makes moving_picture.webp of the README: a sample mesh from look to name. `python samples/moving_picture.py` (needs
 [pipeline] and the household meshes that `make repro` leaves in data/). Only what is measured is drawn: the beliefs are
-those of haptic_glance.knowing at the places that people look at first."""
+those of haptic_glance.know at the places that people look at first."""
 
 from pathlib import Path
 
@@ -10,13 +10,13 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from haptic_glance import find_points, saliency, simplify
+from haptic_glance.base.rng import rng
 from haptic_glance.gallery.demo import sample
-from haptic_glance.knowing import Exploration, known_objects, learn, place_at
-from stages.imprints import Surface
-from stages.kit import Mesh, Viewpoint
-from stages.kit.rng import rng
-from stages.lod.look import vivid
-from stages.meshes import load, normalise, rotate_to_z_up
+from haptic_glance.know import Exploration, known_objects, learn, place_at
+from haptic_glance.lod.pictures import vivid
+from haptic_glance.look.camera import Viewpoint
+from haptic_glance.mesh import Mesh, load, normalise, rotate_to_z_up
+from haptic_glance.touch import Surface
 from stages.report.drawing import picture, visible
 
 OUT = Path(__file__).with_name("moving_picture.webp")

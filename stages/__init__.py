@@ -1,4 +1,8 @@
-"""Haptic Glance: look at a 3D object, touch only the places that matter, and know what it is.
+"""The pipeline: one package per stage, in the order of the data; `engine` runs them, `report` shows their rows."""
 
-One package per pipeline stage, in the order of the data; `kit` holds what several stages share.
-"""
+import sys
+
+try:
+    import omegaconf  # noqa: F401
+except ModuleNotFoundError:
+    sys.exit("the pipeline needs its extra: pip install -e '.[pipeline]'")

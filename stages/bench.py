@@ -9,10 +9,10 @@ better. `lead` is by how much METHOD is better, on the same objects; * marks a m
 An object on which METHOD fails is named and left out. docs/judging.md describes the splits.
 
 examples:
-  haptic-glance bench
-  haptic-glance bench my_method.py:saliency --gaze gaze.zip
-  haptic-glance bench my_method.py:saliency --set gaze_clouds --by kl --objects
-  haptic-glance bench my_method.py:fit --train --json > results.json
+  python -m stages.bench
+  python -m stages.bench my_method.py:saliency --gaze gaze.zip
+  python -m stages.bench my_method.py:saliency --set gaze_clouds --by kl --objects
+  python -m stages.bench my_method.py:fit --train --json > results.json
 """
 
 import argparse
@@ -26,11 +26,11 @@ from typing import Any
 
 import numpy as np
 
-from stages.kit import Mesh, Stopwatch
-from stages.kit.command import errors_in_one_line
-from stages.kit.extras import from_extra
-from stages.kit.parallel import progress
-from stages.kit.timing import WALL, clock
+from haptic_glance.base.errors import errors_in_one_line
+from haptic_glance.base.extras import from_extra
+from haptic_glance.base.timing import WALL, Stopwatch, clock
+from haptic_glance.mesh.mesh import Mesh
+from stages.engine.parallel import progress
 
 ROWS = "reports/measurements/{}/salient_points.csv.gz"
 GAZE = "../shared/data/{}.zip"  # as conf/data has it
@@ -52,7 +52,7 @@ def has_seen(method: str) -> bool:
 def run(argv: Sequence[str]) -> None:
     """Judges a method, or lists those that were."""
     parser = argparse.ArgumentParser(
-        prog="haptic-glance bench", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+        prog="python -m stages.bench", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("method", nargs="?", metavar="FILE.py:FUNCTION", help="the saliency to judge")
     parser.add_argument("--train", action="store_true", help="FUNCTION learns from the other objects")
@@ -66,7 +66,7 @@ def run(argv: Sequence[str]) -> None:
     with from_extra():
         import pandas as pd
 
-        from stages.kit.rows import read_rows
+        from stages.engine.rows import read_rows
     path = options.rows or Path(ROWS.format(options.set))
     if not path.exists():
         raise ValueError(f"no {path}: run it in a clone of the project, or name the rows by --rows")
@@ -116,7 +116,7 @@ def judged(method: Callable, objects: Gazed, train: bool = False) -> list[dict[s
     ValueError
         If the method fails on every object. One on which it fails is named on stderr; its rows have a note, no value.
     """
-    from stages.weights.agreement import agreement
+    from haptic_glance.look.agreement import agreement
 
     rows, failed = [], {}
     for name, (mesh, truth) in progress(objects.items(), "bench"):
@@ -140,13 +140,12 @@ def judged(method: Callable, objects: Gazed, train: bool = False) -> list[dict[s
 
 def gazed(dataset: str, archive: Path, only: Sequence[str] = ()) -> Gazed:
     """{name: (Mesh, GroundTruth)} of the objects of one of SETS; `only` names some of them, none stands for all."""
+    from haptic_glance.look.agreement import GroundTruth
+    from stages.meshes import Params
     from stages.meshes.collect import prepare_mesh
-    from stages.meshes.schema import Params
     from stages.meshes.sources import SOURCES
-    from stages.weights.agreement import GroundTruth
-    from stages.weights.ground_truth import ground_truth_amounts, spread_on_surface
-    from stages.weights.ground_truth.source import published_files
-    from stages.weights.training_data import SPREAD
+    from stages.weights.ground_truth import ground_truth_amounts, published_files, spread_on_surface
+    from stages.weights.training import SPREAD
 
     files, objects = published_files(dataset, archive), {}
     settings = Params(dataset, str(archive), "y", "unknown", list(only), {}, False)
@@ -176,7 +175,7 @@ def leaderboard(scores: Any, by: str = "nss") -> list[dict[str, Any]]:
         median object), clock, values {object: {metric: value, seconds}}, failed {object: reason}; and, where OWN is
         among the methods, `nss_lead` with its `_low` and `_high` and so on: by how much OWN is better, also in KL.
     """
-    from stages.kit.stats import interval
+    from stages.engine.statistics import interval
 
     scores = scores.reindex(columns=["item", "method", "metric", "value", "seconds", "clock", "note"])
     table = scores.pivot_table(index="item", columns=["metric", "method"], values="value")

@@ -18,11 +18,11 @@ from fnmatch import fnmatch
 from pathlib import Path
 from typing import Any
 
-from stages.kit.command import errors_in_one_line
-from stages.kit.extras import from_extra
-from stages.kit.files import read_table
-from stages.kit.rows import SUFFIX
-from stages.kit.workspace import Workspace
+from haptic_glance.base.errors import errors_in_one_line
+from haptic_glance.base.extras import from_extra
+from haptic_glance.base.files import read_table
+from stages.engine.rows import SUFFIX
+from stages.engine.settings import Workspace
 
 
 def run(argv: Sequence[str]) -> int:
@@ -69,10 +69,10 @@ def judged_again(workspace: Workspace, claim: Any, anew: bool = False) -> dict[s
 
     anew: from the rows of the run that params.yaml describes, not from the published ones.
     """
-    from stages.report.anew import command
+    from stages.report import Params
     from stages.report.claims_page import open_text, over_text, sets_read, sets_text
+    from stages.report.records import command
     from stages.report.results import Results
-    from stages.report.schema import Params
     from stages.report.verdict import judged
 
     results = (Results if anew else Results.published)(workspace, workspace.settings(Params))

@@ -1,18 +1,19 @@
 """Writes build/code/STAGE for each stage: the files that it imports and a digest of each, what DVC's stages depend on.
 
-A changed comment, docstring or type annotation changes none of them; see stages.kit.code.
+A changed comment, docstring or type annotation changes none of them; see stages.engine.code.
 """
 
 import argparse
 from pathlib import Path
 
-from stages.kit.code import PACKAGE, ROOT, stage_digests
-from stages.kit.files import write_text
+from haptic_glance.base.files import write_text
+from stages.engine.code import PACKAGE, ROOT, stage_digests
 
 
 def stage_names() -> list[str]:
     """The stages of this repository: the packages that can be run and have settings, in alphabetical order."""
-    return sorted(path.parent.name for path in (ROOT / PACKAGE).glob("*/schema.py"))
+    settings = [path for path in (ROOT / PACKAGE).glob("*/__init__.py") if "class Params" in path.read_text("utf-8")]
+    return sorted(path.parent.name for path in settings)
 
 
 def write_digests(folder: Path) -> None:

@@ -21,12 +21,10 @@ from hydra.errors import HydraException
 from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import OmegaConfBaseException
 
+from haptic_glance.base.errors import errors_in_one_line
+from haptic_glance.base.files import write_text
 from stages.code import stage_names
-from stages.kit.command import errors_in_one_line
-from stages.kit.conf import conf_folder
-from stages.kit.files import write_text
-from stages.kit.params import FILE, ParamsError, check_common, check_section, schema_of
-from stages.kit.workspace import PUBLISHED
+from stages.engine.settings import FILE, PUBLISHED, ParamsError, check_common, check_section, conf_folder, schema_of
 
 OPEN = ("classification.sets", "meshes.classes", "transfer.networks")  # sections whose keys a person may add to
 CONF = conf_folder()

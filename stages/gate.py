@@ -9,10 +9,11 @@ with the seed, the threads or the machine is measured by --spread, which writes 
 move, whatever its rule. Exits with 1 and names what moved, by how much.
 
 examples:
-  haptic-glance gate
-  haptic-glance gate train.json eval.json --baseline baseline.json --tolerances tolerances.yaml
-  haptic-glance gate train.json --baseline baseline.json --update
-  haptic-glance gate --spread runs/seed_1/reports/metrics runs/two_threads/reports/metrics
+  python -m stages.gate
+  python -m stages.gate train.json eval.json --baseline baseline.json --tolerances tolerances.yaml
+  python -m stages.gate train.json --baseline baseline.json --update
+  python -m stages.gate --markdown >> "$GITHUB_STEP_SUMMARY"
+  python -m stages.gate --spread runs/seed_1/reports/metrics runs/two_threads/reports/metrics
 """
 
 import argparse
@@ -22,10 +23,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from stages.kit.command import errors_in_one_line
-from stages.kit.files import read_json, write_json
-from stages.kit.tolerances import Tolerances, compare, read_tolerances, widest_moves
-from stages.kit.workspace import Workspace
+from haptic_glance.base.errors import errors_in_one_line
+from haptic_glance.base.files import read_json, write_json
+from stages.engine.settings import Workspace
+from stages.engine.tolerances import Tolerances, compare, read_tolerances, widest_moves
 
 TOLERANCES = Path("reports/tolerances.yaml")
 REPORT = "report."  # metrics that count tables and verdicts: no measurements, whose luck is to be known
@@ -109,7 +110,7 @@ def write_spread(runs: Sequence[Mapping[str, float]], baseline: Path) -> str:
 def run(argv: Sequence[str]) -> None:
     """Compares, updates the baseline, or measures how far runs differ."""
     parser = argparse.ArgumentParser(
-        prog="haptic-glance gate", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+        prog="python -m stages.gate", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("metrics", nargs="*", type=Path, metavar="METRICS.json", help="metrics of any project")
     parser.add_argument("--baseline", type=Path, help="default: reports/baselines/PROFILE.json")
@@ -117,6 +118,7 @@ def run(argv: Sequence[str]) -> None:
     parser.add_argument("--update", action="store_true", help="write the baseline from the metrics at hand")
     about = "folders of metrics of runs with other seeds or threads: write how far each metric moves"
     parser.add_argument("--spread", nargs="+", type=Path, metavar="FOLDER", help=about)
+    parser.add_argument("--markdown", action="store_true", help="print Markdown, for the summary of a run on GitHub")
     given = parser.parse_args(argv)
     if given.metrics and (given.spread or not given.baseline):
         parser.error("METRICS.json needs --baseline, and --spread is of runs of this project")
@@ -130,8 +132,28 @@ def run(argv: Sequence[str]) -> None:
         others = [name for file in path.parent.glob("*.json") for name in read_json(file)]
     if given.spread:
         print(write_spread([measured(workspace, folder) for folder in given.spread], path))
+    elif given.update:
+        print(update(metrics, path))
     else:
-        print(update(metrics, path) if given.update else hold(metrics, path, allowed(rules, path), others))
+        try:
+            text = hold(metrics, path, allowed(rules, path), others)
+        except SystemExit as moved:
+            raise SystemExit(markdown(str(moved)) if given.markdown else moved.code) from None
+        print(markdown(text) if given.markdown else text)
+
+
+def markdown(text: str) -> str:
+    """The message of the gate under a heading, with an item for each metric that moved."""
+    first, *moved = text.splitlines()
+    return "\n".join(
+        [
+            "## Metrics against their baseline",
+            "",
+            first.removeprefix("gate: "),
+            "",
+            *(f"- {line.strip()}" for line in moved),
+        ]
+    )
 
 
 def baseline_of(workspace: Workspace) -> Path:

@@ -21,10 +21,10 @@ from typing import Any
 
 from tqdm import tqdm
 
-from stages.kit import cores
-from stages.kit.alone import alone
-from stages.kit.command import errors_in_one_line
-from stages.kit.dvc_files import keep_lock, mend_dvc_files
+from haptic_glance.base.errors import errors_in_one_line
+from stages.engine import parallel
+from stages.engine.dvc_files import keep_lock, mend_dvc_files
+from stages.engine.run import alone
 
 AT_ONCE = 2  # stages: each has a worker a core; with more, memory is needed for no time gained
 LOGS = Path("build/logs")
@@ -105,7 +105,7 @@ def run(root: Path) -> list[str]:
     running: dict[str, tuple[Any, Any, float]] = {}
     bar = tqdm(total=len(schedule.needs), desc="stages", disable=not sys.stderr.isatty(), unit="stage")
     said: tuple[set[str], float] = set(), 0.0  # what the last line of progress names, and when it came
-    with cores.budget(root / "build/cores"), bar:
+    with parallel.budget(root / "build/cores"), bar:
         while True:
             while len(running) < AT_ONCE and (name := schedule.take()):
                 receive, send = context.Pipe(duplex=False)

@@ -25,20 +25,19 @@ from hydra.core.hydra_config import HydraConfig
 from hydra.experimental.callback import Callback
 from omegaconf import DictConfig, OmegaConf
 
-from stages.classification import evaluate
+from haptic_glance.base.errors import errors_in_one_line
+from haptic_glance.base.files import read_json, read_mesh, read_table, write_json, write_table, write_text
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.know import evaluate
+from haptic_glance.know.split import Split
+from haptic_glance.look.points.methods import find_all, method_named, split_runnable
+from haptic_glance.look.points.options import Options
+from haptic_glance.look.weights import read_learned_weights
+from haptic_glance.touch import press_many, touchable
 from stages.compose import composed
-from stages.conspicuity import read_view_maps
-from stages.imprints import press_many, touchable
-from stages.kit import Stopwatch
-from stages.kit.command import errors_in_one_line
-from stages.kit.conf import conf_folder
-from stages.kit.files import read_json, read_mesh, read_table, write_json, write_table, write_text
-from stages.kit.params import FILE, ParamsError, check_section, load_params, schema_of
-from stages.kit.split import Split
-from stages.kit.stats import interval
-from stages.salient_points.methods import find_all, method_named, split_runnable
-from stages.salient_points.options import Options
-from stages.weights import read_learned_weights
+from stages.conspicuity.measure import read_view_maps
+from stages.engine.settings import FILE, ParamsError, check_section, conf_folder, load_params, schema_of
+from stages.engine.statistics import interval
 
 OUT = Path("runs/sweeps/recognition.csv")
 BASES = Path("build/sweeps/bases.json")  # {set: its settings in params.yaml, and those of conf/}, for all jobs

@@ -5,13 +5,15 @@ import pytest
 import trimesh
 from omegaconf import OmegaConf
 
-from stages.conspicuity import ViewMaps
-from stages.conspicuity.channels import CHANNELS as NINE
-from stages.conspicuity.channels import OTHERS
-from stages.kit import Mesh, RayScene, camera
-from stages.kit.files import write_text
-from stages.kit.workspace import Workspace
-from stages.views import TWELVE
+from haptic_glance.base.files import write_text
+from haptic_glance.look import camera
+from haptic_glance.look.channels import ViewMaps
+from haptic_glance.look.channels.channels import CHANNELS as NINE
+from haptic_glance.look.channels.channels import OTHERS
+from haptic_glance.look.views import TWELVE
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.rays import RayScene
+from stages.engine.settings import Workspace
 
 SIZE = (75, 100)
 CHANNELS = (*NINE, *OTHERS)

@@ -8,10 +8,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from haptic_glance.look.agreement import METRICS, GroundTruth
+from haptic_glance.mesh.mesh import Mesh
 from stages import bench
-from stages.kit import Mesh
-from stages.kit.rows import read_rows
-from stages.weights.agreement import METRICS, GroundTruth
+from stages.engine.rows import read_rows
 
 PAGE = (Path(__file__).parents[1] / "docs/judging.md").read_text(encoding="utf-8")
 EXAMPLES = re.findall(r"^```python\n(.*?)^```$", PAGE, re.M | re.S)

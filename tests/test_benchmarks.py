@@ -11,8 +11,8 @@ import pytest
 import trimesh
 
 from benchmarks import _history, _simplify_peers, imprints, kernels, simplification
-from stages.kit import Mesh
-from stages.lod import SimplifyError
+from haptic_glance.lod import SimplifyError
+from haptic_glance.mesh.mesh import Mesh
 
 BENCHMARKS = sorted(path.stem for path in Path(simplification.__file__).parent.glob("[a-z]*.py"))
 BALL = Mesh(*(getattr(trimesh.creation.icosphere(2), name) for name in ("vertices", "faces")))

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from stages.claim import run
-from stages.kit.workspace import Workspace
-from stages.report.anew import command
+from stages.engine.settings import Workspace
+from stages.report.records import command
 
 ROOT = Path(__file__).parents[1]
 KEYS = ["fit_gaze", "equal_over_itti_gaze", "four_easier_beyond_chance"]

@@ -6,9 +6,9 @@ import subprocess
 
 import pytest
 
-from haptic_glance.__main__ import OWN, SHELL, WHOLE
-from haptic_glance.completion import OPTIONS, bash, fish, options_of, run
-from stages.kit.timing import WallClock
+from haptic_glance.__main__ import OWN, SHELL
+from haptic_glance.base.timing import WallClock
+from haptic_glance.cli.completion import OPTIONS, bash, fish, options_of, run
 
 KNOWN = {"saliency": ["--count", "--out"], "gate": ["--update"]}
 
@@ -40,9 +40,9 @@ def test_fish_has_a_line_for_each_command_and_option():
 @pytest.mark.slow
 def test_the_options_are_those_that_help_lists():
     kept = json.loads(OPTIONS.read_text())
-    assert {"--help", "--out", "--json", "--up"} <= set(kept["points"]) and set(kept) == {*OWN, *WHOLE, *SHELL}
-    again = "python -c 'from haptic_glance.completion import write_options; write_options()'"
-    for command in ("points", "simplify", "touch", "gate", "studio"):
+    assert {"--help", "--out", "--json", "--up"} <= set(kept["points"]) and set(kept) == {*OWN, *SHELL}
+    again = "python -c 'from haptic_glance.cli.completion import write_options; write_options()'"
+    for command in ("points", "simplify", "touch", "saliency", "studio"):
         assert options_of(command) == kept[command], f"{command} has other options now: {again}"
 
 

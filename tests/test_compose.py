@@ -6,9 +6,8 @@ import pytest
 from omegaconf import OmegaConf
 
 from stages.compose import CONF, compose, main
-from stages.kit.params import ParamsError
-from stages.kit.workspace import Workspace
-from stages.views.schema import Params
+from stages.engine.settings import ParamsError, Workspace
+from stages.views import Params
 
 ROOT = Path(__file__).parents[1]
 GROUPS = sorted(path.name for path in CONF.iterdir() if path.is_dir())

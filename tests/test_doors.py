@@ -13,10 +13,10 @@ import trimesh
 import haptic_glance
 from haptic_glance import Mesh, detect, doors, find_points, load, press, press_many, saliency, show, simplify
 from haptic_glance.__main__ import run
+from haptic_glance.lod.export import write_any
+from haptic_glance.mesh.clouds import Cloud
 from haptic_glance.studio.specimen import open_file
-from stages.imprints.layout import Layout
-from stages.lod.export import write_any
-from stages.meshes.clouds import Cloud
+from haptic_glance.touch.layout import Layout
 
 COUNT = 5
 
@@ -234,9 +234,9 @@ def test_a_triangle_soup_and_an_open_patch_are_simplified(body):
 
 
 def test_a_count_that_leaves_a_fold_is_answered_by_one_nearby(body, monkeypatch):
-    import stages.lod
+    import haptic_glance.lod
 
-    inner, asked = stages.lod.simplify, []
+    inner, asked = haptic_glance.lod.simplify, []
 
     def folding(mesh, faces, **options):
         asked.append(faces)
@@ -244,7 +244,7 @@ def test_a_count_that_leaves_a_fold_is_answered_by_one_nearby(body, monkeypatch)
             raise haptic_glance.SimplifyError(f"{faces} faces leave 1 new folded pairs of faces: ask for more faces")
         return inner(mesh, faces, **options)
 
-    monkeypatch.setattr(stages.lod, "simplify", folding)
+    monkeypatch.setattr(haptic_glance.lod, "simplify", folding)
     assert len(simplify(Mesh(*body), 320).faces) == 316 and asked == [320, 318, 316]
     with pytest.raises(haptic_glance.SimplifyError, match="400 faces leave"):
         simplify(Mesh(*body), 400)

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from haptic_glance.base.files import read_json, write_json
 from stages import gate
-from stages.kit.files import read_json, write_json
-from stages.kit.tolerances import Rule, Tolerances, compare
+from stages.engine.tolerances import Rule, Tolerances, compare
 
 ROOT = Path(__file__).parents[1]
 PROFILES = ["smoke", "laptop"]
@@ -125,3 +125,16 @@ def exchanged(metrics, one, other):
         if place != name and place in metrics:
             found[name], found[place] = metrics[place], metrics[name]
     return found
+
+
+def test_markdown_lists_what_moved(tmp_path, capsys):
+    metrics, baseline = tmp_path / "train.json", tmp_path / "base.json"
+    metrics.write_text(json.dumps({"accuracy": 0.8}))
+    given = [str(metrics), "--baseline", str(baseline)]
+    gate.run([*given, "--update"])
+    capsys.readouterr()
+    gate.run([*given, "--markdown"])
+    assert capsys.readouterr().out.startswith("## Metrics against their baseline\n\n1 metrics within")
+    metrics.write_text(json.dumps({"accuracy": 0.7}))
+    with pytest.raises(SystemExit, match=r"(?s)1 of 1 metrics left.*\n- train.accuracy moved by -0.1"):
+        gate.run([*given, "--markdown"])

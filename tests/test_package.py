@@ -6,7 +6,6 @@ import re
 import subprocess
 import sys
 import tomllib
-import types
 import zipfile
 from importlib.metadata import packages_distributions
 from pathlib import Path
@@ -15,8 +14,8 @@ import pytest
 
 import haptic_glance
 from haptic_glance import __main__ as command
-from stages.kit.conf import conf_folder
-from stages.kit.extras import EXTRAS, MODULES, MissingExtra, from_extra
+from haptic_glance.base.extras import EXTRAS, MODULES, MissingExtra, from_extra
+from stages.engine.settings import conf_folder
 
 ROOT = Path(__file__).parents[1]
 OURS = sys.stdlib_module_names | {"stages", "haptic_glance"}
@@ -75,7 +74,8 @@ def normalised(name):
 def third_party():
     """{top-level module that the stages import and Python does not have: one file that does}."""
     found = {}
-    for path in sorted([*ROOT.glob("stages/**/*.py"), *ROOT.glob("haptic_glance/*.py")]):
+    guard = ROOT / "haptic_glance/studio/guard.py"  # wraps parts of websockets, which viser brings
+    for path in sorted({*ROOT.glob("stages/**/*.py"), *ROOT.glob("haptic_glance/**/*.py")} - {guard}):
         for node in ast.walk(ast.parse(path.read_bytes())):
             if isinstance(node, ast.Import):
                 names = [alias.name for alias in node.names]
@@ -122,8 +122,8 @@ def test_one_mesh_is_looked_at_in_a_core_install(ball):
 
 @pytest.mark.slow
 def test_a_stage_names_the_extra_that_a_core_install_lacks():
-    (line,) = run_command("lod", "household", before=CORE).stderr.splitlines()
-    assert line.startswith("haptic-glance lod: ") and line.endswith("pip install '.[pipeline]'")
+    done = python(f"{CORE}\nimport runpy\nrunpy.run_module('stages.lod', run_name='__main__')")
+    assert done.returncode == 1 and done.stderr.strip().endswith("pip install -e '.[pipeline]'")
 
 
 def test_the_core_has_few_dependencies():
@@ -171,18 +171,11 @@ def test_the_names_of_the_package_are_those_that_a_type_checker_sees():
 def test_the_list_of_commands_imports_no_stage():
     done = run_command("--help", before="import atexit, sys; atexit.register(lambda: print(sorted(sys.modules)))")
     assert done.returncode == 0
-    for name in {**command.OWN, **command.WHOLE, **command.SHELL}:
+    for name in {**command.OWN, **command.SHELL}:
         assert re.search(rf"^  {name} +[A-Z].{{20,}}$", done.stdout, re.M)
-    assert all(re.search(rf"\b{re.escape(name)}\b", done.stdout) for name in command.commands())
     assert max(map(len, done.stdout.splitlines()[:-1])) <= 120
     loaded = ast.literal_eval(done.stdout.splitlines()[-1])
     assert not [name for name in loaded if name.startswith("stages.") or name in ("numpy", "torch", *EXTRAS)]
-
-
-@pytest.mark.slow
-def test_a_command_is_the_module_of_its_name():
-    done = run_command("gate", "--help")
-    assert done.returncode == 0 and "--update" in done.stdout
 
 
 def test_an_unknown_command_is_named_with_one_like_it():
@@ -221,31 +214,10 @@ def test_one_mesh_is_touched_in_a_core_install(ball):
     assert {path.name for path in (ball.parent / "out").iterdir()} == {"imprints.npz", "imprints.png", "places.csv"}
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(("name", "extra"), [("fixation", "deep"), ("repro", "pipeline")])
-def test_a_missing_extra_ends_in_one_line_that_names_it(name, extra):
-    without = CORE.replace(str(sorted(EXTRAS)), str(sorted(MODULES[extra])))
-    done = run_command(name, before=without)
-    assert done.returncode == 1
-    (line,) = done.stderr.splitlines()
-    assert line.startswith(f"haptic-glance {name}: ") and line.endswith(f"pip install '.[{extra}]'")
-
-
 def test_a_missing_module_of_nobodys_is_left_as_it_is():
     with pytest.raises(ModuleNotFoundError) as raised, from_extra():
         import no_such_module  # noqa: F401  # pyright: ignore[reportMissingImports]
     assert not isinstance(raised.value, MissingExtra)
-
-
-def test_repro_hands_its_arguments_to_dvc_and_its_own_python_to_the_stages(monkeypatch):
-    given = []
-    monkeypatch.setitem(sys.modules, "dvc.cli", types.SimpleNamespace(main=lambda argv: given.append(argv) or 3))
-    monkeypatch.setattr(sys, "argv", ["haptic-glance", "repro", "lod", "--dry"])
-    monkeypatch.setenv("PATH", "/somewhere")
-    with pytest.raises(SystemExit) as raised:
-        command.main()
-    assert raised.value.code == 3 and given == [["repro", "lod", "--dry"]]
-    assert os.environ["PATH"].split(os.pathsep) == [str(Path(sys.executable).parent), "/somewhere"]
 
 
 def test_a_checkout_has_its_settings_at_the_top():
@@ -265,18 +237,12 @@ def installed(tmp_path_factory):
 
 
 @pytest.mark.slow
-def test_the_wheel_holds_the_settings_and_all_files_of_the_stages(installed):
-    wanted = {f"stages/conf/{path.relative_to(ROOT / 'conf')}" for path in ROOT.glob("conf/**/*.yaml")}
-    for package in ("stages", "haptic_glance"):
-        wanted |= {str(path.relative_to(ROOT)) for path in ROOT.glob(f"{package}/**/*.*") if path.is_file()}
+def test_the_wheel_holds_the_library_and_nothing_else(installed):
+    wanted = {str(path.relative_to(ROOT)) for path in ROOT.glob("haptic_glance/**/*.*") if path.is_file()}
     assert (installed / "haptic_glance/samples/dromedary.glb").is_file()
     held = {str(path.relative_to(installed)) for path in installed.rglob("*.*")}
     assert {name for name in wanted if "__pycache__" not in name} - held == set()
-    assert {name.split("/")[0] for name in held} <= {
-        "stages",
-        "haptic_glance",
-        *(p.name for p in installed.glob("*-info")),
-    }
+    assert {name.split("/")[0] for name in held} <= {"haptic_glance", *(p.name for p in installed.glob("*-info"))}
 
 
 @pytest.mark.slow
@@ -288,20 +254,9 @@ def test_an_installed_demo_needs_no_extra_and_no_checkout(installed, tmp_path):
     assert (tmp_path / "haptic_glance_demo/index.html").stat().st_size > 50_000
 
 
-@pytest.mark.slow
-def test_an_installed_compose_writes_params_in_an_empty_folder(installed, tmp_path):
-    environment = os.environ | {"PYTHONPATH": str(installed)}
-    code = "from haptic_glance.__main__ import main\nmain()"
-    done = python(code, "compose", "profile=smoke", cwd=tmp_path, env=environment)
-    assert done.returncode == 0, done.stderr
-    assert "profile: smoke" in (tmp_path / "params.yaml").read_text()
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", [*command.WHOLE, "fixation", "lod", "sweep", "compose"])
-def test_help_needs_no_extra(name):
-    done = run_command(name, "--help", before=CORE)
-    assert done.returncode == 0 and len(done.stdout.splitlines()) > 2 and "Traceback" not in done.stderr
+def test_a_command_of_the_pipeline_is_named_with_its_module():
+    done = run_command("gate", "--update")
+    assert done.returncode == 2 and "`python -m stages.gate` in a clone" in done.stderr.splitlines()[-1]
 
 
 @pytest.mark.slow

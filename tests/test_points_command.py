@@ -5,7 +5,7 @@ import json
 import pytest
 import trimesh
 
-from stages import points, saliency
+from haptic_glance.cli import points, saliency
 
 
 @pytest.fixture

@@ -5,12 +5,13 @@ import os
 import re
 import subprocess
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
 
 import stages
-from haptic_glance.__main__ import OWN, REPRO, commands
+from haptic_glance.__main__ import OWN
 from stages.compose import groups
 
 ROOT = Path(__file__).parents[1]
@@ -74,7 +75,7 @@ def test_results_and_failures_have_intervals():
 
 
 def test_the_readme_is_short():
-    assert len(TEXT.splitlines()) <= 150
+    assert len(TEXT.splitlines()) <= 130
     long = [text for text in paragraphs() if len(text.split()) > 100]
     assert not long and len(paragraphs()) > 10
 
@@ -91,8 +92,9 @@ def test_every_link_leads_to_a_file(path):
 
 def test_every_command_is_there():
     code = "\n".join(text for _, text in CODE.findall(TEXT))
-    modules = set(re.findall(r"python -m stages\.([\w.]+)", TEXT)) | set(re.findall(r"haptic-glance (\w+)", code))
-    assert modules and modules <= {*commands(), *OWN, REPRO}
+    modules = set(re.findall(r"python -m stages\.([\w.]+)", TEXT))
+    assert modules and all(find_spec(f"stages.{name}") for name in modules)
+    assert set(re.findall(r"haptic-glance (\w+)", code)) <= {*OWN}
     made = set(re.findall(r"^(\w+):", (ROOT / "Makefile").read_text(), re.M))
     assert {"repro", "test"} <= set(re.findall(r"^make (\w+)", code, re.M)) <= made
     options = re.findall(r"\b(experiment|profile|parallel|classifier)=([\w,]+)", TEXT)
@@ -107,7 +109,7 @@ def test_the_python_example_runs(tmp_path):
     ball.vertices[:, 2] += 0.005 * ball.vertices[:, 0] ** 2
     ball.export(tmp_path / "scan.stl")
     ((_, code),) = [block for block in CODE.findall(TEXT) if block[0] == "python"]
-    check = "assert values.shape == (2562,) and len(points) and len(small.faces) <= 1500 and image.shape == (16, 16)"
+    check = "assert values.shape == (2562,) and len(points) and len(small.faces) <= 1300 and image.shape == (16, 16)"
     environment = os.environ | {"PYTHONPATH": str(Path(stages.__path__[0]).parent)}
     command = [sys.executable, "-c", f"{code}\n{check}"]
     done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)

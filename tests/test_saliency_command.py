@@ -7,11 +7,11 @@ import pytest
 import trimesh
 from PIL import Image
 
-from stages.kit import Mesh
-from stages.lod.look import places, write_look
-from stages.meshes import load, normalise
-from stages.saliency import COLUMNS, run
-from stages.salient_points import detect, find_points, saliency
+from haptic_glance.cli.saliency import COLUMNS, run
+from haptic_glance.lod.pictures import places, write_look
+from haptic_glance.look.points import detect, find_points, saliency
+from haptic_glance.mesh import load, normalise
+from haptic_glance.mesh.mesh import Mesh
 
 PLACE, SIZE = np.array([120.0, -40.0, 7.0]), 25.0
 
@@ -108,7 +108,7 @@ def test_a_picture_shows_the_mesh_upright_and_names_the_axis(egg, tmp_path):
 
 def test_the_numbers_of_the_picture_are_the_ranks_of_the_points(egg, tmp_path, capsys, monkeypatch):
     marked = {}
-    monkeypatch.setattr("stages.lod.look.mark", lambda image, x, y, text: marked.update({text: (x, y)}))
+    monkeypatch.setattr("haptic_glance.lod.pictures.mark", lambda image, x, y, text: marked.update({text: (x, y)}))
     run([str(egg), "--picture", str(tmp_path / "look.png"), "--count", "8", "--json"])
     ids = [row["vertex"] for row in json.loads(capsys.readouterr().out)]
     rows, columns = places(normalise(load(egg)), np.array(ids))

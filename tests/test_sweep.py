@@ -8,10 +8,10 @@ import pandas as pd
 import pytest
 from omegaconf import OmegaConf
 
+from haptic_glance.base.files import read_table, write_json, write_table
 from stages import sweep
 from stages.compose import compose, composed
-from stages.kit.files import read_table, write_json, write_table
-from stages.kit.params import ParamsError, load_params
+from stages.engine.settings import ParamsError, load_params
 
 
 def job_rows(job, classifier, value, seed=0):

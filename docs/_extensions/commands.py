@@ -8,10 +8,10 @@ from pathlib import Path
 import pandas as pd
 import yaml
 
-from stages.kit.rows import SUFFIX
-from stages.report.anew import COMPOSE, switch
+from stages.engine.rows import SUFFIX
 from stages.report.claims import Claim
-from stages.report.stability.time_spent import KEYS, SEEN
+from stages.report.records import COMPOSE, switch
+from stages.report.stability.score import SEEN, TIME_KEYS
 from stages.report.topics import CLAIMS
 
 from .measured import number, rows_of, table
@@ -89,4 +89,4 @@ def seconds(dataset: str, stage: str) -> float:
     rows = pd.read_csv(ROOT / "reports/measurements" / dataset / f"{stage}{SUFFIX}", low_memory=False)
     timed = rows.dropna(subset=["seconds"])
     timed = timed.loc[~((timed["metric"] == SEEN) & (timed.get("views") != 1))]
-    return float(timed.drop(columns=KEYS, errors="ignore").drop_duplicates()["seconds"].sum())
+    return float(timed.drop(columns=TIME_KEYS, errors="ignore").drop_duplicates()["seconds"].sum())

@@ -48,12 +48,13 @@ def _process(app, what, name, thing, options, lines):
 
 
 def linked(code: str, module: str) -> str:
-    """Code in a docstring of a module: a link where it is a public name of its stage or of haptic_glance."""
-    package = ".".join(module.split(".")[:2])
+    """Code in a docstring of a module: a link where it is a public name of its package or of haptic_glance."""
     if code in haptic_glance.__all__:
         return f":py:obj:`~haptic_glance.{code}`"
-    if code.isidentifier() and package.startswith("stages.") and code in getattr(import_module(package), "__all__", ()):
-        return f":py:obj:`~{package}.{code}`"
+    parts = module.split(".")
+    for package in (".".join(parts[:k]) for k in range(len(parts) - 1, 1, -1) if code.isidentifier()):
+        if code in getattr(import_module(package), "__all__", ()):
+            return f":py:obj:`~{package}.{code}`"
     return f"``{code}``"
 
 

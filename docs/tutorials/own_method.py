@@ -13,14 +13,14 @@ import pandas as pd
 from scipy.spatial import KDTree
 
 from haptic_glance import METHODS, find_points, load, normalise, saliency, simplify
+from haptic_glance.disturb.objects import PERTURBATIONS
 from haptic_glance.gallery.demo import sample
-from stages.kit import Mesh
-from stages.lod.look import look
-from stages.meshes import rotate_to_z_up
-from stages.salient_points.surface import SurfaceDetector
+from haptic_glance.lod.pictures import look
+from haptic_glance.look.agreement import GroundTruth, agreement
+from haptic_glance.look.points.detectors import SurfaceDetector
+from haptic_glance.mesh import rotate_to_z_up
+from haptic_glance.mesh.mesh import Mesh
 from stages.stability.measures import TOLERANCE, repeatability
-from stages.stability.perturbations import PERTURBATIONS
-from stages.weights.agreement import GroundTruth, agreement
 
 
 def thin_parts(mesh: Mesh) -> np.ndarray:
@@ -35,7 +35,7 @@ def thin_parts(mesh: Mesh) -> np.ndarray:
 # --------------
 #
 # In a checkout the function is a file in ``stages/salient_points/rivals``, and its name stands in ``PUBLISHED`` of
-# ``stages/salient_points/methods.py``. Here we add it to the registry of this process. Every function that takes a
+# ``haptic_glance/look/points/methods.py``. Here we add it to the registry of this process. Every function that takes a
 # method knows it from now on.
 
 METHODS["thin_parts"] = SurfaceDetector(thin_parts)
@@ -87,7 +87,7 @@ for method in ["thin_parts", "glance"]:
 #
 # .. code-block:: sh
 #
-#    haptic-glance bench my_method.py:thin_parts --gaze gaze.zip
+#    python -m stages.bench my_method.py:thin_parts --gaze gaze.zip
 #
 # With the name in the registry, and in ``salient_points.methods`` of the settings, the experiment ``attention``
 # measures

@@ -27,9 +27,9 @@ from haptic_glance import (
     simplify,
     write_any,
 )
+from haptic_glance.disturb.objects import PERTURBATIONS
 from haptic_glance.gallery.demo import sample
-from stages.lod.look import look
-from stages.stability.perturbations import PERTURBATIONS
+from haptic_glance.lod.pictures import look
 
 folder = Path(tempfile.mkdtemp())
 scanned = PERTURBATIONS["noise"].apply(load(sample()), 0.0005, np.random.default_rng(0)).mesh

@@ -14,11 +14,10 @@ import matplotlib.pyplot as plt
 
 from haptic_glance import Placed, Scene, budget, fly, load, saliency, simplify
 from haptic_glance.gallery.demo import sample
-from stages.lod.look import draw
-from stages.meshes import normalise, rotate_to_z_up
-from stages.scene import build_lod_chain
-from stages.scene.export import describe, metres_per_unit, write_lod
-from stages.scene.loaded_back import read_lod
+from haptic_glance.lod.pictures import draw
+from haptic_glance.lod.scene import build_lod_chain
+from haptic_glance.mesh import normalise, rotate_to_z_up
+from stages.scene.export import describe, metres_per_unit, read_lod, write_lod
 
 SIZE = 2.0  # metres, the longest side of the animal
 
@@ -76,5 +75,5 @@ tree = json.loads(content[20 : 20 + int.from_bytes(content[12:16], "little")])
 print(json.dumps(tree["nodes"][0], indent=1))
 
 # %%
-# For scenes of a data set, the stage ``scene`` does all of this: ``haptic-glance scene`` writes a GLB per level, one
+# For scenes of a data set, the stage ``scene`` does all of this: ``python -m stages.scene`` writes a GLB per level, one
 # per object with ``MSFT_lod``, one of the fullest frame, and a manifest to ``data/SET/scene/export``.

@@ -11,8 +11,8 @@ import matplotlib.pyplot as plt
 import pandas as pd
 
 from haptic_glance.gallery.demo import sample
-from stages.kit.split import Split, shared_by
-from stages.kit.stats import interval
+from haptic_glance.know.split import Split, shared_by
+from stages.engine.statistics import interval
 from stages.report.verdict import verdict
 
 ROOT = sample().parents[1]  # of the checkout
@@ -54,7 +54,7 @@ print((100 * thesis).round().astype(int).to_string())
 # --------------
 #
 # The thesis finds that touches at attended places recognise better than blind ones. Each split gives a pair, and the
-# difference of each pair counts. ``haptic-glance claim equal_over_blind`` does the same.
+# difference of each pair counts. ``python -m stages.claim equal_over_blind`` does the same.
 
 attended, blind = (
     rows[(rows["method"] == method) & (rows["classifier"] == "knn")].set_index("repetition")["value"]

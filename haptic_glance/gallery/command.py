@@ -18,15 +18,15 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from stages.imprints.options import check_folder
-from stages.kit.command import DEBUG
-from stages.kit.files import write_text
-from stages.kit.timing import WallClock
-from stages.lod.levels import levels
-from stages.meshes.own import mesh_files, names_of
-from stages.meshes.up import add_up
+from haptic_glance.base.errors import DEBUG
+from haptic_glance.base.files import write_text
+from haptic_glance.base.timing import WallClock
+from haptic_glance.cli.touch import check_folder
+from haptic_glance.lod.compiled import compile_beside
+from haptic_glance.lod.export import levels
+from haptic_glance.mesh.files import mesh_files, names_of
+from haptic_glance.mesh.up import add_up
 
-from .compiled import compile_beside
 from .exhibit import Exhibit, exhibit
 from .page import build_page
 

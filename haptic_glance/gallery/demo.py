@@ -11,7 +11,7 @@ examples:
 from collections.abc import Sequence
 from pathlib import Path
 
-from stages.lod.levels import levels
+from haptic_glance.lod.export import levels
 
 from .command import COUNT, LEVELS, commands, parser, show
 

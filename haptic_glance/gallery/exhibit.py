@@ -8,37 +8,34 @@ from typing import Any
 import numpy as np
 from scipy.spatial import KDTree
 
-from stages.imprints import normalise as as_images
-from stages.imprints import sensor_axes, touchable
-from stages.imprints.command import ARRAYS, TABLE, places_rows, saved_arrays
-from stages.imprints.command import as_csv as places_csv
-from stages.imprints.distances import distances_at
-from stages.imprints.press import as_shown
-from stages.imprints.user_mesh import UserMesh
-from stages.kit import Mesh
-from stages.kit.files import write_arrays, write_text
-from stages.lod import InfeasibleTarget, SimplifyError, vertex_errors
-from stages.lod.export import write_any
-from stages.lod.levels import level_path
-from stages.lod.look import coloured, look
-from stages.lod.parts import moved_parts, parts_of
-from stages.lod.remedies import infeasible
-from stages.lod.simplify import BACKEND
-from stages.lod.targets import face_count
-from stages.lod.task import SimplificationTask, repaired
-from stages.meshes.colours import bake_texture
-from stages.meshes.load import load_unnamed
-from stages.meshes.up import upright_by, upright_for
-from stages.saliency import as_csv, finely, nearest_vertices, points_of
-from stages.salient_points import detect
-from stages.salient_points import saliency as saliency_of
+from haptic_glance.base.files import write_arrays, write_text
+from haptic_glance.cli.saliency import as_csv, finely, nearest_vertices, points_of
+from haptic_glance.cli.touch import ARRAYS, TABLE, places_rows, saved_arrays
+from haptic_glance.cli.touch import as_csv as places_csv
+from haptic_glance.lod import InfeasibleTarget, SimplifyError, vertex_errors
+from haptic_glance.lod.export import face_count, level_path, write_any
+from haptic_glance.lod.pictures import coloured, look
+from haptic_glance.lod.simplify import BACKEND
+from haptic_glance.lod.task import SimplificationTask, infeasible, repaired
+from haptic_glance.lod.topology import moved_parts, parts_of
+from haptic_glance.look.points import detect
+from haptic_glance.look.points import saliency as saliency_of
+from haptic_glance.mesh.files import load_unnamed
+from haptic_glance.mesh.materials import bake_texture
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.up import upright_by, upright_for
+from haptic_glance.touch import normalise as as_images
+from haptic_glance.touch import sensor_axes, touchable
+from haptic_glance.touch.distances import distances_at
+from haptic_glance.touch.places import UserMesh
+from haptic_glance.touch.press import as_shown
 
 CELLS, PITCH = (16, 16), 0.01  # as of `haptic-glance touch`
 
 
 @dataclass(frozen=True)
 class Level:
-    """A simplified mesh in the frame of `stages.meshes.normalise`, and the file that holds it in the file's own.
+    """A simplified mesh in the frame of `haptic_glance.mesh.repair`, and the file that holds it in the file's own.
 
     error: (n,) distance of each vertex of the mesh to it, in % of the diagonal.
     """
@@ -53,9 +50,9 @@ class Exhibit:
     """What was found on one mesh.
 
     touched: the mesh, repaired; note: what is known of its up axis. saliency (n,). points: rows of
-    stages.saliency.COLUMNS, most salient first. levels: finest first; missing: {level: why there is none}. touches:
-    rows of places.csv, in the order of the points; images (k, rows, cols) in 0..1, 0 pressed first. picture: (h, w, 3)
-    u1, coloured by saliency with the points numbered. units: of its lengths and positions.
+    haptic_glance.cli.saliency.COLUMNS, most salient first. levels: finest first; missing: {level: why there is none}.
+    touches: rows of places.csv, in the order of the points; images (k, rows, cols) in 0..1, 0 pressed first. picture:
+    (h, w, 3) u1, coloured by saliency with the points numbered. units: of its lengths and positions.
     """
 
     name: str

@@ -15,12 +15,12 @@ import numpy as np
 from PIL import Image
 from scipy.spatial import KDTree
 
-from stages.kit.packing import SHADES, pack, viewer_data
-from stages.kit.packing import Level as Drawn
-from stages.lod.look import viridis, vivid
-from stages.lod.remedies import number
-from stages.lod.shown import shown_mesh
-from stages.meshes import rotate_to_z_up
+from haptic_glance.base.packing import SHADES, pack, viewer_data
+from haptic_glance.base.packing import Level as Drawn
+from haptic_glance.lod.export import shown_mesh
+from haptic_glance.lod.pictures import viridis, vivid
+from haptic_glance.lod.task import number
+from haptic_glance.mesh import rotate_to_z_up
 
 from .exhibit import Exhibit
 
@@ -38,13 +38,13 @@ def build_page(
     """
     faces = int(np.clip(ALL // max(len(exhibits), 1), LEAST, MOST))
     colours = viridis(np.linspace(0, 1, SHADES))
-    report = resources.files("stages") / "report" / "page"  # not stages.report, which imports what the pipeline has
     own = resources.files(__package__ or "")
-    viewer = (report / "viewer.html").read_text("utf-8").replace('data-first="error"', 'data-first="glance"')
+    shared = own / "viewer"  # the report shows its meshes with the same files
+    viewer = (shared / "viewer.html").read_text("utf-8").replace('data-first="error"', 'data-first="glance"')
     words = {
         "title": escape(title),
-        "style": (report / "page.css").read_text("utf-8") + (own / "page.css").read_text("utf-8"),
-        "script": (report / "viewer.js").read_text("utf-8"),
+        "style": (shared / "page.css").read_text("utf-8") + (own / "page.css").read_text("utf-8"),
+        "script": (shared / "viewer.js").read_text("utf-8"),
         "failures": failures_html(failures),
         "contents": contents_html(exhibits),
         "viewer": viewer,

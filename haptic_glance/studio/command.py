@@ -20,8 +20,8 @@ import webbrowser
 from collections.abc import Sequence
 from pathlib import Path
 
-from stages.kit.extras import from_extra
-from stages.meshes.up import add_up
+from haptic_glance.base.extras import from_extra
+from haptic_glance.mesh.up import add_up
 
 from .specimen import files_at
 

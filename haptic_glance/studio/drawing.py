@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from stages.lod.look import viridis
+from haptic_glance.lod.pictures import viridis
 
 from .feeling import Felt
 from .scene import RED, Scene

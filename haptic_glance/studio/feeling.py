@@ -4,11 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stages.imprints import Layer, Skin, Surface, distances_at, sensor_axes
-from stages.imprints.force import gaps_at, press_forces
-from stages.imprints.press import normalise
-from stages.imprints.quasi_tangent import contour_imprints, quasi_tangent
-from stages.imprints.user_mesh import Places
+from haptic_glance.touch import Layer, Skin, Surface, distances_at, sensor_axes
+from haptic_glance.touch.force import gaps_at, press_forces
+from haptic_glance.touch.places import Places
+from haptic_glance.touch.press import normalise
+from haptic_glance.touch.quasi_tangent import contour_imprints, quasi_tangent
 
 RAYS, RIGID, CONTOURS, NEWTONS = "rays", "rays, rigid plate", "contours", "newtons"
 SENSORS = (RAYS, RIGID, CONTOURS, NEWTONS)

@@ -3,10 +3,10 @@
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from stages.kit import Mesh
-from stages.lod.export import write_any
-from stages.meshes.colours import bake_texture
-from stages.meshes.up import upright_for
+from haptic_glance.lod.export import write_any
+from haptic_glance.mesh.materials import bake_texture
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.up import upright_for
 
 
 def as_bytes(mesh: Mesh, suffix: str) -> bytes:

@@ -5,7 +5,7 @@ import struct
 
 import numpy as np
 
-from stages.kit import Mesh
+from haptic_glance.mesh.mesh import Mesh
 
 FLOAT, UNSIGNED, SHORT = 5126, 5125, 5123  # component types of glTF 2.0, section 3.6.2
 VERTICES, INDICES = 34962, 34963  # what a part of the buffer is for

@@ -8,7 +8,7 @@ from io import BytesIO
 import numpy as np
 from PIL import Image
 
-from stages.lod.look import viridis
+from haptic_glance.lod.pictures import viridis
 
 BARS = 8  # of the likeliest objects; the others are counted
 SURE, MAYBE = "#0b7a43", "#00558c"

@@ -7,14 +7,14 @@ from threading import RLock
 import numpy as np
 from scipy.spatial import KDTree
 
-from stages.kit import Mesh
-from stages.lod import InfeasibleTarget, metro, neighbourhoods, vertex_errors
-from stages.lod.kernels.jit import FOLDER
-from stages.lod.simplify import BACKEND
-from stages.lod.task import SimplificationTask, repaired
-from stages.meshes import rotate_to_z_up
-from stages.meshes.colours import bake_texture
-from stages.salient_points import saliency
+from haptic_glance.lod import InfeasibleTarget, metro, neighbourhoods, vertex_errors
+from haptic_glance.lod.kernels.jit import FOLDER
+from haptic_glance.lod.simplify import BACKEND
+from haptic_glance.lod.task import SimplificationTask, repaired
+from haptic_glance.look.points import saliency
+from haptic_glance.mesh import rotate_to_z_up
+from haptic_glance.mesh.materials import bake_texture
+from haptic_glance.mesh.mesh import Mesh
 
 from .files import as_bytes
 from .jobs import Report
@@ -77,7 +77,7 @@ class Levels:
 
     def _made(self, faces, kind, report):
         first = not any(FOLDER.rglob("*.nbc"))
-        report(0.1, "compiling, the first time on this machine: up to a minute" if first else "simplifying")
+        report(0.1, "compiling, the first time on this machine: about ten seconds" if first else "simplifying")
         task = self.tasks[kind]
         try:
             mesh = task.simplified(faces) if faces < len(task.mesh.faces) else task.mesh

@@ -3,9 +3,8 @@
 from datetime import UTC, datetime
 from pathlib import Path
 
-from stages.kit import Mesh
-from stages.weights.annotate import MarksChanged, check_on_mesh, read_marks, write_marks
-from stages.weights.annotate.marks import check_annotator, utc
+from haptic_glance.look.marks import MarksChanged, check_annotator, check_on_mesh, read_marks, utc, write_marks
+from haptic_glance.mesh.mesh import Mesh
 
 Mark = tuple[str, int]  # time (UTC), vertex
 

@@ -7,15 +7,15 @@ from pathlib import Path
 
 import numpy as np
 
-from haptic_glance.knowing import Exploration, Library, known_objects, learn, primitives, touched
-from stages.imprints.surface import as_surface
-from stages.kit import Mesh
-from stages.kit.extras import MissingExtra
-from stages.kit.rng import rng
+from haptic_glance.base.extras import MissingExtra
+from haptic_glance.base.rng import rng
+from haptic_glance.know import Exploration, Library, known_objects, learn, primitives, touched
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.touch.surface import as_surface
 
 from .specimen import Specimen, open_file
 
-HOUSEHOLD = Path("data") / "household" / "meshes"  # where `haptic-glance repro` puts them, below the current folder
+HOUSEHOLD = Path("data") / "household" / "meshes"  # where `make repro` puts them, below the current folder
 MOST = 60  # objects
 
 

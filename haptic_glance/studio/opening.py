@@ -4,8 +4,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from stages.kit.axes import AXES
-from stages.meshes.own import names_of
+from haptic_glance.mesh.axes import AXES
+from haptic_glance.mesh.files import names_of
 
 from .guard import MAX_UPLOAD
 from .jobs import Report

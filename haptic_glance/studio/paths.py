@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stages.imprints import Surface, contour, follow
-from stages.imprints.frame import mean_vertex_normals
-from stages.kit.mesh import unit
-from stages.kit.rays import RayScene, barycentric
+from haptic_glance.mesh.mesh import unit
+from haptic_glance.mesh.rays import RayScene, barycentric
+from haptic_glance.touch import Surface, contour, follow
+from haptic_glance.touch.surface import mean_vertex_normals
 
 from .specimen import Hit
 
@@ -33,7 +33,8 @@ class Path:
 
 
 def around(surface: Surface, first: Hit, second: Hit, frames: int, cells: tuple[int, int], pitch: float) -> Path:
-    """The contour in the plane through the object's middle and two places, as stages.imprints.follow walks it (T4.4.6).
+    """The contour in the plane through the object's middle and two places, as haptic_glance.touch.follow walks it
+    (T4.4.6).
 
     Raises ValueError where the three lie on a line.
     """

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import viser
 
-from stages.kit import Mesh
+from haptic_glance.mesh.mesh import Mesh
 
 from .glb import glb
 

@@ -6,19 +6,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stages.imprints import Surface, press_at, sensor_axes
-from stages.imprints.user_mesh import Places
-from stages.kit import Mesh, Viewpoint
-from stages.kit.extras import from_extra
-from stages.kit.rng import rng
+from haptic_glance.base.extras import from_extra
+from haptic_glance.base.rng import rng
+from haptic_glance.look.camera import Viewpoint
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.touch import Surface, press_at, sensor_axes
+from haptic_glance.touch.places import Places
 
 if TYPE_CHECKING:
-    from stages.transfer import HybridNet
+    from haptic_glance.deep import HybridNet
 
 NETWORKS = "data/*/transfer/hybrid/networks/*.npz"  # below the current folder, where the stage transfer puts them
 MISSING = (
     "There is no hybrid network below data/ yet. `python -m stages.compose experiment=transfer`, then "
-    "`haptic-glance repro`, trains one on classes of furniture in half an hour."
+    "`make repro`, trains one on classes of furniture in half an hour."
 )
 SIZE, CELLS, PITCH = 80, 128, 0.00125  # transfer.size, .cells and .pitch of conf/config.yaml
 LOWEST, HIGHEST = -10.0, 60.0  # degrees of elevation from which the network has seen objects
@@ -54,7 +55,7 @@ class Trained:
 def load_network(path: Path) -> Trained:
     """The network of a file. MissingExtra without torch; ValueError for a damaged file."""
     with from_extra():
-        from stages.transfer.hybrid_file import load
+        from haptic_glance.deep.hybrid import load
     return Trained(*load(path))
 
 
@@ -68,7 +69,7 @@ def viewpoint(position: np.ndarray, look_at: np.ndarray) -> Viewpoint:
 def sense(mesh: Mesh, surface: Surface, seen_from: Viewpoint, place: Places) -> tuple[np.ndarray, np.ndarray]:
     """(picture (SIZE, SIZE, 3), imprint (CELLS, CELLS)), u1, of a normalised mesh."""
     with from_extra():
-        from stages.transfer.pictures import take_pictures
+        from haptic_glance.deep.pictures import take_pictures
     axes = sensor_axes(place.normals[:1])
     imprint = press_at(surface, place.positions[:1], axes, (CELLS, CELLS), PITCH)[0]
     return take_pictures(mesh, [seen_from], SIZE)[0], np.rint(255 * imprint).astype(np.uint8)
@@ -77,10 +78,10 @@ def sense(mesh: Mesh, surface: Surface, seen_from: Viewpoint, place: Places) -> 
 def ask(trained: Trained, picture: np.ndarray, imprint: np.ndarray, dark: float, dead: float) -> Answer:
     """What the network takes a picture and an imprint for; dark, dead: shares of the light and of the cells taken."""
     with from_extra():
-        from stages.transfer.disturbed import disturb
-        from stages.transfer.hybrid import SENSES, join_senses
-        from stages.transfer.hybrid_damage import damage_pictures
-        from stages.transfer.hybrid_data import as_images
+        from haptic_glance.deep.hybrid import SENSES, join_senses
+        from haptic_glance.deep.pictures import as_images
+        from haptic_glance.disturb.imprint import disturb
+        from haptic_glance.disturb.picture import damage_pictures
     network, random = trained.network, rng(0, "studio")
     seen = damage_pictures(picture[None], "darkness", dark, random)
     felt = disturb(imprint[None], "dead_cells", dead, random) if dead < 1 else np.ones((1, *imprint.shape), np.float32)

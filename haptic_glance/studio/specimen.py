@@ -8,18 +8,17 @@ from threading import RLock
 
 import numpy as np
 
-from stages.kit import Mesh
-from stages.kit.files import read_mesh
-from stages.kit.rays import RayScene
-from stages.meshes import normalise, rotate_to_z_up
-from stages.meshes.colours import bake_texture
-from stages.meshes.load import MeshError, load_unnamed, parse
-from stages.meshes.normalise import RADIUS, centre_and_radius
-from stages.meshes.orient import orient
-from stages.meshes.own import mesh_files
-from stages.meshes.up import upright_by
-from stages.saliency import finely, points_of
-from stages.salient_points import METHODS, detect
+from haptic_glance.base.files import read_mesh
+from haptic_glance.cli.saliency import finely, points_of
+from haptic_glance.look.points import METHODS, detect
+from haptic_glance.mesh import normalise, rotate_to_z_up
+from haptic_glance.mesh.files import load_unnamed, mesh_files, parse
+from haptic_glance.mesh.headers import MeshError
+from haptic_glance.mesh.materials import bake_texture
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.rays import RayScene
+from haptic_glance.mesh.repair import RADIUS, centre_and_radius, orient
+from haptic_glance.mesh.up import upright_by
 
 STORED = ".npz"  # a mesh as the pipeline keeps it in data/SET/meshes
 RENDERING = ThreadPoolExecutor(1)  # what renders views: an OpenGL context belongs to one thread
@@ -29,8 +28,8 @@ RENDERING = ThreadPoolExecutor(1)  # what renders views: an OpenGL context belon
 class Look:
     """What a method found: saliency (n,) f8 in 0..1, and the points.
 
-    points: rows of stages.saliency.COLUMNS, most salient first; positions in the file's coordinates. drawn: the mesh
-    and saliency to be drawn, finer than Specimen.mesh where that has long edges.
+    points: rows of haptic_glance.cli.saliency.COLUMNS, most salient first; positions in the file's coordinates. drawn:
+    the mesh and saliency to be drawn, finer than Specimen.mesh where that has long edges.
     """
 
     method: str

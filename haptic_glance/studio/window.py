@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import viser
 
-from stages.kit.command import DEBUG
+from haptic_glance.base.errors import DEBUG
 
 from .guard import bound_uploads
 from .jobs import Job, Report

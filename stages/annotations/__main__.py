@@ -14,22 +14,19 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial import KDTree
 
-from stages.kit import Mesh
-from stages.kit.command import workspace_of_arguments
-from stages.kit.files import read_arrays, read_mesh
-from stages.kit.rng import rng
-from stages.kit.run import Rows, StageRun
-from stages.kit.workspace import Workspace
-from stages.meshes.schema import Params as MeshesParams
-from stages.salient_points.positions import height
-from stages.salient_points.random_points import random_vertices
-from stages.weights.agreement import GroundTruth, auc, nss
-from stages.weights.annotate import read_marks
-from stages.weights.annotate.marks import check_on_mesh
+from haptic_glance.base.files import read_arrays, read_mesh
+from haptic_glance.base.rng import rng
+from haptic_glance.look.agreement import GroundTruth, auc, nss
+from haptic_glance.look.marks import check_on_mesh, read_marks
+from haptic_glance.look.points.detectors import height, random_vertices
+from haptic_glance.mesh.mesh import Mesh
+from stages.engine.run import Rows, StageRun
+from stages.engine.settings import Workspace, workspace_of_arguments
+from stages.meshes import Params as MeshesParams
 from stages.weights.ground_truth import spread_on_surface
-from stages.weights.training_data import SPREAD
+from stages.weights.training import SPREAD
 
-from .schema import Params
+from . import Params
 
 
 def process(name: str, folder: Path, data: Path, marks: Path, gaze: bool, settings: Params, seed: int) -> Rows:

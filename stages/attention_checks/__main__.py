@@ -10,26 +10,24 @@ import functools
 
 import numpy as np
 
-from stages.kit.command import workspace_of_arguments
-from stages.kit.run import Rows, StageRun
-from stages.kit.workspace import Workspace
-from stages.weights.published import GLANCE
+from haptic_glance.look.weights.weights import GLANCE
+from stages.engine.run import Rows, StageRun
+from stages.engine.settings import Workspace, workspace_of_arguments
 
-from . import nested, viewpoints
-from .schema import COLUMNS, Params
+from . import COLUMNS, Params, checks
 
 
 def run(workspace: Workspace) -> None:
     """Runs the stage on the data set of a workspace."""
     views = list(workspace.settings(Params).views)
-    viewpoints.check_views(views)
+    checks.check_views(views)
     with StageRun(workspace, "attention_checks", COLUMNS, inputs=("meshes", "weights")) as stage:
         names = sorted(path.stem for path in (workspace.data / "weights/ground_truth").glob("*.npz"))
         if len(names) < 2:
             raise ValueError(f"{workspace.dataset} has {len(names)} objects with ground truth; two are needed")
-        work = functools.partial(viewpoints.process, data=workspace.data, views=views)
+        work = functools.partial(checks.process_views, data=workspace.data, views=views)
         stage.each(work, names, ["meshes/{}.npz", "weights/ground_truth/{}.npz"])
-        work = functools.partial(nested.process, data=workspace.data, names=names)
+        work = functools.partial(checks.process_nested, data=workspace.data, names=names)
         stage.each(work, [GLANCE], ["meshes", "weights/ground_truth"])
         stage.metrics(summary(stage.rows))
     print(f"attention_checks: {workspace.dataset}, {len(names)} objects, viewpoints {', '.join(views)}")

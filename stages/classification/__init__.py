@@ -1,27 +1,25 @@
-"""Recognition by touch: features of an imprint and five classifiers, by the thesis's protocol (T4.2).
+"""Recognises the objects of a data set by touch (T4.2)."""
 
-Public names: classifier, concatenate_touches, confusable, draw_combinations, evaluate, evaluate_features, features,
-random_holdout, region_holdout, similarity, touch_map, CLASSIFIERS, FEATURES.
-"""
+from dataclasses import dataclass
 
-from .classifiers import CLASSIFIERS, classifier
-from .features import FEATURES, features
-from .protocol import evaluate, evaluate_features, random_holdout, region_holdout
-from .similarity import confusable, similarity
-from .touches import concatenate_touches, draw_combinations, touch_map
+COLUMNS = {
+    "variant": "plain, or the name of a further experiment: see stages/classification/trials.py",
+    "set": "number of a random set of objects, of those that are drawn",
+    "scaling": "of samples before the classifier: a name of haptic_glance.know.classifiers.SCALINGS",
+    "classifier": "a name of haptic_glance.know.CLASSIFIERS",
+    "repetition": "number of the random split",
+    "imprints": "samples that were trained and tested on",
+}
 
-__all__ = [
-    "CLASSIFIERS",
-    "FEATURES",
-    "classifier",
-    "concatenate_touches",
-    "confusable",
-    "draw_combinations",
-    "evaluate",
-    "evaluate_features",
-    "features",
-    "random_holdout",
-    "region_holdout",
-    "similarity",
-    "touch_map",
-]
+
+@dataclass
+class Params:
+    """Section `classification` of params.yaml."""
+
+    sets: dict[str, list[str]]  # name of the set: its objects, each with imprints in data/SET/imprints
+    drawn: int
+    classifiers: list[str]  # names of haptic_glance.know.CLASSIFIERS
+    repetitions: int
+    closer: list[str]
+    touches: list[int]
+    combinations: int

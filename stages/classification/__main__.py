@@ -20,23 +20,19 @@ import numpy as np
 from sklearn import config_context
 from threadpoolctl import threadpool_limits
 
-from stages.imprints import read_imprints
-from stages.kit.command import workspace_of_arguments
-from stages.kit.files import object_files, write_arrays
-from stages.kit.run import Rows, StageRun
-from stages.kit.split import Split
-from stages.kit.stats import interval_metrics
-from stages.kit.workspace import Workspace
+from haptic_glance.base.files import object_files, write_arrays
+from haptic_glance.know.classifiers import TRAINING, check_name
+from haptic_glance.know.protocol import check_counts, evaluate_prepared, prepare
+from haptic_glance.know.split import Split
+from stages.engine.run import Rows, StageRun
+from stages.engine.settings import Workspace, workspace_of_arguments
+from stages.engine.statistics import interval_metrics
+from stages.imprints.imprints import read_imprints
 
-from .classifiers import check_name
-from .drawn import drawn_sets, set_of
-from .gather import feature_cost_rows, gather, similar_share_rows
-from .multi_touch import MultiTouchTrials
-from .protocol import check_counts, evaluate_prepared, prepare
-from .scaling import TRAINING
-from .schema import COLUMNS, Params
-from .trials import TouchSet
-from .variants import evaluate_variants
+from . import COLUMNS, Params
+from .multi_touch import MultiTouchTrials, evaluate_variants
+from .recorded import feature_cost_rows, gather, similar_share_rows
+from .trials import TouchSet, drawn_sets, set_of
 
 METRICS = {  # (metric, split): the name of their mean in reports/metrics
     ("accuracy", Split.RANDOM): "accuracy_holdout",

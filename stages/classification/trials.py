@@ -1,4 +1,6 @@
-"""The further experiments of T4.2.4 as trials of one split: fewer imprints, locations, selection, several touches.
+"""The trials of recognition by single touches, and their variants.
+
+The further experiments of T4.2.4 as trials of one split: fewer imprints, locations, selection, several touches.
 
 | variant | samples | thesis |
 |---|---|---|
@@ -21,20 +23,20 @@
 
 T4.2.4 removes 33.33, 40, 6.67, 26.67, 13.33 and 20 % of the six objects' imprints: fifteenths. A quarter of fifteen
 cannot give five different touches, so the thesis's combinations seem to be drawn before the split.
+
+Random sets of objects in the place of named ones, so that a conclusion is about sets and not about one of them.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from stages.kit.split import Split
-
-from .features import IMAGE
-from .prepared import VALIDITY
-from .protocol import random_holdout, region_holdout
-from .scaling import BEFOREHAND, MIN_MAX, SCALINGS, TRAINING
-from .similarity import as_many, confusable, similarity
+from haptic_glance.base.rng import rng
+from haptic_glance.know.classifiers import BEFOREHAND, MIN_MAX, SCALINGS, TRAINING
+from haptic_glance.know.features import IMAGE, as_many, confusable, similarity
+from haptic_glance.know.protocol import VALIDITY, random_holdout, region_holdout
+from haptic_glance.know.split import Split
 
 THESIS_COUNT = 15  # imprints per object in the thesis, see above
 NO_DISTANT_TOUCH = "an object has no touch farther than the array's width from its held-out region"
@@ -195,11 +197,39 @@ def _region_trial(variant, touched, samples, random_state, kind, side):
 def _rotated_positions(touched, parts, random_state):
     """Located samples whose test part is rotated about the vertical, each object by its own angle.
 
-    The array is upright (stages.imprints.sensor_axes), so such a rotation changes positions and not imprints, except
-    for touches within 18 degrees of the poles.
+    The array is upright (haptic_glance.touch.sensor_axes), so such a rotation changes positions and not imprints,
+    except for touches within 18 degrees of the poles.
     """
     angles = np.random.default_rng(random_state).uniform(0, 2 * np.pi, size=touched.truth.max() + 1)[touched.truth]
     angles[parts[0]] = 0
     x, y, z = touched.places.T
     turned = [np.cos(angles) * x - np.sin(angles) * y, np.sin(angles) * x + np.cos(angles) * y, z]
     return np.column_stack([touched.samples, *turned])
+
+
+def drawn_sets(
+    groups: Mapping[str, Sequence[str]], objects: Sequence[str], count: int, seed: int
+) -> dict[str, list[str]]:
+    """{"GROUP.NUMBER": objects}: `count` random sets, each with groups of as many objects as the named ones have.
+
+    The objects are dealt like cards and shuffled anew when too few are left, so that two sets share as few as they can.
+    The groups of one number are nested: four objects are the first four of the six. Raises ValueError where there are
+    fewer objects than the largest group takes.
+    """
+    size = max(map(len, groups.values()))
+    if size > len(objects):
+        raise ValueError(f"classification.drawn: a set takes {size} objects, there are {len(objects)}")
+    hands: list[list[str]] = []
+    while len(hands) < count:
+        deck = rng(seed, f"deck {len(hands)}").permutation(sorted(objects)).tolist()
+        hands += [deck[start : start + size] for start in range(0, len(deck) - size + 1, size)]
+    return {
+        f"{group}.{number:02}": hand[: len(named)]
+        for number, hand in enumerate(hands[:count], 1) for group, named in groups.items()
+    }  # fmt: skip
+
+
+def set_of(name: str) -> dict[str, str | int | None]:
+    """The columns `group` and `set` of a name of `drawn_sets`, or of a named set."""
+    group, _, number = name.partition(".")
+    return {"group": group, "set": int(number) if number else None}

@@ -12,15 +12,14 @@ import functools
 
 import numpy as np
 
-from stages.kit.command import workspace_of_arguments
-from stages.kit.run import Rows, StageRun
-from stages.kit.workspace import Workspace
-from stages.meshes.classes import read_classes
-from stages.networks.weights import imagenet_state
+from haptic_glance.deep.weights import imagenet_state
+from stages.engine.run import Rows, StageRun
+from stages.engine.settings import Workspace, workspace_of_arguments
+from stages.meshes.collect import read_classes
 
-from . import press, trial
-from .schema import COLUMNS, Params
-from .variants import VARIANTS
+from . import COLUMNS, Params, trial
+from . import trial as press
+from .trial import VARIANTS
 
 
 def run(workspace: Workspace) -> None:
@@ -36,7 +35,9 @@ def run(workspace: Workspace) -> None:
         members = read_classes(workspace.data / "meshes")
         each = dataclasses.replace(settings, variants=[])  # what an object or a variant depends on
         arrays = sorted({variant.cells for variant in chosen})
-        work = functools.partial(press.process, data=workspace.data, settings=each, arrays=arrays, seed=stage.seed)
+        work = functools.partial(
+            press.process_press, data=workspace.data, settings=each, arrays=arrays, seed=stage.seed
+        )
         objects = [name for names in members.values() for name in names]
         stage.each(work, objects, reads=("meshes/{}.npz", "salient_points/{}.npz"))
         train = functools.partial(trial.process, made=stage.folder, members=members, settings=each, seed=stage.seed)

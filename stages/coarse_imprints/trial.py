@@ -1,24 +1,81 @@
-"""Trains the head of a frozen MobileNetV2 on one variant of the imprints."""
+"""One trial with imprints that a coarse network sees.
 
+What the frozen network is given: variants that differ from the plain one in one thing.
+
+Trains the head of a frozen MobileNetV2 on one variant of the imprints.
+
+The touches of one object, by arrays of several resolutions that are equally wide.
+"""
+
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 import torch
 
-from stages.kit.holdout import Split as Parts
-from stages.kit.repeatable import repeatable
-from stages.kit.rng import rng
-from stages.kit.run import Rows
-from stages.kit.split import Split
-from stages.networks.images import normalise
-from stages.networks.modes import Task, features
-from stages.networks.network import build, recalibrate
-from stages.networks.training import accuracy, predict_probabilities, search_rate, train_model
-from stages.transfer.split import by_touches, stratified_split
+from haptic_glance.base.files import read_arrays, read_mesh, write_arrays
+from haptic_glance.base.rng import rng
+from haptic_glance.deep.images import normalise, to_images
+from haptic_glance.deep.modes import Task, features
+from haptic_glance.deep.network import build, recalibrate
+from haptic_glance.deep.repeatable import repeatable
+from haptic_glance.deep.training import accuracy, predict_probabilities, search_rate, train_model
+from haptic_glance.know.split import Split
+from haptic_glance.touch import Skin, press_many
+from stages.engine.run import Rows
+from stages.engine.statistics import Split as Parts
+from stages.salient_points.measure import read_points
+from stages.transfer.plan import by_touches, stratified_split
+from stages.transfer.touches import choose_vertices
 
-from .press import read_imprints
-from .schema import Params
-from .variants import VARIANTS, Variant
+from . import Params
+
+RATES = (1e-4, 3e-4, 1e-3, 3e-3, 1e-2)
+
+
+@dataclass(frozen=True)
+class Variant:
+    """What the frozen network is given. share: of the touches of each object that are trained on."""
+
+    cells: int = 16
+    weights: str = "imagenet"
+    grey: bool = False  # the imprint in all three channels, not in the red one alone
+    blocks: bool = False  # a cell becomes a block of equal pixels, not a smooth passage to the next
+    own_statistics: bool = False  # the normalisation layers have the statistics of the touches, not of photographs
+    rates: tuple[float, ...] = RATES
+    share: float = 1.0
+    skin: Skin = Skin()
+    size: int = 80
+
+    def images(self, imprints: np.ndarray) -> torch.Tensor:
+        """(k, 3, size, size) f4 in 0..1 of imprints (k, cells, cells)."""
+        pressed = self.skin(imprints)
+        if self.blocks:
+            pressed = pressed.repeat(self.size // self.cells, axis=1).repeat(self.size // self.cells, axis=2)
+        images = to_images(pressed, self.size)
+        return images[:, :1].expand(-1, 3, -1, -1) if self.grey else images
+
+
+PLAIN = Variant()
+FAULTY = Skin(blur=1.0, noise=0.1, dead=0.05)
+VARIANTS = {
+    "plain": PLAIN,
+    "fine_array": replace(PLAIN, cells=128),
+    "random_weights": replace(PLAIN, weights="random", own_statistics=True),
+    "three_channels": replace(PLAIN, grey=True),
+    "blocks": replace(PLAIN, blocks=True),
+    "settled": replace(PLAIN, own_statistics=True),
+    "size_224": replace(PLAIN, size=224),
+    "rate_of_table_5_3": replace(PLAIN, rates=(1e-5,)),
+    "rate_of_table_5_4": replace(PLAIN, rates=(1e-4,)),
+    "fine_array_rate_of_table_5_4": replace(PLAIN, cells=128, rates=(1e-4,)),
+    "fine_array_rate_of_table_5_3": replace(PLAIN, cells=128, rates=(1e-5,)),
+    "quarter_of_the_touches": replace(PLAIN, share=0.25),
+    "noise_0.05": replace(PLAIN, skin=Skin(noise=0.05)),
+    "noise_0.2": replace(PLAIN, skin=Skin(noise=0.2)),
+    "skin": replace(PLAIN, skin=FAULTY),
+    "skin_and_rate": replace(PLAIN, skin=FAULTY, rates=(1e-5,)),
+}
 
 
 def process(name: str, folder: Path, made: Path, members: dict[str, list[str]], settings: Params, seed: int) -> Rows:
@@ -67,3 +124,25 @@ def train_head(
         rate, _ = search_rate(task, labels, fit, split.validation, variant.rates, epochs=epochs, **training)
     model = train_model(task, labels, train, rate, settings.epochs, **training)
     return rate, accuracy(predict_probabilities(model, task.inputs, split.test), labels[split.test])
+
+
+def process_press(name: str, folder: Path, data: Path, settings: Params, arrays: list[int], seed: int) -> Rows:
+    """Presses each array at the same vertices and writes NAME.npz: per number of cells (touches, cells, cells)."""
+    mesh, points = read_mesh(data / "meshes" / f"{name}.npz"), read_points(data / "salient_points" / f"{name}.npz")
+    if settings.detector not in points:
+        raise ValueError(f"coarse_imprints.detector={settings.detector} is not one of {', '.join(points)}")
+    vertices = choose_vertices(mesh, points[settings.detector], settings.touches, rng(seed, f"touches {name}"))
+    pressed = {str(cells): press_many(mesh, vertices, (cells, cells), settings.width / cells) for cells in arrays}
+    write_arrays(folder / f"{name}.npz", **pressed)
+    return []
+
+
+def read_imprints(folder: Path, members: dict[str, list[str]], cells: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(imprints (k, cells, cells), labels (k,) i8, objects (k,) i8) of members {class: its objects}."""
+    images, labels, objects = [], [], []
+    for label, names in enumerate(members.values()):
+        for name in names:
+            images.append(read_arrays(folder / f"{name}.npz")[str(cells)])
+            objects += [len(images)] * len(images[-1])
+            labels += [label] * len(images[-1])
+    return np.concatenate(images), np.array(labels), np.array(objects)

@@ -1,8 +1,17 @@
-"""Conspicuity maps: nine channels of visual attention in a view and on the visible surface (T3.1.1, T3.2)."""
+"""Computes the conspicuity maps of a data set."""
 
-from .channels import CHANNELS, conspicuity
-from .facing import facing
-from .storage import read_view_maps
-from .view_maps import ViewMaps
+from dataclasses import dataclass
 
-__all__ = ["CHANNELS", "ViewMaps", "conspicuity", "facing", "read_view_maps"]
+COLUMNS = {"viewpoint": "name of the viewpoint of the map"}
+
+
+@dataclass
+class Params:
+    """Section `conspicuity` of params.yaml."""
+
+    channels: list[str]
+    size: list[int]
+    background: str
+    symmetry: str
+    formulas: str
+    compare_background: bool

@@ -10,17 +10,16 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from stages.kit.command import workspace_of_arguments
-from stages.kit.files import read_mesh, read_table, write_arrays
-from stages.kit.run import Rows, StageRun
-from stages.kit.workspace import Workspace
-from stages.views import read_view
+from haptic_glance.base.files import read_mesh, read_table, write_arrays
+from haptic_glance.look.channels.channels import check_channels, check_symmetry, mask_at_size
+from haptic_glance.look.channels.cropped_view import FILLED, check_background
+from haptic_glance.look.channels.printed import check_formulas
+from stages.engine.run import Rows, StageRun
+from stages.engine.settings import Workspace, workspace_of_arguments
+from stages.views.storage import read_view
 
-from .background import FILLED, check_background
-from .channels import check_channels, check_symmetry, mask_at_size
+from . import COLUMNS, Params
 from .measure import background_rows, hue_rows, measured_maps
-from .printed import check_formulas
-from .schema import COLUMNS, Params
 
 
 def process(name: str, folder: Path, data: Path, settings: Params) -> Rows:

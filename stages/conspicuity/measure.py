@@ -1,17 +1,30 @@
-"""The maps of a view with their cost, and the check that they do not respond to the silhouette."""
+"""The conspicuity maps of an object, and their files.
+
+The maps of a view with their cost, and the check that they do not respond to the silhouette.
+
+How much of a map lies along the silhouette: the check that the background does not affect the maps.
+
+Reads the file with the maps of one object.
+"""
 
 import math
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from pathlib import Path
 
+import cv2
 import numpy as np
 
-from stages.kit import Mesh, Stopwatch
-from stages.views import View
-
-from .channels import PERCEIVED, conspicuity, mask_at_size
-from .printed import OURS
-from .silhouette import silhouette_share
+from haptic_glance.base.files import read_arrays
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.base.weak_cache import weak_cache
+from haptic_glance.look.camera import Viewpoint
+from haptic_glance.look.channels.channels import PERCEIVED, conspicuity, mask_at_size
+from haptic_glance.look.channels.printed import OURS
+from haptic_glance.look.channels.view_maps import ViewMaps
+from haptic_glance.look.views import View
+from haptic_glance.mesh.mesh import Mesh
 
 
 def measured_maps(
@@ -86,3 +99,57 @@ def _valued(channel, view, metric, value, seconds=None):
         "value": None if math.isnan(value) else value,
         "seconds": seconds,
     }
+
+
+BAND = 12 / 900  # of the image's rows: 12 pixels in the thesis's 1200 x 900
+
+
+def silhouette_share(values: np.ndarray, mask: np.ndarray) -> float:
+    """The share of a map's sum in a band along the silhouette, over the band's share of the object's area.
+
+    1: in proportion to the area; well above 1: the map responds to the silhouette. values (h', w') f4, a map of
+    conspicuity(); mask (h, w) boolean of the view, of the same aspect ratio. NaN for a map of zeros, or a view so
+    small that no pixel lies in the band.
+    """
+    total = float(values.sum())
+    within, share = _band(mask, values.shape) if total > 0 and mask.any() else (values, 0)
+    if share == 0:
+        return float("nan")
+    return float((values * within).sum() / total) / share
+
+
+@weak_cache  # the channels of a view share its mask
+def _band(mask, shape):
+    """((h', w') the share of each pixel's object that lies in the band, the band's share of the object's area)."""
+    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
+    box = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+    padded = cv2.copyMakeBorder(mask[box].astype(np.uint8), 1, 1, 1, 1, cv2.BORDER_CONSTANT, value=0)
+    inward = cv2.distanceTransform(padded, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)[1:-1, 1:-1]
+    band = np.zeros(mask.shape, dtype=bool)
+    band[box] = (inward > 0) & (inward <= BAND * len(mask))
+    parts = (cv2.resize(each.astype(np.float32), shape[::-1], interpolation=cv2.INTER_AREA) for each in (band, mask))
+    along, inside = parts
+    within = np.divide(along, inside, out=np.zeros_like(along), where=inside > 0)
+    return within, float(band.sum() / mask.sum())
+
+
+def read_maps(path: str | Path) -> tuple[np.ndarray, np.ndarray, list[Viewpoint], list[str]]:
+    """(maps (v, channels, h, w) f4, mask (v, h, w) boolean, viewpoints, channels) of a file of data/SET/conspicuity."""
+    stored = read_arrays(path)
+    viewpoints = [parse_viewpoint(name) for name in stored["viewpoints"]]
+    return stored["maps"].astype("f4"), stored["mask"], viewpoints, [str(channel) for channel in stored["channels"]]
+
+
+def read_view_maps(path: str | Path, mesh: Mesh) -> ViewMaps:
+    """The ViewMaps of an object from its file of data/SET/conspicuity."""
+    maps, mask, viewpoints, channels = read_maps(path)
+    return ViewMaps(mesh, viewpoints, {channel: maps[:, k] for k, channel in enumerate(channels)}, mask)
+
+
+def parse_viewpoint(name: str) -> Viewpoint:
+    """The Viewpoint of a name, for example `az120_el-45`; ValueError for another name."""
+    number = r"(-?[\d.]+(?:e-?\d+)?)"
+    match = re.fullmatch(rf"az{number}_el{number}(?:_ro{number})?", str(name))
+    if match is None:
+        raise ValueError(f"{str(name)!r} is not the name of a viewpoint, such as az120_el-45")
+    return Viewpoint(*(float(angle) for angle in match.groups(default="0")))

@@ -14,19 +14,17 @@ from typing import Any
 
 import numpy as np
 
-from stages.imprints import Surface
-from stages.kit import Stopwatch
-from stages.kit.command import workspace_of_arguments
-from stages.kit.files import read_mesh
-from stages.kit.rng import rng
-from stages.kit.run import Rows, StageRun
-from stages.kit.stats import interval_metrics
-from stages.kit.workspace import Workspace
-from stages.salient_points import read_points
+from haptic_glance.base.files import read_mesh
+from haptic_glance.base.rng import rng
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.touch import Surface
+from stages.engine.run import Rows, StageRun
+from stages.engine.settings import Workspace, workspace_of_arguments
+from stages.engine.statistics import interval_metrics
+from stages.salient_points.measure import read_points
 
-from .files import write_sequences
-from .sample_contours import sample_contours
-from .schema import Params
+from . import Params
+from .contours import sample_contours, write_sequences
 
 BLIND = "random"  # the strategy that any two vertices serve
 

@@ -1,22 +1,25 @@
-"""Sequential touch: one place after another until the belief in one object is strong (T4.2.3.5).
+"""Touches objects until the belief is strong (T4.2.3.5)."""
 
-Public names: calibrate, explore, split_touches, stop, Calibration, Trial, LIKELIHOODS, SPLITS, STRATEGIES.
-"""
+from dataclasses import dataclass
 
-from .belief import Calibration, calibrate
-from .choose import STRATEGIES
-from .explore import explore, stop
-from .split_touches import SPLITS, split_touches
-from .trial import LIKELIHOODS, Trial
+COLUMNS = {
+    "likelihood": "what the belief is computed from: a name of haptic_glance.know.LIKELIHOODS",
+    "way": "how the next place is chosen: a name of haptic_glance.know.STRATEGIES",
+    "stop": "fixed: after `level` touches; confidence: at a belief of `level`",
+    "level": "touches or belief at which touching stops",
+    "repetition": "number of the random split",
+    "touches": "mean number of touches",
+    "belief": "mean belief in the likeliest object when touching stops",
+    "decided": "share of explorations that reached the confidence",
+}
 
-__all__ = [
-    "LIKELIHOODS",
-    "SPLITS",
-    "STRATEGIES",
-    "Calibration",
-    "Trial",
-    "calibrate",
-    "explore",
-    "split_touches",
-    "stop",
-]
+
+@dataclass
+class Params:
+    """Section `exploration` of params.yaml."""
+
+    sets: list[str]
+    methods: list[str]
+    confidences: list[float]
+    most: int
+    repetitions: int

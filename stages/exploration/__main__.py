@@ -18,15 +18,14 @@ from collections import defaultdict
 from collections.abc import Mapping
 from typing import Any
 
-from stages.classification.schema import Params as Classification
-from stages.kit.command import workspace_of_arguments
-from stages.kit.run import Rows, StageRun
-from stages.kit.split import Split
-from stages.kit.stats import interval_metrics
-from stages.kit.workspace import Workspace
+from haptic_glance.know.split import Split
+from stages.classification import Params as Classification
+from stages.engine.run import Rows, StageRun
+from stages.engine.settings import Workspace, workspace_of_arguments
+from stages.engine.statistics import interval_metrics
 
+from . import COLUMNS, Params
 from .one_sampling import process
-from .schema import COLUMNS, Params
 
 HEADLINE = {"split": Split.RANDOM, "likelihood": "imprint", "stop": "confidence", "level": 0.95}  # in the metrics
 

@@ -6,19 +6,17 @@ from pathlib import Path
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from stages.classification import classifier, features
-from stages.imprints import read_imprints
-from stages.kit import Stopwatch
-from stages.kit.files import write_arrays
-from stages.kit.rng import rng
-from stages.kit.run import Rows
-from stages.kit.split import Split
+from haptic_glance.base.files import write_arrays
+from haptic_glance.base.rng import rng
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.know import classifier, features
+from haptic_glance.know.explore import STRATEGIES, explore, stop
+from haptic_glance.know.split import Split
+from haptic_glance.know.trial import SPLITS, Trial, split_touches
+from stages.engine.run import Rows
+from stages.imprints.imprints import read_imprints
 
-from .choose import STRATEGIES
-from .explore import explore, stop
-from .schema import Params
-from .split_touches import SPLITS, split_touches
-from .trial import Trial
+from . import Params
 
 # With places, `regions` would measure the split alone: only the true object has no training touch near the place.
 EXPERIMENTS = {

@@ -11,13 +11,11 @@ import functools
 
 import numpy as np
 
-from stages.kit.command import workspace_of_arguments
-from stages.kit.run import Rows, StageRun
-from stages.kit.workspace import Workspace
+from stages.engine.run import Rows, StageRun
+from stages.engine.settings import Workspace, workspace_of_arguments
 
-from .one_object import process
-from .recognised import recognise
-from .schema import COLUMNS, Params
+from . import COLUMNS, Params
+from .need import process, recognise
 
 READS = ("meshes/{}.npz", "meshes/manifest.csv", "salient_points/{}.npz", "scene/levels/{}")
 

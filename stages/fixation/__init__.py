@@ -1,22 +1,31 @@
 """Attention of networks: Grad-CAM maps fused over tasks, projected to the surface, compared with human gaze (T3.3)."""
 
-from stages.kit.lazy import lazy_names
+from dataclasses import dataclass
 
-_MODULES = {  # public name -> its module
-    "viewpoint_sphere": "viewpoints",
-    "gaussian_curvature": "shape",
-    "curvature_shares": "shape",
-    "eccentricity": "shape",
-    "grad_cam": "cam",
-    "entropy": "fusion",
-    "fuse": "fusion",
-    "highest_level": "fusion",
-    "project_to_vertices": "vertices",
-    "project_by_boxes": "vertices",
-    "mean_over_views": "vertices",
-    "centre_distance": "centres",
-    "half_share": "concentration",
-    "subtractive_clusters": "subtractive",
+COLUMNS = {
+    "task": "what the networks name: a group of shapes, a level of meaning, a fusion of several (ewigc), or two tasks",
+    "view": "the number of one of the three evaluated views, or all",
+    "clusters": "of metric ssd: the number of clusters tried",
+    "chosen": "of metric ssd: whether the task has this number of classes",
+    "label": "of metric class: the name of the item's class in the task",
 }
-__all__ = list(_MODULES)  # pyright: ignore[reportUnsupportedDunderAll]
-__getattr__ = lazy_names(__name__, _MODULES)
+
+
+@dataclass
+class Params:
+    """From where the networks look at the objects, which networks, and how they learn."""
+
+    parallels: int
+    azimuths: int
+    size: int
+    projection: str
+    methods: list[str]
+    source: str
+    device: str
+    penalties: list[float]
+    folds: int
+    rate: float
+    rates: list[float]
+    epochs: int
+    batch: int
+    momentum: float

@@ -22,18 +22,18 @@ from pathlib import Path
 
 import pandas as pd
 
-from stages.kit.command import workspace_of_arguments
-from stages.kit.files import write_table
-from stages.kit.run import Rows, StageRun
-from stages.kit.workspace import Workspace
-from stages.meshes.schema import Params as Meshes
+from haptic_glance.base.files import write_table
+from stages.engine.run import Rows, StageRun
+from stages.engine.settings import Workspace, workspace_of_arguments
+from stages.meshes import Params as Meshes
 
-from . import attention, backbone, finetune, heads, pictures, trunk
-from .options import TRAINED, Method, available, check
-from .schema import COLUMNS, Params
-from .summary import summary, verdicts
-from .tasks import SEMANTICS, assign_classes
-from .viewpoints import viewpoint_sphere
+from . import COLUMNS, Params, attention, backbone, finetune
+from . import backbone as pictures
+from . import backbone as trunk
+from . import finetune as heads
+from .agreement import summary, verdicts
+from .backbone import TRAINED, Method, available, check
+from .tasks import SEMANTICS, assign_classes, viewpoint_sphere
 
 HIDDEN = (".pictures", ".maps", ".pooled", ".networks", ".trunk", ".rates", ".cams")  # what one step hands to the next
 PICTURES, ALL_PICTURES = "fixation/.pictures/{}.npz", "fixation/.pictures"

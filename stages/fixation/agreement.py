@@ -1,15 +1,26 @@
-"""The agreement of a saliency on the vertices with human fixations (T3.3.6)."""
+"""Agreement of maps with people, and its summaries and controls.
+
+The agreement of a saliency on the vertices with human fixations (T3.3.6).
+
+The numbers that the gate checks, and the comparison of the models with the controls.
+
+How concentrated a saliency is: the thesis's deep maps are one or two regions, its classical ones broad (T3.4).
+
+Control saliencies that any model must beat: the centre of the image, and random values.
+"""
 
 import itertools
 from collections.abc import Mapping, Sequence
+from typing import cast
 
 import numpy as np
+import pandas as pd
 
-from stages.kit import Mesh
-from stages.weights.agreement import GroundTruth, auc, cc, nss
+from haptic_glance.look.agreement import GroundTruth, auc, cc, nss
+from haptic_glance.mesh.mesh import Mesh
+from stages.engine.statistics import interval
 
-from .centres import centre_distance
-from .concentration import half_share
+from .places import centre_distance
 
 ALL_VIEWS = "all"  # all views together
 
@@ -24,7 +35,7 @@ def agreement_rows(
 ) -> list[dict]:
     """Rows of view, metric and value: one saliency compared with human fixations.
 
-    fixations: arrays of stages.weights.training_data; visible (3, n) boolean and by_view (3, n): the evaluated views
+    fixations: arrays of stages.weights.training; visible (3, n) boolean and by_view (3, n): the evaluated views
     and the saliency in each; whole (n,): the saliency over all views, used for nss and auc. pcc in a view weights each
     visible vertex by its area. pcc_masked is the thesis's number: over all vertices, with both maps scaled to 0..1 and
     the hidden vertices set to zero, so that visibility alone gives some correlation. distances: adds the distance
@@ -96,3 +107,82 @@ def task_correlations(values: np.ndarray, seen: np.ndarray, names: Sequence[str]
         value = float(own.mean()) if len(own) else None
         rows.append({"task": f"{names[i]}~{names[j]}", "view": ALL_VIEWS, "metric": "pcc_tasks", "value": value})
     return rows
+
+
+MODEL = "ewigc"
+COLUMNS = ["item", "method", "task", "view", "split", "metric", "value"]
+
+
+def summary(rows: Sequence[dict], chosen: Mapping[str, int], seed: int) -> dict[str, dict]:
+    """dict for the metric file: classes and mean accuracy of each task, mean agreement of the fused model and controls.
+
+    chosen: dict task -> number of classes. Agreement: the Pearson correlation in the three views, averaged per object,
+    with its interval over the objects.
+    """
+    frame = pd.DataFrame(rows).reindex(columns=COLUMNS)
+    found: dict[str, dict] = {"classes": {task: int(count) for task, count in chosen.items()}}
+    accuracies = frame.loc[(frame["metric"] == "accuracy") & frame["value"].notna()]
+    for key, part in accuracies.groupby(["method", "split"]):
+        method, split = cast(tuple[str, str], key)
+        found.setdefault("accuracy", {}).setdefault(method, {})[split] = round(float(np.mean(part["value"])), 6)
+    for name, values in agreement(frame).items():
+        mean, low, high = np.round(interval(values, seed=seed), 6).tolist()
+        ends = {"low": low, "high": high} if np.isfinite(low) else {}
+        found.setdefault("pcc", {})[name] = {"value": mean} | ends
+    return found
+
+
+def agreement(frame: pd.DataFrame) -> dict[str, pd.Series]:
+    """dict method -> Series object -> mean pcc over the views, of the fused models, rivals and controls."""
+    views = frame.loc[(frame["metric"] == "pcc") & (frame["view"] != ALL_VIEWS)]
+    own = views.loc[(views["task"] == MODEL) | views["method"].isin(["control", "rival"])]
+    found = {}
+    for key, part in own.groupby(["method", "task"], sort=True):
+        method, task = cast(tuple[str, str], key)
+        found[task if method in ("control", "rival") else method] = part.groupby("item")["value"].mean()
+    return found
+
+
+def verdicts(frame: pd.DataFrame, seed: int) -> list[str]:
+    """Sentences that compare each control with each model trained on photographs, over the objects."""
+    found = agreement(frame)
+    trained = [name for name in found if name.endswith(("-frozen", "-last_block", "-finetuned"))]
+    controls = [name for name in found if name.endswith("-random") or name in ("random", "centre_prior")]
+    sentences = []
+    for name in trained:
+        for control in controls:
+            if control.endswith("-random") and control.rpartition("-")[0] != name.rpartition("-")[0]:
+                continue
+            mean, low, high = interval(found[name] - found[control], seed=seed)
+            verdict = "loses" if low > 0 else "wins" if high < 0 else "does not differ"
+            sentences.append(f"{control} {verdict} against {name} (PCC {mean:+.3f}, {low:+.3f} to {high:+.3f})")
+    return sentences
+
+
+def half_share(values: np.ndarray, areas: np.ndarray) -> float:
+    """The least share of a surface that holds half of a saliency: 0.5 where it is even, near 0 for one small place.
+
+    values (n,) at the vertices, which weigh by their areas (n,) and count from the least on, since a saliency has no
+    zero of its own. NaN where the values are constant.
+    """
+    values, areas = np.asarray(values, dtype=np.float64), np.asarray(areas, dtype=np.float64)
+    above = values - values.min(initial=np.inf)
+    if not (above * areas).any():
+        return np.nan
+    order = np.argsort(-above, kind="stable")
+    held, covered = np.cumsum((above * areas)[order]), np.cumsum(areas[order])
+    return float(np.interp(0.5, held / held[-1], covered / covered[-1]))
+
+
+SPREAD = 0.25  # of the image's side: deviation of the Gaussian; half of the object lies within it
+
+
+def centre_prior(size: int) -> np.ndarray:
+    """(size, size) f8 in 0..1: a Gaussian at the centre of the image."""
+    across = np.exp(-(((np.arange(size) - (size - 1) / 2) / (SPREAD * size)) ** 2) / 2)
+    return across[:, None] * across
+
+
+def random_saliency(count: int, generator: np.random.Generator) -> np.ndarray:
+    """(count,) f8 in 0..1: an independent random value per vertex."""
+    return generator.random(count)

@@ -7,27 +7,23 @@ from pathlib import Path
 import numpy as np
 import torch
 
-from stages.conspicuity import facing
-from stages.kit import Mesh, Stopwatch, Viewpoint
-from stages.kit.files import read_arrays, read_mesh, write_arrays
-from stages.kit.rng import rng
-from stages.networks.grid import resize_cams
-from stages.salient_points import read_saliency
+from haptic_glance.base.files import read_arrays, read_mesh, write_arrays
+from haptic_glance.base.rng import rng
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.deep.cam import grad_cam
+from haptic_glance.deep.resize import resize_cams
+from haptic_glance.look.camera import Viewpoint
+from haptic_glance.look.channels import facing
+from haptic_glance.mesh.mesh import Mesh
+from stages.salient_points.measure import read_saliency
 
-from .agreement import ALL_VIEWS, agreement_rows, task_correlations
-from .backbone import read_maps
-from .cam import grad_cam
-from .controls import centre_prior, random_saliency
-from .finetune import read_cams
+from . import Params
+from .agreement import ALL_VIEWS, agreement_rows, centre_prior, random_saliency, task_correlations
+from .backbone import TRAINED, Method, read_maps, read_pictures
+from .finetune import read_cams, read_head
 from .fusion import entropy, fuse, highest_level
-from .heads import read_head
-from .options import TRAINED, Method
-from .pictures import read_pictures
-from .places import ITSELF, nearer
-from .schema import Params
-from .tasks import FUSED_TASKS, TASKS
-from .vertices import mean_over_views, project_by_boxes, project_to_vertices
-from .viewpoints import evaluated_views, viewpoint_sphere
+from .places import ITSELF, mean_over_views, nearer, project_by_boxes, project_to_vertices
+from .tasks import FUSED_TASKS, TASKS, evaluated_views, viewpoint_sphere
 
 MODELS = {
     "ewigc": fuse,  # T eq. 3.24

@@ -1,4 +1,9 @@
-"""The fusion of the maps of several tasks: EWIGC and EWIGC_L4 (T eq. 3.24, 3.25)."""
+"""Fusion of maps over tasks, and subtractive clustering.
+
+The fusion of the maps of several tasks: EWIGC and EWIGC_L4 (T eq. 3.24, 3.25).
+
+Subtractive clustering (Chiu 1994, T [243]).
+"""
 
 import numpy as np
 from skimage.filters import threshold_multiotsu
@@ -52,3 +57,47 @@ def _checked(pictures):
     if not ((pictures >= 0) & (pictures <= 1)).all():
         raise ValueError("pictures must hold values in 0..1, and no NaN: divide each by its maximum")
     return pictures
+
+
+SQUASH = 1.25  # radius within which a centre takes away potential, over the radius of influence; Matlab's subclust
+ACCEPT, REJECT = 0.5, 0.15  # of the first centre's potential; Chiu 1994
+BLOCK = 1000  # points whose distances to all others are computed at once
+
+
+def subtractive_clusters(points: np.ndarray, radius: float = 0.5) -> np.ndarray:
+    """(c,) i8: which of points (k, d) are centres of clusters, the densest first.
+
+    Chiu, Fuzzy model identification based on cluster estimation, Journal of Intelligent and Fuzzy Systems 2, 1994: the
+    points are scaled to the unit hypercube, and the potential of each is the sum of exp(-4 d^2 / radius^2) over all.
+    The point with the highest potential becomes a centre, and the potential of the points near it is reduced. This
+    repeats until the highest potential is below REJECT of the first. Between REJECT and ACCEPT a point becomes a centre
+    only if its distance to the other centres over the radius plus its share of the first potential is one or more.
+    radius 0.5 and a squash factor of 1.25 (Chiu: 1.5) are the defaults of Matlab's subclust, which the thesis used. Of
+    equal potentials the first point is taken. Raises ValueError for no points or values that are not finite.
+    """
+    points = np.asarray(points, dtype=np.float64)
+    if points.ndim != 2 or not len(points) or not np.isfinite(points).all():
+        raise ValueError(f"points must be finite and of shape (k, d), at least one, got {points.shape}")
+    if not radius > 0:
+        raise ValueError(f"radius must be above 0, got {radius}")
+    extent = np.ptp(points, axis=0)
+    scaled = (points - points.min(axis=0)) / np.where(extent > 0, extent, 1)
+    left = np.concatenate(
+        [_near(scaled[k : k + BLOCK], scaled, radius).sum(axis=1) for k in range(0, len(scaled), BLOCK)]
+    )
+    first, centres = left.max(), []
+    while True:
+        best = int(left.argmax())
+        share = left[best] / first
+        if share <= REJECT:
+            return np.array(centres, dtype=np.int64)
+        apart = np.linalg.norm(scaled[centres] - scaled[best], axis=1).min(initial=np.inf)
+        if share > ACCEPT or apart / radius + share >= 1:
+            centres.append(best)
+            left = left - left[best] * _near(scaled[best : best + 1], scaled, SQUASH * radius)[0]
+        left[best] = 0
+
+
+def _near(some, points, radius):
+    squared = ((some[:, None] - points[None]) ** 2).sum(axis=2)
+    return np.exp(-4 * squared / radius**2)

@@ -1,4 +1,11 @@
-"""The six tasks and the class of each object in each of them (T3.3.2.1, T3.3.2.2)."""
+"""The tasks of the networks, their split and viewpoints.
+
+The six tasks and the class of each object in each of them (T3.3.2.1, T3.3.2.2).
+
+The division of pictures and objects into training, validation and test sets (T3.3.2).
+
+The viewpoints around an object from which its pictures are rendered (T3.3.2).
+"""
 
 import sys
 from collections.abc import Mapping, Sequence
@@ -8,7 +15,8 @@ import numpy as np
 from sklearn.cluster import KMeans
 from threadpoolctl import threadpool_limits
 
-from stages.kit.files import read_table
+from haptic_glance.base.files import read_table
+from haptic_glance.look.camera import Viewpoint
 
 SHAPE_MEASURES = {  # task -> the measures by which its objects are clustered into classes
     "convexity": ["convexity"],
@@ -95,3 +103,56 @@ def assign_classes(
         print(f"fixation: task {task} is left out, it has fewer than two classes", file=sys.stderr)
         del found[task]
     return found, curves
+
+
+TRAIN, VALIDATION = 0.6, 0.2  # shares of the views, the rest is for testing; T3.3.2
+
+
+def random_views(count: int, generator: np.random.Generator) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(train, validation, test): sorted ids of `count` pictures, 60, 20 and 20 %, whatever their object (T3.3.2).
+
+    Views of one object, even neighbouring ones, are in all three sets. So the accuracy is that of known objects from
+    new directions, not of new objects.
+    """
+    order, first, second = generator.permutation(count), round(TRAIN * count), round((TRAIN + VALIDATION) * count)
+    return np.sort(order[:first]), np.sort(order[first:second]), np.sort(order[second:])
+
+
+def object_folds(labels: np.ndarray, folds: int, generator: np.random.Generator) -> np.ndarray:
+    """(k,) i8: the fold 0..folds-1 in which each object is tested, -1 for one whose class has no other object.
+
+    labels (k,): the objects' classes. Each class is spread over the folds, so that the training set of each tested
+    object has another object of its class.
+    """
+    labels = np.asarray(labels)
+    fold, start = np.full(len(labels), -1), 0
+    for label in np.unique(labels):
+        ids = generator.permutation(np.flatnonzero(labels == label))
+        if len(ids) > 1:
+            fold[ids] = (start + np.arange(len(ids))) % folds
+            start += len(ids)
+    return fold
+
+
+def viewpoint_sphere(parallels: int, azimuths: int) -> tuple[Viewpoint, ...]:
+    """Viewpoints on parallel circles and at both poles, (parallels x azimuths + 2) of them; the first view first.
+
+    T3.3.2: nine circles, a picture every 15 degrees, and the poles: viewpoint_sphere(9, 24) has 218. The thesis does
+    not say where the circles are; here they are evenly spaced, by 18 degrees for nine. Raises ValueError for numbers
+    without an equator, or without three views on it a third of a turn apart (see evaluated_views).
+    """
+    if parallels < 1 or parallels % 2 == 0:
+        raise ValueError(f"fixation.parallels must be an odd number, one of them is the equator, got {parallels}")
+    if azimuths < 3 or azimuths % 3:
+        raise ValueError(f"fixation.azimuths must be a multiple of three, got {azimuths}")
+    step = 180 / (parallels + 1)
+    around = [Viewpoint(360 / azimuths * k, step * (row + 1) - 90) for row in range(parallels) for k in range(azimuths)]
+    return (*around, Viewpoint(0, 90), Viewpoint(0, -90))
+
+
+def evaluated_views(parallels: int, azimuths: int) -> list[int]:
+    """The indices in viewpoint_sphere of three views on the equator, a third of a turn apart.
+
+    The thesis evaluates at the three viewpoints of Lavoue's data, whose directions are not published with it.
+    """
+    return [parallels // 2 * azimuths + k * azimuths // 3 for k in range(3)]

@@ -11,9 +11,9 @@ Reads data/SET/meshes of household and of a set with classes; writes reports/mea
 Keeps its study in build/front and goes on where it stopped. `dvc repro` does not run it.
 
 examples:
-  haptic-glance front
-  haptic-glance front --minutes 10
-  haptic-glance front --trials 300 --classes princeton_eight
+  python -m stages.front
+  python -m stages.front --minutes 10
+  python -m stages.front --trials 300 --classes princeton_eight
 """
 
 import argparse
@@ -22,10 +22,10 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from stages.kit.code import stage_digest
-from stages.kit.command import errors_in_one_line
-from stages.kit.extras import from_extra
-from stages.kit.files import sha256
+from haptic_glance.base.errors import errors_in_one_line
+from haptic_glance.base.extras import from_extra
+from haptic_glance.base.files import sha256
+from stages.engine.code import stage_digest
 
 SHAPES = "household"
 TRIALS = 96  # choices that are proposed: four generations
@@ -35,7 +35,7 @@ MINUTES = 60.0
 def run(argv: Sequence[str], root: Path = Path(".")) -> int:
     """Runs or continues the search of a repository root; 1 where the minutes were over before its end."""
     parser = argparse.ArgumentParser(
-        prog="haptic-glance front", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+        prog="python -m stages.front", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--trials", type=int, default=TRIALS, help="choices to propose (default: %(default)s)")
     parser.add_argument("--minutes", type=float, default=MINUTES, help="stop after these; a later call goes on (60)")
@@ -43,8 +43,8 @@ def run(argv: Sequence[str], root: Path = Path(".")) -> int:
     parser.add_argument("--classes", default="furniture", help="data set of the classes (default: %(default)s)")
     given = parser.parse_args(argv)
     with from_extra():
-        from . import rows
-        from .objects import halves, read_objects
+        from . import known
+        from .known import halves, read_objects
         from .search import OutOfTime, Search
         from .senses import Senses
     shapes, classes, files = read_objects(root / "data", SHAPES, given.classes)
@@ -58,7 +58,7 @@ def run(argv: Sequence[str], root: Path = Path(".")) -> int:
     except OutOfTime:
         print(f"front: {given.minutes:g} minutes are over; run it again to go on", file=sys.stderr)
         return 1
-    paths = rows.write(root / "reports/measurements", (SHAPES, given.classes), found, given.seed)
+    paths = known.write(root / "reports/measurements", (SHAPES, given.classes), found, given.seed)
     print(f"front: {len(found)} rows in {' and '.join(map(str, paths))}; `python -m stages.report` shows them")
     return 0
 

@@ -1,22 +1,109 @@
-"""How well a choice knows objects by touch: which of six shapes by an unseen region, and unseen objects' classes."""
+"""The objects of the front, known values, rows.
 
-from collections.abc import Iterator
+Which objects the search may see, and which it may not: those that confirm what it found.
+
+How well a choice knows objects by touch: which of six shapes by an unseen region, and unseen objects' classes.
+
+The rows of the front: what each holds, and where they are kept for the report.
+"""
+
+import zlib
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from sklearn import config_context
 from threadpoolctl import threadpool_limits
 
-from stages.classification import classifier, draw_combinations, region_holdout
-from stages.kit import Stopwatch
-from stages.kit.rng import rng
-from stages.kit.run import Rows
-from stages.kit.split import Split
+from haptic_glance.base.files import object_files
+from haptic_glance.base.rng import rng
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.know import classifier, draw_combinations, region_holdout
+from haptic_glance.know.split import Split
+from stages.engine.rows import SUFFIX, write_rows
+from stages.engine.run import Rows
+from stages.meshes.collect import read_classes
 from stages.sensor_size.protocol import majority
 
-from .objects import Objects
 from .senses import Felt, Senses
 from .space import WIDTH, Choice, settings_of
+
+SIZES = ("medium", "small")  # of five basic shapes, which are equal to the large one once they are scaled
+SIX = 6  # objects of one question: who of these six is it (T4.2.4)
+
+
+@dataclass(frozen=True)
+class Objects:
+    """Shapes to tell apart, and classes {class: objects} whose unseen objects are to be named."""
+
+    shapes: tuple[str, ...]
+    classes: Mapping[str, tuple[str, ...]]
+
+    def sixes(self, shapes: int, count: int, seed: int) -> list[list[str]]:
+        """`count` sets of six of the first `shapes`, drawn so that each of these is in as many of them, or in one more.
+
+        ValueError for fewer than six.
+        """
+        few, taken, sets = self.shapes[:shapes], Counter(), []
+        if len(few) < SIX:
+            raise ValueError(f"{len(few)} shapes to tell apart are too few: {SIX} are needed")
+        for number in range(count):
+            order = rng(seed, f"six {number}").permutation(few).tolist()
+            sets.append(sorted(sorted(order, key=lambda name: taken[name])[:SIX]))  # of equals in the order drawn
+            taken.update(sets[-1])
+        return sets
+
+
+def halves(shapes: Iterable[str], classes: Mapping[str, Sequence[str]], seed: int) -> tuple[Objects, Objects]:
+    """(objects of the search, objects of the confirmation), which share neither a shape nor a class.
+
+    A shape or class is of the search by its place in the order of a checksum of the seed and its name.
+    """
+    first, second = (
+        Objects(tuple(part), {name: tuple(classes[name]) for name in sorted(groups)})
+        for part, groups in zip(_halved(shapes, seed), _halved(classes, seed), strict=True)
+    )
+    return first, second
+
+
+def _halved(names, seed):
+    order = sorted(names, key=lambda name: (zlib.crc32(f"{seed} {name}".encode()), name))
+    return order[: len(order) // 2], order[len(order) // 2 :]
+
+
+def shapes_of(names: Iterable[str]) -> list[str]:
+    """The names without those that are another size of a shape among them."""
+    every = set(names)
+    return sorted(
+        name
+        for name in every
+        if not any(name.endswith(size) and f"{name.removesuffix(size)}large" in every for size in SIZES)
+    )
+
+
+def read_objects(data: Path, shapes: str, classes: str) -> tuple[list[str], dict[str, list[str]], dict[str, Path]]:
+    """(shapes of one data set, {class: objects} of another, {object: its mesh} of both), from data/SET/meshes.
+
+    ValueError where meshes are not there, where an object is of both sets (it could be searched on and confirm), and
+    for a class of one object.
+    """
+    files: dict[str, Path] = {}
+    for dataset in (shapes, classes):
+        folder = data / dataset / "meshes"
+        names = object_files(folder)
+        if not names:
+            remedy = f"`python -m stages.compose 'sets=[{shapes},{classes}]'`, then `dvc repro meshes@{dataset}`"
+            raise ValueError(f"{folder} holds no meshes: {remedy}")
+        if both := sorted(files.keys() & set(names)):
+            raise ValueError(f"{', '.join(both)}: objects of both {shapes} and {classes}; name other --classes")
+        files |= {name: folder / f"{name}.npz" for name in names}
+    groups = read_classes(data / classes / "meshes")
+    if few := [name for name, members in groups.items() if len(members) < 2]:
+        raise ValueError(f"{classes}: of class {', '.join(few)} no object can be held out: two are needed")
+    return shapes_of(object_files(data / shapes / "meshes")), groups, files
+
 
 ATTEMPTS = 5  # draws of a region until touches apart from it are left to learn from
 PARTS = ("simplifying", "looking", "pressing", "asking")  # of the seconds to know one object
@@ -126,3 +213,42 @@ def _ask(choice, learned, truth, asked, owners, names, answers, random) -> Answe
         said = majority(model.predict(asked)[together].ravel(), choice.touches)
     right = {name: float((said[owners == k] == k).mean()) for k, name in enumerate(names)}
     return Answers(right, learning.seconds, choice.touches * asking.seconds / len(asked))
+
+
+COLUMNS = {
+    "rung": "a name of stages.front.search.RUNGS, `confirmation` or `one_choice`",
+    "number": "of the choice, in the order in which it was first asked about",
+    "role": "of a choice that is confirmed: smallest (within two points of the best), or default (the project's own)",
+    "viewpoints": "set of viewpoints; empty where the method looks at no picture",
+    "image_rows": "rows of an image",
+    "points": "places that are looked for and learned, of each object",
+    "cells": "sensels a side of the array, which is as wide whatever their number",
+    "level": "faces that the model of an object was to have: a number, or 100% for all",
+    "faces": "faces that it has",
+    "touches": "touches of one answer",
+    "classifier": "a name of haptic_glance.know.CLASSIFIERS",
+    "simplifying": "seconds, the first part of the column `seconds`",
+    "looking": "seconds: pictures, maps, saliency and the choice of the places",
+    "pressing": "seconds: the array on the object, once for each touch, and the features",
+    "asking": "seconds of the classifier's answer",
+    "training": "seconds of learning the object, not part of `seconds`",
+}
+STAGE = "front"
+
+
+def write(measurements: Path, sets: tuple[str, str], rows: Rows, seed: int) -> list[Path]:
+    """Writes the rows of shapes and of classes below the names of their data sets, and returns the files.
+
+    Those of an earlier search go, whatever its sets: rows of two searches do not belong together.
+    """
+    paths = []
+    for older in measurements.glob(f"*/{STAGE}{SUFFIX}"):
+        older.unlink()
+    for dataset, split in zip(sets, (Split.REGIONS, Split.OBJECTS), strict=True):
+        paths.append(measurements / dataset / f"{STAGE}{SUFFIX}")
+        write_rows(paths[-1], _of(rows, split), COLUMNS, dataset, seed)
+    return paths
+
+
+def _of(rows: Rows, split: Split) -> Iterable[dict]:
+    return (row for row in rows if row["split"] == split)

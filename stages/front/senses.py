@@ -1,25 +1,38 @@
-"""Looks at an object and presses the array on it, with the seconds of each part; what was felt once is kept.
+"""What the front measures: looking and touching.
+
+Looks at an object and presses the array on it, with the seconds of each part; what was felt once is kept.
 
 Where an object is looked at and how it feels is learned from a mesh of as many faces as were chosen. The touches that
 ask are pressed on the object itself, with all its faces: a coarse model must know the real thing.
+
+What all methods that need pictures find on a mesh, with the seconds that each would take by itself.
+
+The array pressed on a mesh, and at the same places of the whole object, with its seconds.
 """
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 
 import cv2
 import numpy as np
+from scipy.spatial import KDTree
 
-from stages.kit import Stopwatch
-from stages.kit.files import read_arrays, read_json, read_mesh, write_arrays, write_json
-from stages.lod import InfeasibleTarget, simplify
-from stages.lod.targets import face_count
-from stages.salient_points.methods import METHODS, method_named
-from stages.salient_points.options import Options
+from haptic_glance.base.files import read_arrays, read_json, read_mesh, write_arrays, write_json
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.know import features
+from haptic_glance.lod import InfeasibleTarget, simplify
+from haptic_glance.lod.export import face_count
+from haptic_glance.look.camera import Viewpoint
+from haptic_glance.look.channels import ViewMaps, conspicuity
+from haptic_glance.look.channels.channels import mask_at_size
+from haptic_glance.look.points.methods import METHODS, method_named
+from haptic_glance.look.points.options import Options
+from haptic_glance.look.views import TWELVE, render, viewpoint_set
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.touch import Surface, press_many, touchable
 
-from .looking import MOST, looks
-from .pressing import press_both
 from .space import SPACE, WHOLE, Choice, settings_of
 
 SECONDS: tuple[str, ...] = ("simplifying", "looking", "surfaces", "pressing")  # of a Felt
@@ -127,3 +140,71 @@ def _mesh(path):
 
 def _folder(level):
     return level.replace("%", "pct")
+
+
+MOST = max(SPACE["points"])  # places that are looked for; fewer are the first of these
+LOOKING = [name for name in SPACE["method"] if METHODS[name].channels]  # methods that need pictures
+CHANNELS = tuple(dict.fromkeys(channel for name in LOOKING for channel in METHODS[name].channels))
+
+
+def looks(mesh: Mesh, choice: Choice, options: Options) -> Iterator[tuple[str, np.ndarray]]:
+    """(METHOD-VIEWPOINTS points, (k,)) and (... seconds, ()) of all methods that look, at one image size.
+
+    Pictures, maps and lines of sight are made once, and each method pays for those that it needs by itself.
+    """
+    settings = settings_of(choice)
+    pictures, cost = {}, {}
+    for viewpoint in TWELVE:
+        pictures[viewpoint], cost[viewpoint] = _picture(mesh, viewpoint, settings)
+    for name in SPACE["viewpoints"]:
+        viewpoints = viewpoint_set(name)
+        maps = {channel: np.stack([pictures[one][channel] for one in viewpoints]) for channel in CHANNELS}
+        mask = np.stack([pictures[one]["mask"] for one in viewpoints])
+        with Stopwatch() as lines:
+            sight = ViewMaps(replace(mesh), viewpoints, maps, mask)
+            sight.vertex_values(sight.maps[CHANNELS[0]])  # factors the equations of the smoothing, which all need
+        for method in LOOKING:
+            with Stopwatch() as finding:
+                points = METHODS[method].find(sight.mesh, sight, options, MOST).points
+            parts = ("picture", *METHODS[method].channels)
+            seconds = sum(cost[one][part] for one in viewpoints for part in parts)
+            yield f"{method}-{name} points", points
+            yield f"{method}-{name} seconds", np.array(seconds + lines.seconds + finding.seconds)
+
+
+def _picture(mesh: Mesh, viewpoint: Viewpoint, settings) -> tuple[dict[str, np.ndarray], dict[str, float]]:
+    """({channel: its map, "mask"}, {"picture", channel: seconds}) of one view."""
+    size = tuple(settings.conspicuity.size)
+    with Stopwatch() as watch:
+        view = render(mesh, viewpoint, settings.views.size, settings.views.renderer)
+        maps = {"mask": mask_at_size(view.mask, size)}
+    seconds = {"picture": watch.seconds}
+    for channel in CHANNELS:
+        with Stopwatch() as watch:
+            maps |= conspicuity(mesh, view, [channel], size)
+        seconds[channel] = watch.seconds
+    return maps, seconds
+
+
+def press_both(
+    mesh: Mesh, whole: Mesh, points: np.ndarray, choice: Choice, before: Sequence[float]
+) -> dict[str, np.ndarray]:
+    """Arrays of the touches at vertices (k,) of a mesh, and at the nearest vertices of the whole one.
+
+    before: the seconds that it took to come so far, which those of pressing follow.
+    """
+    sensor = settings_of(choice).imprints
+    cells = sensor.cells[0], sensor.cells[1]
+    with Stopwatch() as once:
+        surface = Surface(replace(whole))
+        near = whole.used[KDTree(whole.vertices[whole.used]).query(mesh.vertices[points])[1]]
+        can = touchable(surface.mesh, near)
+    rank = np.flatnonzero(can & touchable(mesh, points))
+    with Stopwatch() as each:
+        asked = features(press_many(surface, near[rank], cells, sensor.pitch, contact=sensor.contact))
+    learned = asked
+    if mesh is not whole:
+        learned = features(press_many(Surface(mesh), points[rank], cells, sensor.pitch, contact=sensor.contact))
+    seconds = np.array([*before, once.seconds, each.seconds / max(len(rank), 1)])
+    return {"learned": learned, "asked": asked, "places": mesh.vertices[points[rank]], "rank": rank,
+            "faces": np.array(len(mesh.faces)), "seconds": seconds}  # fmt: skip

@@ -5,15 +5,15 @@ from dataclasses import asdict, dataclass, fields, replace
 from functools import lru_cache
 from typing import Any
 
-from stages.classification.schema import Params as Classification
+from haptic_glance.look.points.methods import method_named
+from stages.classification import Params as Classification
 from stages.compose import compose
-from stages.conspicuity.schema import Params as Conspicuity
-from stages.imprints.schema import Params as Imprints
-from stages.kit.params import check_section
-from stages.lod.schema import Params as Lod
-from stages.salient_points.methods import method_named
-from stages.salient_points.schema import Params as SalientPoints
-from stages.views.schema import Params as Views
+from stages.conspicuity import Params as Conspicuity
+from stages.engine.settings import check_section
+from stages.imprints import Params as Imprints
+from stages.lod import Params as Lod
+from stages.salient_points import Params as SalientPoints
+from stages.views import Params as Views
 
 WIDTH = 0.16  # units, of every array: that of 16 cells at 0.01 (T4.3.1), so that cells mean resolution alone
 WHOLE = "100%"  # the mesh as it is

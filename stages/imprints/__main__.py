@@ -13,20 +13,18 @@ from pathlib import Path
 
 import numpy as np
 
-from stages.kit import Stopwatch
-from stages.kit.command import workspace_of_arguments
-from stages.kit.files import read_mesh
-from stages.kit.run import Rows, StageRun
-from stages.kit.workspace import Workspace
-from stages.salient_points import read_points
+from haptic_glance.base.files import read_mesh
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.touch.distances import check_array, check_contact
+from haptic_glance.touch.quasi_tangent import SENSORS, Touched, misfit, touch
+from haptic_glance.touch.surface import Surface
+from haptic_glance.touch.warm_up import warm_up
+from stages.engine.run import Rows, StageRun
+from stages.engine.settings import Workspace, workspace_of_arguments
+from stages.salient_points.measure import read_points
 
-from .contact import check_contact
-from .distances import check_array
-from .files import Imprints, write_imprints
-from .schema import Params
-from .sensor import SENSORS, Touched, misfit, touch
-from .surface import Surface
-from .warm_up import warm_up
+from . import Params
+from .imprints import Imprints, write_imprints
 
 
 def process(name: str, folder: Path, data: Path, settings: Params) -> Rows:

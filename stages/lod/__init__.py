@@ -1,18 +1,29 @@
-"""LOD: simplification that spares the salient regions, and its errors (T3.1.3, T3.1.4, T3.2.8)."""
+"""Simplifies every object of a data set to several sizes and measures the errors."""
 
-from .attributes import carry
-from .colour_error import colour_error
-from .export import to_trimesh, write_any
-from .feasibility import InfeasibleTarget, SimplifyError, frozen_faces, smallest_feasible
-from .metro import metro, surface_errors, vertex_errors
-from .neighbourhood import neighbourhoods
-from .perceptual import perceptual, picture_errors, take_pictures
-from .salient_error import salient_error
-from .shrink import shrunk_rings
-from .simplify import BACKENDS, quadric_weights, simplify
+from dataclasses import dataclass
 
-__all__ = [
-    "BACKENDS", "InfeasibleTarget", "SimplifyError", "carry", "colour_error", "frozen_faces", "metro", "neighbourhoods",
-    "perceptual", "picture_errors", "quadric_weights", "salient_error", "shrunk_rings", "simplify", "smallest_feasible",
-    "surface_errors", "take_pictures", "to_trimesh", "vertex_errors", "write_any",
-]  # fmt: skip
+COLUMNS = {
+    "target": "the face count asked for, as in the settings",
+    "asked": "the same as a number of faces",
+    "faces": "the faces of the simplified mesh; empty where there is none",
+    "points": "salient points to keep",
+    "kept": "those that were kept",
+    "rings": "mean rings of faces frozen around a kept point",
+    "smallest_feasible": "the fewest faces with which all points can be kept",
+    "infeasible": "whether the target is too low for what is kept",
+    "shrunk": "whether neighbourhoods are smaller than asked for",
+}
+
+
+@dataclass
+class Params:
+    """Section `lod` of params.yaml."""
+
+    methods: list[str]  # qem, qslim, or a method of salient_points, also with -adaptive, -area or -soft behind it
+    targets: list[str]
+    rings: int
+    backend: str
+    samples: int
+    viewpoints: str
+    size: list[int]
+    shrink: bool

@@ -12,15 +12,14 @@ measured once. Settings: section `lod` of params.yaml.
 `haptic-glance simplify` simplifies a mesh of your own.
 """
 
-from stages.kit.command import workspace_of_arguments
-from stages.kit.workspace import Workspace
-from stages.meshes.schema import Params as MeshesParams
+from haptic_glance.lod.export import face_count
+from haptic_glance.lod.simplify import check_backend
+from haptic_glance.lod.task import variant
+from stages.engine.settings import Workspace, workspace_of_arguments
+from stages.meshes import Params as MeshesParams
 
+from . import Params
 from .data_set import simplify_all
-from .schema import Params
-from .simplify import check_backend
-from .targets import face_count
-from .variant import variant
 
 
 def run(workspace: Workspace) -> None:

@@ -1,23 +1,60 @@
-"""One cell of the comparison: an object, a method and a target, simplified and measured."""
+"""One level of one object: its inputs, its mesh and its errors.
 
-from dataclasses import dataclass, replace
+What the comparison needs of one object.
+
+One cell of the comparison: an object, a method and a target, simplified and measured.
+
+All errors of one simplified mesh, each with its cost.
+
+A first call before seconds are measured, since it loads compiled code.
+"""
+
+import functools
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from hashlib import sha256
 from pathlib import Path
 
 import numpy as np
+import trimesh
 
-from stages.kit import Mesh, Stopwatch
-from stages.kit.files import write_mesh
+from haptic_glance.base.files import write_mesh
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.lod.errors import metro, surface_errors
+from haptic_glance.lod.export import face_count, file_name
+from haptic_glance.lod.feasibility import InfeasibleTarget, frozen_faces, smallest_feasible
+from haptic_glance.lod.neighbourhood import neighbourhoods, shrunk_rings
+from haptic_glance.lod.perceptual import Analysis, analyse, picture_errors, take_pictures
+from haptic_glance.lod.simplify import BACKEND, simplify
+from haptic_glance.lod.task import SOFT, Variant, variant
+from haptic_glance.look.views import viewpoint_set
+from haptic_glance.look.weights.weights import GLANCE
+from haptic_glance.mesh.mesh import Mesh
 
-from .errors import measure_errors
-from .feasibility import InfeasibleTarget, frozen_faces, smallest_feasible
-from .inputs import ObjectInputs
-from .neighbourhood import neighbourhoods
-from .schema import Params
-from .shrink import shrunk_rings
-from .simplify import simplify
-from .targets import face_count, file_name
-from .variant import SOFT, Variant, variant
+from . import Params
+
+
+@dataclass(frozen=True)
+class ObjectInputs:
+    """What all cells of one object share.
+
+    Its mesh; the points and the saliency (n,) by method; its own pictures (views, rows, columns), or None where they
+    are not compared; human gaze spread over the surface (n,), or None; and a cache of its simplified meshes and their
+    errors, since many methods keep the same faces, above all where nothing can be kept.
+    """
+
+    name: str
+    mesh: Mesh
+    points: dict[str, np.ndarray]
+    saliency: dict[str, np.ndarray]
+    pictures: np.ndarray | None = None
+    gaze: np.ndarray | None = None
+    cache: dict = field(default_factory=dict, repr=False)
+
+    @cached_property
+    def analyses(self) -> list[Analysis] | None:
+        """What comparisons need of its own pictures."""
+        return None if self.pictures is None else analyse(self.pictures)
 
 
 @dataclass(frozen=True)
@@ -117,3 +154,45 @@ def _row(inputs, method, target):
         "rings": None, "smallest_feasible": None, "infeasible": False, "shrunk": False, "metric": "faces",
         "value": None, "seconds": None, "note": "",
     }  # fmt: skip
+
+
+SALIENCY_METHOD = GLANCE  # its saliency weights the salient error of all methods
+
+
+def measure_errors(inputs: ObjectInputs, mesh: Mesh, settings: Params, seed: int) -> list[dict]:
+    """Parts of rows {metric, value, seconds, note} of one mesh; seconds are those of the call behind the metric."""
+    parts = []
+    for measure in (_surface, _pictures):
+        with Stopwatch() as watch:
+            values, note = measure(inputs, mesh, settings, seed)
+        for name, value in values.items():
+            parts.append({"metric": name, "value": value, "seconds": watch.seconds, "note": note})
+    return parts
+
+
+def _surface(inputs, mesh, settings, seed):
+    saliencies = {"salient_error": inputs.saliency.get(SALIENCY_METHOD), "gaze_error": inputs.gaze}
+    saliencies = {name: values for name, values in saliencies.items() if values is not None and values.any()}
+    errors = surface_errors(inputs.mesh, mesh, saliencies, settings.samples, seed)
+    return {name if name in saliencies else f"metro_{name}": value for name, value in errors.items()}, ""
+
+
+def _pictures(inputs, mesh, settings, _):
+    try:
+        pictures = take_pictures(mesh, viewpoint_set(settings.viewpoints), tuple(settings.size))
+        errors = picture_errors(inputs.pictures, pictures, inputs.analyses)
+    except ValueError as error:  # a mesh that leaves the frame
+        return {"ssim_error": None}, str(error)
+    return {"ssim_error" if name == "ssim" else name: value for name, value in errors.items()}, ""
+
+
+FACES = 200  # of 1,280: few enough that every step of the backends runs
+
+
+@functools.cache
+def warm_up(backend: str = BACKEND) -> None:
+    """Simplifies a small ball and measures it, once per process and backend."""
+    ball = trimesh.creation.icosphere(subdivisions=3, radius=0.5)
+    mesh = Mesh(ball.vertices, ball.faces)
+    metro(mesh, simplify(mesh, FACES, [0], 1, backend, shrink=True), samples=100)
+    simplify(mesh, FACES, backend=backend, weights=np.linspace(0, 1, len(mesh.vertices)))

@@ -1,23 +1,27 @@
-"""All objects of a data set, simplified by every method to every target."""
+"""Levels of a data set, and their summary.
+
+All objects of a data set, simplified by every method to every target.
+
+The few numbers of a run that the gate checks.
+"""
 
 import functools
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
-from stages.kit.files import read_arrays, read_mesh, write_table
-from stages.kit.run import Rows, StageRun
-from stages.kit.workspace import Workspace
-from stages.salient_points import read_saliency, read_strong_points
-from stages.views import viewpoint_set
+from haptic_glance.base.files import read_arrays, read_mesh, write_table
+from haptic_glance.lod.perceptual import take_pictures
+from haptic_glance.look.views import viewpoint_set
+from stages.engine.rows import some_rows
+from stages.engine.run import Rows, StageRun
+from stages.engine.settings import Workspace
+from stages.salient_points.measure import read_saliency, read_strong_points
 
-from .cell import measure_cells
-from .inputs import ObjectInputs
-from .perceptual import take_pictures
-from .schema import COLUMNS, Params
-from .summary import summarise
-from .warm_up import warm_up
+from . import COLUMNS, Params
+from .cell import ObjectInputs, measure_cells, warm_up
 
 READS = ("meshes/{}.npz", "salient_points/{}.npz")
 GAZE = "weights/ground_truth/{}.npz"
@@ -56,3 +60,41 @@ def process(name: str, folder: Path, data: Path, settings: Params, seed: int, ga
 def human_gaze(path: Path) -> np.ndarray | None:
     """(n,) density of recorded gaze on an object, from its file of data/SET/weights/ground_truth; None without one."""
     return read_arrays(path)["density"] if path.exists() else None
+
+
+SUMMARY_COLUMNS = ("item", "method", "target", "metric", "value", "infeasible", "shrunk")
+METRICS = ("metro_mean", "ssim_error", "salient_error")
+
+
+def summarise(rows: Sequence[dict]) -> dict[str, int | float | None]:
+    """dict of mean errors per method over the cells (object, target) for which every method has a mesh (paired).
+
+    A method without any mesh has None and is left out of the pairing. Also the number of such cells and of meshes, and
+    the shares of infeasible cells and of those with shrunk neighbourhoods, over all and per method, among the cells
+    that ask for fewer faces than the object has.
+    """
+    table = some_rows(rows, SUMMARY_COLUMNS, ("faces", *METRICS))
+    cells = pd.DataFrame(table[(table["metric"] == "faces") & (table["value"].notna() | table["infeasible"])])
+    methods = list(dict.fromkeys(table["method"]))
+    summary: dict[str, int | float | None] = {"meshes": len(cells.dropna(subset="value"))}
+    summary["paired_cells"] = len(paired(table, "faces"))
+    for share in ("infeasible", "shrunk"):
+        summary[f"share_{share}"] = round(float(cells[share].to_numpy().mean()), 6)
+        by_method = pd.Series(cells.groupby("method")[share].mean())
+        summary |= {
+            f"{share}_{method}": round(float(by_method[method]), 6) for method in methods if method in by_method
+        }
+    for metric in METRICS:
+        means = paired(table, metric).mean()
+        summary |= {f"{metric}_{method}": _rounded(means.get(method)) for method in methods}
+    return summary
+
+
+def paired(table: pd.DataFrame, metric: str) -> pd.DataFrame:
+    """Frame of one metric, one column per method, one row per cell for which all methods have a mesh."""
+    wide = table[table["metric"] == metric].pivot(index=["item", "target"], columns="method", values="value")
+    return wide.astype(float).dropna(axis="columns", how="all").dropna()
+
+
+def _rounded(value):
+    return None if value is None or pd.isna(value) else round(float(value), 9)

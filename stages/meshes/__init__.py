@@ -1,14 +1,23 @@
-"""Meshes: reads a data set, repairs or refuses each mesh, centres and scales it (T3.1.5, T3.2.9)."""
+"""Collects the meshes of a data set."""
 
-from stages.kit import Mesh
+from dataclasses import dataclass
 
-from .clean import clean
-from .clouds import Cloud, cloud_of_depth, surface_of
-from .load import MeshError, as_mesh, load
-from .normalise import normalise, rotate_to_z_up
-from .plane import remove_plane
+from haptic_glance.mesh.axes import axis_named
 
-__all__ = [
-    "Cloud", "Mesh", "MeshError", "as_mesh", "clean", "cloud_of_depth", "load", "normalise", "remove_plane",
-    "rotate_to_z_up", "surface_of",
-]  # fmt: skip
+
+@dataclass
+class Params:
+    """Section `meshes` of params.yaml."""
+
+    source: str  # which collection: a name of stages.meshes.sources.SOURCES
+    folder: str
+    up: str
+    unit: str
+    objects: list[str]
+    classes: dict[str, list[str]]
+    strict: bool
+    colours: str = "vertex"
+    remove_plane: bool = False
+
+    def __post_init__(self) -> None:
+        self.up = axis_named(self.up)

@@ -14,17 +14,15 @@ from pathlib import Path
 
 import pandas as pd
 
-from stages.kit import Stopwatch
-from stages.kit.command import workspace_of_arguments
-from stages.kit.files import write_mesh, write_table
-from stages.kit.run import Rows, StageRun
-from stages.kit.workspace import Workspace
+from haptic_glance.base.files import write_mesh, write_table
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.mesh.headers import MeshError
+from haptic_glance.mesh.materials import COLOURS
+from stages.engine.run import Rows, StageRun
+from stages.engine.settings import Workspace, workspace_of_arguments
 
-from .classes import CLASSES, chosen_objects, small_classes
-from .collect import prepare_mesh
-from .colours import COLOURS
-from .load import MeshError
-from .schema import Params
+from . import Params
+from .collect import CLASSES, chosen_objects, prepare_mesh, small_classes
 from .sources import SOURCES, MeshFile
 
 REFUSED = ["object", "file", "reason"]

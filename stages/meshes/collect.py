@@ -1,24 +1,33 @@
-"""Turns one mesh file of a source into a mesh that the later stages can use, and a row of its metadata."""
+"""Collects the objects of a data set, with their classes.
+
+Turns one mesh file of a source into a mesh that the later stages can use, and a row of its metadata.
+
+Classes of several objects that are to be recognised by touch (T4.3.2, T4.4.10).
+"""
 
 import hashlib
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from scipy.sparse.csgraph import connected_components
 from trimesh.resolvers import ZipResolver
 
-from stages.kit import Mesh
-from stages.kit.axes import AUTO
-from stages.kit.fetch import FetchError
+from haptic_glance.base.fetch import FetchError
+from haptic_glance.base.files import read_table
+from haptic_glance.mesh.axes import AUTO
+from haptic_glance.mesh.clouds import DEPTH
+from haptic_glance.mesh.files import parse
+from haptic_glance.mesh.headers import MeshError
+from haptic_glance.mesh.materials import coloured
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.plane import remove_plane
+from haptic_glance.mesh.repair import clean, normalise, rotate_to_z_up
+from haptic_glance.mesh.upright import settled
 
-from .clean import clean
-from .clouds import DEPTH
-from .colours import coloured
-from .load import MeshError, parse
-from .normalise import normalise, rotate_to_z_up
-from .plane import remove_plane
 from .sources import MeshFile
-from .upright import settled
 
 
 def prepare_mesh(item: MeshFile, remove_table: bool = False, colours: str = "vertex") -> tuple[Mesh, dict]:
@@ -62,3 +71,41 @@ def _without_table(mesh, notes):
         *notes,
         f"supporting plane removed with {removed} faces" if removed else "no supporting plane found",
     ]
+
+
+CLASSES = "classes.csv"  # in data/SET/meshes: the class of each object, in the order of meshes.classes
+
+
+def read_classes(folder: str | Path) -> dict[str, list[str]]:
+    """{class: its objects} of data/SET/meshes, in the order of meshes.classes; objects that were refused are not there.
+
+    Raises ValueError where the data set has no classes.
+    """
+    path = Path(folder) / CLASSES
+    if not path.exists():
+        raise ValueError(f"{path} is not there: name the classes of this data set in meshes.classes")
+    table = read_table(path, dtype={"class": str, "object": str})
+    return {str(name): list(rows["object"]) for name, rows in table.groupby("class", sort=False)}
+
+
+def chosen_objects(objects: Sequence[str], classes: Mapping[str, Sequence[str]]) -> list[str]:
+    """The objects to take: those named, or else those of all classes; an empty list stands for all of the source.
+
+    Raises ValueError for a class without objects and for an object that is named twice.
+    """
+    if not all(classes.values()):
+        raise ValueError("meshes.classes: every class must name at least one object")
+    members = [name for names in classes.values() for name in names]
+    twice = sorted({name for name in members if members.count(name) > 1})
+    if twice:
+        raise ValueError(f"meshes.classes: {', '.join(twice)} named twice; an object belongs to one class")
+    return list(objects) or members
+
+
+def small_classes(classes: Mapping[str, Sequence[str]], accepted: Sequence[str]) -> Iterator[dict[str, Any]]:
+    """Rows with a note, one per class that is left with fewer than two objects."""
+    for name, objects in classes.items():
+        left = len(set(objects) & set(accepted))
+        if left < 2:
+            note = f"class {name} has {left} of its {len(objects)} objects: none of it can be held out"
+            yield {"group": name, "metric": "objects", "value": left, "note": note}

@@ -1,22 +1,26 @@
-"""Objects in classes, three per class, from the Debian package sweethome3d-furniture.
+"""Furniture, and files beside a mesh.
+
+Objects in classes, three per class, from the Debian package sweethome3d-furniture.
 
 Each object was inspected from both sides, since names mislead ("Clothes horse" is not an animal). It stands upright,
 is complete and solid, shows the outer side of its faces, and has 1,000 to 60,000 faces.
+
+The files that a mesh file names: its materials, their pictures, a depth image.
 """
 
 import hashlib
 import io
 import re
 import zipfile
+from collections.abc import Callable
 from pathlib import Path, PurePosixPath
 
 import numpy as np
+from trimesh.resolvers import FilePathResolver
 
-from stages.kit.fetch import FetchError, cache_folder, debian_files, fetch_debian, read_members, zipped
-from stages.kit.files import whole_file
-
-from .beside import files_named
-from .materials import obj_vertices
+from haptic_glance.base.fetch import FetchError, cache_folder, debian_files, fetch_debian, read_members, zipped
+from haptic_glance.base.files import whole_file
+from haptic_glance.mesh.materials import obj_vertices
 
 PACKAGE = "sweethome3d-furniture_1.8-1_all.deb"
 HASH = "3ccb90c63f9525e887a767b9cd5c8b6933b8b6b2973a615a5359ee68a2118668"
@@ -132,3 +136,39 @@ def _entries(catalogue):
     for key, number, value in re.findall(r"^(\w+)#(\d+)=(.*?)\s*$", catalogue.decode("latin-1"), re.M):
         numbered.setdefault(number, {})[key] = value
     return {entry["id"].partition("#")[2]: entry for entry in numbered.values()}
+
+
+NAMES = {  # what names a file, by the suffix of the file in which it stands
+    ".obj": re.compile(rb"^[ \t]*mtllib[ \t]+(.+?)\s*$", re.M),
+    ".mtl": re.compile(rb"^[ \t]*map_Kd[ \t]+(.+?)\s*$", re.M | re.I),
+    ".depth": re.compile(rb'"image"\s*:\s*"([^"]+)"'),
+    ".ply": re.compile(rb"^comment[ \t]+TextureFile[ \t]+(.+?)\s*$", re.M | re.I),
+}
+
+
+def files_beside(path: Path) -> dict[str, bytes]:
+    """{name: bytes} of the files that a mesh file names, as it spells them: an OBJ and its materials, a PLY, a .depth.
+
+    A file that is not there, or not below the folder of the mesh, is empty.
+    """
+    return files_named(path.read_bytes(), path.suffix, FilePathResolver(str(path)).get)
+
+
+def files_named(content: bytes, suffix: str, read: Callable[[str], bytes]) -> dict[str, bytes]:
+    """As `files_beside`, of the bytes of a mesh file; read(name, relative to it) raises OSError or ValueError."""
+    found: dict[str, bytes] = {}
+    wanted = _named(content, suffix)
+    while wanted:
+        name = wanted.pop(0)
+        try:
+            found[name] = read(name.replace("\\", "/"))
+        except (OSError, ValueError):
+            found[name] = b""
+        wanted += [other for other in _named(found[name], Path(name).suffix) if other not in found]
+    return found
+
+
+def _named(content, suffix):
+    header = content.partition(b"end_header")[0] if suffix.lower() == ".ply" else content
+    pattern = NAMES.get(suffix.lower())
+    return [name.decode("utf-8", "replace") for name in pattern.findall(header)] if pattern else []

@@ -6,19 +6,17 @@ of a fingertip, or grasps by pressure arrays over time.
 """
 
 from stages.classification.recorded import read_grasps, read_pressure_images
-from stages.kit.command import workspace_of_arguments
-from stages.kit.run import StageRun
-from stages.kit.workspace import Workspace
+from stages.engine.run import StageRun
+from stages.engine.settings import Workspace, workspace_of_arguments
 
-from . import biotac_grasps, pressure_images, schunk, touch_events
-from .schema import COLUMNS, Params
-from .touch_series import read_grasp_series, read_touch_events
+from . import COLUMNS, Params, biotac_grasps, pressure_images, series, touch_events
+from .series import read_grasp_series, read_touch_events
 
 KINDS = {  # kind: how it is read, and what measures it
     "pressure_images": (read_pressure_images, pressure_images),
     "biotac_grasps": (read_grasps, biotac_grasps),
     "touch_events": (read_touch_events, touch_events),
-    "schunk": (read_grasp_series, schunk),
+    "schunk": (read_grasp_series, series),
 }
 
 

@@ -12,13 +12,13 @@ from sklearn.pipeline import make_pipeline
 from sklearn.preprocessing import StandardScaler
 from threadpoolctl import threadpool_limits
 
-from stages.classification import CLASSIFIERS
+from haptic_glance.base.rng import rng
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.know import CLASSIFIERS
+from haptic_glance.know.classifiers import COMPONENTS
+from haptic_glance.know.split import Split
 from stages.classification.recorded import PALMS, Grasps
-from stages.classification.scaling import COMPONENTS
-from stages.kit import Stopwatch
-from stages.kit.rng import rng
-from stages.kit.run import Rows, StageRun
-from stages.kit.split import Split
+from stages.engine.run import Rows, StageRun
 
 from .splits import SPLITS, split_number
 

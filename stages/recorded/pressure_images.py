@@ -9,14 +9,13 @@ import numpy as np
 from sklearn.model_selection import StratifiedKFold, cross_val_score
 from threadpoolctl import threadpool_limits
 
-from stages.classification import CLASSIFIERS, classifier, features
-from stages.classification.prepared import Prepared
-from stages.classification.protocol import FOLDS, MIN_IMPRINTS
-from stages.classification.scaling import SCALINGS, TRAINING, TWICE
-from stages.classification.similarity import as_many, confusable, similarity
-from stages.kit.rng import rng
-from stages.kit.run import Rows, StageRun
-from stages.kit.split import Split
+from haptic_glance.base.rng import rng
+from haptic_glance.know import CLASSIFIERS, classifier, features
+from haptic_glance.know.classifiers import SCALINGS, TRAINING, TWICE
+from haptic_glance.know.features import as_many, confusable, similarity
+from haptic_glance.know.protocol import FOLDS, MIN_IMPRINTS, Prepared
+from haptic_glance.know.split import Split
+from stages.engine.run import Rows, StageRun
 
 from .splits import SPLITS, random_split, split_number
 

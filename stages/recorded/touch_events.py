@@ -11,13 +11,13 @@ from pathlib import Path
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from stages.kit import Stopwatch
-from stages.kit.rng import rng
-from stages.kit.run import Rows, StageRun
-from stages.kit.split import Split
+from haptic_glance.base.rng import rng
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.know.split import Split
+from stages.engine.run import Rows, StageRun
 
-from .binned import METHODS, Choice, binned, choose, foldings
-from .touch_series import TouchSeries, spread_taxels
+from .series import TouchSeries, spread_taxels
+from .splits import METHODS, Choice, binned, choose, foldings
 
 HEARD = (0.1, 0.25, 0.5, 1.0)  # share of the touch
 TAXELS = (1, 2, 5, 10, 20, 39)

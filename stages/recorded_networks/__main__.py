@@ -12,17 +12,15 @@ import sys
 
 import numpy as np
 
-from stages.kit.command import workspace_of_arguments
-from stages.kit.fetch import FetchError
-from stages.kit.run import Rows, StageRun
-from stages.kit.workspace import Workspace
-from stages.networks.learning import CONVERGED, check_passes
-from stages.networks.weights import imagenet_state
-from stages.recorded.schema import Params as RecordedParams
+from haptic_glance.base.fetch import FetchError
+from haptic_glance.deep.training import CONVERGED, check_passes
+from haptic_glance.deep.weights import imagenet_state
+from stages.engine.run import Rows, StageRun
+from stages.engine.settings import Workspace, workspace_of_arguments
+from stages.recorded import Params as RecordedParams
 
-from .neighbours import neighbour_rows
-from .schema import COLUMNS, Params
-from .sources import SOURCES
+from . import COLUMNS, Params
+from .data import SOURCES, neighbour_rows
 from .trial import Trial, process, trials
 
 

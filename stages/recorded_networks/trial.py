@@ -9,21 +9,27 @@ from typing import NamedTuple
 import numpy as np
 import torch
 
-from stages.kit import Stopwatch
-from stages.kit.repeatable import repeatable
-from stages.kit.rng import rng
-from stages.kit.run import Rows
-from stages.networks.device import explain_out_of_memory
-from stages.networks.learning import CONVERGED, PRINTED, Diverged, Learning
-from stages.networks.network import UNNORMALISED, count_parameters
-from stages.networks.training import accuracy, predict_probabilities, search_rate, train_model
-from stages.networks.weights import available_weights
+from haptic_glance.base.rng import rng
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.deep.device import explain_out_of_memory
+from haptic_glance.deep.network import UNNORMALISED, count_parameters
+from haptic_glance.deep.repeatable import repeatable
+from haptic_glance.deep.training import (
+    CONVERGED,
+    PRINTED,
+    Diverged,
+    Learning,
+    accuracy,
+    predict_probabilities,
+    search_rate,
+    train_model,
+)
+from haptic_glance.deep.weights import available_weights
+from stages.engine.run import Rows
 from stages.recorded.splits import split_number
 
-from .parts import groups_of, parts
-from .schema import Params
-from .sources import Recording
-from .tasks import finetuned, frozen, frozen_features
+from . import Params
+from .data import Recording, finetuned, frozen, frozen_features, groups_of, parts
 
 MODES = ("frozen", "finetuned")
 

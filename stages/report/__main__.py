@@ -16,24 +16,24 @@ from typing import Any
 
 import pandas as pd
 
-from stages.kit.command import workspace_of_arguments
-from stages.kit.files import replace_folder, write_json, write_table, write_text
-from stages.kit.parallel import parallel_map
+from haptic_glance.base.files import replace_folder, write_json, write_table, write_text
+from stages.engine.parallel import parallel_map
+from stages.engine.settings import workspace_of_arguments
 
+from . import Params
 from .claims_page import claims_shown
-from .counting import counted, counts, open_by_cause
+from .headlines import FILE as HEADLINES
+from .headlines import write_headlines
 from .items import Built
-from .markdown import as_text, markdown_table
-from .own import write_own_page
-from .records import write_records
+from .page import pack_viewer
+from .records import write_own_page, write_records
 from .results import NotRun, Results
-from .schema import Params
 from .site import write_site
+from .tables import as_text, markdown_table
 from .topics import CLAIMS, KINDS, TOPICS, build_all
-from .verdict import judged
-from .viewer import pack_viewer
+from .verdict import counted, counts, judged, open_by_cause
 
-OUTPUTS = ("tables", "figures", "tradeoff", "claims", "site", "claims.md", "claims.csv", "index.html")
+OUTPUTS = ("tables", "figures", "tradeoff", "claims", "site", "claims.md", "claims.csv", "index.html", HEADLINES)
 OWN_NOTE = "this page is about a folder alone; `python -m stages.compose` switches the project's own data sets on"
 CLAIMS_NOTE = """Each effect is a paired difference, positive on the side that the thesis claims, with its 95 %
 interval. The words:
@@ -115,6 +115,7 @@ def build(results: Results, out: Path) -> dict[str, Any]:
     if own:  # what would need other data sets is left out
         claims, not_run = claims[claims["pairs"] > 0], {"what needs other data sets": OWN_NOTE}
     write_claims(claims, differences, out)
+    write_headlines(out, counts(claims))
     parts = {**built, "claims": claims, "differences": differences, "known": CLAIMS, "results": results}
     parts |= {"not_run": not_run, "sets": results.sets, "own": own, "meshes": None}
     parts |= {"first": ["pipeline"], "dataset": dataset_line(results)}

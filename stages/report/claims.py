@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from stages.kit.split import shared_by
+from haptic_glance.know.split import shared_by
 
 Phrases = Mapping[tuple[str, Any], str]  # (column, value) -> words
 Side = Mapping[str, Any]  # column -> value; a tuple: the mean of several; a Pick: one of several, by its mean
@@ -75,17 +75,17 @@ class Claim:
     those that have such rows are pooled. elsewhere: {method: the one in its place on all sets but the first}. first,
     second: the rows of each side, of another set where a side names a `dataset`; second may be a number (before
     scaling) or None. where: what both have in common. A text value with `*` is a pattern. over: columns whose
-    combinations are the pairs, the outermost unit of the analysis first (stages.kit.units); within: columns that are
+    combinations are the pairs, the outermost unit of the analysis first (stages.engine.rows); within: columns that are
     matched too, before the differences of a pair are averaged. relative: differences as shares of the mean of both
     sides. mean_of: the side ("first" or "second") that counts by the mean of all its rows. contrast: two selections;
     the difference under the first of them minus that under the second. scale, then margin: from differences to `unit`.
-    statistic: a name of stages.report.differences.STATISTICS. shared: test over training share (kit.split), or a
+    statistic: a name of stages.report.effects.STATISTICS. shared: test over training share (kit.split), or a
     function of the set; None: that of the split where the pairs are repetitions, else 0. phrases: {(column, value):
     words} of the topic. note: words behind all others. printed: how many of the sets, from the first on, follow the
     printed protocol: their rows alone give the verdict, and the other sets show whether it carries over; 0 for all.
     None: 1 for the thesis's claims, 0 for ours. of: key of the primary claim whose sentence this claim tests elsewhere;
     a later claim in the same words and chapter is secondary without being told. readings: other readings of the
-    protocol, in which the verdict must hold too. checked: whether rows that stages.report.validity refuses are out.
+    protocol, in which the verdict must hold too. checked: whether rows that stages.report.effects refuses are out.
     """
 
     key: str

@@ -1,19 +1,42 @@
-"""The claims as people read them: a frame for Markdown, and a page that filters and opens each to what it rests on."""
+"""The page of claims, and its prose.
 
-from collections.abc import Sequence
+The claims as people read them: a frame for Markdown, and a page that filters and opens each to what it rests on.
+
+The words of the report: titles, notes and captions, kept as Markdown beside the code of each topic.
+
+TOPIC/prose.md has a section for each item, `# KIND/NAME: title`, where KIND is a folder of reports/. A table's section
+is its summary, one sentence whose figures come from the table (`{this row: column}`, see `cells`), then a list of
+notes; that of a figure or chart is `Alt: what a blind reader needs`, then the caption. `{word}` is filled in by the
+code. A note that comes out empty is left out, and one of several lines becomes as many notes. What a topic found stands
+in TOPIC/findings.md, with figures from any table or claim; a paragraph that lacks one is left out.
+
+Figures of data sets that the default run leaves out: drawn where their data is, and kept in the repository.
+"""
+
+import re
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from functools import cache
 from html import escape
+from importlib import resources
+from pathlib import Path
 from string import Template
+from types import ModuleType
 from typing import Any
 
 import pandas as pd
+from matplotlib.figure import Figure as Drawing
 
-from .anew import command
+from haptic_glance.base.files import read_json, write_json
+
 from .claims import Claim
-from .counting import counted, open_by_cause
 from .effects import sets_of
-from .markdown import with_interval
+from .items import Figure, Table
 from .page import WORDS, folded, part, prose, script_json
-from .results import Results
+from .records import command
+from .results import NotRun, Results, there
+from .tables import filled, with_interval
+from .verdict import counted, open_by_cause
 from .words import dataset_text
 
 CHAPTERS = {  # start of a claim's section -> what it is about
@@ -119,7 +142,7 @@ def _claim_html(
         "Open": prose(open_text(row)),
         "Data": links if row.pairs else "not measured",
         "Holds among the claims of its chapter": row.holds,
-        "Judged again from its rows": f"<code>haptic-glance claim {row.key}</code>",
+        "Judged again from its rows": f"<code>python -m stages.claim {row.key}</code>",
         "Measured again": command and f"<code>{escape(command)}</code>",
     }
     said = "".join(f"<dt>{name}</dt><dd>{text}</dd>" for name, text in facts.items() if text)
@@ -133,3 +156,85 @@ def _claim_html(
 
 def _options(found: dict[str, str]) -> str:
     return "".join(f'<option value="{escape(value)}">{escape(text)}</option>' for value, text in found.items())
+
+
+def add_words(item: Table | Figure, topic: ModuleType, kind: str, name: str) -> None:
+    """Fills in name, title, summary (not yet its figures), notes of a table; name, title, alt, caption of a figure.
+
+    Raises KeyError where prose.md lacks the section or the item lacks a word.
+    """
+    title, text = _sections(topic.__name__)[f"{kind}/{name}"]
+    item.name, item.title = name, title.format_map(item.words)
+    if isinstance(item, Table):
+        summary, *listed = re.split(r"^- ", text, flags=re.MULTILINE)
+        item.summary = _joined(summary).replace("{this ", f"{{{kind}/{name} ")
+        notes = (_joined(note).format_map(item.words) for note in listed)
+        item.notes = [line for note in notes for line in note.splitlines() if line]
+    else:
+        alt, _, caption = text.removeprefix("Alt: ").partition("\n\n")
+        item.alt, item.caption = (_joined(part).format_map(item.words) for part in (alt, caption))
+
+
+def shared_notes(package: str | None, name: str) -> str:
+    """Notes that several tables of a topic share, a line each, to be a word of theirs: the section `# shared/NAME`."""
+    _, text = _sections(package or "")[f"shared/{name}"]
+    return "\n".join(_joined(note) for note in re.split(r"^- ", text, flags=re.MULTILINE)[1:])
+
+
+def findings(topic: ModuleType, reports: Path) -> list[str]:
+    """The paragraphs of TOPIC/findings.md, in Markdown, with their figures; without those that lack a figure."""
+    text = resources.files(topic.__name__).joinpath("findings.md").read_text(encoding="utf-8")
+    found = []
+    for paragraph in text.strip().split("\n\n"):
+        with suppress(LookupError):
+            found.append(filled(_joined(paragraph), reports)[0])
+    return found
+
+
+@cache
+def _sections(package: str) -> dict[str, tuple[str, str]]:
+    """{KIND/NAME: (title, text below it)} of a topic's prose.md."""
+    text = resources.files(package).joinpath("prose.md").read_text(encoding="utf-8")
+    parts = re.split(r"^# (\S+): (.+)$", text, flags=re.MULTILINE)
+    return {name: (title, text.strip()) for name, title, text in zip(*(parts[k::3] for k in (1, 2, 3)), strict=True)}
+
+
+def _joined(lines: str) -> str:
+    return " ".join(lines.split())
+
+
+class Kept(Figure):
+    """A figure whose words stand beside it in NAME.json, so that both outlast the data; drawing empty: they did."""
+
+    def write(self, folder: Path) -> None:
+        """Writes NAME.png and NAME.json, where there is something new."""
+        words = folder / f"{self.name}.json"
+        if self.drawing.axes:
+            super().write(folder)
+            write_json(words, self.words)
+        self.paths = [words.with_suffix(".png"), words]
+
+
+def last_drawn(results: Results, name: str, stage: str) -> Kept:
+    """The figure as it was drawn last time; NotRun where it never was."""
+    here = results.out if (results.out / f"figures/{name}.json").exists() else results.reports
+    words = here / f"figures/{name}.json"
+    why = f"no figures/{name}.png: run the stage {stage} on its data set"
+    there(words.with_suffix(".png"), why, stage, runnable=False)
+    return Kept(Drawing(), read_json(there(words, why, stage, runnable=False)))
+
+
+def as_printed(build: Callable[[Results], Figure], dataset: str, results: Results, stage: str = "lod") -> Figure:
+    """The figure on the set of a protocol as printed, where that set is the first; else as it was drawn there.
+
+    Where it never was, or of one's own meshes, it is of the first set. `build` has the figure's name.
+    """
+    if results.sets[:1] == [dataset]:
+        figure = build(results)
+        return Kept(figure.drawing, figure.words, dpi=figure.dpi)
+    if not results.own_meshes:
+        with suppress(NotRun):
+            found = last_drawn(results, build.__name__, stage)
+            results.read.add(dataset)
+            return found
+    return build(results)

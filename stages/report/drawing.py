@@ -1,21 +1,164 @@
-"""Pictures of meshes on a white page: lit surface, colour a vertex, wires and points, drawn by rays."""
+"""Drawing: style, scales, labels and pictures.
 
+One style for all pictures: white page, quiet axes, colours that the colour-blind can tell apart.
+
+Pictures of meshes on a white page: lit surface, colour a vertex, wires and points, drawn by rays.
+
+Rows by the scale of the samples, a reading of T4.2.4, and means over classifiers with and without the SVM.
+
+Names beside the points of a chart, where they cover neither each other nor a point.
+"""
+
+import io
 from collections.abc import Iterable, Sequence
 from functools import lru_cache
+from itertools import cycle, product
+from pathlib import Path
+from typing import Any
 
 import matplotlib
+import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np
+import pandas as pd
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis  # noqa: E402
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure  # noqa: E402
+from matplotlib.text import Annotation
+from matplotlib.ticker import LogLocator, NullFormatter  # noqa: E402
+from matplotlib.transforms import Bbox
+from PIL import Image
 
-from stages.kit import Mesh, RayScene, Viewpoint
-from stages.kit.camera import pixel_rays, pixels_per_unit, project
-from stages.kit.mesh import unit
-from stages.kit.rays import barycentric
+from haptic_glance.base.files import whole_file
+from haptic_glance.know.classifiers import BEFOREHAND, MIN_MAX, TRAINING, TWICE
+from haptic_glance.look.camera import Viewpoint, pixel_rays, pixels_per_unit, project
+from haptic_glance.mesh.mesh import Mesh, unit
+from haptic_glance.mesh.rays import RayScene, barycentric
 
-from .style import GREY, MAP, plt
+matplotlib.use("Agg")  # no screen where pipelines run
+
+MAP = "viridis"  # for saliency: even in lightness, safe for the colour-blind
+INK, GREY, PALE = "#222222", "#767676", "#d9d9d9"
+# Okabe and Ito 2008: eight colours that stay apart under the common colour deficiencies.
+CYCLE = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#7A6A00", "#000000"]
+LABELS = {
+    "random": "blind touch",
+    "itti": "Itti's attention",
+    "VisAttAll": "thesis, equal weights",
+    "equal": "thesis, nine equal weights",
+    "thesis_ssim": "thesis, SSIM",
+    "thesis_ed": "thesis, ED",
+    "glance_any_pose": "glance, any pose",
+    "glance_deep": "glance, deep",
+    "human": "the truth itself",
+    "guided_ssim": "guided by SSIM",
+    "guided_ed": "guided by ED",
+    "guided_ssim_object": "guided by SSIM on the object",
+    "svm_nearest": "thesis, SVM of the nearest object",
+    "svm_object": "thesis, SVM of the object",
+    "svm_viewpoint": "thesis, SVM of each view",
+    "leifman": "regions of interest",
+    "song": "spectral saliency",
+    "tasse": "cluster-based saliency",
+    "sift": "3D-SIFT",
+    "harris": "3D-Harris",
+    "corners": "scale-dependent corners",
+    "farthest": "farthest points",
+    "touch": "places to touch",
+    "centre_distance": "distance from the centre",
+    "spectral_residual": "spectral residual (OpenCV)",
+    "fine_grained": "fine-grained (OpenCV)",
+    "qem": "plain QEM",
+    "qslim": "QSlim",
+    "knn": "kNN",
+    "svm": "SVM",
+    "naive_bayes": "naive Bayes",
+    "mean_without_svm": "mean without the SVM",
+    "discriminant": "linear discriminant",
+    "linear_svm": "linear SVM",
+    "heat_kernel": "heat kernel signature",
+    "hks": "heat kernel signature",
+    "dkl": "DKL",
+    "alexnet": "AlexNet",
+    "googlenet": "GoogLeNet",
+    "vgg16": "VGG16",
+    "resnet50": "ResNet50",
+    "resnet101": "ResNet101",
+    "mobilenet_v2": "MobileNetV2",
+    "efficientnet_lite0": "EfficientNet-Lite0",
+    "finetuned": "fine-tuned",
+    "last_block": "last block fine-tuned",
+    "fast": "fast (ours)",
+    "fast_simplification": "fast-simplification",
+    "meshoptimizer_native": "meshoptimizer 0.2.30a0",
+    "vtk": "VTK",
+}
+WAYS = ("adaptive", "area", "soft")  # of keeping a neighbourhood; behind a method's name
+METHOD_COLOURS = {"random": "#E69F00", "itti": "#56B4E9", "thesis_ssim": "#009E73", "glance": "#0072B2", "qem": GREY}
+MARKERS = "osD^vPX*"
+PALETTE = 160  # colours of a picture: a fourth of the bytes, and the shading of meshes still looks smooth
+SETTLED = 1_000  # pixels that still change their colour: to go on until all stay takes five times as long
+SETTINGS: dict[Any, Any] = {
+    "figure.facecolor": "white",
+    "savefig.facecolor": "white",
+    "font.family": "DejaVu Sans",  # comes with matplotlib: the same letters on every machine
+    "font.size": 10,
+    "axes.titlesize": 11,
+    "axes.titleweight": "bold",
+    "axes.titlelocation": "left",
+    "axes.edgecolor": GREY,
+    "axes.labelcolor": INK,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.axisbelow": True,
+    "grid.color": "#ececec",
+    "xtick.color": INK,
+    "ytick.color": INK,
+    "legend.frameon": False,
+    "image.interpolation": "antialiased",
+}
+
+
+def label(name: object) -> str:
+    """A method's name in words, with its way of keeping neighbourhoods where there is one, but without `_seen`."""
+    text = str(name)
+    base, _, way = text.rpartition("-")
+    said = LABELS.get(text) or LABELS.get(text.removesuffix("_seen")) or text.replace("_", " ")
+    return f"{label(base)}, {way}" if way in WAYS else said
+
+
+def start(weights: str) -> str:
+    """What a network starts from, in words."""
+    own = {"imagenet": "ImageNet", "random_initial": "random weights, initial statistics"}
+    return own.get(weights) or f"{weights} weights"
+
+
+def colours(names: Sequence[str]) -> dict[str, str]:
+    """dict name -> colour: fixed for the known methods, the cycle for others."""
+    known = {name: METHOD_COLOURS[name] for name in names if name in METHOD_COLOURS}
+    free = cycle(colour for colour in CYCLE if colour not in known.values())
+    return {name: known.get(name) or next(free) for name in names}
+
+
+def plain_logarithm(axis: Axis, subs: Sequence[float] = (1.0, 2.0, 5.0)) -> None:
+    """Numbers without powers at these multiples of a logarithmic axis's decades."""
+    axis.set_major_locator(LogLocator(subs=subs))
+    axis.set_major_formatter(lambda value, _: f"{value:g}")
+    axis.set_minor_formatter(NullFormatter())
+
+
+def save(figure: Figure, path: Path, dpi: int = 130) -> Path:
+    """Writes a PNG of PALETTE colours without dates or versions, so that equal runs give equal bytes; the path."""
+    drawn = io.BytesIO()
+    figure.savefig(drawn, dpi=dpi, bbox_inches="tight", pad_inches=0.12, metadata={"Software": None})
+    plt.close(figure)
+    with Image.open(drawn) as image:
+        few = image.convert("RGB").quantize(PALETTE, Image.Quantize.MEDIANCUT, SETTLED, dither=Image.Dither.NONE)
+    with whole_file(path) as part:
+        few.save(part, "PNG", optimize=True)
+    return path
+
 
 VIEWPOINT = Viewpoint(305, 22)  # from above and the side: most household objects show their parts
 CLAY = np.array([0.80, 0.80, 0.82])
@@ -177,3 +320,106 @@ def name_panels(
     for axes, words in zip(grid[:, 0], beside, strict=False):
         axes.text(-away, 0.5, words, rotation=90, va="center", ha="right", fontsize=letters[1],
                   transform=axes.transAxes)  # fmt: skip
+
+
+READINGS = {  # beside ours, TRAINING
+    BEFOREHAND: "all data standardised beforehand (T4.2.4)", TWICE: "components standardised, too",
+    MIN_MAX: "all data from 0 to 1",
+}  # fmt: skip
+CLASSIFIERS = ("knn", "svm", "decision_tree", "naive_bayes", "deep_learning")  # the thesis's order, reversed
+MEANS = {"mean_of_all": CLASSIFIERS, "mean_without_svm": tuple(name for name in CLASSIFIERS if name != "svm")}
+
+
+def scaled(rows: pd.DataFrame, scaling: str = TRAINING) -> pd.DataFrame:
+    """The rows of one scaling; those that are about no classifier have none, and stay with TRAINING."""
+    return rows[rows["scaling"].fillna(TRAINING) == scaling]
+
+
+def with_means(rows: pd.DataFrame) -> pd.DataFrame:
+    """The rows, and behind them the means over the classifiers of MEANS where each of these was run."""
+    columns = ("dataset", "set", "repetition", "group", "method", "variant", "split", "metric", "scaling")
+    keys, found = [name for name in columns if name in rows], [rows]
+    for name, classifiers in MEANS.items():
+        own = rows[rows["classifier"].isin(classifiers)].groupby(keys, dropna=False, sort=False)
+        means = own.agg({"value": "mean", "classifier": "nunique"}).reset_index()
+        found.append(means[means["classifier"] == len(classifiers)].assign(classifier=name))
+    return pd.concat(found, ignore_index=True)
+
+
+SIDES = [(1, 1), (-1, 1), (1, -1), (-1, -1), (1, 0), (-1, 0), (0, 1), (0, -1)]  # of the point, the best first
+GAPS = [8, 14, 26, 40]  # from the point to its name, in typographic points
+FAR = 14  # a name from this gap on gets a thin line to its point
+CROSSING = 15  # a crossed line is as bad as so much more of a gap
+SIZE, RADIUS = 8.5, 5.5  # of the letters and of a point with its rim, in typographic points
+
+
+Spot = tuple[float, float]
+
+
+def place_names(
+    axes: Axes, names: Iterable[tuple[str, Spot]], points: np.ndarray, lines: Iterable[Sequence[Spot]]
+) -> list[Annotation]:
+    """Writes each name at the nearest free place around its point; returns the texts.
+
+    names: list of (text, (x, y)); points (k, 2): all that no name may cover; lines: list of two ends each, which names
+    avoid where they can. All in the data's units. To be called last, when nothing moves the limits of the
+    axes any more. A name that finds no free place is left out.
+    """
+    figure: Any = axes.figure  # whole, no part of one
+    figure.draw_without_rendering()  # limits are settled only by drawing
+    scale = figure.dpi / 72
+    to_pixels = axes.transData.transform
+    taken = [_around(spot[None], RADIUS * scale) for spot in to_pixels(points)]
+    strokes = [_around(to_pixels(ends), scale) for ends in lines]
+    written = []
+    for text, point in names:
+        probe, spot = axes.text(0, 0, text, fontsize=SIZE), to_pixels(point)
+        extent = probe.get_window_extent()
+        probe.remove()
+        found = _nearest(axes, (extent.width, extent.height), spot, taken, strokes, scale)
+        if found is None:
+            continue
+        gap, box = found
+        taken.append(box)
+        place = {"xytext": ((box.x0 - spot[0]) / scale, (box.y0 - spot[1]) / scale), "textcoords": "offset points"}
+        if gap >= FAR:
+            taken += _leader(spot, box, scale)
+            place["arrowprops"] = {"arrowstyle": "-", "color": GREY, "lw": 0.6, "shrinkA": 0, "shrinkB": 4}
+        written.append(axes.annotate(text, point, ha="left", va="bottom", fontsize=SIZE, color=INK, zorder=4, **place))
+    return written
+
+
+def _nearest(
+    axes: Axes, extent: Spot, spot: np.ndarray, taken: list[Bbox], strokes: list[Bbox], scale: float
+) -> tuple[float, Bbox] | None:
+    """(gap, box) of the best free place, or None. taken: what no name may cover; strokes: what it better does not."""
+    window, free = axes.get_window_extent(), []
+    for gap, side in product(GAPS, SIDES):
+        box = _beside(spot, extent, side, gap * scale)
+        inside = window.x0 <= box.x0 and box.x1 <= window.x1 and window.y0 <= box.y0 and box.y1 <= window.y1
+        led = _leader(spot, box, scale) if gap >= FAR else []  # its line would belong to others where it crosses them
+        free_way = not any(part.count_overlaps(taken + strokes) for part in led)
+        if inside and free_way and not box.count_overlaps(taken):
+            free.append((gap + CROSSING * box.count_overlaps(strokes), len(free), gap, box))
+    return min(free)[2:] if free else None
+
+
+def _leader(spot: np.ndarray, box: Bbox, scale: float) -> list[Bbox]:
+    """Small boxes along the thin line to a name, from a little way off its point."""
+    middle = np.array([(box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2])
+    near = min(1.0, 2 * RADIUS * scale / np.linalg.norm(middle - spot))
+    return [_around((spot + share * (middle - spot))[None], scale) for share in np.linspace(near, 1, 30)]
+
+
+def _beside(spot: np.ndarray, extent: Spot, side: tuple[int, int], gap: float) -> Bbox:
+    """The box of a text of this extent at one side of a spot, in pixels."""
+    (x, y), (width, height), (across, up) = spot, extent, side
+    step = gap if across == 0 or up == 0 else 0.7 * gap  # at a corner both ways count
+    x0 = x - width / 2 + across * (width / 2 + step)
+    y0 = y - height / 2 + up * (height / 2 + step)
+    return Bbox.from_extents(x0, y0, x0 + width, y0 + height)
+
+
+def _around(spots: np.ndarray, margin: float) -> Bbox:
+    """The box around spots (k, 2) with a margin: around one point, or the ends of an upright or level line."""
+    return Bbox([spots.min(axis=0) - margin, spots.max(axis=0) + margin])

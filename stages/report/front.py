@@ -10,13 +10,11 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure as Drawing
 
-from .cells import CLAIMS, PREFIXES, filled
-from .counting import counts, sentences
-from .markdown import with_interval
+from .drawing import CYCLE, INK, SETTINGS, plt
+from .marks import vector
 from .page import box, part, prose
-from .style import CYCLE, INK, SETTINGS, plt
-from .vector import vector
-from .verdict import DEPENDS, UNTESTABLE
+from .tables import CLAIMS, PREFIXES, filled, with_interval
+from .verdict import DEPENDS, UNTESTABLE, counts, sentences
 
 ROWS = 5  # heights of the dots of a chart: pairs of like values lie beside each other
 

@@ -9,12 +9,10 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure as Drawing
 
-from stages.kit.files import write_table, write_text
+from haptic_glance.base.files import write_table, write_text
 
-from .cells import filled
-from .markdown import as_text, markdown_table
-from .ranking import Ranking
-from .style import save
+from .drawing import save
+from .tables import Ranking, as_text, filled, markdown_table
 
 
 @dataclass(eq=False, kw_only=True)

@@ -1,22 +1,36 @@
-"""HTML of what the report is made of: tables that a script sorts and filters, charts that one can hover, pictures."""
+"""A page of the site, with viewers of meshes.
+
+HTML of what the report is made of: tables that a script sorts and filters, charts that one can hover, pictures.
+
+The turnable meshes of the page: each object beside its simplified levels, coloured by saliency or by error.
+"""
 
 import base64
 import io
 import json
 import re
 from collections.abc import Iterable
+from contextlib import suppress
 from html import escape
 from importlib import resources
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 from PIL import Image
+from scipy.spatial import KDTree
 
+from haptic_glance.base.packing import SHADES, Level, ordered, pack, viewer_data
+from haptic_glance.lod import vertex_errors
+from haptic_glance.lod.export import shown_mesh
+from haptic_glance.mesh.mesh import Mesh
+
+from .drawing import colour_map, label, vivid
 from .items import Figure, Table
-from .markdown import is_numeric
-from .marks import table
-from .vector import has_marks_alone, vector
+from .marks import has_marks_alone, table, vector
+from .results import NotRun, Results, some
+from .tables import is_numeric
 
 WIDEST = 900  # pixels of a picture on the page
 LONG_TEXT = 40  # characters of a cell from which its column is wide
@@ -73,8 +87,9 @@ def prose(text: str) -> str:
 
 
 def part(name: str) -> str:
-    """A file of the package's page folder."""
-    return resources.files(__package__ or "").joinpath("page", name).read_text(encoding="utf-8")
+    """A file of the package's page folder, or of the viewer of meshes that the library's gallery has."""
+    folders = resources.files(__package__ or "") / "page", resources.files("haptic_glance.gallery") / "viewer"
+    return next(folder / name for folder in folders if (folder / name).is_file()).read_text(encoding="utf-8")
 
 
 def script_json(value: object) -> str:
@@ -126,3 +141,70 @@ def small_picture(path: Path, widest: int = WIDEST) -> str:
     packed = io.BytesIO()
     shown.save(packed, "WEBP", quality=60, method=4)  # 6 takes fifteen times as long for one per cent
     return base64.b64encode(packed.getvalue()).decode("ascii")
+
+
+METHODS = [  # those that the page offers, as far as they were run: each costs an object up to 5 kB
+    "glance", "itti", "thesis_ssim", "mesh_saliency", "salient_points", "heat_kernel", "random",
+]  # fmt: skip
+FINEST = 0.6  # of the object's faces: a finer level looks like the object itself and costs the page most
+STEP = 0.75  # of the faces of the finer level before it: a closer one looks the same
+
+
+def pack_viewer(results: Results) -> dict[str, Any]:
+    """dict for the page's script: objects, colours. Raises NotRun without meshes or points.
+
+    Objects are taken in the order of the settings; those that no longer fit into `viewer_kilobytes` are left out.
+    """
+    settings = results.settings
+    objects, left_out, room = [], [], 1000 * settings.viewer_kilobytes
+    for name in results.choose(settings.viewer_objects, settings.viewer_count):
+        packed = pack_object(results, name)
+        if len(packed["store"]) > room:
+            left_out.append(name)
+        else:
+            room -= len(packed["store"])
+            objects.append(packed)
+    some(objects, f"no mesh fits into report.viewer_kilobytes={settings.viewer_kilobytes}; raise it", "report")
+    colours = 255 * colour_map(np.linspace(0, 1, SHADES))
+    return viewer_data(objects, colours, left_out)
+
+
+def pack_object(results: Results, name: str) -> dict[str, Any]:
+    """One object: the full mesh, saliency and points by method, and chains of simplified meshes by method.
+
+    `faces` counts those of the object itself; the full mesh has at most `viewer_faces`. A level has `error`, the
+    distance of each vertex of the full mesh to it.
+    """
+    original, found = results.mesh(name), results.points(name)
+    full, nearest = shown_mesh(original, results.settings.viewer_faces)
+    place = KDTree(full.vertices)
+    shown = [method for method in METHODS if method in found] or list(found)
+    saliency = {
+        method: (label(method), vivid(values)[nearest])
+        for method, values in results.saliency(name).items()
+        if method in shown
+    }
+    points = {
+        method: (label(method), np.asarray(place.query(original.vertices[found])[1]))
+        for method, found in results.strong_points(name).items()
+        if method in shown
+    }
+    ladders = {}
+    for method in results.settings.viewer_lod_methods:
+        with suppress(NotRun):
+            found = [ordered(mesh)[0] for _, mesh in results.lods(name, method)]
+            levels = apart([mesh for mesh in found if len(mesh.faces) <= FINEST * len(full.faces)])
+            ladders[method] = (
+                label(method),
+                [Level(mesh, 100 * vertex_errors(mesh, full) / full.diagonal, len(mesh.faces)) for mesh in levels],
+            )
+    return pack(name, len(original.faces), full, saliency, points, ladders)
+
+
+def apart(levels: list[Mesh]) -> list[Mesh]:
+    """Those of the meshes, most faces first, that have STEP of the faces of the one kept before, or fewer."""
+    kept = []
+    for mesh in levels:
+        if not kept or len(mesh.faces) <= STEP * len(kept[-1].faces):
+            kept.append(mesh)
+    return kept

@@ -1,4 +1,11 @@
-"""Accuracy against cost: one chart for every stage, with the Pareto front drawn."""
+"""Charts of error against cost.
+
+Accuracy against cost: one chart for every stage, with the Pareto front drawn.
+
+What it costs to find an object's salient points, from the picture to the points.
+
+Which simplified meshes say something about the points that they keep.
+"""
 
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
@@ -11,13 +18,13 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import Locator, LogLocator, MaxNLocator
 from numpy.typing import ArrayLike
 
-from stages.kit.timing import CLOCK, WALL
+from haptic_glance.base.timing import CLOCK, WALL
+from haptic_glance.look.points import METHODS
 
+from .drawing import CYCLE, INK, MARKERS, SETTINGS, Spot, colours, label, place_names, plain_logarithm, plt
 from .items import Figure
-from .markdown import number
-from .names import Spot, place_names
-from .results import NotRun
-from .style import CYCLE, INK, MARKERS, SETTINGS, colours, label, plain_logarithm, plt
+from .results import NotRun, Results
+from .tables import number
 
 ON, PERHAPS, OFF = "yes", "perhaps", "no"  # of a choice: whether it is on the front
 CERTAIN, RESAMPLES, NORMAL = 0.95, 1000, 1.96
@@ -242,3 +249,58 @@ def _lines(rows: pd.DataFrame, front: pd.DataFrame, quality: str) -> list[tuple[
     bars = [((row["cost_ratio"], row["low"]), (row["cost_ratio"], row["high"])) for _, row in known.iterrows()]
     across, up = front[["cost_ratio", quality]].to_numpy().repeat(2, axis=0).T
     return [*bars, *pairwise(zip(across[1:], up[:-1], strict=True))]
+
+
+def attention_seconds(results: Results, dataset: str | None = None) -> dict[str, float]:
+    """dict method -> seconds of the median object of a set: all views, the maps of its channels, and the points."""
+    stages = ("salient_points", "conspicuity", "views")
+    points, channels, views = (results.rows(stage, dataset).dropna(subset=["seconds"]) for stage in stages)
+    points = points.drop_duplicates(["item", "method", "seconds"]).groupby("method")["seconds"].median()
+    channels = channels.groupby(["item", "method"])["seconds"].sum().groupby("method").median()
+    views = views[views["metric"] == "coverage"].groupby("item")["seconds"].sum().median()
+    return {str(method): seconds + _maps(str(method), views, channels) for method, seconds in points.items()}
+
+
+def _maps(method: str, views: float, channels: pd.Series) -> float:
+    """Seconds of the pictures and maps that a method reads; 0 for one that reads none (blind touch)."""
+    read = METHODS[method].channels if method in METHODS else ()
+    missing = [name for name in read if name not in channels]
+    if missing:
+        raise NotRun(f"no seconds of the channels {', '.join(missing)}", "conspicuity")
+    return views + sum(channels[name] for name in read) if read else 0.0
+
+
+PLAIN, QSLIM = "qem", "qslim"  # plain simplification: with and without the fit of ours
+UNIT = ["item", "method", "target"]
+NO_POINT, AS_PLAIN, NO_RING = "no point found", "equal to plain simplification", "less than one ring kept"
+
+
+def invalid_units(rows: pd.DataFrame) -> pd.Series:
+    """The cause of each invalid unit, indexed by item, method and target: its error says nothing about its points.
+
+    rows: those of the lod stage on one set, plain QEM among them. A unit is invalid where its method found no point,
+    where all its errors equal plain QEM's, or where the kept points have less than one ring in the mean. Units without
+    a mesh, and those of plain simplification, are neither valid nor invalid.
+    """
+    made = rows[rows["value"].notna() & ~rows["method"].isin([PLAIN, QSLIM])]
+    units = made.drop_duplicates(UNIT).set_index(UNIT)
+    keeps = ~units.index.get_level_values("method").str.endswith("-soft")  # the others weigh the error
+    causes = {
+        NO_POINT: keeps & (units["points"] == 0),
+        AS_PLAIN: units.index.isin(as_plain(rows)),
+        NO_RING: keeps & (units["rings"].fillna(0) < 1),
+    }
+    found = pd.Series(pd.NA, units.index, dtype="object", name="cause")
+    for cause, invalid in causes.items():
+        found = found.mask(found.isna() & invalid, cause)
+    return found.dropna()
+
+
+def as_plain(rows: pd.DataFrame) -> pd.MultiIndex:
+    """The units, item, method and target, whose errors all equal plain QEM's."""
+    keys = ["item", "target", "metric"]
+    errors = rows[rows["value"].notna() & (rows["metric"] != "faces")]
+    plain = errors.loc[errors["method"] == PLAIN, [*keys, "value"]]
+    both = errors[~errors["method"].isin([PLAIN, QSLIM])].merge(plain, on=keys, suffixes=("", "_plain"))
+    same = (both["value"] == both["value_plain"]).groupby([both[key] for key in UNIT]).all()
+    return pd.MultiIndex.from_frame(same.index[same].to_frame())

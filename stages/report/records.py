@@ -1,24 +1,44 @@
-"""The data behind every table, figure and chart: KIND/records.json, one line an item.
+"""The files of the report, and the parts to regenerate.
+
+The data behind every table, figure and chart: KIND/records.json, one line an item.
 
 An item's record has its data sets, the files of rows that it read, the methods, sizes and number of objects in them,
 and how many rows it shows. `files` has of each file of rows its hash, its commit where git knows it unchanged, and the
 clock of its seconds.
+
+What to type to measure the rows of a claim anew.
+
+The front page of a run on a folder of one's own: the page of `haptic-glance gallery`, from the pipeline's data.
 """
 
 import json
+import shutil
 import subprocess
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
+import yaml
 
-from stages.kit.files import read_json, sha256, write_text
-from stages.kit.rows import SUFFIX
+from haptic_glance.base.files import read_json, sha256, write_text
+from haptic_glance.cli.saliency import as_csv, points_of
+from haptic_glance.gallery.exhibit import Exhibit, Level
+from haptic_glance.gallery.page import build_page
+from haptic_glance.lod import vertex_errors
+from haptic_glance.lod.export import write_any
+from haptic_glance.lod.pictures import coloured, look
+from haptic_glance.look.points import Detection
+from haptic_glance.look.points.find import scores_of
+from haptic_glance.touch.places import UserMesh
+from stages.engine.rows import SUFFIX
+from stages.imprints.imprints import read_imprints
 
 from .items import Built, Figure, Table
-from .results import BENCH, Results
+from .results import BENCH, NotRun, Results
 
 FILE = "records.json"
 SIZES = ("target", "size", "touches", "cells", "pitch", "imprints", "frames", "image_rows", "tolerance")
@@ -100,3 +120,95 @@ def commit(path: Path) -> str:
         return "" if git("status", "--porcelain") else git("log", "-1", "--format=%h")
     except (OSError, subprocess.CalledProcessError):
         return ""
+
+
+COMPOSE = "python -m stages.compose"
+
+
+@cache
+def switch(conf: Path, dataset: str, stage: str) -> str:
+    """What to compose so that a stage runs on a set: nothing for the default run, an experiment, or the set alone.
+
+    conf: the folder of the configuration; what it lacks is not known.
+    """
+    defaults = _read(conf / "config.yaml").get("sets", ())
+    if dataset in defaults and stage in _read(conf / f"data/{dataset}.yaml").get("stages", ()):
+        return ""
+    for path in sorted((conf / "experiment").glob("*.yaml")):
+        chosen = _read(path)
+        if dataset in chosen.get("sets", ()) and stage in chosen.get("stages", [stage]):
+            return f"experiment={path.stem}"
+    return f"'sets=[{dataset}]'"
+
+
+def command(conf: Path, stage: str, sets: Iterable[str]) -> str:
+    """What measures a stage on all of the sets, and judges again."""
+    conf = conf.resolve()  # `switch` remembers folders, and the same relative one may be another folder later
+    together: dict[str, list[str]] = {}
+    for name in sets:
+        together.setdefault(switch(conf, name, stage), []).append(f"{stage}@{name}")
+    parts = (f"{COMPOSE} {chosen}".rstrip() + f" && dvc repro {' '.join(names)}" for chosen, names in together.items())
+    return " && ".join(parts) + " report"
+
+
+def _read(path: Path) -> dict:
+    return yaml.safe_load(path.read_text(encoding="utf-8")) or {} if path.is_file() else {}
+
+
+MODEL, COUNT = "glance", 6  # whose places and levels are shown, else those of the first method; and how many places
+UNITS = "units of the object's diameter"
+
+
+def write_own_page(results: Results, pages: Sequence[str], out: Path) -> None:
+    """Writes OUT/index.html and a folder of files a mesh below OUT/site; pages: the names of the site's other pages."""
+    for path in filter(Path.is_dir, (out / "site").iterdir()):
+        shutil.rmtree(path)
+    made, missing = [], dict(_refused(results))
+    for name in results.objects:
+        try:
+            made.append(exhibit_of(results, name, out / "site" / name))
+        except NotRun as error:
+            missing[name] = str(error)
+    links = " ".join(f'<a href="site/{page}.html">{page.capitalize()}</a>' for page in pages)
+    more = f'<section id="tables"><h2>Tables and charts</h2><p>{links}</p></section>' if links else ""
+    folder = results.workspace.params[results.sets[0]]["meshes"].get("folder", "FOLDER")
+    text = build_page("Your meshes", made, missing, [f"haptic-glance gallery {folder}"], out, more)
+    write_text(out / "index.html", text)
+
+
+def exhibit_of(results: Results, name: str, folder: Path) -> Exhibit:
+    """The findings of the pipeline on one object; its files are written into a folder. NotRun where it has no places.
+
+    Levels and imprints that were not made are named among the missing.
+    """
+    mesh, found = results.mesh(name), results.saliency(name)
+    model = MODEL if MODEL in found else found.those_of(list(found))[0]
+    saliency, vertices = found[model], results.points(name)[model][:COUNT]
+    points = points_of(mesh, Detection(vertices, None, saliency, scores_of(mesh, vertices, saliency)))
+    folder.mkdir(parents=True)
+    write_any(folder / "saliency.ply", coloured(mesh, saliency))
+    write_text(folder / "points.csv", as_csv(points))
+    levels, touches, images, missing = [], [], [], {}
+    try:
+        for target, level in results.lods(name, f"{model}-soft"):
+            path = folder / f"{name}_{target.replace('%', 'pct')}.ply"
+            write_any(path, level)
+            levels.append(Level(level, 100 * vertex_errors(level, mesh) / mesh.diagonal, path))
+    except NotRun as error:
+        missing["levels"] = str(error)
+    with suppress(NotRun, KeyError):
+        touched = read_imprints(results.folder("imprints") / f"{name}.npz")[model]
+        felt = dict(zip(touched.vertices.tolist(), touched.images, strict=True))
+        ranks = [rank for rank, vertex in enumerate(vertices.tolist(), 1) if vertex in felt]
+        touches, images = [{"index": rank} for rank in ranks], [felt[vertices[rank - 1]] for rank in ranks]
+    return Exhibit(
+        name, folder, folder, UserMesh(mesh, name), "z is up", saliency, points, levels, missing, touches,
+        np.array(images), look(mesh, saliency, vertices), UNITS,
+    )  # fmt: skip
+
+
+def _refused(results):
+    """(file, why) of each file that the stage meshes refused."""
+    with suppress(NotRun):
+        for row in results.table("meshes", "refused.csv").itertuples():
+            yield str(row.file), str(row.reason)

@@ -8,19 +8,18 @@ from typing import Any, TypeVar
 import numpy as np
 import pandas as pd
 
-from stages.conspicuity.storage import read_maps
-from stages.imprints import read_imprints
-from stages.kit import Mesh, Viewpoint
-from stages.kit.conf import conf_folder
-from stages.kit.files import files_below, object_files, read_arrays, read_mesh, read_table
-from stages.kit.params import load_params
-from stages.kit.rows import SUFFIX, read_rows
-from stages.kit.timing import CLOCK, WALL
-from stages.kit.workspace import Workspace
-from stages.salient_points import read_points, read_saliency, read_strong_points
-from stages.weights import read_learned_weights
+from haptic_glance.base.files import files_below, object_files, read_arrays, read_mesh, read_table
+from haptic_glance.base.timing import CLOCK, WALL
+from haptic_glance.look.camera import Viewpoint
+from haptic_glance.look.weights import read_learned_weights
+from haptic_glance.mesh.mesh import Mesh
+from stages.conspicuity.measure import read_maps
+from stages.engine.rows import SUFFIX, read_rows
+from stages.engine.settings import Workspace, conf_folder, load_params
+from stages.imprints.imprints import read_imprints
+from stages.salient_points.measure import read_points, read_saliency, read_strong_points
 
-from .schema import Params
+from . import Params
 
 Found = TypeVar("Found", bound=Sized)
 # Sets with the settings of a section of the thesis.
@@ -296,13 +295,15 @@ class Results:
         return maps[:, [stored.index(channel) for channel in wanted]], mask, viewpoints, list(wanted)
 
     def ground_truth(self, name: str, dataset: str | None = None) -> dict[str, np.ndarray]:
-        """Arrays of data/SET/weights/ground_truth/NAME.npz: density, points and more (stages.weights.training_data)."""
+        """Arrays of data/SET/weights/ground_truth/NAME.npz: density, points and more (stages.weights.training)."""
         path = self.folder("weights", dataset) / "ground_truth" / f"{name}.npz"
         what = f"no weights/ground_truth/{name}.npz: no ground truth of {name}, or not run"
         return read_arrays(there(path, what, "weights"))
 
     def learned(self, name: str, mesh: Mesh, dataset: str | None = None):
-        """What the weights stage learned, as it may be applied to this object: a stages.weights.LearnedWeights."""
+        """What the weights stage learned, as it may be applied to this object: a
+        haptic_glance.look.weights.LearnedWeights.
+        """
         path = self.folder("weights", dataset) / "weights.csv"
         return read_learned_weights(there(path, "no weights/weights.csv", "weights").parent, name, mesh)
 

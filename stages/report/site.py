@@ -7,15 +7,14 @@ from string import Template
 from types import ModuleType
 from typing import Any
 
-from stages.kit.files import write_text
+from haptic_glance.base.files import write_text
 
-from .cells import CLAIMS
-from .claims_page import claims_main
-from .counting import counts
+from .claims_page import claims_main, findings
 from .front import findings_html, questions, questions_html
 from .items import Figure, Table
 from .page import box, folded, image, lacks_cells, part, prose, script_json
-from .prose import findings
+from .tables import CLAIMS
+from .verdict import counts
 from .words import dataset_text
 
 HOME, FOLDER = "index.html", "site"

@@ -2,10 +2,10 @@
 
 from collections.abc import Sequence
 
-from stages.kit.split import Split
+from haptic_glance.know.split import Split
 
 from .claims import Claim, Pick, Side
-from .markdown import number
+from .drawing import label
 from .results import (
     COLOURED,
     MENDED_3_2,
@@ -19,7 +19,7 @@ from .results import (
     SETS_4_2,
     Results,
 )
-from .style import label
+from .tables import number
 
 METRICS = {  # "" where the claim's unit says it
     "accuracy": "", "recall": "mean of the objects' rates", "nss": "NSS", "auc": "AUC", "pcc": "PCC",

@@ -12,20 +12,17 @@ import functools
 import sys
 from pathlib import Path
 
-from stages.conspicuity import read_view_maps
-from stages.kit import Stopwatch
-from stages.kit.command import workspace_of_arguments
-from stages.kit.files import read_arrays, read_mesh
-from stages.kit.run import Rows, StageRun
-from stages.kit.workspace import Workspace
-from stages.weights import read_learned_weights
+from haptic_glance.base.files import read_arrays, read_mesh
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.look.points.methods import find_all, method_named, split_runnable
+from haptic_glance.look.points.options import Options
+from haptic_glance.look.weights import read_learned_weights
+from stages.conspicuity.measure import read_view_maps
+from stages.engine.run import Rows, StageRun
+from stages.engine.settings import Workspace, workspace_of_arguments
 
-from .agreement import agreement_rows
-from .measure import measurement_rows, summary
-from .methods import find_all, method_named, split_runnable
-from .options import Options
-from .schema import Params
-from .storage import write_points
+from . import Params
+from .measure import agreement_rows, measurement_rows, summary, write_points
 
 # Of the learned weights, what applies to an object: without ground truth in the set nothing here depends on the others.
 READS = (

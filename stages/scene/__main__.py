@@ -11,22 +11,30 @@ rendered is not rendered again, but for the network, which starts anew. Settings
 import functools
 from pathlib import Path
 
-from stages.kit import Stopwatch
-from stages.kit.command import workspace_of_arguments
-from stages.kit.kept_rows import KeptRows
-from stages.kit.run import Rows, StageRun
-from stages.kit.workspace import Workspace
-from stages.lod.variant import variant
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.lod.scene.chain import build_lod_chain
+from haptic_glance.lod.task import variant
+from stages.engine.objects import KeptRows
+from stages.engine.run import Rows, StageRun
+from stages.engine.settings import Workspace, workspace_of_arguments
 
-from .compare import OURS, PLAIN
+from . import COLUMNS, Params
+from .compare import OURS, PLAIN, write_chain
 from .export import export
-from .lod_chain import build_lod_chain
-from .measure import Case, measure, measure_network
-from .network import CURVE, evaluation_rows
-from .read import MESH, POINTS, read_object, report_missing, scene_of, scenes_of
+from .measure import (
+    CURVE,
+    MESH,
+    POINTS,
+    Case,
+    evaluation_rows,
+    measure,
+    measure_network,
+    read_object,
+    report_missing,
+    scene_of,
+    scenes_of,
+)
 from .rows import summary
-from .schema import COLUMNS, Params
-from .storage import write_chain
 
 LEVELS, PLAN = "scene/levels", "scene/plans/{}.npz"  # what earlier items of the run have made
 

@@ -1,23 +1,27 @@
-"""One scene at one tolerance: our plan, and those of other methods at the same error of the rendered frames."""
+"""Compares scenes, and stores them.
+
+One scene at one tolerance: our plan, and those of other methods at the same error of the rendered frames.
+
+The files of an LOD chain, data/SET/scene/levels/NAME/KIND_FACES.npz and KIND.csv with the errors; those of plans.
+"""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 
-from stages.kit import Stopwatch
-from stages.kit.mesh import Mesh
+from haptic_glance.base.files import read_arrays, read_mesh, read_table, write_arrays, write_mesh, write_table
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.lod.scene.budget import budget, cheapest
+from haptic_glance.lod.scene.camera import Scene
+from haptic_glance.lod.scene.chain import ERRORS, Level, finest
+from haptic_glance.lod.scene.frames import Frames, Plan
+from haptic_glance.mesh.mesh import Mesh
 
-from . import rivals
-from .budget import budget
-from .frames import Frames
-from .levels import Plan
-from .lod_chain import ERRORS, Level
+from . import online as rivals
 from .online import online
-from .place import Scene
-from .plan import cheapest
-from .storage import finest_levels, read_chains
 
 OURS, PLAIN = "ours", "plain"  # kinds of LOD chain: with the salient regions spared, and without
 MATCHED, ASKED = ("error", "displacement", "held"), "asked"  # see MethodPlan
@@ -192,3 +196,42 @@ def compare_network(
     """
     found = _tuned(setup, "network", _network(setup, counts), ours, matched)
     return [*found, _timed("network", ASKED, lambda: _network(setup, counts)(1.0))] if ASKED in matched else found
+
+
+DIGITS = 9  # decimals of an error, enough for a mesh of unit size
+
+
+def write_chain(folder: Path, kind: str, levels: Sequence[Level]) -> None:
+    """Writes the levels below the finest, and KIND.csv: faces and the errors of each."""
+    for level in levels[1:]:
+        write_mesh(folder / f"{kind}_{level.faces}.npz", level.mesh)
+    errors = [{name: round(error, DIGITS) for name, error in level.error.items()} for level in levels]
+    rows = [{"faces": level.faces} | error for level, error in zip(levels, errors, strict=True)]
+    write_table(folder / f"{kind}.csv", pd.DataFrame(rows))
+
+
+def read_chain(folder: Path, kind: str, full: Level) -> tuple[Level, ...]:
+    """The Levels of an object; full: the finest one, which all kinds share."""
+    table = read_table(folder / f"{kind}.csv").set_index("faces")
+    below = [Level(read_mesh(folder / f"{kind}_{faces}.npz"), dict(row)) for faces, row in table.iloc[1:].iterrows()]
+    return (full, *below)
+
+
+def read_chains(folder: Path, kind: str, full: Mapping[str, Level]) -> dict[str, tuple[Level, ...]]:
+    """dict name -> Levels; full: dict name -> the finest Level."""
+    return {name: read_chain(folder / name, kind, level) for name, level in full.items()}
+
+
+def finest_levels(meshes: Mapping[str, Mesh]) -> dict[str, Level]:
+    """dict name -> the finest Level, of dict name -> Mesh."""
+    return {name: finest(mesh) for name, mesh in meshes.items()}
+
+
+def write_plans(folder: Path, name: str, levels: Mapping[str, np.ndarray]) -> None:
+    """Writes the levels (frames, objects) of plans for one case; levels: dict method.matched -> levels."""
+    write_arrays(folder / f"plans/{name}.npz", **levels)
+
+
+def read_plans(folder: Path, name: str) -> dict[str, np.ndarray]:
+    """What write_plans wrote."""
+    return read_arrays(folder / f"plans/{name}.npz")

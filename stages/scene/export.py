@@ -1,11 +1,16 @@
-"""The levels that a plan shows as GLB files for viewers and engines, with a manifest.
+"""Exports a scene, and reads it back.
+
+The levels that a plan shows as GLB files for viewers and engines, with a manifest.
 
 glTF has +y up and metres, so meshes are turned and scaled; colours become vertex colours. MSFT_lod is a vendor
 extension of the Khronos registry: one node per level, the finest first, and as a hint the least share of the screen,
 here of its height, at which to show each. manifest.json has the same, and the errors, without an extension. Every file
 is loaded again after it is written, and checked.
+
+GLB files read again after they were written, and compared with what was written.
 """
 
+import json
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -15,17 +20,15 @@ import pandas as pd
 import trimesh
 from trimesh.exchange.gltf import export_glb
 
-from stages.kit import Mesh
-from stages.kit.files import read_mesh, read_table, whole_file, write_json
-from stages.meshes.up import Y_UP
+from haptic_glance.base.files import read_mesh, read_table, whole_file, write_json
+from haptic_glance.lod.scene.camera import Scene, world_mesh
+from haptic_glance.lod.scene.chain import Level, finest
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.up import Y_UP
 
-from .compare import OURS
-from .loaded_back import EXTENSION, check_glb, read_lod
-from .lod_chain import Level, finest
-from .place import Scene, world_mesh
-from .read import MESH
-from .schema import Params
-from .storage import read_chain
+from . import Params
+from .compare import OURS, read_chain
+from .measure import MESH
 
 FOLDER, MANIFEST = "export", "manifest.json"
 
@@ -143,3 +146,46 @@ def _trimesh(mesh):
 def _fullest_frame(plan):
     shown = plan.groupby("frame")["faces"].sum()
     return int(shown.idxmax()) if len(shown) else 0
+
+
+EXTENSION = "MSFT_lod"
+SINGLE = 1e-6  # of the largest coordinate: glTF stores 4 bytes a number
+
+
+def check_glb(path: Path, meshes: Sequence[Mesh], names: Sequence[str]) -> None:
+    """Raises ValueError that names the file unless it holds these Meshes under these names, in their order."""
+    try:
+        found = trimesh.load_scene(path, file_type="glb", process=False).geometry
+    except Exception as error:  # whatever the reader raises: the file is at fault
+        raise ValueError(f"{path} cannot be loaded back: {error}") from error
+    if list(found) != list(names):
+        raise ValueError(f"{path} came back with {', '.join(found) or 'nothing'} in place of {', '.join(names)}")
+    for name, mesh in zip(names, meshes, strict=True):
+        fault = _fault(found[name], mesh)
+        if fault:
+            raise ValueError(f"{path}: {name} came back with other {fault} than were written")
+
+
+def _fault(found, mesh):
+    """What of a loaded mesh differs from the Mesh: "faces", "positions" or "colours"; or ""."""
+    if not np.array_equal(found.faces, mesh.faces):
+        return "faces"
+    tolerance = SINGLE * np.abs(mesh.vertices).max(initial=0)
+    if found.vertices.shape != mesh.vertices.shape or np.abs(found.vertices - mesh.vertices).max(initial=0) > tolerance:
+        return "positions"
+    same = mesh.colors is None or np.array_equal(found.visual.vertex_colors[:, :3], mesh.colors)
+    return "" if same else "colours"
+
+
+def read_lod(path: Path) -> list[str]:
+    """Names of the levels, finest first, of a GLB with MSFT_lod. Raises ValueError where it has none."""
+    content = path.read_bytes()
+    length = int.from_bytes(content[12:16], "little")
+    try:
+        nodes = json.loads(content[20 : 20 + length])["nodes"]
+        for k, node in enumerate(nodes):
+            if EXTENSION in node.get("extensions", {}):
+                return [nodes[j]["name"] for j in (k, *node["extensions"][EXTENSION]["ids"])]
+    except (ValueError, LookupError, TypeError, AttributeError, RecursionError) as error:
+        raise ValueError(f"{path} is damaged: {error}") from None
+    raise ValueError(f"{path} has no {EXTENSION}")

@@ -1,28 +1,52 @@
-"""The jobs of one scene and tolerance: read the levels, compare the methods to choose them, return the rows.
+"""Measures a scene: its objects, its levels and the network that predicts them.
+
+The jobs of one scene and tolerance: read the levels, compare the methods to choose them, return the rows.
 
 The network is a job of its own: it alone depends on objects that are not in the scene.
+
+From settings and data/ to a Scene, its meshes, and the options that spare their salient regions.
+
+The thesis's network for scenes: the faces of each object at each distance, learned from other objects (T3.1.3).
 """
 
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from stages.kit.files import write_arrays, write_table
-from stages.kit.run import Rows
-from stages.salient_points import read_strong_points
+from haptic_glance.base.files import read_mesh, read_table, write_arrays, write_table
+from haptic_glance.lod.scene.camera import Placed, Scene, bounds, fly
+from haptic_glance.lod.scene.frames import Frames, Plan
+from haptic_glance.lod.scene.pictures import displacement_picture, shaded
+from haptic_glance.lod.task import variant
+from haptic_glance.mesh.mesh import Mesh
+from stages.engine.run import Rows
+from stages.lod.cell import ObjectInputs, keep_rule
+from stages.salient_points.measure import read_saliency, read_strong_points
 
-from .compare import ASKED, MATCHED, OTHERS, OURS, MethodPlan, SceneSetup, compare, compare_network, load_setup
-from .counts.evaluate import COMBINED
-from .levels import Plan
-from .network import fit_network, predicted_counts
-from .pictures import displacement_picture, shaded
-from .read import POINTS, read_object, scene_of
+from . import Params
+from .compare import (
+    ASKED,
+    MATCHED,
+    OTHERS,
+    OURS,
+    MethodPlan,
+    SceneSetup,
+    compare,
+    compare_network,
+    load_setup,
+    read_plans,
+    write_plans,
+)
+from .counts import Counts, evaluate_counts, fit_counts, read_curves
+from .counts.evaluate import COMBINED, Map
+from .counts.models import Points
+from .online import draw_scene
 from .rows import frame_rows, object_rows, plan_rows, saved_rows
-from .schema import Params
-from .storage import read_plans, write_plans
 
 SHOWN = ("full", "uniform", OURS)  # methods of the pictures for the report
 FRAMED = ("full", "uniform", "uniform_size", "network", OURS, "ours_plain")  # with rows of every frame
@@ -172,3 +196,113 @@ def _rgb(setup, frame, levels):
 
 def _displacement(setup, frame, levels):
     return displacement_picture(setup.frames, frame, levels).astype(np.float16)
+
+
+MESH, POINTS = "meshes/{}.npz", "salient_points/{}.npz"  # of an object, below data/SET
+SIZES = "meshes/manifest.csv"  # in metres, of all objects
+
+
+def scene_of(settings: Params, names: Sequence[str], factor: float = 1.0) -> tuple[Scene, list[str]]:
+    """(Scene of the settings, its objects that are not among `names`), the tolerance times `factor`.
+
+    Where none of its objects is among `names`, as with meshes of one's own, the named ones take their places in order,
+    once each. Raises ValueError where the scene has no place, and as Scene and fly do.
+    """
+    missing = list(dict.fromkeys(item.name for item in settings.objects if item.name not in names))
+    present = [(item.name, item) for item in settings.objects if item.name in names]
+    present = present or list(zip(names, settings.objects, strict=False))
+    if not present:
+        raise ValueError(f"scene {settings.name} has no object, or data/SET/meshes is empty: choose another scene")
+    placed = tuple(Placed(name, _place(item), item.turn, item.size) for name, item in present)
+    if len(settings.screen) != 2:
+        raise ValueError(f"scene.screen is {settings.screen}: give rows and columns")
+    eyes, targets = ([getattr(key, end) for key in settings.camera] for end in ("eye", "target"))
+    cameras = tuple(fly(eyes, targets, settings.frames, settings.angle, settings.screen))
+    scene = Scene(placed, cameras, settings.tolerance * factor, settings.kind, settings.limit, settings.hold)
+    return scene, missing
+
+
+def _place(item):
+    if len(item.position) != 3:
+        raise ValueError(f"{item.name} stands at {item.position}: give x, y, z in metres")
+    x, y, z = item.position
+    return x, y, z
+
+
+def scenes_of(settings: Params, names: Sequence[str], data: Path, seed: int) -> list[Params]:
+    """The settings of each scene: the one that they are of, or as many as they let be drawn at random from `names`."""
+    if not settings.random:
+        return [settings]
+    boxes = {name: bounds(read_mesh(data / MESH.format(name))) for name in names}
+    table = read_table(data / SIZES, {"object": str})
+    sizes = dict(zip(table["object"], table["size"].astype(float), strict=True))
+    return [draw_scene(settings, number, boxes, sizes, seed) for number in range(settings.random)]
+
+
+def report_missing(settings: Params, scene: Scene, missing: Sequence[str]) -> None:
+    """Prints which objects are missing, and which take their places where none of the scene's own is present."""
+    if missing:
+        named = {item.name for item in settings.objects}
+        others = ", ".join(dict.fromkeys(item.name for item in scene.objects if item.name not in named))
+        how = f"with {others} in their places" if others else "without them"
+        print(f"scene: {settings.name} continues {how}; not in data/SET/meshes: {', '.join(missing)}", file=sys.stderr)
+
+
+def read_object(data: Path, name: str, method: str) -> tuple[Mesh, dict[str, Any], np.ndarray | None]:
+    """(Mesh, options of simplify, saliency (n,) or None) of an object in data/SET, for a method of the lod stage."""
+    path = data / POINTS.format(name)
+    mesh, saliency = read_mesh(data / MESH.format(name)), read_saliency(path)
+    chosen = variant(method)
+    rule = keep_rule(ObjectInputs(name, mesh, read_strong_points(path), saliency), chosen)
+    options = {"keep": rule.vertices, "rings": rule.rings, "weights": rule.weights}
+    return mesh, options, saliency.get(chosen.method or "")
+
+
+CURVE = "lod/{}/curve.csv"  # of an object, below data/SET
+
+
+def lod_rows(data: Path, objects: Sequence[str]) -> pd.DataFrame:
+    """The rows of the lod stage for some objects. Raises ValueError where it has none."""
+    paths = [data / CURVE.format(name) for name in objects]
+    tables = [read_table(path, {"item": str}) for path in paths if path.exists()]
+    if not tables:
+        raise ValueError(f"no {data / CURVE.format('NAME')} to learn from: run `dvc repro lod@{data.name}`")
+    return pd.concat(tables)
+
+
+def evaluation_rows(data: Path, objects: Sequence[str], seed: int, side_by_side: Map) -> Rows:
+    """Rows of `evaluate_counts` on all these objects."""
+    meshes = {name: read_mesh(data / MESH.format(name)) for name in objects}
+    points = {name: read_strong_points(data / POINTS.format(name)) for name in objects}
+    curves = read_curves(lod_rows(data, objects), {name: len(mesh.faces) for name, mesh in meshes.items()})
+    return evaluate_counts(curves, meshes, points, seed, side_by_side)
+
+
+def fit_network(data: Path, objects: Sequence[str], focal: float, combinations: Sequence[str], seed: int) -> Counts:
+    """The thesis's network, trained on the measured curves of some objects.
+
+    objects: those outside the scene; focal: pixels per unit at distance one. Raises ValueError where there is no curve
+    to train on.
+    """
+    if not objects:
+        raise ValueError("no object outside the scene to train on")
+    rows = lod_rows(data, objects)
+    faces = {name: len(read_mesh(data / MESH.format(name)).faces) for name in objects}
+    return fit_counts(read_curves(rows, faces), combinations, "network", seed, focal)
+
+
+def predicted_counts(
+    model: Counts, frames: Frames, points: Sequence[Points], diagonals: np.ndarray, tolerance: float
+) -> np.ndarray:
+    """(frames, objects) f8 face counts that the model predicts.
+
+    points: a number, or dict combination -> number, per object; diagonals: in metres, per object. Distances are in
+    diagonals of the object, as in training.
+    """
+    distance = frames.distance / diagonals
+    pixels = np.full(len(distance), tolerance)
+    columns = [
+        np.asarray(model.faces_needed(pixels, distance[:, item], level.faces, points[item]))
+        for item, level in enumerate(frames.full)
+    ]
+    return np.stack(columns, axis=1).astype(np.float64)

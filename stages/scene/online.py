@@ -1,12 +1,23 @@
-"""Levels chosen frame by frame: a planner that knows the frame at hand and those before it, and none ahead."""
+"""Plans of levels while a camera moves, and their rivals.
 
-from collections.abc import Callable, Sequence
+Levels chosen frame by frame: a planner that knows the frame at hand and those before it, and none ahead.
+
+Scenes drawn at random: what stands where on a ground, and the path of a camera that comes near.
+
+Other methods to choose the levels of a scene: all faces, the usual share by distance, a model's count.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from .frames import Frames
-from .levels import Plan
-from .lod_chain import Level
+from haptic_glance.base.rng import rng
+from haptic_glance.lod.scene.camera import Box
+from haptic_glance.lod.scene.chain import Level
+from haptic_glance.lod.scene.frames import Frames, Plan
+
+from . import Item, Keyframe, Params
 
 BEHIND = 1e-9  # metres: the depth of what reaches behind the camera
 Error = Callable[[int, int], float]  # (frame, level) -> error on the screen
@@ -79,3 +90,159 @@ def _scale(frames, item):
     depths = np.array([camera.project(pose.corners())[2].min() for camera in frames.scene.cameras])
     focal = np.array([camera.focal for camera in frames.scene.cameras])
     return pose.scale * focal / np.maximum(depths, BEHIND)
+
+
+GROUND = 0.6, 2.0  # metres a side, from a small table to a rug
+FEWEST, MOST = 6, 12  # objects
+LARGER = 0.8, 1.25  # times the object's own size
+GAP = 0.01  # metres between two objects, which are taken as upright cylinders
+TRIES = 100  # places tried for an object before the ground grows
+GROWTH = 1.1
+KEYS = 4  # keyframes of the camera
+FAR, NEAR = (1.0, 1.6), (0.6, 1.0)  # metres from the target at the first, in sides of the ground, and at the last
+ASIDE = 60.0  # degrees about the vertical between two keyframes, at most
+RISE = 20.0, 40.0  # degrees above the horizon
+LOWEST = 0.45  # metres: no eye is inside an object, of which none is that high
+
+
+def draw_scene(
+    settings: Params, number: int, boxes: Mapping[str, Box], sizes: Mapping[str, float], seed: int
+) -> Params:
+    """The settings with the objects and the camera path of random scene `number`, named random_NUMBER.
+
+    boxes: dict name -> (low, high) in units of the mesh, sizes: dict name -> metres of the longest side, of the objects
+    that may stand there. Each of 6 to 12 of them (fewer where there are no more) stands once, at 0.8 to 1.25 of its
+    size, turned at random, at even odds anywhere on a square ground; the circles round their feet do not overlap. The
+    camera comes near from afar, to look at one of them in the end, and the others or the middle on its way.
+    """
+    random = rng(seed, f"scene {number}")
+    count = min(int(random.integers(FEWEST, MOST + 1)), len(boxes))
+    names = random.permutation(sorted(boxes))[:count].tolist()
+    side = float(np.exp(random.uniform(*np.log(GROUND))))
+    lengths = [sizes[name] * random.uniform(*LARGER) for name in names]
+    radii = [length * _footprint(boxes[name]) for name, length in zip(names, lengths, strict=True)]
+    places, side = _places(radii, side, random)
+    turns = random.uniform(0, 360, count)
+    objects = [
+        Item(name, [*map(float, place), 0.0], float(turn), float(length))
+        for name, place, turn, length in zip(names, places, turns, lengths, strict=True)
+    ]
+    return replace(settings, name=scene_name(number), objects=objects, camera=_camera(objects, side, random))
+
+
+def scene_name(number: int) -> str:
+    """The name of a random scene, for the tables."""
+    return f"random_{number:02d}"
+
+
+def _footprint(box):
+    """Radius of the circle round a box's foot, over its longest side."""
+    extent = box[1] - box[0]
+    return float(np.hypot(extent[0], extent[1]) / 2 / extent.max())
+
+
+def _places(radii: Sequence[float], side: float, random: np.random.Generator) -> tuple[np.ndarray, float]:
+    """((o, 2) middles of circles that do not overlap, on a square round 0; its side, which grows where it is full)."""
+    found = np.zeros((0, 2))
+    while len(found) < len(radii):
+        radius, others = radii[len(found)], np.array(radii[: len(found)])
+        reach = max(side / 2 - radius, 0)
+        tried = random.uniform(-reach, reach, (TRIES, 2))
+        apart = np.linalg.norm(tried[:, None] - found, axis=2) >= others + radius + GAP
+        free = np.flatnonzero(apart.all(axis=1))
+        if len(free):
+            found = np.vstack([found, tried[free[0]]])
+        else:
+            side *= GROWTH
+    return found, side
+
+
+def _camera(objects: Sequence[Item], side: float, random: np.random.Generator) -> list[Keyframe]:
+    targets = [[0.0, 0.0, 0.05], *([*item.position[:2], item.size / 2] for item in objects)]
+    seen = [0, *random.integers(len(targets), size=KEYS - 2), random.integers(1, len(targets))]
+    distances = np.geomspace(side * random.uniform(*FAR) + 0.5, random.uniform(*NEAR), KEYS)
+    turns = np.radians(random.uniform(0, 360) + np.cumsum(random.uniform(-ASIDE, ASIDE, KEYS)))
+    rises = np.radians(random.uniform(*RISE, KEYS))
+    along = np.stack([np.cos(turns) * np.cos(rises), np.sin(turns) * np.cos(rises), np.sin(rises)], axis=1)
+    eyes = np.array([targets[k] for k in seen]) + along * distances[:, None]
+    eyes[:, 2] = np.maximum(eyes[:, 2], LOWEST)
+    return [Keyframe(eye.tolist(), targets[k]) for eye, k in zip(eyes, seen, strict=True)]
+
+
+HALVINGS = 14  # of the span of the tuned factor, which is then known to 0.1 %
+SPAN = (1e-3, 1e3)
+
+
+def full(frames: Frames) -> Plan:
+    """The Plan with all faces of every object."""
+    return Plan(np.zeros(frames.shape, dtype=np.int64), tuple((level,) for level in frames.full), frames)
+
+
+def uniform(frames: Frames, chains: Sequence[Sequence[Level]], full_detail: float, by_size: bool = False) -> Plan:
+    """The usual practice: every object reduced to the same share of faces, chosen by its distance alone.
+
+    chains: the levels of each object, the same from which a budget chooses. All faces up to the distance `full_detail`,
+    in metres, half of them at twice that, a quarter at four times, and so on, by the nearest level: the error on the
+    surface is about inversely proportional to the faces, and on the screen to the distance. by_size: distances in
+    lengths of the object, so that the size on the screen decides, as in game engines.
+    """
+    distance = frames.distance
+    if by_size:
+        distance = distance / [placed.size for placed in frames.scene.objects]
+    return by_counts(frames, chains, np.minimum(full_detail / distance, 1) * [chain[0].faces for chain in chains])
+
+
+def by_counts(frames: Frames, chains: Sequence[Sequence[Level]], counts: np.ndarray) -> Plan:
+    """The Plan of the levels nearest, in ratio, to the face counts (frames, objects)."""
+    faces = [np.log([level.faces for level in chain]) for chain in chains]
+    nearest = [np.abs(np.log(column)[:, None] - own).argmin(axis=1)
+               for own, column in zip(faces, counts.T, strict=True)]  # fmt: skip
+    return Plan(np.stack(nearest, axis=1), chains, frames)
+
+
+def equal(plan: Plan, limit: int) -> Plan:
+    """The Plan with the same count for all objects in view in each frame that has more than `limit` faces.
+
+    Each takes its finest level of at most that count, the largest with which the frame is within the limit.
+    """
+    levels = plan.levels.copy()
+    for frame in np.flatnonzero(plan.faces.sum(axis=1) > limit):
+        visible = np.flatnonzero(plan.frames.in_view[frame])
+        chains = [[level.faces for level in plan.chains[item]] for item in visible.tolist()]
+        for count in sorted({count for counts in chains for count in counts}, reverse=True):
+            chosen = [next((k for k, n in enumerate(counts) if n <= count), len(counts) - 1) for counts in chains]
+            if sum(counts[k] for counts, k in zip(chains, chosen, strict=True)) <= limit:
+                levels[frame, visible] = chosen
+                break
+    return Plan(levels, plan.chains, plan.frames)
+
+
+def tune(plan_of: Callable[[float], Plan], measure: Callable[[Plan], float], target: float) -> Plan:
+    """The Plan of `plan_of(factor)` whose `measure` is closest to `target` from above: no more faces than at equality.
+
+    Larger factors must give coarser plans. Where even the coarsest has less error, that one.
+    """
+    low, high = np.log(SPAN)
+    coarse = plan_of(float(np.exp(high)))
+    for _ in range(HALVINGS):
+        middle = (low + high) / 2
+        plan = plan_of(float(np.exp(middle)))
+        if measure(plan) >= target:
+            high, coarse = middle, plan
+        else:
+            low = middle
+    return coarse
+
+
+def tune_below(plan_of: Callable[[float], Plan], measure: Callable[[Plan], float], limit: float) -> Plan:
+    """As `tune`: the coarsest Plan found whose `measure` is at most `limit`."""
+    low, high = np.log(SPAN)
+    fine = plan_of(float(np.exp(low)))
+    for _ in range(HALVINGS):
+        middle = (low + high) / 2
+        plan = plan_of(float(np.exp(middle)))
+        if measure(plan) <= limit:
+            low, fine = middle, plan
+        else:
+            high = middle
+    return fine

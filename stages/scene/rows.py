@@ -4,11 +4,11 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from stages.kit.rng import rng
+from haptic_glance.base.rng import rng
+from haptic_glance.lod.scene.frames import Plan
+from haptic_glance.lod.scene.pictures import picture_error
 
 from .compare import MethodPlan, SceneSetup
-from .levels import Plan
-from .pictures import picture_error
 
 RESAMPLES = 2000
 SAVED_AGAINST = ("uniform", "uniform_size", "network")

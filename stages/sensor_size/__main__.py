@@ -16,22 +16,19 @@ import numpy as np
 from sklearn import config_context
 from threadpoolctl import threadpool_limits
 
-from stages.imprints import press_many, touchable, warm_up
-from stages.kit import Stopwatch
-from stages.kit.command import workspace_of_arguments
-from stages.kit.files import read_mesh
-from stages.kit.rng import rng
-from stages.kit.run import Rows, StageRun
-from stages.kit.split import Split
-from stages.kit.stats import interval_metrics
-from stages.kit.workspace import Workspace
-from stages.meshes.classes import read_classes
-from stages.salient_points import read_points, read_saliency
+from haptic_glance.base.files import read_mesh
+from haptic_glance.base.rng import rng
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.know.split import Split
+from haptic_glance.touch import press_many, touchable, warm_up
+from stages.engine.run import Rows, StageRun
+from stages.engine.settings import Workspace, workspace_of_arguments
+from stages.engine.statistics import interval_metrics
+from stages.meshes.collect import read_classes
+from stages.salient_points.measure import read_points, read_saliency
 
-from .extent import ARRAY, EXTENTS, TOUCHES, sample_vertices
-from .protocol import evaluate
-from .schema import COLUMNS, Params
-from .smallest import choice_repeatability, smallest_sufficient
+from . import COLUMNS, Params
+from .protocol import ARRAY, EXTENTS, TOUCHES, choice_repeatability, evaluate, sample_vertices, smallest_sufficient
 
 
 def process(item: str, folder: Path, data: Path, classes: Mapping[str, list[str]], settings: Params, seed: int) -> Rows:

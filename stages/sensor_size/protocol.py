@@ -1,12 +1,31 @@
-"""The protocol of T figure 4.10: train on some objects of every class, test on an object that was not touched."""
+"""The protocol of sensor sizes, and the smallest sensor.
+
+The protocol of T figure 4.10: train on some objects of every class, test on an object that was not touched.
+
+Where the touches of one sample lie: at separate points, in the salient region around one, or in a disc (T6.3).
+
+The four classifiers of T figure 4.11 (T4.3.1).
+
+The smallest sensor that is sufficient, and the repeatability of that choice.
+"""
+
+from collections.abc import Mapping
 
 import numpy as np
+from numpy.typing import ArrayLike
+from scipy.sparse.csgraph import connected_components
+from sklearn.ensemble import BaggingClassifier
+from sklearn.neighbors import KNeighborsClassifier
+from sklearn.pipeline import Pipeline, make_pipeline
+from sklearn.preprocessing import StandardScaler
+from sklearn.svm import SVC
 
-from stages.kit import Stopwatch
-from stages.kit.rng import rng
-from stages.kit.split import Split
-
-from .classifiers import classifier
+from haptic_glance.base.rng import rng
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.know.network import FeedForward
+from haptic_glance.know.split import Split
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.touch import touchable
 
 COMPONENTS = 10  # T4.3.1
 HOLDOUT = 0.25  # T4.2.4
@@ -91,3 +110,118 @@ def check_imprints(imprints: dict[str, list[np.ndarray]]) -> None:
         raise ValueError(
             f"{fewest} touches are left to train on, fewer than {COMPONENTS} components need: touch more often"
         )
+
+
+EXTENTS = ("points", "region", "disc")
+ARRAY = "16-0.01"  # CELLS-PITCH of the array that they are tried with
+TOUCHES = 5  # of a sample
+SHARE = 0.8  # of a point's saliency, above which what is connected with it is one region
+
+
+def sample_vertices(
+    mesh: Mesh, saliency: np.ndarray, points: np.ndarray, extent: str, random: np.random.Generator
+) -> np.ndarray:
+    """(k * TOUCHES,) vertices to touch, each TOUCHES of them one sample that begins with one of the first k points.
+
+    saliency (n,) in 0..1; points: vertex ids, most salient first, of which k = len(points) // TOUCHES begin a sample.
+    extent `points`: the others are the remaining points, dealt out in turn; `region`: random vertices, by area, of
+    `salient_region` around the point; `disc`: of a disc around it with the region's area. So every extent touches as
+    often, in as many samples.
+    """
+    centres = points[: len(points) // TOUCHES]
+    if extent == "points":
+        return points[: len(centres) * TOUCHES].reshape(TOUCHES, -1).T.ravel()
+    chosen = []
+    for centre in centres:
+        inside = salient_region(mesh, saliency, centre)
+        inside = inside if extent == "region" else disc(mesh, centre, mesh.vertex_areas[inside].sum())
+        others = inside[(inside != centre) & touchable(mesh, inside)]
+        weights = mesh.vertex_areas[others]
+        drawn = random.choice(others, TOUCHES - 1, replace=len(others) < TOUCHES - 1, p=weights / weights.sum())
+        chosen.append([centre, *drawn])
+    return np.ravel(chosen)
+
+
+def salient_region(mesh: Mesh, saliency: np.ndarray, centre: int) -> np.ndarray:
+    """Vertices that are connected with `centre` through vertices of at least SHARE of its saliency.
+
+    Where fewer than TOUCHES of them can be touched, as many vertices nearest to the centre.
+    """
+    strong = np.flatnonzero(saliency >= SHARE * saliency[centre])
+    _, labels = connected_components(mesh.adjacency[strong][:, strong], directed=False)
+    found = strong[labels == labels[np.searchsorted(strong, centre)]]
+    return found if touchable(mesh, found).sum() >= TOUCHES else disc(mesh, centre, 0.0)
+
+
+def disc(mesh: Mesh, centre: int, area: float) -> np.ndarray:
+    """The touchable vertices nearest to `centre`, as many as have the area together, and at least TOUCHES."""
+    order = np.argsort(np.linalg.norm(mesh.vertices - mesh.vertices[centre], axis=1), kind="stable")
+    order = order[touchable(mesh, order)]
+    return order[: max(TOUCHES, np.searchsorted(np.cumsum(mesh.vertex_areas[order]), area) + 1)]
+
+
+TREES = 50  # T4.3.1 bags its trees and gives no number
+ITERATIONS = 100_000  # of the SVM; a thousand touches usually need a few thousand
+EPOCHS = 30  # T4.3.1 gives none; the loss is constant by then
+
+
+def knn(seed: int = 0) -> KNeighborsClassifier:
+    """The nearest sample by Euclidean distance; T4.3.1 gives no number of neighbours, T4.2.4 gives one."""
+    return KNeighborsClassifier(n_neighbors=1)
+
+
+def svm(seed: int = 0) -> SVC:
+    """Support vector machine with a quadratic kernel, by sequential minimal optimisation.
+
+    Some imprints make libsvm's steps run in a circle: it then stops at ITERATIONS, with scikit-learn's warning.
+    """
+    return SVC(kernel="poly", degree=2, coef0=1.0, gamma="scale", max_iter=ITERATIONS)
+
+
+def decision_tree(seed: int = 0) -> BaggingClassifier:
+    """Bootstrap-aggregated decision trees (Breiman 1996)."""
+    return BaggingClassifier(n_estimators=TREES, random_state=seed)
+
+
+def deep_learning(seed: int = 0) -> Pipeline:
+    """The rectified network of T4.2.4 on standardised components; T4.3.1 gives no other sizes."""
+    return make_pipeline(StandardScaler(), FeedForward(hidden=(50, 50), epochs=EPOCHS, seed=seed))
+
+
+CLASSIFIERS = {"knn": knn, "svm": svm, "decision_tree": decision_tree, "deep_learning": deep_learning}
+
+
+def classifier(name: str, seed: int = 0) -> KNeighborsClassifier | SVC | BaggingClassifier | Pipeline:
+    """The estimator of one classifier. Raises ValueError for a name that is not in CLASSIFIERS."""
+    if name not in CLASSIFIERS:
+        raise ValueError(f"unknown classifier {name}: choose one of {', '.join(CLASSIFIERS)}")
+    return CLASSIFIERS[name](seed)
+
+
+RESAMPLES = 1000  # of the objects: shares then have an error below three points
+
+
+def smallest_sufficient(accuracy: dict[tuple[int, float], float], slack: float) -> tuple[int, float]:
+    """Key (cells, pitch) of the smallest array whose accuracy is at most `slack` below the best one's.
+
+    accuracy: {(cells per side, pitch): mean accuracy}. The smallest array has the fewest sensels, since each is wired
+    and read. Of equal numbers it is the narrower array, which fits into more places. Raises ValueError for no array or
+    a negative slack.
+    """
+    if not accuracy or not slack >= 0:
+        raise ValueError(f"give at least one array and a slack of 0 or more, got {len(accuracy)} and {slack}")
+    floor = max(accuracy.values()) - slack
+    return min(key for key, value in accuracy.items() if value >= floor)
+
+
+def choice_repeatability(scores: Mapping[tuple[int, float], ArrayLike], slack: float, seed: int = 0) -> float:
+    """The share of bootstrap resamples of the objects in which `smallest_sufficient` chooses the same array.
+
+    scores: {(cells per side, pitch): accuracies of the objects, in one order}. The arrays differ by less than the width
+    of their intervals, so that a choice without its repeatability could be chance.
+    """
+    table = np.array(list(scores.values()), dtype=np.float64)
+    chosen = smallest_sufficient(dict(zip(scores, table.mean(axis=1), strict=True)), slack)
+    resampled = np.random.default_rng(seed).integers(table.shape[1], size=(RESAMPLES, table.shape[1]))
+    resamples = (dict(zip(scores, means, strict=True)) for means in table[:, resampled].mean(axis=2).T)
+    return sum(smallest_sufficient(means, slack) == chosen for means in resamples) / RESAMPLES

@@ -1,23 +1,30 @@
-"""Classification of objects by following a contour: networks and conventional classifiers (T4.4.7 to T4.4.10).
+"""Classification of objects by following a contour: networks and conventional classifiers (T4.4.7 to T4.4.10)."""
 
-Public names: directional_std, sequence_features, series, ImageNet, NormalNet.
-"""
+from dataclasses import dataclass
 
-from typing import TYPE_CHECKING
+COLUMNS = {
+    "classifier": "cnn_images, cnn_normals, cnn (the sum of their probabilities), or a name of CONVENTIONAL",
+    "repetition": "number of the random split, or of the object of each class that was tested",
+    "training": "which of the trainings for these objects",
+    "frames": "touches of a sequence",
+    "cells": "sensels along each side of an imprint",
+    "classes": "number of classes",
+    "sequences": "number of sequences, to train and to test",
+    "predicted": "the class that `value` sequences of the class `group` were taken for",
+    "layer": "a layer of a network, which has `value` parameters",
+    "kind": "what it is: Conv3d, ...",
+    "output": "the shape of what it gives",
+}
 
-from .contourlet import directional_std
-from .series import sequence_features, series
 
-if TYPE_CHECKING:
-    from .networks import ImageNet, NormalNet
+@dataclass
+class Params:
+    """Section `sequences` of params.yaml."""
 
-__all__ = ["ImageNet", "NormalNet", "directional_std", "sequence_features", "series"]
-
-
-def __getattr__(name: str) -> object:
-    # torch takes seconds to import, and whoever reads only the schema does without it.
-    if name not in ("ImageNet", "NormalNet"):
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from . import networks
-
-    return getattr(networks, name)
+    repetitions: int
+    trainings: int
+    image_epochs: int
+    normal_epochs: int
+    smaller_strategy: str
+    smaller: list[str]
+    smaller_networks: list[str]

@@ -15,17 +15,15 @@ from typing import Any
 import numpy as np
 import torch
 
-from stages.kit.command import workspace_of_arguments
-from stages.kit.files import read_arrays
-from stages.kit.run import Rows, StageRun
-from stages.kit.stats import interval_metrics
-from stages.kit.workspace import Workspace
-from stages.meshes.classes import read_classes
+from haptic_glance.base.files import read_arrays
+from stages.engine.run import Rows, StageRun
+from stages.engine.settings import Workspace, workspace_of_arguments
+from stages.engine.statistics import interval_metrics
+from stages.meshes.collect import read_classes
 
+from . import COLUMNS, Params
 from .networks import ImageNet, NormalNet, layers
-from .plan import plan
-from .schema import COLUMNS, Params
-from .trial import SPLITS, Trial, process
+from .trial import SPLITS, Trial, plan, process
 
 
 def confusion_rows(folder: Path, trials: list[Trial], classes: list[str]) -> Rows:

@@ -1,24 +1,131 @@
-"""One trial: the classifiers of one kind on one strategy, split, repetition and size of the sequences."""
+"""Trials of recognition by contours: plan, split, data.
 
+Training, validation and test sequences: drawn at random, as in the thesis, or with whole objects held out.
+
+All sequences of one strategy with their classes and objects, at full size or with fewer frames and cells.
+
+One trial: the classifiers of one kind on one strategy, split, repetition and size of the sequences.
+
+The trials of a run, and what is left out with the reason.
+"""
+
+import re
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from stages.kit import Stopwatch
-from stages.kit.files import write_arrays
-from stages.kit.holdout import Split as Parts
-from stages.kit.rng import rng
-from stages.kit.run import Rows
-from stages.kit.split import Split
+from haptic_glance.base.files import write_arrays
+from haptic_glance.base.rng import rng
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.know.split import Split
+from stages.contours.contours import read_sequences
+from stages.engine.run import Rows
+from stages.engine.statistics import Split as Parts
 
+from . import Params
 from .classifiers import CONVENTIONAL, Reduced, choose_dimensions
-from .dataset import SequenceData, downsample, read_sequence_data
-from .schema import Params
+from .networks import SHORTEST, SMALLEST, ImageInputs, NormalInputs, class_probabilities, train_network
 from .series import sequence_features, series
-from .split import split_by_objects, split_by_sequences
-from .training import ImageInputs, NormalInputs, class_probabilities, train_network
+
+TEST_SHARE = 0.2  # T4.4.10: 80:20
+VALIDATION_SHARE = 0.2  # of the training sequences, to choose settings on
+
+
+def split_by_sequences(labels: np.ndarray, generator: np.random.Generator) -> Parts:
+    """The Parts that tests a random fifth of every class. Both sides share objects and nearly equal planes."""
+    test = _draw_share(labels, np.arange(len(labels)), TEST_SHARE, generator)
+    train = np.setdiff1d(np.arange(len(labels)), test)
+    return Parts(train, _draw_share(labels, train, VALIDATION_SHARE, generator), test)
+
+
+def split_by_objects(
+    labels: np.ndarray, ranks: np.ndarray, fold: int, folds: int, generator: np.random.Generator
+) -> Parts:
+    """The Parts that tests the object of rank `fold` of every class; the next object of every class is for validation.
+
+    With two objects per class, a random fifth of the training sequences is for validation.
+    """
+    test, train = np.flatnonzero(ranks == fold), np.flatnonzero(ranks != fold)
+    if folds < 3:
+        return Parts(train, _draw_share(labels, train, VALIDATION_SHARE, generator), test)
+    return Parts(train, np.flatnonzero(ranks == (fold + 1) % folds), test)
+
+
+def _draw_share(labels, ids, share, generator):
+    """Sorted indices: a share of every class, at least one of each class that has two."""
+    labels, drawn = np.asarray(labels), []
+    for label in np.unique(labels[ids]):
+        members = generator.permutation(ids[labels[ids] == label])
+        drawn.append(members[: min(max(round(share * len(members)), 1), len(members) - 1)])
+    return np.sort(np.concatenate(drawn))
+
+
+@dataclass(frozen=True, eq=False)
+class SequenceData:
+    """n sequences: images (n, frames, rows, cols) u1, normals (n, frames, 3) f4, labels (n,) i8 into classes.
+
+    ranks (n,) i8: the number, from 0, of the sequence's object among the objects of its class.
+    """
+
+    images: np.ndarray
+    normals: np.ndarray
+    labels: np.ndarray
+    ranks: np.ndarray
+    classes: list[str]
+
+    @property
+    def folds(self) -> int:
+        """The number of folds that hold out one object of every class: that of objects in the smallest class."""
+        return int(min(len(np.unique(self.ranks[self.labels == label])) for label in range(len(self.classes))))
+
+
+def count_sequences(path: Path) -> dict[str, int]:
+    """{strategy: number of sequences} of a file of data/SET/contours, without reading their images."""
+    with open(path, "rb") as stream, np.load(stream, allow_pickle=False) as stored:
+        names = sorted({name.rpartition(".")[0] for name in stored.files})
+        return {name: len(stored[f"{name}.planes"]) for name in names}
+
+
+def read_sequence_data(folder: Path, members: dict[str, list[str]], strategy: str) -> SequenceData:
+    """The SequenceData of one strategy. folder: data/SET/contours; members: {class: objects}, all with sequences."""
+    images, normals, labels, ranks = [], [], [], []
+    for label, objects in enumerate(members.values()):
+        for rank, name in enumerate(objects):
+            found = read_sequences(folder / f"{name}.npz", strategy)[strategy]
+            images.append(found.images)
+            normals.append(found.normals)
+            labels += [label] * len(found.images)
+            ranks += [rank] * len(found.images)
+    return SequenceData(
+        np.concatenate(images), np.concatenate(normals), np.array(labels), np.array(ranks), list(members)
+    )
+
+
+def downsample(data: SequenceData, frames: int, cells: int) -> SequenceData:
+    """The SequenceData with `frames` evenly spaced frames and imprints of `cells` rows, each cell the mean of a block.
+
+    Raises ValueError for more frames than there are, or a number of cells that does not divide the imprints.
+    """
+    count, available, rows, columns = data.images.shape
+    if not 1 <= frames <= available:
+        raise ValueError(f"{frames} frames requested, the sequences have {available}")
+    if not is_divisible(cells, rows, columns):
+        raise ValueError(f"imprints of {rows} x {columns} cells cannot be averaged to {cells} rows")
+    if (frames, cells) == (available, rows):
+        return data
+    frame_ids, side = np.arange(frames) * available // frames, rows // cells
+    blocks = data.images[:, frame_ids].reshape(count, frames, cells, side, columns // side, side)
+    images = np.round(blocks.mean(axis=(3, 5), dtype=np.float32)).astype(np.uint8)
+    return replace(data, images=images, normals=data.normals[:, frame_ids])
+
+
+def is_divisible(cells: int, rows: int, columns: int) -> bool:
+    """True if imprints of rows x columns divide into square blocks, `cells` of them in a column."""
+    return 1 <= cells <= rows and rows % cells == 0 and columns % (rows // cells) == 0
+
 
 # Each split by its word in reports/metrics and in the seeds of the random numbers, on which the results depend.
 SPLITS = {Split.RANDOM: "sequences", Split.OBJECTS: "objects"}
@@ -129,3 +236,89 @@ def _rows(trial, data, truth, results):
                 for label, value in accuracy_by_class.items()
             ]
     return rows
+
+
+MIN_SEQUENCES = 5  # per object and strategy: a split of 80:20 then still tests one
+
+
+class Plan(NamedTuple):
+    """The trials of a run, {class: objects} that take part, and one note for each thing that is left out."""
+
+    trials: list[Trial]
+    members: dict[str, list[str]]
+    notes: list[str]
+
+
+def plan(classes: dict[str, list[str]], folder: Path, settings: Params) -> Plan:
+    """The Plan for classes {class: objects} with their sequences in `folder` (data/SET/contours).
+
+    Every strategy is tested in both splits with all classifiers. Fewer frames and smaller imprints are tested on one
+    strategy, with objects held out where every class has two or more. There are no trials with fewer than two classes.
+    """
+    members, notes = _members(classes, folder)
+    if len(members) < 2:
+        return Plan([], members, [*notes, f"two classes with sequences are needed, got {len(members)}"])
+    strategies, left_out = _strategies(members, folder)
+    notes += left_out
+    if not strategies:
+        return Plan([], members, [*notes, "no strategy has sequences of every object"])
+    first = next(iter(members.values()))[0]
+    shape = read_sequences(folder / f"{first}.npz")[strategies[0]].images.shape[1:]
+    folds = min(len(objects) for objects in members.values())
+    if folds < 2:
+        notes.append("objects are not held out: every class needs two or more")
+    object_rounds = [(Split.OBJECTS, number) for number in range(folds * settings.trainings)] if folds > 1 else []
+    rounds = [(Split.RANDOM, number) for number in range(settings.repetitions)] + object_rounds
+    full_size = _possible(f"{shape[0]}x{shape[1]}", shape, KINDS, notes)
+    trials = [
+        Trial(strategy, *each, kind, size) for strategy in strategies for each in rounds for kind, size in full_size
+    ]
+    if settings.smaller_strategy in strategies:
+        for kind, sizes in (("networks", settings.smaller_networks), ("conventional", settings.smaller)):
+            reduced = [pair for size in sizes for pair in _possible(size, shape, [kind], notes)]
+            trials += [
+                Trial(settings.smaller_strategy, *each, *pair) for pair in reduced for each in object_rounds or rounds
+            ]
+    return Plan(list(dict.fromkeys(trials)), members, notes)
+
+
+def _members(classes, folder):
+    """({class: its objects that have sequences}, notes)."""
+    members, notes = {}, []
+    for name, objects in classes.items():
+        available = [one for one in objects if (folder / f"{one}.npz").exists()]
+        missing = [one for one in objects if one not in available]
+        if missing:
+            notes.append(f"class {name}: no sequences of {', '.join(missing)}")
+        if available:
+            members[name] = available
+    return members, notes
+
+
+def _strategies(members, folder):
+    """(strategies with enough sequences of every object, notes on the others)."""
+    counts = {one: count_sequences(folder / f"{one}.npz") for objects in members.values() for one in objects}
+    usable, notes = [], []
+    for strategy in dict.fromkeys(name for by_strategy in counts.values() for name in by_strategy):
+        too_few = [one for one, by_strategy in counts.items() if by_strategy.get(strategy, 0) < MIN_SEQUENCES]
+        if too_few:
+            notes.append(f"{strategy} left out: fewer than {MIN_SEQUENCES} sequences of {', '.join(too_few)}")
+        else:
+            usable.append(strategy)
+    return usable, notes
+
+
+def _possible(size, shape, kinds, notes):
+    """[(kind, size)] of the kinds that accept sequences of this size; appends to the notes why others do not."""
+    match = re.fullmatch(r"(\d+)x(\d+)", size)
+    if match is None:
+        raise ValueError(f"sequences.smaller: {size!r} is not of the form FRAMESxCELLS, such as 13x16")
+    frames, cells = map(int, match.groups())
+    available, rows, columns = shape
+    if not 2 <= frames <= available or cells < 4 or not is_divisible(cells, rows, columns):
+        notes.append(f"size {size} left out: the sequences have {available} frames of {rows} x {columns} cells")
+        return []
+    small = frames < SHORTEST or cells < SMALLEST
+    if small and "networks" in kinds:
+        notes.append(f"networks left out at {size}: they need {SHORTEST} frames of {SMALLEST} x {SMALLEST} cells")
+    return [(kind, size) for kind in kinds if kind != "networks" or not small]

@@ -11,19 +11,17 @@ from pathlib import Path
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from stages.classification import features
+from haptic_glance.base.files import read_arrays, read_mesh, read_table, write_arrays
+from haptic_glance.base.rng import rng
+from haptic_glance.know import features
 from stages.classification.recorded import read_pressure_images
-from stages.kit.command import workspace_of_arguments
-from stages.kit.files import read_arrays, read_mesh, read_table, write_arrays
-from stages.kit.rng import rng
-from stages.kit.run import Rows, StageRun
-from stages.kit.workspace import Workspace
-from stages.meshes.classes import read_classes
-from stages.recorded.schema import Params as RecordedParams
+from stages.engine.run import Rows, StageRun
+from stages.engine.settings import Workspace, workspace_of_arguments
+from stages.meshes.collect import read_classes
+from stages.recorded import Params as RecordedParams
 
-from . import trial
-from .schema import COLUMNS, Params
-from .simulations import SIMULATIONS, simulate
+from . import COLUMNS, Params, trial
+from .trial import SIMULATIONS, simulate
 
 
 def process(name: str, folder: Path, data: Path, counts: dict[str, int], cells: tuple[int, int], simulations: list[str],

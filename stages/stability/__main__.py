@@ -28,24 +28,20 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from stages.kit.command import workspace_of_arguments
-from stages.kit.files import read_arrays, read_mesh, write_arrays
-from stages.kit.run import Rows, StageRun
-from stages.kit.workspace import Workspace
-from stages.salient_points.methods import method_named, split_runnable
-from stages.salient_points.options import Options
-from stages.weights import read_learned_weights
-from stages.weights.agreement import GroundTruth
+from haptic_glance.base.files import read_arrays, read_mesh, write_arrays
+from haptic_glance.disturb.objects import PERTURBATIONS
+from haptic_glance.look.agreement import GroundTruth
+from haptic_glance.look.points.methods import method_named, split_runnable
+from haptic_glance.look.points.options import Options
+from haptic_glance.look.weights import read_learned_weights
+from stages.engine.run import Rows, StageRun
+from stages.engine.settings import Workspace, workspace_of_arguments
 
+from . import COLUMNS, Params
 from .disturbance import AND, Disturbance, disturbances, parts_of
-from .draws import mean_of_draws
-from .perturbations import PERTURBATIONS
-from .recognition import FOLDER, SET, recognise
-from .schema import COLUMNS, Params
-from .simplification import OUTCOMES, simplification_rows
-from .subject import Findings, Subject, worst_arrays
-from .summary import middle_severity, summarise, summarise_simplification
-from .uses import Uses
+from .simplification import OUTCOMES, middle_severity, simplification_rows, summarise, summarise_simplification
+from .subject import Findings, Subject, mean_of_draws, worst_arrays
+from .uses import FOLDER, SET, Uses, recognise
 
 
 def process(name: str, folder: Path, data: Path, settings: Params, seed: int) -> Rows:

@@ -5,11 +5,11 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from stages.kit import Mesh
-from stages.kit.rng import rng
-from stages.lod.nearest import surface_index
-
-from .perturbations import PERTURBATIONS, Conditions, Perturbed
+from haptic_glance.base.rng import rng
+from haptic_glance.disturb.objects import PERTURBATIONS
+from haptic_glance.disturb.perturbed import Conditions, Perturbed
+from haptic_glance.lod.errors import surface_index
+from haptic_glance.mesh.mesh import Mesh
 
 AND = "+"  # between the names of a pair
 

@@ -1,26 +1,37 @@
-"""Broken meshes, tight budgets and unusual kept sets, through every simplifier: valid, refused, ruined or crash.
+"""Stability of simplification, and its summary.
 
-`valid`: the simplifier returned a sound mesh (stages.stability.checks); `refused`: it raised an error that gives the
+Broken meshes, tight budgets and unusual kept sets, through every simplifier: valid, refused, ruined or crash.
+
+`valid`: the simplifier returned a sound mesh (stages.stability.surface); `refused`: it raised an error that gives the
 reason; `ruined`: it returned a mesh that is not sound, or another mesh on the second run; `crash`: any other error.
+
+The numbers of a run that the gate checks: repeatability, breaking points, outcomes on broken meshes.
 """
 
 import traceback
 import warnings
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
+from typing import cast
 
 import numpy as np
+import pandas as pd
 
-from stages.kit import Mesh, Stopwatch
-from stages.lod import simplify
-from stages.lod.targets import face_count
-from stages.lod.warm_up import warm_up
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.disturb.objects import PERTURBATIONS
+from haptic_glance.lod import simplify
+from haptic_glance.lod.export import face_count
+from haptic_glance.mesh.mesh import Mesh
+from stages.engine.rows import unit
+from stages.engine.statistics import breaking_interval, breaking_point
+from stages.lod.cell import warm_up
 
 from .broken import DAMAGES
-from .checks import find_faults, surface_error
-from .qem_error_curve import QemErrorCurve
-from .specimen import KEPT, RINGS, WEIGHTS, Case, Specimen
+from .surface import KEPT, RINGS, WEIGHTS, Case, QemErrorCurve, Specimen, find_faults, surface_error
 
+OURS = [Path(__file__).parents[2] / package for package in ("haptic_glance", "stages")]
 OUTCOMES = ("valid", "refused", "ruined", "crash")
 BUDGETS = ("4", "16", "64", "256", "1024", "50%", "90%")
 SMALLEST = "smallest"  # the budget that an InfeasibleTarget names, which must be feasible
@@ -128,10 +139,85 @@ def _rows(name, damage, backend, case, result):
 def _no_mesh(error, asked, seconds):
     """The Result without a mesh: a ValueError of this project with a reason is a refusal, all else a crash."""
     place, note = traceback.extract_tb(error.__traceback__)[-1], " ".join(str(error).split())
-    if isinstance(error, ValueError) and "stages" in place.filename and note:
+    if isinstance(error, ValueError) and any(map(Path(place.filename).is_relative_to, OURS)) and note:
         return Result("refused", note, asked, seconds, smallest=getattr(error, "smallest", 0))
     return Result("crash", f"{type(error).__name__}: {note}", asked, seconds)
 
 
 def _same(one, other):
     return one.vertices.tobytes() == other.vertices.tobytes() and one.faces.tobytes() == other.faces.tobytes()
+
+
+KEYS = ["perturbation", "method", "severity"]
+
+
+def middle_severity(severities: Sequence[float]) -> float:
+    """The severity in the middle of a list, the milder of two: harsh enough to separate the methods."""
+    return severities[(len(severities) - 1) // 2]
+
+
+def mean_repeatability(rows: Sequence[dict] | pd.DataFrame) -> pd.DataFrame:
+    """Frame of perturbation, method, severity and value, the mean over the objects, in the order of the rows."""
+    table = pd.DataFrame(rows)
+    table = table.loc[table["metric"] == "repeatability", [*KEYS, "value"]].astype({"value": float})
+    return table.groupby(KEYS, sort=False, as_index=False).mean()
+
+
+def breaking_points(rows: pd.DataFrame) -> dict[tuple[str, str], tuple[float, float, float]]:
+    """dict (perturbation, method) -> the severity at which the mean repeatability falls below one half, and its ends.
+
+    The interval is over the units of the objects, see `breaking_interval`; NaN is beyond the harshest severity. Also
+    NaN where a severity before it has no value at all.
+    """
+    found = {}
+    for key, own in rows[rows["metric"] == "repeatability"].groupby(["perturbation", "method"], sort=False):
+        perturbation, method = cast(tuple[str, str], key)
+        wide = own.assign(unit=own["item"].map(unit)).pivot_table(
+            index="unit", columns="severity", values="value", sort=False
+        )
+        severities = [one for one in dict.fromkeys(own["severity"]) if one in wide.columns]
+        if severities:
+            curves = wide[severities].to_numpy()
+            found[perturbation, method] = breaking_interval(severities, curves, PERTURBATIONS[perturbation].unharmed)
+    return found
+
+
+def summarise(rows: Sequence[dict]) -> dict[str, dict]:
+    """Numbers for the gate: `repeatability`, of each PERTURBATION.METHOD at the middle severity; `breaking_point`."""
+    means = {
+        f"{perturbation}.{method}": values[severities.index(middle_severity(severities))]
+        for perturbation, method, severities, values in _curves(rows)
+    }
+    breaks = {
+        f"{perturbation}.{method}": breaking_point(severities, values, PERTURBATIONS[perturbation].unharmed)
+        for perturbation, method, severities, values in _curves(rows)
+    }
+    return {"repeatability": _rounded(means), "breaking_point": _rounded(breaks)}
+
+
+def summarise_simplification(rows: Sequence[dict]) -> dict[str, dict]:
+    """Numbers for the gate, per backend: the share of its cases by outcome, and of the smallest counts that were met.
+
+    Crashes are counted: none is allowed on any machine.
+    """
+    rows, found = [row for row in rows if row["metric"] == "faces"], {}
+    for backend in dict.fromkeys(row["method"] for row in rows):
+        cases = [row for row in rows if row["method"] == backend]
+        outcomes = Counter(row["outcome"] for row in cases)
+        met = [row["outcome"] == "valid" for row in cases if row["budget"] == SMALLEST]
+        found[backend] = {outcome: round(outcomes[outcome] / len(cases), 6) for outcome in OUTCOMES[:-1]}
+        found[backend]["smallest_had"] = round(sum(met) / len(met), 6) if met else None
+        found[backend]["crashes"] = outcomes[OUTCOMES[-1]]
+    return found
+
+
+def _curves(rows):
+    """(perturbation, method, severities, mean repeatabilities) of each perturbation and method."""
+    for key, group in mean_repeatability(rows).groupby(["perturbation", "method"], sort=False):
+        perturbation, method = cast(tuple[str, str], key)
+        yield perturbation, method, list(group["severity"]), list(group["value"])
+
+
+def _rounded(values):
+    """Values rounded to six digits; NaN (never broken, or never measured) becomes None, which the gate ignores."""
+    return {key: round(value, 6) if np.isfinite(value) else None for key, value in values.items()}

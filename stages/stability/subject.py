@@ -1,22 +1,28 @@
-"""One object: what every method finds on it unperturbed and under each perturbation."""
+"""The objects of a test of stability, and their random draws.
+
+One object: what every method finds on it unperturbed and under each perturbation.
+
+Several draws of one disturbance as one: the mean of what was measured.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from stages.kit import Mesh, Stopwatch
-from stages.kit.rng import rng
-from stages.meshes import normalise
-from stages.meshes.orient import orient
-from stages.salient_points.methods import find_all, method_named
-from stages.salient_points.options import Detection, Options
-from stages.weights.agreement import METRICS, GroundTruth
+from haptic_glance.base.rng import rng
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.disturb.perturbed import Conditions, Perturbed
+from haptic_glance.look.agreement import METRICS, GroundTruth
+from haptic_glance.look.points.methods import find_all, method_named
+from haptic_glance.look.points.options import Detection, Options
+from haptic_glance.mesh import normalise
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.repair import orient
+from stages.engine.run import Rows
 
 from .disturbance import Disturbance
-from .maps import maps_under_conditions
-from .measures import TOLERANCE, at_original_vertices, chance_repeatability, drift, repeatability
-from .perturbations import Conditions, Perturbed
+from .measures import TOLERANCE, at_original_vertices, chance_repeatability, drift, maps_under_conditions, repeatability
 
 UNPERTURBED = "none"  # the perturbation in the rows of the unperturbed object
 AGREEMENT = "nss", "auc"  # with people, of the saliency on the object that they saw
@@ -153,3 +159,19 @@ def _score(subject, method, case):
     before = subject.mesh.vertices[subject.unperturbed.found[method].points]
     after = case.perturbed.original_positions[case.found[method].points]
     return repeatability(before, after, TOLERANCE * subject.mesh.diagonal)
+
+
+def mean_of_draws(draws: Sequence[Rows]) -> Rows:
+    """Rows of one disturbance, those of the first draw with the means of all; a draw without values does not count.
+
+    draws: the rows of each, in the same order, or fewer where it failed; those of the longest are taken.
+    """
+    longest = max(draws, key=len)
+    found: dict[tuple[str, str], list[dict]] = {}
+    for row in (row for rows in draws for row in rows if row["value"] is not None):
+        found.setdefault((row["method"], row["metric"]), []).append(row)
+    return [row | _means(found.get((row["method"], row["metric"]), [])) for row in longest]
+
+
+def _means(rows):
+    return {key: sum(row[key] for row in rows) / len(rows) for key in ("value", "seconds") if rows}

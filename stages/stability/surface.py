@@ -1,17 +1,31 @@
-"""Counts on a surface: boundary edges, connected components, degenerate and duplicate faces, folds, non-manifold parts.
+"""A disturbed surface, and checks of what simplification makes of it.
+
+Counts on a surface: boundary edges, connected components, degenerate and duplicate faces, folds, non-manifold parts.
 
 Computed by trimesh and numpy and not by stages.lod, so that an error in its own functions shows here.
+
+Whether a simplified mesh is sound, checked by trimesh and numpy and not by the simplifiers' own functions.
+
+The error of plain quadric edge collapse (QEM) by face count, with which simplified meshes are compared.
+
+A mesh broken in one way, the cases of its simplification, and the error beyond which a result is ruined.
 """
 
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import point_cloud_utils as pcu
+import pymeshlab
 import trimesh
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
-from stages.kit import Mesh
+from haptic_glance.base.rng import rng
+from haptic_glance.lod.export import face_count
+from haptic_glance.mesh.mesh import Mesh
+
+from .broken import DAMAGES
 
 FOLDED = 0.99  # cosine between two neighbours seen along their edge: at most 8 degrees apart
 FLAT = 1e-8  # height of a face over the diagonal, below which it counts as without area
@@ -129,3 +143,179 @@ def _folds(scene):
         to = scene.vertices[tip] - ends[:, 0]
         sides.append(trimesh.util.unitize(to - np.einsum("ij,ij->i", to, along)[:, None] * along))
     return int((np.einsum("ij,ij->i", *sides) > FOLDED).sum())
+
+
+COUNTS = {  # counts of a Surface that simplification must not increase -> their names in messages
+    "degenerate_faces": "faces without area",
+    "folds": "folds",
+    "duplicate_faces": "duplicate faces",
+    "non_manifold_edges": "non-manifold edges",
+    "non_manifold_vertices": "non-manifold vertices",
+}
+SAMPLES = 2000  # points on each surface: the mean error is then exact to 3 %
+
+
+def find_faults(old: Surface, found: Mesh, faces: int, kept_vertices: np.ndarray, kept_faces: np.ndarray) -> list[str]:
+    """The faults of a simplified mesh as phrases, [] when it is sound.
+
+    old: the surface before simplification; found: the result; faces: the number of faces asked for; kept_vertices (k,)
+    ids and kept_faces (j, 3): what must survive bit for bit. A simplifier may first remove duplicate faces and faces
+    that name a vertex twice: boundary and connected components may be those of the mesh with or without them.
+    """
+    if len(found.faces) == 0:
+        return ["no face left"]
+    before, new, said = old.mesh, Surface(found), []
+    if len(found.faces) > faces:
+        said.append(f"{len(found.faces)} faces, {faces} asked")
+    lost = _missing(before.vertices[kept_vertices], found.vertices[np.unique(found.faces)])
+    if lost:
+        said.append(f"{lost} kept vertices lost")
+    lost = _missing(_triples(before.vertices[kept_faces]), _triples(found.vertices[found.faces]))
+    if lost:
+        said.append(f"{lost} kept faces lost")
+    if new.boundary_edges not in (old.boundary_edges, old.deduplicated.boundary_edges):
+        said.append(f"boundary changed in {len(new.boundary_edges ^ old.boundary_edges)} edges")
+    if new.components not in (old.components, old.deduplicated.components):
+        said.append(f"{new.components} connected components instead of {old.components}")
+    for name, words in COUNTS.items():
+        more = np.min(getattr(new, name) - getattr(old, name))  # folds are counted in two ways
+        if more > 0:
+            said.append(f"{more} new {words}")
+    if old.closed and not new.closed:
+        said.append("no longer closed")
+    elif old.closed and old.volume * new.volume < 0:
+        said.append("inside out")
+    return said
+
+
+def surface_error(before: Mesh, found: Mesh) -> float:
+    """The mean distance of two surfaces, the larger of both directions, over the diagonal of the first (T3.1.4).
+
+    Measured at points drawn uniformly by area, or at the corners of the faces where a mesh has no area.
+    """
+    place, size = before.vertices[before.faces[0, 0]], before.diagonal or 1.0
+    one, other = (
+        trimesh.Trimesh((mesh.vertices - place) / size, mesh.faces, process=False) for mesh in (before, found)
+    )
+    return max(_mean_distance(one, other), _mean_distance(other, one))
+
+
+def _mean_distance(one, other):
+    has_area = one.area > FLAT**2
+    points = trimesh.sample.sample_surface(one, SAMPLES, seed=0)[0] if has_area else one.triangles.reshape(-1, 3)
+    faces = np.ascontiguousarray(other.faces, dtype=np.int64)
+    apart = pcu.closest_points_on_mesh(np.ascontiguousarray(points), np.ascontiguousarray(other.vertices), faces)[0]
+    return float(np.mean(apart))
+
+
+def _missing(rows, among):
+    """How many of the rows (k, d) are not bit for bit among the others."""
+    have = {row.tobytes() for row in np.ascontiguousarray(among)}
+    return sum(row.tobytes() not in have for row in np.ascontiguousarray(rows))
+
+
+def _triples(corners):
+    """(j, 9): the corners (j, 3, 3) of each triangle sorted by position, so that equal triangles give equal rows."""
+    order = np.lexsort(corners.transpose(2, 0, 1)[::-1], axis=-1)
+    return np.take_along_axis(corners, order[:, :, None], axis=1).reshape(-1, 9)
+
+
+# pymeshlab comes without types:
+# pyright: reportAttributeAccessIssue=false
+
+
+FEWEST_FACES = 16  # below this number the error of plain QEM is a matter of chance
+LEAST_ERROR = 1e-4  # of the diagonal: smaller errors, as on flat faces, are set to this
+
+
+class QemErrorCurve:
+    """The mean error of plain QEM on a sound mesh at any face count, interpolated between a few measured ones."""
+
+    def __init__(self, sound: Mesh) -> None:
+        counts = {face_count(target, len(sound.faces)) for target in ("16", "64", "256", "1024", "50%")}
+        self.counts = sorted(count for count in counts if FEWEST_FACES <= count < len(sound.faces))
+        self.errors = [max(surface_error(sound, plain_qem(sound, count)), LEAST_ERROR) for count in self.counts]
+
+    def error(self, faces: int) -> float:
+        """The mean error over the diagonal: linear between the counts in log-log space, infinite below FEWEST_FACES."""
+        if faces < FEWEST_FACES or not self.counts:
+            return np.inf
+        return float(np.exp(np.interp(np.log(faces), np.log(self.counts), np.log(self.errors))))
+
+
+def plain_qem(mesh: Mesh, faces: int) -> Mesh:
+    """The mesh at `faces` faces by pymeshlab's quadric edge collapse, without any of its constraints."""
+    work = pymeshlab.MeshSet(verbose=False)
+    work.add_mesh(pymeshlab.Mesh(mesh.vertices / mesh.diagonal, mesh.faces))
+    work.apply_filter(
+        "meshing_decimation_quadric_edge_collapse", targetfacenum=faces, targetperc=0.0, qualitythr=0.3,
+        preserveboundary=False, boundaryweight=1.0, preservenormal=False, preservetopology=False,
+        optimalplacement=True, planarquadric=True, planarweight=1e-5, qualityweight=False, autoclean=False,
+        selected=False,
+    )  # fmt: skip
+    found = work.current_mesh()
+    return Mesh(found.vertex_matrix() * mesh.diagonal, found.face_matrix())
+
+
+RINGS = 3  # rings of faces kept around a kept vertex; T3.1.3
+RUIN = 4.0  # times the mean error of plain QEM on the sound mesh at the number of free faces
+LARGEST_ERROR = 0.15  # of the diagonal, allowed at any budget; a tetrahedron inscribed in a sphere has 0.12
+KEPT = {"none": 0, "1": 1, "5": 5, "60": 60, "half": 0.5, "all": 1.0}  # kept vertices: a number or a share
+WEIGHTS = {
+    "zero": lambda n, _: np.zeros(n),
+    "equal": lambda n, _: np.full(n, 0.5),
+    "spike": lambda n, generator: np.eye(1, n, generator.integers(n))[0],
+    "random": lambda n, generator: generator.random(n),
+}
+
+
+@dataclass(frozen=True)
+class Case:
+    """What is asked for: the face count, the kept vertices (a name of KEPT) and the weights (a name of WEIGHTS)."""
+
+    budget: str
+    kept: str = "none"
+    soft: str = ""
+
+
+class Specimen:
+    """A sound mesh broken in one way (a name of DAMAGES), with what its cases share.
+
+    name and seed decide all random numbers.
+    """
+
+    def __init__(self, sound: Mesh, curve: QemErrorCurve, damage: str, name: str, seed: int) -> None:
+        self.curve, self.damage, self.name, self.seed = curve, damage, f"{name} {damage}", seed
+        self.mesh = DAMAGES[damage].make(sound, rng(seed, self.name))
+        self.surface = Surface(self.mesh)
+
+    @cached_property
+    def _order(self) -> np.ndarray:
+        return rng(self.seed, f"{self.name} kept").permutation(np.unique(self.surface.deduplicated.mesh.faces))
+
+    def kept(self, case: Case) -> np.ndarray:
+        """Ids of the vertices that a case keeps: the first of all used vertices in one random order."""
+        count = KEPT[case.kept]
+        return self._order[: round(count * len(self._order)) if isinstance(count, float) else count]
+
+    def weights(self, case: Case) -> np.ndarray | None:
+        """The weights (n,) of a case, or None."""
+        generator = rng(self.seed, f"{self.name} {case.soft}")
+        return WEIGHTS[case.soft](len(self.mesh.vertices), generator) if case.soft else None
+
+    def kept_faces(self, kept: np.ndarray) -> np.ndarray:
+        """(j, 3) faces that must survive with the kept vertices: those within RINGS edges of them."""
+        faces = self.surface.deduplicated.mesh.faces
+        near = np.isin(np.arange(len(self.mesh.vertices)), kept)
+        for _ in range(RINGS):
+            near[faces[near[faces].any(axis=1)]] = True
+        return faces[near[faces].all(axis=1)]
+
+    def limit(self, asked: int, frozen: int) -> float:
+        """The largest mean error allowed for a result of `asked` faces, `frozen` of them kept.
+
+        Each boundary edge needs one face and each further connected component four; the other faces are free. What the
+        damage itself moved is added.
+        """
+        free = asked - frozen - len(self.surface.boundary_edges) - 4 * (self.surface.deduplicated.components - 1)
+        return min(RUIN * self.curve.error(free) + DAMAGES[self.damage].moved, LARGEST_ERROR)

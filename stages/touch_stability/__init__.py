@@ -1,10 +1,24 @@
-"""Breaking points of recognition by touch: sensor errors, moved objects, coarse models, few touches.
+"""Breaking points of recognition by touch: sensor errors, moved objects, coarse models, few touches."""
 
-Public names: recognition_rows, Perturbation, PerturbedTouches, Touches, CLEAN, FEATURES, PERTURBATIONS.
-"""
+from dataclasses import dataclass
 
-from .perturbations import PERTURBATIONS, Perturbation, PerturbedTouches
-from .recognition import CLEAN, FEATURES, recognition_rows
-from .touches import Touches
+COLUMNS = {
+    "features": "imprint: imprints alone; imprint_place: with their positions; imprint_DENOISER: denoised",
+    "classifier": "a name of haptic_glance.know.CLASSIFIERS",
+    "perturbation": "a name of stages.touch_stability.PERTURBATIONS; none is clean touches",
+    "severity": "in the perturbation's own unit; 0 for clean touches",
+    "repetition": "number of the random split",
+    "chance": "accuracy of guessing",
+}
 
-__all__ = ["CLEAN", "FEATURES", "PERTURBATIONS", "Perturbation", "PerturbedTouches", "Touches", "recognition_rows"]
+
+@dataclass
+class Params:
+    """Section `touch_stability` of params.yaml."""
+
+    set: str
+    method: str
+    classifiers: list[str]
+    severities: dict[str, list[float]]
+    repetitions: int
+    denoisers: list[str]

@@ -15,21 +15,17 @@ from typing import Any
 
 import numpy as np
 
-from stages.classification import CLASSIFIERS
-from stages.classification.schema import Params as Classification
-from stages.exploration import SPLITS
-from stages.imprints import read_imprints
-from stages.kit.breaking_point import breaking_point, lead_left
-from stages.kit.command import workspace_of_arguments
-from stages.kit.run import Rows, StageRun
-from stages.kit.workspace import Workspace
+from haptic_glance.disturb.touches import TOUCH_PERTURBATIONS
+from haptic_glance.know import CLASSIFIERS, SPLITS
+from stages.classification import Params as Classification
+from stages.engine.run import Rows, StageRun
+from stages.engine.settings import Workspace, workspace_of_arguments
+from stages.engine.statistics import breaking_point, lead_left
+from stages.imprints.imprints import read_imprints
 
+from . import COLUMNS, Params
 from .denoisers import DENOISERS
-from .one_object import process
-from .perturbations import PERTURBATIONS
-from .recognition import CLEAN
-from .schema import COLUMNS, Params
-from .trial import trial
+from .trial import CLEAN, process, trial
 
 
 def summary(rows: Rows) -> dict[str, dict[str, Any]]:
@@ -48,7 +44,7 @@ def summary(rows: Rows) -> dict[str, dict[str, Any]]:
         tree["accuracy"][model] = round(clean, 6)
         for perturbation, by_severity in by_perturbation.items():
             left = lead_left([np.mean(found) for found in by_severity.values()], clean, chances[model])
-            at = breaking_point(list(by_severity), left.tolist(), PERTURBATIONS[perturbation].unharmed)
+            at = breaking_point(list(by_severity), left.tolist(), TOUCH_PERTURBATIONS[perturbation].unharmed)
             tree["breaking_point"][f"{model}.{perturbation}"] = round(at, 6) if np.isfinite(at) else None
     return tree
 
@@ -57,9 +53,11 @@ def check(settings: Params, sets: Mapping[str, list[str]]) -> None:
     """Raises ValueError that names a setting with which nothing can be measured."""
     if settings.set not in sets:
         raise ValueError(f"touch_stability.set: no set {settings.set}; classification.sets: {', '.join(sets)}")
-    unknown = [name for name in settings.severities if name not in PERTURBATIONS]
+    unknown = [name for name in settings.severities if name not in TOUCH_PERTURBATIONS]
     if unknown:
-        raise ValueError(f"touch_stability.severities: {', '.join(unknown)}; choose from {', '.join(PERTURBATIONS)}")
+        raise ValueError(
+            f"touch_stability.severities: {', '.join(unknown)}; choose from {', '.join(TOUCH_PERTURBATIONS)}"
+        )
     odd = [name for name in settings.denoisers if name not in DENOISERS]
     if odd:
         raise ValueError(f"touch_stability.denoisers: {', '.join(odd)}; choose from {', '.join(DENOISERS)}")

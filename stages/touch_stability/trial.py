@@ -1,23 +1,36 @@
-"""One repetition: recognition of disturbed touches, at random places and on unseen regions."""
+"""Trials of recognition by disturbed touches.
 
+One repetition: recognition of disturbed touches, at random places and on unseen regions.
+
+All disturbed touches of one object.
+
+One hold-out: train on clean touches, test on disturbed ones at other places, and vice versa.
+"""
+
+import itertools
+from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 from sklearn import config_context
+from sklearn.pipeline import Pipeline
 from threadpoolctl import threadpool_limits
 
-from stages.classification import features as features_of
-from stages.exploration import SPLITS, split_touches
-from stages.kit.files import read_arrays
-from stages.kit.rng import rng
-from stages.kit.run import Rows
+from haptic_glance.base.files import files_below, read_arrays, read_mesh, write_arrays
+from haptic_glance.base.rng import rng
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.disturb.touches import SOFT, TOUCH_PERTURBATIONS, Touches
+from haptic_glance.know import SPLITS, classifier, features, split_touches
+from haptic_glance.know import features as features_of
+from haptic_glance.look.weights.weights import GLANCE
+from stages.engine.run import Rows
+from stages.imprints.imprints import read_imprints
+from stages.salient_points.measure import read_saliency
 
+from . import Params
 from .denoisers import DENOISERS
-from .one_object import DRAWS
-from .perturbations import PERTURBATIONS
-from .recognition import recognition_rows
-from .schema import Params
 
 
 def trial(item: str, folder: Path, made: Path, objects: list[str], settings: Params, width: float, seed: int) -> Rows:
@@ -29,7 +42,7 @@ def trial(item: str, folder: Path, made: Path, objects: list[str], settings: Par
         return np.concatenate([one[key] for one in stored])
 
     def perturbed_features(perturbation, severity, features, denoise):
-        draw = repetition % DRAWS if PERTURBATIONS[perturbation].random_draws else 0
+        draw = repetition % DRAWS if TOUCH_PERTURBATIONS[perturbation].random_draws else 0
         key = f"{perturbation}.{severity:g}.{draw}"
         if not all(key in one for one in stored):
             return None
@@ -61,3 +74,123 @@ def trial(item: str, folder: Path, made: Path, objects: list[str], settings: Par
                 note = f"set {settings.set}, {split}: {error}"
                 rows.append(common | {"split": split, "metric": "accuracy", "value": None, "note": note})
     return rows
+
+
+DRAWS = 3  # of a random perturbation; the repetitions use them in turn
+STORED_IMPRINTS = 4  # touches per perturbation whose imprints are stored for the figure
+
+
+def touches_of(name: str, data: Path, settings: Params, count: int, seed: int) -> Touches:
+    """The first `count` Touches of an object, with the simplified meshes that exist. data: data/SET."""
+    found = read_imprints(data / "imprints" / f"{name}.npz")[settings.method]
+    levels = {path.stem: read_mesh(path) for path in files_below(data / "lod" / name) if _is_used_level(path.stem)}
+    saliency = read_saliency(data / "salient_points" / f"{name}.npz").get(GLANCE)
+    mesh, cells = read_mesh(data / "meshes" / f"{name}.npz"), found.images.shape[1:]
+    return Touches(name, mesh, found.vertices[:count], cells, float(found.pitch), saliency, levels, seed)
+
+
+def _is_used_level(level):
+    return level.rpartition("_")[0] in ("qem", SOFT)
+
+
+def process(name: str, folder: Path, data: Path, settings: Params, count: int, seed: int) -> Rows:
+    """Writes all disturbed touches of one object; returns a row per severity that is not available."""
+    touches, rows = touches_of(name, data, settings, count, seed), []
+    kept = {"clean": features(touches.images), "positions": touches.positions}
+    kept |= {"images.clean": touches.images, "shown.clean": touches.images[:STORED_IMPRINTS]}
+    for key, severity in perturbation_severities(settings.severities):
+        perturbation = TOUCH_PERTURBATIONS[key]
+        for draw in range(DRAWS if perturbation.random_draws else 1):
+            if perturbation.apply is None:
+                break
+            try:
+                perturbed = perturbation.apply(touches, severity, draw)
+            except ValueError as error:
+                note = f"{key} {severity:g} left out: {name}: {error}"
+                where = {"item": name, "perturbation": key, "severity": severity}
+                rows.append(where | {"metric": "accuracy", "value": None, "note": note})
+                break
+            kept[f"{key}.{severity:g}.{draw}"] = features(perturbed.images)
+            if settings.denoisers:
+                kept[f"images.{key}.{severity:g}.{draw}"] = perturbed.images
+            if perturbed.positions is not None:
+                kept[f"{key}.{severity:g}.{draw}.positions"] = perturbed.positions
+            if draw == 0:
+                kept[f"shown.{key}.{severity:g}"] = perturbed.images[:STORED_IMPRINTS]
+    write_arrays(folder / f"{name}.npz", **kept)
+    return rows
+
+
+FEATURES = ("imprint", "imprint_place")  # imprints alone, and with their positions (T table 4.5)
+CLEAN = "none"  # the perturbation in rows of undisturbed touches
+
+
+def recognition_rows(
+    clean: dict[str, np.ndarray],
+    perturbed_features: Callable[[str, float, str], np.ndarray | None],
+    truth: np.ndarray,
+    order: np.ndarray,
+    test: np.ndarray,
+    severities: dict[str, list[float]],
+    classifiers: list[str],
+    repetition: int,
+) -> list[dict]:
+    """A list of row dicts: features, classifier, perturbation, severity, metric accuracy, value, seconds.
+
+    clean: {features: (k, d)} of the touches of objects truth (k,), by names such as FEATURES; perturbed_features:
+    function (perturbation, severity, features) -> (k, d) of the same touches when disturbed, or None if they are not
+    available; order, test: indices of the training touches, in random order, and of the test touches. Seconds are those
+    of prediction.
+    """
+    rows, train = [], np.sort(order)
+    for name, kind in itertools.product(classifiers, clean):
+        test_case = RecognitionTest(name, repetition, truth, test)
+        clean_model = test_case.fit(clean[kind], train)
+        common = {"features": kind, "classifier": name, "metric": "accuracy"}
+        rows.append(common | test_case.score(clean_model, clean[kind]) | {"perturbation": CLEAN, "severity": 0.0})
+        for perturbation, severity in perturbation_severities(severities):
+            registered = TOUCH_PERTURBATIONS[perturbation]
+            tested, model = clean[kind], clean_model
+            if kind == "imprint_place" and not registered.moves_positions:
+                continue
+            if registered.apply is None:
+                model = test_case.fit(clean[kind], first_of_each(order, truth, int(severity)))
+            elif (samples := perturbed_features(perturbation, severity, kind)) is None:
+                continue
+            elif registered.in_training:
+                model = test_case.fit(samples, train)
+            else:
+                tested = samples
+            where = {"perturbation": perturbation, "severity": severity}
+            rows.append(common | test_case.score(model, tested) | where)
+    return rows
+
+
+@dataclass(frozen=True)
+class RecognitionTest:
+    """One classifier in one repetition, tested on the touches `test` of truth (k,)."""
+
+    name: str
+    random_state: int
+    truth: np.ndarray
+    test: np.ndarray
+
+    def fit(self, samples: np.ndarray, train: np.ndarray) -> Pipeline:
+        """The classifier trained on some of the samples (k, d)."""
+        return classifier(self.name, self.random_state).fit(samples[train], self.truth[train])
+
+    def score(self, model: Pipeline, samples: np.ndarray) -> dict[str, float]:
+        """The value and seconds of a row: the model's accuracy on the test part of the samples (k, d)."""
+        with Stopwatch() as watch:
+            correct = model.predict(samples[self.test]) == self.truth[self.test]
+        return {"value": float(correct.mean()), "seconds": watch.seconds}
+
+
+def perturbation_severities(severities: dict[str, list[float]]) -> list[tuple[str, float]]:
+    """[(perturbation, severity)] of {perturbation: severities}."""
+    return [(name, severity) for name, levels in severities.items() for severity in levels]
+
+
+def first_of_each(indices: np.ndarray, truth: np.ndarray, count: int) -> np.ndarray:
+    """The first `count` indices of each object, sorted: fewer only where an object has fewer."""
+    return np.sort(np.concatenate([indices[truth[indices] == label][:count] for label in np.unique(truth)]))

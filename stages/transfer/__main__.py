@@ -14,18 +14,15 @@ import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from stages.kit.command import workspace_of_arguments
-from stages.kit.files import read_mesh
-from stages.kit.kept_rows import KeptRows
-from stages.kit.run import Rows, StageRun
-from stages.kit.workspace import Workspace
-from stages.meshes.classes import read_classes
-from stages.networks.weights import imagenet_state
+from haptic_glance.base.files import read_mesh
+from haptic_glance.deep.weights import imagenet_state
+from stages.engine.objects import KeptRows
+from stages.engine.run import Rows, StageRun
+from stages.engine.settings import Workspace, workspace_of_arguments
+from stages.meshes.collect import read_classes
 
-from . import hybrid_data, hybrid_trial, touches, trial
-from .plan import Plan, check, plan
-from .schema import COLUMNS, Params
-from .tables import seen, summary, trial_row
+from . import COLUMNS, Params, hybrid, hybrid_data, touches, trial
+from .plan import Plan, check, plan, seen, summary, trial_row
 from .touches import count_touchable_vertices
 
 MADE = ("transfer/imprints", "transfer/hybrid/pictures")  # touches and pictures of all objects
@@ -35,7 +32,7 @@ def train(
     name: str, folder: Path, made: Path, members: Mapping[str, Mapping[str, Sequence[str]]], settings: Params, seed: int
 ) -> Rows:
     """Rows of one training, or of one hybrid network."""
-    kind = hybrid_trial if name.startswith("hybrid.") else trial
+    kind = hybrid if name.startswith("hybrid.") else trial
     return kind.process(name, folder, made, members, settings, seed)
 
 
@@ -47,7 +44,7 @@ def train_all(stage: StageRun, planned: Plan, settings: Params) -> dict[str, dic
     each = dataclasses.replace(settings, networks={}, weights=[], uncontrolled=[], splits={}, passes=[])
     press = functools.partial(touches.process, data=data, settings=each, seed=stage.seed)
     stage.each(press, objects, reads=("meshes/{}.npz", "salient_points/{}.npz"))
-    hybrids = hybrid_trial.trials(settings, members)
+    hybrids = hybrid.trials(settings, members)
     if hybrids:
         imagenet_state("mobilenet_v2", settings.source)  # before the work starts, not in each worker
         take = functools.partial(hybrid_data.process, data=data, settings=each, seed=stage.seed)
@@ -59,7 +56,7 @@ def train_all(stage: StageRun, planned: Plan, settings: Params) -> dict[str, dic
     stage.rows = KeptRows(trained, stitched)
     metrics = summary(trained, stage.seed)
     if hybrids:
-        metrics["hybrid"] = hybrid_trial.summary(stitched, settings, stage.seed)
+        metrics["hybrid"] = hybrid.summary(stitched, settings, stage.seed)
     return metrics
 
 

@@ -1,161 +1,275 @@
-"""The hybrid network: two MobileNetV2 that share their middle, stitched into one with two streams (T5.5)."""
+"""Trials of the hybrid network, and comparisons with it.
 
-import copy
-from typing import NamedTuple
+One hybrid network: two trainings, the stitching, and the tests with one sense, both, and damaged ones (T5.5).
 
+The hybrid network compared with its two parent networks: accuracy, size, calibration, and as ONNX (T5.5).
+"""
+
+import itertools
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import NamedTuple, Self
+
+import numpy as np
 import torch
 
-from stages.networks.device import device_of
-from stages.networks.images import MEAN, STD
-from stages.networks.network import Network
+from haptic_glance.base.files import read_arrays, write_arrays
+from haptic_glance.base.rng import rng
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.deep.device import choose_device, device_of, explain_out_of_memory
+from haptic_glance.deep.hybrid import PRECISIONS, SENSES, HybridNet, load, save, state_arrays
+from haptic_glance.deep.images import augmentation, normalise
+from haptic_glance.deep.modes import finetuned_except, frozen_modules
+from haptic_glance.deep.network import Network, build, count_parameters
+from haptic_glance.deep.pictures import as_images, picture_augmentation
+from haptic_glance.deep.repeatable import repeatable
+from haptic_glance.deep.training import train_model
+from haptic_glance.deep.weights import available_weights
+from stages.engine.statistics import interval_metrics
 
-from .switch import Switch, present
+from . import Params, fusion
+from .export import export_onnx, onnx_scores
+from .hybrid_data import SenseData, fused_rows, in_batches, read_pictures, row, sense_scores, single_sense
+from .new_object import TOUCH, new_object_rows
+from .plan import by_objects, by_touches, middle_of, stratified_split
+from .touches import Touches, read_touches, sensor_arrays
 
-MIDDLE = (3, 17)  # of torchvision's `features`: block_2 to block_15, layers 18 to 139 of Matlab's MobileNetV2
-LAYERS = 19  # parts of MobileNetV2's `features`
-SENSES = ("vision", "touch")
-
-
-class Scores(NamedTuple):
-    """Scores before the softmax, (b, classes) for each head; NaN where the head's sense is absent."""
-
-    vision: torch.Tensor
-    touch: torch.Tensor
-
-
-class Prediction(NamedTuple):
-    """The predicted label (b,) i8, its probability (b,) f4, and the sense that decided, (b,) i8 into SENSES.
-
-    Where both senses are absent the label and the sense are -1 and the probability is NaN.
-    """
-
-    label: torch.Tensor
-    probability: torch.Tensor
-    sense: torch.Tensor
+PAIR_METRICS = ("max_difference", "size_ratio")  # metrics of the summary of both senses together
 
 
-class HybridNet(torch.nn.Module):
-    """One network for pictures and imprints, of two Networks `mobilenet_v2` that were trained separately (T5.5).
+class HybridTrial(NamedTuple):
+    """The settings of one hybrid network; its name is hybrid.LAYERS.SPLIT.REPETITION, with - for the colon."""
 
-    Input: six channels in 0..1, (b, 6, h, w): red, green and blue of the picture, then the three of the imprint; zeros
-    for an absent sense. Each stream has its own normalisation and early layers and is switched off where its three
-    channels are constant. The streams are summed and pass through the shared middle, then through two late parts with a
-    head each. A head whose sense is absent gives NaN, since its scores would come from the other sense alone. Where
-    both senses are present each head gets the sum of both streams, as in the thesis, which never used both at the same
-    time; `separate_scores` and `predict` keep the streams separate instead.
-
-    vision, touch: Networks with equal features[start:stop], of `middle`; the layers are copied. The network is for
-    prediction alone: it stays in evaluation mode and is not trained. Raises ValueError for another architecture, and
-    for middles that differ, naming the first tensor that does.
-    """
-
-    mean: torch.Tensor
-    std: torch.Tensor
-    temperature: torch.Tensor
-
-    def __init__(self, vision: Network, touch: Network, middle: tuple[int, int] = MIDDLE) -> None:
-        super().__init__()
-        start, stop = self.middle = _check(vision, touch, middle)
-        vision, touch = copy.deepcopy(vision), copy.deepcopy(touch)
-        self.early = torch.nn.ModuleList(net.convolutions[:start] for net in (vision, touch))
-        self.switch = Switch()
-        self.shared = vision.convolutions[start:stop]
-        self.late = torch.nn.ModuleList(
-            torch.nn.Sequential(net.convolutions[stop:], net.pool, torch.nn.Flatten(), net.head)
-            for net in (vision, touch)
-        )
-        self.register_buffer("mean", torch.tensor(MEAN * 2).view(6, 1, 1))
-        self.register_buffer("std", torch.tensor(STD * 2).view(6, 1, 1))
-        self.register_buffer("temperature", torch.ones(2))  # of each head's softmax, from stages.transfer.fusion
-        self.requires_grad_(False).eval().to(device_of(vision))
-
-    def forward(self, images: torch.Tensor) -> Scores:
-        """Scores of images (b, 6, h, w) in 0..1."""
-        shared = self.shared(self._stream(images, 0) + self._stream(images, 1))
-        return Scores(*(self._head(images, shared, sense) for sense in range(2)))
-
-    def separate_scores(self, images: torch.Tensor) -> Scores:
-        """Scores like those of forward, but each head gets its own stream alone, even where both senses are present."""
-        return Scores(*(self._head(images, self.shared(self._stream(images, sense)), sense) for sense in range(2)))
-
-    def features(self, images: torch.Tensor, sense: int) -> torch.Tensor:
-        """(b, width): what the head of one sense, an index of SENSES, gets of images (b, 6, h, w) in 0..1."""
-        # the items of a ModuleList are typed as Module
-        return self.late[sense][:-1](self.shared(self._stream(images, sense)))  # pyright: ignore
-
-    @torch.no_grad()
-    def predict(self, images: torch.Tensor) -> Prediction:
-        """Prediction for images (b, 6, h, w) by the more confident of the present senses, of equals vision.
-
-        Confidence is the highest probability after each head's `temperature`. Raises ValueError for images of another
-        shape and for values that are not in 0..1.
-        """
-        check_images(images)
-        scaled = [scores / t for scores, t in zip(self.separate_scores(images), self.temperature, strict=True)]
-        best = torch.stack([scores.softmax(dim=1).amax(dim=1).nan_to_num(nan=-1) for scores in scaled])
-        probability, sense = best.max(dim=0)
-        labels = torch.stack([scores.argmax(dim=1) for scores in scaled])
-        label = labels.gather(0, sense[None])[0]
-        none = probability < 0
-        return Prediction(
-            label.masked_fill(none, -1), probability.masked_fill(none, torch.nan), sense.masked_fill(none, -1)
-        )
+    layers: str
+    split: str
+    repetition: int
 
     @property
-    def classes(self) -> tuple[int, int]:
-        """The numbers of classes of the heads of (vision, touch)."""
-        # the items of a ModuleList are typed as Module
-        return tuple(late[-1][-1].out_features for late in self.late)  # pyright: ignore
+    def name(self) -> str:
+        return ".".join(map(str, ("hybrid", *self))).replace(":", "-")
 
-    def _own(self, images, sense):
-        return images[:, 3 * sense : 3 * sense + 3]
-
-    def _stream(self, images, sense):
-        own, channels = self._own(images, sense), slice(3 * sense, 3 * sense + 3)
-        normal = ((own - self.mean[channels]) / self.std[channels]).contiguous(memory_format=torch.channels_last)
-        return self.switch(own, self.early[sense](normal))
-
-    def _head(self, images, shared, sense):
-        available = present(self._own(images, sense))
-        return self.late[sense](shared).where(available[:, None], torch.nan)
+    @classmethod
+    def parse(cls, name: str) -> Self:
+        """The trial with this name."""
+        _, layers, split, repetition = name.split(".")
+        return cls(layers.replace("-", ":"), split, int(repetition))
 
 
-def join_senses(pictures: torch.Tensor | None, imprints: torch.Tensor | None) -> torch.Tensor:
-    """(b, 6, h, w) f4: the input of a HybridNet from images (b, 3, h, w) of each sense; None for an absent sense."""
-    present_sense = imprints if pictures is None else pictures
-    if present_sense is None:
-        raise ValueError("one of the two senses must be given")
-    pictures = torch.zeros_like(present_sense) if pictures is None else pictures
-    imprints = torch.zeros_like(present_sense) if imprints is None else imprints
-    if pictures.shape != imprints.shape:
-        raise ValueError(f"both senses need equal shapes, got {tuple(pictures.shape)} and {tuple(imprints.shape)}")
-    return torch.cat([pictures, imprints], dim=1)
+def trials(settings: Params, members: Mapping[str, Mapping[str, Sequence[str]]]) -> list[str]:
+    """The names of all hybrid networks, as many of each middle as splits. members: {split: {class: its objects}}."""
+    return [
+        HybridTrial(layers, split, number).name
+        for layers, (split, count) in itertools.product(settings.hybrid_middles, settings.splits.items())
+        if len(members[split]) > 1
+        for number in range(count)
+    ]
 
 
-def check_images(images: torch.Tensor) -> None:
-    """Raises ValueError unless images are (b, 6, h, w) with finite values in 0..1."""
-    if images.ndim != 4 or images.shape[1] != 6 or 0 in images.shape:
-        raise ValueError(f"images must have shape (b, 6, h, w) and not be empty, got {tuple(images.shape)}")
-    if not bool(((images >= 0) & (images <= 1)).all()):
-        raise ValueError("images must hold values in 0..1, and neither NaN nor infinity")
+@explain_out_of_memory()
+def process(
+    name: str, folder: Path, made: Path, members: Mapping[str, Mapping[str, Sequence[str]]], settings: Params, seed: int
+) -> list[dict]:
+    """Trains two networks with their middle frozen, stitches them and tests the result; returns the rows.
+
+    made: the folder of the touches and pictures; members: {split: {class: its objects}}. Writes below folder/hybrid:
+    predictions/NAME.npz (the scores of both senses for their test items), networks/NAME.npz (the hybrid network; of the
+    first repetition) and, of the first repetition of the first middle on touches drawn at random, NAME.onnx. The
+    training settings are those of the stage; `validation_share` of the training items is kept for the temperatures.
+    """
+    trial = HybridTrial.parse(name)
+    first = trial.layers == settings.hybrid_middles[0]
+    random = rng(seed, f"hybrid {trial.split} {trial.repetition}")
+    senses = [
+        split_sense(sense, trial, settings, random) for sense in read_senses(made, members[trial.split], settings)
+    ]
+    classes = list(members[trial.split])
+    with repeatable(int(random.integers(2**31))):
+        trained = [
+            train_sense(sense, kind, trial, len(classes), settings, random, folder / f"{kind}.pt")
+            for kind, sense in zip(SENSES, senses, strict=True)
+        ]
+        networks, seconds = [one[0] for one in trained], [one[1] for one in trained]
+        hybrid = HybridNet(networks[0], networks[1], middle_of(trial.layers))
+        alone = [sense_scores(hybrid, sense.images[sense.validation], kind) for kind, sense in enumerate(senses)]
+        pairs = zip(alone, senses, strict=True)
+        found = [fit_temperature(scores, sense.labels[sense.validation]) for scores, sense in pairs]
+        hybrid.temperature.copy_(torch.tensor(found))
+        rows = [*comparison_rows(hybrid, networks, senses, seconds, name, folder, classes)]
+        rows += confusion_rows(folder / "hybrid" / "predictions" / f"{name}.npz", classes)
+        if first:
+            rows += fused_rows(hybrid, senses, settings, rng(seed, f"pairs {trial.split} {trial.repetition}"), seed)
+        if first and trial.split == "objects":
+            imagenet = build("mobilenet_v2", len(classes), "imagenet", 0, settings.source).to(device_of(hybrid))
+            names = object_names(members[trial.split])
+            rows += new_object_rows(hybrid, imagenet, senses[TOUCH], names, settings.new_object_touches, random)
+        if first and trial.repetition == 0 and trial.split == "random" and settings.hybrid_onnx:
+            rows += onnx_rows(hybrid, senses, settings, folder / "hybrid" / f"{name}.onnx")
+    if trial.repetition:
+        (folder / "hybrid" / "networks" / f"{name}.npz").unlink()
+    about = {
+        "data": "hybrid",
+        "weights": "imagenet",
+        "pretrained": available_weights("mobilenet_v2", settings.source),
+        "mode": trial.layers,
+    }
+    return [about | {"split": trial.split, "repetition": trial.repetition} | row for row in rows]
 
 
-def _check(vision, touch, middle):
-    start, stop = middle
-    if not 0 < start < stop < LAYERS:
-        raise ValueError(f"the middle must be (start, stop) with 0 < start < stop < {LAYERS}, got {middle}")
-    for sense, network in zip(SENSES, (vision, touch), strict=True):
-        found = len(getattr(network, "convolutions", ()))
-        if found != LAYERS:
-            raise ValueError(f"{sense} is not a mobilenet_v2: its convolutions have {found} parts instead of {LAYERS}")
-    other = touch.convolutions[start:stop].state_dict()
-    for key, value in vision.convolutions[start:stop].state_dict().items():
-        if "num_batches_tracked" in key:  # a counter that nothing in evaluation mode reads
-            continue
-        if key not in other or value.shape != other[key].shape or not torch.equal(value, other[key]):
-            layer, _, rest = key.partition(".")
-            raise ValueError(
-                f"the two networks do not share features[{start}:{stop}]: features.{layer}.{rest} differs. Train both "
-                "with these layers frozen, from the same weights"
-            )
-    return start, stop
+def object_names(members: Mapping[str, Sequence[str]]) -> dict[int, str]:
+    """{number as in Touches.objects: name} of the objects of {class: its objects}."""
+    most = max(map(len, members.values()))
+    return {label * most + rank: name for label, own in enumerate(members.values()) for rank, name in enumerate(own)}
+
+
+def fit_temperature(scores: np.ndarray, labels: np.ndarray) -> float:
+    """The best temperature for the items with a prediction, which a touch without contact does not have."""
+    answered = np.isfinite(scores).all(axis=1)
+    return fusion.best_temperature(scores[answered], labels[answered])
+
+
+def read_senses(folder: Path, members: Mapping[str, Sequence[str]], settings: Params) -> tuple[Touches, Touches]:
+    """(pictures, touches) of the objects, both as Touches."""
+    return read_pictures(folder, members), read_touches(folder, members, next(iter(sensor_arrays(settings))))
+
+
+def split_sense(items: Touches, trial: HybridTrial, settings: Params, random: np.random.Generator) -> SenseData:
+    """The SenseData of touches, or of pictures as Touches."""
+    if trial.split == "objects":
+        split = by_objects(items.labels, items.ranks, trial.repetition, settings.validation_share, random)
+    else:
+        split = by_touches(items.objects, settings.train_share, settings.validation_share, random)
+    # Not the split's own validation part, one object per class: of three objects one would be left for training.
+    kept, rest = stratified_split(items.objects[split.train], settings.validation_share, random)
+    images = as_images(items.images, settings.size)
+    ids = split.train[rest], split.train[kept], split.test
+    return SenseData(items.images, images, items.labels, items.objects, *ids)
+
+
+def train_sense(
+    sense: SenseData,
+    kind: str,
+    trial: HybridTrial,
+    classes: int,
+    settings: Params,
+    random: np.random.Generator,
+    checkpoint: Path,
+) -> tuple[Network, float]:
+    """(network, seconds): a MobileNetV2 trained on one sense with the trial's layers frozen at ImageNet's weights."""
+    first_weights, seed = (int(number) for number in random.integers(2**31, size=2))
+    device = choose_device(settings.device)
+    with Stopwatch() as watch:
+        network = build("mobilenet_v2", classes, "imagenet", first_weights, settings.source).to(device)
+        augment = picture_augmentation() if kind == "vision" else augmentation()
+        task = finetuned_except(network, sense.images.to(device), augment, tuple(frozen_modules(trial.layers, network)))
+        model = train_model(
+            task, sense.labels, sense.train, settings.hybrid_rate, settings.epochs, settings.batch, settings.momentum,
+            seed=seed, checkpoint=checkpoint,
+        )  # fmt: skip
+    assert isinstance(model, Network)
+    return model, watch.seconds
+
+
+def summary(rows: list[dict], settings: Params, seed: int) -> dict[str, dict]:
+    """{split: {accuracy_vision, accuracy_touch, max_difference, size_ratio}} of the hybrid network of the first middle.
+
+    Each with its interval over the repetitions, where there are several.
+    """
+    values, tree = defaultdict(list), {}
+    for entry in rows:
+        if entry["method"] == "hybrid" and entry["mode"] == settings.hybrid_middles[0]:
+            name = entry["metric"] if entry["metric"] in PAIR_METRICS else f"{entry['metric']}_{entry['sense']}"
+            values[entry["split"], name].append(entry["value"])
+    for (split, name), found in values.items():
+        if name in (*PAIR_METRICS, *(f"accuracy_{sense}" for sense in SENSES)):
+            tree.setdefault(split, {})[name] = interval_metrics(found, seed)
+    return tree
+
+
+def confusion_rows(predictions: Path, classes: Sequence[str]) -> list[dict]:
+    """Rows of the confusion matrix of each sense (T figure 5.6): how many items of `group` were taken for `predicted`.
+
+    A touch without contact has no prediction and is not counted.
+    """
+    stored, rows = read_arrays(predictions), []
+    for sense in SENSES:
+        scores, counts = stored[f"{sense}_scores"], np.zeros((len(classes), len(classes)), dtype=int)
+        answered = np.isfinite(scores).all(axis=1)
+        np.add.at(counts, (stored[f"{sense}_true"][answered], scores[answered].argmax(axis=1)), 1)
+        about = {"method": "hybrid", "sense": sense, "metric": "confusion"}
+        rows += [
+            about | {"group": classes[i], "predicted": classes[j], "value": int(counts[i, j])}
+            for i, j in np.argwhere(counts)
+        ]
+    return rows
+
+
+def comparison_rows(
+    hybrid: HybridNet,
+    networks: Sequence[Network],
+    senses: Sequence[SenseData],
+    seconds: Sequence[float],
+    name: str,
+    folder: Path,
+    classes: Sequence[str],
+) -> Iterator[dict]:
+    """Rows of the two networks, the hybrid and its versions of lower precision: accuracy, size, calibration."""
+    paths = folder / "hybrid" / "networks"
+    tested = {}
+    for kind, (sense, network) in enumerate(zip(senses, networks, strict=True)):
+        own = in_batches(lambda part, n=network: n(normalise(part)), sense.images[sense.test], device_of(network))
+        tested[kind] = sense_scores(hybrid, sense.images[sense.test], kind)
+        write_arrays(paths / f"{name}.{kind}.npz", **state_arrays(network))
+        yield row(SENSES[kind], "accuracy", fusion.accuracy(own, sense.labels[sense.test]), kind, seconds[kind])
+        yield row("hybrid", "max_difference", float(np.nanmax(np.abs(own - tested[kind]))), kind)
+        yield from calibration_rows(tested[kind], sense.labels[sense.test], kind, float(hybrid.temperature[kind]))
+    own = [paths / f"{name}.{kind}.npz" for kind in range(2)]
+    apart = sum(path.stat().st_size for path in own)
+    for kind, path in enumerate(own):
+        yield row(SENSES[kind], "size_bytes", path.stat().st_size, kind)
+        yield row(SENSES[kind], "parameters", count_parameters(networks[kind]), kind)
+        path.unlink()
+    yield row("hybrid", "parameters", count_parameters(hybrid))
+    yield row("hybrid", "parameter_ratio", sum(map(count_parameters, networks)) / count_parameters(hybrid))
+    for number in reversed(PRECISIONS):  # float32 last, whose file is kept
+        save(paths / f"{name}.npz", hybrid, classes, number)
+        size = (paths / f"{name}.npz").stat().st_size
+        method = "hybrid" if number == "float32" else f"hybrid_{number}"
+        loaded = load(paths / f"{name}.npz")[0].to(device_of(hybrid))
+        yield row(method, "size_bytes", size)
+        yield row(method, "size_ratio", apart / size)
+        for kind, sense in enumerate(senses):
+            scores = sense_scores(loaded, sense.images[sense.test], kind)
+            yield row(method, "accuracy", fusion.accuracy(scores, sense.labels[sense.test]), kind)
+    write_arrays(
+        folder / "hybrid" / "predictions" / f"{name}.npz",
+        **{f"{kind}_scores": tested[place] for place, kind in enumerate(SENSES)},
+        **{f"{kind}_true": sense.labels[sense.test] for kind, sense in zip(SENSES, senses, strict=True)},
+        **{f"{kind}_test": sense.test for kind, sense in zip(SENSES, senses, strict=True)},
+    )
+
+
+def calibration_rows(scores: np.ndarray, labels: np.ndarray, kind: int, temperature: float) -> Iterator[dict]:
+    """Rows of a head's temperature and of its calibration error without it and with it."""
+    yield row("hybrid", "temperature", temperature, kind)
+    for metric, value in (("calibration_error_raw", 1.0), ("calibration_error", temperature)):
+        yield row("hybrid", metric, fusion.calibration_error(fusion.probabilities(scores, value), labels), kind)
+
+
+def onnx_rows(hybrid: HybridNet, senses: Sequence[SenseData], settings: Params, path: Path) -> Iterator[dict]:
+    """Rows of the network as ONNX over all test items: the largest difference of a score, and the agreement of classes.
+
+    The difference is infinite where only one of them treats a sense as absent.
+    """
+    export_onnx(path, hybrid, settings.size)
+    worst, agree = 0.0, []
+    for kind, sense in enumerate(senses):
+        own = sense_scores(hybrid, sense.images[sense.test], kind)
+        found = onnx_scores(path, single_sense(sense.images[sense.test], kind))[kind]
+        absent = np.isnan(own)
+        equal = np.array_equal(np.isnan(found), absent)
+        worst = max(worst, float(np.abs(found - own)[~absent].max(initial=0)) if equal else np.inf)
+        agree += list(found.argmax(axis=1) == own.argmax(axis=1))
+    yield row("hybrid_onnx", "max_difference", worst)
+    yield row("hybrid_onnx", "agreement", float(np.mean(agree)))
+    yield row("hybrid_onnx", "size_bytes", path.stat().st_size)

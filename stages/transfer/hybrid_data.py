@@ -1,22 +1,29 @@
-"""Pictures of the touched objects: their files, and the pairing of touches with pictures."""
+"""Data, training and scores of the hybrid network.
 
-from collections.abc import Mapping, Sequence
+Pictures of the touched objects: their files, and the pairing of touches with pictures.
+
+Accuracy with both senses at the same time, undamaged, damaged or missing, by way of fusion (beyond T5.5).
+
+The scores of a hybrid network, computed in batches, and its rows.
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import torch
 
-from stages.kit.files import read_arrays, read_mesh, write_arrays
-from stages.kit.rng import rng
-from stages.networks.images import to_images
+from haptic_glance.base.files import read_arrays, read_mesh, write_arrays
+from haptic_glance.base.rng import rng
+from haptic_glance.deep.device import device_of, explain_out_of_memory
+from haptic_glance.deep.hybrid import SENSES, HybridNet, Scores, join_senses
+from haptic_glance.deep.pictures import as_images, take_pictures, viewpoints
+from haptic_glance.disturb.picture import IMPRINT, MISSING, PICTURE, damage
 
-from .pictures import picture_images, take_pictures, viewpoints
-from .schema import Params
-from .switch import present
+from . import Params, fusion
 from .touches import Touches
-
-STEP = 1 / 255  # the smallest step of a grey value
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,24 +69,6 @@ def read_pictures(folder: Path, members: Mapping[str, Sequence[str]]) -> Touches
     return Touches(np.concatenate(images), labels, ranks, indices, list(members))
 
 
-def as_images(raw: np.ndarray, size: int) -> torch.Tensor:
-    """Images (k, 3, size, size) f4 in 0..1 of pictures (k, h, w, 3) or imprints (k, r, c), u1 or f4 in 0..1."""
-    return picture_images(raw, size) if raw.ndim == 4 else imprint_images(raw, size)
-
-
-def imprint_images(imprints: np.ndarray, size: int) -> torch.Tensor:
-    """Images (k, 3, size, size) f4 of imprints (k, r, c), as by stages.networks.to_images, with full contact marked.
-
-    A flat face pressed against the array gives zeros everywhere (distance 0), which in the thesis also means an absent
-    sense: its switch would turn off the touch of a table top. So one corner pixel is raised by one grey step, and the
-    variance is not zero. An imprint of ones, without contact, stays constant: absent.
-    """
-    images = to_images(imprints, size)
-    flat = ~present(images) & (images[:, 0, 0, 0] < 1)
-    images[flat, 0, 0, 0] += STEP
-    return images
-
-
 def pair_pictures(picture_objects: np.ndarray, touch_objects: np.ndarray, random: np.random.Generator) -> np.ndarray:
     """(k,) ids of pictures: for each touch one of the same object.
 
@@ -94,3 +83,94 @@ def pair_pictures(picture_objects: np.ndarray, touch_objects: np.ndarray, random
             raise ValueError(f"object {one} has touches but no picture")
         found[touched] = np.resize(random.permutation(own), touched.sum())
     return found
+
+
+UNDAMAGED = "none"  # the perturbation in rows without any
+
+
+def fused_rows(
+    hybrid: HybridNet, senses: Sequence[SenseData], settings: Params, random: np.random.Generator, seed: int
+) -> Iterator[dict]:
+    """Rows of the accuracy with both senses under every condition; each test touch has a picture of the same object."""
+    vision, touch = senses
+    paired = vision.test[pair_pictures(vision.objects[vision.test], touch.objects[touch.test], random)]
+    raw, labels = (vision.raw[paired], touch.raw[touch.test]), touch.labels[touch.test]
+    undamaged = [as_images(one, settings.size) for one in raw]
+    clean = [sense_scores(hybrid, one, kind) for kind, one in enumerate(undamaged)]
+    better = better_sense(hybrid, senses)
+    for name, severity in conditions(settings.hybrid_severities):
+        images, apart = list[torch.Tensor | None](undamaged), list(clean)
+        if name != UNDAMAGED:
+            kind = int(name.startswith(IMPRINT))
+            damaged = damage(raw[kind], name, severity, rng(seed, f"{name} {severity}"))
+            images[kind], apart[kind] = None, np.full_like(clean[kind], np.nan)
+            if damaged is not None:
+                images[kind] = changed = as_images(damaged, settings.size)
+                apart[kind] = sense_scores(hybrid, changed, kind)
+        summed = in_batches(hybrid, join_senses(*images), device_of(hybrid))
+        for method, probabilities in method_probabilities(apart, summed, hybrid.temperature.tolist(), better).items():
+            found = row(method, "accuracy", fusion.accuracy(probabilities, labels)) | {"sense": "both"}
+            yield found | {"perturbation": name, "severity": severity}
+
+
+def conditions(severities: Mapping[str, Sequence[float]]) -> list[tuple[str, float]]:
+    """(name, severity) of all conditions: undamaged, each perturbation, and each sense missing."""
+    found = [(name, severity) for name, every in severities.items() for severity in every]
+    return [(UNDAMAGED, 0.0), *found, (PICTURE + MISSING, 1.0), (IMPRINT + MISSING, 1.0)]
+
+
+def better_sense(hybrid: HybridNet, senses: Sequence[SenseData]) -> int:
+    """The sense, 0 or 1, with the higher accuracy on the validation items."""
+    own = [
+        fusion.accuracy(sense_scores(hybrid, s.images[s.validation], kind), s.labels[s.validation])
+        for kind, s in enumerate(senses)
+    ]
+    return int(own[1] > own[0])
+
+
+def method_probabilities(
+    apart: Sequence[np.ndarray], summed: Sequence[np.ndarray], temperatures: Sequence[float], better: int
+) -> dict[str, np.ndarray]:
+    """{method: probabilities (n, k)} of every method; NaN where it gives none.
+
+    apart, summed: scores (n, k) of the two heads, each on its own stream, and on the sum of both as in the thesis. The
+    methods are vision and touch alone, the sense that `better` names, the fusions of both, one of them without
+    temperatures, and for the sum its two heads and their mean.
+    """
+    alone, heads = (
+        [fusion.probabilities(scores, value) for scores, value in zip(both, temperatures, strict=True)]
+        for both in (apart, summed)
+    )
+    found = {"vision": alone[0], "touch": alone[1], "better_sense": alone[better]}
+    found |= {f"fusion_{rule}": fusion.fuse(alone[0], alone[1], rule) for rule in fusion.FUSIONS}
+    found["fusion_entropy_raw"] = fusion.fuse(fusion.probabilities(apart[0]), fusion.probabilities(apart[1]), "entropy")
+    return found | {"sum_vision": heads[0], "sum_touch": heads[1], "sum_mean": fusion.fuse(heads[0], heads[1], "mean")}
+
+
+BATCH = 64  # images
+
+
+def single_sense(images: torch.Tensor, kind: int) -> torch.Tensor:
+    """(k, 6, h, w): the images (k, 3, h, w) of one sense, with the other absent. kind: the sense, 0 or 1."""
+    return join_senses(images, None) if kind == 0 else join_senses(None, images)
+
+
+def sense_scores(hybrid: HybridNet, images: torch.Tensor, kind: int) -> np.ndarray:
+    """(n, classes) f4 numpy: the scores of one sense's head for its images (n, 3, h, w), without the other sense."""
+    return in_batches(lambda part: hybrid(single_sense(part, kind))[kind], images, device_of(hybrid))
+
+
+@torch.no_grad()
+def in_batches(function: Callable[[torch.Tensor], Any], images: torch.Tensor, device: torch.device) -> Any:
+    """function(images), computed in batches on the device: an array for a tensor, a tuple of arrays for Scores."""
+    with explain_out_of_memory():
+        found = [function(part.to(device)) for part in images.split(BATCH)]
+    if isinstance(found[0], Scores):
+        return tuple(torch.cat(part).cpu().numpy() for part in zip(*found, strict=True))
+    return torch.cat(found).cpu().numpy()
+
+
+def row(method: str, metric: str, value: float, kind: int | None = None, seconds: float | None = None) -> dict:
+    """A row of a measurement. kind: the sense, 0 or 1, or None for the whole network."""
+    sense = None if kind is None else SENSES[kind]
+    return {"method": method, "sense": sense, "metric": metric, "value": value, "seconds": seconds}

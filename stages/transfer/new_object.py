@@ -10,14 +10,13 @@ from sklearn.pipeline import Pipeline, make_pipeline
 from sklearn.preprocessing import StandardScaler
 from threadpoolctl import threadpool_limits
 
-from stages.kit import Stopwatch
-from stages.networks.device import device_of
-from stages.networks.images import normalise
-from stages.networks.network import Network
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.deep.device import device_of
+from haptic_glance.deep.hybrid import SENSES, HybridNet
+from haptic_glance.deep.images import normalise
+from haptic_glance.deep.network import Network
 
-from .hybrid import SENSES, HybridNet
-from .hybrid_data import SenseData
-from .hybrid_scores import in_batches, single_sense
+from .hybrid_data import SenseData, in_batches, single_sense
 
 TOUCH = SENSES.index("touch")
 DRAWS = 20  # random choices of the touches that are learned

@@ -1,21 +1,31 @@
-"""The trainings of a run, and what is left out, with the reason."""
+"""The plan of trainings: networks, modes, splits, tables.
+
+The trainings of a run, and what is left out, with the reason.
+
+The division into training and test touches: at random, as in the thesis, or by objects that are left out.
+
+The shared middle of two networks, in the layer numbers of Matlab and torchvision (T5.5).
+
+Rows and metrics of a run, from the rows of its trials.
+"""
 
 import itertools
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple, Self
 
-from stages.kit.fetch import FetchError
-from stages.networks.device import choose_device
-from stages.networks.layers import is_range, parse_range
-from stages.networks.learning import PRINTED, check_passes
-from stages.networks.modes import MODES
-from stages.networks.network import NETWORKS, SMALLEST, UNNORMALISED, WEIGHTS
-from stages.networks.weights import available_weights, imagenet_state
+import numpy as np
 
-from . import disturbed, hybrid_damage
-from .middle import middle_of
-from .schema import Params
-from .split import SPLITS
+from haptic_glance.base.fetch import FetchError
+from haptic_glance.deep.device import choose_device, precision
+from haptic_glance.deep.modes import MODES, frozen_modules, is_range, parse_range
+from haptic_glance.deep.network import NETWORKS, SMALLEST, UNNORMALISED, WEIGHTS, build
+from haptic_glance.deep.training import CONVERGED, PRINTED, check_passes
+from haptic_glance.deep.weights import available_weights, imagenet_state
+from haptic_glance.disturb import imprint, picture
+from stages.engine.statistics import Split, interval_metrics
+
+from . import Params
 from .touches import sensor_arrays
 
 
@@ -83,8 +93,8 @@ def check(settings: Params) -> None:
     if choose_device(settings.device).type == "cuda" and "random_initial" in settings.weights:
         raise ValueError("transfer.weights: features of random_initial are too small for a card's half precision, "
                          "take transfer.device=cpu for it")  # fmt: skip
-    disturbed.check(settings.severities)
-    hybrid_damage.check(settings.hybrid_severities)
+    imprint.check(settings.severities)
+    picture.check(settings.hybrid_severities)
     for layers in settings.hybrid_middles:
         middle_of(layers)
 
@@ -175,3 +185,119 @@ def _members(classes, vertices, touches):
         if name not in spare
     ]
     return {"random": kept, "objects": spare}, notes
+
+
+SPLITS = ("random", "objects")
+
+
+def by_touches(objects: np.ndarray, train_share: float, validation_share: float, rng: np.random.Generator) -> Split:
+    """The Split with a share of every object's touches for training, and the rest for testing.
+
+    objects: (k,) i8, the object of each touch; validation_share: of the training touches. The thesis splits touches at
+    random, 75 % to 25 % (T5.1.3). Touches of one object, even neighbouring ones, are then on both sides, so the
+    accuracy is that on known objects, not on unseen ones of the same class.
+    """
+    train, test = stratified_split(objects, train_share, rng)
+    validation, _ = stratified_split(objects[train], validation_share, rng)
+    return Split(train, train[validation], test)
+
+
+def by_objects(
+    labels: np.ndarray, ranks: np.ndarray, number: int, validation_share: float, rng: np.random.Generator
+) -> Split:
+    """The Split with one object of each class for testing, and the others for training.
+
+    labels, ranks: (k,) i8, the class of each touch and the index of its object in the class. The test object has rank
+    `number` modulo the number of objects. The next object of every class is for validation, so that the learning rate,
+    too, is chosen on unseen objects. Where a class has only two objects, validation is a share of the training touches.
+    Raises ValueError for a class with one object.
+    """
+    counts = np.array([len(np.unique(ranks[labels == label])) for label in range(labels.max() + 1)])
+    if counts.min() < 2:
+        raise ValueError(f"class {counts.argmin()} has one object alone: it cannot be left out")
+    turn = (ranks - number) % counts[labels]  # 0: test, 1: validation
+    train, test = np.flatnonzero(turn != 0), np.flatnonzero(turn == 0)
+    if counts.min() > 2:
+        return Split(train, np.flatnonzero(turn == 1), test)
+    validation, _ = stratified_split(labels[train], validation_share, rng)
+    return Split(train, train[validation], test)
+
+
+def stratified_split(labels: np.ndarray, share: float, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+    """(first, second): sorted ids of two disjoint parts that together hold all; first holds `share` of each label.
+
+    labels: (k,) integers. Each label has at least one item in both parts. Raises ValueError for a share outside
+    (0, 1) or a label with fewer than two items.
+    """
+    labels = np.asarray(labels)
+    if labels.ndim != 1 or not np.issubdtype(labels.dtype, np.integer):
+        raise ValueError(f"labels must be integers of shape (k,), got {labels.dtype} {labels.shape}")
+    if not 0 < share < 1:
+        raise ValueError(f"share must lie between 0 and 1, got {share}")
+    first = []
+    for label in np.unique(labels):
+        ids = np.flatnonzero(labels == label)
+        if len(ids) < 2:
+            raise ValueError(f"class {label} has one touch alone: it cannot be split")
+        count = min(max(round(share * len(ids)), 1), len(ids) - 1)
+        first.append(rng.permutation(ids)[:count])
+    first = np.sort(np.concatenate(first))
+    return first, np.setdiff1d(np.arange(len(labels)), first)
+
+
+def middle_of(layers: str) -> tuple[int, int]:
+    """(start, stop) of the parts of torchvision's `features` that a range of Matlab's layers such as `18:139` covers.
+
+    Raises ValueError for a range that divides a part, or that leaves none before or after it: networks cannot be
+    stitched there.
+    """
+    network = build("mobilenet_v2", 2, "random", 0)
+    wanted = set(frozen_modules(layers, network))
+    parts = sorted({int(name.split(".")[1]) for name in wanted})
+    start, stop = (parts[0], parts[-1] + 1) if parts else (0, 0)
+    whole = {
+        name
+        for name, module in network.named_modules()
+        if name.startswith("convolutions.") and start <= int(name.split(".")[1]) < stop
+        if any(True for _ in module.parameters(recurse=False))
+    }
+    if wanted != whole or not 0 < start < stop < len(network.convolutions):
+        raise ValueError(
+            f"layers {layers} are not whole blocks of mobilenet_v2 with layers on both sides, as 18:139 are"
+        )
+    return start, stop
+
+
+def seen(settings: Params) -> dict:
+    """The columns of what a network saw and computed in."""
+    numbers = precision(choose_device(settings.device))
+    return {"size": settings.size, "touches": settings.touches, "precision": numbers}
+
+
+def trial_row(row: dict, pretrained: Mapping[str, str | None], settings: Params) -> dict:
+    """A row with the columns of its trial instead of the trial's name. pretrained: as in Plan."""
+    trial = Trial.parse(row["trial"])
+    about: dict = {"data": trial.data, "method": trial.network, "weights": trial.weights}
+    about["pretrained"] = pretrained[trial.network] if trial.weights == "imagenet" else None
+    about |= {"mode": trial.mode, "split": trial.split, "repetition": trial.repetition, "passes": trial.passes}
+    about |= seen(settings)
+    return about | {key: value for key, value in row.items() if key != "trial"}
+
+
+def summary(rows: list[dict], seed: int) -> dict[str, dict]:
+    """{data: {split: {network: {MODE_WEIGHTS: {mean, low, high}}}}} of the accuracy, and the chance of each split.
+
+    The key of trainings until nothing improves ends with _converged.
+    """
+    values, tree = defaultdict(list), {}
+    for row in rows:
+        if row["metric"] == "accuracy" and not row.get("note"):
+            end = "_converged" if row.get("passes") == CONVERGED else ""
+            key = row["data"], row["split"], row["method"], f"{row['mode']}_{row['weights']}{end}"
+            values[key].append(row["value"])
+        if row["metric"] == "chance":
+            tree.setdefault("chance", {})[row["split"]] = round(row["value"], 6)
+    for (data, split, network, kind), found in values.items():
+        branch = tree.setdefault(data, {}).setdefault(split, {}).setdefault(network, {})
+        branch[kind] = interval_metrics(found, seed)
+    return tree

@@ -6,13 +6,13 @@ from pathlib import Path
 
 import numpy as np
 
-from stages.imprints import press_many
-from stages.kit import Mesh
-from stages.kit.files import read_arrays, read_mesh, write_arrays
-from stages.kit.rng import rng
-from stages.salient_points import read_points
+from haptic_glance.base.files import read_arrays, read_mesh, write_arrays
+from haptic_glance.base.rng import rng
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.touch import press_many
+from stages.salient_points.measure import read_points
 
-from .schema import Params
+from . import Params
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,24 +6,31 @@ from pathlib import Path
 import numpy as np
 import torch
 
-from stages.kit import Stopwatch
-from stages.kit.files import read_json, write_arrays, write_json
-from stages.kit.holdout import Split
-from stages.kit.repeatable import repeatable
-from stages.kit.rng import rng
-from stages.networks.device import choose_device, explain_out_of_memory
-from stages.networks.images import normalise, to_images
-from stages.networks.learning import CONVERGED, PRINTED, Diverged, Learning
-from stages.networks.modes import MODES, Task, mode_named
-from stages.networks.network import Network, build, count_parameters, recalibrate
-from stages.networks.training import accuracy, predict_probabilities, search_rate, train_model
+from haptic_glance.base.files import read_json, write_arrays, write_json
+from haptic_glance.base.rng import rng
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.deep.device import choose_device, explain_out_of_memory
+from haptic_glance.deep.images import normalise, to_images
+from haptic_glance.deep.modes import MODES, Task, mode_named
+from haptic_glance.deep.network import Network, build, count_parameters, recalibrate
+from haptic_glance.deep.repeatable import repeatable
+from haptic_glance.deep.training import (
+    CONVERGED,
+    PRINTED,
+    Diverged,
+    Learning,
+    accuracy,
+    predict_probabilities,
+    search_rate,
+    train_model,
+)
+from haptic_glance.disturb.imprint import FEW_TOUCHES, PERTURBATIONS, disturb
+from stages.engine.statistics import Split
 
-from .disturbed import FEW_TOUCHES, PERTURBATIONS, disturb
-from .plan import Trial, main_data
-from .schema import Params
-from .split import by_objects, by_touches, stratified_split
+from . import Params
+from .export import network_parts, weight_changes
+from .plan import Trial, by_objects, by_touches, main_data, stratified_split
 from .touches import Touches, read_touches
-from .weight_change import network_parts, weight_changes
 
 
 @explain_out_of_memory()

@@ -1,18 +1,19 @@
-"""Rendered views of a mesh from the viewpoints of the thesis, and the choice of the best viewpoints."""
+"""Renders the views of a data set."""
 
-from stages.kit import Viewpoint
+from dataclasses import dataclass, field
 
-from .best import best_viewpoints, hidden_surface
-from .candidates import CANDIDATES, PERPENDICULAR_SETS
-from .coverage import cumulative_coverage, fewest_views, greedy_views, point_visibility
-from .material import Material
-from .renderer import render
-from .storage import read_view, write_view
-from .view import View
-from .viewpoints import FOUR, TWELVE, VIEWPOINTS, viewpoint_set
+from haptic_glance.look.views.view import Material
 
-__all__ = [
-    "CANDIDATES", "FOUR", "Material", "PERPENDICULAR_SETS", "TWELVE", "VIEWPOINTS", "View", "Viewpoint",
-    "best_viewpoints", "cumulative_coverage", "fewest_views", "greedy_views", "hidden_surface", "point_visibility",
-    "read_view", "render", "viewpoint_set", "write_view",
-]  # fmt: skip
+COLUMNS = {"viewpoint": "name of the viewpoint", "views": "how many views together, this one the last"}
+
+
+@dataclass
+class Params:
+    """Section `views` of params.yaml."""
+
+    viewpoints: str
+    size: list[int]
+    renderer: str
+    background: str
+    compare_sets: bool
+    material: Material = field(default_factory=Material)

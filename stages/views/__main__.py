@@ -10,15 +10,16 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from stages.kit import Mesh, Stopwatch
-from stages.kit.command import workspace_of_arguments
-from stages.kit.files import read_mesh, write_table
-from stages.kit.run import Rows, StageRun
-from stages.kit.workspace import Workspace
+from haptic_glance.base.files import read_mesh, write_table
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.look.views import VIEWPOINTS, cumulative_coverage, fewest_views, greedy_views, render, viewpoint_set
+from haptic_glance.look.views.renderer import resolve_renderer
+from haptic_glance.mesh.mesh import Mesh
+from stages.engine.run import Rows, StageRun
+from stages.engine.settings import Workspace, workspace_of_arguments
 
-from . import VIEWPOINTS, cumulative_coverage, fewest_views, greedy_views, render, viewpoint_set, write_view
-from .renderer import resolve_renderer
-from .schema import COLUMNS, Params
+from . import COLUMNS, Params
+from .storage import write_view
 
 
 def process(name: str, folder: Path, data: Path, settings: Params, renderer: str) -> Rows:

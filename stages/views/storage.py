@@ -4,12 +4,10 @@ from pathlib import Path
 
 import numpy as np
 
-from stages.kit import Viewpoint
-from stages.kit.camera import DISTANCE
-from stages.kit.files import read_arrays, write_arrays
-
-from .kernels import background_colour, fold_depth, unfold_depth
-from .view import DEPTH_STEP, View
+from haptic_glance.base.files import read_arrays, write_arrays
+from haptic_glance.look.camera import DISTANCE, Viewpoint
+from haptic_glance.look.views.kernels import background_colour, fold_depth, unfold_depth
+from haptic_glance.look.views.view import DEPTH_STEP, View
 
 
 def write_view(path: str | Path, view: View) -> None:

@@ -1,7 +1,20 @@
-"""Weights of the conspicuity channels, learned from where people look or mark points (T3.2.1 to T3.2.3)."""
+"""Learns channel weights of a data set, and reads its ground truth."""
 
-from .fixations import fit_fixations, fixation_density
-from .learned_weights import LearnedWeights, read_learned_weights
-from .published import METHODS, weights
+from dataclasses import dataclass
 
-__all__ = ["METHODS", "LearnedWeights", "fit_fixations", "fixation_density", "read_learned_weights", "weights"]
+COLUMNS = {
+    "channel": "channel, or feature of the glance, that the weight is of",
+    "area": "where the pixels were drawn: on the `object`, or from the whole `image` as in the thesis",
+    "training": "what an SVM is trained on: one_for_all, one_per_object or one_per_viewpoint",
+    "validation": "what the folds leave out: pixels, views or objects",
+    "deviation": "standard deviation of the accuracy over the folds",
+    "background_alone": "accuracy of labelling every pixel of the object as salient",
+}
+
+
+@dataclass
+class Params:
+    """Which weights the methods `glance` and `glance_any_pose` take, and what the SVMs are trained on."""
+
+    method: str
+    svm: str

@@ -14,19 +14,23 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from stages.kit.command import workspace_of_arguments
-from stages.kit.files import read_mesh, write_arrays, write_table
-from stages.kit.run import Rows, StageRun
-from stages.kit.workspace import Workspace
-from stages.meshes.schema import Params as MeshesParams
+from haptic_glance.base.files import read_mesh, write_arrays, write_table
+from haptic_glance.look.weights.convexity import convexity
+from stages.engine.run import Rows, StageRun
+from stages.engine.settings import Workspace, workspace_of_arguments
+from stages.meshes import Params as MeshesParams
 
-from .convexity import convexity
-from .ground_truth import digest, ground_truth_amounts, ground_truth_files
-from .ground_truth.source import Files
-from .schema import COLUMNS, Params
-from .table import weight_rows, weight_table
-from .train import check_pixels, train_all, train_object
-from .training_data import collect_training_data, read_training_data
+from . import COLUMNS, Params
+from .ground_truth import Files, digest, ground_truth_amounts, ground_truth_files
+from .training import (
+    check_pixels,
+    collect_training_data,
+    read_training_data,
+    train_all,
+    train_object,
+    weight_rows,
+    weight_table,
+)
 
 GROUND_TRUTH = "ground_truth"  # the folder of the training data in data/SET/weights
 

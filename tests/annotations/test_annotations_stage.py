@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from haptic_glance.base.files import read_json, write_arrays, write_mesh, write_text
 from stages.annotations.__main__ import found, run
-from stages.kit.files import read_json, write_arrays, write_mesh, write_text
-from stages.kit.rows import read_rows
+from stages.engine.rows import read_rows
 from stages.weights.ground_truth import spread_on_surface
 
 SOURCES = {"household": "", "gaze": "gaze/"}

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 import trimesh
 
+from haptic_glance.base.files import read_json, write_arrays, write_mesh
+from haptic_glance.look.glance import samples_of_mesh, standardised
+from haptic_glance.mesh import normalise
+from haptic_glance.mesh.mesh import Mesh
 from stages.attention_checks.__main__ import run
-from stages.glance import samples_of_mesh, standardised
-from stages.kit import Mesh
-from stages.kit.files import read_json, write_arrays, write_mesh
-from stages.kit.rows import read_rows
-from stages.meshes import normalise
+from stages.engine.rows import read_rows
 from stages.weights.ground_truth import spread_on_surface
 
 

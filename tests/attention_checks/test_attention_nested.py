@@ -4,10 +4,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.attention_checks import nested
-from stages.attention_checks.nested import Seen, choose
-from stages.kit.files import write_arrays
-from stages.weights import fit_fixations, fixation_density
+from haptic_glance.base.files import write_arrays
+from haptic_glance.look.weights import fit_fixations, fixation_density
+from stages.attention_checks import checks
+from stages.attention_checks.checks import Seen, choose
 
 
 def objects(count=8, points=400, seed=0):
@@ -29,7 +29,7 @@ def around(found):
 def test_the_feature_that_draws_gaze_is_chosen_and_little_else():
     found = objects()
     features, ridge = choose(found, around(found))
-    assert "f3" in features and len(features) <= 3 and ridge in nested.RIDGES and ridge < 0.1
+    assert "f3" in features and len(features) <= 3 and ridge in checks.RIDGES and ridge < 0.1
 
 
 def test_pure_noise_is_held_down_by_the_strongest_ridge():
@@ -40,13 +40,13 @@ def test_pure_noise_is_held_down_by_the_strongest_ridge():
 @pytest.fixture
 def judged(tmp_path, monkeypatch):
     """A function from objects to their rows, without meshes to be looked at."""
-    monkeypatch.setattr(nested, "FIXED", ("f0", "f3"))
+    monkeypatch.setattr(checks, "FIXED", ("f0", "f3"))
 
     def rows(found):
         def saliency(path, weights):
             return fixation_density(found[path.stem].features, weights)
 
-        monkeypatch.setattr(nested, "_saliency", saliency)
+        monkeypatch.setattr(checks, "_saliency", saliency)
         for name, one in found.items():
             arrays = {"amounts": one.amounts, "density": one.amounts + 0.01, "areas": np.ones(len(one.amounts))}
             arrays |= {"glance": one.stacked(tuple(one.features)), "glance_names": np.array(list(one.features))}
@@ -56,7 +56,7 @@ def judged(tmp_path, monkeypatch):
                 glance_amounts=one.amounts,
                 glance_areas=one.areas,
             )
-        return pd.DataFrame(nested.process("glance", tmp_path, tmp_path, list(found)))
+        return pd.DataFrame(checks.process_nested("glance", tmp_path, tmp_path, list(found)))
 
     return rows
 

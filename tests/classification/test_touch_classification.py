@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from stages.classification import CLASSIFIERS, evaluate
+from haptic_glance.base.files import read_arrays, read_json
+from haptic_glance.know import CLASSIFIERS, evaluate
+from stages.classification import Params
 from stages.classification.__main__ import plan, process, run, summary
-from stages.classification.schema import Params
-from stages.imprints import Imprints, write_imprints
-from stages.kit.files import read_arrays, read_json
-from stages.kit.rows import read_rows
+from stages.engine.rows import read_rows
+from stages.imprints.imprints import Imprints, write_imprints
 
 NAMES = ("cup", "duck", "hand")
 PLAIN = ("plain", "training", "accuracy")

@@ -4,7 +4,7 @@ from collections import Counter
 
 import pytest
 
-from stages.classification.drawn import drawn_sets, set_of
+from stages.classification.trials import drawn_sets, set_of
 
 GROUPS = {"six": list("abcdef"), "four": list("abcd")}
 OBJECTS = [f"object_{k:02}" for k in range(20)]

@@ -5,7 +5,7 @@ import pytest
 import pywt
 from scipy.stats import entropy
 
-from stages.classification import FEATURES, features
+from haptic_glance.know import FEATURES, features
 
 IMAGES = np.random.default_rng(0).random((5, 16, 16))
 

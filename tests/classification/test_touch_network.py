@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import torch
 
-from stages.classification.network import FeedForward
+from haptic_glance.know.network import FeedForward
 
 RANDOM = np.random.default_rng(0)
 LABELS = np.repeat(["cup", "duck", "hand"], 40)

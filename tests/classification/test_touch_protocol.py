@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from sklearn.metrics.pairwise import rbf_kernel
 
-from stages.classification import CLASSIFIERS, classifier, evaluate, evaluate_features, features, protocol
-from stages.classification.prepared import Prepared
+from haptic_glance.know import CLASSIFIERS, classifier, evaluate, evaluate_features, features, protocol
+from haptic_glance.know.protocol import Prepared
 
 
 def mean(rows, split):

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from skimage.feature import match_template
 
-from stages.classification import confusable, similarity
-from stages.classification.similarity import as_many
+from haptic_glance.know import confusable, similarity
+from haptic_glance.know.features import as_many
 
 RANDOM = np.random.default_rng(0)
 IMAGES = RANDOM.random((5, 9, 7))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from stages.classification import concatenate_touches, draw_combinations, touch_map
+from haptic_glance.know import concatenate_touches, draw_combinations, touch_map
 
 RANDOM = np.random.default_rng(0)
 TRUTH = np.repeat([0, 1, 2], 8)

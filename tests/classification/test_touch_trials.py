@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from stages.classification.multi_touch import MultiTouchTrials
+from stages.classification.multi_touch import MultiTouchTrials, evaluate_variants
 from stages.classification.trials import TouchSet, selection_trials, single_touch_trials
-from stages.classification.variants import evaluate_variants
 
 
 def touched(bumps, count=24, jitter=0.5):

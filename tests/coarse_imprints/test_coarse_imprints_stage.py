@@ -6,13 +6,13 @@ import pytest
 import torch
 import trimesh
 
+from haptic_glance.base.files import read_arrays, write_arrays, write_mesh, write_table
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.touch import Skin
 from stages.coarse_imprints.__main__ import run
-from stages.coarse_imprints.variants import VARIANTS
+from stages.coarse_imprints.trial import VARIANTS
 from stages.compose import compose
-from stages.imprints import Skin
-from stages.kit import Mesh
-from stages.kit.files import read_arrays, write_arrays, write_mesh, write_table
-from stages.kit.rows import read_rows
+from stages.engine.rows import read_rows
 
 SETTINGS = {
     "variants": ["random_weights"], "detector": "thesis_ssim", "touches": 8, "width": 0.16, "repetitions": 2,

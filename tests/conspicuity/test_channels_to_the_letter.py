@@ -4,18 +4,21 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.conspicuity import conspicuity, operators
-from stages.conspicuity.color import opponency
-from stages.conspicuity.contrast import WINDOW, local_variance
-from stages.conspicuity.dkl import LINEAR, MECHANISMS, RGB_TO_LMS, mechanisms
-from stages.conspicuity.edge import laplacian_of_gaussian
-from stages.conspicuity.entropy import local_entropy
-from stages.conspicuity.kernels import mean_of_other_maxima
-from stages.conspicuity.operators import PEAK, centre_surround, expand, normalise, pyramid
-from stages.conspicuity.orientation import ANGLES, energy
-from stages.conspicuity.symmetry_search import shape_symmetries
-from stages.kit import Mesh
-from stages.views import View, Viewpoint, render
+from haptic_glance.look.channels import conspicuity, operators
+from haptic_glance.look.channels.colour import LINEAR, MECHANISMS, RGB_TO_LMS, mechanisms, opponency
+from haptic_glance.look.channels.kernels import mean_of_other_maxima
+from haptic_glance.look.channels.operators import PEAK, centre_surround, expand, normalise, pyramid
+from haptic_glance.look.channels.symmetry import shape_symmetries
+from haptic_glance.look.channels.texture import (
+    ANGLES,
+    WINDOW,
+    energy,
+    laplacian_of_gaussian,
+    local_entropy,
+    local_variance,
+)
+from haptic_glance.look.views import View, Viewpoint, render
+from haptic_glance.mesh.mesh import Mesh
 
 TRIANGLE = Mesh([[0, -0.5, -0.5], [0, 0.5, -0.5], [0, 0, 0.5]], [[0, 1, 2]])
 PAIRS = [(2, 5), (2, 6), (3, 6), (3, 7), (4, 7), (4, 8)]

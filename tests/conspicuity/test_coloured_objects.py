@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from stages.conspicuity import conspicuity
+from haptic_glance.look.channels import conspicuity
+from haptic_glance.look.views import Material, Viewpoint, render
+from haptic_glance.mesh.mesh import Mesh
 from stages.conspicuity.measure import hue_rows
-from stages.kit import Mesh
-from stages.views import Material, Viewpoint, render
 
 FRONT, SIZE = Viewpoint(0, 0), (450, 600)
 SHINY = Material(0.1, 0.7, 0.3, 20)

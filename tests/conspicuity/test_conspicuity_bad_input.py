@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.conspicuity import conspicuity
-from stages.kit import Mesh
-from stages.views import View, Viewpoint, render
+from haptic_glance.look.channels import conspicuity
+from haptic_glance.look.views import View, Viewpoint, render
+from haptic_glance.mesh.mesh import Mesh
 
 SIZE = (180, 240)
 BALL = trimesh.creation.icosphere(subdivisions=3, radius=0.4)

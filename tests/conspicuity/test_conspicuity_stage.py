@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 import trimesh
 
+from haptic_glance.base.files import read_json, write_mesh
+from haptic_glance.mesh.mesh import Mesh
 from stages.conspicuity import __main__ as stage
-from stages.conspicuity.storage import read_maps
-from stages.kit import Mesh
-from stages.kit.files import read_json, write_mesh
-from stages.kit.rows import read_rows
+from stages.conspicuity.measure import read_maps
+from stages.engine.rows import read_rows
 from stages.views.__main__ import run as run_views
 
 VIEWS = {"viewpoints": "four", "size": [90, 120], "renderer": "raster", "background": "black",

@@ -5,14 +5,11 @@ import pytest
 from skimage.filters.rank import entropy as rank_entropy
 from skimage.morphology import footprint_rectangle
 
-from stages.conspicuity import CHANNELS, conspicuity
-from stages.conspicuity.contrast import local_variance
-from stages.conspicuity.dkl import MECHANISMS, RGB_TO_LMS
-from stages.conspicuity.edge import laplacian_of_gaussian
-from stages.conspicuity.entropy import local_entropy
-from stages.conspicuity.orientation import energy
-from stages.kit import Mesh
-from stages.views import View, Viewpoint
+from haptic_glance.look.channels import CHANNELS, conspicuity
+from haptic_glance.look.channels.colour import MECHANISMS, RGB_TO_LMS
+from haptic_glance.look.channels.texture import energy, laplacian_of_gaussian, local_entropy, local_variance
+from haptic_glance.look.views import View, Viewpoint
+from haptic_glance.mesh.mesh import Mesh
 
 TRIANGLE = Mesh([[0, -0.5, -0.5], [0, 0.5, -0.5], [0, 0, 0.5]], [[0, 1, 2]])
 IMAGE_CHANNELS = sorted(set(CHANNELS) - {"curvature", "symmetry"})

@@ -3,11 +3,10 @@
 import numpy as np
 import pytest
 
-from stages.conspicuity.background import fill
-from stages.conspicuity.cropped_view import core
-from stages.conspicuity.kernels import mean_of_other_maxima
-from stages.conspicuity.operators import PEAK, centre_surround, expand, normalise, pyramid
-from stages.conspicuity.weak_cache import weak_cache
+from haptic_glance.base.weak_cache import weak_cache
+from haptic_glance.look.channels.cropped_view import core, fill
+from haptic_glance.look.channels.kernels import mean_of_other_maxima
+from haptic_glance.look.channels.operators import PEAK, centre_surround, expand, normalise, pyramid
 
 EVERYWHERE = np.ones((60, 80), dtype=bool)
 

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.conspicuity import CHANNELS, conspicuity
-from stages.conspicuity.channels import OTHERS, check_channels, resize_map
-from stages.conspicuity.symmetry import symmetric_points
-from stages.kit import Mesh
-from stages.views import Viewpoint, render
+from haptic_glance.look.channels import CHANNELS, conspicuity
+from haptic_glance.look.channels.channels import OTHERS, check_channels, resize_map
+from haptic_glance.look.channels.symmetry import symmetric_points
+from haptic_glance.look.views import Viewpoint, render
+from haptic_glance.mesh.mesh import Mesh
 
 SIZE = (300, 400)
 RIVALS = ("spectral_residual", "fine_grained")

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from stages.conspicuity import CHANNELS, conspicuity
-from stages.conspicuity.channels import OTHERS
-from stages.conspicuity.operators import pyramid
-from stages.conspicuity.printed import centre_surround, normalise
-from stages.kit import Viewpoint
-from stages.views import View, render
+from haptic_glance.look.camera import Viewpoint
+from haptic_glance.look.channels import CHANNELS, conspicuity
+from haptic_glance.look.channels.channels import OTHERS
+from haptic_glance.look.channels.operators import pyramid
+from haptic_glance.look.channels.printed import centre_surround, normalise
+from haptic_glance.look.views import View, render
 
 
 @pytest.fixture

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from stages.conspicuity.project import nearest_corners
-from stages.kit import Mesh
+from haptic_glance.look.channels.surface import nearest_corners
+from haptic_glance.mesh.mesh import Mesh
 
 
 def test_a_place_takes_the_corner_nearest_to_it():

@@ -6,12 +6,11 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.conspicuity import CHANNELS, conspicuity
-from stages.conspicuity.measure import background_rows, measured_maps
-from stages.conspicuity.silhouette import silhouette_share
-from stages.kit import Mesh
-from stages.kit.files import read_mesh
-from stages.views import Viewpoint, render
+from haptic_glance.base.files import read_mesh
+from haptic_glance.look.channels import CHANNELS, conspicuity
+from haptic_glance.look.views import Viewpoint, render
+from haptic_glance.mesh.mesh import Mesh
+from stages.conspicuity.measure import background_rows, measured_maps, silhouette_share
 
 MESHES = Path(__file__).parents[2] / "data/household/meshes"
 

@@ -6,13 +6,12 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.conspicuity import CHANNELS, conspicuity
-from stages.conspicuity.channels import SYMMETRIES
-from stages.conspicuity.curvature import capped_curvature, mean_curvature
-from stages.conspicuity.symmetry import symmetric_points
-from stages.conspicuity.symmetry_search import mirror, rotate, shape_symmetries
-from stages.kit import Mesh
-from stages.views import Viewpoint, render
+from haptic_glance.look.channels import CHANNELS, conspicuity
+from haptic_glance.look.channels.channels import SYMMETRIES
+from haptic_glance.look.channels.curvature import capped_curvature, mean_curvature
+from haptic_glance.look.channels.symmetry import mirror, rotate, shape_symmetries, symmetric_points
+from haptic_glance.look.views import Viewpoint, render
+from haptic_glance.mesh.mesh import Mesh
 
 SIZE = (300, 400)
 

@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.conspicuity import ViewMaps
-from stages.conspicuity.surface_values import smoother
-from stages.kit import Mesh, Viewpoint
-from stages.views import TWELVE
+from haptic_glance.look.camera import Viewpoint
+from haptic_glance.look.channels import ViewMaps
+from haptic_glance.look.channels.surface import smoother
+from haptic_glance.look.views import TWELVE
+from haptic_glance.mesh.mesh import Mesh
 
 SIZE = (75, 100)
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from stages.contours import draw_pairs
-from stages.kit.rng import rng
+from haptic_glance.base.rng import rng
+from stages.contours.contours import draw_pairs
 
 
 def as_sets(pairs):

@@ -4,15 +4,14 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.contours import sample_contours, write_sequences
-from stages.imprints import Surface
-from stages.kit import Mesh
-from stages.kit.files import write_mesh, write_text
-from stages.kit.rng import rng
-from stages.kit.workspace import Workspace
-from stages.report import sequences
+from haptic_glance.base.files import write_mesh, write_text
+from haptic_glance.base.rng import rng
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.touch import Surface
+from stages.contours.contours import sample_contours, write_sequences
+from stages.engine.settings import Workspace
+from stages.report import Params, sequences
 from stages.report.results import NotRun, Results
-from stages.report.schema import Params
 from stages.report.sequences.contours import followed
 from stages.report.topics import build_one
 

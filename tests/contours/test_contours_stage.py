@@ -11,14 +11,14 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.contours import Sequences, read_sequences, sample_contours, write_sequences
+from haptic_glance.base.files import sha256, write_arrays, write_mesh
+from haptic_glance.base.rng import rng
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.touch import Surface, follow
+from stages.contours import Params
 from stages.contours import __main__ as stage
-from stages.contours.schema import Params
-from stages.imprints import Surface, follow
-from stages.kit import Mesh
-from stages.kit.files import sha256, write_arrays, write_mesh
-from stages.kit.rng import rng
-from stages.kit.rows import read_rows
+from stages.contours.contours import Sequences, read_sequences, sample_contours, write_sequences
+from stages.engine.rows import read_rows
 
 SHAPE = trimesh.creation.torus(0.35, 0.15, major_sections=40, minor_sections=20)
 RING = Mesh(SHAPE.vertices, SHAPE.faces)
@@ -109,7 +109,7 @@ SCRIPT = """
 import os, signal, sys
 from pathlib import Path
 from stages.contours import __main__ as stage
-from stages.kit.workspace import Workspace
+from stages.engine.settings import Workspace
 read = stage.read_mesh
 def read_mesh(path):
     if path.stem == "b" and sys.argv[1] == "die":

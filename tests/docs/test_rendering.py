@@ -40,10 +40,10 @@ def test_parameters_are_bold_where_a_sentence_begins_with_them():
 @pytest.mark.parametrize(
     "code, module, shown",
     [
-        ("simplify", "stages.lod.levels", ":py:obj:`~haptic_glance.simplify`"),
-        ("quadric_weights", "stages.lod.simplify", ":py:obj:`~stages.lod.quadric_weights`"),
-        ("quadric_weights", "stages.views.view", "``quadric_weights``"),
-        ("faces > 4", "stages.lod.simplify", "``faces > 4``"),
+        ("simplify", "haptic_glance.lod.export", ":py:obj:`~haptic_glance.simplify`"),
+        ("quadric_weights", "haptic_glance.lod.simplify", ":py:obj:`~haptic_glance.lod.quadric_weights`"),
+        ("quadric_weights", "haptic_glance.look.views.view", "``quadric_weights``"),
+        ("faces > 4", "haptic_glance.lod.simplify", "``faces > 4``"),
         ("faces", "", "``faces``"),
     ],
 )

@@ -39,8 +39,8 @@ def test_it_runs_and_draws(path, monkeypatch, tmp_path):
     assert drawn and not list(tmp_path.iterdir())
 
 
-def test_there_are_twenty_examples_and_six_tutorials():
-    assert len(EXAMPLES) >= 20 and len(TUTORIALS) == 6
+def test_there_are_twenty_examples_and_seven_tutorials():
+    assert len(EXAMPLES) >= 20 and len(TUTORIALS) == 7
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=name)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh
+from haptic_glance.mesh.mesh import Mesh
 
 pytest.importorskip("matplotlib")
 TUTORIAL = Path(__file__).parents[2] / "docs" / "tutorials" / "touch_environment.py"

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from stages.exploration import (
+from haptic_glance.know import (
     LIKELIHOODS,
     SPLITS,
     STRATEGIES,
@@ -14,7 +14,7 @@ from stages.exploration import (
     split_touches,
     stop,
 )
-from stages.exploration.likelihood import feature_kernel, log_likelihood, place_kernel
+from haptic_glance.know.belief import feature_kernel, log_likelihood, place_kernel
 
 PLAIN = Calibration(1.0, 0.0)
 

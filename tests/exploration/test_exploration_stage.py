@@ -4,11 +4,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from stages.engine.rows import read_rows
+from stages.exploration import Params
 from stages.exploration import __main__ as stage
 from stages.exploration.one_sampling import EXPERIMENTS
-from stages.exploration.schema import Params
-from stages.imprints import Imprints, write_imprints
-from stages.kit.rows import read_rows
+from stages.imprints.imprints import Imprints, write_imprints
 
 SETTINGS = {"sets": ["pair"], "methods": ["here"], "confidences": [0.8], "most": 3, "repetitions": 2}
 CLASSIFICATION = {"drawn": 0, "classifiers": [], "repetitions": 1, "closer": [], "touches": [], "combinations": 1}

@@ -5,17 +5,15 @@ import pandas as pd
 import pytest
 import trimesh
 
-from stages.face_needs import coarsest
+from haptic_glance.base.files import write_arrays, write_mesh, write_table
+from haptic_glance.lod.scene import build_lod_chain
+from haptic_glance.lod.scene.chain import finest
+from haptic_glance.mesh.mesh import Mesh
+from stages.engine.rows import read_rows
+from stages.face_needs import Params
 from stages.face_needs.__main__ import run, summary
-from stages.face_needs.one_object import differences, felt, seen
-from stages.face_needs.recognised import accuracies
-from stages.face_needs.schema import Params
-from stages.kit import Mesh
-from stages.kit.files import write_arrays, write_mesh, write_table
-from stages.kit.rows import read_rows
-from stages.scene import build_lod_chain
-from stages.scene.lod_chain import finest
-from stages.scene.storage import write_chain
+from stages.face_needs.need import accuracies, coarsest, differences, felt, seen
+from stages.scene.compare import write_chain
 
 SETTINGS = Params([0.5, 2.0], 3, [60, 80], 40.0, 1.0, "glance", 12, [16, 16], 0.01, [0.02, 0.1], 0.02, 3, 2)
 

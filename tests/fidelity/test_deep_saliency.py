@@ -9,14 +9,13 @@ import trimesh
 from scipy import ndimage
 from skimage.filters import threshold_multiotsu
 
-from stages.fixation.cam import grad_cam
-from stages.fixation.fusion import fuse, highest_level
-from stages.fixation.shape import FLAT, curvature_shares, eccentricity, gaussian_curvature
-from stages.fixation.subtractive import subtractive_clusters
+from haptic_glance.deep.cam import grad_cam
+from haptic_glance.look.weights.convexity import convexity
+from haptic_glance.mesh import load, normalise
+from haptic_glance.mesh.mesh import Mesh
+from stages.fixation.fusion import fuse, highest_level, subtractive_clusters
+from stages.fixation.places import FLAT, curvature_shares, eccentricity, gaussian_curvature
 from stages.fixation.tasks import CLUSTERS, FUSED_TASKS, SHAPE_MEASURES
-from stages.kit import Mesh
-from stages.meshes import load, normalise
-from stages.weights.convexity import convexity
 
 ROOT = Path(__file__).parents[2]
 

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.conspicuity import facing
-from stages.fixation import project_by_boxes, project_to_vertices
+from haptic_glance.look.camera import Viewpoint
+from haptic_glance.look.channels import facing
+from haptic_glance.look.views import render
+from haptic_glance.mesh.mesh import Mesh
 from stages.fixation.agreement import agreement_rows
-from stages.fixation.centres import centres
-from stages.kit import Mesh, Viewpoint
-from stages.views import render
+from stages.fixation.places import centres, project_by_boxes, project_to_vertices
 
 SIZE = 224
 

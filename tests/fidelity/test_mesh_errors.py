@@ -7,11 +7,9 @@ import trimesh
 from scipy import ndimage
 from skimage.metrics import structural_similarity
 
-from stages.kit import Mesh
-from stages.lod.laplacian import band_distance, laplacian_pyramid
-from stages.lod.metro import metro
-from stages.lod.normalised_laplacian import CONSTANTS, NEIGHBOURS, normalise
-from stages.lod.similarity import ssim_error
+from haptic_glance.lod.errors import metro
+from haptic_glance.lod.perceptual import CONSTANTS, NEIGHBOURS, band_distance, laplacian_pyramid, normalise, ssim_error
+from haptic_glance.mesh.mesh import Mesh
 
 ROOT = Path(__file__).parents[2]
 BINOMIAL = np.array([1, 4, 6, 4, 1]) / 16

@@ -5,14 +5,17 @@ from scipy import ndimage
 from scipy.spatial.distance import cdist
 from skimage.metrics import structural_similarity
 
-from stages.kit.camera import pixels_per_unit
-from stages.salient_points.select import select_by_centroid, select_by_suppression
-from stages.views.best import best_viewpoints
-from stages.views.candidates import CANDIDATES, PERPENDICULAR_SETS
-from stages.weights.euclidean import euclidean_weights, view_distances
-from stages.weights.ground_truth.maps import gts_map
-from stages.weights.similarity import similarity_weights, view_similarities
-from stages.weights.svm_pixels import select_far_points
+from haptic_glance.look.camera import pixels_per_unit
+from haptic_glance.look.points.fuse import select_by_centroid, select_by_suppression
+from haptic_glance.look.views.best import CANDIDATES, PERPENDICULAR_SETS, best_viewpoints
+from haptic_glance.look.weights.attention import (
+    euclidean_weights,
+    similarity_weights,
+    view_distances,
+    view_similarities,
+)
+from haptic_glance.look.weights.svm import select_far_points
+from stages.weights.ground_truth import gts_map
 
 
 def smooth_map(seed, shape=(90, 120), width=4.0):

@@ -6,16 +6,16 @@ import cv2
 import numpy as np
 import pandas as pd
 
-from stages.classification.classifiers import CLASSIFIERS
-from stages.classification.protocol import COMPONENTS, FOLDS, HOLDOUT
-from stages.fixation.viewpoints import viewpoint_sphere
-from stages.kit.rows import read_rows
-from stages.networks.images import to_images
+from haptic_glance.deep.images import to_images
+from haptic_glance.know.classifiers import CLASSIFIERS, COMPONENTS
+from haptic_glance.know.protocol import FOLDS, HOLDOUT
+from haptic_glance.look.views.viewpoints import PRINCIPAL
+from haptic_glance.look.weights.svm import SIDE, pixel_samples
+from stages.engine.rows import read_rows
+from stages.fixation.tasks import viewpoint_sphere
 from stages.sequences.classifiers import MAP_DIMENSIONS, NEIGHBOURS, svm
-from stages.views.viewpoints import PRINCIPAL
-from stages.weights.svm_pixels import SIDE, pixel_samples
-from stages.weights.svm_validation import FOLDS as SVM_FOLDS
-from stages.weights.train import AREAS, PIXELS
+from stages.weights.training import AREAS, PIXELS
+from stages.weights.training import FOLDS as SVM_FOLDS
 
 ROOT = Path(__file__).parents[2]
 TWENTY = {

@@ -5,12 +5,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from stages.conspicuity.project import nearest_corners
-from stages.kit import Mesh, RayScene, Viewpoint
-from stages.kit.camera import DISTANCE, pixel_rays, pixels_per_unit, project
-from stages.lod.neighbourhood import adaptive_rings
-from stages.meshes import load, normalise
-from stages.views import TWELVE, render
+from haptic_glance.lod.neighbourhood import adaptive_rings
+from haptic_glance.look.camera import DISTANCE, Viewpoint, pixel_rays, pixels_per_unit, project
+from haptic_glance.look.channels.surface import nearest_corners
+from haptic_glance.look.views import TWELVE, render
+from haptic_glance.mesh import load, normalise
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.rays import RayScene
 
 ROOT = Path(__file__).parents[2]
 SIZE = (900, 1200)

@@ -5,13 +5,14 @@ from pathlib import Path
 import numpy as np
 from scipy import ndimage
 
-from stages.conspicuity import conspicuity
-from stages.conspicuity.channels import mask_at_size
-from stages.conspicuity.dkl import LINEAR, MECHANISMS
-from stages.kit import Mesh, Viewpoint
-from stages.meshes import load, normalise
-from stages.salient_points.fuse import COMBINATIONS, fuse
-from stages.views import View, render
+from haptic_glance.look.camera import Viewpoint
+from haptic_glance.look.channels import conspicuity
+from haptic_glance.look.channels.channels import mask_at_size
+from haptic_glance.look.channels.colour import LINEAR, MECHANISMS
+from haptic_glance.look.points.fuse import COMBINATIONS, fuse
+from haptic_glance.look.views import View, render
+from haptic_glance.mesh import load, normalise
+from haptic_glance.mesh.mesh import Mesh
 
 ROOT = Path(__file__).parents[2]
 MESH = Mesh([[0, -0.5, -0.5], [0, 0.5, -0.5], [0, 0, 0.5]], [[0, 1, 2]])
@@ -105,7 +106,7 @@ def correlation(found, literal, mask):
 
 
 def test_normalisation(picture, agreement):
-    from stages.conspicuity import printed as library
+    from haptic_glance.look.channels import printed as library
 
     rgb, _ = picture
     images = [

@@ -6,19 +6,16 @@ import numpy as np
 import pywt
 from scipy import ndimage, stats
 
-from stages.classification.features import FEATURES, features
-from stages.classification.similarity import SIMILARITY_THRESHOLD, confusable, similarity
-from stages.classification.touches import concatenate_touches, draw_combinations, touch_map
-from stages.imprints.adaptive import adaptive_distances
-from stages.imprints.distances import distances
-from stages.imprints.face_centres import FaceCentres
-from stages.imprints.follow import follow
-from stages.imprints.frame import sensor_normals
-from stages.imprints.press import press_many
-from stages.imprints.quasi_tangent import quasi_tangent
-from stages.kit import Mesh
-from stages.kit.sensor_axes import sensor_axes
-from stages.meshes import load, normalise
+from haptic_glance.know.features import FEATURES, SIMILARITY_THRESHOLD, confusable, features, similarity
+from haptic_glance.know.touches import concatenate_touches, draw_combinations, touch_map
+from haptic_glance.mesh import load, normalise
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.touch.distances import adaptive_distances, distances
+from haptic_glance.touch.follow import follow
+from haptic_glance.touch.press import press_many
+from haptic_glance.touch.quasi_tangent import quasi_tangent
+from haptic_glance.touch.surface import sensor_axes, sensor_normals
+from stages.imprints.imprints import FaceCentres
 from stages.sequences.series import sequence_features
 
 ROOT = Path(__file__).parents[2]
@@ -159,7 +156,7 @@ def test_face_centres(agreement):
 
 def test_hit_beside_face_centre(agreement):
     """The imprints of the two, on a dromedary of 4,000 faces."""
-    from stages.lod import simplify
+    from haptic_glance.lod import simplify
 
     mesh = simplify(dromedary(), 4000)
     vertices = np.linspace(0, len(mesh.vertices) - 1, 40).astype(int)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh
+from haptic_glance.mesh.mesh import Mesh
 
 
 def as_mesh(shape):

@@ -4,11 +4,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.fixation import centre_distance, half_share, subtractive_clusters
-from stages.fixation.agreement import agreement_rows, task_correlations
-from stages.fixation.centres import centres
-from stages.fixation.controls import centre_prior
-from stages.fixation.summary import summary, verdicts
+from stages.fixation.agreement import agreement_rows, centre_prior, half_share, summary, task_correlations, verdicts
+from stages.fixation.fusion import subtractive_clusters
+from stages.fixation.places import centre_distance, centres
 
 
 @pytest.fixture(scope="module")

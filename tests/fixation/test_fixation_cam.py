@@ -6,18 +6,17 @@ import numpy as np
 import pytest
 import torch
 
-from stages.conspicuity import facing
-from stages.fixation import entropy, fuse, grad_cam, highest_level, mean_over_views, project_to_vertices
+from haptic_glance.base.files import sha256
+from haptic_glance.deep import Network, build, grad_cam
+from haptic_glance.deep.resize import resize_cams
+from haptic_glance.look.camera import Viewpoint, project
+from haptic_glance.look.channels import facing
 from stages.fixation.attention import MODELS, alive, linear_scores, project_maps, to_surface
-from stages.fixation.backbone import folded_network, last_maps, state_path, write_state
-from stages.fixation.heads import fit_head, scores
-from stages.fixation.options import method_named
-from stages.fixation.viewpoints import viewpoint_sphere
-from stages.kit import Viewpoint
-from stages.kit.camera import project
-from stages.kit.files import sha256
-from stages.networks import Network, build
-from stages.networks.grid import resize_cams
+from stages.fixation.backbone import folded_network, last_maps, method_named, state_path, write_state
+from stages.fixation.finetune import fit_head, scores
+from stages.fixation.fusion import entropy, fuse, highest_level
+from stages.fixation.places import mean_over_views, project_to_vertices
+from stages.fixation.tasks import viewpoint_sphere
 
 pytestmark = pytest.mark.slow
 

@@ -4,14 +4,12 @@ import numpy as np
 import pytest
 import torch
 
-from stages.fixation import options, trunk
+from haptic_glance.base.files import write_arrays
+from haptic_glance.deep import build, recalibrate
+from haptic_glance.deep.architectures import fully_connected
+from stages.fixation import Params, backbone
+from stages.fixation.backbone import Method, method_named, network_inputs
 from stages.fixation.finetune import divided, labels_of
-from stages.fixation.options import Method, method_named
-from stages.fixation.pictures import network_inputs
-from stages.fixation.schema import Params
-from stages.kit.files import write_arrays
-from stages.networks import build, recalibrate
-from stages.networks.architectures.vgg16 import fully_connected
 
 SETTINGS = Params(
     parallels=1, azimuths=3, size=64, projection="camera", methods=[], source="package", device="cpu",
@@ -32,18 +30,18 @@ def some_network(*_):
 
 @pytest.mark.slow
 def test_the_last_block_on_cached_maps_gives_the_scores_of_the_network(tmp_path, monkeypatch):
-    monkeypatch.setattr(trunk, "build", some_network)
+    monkeypatch.setattr(backbone, "build", some_network)
     method = Method("mobilenet_v2-last_block", "mobilenet_v2", "last_block")
     for name in ("a", "b"):
         write_arrays(tmp_path / ".pictures" / f"{name}.npz", pictures=PICTURES, seconds=1.0)
-        trunk.cache_trunk(name, tmp_path, tmp_path, method, SETTINGS, 0)
-    maps, once, again = trunk.read_trunk(tmp_path, method.name, ["a", "b"])
+        backbone.cache_trunk(name, tmp_path, tmp_path, method, SETTINGS, 0)
+    maps, once, again = backbone.read_trunk(tmp_path, method.name, ["a", "b"])
     assert maps.shape[:2] == (2, 10) and once > 0 and again > 0
     assert torch.equal(maps[0, :5], maps[0, 5:]) and not torch.equal(maps[1, :5], maps[1, 5:])
     network = some_network()
     with torch.no_grad():
         expected = network.classify(network.convolutions(network_inputs(PICTURES)))
-        task = trunk.cached_task(network, method, maps)
+        task = backbone.cached_task(network, method, maps)
         found = task.model(task.inputs(torch.arange(5)))
     assert (found - expected).abs().max() < 0.01 * expected.abs().max()
     drawn = task.training_inputs(torch.zeros(64, dtype=torch.long)).half()
@@ -71,9 +69,9 @@ def test_fully_connected_layers_are_those_of_the_state_or_random():
 
 @pytest.mark.parametrize(("source", "word"), [("package", "source=download"), ("download", "")])
 def test_fully_connected_layers_that_nobody_carries_are_named_with_the_remedy(monkeypatch, capsys, source, word):
-    monkeypatch.setattr(options, "build", lambda *_: None)
+    monkeypatch.setattr(backbone, "build", lambda *_: None)
     methods = ["vgg16-last_block", "resnet50-last_block", "vgg16-frozen"]
-    found, missing = options.available(Params(**vars(SETTINGS) | {"methods": methods, "source": source}))
+    found, missing = backbone.available(Params(**vars(SETTINGS) | {"methods": methods, "source": source}))
     said = capsys.readouterr().err
     assert len(found) == 3 and not missing and said.count("\n") == bool(word) and word in said
     assert "vgg16-last_block" in said or not word

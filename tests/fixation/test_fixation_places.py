@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from stages.fixation.places import nearer
-from stages.fixation.viewpoints import viewpoint_sphere
+from stages.fixation.tasks import viewpoint_sphere
 
 VIEWS = viewpoint_sphere(1, 3)[:3]
 AXES = np.array([view.axes[2] for view in VIEWS])

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from stages.fixation import curvature_shares, eccentricity, gaussian_curvature, viewpoint_sphere
-from stages.fixation.viewpoints import evaluated_views
-from stages.kit import Mesh
+from haptic_glance.mesh.mesh import Mesh
+from stages.fixation.places import curvature_shares, eccentricity, gaussian_curvature
+from stages.fixation.tasks import evaluated_views, viewpoint_sphere
 
 
 def test_curvature_of_a_ball_is_one_over_its_radius_squared(shapes):

@@ -6,15 +6,13 @@ import numpy as np
 import pytest
 import torch
 
+from haptic_glance.base.fetch import FetchError
+from haptic_glance.base.files import read_arrays, read_table, sha256, write_arrays, write_mesh, write_text
+from stages.engine.rows import read_rows
+from stages.fixation import Params, backbone
 from stages.fixation import __main__ as stage
-from stages.fixation import options
-from stages.fixation.backbone import last_maps
-from stages.fixation.options import method_named
-from stages.fixation.schema import Params
+from stages.fixation.backbone import last_maps, method_named
 from stages.fixation.tasks import SEMANTICS
-from stages.kit.fetch import FetchError
-from stages.kit.files import read_arrays, read_table, sha256, write_arrays, write_mesh, write_text
-from stages.kit.rows import read_rows
 
 METHOD = "mobilenet_v2-random"
 SETTINGS = {
@@ -102,9 +100,9 @@ def test_stage_judges_models_rivals_and_controls_where_people_looked(run, capsys
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("mode", options.TRAINED)
+@pytest.mark.parametrize("mode", backbone.TRAINED)
 def test_networks_trained_for_each_task_run_beside_the_frozen_way(run, monkeypatch, mode):
-    monkeypatch.setitem(options.MODES, mode, "random")  # from scratch: no weights are fetched here
+    monkeypatch.setitem(backbone.MODES, mode, "random")  # from scratch: no weights are fetched here
     rows = rows_of(run(methods=[f"mobilenet_v2-{mode}"]))
     own = rows[rows["method"] == f"mobilenet_v2-{mode}"]
     assert {"accuracy", "chance", "views", "entropy", "pcc"} <= set(own["metric"])
@@ -114,11 +112,14 @@ def test_networks_trained_for_each_task_run_beside_the_frozen_way(run, monkeypat
 
 @pytest.mark.slow
 def test_a_network_without_weights_is_left_out_with_the_reason(run, monkeypatch, capsys):
-    def missing(name, *_):
+    def missing(name, *options):
         if name == "resnet101":
             raise FetchError("nobody carries it")
+        return build(name, *options)
 
-    monkeypatch.setattr(options, "build", missing)
+    build = backbone.build
+
+    monkeypatch.setattr(backbone, "build", missing)
     rows = rows_of(run(methods=[METHOD, "resnet101-frozen"]))
     assert rows.loc[rows["method"] == "resnet101-frozen", "note"].tolist() == ["nobody carries it"]
     assert "resnet101-frozen is left out: nobody carries it" in capsys.readouterr().err
@@ -135,7 +136,7 @@ def test_an_unknown_method_is_named(name):
 )
 def test_settings_that_no_run_can_have_are_refused(changed):
     with pytest.raises(ValueError):
-        options.check(Params(**SETTINGS | changed))
+        backbone.check(Params(**SETTINGS | changed))
 
 
 def test_too_little_memory_names_the_remedy():

@@ -5,8 +5,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from stages.fixation.split import object_folds, random_views
-from stages.fixation.tasks import SEMANTICS, assign_classes, cluster_objects, elbow, semantic_classes
+from stages.fixation.tasks import (
+    SEMANTICS,
+    assign_classes,
+    cluster_objects,
+    elbow,
+    object_folds,
+    random_views,
+    semantic_classes,
+)
 
 TABLE = Path(__file__).parents[2] / SEMANTICS
 

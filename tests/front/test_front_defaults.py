@@ -7,13 +7,13 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
+from haptic_glance.cli.touch import parser
 from haptic_glance.gallery import exhibit
-from haptic_glance.knowing import library
+from haptic_glance.know import library
 from haptic_glance.studio.feeling import Sensor
+from haptic_glance.touch import press
 from stages.compose import compose
 from stages.front.space import DEFAULT, WHOLE, WIDTH
-from stages.imprints import press
-from stages.imprints.options import parser
 from stages.report.chain.front import smallest_kept
 
 FRONT = smallest_kept(pd.read_csv(Path(__file__).parents[2] / "reports/tables/front.csv", dtype={"level": str}))

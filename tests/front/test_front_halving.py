@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from stages.front.halving import DIRECTIONS, aims, best_share, crowding, losses, ranks, smallest_of
+from stages.front.search import DIRECTIONS, aims, best_share, crowding, losses, ranks, smallest_of
 
 
 def rows(regions, objects, seconds=1.0, faces=100.0, touches=1):

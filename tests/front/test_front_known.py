@@ -3,11 +3,10 @@
 import numpy as np
 import pytest
 
-from stages.front.known import PARTS, Effort, known
-from stages.front.objects import Objects
+from haptic_glance.base.rng import rng
+from stages.front.known import PARTS, Effort, Objects, known
 from stages.front.senses import Felt
 from stages.front.space import SPACE, choice_of
-from stages.kit.rng import rng
 
 SHAPES = tuple(f"shape{k}" for k in range(7))
 CLASSES = {"round": ("ball", "egg"), "flat": ("plate", "tray"), "long": ("rod", "stick")}

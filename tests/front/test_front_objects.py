@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from stages.front.objects import Objects, halves, read_objects, shapes_of
-from stages.kit import Mesh
-from stages.kit.files import write_mesh, write_text
+from haptic_glance.base.files import write_mesh, write_text
+from haptic_glance.mesh.mesh import Mesh
+from stages.front.known import Objects, halves, read_objects, shapes_of
 
 SHAPES = [f"shape{k}" for k in range(15)]
 CLASSES = {f"class{k}": [f"{k}a", f"{k}b"] for k in range(6)}

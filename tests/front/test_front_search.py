@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from stages.front.halving import ranks
-from stages.front.objects import halves
-from stages.kit.rng import rng
+from haptic_glance.base.rng import rng
+from stages.front.known import halves
+from stages.front.search import ranks
 
 optuna = pytest.importorskip("optuna", reason="pip install 'haptic-glance[front]'")
 from stages.front import search as module  # noqa: E402

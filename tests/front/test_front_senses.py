@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 import trimesh
 
+from haptic_glance.base.files import write_mesh, write_text
+from haptic_glance.mesh import normalise
+from haptic_glance.mesh.mesh import Mesh
+from stages.engine.rows import read_rows
 from stages.front import senses as module
 from stages.front.senses import Senses
 from stages.front.space import SPACE, WHOLE, choice_of
-from stages.kit import Mesh
-from stages.kit.files import write_mesh, write_text
-from stages.kit.rows import read_rows
-from stages.meshes import normalise
 
 SMALL = {"method": "random", "viewpoints": "four", "image_rows": 225, "points": 20, "cells": 8, "level": "500",
          "touches": 1, "classifier": "knn"}  # fmt: skip
@@ -86,7 +86,8 @@ def test_parts_that_cannot_be_so_coarse_keep_the_fewest_faces_they_can(tmp_path)
 def test_a_tiny_study_leaves_rows_that_a_second_call_finds_done(tmp_path, monkeypatch, capsys):
     pytest.importorskip("optuna", reason="pip install 'haptic-glance[front]'")
     from stages.front import __main__ as command
-    from stages.front import halving, search, space
+    from stages.front import search, space
+    from stages.front import search as halving
     from stages.front.known import Effort
 
     few = {name: tuple(option for option in options if option in (SMALL[name], "itti", 3, "svm"))

@@ -4,10 +4,10 @@ from dataclasses import asdict, replace
 
 import pytest
 
+from haptic_glance.look.points.methods import METHODS
+from stages.engine.settings import ParamsError
 from stages.front.space import DEFAULT, SPACE, WIDTH, choice_of, one_choice_changed, settings_of
-from stages.imprints.schema import Params as Imprints
-from stages.kit.params import ParamsError
-from stages.salient_points.methods import METHODS
+from stages.imprints import Params as Imprints
 
 OPTIONS = {name: options[0] for name, options in SPACE.items()}
 BLIND, ITTI = (choice_of(OPTIONS | {"method": method}) for method in ("random", "itti"))

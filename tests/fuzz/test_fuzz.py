@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from stages.kit.picture import open_picture
-from stages.meshes import MeshError, load
+from haptic_glance.base.files import open_picture
+from haptic_glance.mesh import MeshError, load
 from tests.fuzz.attack import MEMORY, attack, fault_of, limits
 from tests.fuzz.readers import READERS, Reader
 

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 
 from haptic_glance import metro, normalise, press, saliency, simplify
-from stages.lod.topology import faults
-from stages.meshes import clean
+from haptic_glance.lod.topology import faults
+from haptic_glance.mesh import clean
 from tests.fuzz.strategies import meshes
 
 

@@ -11,16 +11,16 @@ import numpy as np
 import pytest
 import trimesh
 
-from haptic_glance.gallery import command, compiled, demo
+from haptic_glance.base.packing import ordered
+from haptic_glance.cli import saliency
+from haptic_glance.cli.simplify import run as simplify
+from haptic_glance.cli.touch import run as touch
+from haptic_glance.gallery import command, demo
 from haptic_glance.gallery.command import run
 from haptic_glance.gallery.exhibit import exhibit
 from haptic_glance.gallery.page import turnable
-from stages import saliency
-from stages.imprints.command import run as touch
-from stages.kit.packing import ordered
-from stages.lod import vertex_errors
-from stages.lod.command import run as simplify
-from stages.meshes import load, rotate_to_z_up
+from haptic_glance.lod import compiled, vertex_errors
+from haptic_glance.mesh import load, rotate_to_z_up
 
 pytestmark = pytest.mark.slow
 
@@ -223,12 +223,12 @@ def test_kernels_are_compiled_beside_only_where_there_are_none(tmp_path, monkeyp
     monkeypatch.setattr(compiled.subprocess, "Popen", lambda command, **_: started.append(command) or command)
     monkeypatch.setattr(compiled, "FOLDER", tmp_path)
     compiled.compile_beside(said.append)
-    assert len(started) == 2 and "up to a minute" in said[0]
+    assert len(started) == 2 and "about ten seconds" in said[0]
     (tmp_path / "kernel.nbc").touch()
     compiled.compile_beside(said.append)()
     assert len(started) == 2 and len(said) == 1
     compiled.compile_search()
-    compiled.compile_rest()
+    compiled.compile_collapse()
 
 
 def test_what_cannot_be_is_named_before_anything_is_looked_at(scans, tmp_path):

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from haptic_glance.gallery.demo import sample
-from stages.lod import metro
-from stages.meshes import clean, load
+from haptic_glance.lod import metro
+from haptic_glance.mesh import clean, load
 
 
 def test_the_sample_is_small_whole_and_upright():

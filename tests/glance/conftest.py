@@ -1,6 +1,6 @@
 import trimesh
 
-from stages.kit import Mesh
+from haptic_glance.mesh.mesh import Mesh
 
 
 def as_mesh(shape: trimesh.Trimesh) -> Mesh:

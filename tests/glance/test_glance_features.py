@@ -4,12 +4,11 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.glance import FEATURES, samples_of_mesh, standardised
-from stages.glance.features import features
-from stages.glance.mirror import symmetry
-from stages.glance.relief import fullness, relief
-from stages.glance.visibility import visibility
-from stages.weights.published import GLANCES
+from haptic_glance.look.glance import FEATURES, samples_of_mesh, standardised
+from haptic_glance.look.glance.cells import visibility
+from haptic_glance.look.glance.features import features, fullness, relief
+from haptic_glance.look.glance.mirror import symmetry
+from haptic_glance.look.weights.weights import GLANCES
 
 from .conftest import as_mesh
 

@@ -7,14 +7,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from stages.glance import samples_of_mesh, samples_of_points, standardised
-from stages.kit.axes import TO_Z_UP
-from stages.kit.mesh import unit
-from stages.meshes import normalise, rotate_to_z_up
-from stages.meshes.load import parse
-from stages.weights import fit_fixations
-from stages.weights.ground_truth.gaze import gaze_on_vertices, read_gaze
-from stages.weights.published import GLANCES
+from haptic_glance.look.glance import samples_of_mesh, samples_of_points, standardised
+from haptic_glance.look.weights import fit_fixations
+from haptic_glance.look.weights.weights import GLANCES
+from haptic_glance.mesh import normalise, rotate_to_z_up
+from haptic_glance.mesh.axes import TO_Z_UP
+from haptic_glance.mesh.files import parse
+from haptic_glance.mesh.mesh import unit
+from stages.weights.gaze import gaze_on_vertices, read_gaze
 
 SHARED = Path(__file__).parents[2] / "../shared/data"
 

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.glance import samples_of_mesh, samples_of_points, standardised
-from stages.kit import Mesh
-from stages.kit.rng import rng
-from stages.meshes import normalise
-from stages.salient_points import detect, saliency
-from stages.weights.published import GLANCES
+from haptic_glance.base.rng import rng
+from haptic_glance.look.glance import samples_of_mesh, samples_of_points, standardised
+from haptic_glance.look.points import detect, saliency
+from haptic_glance.look.weights.weights import GLANCES
+from haptic_glance.mesh import normalise
+from haptic_glance.mesh.mesh import Mesh
 
 from .conftest import as_mesh
 

@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.glance import COUNT, Samples, samples_of_mesh, samples_of_points
-from stages.glance.denoise import denoised
-from stages.kit import Mesh
-from stages.kit.mesh import unit
-from stages.kit.rng import rng
+from haptic_glance.base.rng import rng
+from haptic_glance.look.glance import COUNT, Samples, samples_of_mesh, samples_of_points
+from haptic_glance.look.glance.denoise import denoised
+from haptic_glance.mesh.mesh import Mesh, unit
 
 from .conftest import as_mesh
 

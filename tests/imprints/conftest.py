@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from stages.kit import Mesh
+from haptic_glance.mesh.mesh import Mesh
 
 
 def solid(top, half=24, spacing=0.005, depth=0.5):

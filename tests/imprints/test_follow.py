@@ -5,8 +5,8 @@ import pytest
 import trimesh
 from scipy.spatial.transform import Rotation
 
-from stages.imprints import Surface, contour, follow, follow_many, press_at, snap_to_surface
-from stages.kit import Mesh
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.touch import Surface, contour, follow, follow_many, press_at, snap_to_surface
 
 CELLS, ORIGIN = (8, 8), np.zeros(3)
 

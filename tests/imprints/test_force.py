@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.imprints import (
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.touch import (
     Layer,
     Surface,
     distances_at,
@@ -15,7 +16,6 @@ from stages.imprints import (
     sensor_normals,
     shear,
 )
-from stages.kit import Mesh
 
 LAYER = Layer(thickness=0.01, modulus=1e5, poisson=0.25, friction=0.5)
 ABOVE = np.array([[0, 0, 0.005]]), np.eye(3)[None]  # the middle of a face of the punch

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from stages.imprints import adaptive_distances, distances_at, sensor_axes, sensor_normals
+from haptic_glance.touch import adaptive_distances, distances_at, sensor_axes, sensor_normals
 
 
 def pitches(*array, **limits):

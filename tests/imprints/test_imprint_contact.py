@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.imprints import Surface, distances, distances_at, press
-from stages.kit import Mesh
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.touch import Surface, distances, distances_at, press
 
 FLAT = np.eye(3)[None]  # right +x, up +y, normal +z
 

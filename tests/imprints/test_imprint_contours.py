@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from stages.imprints import contour_imprints, distances_at, quasi_tangent
-from stages.kit import Mesh
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.touch import contour_imprints, distances_at, quasi_tangent
 
 
 def fan(angles, heights, radius=0.01):

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from stages.imprints import distances, sensor_axes, sensor_normals
-from stages.kit import Mesh
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.touch import distances, sensor_axes, sensor_normals
 
 SURFACES = {
     "plane": lambda x, y: 0 * x,

@@ -5,11 +5,12 @@ from importlib import import_module
 import numpy as np
 import pytest
 
-from stages.imprints import Imprints, indent, normalise, press, press_many, read_imprints, touchable, write_imprints
+from haptic_glance.base.files import write_arrays, write_mesh
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.touch import indent, normalise, press, press_many, touchable
+from stages.engine.rows import read_rows
 from stages.imprints.__main__ import run
-from stages.kit import Mesh
-from stages.kit.files import write_arrays, write_mesh
-from stages.kit.rows import read_rows
+from stages.imprints.imprints import Imprints, read_imprints, write_imprints
 
 
 def test_plane_gives_flat_imprint(shapes):
@@ -70,7 +71,7 @@ def test_distances_that_are_no_numbers_make_no_imprint(wrong):
 def test_blocks_change_no_imprint(monkeypatch):
     raw = np.random.default_rng(0).normal(size=(9, 4, 4))
     whole = normalise(raw, 0.01)
-    monkeypatch.setattr(import_module("stages.imprints.press"), "BLOCK", 30)
+    monkeypatch.setattr(import_module("haptic_glance.touch.press"), "BLOCK", 30)
     assert np.array_equal(normalise(raw, 0.01), whole)
 
 

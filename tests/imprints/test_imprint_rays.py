@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.imprints import Surface, distances, distances_at, sensor_axes, sensor_normals, touchable
-from stages.imprints.surface import LIFT
-from stages.kit import Mesh, RayScene
-from stages.kit.files import read_mesh
+from haptic_glance.base.files import read_mesh
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.rays import RayScene
+from haptic_glance.touch import Surface, distances, distances_at, sensor_axes, sensor_normals, touchable
+from haptic_glance.touch.surface import LIFT
 
 MESHES = Path(__file__).parents[2] / "data/meshes"
 

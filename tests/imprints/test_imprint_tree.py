@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from stages.imprints.kernels import face_tree
+from haptic_glance.touch.kernels.faces import face_tree
 
 LANES = 32
 

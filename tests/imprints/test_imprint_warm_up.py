@@ -3,9 +3,9 @@
 import numba
 import pytest
 
+from haptic_glance.touch import warm_up as warm
+from haptic_glance.touch.kernels import faces
 from stages.imprints import __main__ as stage
-from stages.imprints import warm_up as warm
-from stages.imprints.kernels import jit
 
 
 def test_it_works_once_a_process(monkeypatch):
@@ -28,7 +28,7 @@ def test_the_stage_warms_up_before_it_reads_the_object(monkeypatch, tmp_path):
 
 def test_a_kernel_leaves_the_folder_of_other_kernels_as_it_was(monkeypatch):
     monkeypatch.setattr(numba.config, "CACHE_DIR", "elsewhere")
-    assert jit.kernel(abs_of)(-2.0) == 2.0
+    assert faces.kernel(abs_of)(-2.0) == 2.0
     assert numba.config.CACHE_DIR == "elsewhere"
 
 

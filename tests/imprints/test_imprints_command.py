@@ -12,15 +12,14 @@ import pytest
 import trimesh
 from PIL import Image
 
-from stages.imprints import pictures, press_many, user_mesh
-from stages.imprints.command import run
-from stages.imprints.layer import Layer
-from stages.imprints.options import POINT, parse_options, parse_skin
-from stages.imprints.pictures import CANDIDATES, _columns, _label_positions, best_views, visible, write_picture
-from stages.imprints.skin import Skin
-from stages.imprints.user_mesh import UserMesh
-from stages.kit import Mesh
-from stages.meshes import load, normalise, rotate_to_z_up
+from haptic_glance.cli.touch import POINT, parse_options, parse_skin, run
+from haptic_glance.mesh import load, normalise, rotate_to_z_up
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.touch import pictures, press_many
+from haptic_glance.touch import places as user_mesh
+from haptic_glance.touch.pictures import CANDIDATES, _columns, _label_positions, best_views, visible, write_picture
+from haptic_glance.touch.places import UserMesh
+from haptic_glance.touch.skin import Layer, Skin
 
 PLACE, SIZE = np.array([120.0, -40.0, 7.0]), 25.0
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.imprints import Layer, Layout, layout_forces, press_forces, read_layout
-from stages.kit import Mesh
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.touch import Layer, Layout, layout_forces, press_forces, read_layout
 
 LAYER = Layer(thickness=0.002, modulus=2e5)
 TIP = 0.008  # radius of the fingertip, in metres

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.imprints import section
-from stages.kit import Mesh
-from stages.kit.files import read_mesh
+from haptic_glance.base.files import read_mesh
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.touch import section
 
 MESHES = Path("data/meshes")
 ORIGIN, X, Z = np.zeros(3), np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])

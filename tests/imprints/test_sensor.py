@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.imprints import CONTACTS, Surface, contour_imprints, distances, normalise
-from stages.imprints.sensor import CONTOURS, SENSORS, misfit, touch
-from stages.kit import Mesh
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.touch import CONTACTS, Surface, contour_imprints, distances, normalise
+from haptic_glance.touch.quasi_tangent import CONTOURS, SENSORS, misfit, touch
 
 CELLS, PITCH = (16, 16), 0.01
 

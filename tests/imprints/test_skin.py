@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from stages.imprints.distances import distances
-from stages.imprints.press import normalise, press_many
-from stages.imprints.skin import Skin, dead_cells, indent
+from haptic_glance.touch.distances import distances
+from haptic_glance.touch.press import normalise, press_many
+from haptic_glance.touch.skin import Skin, dead_cells, indent
 
 IMAGES = np.random.default_rng(0).random((6, 12, 10)).astype(np.float32)
 FULL = Skin(blur=0.7, gain=1.2, saturation=0.9, hysteresis=0.05, noise=0.1, dead=0.1, seed=3)

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.imprints import (
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.touch import (
     Surface,
     distances,
     distances_at,
@@ -14,7 +15,6 @@ from stages.imprints import (
     sensor_normals,
     snap_to_surface,
 )
-from stages.kit import Mesh
 
 
 def ball():

@@ -8,13 +8,13 @@ from pathlib import Path
 
 import pytest
 
-from stages.kit import cores
+from stages.engine import parallel
 
 CONTEXT = multiprocessing.get_context("fork")
 
 
 def hold(inside: Path) -> None:
-    with cores.core():
+    with parallel.core():
         inside.write_text("in")
         time.sleep(60)
 
@@ -28,8 +28,8 @@ def wait_for(condition, seconds: float = 20.0) -> bool:
 
 @pytest.mark.slow
 def test_no_more_processes_work_than_there_are_cores_and_a_killed_one_frees_its_core(tmp_path, monkeypatch):
-    monkeypatch.setattr(cores, "cpu_count", lambda: 2)
-    with cores.budget(tmp_path / "cores"):
+    monkeypatch.setattr(parallel, "cpu_count", lambda: 2)
+    with parallel.budget(tmp_path / "cores"):
         places = [tmp_path / str(number) for number in range(3)]
         processes = [CONTEXT.Process(target=hold, args=(place,)) for place in places]
         try:
@@ -48,12 +48,12 @@ def test_no_more_processes_work_than_there_are_cores_and_a_killed_one_frees_its_
 
 
 def test_without_a_budget_nothing_waits(monkeypatch):
-    monkeypatch.setattr(cores, "cpu_count", lambda: 0)
-    with cores.core(), cores.core():
+    monkeypatch.setattr(parallel, "cpu_count", lambda: 0)
+    with parallel.core(), parallel.core():
         pass
 
 
 def test_a_budget_ends_with_its_block(tmp_path):
-    with cores.budget(tmp_path):
-        assert os.environ[cores.FOLDER] == str(tmp_path)
-    assert cores.FOLDER not in os.environ
+    with parallel.budget(tmp_path):
+        assert os.environ[parallel.FOLDER] == str(tmp_path)
+    assert parallel.FOLDER not in os.environ

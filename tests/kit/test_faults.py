@@ -17,22 +17,21 @@ from pathlib import Path
 
 import pytest
 
-from stages.kit import fetch, files
-from stages.kit.alone import alone
-from stages.kit.command import errors_in_one_line
-from stages.kit.dvc_files import forget_killed
-from stages.kit.objects import Objects, archive
-from stages.kit.run import StageRun
+from haptic_glance.base import fetch, files
+from haptic_glance.base.errors import errors_in_one_line
+from stages.engine.dvc_files import forget_killed
+from stages.engine.objects import Objects, archive
+from stages.engine.run import StageRun, alone
 from stages.repro import run_alone
 
 ROOT = Path(__file__).parents[2]
 TWICE = """
 import sys, time
 from pathlib import Path
-from stages.kit.dvc_files import forget_killed
-from stages.kit.files import write_text
-from stages.kit.run import StageRun
-from stages.kit.workspace import Workspace
+from stages.engine.dvc_files import forget_killed
+from haptic_glance.base.files import write_text
+from stages.engine.run import StageRun
+from stages.engine.settings import Workspace
 def item(name, folder):
     write_text(folder / name, name)
     while not Path("go").exists():
@@ -117,7 +116,7 @@ def test_damaged_pages_of_the_index_are_begun_anew(tmp_path, capsys):
 
 
 def test_a_data_folder_that_cannot_be_written_to_is_named_before_any_work(workspace, monkeypatch):
-    monkeypatch.setattr("stages.kit.run.os.access", lambda path, mode: path != workspace.data or mode != os.W_OK)
+    monkeypatch.setattr("stages.engine.run.os.access", lambda path, mode: path != workspace.data or mode != os.W_OK)
     with (
         pytest.raises(ValueError, match="data/toys cannot be written to: make it writable"),
         StageRun(workspace, "views"),
@@ -146,7 +145,7 @@ def test_a_folder_reaches_another_disk_whole_and_replaces_what_is_there(tmp_path
 
 def test_another_disk_that_is_full_keeps_what_was_there(tmp_path, monkeypatch):
     monkeypatch.setattr(Path, "rename", other_disk)
-    monkeypatch.setattr("stages.kit.files.shutil.copyfile", full)
+    monkeypatch.setattr("haptic_glance.base.files.shutil.copyfile", full)
     files.write_text(tmp_path / "a/lod/x", "new")
     files.write_text(tmp_path / "b/lod/x", "old")
     with pytest.raises(OSError, match="No space left"):

@@ -7,7 +7,9 @@ import numba
 import numba.extending
 import pytest
 
-SOURCE = """from stages.kit.jit import kernel_of
+from haptic_glance.base.jit import UntilWorthCompiling
+
+SOURCE = """from haptic_glance.base.jit import kernel_of
 
 
 @kernel_of(__file__)
@@ -89,3 +91,16 @@ def test_garbage_is_not_collected_while_numba_compiles(collecting):
     finally:
         gc.enable()
     assert seen and not any(seen)
+
+
+def test_little_work_is_interpreted_and_more_is_compiled(tmp_path, monkeypatch):
+    monkeypatch.setenv("HAPTIC_GLANCE_CACHE", str(tmp_path / "cache"))
+    double = double_in(tmp_path / "one", "2 * x")
+    few = UntilWorthCompiling(double, str(tmp_path / "one/kernels.py"), budget=10)
+    assert few.for_work(4)(3) == few.for_work(5)(3) == 6 and not double.signatures
+    assert few.for_work(2)(3) == 6 and double.signatures
+    another = UntilWorthCompiling(double, str(tmp_path / "one/kernels.py"), budget=10)
+    assert another.for_work(1) is double  # its machine code is kept
+    ready = UntilWorthCompiling(double, str(tmp_path / "empty/kernels.py"), budget=10)
+    ready.compile_always()
+    assert ready.for_work(0) is double

@@ -2,8 +2,8 @@
 
 import tracemalloc
 
-from stages.kit.kept_rows import ItemRows, KeptRows
-from stages.kit.rows import read_rows, some_rows, write_rows
+from stages.engine.objects import ItemRows, KeptRows
+from stages.engine.rows import read_rows, some_rows, write_rows
 
 
 def rows_of(name, count=1):

@@ -6,9 +6,9 @@ import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from stages.kit import Mesh, RayScene, Viewpoint
-from stages.kit.camera import pixel_rays, pixels_per_unit, project
-from stages.kit.rays import barycentric
+from haptic_glance.look.camera import Viewpoint, pixel_rays, pixels_per_unit, project
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.rays import RayScene, barycentric
 
 SIZE = (900, 1200)
 angles = st.builds(Viewpoint, st.floats(-360, 360), st.floats(-90, 90), st.floats(-180, 180))

@@ -13,20 +13,19 @@ import pytest
 import trimesh
 from omegaconf import OmegaConf
 
+from haptic_glance.base.fetch import cache_folder
+from haptic_glance.base.files import write_arrays, write_mesh, write_text
+from haptic_glance.mesh.mesh import Mesh
 from stages.compose import compose
-from stages.kit import Mesh
-from stages.kit.fetch import cache_folder
-from stages.kit.files import write_arrays, write_mesh, write_text
-from stages.kit.parallel import Task, finished, parallel_map
-from stages.kit.params import check_section
-from stages.kit.rows import read_rows
-from stages.kit.workspace import Workspace
+from stages.engine.parallel import Task, finished, parallel_map
+from stages.engine.rows import read_rows
+from stages.engine.settings import Workspace, check_section
+from stages.lod import Params
 from stages.lod.data_set import simplify_all
-from stages.lod.schema import Params
 from stages.transfer import __main__ as transfer
 
 pytest.importorskip("distributed", reason="the cluster extra is not installed")
-from stages.kit import cluster  # noqa: E402  # needs that extra
+from stages.engine import cluster  # noqa: E402  # needs that extra
 
 ROOT = Path(__file__).parents[2]
 PATIENCE = 300  # seconds, on a machine that does much else

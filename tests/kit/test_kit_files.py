@@ -5,7 +5,8 @@ import zipfile
 import numpy as np
 import pytest
 
-from stages.kit import Mesh, fetch, files
+from haptic_glance.base import fetch, files
+from haptic_glance.mesh.mesh import Mesh
 
 
 def test_failed_write_leaves_what_was_there(tmp_path):

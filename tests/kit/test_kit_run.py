@@ -11,15 +11,14 @@ from pathlib import Path
 import pytest
 from joblib.externals.loky import process_executor
 
-from stages.kit.code import code_text
-from stages.kit.files import read_json, write_json, write_text
-from stages.kit.guard import UndeclaredRead
-from stages.kit.objects import Objects, archive
-from stages.kit.parallel import GROWTH, parallel_map
-from stages.kit.rng import rng
-from stages.kit.rows import read_rows, write_rows
-from stages.kit.run import StageRun
-from stages.kit.workspace import Workspace
+from haptic_glance.base.files import read_json, write_json, write_text
+from haptic_glance.base.rng import rng
+from stages.engine.code import code_text
+from stages.engine.objects import Objects, archive
+from stages.engine.parallel import GROWTH, parallel_map
+from stages.engine.rows import read_rows, write_rows
+from stages.engine.run import StageRun, UndeclaredRead
+from stages.engine.settings import Workspace
 
 ROOT = Path(__file__).parents[2]
 
@@ -123,8 +122,8 @@ def test_a_changed_input_or_setting_is_made_again_and_a_removed_object_is_gone(w
 
 def test_changed_code_is_made_again(workspace, monkeypatch):
     run_items(workspace)
-    monkeypatch.setattr("stages.kit.run.stage_digest", lambda stage: "other")
-    monkeypatch.setattr("stages.kit.run._is_of_stages", lambda function: True)
+    monkeypatch.setattr("stages.engine.run.stage_digest", lambda stage: "other")
+    monkeypatch.setattr("stages.engine.run._is_of_stages", lambda function: True)
     assert run_items(workspace) == ["a", "b", "c"]
 
 
@@ -248,7 +247,7 @@ def test_missing_input_names_the_stage_to_run(workspace):
     ],
 )
 def test_what_a_person_did_ends_in_one_line(raised, lines, code):
-    program = f"from stages.kit.command import errors_in_one_line\nerrors_in_one_line('demo')\nraise {raised}"
+    program = f"from haptic_glance.base.errors import errors_in_one_line\nerrors_in_one_line('demo')\nraise {raised}"
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, text=True)
     assert (done.stderr.splitlines(), done.returncode) == (lines, code)
@@ -260,9 +259,9 @@ def test_what_a_person_did_ends_in_one_line(raised, lines, code):
 KILLED = """
 import os, signal, sys
 from pathlib import Path
-from stages.kit.files import write_text
-from stages.kit.run import StageRun
-from stages.kit.workspace import Workspace
+from haptic_glance.base.files import write_text
+from stages.engine.run import StageRun
+from stages.engine.settings import Workspace
 def item(name, folder):
     with open("log", "a") as log:
         log.write(name)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from stages.kit.split import Split, shared_by
-from stages.kit.stats import discoveries, interval, interval_metrics, p_value
+from haptic_glance.know.split import Split, shared_by
+from stages.engine.statistics import discoveries, interval, interval_metrics, p_value
 
 
 @pytest.mark.slow

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from stages.kit.pooling import pool
-from stages.kit.power import MOST, needed
+from stages.engine.statistics import MOST, needed, pool
 
 # Thirteen trials of the BCG vaccine (Colditz 1994): cases and others, vaccinated and not. The figures are those that
 # the documentation of metafor prints for log risk ratios, restricted maximum likelihood and Knapp and Hartung's test.

@@ -4,9 +4,17 @@ import numpy as np
 import pytest
 from sklearn.metrics import mutual_info_score
 
-from stages.kit.self_organising_map import NEURONS, SelfOrganisingMap
-from stages.sequences.classifiers import CONVENTIONAL, ESTIMATORS, MAP_DIMENSIONS, Reduced, choose_dimensions, svm
-from stages.sequences.reduction import MostInformative, mutual_information
+from haptic_glance.know.self_organising_map import NEURONS, SelfOrganisingMap
+from stages.sequences.classifiers import (
+    CONVENTIONAL,
+    ESTIMATORS,
+    MAP_DIMENSIONS,
+    MostInformative,
+    Reduced,
+    choose_dimensions,
+    mutual_information,
+    svm,
+)
 
 
 def blobs(count=40, classes=3, width=8, apart=6.0, seed=0):

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from stages.kit import Mesh
-from stages.kit.surface_samples import points_in_faces, sample_surface
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.sampling import points_in_faces, sample_surface
 
 CORNERS = np.array([[0, 0, 0], [2, 0, 0], [0, 2, 0], [0, 0, 1], [5, 5, 5]], dtype=float)
 MESH = Mesh(CORNERS, [[0, 1, 2], [0, 2, 3], [0, 3, 1]])  # areas 2, 1, 1

@@ -6,10 +6,9 @@ import time
 
 import pytest
 
-from stages.kit import Stopwatch
-from stages.kit.parallel import parallel_map
-from stages.kit.rows import read_rows, write_rows
-from stages.kit.timing import CLOCK, WallClock, clock
+from haptic_glance.base.timing import CLOCK, Stopwatch, WallClock, clock
+from stages.engine.parallel import parallel_map
+from stages.engine.rows import read_rows, write_rows
 
 
 def work(rounds: int = 600_000) -> float:

@@ -2,7 +2,7 @@
 
 import pytest
 
-from stages.kit.tolerances import Rule, Tolerances, compare, read_tolerances, widest_moves
+from stages.engine.tolerances import Rule, Tolerances, compare, read_tolerances, widest_moves
 
 BASELINE = {"touch.ours.accuracy": 0.70, "touch.blind.accuracy": 0.60, "lod.error": 0.001, "lod.meshes": 12}
 

@@ -6,9 +6,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.kit.files import read_mesh
-from stages.kit.stats import interval, p_value
-from stages.kit.units import by_unit, unit
+from haptic_glance.base.files import read_mesh
+from stages.engine.rows import by_unit, unit
+from stages.engine.statistics import interval, p_value
 
 MESHES = Path("data/household/meshes")
 SIZES = ("small", "medium", "large")

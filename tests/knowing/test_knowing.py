@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 import trimesh
 
-from haptic_glance.knowing import Exploration, Library, known_objects, learn, place_at, primitives, sample_places
-from haptic_glance.knowing.explore import FRESH
-from haptic_glance.knowing.library import CELLS, TOUCHES
-from stages.imprints import Surface, press
-from stages.imprints.user_mesh import Places
-from stages.kit import Mesh
-from stages.kit.rng import rng
-from stages.lod import write_any
+from haptic_glance.base.rng import rng
+from haptic_glance.know import Exploration, Library, known_objects, learn, place_at, primitives, sample_places
+from haptic_glance.know.exploration import FRESH
+from haptic_glance.know.library import CELLS, TOUCHES
+from haptic_glance.lod import write_any
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.touch import Surface, press
+from haptic_glance.touch.places import Places
 
 NAMES = ("ball", "box", "capsule", "cone", "cylinder", "torus")
 TOP = np.array([0.0, 0.6, 0.8])

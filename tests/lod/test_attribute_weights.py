@@ -5,13 +5,12 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh
-from stages.kit.texture import Texture
-from stages.lod import InfeasibleTarget, colour_error, fast, metro, simplify
-from stages.lod.attribute_quadrics import attribute_quadrics
-from stages.lod.attributes import closest
-from stages.lod.kernels import decimate
-from stages.lod.kernels.attributes import attribute_cost
+from haptic_glance.lod import InfeasibleTarget, colour_error, fast, metro, simplify
+from haptic_glance.lod.attribute_quadrics import attribute_quadrics
+from haptic_glance.lod.attributes import closest
+from haptic_glance.lod.kernels.collapse import decimate
+from haptic_glance.lod.kernels.quadrics import attribute_cost
+from haptic_glance.mesh.mesh import Mesh, Texture
 from tests.lod.test_attributes import GREY, tube
 
 COLORS, UV = {"colors": 1.0}, {"uv": 1.0}

@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh
-from stages.kit.texture import Texture
-from stages.lod import simplify
-from stages.lod.attributes import carry, charts
-from stages.lod.borders import close_borders, cut_borders
+from haptic_glance.lod import simplify
+from haptic_glance.lod.attributes import carry, charts
+from haptic_glance.lod.borders import close_borders, cut_borders
+from haptic_glance.mesh.mesh import Mesh, Texture
 
 GREY = np.full((1, 1, 4), 128, np.uint8)
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh
-from stages.lod import blocks, metro, simplify, vertex_errors
-from stages.lod.fast import collapse
-from stages.lod.topology import faults, topology
+from haptic_glance.lod import blocks, metro, simplify, vertex_errors
+from haptic_glance.lod.fast import collapse
+from haptic_glance.lod.topology import faults, topology
+from haptic_glance.mesh.mesh import Mesh
 from tests.lod.test_attribute_weights import plane
 
 

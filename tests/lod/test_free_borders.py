@@ -3,12 +3,11 @@
 import numpy as np
 import pytest
 
-from stages.kit import Mesh
-from stages.lod import metro, simplify
-from stages.lod.feasibility import frozen_faces
-from stages.lod.task import SimplificationTask
-from stages.lod.topology import NONE, faults, topology
-from stages.meshes.materials import Texture
+from haptic_glance.lod import metro, simplify
+from haptic_glance.lod.feasibility import frozen_faces
+from haptic_glance.lod.task import SimplificationTask
+from haptic_glance.lod.topology import NONE, faults, topology
+from haptic_glance.mesh.mesh import Mesh, Texture
 
 
 def sheet(height=0.0, side=40, hole=False):

@@ -7,14 +7,12 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh
-from stages.kit.texture import Texture
-from stages.lod import command
-from stages.lod.command import run
-from stages.lod.export import write_any
-from stages.lod.levels import level_path, levels
-from stages.lod.parts import moved_parts, parts_of
-from stages.meshes import load, rotate_to_z_up
+from haptic_glance.cli import simplify
+from haptic_glance.cli.simplify import run
+from haptic_glance.lod.export import level_path, levels, write_any
+from haptic_glance.lod.topology import moved_parts, parts_of
+from haptic_glance.mesh import load, rotate_to_z_up
+from haptic_glance.mesh.mesh import Mesh, Texture
 
 
 def egg(subdivisions=3, at=(0.0, 0.0, 0.0), up="z"):
@@ -57,8 +55,8 @@ def test_levels_keep_the_format_where_it_can_be_written(tmp_path):
 
 @pytest.mark.slow
 def test_levels_come_from_one_look(file, tmp_path, monkeypatch, capsys):
-    looks, look = [], command.saliency
-    monkeypatch.setattr(command, "saliency", lambda *given: looks.append(1) or look(*given))
+    looks, look = [], simplify.saliency
+    monkeypatch.setattr(simplify, "saliency", lambda *given: looks.append(1) or look(*given))
     assert run([str(file), "--levels", "50%,200,10%", "--out", str(tmp_path / "out")]) == 0
     faces = {path.name: len(load(path).faces) for path in (tmp_path / "out").iterdir()}
     assert faces == {"egg_50pct.ply": 640, "egg_200.ply": 200, "egg_10pct.ply": 128} and len(looks) == 1

@@ -6,9 +6,9 @@ import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from stages.kit import Mesh
-from stages.lod import InfeasibleTarget, SimplifyError, frozen_faces, shrunk_rings, simplify, smallest_feasible
-from stages.lod.topology import faults, topology
+from haptic_glance.lod import InfeasibleTarget, SimplifyError, frozen_faces, shrunk_rings, simplify, smallest_feasible
+from haptic_glance.lod.topology import faults, topology
+from haptic_glance.mesh.mesh import Mesh
 
 BALL = trimesh.creation.icosphere(subdivisions=2, radius=0.5)
 RING = trimesh.creation.torus(0.35, 0.12, major_sections=20, minor_sections=10)

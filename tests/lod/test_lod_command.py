@@ -14,21 +14,20 @@ import pytest
 import trimesh
 from PIL import Image
 
-from stages.kit import Mesh
-from stages.kit.extras import MissingExtra
-from stages.kit.texture import Texture
-from stages.lod import colour_error, command, error_table, metro, simplify
-from stages.lod.command import run
-from stages.lod.export import FORMATS, to_trimesh, write_any
-from stages.lod.feasibility import SimplifyError
-from stages.lod.fewest import fewest_faces
-from stages.lod.options import parser, share
-from stages.lod.picture import write_picture
-from stages.lod.task import repaired
-from stages.lod.within_frame import within_frame
-from stages.meshes import load
-from stages.meshes.load import load_unnamed
-from stages.views import TWELVE, render
+from haptic_glance.base.extras import MissingExtra
+from haptic_glance.cli import simplify as command
+from haptic_glance.cli.simplify import parser, run, share
+from haptic_glance.lod import colour_error, measures, metro, simplify
+from haptic_glance.lod.export import FORMATS, to_trimesh, write_any
+from haptic_glance.lod.feasibility import SimplifyError
+from haptic_glance.lod.measures import fewest_faces
+from haptic_glance.lod.perceptual import within_frame
+from haptic_glance.lod.pictures import write_picture
+from haptic_glance.lod.task import repaired
+from haptic_glance.look.views import TWELVE, render
+from haptic_glance.mesh import load
+from haptic_glance.mesh.files import load_unnamed
+from haptic_glance.mesh.mesh import Mesh, Texture
 
 PLACE, SIZE = np.array([120.0, -40.0, 7.0]), 25.0
 CHECKS = np.kron(np.indices((8, 8)).sum(axis=0) % 2, np.ones((8, 8), int))  # of 64 pixels
@@ -201,7 +200,7 @@ def test_without_options_the_saliency_weighs_and_nothing_is_frozen(simplified, m
         seen.append(weights)
         return real(*arguments, weights=weights, **options)
 
-    monkeypatch.setattr("stages.lod.task.simplify", watched)
+    monkeypatch.setattr("haptic_glance.lod.task.simplify", watched)
     _, said, _ = simplified("--faces", 300)
     ours, plain = weights
     assert plain is None and np.ptp(ours) > 0.5 and len(ours) == len(bumpy().vertices)
@@ -242,8 +241,8 @@ def test_the_axis_taken_as_up_is_reported(simplified):
 @pytest.mark.slow
 def test_a_first_run_that_compiles_says_so(simplified, tmp_path, monkeypatch):
     simplify(bumpy(), 300)
-    assert "compiles the simplifier" not in simplified("--faces", 300)[2]
-    monkeypatch.setattr("stages.lod.command.FOLDER", tmp_path / "empty")
+    assert "compiles its kernels" not in simplified("--faces", 300)[2]
+    monkeypatch.setattr("haptic_glance.lod.compiled.FOLDER", tmp_path / "empty")
     assert "compiles" in simplified("--faces", 300)[2].splitlines()[0]
 
 
@@ -491,7 +490,7 @@ def test_pictures_that_fail_leave_dashes_and_the_reason(simplified, monkeypatch)
     def fails(reference, pictures):
         raise ValueError("no light")
 
-    monkeypatch.setattr(error_table, "picture_errors", fails)
+    monkeypatch.setattr(measures, "picture_errors", fails)
     _, said, told = simplified("--faces", 300)
     assert rows(said)["1 - SSIM of the pictures"] == ["-", "-", "-"]
     assert told.count("no errors of the pictures with 300 faces: no light") == 2

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh
-from stages.lod import InfeasibleTarget, simplify
-from stages.lod.topology import faults, topology
+from haptic_glance.lod import InfeasibleTarget, simplify
+from haptic_glance.lod.topology import faults, topology
+from haptic_glance.mesh.mesh import Mesh
 
 BALL = trimesh.creation.icosphere(3, radius=0.5)
 

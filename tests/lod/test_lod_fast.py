@@ -4,13 +4,14 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh
-from stages.lod import InfeasibleTarget, SimplifyError, fast, frozen_faces, metro, simplify
-from stages.lod.fast import collapse
-from stages.lod.kernels import decimate, refit
-from stages.lod.kernels.corners import before
-from stages.lod.kernels.quadrics import best_place
-from stages.lod.topology import faults, topology
+from haptic_glance.lod import InfeasibleTarget, SimplifyError, fast, frozen_faces, metro, simplify
+from haptic_glance.lod.fast import collapse
+from haptic_glance.lod.kernels.collapse import decimate
+from haptic_glance.lod.kernels.mesh import before
+from haptic_glance.lod.kernels.quadrics import best_place
+from haptic_glance.lod.kernels.refit import refit
+from haptic_glance.lod.topology import faults, topology
+from haptic_glance.mesh.mesh import Mesh
 
 
 def subdivided_box(times):

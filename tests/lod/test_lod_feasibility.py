@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh
-from stages.lod import BACKENDS, InfeasibleTarget, frozen_faces, simplify, smallest_feasible
-from stages.lod.topology import Topology, faults, split_nonmanifold_vertices, topology
+from haptic_glance.lod import BACKENDS, InfeasibleTarget, frozen_faces, simplify, smallest_feasible
+from haptic_glance.lod.topology import Topology, faults, split_nonmanifold_vertices, topology
+from haptic_glance.mesh.mesh import Mesh
 
 SPHERE = trimesh.creation.icosphere(subdivisions=3, radius=0.5)
 TORUS = trimesh.creation.torus(0.35, 0.15, major_sections=24, minor_sections=12)

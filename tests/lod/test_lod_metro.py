@@ -5,9 +5,9 @@ import pymeshlab
 import pytest
 import trimesh
 
-from stages.kit import Mesh
-from stages.lod import metro, simplify
-from stages.lod.nearest import SurfaceIndex
+from haptic_glance.lod import metro, simplify
+from haptic_glance.lod.errors import SurfaceIndex
+from haptic_glance.mesh.mesh import Mesh
 
 BALL = trimesh.creation.icosphere(subdivisions=4, radius=0.5)
 SPHERE = Mesh(BALL.vertices, BALL.faces)

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from stages.kit import Mesh
-from stages.lod import frozen_faces, neighbourhoods
-from stages.lod.neighbourhood import edge_lengths
+from haptic_glance.lod import frozen_faces, neighbourhoods
+from haptic_glance.lod.neighbourhood import edge_lengths
+from haptic_glance.mesh.mesh import Mesh
 
 
 def grid(x, y):

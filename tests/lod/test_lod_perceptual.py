@@ -5,12 +5,11 @@ import pytest
 import trimesh
 from skimage.metrics import structural_similarity
 
-from stages.kit import Mesh
-from stages.kit.similarity import local_moments
-from stages.lod import perceptual, picture_errors, simplify, take_pictures
-from stages.lod.perceptual import analyse
-from stages.lod.similarity import ssim_error
-from stages.views import FOUR
+from haptic_glance.base.similarity import local_moments
+from haptic_glance.lod import perceptual, picture_errors, simplify, take_pictures
+from haptic_glance.lod.perceptual import analyse, ssim_error
+from haptic_glance.look.views import FOUR
+from haptic_glance.mesh.mesh import Mesh
 
 KNOT = trimesh.creation.torus(0.33, 0.14, major_sections=48, minor_sections=24)
 RING = Mesh(KNOT.vertices, KNOT.faces)

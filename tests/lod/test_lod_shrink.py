@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh
-from stages.lod import InfeasibleTarget, shrunk_rings, smallest_feasible
+from haptic_glance.lod import InfeasibleTarget, shrunk_rings, smallest_feasible
+from haptic_glance.mesh.mesh import Mesh
 
 BALL = trimesh.creation.icosphere(subdivisions=4, radius=0.5)
 SPHERE = Mesh(BALL.vertices, BALL.faces)

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh
-from stages.lod import (
+from haptic_glance.lod import (
     InfeasibleTarget,
     SimplifyError,
     frozen_faces,
@@ -16,7 +15,8 @@ from stages.lod import (
     simplify,
     smallest_feasible,
 )
-from stages.lod.topology import Topology, faults, topology
+from haptic_glance.lod.topology import Topology, faults, topology
+from haptic_glance.mesh.mesh import Mesh
 
 
 def sphere(subdivisions=4):

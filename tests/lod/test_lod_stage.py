@@ -7,21 +7,19 @@ import numpy as np
 import pytest
 import trimesh
 
+from haptic_glance.base.files import read_mesh, read_table, write_arrays, write_mesh
+from haptic_glance.lod import shrunk_rings, simplify, take_pictures
+from haptic_glance.lod.export import face_count, file_name
+from haptic_glance.lod.task import Variant, variant
+from haptic_glance.look.points.options import Detection
+from haptic_glance.look.views import viewpoint_set
+from haptic_glance.mesh.mesh import Mesh
 from stages.compose import compose
-from stages.kit import Mesh
-from stages.kit.files import read_mesh, read_table, write_arrays, write_mesh
-from stages.kit.rows import read_rows
-from stages.lod import __main__, data_set, shrunk_rings, simplify, take_pictures
-from stages.lod.cell import measure_cells
-from stages.lod.errors import measure_errors
-from stages.lod.inputs import ObjectInputs
-from stages.lod.schema import Params
-from stages.lod.summary import summarise
-from stages.lod.targets import face_count, file_name
-from stages.lod.variant import Variant, variant
-from stages.salient_points.options import Detection
-from stages.salient_points.storage import write_points
-from stages.views import viewpoint_set
+from stages.engine.rows import read_rows
+from stages.lod import Params, __main__, data_set
+from stages.lod.cell import ObjectInputs, measure_cells, measure_errors
+from stages.lod.data_set import summarise
+from stages.salient_points.measure import write_points
 from stages.weights.ground_truth import spread_on_surface
 
 SETTINGS = Params(

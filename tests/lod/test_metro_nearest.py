@@ -5,9 +5,8 @@ import point_cloud_utils
 import pytest
 import trimesh
 
-from stages.kit import Mesh
-from stages.lod.metro import metro, vertex_errors
-from stages.lod.nearest import SurfaceIndex
+from haptic_glance.lod.errors import SurfaceIndex, metro, vertex_errors
+from haptic_glance.mesh.mesh import Mesh
 
 BALL = trimesh.creation.icosphere(subdivisions=3, radius=0.5)
 SPHERE = Mesh(BALL.vertices, BALL.faces)

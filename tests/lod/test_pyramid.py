@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from stages.lod import picture_errors
-from stages.lod.laplacian import laplacian_pyramid
-from stages.lod.normalised_laplacian import normalise
+from haptic_glance.lod import picture_errors
+from haptic_glance.lod.perceptual import laplacian_pyramid, normalise
 
 # plenoptic 1.2.0 in double precision: metric.nlpd, and the same pooling over simulate.LaplacianPyramid(6, True).
 SCORES = {

@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh
-from stages.lod import metro
-from stages.lod.metro import surface_errors
-from stages.lod.salient_error import salient_error
+from haptic_glance.lod import metro
+from haptic_glance.lod.errors import salient_error, surface_errors
+from haptic_glance.mesh.mesh import Mesh
 
 BALL = trimesh.creation.icosphere(subdivisions=4, radius=0.5)
 SPHERE = Mesh(BALL.vertices, BALL.faces)

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh
-from stages.lod import metro, simplify
-from stages.lod.metro import vertex_errors
+from haptic_glance.lod import metro, simplify
+from haptic_glance.lod.errors import vertex_errors
+from haptic_glance.mesh.mesh import Mesh
 
 RADIUS = 0.3
 

@@ -2,9 +2,9 @@
 
 import pytest
 
+from haptic_glance.lod.simplify import simplify
+from stages.lod import cell as module
 from stages.lod import data_set
-from stages.lod import warm_up as module
-from stages.lod.simplify import simplify
 
 
 def test_it_works_once_for_each_backend(monkeypatch):

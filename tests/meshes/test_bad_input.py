@@ -1,12 +1,14 @@
 """Every file that a person may hand in gets a right result or the right reason; tests/fuzz has a thousand a format."""
 
+import json
 import struct
+import zlib
 
 import numpy as np
 import pytest
 import trimesh
 
-from stages.meshes import MeshError, clean, load
+from haptic_glance.mesh import MeshError, clean, load
 
 CUBE = trimesh.creation.box()
 
@@ -59,6 +61,44 @@ def test_bad_file_is_refused_with_its_reason(tmp_path, name):
     with pytest.raises(MeshError, match=reason) as error:
         clean(load(path))
     print(f"{name}: {error.value}")
+
+
+def glb_of(tree, binary=b""):
+    """A GLB of a JSON tree and binary data."""
+    text = json.dumps(tree).encode()
+    text += b" " * (-len(text) % 4)
+    binary += b"\0" * (-len(binary) % 4)
+    chunks = struct.pack("<I4s", len(text), b"JSON") + text
+    chunks += struct.pack("<I4s", len(binary), b"BIN\0") + binary if binary else b""
+    return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
+
+
+def test_a_glb_of_too_many_primitives_is_refused_at_once(tmp_path):
+    tree = {"asset": {"version": "2.0"}, "meshes": [{"primitives": [{"attributes": {}}] * 100}]}
+    path = tmp_path / "many.glb"
+    path.write_bytes(glb_of(tree | {"nodes": [{"mesh": 0}] * 201}))
+    with pytest.raises(MeshError, match="20,100 primitives are more than 20,000: join its parts"):
+        load(path)
+
+
+def test_a_texture_that_would_fill_the_memory_is_refused_by_its_header(tmp_path):
+    side = 13_000
+    rows = zlib.compress(b"\0" * (side * (side // 8 + 1)), 9)  # one bit a pixel
+    parts = (b"IHDR", struct.pack(">IIBBBBB", side, side, 1, 0, 0, 0, 0)), (b"IDAT", rows), (b"IEND", b"")
+    png = b"\x89PNG\r\n\x1a\n" + b"".join(
+        struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data)) for kind, data in parts
+    )
+    folder = tmp_path / "big"
+    folder.mkdir()
+    (folder / "big.png").write_bytes(png)
+    (folder / "big.mtl").write_text("newmtl a\nmap_Kd big.png\n")
+    lines = ["mtllib big.mtl", "v 0 0 0", "v 1 0 0", "v 0 1 0", "v 0 0 1", "vt 0 0", "usemtl a"]
+    lines += [f"f {a}/1 {b}/1 {c}/1" for a, b, c in ((1, 3, 2), (1, 2, 4), (1, 4, 3), (2, 3, 4))]
+    (folder / "big.obj").write_text("\n".join(lines) + "\n")
+    with pytest.raises(
+        MeshError, match="a texture of 13,000 x 13,000 pixels is larger than 8,192 x 8,192: scale it down"
+    ):
+        load(folder / "big.obj")
 
 
 def test_missing_file_is_named(tmp_path):
@@ -126,6 +166,6 @@ def test_duplicate_and_degenerate_faces_are_removed_and_noted():
 
 
 def load_faces(faces):
-    from stages.kit import Mesh
+    from haptic_glance.mesh.mesh import Mesh
 
     return Mesh(np.array(TRIANGLE, dtype=float), np.array(faces))

@@ -11,11 +11,10 @@ import pytest
 import trimesh
 from pypcd4 import Encoding, PointCloud
 
-from stages.kit.extras import MissingExtra
-from stages.kit.mesh import unit
-from stages.meshes import MeshError, clean, load
-from stages.meshes.clouds import Cloud, cloud_of_depth, surface_of
-from stages.meshes.clouds.normals import normals_of
+from haptic_glance.base.extras import MissingExtra
+from haptic_glance.mesh import MeshError, clean, load
+from haptic_glance.mesh.clouds import Cloud, cloud_of_depth, normals_of, surface_of
+from haptic_glance.mesh.mesh import unit
 
 RANDOM = np.random.default_rng(0)
 BALL = unit(RANDOM.normal(size=(1200, 3)))

@@ -11,13 +11,13 @@ from PIL import Image
 from trimesh.visual import TextureVisuals
 from trimesh.visual.material import PBRMaterial
 
-from stages.kit import Mesh
-from stages.kit.files import read_mesh, read_table
-from stages.meshes import MeshError
+from haptic_glance.base.files import read_mesh, read_table
+from haptic_glance.mesh import MeshError
+from haptic_glance.mesh.materials import PALETTE, coloured
+from haptic_glance.mesh.mesh import Mesh
 from stages.meshes import __main__ as stage
-from stages.meshes.beside import files_beside
 from stages.meshes.collect import prepare_mesh
-from stages.meshes.colours import PALETTE, coloured
+from stages.meshes.furniture import files_beside
 from stages.meshes.sources import HOUSEHOLD, Content, MeshFile
 
 RED, GREEN, BLUE, GOLD = (255, 0, 0), (0, 255, 0), (0, 0, 255), (200, 160, 20)

@@ -9,9 +9,9 @@ from PIL import Image
 
 from haptic_glance import Mesh, clean, find_points, load, press, simplify
 from haptic_glance.__main__ import run
+from haptic_glance.cli.saliency import finely
 from haptic_glance.studio.mystery import gather
-from stages.imprints.press import as_shown
-from stages.saliency import finely
+from haptic_glance.touch.press import as_shown
 
 
 @pytest.fixture

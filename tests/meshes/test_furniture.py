@@ -11,8 +11,8 @@ import pytest
 import trimesh
 import yaml
 
+from haptic_glance.base.fetch import FetchError, cache_folder, debian_files, fetch_debian
 from stages.compose import CONF
-from stages.kit.fetch import FetchError, cache_folder, debian_files, fetch_debian
 from stages.meshes import furniture
 from stages.meshes.collect import prepare_mesh
 from stages.meshes.sources import SOURCES

@@ -2,8 +2,8 @@
 
 import pytest
 
-from stages.kit.files import write_text
-from stages.meshes.classes import chosen_objects, read_classes, small_classes
+from haptic_glance.base.files import write_text
+from stages.meshes.collect import chosen_objects, read_classes, small_classes
 
 CLASSES = {"vase": ["urn", "jar"], "animal": ["dog", "61"]}
 

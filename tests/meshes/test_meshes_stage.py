@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh
-from stages.kit.files import read_json, read_mesh, read_table
-from stages.kit.rows import read_rows
+from haptic_glance.base.files import read_json, read_mesh, read_table
+from haptic_glance.mesh import normalise
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.repair import rotate_to_z_up
+from stages.engine.rows import read_rows
 from stages.meshes import __main__ as stage
-from stages.meshes import normalise
-from stages.meshes.classes import read_classes
-from stages.meshes.normalise import rotate_to_z_up
+from stages.meshes.collect import read_classes
 
 
 @pytest.fixture

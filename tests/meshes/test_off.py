@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from stages.meshes import MeshError, load
-from stages.meshes.off import read_off
+from haptic_glance.mesh import MeshError, load
+from haptic_glance.mesh.off import read_off
 
 SQUARE = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n"
 TRIANGLES = "3 0 1 2\n3 0 2 3\n"

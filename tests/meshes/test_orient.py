@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh
-from stages.meshes import MeshError, clean
-from stages.meshes.orient import orient
+from haptic_glance.mesh import MeshError, clean
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.repair import orient
 
 BALL = trimesh.creation.icosphere(2)
 

@@ -2,8 +2,8 @@
 
 import pytest
 
-from stages.meshes import MeshError
-from stages.meshes.own import mesh_files, names_of
+from haptic_glance.mesh import MeshError
+from haptic_glance.mesh.files import mesh_files, names_of
 
 
 def test_a_folder_gives_its_meshes_in_order_and_nothing_else(tmp_path):

@@ -11,10 +11,10 @@ import pytest
 import trimesh
 from scipy.io import savemat
 
-from stages.kit.fetch import FetchError
-from stages.meshes import MeshError
+from haptic_glance.base.fetch import FetchError
+from haptic_glance.mesh import MeshError
+from haptic_glance.mesh.files import parse
 from stages.meshes.__main__ import run
-from stages.meshes.load import parse
 from stages.meshes.sources import SOURCES, Content
 
 ROOT = Path(__file__).parents[2]

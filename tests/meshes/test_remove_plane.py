@@ -5,9 +5,8 @@ import pytest
 import trimesh
 from scipy.spatial.transform import Rotation
 
-from stages.kit import Mesh
-from stages.kit.texture import Texture
-from stages.meshes import remove_plane
+from haptic_glance.mesh import remove_plane
+from haptic_glance.mesh.mesh import Mesh, Texture
 from stages.meshes.collect import prepare_mesh
 from stages.meshes.sources import MeshFile
 

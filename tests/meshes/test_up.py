@@ -7,20 +7,19 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh
-from stages.kit.axes import axis_named, to_z_up
-from stages.kit.texture import Texture
-from stages.lod import simplify
-from stages.lod.borders import close_borders, cut_borders
-from stages.lod.export import write_any
-from stages.lod.look import coloured
-from stages.lod.task import SimplificationTask, repaired
-from stages.meshes import clean, load, normalise, rotate_to_z_up
-from stages.meshes.colours import bake_texture
-from stages.meshes.load import load_as_stated
-from stages.meshes.orient import orient
-from stages.meshes.plane import _submesh
-from stages.meshes.up import add_up, upright_by, upright_for
+from haptic_glance.lod import simplify
+from haptic_glance.lod.borders import close_borders, cut_borders
+from haptic_glance.lod.export import write_any
+from haptic_glance.lod.pictures import coloured
+from haptic_glance.lod.task import SimplificationTask, repaired
+from haptic_glance.mesh import clean, load, normalise, rotate_to_z_up
+from haptic_glance.mesh.axes import axis_named, to_z_up
+from haptic_glance.mesh.files import load_as_stated
+from haptic_glance.mesh.materials import bake_texture
+from haptic_glance.mesh.mesh import Mesh, Texture
+from haptic_glance.mesh.plane import _submesh
+from haptic_glance.mesh.repair import orient
+from haptic_glance.mesh.up import add_up, upright_by, upright_for
 
 BALL = trimesh.creation.icosphere(2)
 PLAIN = Texture(np.zeros((len(BALL.faces), 3, 2)), np.zeros(len(BALL.faces), int), (np.full((1, 1, 4), 255, np.uint8),))

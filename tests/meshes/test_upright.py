@@ -9,12 +9,12 @@ import trimesh
 from trimesh import creation
 from trimesh.transformations import rotation_matrix
 
-from stages.kit import Mesh
-from stages.lod import write_any
-from stages.meshes import as_mesh, load, normalise, rotate_to_z_up
+from haptic_glance.lod import write_any
+from haptic_glance.mesh import as_mesh, load, normalise, rotate_to_z_up
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.upright import CANDIDATES, MOST, SURE, WEIGHTS, _pieces, features, probable_up
 from stages.meshes.collect import prepare_mesh
 from stages.meshes.sources import SOURCES
-from stages.meshes.upright import CANDIDATES, MOST, SURE, WEIGHTS, _pieces, features, probable_up
 
 TURNS = {"z": [0, 1, 2], "y": [1, 2, 0]}  # columns of a mesh whose third axis is then that one
 

@@ -6,14 +6,13 @@ import numpy as np
 import pytest
 import torch
 
-from stages.kit.files import sha256
-from stages.networks import cost as costs
-from stages.networks.converters.googlenet import convert
-from stages.networks.cost import cost
-from stages.networks.network import NETWORKS, SMALLEST, build, count_parameters, imagenet_classifier, recalibrate
-from stages.networks.restore import restore
-from stages.networks.torchvision_import import torchvision
-from stages.networks.weights import available_weights
+from haptic_glance.base.files import sha256
+from haptic_glance.deep import device as costs
+from haptic_glance.deep.architectures import restore, torchvision
+from haptic_glance.deep.converters import convert_googlenet
+from haptic_glance.deep.device import cost
+from haptic_glance.deep.network import NETWORKS, SMALLEST, build, count_parameters, imagenet_classifier, recalibrate
+from haptic_glance.deep.weights import available_weights
 
 SIDE = {"alexnet": 13, "vgg16": 14}  # of the last maps at 224 pixels; 7 for the others
 PUBLISHED = {  # million parameters, giga multiply-adds, as torchvision and the papers give them, with 1000 classes
@@ -174,7 +173,7 @@ def test_googlenets_own_colours_move_into_its_first_layer():
         theirs.conv1.bn.running_mean.normal_()
         theirs.conv1.bn.running_var.uniform_(0.5, 2)
         ours = torchvision.models.googlenet(init_weights=True, aux_logits=False, transform_input=False).eval()
-        ours.load_state_dict(convert(theirs.state_dict()))
+        ours.load_state_dict(convert_googlenet(theirs.state_dict()))
         images = torch.randn(2, 3, 48, 48)
         expected = theirs.conv1(theirs._transform_input(images))
         inside = (..., slice(2, -2), slice(2, -2))  # the kernel of 7 reaches the padding outside

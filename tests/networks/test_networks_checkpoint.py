@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 import torch
 
-from stages.kit.repeatable import repeatable
-from stages.networks.checkpoint import resume, save
-from stages.networks.modes import MODES
-from stages.networks.network import Network
-from stages.networks.training import train_model
+from haptic_glance.deep.modes import MODES
+from haptic_glance.deep.network import Network
+from haptic_glance.deep.repeatable import repeatable
+from haptic_glance.deep.training import resume, save, train_model
 
 SIZE = 32
 LABELS = np.arange(24) % 2

@@ -8,8 +8,8 @@ import tarfile
 
 import pytest
 
-from stages.kit.fetch import FetchError, fetch_npm, fetch_sdist, read_tar_members
-from stages.kit.files import sha256
+from haptic_glance.base.fetch import FetchError, fetch_npm, fetch_sdist, read_tar_members
+from haptic_glance.base.files import sha256
 
 
 def tar(path, files):

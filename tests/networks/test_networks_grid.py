@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import torch
 
-from stages.networks.grid import GRIDS, cell_positions
-from stages.networks.network import NETWORKS, build
+from haptic_glance.deep.network import NETWORKS, build
+from haptic_glance.deep.resize import GRIDS, cell_positions
 
 SIZE = 96
 

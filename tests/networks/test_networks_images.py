@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import torch
 
-from stages.networks.images import MEAN, STD, augmentation, normalise, to_images
+from haptic_glance.deep.images import MEAN, STD, augmentation, normalise, to_images
 
 
 @pytest.fixture

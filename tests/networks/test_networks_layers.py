@@ -3,8 +3,8 @@
 import pytest
 import torch
 
-from stages.networks.layers import LAYERS, frozen_modules, layers, parse_range
-from stages.networks.network import Network, build
+from haptic_glance.deep.modes import LAYERS, frozen_modules, layers, parse_range
+from haptic_glance.deep.network import Network, build
 
 
 @pytest.fixture(scope="module")

@@ -6,11 +6,17 @@ import numpy as np
 import pytest
 import torch
 
-from stages.kit.repeatable import repeatable
-from stages.networks.checkpoint import save
-from stages.networks.learning import Diverged, Learning, check_passes
-from stages.networks.modes import Task
-from stages.networks.training import accuracy, predict_probabilities, train_model
+from haptic_glance.deep.modes import Task
+from haptic_glance.deep.repeatable import repeatable
+from haptic_glance.deep.training import (
+    Diverged,
+    Learning,
+    accuracy,
+    check_passes,
+    predict_probabilities,
+    save,
+    train_model,
+)
 
 FIT, VALIDATION, TEST = np.arange(60), np.arange(60, 80), np.arange(80, 120)
 POINTS = torch.randn((120, 4), generator=torch.Generator().manual_seed(0))
@@ -122,7 +128,7 @@ def test_a_checkpoint_of_another_patience_is_not_taken(tmp_path, capsys):
         kept.append(path.read_bytes())
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("stages.networks.training.save", keep)
+        patch.setattr("haptic_glance.deep.training.save", keep)
         learn(linear(), Learning(VALIDATION, 8), checkpoint=path)
     path.write_bytes(kept[3])
     learn(linear(), Learning(VALIDATION, 9), checkpoint=path)

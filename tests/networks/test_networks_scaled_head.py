@@ -2,7 +2,7 @@
 
 import torch
 
-from stages.networks.scaled_head import ScaledHead
+from haptic_glance.deep.network import ScaledHead
 
 
 def test_features_get_mean_zero_and_deviation_one():

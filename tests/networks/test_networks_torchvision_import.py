@@ -6,13 +6,13 @@ import sys
 import pytest
 import torch
 
-from stages.networks import torchvision_import as vision
+from haptic_glance.deep import architectures as vision
 
 
 @pytest.mark.slow
 def test_models_build_and_run_in_a_fresh_process():
     code = (
-        "from stages.networks.torchvision_import import torchvision\n"
+        "from haptic_glance.deep.architectures import torchvision\n"
         "import torch\n"
         "net = torchvision.models.mobilenet_v2(num_classes=3).eval()\n"
         "print(tuple(net(torch.zeros(1, 3, 32, 32)).shape), len(torchvision.models.list_models()) > 50)\n"

@@ -6,13 +6,12 @@ import numpy as np
 import pytest
 import torch
 
-from stages.kit.repeatable import repeatable
-from stages.networks.device import choose_device
-from stages.networks.images import normalise, to_images
-from stages.networks.layers import frozen_modules
-from stages.networks.modes import MODES, mode_named
-from stages.networks.network import Network, build, count_parameters, recalibrate
-from stages.networks.training import accuracy, predict_probabilities, search_rate, train_model
+from haptic_glance.deep.device import choose_device
+from haptic_glance.deep.images import normalise, to_images
+from haptic_glance.deep.modes import MODES, frozen_modules, mode_named
+from haptic_glance.deep.network import Network, build, count_parameters, recalibrate
+from haptic_glance.deep.repeatable import repeatable
+from haptic_glance.deep.training import accuracy, predict_probabilities, search_rate, train_model
 
 SIZE = 32
 LABELS = np.arange(32) % 2

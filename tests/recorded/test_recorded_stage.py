@@ -3,9 +3,9 @@
 import pandas as pd
 import pytest
 
+from haptic_glance.base.files import read_json
 from stages.classification.recorded import ELECTRODES, PALMS
-from stages.kit.files import read_json
-from stages.kit.rows import read_rows
+from stages.engine.rows import read_rows
 from stages.recorded.__main__ import run
 
 

@@ -5,11 +5,11 @@ import pandas as pd
 import pytest
 from scipy.spatial.distance import pdist
 
-from stages.recorded import binned as binned_module
-from stages.recorded import schunk
-from stages.recorded.binned import METHODS, binned, choose, rotated
+from stages.recorded import series as schunk
+from stages.recorded import splits as binned_module
+from stages.recorded.series import TouchSeries
+from stages.recorded.splits import METHODS, binned, choose, rotated
 from stages.recorded.touch_events import disturbed, process
-from stages.recorded.touch_series import TouchSeries
 
 
 def series(count=8, classes=4, steps=60, seed=0):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.io import savemat
 
-from stages.recorded.touch_series import TAXELS, read_grasp_series, read_touch_events, spread_taxels
+from stages.recorded.series import TAXELS, read_grasp_series, read_touch_events, spread_taxels
 
 DATA = Path(__file__).parents[3] / "shared/data"
 

@@ -9,8 +9,8 @@ from stages.recorded.biotac_grasps import Model
 from stages.recorded.biotac_grasps import process as grasp_rows
 from stages.recorded.pressure_images import class_sets, describe
 from stages.recorded.pressure_images import process as image_rows
-from stages.recorded_networks import neighbours
-from stages.recorded_networks.neighbours import neighbour_rows
+from stages.recorded_networks import data
+from stages.recorded_networks.data import neighbour_rows
 
 
 @pytest.fixture
@@ -37,7 +37,7 @@ def values(rows, **where):
 @pytest.mark.slow
 @pytest.mark.parametrize("split", ["random", "blocks"])
 def test_pressure_images(images, split, monkeypatch, tmp_path):
-    monkeypatch.setattr(neighbours, "read_pressure_images", lambda path: images)
+    monkeypatch.setattr(data, "read_pressure_images", lambda path: images)
     found = neighbour_rows("pressure_images", tmp_path, 2, seed=0)
     touches = describe(images)
     same = image_rows(class_sets(touches, 2, 0)["all"], tmp_path, touches, 0)
@@ -47,7 +47,7 @@ def test_pressure_images(images, split, monkeypatch, tmp_path):
 
 
 def test_grasps(grasps, monkeypatch, tmp_path):
-    monkeypatch.setattr(neighbours, "read_grasps", lambda path: grasps)
+    monkeypatch.setattr(data, "read_grasps", lambda path: grasps)
     found = pd.DataFrame(neighbour_rows("biotac_grasps", tmp_path, 1, seed=0))
     same = pd.DataFrame(grasp_rows(Model("knn", None), tmp_path, grasps, 1, 0))
     same = same[same["scaled"] == "training"]

@@ -8,13 +8,11 @@ import pytest
 import torch
 
 from stages.compose import compose
-from stages.kit.params import check_section
-from stages.kit.rows import read_rows
+from stages.engine.rows import read_rows
+from stages.engine.settings import check_section
+from stages.recorded_networks import Params, data, trial
 from stages.recorded_networks import __main__ as stage
-from stages.recorded_networks import tasks, trial
-from stages.recorded_networks.parts import object_split, parts
-from stages.recorded_networks.schema import Params
-from stages.recorded_networks.sources import SOURCES, Recording
+from stages.recorded_networks.data import SOURCES, Recording, object_split, parts
 from stages.recorded_networks.trial import Run, Trial, passes, process, trials
 from stages.transfer.recorded import Recorded
 
@@ -79,11 +77,11 @@ def test_objects_that_nobody_knows_cannot_be_held_out():
 
 
 def test_grey_is_red_and_colours_stay():
-    color = tasks.as_images(recording(color=True).touches.images, 16)
-    grey = tasks.as_images(recording().touches.images, 16)
+    color = data.as_images(recording(color=True).touches.images, 16)
+    grey = data.as_images(recording().touches.images, 16)
     assert color.shape == grey.shape == (48, 3, 16, 16)
     assert (grey[:, 1:] == 0).all() and (color.mean(dim=(0, 2, 3)) > 0.1).all()
-    assert torch.allclose(color[0, 2], tasks.as_images(recording(color=True).touches.images[..., 2], 16)[0, 0])
+    assert torch.allclose(color[0, 2], data.as_images(recording(color=True).touches.images[..., 2], 16)[0, 0])
 
 
 def train(tmp_path, mode, split="random", network="mobilenet_v2", kept=(), **changes):

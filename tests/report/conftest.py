@@ -8,14 +8,14 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.conspicuity import CHANNELS
-from stages.kit import Mesh
-from stages.kit.files import write_arrays, write_mesh, write_table, write_text
-from stages.kit.workspace import Workspace
+from haptic_glance.base.files import write_arrays, write_mesh, write_table, write_text
+from haptic_glance.look.channels import CHANNELS
+from haptic_glance.look.weights.svm import fit_svm
+from haptic_glance.look.weights.weights import write_models
+from haptic_glance.mesh.mesh import Mesh
+from stages.engine.settings import Workspace
+from stages.report import Params
 from stages.report.results import Results
-from stages.report.schema import Params
-from stages.weights.learned_weights import write_models
-from stages.weights.svm import fit_svm
 
 THESIS = Path(__file__).parents[2] / "data/reference/thesis"
 SETS = ("test", "household", "furniture")  # switched on in the small run

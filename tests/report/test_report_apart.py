@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from stages.kit import Mesh
+from haptic_glance.mesh.mesh import Mesh
 from stages.report.meshes.apart import against_the_mean, density, faces_an_area
 
 

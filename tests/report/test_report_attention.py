@@ -7,23 +7,19 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.kit.files import read_arrays, write_arrays
-from stages.kit.stats import interval
+from haptic_glance.base.files import read_arrays, write_arrays
+from stages.engine.statistics import interval
 from stages.report import attention, meshes, stability
-from stages.report.attention.agreement import against_gaze
-from stages.report.attention.rows import agreement, difference, method_text, rivals
-from stages.report.costs import attention_seconds
-from stages.report.drawing import vivid
-from stages.report.markdown import number, signed
-from stages.report.meshes.methods import COMBINATIONS
-from stages.report.meshes.rows import paired_cells
-from stages.report.meshes.simplification import METHODS
-from stages.report.pareto import pareto_chart
+from stages.report.attention.claims import against_gaze, agreement, difference, method_text, rivals
+from stages.report.drawing import colours, vivid
+from stages.report.meshes.levels import METHODS
+from stages.report.meshes.tables import COMBINATIONS, paired_cells
+from stages.report.page import pack_viewer
+from stages.report.pareto import attention_seconds, pareto_chart
 from stages.report.results import COLOURED, ON_BLACK, SECTION_3_2, NotRun
-from stages.report.style import colours
+from stages.report.tables import number, signed
 from stages.report.topics import CLAIMS, TOPICS, build_all, build_one
 from stages.report.verdict import judge
-from stages.report.viewer import pack_viewer
 
 FIGURES = ["figure_3_3", "figure_3_6", "figure_3_10", "figure_3_12", "figure_3_13", "views_seen"]
 

@@ -4,9 +4,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.kit.files import write_table
+from haptic_glance.base.files import write_table
 from stages.report import meshes
-from stages.report.meshes.growth import growth
+from stages.report.meshes.levels import growth
 from stages.report.results import NotRun
 from stages.report.topics import build_one
 

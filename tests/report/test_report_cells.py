@@ -3,8 +3,8 @@
 import pandas as pd
 import pytest
 
-from stages.kit.files import write_table
-from stages.report.cells import filled
+from haptic_glance.base.files import write_table
+from stages.report.tables import filled
 
 
 @pytest.fixture

@@ -10,15 +10,14 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.kit.stats import interval
+from stages.engine.statistics import interval
 from stages.report.__main__ import write_claims
 from stages.report.claims import POINTS, Claim, highest_of, lowest_of, reading
 from stages.report.claims_page import effect, open_text, over_text
-from stages.report.counting import counted, sentences
-from stages.report.differences import differences
+from stages.report.effects import differences
 from stages.report.results import SECTION_3_1, NotRun
 from stages.report.topics import CLAIMS, build_all
-from stages.report.verdict import holding, judge, judged, over_readings, verdict
+from stages.report.verdict import counted, holding, judge, judged, over_readings, sentences, verdict
 
 
 def of(results, key):
@@ -515,7 +514,7 @@ def test_every_verdict_can_be_recomputed_from_the_differences(root, results, sma
 def test_a_process_that_imported_no_topic_knows_the_statistic_of_a_claim():
     program = (
         "import pickle, sys; from pathlib import Path\n"
-        "from stages.kit.workspace import Workspace; from stages.report.schema import Params\n"
+        "from stages.engine.settings import Workspace; from stages.report import Params\n"
         "from stages.report.results import Results; from stages.report.verdict import judge\n"
         "one, workspace = pickle.load(sys.stdin.buffer), Workspace(Path('.'))\n"
         "assert 'stages.report.topics' not in sys.modules\n"

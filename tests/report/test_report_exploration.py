@@ -4,13 +4,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.kit.files import write_arrays
+from haptic_glance.base.files import write_arrays
 from stages.report import exploration, stability
-from stages.report.exploration import claims
+from stages.report.exploration import exploration as claims
 from stages.report.exploration.exploration import needed
 from stages.report.results import NotRun
-from stages.report.stability.touch import DENOISED, breaking, curve, harmless
-from stages.report.stability.touch_imprints import severities
+from stages.report.stability.touch import DENOISED, breaking, curve, harmless, severities
 from stages.report.topics import build_one
 from stages.report.verdict import judge
 

@@ -7,8 +7,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from stages.report.fidelity.agreement import is_printed, matches
-from stages.report.fidelity.table import PRINTED, RUNS
+from stages.report.fidelity.table import PRINTED, RUNS, is_printed, matches
 from stages.report.topics import KINDS, TOPICS
 
 ROOT = Path(__file__).parents[2]
@@ -41,7 +40,7 @@ def test_every_formula_table_and_figure_of_the_thesis_has_a_row(kind):
 @pytest.mark.parametrize("row", ROWS, ids=FRAME["thesis"])
 def test_each_row_names_code_sets_and_twins_that_exist(row):
     path, _, name = row.code.partition(":")
-    source = ROOT / "stages" / path
+    source = ROOT / path
     assert source.is_file()
     defined = [node.name for node in ast.parse(source.read_text()).body if hasattr(node, "name")]
     assert not name or name in defined

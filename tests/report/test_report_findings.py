@@ -7,12 +7,12 @@ from types import ModuleType
 import pandas as pd
 import pytest
 
-from stages.kit.files import write_table
+from haptic_glance.base.files import write_table
 from stages.report import topics
-from stages.report.cells import CLAIMS, ENDS, PAIR, PLACE, PREFIXES, ROWS, filled, parts_of
+from stages.report.claims_page import findings
 from stages.report.items import Table
-from stages.report.prose import findings
 from stages.report.site import topic_main
+from stages.report.tables import CLAIMS, ENDS, PAIR, PLACE, PREFIXES, ROWS, filled, parts_of
 
 REPORTS = Path(__file__).parents[2] / "reports"
 SETTINGS = (  # the numbers that a finding may have of its own

@@ -8,13 +8,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from haptic_glance.base.files import write_arrays
+from stages.engine.statistics import interval
 from stages.fixation.agreement import ALL_VIEWS
-from stages.fixation.tasks import SHAPE_MEASURES
-from stages.fixation.viewpoints import evaluated_views, viewpoint_sphere
-from stages.kit.files import write_arrays
-from stages.kit.stats import interval
+from stages.fixation.tasks import SHAPE_MEASURES, evaluated_views, viewpoint_sphere
 from stages.report import fixation as topic
-from stages.report.differences import differences
+from stages.report.effects import differences
 from stages.report.fixation import claims as chapter_3_fixation
 from stages.report.fixation import maps
 from stages.report.fixation import rows as _fixation
@@ -366,7 +365,7 @@ def test_no_interval_of_a_correlation_leaves_its_range(gaze, small):
     frame = rows(count=4)
     alike = frame["metric"] == "pcc_tasks"
     frame.loc[alike, "value"] = frame.loc[alike, "item"].map(dict(zip("abcd", wild, strict=True)))
-    drawn = topic.tasks.figure_3_31(again(gaze, small, frame)).drawing
+    drawn = topic.agreement.figure_3_31(again(gaze, small, frame)).drawing
     assert drawn.axes[0].get_title().endswith(", 1.00]")
     plt.close(drawn)
 

@@ -6,16 +6,16 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.kit.rows import write_rows
+from stages.engine.rows import write_rows
 from stages.report import hybrid, stability
-from stages.report.differences import differences
+from stages.report.effects import differences
 from stages.report.hybrid import claims as chapter_5_hybrid
 from stages.report.hybrid import new_objects
 from stages.report.hybrid.hybrid_senses import METHODS as BOTH
 from stages.report.results import NotRun
 from stages.report.topics import build_one
 from stages.report.verdict import judge
-from stages.transfer.schema import COLUMNS
+from stages.transfer import COLUMNS
 
 FIRST, LONGER = "18:139", "18:147"
 SIZES = {"hybrid": 11.9e6, "hybrid_float16": 5.9e6, "hybrid_int8": 3.4e6}

@@ -5,9 +5,9 @@ from types import SimpleNamespace
 
 import pytest
 
+from stages.report.claims_page import as_printed
+from stages.report.drawing import plt
 from stages.report.items import Figure
-from stages.report.kept import as_printed
-from stages.report.style import plt
 
 PROTOCOL = "household_3_1"
 

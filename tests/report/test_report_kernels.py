@@ -3,10 +3,10 @@
 import pandas as pd
 import pytest
 
-from stages.kit.files import write_table
+from haptic_glance.base.files import write_table
 from stages.report import stability
 from stages.report.results import NotRun
-from stages.report.stability import kernels
+from stages.report.stability import score
 from stages.report.topics import build_one
 
 
@@ -28,15 +28,15 @@ def results(bare, small):
 
 
 def test_lines_are_those_of_the_machine_that_measured_last_by_date(results, monkeypatch):
-    drawn, draw = {}, kernels._draw
+    drawn, draw = {}, score._draw
 
     def noted(axes, rows, *looks):
         drawn[rows["what"].iloc[0]] = rows
         draw(axes, rows, *looks)
 
-    monkeypatch.setattr(kernels, "_draw", noted)
+    monkeypatch.setattr(score, "_draw", noted)
     rows = [row("b", 2, "maps", 0.2), row("a", 1, "maps", 0.1), row("a", 1, "old", 5.0, "elsewhere")]
-    words = kernels.build(results(*rows, row("b", 2, "loop", None))).words
+    words = score.kernels(results(*rows, row("b", 2, "loop", None))).words
     assert list(drawn) == ["maps"] and list(drawn["maps"]["ratio"]) == [0.1, 0.2]
     assert list(drawn["maps"]["place"]) == [0, 1]
     assert words == {"kernels": 1, "commits": 2, "machine": "here", "names": "maps (peer of maps)"}
@@ -49,4 +49,4 @@ def test_one_commit_is_drawn_and_said(results):
 
 def test_without_the_history_it_is_not_run(bare, small):
     with pytest.raises(NotRun, match="make bench"):
-        kernels.build(small.results(bare))
+        score.kernels(small.results(bare))

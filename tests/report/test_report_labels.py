@@ -6,13 +6,12 @@ from pathlib import Path
 import pytest
 from matplotlib.text import Text
 
-from stages.kit.workspace import Workspace
-from stages.report import topics
+from stages.engine.settings import Workspace
+from stages.report import Params, topics
+from stages.report.claims_page import add_words
+from stages.report.drawing import SETTINGS, plt
 from stages.report.page import item_html
-from stages.report.prose import add_words
 from stages.report.results import NotRun, Results
-from stages.report.schema import Params
-from stages.report.style import SETTINGS, plt
 
 ROOT = Path(__file__).parents[2]
 RAW = re.compile(r"\b[A-Za-z][A-Za-z0-9]*_\w+\b|\b(?:hks|knn|svm|dkl|qem|qslim|leifman|tasse|alexnet|vgg16|resnet50)\b")

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from stages.report.drawing import plt
 from stages.report.marks import marks, table
-from stages.report.style import plt
 
 
 @pytest.fixture

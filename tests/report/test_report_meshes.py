@@ -6,19 +6,17 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.kit.files import write_arrays, write_mesh
-from stages.kit.stats import interval
+from haptic_glance.base.files import write_arrays, write_mesh
+from stages.engine.statistics import interval
 from stages.report import meshes
 from stages.report.claims import highest_of, lowest_of
-from stages.report.differences import differences
-from stages.report.effects import sets_of
-from stages.report.meshes import pictures, simplification
+from stages.report.drawing import label
+from stages.report.effects import differences, sets_of
+from stages.report.meshes import levels, pictures
 from stages.report.meshes.claims import BOTH, CLAIMS, FEW_MINUS_MANY, claim, lower
 from stages.report.meshes.errors import BOXES
-from stages.report.meshes.methods import UNSEEN, ordered, short
-from stages.report.meshes.rows import data_sets, face_counts, paired_cells
+from stages.report.meshes.tables import UNSEEN, data_sets, face_counts, ordered, paired_cells, short
 from stages.report.results import SECTION_3_2, SETS_3_1, NotRun
-from stages.report.style import label
 from stages.report.topics import KINDS, build_all, build_one
 from stages.report.verdict import judge
 from stages.report.words import dataset_text
@@ -392,7 +390,7 @@ def test_boxes_hold_the_objects_without_error(run):
 def test_chart_of_costs_has_a_front_for_each_share(run, monkeypatch):
     rows = measured()
     more = rows[rows["target"] == "25%"].assign(target="50%", value=lambda half: half["value"] / 2)
-    monkeypatch.setattr(simplification, "attention_seconds", lambda _: dict.fromkeys(POINTS, 0.9))
+    monkeypatch.setattr(levels, "attention_seconds", lambda _: dict.fromkeys(POINTS, 0.9))
     chart = build_one(meshes, "tradeoff", "simplification", run(pd.concat([rows, more])))
     found = pd.read_csv(chart.paths[1]).set_index(["metric", "target", "method"])
     plain = found.xs("qem", level="method")

@@ -12,16 +12,16 @@ import pandas as pd
 import pytest
 from PIL import Image
 
-from stages.kit import Mesh, Viewpoint
-from stages.kit.files import write_mesh, write_text
-from stages.kit.packing import SHADES, STEPS, Store, ordered
+from haptic_glance.base.files import write_mesh, write_text
+from haptic_glance.base.packing import SHADES, STEPS, Store, ordered
+from haptic_glance.look.camera import Viewpoint
+from haptic_glance.mesh.mesh import Mesh
 from stages.report.__main__ import dataset_line, write_report
 from stages.report.drawing import VIEWPOINT, picture, visible
 from stages.report.items import Built, Table
-from stages.report.page import item_html, prose, small_picture
+from stages.report.page import item_html, pack_viewer, prose, small_picture
 from stages.report.results import NotRun
 from stages.report.site import front_main
-from stages.report.viewer import pack_viewer
 
 pytestmark = pytest.mark.slow
 

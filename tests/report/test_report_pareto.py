@@ -7,10 +7,9 @@ import pandas as pd
 import pytest
 from matplotlib.text import Text
 
-from stages.report.names import place_names
+from stages.report.drawing import place_names, plt
 from stages.report.pareto import OFF, ON, PERHAPS, pareto_chart, pareto_front, placed, ticks
 from stages.report.results import NotRun
-from stages.report.style import plt
 
 
 def test_front_of_a_known_set():

@@ -9,8 +9,8 @@ import pytest
 from matplotlib.figure import Figure as Drawing
 
 from stages.report import topics
+from stages.report.claims_page import add_words
 from stages.report.items import Figure, Table
-from stages.report.prose import add_words
 
 PROSE = """# tables/one: One of {count}
 

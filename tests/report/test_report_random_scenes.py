@@ -4,9 +4,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.kit.files import write_table
+from haptic_glance.base.files import write_table
 from stages.report import scene as topic
-from stages.report.differences import differences
+from stages.report.effects import differences
 from stages.report.results import NotRun
 from stages.report.scene.claims import CLAIMS
 from stages.report.scene.random import planning, plans, saving

@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from stages.report.items import Table
-from stages.report.ranking import Ranking, leading
+from stages.report.tables import Ranking, leading
 
 SHOWN = pd.DataFrame({
     "set": ["a", "a", "a", "b", "b", "b"],

@@ -8,9 +8,8 @@ import pytest
 
 from stages.report import recorded as topic
 from stages.report.recorded.claims_touches import CLAIMS
-from stages.report.recorded.grasps import TASKS
-from stages.report.recorded.simulated_to_real import PANELS
-from stages.report.recorded.table_4_4 import SETS
+from stages.report.recorded.grasps import SETS, TASKS
+from stages.report.recorded.networks import PANELS
 from stages.report.results import NotRun
 from stages.report.topics import build_one
 from stages.report.verdict import judge

@@ -6,8 +6,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.kit.split import shared_by
-from stages.kit.stats import interval
+from haptic_glance.know.split import shared_by
+from stages.engine.statistics import interval
 from stages.report import recorded as topic
 from stages.report.recorded.claims_networks import CLAIMS, SETTINGS
 from stages.report.results import NotRun

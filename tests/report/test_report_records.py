@@ -7,13 +7,13 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from stages.kit.files import read_json, sha256
-from stages.kit.timing import WALL, clock
+from haptic_glance.base.files import read_json, sha256
+from haptic_glance.base.timing import WALL, clock
 from stages.report import records, touch
+from stages.report.drawing import plt
 from stages.report.items import Built, Figure, Table
 from stages.report.records import DIGITS, FILE, record_of, write_records
 from stages.report.results import NotRun
-from stages.report.style import plt
 from stages.report.topics import KINDS, build_one
 
 ROOT = Path(__file__).parents[2]

@@ -3,11 +3,11 @@
 import pandas as pd
 import pytest
 
-from stages.kit.files import write_table
+from haptic_glance.base.files import write_table
 from stages.report import scene as topic
 from stages.report.results import NotRun
-from stages.report.scene import scenes
-from stages.report.scene.rows import left_of
+from stages.report.scene import scene as scenes
+from stages.report.scene.random import left_of
 from stages.report.topics import build_one
 
 VALUES = {"full": 9000, "uniform": 1600, "uniform_size": 1250, "network": 1500, "ours": 1000, "online": 1040}
@@ -108,4 +108,4 @@ def test_a_way_that_was_not_asked_has_no_line(root, results):
 
 def test_without_the_benchmark_it_is_not_run(results):
     with pytest.raises(NotRun, match="bench/scenes"):
-        scenes.build(results)
+        scenes.scenes(results)

@@ -4,11 +4,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.kit.stats import interval
-from stages.kit.timing import WALL
+from haptic_glance.base.timing import WALL
+from stages.engine.statistics import interval
 from stages.report import sensor
 from stages.report.results import NotRun
-from stages.report.sensor import claims
+from stages.report.sensor import arrays
 from stages.report.topics import build_one
 from stages.report.verdict import judge
 
@@ -78,7 +78,7 @@ def test_a_cost_has_the_interval_of_its_objects(sensed, root, small):
 
 def test_claims_know_the_truth_of_the_rows(root, sensed, small):
     small.write(root, "sensor_size", pressed().assign(dataset="princeton_eight"), "princeton_eight")
-    judged = judge(claims.CLAIMS, sensed).set_index("key")
+    judged = judge(arrays.CLAIMS, sensed).set_index("key")
     words = judged["verdict"]
     better = [
         "more_cells_help_all",
@@ -95,7 +95,7 @@ def test_claims_know_the_truth_of_the_rows(root, sensed, small):
 
 
 def test_nothing_pressed_is_said_and_not_crashed_on(results):
-    assert set(judge(claims.CLAIMS, results)["verdict"]) == {"open"}
+    assert set(judge(arrays.CLAIMS, results)["verdict"]) == {"open"}
     for kind, name in (("tables", "figure_4_11"), ("tradeoff", "sensor_size")):
         with pytest.raises(NotRun):
             build_one(sensor, kind, name, results)
@@ -109,10 +109,10 @@ def test_two_arrays_and_several_touches_are_said_beside_the_single_ones(root, re
         ({"extent": "points"}, 0.0),
         ({"cells": 20}, 0.0),
     ]
-    several = [rows.assign(**kind, value=rows["value"] + more, dataset=claims.HANDS[0]) for kind, more in kinds]
-    small.write(root, "sensor_size", pd.concat([*several, pressed().assign(dataset=claims.HANDS[0])]), claims.HANDS[0])
+    several = [rows.assign(**kind, value=rows["value"] + more, dataset=arrays.HANDS[0]) for kind, more in kinds]
+    small.write(root, "sensor_size", pd.concat([*several, pressed().assign(dataset=arrays.HANDS[0])]), arrays.HANDS[0])
     shown = build_one(sensor, "tables", "figure_4_11", results).shown
     said = ["16 x 16 and 12 x 12 at 0.005", "16 x 16, five in a salient region", "16 x 16, five separate points"]
     assert set(said) < set(shown["cells"])
-    judged = judge(claims.CLAIMS, results).set_index("key")
+    judged = judge(arrays.CLAIMS, results).set_index("key")
     assert judged.loc["wide_hand_over_coarse", "effect"] == pytest.approx(20, abs=0.5)

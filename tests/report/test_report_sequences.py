@@ -6,10 +6,8 @@ import pytest
 
 from stages.report import sequences
 from stages.report.results import NotRun
-from stages.report.sequences.charts import SHOWN
-from stages.report.sequences.claims import MORE, PRINTED_SET
-from stages.report.sequences.rows import SPLITS
-from stages.report.sequences.tables import SAID
+from stages.report.sequences.contours import SHOWN
+from stages.report.sequences.tables import MORE, PRINTED_SET, SAID, SPLITS
 from stages.report.topics import build_one
 from stages.report.verdict import judge
 

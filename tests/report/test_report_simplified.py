@@ -8,9 +8,9 @@ import pandas as pd
 import pytest
 
 from stages.report import meshes
-from stages.report.meshes import points
+from stages.report.meshes import tables
+from stages.report.pareto import AS_PLAIN, NO_POINT, NO_RING, UNIT, invalid_units
 from stages.report.results import SECTION_3_1
-from stages.report.simplified import AS_PLAIN, NO_POINT, NO_RING, UNIT, invalid_units
 from stages.report.topics import build_one
 
 ERRORS = ("metro_mean", "ssim_error")
@@ -98,7 +98,7 @@ def made():
 
 
 def test_the_numbers_of_points_and_rings(made):
-    found = points.counted(made).set_index(["method", "target"])
+    found = tables.counted(made).set_index(["method", "target"])
     assert list(dict.fromkeys(found.index.get_level_values("method"))) == ["harris", "itti", "SymRad"]
     assert found.loc[("SymRad", "1500")].to_dict() == {
         "objects": 4, "points": 0.0, "rings": 3.0, "without_points": 0.75, "three_rings": 0.25, "as_plain": 0.75,

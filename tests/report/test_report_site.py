@@ -11,12 +11,12 @@ from matplotlib.figure import Figure as Drawing
 
 from stages.compose import compose
 from stages.report.__main__ import write_report
-from stages.report.anew import command
 from stages.report.claims_page import sets_read
 from stages.report.items import Figure, Table
 from stages.report.page import frame_html, item_html
-from stages.report.ranking import Ranking
+from stages.report.records import command
 from stages.report.site import page
+from stages.report.tables import Ranking
 from stages.report.topics import CLAIMS
 
 CONF = Path(__file__).parents[2] / "conf"
@@ -158,7 +158,7 @@ def test_claims_filter_and_open_to_their_pairs(tab, site):
     tab.goto(f"{(site / 'site/claims.html').as_uri()}#{key}")
     assert tab.locator(f"#{key} tbody tr").count() == (differences["key"] == key).sum() > 0
     said = tab.locator(f"#{key} dl").inner_text()
-    assert "dvc repro" in said and f"haptic-glance claim {key}" in said
+    assert "dvc repro" in said and f"python -m stages.claim {key}" in said
 
 
 @pytest.mark.slow

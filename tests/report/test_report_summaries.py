@@ -7,11 +7,11 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from stages.kit.files import write_table
+from haptic_glance.base.files import write_table
 from stages.report import topics
-from stages.report.cells import PAIR, PLACE, filled
+from stages.report.claims_page import add_words
 from stages.report.items import Table
-from stages.report.prose import add_words
+from stages.report.tables import PAIR, PLACE, filled
 
 REPORTS = Path(__file__).parents[2] / "reports"
 LONGEST = 200

@@ -5,13 +5,12 @@ import pandas as pd
 import pytest
 
 from stages.report import touch
-from stages.report.grid import blocks, grid, means
 from stages.report.items import Table
-from stages.report.markdown import as_text, is_numeric, markdown_table, number, with_interval
-from stages.report.meshes.rows import paired_cells
+from stages.report.meshes.tables import paired_cells
 from stages.report.results import NotRun
+from stages.report.tables import as_text, blocks, grid, is_numeric, markdown_table, means, number, with_interval
 from stages.report.topics import build_all, build_one
-from stages.report.touch.rows import METHODS, SSIM
+from stages.report.touch.imprints import METHODS, SSIM
 
 
 def table_4_1(results):

@@ -7,13 +7,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.kit.split import shared_by
+from haptic_glance.know.split import shared_by
 from stages.report import networks as _transfer
 from stages.report import transfer
 from stages.report.results import NotRun
 from stages.report.topics import build_one
-from stages.report.transfer import claims as chapter_5
 from stages.report.transfer import figure_5_3
+from stages.report.transfer import tables as chapter_5
 from stages.report.verdict import judge
 
 FINE, COARSE = "imprints128", "imprints16"

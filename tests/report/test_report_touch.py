@@ -4,13 +4,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.imprints import Imprints, write_imprints
-from stages.kit.files import write_arrays
+from haptic_glance.base.files import write_arrays
+from stages.imprints.imprints import Imprints, write_imprints
 from stages.report import touch
 from stages.report.results import SECTION_4_2, SETS_4_2, NotRun
 from stages.report.topics import CLAIMS, build_one
 from stages.report.touch import claims, pictures, touches
-from stages.report.touch.rows import PRINTED
+from stages.report.touch.imprints import PRINTED
 from stages.report.verdict import judge
 
 GLANCE = {

@@ -6,15 +6,15 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.kit.files import write_table
+from haptic_glance.base.files import write_table
 from stages.report import networks as _transfer
 from stages.report import recorded as recorded_topic
 from stages.report import transfer
-from stages.report.differences import differences
+from stages.report.effects import differences
 from stages.report.results import NotRun
 from stages.report.topics import KINDS, build_one
-from stages.report.transfer import claims as chapter_5
-from stages.report.transfer import coarse_imprints, figure_5_3
+from stages.report.transfer import figure_5_3, tables
+from stages.report.transfer import tables as chapter_5
 from stages.report.verdict import judge
 
 MEANS = {  # (data, weights, mode) -> accuracy
@@ -280,7 +280,7 @@ def test_the_coarse_array_is_told_one_change_at_a_time(bare, small):
     found = [base | {"setting": s, "repetition": k, "value": v + 0.01 * k} for s, v in levels.items() for k in range(3)]
     small.write(bare, "coarse_imprints", pd.DataFrame(found), "furniture")
     shown = build_one(transfer, "tables", "coarse_imprints", small.results(bare)).shown
-    assert list(shown["what differs"]) == [coarse_imprints.SETTINGS[name] for name in ("plain", "rate_of_table_5_3")]
+    assert list(shown["what differs"]) == [tables.SETTINGS[name] for name in ("plain", "rate_of_table_5_3")]
     assert shown["accuracy, %"][0].startswith("61.0 [")
 
 

@@ -7,9 +7,8 @@ import pandas as pd
 import pytest
 
 from stages.report.claims import Claim
-from stages.report.differences import differences, invalid
-from stages.report.simplified import NO_POINT, NO_RING
-from stages.report.validity import GUESSING, ONE_CLASS, SAME, UNTRAINED, causes
+from stages.report.effects import GUESSING, ONE_CLASS, SAME, UNTRAINED, causes, differences, invalid
+from stages.report.pareto import NO_POINT, NO_RING
 from stages.report.verdict import judge
 
 OVER = Claim(

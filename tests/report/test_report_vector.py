@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure as Drawing
 
-from stages.report.style import CYCLE, plt
-from stages.report.vector import MOST, has_marks_alone, vector
+from stages.report.drawing import CYCLE, plt
+from stages.report.marks import MOST_PATHS, has_marks_alone, vector
 
 
 @pytest.fixture
@@ -60,10 +60,10 @@ def test_equal_charts_give_equal_bytes_without_a_date(drawing):
 
 
 def test_too_many_marks_are_left_to_the_table(drawing):
-    for k in range(MOST // 100 + 1):
+    for k in range(MOST_PATHS // 100 + 1):
         drawing.axes[0].plot(np.linspace(0, 1, 100), np.full(100, 1 + k / 10), "o")
     text, found = vector(drawing, "chart", "alt")
-    assert len(found) > MOST and "<circle" not in text
+    assert len(found) > MOST_PATHS and "<circle" not in text
 
 
 def test_a_drawing_with_a_picture_is_no_chart(drawing):

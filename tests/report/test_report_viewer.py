@@ -9,12 +9,11 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from stages.kit import Mesh
-from stages.kit.files import write_mesh
-from stages.kit.packing import SHADES, ordered
-from stages.report.page import part, script_json
+from haptic_glance.base.files import write_mesh
+from haptic_glance.base.packing import SHADES, ordered
+from haptic_glance.mesh.mesh import Mesh
+from stages.report.page import FINEST, apart, pack_object, pack_viewer, part, script_json
 from stages.report.site import page
-from stages.report.viewer import FINEST, apart, pack_object, pack_viewer
 
 
 @pytest.fixture
@@ -53,7 +52,7 @@ def test_levels_share_one_scale_on_which_the_error_grows(levels):
 
 
 def test_level_equal_to_the_original_has_no_error(results, small, monkeypatch):
-    monkeypatch.setattr("stages.report.viewer.FINEST", 1.0)
+    monkeypatch.setattr("stages.report.page.FINEST", 1.0)
     write_mesh(results.data / "test/lod/ball/qem_50pct.npz", small.ball())
     packed = pack_object(results, "ball")
     level = packed["ladders"]["qem"]["levels"][0]

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from stages.salient_points.inhibition import visited
+from haptic_glance.look.points.options import visited
 
 GRID = np.stack([*np.meshgrid(np.arange(60.0), np.arange(40.0), indexing="ij"), np.zeros((60, 40))], axis=2)
 PLACES = GRID.reshape(-1, 3)

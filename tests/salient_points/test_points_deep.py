@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.glance import samples_of_mesh, standardised
-from stages.kit import Mesh
-from stages.meshes import normalise
-from stages.networks import build
-from stages.salient_points import METHODS, deep, saliency
-from stages.salient_points.glance import deep_features
-from stages.weights import fixation_density
-from stages.weights.published import DEEP, GLANCES, MAPS
+from haptic_glance.deep import build
+from haptic_glance.look.glance import samples_of_mesh, standardised
+from haptic_glance.look.points import METHODS, glance, saliency
+from haptic_glance.look.points.glance import deep_features
+from haptic_glance.look.weights import fixation_density
+from haptic_glance.look.weights.weights import DEEP, GLANCES, MAPS
+from haptic_glance.mesh import normalise
+from haptic_glance.mesh.mesh import Mesh
 
 from ..test_package import CORE
 
@@ -29,7 +29,7 @@ def brightness(monkeypatch):
         grey = torch.nn.functional.avg_pool2d(images.mean(dim=1, keepdim=True), 16)
         return grey.expand(-1, len(MAPS), -1, -1)
 
-    monkeypatch.setattr(deep, "_trunk", lambda: trunk)
+    monkeypatch.setattr(glance, "_trunk", lambda: trunk)
 
 
 def body():
@@ -42,7 +42,7 @@ def body():
 def first_map(mesh):
     """(samples, (s,) the first map on them)."""
     samples = samples_of_mesh(mesh)
-    return samples, deep.maps_on_surface(mesh, samples)[:, 0]
+    return samples, glance.maps_on_surface(mesh, samples)[:, 0]
 
 
 def at(samples, values, places):
@@ -85,10 +85,10 @@ def test_a_map_that_hardly_varies_is_not_scaled_up(monkeypatch):
     mesh = Mesh(ball.vertices, ball.faces)
     samples = samples_of_mesh(mesh)
     faint = np.linspace(0, 0.01, len(samples.points))[:, None] + np.zeros(len(MAPS))
-    monkeypatch.setattr(deep, "maps_on_surface", lambda mesh, samples: faint)
-    found = deep.standardised_maps(mesh, samples)
+    monkeypatch.setattr(glance, "maps_on_surface", lambda mesh, samples: faint)
+    found = glance.standardised_maps(mesh, samples)
     assert list(found) == list(MAPS)
-    assert np.ptp(found[MAPS[0]]) == pytest.approx(0.02 / deep.DEVIATION)
+    assert np.ptp(found[MAPS[0]]) == pytest.approx(0.02 / glance.DEVIATION)
     assert samples.shares @ found[MAPS[0]] == pytest.approx(0, abs=1e-12)
 
 
@@ -108,7 +108,7 @@ def test_the_method_is_the_density_of_both_kinds_of_features(brightness):
 def test_a_picture_and_its_mirror_image_are_laid_over_each_other():
     picture = torch.zeros(32, 32, 3, dtype=torch.uint8)
     picture[:, :8] = 255
-    maps = deep._maps(lambda images: images.mean(dim=1, keepdim=True), picture)[0, 0]
+    maps = glance._maps(lambda images: images.mean(dim=1, keepdim=True), picture)[0, 0]
     assert maps[:, :8].min() > maps[:, 8:].max()
 
 
@@ -116,7 +116,7 @@ def test_a_picture_and_its_mirror_image_are_laid_over_each_other():
 def test_the_trunk_is_the_network_up_to_its_last_maps_of_a_sixteenth_of_the_side():
     images = torch.rand(1, 3, 64, 96, generator=torch.Generator().manual_seed(0))
     with torch.no_grad():
-        maps, blocks = deep._trunk()(images), build("mobilenet_v2", 2, "imagenet", 0).convolutions
+        maps, blocks = glance._trunk()(images), build("mobilenet_v2", 2, "imagenet", 0).convolutions
         assert maps.shape == (1, len(MAPS), 4, 6) and blocks[14](maps).shape == (1, 160, 2, 3)
         assert torch.allclose(maps, blocks[:14](images), atol=1e-4)
 

@@ -6,28 +6,19 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.conspicuity import ViewMaps
-from stages.conspicuity.storage import parse_viewpoint
-from stages.kit import Mesh
-from stages.kit.rng import rng
-from stages.meshes import normalise
-from stages.salient_points import (
-    METHODS,
-    best_viewpoints,
-    find_points,
-    read_points,
-    read_saliency,
-    read_strong_points,
-    saliency,
-)
-from stages.salient_points.fused import FusedDetector
-from stages.salient_points.merge import continue_on_surface, merge_views
-from stages.salient_points.methods import find_all, split_runnable
-from stages.salient_points.options import Options
-from stages.salient_points.random_points import random_vertices
-from stages.salient_points.storage import write_points
-from stages.views import FOUR, TWELVE
-from stages.weights import LearnedWeights, weights
+from haptic_glance.base.rng import rng
+from haptic_glance.look.channels import ViewMaps
+from haptic_glance.look.points import METHODS, best_viewpoints, find_points, saliency
+from haptic_glance.look.points.detectors import FusedDetector, random_vertices
+from haptic_glance.look.points.fuse import continue_on_surface, merge_views
+from haptic_glance.look.points.methods import find_all, split_runnable
+from haptic_glance.look.points.options import Options
+from haptic_glance.look.views import FOUR, TWELVE
+from haptic_glance.look.weights import LearnedWeights, weights
+from haptic_glance.mesh import normalise
+from haptic_glance.mesh.mesh import Mesh
+from stages.conspicuity.measure import parse_viewpoint
+from stages.salient_points.measure import read_points, read_saliency, read_strong_points, write_points
 
 RUNS, _ = split_runnable(METHODS, LearnedWeights())  # the others need a run of the stage `weights`
 FUSED = [name for name in RUNS if isinstance(METHODS[name], FusedDetector)]

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from stages.conspicuity.channels import CHANNELS, OTHERS
-from stages.salient_points import COMBINATIONS, METHODS, fuse
-from stages.weights import weights
+from haptic_glance.look.channels.channels import CHANNELS, OTHERS
+from haptic_glance.look.points import COMBINATIONS, METHODS, fuse
+from haptic_glance.look.weights import weights
 
 MAPS = {"color": np.full((3, 4), 0.2), "edge": np.full((3, 4), 0.8)}
 

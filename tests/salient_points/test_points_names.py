@@ -2,9 +2,9 @@
 
 import pytest
 
-from stages.salient_points import METHODS
-from stages.salient_points.methods import MEANT
-from stages.salient_points.names import check_name
+from haptic_glance.look.points import METHODS
+from haptic_glance.look.points.find import check_name
+from haptic_glance.look.points.methods import MEANT
 
 
 @pytest.mark.parametrize(

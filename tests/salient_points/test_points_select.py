@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from stages.salient_points import select_by_centroid, select_by_suppression
+from haptic_glance.look.points import select_by_centroid, select_by_suppression
 
 RADIUS = 5
 

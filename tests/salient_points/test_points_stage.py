@@ -6,15 +6,14 @@ import functools
 import numpy as np
 import pytest
 
-from stages.kit.files import read_arrays, sha256, write_arrays, write_mesh, write_table
-from stages.kit.rows import read_rows
+from haptic_glance.base.files import read_arrays, sha256, write_arrays, write_mesh, write_table
+from haptic_glance.look.points.options import Detection
+from haptic_glance.look.views import TWELVE
+from stages.engine.rows import read_rows
+from stages.salient_points import Params
 from stages.salient_points import __main__ as stage
-from stages.salient_points import read_points, read_strong_points
-from stages.salient_points.measure import mean_spacing, measurement_rows, summary
-from stages.salient_points.options import Detection
-from stages.salient_points.schema import Params
-from stages.views import TWELVE
-from stages.weights.table import weight_table
+from stages.salient_points.measure import mean_spacing, measurement_rows, read_points, read_strong_points, summary
+from stages.weights.training import weight_table
 
 METHODS = ["glance", "itti", "random"]
 SETTINGS = Params(METHODS, 30, "suppression", 0.058, 0.02)

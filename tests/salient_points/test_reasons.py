@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from stages.glance import FEATURES
-from stages.kit import Mesh
-from stages.salient_points import saliency
-from stages.salient_points.reasons import WORDS, contributions, reasons
-from stages.weights.published import GLANCES
+from haptic_glance.look.glance import FEATURES
+from haptic_glance.look.points import saliency
+from haptic_glance.look.points.reasons import WORDS, contributions, reasons
+from haptic_glance.look.weights.weights import GLANCES
+from haptic_glance.mesh.mesh import Mesh
 
 from .conftest import raised_ball
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from stages.kit import Mesh
-from stages.salient_points.rivals import corners
+from haptic_glance.look.rivals import corners
+from haptic_glance.mesh.mesh import Mesh
 
 TOPS = [[0, 0, 1], [0, 1, 0]]
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh
-from stages.salient_points.rivals import harris
+from haptic_glance.look.rivals import harris
+from haptic_glance.mesh.mesh import Mesh
 
 
 @pytest.fixture(scope="module")

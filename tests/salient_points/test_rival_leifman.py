@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy.sparse.csgraph import dijkstra
 
-from stages.kit import Mesh
-from stages.salient_points.kernels import spin_images
-from stages.salient_points.rivals import leifman
-from stages.salient_points.rivals.samples import samples, unit_mesh
+from haptic_glance.look.kernels import spin_images
+from haptic_glance.look.rivals import leifman
+from haptic_glance.look.rivals.samples import samples, unit_mesh
+from haptic_glance.mesh.mesh import Mesh
 
 UP = np.array([[0.0, 0, 1]])
 

@@ -8,8 +8,7 @@ import pytest
 import trimesh
 from scipy.spatial.transform import Rotation
 
-from stages.kit import Mesh
-from stages.salient_points.rivals import (
+from haptic_glance.look.rivals import (
     corners,
     harris,
     heat_kernel,
@@ -20,6 +19,7 @@ from stages.salient_points.rivals import (
     song,
     tasse,
 )
+from haptic_glance.mesh.mesh import Mesh
 
 X = np.array([1.0, 0, 0])
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh
-from stages.salient_points.kernels import gaussian_sums
-from stages.salient_points.rivals.maxima import local_maxima
-from stages.salient_points.rivals.surface_average import gaussian_average, subdivide, surface_elements
+from haptic_glance.look.kernels import gaussian_sums
+from haptic_glance.look.rivals.maxima import local_maxima
+from haptic_glance.look.rivals.samples import gaussian_average, subdivide, surface_elements
+from haptic_glance.mesh.mesh import Mesh
 
 BALL = trimesh.creation.icosphere(subdivisions=3)
 MESH = Mesh(BALL.vertices, BALL.faces)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from stages.salient_points.rivals import mesh_saliency
+from haptic_glance.look.rivals import mesh_saliency
 
 
 @pytest.mark.slow

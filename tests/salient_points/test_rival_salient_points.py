@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from stages.salient_points.rivals import salient_points
+from haptic_glance.look.rivals import salient_points
 
 
 @pytest.mark.slow

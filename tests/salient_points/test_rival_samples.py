@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from stages.kit import Mesh
-from stages.salient_points.rivals.samples import samples, unit_mesh
+from haptic_glance.look.rivals.samples import samples, unit_mesh
+from haptic_glance.mesh.mesh import Mesh
 
 
 @pytest.fixture(scope="module")

@@ -5,9 +5,9 @@ import pytest
 from scipy.ndimage import maximum_filter
 from scipy.special import erf
 
-from stages.kit import Mesh
-from stages.salient_points.kernels import scale_peaks, spaced, splat
-from stages.salient_points.rivals import sift
+from haptic_glance.look.kernels import scale_peaks, spaced, splat
+from haptic_glance.look.rivals import sift
+from haptic_glance.mesh.mesh import Mesh
 
 X = np.array([1.0, 0, 0])
 

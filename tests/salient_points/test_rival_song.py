@@ -5,8 +5,8 @@ import pytest
 from scipy import sparse
 from scipy.spatial.transform import Rotation
 
-from stages.kit import Mesh
-from stages.salient_points.rivals import song
+from haptic_glance.look.rivals import song
+from haptic_glance.mesh.mesh import Mesh
 
 
 @pytest.fixture(autouse=True)

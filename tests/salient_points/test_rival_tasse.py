@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from stages.kit import Mesh
-from stages.salient_points.kernels import fpfh
-from stages.salient_points.rivals import tasse
+from haptic_glance.look.kernels import fpfh
+from haptic_glance.look.rivals import tasse
+from haptic_glance.mesh.mesh import Mesh
 
 PAIR, EACH_OTHER, STARTS = np.array([[0.0, 0, 0], [2, 0, 0]]), np.array([1, 0]), np.array([0, 1, 2])
 

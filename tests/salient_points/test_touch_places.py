@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.glance import samples_of_mesh
-from stages.imprints import Surface, press_at
-from stages.kit import Mesh
-from stages.kit.sensor_axes import sensor_axes
-from stages.meshes import normalise
-from stages.salient_points import METHODS, detect, find_points
-from stages.salient_points.kernels import pressed
-from stages.salient_points.options import Options
-from stages.salient_points.touch import CELLS, DISC, WIDTH, imprints, recurrence, spread
+from haptic_glance.look.glance import samples_of_mesh
+from haptic_glance.look.kernels import pressed
+from haptic_glance.look.points import METHODS, detect, find_points
+from haptic_glance.look.points.options import Options
+from haptic_glance.look.points.touch import CELLS, DISC, WIDTH, imprints, recurrence, spread
+from haptic_glance.mesh import normalise
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.touch import Surface, press_at
+from haptic_glance.touch.surface import sensor_axes
 
 
 @pytest.fixture(scope="module")

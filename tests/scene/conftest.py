@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh
-from stages.scene import Frames, Placed, Scene, build_lod_chain, fly
+from haptic_glance.lod.scene import Frames, Placed, Scene, build_lod_chain, fly
+from haptic_glance.mesh.mesh import Mesh
 
 
 def bumpy(seed, subdivisions=4):

@@ -4,16 +4,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.kit import Mesh
-from stages.scene.counts import (
-    Curve,
-    evaluate_counts,
-    fit_counts,
-    fit_power_law,
-    focal_length,
-    read_curves,
-    rebuild,
-)
+from haptic_glance.mesh.mesh import Mesh
+from stages.scene.counts import Curve, cases, evaluate_counts, fit_counts, fit_power_law, focal_length, read_curves
 
 pytestmark = pytest.mark.slow
 
@@ -175,7 +167,7 @@ def ball_curves():
 def evaluated():
     """The rows of a small evaluation, by (method, condition, metric)."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(rebuild, "BUILT", 1)
+        patch.setattr(cases, "BUILT", 1)
         frame = pd.DataFrame(evaluate_counts(*ball_curves()))
     return frame.set_index(["method", "condition", "metric"]).sort_index()
 

@@ -3,8 +3,8 @@
 import pandas as pd
 import pytest
 
-from stages.kit.files import write_table, write_text
-from stages.kit.workspace import Workspace
+from haptic_glance.base.files import write_table, write_text
+from stages.engine.settings import Workspace
 from stages.report import scene
 from stages.report.results import NotRun, Results
 from stages.report.scene import counts as table
@@ -38,7 +38,7 @@ def written(tmp_path):
 
 
 def test_table_has_a_line_a_model_and_condition(written):
-    shown = table.build(written(rows())).shown
+    shown = table.counts_table(written(rows())).shown
     assert len(shown) == len(table.MODELS) * len(table.CONDITIONS)
     line = shown[(shown["asked about"] == "objects left out") & (shown["model"] == table.MODELS["linear"])].iloc[0]
     assert line["wasted faces, %"] == "120 [105, 160]" and line["objects"] == 7
@@ -47,7 +47,7 @@ def test_table_has_a_line_a_model_and_condition(written):
 def test_metric_that_was_not_measured_is_a_dash(written):
     frame = rows()
     frame = frame[~((frame["condition"] == "flat") & (frame["metric"] == "excess"))]
-    shown = table.build(written(frame)).shown.set_index("asked about")
+    shown = table.counts_table(written(frame)).shown.set_index("asked about")
     assert set(shown.loc["objects of flat sides", "excess error, %"]) == {"–"}
 
 
@@ -68,4 +68,4 @@ def test_figure_is_drawn_with_and_without_all_conditions(written):
 def test_without_a_judgement_it_is_not_run(written):
     frame = rows().assign(value=None, note="3 objects have curves")
     with pytest.raises(NotRun, match="3 objects"):
-        table.build(written(frame))
+        table.counts_table(written(frame))

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from stages.kit import Mesh
-from stages.scene import Frames, Level, Placed, budget, rivals
-from stages.scene.lod_chain import ERRORS, finest
-from stages.scene.pictures import picture_error
+from haptic_glance.lod.scene import Frames, Level, Placed, budget
+from haptic_glance.lod.scene.chain import ERRORS, finest
+from haptic_glance.lod.scene.pictures import picture_error
+from haptic_glance.mesh.mesh import Mesh
+from stages.scene import online
 from stages.scene.rows import saved
 
 
@@ -31,7 +32,7 @@ def test_far_frames_need_fewer_faces_than_near_ones(plan):
 
 
 def test_one_level_coarser_breaks_the_tolerance_somewhere(plan, scene):
-    coarser = rivals.by_counts(plan.frames, plan.chains, np.maximum(plan.faces // 2, 1))
+    coarser = online.by_counts(plan.frames, plan.chains, np.maximum(plan.faces // 2, 1))
     assert coarser.errors.max() > scene.tolerance
 
 
@@ -52,7 +53,7 @@ def test_the_perceptual_tolerance_holds_too(meshes, chains, make_scene):
     scene = make_scene(frames=3, tolerance=0.1, kind="ssim")
     found = budget(meshes, scene, chains=chains)
     assert 0 < found.errors.max() <= 0.1
-    assert found.faces.sum() < rivals.full(found.frames).faces.sum() / 2
+    assert found.faces.sum() < online.full(found.frames).faces.sum() / 2
 
 
 @pytest.mark.parametrize("aside", [0.28, 0.34])
@@ -125,14 +126,14 @@ def test_a_plate_moved_towards_the_eye_is_off_by_its_shift_in_pixels(make_scene)
 
 def test_the_full_scene_has_no_error(frames_of, make_scene):
     frames = frames_of(make_scene(frames=2))
-    assert rivals.full(frames).errors.tolist() == [0, 0]
+    assert online.full(frames).errors.tolist() == [0, 0]
     assert picture_error(frames, 1, frames.full) == 0
     assert frames.check(1, frames.full).displacements.max() == 0
 
 
 def test_joined_frames_show_what_one_ray_cast_of_the_whole_scene_shows(meshes, frames_of, make_scene):
-    from stages.kit import RayScene
-    from stages.scene.place import world_mesh
+    from haptic_glance.lod.scene.camera import world_mesh
+    from haptic_glance.mesh.rays import RayScene
 
     scene = make_scene(frames=2)
     frames = frames_of(scene)
@@ -154,24 +155,24 @@ def test_uniform_levels_go_by_distance_alone(frames_of, make_scene, meshes, chai
     scene = make_scene()
     frames = frames_of(scene)
     own = tuple((full, *chains[placed.name][1:]) for full, placed in zip(frames.full, scene.objects, strict=True))
-    found = rivals.uniform(frames, own, 1.0)
+    found = online.uniform(frames, own, 1.0)
     expected = np.maximum(np.rint(2 * np.log2(frames.distance)), 0)
     assert np.array_equal(found.levels, expected) and len(np.unique(expected)) > 2
-    assert (rivals.uniform(frames, own, 1e3).levels == 0).all()
-    assert (rivals.uniform(frames, own, 1e-3).levels == [len(chain) - 1 for chain in own]).all()
+    assert (online.uniform(frames, own, 1e3).levels == 0).all()
+    assert (online.uniform(frames, own, 1e-3).levels == [len(chain) - 1 for chain in own]).all()
 
 
 def test_uniform_levels_by_size_show_a_larger_copy_finer(frames_of, make_scene, chains):
     objects = (Placed("one", (-0.3, 0, 0), 0.0, 0.2), Placed("one", (0.3, 0, 0), 0.0, 0.4))
     frames = frames_of(make_scene(objects=objects))
     own = tuple((full, *chains["one"][1:]) for full in frames.full)
-    found = rivals.uniform(frames, own, 2.0, by_size=True)
+    found = online.uniform(frames, own, 2.0, by_size=True)
     assert (found.levels[:, 1] < found.levels[:, 0]).all()
 
 
 def test_a_limit_shared_equally_gives_all_the_same_count(plan):
     limit = int(plan.faces.sum(axis=1).max() * 0.6)
-    found = rivals.equal(plan, limit)
+    found = online.equal(plan, limit)
     over = plan.faces.sum(axis=1) > limit
     assert over.any() and (found.faces.sum(axis=1) <= limit).all()
     assert np.array_equal(found.levels[~over], plan.levels[~over])
@@ -185,7 +186,7 @@ def test_a_limit_shared_equally_gives_all_the_same_count(plan):
 def test_a_limit_shared_where_it_hurts_least_hurts_less(meshes, chains, make_scene, plan):
     limit = int(plan.faces.sum(axis=1).max() * 0.6)
     found = budget(meshes, make_scene(limit=limit), chains=chains)
-    assert found.errors.max() < rivals.equal(plan, limit).errors.max()
+    assert found.errors.max() < online.equal(plan, limit).errors.max()
 
 
 def test_a_level_that_sticks_out_of_the_box_is_seen_to_its_end(meshes, chains, make_scene, frames_of):
@@ -211,11 +212,11 @@ def test_tuning_meets_the_wanted_error_from_above(frames_of, make_scene, chains)
     scene = make_scene()
     frames = frames_of(scene)
     own = tuple((full, *chains[placed.name][1:]) for full, placed in zip(frames.full, scene.objects, strict=True))
-    plan_of = lambda factor: rivals.uniform(frames, own, 1 / factor)  # noqa: E731
+    plan_of = lambda factor: online.uniform(frames, own, 1 / factor)  # noqa: E731
     wanted = 0.6 * plan_of(1e3).errors.mean()  # the coarsest has more
-    found = rivals.tune(plan_of, lambda plan: plan.errors.mean(), wanted)
+    found = online.tune(plan_of, lambda plan: plan.errors.mean(), wanted)
     assert wanted <= found.errors.mean() < 1.6 * wanted
-    assert rivals.tune_below(plan_of, lambda plan: plan.errors.max(), wanted).errors.max() <= wanted
+    assert online.tune_below(plan_of, lambda plan: plan.errors.max(), wanted).errors.max() <= wanted
 
 
 def test_saved_faces_are_of_the_totals():

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from stages.scene import Camera, Placed, Scene, fly
-from stages.scene.rendering import pixel_box, rays_of, render_level
+from haptic_glance.lod.scene import Camera, Placed, Scene, fly
+from haptic_glance.lod.scene.pictures import pixel_box, rays_of, render_level
 
 
 @pytest.fixture

@@ -5,10 +5,10 @@ import dataclasses
 import numpy as np
 import pytest
 
-from stages.scene.drawn import LOWEST, draw_scene
-from stages.scene.place import Scene
-from stages.scene.read import scene_of
-from stages.scene.schema import Params
+from haptic_glance.lod.scene.camera import Scene
+from stages.scene import Params
+from stages.scene.measure import scene_of
+from stages.scene.online import LOWEST, draw_scene
 
 NAMES = [f"thing {number}" for number in range(20)]
 BOXES = {name: (np.array([-0.5, -0.1 - 0.02 * k, -0.2]), np.array([0.5, 0.1, 0.3])) for k, name in enumerate(NAMES)}

@@ -11,9 +11,17 @@ import pandas as pd
 import pytest
 import trimesh
 
-from stages.kit import Mesh
-from stages.scene.export import describe, metres_per_unit, to_gltf, write_glb, write_lod, write_scene
-from stages.scene.loaded_back import check_glb, read_lod
+from haptic_glance.mesh.mesh import Mesh
+from stages.scene.export import (
+    check_glb,
+    describe,
+    metres_per_unit,
+    read_lod,
+    to_gltf,
+    write_glb,
+    write_lod,
+    write_scene,
+)
 
 VALIDATE = """
 const validator = require('gltf-validator'), fs = require('fs');

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from stages.kit import Mesh
-from stages.scene import Frames, Level, budget
+from haptic_glance.lod.scene import Frames, Level, budget
+from haptic_glance.lod.scene.budget import cheapest
+from haptic_glance.mesh.mesh import Mesh
 from stages.scene.online import choose, online
-from stages.scene.plan import cheapest
 from stages.scene.rows import saved
 
 FACES = np.array([100.0, 50.0, 25.0, 12.0])

@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 import pytest
 
-from stages.scene.plan import VIOLATION_COST, cheapest, share_limit
+from haptic_glance.lod.scene.budget import VIOLATION_COST, cheapest, share_limit
 
 FACES = np.array([100.0, 40.0, 10.0])
 

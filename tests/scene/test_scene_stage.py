@@ -10,19 +10,17 @@ import pytest
 import yaml
 
 from benchmarks import scenes
-from stages.kit.files import read_arrays, read_table, write_arrays, write_mesh, write_table
-from stages.kit.params import check_section
-from stages.kit.rows import read_rows, write_rows
-from stages.scene import __main__
+from haptic_glance.base.files import read_arrays, read_table, write_arrays, write_mesh, write_table
+from stages.engine.rows import read_rows, write_rows
+from stages.engine.settings import check_section
+from stages.scene import COLUMNS, Params, __main__
 from stages.scene import measure as stage_measure
 from stages.scene.__main__ import levels_of
 from stages.scene.compare import MethodPlan, SceneSetup
 from stages.scene.export import export
-from stages.scene.measure import Case, measure, measure_network, pictures
-from stages.scene.read import report_missing, scene_of
-from stages.scene.rivals import full
+from stages.scene.measure import Case, measure, measure_network, pictures, report_missing, scene_of
+from stages.scene.online import full
 from stages.scene.rows import summary
-from stages.scene.schema import COLUMNS, Params
 
 pytestmark = pytest.mark.slow
 

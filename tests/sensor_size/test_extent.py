@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh
-from stages.sensor_size.extent import EXTENTS, disc, salient_region, sample_vertices
+from haptic_glance.mesh.mesh import Mesh
+from stages.sensor_size.protocol import EXTENTS, disc, salient_region, sample_vertices
 
 SOLID = trimesh.creation.icosphere(subdivisions=4, radius=0.5)
 BALL = Mesh(SOLID.vertices, SOLID.faces)

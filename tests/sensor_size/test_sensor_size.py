@@ -8,13 +8,19 @@ import pytest
 import trimesh
 from sklearn.exceptions import ConvergenceWarning
 
-from stages.kit import Mesh
-from stages.kit.files import write_arrays, write_mesh, write_table
-from stages.kit.rows import read_rows
-from stages.sensor_size import CLASSIFIERS, choice_repeatability, classifier, evaluate, smallest_sufficient
+from haptic_glance.base.files import write_arrays, write_mesh, write_table
+from haptic_glance.mesh.mesh import Mesh
+from stages.engine.rows import read_rows
 from stages.sensor_size import __main__ as stage
 from stages.sensor_size.__main__ import chosen_classes, summary
-from stages.sensor_size.protocol import majority
+from stages.sensor_size.protocol import (
+    CLASSIFIERS,
+    choice_repeatability,
+    classifier,
+    evaluate,
+    majority,
+    smallest_sufficient,
+)
 
 
 def touches(level, seed, count=12, noise=0.05):
@@ -165,7 +171,7 @@ def test_the_stage_tests_each_object_of_the_classes(make_workspace):
 
 
 def test_the_svm_stops_where_its_steps_run_in_a_circle(monkeypatch):
-    monkeypatch.setattr("stages.sensor_size.classifiers.ITERATIONS", 3)
+    monkeypatch.setattr("stages.sensor_size.protocol.ITERATIONS", 3)
     random = np.random.default_rng(0)
     with pytest.warns(ConvergenceWarning):
         model = classifier("svm").fit(random.normal(size=(60, 4)), random.integers(3, size=60))

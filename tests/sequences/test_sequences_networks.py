@@ -4,8 +4,15 @@ import numpy as np
 import pytest
 import torch
 
-from stages.sequences.networks import ImageNet, NormalNet, layers
-from stages.sequences.training import ImageInputs, NormalInputs, class_probabilities, train_network
+from stages.sequences.networks import (
+    ImageInputs,
+    ImageNet,
+    NormalInputs,
+    NormalNet,
+    class_probabilities,
+    layers,
+    train_network,
+)
 
 
 def films(count=60, frames=8, cells=8, classes=3, seed=0):

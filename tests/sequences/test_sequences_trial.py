@@ -7,15 +7,21 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.contours import Sequences, write_sequences
-from stages.kit.files import read_arrays
+from haptic_glance.base.files import read_arrays
+from stages.contours.contours import Sequences, write_sequences
 from stages.sequences import trial as trials
 from stages.sequences.__main__ import confusion_rows, layer_rows, summary
 from stages.sequences.classifiers import CONVENTIONAL
-from stages.sequences.dataset import count_sequences, downsample, read_sequence_data
-from stages.sequences.plan import plan
-from stages.sequences.split import split_by_objects, split_by_sequences
-from stages.sequences.trial import Trial, process
+from stages.sequences.trial import (
+    Trial,
+    count_sequences,
+    downsample,
+    plan,
+    process,
+    read_sequence_data,
+    split_by_objects,
+    split_by_sequences,
+)
 
 CLASSES = {"flat": ["plate", "tray"], "round": ["ball", "egg"]}
 SETTINGS = SimpleNamespace(

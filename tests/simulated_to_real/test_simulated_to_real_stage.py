@@ -6,11 +6,11 @@ import pytest
 import trimesh
 from PIL import Image
 
-from stages.kit import Mesh
-from stages.kit.files import read_arrays, write_mesh, write_table
-from stages.kit.rows import read_rows
+from haptic_glance.base.files import read_arrays, write_mesh, write_table
+from haptic_glance.mesh.mesh import Mesh
+from stages.engine.rows import read_rows
 from stages.simulated_to_real.__main__ import run, shares
-from stages.simulated_to_real.simulations import simulate
+from stages.simulated_to_real.trial import simulate
 
 SOLIDS = {"sphere": trimesh.creation.icosphere(2, radius=0.5), "cube": trimesh.creation.box((0.5, 0.5, 0.5))}
 MEMBERS = {"ball": "sphere", "box": "cube"}

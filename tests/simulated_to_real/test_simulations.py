@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh
-from stages.simulated_to_real import simulations
-from stages.simulated_to_real.simulations import LARGE_PITCH, PITCH, SIMULATIONS, simulate
+from haptic_glance.mesh.mesh import Mesh
+from stages.simulated_to_real import trial
+from stages.simulated_to_real.trial import LARGE_PITCH, PITCH, SIMULATIONS, simulate
 
 CELLS = (28, 50)
 
@@ -17,7 +17,7 @@ def mesh_of(solid):
 
 def test_an_object_lies_on_the_array_at_its_true_size(monkeypatch):
     brick = mesh_of(trimesh.creation.box((0.8, 0.4, 0.05)))  # 38 x 19 mm, flat: lies on its large sides
-    monkeypatch.setattr(simulations, "ASIDE", 0.0)
+    monkeypatch.setattr(trial, "ASIDE", 0.0)
     found = simulate("resting", brick, 48, CELLS, 0.038, np.random.default_rng(0))
     assert found.shape == (48, *CELLS)
     cells = 38 * 19 / PITCH**2

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh
-from stages.kit.files import write_mesh, write_table
-from stages.meshes import normalise
+from haptic_glance.base.files import write_mesh, write_table
+from haptic_glance.mesh import normalise
+from haptic_glance.mesh.mesh import Mesh
+from stages.stability import Params
 from stages.stability.__main__ import process
-from stages.stability.schema import Params
 from stages.stability.simplification import simplification_rows
-from stages.weights.table import weight_table
+from stages.weights.training import weight_table
 
 SEVERITIES = {"vertex_order": [1.0], "noise": [0.001, 0.02], "light": [60.0], "missing_faces": [0.9, 1.0]}
 

@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh
-from stages.meshes import normalise
-from stages.salient_points.methods import METHODS
-from stages.salient_points.options import Options
-from stages.stability import Conditions, maps_under_conditions
-from stages.weights import LearnedWeights
+from haptic_glance.disturb.perturbed import Conditions
+from haptic_glance.look.points.methods import METHODS
+from haptic_glance.look.points.options import Options
+from haptic_glance.look.weights import LearnedWeights
+from haptic_glance.mesh import normalise
+from haptic_glance.mesh.mesh import Mesh
+from stages.stability.measures import maps_under_conditions
 
 SIZE = (180, 240)
 COUNT = 5

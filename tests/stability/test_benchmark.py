@@ -5,16 +5,17 @@ import dataclasses
 import numpy as np
 import pytest
 
-from stages.kit import Mesh
-from stages.kit.files import read_arrays, write_mesh, write_table
-from stages.kit.rng import rng
-from stages.kit.rows import read_rows
-from stages.stability import PERTURBATIONS, Conditions
+from haptic_glance.base.files import read_arrays, write_mesh, write_table
+from haptic_glance.base.rng import rng
+from haptic_glance.disturb.objects import PERTURBATIONS
+from haptic_glance.disturb.perturbed import Conditions
+from haptic_glance.mesh.mesh import Mesh
+from stages.engine.rows import read_rows
 from stages.stability.__main__ import check, process, run
 from stages.stability.disturbance import Disturbance, disturbances
-from stages.stability.draws import mean_of_draws
-from stages.stability.recognition import partitions
-from stages.weights.table import weight_table
+from stages.stability.subject import mean_of_draws
+from stages.stability.uses import partitions
+from stages.weights.training import weight_table
 
 NOISE, TILT, HALF = ("noise", 0.01), ("tilt", 30.0), ("decimation", 0.5)
 

@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh
-from stages.kit.rng import rng
-from stages.stability.broken import DAMAGES
-from stages.stability.broken_faces import SLIVER_HEIGHT
+from haptic_glance.base.rng import rng
+from haptic_glance.mesh.mesh import Mesh
+from stages.stability.broken import DAMAGES, SLIVER_HEIGHT
 from stages.stability.surface import Surface
 
 BALL = trimesh.creation.icosphere(subdivisions=3)

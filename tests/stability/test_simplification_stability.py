@@ -5,17 +5,13 @@ import pandas as pd
 import pytest
 import trimesh
 
-from stages.kit import Mesh
-from stages.kit.rng import rng
-from stages.lod import InfeasibleTarget
+from haptic_glance.base.rng import rng
+from haptic_glance.lod import InfeasibleTarget
+from haptic_glance.mesh.mesh import Mesh
 from stages.stability import simplification
 from stages.stability.broken import DAMAGES
-from stages.stability.checks import find_faults, surface_error
-from stages.stability.qem_error_curve import QemErrorCurve
-from stages.stability.simplification import run_case, run_cases
-from stages.stability.specimen import KEPT, Case, Specimen
-from stages.stability.summary import summarise_simplification
-from stages.stability.surface import Surface
+from stages.stability.simplification import run_case, run_cases, summarise_simplification
+from stages.stability.surface import KEPT, Case, QemErrorCurve, Specimen, Surface, find_faults, surface_error
 
 BALL = trimesh.creation.icosphere(subdivisions=3)
 SOUND = Mesh(BALL.vertices * [0.3, 0.4, 0.5], BALL.faces)

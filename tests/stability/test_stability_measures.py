@@ -5,13 +5,12 @@ import pandas as pd
 import pytest
 import trimesh
 
-from stages.kit import Mesh
-from stages.kit.breaking_point import breaking_point
-from stages.stability import chance_repeatability, drift, repeatability
-from stages.stability.measures import at_original_vertices
-from stages.stability.perturbations.perturbed import Perturbed
-from stages.stability.summary import breaking_points, middle_severity, summarise
-from stages.weights.svm_pixels import select_far_points
+from haptic_glance.disturb.perturbed import Perturbed
+from haptic_glance.look.weights.svm import select_far_points
+from haptic_glance.mesh.mesh import Mesh
+from stages.engine.statistics import breaking_point
+from stages.stability.measures import at_original_vertices, chance_repeatability, drift, repeatability
+from stages.stability.simplification import breaking_points, middle_severity, summarise
 
 GRID = np.stack([*np.mgrid[:4, :5].reshape(2, -1), np.zeros(20)], axis=1).astype(float)
 

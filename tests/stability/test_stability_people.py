@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from stages.kit import Mesh
+from haptic_glance.look.agreement import GroundTruth
+from haptic_glance.look.points.options import Options
+from haptic_glance.mesh.mesh import Mesh
 from stages.report import stability
 from stages.report.topics import build_one
-from stages.salient_points.options import Options
 from stages.stability.disturbance import Disturbance
 from stages.stability.subject import Subject
-from stages.weights.agreement import GroundTruth
 
 from .test_stability_report import results
 

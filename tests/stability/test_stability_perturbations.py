@@ -4,13 +4,16 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.conspicuity import CHANNELS, conspicuity
-from stages.kit import Mesh, RayScene, Viewpoint
-from stages.kit.rng import rng
-from stages.meshes import normalise
-from stages.stability import PERTURBATIONS, Conditions, maps_under_conditions
-from stages.stability.maps import corner_normals, relit
-from stages.views import render
+from haptic_glance.base.rng import rng
+from haptic_glance.disturb.objects import PERTURBATIONS
+from haptic_glance.disturb.perturbed import Conditions
+from haptic_glance.look.camera import Viewpoint
+from haptic_glance.look.channels import CHANNELS, conspicuity
+from haptic_glance.look.views import render
+from haptic_glance.mesh import normalise
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.rays import RayScene
+from stages.stability.measures import corner_normals, maps_under_conditions, relit
 
 SIZE = (120, 160)
 MILD = {

@@ -3,16 +3,15 @@
 import pandas as pd
 import pytest
 
-from stages.kit.files import write_text
-from stages.kit.rows import write_rows
-from stages.kit.workspace import Workspace
-from stages.report import stability
+from haptic_glance.base.files import write_text
+from stages.engine.rows import write_rows
+from stages.engine.settings import Workspace
+from stages.report import Params, stability
+from stages.report.drawing import label
 from stages.report.results import NotRun, Results
-from stages.report.schema import Params
 from stages.report.stability import simplification
-from stages.report.style import label
 from stages.report.topics import build_one
-from stages.stability.schema import COLUMNS
+from stages.stability import COLUMNS
 
 SETTINGS = Params(
     hero_object="pear", figure_objects=["pear"], viewer_objects=[], viewer_count=0, viewer_faces=0,

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.kit.breaking_point import breaking_interval, expanded_levels, resampled_means
+from stages.engine.statistics import breaking_interval, expanded_levels, resampled_means
 from stages.report import stability
 from stages.report.results import NotRun
 from stages.report.stability.pairs import compared, verdict
@@ -14,7 +14,7 @@ from stages.report.stability.panels import cell
 from stages.report.stability.score import corruption_errors, of_gaze, of_points, points_lost, scores
 from stages.report.topics import build_one
 from stages.report.verdict import judge
-from stages.stability.summary import breaking_points
+from stages.stability.simplification import breaking_points
 
 from .test_stability_report import results
 

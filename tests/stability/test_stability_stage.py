@@ -5,11 +5,11 @@ import dataclasses
 import numpy as np
 import pytest
 
-from stages.kit.files import read_arrays, read_json, sha256, write_mesh, write_table
-from stages.kit.rows import read_rows
+from haptic_glance.base.files import read_arrays, read_json, sha256, write_mesh, write_table
+from stages.engine.rows import read_rows
 from stages.stability.__main__ import check, chosen, process, run
-from stages.stability.summary import summarise
-from stages.weights.table import weight_table
+from stages.stability.simplification import summarise
+from stages.weights.training import weight_table
 
 
 def value(rows, method, perturbation, severity, metric):

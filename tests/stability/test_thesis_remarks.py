@@ -7,13 +7,14 @@ import pytest
 import trimesh
 from scipy.stats import rankdata, spearmanr
 
-from stages.conspicuity import conspicuity
-from stages.conspicuity.channels import mask_at_size
-from stages.conspicuity.entropy import local_entropy
-from stages.conspicuity.silhouette import silhouette_share
-from stages.kit import Mesh, Viewpoint
-from stages.views import render
-from stages.weights.svm import fit_svm, information_gains
+from haptic_glance.look.camera import Viewpoint
+from haptic_glance.look.channels import conspicuity
+from haptic_glance.look.channels.channels import mask_at_size
+from haptic_glance.look.channels.texture import local_entropy
+from haptic_glance.look.views import render
+from haptic_glance.look.weights.svm import fit_svm, information_gains
+from haptic_glance.mesh.mesh import Mesh
+from stages.conspicuity.measure import silhouette_share
 
 SIZE, MAP = (450, 600), (112, 150)
 VIEWPOINTS = (Viewpoint(-32, 17), Viewpoint(60, 20), Viewpoint(200, -30))

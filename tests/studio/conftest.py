@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh
+from haptic_glance.mesh.mesh import Mesh
 
 viser = pytest.importorskip("viser", reason="the studio needs viser: pip install 'haptic-glance[studio]'")
 

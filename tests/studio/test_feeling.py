@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 import trimesh
 
-from haptic_glance.knowing import place_at
+from haptic_glance.know import place_at
+from haptic_glance.mesh import normalise
+from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.studio.feeling import (
     CONTOURS,
     LAYER,
@@ -18,10 +20,8 @@ from haptic_glance.studio.feeling import (
     turned,
 )
 from haptic_glance.studio.grids import bars_html, grid_html
-from stages.imprints import Surface, press, sensor_axes
-from stages.imprints.user_mesh import Places
-from stages.kit import Mesh
-from stages.meshes import normalise
+from haptic_glance.touch import Surface, press, sensor_axes
+from haptic_glance.touch.places import Places
 
 
 @pytest.fixture(scope="module")

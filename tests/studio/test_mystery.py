@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from haptic_glance.knowing import learn, primitives
+from haptic_glance.know import learn, primitives
+from haptic_glance.lod import write_any
+from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.studio.mystery import by_planner, gather, guess, verdict
 from haptic_glance.studio.specimen import Specimen
-from stages.kit import Mesh
-from stages.lod import write_any
 
 
 @pytest.fixture(scope="module")

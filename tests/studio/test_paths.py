@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 import trimesh
 
+from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.studio.paths import around, through
 from haptic_glance.studio.specimen import Hit, Specimen
-from stages.imprints import Surface, follow
-from stages.kit import Mesh
+from haptic_glance.touch import Surface, follow
 
 SHEETS = (-0.5, 0.0, -0.15), (-0.5, 0.5, 0.15)  # from x, to x, at y
 EYE = np.array([0.0, -3.0, 0.0])

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from haptic_glance.knowing import place_at, primitives
+from haptic_glance.know import place_at, primitives
 from haptic_glance.studio.senses import (
     CELLS,
     SIZE,
@@ -14,7 +14,7 @@ from haptic_glance.studio.senses import (
     sense,
     viewpoint,
 )
-from stages.imprints import Surface
+from haptic_glance.touch import Surface
 
 torch = pytest.importorskip("torch", reason="the hybrid network needs torch: pip install 'haptic-glance[deep]'")
 
@@ -22,9 +22,8 @@ torch = pytest.importorskip("torch", reason="the hybrid network needs torch: pip
 @pytest.fixture(scope="module")
 def trained(tmp_path_factory):
     """An untrained network, in a file as the stage writes it."""
-    from stages.networks.network import build
-    from stages.transfer.hybrid import HybridNet
-    from stages.transfer.hybrid_file import save
+    from haptic_glance.deep.hybrid import HybridNet, save
+    from haptic_glance.deep.network import build
 
     folder = tmp_path_factory.mktemp("root")
     path = folder / "data" / "furniture" / "transfer" / "hybrid" / "networks" / "hybrid.npz"

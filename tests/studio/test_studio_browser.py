@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from haptic_glance.look.marks import read_marks
+from haptic_glance.mesh import load, normalise
 from haptic_glance.studio.app import Studio
 from haptic_glance.studio.session import Settings
-from stages.meshes import load, normalise
-from stages.weights.annotate import read_marks
 
 from .conftest import ball
 

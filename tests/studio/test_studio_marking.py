@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from haptic_glance.look.marks import MarksError, read_marks
+from haptic_glance.mesh import normalise
 from haptic_glance.studio.marking import Marking
-from stages.meshes import normalise
-from stages.weights.annotate import MarksError, read_marks
 
 
 @pytest.fixture

@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 import trimesh
 
+from haptic_glance.base.files import write_mesh
+from haptic_glance.look.points import detect
+from haptic_glance.look.points.reasons import contributions
+from haptic_glance.mesh import MeshError, load, normalise, rotate_to_z_up
+from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.studio.jobs import Job
 from haptic_glance.studio.levels import HARD, SOFT, Levels
 from haptic_glance.studio.panels.look import for_and_against, listing, methods, views_of
 from haptic_glance.studio.session import Session
 from haptic_glance.studio.specimen import Specimen, files_at, open_content, open_file, turned
-from stages.kit import Mesh
-from stages.kit.files import write_mesh
-from stages.meshes import MeshError, load, normalise, rotate_to_z_up
-from stages.salient_points import detect
-from stages.salient_points.reasons import contributions
 
 
 def quiet(share, text):

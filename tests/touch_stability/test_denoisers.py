@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from stages.imprints import Skin
+from haptic_glance.touch import Skin
 from stages.touch_stability.denoisers import DENOISERS
 
 
@@ -24,7 +24,7 @@ def test_the_median_restores_single_dead_cells():
 @pytest.fixture(scope="module")
 def learned():
     """An autoencoder that learned from a hundred domes in a few passes."""
-    autoencoder = pytest.importorskip("stages.touch_stability.denoisers.autoencoder")
+    autoencoder = pytest.importorskip("stages.touch_stability.autoencoder")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(autoencoder, "PASSES", 40)
         return autoencoder, DENOISERS["autoencoder"](domes(100, 0), 0)

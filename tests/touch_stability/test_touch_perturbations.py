@@ -4,13 +4,11 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh
-from stages.kit.breaking_point import breaking_point, lead_left
-from stages.touch_stability import PERTURBATIONS, Touches
-from stages.touch_stability.perturbations.localisation import snap_with_blended_normals
-from stages.touch_stability.touches import rotations_about
+from haptic_glance.disturb.touches import TOUCH_PERTURBATIONS, Touches, rotations_about, snap_with_blended_normals
+from haptic_glance.mesh.mesh import Mesh
+from stages.engine.statistics import breaking_point, lead_left
 
-DISTURBING = [name for name, known in PERTURBATIONS.items() if known.apply]
+DISTURBING = [name for name, known in TOUCH_PERTURBATIONS.items() if known.apply]
 HARSH = {
     "localisation": 0.1, "sensor_turned": 45.0, "sensor_leaning": 20.0, "noise": 0.3, "dead_cells": 0.3, "gain": 0.5,
     "saturation": 0.5, "blur": 2.0, "hysteresis": 0.3, "object_turned": 45.0, "object_tilted": 45.0,
@@ -34,7 +32,7 @@ def touches(mesh):
 
 @pytest.mark.parametrize("name", DISTURBING)
 def test_the_unharmed_severity_changes_nothing(touches, name):
-    known = PERTURBATIONS[name]
+    known = TOUCH_PERTURBATIONS[name]
     perturbed = known.apply(touches, known.unharmed, 0)
     assert np.allclose(perturbed.images, touches.images, atol=1e-3)
     assert perturbed.positions is None or np.allclose(perturbed.positions, touches.positions, atol=1e-9)
@@ -42,7 +40,7 @@ def test_the_unharmed_severity_changes_nothing(touches, name):
 
 @pytest.mark.parametrize("name", DISTURBING)
 def test_a_harsh_severity_changes_imprints_or_places(touches, name):
-    perturbed = PERTURBATIONS[name].apply(touches, HARSH[name], 0)
+    perturbed = TOUCH_PERTURBATIONS[name].apply(touches, HARSH[name], 0)
     change = np.abs(perturbed.images - touches.images).mean()
     moved = 0 if perturbed.positions is None else np.abs(perturbed.positions - touches.positions).max()
     assert max(change, moved) > 0.01 and perturbed.images.shape == touches.images.shape
@@ -51,27 +49,27 @@ def test_a_harsh_severity_changes_imprints_or_places(touches, name):
 
 @pytest.mark.parametrize("name", DISTURBING)
 def test_draws_differ_where_it_is_a_matter_of_luck_and_come_again(touches, name):
-    known = PERTURBATIONS[name]
+    known = TOUCH_PERTURBATIONS[name]
     first, again, other = (known.apply(touches, HARSH[name], draw).images for draw in (0, 0, 1))
     assert np.array_equal(first, again) and np.array_equal(first, other) != known.random_draws
 
 
 @pytest.mark.parametrize("name", DISTURBING)
 def test_positions_change_just_where_the_registry_says_so(touches, name):
-    assert (PERTURBATIONS[name].apply(touches, HARSH[name], 0).positions is not None) == PERTURBATIONS[
+    assert (TOUCH_PERTURBATIONS[name].apply(touches, HARSH[name], 0).positions is not None) == TOUCH_PERTURBATIONS[
         name
     ].moves_positions
 
 
 def test_a_turn_about_the_vertical_moves_places_and_leaves_imprints(touches):
-    perturbed = PERTURBATIONS["object_turned"].apply(touches, 90.0, 0)
+    perturbed = TOUCH_PERTURBATIONS["object_turned"].apply(touches, 90.0, 0)
     upright = np.abs(touches.normals[:, 2]) < 0.95  # at the poles the array's "up" is another
     assert np.allclose(perturbed.images[upright], touches.images[upright], atol=1e-4)
     assert np.allclose(perturbed.positions, touches.positions[:, [1, 0, 2]] * [-1, 1, 1])
 
 
 def test_a_turned_object_feels_as_its_turned_mesh_does(mesh, touches):
-    perturbed = PERTURBATIONS["object_tilted"].apply(touches, 40.0, 0)
+    perturbed = TOUCH_PERTURBATIONS["object_tilted"].apply(touches, 40.0, 0)
     azimuth = touches.random("object_tilted", 0).uniform(0, 2 * np.pi)
     rotation = rotations_about(np.array([np.cos(azimuth), np.sin(azimuth), 0.0]), np.float64(40.0))
     tilted = Touches("egg", Mesh(mesh.vertices @ rotation.T, mesh.faces), np.arange(0, 600, 40), (16, 16), 0.02)
@@ -80,13 +78,13 @@ def test_a_turned_object_feels_as_its_turned_mesh_does(mesh, touches):
 
 
 def test_a_scaled_object_feels_as_its_scaled_mesh_does(mesh, touches):
-    perturbed = PERTURBATIONS["object_larger"].apply(touches, 1.5, 0)
+    perturbed = TOUCH_PERTURBATIONS["object_larger"].apply(touches, 1.5, 0)
     larger = Touches("egg", Mesh(1.5 * mesh.vertices, mesh.faces), np.arange(0, 600, 40), (16, 16), 0.02)
     assert np.allclose(perturbed.images, larger.images, atol=1e-3)
 
 
 def test_a_missed_place_is_on_the_surface_and_no_farther_than_the_error(touches):
-    perturbed = PERTURBATIONS["localisation"].apply(touches, 0.05, 0)
+    perturbed = TOUCH_PERTURBATIONS["localisation"].apply(touches, 0.05, 0)
     gaps = np.linalg.norm(perturbed.positions - touches.positions, axis=1)
     back, _ = snap_with_blended_normals(touches.mesh, perturbed.positions)
     assert np.allclose(back, perturbed.positions, atol=1e-6)
@@ -101,8 +99,8 @@ def test_normals_on_the_surface_are_those_of_the_vertices_at_the_vertices(touche
 def test_a_simplified_mesh_that_is_there_is_used(mesh):
     flat = Mesh(np.array([[-9, -9, 0], [9, -9, 0], [0, 9, 0.0]]), np.array([[0, 1, 2]]))
     found = Touches("egg", mesh, np.arange(0, 600, 40), (16, 16), 0.02, levels={"qem_40": flat})
-    assert (PERTURBATIONS["coarse_object"].apply(found, 40.0, 0).images == 0).all()
-    assert (PERTURBATIONS["coarse_object"].apply(found, 100.0, 0).images != 0).any()
+    assert (TOUCH_PERTURBATIONS["coarse_object"].apply(found, 40.0, 0).images == 0).all()
+    assert (TOUCH_PERTURBATIONS["coarse_object"].apply(found, 100.0, 0).images != 0).any()
 
 
 @pytest.mark.parametrize(
@@ -110,7 +108,7 @@ def test_a_simplified_mesh_that_is_there_is_used(mesh):
 )
 def test_severities_out_of_range_are_refused(touches, name, severity):
     with pytest.raises(ValueError, match="must"):
-        PERTURBATIONS[name].apply(touches, severity, 0)
+        TOUCH_PERTURBATIONS[name].apply(touches, severity, 0)
 
 
 def test_rotations_turn_by_the_right_hand():

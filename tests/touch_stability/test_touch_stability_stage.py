@@ -5,15 +5,15 @@ import pandas as pd
 import pytest
 import trimesh
 
-from stages.imprints import Imprints, press_many, write_imprints
-from stages.kit import Mesh
-from stages.kit.breaking_point import lead_left
-from stages.kit.files import read_json, write_arrays, write_mesh
-from stages.kit.rows import read_rows
-from stages.touch_stability import CLEAN, recognition_rows
+from haptic_glance.base.files import read_json, write_arrays, write_mesh
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.touch import press_many
+from stages.engine.rows import read_rows
+from stages.engine.statistics import lead_left
+from stages.imprints.imprints import Imprints, write_imprints
+from stages.touch_stability import Params
 from stages.touch_stability import __main__ as stage
-from stages.touch_stability.recognition import first_of_each
-from stages.touch_stability.schema import Params
+from stages.touch_stability.trial import CLEAN, first_of_each, recognition_rows
 
 SEVERITIES = {"noise": [0.05, 1.0], "object_turned": [90.0], "coarse_model": [60.0], "few_touches": [8.0]}
 SETTINGS = {

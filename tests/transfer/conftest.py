@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from stages.transfer.schema import Params
+from stages.transfer import Params
 
 SETTINGS = {
     "touches": 8, "detector": "thesis_ssim", "cells": 32, "pitch": 0.005, "coarse_cells": [8],

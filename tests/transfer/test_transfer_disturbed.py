@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from stages.transfer.disturbed import PERTURBATIONS, disturb
+from haptic_glance.disturb.imprint import PERTURBATIONS, disturb
 
 SLOPE = np.tile(np.linspace(0, 255, 32).astype(np.uint8), (3, 32, 1))
 UNHARMED = {"noise": 0.0, "blur": 0.0, "dead_cells": 0.0, "occlusion": 0.0, "rotation": 0.0, "resolution": 32.0}

@@ -5,13 +5,12 @@ import copy
 import pytest
 import torch
 
-from stages.kit.fetch import cache_folder
-from stages.networks.images import normalise
-from stages.networks.network import build, count_parameters, recalibrate
-from stages.networks.weights import PACKAGES
-from stages.transfer.hybrid import MIDDLE, HybridNet, join_senses
-from stages.transfer.hybrid_scores import in_batches
-from stages.transfer.switch import Switch, present
+from haptic_glance.base.fetch import cache_folder
+from haptic_glance.deep.hybrid import MIDDLE, HybridNet, Switch, join_senses, present
+from haptic_glance.deep.images import normalise
+from haptic_glance.deep.network import build, count_parameters, recalibrate
+from haptic_glance.deep.weights import PACKAGES
+from stages.transfer.hybrid_data import in_batches
 
 SIZE, CLASSES = 32, 3
 

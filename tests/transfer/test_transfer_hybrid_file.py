@@ -6,13 +6,21 @@ import numpy as np
 import pytest
 import torch
 
-from stages.kit.files import read_arrays, sha256, write_arrays
-from stages.networks.images import normalise
-from stages.networks.network import build, recalibrate
-from stages.transfer.hybrid import HybridNet, join_senses
-from stages.transfer.hybrid_file import load, save, state_arrays
-from stages.transfer.onnx_export import export_onnx, onnx_scores
-from stages.transfer.precision import LEVELS, dequantise, quantise, to_half
+from haptic_glance.base.files import read_arrays, sha256, write_arrays
+from haptic_glance.deep.hybrid import (
+    LEVELS,
+    HybridNet,
+    dequantise,
+    join_senses,
+    load,
+    quantise,
+    save,
+    state_arrays,
+    to_half,
+)
+from haptic_glance.deep.images import normalise
+from haptic_glance.deep.network import build, recalibrate
+from stages.transfer.export import export_onnx, onnx_scores
 
 SIZE, NAMES = 32, ["cup", "dog", "sofa"]
 
@@ -136,4 +144,4 @@ def test_onnx_says_the_same_for_any_batch_and_any_absence(hybrid, images, tmp_pa
             assert np.array_equal(np.isnan(found), expected.isnan().numpy())
             assert np.nanmax(np.abs(found - expected.numpy())) < 1e-4 * np.nanstd(hybrid(images).vision)
     text = (tmp_path / "net.onnx").read_bytes()
-    assert b"/stages/" not in text and b"site-packages" not in text
+    assert b"/stages/" not in text and b"/haptic_glance/" not in text and b"site-packages" not in text

@@ -6,12 +6,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.kit.files import read_arrays, write_arrays
-from stages.networks.network import build
-from stages.transfer import hybrid_compared, hybrid_trial
-from stages.transfer.hybrid_file import load
-from stages.transfer.middle import middle_of
+from haptic_glance.base.files import read_arrays, write_arrays
+from haptic_glance.deep.hybrid import load
+from haptic_glance.deep.network import build
+from stages.transfer import hybrid
 from stages.transfer.new_object import METRIC
+from stages.transfer.plan import middle_of
 
 pytestmark = pytest.mark.slow
 
@@ -35,10 +35,8 @@ def run(tmp_path_factory):
             write_arrays(folder / "hybrid" / "pictures" / f"{name}.npz", images=pictures, viewpoints=np.zeros((8, 2)))
             write_arrays(folder / "imprints" / f"{name}.npz", vertices=np.arange(8), imprints32=imprints)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(hybrid_trial, "build", lambda name, classes, *_: build(name, classes, "random", 0))
-        rows = hybrid_trial.process(
-            "hybrid.18-139.objects.0", folder, folder, members(), SimpleNamespace(**SETTINGS), 0
-        )
+        patch.setattr(hybrid, "build", lambda name, classes, *_: build(name, classes, "random", 0))
+        rows = hybrid.process("hybrid.18-139.objects.0", folder, folder, members(), SimpleNamespace(**SETTINGS), 0)
     return folder, rows
 
 
@@ -102,7 +100,7 @@ def test_confusion_leaves_out_a_touch_that_felt_nothing(tmp_path):
     stored = {f"{sense}_{part}": value for sense in ("vision", "touch") for part, value in
               (("scores", scores), ("true", true))}  # fmt: skip
     write_arrays(tmp_path / "predictions.npz", **stored)
-    found = hybrid_trial.confusion_rows(tmp_path / "predictions.npz", ["a", "b"])
+    found = hybrid.confusion_rows(tmp_path / "predictions.npz", ["a", "b"])
     touch = [(row["group"], row["predicted"], row["value"]) for row in found if row["sense"] == "touch"]
     assert touch == [("a", "b", 1), ("b", "a", 1)]
 
@@ -112,34 +110,34 @@ def test_an_answer_where_the_other_has_none_is_no_equality(monkeypatch, tmp_path
     sense = SimpleNamespace(images=images, labels=labels, test=np.arange(2))
     own, path = np.array([[np.nan, np.nan], [0.5, 0.25]]), tmp_path / "net.onnx"
     path.write_bytes(b"")
-    monkeypatch.setattr(hybrid_compared, "export_onnx", lambda *_: None)
-    monkeypatch.setattr(hybrid_compared, "sense_scores", lambda *_: own)
-    monkeypatch.setattr(hybrid_compared, "single_sense", lambda images, kind: images)
+    monkeypatch.setattr(hybrid, "export_onnx", lambda *_: None)
+    monkeypatch.setattr(hybrid, "sense_scores", lambda *_: own)
+    monkeypatch.setattr(hybrid, "single_sense", lambda images, kind: images)
     for found, expected in ((own + 0.125, 0.125), (np.nan_to_num(own), np.inf)):
-        monkeypatch.setattr(hybrid_compared, "onnx_scores", lambda *_, answer=found: [answer] * 2)
-        rows = list(hybrid_compared.onnx_rows(None, [sense] * 2, SimpleNamespace(size=4), path))
+        monkeypatch.setattr(hybrid, "onnx_scores", lambda *_, answer=found: [answer] * 2)
+        rows = list(hybrid.onnx_rows(None, [sense] * 2, SimpleNamespace(size=4), path))
         assert values(rows, metric="max_difference") == [expected]
 
 
 def test_summary_holds_what_the_gate_watches(run):
-    found = hybrid_trial.summary(run[1], SimpleNamespace(**SETTINGS), 0)["objects"]
+    found = hybrid.summary(run[1], SimpleNamespace(**SETTINGS), 0)["objects"]
     assert set(found) == {"accuracy_vision", "accuracy_touch", "max_difference", "size_ratio"}
     assert found["size_ratio"]["mean"] == pytest.approx(1.43, abs=0.01)
 
 
 def test_every_middle_has_a_network_for_each_split_and_repetition():
-    names = hybrid_trial.trials(SimpleNamespace(**SETTINGS), members())
+    names = hybrid.trials(SimpleNamespace(**SETTINGS), members())
     assert names == [
         "hybrid.18-139.random.0", "hybrid.18-139.random.1", "hybrid.18-139.objects.0", "hybrid.18-139.objects.1",
         "hybrid.18-147.random.0", "hybrid.18-147.random.1", "hybrid.18-147.objects.0", "hybrid.18-147.objects.1",
     ]  # fmt: skip
-    assert [hybrid_trial.HybridTrial.parse(name).name for name in names] == names
+    assert [hybrid.HybridTrial.parse(name).name for name in names] == names
 
 
 def test_no_repetitions_and_no_classes_are_no_trials():
-    assert hybrid_trial.trials(SimpleNamespace(**SETTINGS | {"splits": {"random": 0, "objects": 0}}), members()) == []
+    assert hybrid.trials(SimpleNamespace(**SETTINGS | {"splits": {"random": 0, "objects": 0}}), members()) == []
     alone = {"random": MEMBERS, "objects": {"cup": ["mug", "glass"]}}
-    assert not any("objects" in name for name in hybrid_trial.trials(SimpleNamespace(**SETTINGS), alone))
+    assert not any("objects" in name for name in hybrid.trials(SimpleNamespace(**SETTINGS), alone))
 
 
 def test_ranges_are_whole_blocks():

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh
-from stages.transfer.hybrid_damage import PICTURES, check, damage, damage_pictures
-from stages.transfer.hybrid_data import imprint_images, pair_pictures
-from stages.transfer.pictures import ELEVATIONS, picture_images, take_pictures, viewpoints
-from stages.transfer.switch import present
+from haptic_glance.deep.hybrid import present
+from haptic_glance.deep.pictures import ELEVATIONS, imprint_images, picture_images, take_pictures, viewpoints
+from haptic_glance.disturb.picture import PICTURES, check, damage, damage_pictures
+from haptic_glance.mesh.mesh import Mesh
+from stages.transfer.hybrid_data import pair_pictures
 
 
 def random(seed=0):

@@ -3,7 +3,7 @@
 import pytest
 import torch
 
-from stages.kit.fetch import FetchError
+from haptic_glance.base.fetch import FetchError
 from stages.transfer import plan as planning
 from stages.transfer.plan import Trial, check, plan
 

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from stages.classification.recorded import Grasps, read_grasps, read_pressure_images
-from stages.transfer.recorded import grasp_images, pressure_images
-from stages.transfer.recorded.grasps import COLUMNS, ROWS, electrode_images
+from stages.transfer.recorded import COLUMNS, ROWS, electrode_images, grasp_images, pressure_images
 
 DATA = Path(__file__).parents[2] / "../shared/data"
 

@@ -7,9 +7,17 @@ import pytest
 from PIL import Image
 from scipy.io import savemat
 
-from stages.transfer.recorded import Recorded, read_bigs, read_schunk, read_vitac, read_vt60
-from stages.transfer.recorded.bigs import GRID, electrode_grid
-from stages.transfer.recorded.series import colour_image, strongest_instant
+from stages.transfer.recorded import (
+    GRID,
+    Recorded,
+    colour_image,
+    electrode_grid,
+    read_bigs,
+    read_schunk,
+    read_vitac,
+    read_vt60,
+    strongest_instant,
+)
 
 CLOTHS = (11, 22, 100)
 

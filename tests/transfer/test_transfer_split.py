@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from stages.kit.mesh import Mesh
-from stages.transfer.split import by_objects, by_touches, stratified_split
+from haptic_glance.mesh.mesh import Mesh
+from stages.transfer.plan import by_objects, by_touches, stratified_split
 from stages.transfer.touches import choose_vertices
 
 LABELS = np.repeat([0, 1, 2], [40, 20, 8])

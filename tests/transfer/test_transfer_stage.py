@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh
-from stages.kit.files import sha256, write_arrays, write_mesh, write_text
-from stages.kit.rows import read_rows
+from haptic_glance.base.files import sha256, write_arrays, write_mesh, write_text
+from haptic_glance.mesh.mesh import Mesh
+from stages.engine.rows import read_rows
 from stages.transfer import __main__ as stage
 from stages.transfer import trial
 
@@ -67,7 +67,7 @@ def test_one_training_more_repeats_no_other(run, monkeypatch):
         return train_model(task, labels, ids, rate, epochs, **rest)
 
     monkeypatch.setattr(trial, "train_model", counted)
-    monkeypatch.setattr("stages.networks.training.train_model", counted)
+    monkeypatch.setattr("haptic_glance.deep.training.train_model", counted)
     short = {"epochs": 3, "search_epochs": 1, "severities": {}, "splits": {"random": 1}}
     killed = True
     with pytest.raises(KeyboardInterrupt):

@@ -5,10 +5,9 @@ import pandas as pd
 import pytest
 import torch
 
-from stages.kit.files import read_arrays, sha256, write_arrays
-from stages.transfer import tables, trial
-from stages.transfer.plan import Trial
-from stages.transfer.tables import summary, trial_row
+from haptic_glance.base.files import read_arrays, sha256, write_arrays
+from stages.transfer import plan, trial
+from stages.transfer.plan import Trial, summary, trial_row
 from stages.transfer.touches import read_touches
 
 SIZE = 32
@@ -100,7 +99,7 @@ def test_what_a_network_saw_and_computed_in_stands_in_its_rows(small, monkeypatc
     row = {"trial": FROZEN.name, "metric": "accuracy", "value": 1.0}
     found = trial_row(row, {"mobilenet_v2": None}, settings)
     assert (found["size"], found["touches"], found["precision"]) == (48, 9, "float32")
-    monkeypatch.setattr(tables, "choose_device", lambda name: torch.device("cuda"))
+    monkeypatch.setattr(plan, "choose_device", lambda name: torch.device("cuda"))
     assert trial_row(row, {"mobilenet_v2": None}, settings)["precision"] == "float16"
 
 
@@ -108,7 +107,7 @@ def test_too_little_memory_for_the_cached_features_names_the_remedy(folder, smal
     def full(*_):
         raise RuntimeError("[enforce fail] DefaultCPUAllocator: can't allocate memory: you tried to allocate 9 bytes")
 
-    monkeypatch.setattr("stages.networks.modes.torch.stack", full)
+    monkeypatch.setattr("haptic_glance.deep.modes.torch.stack", full)
     with pytest.raises(ValueError, match="too little memory: .*fewer cached copies .the stage's `batch`, `size`"):
         run(folder, small.settings())
 

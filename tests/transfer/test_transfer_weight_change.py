@@ -5,8 +5,8 @@ import copy
 import pytest
 import torch
 
-from stages.networks.network import Network, build
-from stages.transfer.weight_change import network_parts, weight_changes
+from haptic_glance.deep.network import Network, build
+from stages.transfer.export import network_parts, weight_changes
 
 
 @pytest.fixture

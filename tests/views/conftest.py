@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh
-from stages.views import gl
+from haptic_glance.look.views import gl
+from haptic_glance.mesh.mesh import Mesh
 
 
 def as_mesh(shape, colors=None):

@@ -5,10 +5,10 @@ import zlib
 import numpy as np
 import pytest
 
-from stages.kit import Mesh, Viewpoint
-from stages.kit.camera import pixels_per_unit
-from stages.views import Material, gl, render
-from stages.views.shading import GREY
+from haptic_glance.look.camera import Viewpoint, pixels_per_unit
+from haptic_glance.look.views import Material, gl, render
+from haptic_glance.look.views.shading import GREY
+from haptic_glance.mesh.mesh import Mesh
 
 SIZE = (225, 300)
 SHINY = Material(0.1, 0.5, 0.4, 20)

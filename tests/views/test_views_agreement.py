@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from stages.kit import Viewpoint
-from stages.kit.camera import pixels_per_unit
-from stages.views import gl, render, renderer
+from haptic_glance.look.camera import Viewpoint, pixels_per_unit
+from haptic_glance.look.views import gl, render, renderer
 
 SIZE = (300, 400)
 FOOTPRINT = 1 / pixels_per_unit(SIZE[0])

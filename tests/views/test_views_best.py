@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh, Viewpoint
-from stages.views import CANDIDATES, PERPENDICULAR_SETS, best_viewpoints, hidden_surface
-from stages.views.candidates import BETWEEN
+from haptic_glance.look.camera import Viewpoint
+from haptic_glance.look.views import CANDIDATES, PERPENDICULAR_SETS, best_viewpoints, hidden_surface
+from haptic_glance.look.views.best import BETWEEN
+from haptic_glance.mesh.mesh import Mesh
 
 
 def as_mesh(shape):

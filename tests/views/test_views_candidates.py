@@ -5,8 +5,8 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from stages.views import CANDIDATES, PERPENDICULAR_SETS
-from stages.views.candidates import BETWEEN, on_circle
+from haptic_glance.look.views import CANDIDATES, PERPENDICULAR_SETS
+from haptic_glance.look.views.best import BETWEEN, on_circle
 
 
 def backs(views):

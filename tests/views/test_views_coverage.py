@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh, Viewpoint
-from stages.views import CANDIDATES, cumulative_coverage, fewest_views, greedy_views, point_visibility
-from stages.views.coverage import POINTS, _fewest, _greedy, surface_points
+from haptic_glance.look.camera import Viewpoint
+from haptic_glance.look.views import CANDIDATES, cumulative_coverage, fewest_views, greedy_views, point_visibility
+from haptic_glance.look.views.best import POINTS, _fewest, _greedy, surface_points
+from haptic_glance.mesh.mesh import Mesh
 
 ABOVE, BELOW, FRONT = Viewpoint(0, 90), Viewpoint(0, -90), Viewpoint(0, 0)
 

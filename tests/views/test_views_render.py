@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from stages.kit import Mesh, Viewpoint
-from stages.kit.camera import DISTANCE, pixel_rays, pixels_per_unit, project
-from stages.views import TWELVE, render
-from stages.views.shading import GREY
+from haptic_glance.look.camera import DISTANCE, Viewpoint, pixel_rays, pixels_per_unit, project
+from haptic_glance.look.views import TWELVE, render
+from haptic_glance.look.views.shading import GREY
+from haptic_glance.mesh.mesh import Mesh
 
 SIZE = (225, 300)
 FRONT = Viewpoint(0, 0)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh
-from stages.views.shading import corner_groups
+from haptic_glance.look.views.shading import corner_groups
+from haptic_glance.mesh.mesh import Mesh
 
 
 def folded(angle):

@@ -5,13 +5,14 @@ import shutil
 import pandas as pd
 import pytest
 
-from stages.kit import Mesh
-from stages.kit.files import read_json, write_mesh
-from stages.kit.params import ParamsError
-from stages.kit.rows import read_rows
-from stages.views import FOUR, Material, read_view, render
+from haptic_glance.base.files import read_json, write_mesh
+from haptic_glance.look.views import FOUR, Material, render
+from haptic_glance.look.views.view import LAMBERT
+from haptic_glance.mesh.mesh import Mesh
+from stages.engine.rows import read_rows
+from stages.engine.settings import ParamsError
 from stages.views import __main__ as stage
-from stages.views.material import LAMBERT
+from stages.views.storage import read_view
 
 SECTION = {"viewpoints": "four", "size": [90, 120], "renderer": "raster", "background": "black",
            "compare_sets": True}  # fmt: skip

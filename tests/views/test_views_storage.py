@@ -3,9 +3,11 @@
 import numpy as np
 import pytest
 
-from stages.kit import Mesh, Viewpoint
-from stages.views import TWELVE, View, read_view, render, write_view
-from stages.views.view import DEPTH_STEP
+from haptic_glance.look.camera import Viewpoint
+from haptic_glance.look.views import TWELVE, View, render
+from haptic_glance.look.views.view import DEPTH_STEP
+from haptic_glance.mesh.mesh import Mesh
+from stages.views.storage import read_view, write_view
 
 
 def assert_equal(one, other):

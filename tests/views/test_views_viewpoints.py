@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from stages.views import FOUR, TWELVE, viewpoint_set
+from haptic_glance.look.views import FOUR, TWELVE, viewpoint_set
 
 
 def test_twelve_different_viewpoints():

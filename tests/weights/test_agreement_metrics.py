@@ -6,9 +6,8 @@ import trimesh
 from scipy import stats
 from sklearn.metrics import roc_auc_score
 
-from stages.kit import Mesh
-from stages.kit.mesh import corner_sum
-from stages.weights.agreement import METRICS, GroundTruth, agreement, auc, cc, kl, nss, sim
+from haptic_glance.look.agreement import METRICS, GroundTruth, agreement, auc, cc, kl, nss, sim
+from haptic_glance.mesh.mesh import Mesh, corner_sum
 
 
 @pytest.fixture

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh
-from stages.weights.agreement import TOLERANCES, gaze_peaks, interest_point_errors
-from stages.weights.agreement.geodesic import Geodesics
+from haptic_glance.look.agreement import TOLERANCES, gaze_peaks, interest_point_errors
+from haptic_glance.look.agreement.geodesic import Geodesics
+from haptic_glance.mesh.mesh import Mesh
 
 
 def as_mesh(shape):

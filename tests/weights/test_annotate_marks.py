@@ -7,9 +7,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.kit import Mesh
-from stages.weights.annotate import MarksChanged, MarksError, check_on_mesh, read_marks, write_marks
-from stages.weights.annotate.marks import COLUMNS
+from haptic_glance.look.marks import COLUMNS, MarksChanged, MarksError, check_on_mesh, read_marks, write_marks
+from haptic_glance.mesh.mesh import Mesh
 
 HEADER = ",".join(COLUMNS) + "\n"
 OTHER = 'zoe,2026-01-02T03:04:05Z,7,0.5,-0.25,1e-1\n"Doe, Jane",2026-01-02T05:04:05+02:00,8,0,0,0.5\n'

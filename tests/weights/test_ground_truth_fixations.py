@@ -6,15 +6,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from stages.kit import Mesh
-from stages.kit.fetch import FetchError
+from haptic_glance.base.fetch import FetchError
+from haptic_glance.mesh.mesh import Mesh
 from stages.meshes.sources import FIXATION_MAPS, SOURCES, collection_files
-from stages.weights.ground_truth import (
-    fixation_files,
-    fixations_on_vertices,
-    ground_truth_amounts,
-    published_files,
-)  # fmt: skip
+from stages.weights.gaze import fixation_files, fixations_on_vertices
+from stages.weights.ground_truth import ground_truth_amounts, published_files  # fmt: skip
 
 DENSITIES = {"300": [0.0, 1.5, 8.25], "413": [2.0, 0.0, 0.0], "599": [0.0, 0.0, 3e-3]}
 TRIANGLE = Mesh(np.eye(3), np.array([[0, 1, 2]]))

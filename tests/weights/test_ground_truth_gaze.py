@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh
-from stages.meshes.load import parse
-from stages.weights.ground_truth import gaze_on_vertices, match_rows, read_gaze
+from haptic_glance.mesh.files import parse
+from haptic_glance.mesh.mesh import Mesh
+from stages.weights.gaze import gaze_on_vertices, match_rows, read_gaze
 
 ARCHIVE = Path(__file__).parents[2] / "../shared/data/gaze.zip"
 BALL = trimesh.creation.icosphere(2)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.io import savemat
 
-from stages.meshes import MeshError
+from haptic_glance.mesh import MeshError
 from stages.weights.ground_truth import read_interest_points
 
 

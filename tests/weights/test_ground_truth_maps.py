@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh, Viewpoint
-from stages.kit.camera import project
+from haptic_glance.look.camera import Viewpoint, project
+from haptic_glance.mesh.mesh import Mesh
 from stages.weights.ground_truth import gts_map, visible_points
 
 WHOLE = np.ones((900, 1200), dtype=bool)

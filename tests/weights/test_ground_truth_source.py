@@ -10,11 +10,11 @@ import pytest
 import trimesh
 from scipy.io import savemat
 
-from stages.kit import Mesh
-from stages.kit.fetch import FetchError
-from stages.meshes import clean, normalise
-from stages.meshes.load import parse
-from stages.meshes.normalise import rotate_to_z_up
+from haptic_glance.base.fetch import FetchError
+from haptic_glance.mesh import clean, normalise
+from haptic_glance.mesh.files import parse
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.repair import rotate_to_z_up
 from stages.meshes.sources import SOURCES
 from stages.weights.ground_truth import digest, ground_truth_amounts, ground_truth_files
 

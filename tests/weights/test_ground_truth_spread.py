@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from stages.kit import Mesh
+from haptic_glance.mesh.mesh import Mesh
 from stages.weights.ground_truth import spread_on_surface
 
 

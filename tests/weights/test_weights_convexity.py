@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import trimesh
 
-from stages.kit import Mesh
-from stages.weights.convexity import convexity, nearest_convexity
+from haptic_glance.look.weights.convexity import convexity, nearest_convexity
+from haptic_glance.mesh.mesh import Mesh
 
 BALL = trimesh.creation.icosphere(3)
 CUBE = trimesh.creation.box((1, 1, 1))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.distance import cdist
 
-from stages.weights.euclidean import average, euclidean_weights, view_distances
+from haptic_glance.look.weights.attention import average, euclidean_weights, view_distances
 
 SHAPE = (30, 40)
 

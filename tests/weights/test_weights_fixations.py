@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from stages.weights import fit_fixations, fixation_density
-from stages.weights.standardise import standardise
+from haptic_glance.look.weights import fit_fixations, fixation_density
+from haptic_glance.look.weights.attention import standardise
 
 TRUE = np.array([1.2, -0.7, 0.0])
 

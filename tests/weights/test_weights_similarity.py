@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from skimage.metrics import structural_similarity
 
-from stages.weights.similarity import similarity_weights, view_similarities
+from haptic_glance.look.weights.attention import similarity_weights, view_similarities
 
 SHAPE = (60, 80)
 R, C = np.mgrid[: SHAPE[0], : SHAPE[1]]

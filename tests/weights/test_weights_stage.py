@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from stages.kit import Mesh
-from stages.kit.files import read_arrays, read_json, read_table, write_arrays, write_mesh, write_text
-from stages.kit.rows import read_rows
-from stages.views import FOUR
-from stages.weights import METHODS, read_learned_weights
+from haptic_glance.base.files import read_arrays, read_json, read_table, write_arrays, write_mesh, write_text
+from haptic_glance.look.views import FOUR
+from haptic_glance.look.weights import METHODS, read_learned_weights
+from haptic_glance.look.weights.weights import read_models
+from haptic_glance.mesh.mesh import Mesh
+from stages.engine.rows import read_rows
 from stages.weights import __main__ as stage
-from stages.weights.learned_weights import read_models
-from stages.weights.train import train_object
+from stages.weights.training import train_object
 
 SECTIONS = {
     "weights": {"method": "fixations", "svm": "object"},

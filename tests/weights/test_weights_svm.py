@@ -5,12 +5,19 @@ import pytest
 from sklearn.linear_model import LogisticRegression
 from sklearn.svm import SVC
 
-from stages.kit.files import read_arrays, write_arrays
-from stages.kit.rng import rng
-from stages.weights import svm
-from stages.weights.svm import SVMModel, balanced_rows, fit_svm, information_gains
-from stages.weights.svm_pixels import pixel_features, pixel_samples, select_far_points
-from stages.weights.svm_validation import cross_validated, grouped_validated
+from haptic_glance.base.files import read_arrays, write_arrays
+from haptic_glance.base.rng import rng
+from haptic_glance.look.weights import svm
+from haptic_glance.look.weights.svm import (
+    SVMModel,
+    balanced_rows,
+    fit_svm,
+    information_gains,
+    pixel_features,
+    pixel_samples,
+    select_far_points,
+)
+from stages.weights.training import cross_validated, grouped_validated
 
 CHANNELS = tuple("abcdef")
 SHAPE = (45, 60)

@@ -6,13 +6,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.conspicuity import CHANNELS
-from stages.glance import FEATURES
-from stages.kit.files import write_table
-from stages.weights import METHODS, LearnedWeights, read_learned_weights, weights
-from stages.weights.learn_weights import learned_weight_rows
-from stages.weights.published import DEEP, GLANCES
-from stages.weights.table import weight_table
+from haptic_glance.base.files import write_table
+from haptic_glance.look.channels import CHANNELS
+from haptic_glance.look.glance import FEATURES
+from haptic_glance.look.weights import METHODS, LearnedWeights, read_learned_weights, weights
+from haptic_glance.look.weights.weights import DEEP, GLANCES, learned_weight_rows
+from stages.weights.training import weight_table
 
 THESIS = Path(__file__).parents[2] / "data/reference/thesis/table_3_1_channel_weights.csv"
 

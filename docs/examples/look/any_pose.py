@@ -12,8 +12,8 @@ from trimesh.transformations import rotation_matrix
 
 from haptic_glance import Mesh, load, normalise, saliency
 from haptic_glance.gallery.demo import sample
-from stages.lod.look import look
-from stages.meshes import rotate_to_z_up
+from haptic_glance.lod.pictures import look
+from haptic_glance.mesh import rotate_to_z_up
 
 upright = normalise(rotate_to_z_up(load(sample())))
 turn = rotation_matrix(np.radians(70), [1, 0.3, 0])[:3, :3]

@@ -10,7 +10,7 @@ import matplotlib.pyplot as plt
 
 from haptic_glance import Viewpoint, conspicuity, load, normalise, render
 from haptic_glance.gallery.demo import sample
-from stages.meshes import rotate_to_z_up
+from haptic_glance.mesh import rotate_to_z_up
 
 mesh = normalise(rotate_to_z_up(load(sample())))
 view = render(mesh, Viewpoint(azimuth=305, elevation=22), renderer="raster")

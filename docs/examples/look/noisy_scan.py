@@ -10,10 +10,10 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from haptic_glance import find_points, load, normalise
+from haptic_glance.disturb.objects import PERTURBATIONS
 from haptic_glance.gallery.demo import sample
-from stages.meshes import rotate_to_z_up
+from haptic_glance.mesh import rotate_to_z_up
 from stages.stability.measures import TOLERANCE, repeatability
-from stages.stability.perturbations import PERTURBATIONS
 
 COUNT, SEVERITIES = 30, [0.0005, 0.001, 0.0025, 0.005]
 

@@ -11,8 +11,8 @@ import numpy as np
 
 from haptic_glance import Cloud, detect, load, normalise, surface_of
 from haptic_glance.gallery.demo import sample
-from stages.lod.look import look
-from stages.meshes import rotate_to_z_up
+from haptic_glance.lod.pictures import look
+from haptic_glance.mesh import rotate_to_z_up
 
 whole = normalise(rotate_to_z_up(load(sample())))
 rng = np.random.default_rng(0)

@@ -11,7 +11,7 @@ import matplotlib.pyplot as plt
 
 from haptic_glance import detect, load
 from haptic_glance.gallery.demo import sample
-from stages.lod.look import look
+from haptic_glance.lod.pictures import look
 
 mesh = load(sample())
 found = detect(mesh, count=10)  # saliency and points from one look

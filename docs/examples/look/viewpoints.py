@@ -10,8 +10,8 @@ import matplotlib.pyplot as plt
 
 from haptic_glance import load, normalise, render
 from haptic_glance.gallery.demo import sample
-from stages.meshes import rotate_to_z_up
-from stages.views import TWELVE, cumulative_coverage, greedy_views
+from haptic_glance.look.views import TWELVE, cumulative_coverage, greedy_views
+from haptic_glance.mesh import rotate_to_z_up
 
 mesh = normalise(rotate_to_z_up(load(sample())))
 best, shares = greedy_views(mesh, 12)

@@ -10,7 +10,7 @@ import matplotlib.pyplot as plt
 
 from haptic_glance import Placed, Scene, budget, fly, load, saliency, simplify
 from haptic_glance.gallery.demo import sample
-from stages.meshes import rotate_to_z_up
+from haptic_glance.mesh import rotate_to_z_up
 
 mesh = simplify(rotate_to_z_up(load(sample())), 3000)
 scene = Scene(

@@ -13,8 +13,8 @@ import matplotlib.pyplot as plt
 
 from haptic_glance import load, metro, normalise, saliency, simplify, to_trimesh, write_any
 from haptic_glance.gallery.demo import sample
-from stages.lod.look import coloured
-from stages.meshes import rotate_to_z_up
+from haptic_glance.lod.pictures import coloured
+from haptic_glance.mesh import rotate_to_z_up
 
 mesh = normalise(rotate_to_z_up(load(sample())))
 small = simplify(mesh, 2000, weights=saliency(mesh))

@@ -12,7 +12,7 @@ import trimesh
 from matplotlib.collections import PolyCollection
 
 from haptic_glance import Mesh, simplify
-from stages.lod import colour_error
+from haptic_glance.lod import colour_error
 
 square = trimesh.creation.box((1, 1, 0.02))
 for _ in range(5):

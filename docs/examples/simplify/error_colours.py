@@ -2,16 +2,17 @@
 Where the error is
 ==================
 
-:func:`stages.lod.vertex_errors` gives the distance of every vertex to the other surface, which makes a picture of it.
+:func:`haptic_glance.lod.vertex_errors` gives the distance of every vertex to the other surface, which makes a picture
+of it.
 """
 
 import matplotlib.pyplot as plt
 
 from haptic_glance import load, normalise, saliency, simplify
 from haptic_glance.gallery.demo import sample
-from stages.lod import vertex_errors
-from stages.lod.look import coloured, draw
-from stages.meshes import rotate_to_z_up
+from haptic_glance.lod import vertex_errors
+from haptic_glance.lod.pictures import coloured, draw
+from haptic_glance.mesh import rotate_to_z_up
 
 mesh = normalise(rotate_to_z_up(load(sample())))
 plain = vertex_errors(simplify(mesh, 600), mesh)

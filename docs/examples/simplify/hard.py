@@ -12,8 +12,8 @@ import numpy as np
 
 from haptic_glance import find_points, load, metro, normalise, saliency, simplify
 from haptic_glance.gallery.demo import sample
-from stages.lod.look import draw
-from stages.meshes import rotate_to_z_up
+from haptic_glance.lod.pictures import draw
+from haptic_glance.mesh import rotate_to_z_up
 
 mesh = normalise(rotate_to_z_up(load(sample())))
 points = find_points(mesh, count=8)

@@ -10,8 +10,8 @@ import matplotlib.pyplot as plt
 
 from haptic_glance import load, saliency, simplify
 from haptic_glance.gallery.demo import sample
-from stages.lod.look import coloured, draw
-from stages.meshes import normalise, rotate_to_z_up
+from haptic_glance.lod.pictures import coloured, draw
+from haptic_glance.mesh import normalise, rotate_to_z_up
 
 mesh = normalise(rotate_to_z_up(load(sample())))
 weights = saliency(mesh)

@@ -9,9 +9,9 @@ import matplotlib.pyplot as plt
 
 from haptic_glance import load, normalise, saliency, simplify
 from haptic_glance.gallery.demo import sample
-from stages.lod.fewest import fewest_faces
-from stages.lod.look import draw
-from stages.meshes import rotate_to_z_up
+from haptic_glance.lod.measures import fewest_faces
+from haptic_glance.lod.pictures import draw
+from haptic_glance.mesh import rotate_to_z_up
 
 mesh = normalise(rotate_to_z_up(load(sample())))
 weights = saliency(mesh)

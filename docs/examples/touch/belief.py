@@ -11,8 +11,7 @@ import numpy as np
 import trimesh
 
 from haptic_glance import Mesh, normalise, press_many
-from stages.classification import features
-from stages.exploration import Trial, explore, split_touches, stop
+from haptic_glance.know import Trial, explore, features, split_touches, stop
 
 TOUCHES, CONFIDENCE = 60, 0.95
 shapes = {

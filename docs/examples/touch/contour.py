@@ -11,7 +11,7 @@ import numpy as np
 
 from haptic_glance import find_points, follow, load, normalise
 from haptic_glance.gallery.demo import sample
-from stages.meshes import rotate_to_z_up
+from haptic_glance.mesh import rotate_to_z_up
 
 mesh = normalise(rotate_to_z_up(load(sample())))
 first, second = mesh.vertices[find_points(mesh, count=6)][[0, 3]]

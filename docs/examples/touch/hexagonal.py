@@ -11,7 +11,7 @@ import numpy as np
 import trimesh
 
 from haptic_glance import Layer, Mesh, layout_forces, sensor_axes
-from stages.imprints import Layout
+from haptic_glance.touch import Layout
 
 PITCH = 0.002  # metres between neighbours
 rows, columns = np.mgrid[-6:7, -6:7]

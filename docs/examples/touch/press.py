@@ -11,8 +11,8 @@ import numpy as np
 
 from haptic_glance import detect, load, normalise, press_many
 from haptic_glance.gallery.demo import sample
-from stages.lod.look import look
-from stages.meshes import rotate_to_z_up
+from haptic_glance.lod.pictures import look
+from haptic_glance.mesh import rotate_to_z_up
 
 mesh = normalise(rotate_to_z_up(load(sample())))
 found = detect(mesh, count=6)

@@ -10,8 +10,8 @@ import matplotlib.pyplot as plt
 
 from haptic_glance import find_points, load, normalise, press_many
 from haptic_glance.gallery.demo import sample
-from stages.imprints import Skin
-from stages.meshes import rotate_to_z_up
+from haptic_glance.mesh import rotate_to_z_up
+from haptic_glance.touch import Skin
 
 mesh = normalise(rotate_to_z_up(load(sample())))
 images = press_many(mesh, find_points(mesh, count=1), cells=(32, 32), pitch=0.005)

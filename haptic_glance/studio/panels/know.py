@@ -3,11 +3,11 @@
 import numpy as np
 import viser
 
-from haptic_glance.knowing import Library, place_at
-from haptic_glance.knowing.library import CELLS, PITCH
-from stages.imprints import sensor_axes
-from stages.imprints.user_mesh import Places
-from stages.kit import Mesh
+from haptic_glance.know import Library, place_at
+from haptic_glance.know.library import CELLS, PITCH
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.touch import sensor_axes
+from haptic_glance.touch.places import Places
 
 from ..drawing import draw_cells
 from ..feeling import Felt, feel_by_rays

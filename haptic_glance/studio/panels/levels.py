@@ -5,8 +5,8 @@ import time
 import numpy as np
 import viser
 
-from stages.lod.look import viridis, vivid
-from stages.saliency import as_csv
+from haptic_glance.cli.saliency import as_csv
+from haptic_glance.lod.pictures import viridis, vivid
 
 from ..jobs import Report
 from ..levels import HARD, SOFT, Level, Levels

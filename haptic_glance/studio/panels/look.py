@@ -5,15 +5,15 @@ from collections.abc import Sequence
 import numpy as np
 import viser
 
-from stages.kit import Mesh
-from stages.lod.look import coloured
-from stages.saliency import as_csv
-from stages.salient_points import METHODS
-from stages.salient_points.methods import split_runnable
-from stages.salient_points.reasons import contributions, reasons
-from stages.views import TWELVE, render
-from stages.weights import LearnedWeights
-from stages.weights.published import GLANCES
+from haptic_glance.cli.saliency import as_csv
+from haptic_glance.lod.pictures import coloured
+from haptic_glance.look.points import METHODS
+from haptic_glance.look.points.methods import split_runnable
+from haptic_glance.look.points.reasons import contributions, reasons
+from haptic_glance.look.views import TWELVE, render
+from haptic_glance.look.weights import LearnedWeights
+from haptic_glance.look.weights.weights import GLANCES
+from haptic_glance.mesh.mesh import Mesh
 
 from ..files import as_bytes
 from ..jobs import Report

@@ -5,7 +5,7 @@ import time
 import numpy as np
 import viser
 
-from stages.imprints.surface import as_surface
+from haptic_glance.touch.surface import as_surface
 
 from ..drawing import draw_array, draw_line
 from ..feeling import Sensor, feel_by_rays

@@ -3,10 +3,10 @@
 import numpy as np
 import viser
 
-from haptic_glance.knowing import place_at
-from stages.imprints import sensor_axes
-from stages.imprints.surface import as_surface
-from stages.imprints.user_mesh import Places
+from haptic_glance.know import place_at
+from haptic_glance.touch import sensor_axes
+from haptic_glance.touch.places import Places
+from haptic_glance.touch.surface import as_surface
 
 from ..drawing import draw_array
 from ..feeling import feel_by_rays

@@ -3,12 +3,11 @@
 import numpy as np
 import viser
 
-from haptic_glance.knowing import place_at
-from stages.imprints.frame import mean_vertex_normals
-from stages.imprints.surface import as_surface
-from stages.imprints.user_mesh import Places
-from stages.imprints.warm_up import warm_up
-from stages.kit import Mesh
+from haptic_glance.know import place_at
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.touch.places import Places
+from haptic_glance.touch.surface import as_surface, mean_vertex_normals
+from haptic_glance.touch.warm_up import warm_up
 
 from ..drawing import draw_array
 from ..feeling import CONTOURS, NEWTONS, SENSORS, Sensor, feel

@@ -1,13 +1,13 @@
 """Where people look: models of attention against human gaze and marks (T3.1, T3.2)."""
 
-from . import agreement, annotations, charts, claims, learned, maps, nested, views_seen
+from . import claims, learned, maps
 
 TABLES = {
-    "attention_gaze": agreement.against_gaze,
-    "attention_nested": nested.build,
-    "attention_clouds": agreement.against_clouds,
-    "attention_marks": agreement.against_marks,
-    "annotations": annotations.build,
+    "attention_gaze": claims.against_gaze,
+    "attention_nested": learned.nested,
+    "attention_clouds": claims.against_clouds,
+    "attention_marks": claims.against_marks,
+    "annotations": learned.annotations,
     "table_3_1": learned.table_3_1,
     "section_3_2_3": learned.section_3_2_3,
 }
@@ -17,7 +17,7 @@ FIGURES = {
     "figure_3_12": maps.figure_3_12,
     "figure_3_13": maps.figure_3_13,
     "saliency": maps.saliency,
-    "views_seen": views_seen.build,
+    "views_seen": maps.build,
 }
-CHARTS = {"attention": charts.by_method}
+CHARTS = {"attention": maps.by_method}
 CLAIMS = claims.CLAIMS

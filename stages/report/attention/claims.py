@@ -1,13 +1,90 @@
-"""Claims of chapter 3 on where people look: weights, SVMs and models against human gaze."""
+"""Claims about attention, and tables of agreement.
 
+How well methods agree with people: one row per method and metric, over objects that have ground truth.
+
+Claims of chapter 3 on where people look: weights, SVMs and models against human gaze.
+
+Every method against where people looked, and against the marks: two tables, and what their numbers say in words.
+"""
+
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from functools import partial
 
-from stages.bench import PER_OBJECT
-from stages.kit.breaking_point import BROKEN
-from stages.report.claims import POINTS, Claim, Pick, highest_of, reading
-from stages.report.results import COLOURED, GAZED, MENDED_3_2, ON_BLACK, SECTION_3_2
+import pandas as pd
 
-from .rows import ANY_POSE, CLASSICAL, NO_RIVALS, OURS, SAME
+from stages.bench import PER_OBJECT, has_seen
+from stages.engine.statistics import BROKEN, interval
+from stages.report.claims import POINTS, Claim, Pick, highest_of, reading
+from stages.report.claims_page import shared_notes
+from stages.report.drawing import label
+from stages.report.items import Table
+from stages.report.pareto import attention_seconds
+from stages.report.results import COLOURED, GAZED, MENDED_3_2, ON_BLACK, SECTION_3_2, NotRun, Results, some
+from stages.report.tables import Ranking, number, records, signed, with_interval
+
+OURS, ANY_POSE, HUMAN = "glance", "glance_any_pose", "human"
+CLASSICAL, THESIS = "itti", "VisAttAll"
+NO_RIVALS = (OURS, ANY_POSE, HUMAN)  # our models, and the ceiling
+BLACK = "-black"  # behind the name of a method: with the black background filtered together with the object
+SAME = ("VisAtt",)  # the classical model under the thesis's name
+NAMES = {"random": "random points", "svm": "thesis, SVM"}  # elsewhere blind touch, and a classifier
+ALONE = {"nss": "NSS", "auc": "AUC"}  # shown with their interval, and in which ours is compared with each other method
+MEAN, GAIN = ["mean", "low", "high"], ["gain", "gain_low", "gain_high"]  # columns: of a method, and over another
+
+
+def method_text(method: str) -> str:
+    """A method's name as a person says it, with a star where it has seen the object."""
+    if method.endswith(BLACK):
+        return f"{label(method.removesuffix(BLACK))}, black background"
+    name = NAMES.get(method) or label(method)
+    return f"{name} *" if has_seen(method) else name
+
+
+def scores(rows: pd.DataFrame, metric: str) -> pd.DataFrame:
+    """Frame objects x methods of one metric; NotRun where it was not measured."""
+    found = rows[rows["metric"] == metric].dropna(subset=["value"])
+    some(found, f"no {metric}: no object has ground truth", "salient_points", runnable=False)
+    return found[~found["method"].isin(SAME)].pivot_table(index="item", columns="method", values="value", sort=False)
+
+
+def difference(rows: pd.DataFrame, metric: str, first: str, second: str) -> pd.Series:
+    """First minus second, an object; NotRun where either was not judged."""
+    table = scores(rows, metric)
+    missing = [method for method in (first, second) if method not in table]
+    if missing:
+        raise NotRun(f"{' and '.join(missing)} not judged on objects with ground truth", "salient_points", False)
+    return pd.Series(table[first] - table[second])
+
+
+def rivals(rows: pd.DataFrame, metric: str) -> list[str]:
+    """The methods that ours are to beat, best first: all but these, the ceiling, and those that peeked."""
+    means = scores(rows, metric).mean().sort_values(ascending=False)
+    return [method for method in map(str, means.index) if method not in NO_RIVALS and not has_seen(method)]
+
+
+def gain(table: pd.DataFrame, first: str, second: str) -> dict[str, float]:
+    """GAIN of one method over another, paired over the objects of `scores`; {} where either is absent."""
+    if first == second or first not in table or second not in table:
+        return {}
+    return dict(zip(GAIN, interval(table[first] - table[second]), strict=True))
+
+
+def agreement(rows: pd.DataFrame, metrics: Sequence[str]) -> pd.DataFrame:
+    """Tidy frame: method, has_seen, metric, objects, MEAN and, for ALONE, GAIN: of ours over the method.
+
+    95 % intervals over the objects. In order of NSS, the human ceiling first.
+    """
+    tables, found = {metric: scores(rows, metric) for metric in metrics}, []
+    order = map(str, tables["nss"].mean().sort_values(ascending=False).index)
+    for method in sorted(order, key=lambda name: name != HUMAN):
+        for metric, table in tables.items():
+            if method in table:
+                line = {"method": method, "has_seen": has_seen(method), "metric": metric}
+                line |= {"objects": table[method].count(), **dict(zip(MEAN, interval(table[method]), strict=True))}
+                found.append(line | (gain(table, OURS, method) if metric in ALONE and method != HUMAN else {}))
+    return pd.DataFrame(found)
+
 
 BEST_RIVAL = highest_of(but=(*NO_RIVALS, *SAME, *PER_OBJECT, "*_seen"))
 ONE_HUE = 0.98  # the least correlation of DKL with intensity on four household objects, each in one colour of a palette
@@ -94,3 +171,121 @@ CLAIMS = [
     closer_to_gaze("any_pose_over_best_gaze", "ours", "Our glance without an up axis predicts where people look better "
                    "than the best rival of the glance.", ANY_POSE, BEST_RIVAL),
 ]  # fmt: skip
+
+
+COUNTED = "points_strong"
+MEANS = {
+    "cc": "CC", "sim": "SIM", "kl": "KL", COUNTED: "points", "fne@0.05": "FNE", "fpe@0.05": "FPE", "wme@0.05": "WME",
+}  # fmt: skip
+NAMED = 5  # methods that a sentence names at most
+PEEKED = {"guided_ssim": "guided_ssim_seen", "guided_ed": "guided_ed_seen", "svm": "svm_object"}
+FILTERED = (CLASSICAL, THESIS, "thesis_ssim", "thesis_ed", "guided_ssim", "guided_ed")  # the thesis's, on black too
+MARKED = "household"  # the data set whose marks come with the project
+
+
+def against_gaze(results: Results) -> Table:
+    """The meshes with human gaze, each left out of the learning."""
+    rows, black = results.rows("salient_points", "gaze"), None
+    with suppress(NotRun):
+        black = results.rows("salient_points", ON_BLACK, method=list(FILTERED))
+        black = black.assign(method=black["method"] + BLACK)
+    return _table(results, rows, list(MEANS), {"count": rows["item"].nunique()}, black)
+
+
+def against_clouds(results: Results) -> Table:
+    """The point clouds with human gaze, each left out of the learning; how their surfaces are made costs apart."""
+    rows = results.rows("salient_points", "gaze_clouds")
+    return _table(results, rows, list(MEANS), {"count": rows["item"].nunique()})
+
+
+def against_marks(results: Results) -> Table:
+    """The marks on this run's own objects."""
+    rows = results.measured("salient_points")
+    dataset, count = rows["dataset"].iloc[0], rows.loc[rows["metric"] == "nss", "item"].nunique()
+    other = f"The truth is what comes with the data set {dataset}."
+    truth = shared_notes(__package__, "marks") if dataset == MARKED else other
+    return _table(results, rows, [COUNTED, "fne@0.05", "fpe@0.05"], {"count": count, "truth": truth})
+
+
+def _table(
+    results: Results, rows: pd.DataFrame, beside: Sequence[str], words: dict, more: pd.DataFrame | None = None
+) -> Table:
+    """The judged rows, with those of MEANS that stand beside NSS and AUC; words: without those that the numbers say.
+
+    more: rows that stand in the table too, of which nothing is said. The seconds are those from the pictures to the
+    points; of a set without rows of pictures or maps there are none.
+    """
+    cost: dict[str, float] = {}
+    with suppress(NotRun):
+        cost = attention_seconds(results, rows["dataset"].iloc[0])
+    shown = rows if more is None else pd.concat([rows, more])
+    frame = agreement(shown, [*ALONE, *beside])
+    names, lines = list(ALONE.values()), {}
+    columns = ["method", *names, *(f"ours − it, {name}" for name in names), *map(MEANS.get, beside)]
+    columns += ["seconds"] if cost else []
+    for row in records(frame.reindex(columns=frame.columns.union(GAIN))):
+        line = lines.setdefault(row.method, dict.fromkeys(columns, "–"))
+        line |= {"method": method_text(row.method), "seconds": number(cost[row.method]) if row.method in cost else "–"}
+        if row.metric in ALONE:
+            line[ALONE[row.metric]] = with_interval(row.mean, row.low, row.high, places=2)
+        elif row.mean == row.mean:
+            line[MEANS[row.metric]] = f"{row.mean:.{1 if row.metric == COUNTED else 2}f}"
+        if row.gain == row.gain:
+            line[f"ours − it, {ALONE[row.metric]}"] = signed(row.gain, row.gain_low, row.gain_high)
+    said = "\n".join([*_ours_and_rivals(rows), *_learned(rows), *_peeking(rows)])
+    words = words | {"said": said, "reading": shared_notes(__package__, "reading")}
+    found = pd.DataFrame(lines.values())
+    truth_and_peeking = [method_text(name) for name in lines if name == HUMAN or has_seen(name)]
+    answer = [name for name in columns if name not in MEANS.values() or name == MEANS[COUNTED]]
+    return Table(frame, found, words, Ranking("NSS", exempt=truth_and_peeking), answer)
+
+
+def _ours_and_rivals(rows: pd.DataFrame) -> Iterator[str]:
+    """Where ours stands, and which rivals it does not beat beyond chance."""
+    table = scores(rows, "nss")
+    if OURS not in table:
+        return
+    first = f"{label(OURS)}: NSS {with_interval(*interval(table[OURS]), places=2)}"
+    if HUMAN in table:
+        first += f"; {label(HUMAN)}, spread as smoothly, has {table[HUMAN].mean():.2f}"
+    yield f"{first}."
+    best = next(iter(rivals(rows, "nss")), None)
+    if best is None:
+        return
+    gains = [f"{name} {signed(*interval(difference(rows, metric, OURS, best)))}" for metric, name in ALONE.items()]
+    yield f"The best other method that has not seen the object is {label(best)}: ours − it {_and(gains)}."
+    for metric, name in ALONE.items():
+        others = rivals(rows, metric)
+        left = [label(other) for other in others if not interval(difference(rows, metric, OURS, other))[1] > 0]
+        named = left if len(left) <= NAMED else [*left[:NAMED], f"{len(left) - NAMED} more"]
+        yield (
+            f"In {name} ours is higher than {len(others) - len(left)} of the {len(others)} others that have not seen "
+            "the object, with an interval that excludes zero" + (f"; not than {_and(named)}." if left else ".")
+        )
+
+
+def _learned(rows: pd.DataFrame) -> Iterator[str]:
+    """What more channels with equal weights are worth over the classical model, and learned weights over equal ones."""
+    base = "equal" if "equal" in scores(rows, "nss") else THESIS
+    for pair in ((THESIS, CLASSICAL), ("equal", CLASSICAL), ("guided_ssim", base), ("guided_ed", base)):
+        with suppress(NotRun):
+            gains = []
+            for metric, name in ALONE.items():
+                mean, low, high = interval(difference(rows, metric, *pair))
+                word = "higher" if low > 0 else "lower" if high < 0 else "not told apart"
+                gains.append(f"{name} {signed(mean, low, high, places=3)} ({word})")
+            yield f"{' − '.join(map(label, pair))}: {_and(gains)}."
+
+
+def _peeking(rows: pd.DataFrame) -> Iterator[str]:
+    """What the same method gains from having seen the object: the leak of the thesis's way of testing."""
+    found = []
+    for clean, seen in PEEKED.items():
+        with suppress(NotRun):
+            found.append(f"{label(clean)} {signed(*interval(difference(rows, 'nss', seen, clean)))}")
+    if found:
+        yield f"* has seen the object: learned from its own truth too. What that adds in NSS: {'; '.join(found)}."
+
+
+def _and(parts: list[str]) -> str:
+    return " and ".join([", ".join(parts[:-1]), parts[-1]]) if len(parts) > 1 else "".join(parts)

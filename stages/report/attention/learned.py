@@ -1,22 +1,40 @@
-"""What was learned from the ground truth, beside the thesis: weights of channels (T table 3.1) and SVMs (T3.2.3)."""
+"""Learned weights, nested fits and annotations.
 
+What was learned from the ground truth, beside the thesis: weights of channels (T table 3.1) and SVMs (T3.2.3).
+
+What the glance owes to features and a ridge that were chosen on the objects that they are judged on.
+
+How well the marks in data/annotations agree with each other, and with human gaze.
+"""
+
+from collections import Counter
+from collections.abc import Sequence
 from contextlib import suppress
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
-from stages.kit.stats import interval
+from stages.engine.statistics import interval
 from stages.report.claims import Claim
-from stages.report.differences import statistic
-from stages.report.grid import everywhere, grouped, over_items, percent, records
+from stages.report.drawing import label
+from stages.report.effects import statistic
 from stages.report.items import Table
-from stages.report.markdown import number, with_interval
-from stages.report.ranking import Ranking
 from stages.report.results import COLOURED, MENDED_3_2, SECTION_3_2, NotRun, Results, some
-from stages.report.style import label
+from stages.report.tables import (
+    Ranking,
+    everywhere,
+    grouped,
+    number,
+    over_items,
+    percent,
+    records,
+    signed,
+    with_interval,
+)
 from stages.report.words import dataset_text
 
-from .rows import MEAN
+from .claims import ALONE, GAIN, MEAN, OURS, gain
 
 KINDS = {"guided_ssim": "SSIM", "guided_ed": "1 − ED", "guided_ssim_object": "SSIM, object"}
 PRINTED = {"ssim": "guided_ssim", "one_minus_ed": "guided_ed"}  # columns of the thesis's weights
@@ -155,3 +173,86 @@ def _shown(row: Any) -> dict[str, str | int]:
         "left out for testing": VALIDATION[row.validation], "ours, %": ours if row.low == row.low else deviations[0],
         "background alone, %": percent(row.background_alone, 1), "thesis, %": deviations[1], "number": row.svms,
     }  # fmt: skip
+
+
+ONCE, NESTED = "once", "nested"
+
+
+def nested(results: Results) -> Table:
+    """NSS and AUC of the glance with its choices made once, and made anew without the object; the difference paired."""
+    rows = results.rows("attention_checks", "gaze")
+    values = {way: rows[rows["method"] == f"{OURS}_{way}"] for way in (ONCE, NESTED)}
+    some(values[NESTED], "no glance with nested choices", "attention_checks", runnable=False)
+    tables = {way: own.pivot_table(index="item", columns="metric", values="value") for way, own in values.items()}
+    found, line = [], {"model": label(OURS)}
+    for metric, words in ALONE.items():
+        once, nested = (tables[way][metric] for way in (ONCE, NESTED))
+        numbers = {"once": interval(once), "nested": interval(nested), "once_over_nested": interval(once - nested)}
+        found += [
+            {"model": OURS, "metric": metric, "what": what, "objects": len(once)}
+            | dict(zip(("mean", "low", "high"), ends, strict=True))
+            for what, ends in numbers.items()
+        ]
+        line[f"chosen once, {words}"] = with_interval(*numbers["once"], places=3)
+        line[f"without the object, {words}"] = with_interval(*numbers["nested"], places=3)
+        line[f"flattered by, {words}"] = signed(*numbers["once_over_nested"], places=3)
+    features = tables[NESTED]["features"]
+    line["features"] = f"{features.min():.0f} to {features.max():.0f} (once: {tables[ONCE]['features'].max():.0f})"
+    line["ridge"] = number(tables[NESTED]["ridge"].median())
+    line["in every choice"] = ", ".join(_always(values[NESTED]))
+    return Table(pd.DataFrame(found), pd.DataFrame([line]), {"count": len(features)})
+
+
+def _always(rows: pd.DataFrame) -> list[str]:
+    """The features that are chosen for each object."""
+    chosen = rows[rows["metric"] == "features"]["chosen"].str.split(", ")
+    counts = Counter(name for names in chosen for name in names)
+    return [label(name) for name, count in counts.items() if count == len(chosen)]
+
+
+METRICS = {"found": "marks found again by another pass, %", "nss": "NSS against gaze", "auc": "AUC against gaze"}
+BESIDE = {"random": "as many random points", "height": "height alone"}
+
+
+def annotations(results: Results) -> Table:
+    """Agreement of the passes beside random points, and with gaze beside height; intervals over the objects."""
+    sets = results.datasets("annotations") or [None]  # without any, the reader says what is missing
+    rows = pd.concat([results.rows("annotations", dataset) for dataset in sets])
+    found, shown = [], []
+    for (dataset, metric), group in grouped(rows, ["dataset", "metric"]):
+        table = group.pivot(index="item", columns="method", values="value")
+        other = "random" if metric == "found" else "height"
+        cells = {
+            name: dict(zip(MEAN, interval(table[name]), strict=True)) | gain(table, name, other)
+            for name in map(str, table)
+        }
+        about = {"dataset": dataset, "metric": metric}
+        found += [about | {"method": name, "objects": len(table)} | cell for name, cell in cells.items()]
+        shown.append({
+            "objects": f"{len(table)} {'household objects' if dataset == 'household' else dataset_text(dataset)}",
+            "measure": METRICS[metric],
+            "three passes": _text(cells.get("passes", {}), metric),
+            "one pass alone": _text(cells["one"], metric) if "one" in cells else "–",
+            "beside": BESIDE[other],
+            "gets": _text(cells.get(other, {}), metric),
+            "passes − that": _text(cells.get("passes", {}), metric, GAIN),
+        })  # fmt: skip
+    # no ranking: a row is a question, not a method
+    return Table(pd.DataFrame(found), pd.DataFrame(shown), {"extremes": _extremes(rows)})
+
+
+def _text(cell: dict[str, float], metric: str, names: Sequence[str] = MEAN) -> str:
+    scale, places = (100, 0) if metric == "found" else (1, 2)
+    return with_interval(*(cell.get(name, np.nan) for name in names), scale=scale, places=places)
+
+
+def _extremes(rows: pd.DataFrame) -> str:
+    """Where the passes agree least, and most; nothing where they were not compared."""
+    passes = rows[(rows["metric"] == "found") & (rows["method"] == "passes")].set_index("item")["value"]
+    if passes.empty:
+        return ""
+    low = str(passes.idxmin())
+    return (
+        f"The passes agree least on {low} ({100 * passes[low]:.0f} %); on {(passes == 1).sum()} of {len(passes)} "
+        "objects each mark was found again by every other pass."
+    )

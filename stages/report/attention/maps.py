@@ -1,19 +1,44 @@
-"""Maps of a view beside its picture (T figures 3.3, 3.10, 3.13), and meshes coloured by saliency (T figure 3.12)."""
+"""Maps of attention and views.
+
+Maps of a view beside its picture (T figures 3.3, 3.10, 3.13), and meshes coloured by saliency (T figure 3.12).
+
+How many views see an object: the share of the visible surface against the number of views (T3.2.4).
+
+Agreement with gaze against the seconds of looking, of every method.
+"""
 
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 
 import numpy as np
 from matplotlib.axes import Axes
 
-from stages.conspicuity import CHANNELS
-from stages.kit import Mesh, Viewpoint
-from stages.report.drawing import VIEWPOINT, colour_bar, name_panels, picture, show, square_grid, vivid
+from haptic_glance.look.camera import Viewpoint
+from haptic_glance.look.channels import CHANNELS
+from haptic_glance.look.points import COMBINATIONS, fuse
+from haptic_glance.look.weights.svm import SALIENT_LEVEL
+from haptic_glance.mesh.mesh import Mesh
+from stages.report.drawing import (
+    CYCLE,
+    GREY,
+    MAP,
+    MARKERS,
+    VIEWPOINT,
+    colour_bar,
+    label,
+    name_panels,
+    picture,
+    plt,
+    show,
+    square_grid,
+    vivid,
+)
 from stages.report.items import Figure
-from stages.report.results import Results, some
-from stages.report.style import MAP, label, plt
-from stages.salient_points import COMBINATIONS, fuse
+from stages.report.pareto import attention_seconds, pareto_chart
+from stages.report.results import NotRun, Results, some
 from stages.weights.ground_truth import gts_map, visible_points
-from stages.weights.svm_pixels import SALIENT_LEVEL
+
+from .claims import CLASSICAL, HUMAN, agreement, method_text, scores
 
 COLOUR = ("color", "dkl")  # the thesis's RGB and DKL features
 KEPT = 0.3  # of the object's pixels: the thesis retains 30 % of the highest values (T3.1.1)
@@ -170,3 +195,50 @@ def _window(mask: np.ndarray, square: bool = False) -> tuple[slice, slice]:
         starts = np.clip((starts + stops - side) // 2, 0, np.maximum(np.array(mask.shape) - side, 0))
         stops = starts + side
     return slice(starts[0], stops[0]), slice(starts[1], stops[1])
+
+
+NAMES = {"greedy": "chosen one by one", "twelve": "the twelve of T figure 3.2", "four": "four all round"}
+ENOUGH = 99  # per cent of the visible surface
+
+
+def build(results: Results) -> Figure:
+    """The median over the objects and the quartiles, a line a set of views."""
+    rows = results.measured("views", metric="seen_share")
+    sets = {method: name for method, name in NAMES.items() if method in set(rows["method"])}
+    some(sets, f"none of {', '.join(NAMES)} among the sets of views", "views", runnable=False)
+    figure, axes = plt.subplots(figsize=(7.2, 4.2))
+    for (method, name), tint, mark in zip(sets.items(), CYCLE, MARKERS, strict=False):
+        table = rows[rows["method"] == method].pivot(index="item", columns="views", values="value")
+        # A greedy choice ends where nothing is left to see: what it saw stays seen.
+        low, middle, high = (100 * table.ffill(axis=1)).quantile([0.25, 0.5, 0.75]).to_numpy()
+        axes.fill_between(table.columns, low, high, color=tint, alpha=0.16, lw=0)
+        axes.plot(table.columns, middle, mark, ls="-", color=tint, mec="white", ms=6.5, label=name)
+    axes.axhline(ENOUGH, color=GREY, lw=0.9, ls=":")
+    axes.set(xlabel="number of views", ylabel="share of the visible surface, %", ylim=(None, 100.5))
+    axes.set_xticks(range(1, int(max(rows["views"])) + 1))
+    axes.grid(axis="y")
+    axes.set_title("What each further view adds", pad=12)
+    axes.legend(loc="lower right")
+    fewest = ""
+    with suppress(NotRun):
+        counts = results.measured("views", metric="fewest_views")["value"]
+        fewest = f"The fewest candidates that see {ENOUGH} %: {counts.median():g} for the median object, "
+        fewest += f"{counts.min():.0f} to {counts.max():.0f}."
+    words = {"sets": ", ".join(sets.values()), "objects": rows["item"].nunique()}
+    return Figure(figure, words | {"enough": ENOUGH, "fewest": fewest})
+
+
+def by_method(results: Results) -> Figure:
+    """NSS on gaze against seconds, for every method."""
+    rows = results.rows("salient_points", "gaze")
+    frame = agreement(rows, ["nss"])
+    frame = frame.loc[~frame["has_seen"] & (frame["method"] != HUMAN)]
+    seconds = frame["method"].map(attention_seconds(results, "gaze"))
+    frame = frame.assign(seconds=seconds, name=frame["method"].map(method_text)).dropna(subset=["seconds"])
+    title, unit = "Predicting where people look", label(CLASSICAL)
+    chart = pareto_chart(
+        frame, "mean", title=title, reference=unit, quality_label="NSS on human gaze",
+        clock=results.clock("salient_points", "gaze"), units=scores(rows, "nss").rename(columns=method_text),
+    )  # fmt: skip
+    chart.words["objects"] = frame["objects"].max()
+    return chart

@@ -1,17 +1,25 @@
-"""The front from mesh to named object: a table of the choices that were confirmed, and a chart of all aims but two."""
+"""The settings on the front, confirmed, and the defaults that follow.
+
+The front from mesh to named object: a table of the choices that were confirmed, and a chart of all aims but two.
+
+What the choice at each stage costs: from the smallest choice, each other option alone.
+
+Rows of the search for the front: of shapes by unseen regions, and of classes by unseen objects.
+"""
+
+from typing import Any
 
 import pandas as pd
 from matplotlib.axes import Axes
 
-from stages.kit.timing import CLOCK
-from stages.report.grid import records
+from haptic_glance.base.timing import CLOCK
+from haptic_glance.know.split import Split
+from stages.engine.statistics import interval
+from stages.report.drawing import CYCLE, GREY, PALE, label, plain_logarithm, plt
 from stages.report.items import Figure, Table
-from stages.report.markdown import with_interval
 from stages.report.pareto import NOISE, ON, placed
-from stages.report.results import Results
-from stages.report.style import CYCLE, GREY, PALE, plain_logarithm, plt
-
-from .rows import CONFIRMED, SEARCH, SPLITS, brief, effect, front_rows, named, of_rung
+from stages.report.results import Results, some
+from stages.report.tables import everywhere, number, records, signed, with_interval, within
 
 PANELS = {"regions": "one of six shapes, by unseen regions", "objects": "the class of an unseen object"}
 SIX = 6  # shapes of one question
@@ -19,7 +27,7 @@ SMALLEST, DEFAULT = "the smallest within two points", "the project's default"
 IN_SEARCH = "the smallest within two points of the search's best"  # in the chart, which shows other objects, too
 
 
-def table(results: Results) -> Table:
+def front_table(results: Results) -> Table:
     """The confirmed choices, the quickest first, beside what the search found of them."""
     rows = front_rows(results)
     frame = of_rung(rows, CONFIRMED).sort_values("seconds", ignore_index=True)
@@ -103,7 +111,7 @@ def chart(results: Results) -> Figure:
     handles, names = panels[0].get_legend_handles_labels()
     drawing.legend(handles, names, loc="outside lower center", ncol=3, fontsize=9)
     frame = pd.concat([searched.assign(rung=SEARCH), confirmed.assign(rung=CONFIRMED)], ignore_index=True)
-    return Figure(drawing, _words(rows, table(results).frame), frame)
+    return Figure(drawing, _words(rows, front_table(results).frame), frame)
 
 
 def _draw(axes: Axes, searched: pd.DataFrame, confirmed: pd.DataFrame, name: str, marked: dict) -> None:
@@ -133,3 +141,95 @@ def _draw(axes: Axes, searched: pd.DataFrame, confirmed: pd.DataFrame, name: str
     axes.set(xscale="log", ylim=(0, 102))
     axes.grid()
     plain_logarithm(axes.xaxis, (1.0, 3.0))
+
+
+STAGES = {
+    "method": "who chooses the places", "viewpoints": "viewpoints", "image_rows": "rows of an image",
+    "points": "places", "cells": "sensels a side", "level": "faces of the model", "touches": "touches of an answer",
+    "classifier": "classifier",
+}  # fmt: skip
+
+
+def changed(results: Results) -> Table:
+    """One row for each option: what changes, the effect on both accuracies with its interval, and the seconds."""
+    rows = front_rows(results)
+    base = rows[(rows["rung"] == CONFIRMED) & (rows["number"] == named(rows, "smallest"))]
+    first, lines = base.iloc[0], []
+    for _, own in rows[rows["rung"] == CHANGED].groupby("number"):
+        stage = next(name for name in CHOICES if not _same(own.iloc[0][name], first[name]))
+        line: dict[str, Any] = {"stage": stage, "option": own.iloc[0][stage], "from": first[stage]}
+        for split, name in SPLITS.items():
+            line |= zip((name, f"{name}_low", f"{name}_high"), effect(base, own, split), strict=True)
+        line["times"] = own["seconds"].mean() / base["seconds"].mean()
+        lines.append(line | {"seconds": own["seconds"].mean(), "faces": own["faces"].mean()})
+    frame = pd.DataFrame(lines).sort_values("stage", key=lambda own: own.map(CHOICES.index), kind="stable")
+    return Table(frame, _shown(frame), {"words": words(first), "seconds": brief(1000 * base["seconds"].mean())})
+
+
+def _same(one, other):
+    return one == other or (pd.isna(one) and pd.isna(other))
+
+
+def _shown(frame: pd.DataFrame) -> pd.DataFrame:
+    effects = {
+        words: [signed(row[name], row[f"{name}_low"], row[f"{name}_high"], 0) for _, row in frame.iterrows()]
+        for name, words in (("regions", "unseen regions, points"), ("objects", "unseen objects, points"))
+    }
+    said = [f"{_option(row['option'])} instead of {_option(row['from'])}" for _, row in frame.iterrows()]
+    times = [f"{brief(value)} times" for value in frame["times"]]
+    return pd.DataFrame({"stage": frame["stage"].map(STAGES), "option": said, **effects, "seconds": times})
+
+
+def _option(value):
+    return label(value) if isinstance(value, str) else f"{value:.0f}"
+
+
+STAGE = "front"
+SEARCH, CONFIRMED, CHANGED = "last", "confirmation", "one_choice"  # of the column `rung`
+CHOICES = ("method", "viewpoints", "image_rows", "points", "cells", "level", "touches", "classifier")
+WHOLE = "100%"  # of the column `level`
+SPLITS = {Split.REGIONS: "regions", Split.OBJECTS: "objects"}  # split -> its columns
+PARTS = ("simplifying", "looking", "pressing", "asking")
+
+
+def front_rows(results: Results) -> pd.DataFrame:
+    """All rows of both splits; NotRun where nothing was searched."""
+    return pd.concat(everywhere(results, STAGE, metric="accuracy").values(), ignore_index=True)
+
+
+def of_rung(rows: pd.DataFrame, rung: str) -> pd.DataFrame:
+    """One row a choice: its options, `words`, the accuracies with low and high, seconds with their parts, training."""
+    found = []
+    for choice, own in some(rows[rows["rung"] == rung], f"no rows of {rung}", STAGE).groupby("number"):
+        first = own.iloc[0]
+        line: dict[str, Any] = {"number": choice, "words": words(first)} | {name: first[name] for name in CHOICES}
+        for split, name in SPLITS.items():
+            ends = within(own.loc[own["split"] == split, "value"])
+            line |= zip((name, f"{name}_low", f"{name}_high"), ends, strict=True)
+        found.append(line | own[["seconds", *PARTS, "training", "faces"]].mean().to_dict())
+    return pd.DataFrame(found)
+
+
+def words(row: pd.Series) -> str:
+    """A choice in words: `blind touch, 40 places, 8 x 8, all faces, 3 touches, kNN`."""
+    sight = f" ({row['viewpoints']} views of {row['image_rows']:.0f} rows)" if pd.notna(row["image_rows"]) else ""
+    faces = "all faces" if row["level"] == WHOLE else f"{row['level']} faces"
+    touches = "1 touch" if row["touches"] == 1 else f"{row['touches']} touches"
+    parts = [f"{label(row['method'])}{sight}", f"{row['points']} places", f"{row['cells']} x {row['cells']} cells"]
+    return ", ".join([*parts, faces, touches, label(row["classifier"])])
+
+
+def effect(base: pd.DataFrame, own: pd.DataFrame, split: str) -> tuple[float, float, float]:
+    """(mean, low, high) over the objects: the points of accuracy by which the rows of a choice exceed those of base."""
+    before, after = (frame[frame["split"] == split].set_index("item")["value"] for frame in (base, own))
+    return interval(100 * (after - before).dropna())
+
+
+def brief(value: float) -> str:
+    """A number to two digits: 19, 0.95, 110."""
+    return number(float(f"{value:.2g}"), 2)
+
+
+def named(rows: pd.DataFrame, role: str) -> int:
+    """The number of the confirmed choice with a role, `smallest` or `default`."""
+    return int(some(rows[rows["role"] == role], f"no {role} choice was confirmed", STAGE)["number"].iloc[0])

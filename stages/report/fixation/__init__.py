@@ -2,16 +2,16 @@
 
 from functools import partial
 
-from . import agreement, claims, maps, people, tasks
+from . import agreement, claims, maps, people
 
 TABLES = {"fixation": agreement.build}
 FIGURES = {
-    "figure_3_28": tasks.figure_3_28,
+    "figure_3_28": agreement.figure_3_28,
     "figure_3_29": maps.figure_3_29,
     "figure_3_29_gaze": partial(maps.on_gaze, maps.figure_3_29),
     "figure_3_30": maps.figure_3_30,
     "figure_3_30_gaze": partial(maps.on_gaze, maps.figure_3_30),
-    "figure_3_31": tasks.figure_3_31,
+    "figure_3_31": agreement.figure_3_31,
     "figure_3_32": people.figure_3_32,
     "figure_3_34": maps.figure_3_34,
     "figure_3_34_gaze": partial(maps.on_gaze, maps.figure_3_34),

@@ -9,21 +9,18 @@ import cv2
 import numpy as np
 from matplotlib.figure import Figure as Drawing
 
-from stages.fixation import fuse
+from haptic_glance.base.files import object_files
+from haptic_glance.deep.resize import GRIDS, resize_cams
+from haptic_glance.mesh.mesh import Mesh
+from stages.fixation.fusion import fuse
 from stages.fixation.places import ITSELF
 from stages.fixation.tasks import FUSED_TASKS
-from stages.kit import Mesh
-from stages.kit.files import object_files
-from stages.networks.grid import GRIDS, resize_cams
-from stages.report.drawing import colour_bar, colour_map, name_panels, picture, square_grid, squared, vivid
+from stages.report.claims_page import Kept, add_words, last_drawn
+from stages.report.drawing import colour_bar, colour_map, label, name_panels, picture, square_grid, squared, vivid
 from stages.report.items import Figure
-from stages.report.kept import Kept, last_drawn
-from stages.report.prose import add_words
 from stages.report.results import NotRun, Results, some
-from stages.report.style import label
 
-from .detectors import LEE, NARROWED, OURS, RIVALS, TASKS, network_text, task_text
-from .rows import VIEWPOINTS, stored
+from .rows import LEE, NARROWED, OURS, RIVALS, TASKS, VIEWPOINTS, network_text, stored, task_text
 
 ROWS, SMALL = 420, 260  # pixels a side of a picture; of the small ones of figure 3.34
 MOST_TAUGHT = ("last_block", "finetuned", "frozen")  # modes of networks that learned, the thesis's first

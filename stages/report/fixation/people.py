@@ -1,4 +1,9 @@
-"""T figures 3.32, 3.35 and 3.36: how much tasks' maps and detectors agree with people, and how far centres lie."""
+"""People and quantiles.
+
+T figures 3.32, 3.35 and 3.36: how much tasks' maps and detectors agree with people, and how far centres lie.
+
+Quartiles of two sides compared: the thesis tells distances by the box plot of all views (T figure 3.36).
+"""
 
 from collections.abc import Callable, Collection
 from functools import partial
@@ -9,14 +14,29 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 
-from stages.kit.stats import interval
+from stages.engine.statistics import interval
+from stages.report.claims import Claim
+from stages.report.drawing import GREY, INK, PALE, colours, plain_logarithm, plt
+from stages.report.effects import side, statistic
 from stages.report.items import Figure
-from stages.report.markdown import number
 from stages.report.results import Results
-from stages.report.style import GREY, INK, PALE, colours, plain_logarithm, plt
+from stages.report.tables import number
 
-from .detectors import FUSED, KINDS, NOISE, TASKS, Detector, network_text, task_text, untrained
-from .rows import detectors, networks, no_people, scores, sources
+from .rows import (
+    FUSED,
+    KINDS,
+    NOISE,
+    TASKS,
+    Detector,
+    detectors,
+    network_text,
+    networks,
+    no_people,
+    scores,
+    sources,
+    task_text,
+    untrained,
+)
 
 LINES = (*TASKS, FUSED)
 FLOOR = 0.1  # %: a centre nearer than this is on the spot, and the axis begins there
@@ -140,3 +160,33 @@ def _box(axes: Axes, values: pd.Series, y: int, tint: str) -> None:
     axes.plot([low, high], [y, y], color=tint, lw=0.9)
     axes.barh(y, right - left, 0.6, left, color=tint, alpha=0.45)
     axes.plot([middle] * 2, [y - 0.3, y + 0.3], color=INK, lw=1.3)
+
+
+MEDIAN, UPPER_QUARTILE = "median_below", "upper_quartile_below"  # names of statistics
+
+
+def below(results: Results, claim: Claim, share: float) -> pd.Series:
+    """How many more of the first side's values than of the second's lie below a quantile of both, as a share by unit.
+
+    It is above zero where the first side's own quantile is the lower one. Values at the quantile count half.
+    """
+    sides = (claim.first, claim.other), (claim.other, claim.first)
+    both = pd.concat([side(results, claim, own, other) for own, other in sides], axis=1, keys=["first", "second"])
+    both = both.dropna()
+    if both.empty:
+        return both["first"]
+    edge = both.stack().quantile(share)  # pyright: ignore[reportAttributeAccessIssue]
+    under = (both < edge) + (both == edge) / 2
+    return (under["first"] - under["second"]).groupby(level=list(range(len(claim.over))), sort=False).mean()
+
+
+@statistic(MEDIAN)
+def median_below(results: Results, claim: Claim) -> pd.Series:
+    """Of the median."""
+    return below(results, claim, 0.5)
+
+
+@statistic(UPPER_QUARTILE)
+def upper_quartile_below(results: Results, claim: Claim) -> pd.Series:
+    """Of the 75th percentile."""
+    return below(results, claim, 0.75)

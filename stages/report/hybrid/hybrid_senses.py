@@ -2,11 +2,10 @@
 
 import pandas as pd
 
-from stages.report.grid import grid, grouped, percent
 from stages.report.items import Table
 from stages.report.networks import accuracy, measured, seen
-from stages.report.ranking import Ranking
 from stages.report.results import Results
+from stages.report.tables import Ranking, grid, grouped, percent
 
 from .section_5_5 import MIDDLE
 

@@ -2,9 +2,8 @@
 
 import pandas as pd
 
-from stages.report.grid import grouped, within
-from stages.report.markdown import number, with_interval
 from stages.report.results import NotRun, Results
+from stages.report.tables import grouped, number, with_interval, within
 from stages.report.words import dataset_text
 
 METRIC = "new_object_accuracy"

@@ -1,4 +1,9 @@
-"""T5.5: the hybrid network beside the two that it is made of, and smaller kinds of it: table and chart."""
+"""Section 5.5 and figure 5.6.
+
+T5.5: the hybrid network beside the two that it is made of, and smaller kinds of it: table and chart.
+
+T figure 5.6: what the hybrid network takes for what, by sight and by touch.
+"""
 
 from itertools import product
 from typing import Any
@@ -6,11 +11,11 @@ from typing import Any
 import pandas as pd
 from matplotlib.axes import Axes
 
+from stages.report.drawing import plt
 from stages.report.items import Figure, Table
-from stages.report.markdown import number, with_interval
-from stages.report.networks import SPLITS, everywhere, mean, seen
+from stages.report.networks import SPLITS, draw_matrices, everywhere, mean, seen
 from stages.report.results import Results
-from stages.report.style import plt
+from stages.report.tables import number, with_interval
 from stages.report.words import dataset_text
 
 from . import new_objects
@@ -29,7 +34,7 @@ TINTS = {"vision": "#0072B2", "touch": "#D55E00"}
 HOLLOW = " Hollow: layers {others} shared instead of {first}, as far from the hybrid as on the same items."
 
 
-def build(results: Results) -> Table:
+def section_5_5_table(results: Results) -> Table:
     """Accuracy by each sense and size, by set, by the layers that are shared, and by what is stored."""
     thesis = results.thesis("section_5_5_hybrid").set_index("quantity")["value"]
     lines, notes = [], []
@@ -54,7 +59,7 @@ def build(results: Results) -> Table:
 
 def chart(results: Results) -> Figure:
     """Accuracy by each sense of every file, by its megabytes, a panel for each split."""
-    frame = build(results).frame
+    frame = section_5_5_table(results).frame
     frame = frame[frame["objects"] == frame["objects"].iloc[0]]  # not those of another data set in one picture
     first = frame["shared_layers"].iloc[0]
     frame = frame[(frame["shared_layers"] == first) | (frame["network"] == "hybrid")]
@@ -148,3 +153,12 @@ def _draw(axes: Axes, frame: pd.DataFrame, first: str) -> None:
     axes.set(xlim=(0, 102), ylim=(len(rows) - 0.5, -0.5), xlabel="accuracy, %")
     axes.tick_params(axis="y", length=0)
     axes.grid(axis="x")
+
+
+def figure_5_6(results: Results) -> Figure:
+    """Confusion matrices, senses in columns and splits in rows."""
+    frame = results.measured("transfer", method="hybrid", metric="confusion", mode=MIDDLE)
+    splits = {(split,): words for split, words in ITEMS.items() if split in set(frame["split"])}
+    senses = {sense: f"by {word}" for sense, word in SENSES.items()}
+    figure, words = draw_matrices(frame, splits, senses, ["split"], "sense")
+    return Figure(figure, words | {"splits": ", ".join(splits.values())})

@@ -2,10 +2,10 @@
 
 from functools import partial
 
-from stages.report.kept import as_printed
+from stages.report.claims_page import as_printed
 from stages.report.results import SECTION_3_1, SECTION_3_2
 
-from . import backends, backends_chart, error_measures, lod_claims, points, simplification
+from . import backends, errors, levels, tables
 from .claims import CLAIMS as CLAIMS
 from .errors import figure_3_4, figure_3_5, figure_3_23
 from .pictures import figure_3_6, figure_3_7, figure_3_8, figure_3_21, figure_3_22
@@ -15,10 +15,10 @@ TABLES = {
     "dataset": dataset,
     "table_3_1_5_combinations": combinations,
     "lod_detectors": every_detector,
-    "lod_points": points.build,
+    "lod_points": tables.build,
     "table_3_2": table_3_2,
-    "lod_claims": lod_claims.build,
-    "backends": backends.build,
+    "lod_claims": levels.lod_claims,
+    "backends": backends.backends_table,
 }
 FIGURES = {
     "figure_3_4": figure_3_4,
@@ -31,8 +31,8 @@ FIGURES = {
     "figure_3_23": figure_3_23,
 }
 CHARTS = {
-    "simplification": simplification.build,
-    "backends": backends_chart.build,
-    "error_samples": error_measures.samples,
-    "error_views": error_measures.views,
+    "simplification": levels.simplification,
+    "backends": backends.backends_chart,
+    "error_samples": errors.samples,
+    "error_views": errors.views,
 }

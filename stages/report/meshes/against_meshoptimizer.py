@@ -5,10 +5,10 @@ from collections.abc import Iterator
 import numpy as np
 import pandas as pd
 
-from stages.kit.stats import interval
-from stages.report.markdown import with_interval
+from stages.engine.statistics import interval
+from stages.report.drawing import label
 from stages.report.results import NotRun, Results
-from stages.report.style import label
+from stages.report.tables import with_interval
 
 OURS, OTHER = "fast", "meshoptimizer"
 Interval = tuple[float, float, float]

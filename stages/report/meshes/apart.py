@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 from scipy.spatial import KDTree
 
-from stages.kit import Mesh
+from haptic_glance.mesh.mesh import Mesh
 
 TINTS = "PuOr_r"  # purple: fewer, orange: more
 SPREAD = 0.05  # of the diagonal: deviation of the Gaussian about a point

@@ -8,10 +8,10 @@ from functools import partial
 from typing import Any
 
 from stages.report.claims import Claim, Pick, highest_of, lowest_of, reading
+from stages.report.drawing import label
 from stages.report.results import COLOURED, GAZED, MENDED_3_2, ON_GREY, ON_WHITE, SECTION_3_1, SECTION_3_2, SETS_3_1
-from stages.report.style import label
 
-from .methods import (
+from .tables import (
     BY_AREA,
     CLASSICAL,
     COMBINATIONS,

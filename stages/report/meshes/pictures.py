@@ -9,18 +9,27 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 
-from stages.kit import Mesh
-from stages.lod.metro import vertex_errors
-from stages.report.drawing import THIN, VIEWPOINT, colour_bar, filled, name_panels, show, square_grid, squared
+from haptic_glance.lod.errors import vertex_errors
+from haptic_glance.look.views import render
+from haptic_glance.mesh.mesh import Mesh
+from stages.report.drawing import (
+    GREY,
+    THIN,
+    VIEWPOINT,
+    colour_bar,
+    filled,
+    label,
+    name_panels,
+    show,
+    square_grid,
+    squared,
+)
 from stages.report.items import Figure
 from stages.report.results import SECTION_3_2, NotRun, Results, some
-from stages.report.style import GREY, label
 from stages.report.words import dataset_text
-from stages.views import render
 
 from .apart import TINTS, against_the_mean, faces_an_area
-from .methods import FIXED_ADAPTIVE, HKS, NAMES, OURS, PLAIN, PRINTED, UNSEEN, WEIGHTED, short
-from .rows import said, size
+from .tables import FIXED_ADAPTIVE, HKS, NAMES, OURS, PLAIN, PRINTED, UNSEEN, WEIGHTED, said, short, size
 
 COLUMNS = 7  # of figure 3.6
 GUIDED = PRINTED[1]  # by SSIM: what figure 3.21 keeps

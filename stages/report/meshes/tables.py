@@ -1,22 +1,224 @@
-"""Tables of the objects and of the errors by method: T3.1.5's combinations, every detector, and T table 3.2."""
+"""Tables of points.
 
-from collections.abc import Iterator
+How many points each detector found, and how much about them the simplified meshes kept.
+
+The errors of simplified meshes, compared on the same objects and targets only.
+
+Whose points the simplified meshes keep: the methods' groups, short names and order.
+
+Tables of the objects and of the errors by method: T3.1.5's combinations, every detector, and T table 3.2.
+"""
+
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from stages.report.grid import means
+from haptic_glance.look.points import METHODS
+from haptic_glance.look.weights.weights import GLANCE
+from stages.engine.statistics import interval
+from stages.report.drawing import WAYS, label
 from stages.report.items import Table
-from stages.report.markdown import number
-from stages.report.ranking import Ranking
-from stages.report.results import SECTION_3_1, SECTION_3_2, NotRun, Results, some
-from stages.report.style import label
+from stages.report.pareto import UNIT, as_plain
+from stages.report.results import ON_GREY, ON_WHITE, SECTION_3_1, SECTION_3_2, NotRun, Results, some
+from stages.report.tables import Ranking, grouped, means, number, over_items, with_interval, within
 from stages.report.words import dataset_text
-from stages.salient_points import METHODS
 
-from .methods import COMBINATIONS, FIXED_ADAPTIVE, HKS, OF_T3_2, OURS, PLAIN, QSLIM, WEIGHTED, ordered, short
-from .rows import ERRORS, FEWEST, METRICS, UNITS, cell, compared, data_sets, face_counts, paired_cells, said, size, wide
+SHARES = {"without_points": "without a point, %", "three_rings": "three rings, %", "as_plain": "as plain, %"}
+
+
+def build(results: Results) -> Table:
+    """A row a data set, method and target: median points, median rings, shares of objects without or with all."""
+    sets = data_sets(results)
+    first = results.printed(SECTION_3_1, "lod") or sets[0]
+    if "rings" not in results.rows("lod", first):
+        raise NotRun("no rings in the rows of lod", "lod")
+    frames = {name: counted(results.rows("lod", name)) for name in sorted(sets, key=lambda name: name != first)}
+    frame = pd.concat({dataset_text(name): found for name, found in frames.items()}, names=["data", None])
+    frame = frame.reset_index("data").reset_index(drop=True)
+    own = frame[frame["data"] == dataset_text(first)]
+    targets = face_counts(results.rows("lod", first))[:2]
+    some(targets, "no target is a number of faces", "lod", runnable=False)
+    return Table(
+        frame, _wide(own, targets), {"set": dataset_text(first)}
+    )  # no ranking: numbers of points do not compete
+
+
+def counted(rows: pd.DataFrame) -> pd.DataFrame:
+    """The table's numbers for the rows of one set: a row a method and target, over the objects that have a mesh."""
+    units = rows[rows["value"].notna() & (rows["metric"] == "metro_mean")]
+    units = units[[fixed(name) and name not in (PLAIN, QSLIM) for name in units["method"]]]
+    units = units.assign(
+        without_points=units["points"] == 0,
+        three_rings=(units["points"] > 0) & ~units["shrunk"].astype(bool),
+        as_plain=pd.MultiIndex.from_frame(units[UNIT]).isin(as_plain(rows)),
+    )
+    grouped = units.groupby(["method", "target"], sort=False)
+    found = grouped.agg(objects=("item", "nunique"), points=("points", "median"), rings=("rings", "median"))
+    found = found.join(grouped[list(SHARES)].mean()).reset_index()
+    found["method"] = pd.Categorical(found["method"], ordered(found["method"].unique()))
+    return found.sort_values("method", kind="stable").astype({"method": str})
+
+
+def _wide(own: pd.DataFrame, targets: list[str]) -> pd.DataFrame:
+    """A row a method: its points at the fewest faces, then rings and shares by face count, most faces first."""
+    cells = own.set_index(["method", "target"])
+    methods = own["method"].unique()
+    shown = pd.DataFrame({"kept points": [short(name) for name in methods]})
+
+    def column(name: str, target: str, text: str = "{:.1f}", factor: float = 1.0) -> list[str]:
+        values = factor * cells.xs(target, level="target")[name].reindex(methods)
+        return ["–" if np.isnan(value) else text.format(value) for value in values]
+
+    shown["points"] = column("points", targets[-1])
+    shown[SHARES["without_points"]] = column("without_points", targets[-1], "{:.0f}", 100)
+    for target in targets:
+        shown[f"rings, {said(target)}"] = column("rings", target)
+        for name in ("three_rings", "as_plain"):
+            shown[f"{SHARES[name]}, {said(target)}"] = column(name, target, "{:.0f}", 100)
+    return shown
+
+
+CELL = ["item", "target"]
+ERRORS = {  # metric -> name, with its unit
+    "metro_mean": "Metro mean, %", "metro_rms": "Metro rms, %", "metro_max": "Metro max, %",
+    "ssim_error": "1 − SSIM, %", "dlap": "DLap", "dnor": "Dnor",
+    "salient_error": "error where our model looks, %", "gaze_error": "error where people look, %",
+}  # fmt: skip
+UNITS = {metric: 100 if name.endswith("%") else 1 for metric, name in ERRORS.items()}  # factors to the unit
+METRICS = ("metro_mean", "ssim_error")  # those of the thesis's figures
+FEWEST = 3  # objects that a mean over objects needs to be shown
+
+
+def data_sets(results: Results, methods: Iterable[str] = ()) -> list[str]:
+    """The sets with meshes simplified by any of these methods (none: by any), those that are switched on first.
+
+    Without those of one method on other backgrounds.
+    """
+    names, wanted = results.datasets("lod"), set(methods)
+    found = [
+        name for name in names
+        if name not in (ON_GREY, ON_WHITE)
+        and (not wanted or wanted & set(results.rows("lod", name)["method"].replace(UNSEEN)))
+    ]  # fmt: skip
+    return some(found, "no measurements of lod", "lod")
+
+
+def paired_cells(
+    results: Results, metrics: Iterable[str] = ERRORS, methods: Iterable[str] | None = None,
+    dataset: str | None = None, whole: bool = False,
+) -> pd.DataFrame:  # fmt: skip
+    """Rows of these errors and methods (None: of all), only where all methods that were run reach the object's target.
+
+    `seconds` is the simplification's; `plain` the value of plain QEM for the same object, target and metric. whole:
+    only where, moreover, no method had to shrink its neighbourhoods: the thesis's own algorithm. Methods that have
+    learned from the object itself, as printed, have the names of those that have not.
+    """
+    rows = results.rows("lod", dataset, metric=[*metrics, "faces"]).dropna(subset=["value"])
+    rows["method"] = rows["method"].replace(UNSEEN)
+    made = rows.loc[rows["metric"] == "faces", [*CELL, "method", "seconds"]]
+    rows = rows[rows["metric"] != "faces"].drop(columns="seconds")
+    plain = rows[rows["method"] == PLAIN].rename(columns={"value": "plain"})[[*CELL, "metric", "plain"]]
+    rows = rows if methods is None else rows[rows["method"].isin(list(methods))]
+    rows = rows.merge(made, on=[*CELL, "method"]).merge(plain, on=[*CELL, "metric"], how="left")
+    counted = rows["method"].mask(rows["shrunk"].fillna(False).astype(bool)) if whole else rows["method"]
+    reached = rows.assign(method=counted).groupby([*CELL, "metric"])["method"].transform("nunique")
+    return rows[reached == rows["method"].nunique()]
+
+
+def compared(rows: pd.DataFrame, by: list[str], least: float = 0.0) -> pd.DataFrame:
+    """Mean, its interval from `least` on, and mean difference from `plain`, over the objects of each value of `by`."""
+    found = []
+    for key, group in grouped(rows, by):
+        gain = interval(over_items(group.assign(value=group["value"] - group["plain"])))
+        found.append((*key, *within(over_items(group), least=least, top=np.inf), group["value"].count(), *gain))
+    ends = ["mean", "low", "high", "objects", "over_plain", "over_plain_low", "over_plain_high"]
+    return pd.DataFrame(found, columns=[*by, *ends])
+
+
+def by_object(rows: pd.DataFrame, methods: list[str], metric: str, target: str | None = None) -> pd.DataFrame:
+    """Frame objects x methods of one error in its unit; target: at this one alone, or the mean over all."""
+    rows = rows[(rows["metric"] == metric) & (rows["target"].eq(target) if target else True)]
+    return UNITS[metric] * rows.pivot_table(index="item", columns="method", values="value").reindex(columns=methods)
+
+
+def face_counts(rows: pd.DataFrame) -> list[str]:
+    """The targets of the rows with enough objects, most faces first: counts, or shares where there are no counts."""
+    objects = rows.groupby("target")["item"].nunique()
+    enough = sorted(objects.index[objects >= FEWEST], key=size)
+    return [target for target in enough if target.isdigit()] or enough
+
+
+def wide(cells: pd.DataFrame, down: str | list[str], across: str) -> pd.DataFrame:
+    """Column `text` pivoted, rows and columns in the order of the cells; `–` where there is none."""
+    found = cells.pivot(index=down, columns=across, values="text").rename_axis(columns=None)
+    return found.reindex(cells.set_index(down).index.unique(), columns=cells[across].unique()).fillna("–")
+
+
+def cell(row: Any) -> str:
+    """`1.2 [1.1, 1.3] +`: an error with its interval, + or – where it differs from plain QEM beyond chance."""
+    mark = " +" if row.over_plain_low > 0 else " –" if row.over_plain_high < 0 else ""
+    return with_interval(row.mean, row.low, row.high, UNITS[row.metric]) + mark
+
+
+def size(target: str) -> tuple[bool, float]:
+    """A key that sorts targets: shares before counts, large before small."""
+    return (not target.endswith("%"), -float(target.rstrip("%")))
+
+
+def said(target: str) -> str:
+    """A target in words: `25%`, `1,500 faces`."""
+    return target if target.endswith("%") else f"{int(target):,} faces"
+
+
+PLAIN, QSLIM, OURS = "qem", "qslim", GLANCE  # QSLIM: plain QEM without the fit of ours, the thesis's
+CLASSICAL = "itti"  # the classical model, VisAtt in the thesis
+WEIGHTED = "thesis_ssim"  # the thesis's own: the average weighted with its SSIM weights
+HKS = "heat_kernel"
+COMBINATIONS = (  # of channels, as the stages call them, in the order of T3.1.5
+    CLASSICAL, "VisAttCurvP", "VisAttCurv", "Curv", "VisAttSymP", "VisAttSym", "SymLat", "SymRad", "2Sym",
+    "VisAttCurvSym", "VisAttCon", "VisAttCurvSymCon", "VisAttEnt", "VisAttAll",
+)  # fmt: skip
+BY_AREA = (CLASSICAL, "VisAttCon", "VisAttCurvSymCon", "VisAttAll")  # whose neighbourhoods go by area, too (T3.1.3)
+SYMMETRIES = ("SymLat", "SymRad", "2Sym")
+# T2.2.3's detectors but the heat kernel signature, which T3.1.5 takes out of the claim ("except HKS approach").
+RIVALS = ("salient_points", "mesh_saliency", "sift", "harris", "corners")
+PROPOSED = ("guided_ed", "guided_ssim", "svm")  # T3.2.9: ED, SSIM, SVM, learned from other objects than the simplified
+PRINTED = ("guided_ed_seen", "guided_ssim_seen", "svm_object")  # the same, learned from that object too, as printed
+ADAPTIVE = tuple(f"{name}-adaptive" for name in PROPOSED)
+PRINTED_ADAPTIVE = tuple(f"{name}-adaptive" for name in PRINTED)
+UNSEEN = dict(zip(PRINTED + PRINTED_ADAPTIVE, PROPOSED + ADAPTIVE, strict=True))
+OF_T3_2 = (*PROPOSED, OURS)  # by which the sets of T3.2 are known
+FIXED_ADAPTIVE = tuple(name for pair in zip(PROPOSED, ADAPTIVE, strict=True) for name in pair)
+NAMES = {  # short, the thesis's, in the order of its figure 3.6; then those of later sections, ours and chance
+    "harris": "3DH", "mesh_saliency": "MS", "salient_points": "SP", "corners": "SDC", "sift": "3DS",
+    "VisAttCurvP": "VisAttCurvP", "VisAttAll": "VisAttAll", "VisAttSymP": "VisAttSymP", "VisAttEnt": "VisAttEnt",
+    "Curv": "Curv", "VisAttCurv": "VisAttCurv", "VisAttCurvSym": "VisAttCurvSym", "VisAttSym": "VisAttSym",
+    "VisAttCurvSymCon": "VisAttCurvSymCon", CLASSICAL: "VisAtt", "VisAttCon": "VisAttCon", "2Sym": "2Sym",
+    "SymLat": "SymLat", HKS: "HKS", "SymRad": "SymRad", "guided_ed": "ED", "guided_ssim": "SSIM",
+    WEIGHTED: label(WEIGHTED), "thesis_ed": label("thesis_ed"), "svm": "SVM", OURS: label(OURS), "random": "blind",
+}  # fmt: skip
+
+
+def fixed(method: str) -> bool:
+    """Whether a method keeps neighbourhoods of fixed size: no way of keeping them stands behind its name."""
+    return method.rpartition("-")[2] not in WAYS
+
+
+def short(method: str) -> str:
+    """The thesis's short name of a method."""
+    base, _, way = method.rpartition("-")
+    return NAMES.get(method, label(method)) if fixed(method) else f"{short(base)}, {way}"
+
+
+def ordered(methods: Iterable[str]) -> list[str]:
+    """The methods in the thesis's order (figure 3.6), then those with a way behind their name, QEM last."""
+    order = [*NAMES, *(f"{name}-{way}" for name in NAMES for way in WAYS)]
+    plain = [PLAIN, QSLIM]
+    return sorted(methods, key=lambda name: (name in plain, order.index(name) if name in order else len(order), name))
+
 
 COUNTS = ["points", "kept"]  # beside the errors of every detector
 GUIDED = [*FIXED_ADAPTIVE, "thesis_ed", "thesis_ed-adaptive", WEIGHTED, f"{WEIGHTED}-adaptive", "VisAttAll", HKS,

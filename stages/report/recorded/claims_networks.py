@@ -5,9 +5,9 @@ from typing import Any
 
 import pandas as pd
 
-from stages.kit.split import Split, shared_by
+from haptic_glance.know.split import Split, shared_by
 from stages.report.claims import Claim, Side, highest_of
-from stages.report.differences import side, statistic
+from stages.report.effects import side, statistic
 from stages.report.networks import GUESS, NETWORK, PRINTED
 from stages.report.results import Results
 

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from stages.kit.split import Split
+from haptic_glance.know.split import Split
 from stages.report.claims import Claim
 
 from .touch_events import GROUPS, NETWORK, OURS, SET

@@ -3,11 +3,11 @@
 from functools import partial
 from typing import Any
 
-from stages.kit.split import Split, shared_by
+from haptic_glance.know.split import Split, shared_by
 from stages.report.claims import Claim, highest_of, reading
 
-from .simulated_to_real import SIMULATIONS as KINDS
-from .table_4_4 import SELECTIONS, SETS
+from .grasps import SELECTIONS, SETS
+from .networks import SIMULATIONS as KINDS
 
 SIMULATED = "resting_skin"  # the simulation that was meant to be the closest, before any result was seen
 SCALE = {"scaling": "training"}  # z-transform fitted to the training part; other scalings are readings

@@ -2,13 +2,11 @@
 
 import pandas as pd
 
-from stages.kit.stats import interval
-from stages.report.grid import grouped, records, within
+from stages.engine.statistics import interval
+from stages.report.drawing import label
 from stages.report.items import Table
-from stages.report.markdown import signed, with_interval
-from stages.report.ranking import Ranking
 from stages.report.results import Results
-from stages.report.style import label
+from stages.report.tables import Ranking, grouped, records, signed, with_interval, within
 
 SET, OURS = "schunk", "discriminant"
 BEST = Ranking("grasps left out in turn, %")

@@ -5,11 +5,11 @@ from contextlib import suppress
 import numpy as np
 import pandas as pd
 
-from stages.kit.split import Split, shared_by
-from stages.kit.stats import interval
-from stages.report.grid import everywhere, grouped, within
+from haptic_glance.know.split import Split, shared_by
+from stages.engine.statistics import interval
 from stages.report.networks import of_passes
 from stages.report.results import NotRun, Results
+from stages.report.tables import everywhere, grouped, within
 
 STAGE = "recorded_networks"
 DATA = {

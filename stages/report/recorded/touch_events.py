@@ -4,12 +4,11 @@ from collections.abc import Iterator
 
 import pandas as pd
 
-from stages.kit.stats import interval
-from stages.report.grid import grouped, percent, records, within
+from stages.engine.statistics import interval
+from stages.report.drawing import CYCLE, GREY, MARKERS, label, plt
 from stages.report.items import Figure, Table
-from stages.report.markdown import number, signed, with_interval
 from stages.report.results import Results
-from stages.report.style import CYCLE, GREY, MARKERS, label, plt
+from stages.report.tables import grouped, number, percent, records, signed, with_interval, within
 
 SET = "touch_events"
 GROUPS = {"objects": "36 objects", "containers": "20 containers"}

@@ -1,13 +1,19 @@
 """How many faces each object of a scene needs (T3.1.3)."""
 
-from . import claims, counts, frames, needs, random, scene, scenes
+from . import claims, counts, random, scene
 
 TABLES = {
-    "random_scenes": random.build, "scenes": scenes.build, "scene": scene.build, "faces_by_task": needs.build,
-    "face_counts": counts.build,
-}  # fmt: skip
+    "random_scenes": random.random_table,
+    "scenes": scene.scenes,
+    "scene": scene.scene_table,
+    "faces_by_task": random.needs,
+    "face_counts": counts.counts_table,
+}
 FIGURES = {
-    "random_scenes": random.figure, "scene": frames.build, "faces_by_task": needs.figure, "face_counts": counts.figure,
-}  # fmt: skip
+    "random_scenes": random.random_figure,
+    "scene": counts.frames,
+    "faces_by_task": random.needs_figure,
+    "face_counts": counts.figure,
+}
 CHARTS = {"scene": scene.chart}
 CLAIMS = claims.CLAIMS

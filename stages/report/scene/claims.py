@@ -5,12 +5,10 @@ from functools import partial
 import pandas as pd
 
 from stages.report.claims import Claim
-from stages.report.differences import side, statistic
+from stages.report.effects import side, statistic
 from stages.report.results import Results
 
-from .needs import STAGE, TASKS
-from .random import ALLOWED
-from .rows import NAMES, OURS, RANDOM
+from .random import ALLOWED, NAMES, OURS, RANDOM, STAGE, TASKS
 
 FACES = "% of the faces"
 EQUAL = {"displacement": "at an equal mean displacement", "error": "at an equal error of each frame's worst object"}

@@ -1,16 +1,154 @@
-"""Scenes drawn at random: what ours saves at an equal displacement, and what knowing the path is worth."""
+"""Random scenes and the faces that they need.
 
+How many faces each object needs to be seen, to be felt and to be recognised by touch.
+
+The measurements of the scene stage, how its methods are called, and what the comparison of them leaves open.
+
+Scenes drawn at random: what ours saves at an equal displacement, and what knowing the path is worth.
+"""
+
+from typing import Any
+
+import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 
-from stages.kit.stats import interval
-from stages.report.grid import records
+from stages.engine.statistics import interval
+from stages.report.drawing import CYCLE, GREY, INK, plain_logarithm, plt
 from stages.report.items import Figure, Table
-from stages.report.markdown import number, with_interval
 from stages.report.results import NotRun, Results, some
-from stages.report.style import GREY, INK, plt
+from stages.report.tables import number, records, with_interval
 
-from .rows import COLOURS, NAMES, OURS, RANDOM, UNITS, amount
+STAGE = "face_needs"
+TASKS = {  # words, what the condition is multiplied by in them, colour
+    "seen": ("seen from {:g} m", 1, CYCLE[0]), "felt": ("felt, within {:g} % of full scale", 100, CYCLE[1]),
+    "recognised": ("recognised by touch, within {:g} points", 100, CYCLE[2]),
+}  # fmt: skip
+
+
+def needs(results: Results) -> Table:
+    """A line for each task: the median over the objects with its interval, and the range of nine in ten."""
+    rows, lines, frame = _rows(results), [], []
+    full = rows[rows["task"] == "full"].set_index("item")["value"]
+    for (task, condition), own in _tasks(rows):
+        need = own.set_index("item")["value"]
+        share = 100 * need / full[need.index]
+        median, low, high = interval(need, statistic=np.median)
+        ends = np.quantile(need, [0.05, 0.95])
+        frame.append({"task": task, "condition": condition, "objects": len(need), "median": median, "low": low,
+                      "high": high, "q05": ends[0], "q95": ends[1], "share": share.median()})  # fmt: skip
+        lines.append({
+            "task": words_of(task, condition), "faces, median": with_interval(median, low, high, places=0),
+            "nine in ten objects": f"{ends[0]:,.0f} to {ends[1]:,.0f}",
+            "of the full mesh, %": with_interval(*interval(share, statistic=np.median), places=1),
+        })  # fmt: skip
+    accuracy = 100 * _rows(results, "accuracy")["value"]
+    together = _rows(results, "faces_together")["value"].iloc[0]
+    words = {"objects": len(full), "full": f"{full.median():,.0f}", "together": f"{together:,.0f}",
+             "accuracy": with_interval(*interval(accuracy), places=0)}  # fmt: skip
+    return Table(pd.DataFrame(frame), pd.DataFrame(lines), words)
+
+
+def needs_figure(results: Results) -> Figure:
+    """A dot an object and task, sorted by the faces that it needs, with the median and its interval."""
+    rows = _rows(results)
+    tasks = [(("full", np.nan), rows[rows["task"] == "full"]), *_tasks(rows)]
+    drawing, axes = plt.subplots(figsize=(7.4, 0.42 * len(tasks) + 1.2))
+    for place, ((task, _), own) in enumerate(reversed(tasks)):
+        need = np.sort(own["value"])
+        tint = TASKS[task][-1] if task in TASKS else INK
+        axes.plot(
+            need, place + 0.5 * (np.arange(len(need)) / len(need) - 0.5), "o", ms=3.5, mew=0, color=tint, alpha=0.6
+        )
+        median, low, high = interval(need, statistic=np.median)
+        axes.plot([low, high], [place] * 2, color=INK, lw=1.6)
+        axes.plot(median, place, "|", color=INK, ms=11, mew=2)
+    axes.set_yticks(range(len(tasks)), [words_of(*key) for key, _ in reversed(tasks)])
+    axes.set(xscale="log", xlabel="faces")
+    plain_logarithm(axes.xaxis)
+    axes.tick_params(axis="y", length=0)
+    axes.grid(axis="x")
+    drawing.tight_layout()
+    return Figure(drawing, {"objects": rows["item"].nunique()})
+
+
+def words_of(task: str, condition: float) -> str:
+    """A task in words: seen from 1 m."""
+    if task not in TASKS:
+        return "the full mesh"
+    words, scale, _ = TASKS[task]
+    return words.format(scale * condition)
+
+
+def _rows(results: Results, metric: str = "faces") -> pd.DataFrame:
+    return results.measured(STAGE, metric=metric)
+
+
+def _tasks(rows: pd.DataFrame) -> list[tuple[tuple[str, float], pd.DataFrame]]:
+    """[((task, condition), rows)] in the order of TASKS, from few faces to many."""
+    rows, order = rows.dropna(subset=["condition"]), list(TASKS)
+    keys = sorted({*zip(rows["task"], rows["condition"], strict=True)}, key=lambda key: (order.index(key[0]), -key[1]))
+    return [(key, rows[(rows["task"] == key[0]) & (rows["condition"] == key[1])]) for key in keys]
+
+
+NAMES = {
+    "full": "full models",
+    "uniform": "uniform levels by distance",
+    "uniform_size": "uniform levels by size on the screen",
+    "network": "the thesis's network",
+    "ours_plain": "ours, salience left out",
+    "ours": "ours",
+    "equal": "ours, the limit shared equally",
+    "online": "ours, no frame seen ahead",
+    "online_unrendered": "the same, nothing rendered",
+}
+COLOURS = {
+    "full": "#222222", "uniform": "#E69F00", "uniform_size": "#D55E00", "network": "#CC79A7", "ours_plain": "#56B4E9",
+    "ours": "#0072B2", "online": "#009E73",
+}  # fmt: skip
+UNITS = {"pixels": "pixels", "ssim": "1 − SSIM"}
+OURS = "ours"
+RANDOM = "household_scenes"  # the set with scenes drawn at random
+UNIFORM = ("uniform", "uniform_size")
+
+
+def scene_rows(results: Results, **where: Any) -> tuple[pd.DataFrame, str, float, str]:
+    """(rows of the stage with a value and no gaps in `matched`, the scene, the first tolerance, its unit in words)."""
+    rows = results.measured("scene", **where).fillna({"matched": ""})
+    first = rows.dropna(subset=["tolerance"]).iloc[0]
+    return rows, first["group"], float(first["tolerance"]), UNITS[first["kind"]]
+
+
+def amount(value: float, unit: str) -> str:
+    """A tolerance in words: 1 pixel, 0.5 pixels."""
+    return f"{value:g} {unit.removesuffix('s') if value == 1 else unit}"
+
+
+def savings(rows: pd.DataFrame) -> pd.DataFrame:
+    """The rows on the share of the faces that ours saves: value, low, high, the `rival`, and in per cent as `text`."""
+    found = rows[rows["metric"].str.startswith("saved_")].dropna(subset=["kind", "value"])
+    text = [with_interval(row.value, row.low, row.high, 100, 0) for row in records(found)]
+    return found.assign(rival=found["metric"].str.removeprefix("saved_"), text=text)
+
+
+def left_of(saved: pd.DataFrame) -> str:
+    """How much of `savings` at an equal error is left at an equal displacement; empty where that is not measured."""
+    shares = {key: list(values) for key, values in saved.groupby(["rival", "matched"])["value"]}
+    pairs = {name: (shares[name, "error"], shares[name, "displacement"]) for name in UNIFORM
+             if {(name, "error"), (name, "displacement")} <= set(shares)}  # fmt: skip
+    if not pairs:
+        return ""
+    equal, spread = (np.mean(np.concatenate(each)) for each in zip(*pairs.values(), strict=True))
+    part = "most" if spread < equal / 2 else "part"
+    left = "the saving is no smaller" if spread >= equal else f"{part} of the saving vanishes"
+    said = [f"{_range(each)} instead of {_range(own)} against {NAMES[name]}" for name, (own, each) in pairs.items()]
+    return f" At an equal mean displacement of all pixels {left}: {'; '.join(said)}."
+
+
+def _range(shares: list[float]) -> str:
+    """Shares as percent: 12 %, or 3 to 40 %."""
+    return " to ".join(dict.fromkeys(f"{round(100 * share):d}" for share in (min(shares), max(shares)))) + " %"
+
 
 PLANS = [
     ("full", ""), ("uniform", "displacement"), ("uniform_size", "displacement"), ("network", "displacement"),
@@ -21,7 +159,7 @@ SHOWN = {"displacement_mean": ("displacement, px", 1, 2), "error": ("frame error
          "held": ("frames within, %", 100, 0), "switches_per_object": ("switches an object", 1, 1)}  # fmt: skip
 
 
-def build(results: Results) -> Table:
+def random_table(results: Results) -> Table:
     """A line for each plan: means over the scenes, with intervals over the scenes."""
     wide, first = plans(results)
     times = _times(results)
@@ -51,7 +189,7 @@ def build(results: Results) -> Table:
     return Table(pd.DataFrame(frame), shown, words)
 
 
-def figure(results: Results) -> Figure:
+def random_figure(results: Results) -> Figure:
     """The saving in each scene, sorted, at an equal displacement and at an equal error; and online beside offline."""
     wide, _ = plans(results)
     drawing, panels = plt.subplots(1, 3, figsize=(10.2, 4.0))

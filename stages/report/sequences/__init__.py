@@ -2,15 +2,15 @@
 
 from functools import partial
 
-from stages.report.kept import as_printed
+from stages.report.claims_page import as_printed
 
-from . import charts, claims, contours, tables
+from . import contours, tables
 
 TABLES = {"table_4_7": tables.table_4_7, "table_4_9": tables.table_4_9}
 FIGURES = {
-    "figure_4_14": partial(as_printed, contours.figure_4_14, charts.THESIS_CLASSES, stage="contours"),
+    "figure_4_14": partial(as_printed, contours.figure_4_14, contours.THESIS_CLASSES, stage="contours"),
     "figure_4_15": contours.figure_4_15,
-    "figure_4_19": charts.figure_4_19,
+    "figure_4_19": contours.figure_4_19,
 }
-CHARTS = {"sequences": charts.chart}
-CLAIMS = claims.CLAIMS
+CHARTS = {"sequences": contours.chart}
+CLAIMS = tables.CLAIMS

@@ -1,19 +1,28 @@
-"""T tables 4.7 and 4.8: the layers of the two networks; T table 4.9: which class of objects is it, by contours."""
+"""Contours: tables and claims.
 
+T tables 4.7 and 4.8: the layers of the two networks; T table 4.9: which class of objects is it, by contours.
+
+What table 4.9, figure 4.19, their chart and their claims read: accuracies of whole sequences.
+
+Claims of T4.4: what a whole contour tells, guided or blind, to networks and to conventional classifiers.
+"""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from functools import partial
 from itertools import product
 
 import numpy as np
 import pandas as pd
 
-from stages.kit.split import Split
-from stages.report.grid import blocks, everywhere, grid, percent, records
+from haptic_glance.know.split import Split
+from stages.report.claims import Claim, highest_of, reading
+from stages.report.drawing import label
+from stages.report.effects import difference, statistic
 from stages.report.items import Table
-from stages.report.ranking import Ranking
 from stages.report.results import Results
-from stages.report.style import label
+from stages.report.tables import Ranking, blocks, everywhere, grid, percent, records, within
 from stages.report.words import dataset_text
-
-from .rows import BLIND, CLASSIFIERS, GUIDED, METRICS, SIZE, SPLITS, STAGE, accuracy
 
 KEYS = ["objects", "split", "classifier"]
 SAID = {
@@ -75,3 +84,88 @@ def table_4_9(results: Results) -> Table:
     words = {"not_run": results.left_out(STAGE), "counted": counted, "chance": chance}
     best = Ranking(shown.columns[-1], among=["objects", "split"], exempt=[PRINTED])
     return Table(frame, shown, words, best)
+
+
+STAGE = "sequences"
+SPLITS = {Split.RANDOM: "sequences drawn at random", Split.OBJECTS: "unseen objects"}
+METRICS = {Split.RANDOM: "accuracy", Split.OBJECTS: "accuracy_object"}
+SHARED = {Split.RANDOM: 0.2 / 0.8, Split.OBJECTS: 0.0}  # test over training share; of the random splits T4.4.10
+CLASSIFIERS = {
+    "cnn": "CNNs", "cnn_images": "CNN, images alone", "cnn_normals": "CNN, normals alone", "knn": "kNN", "svm": "SVM",
+    "knn_no_som": "kNN, without the map", "svm_no_som": "SVM, without the map",
+}  # fmt: skip
+PRINTED_METHODS = ("cnn", "knn", "svm")  # those of T table 4.9
+BLIND, GUIDED = "random", "thesis_ssim"  # the two columns of T table 4.9
+SIZE = ["frames", "cells"]
+
+
+def accuracy(rows: pd.DataFrame, split: Split) -> tuple[float, float, float, int]:
+    """(mean, low, high, values) of one strategy, classifier and size: over random splits, or objects left out."""
+    rows = rows[(rows["split"] == split) & (rows["metric"] == METRICS[split])]
+    values = rows.groupby(["group", "repetition"], dropna=False)["value"].mean()  # several trainings for one object
+    return *within(values, SHARED[split]), len(values)
+
+
+RANDOM, UNSEEN = ({"split": split, "metric": METRICS[split]} for split in (Split.RANDOM, Split.OBJECTS))
+WITH_MAP, NO_MAP = ("knn", "svm"), ("knn_no_som", "svm_no_som")
+PHRASES = {
+    **{("classifier", name): words for name, words in CLASSIFIERS.items()},
+    **{("split", split): words for split, words in SPLITS.items()},
+    **{("metric", metric): "" for metric in METRICS.values()},
+    ("classifier", WITH_MAP): "mean of kNN and SVM with the map",
+    ("classifier", NO_MAP): "mean of both without the map",
+}  # fmt: skip
+OBJECTS = {  # the pairs: one of each class left out
+    "over": ("group", "repetition"), "shared": SHARED[Split.OBJECTS],
+    "phrases": PHRASES | {("over", "repetition"): "objects"},
+}  # fmt: skip
+PRINTED_SET = "princeton_eight"  # 11,400 sequences a strategy, as many as the thesis has
+MORE = ("princeton_touched", "furniture_splits")  # fewer sequences of more objects and splits: does it carry over?
+claim = partial(Claim, section="T4.4.10", stage=STAGE, dataset=PRINTED_SET, statistic="whole_sequences",
+                phrases=PHRASES)  # fmt: skip
+guided = partial(claim, first={"method": GUIDED}, second={"method": BLIND})
+cnn = partial(claim, where={"method": GUIDED}, first={"classifier": "cnn"})
+
+
+@statistic("whole_sequences")
+def whole_sequences(results: Results, claim: Claim) -> pd.Series:
+    """First side minus second, of the sequences with all their frames and cells."""
+    size = results.measured(STAGE, claim.sets[0])[SIZE].max()
+    return difference(results, replace(claim, where={**claim.where, **size})).sort_index()
+
+
+def both(claims: Iterable[Claim]) -> Iterator[Claim]:
+    """Each claim with sequences drawn at random, as in the thesis, and with unseen objects."""
+    for one in claims:
+        said = f"{one.sentence[:-1]}, on objects never touched too."
+        yield replace(one, key=f"{one.key}_random", where={**one.where, **RANDOM}, shared=SHARED[Split.RANDOM])
+        yield replace(one, key=f"{one.key}_unseen", sentence=said, where={**one.where, **UNSEEN}, **OBJECTS)
+
+
+OWN = [
+    guided(key="contours_guided", where={"classifier": "cnn"},
+           sentence="Contours through visually interesting points are better than blind ones."),
+    guided(key="contours_guided_all", where={"classifier": PRINTED_METHODS},
+           sentence="Guided contours are better, averaged over the classifiers."),
+    guided(key="contours_glance", section="ours", where={"classifier": "cnn"}, first={"method": "glance"},
+           sentence="Contours through points of our glance are better than blind ones."),
+    cnn(key="contours_cnn_best", sentence="Networks lead on sequences.", second={"classifier": highest_of(*WITH_MAP)},
+        readings=(reading("beside classifiers without the map, too",
+                          second={"classifier": highest_of(*WITH_MAP, *NO_MAP)}),)),
+    *(
+        cnn(key=f"contours_both_over_{alone}", section="T4.4.8", second={"classifier": f"cnn_{alone}"},
+            sentence=f"Images and normals together beat the {alone} alone.")
+        for alone in ("images", "normals")
+    ),
+    cnn(key="contours_map_helps", section="T4.4.9", first={"classifier": WITH_MAP}, second={"classifier": NO_MAP},
+        sentence="Reducing the features by a self-organising map helps."),
+]  # fmt: skip
+PRIMARY = [one for one in both(OWN) if not one.own]
+CLAIMS = [
+    *PRIMARY,
+    *(replace(one, key=f"{one.key}_more", of=one.key, dataset=MORE, printed=0) for one in PRIMARY),
+    *(replace(one, dataset=MORE) for one in both(OWN) if one.own),
+    claim(key="contours_random_flatters", section="ours", dataset=MORE,
+          sentence="Drawing test sequences at random flatters: the same objects are known.",
+          where={"method": GUIDED, "classifier": "cnn"}, first=RANDOM, second=UNSEEN, mean_of="first", **OBJECTS),
+]  # fmt: skip

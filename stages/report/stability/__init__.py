@@ -1,41 +1,28 @@
 """Where methods break: under which perturbation, and how much of it; and where the time went."""
 
-from . import (
-    claims,
-    kernels,
-    leaderboard,
-    pairs,
-    people,
-    points,
-    simplification,
-    time_spent,
-    touch,
-    touch_imprints,
-    transfer,
-    uses,
-)
+from . import claims, pairs, people, points, score, simplification, touch, transfer
 
 TABLES = {
-    "stability_score": leaderboard.table,
-    "stability_breaking": leaderboard.breaking,
+    "stability_score": score.table,
+    "stability_breaking": score.breaking,
     "stability_pairs": pairs.table,
-    "stability_uses": uses.table,
+    "stability_uses": people.uses,
     "stability": points.table,
-    "stability_people": people.table,
+    "stability_people": people.people_table,
     "stability_simplification": simplification.table,
     "touch_stability": touch.table,
     "touch_denoised": touch.denoised,
     "transfer_stability": transfer.table,
-    "time_spent": time_spent.build,
+    "time_spent": score.time_spent,
 }
 FIGURES = {
     "stability": points.figure,
     "stability_failures": points.failures,
     "stability_simplification": simplification.figure,
     "touch_stability": touch.figure,
-    "touch_stability_imprints": touch_imprints.build,
+    "touch_stability_imprints": touch.build,
     "transfer_stability": transfer.figure,
-    "kernels": kernels.build,
+    "kernels": score.kernels,
 }
-CHARTS = {"stability": leaderboard.chart}
+CHARTS = {"stability": score.chart}
 CLAIMS = claims.CLAIMS

@@ -1,12 +1,12 @@
 """Claims of T6.3 on a denoising autoencoder before recognition by touch, and claims on the stability of attention."""
 
-from stages.kit.split import Split
+from haptic_glance.know.split import Split
 from stages.report.claims import Claim
+from stages.stability.uses import PLAIN as NOTHING_KEPT
 
 from .score import BENCHMARK, KINDS
 from .score import STAGE as ATTENTION
 from .touch import DENOISED, PLAIN, STAGE
-from .uses import PLAIN as NOTHING_KEPT
 
 LEARNED, FILTERED = f"{PLAIN}_autoencoder", f"{PLAIN}_median"
 PHRASES = {

@@ -3,14 +3,13 @@
 import numpy as np
 import pandas as pd
 
-from stages.kit.stats import interval
-from stages.report.grid import percent, records
+from stages.engine.statistics import interval
+from stages.report.drawing import label
 from stages.report.items import Table
-from stages.report.markdown import signed
 from stages.report.results import Results, some
-from stages.report.style import label
+from stages.report.tables import percent, records, signed
 from stages.stability.disturbance import AND
-from stages.stability.summary import middle_severity
+from stages.stability.simplification import middle_severity
 
 from .score import BENCHMARK, STAGE, points_lost
 

@@ -8,9 +8,8 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
-from stages.report.grid import records
-from stages.report.markdown import number
-from stages.report.style import GREY, label, plt
+from stages.report.drawing import GREY, label, plt
+from stages.report.tables import number, records
 
 COLUMNS = 4
 ENDS = ("breaking_point", "low", "high")

@@ -1,23 +1,28 @@
-"""What disturbances cost on the objects that people looked at: points found again, agreement with gaze."""
+"""Stability of the agreement with people, and of uses.
+
+What disturbances cost on the objects that people looked at: points found again, agreement with gaze.
+
+What a disturbance costs where the points are used: simplification around them, recognition by touch there.
+"""
 
 import numpy as np
 import pandas as pd
 
-from stages.kit.stats import interval
-from stages.report.grid import grouped, records
+from haptic_glance.disturb.objects import PERTURBATIONS
+from stages.engine.statistics import interval
+from stages.report.drawing import label
 from stages.report.items import Table
-from stages.report.markdown import signed, with_interval
 from stages.report.results import GAZED, Results, some
-from stages.report.style import label
-from stages.stability import PERTURBATIONS
+from stages.report.tables import grouped, records, signed, with_interval, within
 from stages.stability.subject import UNPERTURBED
+from stages.stability.uses import KEPT, PARTITIONS, PLAIN, SENSOR_NOISE, SET, TARGET
 
-from .score import STAGE, of_gaze, scores
+from .score import BENCHMARK, STAGE, of_gaze, scores
 
 REFERENCE = "glance"  # Itti's attention was not disturbed on these sets
 
 
-def table(results: Results) -> Table:
+def people_table(results: Results) -> Table:
     """A row a disturbance: per method the share of points found again, and the NSS and AUC that are lost."""
     sets = some([name for name in GAZED if name in results.datasets(STAGE)], "no objects with gaze", STAGE)
     rows = pd.concat([results.measured(STAGE, name) for name in sets])
@@ -77,3 +82,51 @@ def _line(key, case, methods):
         "chance, %": f"{100 * case['chance'].mean():.0f}",
         **{f"{label(name)}, NSS": signed(*case.loc[name, ["nss", "nss_low", "nss_high"]]) for name in methods},
     }  # fmt: skip
+
+
+SHOWN = ("glance", "itti", "harris")  # the CSV has all
+METRICS = ("lod_mean", "lod_salient", "recognised")
+
+
+def uses(results: Results) -> Table:
+    """A row a disturbance: per method the salient error as a share of that of plain QEM, and recognition by touch."""
+    rows = results.measured(STAGE, results.printed(BENCHMARK, STAGE), metric=list(METRICS))
+    frame = pd.DataFrame([
+        {"perturbation": name, "method": method, "metric": metric, **_number(rows, own, method, metric)}
+        for (name, method, metric), own in grouped(rows, ["perturbation", "method", "metric"])
+    ])  # fmt: skip
+    cells = frame.set_index(["perturbation", "method", "metric"])
+    methods = [name for name in SHOWN if name in set(frame["method"])] or list(dict.fromkeys(frame["method"]))
+    names = [name for name in dict.fromkeys(frame["perturbation"]) if name != PLAIN]
+    names.sort(key=lambda name: name != UNPERTURBED)
+    severity = rows.dropna(subset=["severity"]).drop_duplicates("perturbation").set_index("perturbation")["severity"]
+    shown = pd.DataFrame([
+        {"disturbance": label(name),
+         "severity": f"{severity[name]:g} {PERTURBATIONS[name].unit}" if name in severity else "–",
+         **{f"{label(method)}, salient error, %": _text(cells, name, method, "lod_salient") for method in methods},
+         **{f"{label(method)}, recognised, %": _text(cells, name, method, "recognised") for method in methods}}
+        for name in names
+    ])  # fmt: skip
+    words = {
+        "objects": rows["item"].nunique(), "target": f"{100 * TARGET:.0f}", "kept": KEPT,
+        "set": SET, "partitions": PARTITIONS, "noise": f"{100 * SENSOR_NOISE:.0f}",
+    }  # fmt: skip
+    return Table(frame, shown, words)
+
+
+def _number(rows, own, method, metric):
+    """Mean, low and high over the objects; of an error as a share of that of plain QEM of the same object."""
+    values = own.set_index("item")["value"]
+    if metric == "recognised":
+        found = within(values)
+    else:
+        plain = rows[(rows["perturbation"] == PLAIN) & (rows["method"] == method) & (rows["metric"] == metric)]
+        found = interval(values / plain.set_index("item")["value"].reindex(values.index))
+    return dict(zip(("mean", "low", "high"), found, strict=True)) | {"objects": len(values)}
+
+
+def _text(cells, *key):
+    if key not in cells.index:
+        return "–"
+    mean, low, high = cells.loc[key, ["mean", "low", "high"]]
+    return with_interval(mean, low, high, 100, 0)

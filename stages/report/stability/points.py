@@ -5,16 +5,15 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from stages.kit import Mesh
-from stages.kit.breaking_point import BROKEN
-from stages.kit.files import read_arrays
-from stages.report.drawing import name_panels, show, square_grid
-from stages.report.grid import percent, within
+from haptic_glance.base.files import read_arrays
+from haptic_glance.disturb.objects import PERTURBATIONS
+from haptic_glance.mesh.mesh import Mesh
+from stages.engine.statistics import BROKEN
+from stages.report.drawing import GREY, INK, MARKERS, colours, label, name_panels, show, square_grid
 from stages.report.items import Figure, Table
 from stages.report.results import Results, some
-from stages.report.style import GREY, INK, MARKERS, colours, label
-from stages.stability import PERTURBATIONS
-from stages.stability.summary import breaking_points, mean_repeatability, middle_severity
+from stages.report.tables import percent, within
+from stages.stability.simplification import breaking_points, mean_repeatability, middle_severity
 
 from .panels import broken, finish, panels
 

@@ -1,19 +1,37 @@
-"""One number a method: its mean corruption error (mCE), as Hendrycks and Dietterich have it for classifiers.
+"""The score of stability, the leaderboard, and time spent.
+
+One number a method: its mean corruption error (mCE), as Hendrycks and Dietterich have it for classifiers.
 
 Benchmarking neural network robustness to common corruptions and perturbations, ICLR 2019. The error here is the share
 of the points that are not found again, corrected for chance; the reference is Itti's attention.
+
+Which method is the most stable: the score of each, where it breaks, and its seconds and accuracy beside it.
+
+Time of each kernel as a ratio to its peer, over the commits that were measured.
+
+Where the time went, by stage and method.
 """
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 import pandas as pd
 
-from stages.kit.breaking_point import expanded_levels, resampled_means, resamples
-from stages.kit.units import unit
-from stages.report.results import NotRun, some
+from haptic_glance.disturb.objects import PERTURBATIONS
+from stages.engine.rows import unit
+from stages.engine.statistics import expanded_levels, interval, resampled_means, resamples
+from stages.report.drawing import CYCLE, MARKERS, label, plain_logarithm, plt
+from stages.report.items import Figure, Table
+from stages.report.pareto import attention_seconds, pareto_chart
+from stages.report.results import NotRun, Results, some
+from stages.report.tables import number, percent, records, with_interval
+from stages.stability.simplification import breaking_points
 from stages.stability.subject import UNPERTURBED
+
+from .panels import cell
 
 STAGE = "stability"
 BENCHMARK = "household_stability"
@@ -155,3 +173,162 @@ def _with_ends(name, at, drawn, count):
     levels = expanded_levels(count) if count > 1 else (np.nan, np.nan)
     ends = np.quantile(drawn, levels, axis=0) if count > 1 else np.full((2, drawn.shape[1]), np.nan)
     return {name: at[0], f"{name}_low": ends[0], f"{name}_high": ends[1]}
+
+
+GAZE = "gaze"  # the set that tells accuracy and seconds
+CHANCE = "random"
+PROTOCOL = (  # conf/stability/benchmark.yaml
+    "Smaller than the thesis: pictures of a fourth of the rows, two or three severities, three draws of what is "
+    "random. Left out, since they are the slowest: regions of interest, spectral and cluster-based saliency. Copies of "
+    "a primitive at other sizes count once."
+)
+BANDS = {0.3: "under 0.3", 0.6: "0.3 to 0.6", 1.2: "0.6 to 1.2", np.inf: "above 1.2"}  # NSS on gaze, for the chart
+
+
+def table(results: Results) -> Table:
+    """A row a method, the most stable first."""
+    rows, frame, errors = _scored(results)
+    frame = frame.merge(_accuracy(results), on="method", how="left").sort_values("mce")
+    shown = pd.DataFrame([
+        {
+            "method": label(row.method),
+            "mCE, %": with_interval(row.mce, row.mce_low, row.mce_high, 100, 0),
+            **{f"{kind}, %": percent(getattr(row, kind)) for kind in KINDS},
+            "found again, %": with_interval(row.found, row.found_low, row.found_high, 100, 0),
+            "NSS on gaze": number(row.nss, 2) if np.isfinite(row.nss) else "–",
+            "seconds": number(row.seconds, 2) if np.isfinite(row.seconds) else "–",
+        }
+        for row in records(frame)
+    ])  # fmt: skip
+    return Table(frame, shown, _words(results, rows, errors))
+
+
+def breaking(results: Results) -> Table:
+    """A row a method, a column a disturbance: the severity at which half of the points are lost."""
+    rows, frame, errors = _scored(results)
+    rows = rows[rows["perturbation"].isin(errors.perturbations)]
+    found = pd.DataFrame([
+        {"method": method, "perturbation": name, "unit": PERTURBATIONS[name].unit,
+         "harshest": [severity for one, severity in errors.cases if one == name][-1],
+         "breaking_point": at, "low": low, "high": high}
+        for (name, method), (at, low, high) in breaking_points(rows[rows["method"] != CHANCE]).items()
+    ])  # fmt: skip
+    found["text"] = [cell(row, PERTURBATIONS[row.perturbation].unharmed) for row in records(found)]
+    order = [name for name in frame.sort_values("mce")["method"] if name != CHANCE]
+    wide = found.pivot(index="method", columns="perturbation", values="text").loc[order, errors.perturbations]
+    shown = wide.rename(index=label, columns=label).rename_axis(columns=None).reset_index()
+    units = "; ".join(f"{label(name)}: {PERTURBATIONS[name].unit}" for name in errors.perturbations)
+    return Table(found.drop(columns="text"), shown, _words(results, rows, errors) | {"units": units})
+
+
+def chart(results: Results) -> Figure:
+    """The share of points found again against the seconds of a look, coloured by the agreement with gaze."""
+    _, frame, errors = _scored(results)
+    frame = frame[frame["method"] != CHANCE].merge(_accuracy(results), on="method").dropna(subset=["seconds"])
+    some(frame, f"no seconds of a look on {GAZE}", "salient_points", runnable=False)
+    frame = frame.assign(name=frame["method"].map(label), low=frame["found_low"], high=frame["found_high"])
+    frame["band"] = [next(text for top, text in BANDS.items() if nss < top) for nss in frame["nss"].fillna(0)]
+    frame = frame.sort_values("nss", ascending=False)
+    for end in ("found", "low", "high"):
+        frame[end] *= 100
+    drawn = pareto_chart(
+        frame, "found", title="Stability against the cost of a look", reference=label(REFERENCE),
+        quality_label="points found again beyond chance, %", colour="band", legends={"band": "NSS on gaze"},
+        clock=results.clock("salient_points", GAZE),
+    )  # fmt: skip
+    sharp = frame[frame["band"] == frame["band"].iloc[0]].sort_values("found", ascending=False).iloc[0]
+    said = f"{sharp['name']}, {with_interval(sharp['found'], sharp['low'], sharp['high'], places=0)} %"
+    drawn.words |= {"objects": len(errors.objects), "band": sharp["band"], "sharp": said}
+    return drawn
+
+
+def _scored(results: Results) -> tuple[pd.DataFrame, pd.DataFrame, Errors]:
+    """(rows of the benchmark or else of the first set, `scores`, the Errors)."""
+    rows = results.rows(STAGE, results.printed(BENCHMARK, STAGE), metric=["repeatability", "chance"])
+    errors = of_points(rows)
+    return rows, scores(errors), errors
+
+
+def _accuracy(results: Results) -> pd.DataFrame:
+    """Of each method the NSS on the meshes with gaze, with its interval, and the seconds of a look; empty without."""
+    if not results.printed(GAZE, "salient_points"):
+        return pd.DataFrame(columns=["method", "nss", "seconds"]).astype({"nss": float, "seconds": float})
+    rows = results.measured("salient_points", GAZE, metric="nss")
+    seconds = attention_seconds(results, GAZE)
+    found = [
+        dict(zip(("nss", "nss_low", "nss_high"), interval(own["value"]), strict=True)) | {"method": method}
+        for method, own in rows.groupby("method")
+    ]
+    frame = pd.DataFrame(found)
+    return frame.assign(seconds=frame["method"].map(seconds))
+
+
+def _words(results, rows, errors):
+    dropped = [
+        label(name) for name, sums in zip(errors.perturbations, _of_reference(errors), strict=True) if sums <= LEAST
+    ]
+    return {
+        "objects": len(errors.objects), "methods": len(errors.methods), "reference": label(REFERENCE),
+        "perturbations": ", ".join(label(name) for name in errors.perturbations if label(name) not in dropped),
+        "protocol": PROTOCOL if rows["dataset"].iloc[0] == BENCHMARK else "",
+        "left_out": f"Without {', '.join(dropped)}, which cost the reference nothing." if dropped else "",
+        "not_run": results.left_out(STAGE, rows["dataset"].iloc[0]),
+    }  # fmt: skip
+
+
+def _of_reference(errors):
+    means = errors.by_perturbation(errors.means(np.ones((1, len(errors.objects)))))[0]
+    return means[errors.methods.index(REFERENCE)] / errors.severities
+
+
+def kernels(results: Results) -> Figure:
+    """A line a kernel of the machine that measured last, shaded up to its limit; the commits go from old to new."""
+    rows = results.bench("history").dropna(subset=["ratio"]).sort_values("date", kind="stable")
+    rows = rows[rows["machine"] == rows["machine"].iloc[-1]]
+    commits = list(dict.fromkeys(rows["commit"]))
+    rows = rows.assign(place=rows["commit"].map(commits.index))
+    drawing, axes = plt.subplots(figsize=(7.2, 4.8))
+    last = rows.groupby("what")["ratio"].last().sort_values(ascending=False)
+    for k, what in enumerate(last.index):
+        form = MARKERS[(k + k // len(CYCLE)) % len(MARKERS)]  # another where the colours start again
+        _draw(axes, rows[rows["what"] == what], CYCLE[k % len(CYCLE)], form)
+    axes.axhline(1, color="black", lw=0.8, ls=":")
+    axes.set_yscale("log")
+    plain_logarithm(axes.yaxis)
+    axes.set_xticks(range(len(commits)), commits, rotation=30, ha="right", fontsize=8)
+    axes.set(xlim=(-0.5, len(commits) - 0.5), ylabel="time, as a ratio to the peer's")
+    axes.grid(axis="y")
+    axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=8.5)
+    named = rows.drop_duplicates("what").set_index("what")["peer"]
+    words = {"kernels": len(last), "commits": len(commits), "machine": rows["machine"].iloc[-1]}
+    return Figure(drawing, words | {"names": ", ".join(f"{what} ({named[what]})" for what in last.index)})
+
+
+def _draw(axes, rows: pd.DataFrame, tint: str, form: str) -> None:
+    middle, ends = rows["ratio"].to_numpy(), rows[["low", "high"]].to_numpy().T
+    axes.errorbar(rows["place"], middle, np.abs(ends - middle), fmt=f"{form}-", color=tint, ms=5, mec="white", lw=1.4,
+                  label=f"{rows['what'].iloc[0]} / {rows['peer'].iloc[-1]}")  # fmt: skip
+    beside = np.array([-0.12, 0.12])[:, None] + rows["place"].to_numpy()  # a single commit has a width, too
+    places, low, high = beside.T.ravel(), rows["ratio"].repeat(2), rows["limit"].repeat(2)
+    axes.fill_between(places, low, high, color=tint, alpha=0.12, lw=0)
+
+
+TIME_KEYS = ["value", "metric", "note", "task", "view", "split"]  # in which rows of one piece of work differ
+SEEN = "seen_share"  # rows of the views that stand for one piece of work, the views in a row
+
+
+def time_spent(results: Results) -> Table:
+    """Seconds of all pieces of work of the sets that are switched on, the most first."""
+    parts = []
+    for stage, dataset in product(results.stages, results.sets):
+        with suppress(NotRun):
+            rows = results.rows(stage, dataset).dropna(subset=["seconds"])
+            rows = rows.loc[~((rows["metric"] == SEEN) & (rows.get("views") != 1))]
+            parts.append(rows.drop(columns=TIME_KEYS, errors="ignore").drop_duplicates().assign(stage=stage))
+    timed = pd.concat(some([part for part in parts if len(part)], "nothing was timed", "meshes"))
+    said = {"pieces of work": "size", "seconds each": "mean", "seconds": "sum"}
+    frame = timed.fillna({"method": ""}).groupby(["stage", "method"], sort=False)["seconds"].agg(**said).reset_index()
+    frame["share, %"] = 100 * frame["seconds"] / frame["seconds"].sum()
+    frame = frame.sort_values("seconds", ascending=False, kind="stable")
+    said = {name: frame[name].map(label) for name in ("stage", "method")}
+    return Table(frame, frame.assign(**said), words={"sets": ", ".join(results.sets)})

@@ -10,13 +10,12 @@ from matplotlib.colors import ListedColormap
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from stages.report.grid import grouped
+from stages.report.drawing import CYCLE, INK, PALE, label, plt
 from stages.report.items import Figure, Table
 from stages.report.results import Results
-from stages.report.style import CYCLE, INK, PALE, label, plt
-from stages.stability.qem_error_curve import LEAST_ERROR
+from stages.report.tables import grouped
 from stages.stability.simplification import BUDGETS, KEPT_BUDGETS, OUTCOMES, SMALLEST
-from stages.stability.specimen import KEPT, LARGEST_ERROR, RUIN
+from stages.stability.surface import KEPT, LARGEST_ERROR, LEAST_ERROR, RUIN
 
 STAGE = "stability"
 COLOURS = {"valid": "#9CD3C0", "refused": PALE, "ruined": "#D55E00", "crash": "#000000"}

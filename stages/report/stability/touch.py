@@ -1,19 +1,24 @@
-"""Where recognition by touch breaks: the severity of each perturbation at which half of its lead is lost."""
+"""Stability of touch.
 
-from collections.abc import Sequence
+Where recognition by touch breaks: the severity of each perturbation at which half of its lead is lost.
+
+What the array feels at one place under every perturbation, from mild to harsh.
+"""
+
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 import pandas as pd
 
-from stages.kit.breaking_point import breaking_point, lead_left
-from stages.kit.split import shared_by
-from stages.kit.stats import interval
-from stages.report.grid import grouped, records
+from haptic_glance.base.files import read_arrays
+from haptic_glance.disturb.touches import TOUCH_PERTURBATIONS
+from haptic_glance.know.split import shared_by
+from stages.engine.statistics import breaking_point, interval, lead_left
+from stages.report.drawing import GREY, MARKERS, PALE, label, plt
 from stages.report.items import Figure, Table
-from stages.report.markdown import signed
 from stages.report.results import Results
-from stages.report.style import GREY, MARKERS, label
-from stages.touch_stability import CLEAN, PERTURBATIONS
+from stages.report.tables import grouped, records, signed
+from stages.touch_stability.trial import CLEAN
 
 from .panels import ACCURACY, Curves, broken, degradation
 
@@ -29,8 +34,8 @@ LINES = {  # (split, features, classifier): how a person says it
     ("random", "imprint_place", "knn"): "kNN with places",
 }
 TINTS = ("#0072B2", "#56B4E9", "#D55E00", "#009E73")
-UNITS = {name: known.unit for name, known in PERTURBATIONS.items()}
-UNHARMED = {name: known.unharmed for name, known in PERTURBATIONS.items()}
+UNITS = {name: known.unit for name, known in TOUCH_PERTURBATIONS.items()}
+UNHARMED = {name: known.unharmed for name, known in TOUCH_PERTURBATIONS.items()}
 ENOUGH = 0.02  # accuracy that may be lost before it is said to suffer
 COLUMNS = ["perturbation", "unit", *KEYS, "breaking_point", "low", "high", "harmless", "harshest", "accuracy"]
 LEFT = ["left", "left_low", "left_high"]
@@ -160,7 +165,41 @@ def _lines(behind: str) -> dict[tuple[str, ...], str]:
 def _curves(results: Results, dataset: str | None = None, behind: str = "") -> tuple[pd.DataFrame, Curves]:
     """(rows, the curves of those that were measured)."""
     rows = results.measured(STAGE, dataset, metric="accuracy")
-    names = [name for name in PERTURBATIONS if name in set(rows["perturbation"])]
+    names = [name for name in TOUCH_PERTURBATIONS if name in set(rows["perturbation"])]
     return rows, {
         name: {line: found for line in _lines(behind) if len(found := curve(rows, name, line))} for name in names
     }
+
+
+MOST = 6  # severities
+
+
+def build(results: Results) -> Figure:
+    """Tactile images of one object's first place, a line a perturbation of what is asked about."""
+    [item] = results.choose(results.settings.figure_objects, 1, "touch_stability")
+    stored = read_arrays(results.folder("touch_stability") / f"{item}.npz")
+    asked = [name for name, known in TOUCH_PERTURBATIONS.items() if not known.in_training]
+    shown = {name: found for name in asked if (found := severities(stored, name))}
+    half, across = -(-len(shown) // 2), MOST + 2  # beside the images: the name, and no change
+    unmarked = {"xticks": [], "yticks": []}
+    figure, grid = plt.subplots(half, 2 * across, figsize=(12.5, 0.86 * half), squeeze=False, subplot_kw=unmarked)
+    for axes in grid.flat:
+        axes.set_axis_off()
+    for k, (name, found) in enumerate(shown.items()):
+        words, *row = grid[k % half, across * (k // half) :]
+        words.text(1.0, 0.5, label(name), ha="right", va="center", fontsize=9, transform=words.transAxes)
+        keys = {"none": "shown.clean"} | {severity: f"shown.{name}.{severity}" for severity in found[:MOST]}
+        for axes, (title, key) in zip(row, keys.items(), strict=False):
+            axes.set_axis_on()
+            axes.imshow(stored[key][0], cmap="gray", vmin=0, vmax=1)
+            axes.spines[:].set(visible=True, color=PALE, linewidth=0.6)
+            axes.set_title(title, fontsize=7, fontweight="normal", loc="center", pad=2)
+    figure.subplots_adjust(wspace=0.06, hspace=0.35)
+    return Figure(figure, {"name": item, "perturbations": ", ".join(map(label, shown))})
+
+
+def severities(keys: Iterable[str], perturbation: str) -> list[str]:
+    """The severities of a perturbation as they stand in the keys of a file, from mild to harsh."""
+    start, unharmed = f"shown.{perturbation}.", TOUCH_PERTURBATIONS[perturbation].unharmed
+    found = [key.removeprefix(start) for key in keys if key.startswith(start)]
+    return sorted(found, key=lambda key: np.abs(float(key) - unharmed))

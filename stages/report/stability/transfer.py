@@ -4,12 +4,12 @@ from itertools import product
 
 import pandas as pd
 
-from stages.kit.breaking_point import breaking_point, lead_left
-from stages.report.grid import grouped, records
+from stages.engine.statistics import breaking_point, lead_left
+from stages.report.drawing import label, start
 from stages.report.items import Figure, Table
 from stages.report.networks import FINE, MODES, NETWORK, STARTS, mean, measured
 from stages.report.results import Results, some
-from stages.report.style import label, start
+from stages.report.tables import grouped, records
 
 from .panels import ACCURACY, CLEAN, Curves, broken, degradation
 

@@ -2,10 +2,10 @@
 
 from functools import partial
 
-from stages.report.kept import as_printed
+from stages.report.claims_page import as_printed
 from stages.report.results import SECTION_4_2
 
-from . import claims, costs, imprint_rates, pictures, similar, touches
+from . import claims, imprints, pictures, similar, touches
 
 TABLES = {
     "table_4_1": touches.table_4_1,
@@ -14,7 +14,7 @@ TABLES = {
     "table_4_5": touches.table_4_5,
     "table_4_6": touches.table_4_6,
     "section_4_2_4": similar.section_4_2_4,
-    "imprint_rates": imprint_rates.table,
+    "imprint_rates": imprints.table,
 }
 FIGURES = {
     "pipeline": pictures.pipeline,
@@ -24,9 +24,9 @@ FIGURES = {
     "figure_4_4": partial(as_printed, similar.figure_4_4, SECTION_4_2),
 }
 CHARTS = {
-    "touch": costs.by_classifier,
-    "touches": costs.by_features,
-    "saliency": costs.by_saliency,
-    "imprints": imprint_rates.chart,
+    "touch": claims.by_classifier,
+    "touches": claims.by_features,
+    "saliency": claims.by_saliency,
+    "imprints": imprints.chart,
 }
 CLAIMS = claims.CLAIMS

@@ -6,14 +6,13 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 
-from stages.imprints import Surface, distances, normalise, sensor_axes, sensor_normals, touchable
-from stages.imprints.pictures import draw
-from stages.report.drawing import show, vivid
+from haptic_glance.touch import Surface, distances, normalise, sensor_axes, sensor_normals, touchable
+from haptic_glance.touch.pictures import draw
+from stages.report.drawing import GREY, INK, PALE, label, plt, show, vivid
 from stages.report.items import Figure
 from stages.report.results import NotRun, Results
-from stages.report.style import GREY, INK, PALE, label, plt
 
-from .rows import MODEL, STAGE
+from .imprints import MODEL, STAGE
 from .touches import draw_bars, table_4_1, table_4_2
 
 STEPS = ["1  See it", "2  Find what stands out", "3  Spend the faces there", "4  Touch it there", "5  Know what it is"]

@@ -5,17 +5,16 @@ from itertools import combinations, product
 import numpy as np
 import pandas as pd
 
-from stages.classification.similarity import SIMILARITY_THRESHOLD, similarity
-from stages.kit.files import read_arrays
-from stages.kit.split import Split
-from stages.report.grid import blocks, grid
+from haptic_glance.base.files import read_arrays
+from haptic_glance.know.features import SIMILARITY_THRESHOLD, similarity
+from haptic_glance.know.split import Split
+from stages.report.drawing import GREY, INK, colours, label, plt
 from stages.report.items import Figure, Table
-from stages.report.ranking import Ranking
 from stages.report.results import Results, some
-from stages.report.style import GREY, INK, colours, label, plt
+from stages.report.tables import Ranking, blocks, grid
 from stages.report.words import dataset_text
 
-from .rows import EQUAL, PRINTED, SSIM, STAGE, Protocol, accuracies, fifteen, protocols, sampling_text
+from .imprints import EQUAL, PRINTED, SSIM, STAGE, Protocol, accuracies, fifteen, protocols, sampling_text
 
 THESIS = "the thesis"
 WAYS = {

@@ -10,15 +10,13 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 
-from stages.report.grid import blocks, grid
+from stages.report.claims_page import shared_notes
+from stages.report.drawing import CLASSIFIERS, INK, MEANS, READINGS, colours, label, plt, with_means
 from stages.report.items import Figure, Table
-from stages.report.prose import shared_notes
-from stages.report.ranking import Ranking
 from stages.report.results import SETS_4_2, NotRun, Results, some
-from stages.report.scalings import CLASSIFIERS, MEANS, READINGS, with_means
-from stages.report.style import INK, colours, label, plt
+from stages.report.tables import Ranking, blocks, grid
 
-from .rows import EQUAL, MODEL, SSIM, STAGE, Protocol, accuracies, fifteen, protocols, sampling_text
+from .imprints import EQUAL, MODEL, SSIM, STAGE, Protocol, accuracies, fifteen, protocols, sampling_text
 
 DRAWN = ("random", "itti", EQUAL, SSIM, MODEL)  # samplings
 FURTHER = ["deep_learning", "naive_bayes", "knn"]  # shown in the further rows; all are in the CSV

@@ -4,13 +4,13 @@ from functools import partial
 
 from stages.report.networks import COARSE, FINE
 
-from . import claims, coarse_imprints, figure_5_3, figure_5_4, network_tables, networks_chart, training_curves
+from . import figure_5_3, figure_5_4, networks_chart, tables, training_curves
 
 TABLES = {
-    "table_5_3": partial(network_tables.networks, data=COARSE),
-    "table_5_4": partial(network_tables.networks, data=FINE),
-    "table_5_6": network_tables.frozen_layers,
-    "coarse_imprints": coarse_imprints.build,
+    "table_5_3": partial(tables.networks, data=COARSE),
+    "table_5_4": partial(tables.networks, data=FINE),
+    "table_5_6": tables.frozen_layers,
+    "coarse_imprints": tables.build,
 }
 FIGURES = {
     "figure_5_3": figure_5_3.build,
@@ -18,4 +18,4 @@ FIGURES = {
     "training_curves": training_curves.build,
 }
 CHARTS = {"networks": networks_chart.build}
-CLAIMS = claims.CLAIMS
+CLAIMS = tables.CLAIMS

@@ -4,12 +4,12 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 
-from stages.kit.stats import interval
-from stages.report.grid import grouped
+from stages.engine.statistics import interval
+from stages.report.drawing import GREY, INK, PALE, label, plt
 from stages.report.items import Figure
 from stages.report.networks import COARSE, FINE, MODES, PASSES, PRINTED, SPLITS, THESIS, everywhere, shared
 from stages.report.results import Results, some
-from stages.report.style import GREY, INK, PALE, label, plt
+from stages.report.tables import grouped
 from stages.report.words import dataset_text
 
 TINTS = {("random", FINE): "#0072B2", ("objects", FINE): "#56B4E9", ("random", COARSE): "#D55E00",

@@ -4,11 +4,11 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 
-from stages.report.grid import everywhere, grouped, records
+from stages.report.drawing import CYCLE, GREY, INK, MARKERS, label, plt, start
 from stages.report.items import Figure
 from stages.report.networks import COARSE, FINE, NETWORK, of_passes
 from stages.report.results import Results
-from stages.report.style import CYCLE, GREY, INK, MARKERS, label, plt, start
+from stages.report.tables import everywhere, grouped, records
 from stages.report.words import dataset_text
 
 from .figure_5_3 import CELLS

@@ -2,13 +2,13 @@
 
 import pandas as pd
 
-from stages.kit.split import shared_by
-from stages.report.grid import means
+from haptic_glance.know.split import shared_by
+from stages.report.drawing import label, start
 from stages.report.items import Figure
 from stages.report.networks import FINE, THEIRS, measured
 from stages.report.pareto import pareto_chart
 from stages.report.results import Results
-from stages.report.style import label, start
+from stages.report.tables import means
 from stages.report.words import dataset_text
 
 REFERENCE = "MobileNetV2, ImageNet, frozen"

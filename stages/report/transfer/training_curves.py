@@ -3,10 +3,10 @@
 import pandas as pd
 from matplotlib.axes import Axes
 
+from stages.report.drawing import GREY, INK, label, plt, start
 from stages.report.items import Figure
 from stages.report.networks import FINE, MODES, SPLITS, STARTS, everywhere
 from stages.report.results import Results, some
-from stages.report.style import GREY, INK, label, plt, start
 
 PRINTED_PASSES = 10  # of T tables 5.3 and 5.4
 SIDES = {"curve_train_accuracy": "touches that are learned", "curve_validation_accuracy": "validation touches"}

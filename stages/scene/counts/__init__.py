@@ -5,11 +5,9 @@ networks, or a linear model), `fit_power_law` extrapolates from one simplified m
 the object's own measured errors. `evaluate_counts` compares them on objects that were left out of the training.
 """
 
-from .curves import Curve, read_curves
-from .distance import focal_length
+from .cases import PowerLaw, fit_power_law
 from .evaluate import evaluate_counts
-from .models import Counts, fit_counts
-from .one_mesh import PowerLaw, fit_power_law
+from .models import Counts, Curve, fit_counts, focal_length, read_curves
 
 __all__ = [
     "Counts", "Curve", "PowerLaw", "fit_counts", "fit_power_law", "focal_length", "evaluate_counts", "read_curves",

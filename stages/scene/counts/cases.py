@@ -1,15 +1,28 @@
-"""Test cases for the models: measured points of curves, whose right count is therefore known."""
+"""Cases of the fewest faces of an object.
+
+Test cases for the models: measured points of curves, whose right count is therefore known.
+
+The face count from one simplified mesh of the object: its error, extrapolated by a common power law.
+
+Tests of predicted counts: the mesh is simplified to as many faces, and its error measured.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
+from numpy.typing import ArrayLike
 
-from stages.kit.rng import rng
+from haptic_glance.base.rng import rng
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.lod import metro, simplify
 
-from .curves import Curve
-from .distance import focal_length
-from .models import DISTANCES, FLOOR
+from .models import DISTANCES, FEWEST, FLOOR, Curve, focal_length
+
+if TYPE_CHECKING:
+    from .evaluate import Fold  # which imports this module
 
 HALF = 0.5  # share of the object's own faces: from there on a mesh is fine
 
@@ -95,3 +108,69 @@ def _with_points(curves):
     for curve in curves:
         points.setdefault(curve.object, {})[curve.method] = curve.points
     return [(curve, points[curve.object]) for curve in curves]
+
+
+@dataclass(frozen=True)
+class PowerLaw:
+    """faces ~ error ** -exponent, the same for all objects."""
+
+    exponent: float
+
+    def faces_needed(
+        self, error: ArrayLike, faces: ArrayLike, measured: ArrayLike, initial_faces: ArrayLike
+    ) -> int | np.ndarray:
+        """The faces for an error over the diagonal, from one simplified mesh with `faces` faces and error `measured`.
+
+        All may be arrays: (k,) i8, or an int for numbers. Between 4 and initial_faces.
+        """
+        ratio = np.maximum(measured, FLOOR) / np.maximum(error, FLOOR)
+        found = np.ceil(np.asarray(faces) * ratio**self.exponent - 1e-6)
+        found = np.minimum(np.maximum(found, FEWEST), initial_faces).astype(np.int64)
+        return int(found) if found.ndim == 0 else found
+
+
+def fit_power_law(curves: Sequence[Curve]) -> PowerLaw:
+    """The PowerLaw of measured curves: least squares of log faces on log error about the mean of each curve.
+
+    Errors below FLOOR are left out. Raises ValueError where no curve has two points of unequal error.
+    """
+    covariance, variance = 0.0, 0.0
+    for curve in curves:
+        used = curve.errors > FLOOR
+        if used.any():
+            errors, faces = np.log(curve.errors[used]), np.log(curve.faces[used])
+            covariance += ((errors - errors.mean()) * (faces - faces.mean())).sum()
+            variance += ((errors - errors.mean()) ** 2).sum()
+    if variance == 0:
+        raise ValueError(f"a power law needs a curve with two points above an error of {FLOOR:g}")
+    return PowerLaw(float(-covariance / variance))
+
+
+BUILT = 4  # objects per fold, one case each: all folds and models together take half a minute on one core
+
+
+def build_some(fold: "Fold", cases: Sequence[Case], counts: np.ndarray) -> pd.DataFrame:
+    """Frame like that of `score_counts`, but measured on meshes, for one case of each of BUILT objects, with `seconds`.
+
+    The same cases for equal folds, whatever the model. Neighbourhoods shrink where the count needs it, as in the lod
+    stage. A case without a sound mesh has no row.
+    """
+    names = np.array([case.curve.object for case in cases])
+    draw = rng(fold.seed, "cases to build")
+    places = [draw.choice(np.flatnonzero(names == name)) for name in draw.permutation(np.unique(names))[:BUILT]]
+    rows = [_built(cases[place], int(counts[place]), fold) for place in places]
+    columns = ["object", "ratio", "error", "within", "seconds"]
+    return pd.DataFrame([row for row in rows if row is not None], columns=columns).astype({"within": bool})
+
+
+def _built(case, count, fold):
+    name, method = case.curve.object, case.curve.method
+    mesh, keep = fold.meshes[name], fold.points[name][method]
+    with Stopwatch() as watch:
+        try:
+            found = simplify(mesh, count, keep, shrink=True)
+        except ValueError:
+            return None
+        error = metro(mesh, found, seed=fold.seed)["mean"] / case.error
+    ratio = len(found.faces) / case.needed
+    return {"object": name, "ratio": ratio, "error": error, "within": error <= 1, "seconds": watch.seconds}

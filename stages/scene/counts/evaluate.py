@@ -1,22 +1,121 @@
-"""The models of the face count compared on objects left out of the training (T3.1.3)."""
+"""Evaluates predictions of the fewest faces.
+
+One fold: models trained on some objects and tested on others, in and beyond the measured range.
+
+The models of the face count compared on objects left out of the training (T3.1.3).
+
+The predictions of each kind of model for the same cases, and the factor with which they meet the tolerance.
+
+Scores of predicted counts: the error of the count and of the mesh, with intervals over the objects.
+"""
 
 import functools
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
 from sklearn.model_selection import KFold
 
-from stages.kit import Mesh, Stopwatch
-from stages.salient_points import COMBINATIONS
+from haptic_glance.base.rng import rng
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.look.points import COMBINATIONS
+from haptic_glance.mesh.mesh import Mesh
 
-from .cases import between, flat, is_informative
-from .curves import Curve
-from .fold import Fold, evaluate_fold, labelled
-from .models import KINDS, fit_counts
-from .one_mesh import fit_power_law
-from .predict import ALL, from_one_mesh, predict_counts, predict_with
-from .scores import score_counts, summarise
+from .cases import HALF, Case, PowerLaw, between, beyond, build_some, fit_power_law, flat, is_informative, side
+from .models import KINDS, Counts, Curve, fit_counts
+
+RATE = 0.9  # share of the cases within the tolerance when models are compared at an equal rate
+INNER = 3  # folds of the training objects, for the safety factor
+
+
+@dataclass(frozen=True, eq=False)
+class Fold:
+    """Curves of the training objects and of those left out, with the meshes and the kept points of the latter.
+
+    sizes: numbers of objects to train on, besides all of them.
+    """
+
+    training: list[Curve]
+    test_curves: list[Curve]
+    meshes: dict[str, Mesh]
+    points: dict[str, dict[str, np.ndarray]]
+    combinations: list[str]
+    sizes: list[int]
+    seed: int
+
+
+def evaluate_fold(fold: Fold) -> pd.DataFrame:
+    """One row per case, method, condition and setting: that of `score_counts`, and the seconds of built meshes."""
+    cases = between(fold.test_curves, fold.seed)
+
+    @functools.cache
+    def counts(kind: str, objects: frozenset[str]) -> np.ndarray:
+        training = [curve for curve in fold.training if curve.object in objects]
+        return predict_counts(kind, training, cases, fold.combinations, fold.seed)
+
+    frames = [*_left_out(fold, cases, counts), *_few_objects(fold, cases, counts), *_beyond(fold)]
+    return pd.concat(frames, ignore_index=True)
+
+
+def _left_out(fold, cases, counts):
+    """As trained, then at an equal rate of cases within the tolerance, and a sample of both as meshes."""
+    parts = _inner_parts(fold)
+    for kind in ALL:
+        found = counts(kind, frozenset(_names(fold.training)))
+        yield labelled(score_counts(cases, found), kind, "left_out")
+        yield labelled(build_some(fold, cases, found), kind, "built")
+        safe = enlarged(found, _safety(fold, kind, parts), cases)
+        yield labelled(score_counts(cases, safe), kind, "equal_rate")
+        yield labelled(build_some(fold, cases, safe), kind, "built_equal_rate")
+
+
+def _safety(fold, kind, parts):
+    """The factor on the counts of a model with which RATE of the cases of training objects are within the tolerance.
+
+    Each case is predicted by a model trained on other training objects (cross-conformal prediction: Vovk 2015). Cases
+    of one object are dependent, so the rate is approximate.
+    """
+    counts = [predict_counts(kind, others, cases, fold.combinations, fold.seed) for others, cases in parts]
+    return safety_factor(np.concatenate(counts), [case for _, cases in parts for case in cases], RATE)
+
+
+def _inner_parts(fold):
+    """[(curves to train on, cases of the other training objects)]."""
+    objects, parts = _names(fold.training), []
+    for _, last in KFold(INNER, shuffle=True, random_state=fold.seed).split(objects):
+        aside = {objects[k] for k in last}
+        others, left = ([c for c in fold.training if (c.object in aside) == chosen] for chosen in (False, True))
+        parts.append((others, between(left, fold.seed)))
+    return parts
+
+
+def _few_objects(fold, cases, counts):
+    objects = _names(fold.training)
+    for size in fold.sizes:
+        drawn = frozenset(rng(fold.seed, f"{size} of {','.join(objects)}").permutation(objects)[:size].tolist())
+        for kind in (*KINDS, "one_mesh"):
+            yield labelled(score_counts(cases, counts(kind, drawn)), kind, "trained_on", size)
+
+
+def _beyond(fold):
+    for condition, fine in (("coarser", False), ("finer", True)):
+        cases = beyond(fold.test_curves, fold.seed, fine)
+        parts = [curve.only(~side(curve, fine)) for curve in fold.training]
+        training = [part for part in parts if part is not None and is_informative(part)]
+        for kind in ALL if cases and training else ():
+            found = predict_counts(kind, training, cases, fold.combinations, fold.seed)
+            yield labelled(score_counts(cases, found), kind, condition)
+
+
+def labelled(frame: pd.DataFrame, method: str, condition: str, setting: int | None = None) -> pd.DataFrame:
+    """The frame with columns method, condition and setting."""
+    return frame.assign(method=method, condition=condition, setting=setting)
+
+
+def _names(curves) -> list[str]:
+    return sorted({curve.object for curve in curves})
+
 
 COMBINED = ("itti", *COMBINATIONS, "VisAttCurvP", "VisAttSymP", "SymLat", "SymRad", "2Sym")  # T3.1.5, by our names
 FOLDS = 5
@@ -40,8 +139,8 @@ def evaluate_counts(
     method -> vertex ids kept: for the meshes that are built. method: network, linear, one_mesh, lookup. condition:
     left_out (5 folds of objects), equal_rate (the same times a safety factor from training objects), built and
     built_equal_rate (a sample of these as meshes), trained_on (`setting` objects), coarser and finer (than all given
-    meshes), larger (objects), flat (sides), cost. Metrics: see stages.scene.counts.scores; those of cost are ratios to
-    the lookup. With too few objects: one row without a value, with a note. side_by_side: runs the folds.
+    meshes), larger (objects), flat (sides), cost. Metrics: see stages.scene.counts.evaluate; those of cost are ratios
+    to the lookup. With too few objects: one row without a value, with a note. side_by_side: runs the folds.
     """
     curves = [curve for curve in curves if curve.method in COMBINED]
     used = [curve for curve in curves if is_informative(curve)]
@@ -131,3 +230,103 @@ def _row(method, condition, setting, metric, value=None):
         "method": method, "condition": condition, "setting": setting, "metric": metric,
         "value": value, "low": None, "high": None, "cases": None, "objects": None, "seconds": None, "note": "",
     }  # fmt: skip
+
+
+ALL = (*KINDS, "one_mesh", "lookup")
+
+
+def predict_counts(
+    kind: str, training: Sequence[Curve], cases: Sequence[Case], combinations: Sequence[str], seed: int
+) -> np.ndarray:
+    """(k,) i8: the counts of a model, trained on the curves `training`, for the cases; the lookup needs none."""
+    if kind == "lookup":
+        return np.array([case.given.faces_needed(case.error) for case in cases])
+    if kind == "one_mesh":
+        return from_one_mesh(fit_power_law(training), cases)
+    model = fit_counts(training, combinations, kind, seed)
+    return predict_with(model, cases)
+
+
+def predict_with(model: Counts, cases: Sequence[Case]) -> np.ndarray:
+    """(k,) i8: the predictions of a Counts. For a combination without a curve of the object, the case's points."""
+    points = {name: np.array([case.points.get(name, case.curve.points) for case in cases]) for name in model.regressors}
+    tolerance = np.array([case.tolerance for case in cases])
+    distance = np.array([case.distance for case in cases])
+    initial = np.array([case.curve.initial_faces for case in cases])
+    return np.asarray(model.faces_needed(tolerance, distance, initial, points))
+
+
+def safety_factor(counts: np.ndarray, cases: Sequence[Case], rate: float) -> float:
+    """The factor on the counts with which the share `rate` of the cases gets enough faces."""
+    needed = np.array([case.needed for case in cases])
+    return float(np.quantile(needed / counts, rate, method="higher"))
+
+
+def enlarged(counts: np.ndarray, factor: float, cases: Sequence[Case]) -> np.ndarray:
+    """Counts times a factor, at most those of the full mesh."""
+    return np.minimum(np.ceil(counts * factor), [case.curve.initial_faces for case in cases]).astype(np.int64)
+
+
+def from_one_mesh(law: PowerLaw, cases: Sequence[Case]) -> np.ndarray:
+    """(k,) i8: the power law from the given mesh nearest to half of the object's faces."""
+    faces, errors = [], []
+    for case in cases:
+        nearest = np.abs(np.log(case.given.faces / (HALF * case.curve.initial_faces))).argmin()
+        faces.append(case.given.faces[nearest])
+        errors.append(case.given.errors[nearest])
+    target = np.array([case.error for case in cases])
+    initial = np.array([case.curve.initial_faces for case in cases])
+    return np.asarray(law.faces_needed(target, np.array(faces), np.array(errors), initial))
+
+
+RESAMPLES = 400  # of the objects, with all their cases: the interval's ends are then within a tenth of its width
+
+
+def score_counts(cases: Sequence[Case], counts: np.ndarray) -> pd.DataFrame:
+    """Frame with one row per case: object, ratio (count / needed), error (over the tolerance), within (tolerance met).
+
+    The error is read from the object's whole measured curve. For a count below all measured ones it is that of the
+    coarsest mesh, which is too low: the case still does not meet the tolerance.
+    """
+    rows = []
+    for case, count in zip(cases, counts, strict=True):
+        error = float(case.curve.error_at(count)) / case.error
+        rows.append({"object": case.curve.object, "ratio": count / case.needed, "error": error})
+    frame = pd.DataFrame(rows, columns=["object", "ratio", "error"])
+    return frame.assign(within=frame["ratio"] >= 1)
+
+
+def summarise(frame: pd.DataFrame, seed: int) -> dict[str, tuple[float, float, float]]:
+    """dict metric -> (value, low, high): over the cases of a frame of `score_counts`, 95 % bootstrap over its objects.
+
+    count_bias: geometric mean of count / needed. factor_median, factor_90: the factor, up or down, within which half
+    and 90 % of the counts are. within: share of cases within the tolerance. excess: error over the tolerance, minus
+    one, median of the cases beyond it, NaN where there is none. waste: mean of the excess faces over the needed ones.
+    """
+    groups = [group for _, group in frame.groupby("object")]
+    values = _metrics(frame)
+    draw = rng(seed, "objects resampled")
+    columns = {name: [group[name].to_numpy() for group in groups] for name in ("ratio", "error", "within")}
+    resampled = []
+    for _ in range(RESAMPLES if len(groups) > 1 else 0):
+        picks = draw.integers(len(groups), size=len(groups))
+        resampled.append(_metrics({name: np.concatenate([parts[k] for k in picks]) for name, parts in columns.items()}))
+    found = {}
+    for name, value in values.items():
+        spread = [each[name] for each in resampled if np.isfinite(each[name])]
+        low, high = np.quantile(spread, [0.025, 0.975]) if spread else (np.nan, np.nan)
+        found[name] = (float(value), float(low), float(high))
+    return found
+
+
+def _metrics(cases: Mapping | pd.DataFrame) -> dict[str, float]:
+    ratio, error, within = (np.asarray(cases[name]) for name in ("ratio", "error", "within"))
+    factor = np.exp(np.abs(np.log(ratio)))
+    return {
+        "count_bias": np.exp(np.log(ratio).mean()),
+        "factor_median": np.median(factor),
+        "factor_90": np.quantile(factor, 0.9),
+        "within": within.mean(),
+        "excess": np.median(error[~within]) - 1 if not within.all() else np.nan,
+        "waste": np.maximum(ratio - 1, 0).mean(),
+    }

@@ -1,0 +1,49 @@
+"""All settings of conf/config.yaml with their defaults and meaning, as one table a stage.
+
+```{settings}
+```
+"""
+
+import re
+from pathlib import Path
+
+from docutils import nodes
+from sphinx.application import Sphinx
+from sphinx.util.docutils import SphinxDirective
+
+from .tables import made_table
+
+CONF = Path(__file__).resolve().parents[2] / "conf" / "config.yaml"
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    """Adds the directive."""
+    app.add_directive("settings", SettingsTable)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
+
+
+def settings() -> dict[str, dict[str, tuple[str, str]]]:
+    """{section: {setting: (default, meaning; empty where a group of conf/ says it)}} of conf/config.yaml."""
+    sections: dict[str, dict[str, tuple[str, str]]] = {}
+    section = ""
+    for line in CONF.read_text(encoding="utf-8").splitlines():
+        if head := re.match(r"(\w+):(?:\s*#.*)?$", line):
+            section = head[1]
+        elif setting := re.match(r"  (\w+):(.*)$", line):
+            default, _, meaning = setting[2].partition(" # ")
+            sections.setdefault(section, {})[setting[1]] = default.strip(), meaning.strip()
+    return sections
+
+
+class SettingsTable(SphinxDirective):
+    """A table for each section."""
+
+    def run(self) -> list[nodes.Node]:
+        """A heading and a table for each section."""
+        made: list[nodes.Node] = []
+        for section, found in settings().items():
+            rows = [
+                (nodes.literal(text=name), nodes.literal(text=value), words) for name, (value, words) in found.items()
+            ]
+            made += [nodes.rubric(text=section), made_table(("setting", "default", "meaning"), rows, (20, 25, 55))]
+        return made

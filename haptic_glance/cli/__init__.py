@@ -1,0 +1,1 @@
+"""The commands of `haptic-glance`, one a file: arguments and printing."""

@@ -1,0 +1,24 @@
+"""Prints the places of one mesh that people look at first, or that are worth touching.
+
+They are those of `haptic-glance saliency`, most salient first: vertex, position in the file's coordinates, score
+from 0 to 1. Positions can be handed to `haptic-glance touch --at`.
+
+examples:
+  haptic-glance points scan.stl
+  haptic-glance points chair.glb --count 5 --json
+  haptic-glance points scan.stl --up y --out points.csv
+  haptic-glance points scan.stl --purpose touch --count 6
+"""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from .saliency import look_at, shared_parser
+
+
+def run(argv: Sequence[str]) -> None:
+    """Runs the command line `argv`, without the program's name."""
+    command = shared_parser("points", __doc__ or "")
+    command.add_argument("--out", dest="points", metavar="FILE", type=Path, help="write the points as CSV, too")
+    command.set_defaults(out=None, picture=None, weights=None)
+    look_at(command.parse_args(argv))

@@ -1,0 +1,166 @@
+"""Where people look at one mesh, and the places to touch first.
+
+Reads STL, OBJ, PLY, OFF, GLB or a point cloud. Prints the salient points, most salient first: vertex, position in the
+file's coordinates, score from 0 to 1 (the saliency around the point, never more than that of the point before it). The
+mesh is left as it is; --out writes a copy coloured by saliency.
+
+examples:
+  haptic-glance saliency scan.stl
+  haptic-glance saliency scan.stl --out look.ply --points points.csv --picture look.png
+  haptic-glance saliency chair.glb --count 5 --json
+  haptic-glance saliency chair.glb --weights chair_weights.ply
+"""
+
+import argparse
+import json
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import trimesh
+from scipy.spatial import KDTree
+
+from haptic_glance.base.files import write_text
+from haptic_glance.base.timing import WallClock
+from haptic_glance.lod.export import FORMATS, write_any
+from haptic_glance.lod.pictures import check_look, coloured, write_look
+from haptic_glance.lod.weight_files import check_suffix, write_weights
+from haptic_glance.look.points import Detection, detect
+from haptic_glance.look.points import saliency as saliency_of
+from haptic_glance.look.points.find import HELP, check_name
+from haptic_glance.look.points.methods import PURPOSES, method_for
+from haptic_glance.look.weights.weights import GLANCE
+from haptic_glance.mesh.files import load_unnamed
+from haptic_glance.mesh.materials import bake_texture
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.repair import centre_and_radius
+from haptic_glance.mesh.up import add_up, upright_by, upright_for
+
+from .simplify import check_outputs
+
+LONG, FINE = 0.1, 0.02  # shares of the diameter: an edge that is long, and the longest of the finer copy
+COLUMNS = ("rank", "vertex", "x", "y", "z", "score")
+
+
+def parser() -> argparse.ArgumentParser:
+    """The parser of the command line."""
+    command = shared_parser("saliency", __doc__ or "")
+    command.add_argument(
+        "--out", metavar="FILE", type=Path, help=f"the coloured mesh: {', '.join(FORMATS[:2])} or .ply"
+    )
+    help_weights = "the mesh with the saliency of each vertex, as weights for other tools: .ply (Blender), .glb, .usda,"
+    help_weights += " or .npz (meshoptimizer)"
+    command.add_argument("--weights", metavar="FILE", type=Path, help=help_weights)
+    command.add_argument("--points", metavar="FILE", type=Path, help="the points, as CSV")
+    command.add_argument("--picture", metavar="FILE", type=Path, help="a picture of the saliency with the points")
+    return command
+
+
+def shared_parser(name: str, about: str) -> argparse.ArgumentParser:
+    """What `saliency` and `points` share; about: the text of --help, whose first line comes first."""
+    first, _, rest = about.partition("\n")
+    form = argparse.RawDescriptionHelpFormatter
+    command = argparse.ArgumentParser(f"haptic-glance {name}", description=first, epilog=rest, formatter_class=form)
+    command.set_defaults(name=name)
+    command.add_argument("mesh", metavar="MESH", type=Path, help="the file to look at")
+    command.add_argument("--count", metavar="N", type=int, help="how many points (default: those past the threshold)")
+    help_purpose = "look: where people look (default); touch: where one touch tells most of the object"
+    command.add_argument("--purpose", choices=list(PURPOSES), default="look", help=help_purpose)
+    command.add_argument("--method", help=HELP)
+    add_up(command, "unknown: --method glance_any_pose")
+    command.add_argument("--json", action="store_true", help="print the points as JSON")
+    return command
+
+
+def run(argv: Sequence[str]) -> None:
+    """Runs the command line `argv`, without the program's name."""
+    look_at(parser().parse_args(argv))
+
+
+def look_at(chosen: argparse.Namespace) -> None:
+    """Prints the points of a mesh and writes what else was asked for."""
+    check(chosen)
+    try:
+        mesh, note = upright_by(load_unnamed(chosen.mesh), chosen.mesh, chosen.up)
+        with WallClock() as watch:
+            found = detect(bake_texture(mesh), chosen.method, chosen.count)
+    except ValueError as error:
+        raise ValueError(f"{chosen.mesh}: {error}").with_traceback(error.__traceback__) from None
+    assert found.saliency is not None  # `check` lets no method pass that has none
+    print(f"{chosen.name}: {len(mesh.faces):,} faces in {watch.seconds:.1f} s, {note}", file=sys.stderr)
+    rows = points_of(mesh, found)
+    if chosen.weights:
+        write_weights(chosen.weights, upright_for(chosen.weights, mesh)[0], found.saliency)
+        print(f"{chosen.name}: written: {chosen.weights}", file=sys.stderr)
+    if chosen.out or chosen.picture:
+        write(chosen, *finely(bake_texture(mesh), found.saliency, chosen.method), rows)
+    elif chosen.points:
+        write(chosen, mesh, found.saliency, rows)  # before the lines, whose reader may close the pipe
+    print(json.dumps([dict(zip(COLUMNS, row, strict=True)) for row in rows]) if chosen.json else as_csv(rows))
+
+
+def check(chosen: argparse.Namespace) -> None:
+    """Raises ValueError for files that cannot be written, and for methods and counts that cannot be."""
+    if chosen.out and chosen.out.suffix.lower() not in (".glb", ".obj", ".ply"):
+        raise ValueError(f"--out {chosen.out}: a coloured mesh is written as .glb, .obj or .ply")
+    if chosen.weights:
+        check_suffix(chosen.weights)
+    check_outputs(chosen.mesh, chosen.out, chosen.points, chosen.picture, chosen.weights)
+    if chosen.picture:
+        check_look(chosen.picture)
+    if chosen.method is not None:
+        check_name(chosen.method)
+    chosen.method = method_for(chosen.purpose, chosen.method)
+    if chosen.count is not None and chosen.count < 1:
+        raise ValueError(f"--count {chosen.count}: give 1 or more")
+
+
+def points_of(mesh: Mesh, found: Detection) -> list[tuple]:
+    """Rows of COLUMNS in the order of the Detection, with its scores; positions in the file's coordinates."""
+    assert found.scores is not None  # of methods that have a saliency
+    rows = zip(found.points.tolist(), mesh.vertices[found.points].tolist(), found.scores.tolist(), strict=True)
+    return [(rank, vertex, *place, score) for rank, (vertex, place, score) in enumerate(rows, 1)]
+
+
+def finely(mesh: Mesh, saliency: np.ndarray, method: str = GLANCE) -> tuple[Mesh, np.ndarray]:
+    """(Mesh, saliency (n,)) to be drawn: the mesh, or a finer copy of one with long edges, as CAD programs write them.
+
+    Values at the ends of a long triangle say nothing of the middle, over which colours would be smeared.
+    """
+    diameter = 2 * centre_and_radius(mesh)[1]
+    ends = mesh.vertices[mesh.faces]
+    if np.linalg.norm(ends - np.roll(ends, 1, axis=1), axis=2).max() <= LONG * diameter:
+        return mesh, saliency
+    vertices, faces = trimesh.remesh.subdivide_to_size(mesh.vertices, mesh.faces, FINE * diameter, max_iter=20)[:2]
+    fine = Mesh(vertices, faces, up=mesh.up)
+    return fine, saliency_of(fine, method)
+
+
+def nearest_vertices(mesh: Mesh, rows: list[tuple]) -> np.ndarray:
+    """(k,) i8 the vertices of a mesh at the positions of rows of `points_of`."""
+    return np.asarray(
+        KDTree(mesh.vertices).query(np.array([row[2:5] for row in rows]).reshape(-1, 3))[1], dtype=np.int64
+    )
+
+
+def as_csv(rows: list[tuple]) -> str:
+    """The points as lines of CSV, under a header."""
+    lines = (f"{rank},{vertex},{x:.9g},{y:.9g},{z:.9g},{value:.6g}" for rank, vertex, x, y, z, value in rows)
+    return "\n".join([",".join(COLUMNS), *lines])
+
+
+def write(chosen: argparse.Namespace, mesh: Mesh, saliency: np.ndarray, rows: list[tuple]) -> None:
+    """Writes the files that were asked for, and names them."""
+    if chosen.out:
+        turned, note = upright_for(chosen.out, coloured(mesh, saliency))
+        write_any(chosen.out, turned)
+        if note:
+            print(f"{chosen.name}: {note}", file=sys.stderr)
+    if chosen.picture:
+        write_look(chosen.picture, mesh, saliency, nearest_vertices(mesh, rows))
+    if chosen.points:
+        write_text(chosen.points, as_csv(rows) + "\n")
+    written = [str(path) for path in (chosen.out, chosen.points, chosen.picture) if path]
+    if written:
+        print(f"{chosen.name}: written: {', '.join(written)}", file=sys.stderr)

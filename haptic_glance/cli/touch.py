@@ -1,0 +1,338 @@
+"""Touches one mesh with the virtual pressure array; shows and saves what it measures, and where.
+
+Reads STL, OBJ, PLY, OFF or GLB. The mesh is first scaled so that its bounding sphere is 1 unit across.
+--pitch and --depth are in these units, whose size in units of the file is printed, or lengths such as 1mm. All
+positions, given and written, are in the file's coordinates. Writes into the folder of --out:
+  imprints.png  the mesh with numbered places and outlines of the array to scale, and the imprints beside it
+  imprints.npz  images (k, rows, cols) in 0..1, 0 at first contact; distances (k, rows, cols) before the skin, in units;
+                vertices, positions, normals and axes (rows right, up, normal) in the file's coordinates; pitch; unit
+  places.csv    index, vertex (empty if it is none), position, normal, relief in units and in the file's units
+With --load a rigid array comes from above: imprints.npz also has forces (k, rows, cols) in newtons, and places.csv the
+highest of each place and how deep its layer is indented, in metres.
+
+examples:
+  haptic-glance touch bunny.stl --at salient
+  haptic-glance touch chair.obj --at random --count 12 --cells 32 32 --pitch 0.005 --up y --out chair_touched
+  haptic-glance touch bunny.stl --unit mm --pitch 1mm --load 2 --layer thickness=0.003,modulus=1e5
+  haptic-glance touch part.ply --at 120 455 0.031,-0.2,1.5 --contact rigid --skin blur=0.8,noise=0.02,dead=0.03
+"""
+
+import argparse
+import csv
+import io
+import json
+import os
+import re
+import sys
+from collections.abc import Sequence
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from haptic_glance.base.files import write_arrays, write_text
+from haptic_glance.look.points.find import HELP, check_name
+from haptic_glance.mesh.up import add_up
+from haptic_glance.touch.distances import CONTACTS, check_array, distances_at
+from haptic_glance.touch.force import press_forces
+from haptic_glance.touch.places import DEFAULT_COUNT, Places, UserMesh, read_user_mesh
+from haptic_glance.touch.press import normalise
+from haptic_glance.touch.quasi_tangent import misfit
+from haptic_glance.touch.skin import METRES, Layer, Metres, Skin, indent, length
+from haptic_glance.touch.surface import sensor_axes
+
+SELECTIONS = ("salient", "random")  # of places, which --count applies to
+POINT = re.compile(r"-?[\d.][^,]*,[^,]+,[^,]+")  # a position, which may begin with a minus like an option
+
+
+def parser(description: str) -> argparse.ArgumentParser:
+    """The parser of the command line; description: the text of --help."""
+    first, _, rest = description.partition("\n")
+    form = argparse.RawDescriptionHelpFormatter
+    usage = "%(prog)s MESH [--at PLACE ...] [options]"
+    result = argparse.ArgumentParser("haptic-glance touch", usage, first, rest, formatter_class=form)
+    result.add_argument("mesh", metavar="MESH", type=Path, help="the file to touch: STL, OBJ, PLY, OFF or GLB")
+    help_at = "places: salient (default), random, ids of vertices, or positions x,y,z in the file's coordinates"
+    result.add_argument("--at", metavar="PLACE", nargs="+", default=[SELECTIONS[0]], help=help_at)
+    help_cells = "size of the array (default: 16 16)"
+    result.add_argument("--cells", metavar=("ROWS", "COLS"), nargs=2, type=int, default=[16, 16], help=help_cells)
+    help_pitch = "distance of two cells: a length such as 1mm, or in units, of which the bounding sphere is 1 across"
+    result.add_argument("--pitch", metavar="LENGTH", type=length, default=0.01, help=f"{help_pitch} (default: 0.01)")
+    help_count = f"number of salient or random places (default: {DEFAULT_COUNT})"
+    result.add_argument("--count", metavar="N", type=int, help=help_count)
+    result.add_argument("--method", help=f"of the salient places: {HELP}")
+    help_contact = "tangent: the array stands at the place (default); rigid: it rests on the first contact"
+    result.add_argument("--contact", choices=CONTACTS, default=CONTACTS[0], help=help_contact)
+    help_depth = (
+        "how deep the object's highest point goes into the skin, as --pitch (default: the relief of each imprint)"
+    )
+    result.add_argument("--depth", metavar="LENGTH", type=length, help=help_depth)
+    help_skin = f"faults of a real sensor, such as blur=0.8,noise=0.02; the names are {', '.join(names_of(Skin))}"
+    result.add_argument("--skin", metavar="NAME=VALUE,...", help=help_skin)
+    help_load = "also write the force on each cell, in newtons, at which the whole array bears this load"
+    result.add_argument("--load", metavar="NEWTONS", type=float, help=help_load)
+    help_unit = "what the coordinates of the file are in; --load and lengths such as 1mm need it"
+    result.add_argument("--unit", choices=list(METRES), help=help_unit)
+    help_layer = f"the foam on the array, for --load; the names are {', '.join(names_of(Layer))}"
+    result.add_argument("--layer", metavar="NAME=VALUE,...", help=help_layer)
+    add_up(result)
+    result.add_argument(
+        "--seed", type=int, default=0, help="seed of random places and of the skin (default: %(default)s)"
+    )
+    result.add_argument("--out", metavar="FOLDER", type=Path, help="output folder (default: MESH_imprints)")
+    result.add_argument("--json", action="store_true", help="print the places as JSON, as places.csv has them")
+    result.add_argument("--show", action="store_true", help="also open the picture in a window")
+    return result
+
+
+def parse_options(description: str, argv: list[str]) -> argparse.Namespace:
+    """The options of a command line, checked; a position may begin with a minus."""
+    options = parser(description).parse_args([f" {word}" if POINT.fullmatch(word) else word for word in argv])
+    check_lengths(options)
+    if options.seed < 0:
+        raise ValueError(f"--seed {options.seed}: give 0 or more")
+    _check_combination(options)
+    _check_load(options)
+    options.metres = METRES.get(options.unit)
+    options.skin = parse_skin(options.skin, options.seed)
+    options.layer = Layer(**parse_values("--layer", Layer, options.layer))
+    options.out = options.out or Path(f"{options.mesh.stem}_imprints")
+    check_folder(options.out)
+    return options
+
+
+def lengths_in_units(options: argparse.Namespace, unit: float) -> None:
+    """Converts the lengths of the options in metres to units of the mesh, one of which is `unit` units of the file."""
+    for name in ("pitch", "depth"):
+        if isinstance(value := getattr(options, name), Metres):
+            setattr(options, name, float(value / (unit * options.metres)))
+    check_lengths(options)
+
+
+def check_lengths(options: argparse.Namespace) -> None:
+    """Raises ValueError for a pitch or a depth that is not positive, and for a pitch larger than the object."""
+    check_array(options.cells, options.pitch)
+    if not isinstance(options.pitch, Metres) and options.pitch >= 1 and max(options.cells) > 1:
+        raise ValueError(f"--pitch {options.pitch:g} is larger than the object, which is 1 unit across: try 0.01")
+    if options.depth is not None and not 0 < options.depth < float("inf"):
+        raise ValueError(f"--depth {options.depth:g}: give a positive length")
+
+
+def parse_skin(text: str | None, seed: int) -> Skin | None:
+    """The Skin of a text such as `blur=0.8,noise=0.02`; None of None."""
+    return None if text is None else Skin(**parse_values("--skin", Skin, text), seed=seed)
+
+
+def names_of(kind: type) -> list[str]:
+    """The fields of a Skin or a Layer that a text can set."""
+    return [field.name for field in fields(kind) if field.name != "seed"]
+
+
+def parse_values(option: str, kind: type, text: str | None) -> dict[str, Any]:
+    """{name: number} of a text such as `blur=0.8,noise=0.02` with names of a Skin or a Layer; empty of None."""
+    names, values = names_of(kind), {}
+    for part in text.split(",") if text is not None else ():
+        name, _, value = (word.strip() for word in part.partition("="))
+        if name not in names:
+            raise ValueError(f"{option} {part}: {name!r} is unknown; write NAME=VALUE with one of {', '.join(names)}")
+        try:
+            values[name] = float(value)
+        except ValueError:
+            raise ValueError(f"{option} {part}: {value!r} is not a number") from None
+    return values
+
+
+def check_folder(folder: Path) -> None:
+    """Raises ValueError unless the folder can be written to, or created."""
+    if folder.exists() and not folder.is_dir():
+        raise ValueError(f"--out {folder} is a file: name a folder")
+    existing = next(place for place in [folder.absolute(), *folder.absolute().parents] if place.exists())
+    if not existing.is_dir() or not os.access(existing, os.W_OK):
+        raise ValueError(f"--out {folder}: {existing} is not writable")
+
+
+def _check_load(options):
+    """Raises ValueError for a load that is not positive, a missing unit, and a unit or a layer without use."""
+    if options.load is not None and not 0 < options.load < float("inf"):
+        raise ValueError(f"--load {options.load:g}: give a positive number")
+    if options.load is None and options.layer is not None:
+        raise ValueError("--layer applies to --load only")
+    real = [f"--{name}" for name in ("pitch", "depth") if isinstance(getattr(options, name), Metres)]
+    real += ["--load"] if options.load is not None else []
+    if real and options.unit is None:
+        raise ValueError(f"{real[0]} needs --unit, what the file is in: {', '.join(METRES)}")
+    if options.unit is not None and not real:
+        raise ValueError("--unit applies to --load, and to a --pitch or --depth such as 1mm")
+
+
+def _check_combination(options):
+    """Raises ValueError for options that do not apply together, and for methods that cannot run on a single mesh."""
+    selection = options.at[0] if len(options.at) == 1 and options.at[0] in SELECTIONS else None
+    if any(word in SELECTIONS for word in options.at) and selection is None:
+        raise ValueError(f"--at {' '.join(options.at)}: `salient` and `random` cannot be combined with other places")
+    if options.count is not None and selection is None:
+        raise ValueError("--count applies to --at salient or --at random only")
+    if options.count is not None and options.count < 1:
+        raise ValueError(f"--count {options.count}: give 1 or more")
+    if options.method is not None and selection != "salient":
+        raise ValueError("--method applies to --at salient only")
+    if options.method == "random":
+        raise ValueError("--method random: use --at random")
+    if options.method is not None:
+        check_name(options.method, points_alone=True)
+
+
+ARRAYS, PICTURE, TABLE = "imprints.npz", "imprints.png", "places.csv"
+MAX_CELLS = 50_000_000  # of all places together, which need about 2 GB of memory
+
+
+def run(argv: list[str]) -> None:
+    """Runs the command line `argv`, which excludes the program's name."""
+    options = parse_options(__doc__ or "", argv)
+    if options.show:
+        from haptic_glance.touch.pictures import check_window
+
+        check_window()
+    try:
+        user_mesh = open_mesh(options)
+        places = user_mesh.places(options.at, options.count, options.method, options.seed)
+        check_size(len(places.positions), options.cells)
+    except ValueError as error:
+        raise ValueError(f"{options.mesh}: {error}").with_traceback(error.__traceback__) from None
+    if places.note:
+        report_progress(places.note)
+    axes = sensor_axes(places.normals)
+    raw = distances_at(user_mesh.surface, places.positions, axes, options.cells, options.pitch, contact=options.contact)
+    images = make_images(raw, options, user_mesh.name)
+    if (raw == raw.max(axis=(1, 2), keepdims=True)).all():
+        report_progress("every imprint is flat: the array is small compared with the shape, or touches nothing")
+    pressed = press_load(user_mesh, places.positions, axes, options)
+    rows = places_rows(user_mesh, places, raw)
+    if len(pressed):
+        stiffness = options.layer.stiffness * (options.pitch * user_mesh.unit * options.metres) ** 2
+        for row, peak in zip(rows, pressed.max(axis=(1, 2)).tolist(), strict=True):
+            row |= {"peak_newtons": peak, "indentation_metres": peak / stiffness}
+    options.out.mkdir(parents=True, exist_ok=True)
+    arrays = saved_arrays(user_mesh, places, axes, raw, images, options.pitch)
+    write_arrays(options.out / ARRAYS, **arrays, **({"forces": pressed} if len(pressed) else {}))
+    write_text(options.out / TABLE, as_csv(rows, user_mesh.digits))
+    draw_picture(options, user_mesh, places, axes, images, [row["relief"] for row in rows])
+    print(json.dumps(rows) if options.json else summary(user_mesh, rows, options))
+    report_progress("written: " + ", ".join(str(options.out / name) for name in (PICTURE, ARRAYS, TABLE)))
+    if options.show:
+        from haptic_glance.touch.pictures import open_window
+
+        open_window(options.out / PICTURE)
+
+
+def check_size(places: int, cells: list[int]) -> None:
+    """Raises ValueError if the imprints of this many places would not fit into memory."""
+    rows, columns = cells
+    if places * rows * columns > MAX_CELLS:
+        raise ValueError(f"--cells {rows} {columns}, {places} places: at most {MAX_CELLS:,} cells in all; use fewer")
+
+
+def open_mesh(options: argparse.Namespace) -> UserMesh:
+    """The UserMesh of the file; reports its size and that of the array."""
+    report_progress(f"reading {options.mesh.name}")
+    user_mesh, notes = read_user_mesh(options.mesh, options.up)
+    report_progress("; ".join([f"{len(user_mesh.mesh.faces):,} faces", *notes]))
+    lengths_in_units(options, user_mesh.unit)
+    if wrong := misfit(options.cells, options.pitch):
+        report_progress(wrong)
+    if options.at[0] == "salient":
+        report_progress("looking at it, to find what is salient")
+    return user_mesh
+
+
+def make_images(raw: np.ndarray, options: argparse.Namespace, name: str) -> np.ndarray:
+    """The imprints (k, rows, cols) f4 in 0..1 of distances, with the options' depth and skin."""
+    images = normalise(raw, options.pitch) if options.depth is None else indent(raw, options.depth)
+    return images if options.skin is None else options.skin(images, name)
+
+
+def press_load(user_mesh: UserMesh, positions: np.ndarray, axes: np.ndarray, options: argparse.Namespace) -> np.ndarray:
+    """(k, rows, cols) newtons on the cells at the options' load; (0,) without a load."""
+    if options.load is None:
+        return np.zeros(0)
+    cells, unit = tuple(options.cells), user_mesh.unit * options.metres
+    try:
+        return press_forces(user_mesh.surface, positions, axes, options.layer, cells, options.pitch, options.load,
+                            unit=unit)  # fmt: skip
+    except ValueError as error:
+        raise ValueError(f"--load {options.load:g}: {error}") from None
+
+
+def draw_picture(
+    options: argparse.Namespace, user_mesh: UserMesh, places: Places, axes: np.ndarray, images: np.ndarray,
+    reliefs: Sequence[float],
+) -> None:  # fmt: skip
+    """Writes imprints.png."""
+    from haptic_glance.touch.pictures import write_picture  # brings matplotlib, which nothing else here needs
+
+    scale = "the depth" if options.depth else "the imprint's relief"
+    write_picture(options.out / PICTURE, user_mesh.mesh, places.positions, axes, images, np.asarray(reliefs),
+                  options.pitch, scale, user_mesh.source.up)  # fmt: skip
+
+
+def places_rows(user_mesh: UserMesh, places: Places, raw: np.ndarray) -> list[dict[str, Any]]:
+    """One dict per place, in the file's coordinates; vertex is None where the place is none."""
+    positions, normals = user_mesh.to_file(places.positions), user_mesh.to_file_directions(places.normals)
+    rows = []
+    for index, (vertex, depths) in enumerate(zip(places.vertices.tolist(), raw, strict=True)):
+        place = dict(zip(("x", "y", "z", "nx", "ny", "nz"), [*positions[index], *normals[index]], strict=True))
+        relief = float(np.ptp(depths))
+        row = {"index": index + 1, "vertex": None if vertex < 0 else vertex} | {k: float(v) for k, v in place.items()}
+        rows.append(row | {"relief": relief, "relief_in_file": relief * user_mesh.unit})
+    return rows
+
+
+def as_csv(rows: Sequence[dict[str, Any]], digits: int) -> str:
+    """Rows as CSV, six digits; digits: of positions, since six are too few far from the origin."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(rows[0])
+    for row in rows:
+        writer.writerow(f"{v:.{digits if k in 'xyz' else 6}g}" if isinstance(v, float) else v for k, v in row.items())
+    return text.getvalue()
+
+
+def saved_arrays(
+    user_mesh: UserMesh, places: Places, axes: np.ndarray, raw: np.ndarray, images: np.ndarray, pitch: float
+) -> dict[str, object]:
+    """The arrays of the NPZ file."""
+    return {
+        "images": images, "distances": raw, "vertices": places.vertices,
+        "positions": user_mesh.to_file(places.positions), "normals": user_mesh.to_file_directions(places.normals),
+        "axes": user_mesh.to_file_directions(axes), "pitch": pitch, "unit": user_mesh.unit,
+    }  # fmt: skip
+
+
+def summary(user_mesh: UserMesh, rows: Sequence[dict[str, Any]], options: argparse.Namespace) -> str:
+    """The printed table."""
+    high, wide = options.cells
+    width = user_mesh.digits + 5
+    lines = [
+        f"array: {high} x {wide} cells, {options.pitch:g} units apart "
+        f"({options.pitch * user_mesh.unit:.4g} in the file's units; 1 unit is {user_mesh.unit:.4g}), "
+        f"{options.contact}",
+        f"{'place':>5} {'vertex':>8} {'x':>{width}} {'y':>{width}} {'z':>{width}} {'relief':>8} {'in file':>9}",
+    ]
+    for row in rows:
+        vertex = "-" if row["vertex"] is None else row["vertex"]
+        place = " ".join(f"{row[axis]:>{width}.{user_mesh.digits - 1}g}" for axis in "xyz")
+        lines.append(f"{row['index']:>5} {vertex:>8} {place} {row['relief']:>8.4f} {row['relief_in_file']:>9.4g}")
+    if options.load is not None:
+        indented = [1000 * row["indentation_metres"] for row in rows]
+        lines.append(
+            f"load: {options.load:g} N a place; the highest force on a cell is "
+            f"{max(row['peak_newtons'] for row in rows):.4g} N; "
+            f"the layer is indented by {min(indented):.4g} to {max(indented):.4g} mm"
+        )
+    return "\n".join(lines)
+
+
+def report_progress(text: str) -> None:
+    """Prints a line of progress to stderr, apart from the results."""
+    print(f"touch: {text}", file=sys.stderr, flush=True)

@@ -1,0 +1,92 @@
+"""Pictures of the touched objects: renderings of their meshes from all sides (T5.5)."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import torch
+from kornia import augmentation as kornia_augmentation
+from kornia.augmentation import AugmentationSequential
+
+from haptic_glance.look.camera import Viewpoint
+from haptic_glance.look.views import render
+from haptic_glance.mesh.mesh import Mesh
+
+from .hybrid import present
+from .images import SCALE, SHIFT, check_one_size, to_images
+
+ELEVATIONS = (-10.0, 60.0)  # degrees: an object on a table, seen by a person who sits or stands, and never from below
+STEP = 1 / 255  # the smallest step of a grey value
+SAMPLES = 3  # rays per pixel and side; the pixel is their mean, so that thin parts are grey instead of dotted
+
+
+def viewpoints(count: int, generator: np.random.Generator) -> list[Viewpoint]:
+    """`count` Viewpoints around an upright object: azimuths evenly spaced from a random start, elevations random.
+
+    Elevations are uniform in their sine, so that viewpoints are uniform on the sphere.
+    """
+    if count < 1:
+        raise ValueError(f"the number of pictures must be 1 or more, got {count}")
+    azimuths = (360 * np.arange(count) / count + 360 * generator.random()) % 360
+    low, high = np.sin(np.radians(ELEVATIONS))
+    elevations = np.degrees(np.arcsin(generator.uniform(low, high, count)))
+    return [Viewpoint(float(a), float(e)) for a, e in zip(azimuths, elevations, strict=True)]
+
+
+def take_pictures(mesh: Mesh, views: Sequence[Viewpoint], size: int, colour: bool = False) -> np.ndarray:
+    """(k, size, size, 3) u1: the normalised mesh from k Viewpoints on a white background.
+
+    Grey unless `colour`, since colours would distinguish objects of the same shape. The renderer `raster` makes
+    them equal on every machine.
+    """
+    rendered = mesh if colour else Mesh(mesh.vertices, mesh.faces)
+    fine = (size * SAMPLES, size * SAMPLES)
+    taken = [render(rendered, view, fine, renderer="raster", background="white").rgb for view in views]
+    blocks = np.stack(taken).reshape(-1, size, SAMPLES, size, SAMPLES, 3)
+    return np.rint(blocks.mean(axis=(2, 4))).astype(np.uint8)
+
+
+def picture_images(pictures: np.ndarray, size: int) -> torch.Tensor:
+    """Images (k, 3, size, size) f4 in 0..1 of pictures (k, h, w, 3), u1 or floats in 0..1; resized where needed.
+
+    Resizing is bilinear, with an anti-aliasing filter where they shrink. Raises ValueError for another shape, values
+    out of range or NaN, and for several sizes.
+    """
+    check_one_size(pictures)
+    images = torch.as_tensor(pictures)
+    if images.ndim != 4 or images.shape[3] != 3 or 0 in images.shape:
+        raise ValueError(f"pictures must have shape (k, h, w, 3) and not be empty, got {tuple(images.shape)}")
+    images = images.float() / 255 if images.dtype == torch.uint8 else images.float()
+    if not bool(((images >= 0) & (images <= 1)).all()):
+        raise ValueError("pictures must hold values in 0..1, and neither NaN nor infinity")
+    images = images.permute(0, 3, 1, 2).contiguous()
+    if images.shape[2:] != (size, size):
+        images = torch.nn.functional.interpolate(images, (size, size), mode="bilinear", antialias=True).clamp(0, 1)
+    return images
+
+
+def as_images(raw: np.ndarray, size: int) -> torch.Tensor:
+    """Images (k, 3, size, size) f4 in 0..1 of pictures (k, h, w, 3) or imprints (k, r, c), u1 or f4 in 0..1."""
+    return picture_images(raw, size) if raw.ndim == 4 else imprint_images(raw, size)
+
+
+def imprint_images(imprints: np.ndarray, size: int) -> torch.Tensor:
+    """Images (k, 3, size, size) f4 of imprints (k, r, c), as by haptic_glance.deep.to_images, with full contact marked.
+
+    A flat face pressed against the array gives zeros everywhere (distance 0), which in the thesis also means an absent
+    sense: its switch would turn off the touch of a table top. So one corner pixel is raised by one grey step, and the
+    variance is not zero. An imprint of ones, without contact, stays constant: absent.
+    """
+    images = to_images(imprints, size)
+    flat = ~present(images) & (images[:, 0, 0, 0] < 1)
+    images[flat, 0, 0, 0] += STEP
+    return images
+
+
+def picture_augmentation() -> AugmentationSequential:
+    """Random reflection (left to right, since objects are upright), translation and scaling of pictures in 0..1."""
+    return AugmentationSequential(
+        kornia_augmentation.RandomHorizontalFlip(p=0.5),
+        kornia_augmentation.RandomAffine(
+            degrees=0, translate=(SHIFT, SHIFT), scale=SCALE, padding_mode="border", p=1.0
+        ),
+    )

@@ -1,0 +1,64 @@
+"""Perturbations of imprints by a worse sensor or a less steady hand, which are not in the training data."""
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+
+import cv2
+import numpy as np
+
+from haptic_glance.touch import Skin
+
+FEW_TOUCHES = "few_touches"  # not a perturbation of the test touches: fewer touches are used for training
+
+
+def _skin(images, severity, random, what):
+    return Skin(**{what: severity}, seed=int(random.integers(2**31)))(images)
+
+
+def occlusion(images: np.ndarray, severity: float, random: np.random.Generator) -> np.ndarray:
+    """A square of the array, `severity` of its area, at a random position, gives no contact, as with a torn wire."""
+    cells = images.shape[1]
+    side = min(round(cells * np.sqrt(severity)), cells)
+    found = images.copy()
+    for image, (row, column) in zip(found, random.integers(0, cells - side + 1, (len(images), 2)), strict=True):
+        image[row : row + side, column : column + side] = 1
+    return found
+
+
+def rotation(images: np.ndarray, severity: float, random: np.random.Generator) -> np.ndarray:
+    """Each imprint rotated about its centre by `severity` degrees to either side; its border pixels are repeated."""
+    rows, columns = images.shape[1:]
+    centre, found = ((columns - 1) / 2, (rows - 1) / 2), np.empty_like(images)
+    for i, side in enumerate(random.choice([-1, 1], len(images))):
+        turn = cv2.getRotationMatrix2D(centre, float(side * severity), 1.0)
+        found[i] = cv2.warpAffine(images[i], turn, (columns, rows), borderMode=cv2.BORDER_REPLICATE)
+    return found
+
+
+def resolution(images: np.ndarray, severity: float, random: np.random.Generator) -> np.ndarray:
+    """The imprint of an array as wide with `severity` sensels a side, each the mean of those it replaces."""
+    cells = int(severity)
+    return np.stack([cv2.resize(image, (cells, cells), interpolation=cv2.INTER_AREA) for image in images])
+
+
+PERTURBATIONS = {
+    "noise": partial(_skin, what="noise"),  # sigma, share of full scale
+    "blur": partial(_skin, what="blur"),  # sigma in cells
+    "dead_cells": partial(_skin, what="dead"),  # share of the cells
+    "occlusion": occlusion,  # share of the area
+    "rotation": rotation,  # degrees
+    "resolution": resolution,  # cells a side
+}
+
+
+def disturb(images: np.ndarray, name: str, severity: float, random: np.random.Generator) -> np.ndarray:
+    """(k, rows, cols) f4 in 0..1: imprints (k, r, c) u1 under one of PERTURBATIONS."""
+    return np.clip(PERTURBATIONS[name](images.astype(np.float32) / 255, severity, random), 0, 1).astype(np.float32)
+
+
+def check(severities: Mapping[str, Sequence[float]]) -> None:
+    """Raises ValueError for an unknown perturbation."""
+    unknown = sorted(set(severities) - {*PERTURBATIONS, FEW_TOUCHES})
+    if unknown:
+        known = ", ".join((*PERTURBATIONS, FEW_TOUCHES))
+        raise ValueError(f"transfer.severities: {', '.join(unknown)} not known, choose from {known}")

@@ -1,0 +1,246 @@
+"""Disturbances of a mesh.
+
+Colours, which the thesis's grey objects do not have: one for the whole object, or a pattern of two; or none.
+
+The same surface with other triangles, all of about the same size.
+
+What a few depth cameras see of an object, made a surface again.
+
+The same object in another orientation: turned about the vertical axis, or tilted.
+
+Holes, as a scanner leaves them.
+
+Faces with inverted winding, as in files whose winding nobody checked.
+
+Noise of a scanner: every vertex moves a little.
+
+The same surface with its vertices in another order.
+
+Fewer faces, by quadric edge collapse.
+
+The same object in another unit of length.
+"""
+
+import colorsys
+
+import numpy as np
+import pymeshlab
+from scipy.spatial import KDTree
+
+from haptic_glance.lod import simplify
+from haptic_glance.look.camera import Viewpoint, pixel_rays
+from haptic_glance.look.views import render
+from haptic_glance.look.views.shading import GREY
+from haptic_glance.mesh import Cloud, surface_of
+from haptic_glance.mesh.clouds import normals_of
+from haptic_glance.mesh.mesh import Mesh
+
+from .perturbed import Perturbed, in_range
+
+WAVES = 12  # sine waves whose sum decides between the two colours
+LENGTH = 0.3  # of a wave, over the diagonal: patches are then the size of an object's parts
+
+
+def paint(mesh: Mesh, severity: float, generator: np.random.Generator) -> Perturbed:
+    """The whole object in one colour with a saturation of `severity`; the hue is drawn at random."""
+    colour = _colour(generator.random(), in_range(severity, 0, 1, "saturation"))
+    return _painted(mesh, np.tile(colour, (len(mesh.vertices), 1)))
+
+
+def pattern(mesh: Mesh, severity: float, generator: np.random.Generator) -> Perturbed:
+    """Smooth random patches of two complementary colours with a saturation of `severity`."""
+    hue, saturation = generator.random(), in_range(severity, 0, 1, "saturation")
+    waves = 2 * np.pi / (LENGTH * max(mesh.diagonal, 1e-30)) * _directions(generator)
+    height = np.cos(mesh.vertices @ waves.T + generator.uniform(0, 2 * np.pi, WAVES)).sum(axis=1)
+    two = np.stack([_colour(hue, saturation), _colour(hue + 0.5, saturation)])
+    return _painted(mesh, two[(height > 0).astype(int)])
+
+
+def grey(mesh: Mesh, severity: float, _generator: np.random.Generator) -> Perturbed:
+    """The object's own colours without a share `severity` of their hue; their brightness stays."""
+    return _faded(mesh, severity, lambda colors: colors.mean(axis=1, keepdims=True))
+
+
+def clay(mesh: Mesh, severity: float, _generator: np.random.Generator) -> Perturbed:
+    """The object's own colours moved by a share `severity` to the even grey of objects without colours."""
+    return _faded(mesh, severity, lambda colors: GREY)
+
+
+def _faded(mesh, severity, target):
+    if mesh.colors is None:
+        raise ValueError("has no colours to take away: run it on a set with meshes.colours=own")
+    share, colors = in_range(severity, 0, 1, "the share of colour taken away"), mesh.colors.astype(np.float64)
+    faded = np.rint((1 - share) * colors + share * target(colors)).astype(np.uint8)
+    return Perturbed(Mesh(mesh.vertices, mesh.faces, faded), mesh.vertices)
+
+
+def _directions(generator):
+    drawn = generator.standard_normal((WAVES, 3))
+    return drawn / np.linalg.norm(drawn, axis=1, keepdims=True)
+
+
+def _colour(hue, saturation):
+    """(3,) f8: the factor by which the paint multiplies red, green and blue underneath."""
+    return np.array(colorsys.hsv_to_rgb(hue % 1, saturation, 1.0))
+
+
+def _painted(mesh, coat):
+    under = np.full((len(mesh.vertices), 3), GREY) if mesh.colors is None else mesh.colors
+    return Perturbed(Mesh(mesh.vertices, mesh.faces, np.rint(under * coat).astype(np.uint8)), mesh.vertices)
+
+
+# pymeshlab comes without types:
+# pyright: reportAttributeAccessIssue=false
+
+
+# All parameters are given: pymeshlab sets one that is left out to its value in the call before, not to its default.
+SETTINGS = {
+    "iterations": 5,
+    "adaptive": False,
+    "selectedonly": False,
+    "featuredeg": 30.0,  # degrees; sharper edges stay
+    "checksurfdist": True,
+    "maxsurfdist": pymeshlab.PercentageValue(1.0),  # of the diagonal
+    "splitflag": True,
+    "collapseflag": True,
+    "swapflag": True,
+    "smoothflag": True,
+    "reprojectflag": True,
+}
+
+
+def remeshing(mesh: Mesh, severity: float, _generator: np.random.Generator) -> Perturbed:
+    """Isotropic triangles with edges of `severity` of the diagonal: splits, collapses, flips, smoothing (pymeshlab).
+
+    Colours are those of the nearest vertex. Raises ValueError where the surface collapses at this edge length.
+    """
+    length = 100 * in_range(severity, 1e-3, 1, "the edge length over the diagonal")
+    work = pymeshlab.MeshSet(verbose=False)
+    work.add_mesh(pymeshlab.Mesh(mesh.vertices, mesh.faces))
+    try:
+        work.apply_filter(
+            "meshing_isotropic_explicit_remeshing", targetlen=pymeshlab.PercentageValue(length), **SETTINGS
+        )
+    except pymeshlab.PyMeshLabException as error:
+        raise ValueError(f"this mesh cannot be remeshed: {' '.join(str(error).split())}") from None
+    vertices, faces = work.current_mesh().vertex_matrix(), work.current_mesh().face_matrix()
+    if len(faces) == 0 or not np.isfinite(vertices).all():
+        raise ValueError(f"no surface is left at edges of {severity:g} of the diagonal: take shorter ones")
+    colors = None if mesh.colors is None else mesh.colors[KDTree(mesh.vertices).query(vertices)[1]]
+    return Perturbed(Mesh(vertices, faces, colors), vertices)
+
+
+ELEVATION = 20.0  # degrees above the horizon: the underside is never seen
+SIZE = 90, 120  # rows, columns: about 85 pixels across an object
+FACES = 10_000  # at most; the reconstruction is finer than the readings
+NOISE = 0.001  # sigma along the line of sight, share of the diagonal
+
+
+def scan(mesh: Mesh, severity: float, generator: np.random.Generator) -> Perturbed:
+    """The surface that depth images reconstruct, `severity` degrees apart around the object: 90 are four, 360 is one.
+
+    A camera is as in T3.2.6, its readings are noisy, and what none sees is a hole (haptic_glance.mesh.surface_of).
+    Salient points that lay there count as lost. Raises ValueError where no surface is left.
+    """
+    in_range(severity, 10, 360, "the degrees between cameras")
+    azimuths = generator.uniform(0, 360) + np.arange(0, 360, severity)
+    seen = [_points_seen(mesh, Viewpoint(float(azimuth), ELEVATION), generator) for azimuth in azimuths]
+    points, normals = (np.concatenate(parts) for parts in zip(*seen, strict=True))
+    made = surface_of(Cloud(points, normals))
+    made = simplify(made, FACES) if len(made.faces) > FACES else made
+    colors = None if mesh.colors is None else mesh.colors[KDTree(mesh.vertices).query(made.vertices)[1]]
+    return Perturbed(Mesh(made.vertices, made.faces, colors), made.vertices)
+
+
+def _points_seen(mesh, viewpoint, generator):
+    """(points (k, 3), their normals (k, 3)) of one depth image."""
+    view = render(mesh, viewpoint, SIZE, "raster")
+    rows, columns = np.nonzero(view.mask)
+    origins, directions = pixel_rays(rows, columns, viewpoint, SIZE)
+    away = view.depth[rows, columns] + NOISE * mesh.diagonal * generator.standard_normal(len(rows))
+    points = origins + away[:, None] * directions
+    return points, normals_of(points, origins.mean(axis=0))
+
+
+def turn(mesh: Mesh, severity: float, _generator: np.random.Generator) -> Perturbed:
+    """Turned by `severity` degrees about the vertical axis: the views show other sides."""
+    return _rotated(mesh, severity, np.array([0.0, 0.0, 1.0]))
+
+
+def tilt(mesh: Mesh, severity: float, generator: np.random.Generator) -> Perturbed:
+    """Tilted by `severity` degrees about a random horizontal axis: the object is no longer upright."""
+    way = generator.uniform(0, 2 * np.pi)
+    return _rotated(mesh, severity, np.array([np.cos(way), np.sin(way), 0.0]))
+
+
+def _rotated(mesh, degrees, axis):
+    """Rodrigues' rotation about an axis of length one."""
+    angle = np.radians(degrees)
+    cross = np.cross(np.eye(3), axis)  # rows e_i x axis: vertices @ cross = vertices x axis
+    spin = np.eye(3) - np.sin(angle) * cross + (1 - np.cos(angle)) * (np.outer(axis, axis) - np.eye(3))
+    return Perturbed(Mesh(mesh.vertices @ spin, mesh.faces, mesh.colors), mesh.vertices)
+
+
+PATCHES = 4  # holes per object
+
+
+def missing_faces(mesh: Mesh, severity: float, generator: np.random.Generator) -> Perturbed:
+    """The share `severity` of the faces is missing, in round patches around faces drawn by area.
+
+    A harsher severity widens the same holes. Salient points that lay there count as lost.
+    """
+    lost = int(in_range(severity, 0, 1, "the share of faces missing") * len(mesh.faces))
+    if lost >= len(mesh.faces) or not mesh.face_areas.sum() > 0:
+        raise ValueError(f"{lost} of {len(mesh.faces)} faces missing leave no surface: take a smaller share")
+    middles = mesh.vertices[mesh.faces].mean(axis=1)
+    centres = middles[generator.choice(len(middles), PATCHES, p=mesh.face_areas / mesh.face_areas.sum())]
+    away = np.linalg.norm(middles[:, None] - centres, axis=2).min(axis=1)
+    faces = mesh.faces[np.sort(np.argsort(away, kind="stable")[lost:])]
+    used, at = np.unique(faces, return_inverse=True)
+    colors = None if mesh.colors is None else mesh.colors[used]
+    return Perturbed(Mesh(mesh.vertices[used], at.reshape(-1, 3), colors), mesh.vertices[used])
+
+
+def winding(mesh: Mesh, severity: float, generator: np.random.Generator) -> Perturbed:
+    """The share `severity` of the faces, drawn at random, is inverted; at 1 the whole mesh is inside out.
+
+    The meshes stage corrects such faces; a caller who computes a saliency directly may still have them.
+    """
+    turned = generator.random(len(mesh.faces)) < in_range(severity, 0, 1, "the share of faces")
+    faces = mesh.faces.copy()
+    faces[turned] = faces[turned][:, ::-1]
+    return Perturbed(Mesh(mesh.vertices, faces, mesh.colors), mesh.vertices)
+
+
+def noise(mesh: Mesh, severity: float, generator: np.random.Generator) -> Perturbed:
+    """Gaussian noise on each coordinate of the vertices, with a sigma of `severity` of the diagonal.
+
+    Vertices at one position move together, so that a seam does not open.
+    """
+    in_range(severity, 0, 1, "sigma over the diagonal")
+    places, at = np.unique(mesh.vertices, axis=0, return_inverse=True)
+    steps = severity * mesh.diagonal * generator.standard_normal(places.shape)
+    return Perturbed(Mesh(mesh.vertices + steps[at.ravel()], mesh.faces, mesh.colors), mesh.vertices)
+
+
+def vertex_order(mesh: Mesh, severity: float, generator: np.random.Generator) -> Perturbed:
+    """The share `severity` of the vertices are shuffled; the surface is unchanged."""
+    n = len(mesh.vertices)
+    old = np.arange(n)
+    moved = generator.choice(n, int(round(in_range(severity, 0, 1, "the share of vertices") * n)), replace=False)
+    old[np.sort(moved)] = moved
+    colors = None if mesh.colors is None else mesh.colors[old]
+    return Perturbed(Mesh(mesh.vertices[old], np.argsort(old)[mesh.faces], colors), mesh.vertices[old])
+
+
+def decimation(mesh: Mesh, severity: float, _generator: np.random.Generator) -> Perturbed:
+    """The mesh with the share `severity` of its faces (Garland and Heckbert 1997)."""
+    faces = int(in_range(severity, 1e-6, 1, "the share of faces kept") * len(mesh.faces))
+    simplified = simplify(mesh, max(faces, 1))
+    return Perturbed(simplified, simplified.vertices)
+
+
+def scale(mesh: Mesh, severity: float, _generator: np.random.Generator) -> Perturbed:
+    """Coordinates multiplied by `severity`. For a smaller object in the image see image_size."""
+    factor = in_range(severity, 1e-12, 1e12, "the factor")
+    return Perturbed(Mesh(mesh.vertices * factor, mesh.faces, mesh.colors), mesh.vertices)

@@ -1,0 +1,65 @@
+"""Damaged pictures: a worse camera, less light, something in front of the object."""
+
+from collections.abc import Mapping, Sequence
+
+import cv2
+import numpy as np
+
+from .imprint import PERTURBATIONS, disturb
+
+PICTURE, IMPRINT = "picture_", "imprint_"  # prefixes of perturbations: the sense that is damaged
+MISSING = "missing"  # the sense is absent
+
+
+def noise(images: np.ndarray, severity: float, random: np.random.Generator) -> np.ndarray:
+    """Gaussian noise with a sigma of `severity` of full scale, independent in each channel."""
+    return images + random.normal(0, severity, images.shape)
+
+
+def blur(images: np.ndarray, severity: float, random: np.random.Generator) -> np.ndarray:
+    """A Gaussian blur with a sigma of `severity` of the image's side: out of focus."""
+    sigma = severity * images.shape[1]
+    return np.stack([cv2.GaussianBlur(image, (0, 0), sigma, borderType=cv2.BORDER_REPLICATE) for image in images])
+
+
+def darkness(images: np.ndarray, severity: float, random: np.random.Generator) -> np.ndarray:
+    """The light is reduced by the share `severity` and quantised to 256 levels."""
+    return np.round(images * (1 - severity) * 255) / 255
+
+
+def occlusion(images: np.ndarray, severity: float, random: np.random.Generator) -> np.ndarray:
+    """A grey square of `severity` of the picture's area at a random position, such as a hand or a box."""
+    size = images.shape[1]
+    side = min(round(size * np.sqrt(severity)), size)
+    found = images.copy()
+    for image, (row, column) in zip(found, random.integers(0, size - side + 1, (len(images), 2)), strict=True):
+        image[row : row + side, column : column + side] = 0.5
+    return found
+
+
+PICTURES = {"noise": noise, "blur": blur, "darkness": darkness, "occlusion": occlusion}
+
+
+def damage_pictures(pictures: np.ndarray, name: str, severity: float, random: np.random.Generator) -> np.ndarray:
+    """(k, h, w, 3) f4 in 0..1: pictures (k, h, w, 3) u1 under one of PICTURES."""
+    found = PICTURES[name](pictures.astype(np.float32) / 255, severity, random)
+    return np.clip(found, 0, 1).astype(np.float32)
+
+
+def damage(raw: np.ndarray, name: str, severity: float, random: np.random.Generator) -> np.ndarray | None:
+    """Damaged pictures (k, h, w, 3) or imprints (k, r, c) of one sense, u1 to f4 in 0..1, or None where it is missing.
+
+    name: `picture_NAME` of PICTURES, `imprint_NAME` of haptic_glance.disturb.imprint, or either with `missing`.
+    """
+    what = name.partition("_")[2]
+    if what == MISSING:
+        return None
+    return (damage_pictures if name.startswith(PICTURE) else disturb)(raw, what, severity, random)
+
+
+def check(severities: Mapping[str, Sequence[float]]) -> None:
+    """Raises ValueError for an unknown perturbation."""
+    known = [*(PICTURE + name for name in PICTURES), *(IMPRINT + name for name in PERTURBATIONS)]
+    unknown = sorted(set(severities) - set(known))
+    if unknown:
+        raise ValueError(f"transfer.hybrid_severities: {', '.join(unknown)} not known, choose from {', '.join(known)}")

@@ -1,0 +1,70 @@
+"""An object that is touched until it is known, by a person or by the planner, which touches where it gains most."""
+
+from functools import cached_property
+
+import numpy as np
+
+from haptic_glance.touch import Surface, press_at, sensor_axes
+from haptic_glance.touch.places import Places
+
+from .library import CELLS, PITCH, Belief, Expected, Library, sample_places
+
+PLACES = 64  # where the planner may touch
+FRESH = 0.04  # units, a quarter of the array: nearer to a touched place there is little new
+MOST = 30  # touches after which the planner gives up
+WORTHLESS = 1e-3  # nats: a touch that promises less does not help
+
+
+class Exploration:
+    """The touches of one object and the belief that follows from them.
+
+    Neither the planner nor the belief asks what the object is; the planner knows PLACES places on it, drawn at random.
+    """
+
+    def __init__(self, library: Library, surface: Surface, random: np.random.Generator) -> None:
+        self.library, self.surface = library, surface
+        self.candidates = sample_places(surface, PLACES, random)
+        self.positions, self.normals = np.zeros((0, 3)), np.zeros((0, 3))  # of the touches so far
+        self.images = np.zeros((0, *CELLS), dtype=np.float32)  # what was felt there
+        self.beliefs = [library.belief()]
+
+    @property
+    def belief(self) -> Belief:
+        """The belief after the last touch."""
+        return self.beliefs[-1]
+
+    def touch(self, place: Places) -> np.ndarray:
+        """(rows, cols) f4: the imprint at the first of the places, by which the belief is updated."""
+        position, axes = place.positions[:1], sensor_axes(place.normals[:1])
+        image = press_at(self.surface, position, axes, CELLS, PITCH)[0]
+        self.positions = np.concatenate([self.positions, position])
+        self.normals = np.concatenate([self.normals, place.normals[:1]])
+        self.images = np.concatenate([self.images, image[None]])
+        self.beliefs.append(self.belief.after(image, position[0]))
+        return image
+
+    @cached_property
+    def expected(self) -> Expected:
+        """What touches at the candidates may find."""
+        return self.library.expect(self.candidates)
+
+    def gains(self) -> np.ndarray:
+        """(k,) nats that a touch at each candidate promises; -inf near a place that was touched."""
+        distances = np.linalg.norm(self.candidates.positions[:, None] - self.positions[None], axis=2)
+        return np.where((distances > FRESH).all(axis=1), self.library.gains(self.belief, self.expected), -np.inf)
+
+    def next_place(self) -> Places | None:
+        """The place at which the belief is expected to gain most; None where no fresh place promises anything."""
+        gains = self.gains()
+        return self.candidate(int(gains.argmax())) if gains.max() > WORTHLESS else None
+
+    def finish(self, most: int = MOST) -> str:
+        """Lets the planner touch until an object is known, whose name is returned; empty where it gives up."""
+        while not self.belief.known and len(self.images) < most and (place := self.next_place()) is not None:
+            self.touch(place)
+        return self.belief.known
+
+    def candidate(self, number: int) -> Places:
+        """One of the candidates."""
+        every = self.candidates
+        return Places(every.vertices[[number]], every.positions[[number]], every.normals[[number]])

@@ -1,0 +1,309 @@
+"""A library of known objects, their places, and the belief over them.
+
+What is believed of an object after some touches.
+
+Places of the array on a mesh: a vertex where one is near, else the point itself with the normal of its face.
+
+A library of objects known by touch: imprints of each, and how likely a new imprint is under each of them.
+
+Objects that can be known without a file of one's own, and those of a folder.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    pass
+import hashlib
+from collections.abc import Callable, Mapping
+from functools import lru_cache
+from pathlib import Path
+
+import trimesh
+from trimesh import creation
+
+from haptic_glance.base.extras import from_extra
+from haptic_glance.base.files import read_mesh
+from haptic_glance.base.rng import rng
+from haptic_glance.mesh import MeshError, load, normalise, rotate_to_z_up
+from haptic_glance.mesh.files import FORMATS
+from haptic_glance.mesh.mesh import Mesh, unit
+from haptic_glance.mesh.sampling import sample_surface
+from haptic_glance.touch import Surface, press_at, sensor_axes
+from haptic_glance.touch.places import Places
+from haptic_glance.touch.surface import CANCELLED, mean_vertex_normals
+
+from .belief import FLOOR, Calibration, calibrate, feature_kernel, log_likelihood, nearest_outcomes, place_kernel
+from .explore import State, by_gain
+
+SURE = 0.95  # belief in one object at which it is known
+
+
+@dataclass(frozen=True)
+class Belief:
+    """log_likelihoods (classes,): sums over the touches so far under each object of the library."""
+
+    library: "Library"
+    log_likelihoods: np.ndarray
+    touches: int = 0
+
+    def after(self, image: np.ndarray, position: np.ndarray) -> "Belief":
+        """The Belief after one more touch: an imprint (rows, cols) of the library's array at a position (3,)."""
+        found = self.library.log_likelihoods(np.asarray(image)[None], np.asarray(position)[None])[0]
+        return Belief(self.library, self.log_likelihoods + found, self.touches + 1)
+
+    @cached_property
+    def values(self) -> np.ndarray:
+        """(classes,) probabilities, in the order of the library's names; equal before the first touch."""
+        touches = max(self.touches, 1)
+        return np.exp(self.library.calibration.log_belief(self.log_likelihoods, touches))
+
+    @property
+    def probabilities(self) -> dict[str, float]:
+        """{name: probability}, the likeliest first."""
+        order = np.argsort(-self.values, kind="stable")
+        return {self.library.names[i]: float(self.values[i]) for i in order}
+
+    @property
+    def known(self) -> str:
+        """The name of the object that is known: its probability is at least SURE; else empty."""
+        best = int(self.values.argmax())
+        return self.library.names[best] if self.values[best] >= SURE else ""
+
+
+NEAR = 0.01  # units, one cell of the default array: within it a point belongs to its vertex
+
+
+def sample_places(surface: Surface, count: int, random: np.random.Generator) -> Places:
+    """Places of `count` points, drawn uniformly by area; those whose faces have no normal are left out.
+
+    Raises ValueError for a mesh without area.
+    """
+    shares = (np.arange(count) + random.random(count)) / count  # one in each of `count` equal parts of the surface
+    points, faces, _ = sample_surface(surface.mesh, shares, random.random((2, count)))
+    return place_at(surface, points, faces)
+
+
+def place_at(surface: Surface, points: np.ndarray, faces: np.ndarray) -> Places:
+    """Places of points (k, 3) that lie in faces (k,).
+
+    A point within NEAR of a corner of its face is moved to this vertex, with the normal that `press` has there. A
+    single face of a fine scan is no guide to how an array lies on it. On a large face the normal is the face's own.
+    """
+    mesh, rows = surface.mesh, np.arange(len(points))
+    corners = mesh.faces[faces]
+    distances = np.linalg.norm(mesh.vertices[corners] - points[:, None], axis=2)
+    nearest = distances.argmin(axis=1)
+    vertices = corners[rows, nearest]
+    averages = mean_vertex_normals(mesh)[vertices]
+    at_vertex = (distances[rows, nearest] <= NEAR) & (np.linalg.norm(averages, axis=1) > CANCELLED)
+    return Places(
+        np.where(at_vertex, vertices, -1),
+        np.where(at_vertex[:, None], mesh.vertices[vertices], points),
+        np.where(at_vertex[:, None], unit(averages), mesh.face_normals[faces]),
+    )
+
+
+with from_extra():
+    from .features import features
+
+TOUCHES = 128  # a learned object; twice as many know no more of the household objects
+CELLS, PITCH = (16, 16), 0.01  # of the array, T4.3
+ORDERS, LONGEST = 5, 20  # random orders of each object's touches, and touches of each, for the calibration
+BLOCK = 256  # touches compared at once, in the processor's cache
+AWAY = np.exp(-3.0)  # weight of no learned touch at a place: of one three widths of `place_kernel` away
+
+
+def learn(meshes: Mapping[str, Mesh], placed: bool = True, seed: int = 0) -> "Library":
+    """The Library of meshes {name: mesh}, each scaled by `normalise`; a mesh that was learned before costs nothing.
+
+    Raises ValueError for fewer than two, and for a mesh that cannot be touched, with its name.
+    """
+    if len(meshes) < 2:
+        raise ValueError("at least two objects are needed: with one there is nothing to tell apart")
+    return _library(tuple(_Named(name, mesh, seed) for name, mesh in sorted(meshes.items())), placed)
+
+
+def touched(name: str, mesh: Mesh, seed: int = 0) -> np.ndarray:
+    """(TOUCHES, 41) features of the touches by which `learn` knows a mesh; ValueError where it cannot be touched."""
+    return _learned(_Named(name, mesh, seed))[0]
+
+
+@dataclass(frozen=True)
+class Expected:
+    """The outcomes that touches at k places may have, for each possible object: the planner's prediction.
+
+    predicted (k, classes, outcomes, classes): log likelihoods of possible touches if it is this object;
+    probabilities (k, classes, outcomes): of each, if it is this object.
+    """
+
+    predicted: np.ndarray
+    probabilities: np.ndarray
+
+
+class Library:
+    """Objects known by touch.
+
+    names: of the objects; samples (classes, touches, 41) their features; positions (classes, touches, 3) where they
+    were touched. The likelihood of an imprint is that of T4.2: a kernel density of its components; if the
+    objects are `placed`, that is, stand as they were learned, of the touches near its place. A learned touch is used
+    like a new one when it is compared with all others but itself; that calibrates the belief.
+    """
+
+    def __init__(
+        self, names: tuple[str, ...], samples: np.ndarray, positions: np.ndarray, placed: bool, seed: int = 0
+    ) -> None:
+        with from_extra():
+            from sklearn.pipeline import make_pipeline
+
+            from .classifiers import reduction
+        self.names, self.placed, (classes, self._each) = names, placed, samples.shape[:2]
+        self._owners = np.repeat(np.arange(classes), self._each)
+        self._reduction = make_pipeline(*reduction()).fit(flat := samples.reshape(-1, samples.shape[2]))
+        self._components, self._positions = self._reduction.transform(flat), positions.reshape(-1, 3)
+        self._own = self._of_own_touches()
+        self.calibration: Calibration = self._calibrate(rng(seed, "calibration"))
+
+    def belief(self) -> Belief:
+        """The Belief before the first touch: all objects alike."""
+        return Belief(self, np.zeros(len(self.names)))
+
+    def log_likelihoods(self, images: np.ndarray, positions: np.ndarray) -> np.ndarray:
+        """(k, classes) log likelihoods of imprints (k, *CELLS) at positions (k, 3) under each object, to a constant."""
+        if np.shape(images)[1:] != CELLS:
+            raise ValueError(f"this library was learned with {CELLS} cells, the imprints have {np.shape(images)[1:]}")
+        kernel = feature_kernel(self._reduction.transform(features(images)), self._components)
+        return self._log_likelihood(kernel, np.asarray(positions), np.arange(len(self._owners)))
+
+    def expect(self, places: Places) -> Expected:
+        """What touches at places may find: if it were object c, one of the learned touches of c near the place.
+
+        Near in the frame in which c was learned, even where the objects are not `placed`, as in the stage exploration.
+        """
+        distances = np.linalg.norm(places.positions[:, None] - self._positions[None], axis=2)
+        outcomes, probabilities = nearest_outcomes(distances, self._owners)
+        if not self.placed:
+            return Expected(self._own[outcomes], probabilities)
+        predicted = [self._at_place(*at) for at in zip(places.positions, outcomes, strict=True)]
+        return Expected(np.stack(predicted), probabilities)
+
+    def gains(self, belief: Belief, expected: Expected) -> np.ndarray:
+        """(k,) nats by which the entropy of the belief is expected to fall with a touch at each of k places."""
+        nothing = np.zeros((1, len(expected.predicted)))
+        parts = nothing, expected.predicted[None], expected.probabilities[None], self.calibration
+        now = belief.values[belief.values > 0]
+        return by_gain(State(belief.log_likelihoods[None], belief.touches, *parts))[0] - now @ np.log(now)
+
+    def _log_likelihood(self, kernel, positions, ids):
+        """(k, classes) of touches at positions (k, 3) whose kernel (k, n) with the learned touches `ids` is given.
+
+        The kernel is 0 for a learned touch that must not count. If the objects are placed, it is the likelihood of
+        what was felt given the place: a person or the planner chose it, which says nothing of the object.
+        """
+        owners = self._owners[ids]
+        if not self.placed:
+            return log_likelihood(kernel, owners, (kernel > 0) @ np.eye(len(self.names))[owners])
+        near, of_object = place_kernel(positions, self._positions[ids]) * (kernel > 0), np.eye(len(self.names))[owners]
+        return np.log(np.maximum((kernel * near) @ of_object / (near @ of_object + AWAY), FLOOR))
+
+    def _of_own_touches(self):
+        """(n, classes) log likelihoods of the learned touches, each without itself."""
+        rows, parts = np.arange(len(self._components)), []
+        for block in np.split(rows, rows[BLOCK::BLOCK]):
+            kernel = feature_kernel(self._components[block], self._components)
+            kernel[np.arange(len(block)), block] = 0
+            parts.append(self._log_likelihood(kernel, self._positions[block], rows))
+        return np.concatenate(parts)
+
+    def _at_place(self, position, outcomes):
+        """(classes, outcomes, classes) log likelihoods of touches like the `outcomes` (classes, outcomes), all here."""
+        ids = outcomes.ravel()  # of farther touches the place kernel is next to nothing
+        kernel = feature_kernel(self._components[ids], self._components[ids])
+        np.fill_diagonal(kernel, 0)
+        found = self._log_likelihood(kernel, position[None], ids)
+        return found.reshape(*outcomes.shape, len(self.names))
+
+    def _calibrate(self, random):
+        own = self._own.reshape(len(self.names), self._each, -1)
+        order = [random.permutation(self._each)[:LONGEST] for _ in range(ORDERS * len(self.names))]
+        truth = np.repeat(np.arange(len(self.names)), ORDERS)
+        return calibrate(own[truth[:, None], order], truth)
+
+
+class _Named:
+    """A mesh under a name; equal where name, seed and content are."""
+
+    def __init__(self, name: str, mesh: Mesh, seed: int) -> None:
+        content = hashlib.sha256(mesh.vertices.tobytes() + mesh.faces.tobytes()).hexdigest()
+        self.name, self.mesh, self.key = name, mesh, (name, seed, content)
+        self.seed = seed
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Named) and self.key == other.key
+
+    def __hash__(self) -> int:
+        return hash(self.key)
+
+
+@lru_cache(maxsize=4)
+def _library(objects: tuple[_Named, ...], placed: bool) -> Library:
+    samples, positions = zip(*map(_learned, objects), strict=True)
+    names = tuple(one.name for one in objects)
+    return Library(names, np.stack(samples), np.stack(positions), placed, objects[0].seed)
+
+
+@lru_cache(maxsize=256)
+def _learned(one: _Named) -> tuple[np.ndarray, np.ndarray]:
+    """(features (TOUCHES, 41), positions (TOUCHES, 3)) of an object."""
+    try:
+        surface = Surface(one.mesh)
+        places = sample_places(surface, TOUCHES, rng(one.seed, one.name))
+        images = press_at(surface, places.positions, sensor_axes(places.normals), CELLS, PITCH)
+    except ValueError as error:
+        raise ValueError(f"{one.name}: {error}") from None
+    return features(images), places.positions
+
+
+SIZES = ("medium", "small")  # the household set has its basic shapes in three sizes, which `normalise` makes equal
+
+
+PRIMITIVES: dict[str, Callable[[], trimesh.Trimesh]] = {
+    "ball": lambda: creation.icosphere(subdivisions=4),
+    "box": lambda: creation.box((1.0, 0.7, 0.5)),
+    "capsule": lambda: creation.capsule(height=1.0, radius=0.3),
+    "cone": lambda: creation.cone(radius=0.4, height=1.0, sections=64),
+    "cylinder": lambda: creation.cylinder(radius=0.3, height=1.0, sections=64),
+    "torus": lambda: creation.torus(major_radius=1.0, minor_radius=0.35),
+}
+
+
+def primitives() -> dict[str, Mesh]:
+    """{name: normalised mesh} of six basic shapes."""
+    shapes = {name: make() for name, make in PRIMITIVES.items()}
+    return {
+        name: normalise(Mesh(np.asarray(shape.vertices), np.asarray(shape.faces))) for name, shape in shapes.items()
+    }
+
+
+def known_objects(folder: Path, most: int = 60) -> tuple[dict[str, Mesh], list[str]]:
+    """({name: normalised mesh}, what was left out) of the first `most` meshes of a folder, in alphabetical order.
+
+    The folder holds files of meshes, or is data/SET/meshes of the pipeline; one that is not there holds none.
+    """
+    files = sorted(path for path in folder.glob("*") if path.suffix.lower() in (*FORMATS, ".npz"))
+    stems = {path.stem for path in files}
+    files = [path for path in files if not _is_another_size(path.stem, stems)]
+    found, notes = {}, [f"{path.name}: more than {most} objects" for path in files[most:]]
+    for path in files[:most]:
+        try:
+            found[path.stem] = read_mesh(path) if path.suffix == ".npz" else normalise(rotate_to_z_up(load(path)))
+        except (MeshError, ValueError, KeyError, OSError) as error:
+            notes.append(f"{path.name}: {error}")
+    return found, notes
+
+
+def _is_another_size(stem, stems):
+    return any(stem.endswith(size) and stem.removesuffix(size) + "large" in stems for size in SIZES)

@@ -1,0 +1,50 @@
+"""How measurements divide into training and test: one vocabulary for all stages."""
+
+from enum import StrEnum
+
+
+class Split(StrEnum):
+    """The column `split` of the measurements: what was kept out of training."""
+
+    RANDOM = "random"
+    FOLDS = "folds"
+    REGIONS = "regions"
+    RANDOM_FEWER = "random_fewer"
+    BLOCKS = "blocks"
+    OBJECTS = "objects"
+    TEST_OBJECTS = "test_objects"
+    VIEWS = "views"
+
+    @property
+    def words(self) -> str:
+        """What is tested on, in words."""
+        return _WORDS[self]
+
+
+_WORDS = {
+    Split.RANDOM: "test part drawn at random",
+    Split.FOLDS: "cross-validation",
+    Split.REGIONS: "regions that no training touch overlaps",
+    Split.RANDOM_FEWER: "test part drawn at random, as few touches to train on as for unseen regions",
+    Split.BLOCKS: "neighbours in time or place kept together",
+    Split.OBJECTS: "unseen objects",
+    Split.TEST_OBJECTS: "the publisher's unseen objects",
+    Split.VIEWS: "unseen views",
+}
+# Test over training share. At random a quarter is tested (T4.2.4). Of regions the touches that overlap them are not
+# trained on; `random_fewer` trains on as few. Five folds test a fifth. Objects and views are independent items.
+_SHARED = {
+    Split.RANDOM: 0.25 / 0.75, Split.BLOCKS: 0.25 / 0.75, Split.REGIONS: 0.43, Split.RANDOM_FEWER: 0.43,
+    Split.FOLDS: 0.2 / 0.8,
+}  # fmt: skip
+
+
+def shared_by(split: str, of_class: int | None = None) -> float:
+    """Test over training share of repeated splits of the same data, for an interval of their mean.
+
+    of_class: objects of each class, where the repetitions are folds that leave one object of each class out. Without
+    it, unseen objects or views count as independent: 0. Raises ValueError for a name that is no Split.
+    """
+    if of_class is not None and split == Split.OBJECTS:
+        return 1 / (of_class - 1)
+    return _SHARED.get(Split(split), 0.0)

@@ -1,0 +1,135 @@
+"""Colours and texture coordinates of a surface transferred to a coarser one of the same shape.
+
+Each comes from the closest point of the original surface. Texture coordinates are transferred chart by chart: a chart
+is a patch of faces whose coordinates are continuous across the edges between them, a seam is where they are not. A face
+of the coarse mesh takes the chart under its centre, so that no face shows the stretch of image between two charts.
+"""
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse.csgraph import connected_components
+
+from haptic_glance.mesh.mesh import Mesh, Texture
+from haptic_glance.mesh.rays import barycentric
+
+from .errors import SurfaceIndex
+
+SAME = 1e-6  # texture coordinates this close are continuous across an edge; an image has some 1e3 pixels per side
+INWARDS = 1e-3  # of the way to the face's centre: a corner on a seam then lies on its own side of it
+BEYOND = 1.0  # barycentric: how far past the closest face its coordinates are extrapolated
+FAR = 50.0  # the same from the face under the centre to the corners, some tens of the original's faces away
+
+
+def carry(reference: Mesh, mesh: Mesh) -> Mesh:
+    """`mesh` with the colours and the texture of `reference`, the Mesh from which it was simplified.
+
+    Colours (n, 3) are interpolated at the closest point of the reference's surface; a vertex at the position of one of
+    the reference's takes its colour unchanged. Texture coordinates (m, 3, 2) are those of the chart under the face's
+    centre, at the closest point of each corner within the chart, extrapolated affinely where the corner lies past the
+    seam. The images stay unchanged. Colours that `mesh` has already stay, as those of a simplification whose error
+    counts them. Where the reference has neither, the mesh itself is returned.
+
+    Source: attributes at the closest point as in Cohen, Olano and Manocha 1998 (appearance-preserving simplification,
+    section 3); the thesis has no attributes. Raises ValueError where the reference has no faces.
+    """
+    if len(reference.faces) == 0:
+        raise ValueError("the reference has no faces to take attributes from")
+    if mesh is reference or len(mesh.faces) == 0 or (reference.colors is None and reference.texture is None):
+        return mesh
+    colors = mesh.colors
+    if colors is None and reference.colors is not None:
+        colors = carry_colors(reference, mesh.vertices)
+    texture = None if reference.texture is None else carry_texture(reference, mesh)
+    return Mesh(mesh.vertices, mesh.faces, colors, texture, reference.up)
+
+
+def carry_colors(reference: Mesh, points: np.ndarray) -> np.ndarray:
+    """(k, 3) u1: the reference's vertex colours at the closest points of its surface to points (k, 3)."""
+    face, weights = closest(reference, points)
+    assert reference.colors is not None
+    colors = np.einsum("ij,ijk->ik", weights, reference.colors[reference.faces[face]].astype(np.float64))
+    used = np.unique(reference.faces)
+    ids = np.unique(np.concatenate([reference.vertices[used], points]), axis=0, return_inverse=True)[1].ravel()
+    owner = np.full(ids.max() + 1, -1)
+    owner[ids[: len(used)]] = used
+    own = owner[ids[len(used) :]]
+    colors[own >= 0] = reference.colors[own[own >= 0]]
+    return np.rint(colors).astype(np.uint8)
+
+
+def closest(mesh: Mesh, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(faces (k,), barycentric weights (k, 3)): the closest points on a mesh to points (k, 3)."""
+    points = np.ascontiguousarray(points, dtype=np.float64)
+    index = SurfaceIndex(mesh)
+    face = index.nearest(points)[1].astype(np.int64)
+    return face, index.weights(points, face)
+
+
+def carry_texture(reference: Mesh, mesh: Mesh) -> Texture:
+    """The Texture of the faces of `mesh`, taken from the reference's."""
+    assert reference.texture is not None
+    chart, jump = charts(reference)
+    corners = mesh.vertices[mesh.faces]
+    centres = corners.mean(axis=1)
+    under, at_centre = closest(reference, centres)
+    inside = corners + INWARDS * (centres[:, None] - corners)
+    uv = np.empty(mesh.faces.shape + (2,))
+    for number in np.unique(chart[under]):
+        here, own = np.flatnonzero(chart[under] == number), np.flatnonzero(chart == number)
+        found, weights = closest(Mesh(reference.vertices, reference.faces[own]), inside[here].reshape(-1, 3))
+        at = corners[here].reshape(-1, 3)
+        uv[here] = _extrapolated(reference, own[found], weights, at, BEYOND).reshape(-1, 3, 2)
+    # A corner across a seam between two ends of one chart (the back of a cylinder) got the coordinates of the other
+    # end.
+    sides = np.repeat(under, 3), np.repeat(at_centre, 3, axis=0), corners.reshape(-1, 3)
+    ahead = _extrapolated(reference, *sides, FAR).reshape(uv.shape)
+    astray = np.linalg.norm(uv - ahead, axis=2) > jump[chart[under]][:, None] / 2
+    uv[astray] = ahead[astray]
+    return Texture(uv, reference.texture.image[under], reference.texture.images)
+
+
+def charts(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
+    """(chart (m,) of each face, jump (charts,)); a corner farther off than half the jump has crossed a seam.
+
+    jump is the median length, in texture coordinates, of the jumps across the seams with the chart on both sides;
+    infinite where it has none.
+    """
+    assert mesh.texture is not None
+    uv, image = mesh.texture.uv, mesh.texture.image
+    one, other, length = _shared_edges(mesh)
+    continuous = (length <= SAME) & (image[one] == image[other])
+    graph = sparse.coo_matrix(
+        (np.ones(continuous.sum()), (one[continuous], other[continuous])), shape=(len(uv), len(uv))
+    )
+    count, chart = connected_components(graph, directed=False)
+    jump = np.full(count, np.inf)
+    seam = ~continuous & (chart[one] == chart[other])
+    for number in np.unique(chart[one[seam]]):
+        jump[number] = np.median(length[seam & (chart[one] == number)])
+    return chart, jump
+
+
+def _shared_edges(mesh):
+    """(first face (e,), second face (e,), length (e,) of the larger jump at the two ends) of the edges of two faces."""
+    tails, heads = mesh.faces.ravel(), np.roll(mesh.faces, -1, axis=1).ravel()
+    at_tail, at_head = mesh.texture.uv.reshape(-1, 2), np.roll(mesh.texture.uv, -1, axis=1).reshape(-1, 2)
+    turned = (tails > heads)[:, None]
+    low, high = np.where(turned, at_head, at_tail), np.where(turned, at_tail, at_head)
+    key = np.minimum(tails, heads) * len(mesh.vertices) + np.maximum(tails, heads)
+    order = np.argsort(key, kind="stable")
+    starts = np.flatnonzero(np.r_[True, np.diff(key[order]) > 0])
+    pairs = starts[np.diff(np.r_[starts, len(order)]) == 2]
+    one, other = order[pairs], order[pairs + 1]
+    jumps = [np.linalg.norm(ends[one] - ends[other], axis=1) for ends in (low, high)]
+    return one // 3, other // 3, np.maximum(*jumps)
+
+
+def _extrapolated(mesh, faces, weights, points, beyond):
+    """(k, 2) texture coordinates at barycentric weights (k, 3) of faces (k,), extrapolated affinely to points (k, 3).
+
+    By at most `beyond` barycentric units, since slivers would extrapolate them anywhere.
+    """
+    with np.errstate(all="ignore"):
+        step = np.nan_to_num(barycentric(mesh, faces, points) - weights)
+    step *= np.minimum(beyond / np.maximum(np.abs(step).max(axis=1, keepdims=True), beyond), 1)
+    return np.einsum("ij,ijk->ik", weights + step, mesh.texture.uv[faces])

@@ -1,0 +1,140 @@
+"""Open borders of a mesh while it is simplified.
+
+Borders that may be simplified: each loop of the boundary is closed by hidden faces, so that its edges collapse too.
+
+The hidden faces of a loop meet in one corner that lies nowhere (NaN): all comparisons with it fail, so that no check of
+shape refuses a collapse on its account, and no edge to it is ever offered. The link condition then is that of a closed
+surface, and preserves the loops. What holds a border in place is the error: the squared distances to planes through its
+edges, upright on the faces there (Garland and Heckbert 1997, section 6).
+
+Borders between materials, preserved while a mesh is simplified: cut open before, closed again after.
+
+A geometric error does not depend on where one material ends and the next begins. On a flat side, which needs few faces,
+the border would end up on any edge. Cut open it is a boundary, which simplification preserves.
+"""
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from haptic_glance.mesh.mesh import Mesh
+
+from .kernels.mesh import HalfEdgeMesh
+from .kernels.quadrics import vertex_quadrics
+
+# Weight of those planes beside that of the faces. On ten open household objects and pieces of furniture, at 10 % of
+# their faces, the mean Metro error is 0.0011 of the diagonal at 1, 0.0012 at 10, 0.0014 at 100, and the border's own
+# error 0.0052, 0.0033 and 0.0026. With the border kept, nine of them get that small, at 1.1 to 6 times the error of 10.
+BORDER = 10.0
+
+
+def closed(surface: HalfEdgeMesh, free: np.ndarray, factor: np.ndarray) -> HalfEdgeMesh:
+    """The surface with hidden faces behind its own, and their corners behind its vertices; its arrays are not changed.
+
+    free (n,) boolean: which vertices of the boundary may move; factor (n,): of each vertex's quadric.
+    """
+    edges = np.flatnonzero((surface.opposite < 0) & (surface.corner >= 0))
+    tail, head = surface.corner[edges], surface.corner[_after(edges)]
+    count, label = connected_components(coo_array((np.ones(len(edges)), (tail, head)), shape=2 * [len(surface.start)]))
+    loops, loop = np.unique(label[tail], return_inverse=True)
+    apex = len(surface.start) + loop
+    faces = np.stack([head, tail, apex], axis=1)
+    own = len(surface.corner) + 3 * np.arange(len(edges))  # the first half-edge of each: along the border, backwards
+    arriving = np.zeros(len(surface.start), dtype=np.int64)
+    arriving[head] = np.arange(len(edges))
+    across = np.stack([edges, own[arriving[tail]] + 2, np.zeros_like(own)], axis=1)
+    across[arriving[tail], 2] = own + 1
+    opposite = surface.opposite.copy()
+    opposite[edges] = own
+    first = np.zeros(len(loops), dtype=np.int64)
+    first[loop] = own + 2
+
+    def longer(array, added):
+        return np.concatenate([array, np.asarray(added, dtype=array.dtype)])
+
+    quadric = surface.quadric + _upright(surface, edges, factor)
+    return HalfEdgeMesh(
+        longer(surface.corner, faces.ravel()), longer(opposite, across.ravel()), longer(surface.start, first),
+        np.zeros(len(surface.start) + len(loops), dtype=bool),
+        longer(surface.locked & ~(surface.boundary & free), np.ones(len(loops))),
+        longer(surface.position, np.full((len(loops), 3), np.nan)), longer(quadric, np.zeros((len(loops), 10))),
+        longer(surface.parent, len(surface.start) + np.arange(len(loops))),
+    )  # fmt: skip
+
+
+def hidden(surface: HalfEdgeMesh) -> np.ndarray:
+    """(m,) boolean: the hidden faces that are left."""
+    nowhere = np.isnan(surface.position[:, 0])
+    corner = surface.corner.reshape(-1, 3)
+    if not nowhere[-1:].any():  # they stand last, where there are any
+        return np.zeros(len(corner), dtype=bool)
+    return nowhere[corner].any(axis=1) & (corner[:, 0] >= 0)
+
+
+def held(surface: HalfEdgeMesh) -> HalfEdgeMesh:
+    """The surface with all corners of its hidden faces locked, for a fit that knows no border."""
+    locked = surface.locked.copy()
+    locked[surface.corner.reshape(-1, 3)[hidden(surface)]] = True
+    return surface._replace(locked=locked)
+
+
+def without_hidden(surface: HalfEdgeMesh) -> np.ndarray:
+    """(3 m,) the corners of the surface, those of its hidden faces removed."""
+    corner = surface.corner.reshape(-1, 3).copy()
+    corner[hidden(surface)] = -1
+    return corner.ravel()
+
+
+def _after(edges):
+    return np.where(edges % 3 == 2, edges - 2, edges + 1)
+
+
+def _upright(surface, edges, factor):
+    """(n, 10) quadrics of the planes through the boundary's edges, as of triangles as long and as high as the edge."""
+    corner = surface.corner
+    i, j, k = corner[edges], corner[_after(edges)], corner[_after(_after(edges))]
+    p = surface.position
+    along = p[j] - p[i]
+    normal = np.cross(along, p[k] - p[i])
+    length = np.linalg.norm(normal, axis=1, keepdims=True)
+    up = np.divide(normal, length, out=np.zeros_like(normal), where=length > 0)
+    tops = p[i] + up * np.linalg.norm(along, axis=1, keepdims=True)
+    n, count = len(p), len(edges)
+    triangles = np.stack([i, j, n + np.arange(count)], axis=1).astype(corner.dtype)
+    weight = BORDER * np.concatenate([factor, np.zeros(count)])
+    return vertex_quadrics(np.concatenate([p, tops]), triangles.ravel(), weight)[:n]
+
+
+def cut_borders(mesh: Mesh) -> tuple[Mesh, np.ndarray]:
+    """(Mesh, ids (n',)): vertices on a border become one per material; ids: the old id of each vertex."""
+    if mesh.texture is None:
+        return mesh, np.arange(len(mesh.vertices))
+    n = len(mesh.vertices)
+    pairs = np.repeat(mesh.texture.image, 3) * n + mesh.faces.ravel()
+    found, first, inverse = np.unique(pairs, return_index=True, return_inverse=True)
+    source, owner = found % n, found // n
+    home = np.full(n, -1)
+    home[source[::-1]] = owner[::-1]  # a vertex keeps its id in the first of its materials
+    extra = owner != home[source]
+    number = np.where(extra, n + np.cumsum(extra) - 1, source)
+    ids = np.r_[np.arange(n), source[extra]]
+    colors = None if mesh.colors is None else mesh.colors[ids]
+    return Mesh(mesh.vertices[ids], number[inverse].reshape(-1, 3), colors, mesh.texture, mesh.up), ids
+
+
+def close_borders(mesh: Mesh, cut: Mesh, ids: np.ndarray) -> Mesh:
+    """The simplified `mesh` with the vertices that `cut_borders` doubled merged again; unused ones are removed."""
+    doubled = np.bincount(ids)[ids] > 1
+    rows, place = np.unique(np.concatenate([cut.vertices[doubled], mesh.vertices]), axis=0, return_inverse=True)
+    place = place.ravel()
+    at_border = np.zeros(len(rows), dtype=bool)
+    at_border[place[: doubled.sum()]] = True
+    own = place[doubled.sum() :]
+    name = np.where(at_border[own], own, len(rows) + np.arange(len(own)))
+    _, first, inverse = np.unique(name[mesh.faces], return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    rank = np.empty_like(order)
+    rank[order] = np.arange(len(order))
+    kept = mesh.faces.ravel()[first[order]]
+    colors = None if mesh.colors is None else mesh.colors[kept]
+    return Mesh(mesh.vertices[kept], rank[inverse.ravel()].reshape(-1, 3), colors, mesh.texture, mesh.up)

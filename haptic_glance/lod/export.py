@@ -1,0 +1,165 @@
+"""Files of levels.
+
+Meshes written for other programs, with their colours and textures, in their own coordinates.
+
+Face counts as people write them: absolute or as a share of the object's own.
+
+Several levels of detail of one mesh: how they are written on a command line, and the names of their files.
+
+What of a mesh a page shows that is to stay small.
+"""
+
+import argparse
+import io
+import re
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import trimesh
+from PIL import Image
+from scipy.spatial import KDTree
+from trimesh.visual import TextureVisuals
+from trimesh.visual.material import PBRMaterial
+
+from haptic_glance.base.files import whole_file
+from haptic_glance.base.packing import ordered
+from haptic_glance.mesh.materials import bake_texture
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.up import with_stated_up
+
+from .simplify import simplify
+from .topology import Parts
+
+FORMATS = (".glb", ".obj", ".off", ".ply", ".stl")
+PICTURED = (".glb", ".obj")  # the formats with texture coordinates and images
+COLORLESS = (".off", ".stl")
+DIGITS = 9  # of the diagonal
+
+
+def write_any(path: str | Path, mesh: Mesh, parts: Parts | None = None) -> None:
+    """Writes a Mesh in the format of the path's suffix: glb, obj, off, ply or stl; the file is whole or absent.
+
+    Textures are written to glb and obj (with NAME.mtl and NAME_K.png beside it), where seams double vertices; ply gets
+    the texture's colour at each vertex instead; off and stl have neither. obj and off have nine digits or more, the
+    others single precision. Coordinates are those of the mesh: glTF expects +y up and metres, but nothing is turned
+    here (haptic_glance.mesh.up.upright_for); the other formats get a comment where another axis than z points up.
+    parts: in a glb the nodes, by name. Raises ValueError for another suffix.
+    """
+    path = Path(path)
+    suffix = path.suffix.lower()
+    if suffix not in FORMATS:
+        raise ValueError(f"{path.name}: meshes are written as {', '.join(FORMATS)}, not as {suffix or 'no suffix'}")
+    named = parts if suffix == ".glb" else None
+    loaded = to_trimesh(mesh if suffix in PICTURED else bake_texture(mesh), path.stem, named)
+    digits = max(DIGITS - int(np.floor(np.log10(mesh.diagonal or 1.0))), 1)
+    options: dict[str, Any] = {"digits": digits} if suffix in (".obj", ".off") else {}
+    if suffix == ".obj":
+        options |= {"return_texture": True, "mtl_name": f"{path.stem}.mtl"}
+    exported: Any = loaded.export(file_type=suffix[1:], **options)
+    content, beside = exported if suffix == ".obj" else (exported, {})
+    with ExitStack() as stack:  # all are written before the first is moved into place, the mesh itself last
+        for name, extra in {path.name: content, **beside}.items():
+            part = stack.enter_context(whole_file(path.parent / name))
+            data = extra.encode() if isinstance(extra, str) else extra
+            part.write_bytes(with_stated_up(data, suffix, mesh.up) if name == path.name else data)
+
+
+def to_trimesh(mesh: Mesh, name: str = "mesh", parts: Parts | None = None) -> trimesh.Trimesh | trimesh.Scene:
+    """A trimesh.Trimesh, or with a texture a trimesh.Scene with one part per image, vertices doubled at seams.
+
+    name: prefix of the names of its parts and materials. parts: a Scene of these, named so, each with one part per
+    image, the further ones numbered.
+    """
+    if mesh.texture is None and not parts:
+        return trimesh.Trimesh(mesh.vertices, mesh.faces, vertex_colors=mesh.colors, process=False)
+    if mesh.texture is None:
+        return trimesh.Scene({part: _plain_part(mesh, ids) for part, ids in (parts or {}).items()})
+    images, scene = mesh.texture.image, {}
+    if not parts:
+        scene = {f"{name}_{number}": (number, np.flatnonzero(images == number)) for number in np.unique(images)}
+    for part, ids in (parts or {}).items():
+        for place, number in enumerate(np.unique(images[ids])):
+            scene[f"{part}_{place}" if place else part] = number, ids[images[ids] == number]
+    return trimesh.Scene({part: _part(mesh, number, ids, part) for part, (number, ids) in scene.items()})
+
+
+def _plain_part(mesh, ids):
+    used, faces = np.unique(mesh.faces[ids], return_inverse=True)
+    colors = None if mesh.colors is None else mesh.colors[used]
+    return trimesh.Trimesh(mesh.vertices[used], faces.reshape(-1, 3), vertex_colors=colors, process=False)
+
+
+def _part(mesh, number, ids, name):
+    """Faces of one image, as a Trimesh whose vertices each have one pair of texture coordinates."""
+    own = mesh.texture.of(ids)
+    faces = mesh.faces[ids]
+    rows = np.column_stack([faces.ravel(), own.uv.reshape(-1, 2)])
+    found, first, inverse = np.unique(rows, axis=0, return_index=True, return_inverse=True)
+    image = own.images[number]
+    material = PBRMaterial(name=name, doubleSided=True, metallicFactor=0.0, roughnessFactor=1.0, **_base_color(image))
+    visual = TextureVisuals(uv=found[:, 1:], material=material)
+    vertices = mesh.vertices[faces.ravel()[first]]
+    return trimesh.Trimesh(vertices, inverse.reshape(-1, 3), visual=visual, process=False)
+
+
+def _base_color(pixels):
+    """glTF's base colour: the image, or its colour where it is one pixel."""
+    mask = {"alphaMode": "MASK"} if (pixels[..., 3] < 255).any() else {}
+    if pixels.shape[:2] == (1, 1):
+        return {"baseColorFactor": pixels[0, 0], **mask}
+    packed = io.BytesIO()
+    Image.fromarray(pixels if mask else pixels[..., :3]).save(packed, "PNG")  # trimesh writes the format that was read
+    packed.seek(0)
+    return {"baseColorTexture": Image.open(packed), **mask}
+
+
+def face_count(target: str | int, total: int, name: str = "lod.targets") -> int:
+    """The face count of a `target` ("25%", "1500") for a mesh of `total` faces.
+
+    Raises ValueError, which names the setting, for anything else, shares outside 0 to 100 %, and counts below 1.
+    """
+    match = re.fullmatch(r"(\d+(?:\.\d+)?)(%?)", str(target).strip())
+    if match is None:
+        raise ValueError(f"{name}={target!r} is not a face count: write one like 1500 or 25%")
+    number = float(match[1])
+    if match[2] and not 0 < number < 100:
+        raise ValueError(f"{name}={target!r} must lie between 0% and 100%")
+    count = int(total * number / 100) if match[2] else int(number)
+    if count < 1 and not match[2]:
+        raise ValueError(f"{name}={target!r} must be 1 or more")
+    return max(count, 1)
+
+
+def file_name(method: str, target: str) -> str:
+    """The name of a mesh's file, for example `glance_25pct.npz`."""
+    return f"{method}_{str(target).strip().replace('%', 'pct')}.npz"
+
+
+def levels(text: str) -> list[str]:
+    """["50%", "25%"] of the text `50%,25%`; argparse.ArgumentTypeError for what is no face count."""
+    try:
+        found = [part.strip() for part in text.split(",")]
+        for part in found:
+            face_count(part, 1, "--levels")
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+    return list(dict.fromkeys(found))
+
+
+def level_path(folder: Path, name: str, source: Path, target: str, kind: str | None = None) -> Path:
+    """folder/NAME_50pct.glb; kind: such as glb; None for that of the source where it can be written, or else glb."""
+    own = source.suffix.lower()
+    suffix = f".{kind}" if kind else own if own in FORMATS else ".glb"
+    return folder / f"{name}_{target.replace('%', 'pct')}{suffix}"
+
+
+INDEX_LIMIT = 65535  # 16-bit vertex ids
+
+
+def shown_mesh(mesh: Mesh, faces: int) -> tuple[Mesh, np.ndarray]:
+    """(mesh, ids): the mesh, simplified where it has more faces; ids: the original vertex nearest to each of its."""
+    large = len(mesh.faces) > faces or len(np.unique(mesh.faces)) > INDEX_LIMIT
+    small = ordered(simplify(mesh, faces) if large else mesh)[0]
+    return small, np.asarray(KDTree(mesh.vertices).query(small.vertices)[1])

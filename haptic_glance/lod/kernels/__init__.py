@@ -1,0 +1,1 @@
+"""The inner loops of simplification and of its error measures: compiled kernels on plain arrays."""

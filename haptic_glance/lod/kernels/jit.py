@@ -1,0 +1,64 @@
+"""The decorators and vectors of these kernels.
+
+How this folder's kernels are compiled.
+
+Points and vectors of three numbers: a call is compiled in less time than the operators that it stands for.
+"""
+
+from collections.abc import Callable
+from typing import TypeVar
+
+import numpy as np
+
+from haptic_glance.base import jit
+from haptic_glance.base.jit import kept_in, kernel_of
+
+Id = int | np.integer  # of a vertex, half-edge, face or bucket
+Result = TypeVar("Result")
+
+# Inlined throughout: a call passes seven words for each array, which took as long as the work.
+_compiled = kernel_of(__file__, forceinline=True, _nrt=False)
+_allocating = kernel_of(__file__, forceinline=True)
+FOLDER = kept_in(__file__)
+
+
+def kernel(function: Callable[..., Result]) -> Callable[..., Result]:
+    """The function compiled, for arguments of any numeric type; it makes no array."""
+    return _compiled(function)
+
+
+def allocating_kernel(function: Callable[..., Result]) -> Callable[..., Result]:
+    """The same for one that makes arrays: to count references to them takes longer to compile."""
+    return _allocating(function)
+
+
+def helper(function: Callable[..., Result]) -> Callable[..., Result]:
+    """The function compiled as a part of the kernels that call it."""
+    return jit.helper(function)
+
+
+Vector = tuple[float, float, float]
+
+
+@helper
+def point(p: np.ndarray, v: Id) -> Vector:
+    """Row v of p (n, 3)."""
+    return p[v, 0], p[v, 1], p[v, 2]
+
+
+@helper
+def between(p: np.ndarray, a: Id, b: Id) -> Vector:
+    """From row a of p (n, 3) to row b."""
+    return p[b, 0] - p[a, 0], p[b, 1] - p[a, 1], p[b, 2] - p[a, 2]
+
+
+@helper
+def dot(ax: float, ay: float, az: float, bx: float, by: float, bz: float) -> float:
+    """The inner product of a and b."""
+    return ax * bx + ay * by + az * bz
+
+
+@helper
+def cross(ax: float, ay: float, az: float, bx: float, by: float, bz: float) -> Vector:
+    """The cross product of a and b."""
+    return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx

@@ -1,0 +1,385 @@
+"""The mesh while it is simplified: corners, half edges, parts, faults.
+
+The corner table: the opposite of each half-edge, and one vertex per fan of faces.
+
+Half-edge 3 f + k runs from corner k of face f to the next; it is also the name of that corner.
+
+The half-edge mesh while it is simplified, and one edge collapse on it.
+
+The parts of a surface: fans of faces around a vertex, components joined by edges.
+
+Counts of a surface's faults.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .jit import Id, allocating_kernel, between, cross, dot, helper, kernel, point
+
+MAX_EDGES = 64  # at a vertex, to vertices of higher ids: with more of them the linear search takes too long
+
+
+@helper
+def after(h: Id) -> Id:
+    """The next half-edge of the face."""
+    return h - 2 if np.uint32(h) % np.uint32(3) == np.uint32(2) else h + 1
+
+
+@helper
+def before(h: Id) -> Id:
+    """The previous half-edge of the face."""
+    return h + 2 if np.uint32(h) % np.uint32(3) == np.uint32(0) else h - 1
+
+
+def opposites(faces: np.ndarray, count: int, oriented: bool) -> tuple[np.ndarray, int]:
+    """The opposite of each half-edge, (3 m,) i4, and how many half-edges lie on non-manifold edges.
+
+    faces (3 m,) vertex ids below `count`. The opposite is -1 on the boundary: where one, three or more faces share the
+    edge and, if `oriented`, where its two faces have opposite windings.
+    """
+    other = np.full(len(faces), -1, dtype=np.int32)
+    ends = np.empty((2, len(faces) // 2), dtype=np.int32)
+    if _closed(faces, other, np.zeros(count + 1, dtype=np.int32), *ends):
+        return other, 0
+    return _of_any(faces, count, oriented)
+
+
+@allocating_kernel
+def _of_any(faces, count, oriented):
+    """`opposites` of faces that need not be closed."""
+    other = np.full(len(faces), -1, dtype=np.int32)
+    first, order = _by_lower_end(faces, count)
+    seen = np.full(count, -1, dtype=np.int32)
+    slot = np.zeros(count, dtype=np.int32)
+    shared = np.zeros(count, dtype=np.int32)
+    non_manifold = 0
+    for low in range(count):
+        for at in range(first[low], first[low + 1]):
+            h = order[at]
+            tail, head = faces[h], faces[after(h)]
+            high = max(tail, head)
+            if seen[high] != low:
+                seen[high], slot[high], shared[high] = low, h, 0
+            first_half = slot[high]  # of the edge, which keeps the count
+            shared[high] += 1
+            if shared[high] == 2 and not (oriented and faces[first_half] == tail):
+                other[h], other[first_half] = first_half, h
+            elif shared[high] > 3:
+                non_manifold += 1
+            elif shared[high] == 3:
+                non_manifold += 3
+                if other[first_half] >= 0:
+                    other[other[first_half]] = -1
+                    other[first_half] = -1
+    return other, non_manifold
+
+
+@kernel
+def _closed(faces, other, first, up, high):
+    """Fills `other` for a closed manifold with consistent winding, else returns False.
+
+    There each edge has one half-edge up, to the higher id, and one down. Most meshes are such: a third of the time.
+    first (count + 1,): zeros; up, high: scratch, half as long as faces.
+    """
+    for f in range(0, len(faces), 3):
+        for k in range(3):
+            tail, head = faces[f + k], faces[f + (k + 1) % 3]
+            first[min(tail, head)] += tail < head
+    total, count = 0, len(first) - 1
+    for low in range(count):
+        if first[low] > MAX_EDGES:
+            return False
+        total += first[low]
+        first[low] = total
+    first[count] = total
+    if 2 * total != len(faces):
+        return False
+    for f in range(0, len(faces), 3):
+        for k in range(3):
+            tail, head = faces[f + k], faces[f + (k + 1) % 3]
+            if tail < head:
+                first[tail] -= 1
+                up[first[tail]], high[first[tail]] = f + k, head
+    good = True
+    for f in range(0, len(faces), 3):
+        for k in range(3):
+            tail, head = faces[f + k], faces[f + (k + 1) % 3]
+            if tail >= head:
+                good &= _match(first, up, high, other, tail, head, f + k)
+    return good
+
+
+@helper
+def _match(first, up, high, other, tail, head, h):
+    """Pairs half-edge h with the first one from its head up to its tail; False where that already has a pair."""
+    for at in range(first[head], first[head + 1]):
+        if high[at] == tail:
+            g = up[at]
+            free = other[g] < 0
+            other[h], other[g] = g, h
+            return free
+    return False
+
+
+@allocating_kernel
+def _by_lower_end(faces, count):
+    first = np.zeros(count + 1, dtype=np.int32)
+    for h in range(len(faces)):
+        first[min(faces[h], faces[after(h)]) + 1] += 1
+    for low in range(count):
+        first[low + 1] += first[low]
+    place = first[:-1].copy()
+    order = np.empty(len(faces), dtype=np.int32)
+    for h in range(len(faces)):
+        low = min(faces[h], faces[after(h)])
+        order[place[low]] = h
+        place[low] += 1
+    return first, order
+
+
+def fans(faces: np.ndarray, opposite: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """One vertex per fan of faces, so that vertices at which several fans touch are split.
+
+    Returns corner (3 m,) i4: the new vertex at the tail of each half-edge; start (k,) i4: the first half-edge that
+    leaves a new vertex (of an open fan the one on the boundary); source (k,) i4: the old vertex of each; boundary (k,)
+    boolean: whether the fan is open.
+    """
+    corner = np.full(len(faces), -1, dtype=np.int32)
+    start, source = np.empty((2, len(faces)), dtype=np.int32)
+    boundary = np.empty(len(faces), dtype=np.bool_)
+    count = _fill_fans(faces, opposite, corner, start, source, boundary)
+    return corner, start[:count].copy(), source[:count].copy(), boundary[:count].copy()
+
+
+@kernel
+def _fill_fans(faces, opposite, corner, start, source, boundary):
+    """Fills what `fans` returns; returns the number of fans."""
+    count = 0
+    for seed in range(len(faces)):
+        if corner[seed] >= 0:
+            continue
+        h = seed
+        while opposite[h] >= 0:  # back to the boundary, or around once
+            h = after(opposite[h])
+            if h == seed:
+                break
+        start[count], source[count], boundary[count] = h, faces[h], opposite[h] < 0
+        while corner[h] < 0:
+            corner[h] = count
+            h = opposite[before(h)]
+            if h < 0:
+                break
+        count += 1
+    return count
+
+
+class HalfEdgeMesh(NamedTuple):
+    """A triangle mesh by half-edges; the corners of a removed face are -1."""
+
+    corner: np.ndarray  # (3 m,) vertex at the tail of each half-edge
+    opposite: np.ndarray  # (3 m,) half-edge
+    start: np.ndarray  # (n,) first half-edge that leaves a vertex
+    boundary: np.ndarray  # (n,) boolean
+    locked: np.ndarray  # (n,) boolean
+    position: np.ndarray  # (n, 3)
+    quadric: np.ndarray  # (n, 10)
+    parent: np.ndarray  # (n,) the vertex into which each was merged
+
+
+@helper
+def collapse_edge(
+    corner: np.ndarray,
+    opposite: np.ndarray,
+    start: np.ndarray,
+    boundary: np.ndarray,
+    locked: np.ndarray,
+    position: np.ndarray,
+    quadric: np.ndarray,
+    parent: np.ndarray,
+    h: Id,
+    x: float,
+    y: float,
+    z: float,
+) -> tuple[Id, Id]:
+    """Merges the ends of the edge of half-edge h at x, y, z; a locked end keeps its position.
+
+    Returns a half-edge of each of the two edges that result from merging two.
+    """
+    t = np.int64(opposite[h])
+    i, j = corner[h], corner[t]
+    stays, goes = (i, j) if locked[i] else (j, i)
+    g = first = start[goes]
+    while True:
+        corner[g] = stays
+        g = opposite[before(g)]
+        if g < 0 or g == first:
+            break
+    up, down = opposite[before(h)], opposite[before(t)]  # half-edges that leave i and j beside the two removed faces
+    if start[stays] // 3 == h // 3 or start[stays] // 3 == t // 3:
+        start[stays] = down if boundary[stays] and stays == i else up
+    left, right = opposite[after(h)], opposite[after(t)]
+    left, right = (left if left >= 0 else up), (right if right >= 0 else down)
+    for g in (h, t):
+        one, two, across = opposite[after(g)], opposite[before(g)], corner[before(g)]
+        if start[across] == before(g):
+            start[across] = one
+        if one >= 0:
+            opposite[one] = two
+        if two >= 0:
+            opposite[two] = one
+        f = g - g % 3
+        corner[f] = corner[f + 1] = corner[f + 2] = -1
+    position[stays, 0], position[stays, 1], position[stays, 2] = x, y, z
+    for n in range(10):
+        quadric[stays, n] += quadric[goes, n]
+    parent[goes] = stays
+    return np.int64(left), np.int64(right)
+
+
+def compact(corner: np.ndarray, locked: np.ndarray, source: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """The remaining faces (3 k,) i8, and (n',) the vertex of the surface that each of their vertices is.
+
+    corner, locked: as of a HalfEdgeMesh. source (n,): ids below `count`; locked vertices of one source become one
+    vertex again.
+    """
+    name = np.full(count + len(source), -1, dtype=np.int64)
+    faces = np.empty(len(corner), dtype=np.int64)
+    used = np.empty(len(source), dtype=np.int64)
+    size, ids = _name_corners(corner, locked, source, count, name, faces, used)
+    return faces[:size].copy(), used[:ids].copy()
+
+
+@kernel
+def _name_corners(corner, locked, source, count, name, faces, used):
+    """Fills what `compact` returns; returns the numbers of corners and of vertices. name: -1 for each key."""
+    size = ids = 0
+    for v in corner:
+        if v < 0:
+            continue
+        key = source[v] if locked[v] else count + v
+        if name[key] < 0:
+            name[key], used[ids] = ids, v
+            ids += 1
+        faces[size] = name[key]
+        size += 1
+    return size, ids
+
+
+def split_fans(faces: np.ndarray, other: np.ndarray) -> tuple[np.ndarray, int]:
+    """(3 m,) i4: the fan at each corner, and the number of fans; the windings of neighbours may differ.
+
+    faces (3 m,); other (3 m,): their `opposites`.
+    """
+    fan = np.full(len(faces), -1, dtype=np.int32)
+    return fan, _fill_split_fans(faces, other, fan)
+
+
+@kernel
+def _fill_split_fans(faces, other, fan):
+    """Fills the fans of `split_fans`, all -1 before; returns their number."""
+    count = 0
+    for seed in range(len(faces)):
+        if fan[seed] >= 0:
+            continue
+        fan[seed] = count
+        for side in range(2):  # to one end of the fan, then to the other; around once where it is closed
+            edge, tail = (seed, True) if side == 0 else (before(seed), False)  # tail: the corner is that of the edge
+            while other[edge] >= 0:
+                across = other[edge]
+                tail = tail == (faces[across] == faces[edge])
+                here = across if tail else after(across)
+                if fan[here] >= 0:
+                    break
+                fan[here] = count
+                edge, tail = (before(across), False) if tail else (here, True)
+        count += 1
+    return count
+
+
+def face_components(other: np.ndarray) -> tuple[np.ndarray, int]:
+    """(m,) i4: the component, joined by edges, of each face, and their number. other (3 m,): see `opposites`."""
+    component = np.full(len(other) // 3, -1, dtype=np.int32)
+    return component, _fill_components(other, component, np.empty_like(component))
+
+
+@kernel
+def _fill_components(other, component, waiting):
+    """Fills the components, all -1 before, and returns their number. waiting (m,): scratch."""
+    count = 0
+    for seed in range(len(component)):
+        if component[seed] >= 0:
+            continue
+        component[seed], waiting[0], left = count, seed, 1
+        while left:
+            left -= 1
+            f = waiting[left]
+            for h in range(3 * f, 3 * f + 3):
+                g = other[h] // 3  # -1 on the boundary
+                if g >= 0 and component[g] < 0:
+                    component[g], waiting[left] = count, g
+                    left += 1
+        count += 1
+    return count
+
+
+def signed_volumes(vertices: np.ndarray, faces: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """(k,) volume inside each component, negative where it is inside out; 0 for one with a boundary."""
+    component, count = face_components(other)
+    volume, boundary = np.zeros(count), np.zeros(count, dtype=np.bool_)
+    _add_volumes(vertices, faces, other, component, np.full(count, -1, dtype=np.int32), volume, boundary)
+    volume[boundary] = 0.0
+    return volume
+
+
+@kernel
+def _add_volumes(vertices, faces, other, component, origin, volume, boundary):
+    """Adds the volume under each face to that of its component. origin: -1, then a vertex of each component."""
+    for f in range(len(component)):
+        at = component[f]
+        if origin[at] < 0:
+            origin[at] = faces[
+                3 * f
+            ]  # a point of the component itself: from afar, small volumes would be lost to rounding
+        o, i, j, k = origin[at], faces[3 * f], faces[3 * f + 1], faces[3 * f + 2]
+        ax, ay, az = between(vertices, o, i)
+        bx, by, bz = between(vertices, o, j)
+        cx, cy, cz = between(vertices, o, k)
+        nx, ny, nz = cross(bx, by, bz, cx, cy, cz)
+        volume[at] += dot(ax, ay, az, nx, ny, nz) / 6
+        for h in range(3 * f, 3 * f + 3):
+            boundary[at] |= other[h] < 0
+
+
+def count_faults(
+    vertices: np.ndarray, faces: np.ndarray, other: np.ndarray, thin: float, fold: float
+) -> tuple[int, int]:
+    """(degenerate faces, pairs of neighbours folded onto each other).
+
+    faces (3 m,); other (3 m,): their `opposites`. thin: height of a degenerate face; fold: cosine of the normals.
+    """
+    return _count(vertices, faces, other, thin, fold, np.zeros((len(faces) // 3, 3)))
+
+
+@kernel
+def _count(vertices, faces, other, thin, fold, normal):
+    """`count_faults`; normal (m, 3): zeros."""
+    degenerate = folded = 0
+    for f in range(len(normal)):
+        i, j, k = faces[3 * f], faces[3 * f + 1], faces[3 * f + 2]
+        ux, uy, uz = between(vertices, i, j)
+        vx, vy, vz = between(vertices, i, k)
+        wx, wy, wz = vx - ux, vy - uy, vz - uz
+        x, y, z = cross(ux, uy, uz, vx, vy, vz)
+        double = np.sqrt(dot(x, y, z, x, y, z))
+        sides = max(dot(ux, uy, uz, ux, uy, uz), dot(vx, vy, vz, vx, vy, vz), dot(wx, wy, wz, wx, wy, wz))
+        degenerate += double <= thin * np.sqrt(sides)
+        if double > 0.0:
+            normal[f, 0], normal[f, 1], normal[f, 2] = x / double, y / double, z / double
+    for h in range(len(faces)):
+        if other[h] > h:
+            ux, uy, uz = point(normal, h // 3)
+            vx, vy, vz = point(normal, other[h] // 3)
+            along = dot(ux, uy, uz, vx, vy, vz)
+            folded += (-along if faces[h] == faces[other[h]] else along) < fold  # whatever the winding
+    return degenerate, folded

@@ -1,0 +1,208 @@
+"""The nearest point on a surface.
+
+The search for the nearest face in a grid of cells, compiled by numba.
+
+The faces of a mesh sorted into the cells of a grid, compiled by numba.
+"""
+
+import math
+
+import numpy as np
+
+from .jit import allocating_kernel, helper
+from .quadrics import NUMBERS, bound_to, set_planes, square_to
+
+# Grid: starts and entries of the cells (see fill_cells), lower corner, width and counts of the cells.
+Grid = tuple[np.ndarray, np.ndarray, np.ndarray, float, np.ndarray]
+EQUAL = 1 + 1e-9  # smaller ratios are rounding
+
+
+@helper
+def _clipped(place, cells):
+    """The cell at a position along an axis, or the nearest one."""
+    return int(place) if 0.0 <= place < cells else (0 if place < 0.0 else cells - 1)
+
+
+@helper
+def _nearest_in_cell(x, y, z, first, last, low, vertices, faces, entries, planes, enough):
+    """(squared distance, face) of the nearest face in one cell; face -1 in an empty one.
+
+    All bounds are computed without a branch, and the face of the smallest is measured: mispredicted branches took
+    longer than all arithmetic. A face whose squared distance is at most `enough` ends the search.
+    """
+    px, py, pz = x - low[0], y - low[1], z - low[2]
+    least, second, face = np.inf, np.inf, -1
+    for e in range(first, last):
+        bound = bound_to(planes, entries[e], px, py, pz)
+        if bound <= enough:
+            square = square_to(vertices, faces, planes, entries[e], x, y, z)
+            if square <= enough:
+                return square, entries[e]
+        face = entries[e] if bound < least else face
+        larger = bound if bound > least else least
+        second = larger if larger < second else second
+        least = bound if bound < least else least
+    best = np.inf
+    if face >= 0:
+        best = square_to(vertices, faces, planes, face, x, y, z)
+        if best > second * EQUAL:  # the nearest point is a corner: another face may be nearer
+            for e in range(first, last):
+                if bound_to(planes, entries[e], px, py, pz) < best:
+                    square = square_to(vertices, faces, planes, entries[e], x, y, z)
+                    if square < best:
+                        best, face = square, entries[e]
+    return best, face
+
+
+@helper
+def _search_one(points, i, vertices, faces, starts, entries, low, cell, shape, planes, enough, far):
+    """(squared distance, face, whether it is the nearest) of one point: in its cell, then in ever wider boxes of cells.
+
+    A face in several cells is bounded again, which is cheaper than remembering it.
+    """
+    x, y, z = points[i, 0], points[i, 1], points[i, 2]
+    px, py, pz, per_unit = x - low[0], y - low[1], z - low[2], 1 / cell
+    gx, gy, gz = px * per_unit, py * per_unit, pz * per_unit
+    x0, y0, z0 = _clipped(gx, shape[0]), _clipped(gy, shape[1]), _clipped(gz, shape[2])
+    own = (z0 * shape[1] + y0) * shape[0] + x0
+    best, face = _nearest_in_cell(x, y, z, starts[own], starts[own + 1], low, vertices, faces, entries, planes, enough)
+    needed = math.sqrt(best) * per_unit
+    sure = gx - needed >= x0 and gx + needed < x0 + 1 and gy - needed >= y0 and gy + needed < y0 + 1
+    sure = (sure and gz - needed >= z0 and gz + needed < z0 + 1) or best <= enough
+    limit = 1.0
+    while not sure and limit <= far:
+        radius = min(needed, limit)
+        x0, x1 = _clipped(gx - radius, shape[0]), _clipped(gx + radius, shape[0])
+        y0, y1 = _clipped(gy - radius, shape[1]), _clipped(gy + radius, shape[1])
+        z0, z1 = _clipped(gz - radius, shape[2]), _clipped(gz + radius, shape[2])
+        for layer in range(z0, z1 + 1):
+            up = max(layer - gz, gz - layer - 1, 0.0)
+            for column in range(y0, y1 + 1):
+                aside = max(column - gy, gy - column - 1, 0.0)
+                if (up * up + aside * aside) * cell * cell > best:
+                    continue
+                row = layer * shape[1] + column
+                for e in range(starts[row * shape[0] + x0], starts[row * shape[0] + x1 + 1]):
+                    if bound_to(planes, entries[e], px, py, pz) < best:
+                        square = square_to(vertices, faces, planes, entries[e], x, y, z)
+                        if square < best:
+                            best, face = square, entries[e]
+                            if best <= enough:
+                                return best, face, True
+        sure = needed <= limit or best * per_unit**2 <= radius**2
+        needed = math.sqrt(best) * per_unit
+        limit *= 2
+    return best, face, sure
+
+
+@allocating_kernel
+def search(
+    points: np.ndarray, vertices: np.ndarray, faces: np.ndarray, grid: Grid, planes: np.ndarray, far: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """(squared distances (k,), faces (k,)) of the nearest faces; face -1 where all are more than `far` cells away."""
+    starts, entries, low, cell, shape = grid
+    squares, found = np.empty(len(points)), np.empty(len(points), dtype=np.int64)
+    for i in range(len(points)):
+        best, face, sure = _search_one(points, i, vertices, faces, starts, entries, low, cell, shape, planes, -1.0, far)
+        squares[i], found[i] = best, face if sure else -1
+    return squares, found
+
+
+@allocating_kernel
+def farthest(
+    points: np.ndarray,
+    corners: np.ndarray,
+    vertices: np.ndarray,
+    faces: np.ndarray,
+    grid: Grid,
+    planes: np.ndarray,
+    square: float,
+    far: float,
+) -> tuple[float, np.ndarray]:
+    """(largest squared distance of the corners (m, 3) among the points, at least `square`; ids of those not searched).
+
+    Not searched are points more than `far` cells away.
+    """
+    starts, entries, low, cell, shape = grid
+    done = np.zeros(len(points), dtype=np.bool_)
+    away = np.empty(len(points), dtype=np.int64)
+    count = 0
+    for f in range(len(corners)):
+        for corner in range(3):
+            v = corners[f, corner]
+            if done[v]:
+                continue
+            done[v] = True
+            best, _, sure = _search_one(
+                points, v, vertices, faces, starts, entries, low, cell, shape, planes, square, far
+            )
+            if not sure:
+                away[count] = v
+                count += 1
+            elif best > square:
+                square = best
+    return square, away[:count]
+
+
+@allocating_kernel
+def bounding_box(vertices: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Lower and upper corner of the box around all faces."""
+    low, high = np.full(3, np.inf), np.full(3, -np.inf)
+    for f in range(len(faces)):
+        for corner in range(3):
+            for axis in range(3):
+                value = vertices[faces[f, corner], axis]
+                low[axis], high[axis] = min(low[axis], value), max(high[axis], value)
+    return low, high
+
+
+@allocating_kernel
+def planes_of(vertices: np.ndarray, faces: np.ndarray, low: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The planes (m, 16) of all faces, relative to the corner `low`, and twice their areas (m,)."""
+    planes, areas = np.empty((len(faces), NUMBERS)), np.empty(len(faces))
+    for f in range(len(faces)):
+        areas[f] = set_planes(vertices, faces[f, 0], faces[f, 1], faces[f, 2], low, planes, f)
+    return planes, areas
+
+
+@allocating_kernel
+def cell_boxes(
+    vertices: np.ndarray, faces: np.ndarray, low: np.ndarray, cell: float, shape: np.ndarray
+) -> tuple[np.ndarray, int]:
+    """(m, 6) i4 first and last cell of each face along the axes, and the number of cells in all these boxes."""
+    boxes, per_unit, total = np.empty((len(faces), 6), dtype=np.int32), 1 / cell, 0
+    for f in range(len(faces)):
+        a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
+        cells = 1
+        for axis in range(3):
+            p, q, r = vertices[a, axis], vertices[b, axis], vertices[c, axis]
+            first = int((min(p, q, r) - low[axis]) * per_unit)
+            last = min(int((max(p, q, r) - low[axis]) * per_unit), shape[axis] - 1)
+            boxes[f, axis], boxes[f, axis + 3] = first, last
+            cells *= last - first + 1
+        total += cells
+    return boxes, total
+
+
+@allocating_kernel
+def fill_cells(boxes: np.ndarray, total: int, shape: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(start of each cell's faces, and one more at the end; the faces, cell by cell)."""
+    sx, sy = shape[0], shape[1]
+    starts = np.zeros(sx * sy * shape[2] + 2, dtype=np.int32)
+    for f in range(len(boxes)):
+        for z in range(boxes[f, 2], boxes[f, 5] + 1):
+            for y in range(boxes[f, 1], boxes[f, 4] + 1):
+                row = (z * sy + y) * sx + 2
+                for x in range(row + boxes[f, 0], row + boxes[f, 3] + 1):
+                    starts[x] += 1
+    for k in range(1, len(starts)):
+        starts[k] += starts[k - 1]
+    entries = np.empty(total, dtype=np.int32)
+    for f in range(len(boxes)):
+        for z in range(boxes[f, 2], boxes[f, 5] + 1):
+            for y in range(boxes[f, 1], boxes[f, 4] + 1):
+                row = (z * sy + y) * sx + 1
+                for x in range(row + boxes[f, 0], row + boxes[f, 3] + 1):
+                    entries[starts[x]] = f
+                    starts[x] += 1
+    return starts[:-1], entries

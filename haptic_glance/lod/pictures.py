@@ -1,0 +1,163 @@
+"""Pictures of a mesh and its levels.
+
+A mesh as a picture, coloured by saliency, with its salient points: by what a core install has.
+
+A picture of one simplification: the saliency, and the faces before and after.
+"""
+
+from dataclasses import replace
+from pathlib import Path
+
+import cv2
+import numpy as np
+from matplotlib.figure import Figure
+from PIL import Image
+
+from haptic_glance.base.files import whole_file
+from haptic_glance.look.camera import Viewpoint, project
+from haptic_glance.look.views import render
+from haptic_glance.mesh import normalise, rotate_to_z_up
+from haptic_glance.mesh.mesh import Mesh
+
+from .perceptual import within_frame
+
+VIEWPOINT = Viewpoint(305, 22)  # from above and the side, as in the report
+ROWS, FINER = 600, 2  # rows of a picture; drawn twice as fine and averaged
+TOP = 0.98  # quantile of the values at which the colours saturate
+WIRE = np.array([40, 56, 82])
+DOT, RIM, INK = (216, 27, 27), (255, 255, 255), (34, 34, 34)
+MARGIN, ARROW = 20, 45  # pixels: of the arrow that points up
+KINDS = (".jpg", ".png", ".webp")
+
+
+def write_look(path: Path, mesh: Mesh, saliency: np.ndarray, points: np.ndarray) -> None:
+    """Writes a picture of a mesh turned upright, with the axis that points up: its saliency (n,) and points (k,).
+
+    Points are numbered from 1; those on the far side are not shown. The format follows the suffix of the path;
+    ValueError for an unknown one.
+    """
+    check_look(path)
+    with whole_file(path) as part:
+        Image.fromarray(look(mesh, saliency, points)).save(
+            part, format=Image.registered_extensions()[path.suffix.lower()]
+        )
+
+
+def look(mesh: Mesh, saliency: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """The picture of `write_look`, (ROWS, ROWS, 3) u1."""
+    upright = normalise(rotate_to_z_up(mesh))
+    image = with_axis(draw(coloured(upright, saliency)), mesh.up)
+    rows, columns = places(upright, points)
+    for k in np.flatnonzero(visible(upright, points))[::-1]:  # the most salient last, above the others
+        mark(image, round(float(columns[k])), round(float(rows[k])), str(k + 1))
+    return image
+
+
+def mark(image: np.ndarray, column: int, row: int, text: str) -> None:
+    """Draws a dot that bears a text of a digit or two."""
+    for radius, colour in ((11, RIM), (9, DOT)):
+        cv2.circle(image, (column, row), radius, colour, cv2.FILLED, cv2.LINE_AA)
+    (width, height), _ = cv2.getTextSize(text, cv2.FONT_HERSHEY_SIMPLEX, 0.42, 1)
+    corner = column - width // 2, row + height // 2
+    cv2.putText(image, text, corner, cv2.FONT_HERSHEY_SIMPLEX, 0.42, RIM, 1, cv2.LINE_AA)
+
+
+def check_look(path: Path) -> None:
+    """Raises ValueError for a suffix that is not of KINDS."""
+    if path.suffix.lower() not in KINDS:
+        raise ValueError(f"{path.name}: pictures are written as {', '.join(KINDS)}")
+
+
+def coloured(mesh: Mesh, values: np.ndarray) -> Mesh:
+    """The mesh with colours of the values (n,), from violet to yellow, which saturate at their 98 % quantile."""
+    return replace(mesh, colors=viridis(vivid(values)), texture=None)
+
+
+def vivid(values: np.ndarray) -> np.ndarray:
+    """The square root of values (n,) >= 0 over their 98 % quantile, at most 1.
+
+    A density has a few high peaks, beside which everything else would be dark.
+    """
+    return np.sqrt(np.clip(values / (np.quantile(values, TOP) or values.max() or 1.0), 0, 1))
+
+
+def viridis(values: np.ndarray) -> np.ndarray:
+    """(n, 3) u1 colours of values (n,) in 0..1, from violet to yellow."""
+    levels = np.rint(255 * values).astype(np.uint8)
+    return np.ascontiguousarray(cv2.applyColorMap(levels[:, None], cv2.COLORMAP_VIRIDIS)[:, 0, ::-1])
+
+
+def draw(mesh: Mesh, wires: bool = False) -> np.ndarray:
+    """(ROWS, ROWS, 3) u1 picture of a mesh on white; wires: with the edges between visible faces."""
+    side = ROWS * FINER
+    view = render(mesh, VIEWPOINT, (side, side), renderer="raster", background="white")
+    image = view.rgb.astype(np.float64)
+    if wires:
+        face = view.face
+        across, down = face[:, 1:] != face[:, :-1], face[1:] != face[:-1]
+        image[:, 1:][across] = WIRE
+        image[1:][down] = WIRE
+    return image.reshape(ROWS, FINER, ROWS, FINER, 3).mean(axis=(1, 3)).astype(np.uint8)
+
+
+def with_axis(image: np.ndarray, up: str) -> np.ndarray:
+    """The picture (h, w, 3) u1 with an arrow in its lower left corner that names the axis `up`."""
+    foot = len(image) - MARGIN
+    cv2.arrowedLine(image, (MARGIN, foot), (MARGIN, foot - ARROW), INK, 1, cv2.LINE_AA, tipLength=0.25)
+    cv2.putText(image, up, (MARGIN + 8, foot - ARROW + 12), cv2.FONT_HERSHEY_SIMPLEX, 0.6, INK, 1, cv2.LINE_AA)
+    return image
+
+
+def visible_points(mesh: Mesh, vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(rows, columns) in the picture of the visible ones of the vertices."""
+    near = visible(mesh, vertices)
+    rows, columns = places(mesh, vertices)
+    return rows[near], columns[near]
+
+
+def places(mesh: Mesh, vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(rows (k,), columns (k,)) in the picture of the vertices (k,)."""
+    return project(mesh.vertices[vertices], VIEWPOINT, (ROWS, ROWS))[:2]
+
+
+def visible(mesh: Mesh, vertices: np.ndarray) -> np.ndarray:
+    """(k,) boolean: which of the vertices the picture shows."""
+    size = (ROWS, ROWS)
+    depth = render(mesh, VIEWPOINT, size, renderer="raster").depth
+    rows, columns, depths = project(mesh.vertices[vertices], VIEWPOINT, size)
+    r, c = (np.clip(np.rint(place).astype(int), 0, ROWS - 1) for place in (rows, columns))
+    return depths <= depth[r, c] + 0.02  # units: a point on the silhouette may miss its own surface by a pixel
+
+
+def write_picture(
+    path: Path, before: Mesh, after: Mesh, saliency: np.ndarray, points: np.ndarray, up: str = "z"
+) -> None:
+    """Writes a picture of three panels: saliency (n,) and points (k,), and the wireframes before and after.
+
+    before, after: Meshes in the frame of haptic_glance.mesh.repair, +z up; where a coarse one exceeds it, both are
+    drawn smaller; up: which axis that was before they were turned. The format follows the suffix of the path;
+    ValueError for an unknown one (`check_picture`).
+    """
+    check_picture(path)
+    (before, after), _ = within_frame([before, after])
+    figure = Figure(figsize=(12, 4.4), layout="constrained")
+    axes = figure.subplots(1, 3)
+    axes[0].imshow(with_axis(draw(coloured(before, saliency)), up))
+    rows, columns = visible_points(before, points)
+    axes[0].plot(columns, rows, "o", color="#D81B1B", ms=5, mec="white", mew=0.8)
+    kept = f", {len(points)} point{'' if len(points) == 1 else 's'} kept" if len(points) else ""
+    axes[0].set_title(f"saliency{kept}")
+    for panel, mesh, word in ((axes[1], before, "before"), (axes[2], after, "after")):
+        panel.imshow(draw(Mesh(mesh.vertices, mesh.faces), wires=True))
+        panel.set_title(f"{word}: {len(mesh.faces):,} faces")
+    for panel in axes:
+        panel.set_axis_off()
+    with whole_file(path) as part:
+        figure.savefig(part, dpi=130, format=path.suffix.lower()[1:])
+
+
+def check_picture(path: Path) -> None:
+    """Raises ValueError where matplotlib cannot write the format of the path's suffix."""
+    kinds = Figure().canvas.get_supported_filetypes()
+    if path.suffix.lower()[1:] not in kinds:
+        raise ValueError(f"{path.name}: pictures are written as {', '.join(sorted(kinds))}")

@@ -1,0 +1,201 @@
+"""Places of objects, and the path of the camera.
+
+A perspective camera on a path, as for a screen (the kit's camera is the thesis's orthographic one).
+
+Meshes placed in the world, and the scene of all of them along a camera path.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.interpolate import PchipInterpolator
+
+from haptic_glance.mesh.mesh import Mesh, unit
+
+
+@dataclass(frozen=True)
+class Camera:
+    """The camera of one frame: eye and target (3,) in metres; vertical view angle in degrees; size, rows and columns.
+
+    +z is up. Pixel centres lie at whole numbers. Raises ValueError for a camera that has no direction or renderings
+    straight up or down, and for an angle outside 1 to 170 degrees.
+    """
+
+    eye: tuple[float, float, float]
+    target: tuple[float, float, float]
+    angle: float
+    size: tuple[int, int]
+
+    def __post_init__(self) -> None:
+        along = np.subtract(self.target, self.eye)
+        if not np.isfinite(along).all():
+            raise ValueError(f"a camera at {self.eye} that looks at {self.target} is nowhere: give finite numbers")
+        if np.hypot(along[0], along[1]) <= 1e-6 * (1 + np.abs(along[2])):
+            raise ValueError(f"a camera at {self.eye} cannot look at {self.target}: same place, or straight up or down")
+        if not 1 <= self.angle <= 170:
+            raise ValueError(f"the view angle is {self.angle} degrees: give the vertical one, from 1 to 170")
+        if min(self.size) < 1:
+            raise ValueError(f"a screen of {self.size[0]} x {self.size[1]} pixels shows nothing")
+
+    @cached_property
+    def axes(self) -> np.ndarray:
+        """(3, 3) rows right, up, forward: the camera's axes in the world."""
+        forward = unit(np.subtract(self.target, self.eye))
+        right = unit(np.cross(forward, [0.0, 0.0, 1.0]))
+        return np.array([right, np.cross(right, forward), forward])
+
+    @property
+    def focal(self) -> float:
+        """Focal length: the pixels that one metre covers at a depth of one metre; at depth d it is focal / d."""
+        return self.size[0] / (2 * np.tan(np.radians(self.angle) / 2))
+
+    def project(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """World points (k, 3) to (rows (k,), columns (k,), depths (k,)): pixels, and metres along the view axis."""
+        right, up, depth = self.axes @ (np.asarray(points, dtype=np.float64) - self.eye).T
+        far = np.where(depth > 0, depth, np.nan)
+        h, w = self.size
+        return (h - 1) / 2 - up / far * self.focal, (w - 1) / 2 + right / far * self.focal, depth
+
+    def directions(self, rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
+        """Unit directions (k, 3) of the rays through pixels."""
+        h, w = self.size
+        right, up, forward = self.axes
+        across = ((np.asarray(columns) - (w - 1) / 2) / self.focal)[:, None]
+        down = (((h - 1) / 2 - np.asarray(rows)) / self.focal)[:, None]
+        return unit(forward + across * right + down * up)
+
+
+def fly(eyes: ArrayLike, targets: ArrayLike, frames: int, angle: float, size: Sequence[int]) -> list[Camera]:
+    """`frames` Cameras along keyframes: eyes and targets (k, 3), at equal times, joined by a smooth curve.
+
+    The curve (Fritsch and Carlson 1980, monotone piecewise cubic) does not overshoot its keyframes.
+    Raises ValueError for no keyframe or no frame, and for keyframes that are not finite.
+    """
+    eye, target = np.asarray(eyes, dtype=np.float64), np.asarray(targets, dtype=np.float64)
+    if eye.ndim != 2 or eye.shape[1:] != (3,) or eye.shape != target.shape or not len(eye) or frames < 1:
+        raise ValueError("a camera path needs at least one frame, and keyframes with x, y, z of an eye and a target")
+    if not (np.isfinite(eye).all() and np.isfinite(target).all()):
+        raise ValueError("the keyframes of a camera path must be finite: an eye or a target holds NaN or infinity")
+    if len(eye) > 1:
+        times = np.linspace(0, len(eye) - 1, frames)
+        eye, target = (PchipInterpolator(range(len(points)), points)(times) for points in (eye, target))
+    else:
+        eye, target = np.repeat(eye, frames, axis=0), np.repeat(target, frames, axis=0)
+    screen = size[0], size[1]
+    return [Camera(tuple(place), tuple(aim), angle, screen) for place, aim in zip(eye, target, strict=True)]
+
+
+KINDS = ("pixels", "ssim")
+Box = tuple[np.ndarray, np.ndarray]  # low (3,), high (3,)
+
+
+@dataclass(frozen=True)
+class Placed:
+    """An object in the world: name of its mesh; position (3,) in metres of the middle of its foot; turn in degrees
+    about +z, counter-clockwise seen from above; size in metres of the longest side of its bounding box.
+    """
+
+    name: str
+    position: tuple[float, float, float]
+    turn: float
+    size: float
+
+    def pose(self, mesh: Mesh) -> "Pose":
+        """The Pose of this object's mesh.
+
+        Raises ValueError for a size that is not above 0, numbers that are not finite, and a mesh without faces.
+        """
+        if not len(mesh.faces):
+            raise ValueError(f"{self.name} has no faces to show")
+        if not self.size > 0:
+            raise ValueError(f"{self.name} is {self.size} m large: give its longest side, above 0")
+        if not np.isfinite([*self.position, self.turn, self.size]).all():
+            place = f"position {self.position}, turn {self.turn} and size {self.size}"
+            raise ValueError(f"{self.name} has {place}: give finite numbers")
+        low, high = bounds(mesh)
+        foot = np.array([*((low + high) / 2)[:2], low[2]])
+        cos, sin = np.cos(np.radians(self.turn)), np.sin(np.radians(self.turn))
+        turn = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
+        return Pose(turn, self.size / (high - low).max(), foot, np.array(self.position, dtype=np.float64), (low, high))
+
+
+@dataclass(frozen=True)
+class Pose:
+    """Rotation turn (3, 3); metres per unit, scale; foot (3,) in the mesh; position (3,) in the world; its box."""
+
+    turn: np.ndarray
+    scale: float
+    foot: np.ndarray
+    position: np.ndarray
+    box: Box
+
+    def to_world(self, points: np.ndarray) -> np.ndarray:
+        """Points (k, 3) of the mesh in metres."""
+        return (points - self.foot) @ self.turn.T * self.scale + self.position
+
+    def to_mesh(self, points: np.ndarray) -> np.ndarray:
+        """World points (k, 3) in the mesh's own coordinates."""
+        return (points - self.position) @ self.turn / self.scale + self.foot
+
+    def corners(self, box: Box | None = None) -> np.ndarray:
+        """(8, 3) corners in the world of a box (low, high) in the mesh's own coordinates, or of the mesh's own."""
+        low, high = box or self.box
+        picks = np.array(np.meshgrid([0, 1], [0, 1], [0, 1])).reshape(3, 8).T
+        return self.to_world(np.where(picks == 0, low, high))
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Objects, a camera path, and the tolerated error.
+
+    objects: Placed, one or more. cameras: one per frame. tolerance: above 0, in pixels of the screen (kind `pixels`),
+    or a share of the structure lost, 1 - SSIM (kind `ssim`). limit: faces of all objects of a frame together, 0 for no
+    limit. hold: the least number of frames that a level stays. Raises ValueError for anything else.
+    """
+
+    objects: tuple[Placed, ...]
+    cameras: tuple[Camera, ...]
+    tolerance: float
+    kind: str = "pixels"
+    limit: int = 0
+    hold: int = 3
+
+    def __post_init__(self) -> None:
+        if not self.objects or not self.cameras:
+            raise ValueError("a scene needs at least one object and one camera")
+        if not (np.isfinite(self.tolerance) and self.tolerance > 0):
+            raise ValueError(
+                f"the tolerance is {self.tolerance}: it must be above 0, since only the full mesh has no error"
+            )
+        if self.kind not in KINDS:
+            raise ValueError(f"unknown kind of tolerance {self.kind!r}: choose one of {', '.join(KINDS)}")
+        if self.limit < 0 or self.hold < 1:
+            raise ValueError(f"limit ({self.limit}) must be 0 or more and hold ({self.hold}) 1 or more")
+
+    def poses(self, meshes: Mapping[str, Mesh]) -> list[Pose]:
+        """One Pose per object; ValueError for an object without a mesh, or an eye inside one."""
+        missing = sorted({placed.name for placed in self.objects} - set(meshes))
+        if missing:
+            raise ValueError(f"no mesh of {', '.join(missing)}: there are {', '.join(sorted(meshes))}")
+        poses = [placed.pose(meshes[placed.name]) for placed in self.objects]
+        for placed, pose in zip(self.objects, poses, strict=True):
+            eyes = pose.to_mesh(np.array([camera.eye for camera in self.cameras]))
+            inside = np.flatnonzero(((eyes >= pose.box[0]) & (eyes <= pose.box[1])).all(axis=1))
+            if len(inside):
+                place = f"{placed.name} at {tuple(placed.position)}"
+                raise ValueError(f"the camera of frame {inside[0]} is inside {place}: move one of them")
+        return poses
+
+
+def bounds(mesh: Mesh) -> Box:
+    """(low (3,), high (3,)): the box around the faces of a mesh."""
+    corners = mesh.vertices[np.unique(mesh.faces)]
+    return corners.min(axis=0), corners.max(axis=0)
+
+
+def world_mesh(mesh: Mesh, pose: Pose) -> Mesh:
+    """The mesh in world coordinates, in metres."""
+    return Mesh(pose.to_world(mesh.vertices), mesh.faces, mesh.colors)

@@ -1,0 +1,255 @@
+"""One simplification as a person asks for it, and remedies where it cannot be done.
+
+A mesh from a file prepared for simplification, and the result brought back to its coordinates.
+
+The meaning of a name in lod.methods: which method's points, and how they are preserved.
+
+What to say, and what would help, where a face count is too low for what must survive.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from haptic_glance.look.points import METHODS
+from haptic_glance.mesh import clean, normalise, rotate_to_z_up
+from haptic_glance.mesh.materials import bake_texture, merge_equal_rows
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.repair import RADIUS, centre_and_radius
+
+from .attributes import carry
+from .borders import close_borders, cut_borders
+from .feasibility import InfeasibleTarget, smallest_feasible
+from .neighbourhood import NEIGHBOURHOODS
+from .simplify import simplify
+from .topology import half_edges, topology
+
+
+@dataclass(frozen=True)
+class SimplificationTask:
+    """A mesh and what simplification must preserve of it.
+
+    given: the Mesh in its own units and axes. saliency (n,) f8 in 0..1. points (k,) vertex ids to
+    keep, most salient first, rings (k,) around each. weights: (n,) for the soft variant or None. shrink: whether the
+    neighbourhoods may shrink where the target needs it. attributes: their weights in the error; free_borders: whether
+    the boundary is simplified, too, but where it meets a border between materials: see `simplify`.
+    """
+
+    given: Mesh
+    saliency: np.ndarray
+    points: np.ndarray
+    rings: np.ndarray
+    weights: np.ndarray | None
+    backend: str
+    shrink: bool
+    attributes: Mapping[str, float] = field(default_factory=dict)
+    free_borders: bool = False
+
+    @cached_property
+    def mesh(self) -> Mesh:
+        """The mesh centred and scaled, its axes unchanged."""
+        return normalise(self.given)
+
+    @cached_property
+    def cut(self) -> tuple[Mesh, np.ndarray]:
+        """(Mesh, ids): `mesh` cut open at the borders between materials, see `cut_borders`."""
+        return cut_borders(self.mesh)
+
+    @cached_property
+    def smallest(self) -> int:
+        """The smallest feasible face count with the points kept."""
+        return smallest_feasible(self.mesh, self.points, self.rings, self.free_borders)
+
+    @cached_property
+    def smallest_with_borders(self) -> int:
+        """The same with the borders between materials preserved too."""
+        cut, ids = self.cut
+        return smallest_feasible(cut, *self._on_cut(ids), self.free_borders)
+
+    @cached_property
+    def border(self) -> np.ndarray:
+        """(e, 2) vertex ids of the edges to preserve: boundary, non-manifold, and those between two materials."""
+        cut, ids = self.cut
+        return _unpaired_edges(ids[cut.faces], half_edges(cut.faces)[1])
+
+    @cached_property
+    def boundary(self) -> np.ndarray:
+        """(e, 2) the same without those between two materials, which are given up where the faces are too few."""
+        return _unpaired_edges(self.mesh.faces, half_edges(self.mesh.faces)[1])
+
+    def border_edges_kept(self, mesh: Mesh) -> int:
+        """How many edges of `border` are edges of a simplified mesh, bit for bit."""
+        n = len(self.mesh.vertices)
+        place = np.unique(np.concatenate([self.mesh.vertices, mesh.vertices]), axis=0, return_inverse=True)[1].ravel()
+        ends = np.stack([mesh.faces.ravel(), np.roll(mesh.faces, -1, axis=1).ravel()], axis=1)
+        present, required = (np.sort(rows, axis=1) @ [len(place), 1] for rows in (place[n + ends], place[self.border]))
+        return int(np.isin(required, present).sum())
+
+    @property
+    def lowest_target(self) -> int:
+        """The lowest face count to ask for: less than `smallest` where neighbourhoods may shrink."""
+        return smallest_feasible(self.mesh, free_borders=self.free_borders) if self.shrink else self.smallest
+
+    def simplified(self, faces: int) -> Mesh:
+        """The Mesh of at most `faces` faces, in the frame of `mesh`, with its attributes.
+
+        Borders between materials are preserved where that is feasible. Raises as `simplify` does.
+        """
+        try:
+            return self._simplify(*self.cut, faces)
+        except InfeasibleTarget:
+            if len(self.cut[0].vertices) == len(self.mesh.vertices):
+                raise
+        return self._simplify(self.mesh, np.arange(len(self.mesh.vertices)), faces)
+
+    def plain(self, faces: int) -> Mesh:
+        """As `simplified`, by plain quadric edge collapse: no points, no weights."""
+        nothing = np.zeros(0, dtype=np.int64)
+        other = replace(self, points=nothing, rings=nothing, weights=None, shrink=False, attributes={})
+        return other.simplified(faces)
+
+    def points_kept(self, mesh: Mesh) -> np.ndarray:
+        """(k,) boolean: the points that are vertices of a simplified mesh, bit for bit."""
+        positions = set(map(bytes, mesh.vertices))
+        return np.array([bytes(self.mesh.vertices[point]) in positions for point in self.points], dtype=bool)
+
+    def upright(self, mesh: Mesh) -> Mesh:
+        """A mesh in the frame of `mesh` as it is rendered: +z up, its texture baked into vertex colours."""
+        return bake_texture(rotate_to_z_up(mesh))
+
+    def restored(self, mesh: Mesh) -> Mesh:
+        """A mesh in the frame of `mesh` in the units of `given`; unmoved vertices have their original coordinates."""
+        centre, radius = centre_and_radius(self.given)
+        vertices = mesh.vertices * (radius / RADIUS) + centre
+        n = len(self.mesh.vertices)
+        _, place = np.unique(np.concatenate([self.mesh.vertices, mesh.vertices]), axis=0, return_inverse=True)
+        place = place.ravel()
+        owner = np.full(place.max() + 1, -1)
+        owner[place[:n]] = np.arange(n)
+        own = owner[place[n:]]
+        vertices[own >= 0] = self.given.vertices[own[own >= 0]]
+        return replace(mesh, vertices=vertices)
+
+    def _simplify(self, mesh, ids, faces):
+        keep, rings = self._on_cut(ids)
+        counts = {"weights": None if self.weights is None else self.weights[ids], "attributes": self.attributes}
+        counts["free_borders"] = self._free(ids) if self.free_borders else False
+        # Those that the error does not count are transferred once, at the end.
+        bare = mesh if self.attributes else replace(mesh, colors=None, texture=None)
+        found = simplify(bare, faces, keep, rings, self.backend, self.shrink, **counts)
+        return self.mesh if found is bare else carry(self.mesh, close_borders(found, mesh, ids))
+
+    def _free(self, ids):
+        """(n',) boolean: of the cut mesh's vertices those of the boundary alone."""
+        return np.isin(ids, self.boundary) & (np.bincount(ids)[ids] == 1)
+
+    def _on_cut(self, ids):
+        """(vertex ids, rings): the points on the cut mesh, whose vertices have the old ids `ids`; with all copies."""
+        order = np.argsort(ids, kind="stable")
+        first, last = (np.searchsorted(ids[order], self.points, side) for side in ("left", "right"))
+        copies = np.repeat(np.arange(len(self.points)), last - first)
+        offset = np.arange(len(copies)) - np.repeat(np.cumsum(last - first) - (last - first), last - first)
+        return order[first[copies] + offset], self.rings[copies]
+
+
+def _unpaired_edges(faces, other):
+    alone = other < 0
+    ends = np.stack([faces.ravel()[alone], np.roll(faces, -1, axis=1).ravel()[alone]], axis=1)
+    return np.unique(np.sort(ends, axis=1), axis=0)
+
+
+def repaired(mesh: Mesh) -> tuple[Mesh, list[str]]:
+    """(Mesh, notes): `haptic_glance.mesh.repair` of the mesh, coincident vertices merged where that closes the
+    boundary.
+
+    Files that store corners (a triangle soup, one patch per texture) have a boundary around each of them, and
+    boundaries are preserved, so nothing could be collapsed. Raises MeshError as `clean` does.
+    """
+    found, notes = clean(mesh)
+    if (half_edges(found.faces)[1] >= 0).all():
+        return found, notes
+    first, ids = merge_equal_rows(mesh.vertices)
+    colors = None if mesh.colors is None else mesh.colors[first]
+    joined, others = clean(replace(mesh, vertices=mesh.vertices[first], faces=ids[mesh.faces], colors=colors))
+    if (half_edges(joined.faces)[1] < 0).sum() >= (half_edges(found.faces)[1] < 0).sum():
+        return found, notes
+    return joined, [f"{len(ids) - len(first):,} coincident vertices merged", *others]
+
+
+PLAIN, QSLIM = "qem", "qslim"  # quadric edge collapse by the backend of the settings, and without its fit
+SOFT = "soft"
+
+
+@dataclass(frozen=True)
+class Variant:
+    """One way of simplifying: the method of salient_points (None: plain QEM), and how it is used.
+
+    rule: that of `neighbourhoods`, which preserves the points, or `soft`: the saliency weights the error and nothing is
+    frozen; None for plain QEM. backend: who simplifies; None for that of the settings.
+    """
+
+    name: str
+    method: str | None
+    rule: str | None
+    backend: str | None = None
+
+
+def variant(name: str) -> Variant:
+    """The Variant of a name: `qem`, `qslim`, `glance` (three rings), `glance-adaptive`, `-area` or `-soft`.
+
+    Raises ValueError that names the wrong part.
+    """
+    if name in (PLAIN, QSLIM):
+        return Variant(name, None, None, QSLIM if name == QSLIM else None)
+    method, dash, rule = name.partition("-")
+    suffixes = [each for each in (*NEIGHBOURHOODS, SOFT) if each != "fixed"]
+    known = (PLAIN, QSLIM, *METHODS)
+    if method not in METHODS:
+        raise ValueError(f"lod.methods: {name!r}: unknown method {method!r}; methods are {', '.join(known)}")
+    if dash and rule not in suffixes:
+        raise ValueError(f"lod.methods: {name!r} ends in {rule!r}; endings are -{', -'.join(suffixes)}, or none")
+    return Variant(name, method, rule or "fixed")
+
+
+def infeasible(task: SimplificationTask, error: InfeasibleTarget, neighbourhood: str = SOFT) -> str:
+    """The message for a target that is too low: the reason, and what is feasible; neighbourhood: as --neighbourhood."""
+    frozen = [f"{number(error.frozen, 'face')} around {number(len(task.points), 'point')}"] if error.frozen else []
+    if len(task.boundary) and not task.free_borders:
+        frozen.append(f"{number(len(task.boundary), 'boundary edge')}")
+    reason = f", since {' and '.join(frozen)} are frozen" if frozen else ""
+    ways = remedies(task, error, neighbourhood) or ["the mesh cannot be simplified further"]
+    return f"{number(error.faces, 'face')} are infeasible{reason}: {', or '.join(ways)}"
+
+
+def remedies(task: SimplificationTask, error: InfeasibleTarget, neighbourhood: str) -> list[str]:
+    """What would help; empty where nothing would."""
+    total = len(task.mesh.faces)
+    possible = smallest_feasible(task.mesh, free_borders=task.free_borders) < total  # with nothing frozen
+    may_free = len(task.boundary) and not task.free_borders and not task.attributes and task.backend != "pymeshlab"
+    ways = [f"ask for {number(error.smallest, 'face')} or more"] if error.smallest < total else []
+    if may_free and (possible or smallest_feasible(task.mesh, free_borders=True) < total):
+        ways += ["let the boundary be simplified with --free-borders"]
+    if error.frozen and possible:
+        ways += _thaw(task, neighbourhood)
+    return ways + ([] if possible else _mend(task.mesh))
+
+
+def _thaw(task, neighbourhood):
+    ways = ["--keep fewer points"] if len(task.points) > 1 else []
+    if neighbourhood == "fixed" and task.rings.any():
+        ways += ["take fewer --rings"]
+    return [*ways, *(() if task.shrink else ("let them --shrink",)), "leave --neighbourhood out"]
+
+
+def _mend(mesh):
+    found = topology(mesh.faces)
+    holes = found.boundary_loops - (found.components - found.closed_components)  # one loop of each may be its outline
+    ways = [f"close its {number(holes, 'hole')} first"] if holes > 0 else []
+    return [*ways, *(["join its connected components first"] if found.components > 1 and found.boundary_edges else [])]
+
+
+def number(count: int, noun: str) -> str:
+    """`1 face`, `1,280 faces`."""
+    return f"{count:,} {noun}{'' if count == 1 else 's'}"

@@ -1,0 +1,148 @@
+"""Topology of a mesh: half edges, faults, parts.
+
+Topology of a surface (boundary loops, components, genus), and the faults that simplification must not add.
+
+The named nodes of a GLB: which faces of a mesh belong to which, before and after simplification.
+"""
+
+from dataclasses import astuple, dataclass
+from pathlib import Path
+
+import numpy as np
+import trimesh
+
+from haptic_glance.mesh.mesh import Mesh
+
+from .attributes import closest
+from .kernels.mesh import count_faults, face_components, opposites, signed_volumes, split_fans
+
+FOLD = -0.99  # cosine between neighbouring normals: folded back within 8 degrees of flat
+THIN = 1e-7  # height of a face over the bounding-box diagonal, below which it counts as degenerate
+
+
+@dataclass(frozen=True)
+class Topology:
+    """Counts of a surface: boundary edges and loops, components (joined by edges), closed ones of them, genus."""
+
+    boundary_edges: int
+    boundary_loops: int
+    components: int
+    closed_components: int
+    genus: int
+
+
+@dataclass(frozen=True)
+class Faults:
+    """Counts of degenerate faces, folded pairs of neighbours, half-edges on non-manifold edges, and closed components
+    that are inside out."""
+
+    degenerate: int
+    folded: int
+    non_manifold: int
+    inverted: int
+
+    def added(self, before: "Faults") -> str:
+        """The faults in excess of `before`, in words; empty when there are none."""
+        names = (
+            "degenerate faces",
+            "folded pairs of faces",
+            "half-edges on non-manifold edges",
+            "components inside out",
+        )
+        ours, theirs = astuple(self), astuple(before)
+        return ", ".join(f"{a - b} new {name}" for name, a, b in zip(names, ours, theirs, strict=True) if a > b)
+
+
+NONE = Faults(degenerate=0, folded=0, non_manifold=0, inverted=0)
+
+
+def faults(mesh: Mesh) -> Faults:
+    """The Faults of a mesh."""
+    if len(mesh.faces) == 0:
+        return NONE
+    ids, other, non_manifold = half_edges(mesh.faces)
+    degenerate, folded = count_faults(mesh.vertices, ids, other, THIN * mesh.diagonal, FOLD)
+    inverted = int((signed_volumes(mesh.vertices, ids, other) < -THIN * mesh.diagonal**3).sum())
+    return Faults(degenerate, folded, non_manifold, inverted)
+
+
+def topology(faces: np.ndarray) -> Topology:
+    """The Topology of the surface made of faces (m, 3).
+
+    Components that touch only in a vertex or in a non-manifold edge count as separate.
+    """
+    ids, other, _ = half_edges(faces)
+    fan, n = split_fans(ids, other)
+    component, count = face_components(other)
+    boundary = np.flatnonzero(other < 0)
+    open_components = len(np.unique(component[boundary // 3]))
+    heads = np.where(boundary % 3 == 2, boundary - 2, boundary + 1)
+    loops = face_components(_joined_ends(fan[np.stack([boundary, heads], axis=1)]))[1]
+    euler = n - (len(ids) + len(boundary)) // 2 + len(faces)
+    genus = max((2 * count - loops - euler) // 2, 0)
+    return Topology(len(boundary), loops, count, count - open_components, genus)
+
+
+def _joined_ends(fans):
+    """Like `opposites`, with edges in the place of faces: the boundary edges of fans (b, 2) joined end to end.
+
+    An open fan of faces has two such ends, so that sorted by fan they are in pairs.
+    """
+    pairs = np.argsort(fans, axis=None).reshape(-1, 2)
+    pairs += pairs // 2  # the ends of edge e become 3 e and 3 e + 1
+    joined = np.full(3 * len(fans), -1, dtype=np.int32)
+    joined[pairs] = pairs[:, ::-1]
+    return joined
+
+
+def half_edges(faces: np.ndarray) -> tuple[np.ndarray, np.ndarray, int]:
+    """Faces (3 m,) i4, the opposite of each half-edge (3 m,) i4, and how many half-edges lie on non-manifold edges.
+
+    Half-edge 3 f + k runs from corner k of face f to the next. Its opposite is -1 unless exactly two faces share it.
+    """
+    ids = faces.astype(np.int32).ravel()
+    other, non_manifold = opposites(ids, int(faces.max()) + 1, False)
+    return ids, other, non_manifold
+
+
+def split_nonmanifold_vertices(faces: np.ndarray) -> np.ndarray:
+    """Faces (m, 3) with new vertex ids: one vertex per fan of faces where several fans touch in a vertex.
+
+    Non-manifold edges become boundary edges.
+    """
+    ids, other, _ = half_edges(faces)
+    return split_fans(ids, other)[0].reshape(-1, 3).astype(np.int64)
+
+
+Parts = dict[str, np.ndarray]  # name of a node -> (k,) ids of faces
+
+
+def parts_of(path: Path) -> Parts:
+    """The Parts of a file's mesh, as `haptic_glance.mesh.files` joins them; empty unless it is a GLB."""
+    if path.suffix.lower() != ".glb":
+        return {}
+    loaded = trimesh.load(path, process=False)
+    dumped = loaded.dump() if isinstance(loaded, trimesh.Scene) else []
+    parts, start = {}, 0
+    for part in dumped:
+        count = len(part.faces) if isinstance(part, trimesh.Trimesh) else 0
+        if count:
+            name = str(part.metadata.get("node", path.stem))
+            parts[name] = np.r_[parts.get(name, np.zeros(0, dtype=np.int64)), start : start + count]
+        start += count
+    return parts
+
+
+def moved_parts(parts: Parts, mesh: Mesh, simplified: Mesh) -> Parts:
+    """The Parts of a simplified mesh: each of its faces goes where the closest face of `mesh` belongs, which `parts`
+    are of. Nodes without a face are left out.
+    """
+    if len(parts) < 2:
+        return {name: np.arange(len(simplified.faces)) for name in parts}
+    names = list(parts)
+    owner = np.zeros(len(mesh.faces), dtype=np.int64)
+    for number, name in enumerate(names):
+        owner[parts[name]] = number
+    face, _ = closest(mesh, simplified.vertices[simplified.faces].mean(axis=1))
+    found = {name: np.flatnonzero(owner[face] == number) for number, name in enumerate(names)}
+    return {name: ids for name, ids in found.items() if len(ids)}

@@ -1,0 +1,107 @@
+"""Files that carry the saliency of each vertex to other tools, which take it as weights of simplification."""
+
+import io
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import trimesh
+from scipy.spatial import KDTree
+
+from haptic_glance.base.files import whole_file
+from haptic_glance.mesh.mesh import Mesh
+
+from .export import to_trimesh
+
+NAME = "saliency"
+
+
+def write_weights(path: str | Path, mesh: Mesh, weights: np.ndarray) -> None:
+    """Write a mesh with a weight per vertex, in the format of the path's suffix.
+
+    Parameters
+    ----------
+    path : str or Path
+        `.ply`: a vertex property `saliency`, which Blender imports as an attribute. `.glb`: a vertex attribute
+        `_SALIENCY`; textures and texture coordinates are kept. `.usda`: a primvar `saliency` per vertex, OpenUSD.
+        `.npz`: arrays `vertices` (n, 3) f4, `indices` (3 m,) u4 and `saliency` (n,) f4 for meshoptimizer.
+    mesh : Mesh
+        The mesh of n vertices, in the coordinates that the file gets.
+    weights : (n,) array
+        Weights in 0..1.
+
+    Raises
+    ------
+    ValueError
+        For another suffix, or another number of weights.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from haptic_glance.mesh import Mesh
+    >>> triangle = Mesh(np.eye(3), np.array([[0, 1, 2]]))
+    >>> write_weights("triangle.obj", triangle, np.ones(3))
+    Traceback (most recent call last):
+    ...
+    ValueError: triangle.obj: weights are written as .glb, .npz, .ply or .usda
+    """
+    path, weights = Path(path), np.asarray(weights, dtype=np.float32)
+    check_suffix(path)
+    if weights.shape != (len(mesh.vertices),):
+        raise ValueError(f"{path.name}: {len(mesh.vertices)} vertices and weights of shape {weights.shape} do not fit")
+    with whole_file(path) as part:
+        part.write_bytes(WRITERS[path.suffix.lower()](mesh, weights))
+
+
+def check_suffix(path: Path) -> None:
+    """Raises ValueError for a file in which no weights can be written."""
+    if path.suffix.lower() not in WRITERS:
+        *others, last = sorted(WRITERS)
+        raise ValueError(f"{path.name}: weights are written as {', '.join(others)} or {last}")
+
+
+def _ply(mesh: Mesh, weights: np.ndarray) -> bytes:
+    plain = trimesh.Trimesh(mesh.vertices, mesh.faces, vertex_colors=mesh.colors, process=False)
+    plain.vertex_attributes[NAME] = weights
+    return plain.export(file_type="ply")  # type: ignore[return-value]
+
+
+def _glb(mesh: Mesh, weights: np.ndarray) -> bytes:
+    loaded = to_trimesh(mesh)
+    scene = loaded if isinstance(loaded, trimesh.Scene) else trimesh.Scene(loaded)
+    places = KDTree(mesh.vertices)  # a seam of a texture doubles vertices
+    for part in scene.geometry.values():
+        part.vertex_attributes[f"_{NAME.upper()}"] = weights[places.query(part.vertices)[1]]
+    return scene.export(file_type="glb")  # type: ignore[return-value]
+
+
+def _npz(mesh: Mesh, weights: np.ndarray) -> bytes:
+    packed = io.BytesIO()
+    indices = mesh.faces.astype(np.uint32).ravel()
+    np.savez_compressed(packed, vertices=mesh.vertices.astype(np.float32), indices=indices, saliency=weights)
+    return packed.getvalue()
+
+
+def _usda(mesh: Mesh, weights: np.ndarray) -> bytes:
+    points = ", ".join(f"({x:.9g}, {y:.9g}, {z:.9g})" for x, y, z in mesh.vertices.tolist())
+    up = "Y" if (mesh.up or "z").lstrip("-") == "y" else "Z"
+    return f"""#usda 1.0
+(
+    defaultPrim = "mesh"
+    upAxis = "{up}"
+)
+
+def Mesh "mesh"
+{{
+    uniform token subdivisionScheme = "none"
+    int[] faceVertexCounts = [{", ".join(["3"] * len(mesh.faces))}]
+    int[] faceVertexIndices = [{", ".join(map(str, mesh.faces.ravel().tolist()))}]
+    point3f[] points = [{points}]
+    float[] primvars:{NAME} = [{", ".join(f"{weight:.9g}" for weight in weights.tolist())}] (
+        interpolation = "vertex"
+    )
+}}
+""".encode()
+
+
+WRITERS: dict[str, Callable[[Mesh, np.ndarray], bytes]] = {".glb": _glb, ".npz": _npz, ".ply": _ply, ".usda": _usda}

@@ -1,0 +1,1 @@
+"""Where people look: views, conspicuity channels, the glance, the models of the thesis, rivals, agreement with gaze."""

@@ -1,0 +1,124 @@
+"""The channels by name, and their conspicuity maps of a view, all at one size."""
+
+from collections.abc import Iterable, Sequence
+
+import cv2
+import numpy as np
+
+from haptic_glance.base.weak_cache import weak_cache
+from haptic_glance.mesh.mesh import Mesh
+
+from ..views import View
+from .colour import color, dkl, intensity
+from .curvature import curvature
+from .operators import OUTPUT_SCALE
+from .printed import OURS, Channel, check_formulas, printed_channels
+from .symmetry import (
+    symmetry,
+    symmetry_lateral,
+    symmetry_radial,
+    symmetry_strongest,
+    symmetry_strongest_lateral,
+    symmetry_strongest_radial,
+)
+from .texture import contrast, edge, entropy, fine_grained, orientation, spectral_residual
+
+CHANNELS = {
+    "color": color,
+    "contrast": contrast,
+    "curvature": curvature,
+    "dkl": dkl,
+    "edge": edge,
+    "entropy": entropy,
+    "intensity": intensity,
+    "orientation": orientation,
+    "symmetry": symmetry,
+}
+# In addition to the nine of T table 3.1: each kind of symmetry alone (T3.1.5), and two saliency maps of OpenCV.
+OTHERS = {
+    "symmetry_lateral": symmetry_lateral,
+    "symmetry_radial": symmetry_radial,
+    "spectral_residual": spectral_residual,
+    "fine_grained": fine_grained,
+}
+# In place of the channels of symmetry where `conspicuity.symmetry` is `strongest`.
+STRONGEST = {
+    "symmetry": symmetry_strongest,
+    "symmetry_lateral": symmetry_strongest_lateral,
+    "symmetry_radial": symmetry_strongest_radial,
+}
+PERCEIVED = "perceived"
+SYMMETRIES = {PERCEIVED: {}, "strongest": STRONGEST}  # setting: the channels that it replaces
+REDUCTION = 4  # the default size of a map is the view's over this
+
+
+def conspicuity(
+    mesh: Mesh,
+    view: View,
+    channels: Iterable[str] | None = None,
+    size: Sequence[int] | None = None,
+    filled: bool = True,
+    symmetry: str = PERCEIVED,
+    formulas: str = OURS,
+) -> dict[str, np.ndarray]:
+    """The conspicuity maps of a view: {channel: (h', w') f4 in 0..1}, zero off the object.
+
+    view: of this mesh. channels: names out of CHANNELS and OTHERS, None for the nine of CHANNELS. size: (rows,
+    columns) of the maps, by default a quarter of the view's. filled: True keeps the background out of the filters
+    (haptic_glance.look.channels.cropped_view), False leaves it in, for comparison. The two maps of OpenCV use the
+    image as rendered in either case. symmetry: `perceived`, only symmetries that people see, or `strongest`, the best
+    plane and axis of each object, however weak. formulas: `ours`, or `printed` or `mended`, which are T's to the
+    letter and want the background left in (haptic_glance.look.channels.printed).
+
+    With our formulas, N(.) is finally applied to each map as a whole, as Itti 1998 brings channels to one scale before
+    their sum, so that the highest value of a map says how much it stands out. Raises ValueError for an unknown channel,
+    a size without pixels, formulas that do not go with the background, or a view of another mesh.
+    """
+    check_formulas(formulas, filled)
+    names = list(CHANNELS) if channels is None else check_channels(channels)
+    size = tuple(max(side // REDUCTION, 1) for side in view.mask.shape) if size is None else tuple(size)
+    if len(size) != 2 or min(size) < 1:
+        raise ValueError(f"the size of the maps must be (rows, columns), each at least 1, got {size}")
+    inside = mask_at_size(view.mask, size)
+    maps: dict[str, Channel] = {**CHANNELS, **OTHERS, **SYMMETRIES[check_symmetry(symmetry)]}
+    maps = maps if formulas == OURS else printed_channels(maps, formulas)
+    return {name: resize_map(maps[name](mesh, view, filled), view.mask.shape, size) * inside for name in names}
+
+
+def check_channels(names: Iterable[str]) -> list[str]:
+    """The names as a list; ValueError for a name that is neither in CHANNELS nor in OTHERS."""
+    known = [*CHANNELS, *OTHERS]
+    unknown = [name for name in names if name not in known]
+    if unknown:
+        raise ValueError(f"unknown channel {', '.join(map(str, unknown))}: choose from {', '.join(known)}")
+    return list(names)
+
+
+def check_symmetry(setting: str) -> str:
+    """The setting; ValueError for one that is not among SYMMETRIES."""
+    if setting not in SYMMETRIES:
+        raise ValueError(f"unknown conspicuity.symmetry {setting!r}: choose one of {', '.join(SYMMETRIES)}")
+    return setting
+
+
+@weak_cache  # the channels of a view share its mask
+def mask_at_size(mask: np.ndarray, size: tuple[int, int]) -> np.ndarray:
+    """A mask (h, w) at another size (rows, columns): boolean, at least half of the pixel's area is on the object."""
+    return cv2.resize(mask.astype(np.float32), size[::-1], interpolation=cv2.INTER_AREA) >= 0.5
+
+
+def resize_map(values: np.ndarray, shape: tuple[int, int], size: tuple[int, int]) -> np.ndarray:
+    """A channel's map, on a pyramid level of a view of `shape`, interpolated to another size (h', w').
+
+    Pixel k of the map lies on pixel k * 2**scale of the view. The pixels of the result divide the view evenly.
+    """
+    sides = [tuple(-(-side // 2**s) for side in shape) for s in range(OUTPUT_SCALE + 1)]
+    scale = max(s for s in range(OUTPUT_SCALE + 1) if sides[s] == values.shape)
+    for finer in range(scale - 1, 1, -1):
+        values = cv2.pyrUp(values, dstsize=sides[finer][::-1])
+    step = 2 ** min(scale, 2)
+    ratio = np.array(shape[::-1]) / np.array(size[::-1])
+    ahead = (ratio - 1) / 2 / step
+    matrix = np.array([[ratio[0] / step, 0, ahead[0]], [0, ratio[1] / step, ahead[1]]])
+    flags = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
+    return cv2.warpAffine(values, matrix, size[::-1], flags=flags, borderMode=cv2.BORDER_REPLICATE)

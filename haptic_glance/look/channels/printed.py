@@ -1,0 +1,167 @@
+"""The formulas of T3.1.1 and T3.2 to the letter: the whole picture on its background, and N with all local maxima.
+
+The other modules of this package hold our own formulas. Two readings of the letter are here:
+
+- `printed`: N multiplies by (M - m)^2, where m is the mean of all local maxima, the highest included. T eq. 3.3 and 3.4
+  subtract the surround's G - R from the centre's R - G, so that red amid red responds.
+- `mended`: m is the mean of all other maxima, and the surround's R - G is subtracted, as T [41] means both.
+
+N first scales a map to 0..1, as in T [41]: the units of the maps differ, and T states no other scale. A sum of N is
+divided by the number of its terms, so that each map lies in 0..1. The scale of a map changes nothing in it.
+T prints no parameters of the Gabor filters, the Laplacian and the median filter: they are those of our own formulas.
+"""
+
+from collections.abc import Callable, Mapping
+
+import cv2
+import numpy as np
+
+from haptic_glance.mesh.mesh import Mesh
+
+from ..views import View
+from .colour import LINEAR, mechanisms
+from .kernels import mean_of_maxima, mean_of_other_maxima, window_entropy
+from .operators import CENTRES, DELTAS, expand, pyramid, reduce
+from .texture import (
+    ANGLES,
+    EDGE_SIGMA,
+    GABOR_SIGMA,
+    MEDIAN,
+    RADIUS,
+    SIDE,
+    WAVELENGTH,
+    WINDOW,
+    laplacian_of_gaussian,
+    local_variance,
+)
+
+OURS, PRINTED, MENDED = FORMULAS = ("ours", "printed", "mended")
+STORED = 2  # the scale of a map of a whole picture, a quarter of its size
+Levels = dict[int, np.ndarray]
+Channel = Callable[[Mesh, View, bool], np.ndarray]
+
+
+def check_formulas(name: str, filled: bool) -> None:
+    """Raises ValueError unless `name` is one of FORMULAS that goes with the background."""
+    if name not in FORMULAS:
+        raise ValueError(f"conspicuity.formulas={name!r}: choose one of {', '.join(FORMULAS)}")
+    if filled and name != OURS:
+        raise ValueError(f"conspicuity.formulas={name} filters whole pictures: set conspicuity.background=kept")
+
+
+def normalise(values: np.ndarray, mended: bool) -> np.ndarray:
+    """N(.) of T3.1.1: a map (h, w) in 0..1, times (M - m)^2; m, the mean of the local maxima, without M if mended."""
+    low, span = values.min(), np.ptp(values)
+    if span == 0:
+        return np.zeros(values.shape, dtype=np.float32)
+    scaled = ((values - low) / span).astype(np.float32)
+    return scaled * (1 - (mean_of_other_maxima(scaled, 0.0) if mended else mean_of_maxima(scaled))) ** 2
+
+
+def centre_surround(levels: Levels, mended: bool, sign: int = 1) -> np.ndarray:
+    """The across-scale mean of N(|I(c) - sign I(s)|) at scale 4 (T eq. 3.1): a map of six terms in 0..1."""
+    terms = [
+        reduce(normalise(np.abs(levels[c] - sign * expand(levels, c + delta, c)), mended), c)
+        for c in CENTRES
+        for delta in DELTAS
+    ]
+    return np.mean(terms, axis=0)
+
+
+def intensity(_mesh: Mesh, view: View, mended: bool) -> np.ndarray:
+    """T eq. 3.1."""
+    return centre_surround(pyramid(_intensity(view)), mended)
+
+
+def orientation(_mesh: Mesh, view: View, mended: bool) -> np.ndarray:
+    """T eq. 3.2, with the magnitude of the even and the odd response."""
+    levels = pyramid(_intensity(view))
+    responses = [{scale: gabor(level, angle) for scale, level in levels.items() if scale > 1} for angle in ANGLES]
+    return np.mean([normalise(centre_surround(own, mended), mended) for own in responses], axis=0)
+
+
+def color(_mesh: Mesh, view: View, mended: bool) -> np.ndarray:
+    """T eq. 3.3 to 3.5."""
+    r, g, b = cv2.split(view.rgb.astype(np.float32) / np.float32(255))
+    red, green, blue = r - (g + b) / 2, g - (r + b) / 2, b - (r + g) / 2
+    yellow = (r + g) / 2 - np.abs(r - g) / 2 - b
+    sign = 1 if mended else -1
+    return np.mean([centre_surround(pyramid(plane), mended, sign) for plane in (red - green, blue - yellow)], axis=0)
+
+
+def dkl(_mesh: Mesh, view: View, mended: bool) -> np.ndarray:
+    """T eq. 3.6."""
+    planes = cv2.split(mechanisms(LINEAR.astype(np.float32)[view.rgb]))
+    return np.mean([centre_surround(pyramid(plane), mended) for plane in planes], axis=0)
+
+
+def contrast(_mesh: Mesh, view: View, mended: bool) -> np.ndarray:
+    """N of the variance of the luminance in 80 x 80 pixels (T3.1.1)."""
+    side = max(round(WINDOW * len(view.rgb)), 3)
+    return _stored(local_variance(_luminance(view), np.ones(view.mask.shape, dtype=bool), side), mended)
+
+
+def entropy(_mesh: Mesh, view: View, mended: bool) -> np.ndarray:
+    """N of the entropy of 9 x 9 pixels behind a median filter (T eq. 3.7)."""
+    half = SIDE // 2
+    padded = cv2.copyMakeBorder(cv2.medianBlur(_luminance(view), MEDIAN), half, half, half, half, cv2.BORDER_REFLECT)
+    return _stored(window_entropy(padded, SIDE), mended)
+
+
+def edge(_mesh: Mesh, view: View, mended: bool) -> np.ndarray:
+    """N of the magnitude of the Laplacian of a Gaussian (T3.2)."""
+    sigma = max(EDGE_SIGMA * len(view.rgb), 0.7)
+    return _stored(np.abs(laplacian_of_gaussian(_luminance(view), sigma)), mended)
+
+
+def gabor(image: np.ndarray, angle: float) -> np.ndarray:
+    """(h, w) f4: magnitude of the plain even and odd Gabor responses of an image at an angle in degrees."""
+    x, y = np.meshgrid(np.arange(-RADIUS, RADIUS + 1), np.arange(RADIUS, -RADIUS - 1, -1))
+    across = y * np.cos(np.radians(angle)) - x * np.sin(np.radians(angle))
+    envelope = np.exp(-(x**2 + y**2) / (2 * GABOR_SIGMA**2))
+    wave = (envelope * np.exp(2j * np.pi * across / WAVELENGTH) / envelope.sum()).astype(np.complex64)
+    parts = wave.real.copy(), wave.imag.copy()
+    even, odd = (cv2.filter2D(image, cv2.CV_32F, part, borderType=cv2.BORDER_REPLICATE) for part in parts)
+    return np.sqrt(even * even + odd * odd)
+
+
+def printed_channels(channels: Mapping[str, Channel], formulas: str) -> dict[str, Channel]:
+    """The channels by name, functions of (mesh, view, filled), with the formulas `printed` or `mended`.
+
+    Of a channel of the surface T prints no formula but C = N(map).
+    """
+    mended = formulas == MENDED
+    own = {name: _of_picture(PICTURE[name], mended) for name in channels if name in PICTURE}
+    return {**channels, **own, **{name: _renormalised(channels[name], mended) for name in channels if name in SURFACE}}
+
+
+def _of_picture(channel, mended):
+    return lambda mesh, view, _filled: channel(mesh, view, mended) * view.mask.any()
+
+
+def _renormalised(channel, mended):
+    return lambda mesh, view, _filled: normalise(channel(mesh, view, False), mended)
+
+
+def _intensity(view):
+    return view.rgb.mean(axis=2, dtype=np.float32) / np.float32(255)
+
+
+def _luminance(view):
+    return cv2.cvtColor(view.rgb, cv2.COLOR_RGB2GRAY)
+
+
+def _stored(values, mended):
+    return reduce(normalise(values, mended), 0, STORED)
+
+
+PICTURE = {
+    "color": color,
+    "contrast": contrast,
+    "dkl": dkl,
+    "edge": edge,
+    "entropy": entropy,
+    "intensity": intensity,
+    "orientation": orientation,
+}
+SURFACE = ("curvature", "symmetry", "symmetry_lateral", "symmetry_radial")

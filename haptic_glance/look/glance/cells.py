@@ -1,0 +1,172 @@
+"""Compiled kernels of the glance: cells of the surface, and their visibility.
+
+Faces cut along the walls of a grid, so that each piece lies in one cell; compiled by numba.
+
+From how many directions each point is seen, and how much it faces them; compiled by numba.
+"""
+
+import math
+
+import numpy as np
+
+from haptic_glance.base.jit import helper, kernel_of
+
+from .samples import Samples
+
+kernel = kernel_of(__file__)
+CORNERS, DEPTH = 24, 96  # a triangle that six walls have cut has nine corners; halving 2^30 cells along three axes
+ROUNDING = 1e-9  # in units of a cell: what lies this near to a wall lies on it
+
+
+@kernel
+def cut(corners: np.ndarray) -> np.ndarray:
+    """(p, 8) face, cell (3), area and centroid (3) of the pieces of triangles (m, 3, 3).
+
+    The walls are the planes on which a coordinate is a whole number.
+    """
+    rows = np.empty((4 * len(corners) + 64, 8))
+    stack, counts, cell = np.empty((DEPTH, CORNERS, 3)), np.empty(DEPTH, dtype=np.int64), np.empty(3, dtype=np.int64)
+    found = 0
+    for f in range(len(corners)):
+        counts[0], top = 3, 0
+        for i in range(3):
+            for k in range(3):
+                stack[0, i, k] = corners[f, i, k]
+        while top >= 0:
+            count, axis, wall = counts[top], -1, 0
+            for k in range(3):
+                low, high = stack[top, 0, k], stack[top, 0, k]
+                for i in range(1, count):
+                    low, high = min(low, stack[top, i, k]), max(high, stack[top, i, k])
+                cell[k] = math.floor(low + ROUNDING)
+                last = math.ceil(high - ROUNDING) - 1
+                if last > cell[k]:
+                    axis, wall = k, (cell[k] + last + 1) // 2
+                    break
+            if axis >= 0:
+                counts[top], counts[top + 1] = _halve(stack, top, count, axis, wall)
+                top += 1
+                continue
+            if found == len(rows):
+                more = np.empty((2 * found, 8))
+                for i in range(found):  # numba compiles the assignment of a slice, with its error messages, for 2 s
+                    for k in range(8):
+                        more[i, k] = rows[i, k]
+                rows = more
+            rows[found, 0] = f
+            for k in range(3):
+                rows[found, 1 + k] = cell[k]
+            _moments(stack, top, count, rows, found)
+            found, top = found + 1, top - 1
+    return rows[:found]
+
+
+@helper
+def _halve(stack, top, count, axis, wall):
+    """Counts of corners (below, above) the wall: what is above goes on the stack, what is below stays at its place."""
+    below, above = 0, 0
+    for i in range(count):
+        j = (i + 1) % count
+        here, there = stack[top, i, axis] - wall, stack[top, j, axis] - wall
+        for k in range(3):
+            if here <= 0:
+                stack[top + 2, below, k] = stack[top, i, k]
+            if here >= 0:
+                stack[top + 1, above, k] = stack[top, i, k]
+        below, above = below + (here <= 0), above + (here >= 0)
+        if here * there < 0:
+            for k in range(3):
+                at = stack[top, i, k] + (stack[top, j, k] - stack[top, i, k]) * (here / (here - there))
+                at = wall if k == axis else at
+                stack[top + 2, below, k], stack[top + 1, above, k] = at, at
+            below, above = below + 1, above + 1
+    for i in range(below):
+        for k in range(3):
+            stack[top, i, k] = stack[top + 2, i, k]
+    return below, above
+
+
+@helper
+def _moments(stack, top, count, rows, row):
+    """Writes the area and the centroid of a convex polygon into a row."""
+    for k in range(4):
+        rows[row, 4 + k] = 0
+    x, y, z = stack[top, 0, 0], stack[top, 0, 1], stack[top, 0, 2]
+    for i in range(1, count - 1):
+        ux, uy, uz = stack[top, i, 0] - x, stack[top, i, 1] - y, stack[top, i, 2] - z
+        vx, vy, vz = stack[top, i + 1, 0] - x, stack[top, i + 1, 1] - y, stack[top, i + 1, 2] - z
+        area = math.sqrt((uy * vz - uz * vy) ** 2 + (uz * vx - ux * vz) ** 2 + (ux * vy - uy * vx) ** 2) / 2
+        rows[row, 4] += area
+        for k in range(3):
+            rows[row, 5 + k] += area * (stack[top, 0, k] + stack[top, i, k] + stack[top, i + 1, k]) / 3
+    for k in range(3):
+        rows[row, 5 + k] /= max(rows[row, 4], 1e-300)
+
+
+HEIGHTS, AROUND = 7, 16  # rings of directions, and directions in a ring
+SIDE = 0.5  # |z| of a direction from the side: 30 degrees above or below the horizon
+PIXEL = 1.4  # side of a pixel in units of the spacing, so that the points leave no holes
+NEAR, FAR = 1.8, 2.6  # of the spacing, more on slopes: what is less far behind is the same surface, else it is hidden
+STEEP = 0.05  # cosine at which a slope counts as no steeper
+
+
+def visibility(samples: Samples) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """(share of directions that see a point, how much it faces those from the side, from above, from below), each (s,).
+
+    A depth picture of the points is drawn from each direction, without a mesh. The directions belong to the object's
+    own axes and lie alike on both sides of its upright planes.
+    """
+    eyes = _directions()
+    right = np.cross(eyes, [0.0, 0.0, 1.0])
+    right /= np.linalg.norm(right, axis=1, keepdims=True)
+    pictures = np.stack([right, np.cross(eyes, right), eyes], axis=1) @ samples.axes
+    group = np.digitize(eyes[:, 2], [-SIDE, SIDE])
+    places = (samples.points - samples.middle) / samples.spacing
+    found = _seen(places, samples.normals, pictures, group)
+    found[:3] /= np.bincount(group)[:, None]
+    below, side, above, seen = found
+    return seen / len(eyes), side, above, below
+
+
+def _directions():
+    """(HEIGHTS * AROUND, 3) unit vectors: rings with equal shares of the sphere, every other one turned half a step."""
+    height, k = np.meshgrid(1 - (2 * np.arange(HEIGHTS) + 1) / HEIGHTS, np.arange(AROUND), indexing="ij")
+    turn = 2 * np.pi / AROUND * (k + np.arange(HEIGHTS)[:, None] % 2 / 2)
+    across = np.sqrt(1 - height**2)
+    return np.stack([np.cos(turn) * across, np.sin(turn) * across, height], axis=2).reshape(-1, 3)
+
+
+@kernel
+def _seen(places, normals, pictures, group):
+    """(4, s) sums of the cosine between normal and direction where it sees the point, and the number that see it.
+
+    The sums are over the directions of each of three groups; pictures (d, 3, 3) look along their third row.
+    """
+    count, farthest = len(places), 0.0
+    for i in range(count):
+        farthest = max(farthest, places[i, 0] ** 2 + places[i, 1] ** 2 + places[i, 2] ** 2)
+    half = int(math.sqrt(farthest) / PIXEL) + 2
+    depth = np.empty((2 * half + 1, 2 * half + 1))
+    pixels, near, found = np.empty((count, 2), dtype=np.int64), np.empty(count), np.zeros((4, count))
+    for d in range(len(pictures)):
+        p = pictures[d]
+        depth[:] = -np.inf
+        for i in range(count):
+            x, y, z = places[i, 0], places[i, 1], places[i, 2]
+            for k in range(2):
+                pixels[i, k] = half + math.floor((p[k, 0] * x + p[k, 1] * y + p[k, 2] * z) / PIXEL + 0.5)
+            near[i] = p[2, 0] * x + p[2, 1] * y + p[2, 2] * z
+            row, column = pixels[i, 0], pixels[i, 1]
+            depth[row, column] = max(depth[row, column], near[i])
+        for i in range(count):
+            cosine = p[2, 0] * normals[i, 0] + p[2, 1] * normals[i, 1] + p[2, 2] * normals[i, 2]
+            if cosine > 0:
+                front = near[i]
+                for row in range(pixels[i, 0] - 1, pixels[i, 0] + 2):
+                    for column in range(pixels[i, 1] - 1, pixels[i, 1] + 2):
+                        front = max(front, depth[row, column])
+                shown = (FAR - (front - near[i]) * max(cosine, STEEP)) / (FAR - NEAR)
+                shown = min(max(shown, 0.0), 1.0)
+                found[group[d], i] += shown * cosine
+                found[3, i] += shown
+    return found

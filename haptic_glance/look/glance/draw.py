@@ -1,0 +1,87 @@
+"""Samples of a mesh or a cloud: exact moments of what lies in each cell of a grid that belongs to the object."""
+
+from dataclasses import replace
+
+import numpy as np
+from scipy.spatial import KDTree
+
+from haptic_glance.mesh.mesh import Mesh, unit
+
+from .cells import ROUNDING, cut
+from .denoise import denoised
+from .samples import Samples, object_axes
+
+COUNT = 15_000  # about as many samples: fewer lose detail such as eyes, more cost time
+CELL = 1.08  # side of a cell, in units of the square root of the area per sample; leaves about COUNT cells
+SMALLEST = 2.0**-10  # side of a cell: a smaller one, of a mesh with next to no area, would tell nothing more
+# length of a cell's mean normal: below the first an edge may be in it, below the second two sides of a sheet are; two
+# sides of an edge whose own mean normals are longer than PLAIN get a sample each
+BENT, TWO_SIDES, PLAIN = 0.95, 0.3, 0.95
+ROUGH = 0.55  # share of the surface in bent cells above which it has noise rather than edges
+LEAST = 1e-9  # of the area per sample: a piece below it is rounding
+
+
+def samples_of_mesh(mesh: Mesh, count: int = COUNT) -> Samples:
+    """The Samples of a normalised mesh whose faces are oriented.
+
+    They depend on the surface alone, not on its faces, their order or the turn about the vertical. Raises ValueError
+    for a mesh without area.
+    """
+    corners, area = mesh.vertices[mesh.faces], float(mesh.face_areas.sum())
+    if not area > 0:
+        raise ValueError("cannot sample a mesh without area")
+    # the second moments of a triangle are those of three points half-way from its corners to its middle
+    middles = corners / 2 + corners.sum(axis=1, keepdims=True) / 6
+    axes, middle = object_axes(middles.reshape(-1, 3), np.repeat(mesh.face_areas / 3, 3), corners.reshape(-1, 3))
+    side = max(CELL * np.sqrt(area / count), SMALLEST)
+    pieces = cut((corners - middle) @ (axes.T / side))
+    pieces = pieces[pieces[:, 4] * side**2 > LEAST * area / count]
+    places = pieces[:, 5:] @ (axes * side) + middle
+    normals = mesh.face_normals[pieces[:, 0].astype(np.int64)]
+    return denoised(_gathered(pieces[:, 1:4].astype(np.int64), places, normals, pieces[:, 4] * side**2, axes))
+
+
+def samples_of_points(points: np.ndarray, normals: np.ndarray, count: int = COUNT) -> Samples:
+    """The Samples of a normalised point cloud (n, 3) with unit normals (n, 3), outwards; all have the same area.
+
+    Raises ValueError for fewer than two points at different places.
+    """
+    apart = KDTree(points).query(points, 2)[0][:, 1] ** 2
+    area, count = float(apart.sum()) * np.pi / 2, min(count, max(len(points) // 2, 1))  # of evenly spread points
+    if not area > 0:
+        raise ValueError("the points of a cloud must lie at different places")
+    axes, middle = object_axes(points, np.ones(len(points)), points)
+    cells = np.floor((points - middle) @ (axes.T / max(CELL * np.sqrt(area / count), SMALLEST)) + ROUNDING)
+    found = _gathered(cells.astype(np.int64), points, normals, np.ones(len(points)), axes)
+    return denoised(replace(found, areas=np.full(len(found.points), area / len(found.points))))
+
+
+def _gathered(cells, places, normals, areas, axes):
+    """The Samples of pieces (p,): the mean of what lies in a cell, for each side of an edge or a sheet on its own."""
+    key = (cells - cells.min(axis=0)) @ [1 << 40, 1 << 20, 1]
+    _, cell = np.unique(key, return_inverse=True)
+    total, normal = _means(cell, normals, areas)
+    length = np.linalg.norm(normal, axis=1)
+    rough = total @ (length < BENT) > ROUGH * total.sum()  # noise bends it nearly everywhere, and has no edges
+    bent = np.flatnonzero(((length < BENT) & ~rough)[cell])
+    side = np.zeros(len(cells), dtype=np.int64)
+    if len(bent):
+        few, of = np.unique(cell[bent], return_inverse=True)
+        off = normals[bent] - normal[cell[bent]]
+        spread = _means(of, np.einsum("ni,nj->nij", off, off).reshape(-1, 9), areas[bent])[1].reshape(-1, 3, 3)
+        apart = np.einsum("ij,ij->i", off, np.linalg.eigh(spread)[1][of, :, 2]) > 0
+        two = 2 * of + apart
+        plain = np.linalg.norm(_means(two, normals[bent], areas[bent], 2 * len(few))[1], axis=1).reshape(-1, 2)
+        split = (plain.min(axis=1) > PLAIN) | (length[few] < TWO_SIDES)
+        side[bent] = apart & split[of]
+        cell = 2 * cell + side
+        cell = (np.cumsum(np.bincount(cell) > 0) - 1)[cell]
+        total, normal = _means(cell, normals, areas)
+    return Samples(_means(cell, places, areas)[1], unit(normal), total, axes)
+
+
+def _means(owner, values, areas, count=0):
+    """(sum of the areas, mean of the values (p, d) by area) of the pieces of each owner."""
+    total = np.bincount(owner, areas, count)
+    sums = np.stack([np.bincount(owner, one * areas, count) for one in values.T], axis=1)
+    return total, sums / np.maximum(total, 1e-300)[:, None]

@@ -1,0 +1,198 @@
+"""Saliency and salient points of a mesh.
+
+From a mesh to its saliency and its salient points, in one call each.
+
+What people call methods on a command line, and the names that these have here.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from scipy.spatial import KDTree
+
+from haptic_glance.mesh import MeshError, clean, normalise, rotate_to_z_up
+from haptic_glance.mesh.axes import Axis
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.mesh.repair import orient
+
+from ..camera import Viewpoint
+from ..channels import ViewMaps, conspicuity
+from ..channels.channels import mask_at_size
+from ..channels.surface import SMOOTHING
+from ..views import TWELVE, render
+from ..weights import LearnedWeights
+from ..weights import weights as published
+from ..weights.weights import GLANCE
+from .methods import MAIN, METHODS, SVMS, meant, method_for, method_named, split_runnable
+from .options import RADIUS, Detection, HasSaliency, Options, tied
+
+VIEW_SIZE = (900, 1200)  # rows, columns of the views; T3.2.6
+MAP_SIZE = (225, 300)  # rows, columns of the maps: a quarter of the views', so that the channels keep their scales
+
+
+def saliency(
+    mesh: Mesh, method: str = GLANCE, weights: str | Mapping[str, float] | None = None,
+    viewpoints: Iterable[Viewpoint] | None = None, smoothing: float = SMOOTHING, up: Axis | None = None,
+) -> np.ndarray:  # fmt: skip
+    """How much each vertex attracts attention: (n,) f8 in 0..1, 1 at the maximum, whatever the mesh's place and size.
+
+    up: the axis of the mesh that points up: x, -y, a vector of three numbers, or `auto`, which chooses y or z by the
+    shape; None: its own, `mesh.up`.
+    People look at the upper part of things and walk around them, so `glance` and `height` need the right one. method:
+    a name of METHODS that has a saliency (all but `random` and `farthest`). `glance`, the default, is the fixation
+    density per unit of area that a log-linear model, fitted to human gaze, predicts from small cells of the
+    surface, `glance_any_pose` the same without the features that need an up axis, for what lies in any pose;
+    `glance_deep` the same with the maps of a network that looks at pictures (extra `deep`), more accurate and slower;
+    `thesis_ssim` is the thesis's own weighted average (eq. 3.9), `itti` the classical model. weights: for a method with
+    weights, the name of a set of weights (haptic_glance.look.weights) or a dict name -> weight, instead of its own.
+    viewpoints: Viewpoints, None for the twelve of T figure 3.2. smoothing: length in units of the normalised
+    mesh (bounding sphere 0.5). Raises ValueError for unknown names or invalid weights.
+    """
+    detector = method_named(method)
+    if not isinstance(detector, HasSaliency):
+        raise ValueError(f"method {method!r} has no saliency: it only places points")
+    mesh = _prepared(mesh, up)
+    options = Options(_learned(method, weights), smoothing=smoothing)
+    return detector.saliency(mesh, compute_maps(mesh, detector.channels, viewpoints), options)
+
+
+def find_points(
+    mesh: Mesh, method: str | int | None = None, count: int | None = None, *, purpose: str = "look",
+    weights: str | Mapping[str, float] | None = None, viewpoints: Iterable[Viewpoint] | None = None,
+    selection: str = "suppression", radius: float = RADIUS, seed: int = 0, name: str = "", up: Axis | None = None,
+) -> np.ndarray:  # fmt: skip
+    """Vertex ids of the places that attract attention, or that are worth touching: (k,) i8, the best first.
+
+    `find_points(mesh, 10)` gives ten of the default method. purpose: `look`, the default, for the places that people
+    look at (method `glance`), or `touch` for those whose imprint by the array, 0.16 units wide, recurs on the object
+    (method `touch`); a method of METHODS may be named in its place. count: how many; None stops at the method's own
+    threshold (T3.2.5 for maps), and only a mesh with fewer vertices gives fewer than asked for. selection: for methods
+    that select points in each view, `suppression` (T3.2.5) or `centroid` (T3.1.2). radius: the least distance between
+    points, in units of the normalised mesh; it shrinks only where `count` points do not fit. seed and name: for
+    `random` alone, whose draw depends on these two and not on earlier calls. The other arguments are those of
+    `saliency`. Raises ValueError for unknown names, an invalid count, a method beside the purpose `touch`, or `random`
+    or `farthest` without a count.
+    """
+    return detect(
+        mesh, method, count, purpose=purpose, weights=weights, viewpoints=viewpoints, selection=selection,
+        radius=radius, seed=seed, name=name, up=up,
+    ).points  # fmt: skip
+
+
+def detect(
+    mesh: Mesh, method: str | int | None = None, count: int | None = None, *, purpose: str = "look",
+    weights: str | Mapping[str, float] | None = None, viewpoints: Iterable[Viewpoint] | None = None,
+    selection: str = "suppression", radius: float = RADIUS, seed: int = 0, name: str = "", up: Axis | None = None,
+) -> Detection:  # fmt: skip
+    """The points of `find_points` and the saliency of `saliency`, from one look, with the points that are equally good.
+
+    The arguments are those of these two functions.
+    """
+    if not isinstance(method, str | None):
+        if count is not None:
+            raise ValueError(f"method {method!r} is not the name of a method")
+        method, count = None, method
+    method = method_for(purpose, method)
+    detector = method_named(method)
+    if count is not None and (count != int(count) or count < 1):
+        raise ValueError(f"count must be a whole number of at least 1, got {count}")
+    options = Options(_learned(method, weights), selection, radius, SMOOTHING, seed, name)
+    mesh = _prepared(mesh, up)
+    found = detector.find(mesh, compute_maps(mesh, detector.channels, viewpoints), options, count)
+    if found.saliency is None:
+        return found
+    scores = scores_of(mesh, found.points, found.saliency)
+    return replace(found, scores=scores, ties=tied(scores))
+
+
+def scores_of(mesh: Mesh, points: np.ndarray, saliency: np.ndarray) -> np.ndarray:
+    """(k,) f8 in 0..1: how strongly each of the points (k,) draws the eye, in their order; descending.
+
+    It is the mean of the saliency (n,) around a point of the normalised mesh, by area, over the length that smooths the
+    saliency before its peaks are taken. Attention inhibits what it has visited, so that a later place may lie beside a
+    high peak: its score is never more than that of the place before it.
+    """
+    place, radius = KDTree(mesh.vertices), 2 * SMOOTHING
+    near = [np.union1d(ids, point).astype(np.int64) for ids, point in zip(
+        place.query_ball_point(mesh.vertices[points], radius), points, strict=True)]  # fmt: skip
+    areas = [mesh.vertex_areas[ids] for ids in near]
+    means = [
+        np.average(saliency[ids], weights=own) if own.any() else saliency[point]
+        for ids, own, point in zip(near, areas, points, strict=True)
+    ]
+    return np.minimum.accumulate(np.array(means, dtype=np.float64))
+
+
+def _prepared(mesh, up):
+    """The mesh as the detectors take it; one that cannot be repaired is only turned outwards."""
+    try:
+        mesh = clean(mesh)[0]
+    except MeshError:
+        mesh = orient(mesh)[0]
+    return normalise(rotate_to_z_up(mesh, up))
+
+
+def compute_maps(
+    mesh: Mesh, channels: Iterable[str], viewpoints: Iterable[Viewpoint] | None = None, renderer: str = "auto"
+) -> ViewMaps | None:
+    """The ViewMaps of a normalised mesh: rendered from the viewpoints, with the channels' maps; None without channels.
+
+    renderer: that of haptic_glance.look.views.render; `raster` gives the same bytes on every machine.
+    """
+    channels = tuple(channels)
+    if not channels:
+        return None
+    viewpoints = TWELVE if viewpoints is None else tuple(viewpoints)
+    if not viewpoints:
+        raise ValueError("no viewpoints: give at least one, or None for the twelve of T figure 3.2")
+    per_view, masks = [], []
+    for viewpoint in viewpoints:
+        view = render(mesh, viewpoint, VIEW_SIZE, renderer)
+        per_view.append(conspicuity(mesh, view, channels, MAP_SIZE))
+        masks.append(mask_at_size(view.mask, MAP_SIZE))
+    maps = {channel: np.stack([maps[channel] for maps in per_view]) for channel in channels}
+    return ViewMaps(mesh, viewpoints, maps, np.stack(masks))
+
+
+def _learned(method, weights):
+    """The published weights, those of the method replaced by the caller's."""
+    required, learned = method_named(method).required_weights, LearnedWeights()
+    if required in SVMS:
+        raise ValueError(f"method {method!r} needs an SVM that the stage `weights` trains: run the pipeline for it")
+    if weights is None:
+        if required not in {None, *learned.weights}:
+            raise ValueError(
+                f"method {method!r} needs weights that the stage `weights` learns: pass weights, or choose another"
+            )
+        return learned
+    if required is None:
+        raise ValueError(f"method {method!r} has no weights")
+    return LearnedWeights(
+        learned.weights | {required: published(weights) if isinstance(weights, str) else dict(weights)}
+    )
+
+
+HELP = (
+    "glance, our model of human gaze (default); thesis_ssim, the thesis's attention; itti, plain visual attention; "
+    "haptic_glance.METHODS has the rest"
+)
+
+
+def check_name(method: str, first: Sequence[str] = (), points_alone: bool = False) -> None:
+    """Raises ValueError for a method that does not run on a mesh outside the pipeline's data sets, with one that does.
+
+    first: names that the command adds. points_alone: also methods that place points and have no saliency.
+    """
+    runs, learned = split_runnable(METHODS, LearnedWeights())
+    runs.remove("random")  # which no command needs: touch has --at random
+    usable = [*first, *(name for name in runs if points_alone or hasattr(METHODS[name], "saliency"))]
+    if method in usable:
+        return
+    said = method.lower().replace("-", "_").replace(" ", "_")
+    near = meant(said, usable)
+    reason = f"there is no such method{near}"
+    if method in METHODS:
+        reason = "its weights are learned in the pipeline" if method in learned else "it has no saliency"
+    rest = "" if near and method not in METHODS else f"; choose one of {', '.join([*first, *MAIN])}"
+    raise ValueError(f"--method {method}: {reason}{rest}")

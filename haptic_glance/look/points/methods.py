@@ -1,0 +1,143 @@
+"""The registry of methods. To add one, add an entry.
+
+A method has `channels`, the maps that it uses (none: it receives no Sight); `required_weights`, the name of the weights
+without which it cannot run, or None; and `find(mesh, sight, options, count=None) -> Detection`. All but those that only
+place points (random, farthest) have `saliency(mesh, sight, options) -> (n,)` too.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from difflib import get_close_matches
+
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.mesh.mesh import Mesh
+
+from ..channels import CHANNELS, ViewMaps
+from ..rivals import corners, harris, heat_kernel, leifman, mesh_saliency, salient_points, sift, song, tasse
+from ..weights import LearnedWeights
+from ..weights.weights import DEEP, GLANCE, GLANCES
+from .detectors import (
+    FarthestPoints,
+    FusedDetector,
+    MergedDetector,
+    RandomPoints,
+    SurfaceDetector,
+    SvmDetector,
+    WeightedDetector,
+    centre_distance,
+    facing_viewer,
+    height,
+)
+from .fuse import COMBINATIONS, WITHOUT_COLOUR
+from .glance import GlanceDetector, deep_features
+from .options import Detection, Detector, Options
+from .touch import TouchDetector
+
+SYMMETRIES = {"SymLat": "symmetry_lateral", "SymRad": "symmetry_radial", "2Sym": "symmetry"}  # T3.1.5
+WEIGHTED = (
+    "equal",
+    "thesis_ssim",
+    "thesis_ed",
+    "guided_ssim",
+    "guided_ed",
+    "guided_ssim_object",
+    "guided_ssim_seen",
+    "guided_ed_seen",
+)
+SVMS = ("svm", "svm_nearest", "svm_seen", "svm_object", "svm_viewpoint")  # T3.2.3
+PUBLISHED = {
+    "mesh_saliency": mesh_saliency, "salient_points": salient_points, "sift": sift, "harris": harris,
+    "corners": corners, "heat_kernel": heat_kernel, "leifman": leifman, "song": song, "tasse": tasse,
+}  # fmt: skip
+
+METHODS: dict[str, Detector] = {
+    **{name: GlanceDetector(name) for name in GLANCES},
+    **{name: GlanceDetector(name, deep_features) for name in DEEP},
+    "itti": FusedDetector(COMBINATIONS["VisAtt"]),
+    "random": RandomPoints(),
+    **{f"random_{draw}": RandomPoints(draw) for draw in range(2, 6)},
+    **{name: FusedDetector(channels) for name, channels in (COMBINATIONS | WITHOUT_COLOUR).items()},
+    "VisAttCurvP": MergedDetector(FusedDetector(COMBINATIONS["VisAtt"]), FusedDetector(COMBINATIONS["Curv"])),
+    "VisAttSymP": MergedDetector(FusedDetector(COMBINATIONS["VisAtt"]), FusedDetector(["symmetry"])),
+    **{name: FusedDetector([channel]) for name, channel in SYMMETRIES.items()},
+    **{name: WeightedDetector(name, CHANNELS) for name in WEIGHTED},
+    **{name: SvmDetector(name, CHANNELS) for name in SVMS},
+    **{name: SurfaceDetector(paper.saliency, paper.points) for name, paper in PUBLISHED.items()},
+    "spectral_residual": FusedDetector(["spectral_residual"]),
+    "fine_grained": FusedDetector(["fine_grained"]),
+    "farthest": FarthestPoints(),
+    "touch": TouchDetector(),
+    "height": SurfaceDetector(height),
+    "centre_distance": SurfaceDetector(centre_distance),
+    "facing_viewer": SurfaceDetector(facing_viewer),
+}
+
+PURPOSES = {"look": GLANCE, "touch": "touch"}  # what places are for: the method that finds them
+
+MAIN = ("glance", "glance_any_pose", "thesis_ssim", "itti", "mesh_saliency")  # named where none is near
+MEANT = {  # in other words, and in the thesis's
+    "ours": "glance", "gaze": "glance", "default": "glance", "any_pose": "glance_any_pose", "deep": "glance_deep",
+    "thesis": "thesis_ssim", "enhanced_attention": "thesis_ssim", "enhanced_visual_attention": "thesis_ssim",
+    "ssim": "thesis_ssim", "ed": "thesis_ed", "visual_attention": "itti", "attention": "itti", "classical": "itti",
+    "enhanced": "thesis_ssim", "lee": "mesh_saliency", "hks": "heat_kernel",
+}  # fmt: skip
+
+
+def method_named(method: str) -> Detector:
+    """The entry of METHODS; ValueError with the nearest name for an unknown one."""
+    if method not in METHODS:
+        near = meant(str(method).lower(), list(METHODS))
+        raise ValueError(f"unknown method {method!r}{near or ': choose one of ' + ', '.join(MAIN)}")
+    return METHODS[method]
+
+
+def method_for(purpose: str, method: str | None = None) -> str:
+    """The name of the method, None for the one of the purpose; ValueError for an unknown purpose, or for both."""
+    if purpose not in PURPOSES:
+        raise ValueError(f"unknown purpose {purpose!r}: choose one of {', '.join(PURPOSES)}")
+    if method is not None and purpose != "look":
+        raise ValueError(f"the purpose {purpose!r} chooses the method: leave out method {method!r}")
+    return PURPOSES[purpose] if method is None else method
+
+
+def meant(said: str, usable: Sequence[str]) -> str:
+    """ " (did you mean NAME?)" for a name in other words or mistyped; else empty."""
+    lower = {name.lower(): name for name in usable}
+    close = get_close_matches(said, [*MEANT, *lower], 1)
+    found = MEANT.get(close[0], lower.get(close[0])) if close else None
+    return f" (did you mean {found}?)" if found in usable else ""
+
+
+def split_runnable(methods: Iterable[str], learned: LearnedWeights) -> tuple[list[str], list[str]]:
+    """(methods whose weights are at hand, the others): without ground truth, `learned` lacks some weights.
+
+    Raises ValueError for an unknown name.
+    """
+    methods, available = list(methods), {None, *learned.weights, *learned.svms}
+    runnable = [method for method in methods if method_named(method).required_weights in available]
+    return runnable, [method for method in methods if method not in runnable]
+
+
+def find_all(
+    mesh: Mesh, sight: ViewMaps | None, methods: Iterable[str], options: Options, count: int | None,
+    known: Mapping[str, Detection] | None = None,
+) -> tuple[dict[str, Detection], dict[str, float]]:  # fmt: skip
+    """Runs methods on one object: (dict method -> Detection, dict method -> seconds).
+
+    known: the Detections of methods that have run on it before.
+
+    A method without a threshold of its own (random, farthest) gets as many strong points as the first one that has one,
+    so that what the LOD keeps for either differs in place alone.
+    """
+    found, seconds = {}, {}
+    for method in methods:
+        with Stopwatch() as watch:
+            found[method] = (known or {}).get(method) or method_named(method).find(mesh, sight, options, count)
+        seconds[method] = watch.seconds
+    strong = next((result.strong for result in found.values() if result.strong is not None), count)
+    for method, result in found.items():
+        if result.strong is None:
+            found[method] = replace(
+                result, strong=len(result.points) if strong is None else min(strong, len(result.points))
+            )
+    return found, seconds

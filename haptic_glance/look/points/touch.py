@@ -1,0 +1,94 @@
+"""The method `touch`: places whose imprint recurs on the object, so that one touch there tells the object.
+
+A classifier names the object that has the nearest imprints. An imprint that recurs on the object (on the other side, on
+another leg, all along a rim) has been met before, wherever the object was learned.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+from scipy.spatial import KDTree
+
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.touch.surface import sensor_axes
+
+from ..glance import Samples, samples_of_mesh
+from ..kernels import pressed
+from .glance import SampledDetector
+from .options import Options
+
+WIDTH = 0.16  # of the array, in units of the normalised mesh: 16 cells of 0.01 (T4.3.1)
+CELLS = 8  # along a side of the array that compares places
+PLACES = 2000  # places compared with each other
+SHARE = 0.03  # of the surface that must feel alike for a place to recur
+ALIKE = 0.06  # root mean square difference of two imprints in 0..1 at which they are 1 / e alike
+FLAT = 1e-3  # relief below which an imprint is flat, in units: samples are no finer
+DISC = 1.1  # radius of a disc over the square root of the area that its sample stands for: discs leave no holes
+BITS = 10  # of a coordinate on the curve that orders samples
+ROUNDING = 1e-6  # smaller differences of skewness, steps and shares are rounding
+
+
+class TouchDetector(SampledDetector):
+    """What it finds depends on the surface and the axis that points up, which an array is held by."""
+
+    def _values(self, mesh: Mesh, options: Options) -> tuple[Samples, np.ndarray, np.ndarray]:
+        samples = samples_of_mesh(mesh)
+        places = spread(samples, PLACES)
+        axes = sensor_axes(samples.normals[places])
+        radii = DISC * np.sqrt(samples.areas)
+        depths = pressed(samples.points, samples.normals, radii, axes, places, CELLS, WIDTH)
+        values = recurrence(imprints(depths), samples.points[places])
+        area = samples.areas.sum() / len(places)
+        few = replace(
+            samples, points=samples.points[places], normals=samples.normals[places], areas=np.full(len(places), area)
+        )
+        return few, values, values
+
+    def _vertices(self, mesh: Mesh, samples: Samples, chosen: np.ndarray) -> np.ndarray:
+        """Near the place and on its side: one across the edge or on the back of a sheet feels otherwise."""
+        both = np.hstack([mesh.vertices, samples.spacing * mesh.vertex_normals])[mesh.used]
+        wanted = np.hstack([samples.points, samples.spacing * samples.normals])[chosen]
+        return mesh.used[KDTree(both).query(wanted)[1]]
+
+
+def spread(samples: Samples, count: int) -> np.ndarray:
+    """(k,) i8 ids of at most `count` samples, each for the same share of the surface.
+
+    They follow one another at equal areas along a curve that fills space (Morton, A computer oriented geodetic data
+    base, IBM 1966). Two sides of a sheet get as many each.
+    """
+    skew = samples.shares @ samples.local**3
+    inside = samples.local * np.where(skew * [1, 1, 0] < -ROUNDING, -1, 1)  # either way of a horizontal axis
+    inside -= inside.min(axis=0)
+    steps = (inside / max(inside.max(), 1e-12) * (2**BITS - 1) + ROUNDING).astype(np.int64)
+    code = sum((steps[:, axis] >> bit & 1) << (3 * bit + axis) for bit in range(BITS) for axis in range(3))
+    has_side = np.flatnonzero(samples.normals.any(axis=1))
+    order = has_side[np.argsort(np.asarray(code)[has_side], kind="stable")]
+    passed = np.cumsum(samples.shares[order])
+    at = np.searchsorted(passed, (np.arange(count) + 0.5) / count * passed[-1] - ROUNDING)
+    return order[np.unique(at.clip(max=len(order) - 1))]
+
+
+def imprints(depths: np.ndarray) -> np.ndarray:
+    """(k, cells) f8: imprints in 0..1 of distances (k, rows, cols), 0 where the array meets the surface first."""
+    above = depths.reshape(len(depths), -1)
+    above = above - above.min(axis=1, keepdims=True)
+    relief = above.max(axis=1, keepdims=True)
+    return np.where(relief > FLAT, above / np.maximum(relief, FLAT), 0)
+
+
+def recurrence(imprints: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """(k,) f8 in 0..1: how alike the imprints (k, c) are at the places, of points (k, 3), that are most alike.
+
+    Only places farther than the array's width count, since nearer ones feel the same surface, and of these the share of
+    the surface SHARE. 1: it feels the same there.
+    """
+    square = (imprints**2).sum(axis=1)
+    apart = square[:, None] + square - 2 * imprints @ imprints.T
+    apart = np.sqrt(np.maximum(apart, 0) / imprints.shape[1])
+    square = (points**2).sum(axis=1)
+    near = square[:, None] + square - 2 * points @ points.T <= WIDTH**2
+    apart[near] = 1
+    count = max(round(SHARE * len(points)), 1)
+    nearest = np.partition(apart, min(count, len(points)) - 1, axis=1)[:, :count]
+    return np.exp(-nearest.mean(axis=1).round(6) / ALIKE)

@@ -1,0 +1,1 @@
+"""Published detectors of salient points, one a file."""

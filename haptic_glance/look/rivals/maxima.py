@@ -1,0 +1,108 @@
+"""Local maxima of a saliency on a mesh.
+
+The local maxima of a function on the vertices of a mesh within a radius, as most detectors select them.
+
+The local maxima of a function on the vertices of a mesh within rings of edges, which coarse meshes have too.
+"""
+
+from itertools import chain
+
+import numpy as np
+from scipy import sparse
+from scipy.spatial import cKDTree  # pyright: ignore[reportAttributeAccessIssue] (compiled, without a stub)
+
+from haptic_glance.mesh.mesh import Mesh
+
+NEAREST = 8  # vertices queried first: they rule out nearly all, so that few wide queries remain
+SPACING = 0.05  # of the size, between points of detectors that leave it open, as for 3D-Harris
+DIGITS = 9  # relative to the largest value: smaller differences are rounding, and count as equal
+
+
+def local_maxima(mesh: Mesh, values: np.ndarray, radius: float) -> np.ndarray:
+    """(k,) i8 vertex ids where values (n,) is largest within `radius`, largest value first.
+
+    The radius is Euclidean, in units of the mesh. Only values above zero count, and only where some vertex within the
+    radius is lower: a plateau has no peak. Of equal values the one that comes last by x, then y, then z is the peak, so
+    that the order of the vertices does not matter. Raises ValueError when values do not fit the mesh or radius <= 0.
+    """
+    values = np.asarray(values, dtype=np.float64)
+    if values.shape != (len(mesh.vertices),) or not np.isfinite(values).all():
+        raise ValueError(f"values must be {len(mesh.vertices)} finite numbers, one per vertex, got {values.shape}")
+    if not radius > 0:
+        raise ValueError(f"radius must be above 0, in units of the mesh, got {radius}")
+    top = values.max(initial=0)
+    if top <= 0:
+        return np.zeros(0, dtype=np.int64)
+    levels = np.round(values / top, DIGITS)
+    order = np.lexsort((*-mesh.vertices.T[::-1], -levels))
+    ranks = np.argsort(order)
+    tree = cKDTree(mesh.vertices)
+    candidates = _above_nearest(tree, levels, ranks, radius)
+    if len(candidates) == 0:
+        return candidates
+    near = tree.query_ball_point(mesh.vertices[candidates], radius)
+    ids = np.fromiter(chain.from_iterable(near), dtype=np.int64)
+    starts = np.cumsum([0, *map(len, near[:-1])])  # no list is empty: each vertex is near itself
+    highest = np.minimum.reduceat(ranks[ids], starts) == ranks[candidates]
+    peaks = candidates[highest & (np.minimum.reduceat(levels[ids], starts) < levels[candidates])]
+    return peaks[np.argsort(ranks[peaks])]
+
+
+def high_maxima(mesh: Mesh, values: np.ndarray) -> np.ndarray:
+    """(k,) i8 vertex ids, largest value first: the local maxima within SPACING that are above the mean of them all.
+
+    So Dutagaci 2012 selects for mesh saliency. The size is twice the distance of the farthest vertex from the middle of
+    the used ones, which no turn changes.
+    """
+    values = np.asarray(values, dtype=np.float64)
+    if not (len(mesh.faces) and values.any()):
+        return local_maxima(mesh, values, 1.0)
+    used = mesh.vertices[mesh.used]
+    size = 2 * np.linalg.norm(used - used.mean(axis=0), axis=1).max()
+    found = local_maxima(mesh, values, SPACING * size)
+    return found[values[found] >= values[found].mean()] if len(found) else found
+
+
+def _above_nearest(tree, levels, ranks, radius):
+    """Vertex ids above zero that none of the nearest vertices within the radius outranks."""
+    found = np.flatnonzero(levels > 0)
+    count = min(NEAREST, tree.n)
+    ids = tree.query(tree.data[found], k=np.arange(1, count + 1), distance_upper_bound=radius)[1]
+    best = np.append(ranks, tree.n)[ids].min(axis=1)  # an empty slot has the id n
+    return found[ranks[found] <= best]
+
+
+def ring_maxima(mesh: Mesh, values: np.ndarray, rings: int) -> np.ndarray:
+    """(k,) i8 vertex ids where values (n,) is largest within `rings` edges, largest value first.
+
+    Only values above zero count, and only where some vertex of the rings is lower: a plateau has no peak. Of equal
+    values the one that comes last by x, then y, then z is the peak, so that the order of the vertices does not matter.
+    Raises ValueError when values do not fit the mesh.
+    """
+    values = np.asarray(values, dtype=np.float64)
+    if values.shape != (len(mesh.vertices),) or not np.isfinite(values).all():
+        raise ValueError(f"values must be {len(mesh.vertices)} finite numbers, one per vertex, got {values.shape}")
+    top = values.max(initial=0)
+    if top <= 0:
+        return np.zeros(0, dtype=np.int64)
+    levels = np.round(values / top, DIGITS)
+    order = np.lexsort((*mesh.vertices.T[::-1], levels))
+    ranks = np.argsort(order)
+    itself = sparse.identity(len(values), dtype=bool)  # pyright: ignore[reportArgumentType] (scipy has no stub)
+    around = (mesh.adjacency + itself).tocsr()
+    highest, lowest = ranks, levels
+    for _ in range(rings):
+        highest = np.maximum.reduceat(highest[around.indices], around.indptr[:-1])
+        lowest = np.minimum.reduceat(lowest[around.indices], around.indptr[:-1])
+    peaks = np.flatnonzero((highest == ranks) & (lowest < levels) & (levels > 0))
+    return peaks[np.argsort(-ranks[peaks])]
+
+
+def representatives(mesh: Mesh, vertices: np.ndarray, distance: float) -> np.ndarray:
+    """Vertices of (k,), best first, in the same order, that are farther than distance from all better ones kept."""
+    near = cKDTree(mesh.vertices[vertices]).query_ball_point(mesh.vertices[vertices], distance)
+    free = np.ones(len(vertices), dtype=bool)
+    for rank, others in enumerate(near):
+        if free[rank]:
+            free[[other for other in others if other > rank]] = False
+    return vertices[free]

@@ -1,0 +1,254 @@
+"""Published and learned weights of the channels.
+
+Published weights: equal ones, those of T table 3.1, and those learned from human gaze.
+
+Reads the learned weights and SVMs that may be applied to an object: those not learned from the same object.
+
+Learns weights from the training data of several objects, leaving one object out at a time.
+"""
+
+import functools
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from haptic_glance.base.files import read_arrays, read_table, write_arrays
+from haptic_glance.mesh.mesh import Mesh
+
+from .attention import average, euclidean_weights, fit_fixations, similarity_weights
+from .convexity import convexity, nearest_convexity
+from .svm import SVMModel
+
+# T table 3.1: channel -> (average SSIM over 43 models, one minus the average normalised Euclidean distance).
+# In code rather than in a data file, so that they are available wherever the package is installed.
+TABLE = {
+    "color": (0.1096, 0.6417),
+    "contrast": (0.7692, 0.3941),
+    "curvature": (0.7536, 0.7929),
+    "dkl": (0.6389, 0.7098),
+    "edge": (0.7264, 0.5651),
+    "entropy": (0.8914, 0.7879),
+    "intensity": (0.6274, 0.4487),
+    "orientation": (0.4596, 0.6773),
+    "symmetry": (0.7235, 0.4970),
+}
+
+
+GLANCE = "glance"  # the default method
+
+
+def equal() -> dict[str, float]:
+    """One for every channel: the plain average (T eq. 3.8)."""
+    return dict.fromkeys(TABLE, 1.0)
+
+
+def thesis_ssim() -> dict[str, float]:
+    """Similarity of each channel's map to that of the ground truth (T3.2.1.2 and T3.2.1.4)."""
+    return {channel: ssim for channel, (ssim, _) in TABLE.items()}
+
+
+def thesis_ed() -> dict[str, float]:
+    """One minus the distance of each channel's brightest pixels from the ground truth (T3.2.1.1).
+
+    The text calls this column a value "for a selected viewpoint from model of skull", the caption an average over 43
+    models. T3.2.2 agrees with the caption, so this is taken as the average.
+    """
+    return {channel: nearness for channel, (_, nearness) in TABLE.items()}
+
+
+# Of the features of haptic_glance.look.glance, learned from 32 people's gaze on the 19 meshes of the data set `gaze`
+# and on the 14 point clouds of `gaze_clouds`. The features without an up axis are a model of their own, for what lies
+# in any pose.
+GLANCES = {
+    "glance": {
+        "rank": 0.44, "middle": 0.309, "upward": 0.128, "upward_high": -0.344, "seen": 0.08, "above": 0.019,
+        "above_high": 0.004, "below": -0.06, "log_below": 0.178, "log_side": 0.612, "convexity": 0.601,
+        "detail": -0.013, "relief": 0.066, "fullness_0.12": -0.036, "fullness_0.24": 0.226, "distance": -0.031,
+        "distance_squared": 0.131, "outward": 0.199, "off_plane": -0.212, "on_plane": 0.097,
+    },
+    "glance_any_pose": {
+        "seen": 0.441, "convexity": 0.627, "detail": -0.016, "relief": 0.007, "fullness_0.12": -0.035,
+        "fullness_0.24": 0.334, "distance": -0.101, "distance_squared": 0.106, "outward": 0.147,
+    },
+}  # fmt: skip
+
+
+# Of the features of haptic_glance.look.glance and of the maps of a network (haptic_glance.look.points.glance), learned
+# from the same gaze by benchmarks/deep_gaze.py. They are not in METHODS, since the stage `weights` does not learn them.
+MAP_WEIGHTS = (
+    0.015, 0.018, 0.027, -0.011, 0.053, -0.034, -0.042, -0.023, 0.027, 0, -0.025, 0.03, 0.051, -0.022, 0.013,
+    -0.012, -0.028, -0.03, -0.015, 0, 0.007, -0.002, 0.015, -0.028, 0.009, 0.007, -0.039, 0, 0.003, -0.027, -0.013,
+    0.031, -0.031, 0.004, 0.001, -0.041, -0.018, -0.022, 0.033, -0.014, -0.055, 0, 0.033, -0.024, -0.042, 0, -0.042,
+    -0.012, 0.051, -0.03, 0.046, -0.014, 0.02, -0.011, 0.001, 0.026, -0.008, 0.008, -0.002, -0.007, -0.002, -0.022,
+    0.029, 0.011, 0.005, 0.02, -0.013, 0.025, -0.01, 0.023, 0.027, 0.041, -0.012, -0.023, 0.018, -0.02, -0.015,
+    -0.037, -0.021, 0.069, -0.041, -0.002, -0.005, 0.006, 0.006, 0.011, 0.01, -0.022, -0.014, -0.002, 0.015, -0.027,
+    0.01, -0.006, 0.026, -0.017,
+)  # fmt: skip
+MAPS = tuple(f"map_{k}" for k in range(len(MAP_WEIGHTS)))
+DEEP = {
+    "glance_deep": {
+        "rank": 0.338, "middle": 0.277, "upward": 0.12, "upward_high": -0.277, "seen": 0.073, "above": 0.035,
+        "above_high": 0.036, "below": -0.053, "log_below": 0.159, "log_side": 0.571, "convexity": 0.64,
+        "detail": -0.049, "relief": 0.108, "fullness_0.12": -0.062, "fullness_0.24": 0.176, "distance": -0.049,
+        "distance_squared": 0.074, "outward": 0.141, "off_plane": -0.164, "on_plane": 0.124,
+        **dict(zip(MAPS, MAP_WEIGHTS, strict=True)),
+    },
+}  # fmt: skip
+
+
+METHODS: dict[str, Callable[[], dict[str, float]]] = {
+    "equal": equal, "thesis_ssim": thesis_ssim, "thesis_ed": thesis_ed,
+    **{name: functools.partial(dict, found) for name, found in GLANCES.items()},
+}  # fmt: skip
+
+
+def weights(method: str) -> dict[str, float]:
+    """The weight of each channel by a method of METHODS: dict channel -> weight, not normalised.
+
+    The methods give weights of all nine channels, for T eq. 3.9, which divides by their sum; GLANCES give those of the
+    features of haptic_glance.look.glance. Raises ValueError for an unknown method.
+    """
+    if method not in METHODS:
+        raise ValueError(f"unknown weights {method!r}: choose one of {', '.join(METHODS)}")
+    return METHODS[method]()
+
+
+SEEN_SUFFIX = "_seen"  # of methods whose weights were learned from all objects, the same one included, as in the thesis
+
+
+def published_weights() -> dict[str, dict[str, float]]:
+    """{method: its published weights}."""
+    return {method: weights(method) for method in METHODS} | _deep()
+
+
+@dataclass(frozen=True)
+class LearnedWeights:
+    """weights: method -> dict name -> weight; svms: kind -> dict k -> SVMModel, one for all views or one per view."""
+
+    weights: dict[str, dict[str, float]] = field(default_factory=published_weights)
+    svms: dict[str, dict[int, SVMModel]] = field(default_factory=dict)
+
+
+def read_learned_weights(folder: str | Path, name: str, mesh: Mesh) -> LearnedWeights:
+    """The LearnedWeights of an object, from data/SET/weights.
+
+    For an object with ground truth, learned weights are those that leave it out; with SEEN_SUFFIX in the name, those
+    learned from all objects. If it is the only object with ground truth, weights that leave it out do not exist, and
+    the methods are missing. The SVMs are `svm`, trained on all other objects; `svm_nearest`, that of the other object
+    nearest in convexity; and, for an object with ground truth, `svm_object` and `svm_viewpoint`, trained on the object
+    itself and on each of its views (T3.2.3).
+    """
+    table = read_table(Path(folder) / "weights.csv").fillna({"left_out": ALL})
+    from_all = table[table.left_out == ALL]
+    own = table[table.left_out == name]
+    every = _by_method(from_all)
+    found = every | _by_method(own)
+    if own.empty and (Path(folder) / "ground_truth" / f"{name}.npz").exists():
+        published = np.allclose([*every[GLANCE].values()], [*weights(GLANCE).values()])
+        usable = {*METHODS} if published else {*METHODS} - {*GLANCES}
+        found = {method: values for method, values in every.items() if method in usable}
+    seen = {f"{method}{SEEN_SUFFIX}": values for method, values in every.items() if method not in METHODS}
+    gazed = (Path(folder) / "ground_truth" / f"{name}.npz").exists()  # weights of DEEP that leave it out do not exist
+    return LearnedWeights(found | seen | ({} if gazed else _deep()), _svms(Path(folder), name, mesh))
+
+
+def _deep():
+    return {method: dict(found) for method, found in DEEP.items()}
+
+
+def _by_method(table):
+    groups = table.groupby("method", sort=False)
+    return {str(method): dict(zip(rows.channel, rows.weight.astype(float), strict=True)) for method, rows in groups}
+
+
+def _svms(folder, name, mesh):
+    if not (folder / "convexity.csv").exists():
+        return {}
+    convexities = read_table(folder / "convexity.csv").set_index("object").convexity.to_dict()
+    own = folder / "svm" / f"{name}.npz"
+    others = {other: value for other, value in convexities.items() if other != name}
+    found = {"svm": read_models(own, "without") if own.exists() else read_models(folder / "svm.npz", "all")}
+    found["svm_seen"] = read_models(folder / "svm.npz", "all")
+    if others:  # their names are texts, which pandas does not tell
+        found["svm_nearest"] = read_models(
+            folder / "svm" / f"{nearest_convexity(convexity(mesh), others)}.npz",  # pyright: ignore[reportArgumentType]
+            "object",
+        )
+    found["svm_object"] = read_models(own, "object")
+    found["svm_viewpoint"] = read_models(own, "view")
+    return {kind: models for kind, models in found.items() if models}
+
+
+def write_models(path: str | Path, models: Mapping[str, Sequence[SVMModel | None]]) -> None:
+    """Writes a dict prefix -> list of models, None for a view without training data."""
+    arrays = {
+        f"{prefix}.{k}.{key}": values
+        for prefix, group in models.items()
+        for k, model in enumerate(group)
+        if model is not None
+        for key, values in model.to_arrays().items()
+    }
+    write_arrays(path, **arrays)
+
+
+def read_models(path: Path, prefix: str) -> dict[int, SVMModel]:
+    """dict k -> SVMModel of a prefix; {} if the file or the prefix does not exist."""
+    if not path.exists():
+        return {}
+    grouped = {}
+    for name, values in read_arrays(path, f"{prefix}.").items():
+        _, k, key = name.split(".")
+        grouped.setdefault(int(k), {})[key] = values
+    return {k: SVMModel.from_arrays(arrays) for k, arrays in grouped.items()}
+
+
+ALL = ""  # the value of `left_out` for weights learned from all objects
+
+
+def learned_weight_rows(training_data: dict[str, dict[str, np.ndarray]]) -> list[dict]:
+    """Rows of method, channel, weight, left_out: the weights learned from all objects, and from all but each one.
+
+    training_data: dict name -> arrays of collect_training_data. An object with ground truth must use the row that
+    leaves it out, since the agreement with people is meaningless for weights that were learned from the same object.
+    With a single object, only the rows learned from all objects exist.
+    """
+    folds = [ALL, *training_data] if len(training_data) > 1 else [ALL]
+    per_object = {name: _views(arrays) for name, arrays in training_data.items()}
+    rows = []
+    for left_out in folds:
+        kept = [name for name in training_data if name != left_out]
+        found = {
+            "guided_ed": average([per_object[name][0] for name in kept]),
+            "guided_ssim": average([per_object[name][1] for name in kept]),
+            "guided_ssim_object": average([per_object[name][2] for name in kept]),
+            **{method: _glance([training_data[name] for name in kept], method) for method in GLANCES},
+        }
+        rows += [
+            {"method": method, "channel": channel, "weight": round(weight, 9), "left_out": left_out}
+            for method, weights in found.items()
+            for channel, weight in weights.items()
+        ]
+    return rows
+
+
+def _views(arrays):
+    """(weights by distance, by similarity, by similarity on the object) of one object, averaged over views (T3.2.1)."""
+    distances, similarities, on_object = (_dicts(arrays, kind) for kind in ("distances", "similarities", "on_object"))
+    return euclidean_weights(distances), similarity_weights(similarities), similarity_weights(on_object)
+
+
+def _dicts(arrays, kind):
+    """One dict channel -> value per view; empty for a view that shows no ground truth."""
+    channels = [str(channel) for channel in arrays["channels"]]
+    return [dict(zip(channels, row, strict=True)) if np.isfinite(row).all() else {} for row in arrays[kind]]
+
+
+def _glance(objects, method):
+    """The weights of a method of GLANCES."""
+    names = list(GLANCES[method])
+    columns = [objects[0]["glance_names"].tolist().index(name) for name in names]
+    amounts, areas = ([one[key] for one in objects] for key in ("glance_amounts", "glance_areas"))
+    weights = fit_fixations([one["glance"][:, columns] for one in objects], amounts, areas)
+    return dict(zip(names, weights.tolist(), strict=True))

@@ -1,0 +1,352 @@
+"""Point clouds and depth images, and the surface through their points.
+
+A point cloud as arrays, and what of it can be used.
+
+Normals of a point cloud: their lines from the neighbours, their sides from where the points can be seen.
+
+Depth images: what a camera that measures distances saw of an object, as a point cloud.
+
+The surface of a point cloud, with the holes that it leaves where nothing was seen.
+
+Readers of point clouds: text by numpy, PCD by pypcd4, LAS by laspy, PLY from what trimesh found.
+"""
+
+import io
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+import trimesh
+from scipy.spatial import ConvexHull, KDTree
+
+from haptic_glance.base.extras import from_extra
+
+from .axes import directions
+from .headers import MeshError
+from .mesh import Mesh
+
+LEAST = 50  # points; fewer hold no shape
+MOST = 300_000  # points that a surface is made of; of more, as many are drawn
+NEIGHBOURS = 8
+STRAY = 8.0  # times the median distance to the neighbours: farther points are outliers
+FLAT = 1e-3  # of the largest extent: less than this across, all points lie on a plane or a line
+
+
+@dataclass(frozen=True, eq=False)
+class Cloud:
+    """points (n, 3) f8; normals (n, 3) f8 of unit length, outwards, or None; colors (n, 3) u1 or None.
+
+    sensor: (3,) f8 where all points were seen from, or None where that is not known.
+    """
+
+    points: np.ndarray
+    normals: np.ndarray | None = None
+    colors: np.ndarray | None = None
+    sensor: np.ndarray | None = None
+
+    def part(self, chosen: np.ndarray) -> "Cloud":
+        """The Cloud of some points: their ids, or (n,) boolean."""
+        normals, colors = (None if one is None else one[chosen] for one in (self.normals, self.colors))
+        return Cloud(self.points[chosen], normals, colors, self.sensor)
+
+
+def usable(cloud: Cloud) -> Cloud:
+    """The points that a surface can be made of: finite, no two at one place, none far from all others.
+
+    Cameras mark pixels without a reading by NaN or by zeros, and many points at one place are that. Of more than MOST
+    points as many are drawn evenly from the file's order. Raises MeshError with the reason where no shape is left.
+    """
+    given = len(cloud.points)
+    finite = [np.isfinite(one).all(axis=1) for one in (cloud.points, cloud.normals) if one is not None]
+    cloud = cloud.part(np.logical_and.reduce(finite))
+    _, first = np.unique(cloud.points, axis=0, return_index=True)
+    cloud = cloud.part(np.sort(first))
+    if len(cloud.points) > MOST:
+        cloud = cloud.part(np.linspace(0, len(cloud.points) - 1, MOST).astype(int))
+    if len(cloud.points) >= LEAST:
+        away = KDTree(cloud.points).query(cloud.points, NEIGHBOURS + 1)[0][:, -1]
+        cloud = cloud.part(away <= STRAY * np.median(away))
+    if len(cloud.points) < LEAST:
+        raise MeshError(f"a point cloud of {given} points, {len(cloud.points)} of them usable: a surface needs {LEAST}")
+    extents = np.linalg.svd(cloud.points - cloud.points.mean(axis=0), compute_uv=False)
+    if extents[2] < FLAT * extents[0]:
+        shape = "line" if extents[1] < FLAT * extents[0] else "plane"
+        raise MeshError(f"all points of the cloud lie on one {shape}: there is no shape to look at or to touch")
+    return cloud
+
+
+NORMAL_NEIGHBOURS = 12
+VIEWS = 32  # directions from which points are looked at
+DISTANCE = 3.0  # of the eye, in radii of the cloud
+FLIP = 1.3  # exponent of the sphere that points are mirrored on: larger sees more, and through gaps
+VOTERS = 20_000  # points that vote; the others follow the nearest of them
+ROUNDS, PULL = 30, 2.0  # of the neighbours' influence on each other
+
+
+def normals_of(points: np.ndarray, sensor: np.ndarray | None = None) -> np.ndarray:
+    """(n, 3) unit normals of points (n, 3), towards the sensor (3,), or outwards where it is not known.
+
+    A normal is the direction of least variance of the twelve nearest points. Without a sensor its side is that from
+    which the point is seen: from 32 directions the visible points are found without any surface (Katz, Tal, Basri,
+    Direct visibility of point sets, SIGGRAPH 2007), each votes for the eye's side, and neighbours pull each other.
+    """
+    tree = KDTree(points)
+    near = tree.query(points, min(NORMAL_NEIGHBOURS, len(points)))[1]
+    spread = points[near] - points[near].mean(axis=1, keepdims=True)
+    normals = np.linalg.eigh(np.einsum("nki,nkj->nij", spread, spread))[1][:, :, 0]
+    if sensor is not None:
+        return normals * _sign(np.einsum("ij,ij->i", normals, sensor - points))[:, None]
+    voters = np.linspace(0, len(points) - 1, min(VOTERS, len(points))).astype(int)
+    votes = _votes(points[voters], normals[voters])
+    if len(voters) < len(points):
+        nearest = KDTree(points[voters]).query(points)[1]
+        votes = votes[nearest] * _sign(np.einsum("ij,ij->i", normals, normals[voters][nearest]))
+    alike, side = np.einsum("ni,nki->nk", normals, normals[near]), np.tanh(votes)
+    for _ in range(ROUNDS):
+        side = np.tanh(votes + PULL * (alike * side[near]).mean(axis=1))
+    return normals * _sign(side)[:, None]
+
+
+def visible(points: np.ndarray, eye: np.ndarray) -> np.ndarray:
+    """Ids of the points (n, 3) seen from the eye (3,): those on the hull of all points mirrored on a sphere."""
+    ray = points - eye
+    length = np.linalg.norm(ray, axis=1, keepdims=True)
+    mirrored = ray * (2 * length.max() * 10**FLIP / length - 1)
+    hull = ConvexHull(np.vstack([mirrored, np.zeros(3)])).vertices
+    return hull[hull < len(points)]
+
+
+def _votes(points, normals):
+    """(n,) how often the side of its normal is seen of each point, less how often the other is."""
+    centre = (points.max(axis=0) + points.min(axis=0)) / 2
+    radius = np.linalg.norm(points - centre, axis=1).max()
+    votes = np.zeros(len(points))
+    for direction in directions(VIEWS):
+        eye = centre + DISTANCE * radius * direction
+        seen = visible(points, eye)
+        ray = eye - points[seen]
+        along = np.einsum("ij,ij->i", normals[seen], ray) / np.linalg.norm(ray, axis=1)
+        votes[seen] += along * np.abs(along)  # a point seen at a slant says little
+    return votes
+
+
+def _sign(values):
+    return np.where(values < 0, -1.0, 1.0)
+
+
+DEPTH = ".depth"
+KEYS = ("image", "fx", "fy", "cx", "cy", "scale")
+EXAMPLE = '{"image": "scan.png", "fx": 615.0, "fy": 615.0, "cx": 319.5, "cy": 239.5, "scale": 0.001}'
+JUMP = 0.02  # of the distance, between neighbours: more is an edge, where cameras mix near and far
+
+
+def cloud_of_depth(depth: np.ndarray, fx: float, fy: float, cx: float, cy: float, scale: float = 1.0) -> Cloud:
+    """The Cloud of a depth image (h, w), its sensor at the origin; x points right, y away from the camera, z up.
+
+    depth: distances along the optical axis, times `scale` in the units that the points get; 0, NaN and infinity are no
+    reading. fx, fy, cx, cy: focal lengths and centre of a pinhole camera, in pixels. Pixels next to a jump of the depth
+    are left out. Raises MeshError for an image without a reading, or intrinsics that cannot be its own.
+    """
+    depth = np.asarray(depth, np.float64) * scale
+    if depth.ndim != 2:
+        raise MeshError(f"a depth image has one channel, this one has shape {depth.shape}")
+    rows, columns = depth.shape
+    if not (min(fx, fy, scale) > 0 and 0 <= cx <= columns and 0 <= cy <= rows):
+        raise MeshError(f"fx={fx}, fy={fy}, cx={cx}, cy={cy}, scale={scale} cannot be of {columns} x {rows} pixels: "
+                        "focal lengths and scale are above 0 and the centre lies in the image")  # fmt: skip
+    read = np.isfinite(depth) & (depth > 0)
+    if not read.any():
+        raise MeshError("the depth image holds no reading: all is 0 or not finite")
+    known = np.where(read, depth, np.inf)
+    solid = read.copy()
+    for axis in (0, 1):
+        with np.errstate(invalid="ignore"):
+            jump = ~(np.abs(np.diff(known, axis=axis)) <= JUMP * np.minimum.reduce(_pairs(known, axis)))
+        for part in _pairs(solid, axis):
+            part &= ~jump
+    v, u = np.nonzero(solid)
+    away = depth[v, u]
+    return Cloud(np.stack([(u - cx) / fx * away, away, (cy - v) / fy * away], axis=1), sensor=np.zeros(3))
+
+
+def read_depth(content: bytes, read: Callable[[str], bytes] | None) -> Cloud:
+    """The Cloud of a .depth file, a JSON text as in EXAMPLE; read(name) gives the bytes of the image beside it."""
+    try:
+        said = json.loads(content)
+        name, numbers = str(said["image"]), [float(said[key]) for key in KEYS[1:]]
+    except (ValueError, KeyError, TypeError, RecursionError) as error:
+        raise MeshError(f"{type(error).__name__}: {error}; a .depth file is like {EXAMPLE}") from None
+    try:
+        found = b"" if read is None else read(name)
+    except (OSError, ValueError, KeyError):
+        found = b""
+    if not found:
+        raise MeshError(f"the depth image {name} is not there: put it next to the .depth file")
+    try:
+        image = cv2.imdecode(np.frombuffer(found, np.uint8), cv2.IMREAD_UNCHANGED)
+    except cv2.error:
+        image = None
+    if image is None:
+        raise MeshError(f"the depth image {name} cannot be read: PNG and TIFF can, with 16 bits or as floats")
+    return cloud_of_depth(image, *numbers)
+
+
+def _pairs(values, axis):
+    """(all but the last, all but the first) along an axis, as views."""
+    return (values[:-1], values[1:]) if axis == 0 else (values[:, :-1], values[:, 1:])
+
+
+# pymeshlab comes without types:
+# pyright: reportAttributeAccessIssue=false
+
+
+DEPTHS = 5, 9  # of the octree: 32 to 512 cells a side
+SIDE = 1.1  # of the octree, in the largest extent of the points
+GAP = 1.5  # times the distance to the neighbours that points have there: surface farther from them was never seen
+
+
+def surface_of(cloud: Cloud) -> Mesh:
+    """The Mesh of a Cloud, in its units; it is closed where points are all round, and open where none were seen.
+
+    Screened Poisson reconstruction (Kazhdan and Hoppe, ACM Transactions on Graphics 32(3), 2013; pymeshlab's) of the
+    usable points and their normals, in cells as wide as the points are apart. It closes every hole; what lies farther
+    from the points than they lie from each other is cut away again. Colours are those of the nearest points. Raises
+    MeshError for a cloud without a shape.
+    """
+    with from_extra("a point cloud is made a surface by pymeshlab, which "):
+        import pymeshlab
+
+    cloud = usable(cloud)
+    centre, extent = cloud.points.mean(axis=0), np.ptp(cloud.points, axis=0).max()
+    points = (cloud.points - centre) / extent  # far from the origin, digits would be lost
+    sensor = None if cloud.sensor is None else (cloud.sensor - centre) / extent
+    tree = KDTree(points)
+    away = tree.query(points, NEIGHBOURS + 1)[0][:, -1]
+    normals = normals_of(points, sensor) if cloud.normals is None else cloud.normals
+    work = pymeshlab.MeshSet()
+    work.add_mesh(pymeshlab.Mesh(vertex_matrix=points, v_normals_matrix=normals))
+    work.generate_surface_reconstruction_screened_poisson(depth=_depth(away), preclean=True, threads=1)
+    made = work.current_mesh()
+    vertices, faces = made.vertex_matrix(), made.face_matrix().astype(np.int64)
+    distance, nearest = tree.query(vertices)
+    seen = np.asarray(distance <= GAP * away[nearest])
+    faces = faces[seen[faces].all(axis=1)]
+    used, ids = np.unique(faces, return_inverse=True)
+    colors = None if cloud.colors is None else cloud.colors[np.asarray(nearest)[used]]
+    return Mesh(vertices[used] * extent + centre, ids.reshape(-1, 3), colors)
+
+
+def _depth(away):
+    """The depth of the octree whose cells are as wide as points are apart; away: distance to the eighth neighbour."""
+    apart = np.median(away) * np.sqrt(np.pi / NEIGHBOURS)  # on a surface, eight points share a disc of that radius
+    return int(np.clip(np.ceil(np.log2(SIDE / apart)), *DEPTHS))
+
+
+TEXT = (".xyz", ".pts", ".asc")
+FORMATS = (*TEXT, ".pcd", ".las")
+UNIT = 0.05  # how far the length of a normal may be from 1
+LARGEST_ORIGIN = 1e-9  # a viewpoint nearer to zero than this was not set by who wrote the file
+
+
+def read_cloud(content: bytes, suffix: str) -> Cloud:
+    """The Cloud of the bytes of a file of FORMATS; its points may be unusable (see haptic_glance.mesh.clouds).
+
+    Text has a point a line: x y z, then three numbers that are a normal if their length is 1 on most lines, and
+    else a colour of 0..255, then the other of the two; what follows is ignored, so are lines that hold no numbers.
+    """
+    if suffix in TEXT:
+        return _text(content)
+    return _pcd(content) if suffix == ".pcd" else _las(content)
+
+
+def cloud_of(loaded: trimesh.PointCloud) -> Cloud:
+    """The Cloud of a PLY without faces, as trimesh reads it."""
+    found = loaded.metadata.get("_ply_raw", {}).get("vertex", {}).get("data")
+    normals = _columns(found, ("nx", "ny", "nz")) if found is not None else None
+    colors = np.asarray(loaded.colors)
+    named = colors[:, :3].astype(np.uint8) if colors.shape == (len(loaded.vertices), 4) else None
+    return Cloud(np.asarray(loaded.vertices, np.float64), _units(normals), named)
+
+
+def _text(content):
+    lines = content.decode("latin-1").replace(",", " ").replace(";", " ").splitlines()
+    rows = [line for line in lines if len(line.split()) >= 3 and _is_number(line.split()[0])]
+    if not rows:
+        raise MeshError("no line of the point cloud holds three numbers")
+    width = min(len(row.split()) for row in rows)
+    values = np.loadtxt(io.StringIO("\n".join(rows)), usecols=range(width), ndmin=2)
+    normals = colors = None
+    for start in range(3, min(width, 9) - 2, 3):
+        three = values[:, start : start + 3]
+        if normals is None and _units(three) is not None:
+            normals = _units(three)
+        elif colors is None and three.min() >= 0 and three.max() <= 255 and three.max() > 1:
+            colors = three.astype(np.uint8)
+    return Cloud(values[:, :3], normals, colors)
+
+
+def _pcd(content):
+    with from_extra():
+        from pypcd4.pypcd4 import PointCloud
+
+    read = PointCloud.from_fileobj(io.BufferedReader(io.BytesIO(content)))
+    data, fields = read.pc_data, read.fields
+    if np.size(data) < read.metadata.points:
+        raise MeshError(f"truncated: its header states {read.metadata.points} points, {np.size(data)} follow")
+    points = _columns(data, ("x", "y", "z"))
+    if points is None:
+        raise MeshError(f"a point cloud without x, y and z: its fields are {', '.join(fields)}")
+    normals = _columns(data, ("normal_x", "normal_y", "normal_z")) if "normal_x" in fields else None
+    colors = read.decode_rgb(np.ascontiguousarray(data["rgb"])) if "rgb" in fields else None
+    return Cloud(points, _units(normals), colors, _sensor(points, np.array(read.metadata.viewpoint[:3])))
+
+
+def _las(content):
+    with from_extra():
+        import laspy
+
+    read = laspy.read(io.BytesIO(content))
+    points = np.stack([np.asarray(one, np.float64) for one in (read.x, read.y, read.z)], axis=1)
+    if "red" not in set(read.point_format.dimension_names):
+        return Cloud(points)
+    colors = np.stack([np.asarray(one) for one in (read.red, read.green, read.blue)], axis=1)
+    wide = colors.max(initial=0) > 255  # sixteen bits as the format says, which many writers fill with eight
+    return Cloud(points, colors=(colors >> 8 if wide else colors).astype(np.uint8))
+
+
+def _columns(data, names):
+    try:
+        return np.stack([np.asarray(data[name], np.float64).ravel() for name in names], axis=1)
+    except (KeyError, ValueError):  # some of the three alone
+        return None
+
+
+def _units(vectors):
+    """Unit normals of vectors (n, 3), or None where some are no normals."""
+    if vectors is None or not len(vectors):
+        return None
+    with np.errstate(invalid="ignore", over="ignore"):
+        length = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return None if (np.abs(length - 1) > UNIT).any() else vectors / length  # without a reading, they are NaN
+
+
+def _sensor(points, viewpoint):
+    """Where the points were seen from: a PCD's viewpoint is zero where its writer knew none, and in a camera's frame.
+
+    It is a camera's where no point lies around it.
+    """
+    finite = points[np.isfinite(points).all(axis=1)]
+    if not len(finite) or np.abs(viewpoint).max() > LARGEST_ORIGIN:
+        return viewpoint
+    low, high = finite.min(axis=0), finite.max(axis=0)
+    return None if ((low <= 0) & (high >= 0)).all() else viewpoint
+
+
+def _is_number(word):
+    try:
+        float(word)
+    except ValueError:
+        return False
+    return True

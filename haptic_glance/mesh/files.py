@@ -1,0 +1,223 @@
+"""Reads any file of a mesh.
+
+Reads one file into a mesh: STL, OBJ, PLY and GLB by trimesh, OFF by a reader of our own, scans by `clouds`.
+
+The mesh files that a person names on a command line: one file, or all of a folder.
+"""
+
+import io
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import trimesh
+from numpy.typing import ArrayLike
+from trimesh.resolvers import FilePathResolver, Resolver
+
+from haptic_glance.base.extras import MissingExtra
+
+from . import clouds
+from .axes import AUTO
+from .headers import MeshError, check_header
+from .materials import join_parts, merge_equal_rows, obj_vertices, texture_of, vertex_colors
+from .mesh import Mesh
+from .off import read_off
+from .up import UP_OF_FORMAT, stated_up
+from .upright import settled
+
+MeshLike = (
+    Mesh
+    | str
+    | Path
+    | trimesh.Trimesh
+    | trimesh.Scene
+    | trimesh.PointCloud
+    | clouds.Cloud
+    | tuple[ArrayLike, ArrayLike]
+)
+FORMATS = (".stl", ".obj", ".ply", ".off", ".glb", *clouds.FORMATS, clouds.DEPTH)
+
+
+def load(path: str | Path) -> Mesh:
+    """Reads a mesh file: Mesh(vertices (n, 3) f8, faces (m, 3) i8, colors (n, 3) u1 or None), in the units of the file.
+
+    Vertices keep the order of the file, since ground truth refers to them by index. STL and GLB repeat vertices at
+    face corners: equal ones are merged in the order of first appearance. Polygons are triangulated. The parts of a GLB
+    scene are transformed and joined. The materials of a GLB, and those of an OBJ whose material files lie next to it,
+    become the texture of the mesh. Of a point cloud (PLY without faces, XYZ, PTS, PCD, LAS), with or without normals,
+    the vertices are those of the surface that haptic_glance.mesh.clouds makes of it; so they are of a depth image,
+    which a .depth file names together with its camera. A GLB is y up, a .depth file z up. The other formats do not
+    say, but in a comment of ours: `up` is then y or z, whichever the shape suggests (haptic_glance.mesh.upright).
+    Raises MeshError with the file and the reason when it holds no usable mesh.
+    """
+    return settled(load_as_stated(path))
+
+
+def load_as_stated(path: str | Path) -> Mesh:
+    """As `load`; `up` is `auto` where the file does not say which axis points up."""
+    try:
+        return load_unnamed(Path(path))
+    except MeshError as error:
+        raise MeshError(f"{path}: {error}") from None
+
+
+def load_unnamed(path: Path) -> Mesh:
+    """As `load_as_stated`; the message of a MeshError is the reason alone, for a caller that names the file itself."""
+    if not path.is_file():
+        raise MeshError("is a folder, not a mesh" if path.is_dir() else "no such file")
+    return parse(path.read_bytes(), path.suffix.lower(), FilePathResolver(str(path)))
+
+
+def as_mesh(given: MeshLike) -> Mesh:
+    """The Mesh of a path, an object of trimesh, (vertices (n, 3), faces (m, 3)) or a Cloud, or the Mesh that is given.
+
+    Vertices keep their ids, but for a Scene, whose parts are joined as those of a GLB are. Colours and textures of
+    trimesh are taken over. Only a Mesh and some files say which axis points up; of the others `up` is y or z, whichever
+    the shape suggests, as of `load`, so that a file and its arrays have one answer. A Mesh is z up unless it is made
+    with another `up`. Raises MeshError as `load` does, ValueError for arrays of another shape, TypeError for anything
+    else.
+    """
+    return settled(as_stated(given))
+
+
+def as_stated(given: MeshLike) -> Mesh:
+    """As `as_mesh`; `up` is `auto` where nothing says which axis points up."""
+    if isinstance(given, Mesh):
+        return given
+    if isinstance(given, str | Path):
+        return load_as_stated(given)
+    return replace(_converted(given), up=AUTO)
+
+
+def _converted(given):
+    if isinstance(given, trimesh.Scene):
+        return join_parts(given, every_colour=True) or _to_mesh(None, False, False)
+    if isinstance(given, clouds.Cloud):
+        return clouds.surface_of(given)
+    if isinstance(given, trimesh.Trimesh | trimesh.PointCloud):
+        return _to_mesh(given, False, every_colour=True)
+    if isinstance(given, tuple) and len(given) == 2:
+        return Mesh(np.asarray(given[0], dtype=np.float64), np.asarray(given[1]))
+    raise TypeError(f"no mesh: a {type(given).__name__}; give a path, a trimesh, (vertices, faces), a Cloud or a Mesh")
+
+
+def parse(content: bytes, suffix: str, resolver: Resolver | None = None, every_colour: bool = False) -> Mesh:
+    """As `load_as_stated`, from the bytes of a file and its suffix (`.stl`, ...). Without a resolver, reads no other.
+
+    every_colour: also the colours of faces, as those of the vertices, and the picture of a PLY, as a texture.
+    """
+    if suffix not in FORMATS:
+        raise MeshError(f"cannot read {suffix or 'a file without suffix'}: the formats are {', '.join(FORMATS)}")
+    if not content:
+        raise MeshError("the file is empty")
+    check_header(content, suffix)
+    try:
+        mesh = _parsed(content, suffix, resolver, every_colour)
+        return replace(mesh, up=UP_OF_FORMAT.get(suffix) or stated_up(content) or AUTO)
+    except (MeshError, MissingExtra):
+        raise
+    except MemoryError:
+        raise MeshError("its header claims more data than fits in memory") from None
+    except Exception as error:  # the parsers raise many types; each means that the file is unreadable
+        raise MeshError(f"unreadable as {suffix[1:].upper()} ({type(error).__name__}: {_brief(error)})") from None
+
+
+def _parsed(content, suffix, resolver, every_colour):
+    if suffix == ".off":
+        return _checked(*read_off(content))
+    if suffix == clouds.DEPTH:
+        return clouds.surface_of(clouds.read_depth(content, resolver and resolver.get))
+    if suffix in clouds.FORMATS:
+        return clouds.surface_of(clouds.read_cloud(content, suffix))
+    if suffix == ".glb" or (suffix == ".obj" and b"usemtl" in content):
+        order = obj_vertices(content) if suffix == ".obj" else None
+        loaded = join_parts(_open(content, suffix, resolver), order, every_colour)
+    else:
+        skip = not (every_colour and suffix == ".ply")
+        loaded = _open(content, suffix, resolver, maintain_order=True, skip_materials=skip)
+        if isinstance(loaded, trimesh.Scene):
+            loaded = loaded.to_geometry() if loaded.geometry else None
+    return loaded if isinstance(loaded, Mesh) else _to_mesh(loaded, suffix == ".stl", every_colour)
+
+
+def _open(content, suffix, resolver, **options):
+    return trimesh.load(io.BytesIO(content), file_type=suffix[1:], resolver=resolver, process=False, **options)
+
+
+def _to_mesh(loaded, merge, every_colour):
+    if loaded is None:
+        raise MeshError("the file holds no geometry")
+    if isinstance(loaded, trimesh.PointCloud) and (strips := _strips(loaded)) is not None:
+        return _checked(np.asarray(loaded.vertices, dtype=np.float64), strips)
+    if isinstance(loaded, trimesh.PointCloud):
+        return clouds.surface_of(clouds.cloud_of(loaded))
+    if not isinstance(loaded, trimesh.Trimesh):
+        raise MeshError(f"not a triangle mesh but a {type(loaded).__name__}")
+    colors = None if merge else vertex_colors(loaded, of_faces=every_colour)
+    mesh = _checked(np.asarray(loaded.vertices, dtype=np.float64), np.asarray(loaded.faces, dtype=np.int64), colors)
+    if not merge:
+        return Mesh(mesh.vertices, mesh.faces, mesh.colors, texture_of([loaded])) if every_colour else mesh
+    first, ids = merge_equal_rows(mesh.vertices)
+    return Mesh(mesh.vertices[first], ids[mesh.faces])
+
+
+def _checked(vertices, faces, colors=None):
+    """The Mesh of arrays that a file holds; MeshError with what is wrong with them."""
+    if len(faces) == 0:
+        raise MeshError(f"no faces ({len(vertices)} vertices)")
+    bad = int((~np.isfinite(vertices).all(axis=1)).sum())
+    if bad:
+        raise MeshError(f"{bad} of {len(vertices)} vertices have NaN or infinite coordinates")
+    if faces.min() < 0 or faces.max() >= len(vertices):
+        raise MeshError(f"faces name vertices that do not exist (0..{len(vertices) - 1})")
+    return Mesh(vertices, faces, colors)
+
+
+def _strips(loaded):
+    """(m, 3) faces of the triangle strips of a PLY, whose parser takes it for a cloud; None where it has none.
+
+    -1 ends a strip; every other triangle of one is wound the other way.
+    """
+    element = loaded.metadata.get("_ply_raw", {}).get("tristrips")
+    if not element:
+        return None
+    data = element["data"]
+    if isinstance(data, dict):
+        ids = np.concatenate([np.ravel(values) for values in data.values()])
+    else:  # a structured array: of each row the list in its last field
+        ids = np.concatenate([np.ravel(row[-1][1] if len(row[-1]) == 2 else row[-1]) for row in data])
+    faces = []
+    for strip in np.split(ids.astype(np.int64), np.flatnonzero(ids == -1)):
+        strip = strip[strip >= 0]
+        found = np.stack([strip[:-2], strip[1:-1], strip[2:]], axis=1) if len(strip) > 2 else np.zeros((0, 3), int)
+        found[1::2] = found[1::2][:, ::-1]
+        faces.append(found)
+    faces = np.concatenate(faces)
+    a, b, c = faces.T
+    return faces[(a != b) & (b != c) & (c != a)]
+
+
+def _brief(error):
+    lines = str(error).strip().splitlines()
+    return lines[0][:120] if lines else "no details"
+
+
+def mesh_files(place: Path) -> list[Path]:
+    """The file itself, or the files of a folder that `load` reads by their suffix, in alphabetical order.
+
+    Folders in the folder are left out. Raises MeshError for a folder without a mesh, and where there is nothing.
+    """
+    if not place.exists():
+        raise MeshError(f"{place}: no such file or folder")
+    if not place.is_dir():
+        return [place]
+    found = sorted(path for path in place.iterdir() if path.suffix.lower() in FORMATS and path.is_file())
+    if not found:
+        raise MeshError(f"{place}: no mesh in this folder; the formats are {', '.join(FORMATS)}")
+    return found
+
+
+def names_of(files: list[Path]) -> list[str]:
+    """A name per file: its own without the suffix, or with it where two files differ in that alone."""
+    stems = [path.stem for path in files]
+    return [path.stem if stems.count(path.stem) == 1 else path.name for path in files]

@@ -1,0 +1,100 @@
+"""Refuses a mesh file whose header states more than the file holds, before a parser allocates what it states."""
+
+import json
+import re
+import struct
+
+MOST_PRIMITIVES = 20_000  # of a GLB, counted at each node that shows them: the parser needs milliseconds for each
+DENSEST = 100  # bytes that one compressed byte of a PCD can hold: LZF writes three bytes for 264
+
+
+class MeshError(ValueError):
+    """A mesh that cannot be used. The message is the reason; who opened the file names it."""
+
+
+def check_header(content: bytes, suffix: str) -> None:
+    """Raises MeshError for a file shorter than its header states: parsers accept it, or their message is unclear."""
+    if suffix in CHECKS:
+        CHECKS[suffix](content)
+
+
+def _glb(content):
+    if content[:4] != b"glTF" or len(content) < 20:
+        raise MeshError("unreadable as GLB (no glTF header)")
+    length, chunk = struct.unpack("<8xII4x", content[:20])
+    if length > len(content):
+        raise MeshError(f"truncated: {len(content)} of {length} bytes")
+    try:
+        tree = json.loads(content[20 : 20 + chunk])
+        counts = [accessor["count"] for accessor in tree.get("accessors", [])]
+        stated = max((int(count) for count in counts), default=0)
+        sizes = [len(mesh["primitives"]) for mesh in tree.get("meshes", [])]
+        primitives = sum(sizes[node["mesh"]] for node in tree.get("nodes", []) if "mesh" in node)
+    except (ValueError, LookupError, TypeError, AttributeError, RecursionError, OverflowError) as error:
+        raise MeshError(f"unreadable as GLB ({type(error).__name__} in its JSON part)") from None
+    if stated > len(content):
+        raise MeshError(f"truncated: its header states {stated} numbers, the file has {len(content)} bytes")
+    if primitives > MOST_PRIMITIVES:
+        raise MeshError(
+            f"{primitives:,} primitives are more than {MOST_PRIMITIVES:,}: join its parts in the program that wrote it"
+        )
+
+
+def _stl(content):
+    if content.lstrip()[:5].lower() == b"solid" and b"facet" in content:
+        if b"endsolid" not in content:
+            raise MeshError("truncated: an ASCII STL without endsolid")
+        return
+    if len(content) < 84:
+        raise MeshError(f"truncated: {len(content)} bytes are fewer than an STL header")
+    stated, follow = struct.unpack("<I", content[80:84])[0], (len(content) - 84) // 50
+    if stated > follow:
+        raise MeshError(f"truncated or not an STL: the header states {stated} faces, {follow} follow")
+
+
+def _ply(content):
+    header, _, body = content.partition(b"end_header")
+    stated = sum(int(count) for count in re.findall(rb"^\s*element\s+\S+\s+(\d{1,18})\s*$", header, re.M))
+    if stated > len(body):
+        raise MeshError(f"truncated: its header states {stated} vertices and faces, {len(body)} bytes follow")
+
+
+def _obj(content):
+    # More digits than the length of the file has: no such vertex can exist, and the parser makes a table up to it.
+    for found in re.finditer(rb"[ \t/]-?(\d{%d,})(?=[\s/]|$)" % (len(str(len(content))) + 1), content):
+        if content[content.rfind(b"\n", 0, found.start()) + 1 :].lstrip()[:1] == b"f":
+            raise MeshError(f"faces name vertices that do not exist ({found[1][:20].decode()})")
+
+
+def _pcd(content):
+    header, _, body = content.partition(b"\nDATA ")
+    stated = re.search(rb"^\W*points\s+(\d+)", header, re.M | re.I)
+    if any(
+        len(number) > 3 for line in re.findall(rb"^\W*count\s(.*)$", header, re.M | re.I) for number in line.split()
+    ):
+        raise MeshError("unreadable as PCD (more than 999 numbers in one field of a point)")
+    kind, _, data = body.partition(b"\n")
+    most = len(data)
+    if kind.strip() not in (b"ascii", b"binary", b"binary_compressed"):
+        raise MeshError("unreadable as PCD (its data are neither ascii nor binary nor binary_compressed)")
+    if kind.strip() == b"binary_compressed" and len(data) >= 8:
+        most = struct.unpack("<4xI", data[:8])[0]
+        if most > DENSEST * len(data):
+            raise MeshError(f"truncated: its header states {most} bytes, {len(data)} compressed ones follow")
+    if stated and int(stated[1]) > most:
+        raise MeshError(f"truncated: its header states {int(stated[1])} points, {most} bytes follow")
+
+
+def _las(content):
+    if len(content) < 227 or content[:4] != b"LASF":
+        raise MeshError("unreadable as LAS (no LASF header)")
+    size, start, records, length, points = struct.unpack("<HIIxHI", content[94:111])
+    if content[25] >= 4 and len(content) >= 375:  # version 1.4 has wider numbers besides
+        more, points = struct.unpack("<IQ", content[243:255])
+        records += more
+    if size + 54 * records > len(content) or start + length * points > len(content):
+        raise MeshError(f"truncated: its header states {points} points, {records} records, the file has {len(content)}"
+                        " bytes")  # fmt: skip
+
+
+CHECKS = {".las": _las, ".glb": _glb, ".pcd": _pcd, ".obj": _obj, ".stl": _stl, ".ply": _ply}

@@ -1,0 +1,177 @@
+"""Materials and colours of a mesh.
+
+Joins meshes that a file splits by material and duplicates at texture seams: OBJ with materials, and GLB.
+
+A material counts by its colour or its picture of colour: Kd and map_Kd, baseColorFactor and baseColorTexture.
+
+The colours of an object: those of its file, or one of a palette by its name.
+"""
+
+import zlib
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import trimesh
+from PIL import Image
+from trimesh.visual import ColorVisuals, TextureVisuals
+from trimesh.visual.color import to_rgba
+from trimesh.visual.material import color_image
+
+from .headers import MeshError
+from .mesh import Mesh, Texture
+
+MAX_TEXTURE = 8192  # pixels, of a square texture
+MADE_UP: Any = color_image()  # what trimesh paints a material with whose file is not there
+
+
+def join_parts(
+    loaded: trimesh.parent.Geometry, order: np.ndarray | None = None, every_colour: bool = False
+) -> Mesh | None:
+    """One Mesh of a loaded Trimesh or Scene; vertices with equal position and colour are merged. None without faces.
+
+    Texture coordinates stay per face corner. order: (n, 3) vertices in the order of the file, whose ids the merged
+    vertices take; None numbers them by first appearance. every_colour: the texture has the colours per vertex, too, of
+    parts that stand beside others with materials, or that have a plain material.
+    """
+    parts = loaded.dump() if isinstance(loaded, trimesh.Scene) else [loaded]
+    parts = [part for part in parts if isinstance(part, trimesh.Trimesh) and len(part.faces)]
+    if not parts:
+        return None
+    starts = np.cumsum([0, *(len(part.vertices) for part in parts)])
+    faces = np.concatenate([part.faces + start for part, start in zip(parts, starts, strict=False)])
+    vertices = np.concatenate([part.vertices for part in parts])
+    colored = [part_colors for part in parts if (part_colors := vertex_colors(part)) is not None]
+    colors = np.concatenate(colored) if len(colored) == len(parts) else None
+    if every_colour and colors is None:
+        parts = [_as_picture(part) for part in parts]
+    texture = texture_of(parts)
+    if order is not None and colors is None:
+        first, ids = merge_equal_rows(np.concatenate([order, vertices]))
+        if first.max() < len(order):
+            return Mesh(order, first[ids[len(order) :]][faces], None, texture)
+    first, ids = merge_equal_rows(vertices if colors is None else np.column_stack([vertices, colors]))
+    return Mesh(vertices[first], ids[faces], None if colors is None else colors[first], texture)
+
+
+def vertex_colors(part: trimesh.Trimesh, of_faces: bool = False) -> np.ndarray | None:
+    """(n, 3) u1, or None when the colours are not per vertex. of_faces: else the mean of the faces around a vertex."""
+    visual = part.visual
+    kinds = ("vertex", "face") if of_faces else ("vertex",)
+    return visual.vertex_colors[:, :3] if isinstance(visual, ColorVisuals) and visual.kind in kinds else None
+
+
+def _as_picture(part):
+    """The part; its colours per vertex become a picture of one row, where it has no other picture."""
+    colors, beside = vertex_colors(part), part.vertex_attributes.get("color")
+    if colors is None and beside is not None and _image(part).size == 4:  # an OBJ with colours and a plain material
+        colors = to_rgba(beside)[:, :3]
+    if colors is None:
+        return part
+    uv = np.column_stack([(np.arange(len(colors)) + 0.5) / len(colors), np.full(len(colors), 0.5)])
+    visual = TextureVisuals(uv, image=Image.fromarray(np.ascontiguousarray(colors)[None]))
+    return trimesh.Trimesh(part.vertices, part.faces, visual=visual, process=False)
+
+
+def obj_vertices(content: bytes) -> np.ndarray:
+    """(n, 3) f8: the vertices of an OBJ file's bytes, in the order of the `v` lines."""
+    lines = (line.split() for line in content.splitlines())
+    return np.array([line[1:4] for line in lines if line[:1] == [b"v"]]).astype(np.float64).reshape(-1, 3)
+
+
+def merge_equal_rows(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Merges bit-equal rows (n, d) in the order of first appearance: first (k,) and ids (n,)."""
+    _, first, inverse = np.unique(rows, axis=0, return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    rank = np.empty_like(order)
+    rank[order] = np.arange(len(order))
+    return first[order], rank[inverse.ravel()]
+
+
+def texture_of(parts: list[trimesh.Trimesh]) -> Texture | None:
+    """The Texture of all parts, one behind the other, or None when no material states a colour or a picture."""
+    if not any(_stated(part) for part in parts):
+        return None
+    images = [_image(part) for part in parts]
+    uv = [_corners(part) for part in parts]
+    sizes = [len(part.faces) for part in parts]
+    names = {}
+    numbers = [names.setdefault((one.shape, one.tobytes()), len(names)) for one in images]
+    distinct = [images[numbers.index(number)] for number in range(len(names))]
+    return Texture(np.concatenate(uv), np.repeat(numbers, sizes), tuple(distinct))
+
+
+def _stated(part):
+    """Whether the file states a colour or a picture for the part; where it does not, trimesh makes one up."""
+    material = getattr(part.visual, "material", None)
+    if any(getattr(material, name, None) is not None for name in ("baseColorTexture", "baseColorFactor")):
+        return True
+    image = getattr(material, "image", None)
+    _check_size(image)
+    made_up = image is None or np.array_equal(image.convert("RGBA"), MADE_UP)
+    return not made_up or "kd" in getattr(material, "kwargs", {})
+
+
+def _image(part):
+    """The image of a part's material, (h, w, 4) u1; one pixel for a plain colour."""
+    material = getattr(part.visual, "material", None) if _stated(part) else None
+    image = getattr(material, "baseColorTexture", None) or getattr(material, "image", None)
+    if image is not None and getattr(part.visual, "uv", None) is not None:
+        _check_size(image)
+        return np.asarray(image.convert("RGBA"))
+    color = getattr(material, "main_color", None)
+    return np.asarray([204, 204, 204, 255] if color is None else color, dtype=np.uint8).reshape(1, 1, 4)
+
+
+def _check_size(image):
+    """Raises MeshError for a picture that would fill the memory; only its header was read so far."""
+    if image is not None and image.width * image.height > MAX_TEXTURE**2:
+        size = f"{image.width:,} x {image.height:,} pixels"
+        raise MeshError(f"a texture of {size} is larger than {MAX_TEXTURE:,} x {MAX_TEXTURE:,}: scale it down")
+
+
+def _corners(part):
+    """(m, 3, 2) texture coordinates of a part's face corners."""
+    uv = getattr(part.visual, "uv", None)
+    if uv is None or len(uv) != len(part.vertices):
+        return np.zeros((len(part.faces), 3, 2))
+    return np.nan_to_num(np.asarray(uv, dtype=np.float64)[:, :2])[part.faces]
+
+
+COLOURS = ("vertex", "own", "palette")  # what meshes.colours may be
+# The eighteen colours of the ColorChecker chart in sRGB, as its maker states them: skin, foliage, sky, flowers, fruit
+# and primaries (McCamy, Marcus and Davidson, A color-rendition chart, J. Applied Photographic Engineering 2(3), 1976).
+PALETTE = np.array([
+    (115, 82, 68), (194, 150, 130), (98, 122, 157), (87, 108, 67), (133, 128, 177), (103, 189, 170),
+    (214, 126, 44), (80, 91, 166), (193, 90, 99), (94, 60, 108), (157, 188, 64), (224, 163, 46),
+    (56, 61, 150), (70, 148, 73), (175, 54, 60), (231, 199, 31), (187, 86, 149), (8, 133, 161),
+], dtype=np.uint8)  # fmt: skip
+
+
+def coloured(mesh: Mesh, name: str, colours: str, suffix: str = "") -> Mesh:
+    """The mesh with a colour at each vertex: its own, or with colours=palette one of PALETTE where it has none.
+
+    A texture becomes the colours of the vertices (bake_texture). The palette's colour follows from the name alone, so
+    that it is the same in every run. Raises MeshError for a mesh without colours where colours=own; suffix: that of its
+    file, for the reason.
+    """
+    mesh = bake_texture(mesh)
+    if mesh.colors is not None:
+        return mesh
+    if colours == "own":
+        reason = "no vertex has a colour, and those of an OFF's faces are not read (save it as PLY)"
+        reason = reason if suffix == ".off" else "has no colours of its own"
+        raise MeshError(f"{reason}: set meshes.colours=palette to paint it, or leave it out")
+    colour = PALETTE[zlib.crc32(name.encode()) % len(PALETTE)]
+    return replace(mesh, colors=np.tile(colour, (len(mesh.vertices), 1)))
+
+
+def bake_texture(mesh: Mesh) -> Mesh:
+    """The Mesh with its texture's colour at each vertex, the mean over the corners there, instead of the texture."""
+    if mesh.texture is None:
+        return mesh
+    texture, ids = mesh.texture, mesh.faces.ravel()
+    rgb = texture.sample(np.repeat(np.arange(len(mesh.faces)), 3), texture.uv.reshape(-1, 2))
+    count = np.maximum(np.bincount(ids, minlength=len(mesh.vertices)), 1)
+    colors = [np.bincount(ids, weights=column, minlength=len(mesh.vertices)) / count for column in rgb.T]
+    return replace(mesh, colors=np.rint(np.stack(colors, axis=1)).astype(np.uint8), texture=None)

@@ -1,0 +1,221 @@
+"""The Mesh of the whole project, and its texture.
+
+Pictures on a surface: texture coordinates per face corner, so that a seam splits the picture and not the surface.
+
+The triangle mesh as arrays, and the few facts of it that several modules ask for.
+"""
+
+from dataclasses import dataclass, fields
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from scipy import sparse
+
+from .axes import axis_named
+
+
+@dataclass(frozen=True, eq=False)
+class Texture:
+    """What a mesh of m faces is painted with; a material of one plain colour is an image of one pixel.
+
+    uv (m, 3, 2) f8, a pair per face corner: u to the right, v up, (0, 0) the lower left corner of the image, which
+    repeats outside 0..1. image (m,) i8: which of the images a face shows. images: arrays (h, w, 4) u1, RGBA.
+    """
+
+    uv: np.ndarray
+    image: np.ndarray
+    images: tuple[np.ndarray, ...]
+
+    def __post_init__(self) -> None:
+        uv = np.ascontiguousarray(self.uv, dtype=np.float64)
+        image = np.ascontiguousarray(self.image, dtype=np.int64)
+        images = tuple(np.ascontiguousarray(one, dtype=np.uint8) for one in self.images)
+        if uv.ndim != 3 or uv.shape[1:] != (3, 2) or not np.isfinite(uv).all():
+            raise ValueError(f"uv must be finite and of shape (m, 3, 2), got {uv.shape}")
+        if image.shape != uv.shape[:1]:
+            raise ValueError(f"image must have shape {uv.shape[:1]}, got {image.shape}")
+        if len(image) and not 0 <= image.min() <= image.max() < len(images):
+            raise ValueError(f"image names pictures outside 0..{len(images) - 1}")
+        if any(one.ndim != 3 or one.shape[2] != 4 or one.size == 0 for one in images):
+            raise ValueError(f"images must have shape (h, w, 4), got {[one.shape for one in images]}")
+        for name, value in (("uv", uv), ("image", image), ("images", images)):
+            object.__setattr__(self, name, value)
+
+    def of(self, faces: np.ndarray) -> "Texture":
+        """The Texture of some faces: ids or (m,) boolean."""
+        return Texture(self.uv[faces], self.image[faces], self.images)
+
+    def turned(self, flips: np.ndarray) -> "Texture":
+        """The Texture after the order of the corners was reversed in the faces (m,) boolean."""
+        uv = self.uv.copy()
+        uv[flips] = uv[flips][:, ::-1]
+        return Texture(uv, self.image, self.images)
+
+    def sample(self, faces: np.ndarray, uv: np.ndarray) -> np.ndarray:
+        """(k, 3) u1 RGB at texture coordinates uv (k, 2) on the images of faces (k,), nearest pixel."""
+        found = np.empty((len(faces), 3), dtype=np.uint8)
+        shown = self.image[faces]
+        for number in np.unique(shown):
+            here, (h, w) = shown == number, self.images[number].shape[:2]
+            across, up = np.floor(uv[here] * (w, h)).astype(np.int64).T
+            found[here] = self.images[number][(h - 1 - up) % h, across % w, :3]
+        return found
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Mesh:
+    """A triangle mesh; vertex order is identity, nothing is ever reordered behind the caller's back.
+
+    vertices (n, 3) f8, faces (m, 3) i8 into vertices, counter-clockwise seen from outside, colors (n, 3) u1 or None,
+    texture: a Texture of the m faces or None (the pipeline stores none). up: the axis that points
+    up, in the form of `axis_named`: y, -z or a vector, and `auto` where the axis is unknown. Functions that derive a
+    mesh from another one keep its axis (`dataclasses.replace`). Stored meshes are z up.
+
+    The arrays are the mesh's own: those of the caller are copied where they can still be written to. Two meshes are
+    equal where all of this is, and equal meshes have one hash; a pickled mesh leaves what it has computed behind.
+    """
+
+    vertices: np.ndarray
+    faces: np.ndarray
+    colors: np.ndarray | None = None
+    texture: Texture | None = None
+    up: str = "z"
+
+    def __post_init__(self) -> None:
+        for name in ("faces", "colors"):
+            values = getattr(self, name)
+            if values is not None and np.size(values) and np.asarray(values).dtype.kind not in "iu":
+                raise ValueError(f"{name} must be whole numbers, got {np.asarray(values).dtype}")
+        vertices, faces = _own(self.vertices, np.float64), _own(self.faces, np.int64)
+        if vertices.ndim != 2 or vertices.shape[1] != 3:
+            raise ValueError(f"vertices must have shape (n, 3), got {vertices.shape}")
+        if faces.ndim != 2 or faces.shape[1] != 3:
+            raise ValueError(f"faces must have shape (m, 3), got {faces.shape}")
+        if not np.isfinite(vertices).all():
+            raise ValueError("vertices hold NaN or infinite coordinates")
+        if len(faces) and (faces.min() < 0 or faces.max() >= len(vertices)):
+            raise ValueError(f"faces name vertices outside 0..{len(vertices) - 1}")
+        object.__setattr__(self, "vertices", vertices)
+        object.__setattr__(self, "faces", faces)
+        if self.colors is not None:
+            colors = _own(self.colors, np.uint8)
+            if colors.shape != vertices.shape:
+                raise ValueError(f"colors must have shape {vertices.shape}, got {colors.shape}")
+            object.__setattr__(self, "colors", colors)
+        if self.texture is not None and len(self.texture.image) != len(faces):
+            raise ValueError(f"the texture must be of {len(faces)} faces, got {len(self.texture.image)}")
+        object.__setattr__(self, "up", axis_named(self.up))
+
+    def __repr__(self) -> str:
+        return f"Mesh({len(self.vertices):,} vertices, {len(self.faces):,} faces, {self.up} up)"
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Mesh):
+            return NotImplemented
+        return self is other or (self.up == other.up and self._arrays() == other._arrays())
+
+    def __hash__(self) -> int:
+        return self._hash
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {field.name: getattr(self, field.name) for field in fields(self)}
+
+    @cached_property
+    def _hash(self) -> int:
+        return hash((self.up, *(hash(content) for content in self._arrays())))
+
+    def _arrays(self) -> list[bytes]:
+        """The content of all arrays, each with its shape."""
+        texture = () if self.texture is None else (self.texture.image, self.texture.uv, *self.texture.images)
+        arrays = (self.vertices, self.faces, *(() if self.colors is None else (self.colors,)), *texture)
+        return [repr((array.shape, array.dtype.str)).encode() + array.tobytes() for array in map(np.asarray, arrays)]
+
+    @cached_property
+    def face_crosses(self) -> np.ndarray:
+        """(m, 3) cross products of two edges: normal times twice the area."""
+        a, b, c = self.vertices[self.faces].transpose(1, 0, 2)
+        return np.cross(b - a, c - a)
+
+    @cached_property
+    def face_areas(self) -> np.ndarray:
+        """(m,) areas, in square units of the mesh."""
+        return np.linalg.norm(self.face_crosses, axis=1) / 2
+
+    @cached_property
+    def face_normals(self) -> np.ndarray:
+        """(m, 3) unit normals; zero where the face has no area."""
+        return unit(self.face_crosses)
+
+    @cached_property
+    def vertex_normals(self) -> np.ndarray:
+        """(n, 3) unit normals, area-weighted over the faces around; zero at a vertex in no face."""
+        return unit(corner_sum(self, np.repeat(self.face_crosses[:, None], 3, axis=1)))
+
+    @cached_property
+    def vertex_areas(self) -> np.ndarray:
+        """(n,) a third of the area of the faces around each vertex; zero at a vertex in no face."""
+        return corner_sum(self, np.repeat(self.face_areas[:, None] / 3, 3, axis=1))
+
+    @cached_property
+    def adjacency(self) -> sparse.csr_matrix:
+        """(n, n) sparse boolean matrix: True where an edge joins two vertices."""
+        tail = self.faces.ravel()
+        head = np.roll(self.faces, -1, axis=1).ravel()
+        n = len(self.vertices)
+        ones = np.ones(2 * len(tail), dtype=bool)
+        return sparse.csr_matrix((ones, (np.r_[tail, head], np.r_[head, tail])), shape=(n, n))
+
+    @cached_property
+    def edge_counts(self) -> tuple[np.ndarray, np.ndarray]:
+        """(edges (e, 2) i8 with the lower id first, counts (e,)): how many faces share each edge."""
+        edges = np.sort(np.stack([self.faces, np.roll(self.faces, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
+        return np.unique(edges, axis=0, return_counts=True)
+
+    @property
+    def watertight(self) -> bool:
+        """True when every edge is shared by exactly two faces."""
+        return len(self.faces) > 0 and bool((self.edge_counts[1] == 2).all())
+
+    @cached_property
+    def used(self) -> np.ndarray:
+        """(k,) i8 ids of the vertices that lie in a face, in order."""
+        in_a_face = np.zeros(len(self.vertices), dtype=bool)
+        in_a_face[self.faces.ravel()] = True
+        return np.flatnonzero(in_a_face)
+
+    @cached_property
+    def diagonal(self) -> float:
+        """Length of the bounding-box diagonal; vertices in no face do not count, but on a mesh without faces."""
+        vertices = self.vertices[self.used] if len(self.faces) else self.vertices
+        return float(np.linalg.norm(np.ptp(vertices, axis=0)))
+
+    def rings(self, vertices: np.ndarray, count: int) -> np.ndarray:
+        """(n,) boolean: the given vertices and all within `count` edges of them."""
+        near = np.zeros(len(self.vertices), dtype=bool)
+        near[np.asarray(vertices, dtype=np.int64)] = True
+        for _ in range(count):
+            near |= self.adjacency @ near
+        return near
+
+
+def _own(values: Any, kind: type) -> np.ndarray:
+    """A contiguous array of a type that nobody else can write to."""
+    found = np.ascontiguousarray(values, dtype=kind)
+    shared = isinstance(values, np.ndarray) and values.flags.writeable and np.may_share_memory(found, values)
+    return found.copy() if shared else found
+
+
+def unit(vectors: np.ndarray) -> np.ndarray:
+    """Vectors of length one along the last axis; a zero vector stays zero."""
+    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return np.divide(vectors, length, out=np.zeros_like(vectors, dtype=np.float64), where=length > 0)
+
+
+def corner_sum(mesh: Mesh, values: np.ndarray) -> np.ndarray:
+    """Sums values (m, 3) or (m, 3, d), one per face corner, onto the vertices: (n,) or (n, d)."""
+    n = len(mesh.vertices)
+    ids = mesh.faces.ravel()
+    flat = values.reshape(len(ids), int(np.prod(values.shape[2:])))
+    summed = np.stack([np.bincount(ids, weights=column, minlength=n) for column in flat.T], axis=1)
+    return summed[:, 0] if values.ndim == 2 else summed

@@ -1,0 +1,205 @@
+"""Repairs, orients and normalises a mesh.
+
+Repairs what can be repaired without moving a vertex, and refuses the rest.
+
+Makes the winding of faces consistent, and turns closed surfaces outwards.
+
+The coordinate frame of all other modules: +z up, centred, a bounding sphere of radius 0.5.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse.csgraph import connected_components
+
+from .axes import Axis, axis_named, to_z_up
+from .headers import MeshError
+from .mesh import Mesh
+from .upright import settled
+
+MIN_AREA = 1e-12  # share of the squared diagonal; below it, rays in single precision find no surface
+BACK_TO_BACK = 0.5  # share of the faces from which on a surface is taken for one that was doubled
+MIN_VISIBLE_AREA = 1e-4  # share of the squared extent: about five pixels of the stored maps, which have 225 rows
+
+
+def clean(mesh: Mesh) -> tuple[Mesh, list[str]]:
+    """The repaired mesh and notes on what was repaired: (Mesh, list of str).
+
+    Removes faces that repeat a vertex and duplicate faces, and turns the others outwards. Vertices keep their ids.
+    Where most faces lie back to back, as SketchUp and games write surfaces to be seen from both sides, one of each two
+    is removed: together they would have no normal. Faces without area that have three distinct vertices stay: they
+    connect their neighbours, and removing them would open a closed mesh. Raises MeshError when no face or no area is
+    left.
+    """
+    ids, notes = np.arange(len(mesh.faces)), []
+    a, b, c = mesh.faces.T
+    ids, notes = _keep(ids, (a != b) & (b != c) & (c != a), notes, "degenerate")
+    faces = mesh.faces[ids]
+    # Compared up to a cyclic permutation: two faces back to back are a thin sheet, and both stay.
+    rotated = np.take_along_axis(faces, (faces.argmin(axis=1)[:, None] + np.arange(3)) % 3, axis=1)
+    _, first = np.unique(rotated, axis=0, return_index=True)
+    single = np.zeros(len(faces), dtype=bool)
+    single[first] = True
+    ids, notes = _keep(ids, single, notes, "duplicate")
+    ordered = np.sort(mesh.faces[ids], axis=1)
+    _, first, count = np.unique(ordered, axis=0, return_index=True, return_counts=True)
+    if count[count > 1].sum() > BACK_TO_BACK * len(ids):
+        front = np.zeros(len(ids), dtype=bool)
+        front[first] = True
+        ids, notes = _keep(ids, front, notes, "back-to-back")
+    if len(ids) == 0:
+        raise MeshError("no face has three different vertices")
+    faces = mesh.faces[ids]
+    cleaned = replace(mesh, faces=faces, texture=mesh.texture and mesh.texture.of(ids))
+    spread = np.ptp(mesh.vertices[np.unique(faces)], axis=0)
+    with np.errstate(over="ignore", invalid="ignore"):
+        area, square = cleaned.face_areas.sum(), float(spread @ spread)
+    if not np.isfinite([area, square]).all():
+        raise MeshError("the coordinates are so large that areas overflow")
+    if area <= MIN_AREA * max(square, np.finfo(float).tiny):
+        raise MeshError("the surface has no area")
+    if area <= MIN_VISIBLE_AREA * square:
+        raise MeshError("the surface is too small for its extent: are there stray parts far from the object?")
+    cleaned, turned = orient(cleaned)
+    return cleaned, notes + turned
+
+
+def _keep(ids, good, notes, what):
+    removed = int((~good).sum())
+    return ids[good], notes + ([f"{removed} {what} faces removed"] if removed else [])
+
+
+EVEN = 1 / 3  # share of flipped faces above which the majority says nothing of the side
+
+
+def orient(mesh: Mesh) -> tuple[Mesh, list[str]]:
+    """The mesh with neighbours wound alike and closed parts facing outwards, and notes: (Mesh, list of str).
+
+    Only the vertex order within faces changes. The virtual sensor distinguishes inside from outside by face normals,
+    so an inverted mesh would seem empty to it. A part is a set of faces connected by edges that exactly two faces
+    share. In each part the minority of faces is flipped; a part that cannot be oriented (a Moebius strip) stays. Where
+    the minority is no clear one and the part is open, its faces look away from its middle, as most of a scan's do. A
+    closed part of negative volume is flipped with all parts inside its bounding box. One that lies inside the box of
+    another closed part stays, since it may be the wall of a cavity.
+    """
+    first, second, alike, closed_edges = _neighbours(mesh)
+    flips = _minority_faces(len(mesh.faces), first, second, alike)
+    turned = flips.sum()
+    mesh = _flipped(mesh, flips)
+    inverted = _inverted(mesh, first, second, closed_edges, flips)
+    notes = [f"{turned} faces turned to agree with their neighbours"] if turned else []
+    notes += [f"{inverted.sum()} faces turned outwards"] if inverted.any() else []
+    return _flipped(mesh, inverted), notes
+
+
+def _neighbours(mesh):
+    """Pairs of faces that share an edge of exactly two faces: (first (e,), second (e,), wound alike (e,), closed).
+
+    closed (m,) boolean: all three edges of the face are of that kind.
+    """
+    tails, heads = mesh.faces.ravel(), np.roll(mesh.faces, -1, axis=1).ravel()
+    forward = tails < heads
+    edge = np.minimum(tails, heads) * len(mesh.vertices) + np.maximum(tails, heads)
+    order = np.argsort(edge, kind="stable")
+    starts = np.flatnonzero(np.r_[True, np.diff(edge[order]) > 0])
+    pairs = starts[np.diff(np.r_[starts, len(order)]) == 2]
+    one, other = order[pairs], order[pairs + 1]
+    closed = np.zeros(len(tails), dtype=bool)
+    closed[one] = closed[other] = True
+    return one // 3, other // 3, forward[one] != forward[other], closed.reshape(-1, 3).all(axis=1)
+
+
+def _minority_faces(count, first, second, alike):
+    """(m,) boolean: the faces to flip, from the double cover of the face graph.
+
+    Each face has two nodes there, unflipped and flipped. Neighbours wound alike connect equal nodes, others unequal.
+    """
+    if alike.all():
+        return np.zeros(count, dtype=bool)
+    crossed = np.where(alike, 0, count)
+    rows = np.r_[first, first + count]
+    columns = np.r_[second + crossed, (second + count + crossed) % (2 * count)]
+    graph = sparse.coo_matrix((np.ones(len(rows)), (rows, columns)), shape=(2 * count, 2 * count))
+    label = connected_components(graph, directed=False)[1]
+    kept = np.bincount(label[:count], minlength=label.max() + 1)  # unflipped faces in each component
+    as_is, turned = label[:count], label[count:]
+    return (kept[as_is] < kept[turned]) | ((kept[as_is] == kept[turned]) & (as_is > turned))
+
+
+def _inverted(mesh, first, second, closed_edges, flips):
+    """(m,) boolean: the faces of parts that face inwards, if these are closed or nearly as many were flipped as not."""
+    count = len(mesh.faces)
+    graph = sparse.coo_matrix((np.ones(len(first)), (first, second)), shape=(count, count))
+    parts, part = connected_components(graph, directed=False)
+    sizes = np.bincount(part, minlength=parts)
+    closed = np.bincount(part, weights=closed_edges, minlength=parts) == sizes
+    turn = _undecided(mesh, part, ~closed & (np.bincount(part, weights=flips, minlength=parts) > EVEN * sizes))
+    corners = mesh.vertices[mesh.faces] - mesh.vertices.mean(axis=0)
+    volume = np.bincount(part, weights=np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])))
+    inside_out = np.flatnonzero(closed & (volume < 0))
+    if not len(inside_out):  # nearly always: boxes take a third of the time
+        return turn[part]
+    low, high = np.full((parts, 3), np.inf), np.full((parts, 3), -np.inf)
+    np.minimum.at(low, part, corners.min(axis=1))
+    np.maximum.at(high, part, corners.max(axis=1))
+    for shell in inside_out:
+        within = closed & (low > low[shell]).all(axis=1) & (high < high[shell]).all(axis=1)
+        around = closed & (low < low[shell]).all(axis=1) & (high > high[shell]).all(axis=1)
+        if not around.any():
+            turn |= within
+            turn[shell] = True
+    return turn[part]
+
+
+def _undecided(mesh, part, asked):
+    """(parts,) boolean: those of the parts asked about whose faces look towards the part's middle."""
+    if not asked.any():
+        return np.zeros(len(asked), dtype=bool)
+    middles, areas = mesh.vertices[mesh.faces].mean(axis=1), mesh.face_areas
+    total = np.maximum(np.bincount(part, weights=areas, minlength=len(asked)), 1e-300)
+    centres = [np.bincount(part, weights=areas * one, minlength=len(asked)) / total for one in middles.T]
+    outwards = np.einsum("ij,ij->i", middles - np.stack(centres, axis=1)[part], mesh.face_crosses)
+    return asked & (np.bincount(part, weights=outwards, minlength=len(asked)) < 0)
+
+
+def _flipped(mesh, flips):
+    if not flips.any():
+        return mesh
+    faces = mesh.faces.copy()
+    faces[flips] = faces[flips][:, ::-1]
+    return replace(mesh, faces=faces, texture=mesh.texture and mesh.texture.turned(flips))
+
+
+RADIUS = 0.5  # the sphere then spans 859 of the 900 image rows of the thesis's camera
+
+
+def normalise(mesh: Mesh) -> Mesh:
+    """The mesh with the centre of its bounding box at 0 and a bounding sphere about it of radius 0.5 (T3.2.9).
+
+    Only vertices that a face uses count, so that a stray vertex cannot shrink the object. Raises ValueError when the
+    mesh has no faces or no extent.
+    """
+    centre, radius = centre_and_radius(mesh)
+    return replace(mesh, vertices=(mesh.vertices - centre) * (RADIUS / radius))
+
+
+def centre_and_radius(mesh: Mesh) -> tuple[np.ndarray, float]:
+    """(centre (3,) of the bounding box, radius of the bounding sphere about it), in the units of the mesh."""
+    used = mesh.vertices[mesh.used]
+    if len(used) == 0:
+        raise ValueError("the mesh has no faces, so that it cannot be normalised")
+    centre = (used.min(axis=0) + used.max(axis=0)) / 2
+    radius = np.linalg.norm(used - centre, axis=1).max()
+    if radius == 0:
+        raise ValueError("the mesh has no extent: all vertices coincide")
+    return centre, radius
+
+
+def rotate_to_z_up(mesh: Mesh, up: Axis | None = None) -> Mesh:
+    """The mesh rotated so that its axis `up` (see `axis_named`; None: its own) becomes +z; ValueError for no axis.
+
+    `auto` stands for the axis that the shape suggests (`probable_up`).
+    """
+    mesh = settled(mesh if up is None else replace(mesh, up=axis_named(up)))
+    return replace(mesh, vertices=mesh.vertices @ to_z_up(mesh.up).T, up="z")

@@ -1,0 +1,240 @@
+"""Distances from the cells of the array to the surface.
+
+The raw measurement of the virtual pressure array: the distance from each cell to the surface (T4.3.1).
+
+How the array touches the object: standing at the place, or resting on its first contact (T4.3.1).
+
+"Obviously when working with a real sensor such cases will prevent a direct contact of the sensor with object at
+interest point and the point with maximum negative distance will directly touch the object" (T4.3.1). `tangent` is the
+thesis's array, which intersects the object there. `rigid` is the plate that the sentence describes.
+
+The array's size adapted to saddles: the pitch shrinks until no cell is inside the object (T4.4.3).
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from haptic_glance.mesh.mesh import Mesh
+
+from .surface import Surface, as_surface, check_vertices, sensor_axes, sensor_normals
+
+
+def distances(
+    mesh: Mesh | Surface,
+    vertices: ArrayLike,
+    cells: tuple[int, int] = (16, 16),
+    pitch: float = 0.01,
+    max_distance: float | None = None,
+    axes: np.ndarray | None = None,
+    contact: str = "tangent",
+) -> np.ndarray:
+    """(k, rows, cols) f8: distance of each cell to the surface along the normal, in units of the mesh.
+
+    The array is a plane grid of rows x cols cells, `pitch` units apart, centred on the vertex, its normal the average
+    of the unit normals of the faces around (`sensor_normals`). Row 0 is at the top and column 0 at the left, seen
+    from outside onto the object (`sensor_axes`).
+
+    A distance is positive where the surface lies below the array, zero at contact and negative where the cell is inside
+    the object: then it is minus the distance to the surface along +normal (T4.3.1). A cell is inside when the first
+    face below and the first face above are both seen from their back. Where only the one below is (an open mesh, mixed
+    orientation), the surface below counts. Of two faces at one height, where parts of the object touch, the one seen
+    from its back counts. If both numbers of cells are odd, the middle cell is the vertex itself, 0. A cell without a
+    surface within `max_distance`, the sensing depth in both directions, reports `max_distance`. By default that is the
+    longer side of the array.
+
+    The thesis uses the centre of the face that the ray hits as the surface point (T figure 4.7). Here it is the exact
+    intersection, so that the imprint does not depend on the triangulation.
+
+    mesh: a Mesh, or a Surface if it is touched more than once; vertices: (k,) vertex ids; axes: (k, 3, 3) rows
+    right, up, normal, to orient the array otherwise; contact: "tangent" (the plane stands at the vertex) or "rigid"
+    (it rests on the first contact), see `haptic_glance.touch.distances`.
+    Raises ValueError for invalid cells or pitch, and one that names a vertex that cannot be touched.
+    """
+    surface = as_surface(mesh)
+    vertices = check_vertices(surface.mesh, vertices)
+    (rows, columns), pitch, max_distance = check_array(cells, pitch, max_distance)
+    axes = sensor_axes(sensor_normals(surface.mesh, vertices), surface.mesh.up) if axes is None else axes
+    measured = distances_at(
+        surface, surface.mesh.vertices[vertices], axes, (rows, columns), pitch, max_distance, contact
+    )
+    if contact == "tangent" and rows % 2 and columns % 2:
+        measured[:, rows // 2, columns // 2] = 0.0
+    return measured
+
+
+def distances_at(
+    surface: Mesh | Surface,
+    centres: ArrayLike,
+    axes: ArrayLike,
+    cells: tuple[int, int] = (16, 16),
+    pitch: ArrayLike = 0.01,
+    max_distance: ArrayLike | None = None,
+    contact: str = "tangent",
+) -> np.ndarray:
+    """(k, rows, cols) f8: `distances` of arrays anywhere: centres (k, 3) and axes (k, 3, 3) rows right, up, normal.
+
+    pitch: a number, or (k,), one per array; max_distance: the same, by default the longer side of each array.
+    `snap_to_surface` finds positions on the surface.
+    """
+    surface = as_surface(surface)
+    centres, axes = check_places(centres, axes)
+    cells, pitches, max_distances = check_arrays(cells, pitch, max_distance, len(centres))
+    return contact_distances(surface, centres, axes, cells, pitches, max_distances, contact)
+
+
+def check_places(centres: ArrayLike, axes: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
+    """The centres (k, 3) and axes (k, 3, 3) of arrays as f8; raises ValueError if they are invalid."""
+    centres, axes = np.asarray(centres, dtype=np.float64), np.asarray(axes, dtype=np.float64)
+    if centres.ndim != 2 or centres.shape[1] != 3 or not np.isfinite(centres).all():
+        raise ValueError(f"centres must be finite and of shape (k, 3), got shape {centres.shape}")
+    if axes.shape != (len(centres), 3, 3):
+        raise ValueError(f"axes must have shape ({len(centres)}, 3, 3), one frame per array, got {axes.shape}")
+    # Right-handed, or front and back of every face would be exchanged.
+    if not np.allclose(axes @ axes.transpose(0, 2, 1), np.eye(3), atol=1e-6) or (np.linalg.det(axes) < 0).any():
+        raise ValueError("axes must be three perpendicular unit vectors per array: right, up, normal = right x up")
+    return centres, axes
+
+
+def check_array(
+    cells: Sequence[int], pitch: float, max_distance: float | None = None
+) -> tuple[tuple[int, int], float, float]:
+    """((rows, columns), pitch, max_distance) as numbers; raises ValueError if they are invalid."""
+    cells, pitches, max_distances = check_arrays(cells, pitch, max_distance, 1)
+    return cells, float(pitches[0]), float(max_distances[0])
+
+
+def check_arrays(
+    cells: Sequence[int], pitch: ArrayLike, max_distance: ArrayLike | None, count: int
+) -> tuple[tuple[int, int], np.ndarray, np.ndarray]:
+    """((rows, columns), pitches (count,), max_distances (count,)); raises ValueError if they are invalid."""
+    if np.shape(cells) != (2,) or any(not number >= 1 or number % 1 for number in cells):
+        raise ValueError(f"cells must be two whole numbers from 1 (rows, columns), got {cells}")
+    rows, columns = (int(number) for number in cells)
+    pitches = _lengths("pitch", pitch, count)
+    max_distances = (
+        max(rows, columns) * pitches if max_distance is None else _lengths("max_distance", max_distance, count)
+    )
+    return (rows, columns), pitches, max_distances
+
+
+def _lengths(name, values, count):
+    values = np.asarray(values, dtype=np.float64)
+    if values.shape not in ((), (count,)):
+        raise ValueError(f"{name} must be a number or have shape ({count},), one per array, got {values.shape}")
+    invalid = values[~(np.isfinite(values) & (values > 0))]
+    if invalid.size:
+        raise ValueError(f"{name} must be a positive number of units, got {invalid.flat[0]}")
+    return np.broadcast_to(values, (count,))
+
+
+CONTACTS = ("tangent", "rigid")
+
+
+def contact_distances(
+    surface: Surface,
+    centres: np.ndarray,
+    axes: np.ndarray,
+    cells: tuple[int, int],
+    pitches: np.ndarray,
+    max_distances: np.ndarray,
+    contact: str,
+) -> np.ndarray:
+    """(k, rows, cols) distances of the arrays from their position, limited to `max_distances`.
+
+    rigid: the plane starts `max_distance` above the place and moves down along its normal until the column of one of
+    its cells, or the place itself, touches the object. Distances count from there, 0 to `max_distance`. Where a cell is
+    inside the object at the start (in a cup narrower than the array and deeper than `max_distance`), the array cannot
+    enter. It stays at the start, such cells touch (0) and the others measure from there. Where the array touches
+    nothing, every cell reports `max_distance`.
+
+    After `normalise` both are equal as long as one surface covers the array's footprint, since both are shifted by the
+    least distance. They differ where something overhangs the place (a handle, a rim, the far side of a fold): the
+    tangent plane is below it or intersects it and does not measure it, a rigid one rests on it. They also differ in the
+    depth limit, which for a rigid array counts from where it rests.
+    """
+    check_contact(contact)
+    limit = max_distances[:, None, None]
+    if contact == "tangent":
+        distances = surface.measure(centres, axes, cells, pitches)
+        return np.clip(distances, -limit, limit, out=distances)
+    distances = surface.measure(centres + max_distances[:, None] * axes[:, 2], axes, cells, pitches)
+    np.maximum(distances, 0.0, out=distances)
+    distances -= np.minimum(distances.min(axis=(1, 2), keepdims=True), limit)
+    return np.minimum(distances, limit, out=distances)
+
+
+def check_contact(contact: str, known: Sequence[str] = CONTACTS) -> None:
+    """Raises ValueError unless `contact` is one of `known`."""
+    if contact not in known:
+        raise ValueError(f"contact must be one of {', '.join(known)}, got {contact!r}")
+
+
+MIN_PITCH = 0.2  # of the pitch, as T4.3.2's fine sensor (0.002) to its coarse one (0.01)
+MAX_FACTOR = 0.99  # between the pitches of two measurements, at most
+TOLERANCE = 0.5  # of the pitch: how deep a cell may be inside the object, as an elastic skin yields
+
+
+def adaptive_distances(
+    surface: Mesh | Surface,
+    centres: ArrayLike,
+    axes: ArrayLike,
+    cells: tuple[int, int] = (32, 32),
+    pitch: ArrayLike = 0.01,
+    min_pitch: ArrayLike | None = None,
+    tolerance: ArrayLike | None = None,
+) -> tuple[np.ndarray, np.ndarray]:
+    """The pitches (k,), at most `pitch`, at which arrays fit on the object (T4.4.3), and their distances.
+
+    The arrays are at centres (k, 3) with axes (k, 3, 3); the distances (k, rows, cols) are those of `distances_at`. An
+    array fits when no cell is more than `tolerance` units inside the object. If it does not fit, its pitch shrinks
+    to the size at which the deepest cells of two neighbouring square rings predict a fit, and it is measured again.
+    This ends when the array fits or the pitch is `min_pitch`, which is returned even if it does not fit. The thesis
+    shrinks the array and gives no rule. By default `min_pitch` is a fifth and `tolerance` a half of the pitch. pitch: a
+    number, or (k,). Raises ValueError for invalid cells or pitches, or a `min_pitch` above the pitch.
+    """
+    centres, axes = np.asarray(centres, dtype=np.float64), np.asarray(axes, dtype=np.float64)
+    cells, pitches, max_distances = check_arrays(cells, pitch, None, len(centres))
+    min_pitches = _checked_limit("min_pitch", min_pitch, MIN_PITCH * pitches, pitches)
+    tolerances = _checked_limit("tolerance", tolerance, TOLERANCE * pitches, np.inf)
+    pitches, active = pitches.copy(), np.arange(len(centres))
+    distances = np.empty((len(centres), *cells))
+    widths, ring = _rings(cells)
+    by_ring, starts = np.argsort(ring, kind="stable"), np.searchsorted(np.sort(ring), np.arange(len(widths)))
+    while len(active):
+        places = centres[active], axes[active], cells, pitches[active], max_distances[active]
+        distances[active] = distances_at(surface, *places)
+        active = active[pitches[active] > min_pitches[active]]
+        by_cell = distances[active].reshape(len(active), len(ring))[:, by_ring] + tolerances[active, None]
+        clearance = np.minimum.reduceat(by_cell, starts, axis=1)
+        too_large = (clearance < 0).any(axis=1)
+        active, clearance = active[too_large], clearance[too_large]
+        pitches[active] = np.maximum(pitches[active] * _fitting_widths(widths, clearance), min_pitches[active])
+    limits = check_arrays(cells, pitches, None, len(centres))[2][:, None, None]  # a smaller array senses less deep
+    return pitches, np.clip(distances, -limits, limits)
+
+
+def _rings(cells):
+    """(half widths of the square rings of cells, the outermost 1; the ring of each cell (rows * cols,))."""
+    rows, columns = (np.abs(np.arange(count) - (count - 1) / 2) / (max(count - 1, 1) / 2) for count in cells)
+    widths, ring = np.unique(np.maximum(rows[:, None], columns).round(12), return_inverse=True)
+    return widths, ring.ravel()
+
+
+def _fitting_widths(widths, clearance):
+    """(k,) half widths at which the clearance (k, rings) becomes 0, interpolated between two rings."""
+    first = np.argmax(clearance < 0, axis=1)
+    rows, inner = np.arange(len(clearance)), np.maximum(first - 1, 0)
+    left = np.where(first > 0, clearance[rows, inner], 0.0)
+    share = left / (left - clearance[rows, first])
+    start = np.where(first > 0, widths[inner], 0.0)
+    return np.minimum(start + share * (widths[first] - start), MAX_FACTOR)
+
+
+def _checked_limit(name, value, default, upper):
+    value = default if value is None else np.broadcast_to(np.asarray(value, dtype=np.float64), default.shape)
+    if not ((value > 0) & (value <= upper)).all():
+        limit = "" if upper is np.inf else " and at most the pitch"
+        raise ValueError(f"{name} must be above 0{limit}, got {value.min()} to {value.max()}")
+    return value

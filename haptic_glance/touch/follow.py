@@ -1,0 +1,258 @@
+"""Follows a contour of an object.
+
+Where a finger goes that follows a contour, and how it holds the array (T4.4.5, T4.4.6).
+
+The measurements of the sensor along one contour (T4.4.5).
+
+Contour following: what the sensor measures along a plane section through the object's centre (T4.4.5, T4.4.6).
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from haptic_glance.mesh.mesh import Mesh, unit
+
+from .distances import adaptive_distances, check_array
+from .press import normalise
+from .section import MeshCutter, SectionCurve
+from .surface import CANCELLED, Surface, as_surface
+
+COLLINEAR = 1e-4  # sine of the angle between the two points, seen from the centre; below it rounding decides the plane
+LENGTH_TIE = 1e-6  # of the length: of curves that differ by less the one nearest to the first point is followed
+KNOT_TOLERANCE = 1e-9  # of the length: a place this near a knot is at it and continues along the segment ahead
+MIN_HEADING = (
+    1e-3  # sine of the angle between direction of motion and normal, below which it gives no direction on the array
+)
+
+
+@dataclass(frozen=True)
+class ContourPath:
+    """Places of the array along a curve: positions (frames, 3), axes (frames, 3, 3); the rest as in Sequence."""
+
+    positions: np.ndarray
+    axes: np.ndarray
+    loops: int
+    length: float
+    share: float
+
+
+def walk(cutter: MeshCutter, plane_points: np.ndarray, frames: int, width: float) -> ContourPath:
+    """The ContourPath along the longest curve of the section, as `follow` describes.
+
+    width: the distance to both sides within which faces along the contour count for the normal, in units.
+    Raises ValueError for three points that define no plane, and for a plane that misses the surface.
+    """
+    curve, curves, normal = followed_curve(cutter, plane_points)
+    total = sum(one.length for one in curves)
+    knots = np.append(0.0, np.cumsum(curve.steps))
+    arc_lengths = (_nearest(curve, plane_points[1])[0] + knots[-1] / frames * np.arange(frames)) % knots[-1]
+    # The last segment that begins at or before the place; one without length is never chosen. Each contour begins at a
+    # knot (a vertex): rounding must not decide whether the finger points along the segment ahead or the one behind.
+    near = KNOT_TOLERANCE * knots[-1]
+    arc_lengths = np.where(arc_lengths + near < knots[-1], arc_lengths, 0.0)
+    segment = np.searchsorted(knots[1:], arc_lengths + near, side="right")
+    ahead = np.roll(curve.points, -1, axis=0) - curve.points
+    tangents = unit(ahead[segment])
+    positions = curve.points[segment] + np.maximum(arc_lengths - knots[segment], 0)[:, None] * tangents
+    face_normals = cutter.mesh.face_normals[curve.faces]
+    normals = _averaged(
+        face_normals, curve.steps, arc_lengths, width, face_normals[np.minimum(segment, len(face_normals) - 1)]
+    )
+    return ContourPath(positions, _axes(normals, tangents, normal), len(curves), curve.length, curve.length / total)
+
+
+def followed_curve(cutter: MeshCutter, plane_points: np.ndarray) -> tuple[SectionCurve, list[SectionCurve], np.ndarray]:
+    """(the curve that is followed, in its direction; all curves of the section; the plane's unit normal)."""
+    centre, first, second = plane_points
+    normal = _normal(centre, first, second)
+    curves = cutter.cut(centre, normal)
+    if not curves or curves[0].length <= 0:
+        raise ValueError(f"the plane through {_text(centre)}, {_text(first)} and {_text(second)} misses the mesh")
+    longest = [curve for curve in curves if curve.length >= (1 - LENGTH_TIE) * curves[0].length]
+    curve = min(longest, key=lambda one: _nearest(one, first)[1])
+    return curve if _area(curve.points, normal) >= 0 else curve.backwards(), curves, normal
+
+
+def _normal(centre, first, second):
+    a, b = first - centre, second - centre
+    size = np.linalg.norm(a) * np.linalg.norm(b)
+    cross = np.cross(a, b)
+    if not size > 0 or np.linalg.norm(cross) <= COLLINEAR * size:
+        raise ValueError(
+            f"{_text(centre)}, {_text(first)} and {_text(second)} lie on a line or coincide, so they define no plane"
+        )
+    return unit(cross)
+
+
+def _area(points, normal):
+    """Twice the area enclosed by the points, negative if they are clockwise seen from the tip of the normal."""
+    local = points - points[0]
+    return float(np.cross(local, np.roll(local, -1, axis=0)).sum(axis=0) @ normal)
+
+
+def _nearest(curve, place):
+    """(arc length of the curve's point nearest to the place, its distance from the place), in units."""
+    starts = curve.points if curve.closed else curve.points[:-1]
+    segments = np.roll(curve.points, -1, axis=0)[: len(starts)] - starts
+    square = np.einsum("ij,ij->i", segments, segments)
+    share = np.einsum("ij,ij->i", place - starts, segments) / np.where(square > 0, square, 1)
+    share = np.clip(share, 0, 1)
+    distances = np.linalg.norm(starts + share[:, None] * segments - place, axis=1)
+    nearest = distances.argmin()
+    return curve.steps[:nearest].sum() + share[nearest] * curve.steps[nearest], distances[nearest]
+
+
+def _averaged(face_normals, steps, arc_lengths, width, fallback):
+    """(frames, 3) unit means of the face normals within `width` of the places, weighted by length.
+
+    Where they cancel out, as on a sheet thinner than the width, it is the normal of the face below (`fallback`), or +z
+    if that face has no normal.
+    """
+    knots = np.append(0.0, np.cumsum(steps))
+    sums = np.vstack([np.zeros(3), np.cumsum(face_normals * steps[:, None], axis=0)])
+    length, width = knots[-1], min(width, knots[-1] / 2)
+
+    def integral(s):
+        turns, rest = np.divmod(s, length)
+        return turns[:, None] * sums[-1] + np.stack([np.interp(rest, knots, part) for part in sums.T], axis=1)
+
+    mean = (integral(arc_lengths + width) - integral(arc_lengths - width)) / (2 * width)
+    mean = np.where(np.linalg.norm(mean, axis=1, keepdims=True) > CANCELLED, mean, fallback)
+    return unit(np.where(np.linalg.norm(mean, axis=1, keepdims=True) > CANCELLED, mean, [0.0, 0.0, 1.0]))
+
+
+def _axes(normals, tangents, plane_normal):
+    """(frames, 3, 3) rows right, up, normal: up is the direction of motion projected on the array."""
+    ahead = tangents - np.einsum("ij,ij->i", tangents, normals)[:, None] * normals
+    cross = np.cross(plane_normal, normals)
+    up = unit(np.where(np.linalg.norm(ahead, axis=1, keepdims=True) > MIN_HEADING, ahead, cross))
+    return np.stack([np.cross(up, normals), up, normals], axis=1)
+
+
+def _text(point):
+    return "(" + ", ".join(f"{value:.4g}" for value in point) + ")"
+
+
+@dataclass(frozen=True)
+class Sequence:
+    """The frames of one contour, in the order of motion.
+
+    images (frames, rows, cols) f4 in 0..1 (the cutaneous cues), normals (frames, 3) unit vectors of the array and
+    positions (frames, 3) in units of the mesh (the kinesthetic cues), pitches (frames,) units between neighbouring
+    cells. loops: the number of curves of the section; length of the one that was followed, in units; share: of the
+    length of all curves.
+    """
+
+    images: np.ndarray
+    normals: np.ndarray
+    positions: np.ndarray
+    pitches: np.ndarray
+    loops: int
+    length: float
+    share: float
+
+
+BATCH = 1 << 11  # frames pressed at once: their distances in double precision take less than 20 MB
+
+
+def follow(
+    mesh_or_surface: Mesh | Surface,
+    plane_points: ArrayLike,
+    frames: int = 25,
+    cells: tuple[int, int] = (32, 32),
+    pitch: float = 0.01,
+) -> Sequence:
+    """The Sequence that the array measures along one contour of an object (T4.4.5, T4.4.6).
+
+    plane_points (3, 3): the object's centre and two points, in units of the mesh; the contour is the
+    section of the mesh by their plane. Of several curves the longest is followed: T4.4.6 puts all planes through the
+    centre "to avoid the selection of local contours around object extremities", which the shorter curves are.
+    `Sequence.loops` and `.share` tell what was left out. An open curve (on a mesh with boundary edges) is followed as
+    well: at its end the finger is lifted and continues at its beginning.
+
+    The `frames` places are equally spaced along the contour. The thesis gives neither start nor direction. Here the
+    start is the contour's point nearest to the second of the plane points (the first after the centre). The direction
+    is counter-clockwise about the plane's normal, (second - centre) x (third - centre), so towards the third by the
+    shorter way. A place on a contour is not a vertex: the array's normal is the mean of the unit normals of the faces
+    that the contour crosses within one pitch before and behind, weighted by the length crossed, as T4.3.1 averages the
+    faces around a vertex. Interpolation between the averages at the vertices would tilt the array on the large faces of
+    flat sides, in their middle by tens of degrees.
+
+    Row 0 of an imprint is ahead: the array's up axis is the direction of motion, as a finger that follows a contour
+    keeps its heading. So a rotation of the object does not change a sequence, and the frames do not spin where the
+    contour passes a pole, as they would with `sensor_axes`. The thesis does not say this either. The array is smaller
+    at saddles, with the same number of cells (T4.4.3, `adaptive_distances`).
+
+    Raises ValueError if the points define no plane, the plane misses the mesh, frames is less than 1, or cells or pitch
+    are invalid.
+    """
+    results = follow_many(mesh_or_surface, np.asarray(plane_points, dtype=np.float64)[None], frames, cells, pitch)[0]
+    if isinstance(results, str):
+        raise ValueError(results)
+    return results
+
+
+def follow_many(
+    mesh_or_surface: Mesh | Surface,
+    planes: ArrayLike,
+    frames: int = 25,
+    cells: tuple[int, int] = (32, 32),
+    pitch: float = 0.01,
+) -> list[Sequence | str]:
+    """[Sequence, or the reason why there is none (str)] for each of the planes (k, 3, 3).
+
+    Other parameters, and errors that concern all planes, as in `follow`. Imprints are computed in batches.
+    """
+    surface = as_surface(mesh_or_surface)
+    planes = _check_planes(planes)
+    if not frames >= 1 or frames % 1:
+        raise ValueError(f"frames must be a whole number from 1, got {frames}")
+    cells, pitch, _ = check_array(cells, pitch)
+    cutter = _cutter(surface.mesh)
+    found = [_path_or_reason(cutter, points, int(frames), pitch) for points in planes]
+    paths, batch = [path for path in found if not isinstance(path, str)], max(1, BATCH // int(frames))
+    batches = [paths[i : i + batch] for i in range(0, len(paths), batch)]
+    sequences = iter([one for part in batches for one in _press_paths(surface, part, cells, pitch)])
+    return [path if isinstance(path, str) else next(sequences) for path in found]
+
+
+def contour(mesh_or_surface: Mesh | Surface, plane_points: ArrayLike) -> SectionCurve:
+    """The SectionCurve that `follow` follows on the plane of points (3, 3), in its direction; errors as in `follow`."""
+    points = _check_planes(np.asarray(plane_points, dtype=np.float64)[None])[0]
+    return followed_curve(_cutter(as_surface(mesh_or_surface).mesh), points)[0]
+
+
+def _check_planes(planes):
+    planes = np.asarray(planes, dtype=np.float64)
+    if planes.ndim != 3 or planes.shape[1:] != (3, 3) or not np.isfinite(planes).all():
+        raise ValueError(f"planes must be finite points of shape (k, 3, 3): centre and two points, got {planes.shape}")
+    return planes
+
+
+@lru_cache(maxsize=2)
+def _cutter(mesh):
+    return MeshCutter(mesh)
+
+
+def _path_or_reason(cutter, points, frames, width):
+    try:
+        return walk(cutter, points, frames, width)
+    except ValueError as error:
+        return str(error)
+
+
+def _press_paths(surface, paths, cells, pitch):
+    """The Sequences of some ContourPaths, all their frames pressed at once."""
+    positions = np.concatenate([path.positions for path in paths])
+    axes = np.concatenate([path.axes for path in paths])
+    pitches, measured = adaptive_distances(surface, positions, axes, cells, pitch)
+    images = normalise(measured, pitches)
+    found, start = [], 0
+    for path in paths:
+        own = slice(start, start := start + len(path.positions))
+        parts = images[own], axes[own, 2], positions[own], pitches[own]
+        found.append(Sequence(*parts, path.loops, path.length, path.share))
+    return found

@@ -1,0 +1,164 @@
+"""Touch in newtons: what each taxel of an array below an elastic layer is pressed and dragged with."""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from haptic_glance.mesh.mesh import Mesh
+
+from .distances import check_arrays, check_places
+from .kernels.measure import depths_of_loads
+from .skin import Layer
+from .surface import Surface, as_surface
+
+
+def press_forces(
+    surface: Mesh | Surface,
+    centres: ArrayLike,
+    axes: ArrayLike,
+    layer: Layer,
+    cells: tuple[int, int] = (16, 16),
+    pitch: float = 0.001,
+    load: ArrayLike | None = None,
+    depth: ArrayLike | None = None,
+    unit: float = 1.0,
+) -> np.ndarray:
+    """(k, rows, cols) f8: the normal force on each cell in newtons, of arrays pressed at centres (k, 3).
+
+    axes (k, 3, 3) rows right, up, normal; pitch: units of the mesh; unit: metres a unit of the mesh is long; load,
+    depth: as in `forces`. Raises ValueError as `distances_at` and `forces` do.
+    """
+    centres, axes = check_places(centres, axes)
+    depths = layer.thickness if depth is None else _checked_depths(depth, len(centres))
+    within = min(np.max(depths, initial=0.0), layer.thickness)
+    gaps = gaps_at(surface, centres, axes, within, cells, pitch, unit)
+    return forces(gaps, layer, (pitch * unit) ** 2, load, depth)
+
+
+def gaps_at(
+    surface: Mesh | Surface,
+    centres: ArrayLike,
+    axes: ArrayLike,
+    within: float,
+    cells: tuple[int, int] = (16, 16),
+    pitch: float = 0.001,
+    unit: float = 1.0,
+) -> np.ndarray:
+    """(k, rows, cols) f8 metres that each cell can still approach until its layer touches the object.
+
+    Below 0 where the object is in the layer of an array that stands at its centre. The array comes from as far above as
+    its longer side, so that it meets what overhangs the place. inf where a cell meets nothing, or nothing `within` so
+    many metres of the first contact: the fewer, the faster. Other arguments as of `press_forces`.
+    """
+    if not (np.isfinite(unit) and unit > 0):
+        raise ValueError(f"unit must be a positive number of metres, got {unit}")
+    if not within >= 0:  # NaN fails as well
+        raise ValueError(f"within must be 0 m or more, got {within:g}")
+    centres, axes = check_places(centres, axes)
+    cells, pitches, reaches = check_arrays(cells, pitch, None, len(centres))
+    starts = centres + reaches[:, None] * axes[:, 2]
+    found = as_surface(surface).first_below(starts, axes, cells, pitches, within / unit)
+    found -= reaches[:, None, None]
+    found *= unit
+    return found
+
+
+def forces(
+    gaps: np.ndarray,
+    layer: Layer,
+    areas: ArrayLike,
+    load: ArrayLike | None = None,
+    depth: ArrayLike | None = None,
+    cosines: ArrayLike = 1.0,
+) -> np.ndarray:
+    """Forces in newtons along the normals of taxels with gaps (k, ...): f8 of the same shape.
+
+    gaps: metres, from anywhere, that the array can approach until a taxel's layer touches the object, inf for never;
+    areas: of the taxels, in m2; load: newtons on the whole array along its approach, at which the approach ends (the
+    sum is exact); or depth: metres of approach after the first contact. Both are a number, or one per touch. areas,
+    cosines: a number, or one per taxel; the cosine is that of its normal to the approach, by which the layer is
+    indented less.
+
+    A sphere of radius R that goes a small depth d into the layer of a fine array is answered with pi R d^2
+    layer.stiffness, a flat punch of area A with A d layer.stiffness (Johnson 1985, section 4.3).
+    Raises ValueError, naming the touch, for a load that is not positive, a negative depth, an indentation above the
+    layer's thickness, and a load on an array that touches nothing.
+    """
+    gaps = np.asarray(gaps, dtype=np.float64)
+    if (load is None) == (depth is None):
+        raise ValueError("give either load, in newtons, or depth, in metres")
+    if gaps.ndim == 0:
+        raise ValueError("gaps must have shape (k, ...), a row for each touch, got a number")
+    if not (gaps > -np.inf).all():  # NaN fails as well
+        raise ValueError("gaps must be numbers of metres, inf where nothing is in range")
+    areas, cosines = (np.broadcast_to(np.asarray(values, np.float64), gaps.shape[1:]) for values in (areas, cosines))
+    _check_areas(areas)
+    if len(wrong := cosines[~((cosines >= 0) & (cosines <= 1))]):
+        raise ValueError(f"cosines must lie in 0..1, got {wrong[0]:g}")
+    least = gaps.min(axis=tuple(range(1, gaps.ndim)), initial=np.inf)
+    weights = (layer.stiffness * areas * cosines**2).ravel()
+    # From the first contact on: sums with the distance of an array that starts far away would round the depth off.
+    near = gaps - np.where(np.isfinite(least), least, 0.0).reshape(-1, *[1] * (gaps.ndim - 1))
+    if load is None:
+        depths = _checked_depths(depth, len(gaps))
+    else:
+        rows = near.reshape(len(gaps), weights.size)
+        facing = np.isfinite(rows[:, weights > 0]).any(axis=1)
+        depths = depths_of_loads(rows, weights, _checked_loads(load, facing), layer.thickness)
+    if len(deep := np.flatnonzero(depths > layer.thickness)):
+        remedy = "press less, or take a thicker or stiffer layer"
+        raise ValueError(f"touch {deep[0]} needs more than the layer's thickness of {layer.thickness:g} m: {remedy}")
+    pressed = np.subtract(depths.reshape(-1, *[1] * (gaps.ndim - 1)), near, out=near)
+    np.maximum(pressed, 0.0, out=pressed)
+    pressed *= layer.stiffness * areas * cosines
+    return pressed
+
+
+def shear(normal: np.ndarray, slips: ArrayLike, layer: Layer, areas: ArrayLike) -> np.ndarray:
+    """(..., 2) tangential forces in newtons on taxels with normal forces (...), after the object has slipped sideways.
+
+    slips: (..., 2) metres that the object has moved along the array's right and up, in one direction since the contact;
+    (k, 2) is one slip for all taxels of a touch. areas: as in `forces`. The layer sticks and shears until a taxel's
+    force is friction times its normal force, where it slides. So contacts begin to slide at their rim, as those of
+    Cattaneo and Mindlin do (Johnson 1985, section 7.2).
+    """
+    normal, slips = np.asarray(normal, dtype=np.float64), np.asarray(slips, dtype=np.float64)
+    if slips.shape not in ((len(normal), 2), (*normal.shape, 2)) or not np.isfinite(slips).all():
+        raise ValueError(f"slips must be finite and of shape (k, 2) or {(*normal.shape, 2)}, got {slips.shape}")
+    if not ((normal >= 0) & np.isfinite(normal)).all():
+        raise ValueError("normal must hold newtons of 0 or more, as `forces` gives them")
+    _check_areas(areas := np.asarray(areas, dtype=np.float64))
+    slips = slips.reshape(len(normal), *(normal.shape[1:] if slips.ndim > 2 else [1] * (normal.ndim - 1)), 2)
+    distance = np.linalg.norm(slips, axis=-1)
+    held = np.minimum(layer.shear_stiffness * areas * distance, layer.friction * normal)
+    return held[..., None] * np.divide(slips, distance[..., None], out=np.zeros_like(slips), where=slips != 0)
+
+
+def _check_areas(areas):
+    if not ((areas > 0) & np.isfinite(areas)).all():
+        raise ValueError(f"areas must be above 0 m2, got {areas.min()}")
+
+
+def _checked_depths(depth, count):
+    depths = _per_touch("depth", depth, count)
+    if (depths < 0).any():
+        raise ValueError(f"depth must be 0 m or more, got {depths.min():g}: it counts from the first contact")
+    return depths
+
+
+def _checked_loads(load, facing):
+    loads = _per_touch("load", load, len(facing))
+    if len(wrong := np.flatnonzero(loads <= 0)):
+        raise ValueError(f"load must be above 0 N, got {loads[wrong[0]]:g}: give newtons, or a depth in metres")
+    if len(lost := np.flatnonzero(~facing)):
+        remedy = "move the array over the object, or take more cells"
+        raise ValueError(f"touch {lost[0]} touches nothing, so no load can be reached: {remedy}")
+    return loads
+
+
+def _per_touch(name, values, count):
+    values = np.asarray(values, dtype=np.float64)
+    if values.shape not in ((), (count,)):
+        raise ValueError(f"{name} must be a number or have shape ({count},), one per touch, got {values.shape}")
+    if not np.isfinite(values).all():
+        raise ValueError(f"{name} must be finite, got {values[~np.isfinite(values)].flat[0]}")
+    return np.broadcast_to(values, (count,)).copy()

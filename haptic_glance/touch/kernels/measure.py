@@ -1,0 +1,198 @@
+"""Measures the cells of an array.
+
+Distances of the cells of flat arrays to a surface, compiled by numba.
+
+No ray is cast: faces are projected onto the array's plane, and each writes its height to the cells under it. The tree
+of faces is traversed from the plane outwards, so that boxes hidden behind faces already found are skipped. All numbers
+are in double precision. A column through an edge hits at least one of its faces.
+
+How deep a bed of springs is pressed by a load, compiled by numba.
+"""
+
+import numpy as np
+
+from haptic_glance.base.jit import UntilWorthCompiling, helper
+
+from .faces import LANES, ROWS, Frame, along, frame_of, half_width, kernel, project, raise_cells
+
+MAX_CHECKED = 64  # cells under a box, up to which it pays to check if all of them hide it
+DEEP = 64  # levels of a tree: more than fit into any memory
+
+
+@kernel
+def measure(
+    blocks: np.ndarray,
+    boxes: np.ndarray,
+    children: np.ndarray,
+    diagonal: float,
+    lift: float,
+    cells: tuple[int, int],
+    centres: np.ndarray,
+    axes: np.ndarray,
+    pitches: np.ndarray,
+) -> np.ndarray:
+    """(k, rows, cols) signed distances of arrays at centres (k, 3) with axes (k, 3, 3), inf where missed.
+
+    blocks, boxes, children: the face_tree; lift: the distance from the plane within which a face counts on both sides.
+    """
+    rows, columns = cells
+    found = np.empty((len(centres), rows, columns))
+    above, back, out = np.empty(cells), np.empty(cells, dtype=np.bool_), np.empty(cells, dtype=np.bool_)
+    stack, projected = np.empty(DEEP, dtype=np.int64), np.empty(ROWS * LANES)
+    for k in range(len(centres)):
+        below = found[k]
+        below[:], back[:], out[:] = -np.inf, False, False
+        frame = frame_of(centres[k], axes[k], pitches[k], rows, columns, 1.0, lift, diagonal)
+        search(blocks, boxes, children, frame, stack, projected, below, back, np.inf)
+        if maybe_inside(back, above):
+            frame = frame_of(centres[k], axes[k], pitches[k], rows, columns, -1.0, lift, diagonal)
+            search(blocks, boxes, children, frame, stack, projected, above, out, np.inf)
+        for i in range(rows):
+            for j in range(columns):
+                below[i, j] = above[i, j] if out[i, j] else -below[i, j]
+    return found
+
+
+@kernel
+def first_below(
+    blocks: np.ndarray,
+    boxes: np.ndarray,
+    children: np.ndarray,
+    diagonal: float,
+    lift: float,
+    cells: tuple[int, int],
+    centres: np.ndarray,
+    axes: np.ndarray,
+    pitches: np.ndarray,
+    window: float,
+) -> np.ndarray:
+    """(k, rows, cols) distances to the first surface below arrays, as `measure`'s but of either side of a face.
+
+    inf where it is missed, or more than `window` below the nearest of the array: what is deeper need not be searched.
+    """
+    rows, columns = cells
+    found, back = np.empty((len(centres), rows, columns)), np.empty(cells, dtype=np.bool_)
+    stack, projected = np.empty(DEEP, dtype=np.int64), np.empty(ROWS * LANES)
+    for k in range(len(centres)):
+        below = found[k]
+        below[:], back[:] = -np.inf, False
+        frame = frame_of(centres[k], axes[k], pitches[k], rows, columns, 1.0, lift, diagonal)
+        lowest = search(blocks, boxes, children, frame, stack, projected, below, back, window) - window
+        for i in range(rows):
+            for j in range(columns):
+                below[i, j] = -below[i, j] if below[i, j] >= lowest else np.inf
+    return found
+
+
+MEASURE = UntilWorthCompiling(measure, __file__, budget=12_800)  # cells: 50 arrays of 16 x 16
+FIRST_BELOW = UntilWorthCompiling(first_below, __file__, budget=12_800)
+
+
+@helper
+def maybe_inside(back: np.ndarray, above: np.ndarray) -> bool:
+    """True if any cell sees the face below from the back and must search upwards: above is -inf there, else inf."""
+    any_back = False
+    for i in range(len(back)):
+        for j in range(back.shape[1]):
+            any_back = any_back or back[i, j]
+            above[i, j] = -np.inf if back[i, j] else np.inf
+    return any_back
+
+
+@kernel
+def search(
+    blocks: np.ndarray,
+    boxes: np.ndarray,
+    children: np.ndarray,
+    frame: Frame,
+    stack: np.ndarray,
+    projected: np.ndarray,
+    best: np.ndarray,
+    back: np.ndarray,
+    window: float,
+) -> float:
+    """Raises best (rows, cols) to the height of the highest face not above `lift`; back: if it is seen from its back.
+
+    Returns the highest of all if there is a `window`: then what lies deeper below it is not searched. A cell that
+    begins at inf is not searched either. The nearer child, by the height of its centre, comes first. A perfect order
+    would hardly save a box.
+    """
+    rows, columns = best.shape
+    size, stack[0], highest = 1, 0, -np.inf
+    while size > 0:
+        size -= 1
+        node = stack[size]
+        x, y, z = from_centre(boxes, node, frame)
+        wx, wy, wz = boxes[node, 3], boxes[node, 4], boxes[node, 5]
+        height, extent = along(frame.normal, x, y, z), half_width(frame.normal, wx, wy, wz) + frame.slack
+        if height - extent > frame.lift or height + extent < highest - window:
+            continue
+        u, extent_u = along(frame.right, x, y, z) + frame.column, half_width(frame.right, wx, wy, wz) + frame.margin
+        v, extent_v = along(frame.down, x, y, z) + frame.row, half_width(frame.down, wx, wy, wz) + frame.margin
+        first, last = max(np.ceil(u - extent_u), 0.0), min(np.floor(u + extent_u), columns - 1.0)
+        top, bottom = max(np.ceil(v - extent_v), 0.0), min(np.floor(v + extent_v), rows - 1.0)
+        if first > last or top > bottom:
+            continue
+        if (last - first + 1) * (bottom - top + 1) <= MAX_CHECKED:
+            hidden = True
+            for i in range(int(top), int(bottom) + 1):
+                for j in range(int(first), int(last) + 1):
+                    hidden = hidden and best[i, j] > height + extent
+            if hidden:
+                continue
+        child = children[node]
+        if child < 0:
+            project(blocks[-1 - child], frame, rows, columns, projected)
+            raise_cells(projected, frame, best, back)
+            if window < np.inf:
+                for i in range(int(top), int(bottom) + 1):
+                    for j in range(int(first), int(last) + 1):
+                        highest = max(highest, best[i, j])
+            continue
+        x, y, z = from_centre(boxes, child, frame)
+        one = abs(along(frame.normal, x, y, z))
+        x, y, z = from_centre(boxes, child + 1, frame)
+        nearer = 0 if one < abs(along(frame.normal, x, y, z)) else 1
+        stack[size], stack[size + 1] = child + 1 - nearer, child + nearer
+        size += 2
+    return highest
+
+
+@helper
+def from_centre(boxes: np.ndarray, node: np.integer | np.ndarray, frame: Frame) -> tuple[float, float, float]:
+    """The centre of a node's box, relative to the array's centre."""
+    return boxes[node, 0] - frame.centre[0], boxes[node, 1] - frame.centre[1], boxes[node, 2] - frame.centre[2]
+
+
+@kernel
+def depths_of_loads(gaps: np.ndarray, weights: np.ndarray, loads: np.ndarray, limit: float) -> np.ndarray:
+    """(k,) depths d, from each row's least gap, at which sum(weights * max(d - gap, 0)) is the load; inf without a gap.
+
+    gaps (k, n), inf where there is nothing; weights (n,), 0 or more; loads (k,), above 0. Springs farther than `limit`
+    are left out: a depth above it is too deep, whatever its value. The sum is convex and piecewise linear in d, so that
+    Newton's method from above ends at the exact root: springs that are out of contact stay out (Michelot 1986).
+    """
+    depths, near, weight = np.empty(len(gaps)), np.empty(gaps.shape[1]), np.empty(gaps.shape[1])
+    for k in range(len(gaps)):
+        first = np.inf
+        for gap in gaps[k]:
+            first = min(first, gap)
+        size, depth = 0, limit
+        for j in range(gaps.shape[1]):
+            if gaps[k, j] - first <= limit and weights[j] > 0:
+                near[size], weight[size] = gaps[k, j] - first, weights[j]
+                size += 1
+        kept = -1
+        while kept != size:
+            size = size if kept < 0 else kept
+            total, moment, kept = 0.0, 0.0, 0
+            for j in range(size):
+                total += weight[j]
+                moment += weight[j] * near[j]
+            depth = (loads[k] + moment) / total
+            for j in range(size):
+                if near[j] <= depth:
+                    near[kept], weight[kept] = near[j], weight[j]
+                    kept += 1
+        depths[k] = depth
+    return depths

@@ -1,0 +1,118 @@
+"""Taxels at any places: hexagonal arrays, fingertips, and what a file says."""
+
+import csv
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from haptic_glance.mesh.mesh import Mesh, unit
+from haptic_glance.mesh.rays import RayScene
+
+from .distances import check_places
+from .force import forces
+from .skin import Layer
+
+COLUMNS = ("x", "y", "z", "nx", "ny", "nz", "area")
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Taxels in the frame of an array, whose axes are right, up and normal, away from the object.
+
+    positions (n, 3) in metres; normals (n, 3), out of the sensor, so that nz is below 0 for a taxel that faces the
+    object; areas (n,) in m2. Raises ValueError for no taxels, two at one position, an area of 0 or below, and a normal
+    without length.
+    """
+
+    positions: np.ndarray
+    normals: np.ndarray
+    areas: np.ndarray
+
+    def __post_init__(self) -> None:
+        for name, shape in (("positions", (3,)), ("normals", (3,)), ("areas", ())):
+            values = np.asarray(getattr(self, name), dtype=np.float64)
+            if values.shape != (np.size(self.areas), *shape) or not np.isfinite(values).all():
+                raise ValueError(f"layout: {name} must be finite and of shape (n, 3), areas (n,), got {values.shape}")
+            object.__setattr__(self, name, values)
+        if len(self.areas) == 0:
+            raise ValueError("layout: there are no taxels; give one a row")
+        _, first, place = np.unique(self.positions, axis=0, return_index=True, return_inverse=True)
+        earlier = first[place.ravel()]
+        if len(again := np.flatnonzero(earlier < np.arange(len(earlier)))):
+            raise ValueError(f"layout: taxels {earlier[again[0]] + 1} and {again[0] + 1} are at one place; remove one")
+        if len(wrong := np.flatnonzero(self.areas <= 0)):
+            raise ValueError(f"layout: taxel {wrong[0] + 1} has an area of {self.areas[wrong[0]]:g}; give m2 above 0")
+        object.__setattr__(self, "normals", unit(self.normals))
+        if len(wrong := np.flatnonzero(~self.normals.any(axis=1))):
+            raise ValueError(f"layout: taxel {wrong[0] + 1} has a normal without length; give its direction")
+        if not (self.cosines > 0).any():
+            raise ValueError("layout: no taxel faces the object; normals point out of the sensor, with nz below 0")
+
+    @property
+    def cosines(self) -> np.ndarray:
+        """(n,) cosines of the normals to the array's approach; 0 where a taxel faces away."""
+        return np.maximum(-self.normals[:, 2], 0.0)
+
+
+def read_layout(path: str | Path) -> Layout:
+    """The Layout of a CSV file, a row a taxel: columns x, y, z, nx, ny, nz in metres and area in m2, in any order."""
+    with open(path, newline="", encoding="utf-8-sig") as file:
+        reader = csv.DictReader(file, skipinitialspace=True)
+        absent = [name for name in COLUMNS if name not in (reader.fieldnames or ())]
+        if absent:
+            raise ValueError(f"{path}: no column {', '.join(absent)}; a layout has {','.join(COLUMNS)}")
+        rows = [_numbers(path, reader.line_num, row) for row in reader]
+    table = np.array(rows).reshape(len(rows), len(COLUMNS))
+    try:
+        return Layout(table[:, :3], table[:, 3:6], table[:, 6])
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None
+
+
+def layout_forces(
+    mesh: Mesh,
+    centres: ArrayLike,
+    axes: ArrayLike,
+    layer: Layer,
+    layout: Layout,
+    load: ArrayLike | None = None,
+    depth: ArrayLike | None = None,
+) -> np.ndarray:
+    """(k, n) f8: forces in newtons along the normals of taxels, for layouts at centres (k, 3) with axes (k, 3, 3).
+
+    mesh: in metres; load, depth: along the approach, which is against the third axis, as in `forces`. Rays are parallel
+    to the approach, so that the forces of a curved sensor are those of small indentations.
+    """
+    centres, axes = check_places(centres, axes)
+    return forces(layout_gaps(mesh, centres, axes, layout, layer), layer, layout.areas, load, depth, layout.cosines)
+
+
+def layout_gaps(mesh: Mesh, centres: np.ndarray, axes: np.ndarray, layout: Layout, layer: Layer) -> np.ndarray:
+    """(k, n) metres that each taxel can still approach, as `gaps_at` of a rectangular array; rays by embree.
+
+    inf where the mesh is not in its way, or it faces away. The approach begins as far off as the layout is wide.
+    """
+    reach = np.ptp(layout.positions, axis=0).max() + layer.thickness
+    start = layout.positions * [1, 1, 0] + [0, 0, layout.positions[:, 2].max() + reach]
+    facing = np.flatnonzero(layout.cosines > 0)
+    origins = centres[:, None] + start[facing] @ axes
+    ways = np.broadcast_to(-axes[:, None, 2], origins.shape)
+    gaps = np.full((len(centres), len(start)), np.inf)
+    cast = _scene(mesh).cast(origins.reshape(-1, 3), ways.reshape(-1, 3)).distance
+    gaps[:, facing] = cast.reshape(origins.shape[:2]) - (start[facing, 2] - layout.positions[facing, 2])
+    return gaps
+
+
+def _numbers(path, line, row):
+    try:
+        return [float(row[name]) for name in COLUMNS]
+    except (TypeError, ValueError):
+        raise ValueError(f"{path}: line {line} has a taxel that is not seven numbers: {','.join(COLUMNS)}") from None
+
+
+@lru_cache(maxsize=2)
+def _scene(mesh):
+    return RayScene(mesh)

@@ -1,0 +1,140 @@
+"""Imprints of quasi-tangent contours, and the sensor of contours.
+
+The earlier sensor of the thesis: contours where quasi-tangent planes intersect the object (T4.2.3.1).
+
+The sensors of the stage: the array of distances in its two contacts, and the older one of contours (T4.2.3.1).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from haptic_glance.mesh.mesh import Mesh, unit
+
+from .distances import CONTACTS, check_array, distances, distances_at
+from .press import normalise
+from .surface import LIFT, Surface, as_surface, check_vertices, sensor_axes, sensor_normals, touchable
+
+DEPTH = 0.25  # of the array's longer side: how far the elastic skin yields
+COLLINEAR = 1e-3  # sine of the angle at the first neighbour, below which three neighbours span no plane
+
+
+def contour_imprints(
+    mesh: Mesh | Surface,
+    vertices: ArrayLike,
+    cells: tuple[int, int] = (16, 16),
+    pitch: float = 0.01,
+    planes: int = 16,
+    depth: float | None = None,
+) -> np.ndarray:
+    """(k, rows, cols) f4 in 0..1, steps of 1 / planes: imprints of the sensor of quasi-tangent planes (T4.2.3.1).
+
+    The first plane contains the three neighbours closest to the vertex (T figure 4.2, `quasi_tangent`). The others
+    follow inwards at equal steps down to `depth`, the sensing depth. A cell's pressure is the share of planes at or
+    below the first surface there. The image is 1 minus it, so that 0 is the highest pressure, as in `press`. A plane
+    beyond the far side of a wall still counts: the thesis registers areas of intersection and does not say, but a skin
+    does not pass through a wall, and a thin cup would otherwise show its thickness and not its shape. Array, axes and
+    errors as in `distances`; by default the depth is a quarter of the array's longer side. A plane that touches the
+    surface counts. Raises ValueError for less than one plane, a depth that is not positive, and as `quasi_tangent`
+    does.
+    """
+    surface = as_surface(mesh)
+    cells, pitch, side = check_array(cells, pitch)
+    if not planes >= 1 or planes % 1:
+        raise ValueError(f"planes must be a whole number from 1, got {planes}")
+    depth = DEPTH * side if depth is None else depth
+    if not (np.isfinite(depth) and depth > 0):
+        raise ValueError(f"depth must be a positive number of units, got {depth}")
+    centres, axes = quasi_tangent(surface.mesh, vertices)
+    planes_found = (
+        distances_at(surface, centres, axes, cells, pitch, max_distance=2 * depth) - LIFT * surface.mesh.diagonal
+    )
+    short = np.searchsorted(np.linspace(0, depth, int(planes)), planes_found)  # planes that end above the surface
+    return (short / planes).astype(np.float32)
+
+
+def quasi_tangent(mesh: Mesh, vertices: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
+    """(centres (k, 3), axes (k, 3, 3)) of arrays on the planes through the three neighbours closest to each vertex.
+
+    The plane's normal is the cross product of P1P2 and P1P3, with the sign of the average normal. The array's centre is
+    the vertex's projection on the plane. Neighbours are vertices one edge away. If the three lie on a line, the next
+    closest replaces the third, if need be one two edges away. Coincident vertices count as one.
+    Raises ValueError that names a vertex around which no three neighbours span a plane, or that has no normal.
+    """
+    vertices = check_vertices(mesh, vertices)
+    outward = sensor_normals(mesh, vertices)
+    planes_found = [_plane(mesh, vertex) for vertex in vertices]
+    if None in planes_found:
+        raise ValueError(
+            f"around vertex {vertices[planes_found.index(None)]} no three neighbours span a plane: there are fewer, or "
+            "they are collinear; use `press`"
+        )
+    places, normals = np.array(planes_found).reshape(-1, 2, 3).swapaxes(0, 1)
+    normals *= np.where(np.einsum("ij,ij->i", normals, outward) < 0, -1, 1)[:, None]
+    points = mesh.vertices[vertices]
+    centres = points + np.einsum("ij,ij->i", places - points, normals)[:, None] * normals
+    return centres, sensor_axes(normals)
+
+
+def spans_plane(mesh: Mesh, vertices: ArrayLike) -> np.ndarray:
+    """(k,) boolean: the vertices (k,) that this sensor can touch: with a normal and neighbours that span a plane."""
+    vertices = check_vertices(mesh, vertices)
+    return touchable(mesh, vertices) & np.array([_plane(mesh, vertex) is not None for vertex in vertices], dtype=bool)
+
+
+def _plane(mesh, vertex):
+    """(a point (3,), unit normal (3,)) of the plane through the three closest neighbours that span one, or None."""
+    links, point = mesh.adjacency, mesh.vertices[vertex]
+    neighbours = links.indices[links.indptr[vertex] : links.indptr[vertex + 1]]
+    for ids in (neighbours, np.unique(links[neighbours].indices)):
+        offsets = mesh.vertices[ids] - point
+        lengths = np.linalg.norm(offsets, axis=1)
+        offsets = np.unique(np.c_[lengths, offsets][lengths > 0], axis=0)[:, 1:]  # closest first, each place once
+        if len(offsets) < 3:
+            continue
+        crosses = np.cross(offsets[1] - offsets[0], offsets[2:] - offsets[0])
+        sides = np.linalg.norm(offsets[1] - offsets[0]) * np.linalg.norm(offsets[2:] - offsets[0], axis=1)
+        spanning = np.flatnonzero(np.linalg.norm(crosses, axis=1) > COLLINEAR * sides)
+        if len(spanning):
+            return point + offsets[0], unit(crosses[spanning[0]])
+    return None
+
+
+CONTOURS = "contours"
+SENSORS = (*CONTACTS, CONTOURS)
+
+
+@dataclass(frozen=True)
+class Touched:
+    """What a sensor feels at k vertices.
+
+    can: (k,) boolean, where it can touch, t times. depths: (t, rows, cols) f4 in units. images: the same in 0..1, 0
+    pressed first. reach: the depth of a cell with no surface in range.
+    """
+
+    can: np.ndarray
+    depths: np.ndarray
+    images: np.ndarray
+    reach: float
+
+
+def misfit(cells: Sequence[int], pitch: float) -> str:
+    """What is wrong with an array that is longer than the object, of diameter 1; else ""."""
+    length = max(cells) * pitch
+    wrong = f"the array is {length:g} units long, the object 1: most cells will miss it; take fewer or a smaller pitch"
+    return wrong if length > 1 else ""
+
+
+def touch(surface: Surface, vertices: ArrayLike, cells: tuple[int, int], pitch: float, sensor: str) -> Touched:
+    """What a sensor of SENSORS feels at vertices (k,): `press`, or `contour_imprints` of the sensor of T4.2.3.1."""
+    mesh, (_, _, reach) = surface.mesh, check_array(cells, pitch)
+    vertices = np.asarray(vertices)
+    if sensor == CONTOURS:
+        can = spans_plane(mesh, vertices)
+        images, reach = contour_imprints(surface, vertices[can], cells, pitch), DEPTH * max(cells) * pitch
+        return Touched(can, images * reach, images, reach)
+    can = touchable(mesh, vertices)
+    depths = distances(surface, vertices[can], cells, pitch, contact=sensor)
+    return Touched(can, depths, normalise(depths, pitch), reach)

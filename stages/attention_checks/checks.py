@@ -1,0 +1,169 @@
+"""Checks of the model of attention: nested fits and viewpoints.
+
+The glance with all its choices made without the object that it is judged on: features and ridge.
+
+A model that leaves an object out of its fit may still have features and a ridge that were chosen by looking at it.
+Here they are chosen anew for each object from all the others. That takes thousands of fits, so each of them is a step
+of Newton's method from the fit with all features: there the likelihood of an object is a quadratic form, and a choice
+that leaves an object out is one small linear system. The last fit, with what was chosen, is exact.
+
+How well the thesis's equal weights predict gaze from a set of viewpoints (T3.2.4).
+"""
+
+import functools
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import cv2
+import numpy as np
+
+from haptic_glance.base.files import read_arrays, read_mesh
+from haptic_glance.base.timing import Stopwatch
+from haptic_glance.look.agreement import GroundTruth, auc, nss
+from haptic_glance.look.camera import Viewpoint
+from haptic_glance.look.channels import CHANNELS
+from haptic_glance.look.points import best_viewpoints, compute_maps
+from haptic_glance.look.points.glance import GlanceDetector
+from haptic_glance.look.points.options import Options
+from haptic_glance.look.views import FOUR, TWELVE
+from haptic_glance.look.weights import LearnedWeights, fit_fixations
+from haptic_glance.look.weights.attention import RIDGE
+from haptic_glance.look.weights.weights import GLANCE, GLANCES
+from haptic_glance.mesh.mesh import Mesh
+from stages.engine.run import Rows
+
+RIDGES = (0.0003, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3)
+FIXED = tuple(GLANCES[GLANCE])  # the features by the choice that was made once, on all objects
+
+
+class Seen(NamedTuple):
+    """What the glance is fitted to, of one object: features {name: (n,)} of samples, amounts of gaze and areas (n,)."""
+
+    features: dict[str, np.ndarray]
+    amounts: np.ndarray
+    areas: np.ndarray
+
+    def stacked(self, names: tuple[str, ...]) -> np.ndarray:
+        """(n, len(names)) of these features."""
+        return np.stack([self.features[name] for name in names], axis=1)
+
+
+def process_nested(method: str, folder: Path, data: Path, names: list[str]) -> Rows:
+    """Rows for each object, left out: with the features and ridge chosen once, and chosen without it.
+
+    The methods are METHOD_once and METHOD_nested; metrics nss and auc, the number of `features` and the `ridge`; the
+    column chosen names the features.
+    """
+    gaze = {name: read_arrays(data / "weights/ground_truth" / f"{name}.npz") for name in names}
+    seen = {name: _seen(one) for name, one in gaze.items()}
+    rows = []
+    for name, own in gaze.items():
+        others = {other: one for other, one in seen.items() if other != name}
+        truth = GroundTruth(own["amounts"], own["density"], own["areas"])
+        fit = functools.cache(functools.partial(_fit, others))  # the fixed choice may be all features
+        chosen = choose(others, fit(tuple(seen[name].features), RIDGE))
+        for way, (features, ridge) in {"once": (FIXED, RIDGE), "nested": chosen}.items():
+            weights = dict(zip(features, fit(features, ridge).tolist(), strict=True))
+            saliency = _saliency(data / "meshes" / f"{name}.npz", weights)
+            values = {metric.__name__: float(metric(saliency, truth)) for metric in (nss, auc)}
+            values |= {"features": len(features), "ridge": ridge}
+            common = {"item": name, "method": f"{method}_{way}", "chosen": ", ".join(features)}
+            rows += [common | {"metric": metric, "value": value} for metric, value in values.items()]
+    return rows
+
+
+def choose(objects: Mapping[str, Seen], around: np.ndarray) -> tuple[tuple[str, ...], float]:
+    """(features, ridge) under which gaze on an object that is left out is the most likely, on average over the objects.
+
+    around: the weights of all features, fitted to all these objects. Features are added one at a time, the best first;
+    of all numbers of features the best is taken.
+    """
+    names = tuple(next(iter(objects.values())).features)
+    slopes, bends = _quadratic(objects, names, around)
+    chosen, found = [], []
+    for _ in names:
+        tried = [(*_left_out(slopes, bends, [*chosen, k]), k) for k in range(len(names)) if k not in chosen]
+        loss, ridge, best = min(tried)
+        chosen.append(best)
+        found.append((loss, len(chosen), ridge))
+    _, count, ridge = min(found)
+    return tuple(names[k] for k in sorted(chosen[:count])), ridge
+
+
+def _quadratic(
+    objects: Mapping[str, Seen], names: tuple[str, ...], around: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """(slopes (k, d), bends (k, d, d)): near the weights `around` the loss of object k is slopes w + w bends w / 2."""
+    slopes, bends = [], []
+    for one in objects.values():
+        features = one.stacked(names).astype(np.float64)
+        score = features @ around + np.log(np.maximum(one.areas, 1e-300))
+        likely = np.exp(score - np.logaddexp.reduce(score))
+        mean = likely @ features
+        bends.append(features.T @ (likely[:, None] * features) - np.outer(mean, mean))
+        slopes.append(mean - one.amounts / one.amounts.sum() @ features - bends[-1] @ around)
+    return np.stack(slopes), np.stack(bends)
+
+
+def _left_out(slopes: np.ndarray, bends: np.ndarray, chosen: list[int]) -> tuple[float, float]:
+    """(mean loss of an object that is left out, ridge): of the best ridge, with some of the features."""
+    slopes, bends = slopes[:, chosen], bends[:, chosen][:, :, chosen]
+    others = len(slopes) - 1
+    slope, bend = (slopes.sum(axis=0) - slopes) / others, (bends.sum(axis=0) - bends) / others
+    losses = []
+    for ridge in RIDGES:
+        weights = np.linalg.solve(bend + 2 * ridge * np.eye(len(chosen)), -slope[..., None])[..., 0]
+        each = np.einsum("ki,ki->k", slopes, weights) + np.einsum("ki,kij,kj->k", weights, bends, weights) / 2
+        losses.append((float(each.mean()), ridge))
+    return min(losses)
+
+
+def _fit(objects: Mapping[str, Seen], names: tuple[str, ...], ridge: float) -> np.ndarray:
+    found = [(one.stacked(names), one.amounts, one.areas) for one in objects.values()]
+    features, amounts, areas = zip(*found, strict=True)
+    return fit_fixations(features, amounts, areas, ridge)
+
+
+def _seen(gaze: dict[str, np.ndarray]) -> Seen:
+    features = dict(zip(map(str, gaze["glance_names"]), gaze["glance"].T, strict=True))
+    return Seen(features, gaze["glance_amounts"], gaze["glance_areas"])
+
+
+def _saliency(path: Path, weights: dict[str, float]) -> np.ndarray:
+    return GlanceDetector(GLANCE).saliency(read_mesh(path), None, Options(LearnedWeights({GLANCE: weights})))
+
+
+VIEWS: dict[str, Callable[[Mesh], Sequence[Viewpoint]]] = {
+    "best": best_viewpoints,
+    "four": lambda _: FOUR,
+    "twelve": lambda _: TWELVE,
+}
+
+
+def check_views(names: Sequence[str]) -> None:
+    """Raises ValueError for the name of a set of viewpoints that does not exist."""
+    for name in names:
+        if name not in VIEWS:
+            raise ValueError(f"attention_checks.views: {name!r} is not one of {', '.join(VIEWS)}")
+
+
+def process_views(name: str, folder: Path, data: Path, views: Sequence[str]) -> Rows:
+    """Rows of NSS and AUC of one object: the plain average of all nine channels, from each set of viewpoints."""
+    cv2.setNumThreads(1)  # a worker is one core, and `seconds` are of one core
+    mesh = read_mesh(data / "meshes" / f"{name}.npz")
+    gaze = read_arrays(data / "weights/ground_truth" / f"{name}.npz")
+    truth = GroundTruth(gaze["amounts"], gaze["density"], gaze["areas"])
+    rows = []
+    for one in views:
+        viewpoints = VIEWS[one](mesh)
+        with Stopwatch() as watch:
+            maps = compute_maps(mesh, CHANNELS, viewpoints, "raster")
+            assert maps is not None  # there are channels
+            saliency = np.add.reduce([maps.vertex_values(maps.maps[channel]) for channel in CHANNELS])
+        rows += [
+            {"item": name, "views": one, "method": "equal", "metric": metric.__name__, "seconds": watch.seconds}
+            | {"value": float(metric(saliency, truth))}
+            for metric in (nss, auc)
+        ]
+    return rows

@@ -1,0 +1,1 @@
+"""The engine of the pipeline: settings, rows, cache, statistics, parallel map."""

@@ -1,0 +1,258 @@
+"""Settings of the stages, and the workspace that holds them.
+
+params.yaml, checked against the typed schema of each section.
+
+The folder of the settings.
+
+Where a run works: the repository root, its settings, and the data set that a stage runs on.
+"""
+
+import argparse
+import difflib
+import importlib
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+from omegaconf import OmegaConf
+from omegaconf.errors import OmegaConfBaseException
+from yaml import YAMLError
+
+from haptic_glance.base.errors import errors_in_one_line
+
+FILE = Path("params.yaml")
+COMMON = {"profile": str, "out": str, "seed": int, "parallel": dict, "sets": list, "graph": dict, "report": dict}
+
+ABOVE_0 = np.nextafter(0, 1)
+RANGES = {  # the last part of a setting's name: the least and the greatest of its numbers, in every section
+    **dict.fromkeys(
+        ("azimuths", "batch", "cells", "coarse_cells", "combinations", "copies", "count", "draws", "epochs", "frames",
+         "hybrid_pictures", "image_epochs", "most", "new_object_touches", "normal_epochs", "parallels", "repetitions",
+         "samples", "screen", "search_epochs", "simulated", "size", "steps", "touches", "trainings", "views",
+         "viewer_count", "viewer_faces"), (1, np.inf)
+    ),
+    **dict.fromkeys(("drawn", "hold", "limit", "real", "rings", "slack", "smoothing"), (0, np.inf)),
+    **dict.fromkeys(
+        ("distances", "factors", "finetuned_rates", "frozen_rates", "hybrid_rate", "near", "penalties", "pitch",
+         "pitches", "radius", "rate", "rates", "tolerance", "width"), (ABOVE_0, np.inf)
+    ),
+    **dict.fromkeys(("confidences", "momentum", "train_share", "validation_share"), (0, 1)),
+    "folds": (2, np.inf), "angle": (ABOVE_0, 180),
+}  # fmt: skip
+
+Settings = TypeVar("Settings")
+
+
+class ParamsError(ValueError):
+    """A setting that no schema knows, or of the wrong type; the message names the nearest right one."""
+
+
+def load_params(path: str | Path = FILE) -> dict[str, Any]:
+    """The whole params.yaml as plain dicts; {} where there is none."""
+    path = Path(path)
+    if not path.exists():
+        return {}
+    try:
+        values = OmegaConf.to_container(OmegaConf.load(path))
+    except (YAMLError, OmegaConfBaseException, ValueError, RecursionError) as error:
+        raise ParamsError(f"{path} is not valid YAML: {' '.join(str(error).split())}") from None
+    if not isinstance(values, dict):
+        raise ParamsError(f"{path} must hold sections, not a {type(values).__name__}")
+    return {str(key): value for key, value in values.items()}
+
+
+def section_of(schema: type) -> str:
+    """The section that a schema belongs to: `lod` for stages.lod.Params."""
+    return schema.__module__.split(".")[-1]
+
+
+def schema_of(section: str) -> type:
+    """The typed schema of a section: the dataclass `Params` of stages/SECTION/__init__.py."""
+    return importlib.import_module(f"stages.{section}").Params
+
+
+def check_section(schema: type[Settings], values: Any) -> Settings:
+    """Checks the values of a section against its schema and returns them as an instance of it."""
+    section = section_of(schema)
+    if not isinstance(values, dict):
+        raise ParamsError(f"{section}: {values!r} is not a section of settings")
+    typed = OmegaConf.structured(schema)
+    known: Any = OmegaConf.to_container(typed, throw_on_missing=False)
+    _check_keys(section, values, list(known))
+    _check_ranges(section, values)
+    try:
+        return OmegaConf.to_object(OmegaConf.merge(typed, values))  # type: ignore[return-value]  # of the schema's type
+    except OmegaConfBaseException as error:
+        key = f"{section}.{error.full_key}" if error.full_key else section
+        raise ParamsError(f"{key}: {str(error).splitlines()[0]}") from None
+    except ValueError as error:  # a schema's own check
+        raise ParamsError(f"{section}: {error}") from None
+
+
+def check_common(values: dict[str, Any]) -> None:
+    """Checks the names of the sections and the settings that all stages share."""
+    if "graph" not in values or "sets" not in values:
+        raise ParamsError(f"{FILE} lacks the section graph or sets: run `python -m stages.compose` to make it anew")
+    _check_keys("", values, [*COMMON, *values["sets"]])
+    for key, kind in COMMON.items():
+        if key in values and not isinstance(values[key], kind):
+            raise ParamsError(f"{key}: {values[key]!r} is not of type {kind.__name__}")
+    if values.get("seed", 0) < 0:
+        raise ParamsError(f"seed: {values['seed']} is negative")
+
+
+def _check_ranges(where: str, values: dict[str, Any]) -> None:
+    """ParamsError for a number outside the range of its setting; numbers may stand in lists, or one a name."""
+    for key, value in values.items():
+        if isinstance(value, dict) and key not in RANGES:
+            _check_ranges(f"{where}.{key}", value)
+            continue
+        least, most = RANGES.get(key, (-np.inf, np.inf))
+        for number in _numbers(value):
+            if not least <= number <= most:
+                low = "above 0" if least == ABOVE_0 else f"{least:g} or more"
+                said = low if most == np.inf else f"between {0 if least == ABOVE_0 else least:g} and {most:g}"
+                raise ParamsError(f"{where}.{key}: {number:g} must be {said}")
+
+
+def _numbers(value: Any) -> Iterator[float]:
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        yield value
+    for part in value.values() if isinstance(value, dict) else value if isinstance(value, list) else ():
+        yield from _numbers(part)
+
+
+def _check_keys(where: str, values: dict[str, Any], known: list[Any]) -> None:
+    for key in values:
+        if key not in known:
+            name = f"{where}.{key}" if where else key
+            near = difflib.get_close_matches(key, known, n=1, cutoff=0.5)
+            hint = f"did you mean {where + '.' if where else ''}{near[0]}?" if near else f"known: {', '.join(known)}"
+            raise ParamsError(f"unknown setting {name}: {hint}")
+
+
+def conf_folder() -> Path:
+    """The folder conf/ of the clone."""
+    return Path(__file__).parents[2] / "conf"
+
+
+PUBLISHED = "reports"
+
+
+@dataclass(frozen=True)
+class Workspace:
+    """Everything that a stage reads or writes lies below `root`; what belongs to a data set lies below its name.
+
+    root: the folder that holds params.yaml. dataset: a set that params.yaml names, empty for what is about all sets.
+    """
+
+    root: Path
+    dataset: str = ""
+
+    @property
+    def data(self) -> Path:
+        """data/SET: a folder for each stage."""
+        return self.root / "data" / self.dataset
+
+    @property
+    def reports(self) -> Path:
+        """The folder of tables, figures, measurements and metrics: that of the published ones, or the run's own."""
+        return self.root / self.params.get("out", PUBLISHED)
+
+    @property
+    def published(self) -> Path:
+        """The folder of the published results, which git keeps; only the published configuration writes there."""
+        return self.root / PUBLISHED
+
+    @property
+    def measurements(self) -> Path:
+        """measurements/SET below `reports`: a table of rows for each stage."""
+        return self.reports / "measurements" / self.dataset
+
+    @property
+    def metrics(self) -> Path:
+        """metrics/SET below `reports`: a file of a few numbers for each stage."""
+        return self.reports / "metrics" / self.dataset
+
+    @property
+    def build(self) -> Path:
+        """What may be deleted at any time: digests of code, the cache of objects, unfinished runs."""
+        return self.root / "build"
+
+    @cached_property
+    def params(self) -> dict[str, Any]:
+        """The whole params.yaml; ParamsError where there is none or it lacks the common sections."""
+        path = self.root / FILE
+        if not path.exists():
+            raise ParamsError(f"there is no {path}: change to the repository root, or run `python -m stages.compose`")
+        values = load_params(path)
+        check_common(values)
+        return values
+
+    @property
+    def seed(self) -> int:
+        """The seed of all random numbers; an item's name joins it."""
+        return self.params["seed"]
+
+    @property
+    def parallel(self) -> dict[str, Any]:
+        """How items run side by side: backend and workers."""
+        return self.params.get("parallel", {})
+
+    @property
+    def sets(self) -> list[str]:
+        """The data sets that are switched on, in order."""
+        return list(self.params["sets"])
+
+    def on(self, dataset: str) -> "Workspace":
+        """The same root, another data set."""
+        return Workspace(self.root, dataset)
+
+    def settings(self, schema: type[Settings]) -> Settings:
+        """The settings of one stage as an instance of its schema: `workspace.settings(stages.lod.Params)`.
+
+        Raises ParamsError for a section that is absent, a key that the schema does not have, or a wrong type.
+        """
+        section = section_of(schema)
+        if self.dataset and self.dataset not in self.sets:
+            raise ParamsError(f"{self.dataset} is not switched on; {FILE} names {', '.join(self.sets)}")
+        values = self.params.get(self.dataset, {}) if self.dataset else self.params
+        if section not in values:
+            where = f"{self.dataset}.{section}" if self.dataset else section
+            raise ParamsError(f"{self.root / FILE} has no section {where}: run `python -m stages.compose` anew")
+        return check_section(schema, values[section])
+
+
+def workspace_of_arguments(doc: str | None, stage: str) -> Workspace:
+    """The workspace that the command line of a stage names: `python -m stages.lod household`.
+
+    Answers --help with the stage's docstring, and lets errors of input and settings end in one line. A stage has no
+    other setting on its command line: they live in params.yaml. Without a set, the stage runs on the only one that it
+    is switched on for.
+    """
+    first, _, rest = (doc or "").partition("\n")
+    parser = argparse.ArgumentParser(
+        prog=f"python -m stages.{stage}",
+        description=first,
+        epilog=rest,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("dataset", nargs="?", default="", help="a data set that params.yaml names")
+    parser.add_argument("--root", type=Path, default=Path("."), help="the folder of params.yaml (default: this one)")
+    given = parser.parse_args()
+    errors_in_one_line(stage)
+    workspace = Workspace(given.root)
+    if stage not in workspace.params["graph"]:
+        return workspace  # a stage about all sets
+    return workspace.on(given.dataset or _only_set(workspace, stage))
+
+
+def _only_set(workspace: Workspace, stage: str) -> str:
+    known = list(workspace.params["graph"][stage])
+    if len(known) != 1:
+        choice = f"one of {', '.join(known)}" if known else "none is switched on: see `python -m stages.compose --help`"
+        raise ValueError(f"name the data set: {choice}")
+    return known[0]

@@ -1,0 +1,282 @@
+"""Statistics: intervals, power, pooled differences, breaking points.
+
+The interval of a mean, for numbers that get compared.
+
+How many units would decide what is open.
+
+Random-effects pooling: one effect from those of several data sets, and how much the sets differ.
+
+Breaking point: the severity of a perturbation at which half of a score's lead is lost.
+
+Which items train, which validate and which test.
+"""
+
+from collections.abc import Callable, Sequence
+from functools import cache
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy import stats
+
+from .rows import by_unit
+
+Statistic = Callable[..., np.floating | np.ndarray]
+
+RESAMPLES = 2000  # the interval's own error is then below a tenth of its width
+SMALLEST = 1e-3  # p-value
+ROUNDED = 1e-3  # of the largest value: differences of measurements with six digits are no more equal than this
+
+
+def interval(
+    values: ArrayLike, shared: float = 0.0, seed: int = 0, level: float = 0.95, statistic: Statistic = np.mean
+) -> tuple[float, float, float]:
+    """(mean, low, high): bootstrap percentile interval of the values (k,), NaN left out, widened twice about the mean.
+
+    A Series whose index has a level `item` counts by unit (stages.engine.rows): copies of a shape are one. First it is
+    widened by t(n - 1) / z * sqrt(n / (n - 1)), since the percentile interval (Efron and Tibshirani, An Introduction to
+    the Bootstrap, 1993, chapter 13) is too narrow for few values (Hesterberg, What teachers should know about the
+    bootstrap, The American Statistician 2015, section 3.3). Then by sqrt(1 + n * shared) where the values are repeated
+    splits of the same data: without it an interval shrinks to nothing by splitting more often (Nadeau and Bengio,
+    Inference for the generalization error, 2003). shared: test over training share of a split
+    (haptic_glance.know.split); 0 for values of independent items. Fewer than two values, or values without spread: no
+    interval (NaN), since a resample of equal values says nothing of how others would differ. statistic: np.median,
+    say, in the mean's place. Raises ValueError for values of another shape.
+    """
+    values = of_units(values)
+    n = len(values)
+    if n == 0:
+        return np.nan, np.nan, np.nan
+    mean = float(statistic(values, axis=0))
+    if n == 1 or np.ptp(values) <= ROUNDED * np.abs(values).max():
+        return mean, np.nan, np.nan
+    picks = np.random.default_rng(seed).integers(n, size=(RESAMPLES, n))
+    tail = (1 + level) / 2
+    low, high = np.quantile(statistic(values[picks], axis=1), [1 - tail, tail])
+    few = stats.t.ppf(tail, n - 1) / stats.norm.ppf(tail) * np.sqrt(n / (n - 1))
+    widen = few * np.sqrt(1 + n * shared)
+    return mean, float(mean - (mean - low) * widen), float(mean + (high - mean) * widen)
+
+
+def of_units(values: ArrayLike) -> np.ndarray:
+    """The finite values as `interval` counts them: those of a Series over items by unit, all others each by itself."""
+    known: Any = values  # a Series, maybe; the core install has no pandas to ask
+    if "item" in getattr(getattr(known, "index", None), "names", ()):
+        known = by_unit(known)
+    found = np.asarray(known, dtype=np.float64)
+    if found.ndim != 1:
+        raise ValueError(f"values must have shape (k,), got {found.shape}")
+    return found[np.isfinite(found)]
+
+
+def p_value(values: ArrayLike, shared: float = 0.0, seed: int = 0) -> float:
+    """Two-sided: 1 less the level at which the `interval` of the values (k,) just touches zero; NaN without interval.
+
+    Not below SMALLEST, which is what RESAMPLES draws can tell.
+    """
+    values = of_units(values)
+    levels = np.array([SMALLEST, 1 - SMALLEST])  # searched by halving, since an interval widens with its level
+    if not np.isfinite(interval(values, shared, seed)[1]):
+        return np.nan
+    while np.ptp(levels) > SMALLEST:
+        low, high = interval(values, shared, seed, level=float(levels.mean()))[1:]
+        levels[0 if low > 0 or high < 0 else 1] = levels.mean()
+    return float(1 - levels.mean())
+
+
+def discoveries(p_values: ArrayLike, rate: float = 0.05) -> np.ndarray:
+    """(k,) bool: which of the p-values (k,) hold with a false discovery rate; NaN never does.
+
+    Benjamini and Hochberg, Controlling the false discovery rate, 1995, by scipy.
+    """
+    p_values = np.asarray(p_values, dtype=np.float64)
+    known = np.isfinite(p_values)
+    found = np.zeros(len(p_values), dtype=bool)
+    if known.any():
+        found[known] = stats.false_discovery_control(p_values[known]) <= rate
+    return found
+
+
+def interval_metrics(values: ArrayLike, seed: int = 0) -> dict[str, float]:
+    """{mean, low, high} of `interval`, rounded for a metric file; what is not finite is left out."""
+    ends = zip(("mean", "low", "high"), interval(values, seed=seed), strict=True)
+    return {key: round(value, 6) for key, value in ends if np.isfinite(value)}
+
+
+MOST = 10_000  # units; what needs more is hardly an effect
+
+
+@cache
+def _quantiles() -> np.ndarray:
+    return stats.t.ppf(0.975, np.arange(1, MOST))
+
+
+def needed(spread: float, distance: float, shared: float = 0.0) -> float:
+    """The fewest units whose 95 % interval is no wider than `distance` to either side; infinite beyond MOST.
+
+    By Student's interval at the present spread, the standard deviation of the units: t(n - 1) * spread * sqrt(1 / n +
+    shared). distance: of the present mean from what would decide it. shared: as in
+    `stages.engine.statistics.interval`: of repeated splits that share much even infinitely many may not decide.
+    """
+    counts = np.arange(2, MOST + 1)
+    enough = _quantiles() * spread * np.sqrt(1 / counts + shared) <= distance
+    return float(counts[enough.argmax()]) if enough.any() else np.inf
+
+
+ROUNDS = 1000  # of the search for the variance between sets; tens are enough but where it is next to zero
+
+
+class Pooled(NamedTuple):
+    """A pooled effect: its standard error with degrees of freedom, and how the sets vary.
+
+    between: the variance between sets. i2: its share of the variation of the sets' effects, 0 to 1. differ: p-value of
+    Cochran's Q, that all sets have one effect.
+    """
+
+    mean: float
+    error: float
+    freedom: float
+    between: float
+    i2: float
+    differ: float
+
+    def interval(self, level: float = 0.95) -> tuple[float, float, float]:
+        """(mean, low, high), by Student's t."""
+        half = float(stats.t.ppf((1 + level) / 2, self.freedom)) * self.error
+        return self.mean, self.mean - half, self.mean + half
+
+    @property
+    def p_value(self) -> float:
+        """Two-sided, of no effect."""
+        return float(2 * stats.t.sf(abs(self.mean) / self.error, self.freedom))
+
+
+def pool(means: Sequence[float], errors: Sequence[float], freedoms: Sequence[float]) -> Pooled:
+    """The random-effects mean of the effects of k sets, (k,) with their standard errors and degrees of freedom.
+
+    The variance between sets is that of restricted maximum likelihood. Where it is above zero and there are three sets
+    or more, the error is Hartung and Knapp's (2001) with k - 1 degrees of freedom: it carries to other sets. That error
+    is too small where sets agree by luck, and therefore never taken below the plain one (Roever, Knapp and Friede,
+    BMC Medical Research Methodology 2015). Else the error is the plain one, sqrt(1 / sum of weights), with the degrees
+    of freedom of Welch and Satterthwaite. Of two sets nobody knows the spread of sets: it is about these two. Raises
+    ValueError for fewer than two sets, or an error that is not above zero.
+    """
+    effects, within = np.asarray(means, dtype=np.float64), np.asarray(errors, dtype=np.float64) ** 2
+    k = len(effects)
+    if k < 2 or not (within > 0).all():
+        raise ValueError(f"pooling needs two sets or more with errors above zero, got the errors {list(errors)}")
+    weights = 1 / within
+    q = float(weights @ (effects - weights @ effects / weights.sum()) ** 2)
+    typical = (k - 1) / (weights.sum() - (weights**2).sum() / weights.sum())  # variance within (Higgins, Thompson 2002)
+    between = variance_between(effects, within)
+    weights = 1 / (within + between)
+    mean = float(weights @ effects / weights.sum())
+    error, freedom = weights.sum() ** -0.5, weights.sum() ** 2 / (weights**2 / np.asarray(freedoms)).sum()
+    if between > 0 and k > 2:
+        error, freedom = error * max(1.0, float(weights @ (effects - mean) ** 2) / (k - 1)) ** 0.5, k - 1
+    shares = between / (between + typical), stats.chi2.sf(q, k - 1)
+    return Pooled(mean, float(error), float(freedom), between, *map(float, shares))
+
+
+def variance_between(effects: np.ndarray, within: np.ndarray) -> float:
+    """The variance between sets by restricted maximum likelihood (Viechtbauer 2005); effects, within: (k,)."""
+    found = float(effects.var(ddof=1))
+    for _ in range(ROUNDS):
+        weights, before = 1 / (within + found), found
+        mean = weights @ effects / weights.sum()
+        step = (weights**2 @ ((effects - mean) ** 2 - within)) / (weights**2).sum() + 1 / weights.sum()
+        found = max(0.0, float(step))
+        if abs(found - before) <= 1e-9 * (found + within.min()):
+            break
+    return found if found > 1e-6 * within.min() else 0.0
+
+
+BROKEN = 0.5  # share of the lead that is left at the breaking point
+
+
+def lead_left(accuracy: ArrayLike, clean: float, chance: float) -> np.ndarray:
+    """The share of the lead over chance that is left: 1 for the undisturbed accuracy `clean`, 0 at chance.
+
+    accuracy: any shape. NaN if `clean` is at chance or below, since there is no lead to lose.
+    """
+    lead = np.asarray(accuracy, dtype=np.float64) - chance
+    return lead / (clean - chance) if clean > chance else np.full_like(lead, np.nan)
+
+
+def breaking_point(severities: Sequence[float], left: Sequence[float], unharmed: float) -> float:
+    """The mildest severity at which less than half is left, linearly interpolated; NaN if there is none.
+
+    severities (s,): from mild to harsh, rising or falling; left (s,): a share such as that of `lead_left` or the
+    repeatability; unharmed: the severity that changes nothing, where the share is 1.
+    """
+    return float(_first_falls(severities, np.asarray(left, dtype=np.float64)[None], unharmed)[0])
+
+
+def breaking_interval(
+    severities: Sequence[float], left: ArrayLike, unharmed: float, seed: int = 0
+) -> tuple[float, float, float]:
+    """(breaking point of the mean over units, its 95 % interval from mild to harsh); NaN is beyond the harshest.
+
+    left (n, s): of each unit at each severity, NaN where it was not measured. The units are resampled, and an end of
+    the interval is censored where so many resamples do not break. The ends are quantiles at levels that are widened for
+    few units (`expanded_levels`). Fewer than two units: both ends are the breaking point.
+    """
+    left = np.atleast_2d(np.asarray(left, dtype=np.float64))
+    left = left[np.isfinite(left).any(axis=1)]
+    at = float(_first_falls(severities, resampled_means(left, np.ones((1, len(left)))), unharmed)[0])
+    if len(left) < 2:
+        return at, at, at
+    sign = 1 if severities[-1] >= unharmed else -1  # harsher is more, or less
+    found = sign * _first_falls(severities, resampled_means(left, resamples(len(left), seed)), unharmed)
+    found[np.isnan(found)] = np.inf
+    tail = expanded_levels(len(left))
+    low, high = np.quantile(found, tail[0], method="lower"), np.quantile(found, tail[1], method="higher")
+    mild, harsh = (sign * float(end) if np.isfinite(end) else float("nan") for end in (low, high))
+    return at, mild, harsh
+
+
+def resamples(units: int, seed: int = 0) -> np.ndarray:
+    """(RESAMPLES, units) f8: how often each unit is in each bootstrap resample."""
+    return np.random.default_rng(seed).multinomial(units, np.full(units, 1 / units), RESAMPLES).astype(np.float64)
+
+
+def resampled_means(values: np.ndarray, counts: np.ndarray) -> np.ndarray:
+    """(r, k) means of values (n, k) over the units that counts (r, n) name; NaN left out, NaN where nothing is left."""
+    known = np.isfinite(values)
+    with np.errstate(invalid="ignore"):
+        return (counts @ np.where(known, values, 0.0)) / (counts @ known)
+
+
+def expanded_levels(units: int, level: float = 0.95) -> tuple[float, float]:
+    """(low, high) quantiles of a bootstrap of `units` units whose interval has this level in spite of few units.
+
+    The plain percentile interval is too narrow by t / z * sqrt(n / (n - 1)). Quantiles farther out mend that, the
+    expanded percentile interval of Hesterberg (What teachers should know about the bootstrap, The American Statistician
+    2015), and an end may be censored.
+    """
+    tail = float(stats.norm.cdf(np.sqrt(units / (units - 1)) * stats.t.ppf((1 - level) / 2, units - 1)))
+    return tail, 1 - tail
+
+
+def _first_falls(severities, left, unharmed):
+    """(r,) breaking points of curves (r, s); NaN where a curve never falls below BROKEN, or falls after a NaN."""
+    at = np.array([unharmed, *severities], dtype=np.float64)
+    left = np.hstack([np.ones((len(left), 1)), left])
+    k, rows = (left < BROKEN).argmax(axis=1), np.arange(len(left))  # 0 where it never falls
+    before, after = left[rows, k - 1], left[rows, k]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        found = at[k - 1] + (before - BROKEN) / (before - after) * (at[k] - at[k - 1])
+    return np.where(k > 0, found, np.nan)
+
+
+class Split(NamedTuple):
+    """Ids of items: `train` and `test` are disjoint and hold all; `validation`, a part of `train`, chooses settings."""
+
+    train: np.ndarray
+    validation: np.ndarray
+    test: np.ndarray
+
+    @property
+    def fit(self) -> np.ndarray:
+        """The part of `train` that is not in `validation`."""
+        return np.setdiff1d(self.train, self.validation)

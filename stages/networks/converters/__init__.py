@@ -1,1 +1,0 @@
-"""Conversions of published weight files, one per file, to the weights of the architectures here."""

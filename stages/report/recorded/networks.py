@@ -1,0 +1,197 @@
+"""Networks on recorded touches.
+
+Networks for photographs on recorded touches: all in a table, those of T tables 5.1, 5.2 and 5.5, and their costs.
+
+How far simulated imprints help to recognise real touches: a table, and a figure of two classifiers.
+"""
+
+from itertools import pairwise
+from typing import Any
+
+import pandas as pd
+from matplotlib.axes import Axes
+
+from haptic_glance.base.timing import CLOCK
+from haptic_glance.know.split import Split, shared_by
+from stages.engine.statistics import interval
+from stages.report.drawing import CYCLE, GREY, INK, MARKERS, label, place_names, plain_logarithm, plt
+from stages.report.items import Figure, Table
+from stages.report.networks import MODES, PRINTED, STARTS, origin
+from stages.report.pareto import NOISE, ON, placed, ticks
+from stages.report.results import Results, some
+from stages.report.tables import Ranking, grid, means, percent, records, signed, with_interval
+
+from .rows import CLASSICAL, DATA, OVER, SPLITS, measured, measured_lines
+
+ABSENT = (
+    "Not run: the data set is not at hand. Its reader is tested on files in its layout; "
+    "`experiment=recorded_touches` says how to switch it on."
+)
+COSTS = {
+    "parameters": ("parameters, millions", 1e6),
+    "operations": ("multiply-adds an image, billions", 1e9),
+    "milliseconds": ("milliseconds an image, one thread", 1.0),
+}
+SIZE = 96  # pixels a side at which the recorded touches are seen
+SLACK = 0.02  # accuracy that the smallest network may lack of the best one's
+SETTING = {"data": "pressure", "split": Split.BLOCKS, "weights": "imagenet", "mode": "frozen", "size": SIZE}
+
+
+def build(results: Results) -> Table:
+    """Accuracy of each network, start and mode on each recording and split, with its gains over the controls."""
+    frame = measured_lines(results)
+    shown = [
+        {
+            "data": DATA.get(row.data, row.data),
+            "split": SPLITS.get(row.split, row.split),
+            "network": "features and kNN" if row.method == CLASSICAL[0] else label(row.method),
+            "starts from": origin(row.weights, row.pretrained) if row.weights in STARTS else "–",
+            "filters": f"{label(row.mode)}, {row.size} px" if row.mode else "–",
+            "accuracy, %": with_interval(row.accuracy, row.low, row.high, 100, 1),
+            "guessing, %": percent(row.guess, 1),
+            "over features and kNN": _gain(row.over_features, row.over_features_low, row.over_features_high),
+            "over random weights": _gain(row.over_random, row.over_random_low, row.over_random_high),
+            "over": f"{row.values} {'objects' if row.split in OVER else 'splits'}",
+        }
+        for row in records(frame)
+    ]
+    found = pd.DataFrame(shown)
+    answer = [name for name in map(str, found) if name not in ("guessing, %", "over")]
+    return Table(frame, found, best=Ranking("accuracy, %", among=["data", "split"]), answer=answer)
+
+
+def printed(data: str, thesis: str, results: Results) -> Table:
+    """Networks on one of the thesis's data sets: its own table, and ours where the data were at hand."""
+    figures = results.thesis(thesis).set_index("network")
+    rows = measured(results, "accuracy")
+    mine = rows[(rows["data"] == data) & (rows["split"] == Split.RANDOM) & (rows["weights"] == "imagenet")]
+    frame = pd.DataFrame({"network": list(PRINTED)})
+    shown = pd.DataFrame({"network": list(PRINTED.values())})
+    for mode in MODES:
+        own = mine[mine["mode"] == mode]
+        found = [interval(own[own["method"] == network]["value"], shared_by(Split.RANDOM)) for network in PRINTED]
+        frame[[mode, f"{mode}_low", f"{mode}_high"]] = found
+        frame[f"{mode}_thesis"] = figures.loc[shown["network"], f"acc_{mode}"].to_numpy()
+        size = "".join(f", {pixels} px" for pixels in own["size"].unique())
+        shown[f"{label(mode)}{size}: ours, %"] = [with_interval(*ends, 100, 1) for ends in found]
+        shown[f"{label(mode)}: thesis, %"] = [percent(share, 1) for share in frame[f"{mode}_thesis"]]
+    return Table(frame, shown, {"absent": "" if len(mine) else ABSENT})  # no ranking: the thesis's rows are printed
+
+
+def chart(results: Results) -> Figure:
+    """A panel for each cost, with the Pareto front; neighbouring touches are held out together."""
+    lines = measured_lines(results)
+    frame = lines[(lines[list(SETTING)] == pd.Series(SETTING)).all(axis=1)].rename(columns={"method": "network"})
+    frame = frame.merge(results.bench("networks"), on=["network", "size"])
+    some(frame, "no frozen network on the pressure images", "transfer", runnable=False)
+    enough = frame[frame["accuracy"] >= frame["accuracy"].max() - SLACK]
+    smallest = label(enough.loc[enough["parameters"].idxmin(), "network"])
+    figure, panels = plt.subplots(1, len(COSTS), figsize=(11.4, 3.8), sharey=True)
+    for axes, (words, _) in zip(panels, COSTS.values(), strict=True):
+        axes.set_xlabel(words)
+    panels[0].set_ylabel("accuracy, %")
+    figure.tight_layout()  # before names find their places
+    known = (100 * frame[["accuracy", "low", "high"]]).assign(name=frame["network"].map(label))
+    for axes, (cost, (_, unit)) in zip(panels, COSTS.items(), strict=True):
+        _draw(axes, known.assign(cost=frame[cost] / unit))
+    return Figure(figure, {"size": SIZE, "slack": 100 * SLACK, "smallest": smallest}, frame)
+
+
+def _gain(*points: float) -> str:
+    """Points gained [interval]; a dash where there is nothing to compare with."""
+    return signed(*(100 * value for value in points), places=1) if points[0] == points[0] else "–"
+
+
+def _draw(axes: Axes, frame: pd.DataFrame) -> None:
+    """frame: accuracy, low and high in per cent, cost and name."""
+    axes.set_xscale("log")
+    found = placed(frame, "cost", "accuracy", noise=NOISE[CLOCK])
+    front = found[found["on_front"] == ON].sort_values("cost")
+    axes.step(front["cost"], front["accuracy"], where="post", color=INK, lw=1, zorder=1)
+    across, up = front[["cost", "accuracy"]].to_numpy().repeat(2, axis=0).T
+    steps = pairwise(zip(across[1:], up[:-1], strict=True))
+    known = frame.dropna(subset=["low", "high"])
+    low, high = (zip(known["cost"], known[end], strict=True) for end in ("low", "high"))
+    axes.plot([known["cost"]] * 2, [known["low"], known["high"]], color="#0072B2", lw=1.2, alpha=0.5)
+    axes.plot(frame["cost"], frame["accuracy"], "o", color="#0072B2", ms=6, mec="white")
+    axes.margins(x=0.2)
+    axes.grid(True)
+    plain_logarithm(axes.xaxis)
+    axes.xaxis.set_major_locator(ticks(frame["cost"].max() / frame["cost"].min()))
+    names = zip(frame["name"], zip(frame["cost"], frame["accuracy"], strict=True), strict=True)
+    place_names(axes, names, frame[["cost", "accuracy"]].to_numpy(), [*zip(low, high, strict=True), *steps])
+
+
+BY = ["training", "simulation", "aligned", "touches", "classifier"]
+SIMULATIONS = {
+    "none": "none", "array": "the thesis's array", "resting": "resting", "resting_skin": "resting, skin",
+    "resting_grain": "resting, skin, gain and grain", "resting_small": "resting, objects at 56 %",
+}  # fmt: skip
+SHOWN = "knn"  # the best of the five on real touches
+PANELS = (SHOWN, "deep_learning")  # and the one that simulation might help to train
+
+
+def build_table(results: Results) -> Table:
+    """Accuracy of kNN by kind of simulated imprints and number of real touches."""
+    frame, rows = _accuracies(results)
+    alone = rows[(rows["group"] != "all") & (rows["training"] == "simulated")]
+    shares = alone.groupby(["simulation", "aligned", "group"])["value"].mean()
+    way: Any = shares.groupby(level=[0, 1]).mean().idxmax()
+    said = [f"{label(name)} {100 * share:.0f}" for name, share in shares[way].sort_values(ascending=False).items()]
+    mine = frame[frame["classifier"] == SHOWN].sort_values("touches", kind="stable")
+    mine["simulated imprints"] = [*map(_way, mine["simulation"], mine["aligned"])]
+    wide = grid(mine, "simulated imprints", "touches", head=lambda count: f"{count} real touch{'es' * (count != 1)}, %")
+    wide = wide.replace("not run", "–")  # with neither real nor simulated touches there is nothing to run
+    wide = wide.sort_values("simulated imprints", key=lambda way: way != "none", kind="stable")
+    words = {"way": _way(*way), "shares": ", ".join(said), "best": _best(frame)}
+    return Table(frame, wide, words, Ranking(wide.columns[-1]))
+
+
+def build_figure(results: Results) -> Figure:
+    """Accuracy against the number of real touches in training, with and without simulated imprints."""
+    frame, _ = _accuracies(results)
+    frame = frame[frame["aligned"] == (frame["simulation"] != "none")]
+    kinds = [kind for kind in SIMULATIONS if kind in set(frame["simulation"])]
+    ticks = sorted(set(frame["touches"]))
+    figure, panels = plt.subplots(1, 2, figsize=(9.4, 4.0), sharey=True)
+    for axes, classifier in zip(panels, PANELS, strict=True):
+        for kind, marker, tint in zip(kinds, MARKERS, [INK, *CYCLE], strict=False):
+            mine = frame[(frame["simulation"] == kind) & (frame["classifier"] == classifier)].sort_values("touches")
+            place, real = [ticks.index(count) for count in mine["touches"]], kind == "none"
+            axes.plot(
+                place, 100 * mine["accuracy"], marker=marker, color=tint, lw=2.2 if real else 1.3, ms=4.5,
+                label="real touches alone" if real else SIMULATIONS[kind],
+            )  # fmt: skip
+            if real:
+                axes.fill_between(place, 100 * mine["low"], 100 * mine["high"], color=INK, alpha=0.12, lw=0)
+        axes.axhline(10, color=GREY, lw=0.9, ls=":")
+        axes.text(1.01, 10, "chance", transform=axes.get_yaxis_transform(), va="center", fontsize=8.5)
+        axes.set_xticks(range(len(ticks)), ticks)
+        axes.set(title=label(classifier), xlabel="real touches of each class in training", ylim=(0, 100))
+        axes.grid(axis="y")
+    panels[0].set_ylabel("accuracy on real touches, %")
+    explained = panels[0].get_legend_handles_labels()
+    figure.legend(*explained, loc="lower center", bbox_to_anchor=(0.5, 0.97), ncols=3, fontsize=9)
+    return Figure(figure)
+
+
+def _accuracies(results: Results) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """(accuracy, low and high by the columns BY, the rows); of real touches alone the simulation is "none"."""
+    rows = results.rows("simulated_to_real").fillna({"simulation": "none", "aligned": False}).astype({"aligned": bool})
+    found = means(rows[rows["group"] == "all"], BY, shared_by(Split.RANDOM), top=1.0)
+    return pd.DataFrame(found).rename(columns={"mean": "accuracy"})[[*BY, "accuracy", "low", "high"]], rows
+
+
+def _way(simulation: Any, aligned: Any) -> str:
+    return SIMULATIONS[simulation] + (", aligned" if aligned else "")
+
+
+def _best(frame: pd.DataFrame) -> str:
+    """The best of all classifiers by the number of real touches, with and without simulated imprints."""
+    top = frame.loc[frame.groupby(["training", "touches"])["accuracy"].idxmax()]
+    said = {}
+    for training, simulation, aligned, touches, classifier, share, *_ in top.itertuples(index=False):
+        way = f", {_way(simulation, aligned)}" if training == "both" else ""
+        said[training, touches] = f"{100 * share:.0f} ({label(classifier)}{way})"
+    counts = sorted(set(frame["touches"]) - {0})
+    return "; ".join(f"{count}: {said['real', count]} without, {said['both', count]} with" for count in counts)

@@ -1,0 +1,322 @@
+"""Tables: grids of cells, the best row, and their Markdown.
+
+From rows of measurements to cells of `mean [low, high]`, and from cells to a grid with the thesis's figures.
+
+Frames as text: numbers rounded for a reader, and Markdown tables.
+
+Figures in sentences: `{tables/scenes scene=shelf method=uniform: 100*saved .0f}` becomes what that cell holds.
+
+Which row of a table is the best.
+"""
+
+import math
+import numbers
+import re
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+import pandas as pd
+from numpy.typing import ArrayLike
+
+from stages.engine.statistics import interval
+
+from .drawing import label
+from .results import NotRun, Results
+
+
+def means(frame: pd.DataFrame, by: Sequence[str], shared: float = 0.0, top: float = np.inf) -> list[dict]:
+    """Mean, low, high, count and seconds of column `value`, one row for each combination of the columns `by`.
+
+    For values within 0..top, such as rates and errors: the interval is cut there. Seconds are the median, since the
+    first piece of work of a process also loads its libraries.
+    """
+    found, names = [], (*by, "mean", "low", "high", "values", "seconds")
+    for key, rows in grouped(frame.dropna(subset=["value"]), by):
+        numbers = (*within(over_items(rows), shared, top=top), len(rows), rows["seconds"].median())
+        found.append(dict(zip(names, (*key, *numbers), strict=True)))
+    return found
+
+
+def over_items(rows: pd.DataFrame) -> pd.Series:
+    """Column `value`, indexed by `item` where each row is about one: an interval then counts copies of a shape once."""
+    return rows.set_index("item")["value"] if "item" in rows and rows["item"].notna().all() else rows["value"]
+
+
+def grouped(frame: pd.DataFrame, by: Sequence[str]) -> Iterator[tuple[tuple[Any, ...], pd.DataFrame]]:
+    """(values of the columns `by`, rows) of each of their combinations, in the order of the rows; no empty cells."""
+    for key, group in frame.groupby(list(by), sort=False):
+        yield cast(tuple[Any, ...], key), group
+
+
+def records(frame: pd.DataFrame) -> Iterable[Any]:
+    """The rows of a frame as `itertuples` gives them, of whose values no type is known."""
+    return frame.itertuples()
+
+
+def within(values: ArrayLike, shared: float = 0.0, least: float = 0.0, top: float = 1.0) -> tuple[float, float, float]:
+    """(mean, low, high) with the interval cut at what the values can be: rates unless told otherwise."""
+    mean, low, high = interval(values, shared)
+    return mean, float(np.maximum(low, least)), float(np.minimum(high, top))
+
+
+def grid(
+    cells: pd.DataFrame,
+    down: str | Sequence[str],
+    across: str,
+    names: Mapping[str, Callable[[Any], Any]] | None = None,
+    head: Callable[[Any], str] = str,
+    places: int = 0,
+    printed: str = "",
+) -> pd.DataFrame:
+    """Cells pivoted for a reader: `62 [57, 67]`, shares in per cent, in the order of the cells.
+
+    cells: one row each, with the columns `down` and `across`, `accuracy` with `low` and `high`. names: how a value of a
+    column `down` is said; head: how one of `across` is. A cell that is absent is "not run"; in rows whose first value
+    is `printed`, a dash.
+    """
+    down = [down] if isinstance(down, str) else list(down)
+    wide = cells.assign(text=cell_texts(cells, places)).pivot(index=down, columns=across, values="text")
+    wide = wide.reindex(index=cells.set_index(down).index.unique(), columns=cells[across].unique())
+    gaps = pd.Series(np.where(wide.index.get_level_values(0) == printed, "–", "not run"), wide.index)
+    wide = wide.apply(lambda column: column.fillna(gaps)).rename(columns=head).rename_axis(columns=None).reset_index()
+    return wide.assign(**{column: wide[column].map(say) for column, say in (names or {}).items()})
+
+
+def cell_texts(cells: pd.DataFrame, places: int = 0) -> list[str]:
+    """The cells of `grid`."""
+    shares = cells[["accuracy", "low", "high"]].itertuples(index=False)
+    return [with_interval(*share, scale=100, places=places) for share in shares]
+
+
+def blocks(
+    cells: pd.DataFrame, down: Sequence[str], across: str, below: Mapping[str, Callable[[str], str]]
+) -> pd.DataFrame:
+    """Cells of `grid`, and below them those of further columns of theirs, each a block of rows of its own.
+
+    below: {column: from a value of the first column of `down` to what the block is called there}. Of cells that come
+    to stand in one place, such as the thesis's beside two protocols, the first stays.
+    """
+    parts, key = [cells], down[0]
+    for column, say in below.items():
+        block = cells.dropna(subset=[column])
+        block = block.assign(accuracy=block[column], low=np.nan, high=np.nan, **{key: block[key].map(say)})
+        parts.append(block.drop_duplicates([*down, across]))
+    return pd.concat(parts, ignore_index=True)
+
+
+def percent(share: float, places: int = 0, gap: str = "–") -> str:
+    """A share in per cent, `gap` where it is unknown."""
+    return f"{100 * share:.{places}f}" if share == share else gap
+
+
+def everywhere(results: Results, stage: str, what: str = "", **where: object) -> dict[str, pd.DataFrame]:
+    """{set: its rows as `Results.measured` reads them}: of all sets that have such rows.
+
+    Raises NotRun where none has: of `what`, or as the last set that was looked at.
+    """
+    found, absent = {}, NotRun(what or f"no measurements of {stage}", stage)
+    for dataset in results.datasets(stage):
+        try:
+            found[dataset] = results.measured(stage, dataset, **where)
+        except NotRun as missing:
+            absent = absent if what else missing
+    if not found:
+        raise absent
+    return found
+
+
+WORDS = ("not run", "infeasible", "")  # that stand in columns of numbers
+
+
+def number(value: Any, digits: int = 3) -> str:
+    """A number to `digits` significant digits without exponent clutter; a dash for NaN; other things as they are."""
+    if value is None or value != value:
+        return "–"
+    if isinstance(value, bool) or not isinstance(value, numbers.Real):
+        return str(value)
+    value = float(value)
+    if value.is_integer() and abs(value) < 1e7:
+        return f"{int(value):,}"
+    if 0 < abs(value) < 1e-4:
+        return f"{value:.{digits - 1}e}"
+    places = max(0, digits - 1 - math.floor(math.log10(abs(value))))
+    return f"{value:.{places}f}"
+
+
+def with_interval(mean: float, low: float, high: float, scale: float = 1, places: int | None = None) -> str:
+    """`mean [low, high]`, or the mean alone where the interval is unknown; "not run" without a mean."""
+    if mean != mean:
+        return "not run"
+    show = (lambda v: f"{v * scale:.{places}f}") if places is not None else (lambda v: number(v * scale))
+    return show(mean) if low != low else f"{show(mean)} [{show(low)}, {show(high)}]"
+
+
+def signed(mean: float, low: float, high: float, places: int = 2) -> str:
+    """`+0.83 [0.61, 1.05]`."""
+    mean, low, high = (round(value, places) + 0.0 for value in (mean, low, high))  # no minus before a zero
+    span = f" [{low:.{places}f}, {high:.{places}f}]" if low == low else ""
+    return f"{mean:+.{places}f}{span}"
+
+
+def as_text(frame: pd.DataFrame) -> pd.DataFrame:
+    """A frame of strings, numbers rounded to three significant digits."""
+    return frame.map(number)
+
+
+def markdown_table(frame: pd.DataFrame, bold: Iterable[bool] = ()) -> str:
+    """A GitHub table of a frame of strings; columns of numbers stand to the right. bold: of each row whether it is."""
+    marks = ["**" if row else "" for row in bold] or [""] * len(frame)
+    rows = [
+        [f"{mark}{text}{mark}" if (text := str(cell).replace("|", r"\|")) else "" for cell in row]
+        for mark, row in zip(marks, frame.itertuples(index=False), strict=True)
+    ]
+    rules = ["---:" if is_numeric(frame[column]) else "---" for column in frame.columns]
+    lines = [[str(column) for column in frame.columns], rules, *rows]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+def is_numeric(column: pd.Series) -> bool:
+    """True for a column of strings that hold numbers alone: signs, intervals, a dash or a few words are let through."""
+    return all(cell in WORDS or re.fullmatch(r"[-+–±\d.,:e\[\]· ]*", str(cell)) for cell in column)
+
+
+PLACE = re.compile(r"\{(\S+) ((?:[^:{}]|:(?! ))*): ([^{}]+)\}")
+PAIR = re.compile(r"(\w+)(!?=)(.*?)(?=\s+\w+!?=|\s*$)")
+CLAIMS = "claims"  # reports/claims.csv; all others are KIND/NAME
+QUALIFIED = ("depends on the reading", "not testable")  # verdicts without which a figure of a claim would mislead
+ROWS = "rows"  # in place of columns: how many rows there are
+ENDS = {"highest": pd.Series.idxmax, "lowest": pd.Series.idxmin}  # in place of a column: picks a row by the one named
+PREFIXES: dict[str, Callable[[float], float]] = {  # before a column's name -> what is shown of its number
+    "": lambda number: number,
+    "-": lambda number: -number,
+    "1-": lambda number: 1 - number,
+    "1/": lambda number: 1 / number,
+    "100*": lambda number: 100 * number,
+    "-100*": lambda number: -100 * number,
+    # of a difference in % of the mean of both sides: how many times the second the first has, and % less of it
+    "times:": lambda number: (200 - number) / (200 + number),
+    "less:": lambda number: 200 * number / (200 + number),
+}
+
+
+def filled(text: str, reports: Path) -> tuple[str, list[tuple[str, str]]]:
+    """(the text with its figures, [(KIND/NAME or claims, which row)] of each); LookupError where one is missing.
+
+    Which row: `column=value column!=value`, with `*` for any part of a value; of those left, `highest=column` or
+    `lowest=column` picks one. What: `rows` for their number; one column, a number or a name; or three: a mean and the
+    ends of its interval. Then, where wanted, `higher|lower`: the words for a difference above and below zero; and the
+    places, `.0f`.
+    """
+    sources = [(name, where) for name, where, _ in PLACE.findall(text)]
+    return PLACE.sub(lambda found: _figure(reports, *found.groups()), text), sources
+
+
+def _figure(reports: Path, name: str, where: str, what: str) -> str:
+    """`1.64 [1.41, 1.88]`, `0.4 [0.2, 0.6] higher`, one number, or a name."""
+    columns, words, places = parts_of(what)
+    found = _rows(reports / f"{name}.csv", where)
+    if columns == [ROWS]:
+        return f"{len(found):,}"
+    if len(found) != 1:
+        raise LookupError(f"{name} has {len(found)} rows with {where}")
+    row = found.iloc[0]
+    try:
+        mean, *ends = (_cell(row, column) for column in columns)
+    except ValueError:  # no number
+        return label(row[columns[0]])
+    known = ends and all(end == end for end in ends)
+    low, high = sorted(ends) if known else (float("nan"),) * 2
+    word = f" ({row['verdict']})" if name == CLAIMS and row.get("verdict") in QUALIFIED else ""
+    if mean != mean or (words and not known):
+        raise LookupError(f"{name} {where} has no {'interval' if mean == mean else 'value'}")
+    show = (lambda value: f"{value:,.{places}f}") if places else _shown
+    if words:
+        return _difference(mean, low, high, words, show) + word
+    return (show(mean) if low != low else f"{show(mean)} [{show(low)}, {show(high)}]") + word
+
+
+def parts_of(what: str) -> tuple[list[str], list[str], str]:
+    """(columns, the two words for a difference or none, places) of `mean low high NSS higher|NSS lower .2f`."""
+    text, _, places = what.strip().partition(" .")
+    found = re.fullmatch(r"(\S+ \S+ \S+) ([^|]+)\|([^|]+)", text)
+    columns, *words = found.groups() if found else (text,)
+    return columns.split(), words, places.removesuffix("f")
+
+
+def _difference(mean: float, low: float, high: float, words: list[str], show: Callable[[float], str]) -> str:
+    """`0.4 [0.2, 0.6] higher`; `neither higher nor lower beyond chance (0.1 [-0.2, 0.4])`."""
+    if low > 0:
+        return f"{show(mean)} [{show(low)}, {show(high)}] {words[0]}"
+    if high < 0:
+        return f"{show(-mean)} [{show(-high)}, {show(-low)}] {words[1]}"
+    return f"neither {words[0]} nor {words[1]} beyond chance ({show(mean)} [{show(low)}, {show(high)}])"
+
+
+def _shown(value: float) -> str:
+    return f"{value:,.0f}" if abs(value) >= 1000 else number(value)
+
+
+def _rows(path: Path, where: str) -> pd.DataFrame:
+    """The rows that agree with `where`, empty cells included; strings."""
+    if not path.exists():
+        raise LookupError(f"no {path.name}")
+    frame = pd.read_csv(path, dtype=str, keep_default_na=False)
+    for column, sign, value in PAIR.findall(where):
+        wanted = value if column in ENDS else column
+        if wanted not in frame:
+            raise LookupError(f"{path.name} has no column {wanted}")
+        if column in ENDS:
+            numbers = pd.to_numeric(frame[value]).dropna()
+            frame = frame.loc[[ENDS[column](numbers)]] if len(numbers) else frame[:0]
+        else:
+            frame = frame[[fnmatchcase(cell, value) == (sign == "=") for cell in frame[column]]]
+    return frame
+
+
+def _cell(row: pd.Series, wanted: str) -> float:
+    """A number of a row; ValueError where the cell holds a word."""
+    prefixes = "|".join(map(re.escape, sorted(PREFIXES, key=len, reverse=True)))
+    ((prefix, column),) = re.findall(rf"^({prefixes})(\S+)$", wanted)
+    if column not in row:
+        raise LookupError(f"no column {column}")
+    return PREFIXES[prefix](float(row[column] or "nan"))
+
+
+FIRST = re.compile(r"[+<]?\s*([-−]?\d[\d,]*(?:\.\d+)?(?:e[+-]?\d+)?)")  # number of a cell such as `+0.83 [0.61, 1.05]`
+
+
+@dataclass(frozen=True)
+class Ranking:
+    """By which column of what is shown a table is ranked.
+
+    lowest: whether less is better. among: columns; rows that agree in them are compared with each other alone. exempt:
+    names; a row that has one in any of its cells takes no part: a truth, a full model, what the thesis printed.
+    """
+
+    by: str
+    lowest: bool = False
+    among: Sequence[str] = ()
+    exempt: Collection[str] = ()
+
+    def best(self, text: pd.DataFrame) -> np.ndarray:
+        """(rows,) boolean of a frame of strings: the best, with those that are shown as equal to it; none if all are.
+
+        None either where the column was not run.
+        """
+        if self.by not in text:
+            return np.zeros(len(text), dtype=bool)
+        values = text[self.by].map(leading).mask(text.isin(list(self.exempt)).any(axis=1))
+        groups = values.groupby([text[column] for column in self.among] or np.zeros(len(text)), sort=False)
+        best, worst = ("min", "max") if self.lowest else ("max", "min")
+        top = groups.transform(best)
+        return ((values == top) & (top != groups.transform(worst))).to_numpy()
+
+
+def leading(cell: str) -> float:
+    """The first number of a cell; NaN of one that starts with a word or a dash."""
+    found = FIRST.match(cell)
+    return float(found[1].replace(",", "").replace("−", "-")) if found else np.nan

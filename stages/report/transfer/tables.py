@@ -1,0 +1,314 @@
+"""Tables of networks, claims, coarse imprints.
+
+T tables 5.3, 5.4 and 5.6: networks that learned by sight on imprints, whole or with some layers frozen.
+
+Claims of T5.4 to 5.6: what training on photographs is worth for touch, and which layers must learn.
+
+Why frozen filters are at chance on a 16 x 16 array in T table 5.3: one thing changed at a time.
+"""
+
+from contextlib import suppress
+from dataclasses import replace
+from itertools import product
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from scipy.stats import spearmanr
+
+from haptic_glance.know.split import shared_by
+from stages.engine.statistics import interval
+from stages.report.claims import Claim, reading
+from stages.report.claims_page import shared_notes
+from stages.report.drawing import label
+from stages.report.effects import statistic
+from stages.report.items import Table
+from stages.report.networks import (
+    COARSE,
+    FINE,
+    GUESS,
+    MODES,
+    NETWORK,
+    PASSES,
+    PRINTED,
+    SEEN,
+    SETS,
+    SPLITS,
+    STARTS,
+    THEIRS,
+    THESIS,
+    accuracy,
+    both,
+    everywhere,
+    of_passes,
+    origin,
+    seen,
+)  # fmt: skip
+from stages.report.results import NotRun, Results
+from stages.report.tables import Ranking, cell_texts, grid, grouped, percent, signed
+from stages.report.words import dataset_text
+
+CELL = {"accuracy": "", "low": "_low", "high": "_high", "values": "_values"}  # of an accuracy -> end of a column's name
+MODE_OF = {"all": "frozen", "none": "finetuned"}  # what the stage calls these rows of the thesis's table 5.6
+
+
+def networks(results: Results, data: str) -> Table:
+    """Accuracies of all networks on one kind of imprints, on every set and by passes, beside the thesis's."""
+    thesis = results.thesis(THESIS[data]).set_index("network")
+    rows = pd.concat(everywhere(results, *PASSES, data=data).values())
+    sources = list(dict.fromkeys(rows["dataset"]))
+    every = pd.concat([results.rows("transfer", source) for source in sources])
+    chance = every[every["metric"] == "chance"].groupby(["dataset", "split"])["value"].mean()
+    keys = ["dataset", "method", "weights", "mode", "split", "passes"]
+    groups, trained = dict(iter(rows.groupby(keys))), _trained(results, keys, data=data)
+    ran = {key[1:4] for key in groups}
+    looked = {key: seen(own) for key, own in grouped(of_passes(rows), ["dataset", "split"])}
+    settings = product(dict.fromkeys([*PRINTED, *rows["method"]]), STARTS, MODES)
+    kept = [one for one in settings if one in ran or (one[0] in PRINTED and one[1] == "imagenet")]
+    lines = []
+    for source, (network, weights, mode), split in product(sources, kept, SPLITS):
+        every = {passes: (source, network, weights, mode, split, passes) for passes in PASSES}
+        mine = groups.get(every["printed"], rows[:0])
+        cell, guess = accuracy(mine, split), chance.get((source, split), np.nan)
+        printed = weights == "imagenet" and split == "random" and network in PRINTED
+        lines.append({
+            "objects": source, "network": network, "weights": weights,
+            "pretrained": next(iter(mine["pretrained"].dropna()), None), "mode": mode, "split": split, **cell,
+            **_both_passes(every, groups, trained, split), "chance": guess,
+            "above_chance": cell["accuracy"] - guess, "seen": looked.get((source, split), ""),
+            "precision": next(iter(mine["precision"].dropna()), None) if "precision" in mine else None,
+            "thesis": thesis.loc[PRINTED[network], f"acc_{mode}"] if printed else np.nan,
+            "seconds": mine["seconds"].median(),
+        })  # fmt: skip
+    frame = pd.DataFrame(lines)
+    starts = zip(frame["weights"], frame.groupby("network")["pretrained"].transform("first"), strict=True)
+    down = {"starts from": [origin(*pair) for pair in starts], "filters": frame["mode"].map(label)}
+    cells = frame.assign(network=frame["network"].map(label), **down)
+    notes = [
+        f"Not run on {dataset_text(name)}: {note}." for name in sources for note in results.notes("transfer", name)
+    ]
+    words = {"networks": shared_notes(__package__, "networks"), "not_run": "\n".join(notes)}
+    words |= {"precision": _precisions(frame), "looked": _looked(frame), "guesses": _guesses(frame)}
+    heads = _heads(rows)
+    return Table(frame, _shown(cells, ["network", *down], heads), words, _ranking(frame, heads))
+
+
+def frozen_layers(results: Results) -> Table:
+    """Accuracies of MobileNetV2 by the layers that stay as sight left them, on every set, beside the thesis's."""
+    thesis = results.thesis("table_5_6_frozen_layers_mobilenetv2").set_index("frozen_layers")["accuracy"]
+    where = {"method": NETWORK, "weights": "imagenet", "data": FINE}
+    rows = pd.concat(everywhere(results, *PASSES, **where).values())
+    keys = ["dataset", "mode", "split", "passes"]
+    groups, trained, lines = dict(iter(rows.groupby(keys))), _trained(results, keys, **where), []
+    for source, (layers, printed), split in product(dict.fromkeys(rows["dataset"]), thesis.items(), SPLITS):
+        every = {passes: (source, MODE_OF.get(str(layers), layers), split, passes) for passes in PASSES}
+        mine = groups.get(every["printed"], rows[:0])
+        known = {"objects": source, "frozen_layers": layers, "split": split}
+        saw = of_passes(rows[(rows["dataset"] == source) & (rows["split"] == split)])
+        known |= accuracy(mine, split) | _both_passes(every, groups, trained, split)
+        lines.append(known | {"thesis": printed, "seen": seen(saw)})
+    frame, heads = pd.DataFrame(lines), _heads(rows)
+    shown = _shown(frame.rename(columns={"frozen_layers": "frozen layers"}), ["frozen layers"], heads)
+    return Table(frame, shown, {"looked": _looked(frame)}, _ranking(frame, heads))
+
+
+def _trained(results: Results, keys: list[str], **where: str) -> dict[tuple, pd.DataFrame]:
+    """{values of `keys`: train_accuracy and epochs of each repetition}, of the trainings that say them."""
+    found = {}
+    for metric in ("train_accuracy", "epochs"):
+        with suppress(NotRun):
+            rows = pd.concat(everywhere(results, *PASSES, metric=metric, **where).values())
+            found[metric] = rows.set_index([*keys, "repetition"])["value"]
+    return dict(iter(pd.DataFrame(found).groupby(level=list(range(len(keys)))))) if found else {}
+
+
+def _both_passes(
+    keys: dict[str, tuple], groups: dict[tuple, pd.DataFrame], trained: dict[tuple, pd.DataFrame], split: str
+) -> dict[str, Any]:
+    """Accuracy on the training touches, and the columns of the trainings until nothing improves."""
+    course = {passes: trained[key].mean() if key in trained else {} for passes, key in keys.items()}
+    late = groups.get(keys["converged"])
+    cell = accuracy(late, split) if late is not None else dict.fromkeys(CELL, np.nan)
+    values = {f"converged{end}": cell[name] for name, end in CELL.items()}
+    values |= {"training": course["printed"].get("train_accuracy", np.nan)}
+    values |= {"converged_training": course["converged"].get("train_accuracy", np.nan)}
+    return values | {"converged_epochs": course["converged"].get("epochs", np.nan)}
+
+
+def _precisions(frame: pd.DataFrame) -> str:
+    """Which networks computed in other numbers than float32, in a sentence; empty for none."""
+    other = frame[frame["precision"].notna() & (frame["precision"] != "float32")]
+    kinds = other[["network", "precision"]].drop_duplicates().itertuples(index=False)
+    return " ".join(f"{label(name)} computed in {numbers}." for name, numbers in kinds)
+
+
+def _guesses(frame: pd.DataFrame) -> str:
+    """What guessing gives on each set."""
+    shares = frame.groupby("objects", sort=False)["chance"].first().dropna()
+    return ", ".join(f"{dataset_text(str(name))} {percent(share, 1)} %" for name, share in shares.items())
+
+
+def _shown(cells: pd.DataFrame, down: list[str], heads: dict[tuple, str]) -> pd.DataFrame:
+    """Accuracies in per cent, a column for each set and split, then on the training touches, then the thesis's.
+
+    A second row of each setting is of trainings until nothing improves, where there are any of these.
+    """
+    late = {"accuracy": "converged", "low": "converged_low", "high": "converged_high", "training": "converged_training"}
+    parts = [cells.assign(passes="printed")]
+    if cells["converged"].notna().any():
+        setting = [cells[name] for name in down]
+        tried = cells[["accuracy", "converged"]].notna().any(axis=1).groupby(setting).transform("any")
+        theirs = cells["thesis"].groupby(setting).transform("max").notna()
+        asked = cells["converged"].notna() | (tried & theirs)
+        again = cells[asked].assign(**{name: cells[own] for name, own in late.items()}, passes="converged")
+        parts.append(again)
+    every, keys = pd.concat(parts).sort_index(kind="stable"), [*down, "passes"]
+    head = [heads[key] for key in zip(every["objects"], every["split"], strict=True) if key in heads]
+    wide = grid(every.assign(head=head), keys, "head", names={"passes": PASSES.__getitem__}, places=1)
+    thesis = every.groupby(keys, sort=False)["thesis"].max()  # printed beside touches at random alone
+    known = every[every["split"] == "random"].groupby(keys, sort=False)["training"].last()
+    return wide.assign(**{
+        "training touches, %": [percent(share, 1) for share in known],
+        "thesis, %": [percent(share, 1) for share in thesis],
+    })  # fmt: skip
+
+
+def _heads(rows: pd.DataFrame) -> dict[tuple, str]:
+    """{(set, split): head of its column}: with the pixels a side, and the most repetitions of a training."""
+    known, found = of_passes(rows, *PASSES), {}
+    for source, split in product(dict.fromkeys(known["dataset"]), SPLITS):
+        mine = known[(known["dataset"] == source) & (known["split"] == split)]
+        sizes = " and ".join(f"{pixels:.0f}" for pixels in sorted(mine["size"].dropna().unique()))
+        count = mine.groupby(["method", "weights", "mode", "passes"])["repetition"].nunique().max()
+        ends = f", {sizes} px, {count} {'folds' if split == 'objects' else 'splits'}" if len(mine) else ""
+        found[source, split] = f"{dataset_text(source)}, {SPLITS[split]}{ends}, %"
+    return found
+
+
+def _head(cells: pd.DataFrame) -> pd.Series:
+    return cells["objects"].map(dataset_text) + ", " + cells["split"].map(SPLITS)
+
+
+def _ranking(cells: pd.DataFrame, heads: dict[tuple, str]) -> Ranking:
+    """By the column of most measured rows."""
+    measured = cells.dropna(subset=["accuracy"])
+    place = (measured["objects"] + " " + measured["split"]).mode().iloc[0]
+    return Ranking(heads[tuple(place.rsplit(" ", 1))])
+
+
+def _looked(cells: pd.DataFrame) -> str:
+    """What the networks of each column saw."""
+    heads = (_head(cells) + ": " + cells["seen"])[cells["seen"] != ""]
+    return "; ".join(heads.unique())
+
+
+PHRASES = {
+    ("data", FINE): "imprints of 128 x 128", ("data", COARSE): "imprints of 16 x 16",
+    ("weights", "imagenet"): "ImageNet's weights", ("weights", "random"): "random weights",
+    ("mode", "finetuned"): "fine-tuned", ("mode", "frozen"): "frozen",
+    ("mode", "18:139"): "layers 18 to 139 frozen", ("mode", "1:134"): "layers 1 to 134 frozen",
+    ("metric", "accuracy"): "accuracy", ("metric", "chance"): "guessing",
+    ("passes", "printed"): "", ("passes", "converged"): "trained until nothing improves",
+}  # fmt: skip
+SETTING = {"method": NETWORK, "metric": "accuracy", "data": FINE, "weights": "imagenet", "passes": "printed"}
+CONVERGED = (  # splits first: objects share the trainings, so that their interval is too narrow
+    reading("trained until nothing improves", where={"passes": "converged"}),
+    reading("trained until nothing improves, over objects", where={"passes": "converged", "metric": "object_accuracy"},
+            over=("item",), within=("repetition", *SEEN), shared=0.0),
+)  # fmt: skip
+
+
+def claim(
+    key: str, section: str, sentence: str, column: str, first: str, second: str, margin: float = 0.0, **where: str
+) -> Claim:
+    """The claim of one value of a column over another. where: what both have in common that differs from SETTING."""
+    common = {name: value for name, value in (SETTING | where).items() if name != column}
+    return Claim(
+        key=key, section=section, sentence=sentence, stage="transfer", first={column: first}, second={column: second},
+        where=common, margin=margin, phrases=PHRASES, within=SEEN, dataset=SETS,
+        readings=CONVERGED,
+    )  # fmt: skip
+
+
+@statistic("later_convolutions_change_less")
+def later_change_less(results: Results, claim: Claim) -> pd.Series:
+    """Minus the rank correlation of a convolution's depth with its change, per training."""
+    changes = results.measured("transfer", claim.sets[0], metric="layer_weight_change", **claim.where)
+    return -changes.groupby("repetition")["value"].agg(lambda one: spearmanr(np.arange(len(one)), one)[0])
+
+
+OWN = both(
+    claim("tuned_over_frozen", "T5.4", "Fine-tuning on touch beats frozen filters.", "mode", "finetuned", "frozen"),
+    claim("frozen_over_chance", "T5.4", "Frozen visual filters tell simulated imprints apart better than guessing.",
+          "metric", "accuracy", "chance", mode="frozen"),
+    claim("frozen_coarse_by_chance", "T5.4", "With 16 x 16 sensels frozen filters are hardly better than guessing.",
+          "metric", "chance", "accuracy", GUESS, data=COARSE, mode="frozen"),
+    claim("fine_over_coarse_frozen", "T5.4", "A finer array makes touch more like sight: frozen filters gain by it.",
+          "data", FINE, COARSE, mode="frozen"),
+    claim("fine_over_coarse_tuned", "T5.6", "A finer array makes touch easier to recognise.",
+          "data", FINE, COARSE, mode="finetuned"),
+    claim("seen_over_random_frozen", "T5.4",
+          "Vision and touch share features: frozen filters trained on photographs help.",
+          "weights", "imagenet", "random", mode="frozen"),
+    claim("seen_over_random_tuned", "T5.4", "Vision and touch share features: sight is a better start for touch.",
+          "weights", "imagenet", "random", mode="finetuned"),
+    claim("early_and_late", "T5.5", "Tuning the first and the last layers alone beats frozen filters.",
+          "mode", "18:139", "frozen"),
+    claim("middle_frozen", "T5.5", "With layers 18 to 139 frozen touch is recognised as well as with all tuned, but "
+          "for one point.", "mode", "18:139", "finetuned", 1.0),
+)  # fmt: skip
+EARLY = [  # by layers that the default run does not freeze
+    replace(one, key=f"{one.key}_psb", dataset=THEIRS)
+    for one in both(
+        claim("early_decisive", "T5.5", "The early layers are decisive: tuning them too beats tuning the last ones "
+              "alone.", "mode", "18:139", "1:134"),
+    )
+]  # fmt: skip
+CHANGES = Claim(
+    key="earlier_change_more", section="T5.4", stage="transfer", dataset=SETS, phrases=PHRASES, scale=1.0,
+    shared=shared_by("random"),
+    sentence="Earlier convolutions are altered more for touch than later ones.", unit="rank correlation",
+    where={"method": NETWORK, "mode": "finetuned", "split": "random", "data": FINE, "weights": "imagenet",
+           "passes": "printed"},
+    statistic="later_convolutions_change_less", note="minus the rank correlation of depth and change",
+)  # fmt: skip
+CLAIMS = [*OWN, *EARLY, CHANGES]
+
+
+SETTINGS = {
+    "plain": "16 x 16 cells, learning rate searched",
+    "fine_array": "128 x 128 cells",
+    "three_channels": "the imprint in all three channels, not in red alone",
+    "blocks": "cells drawn as blocks, not smoothed",
+    "settled": "normalisation by the statistics of the touches",
+    "size_224": "images of 224 pixels, not 80",
+    "quarter_of_the_touches": "a quarter of the touches to learn from",
+    "noise_0.05": "noise of 5 % of full scale",
+    "noise_0.2": "noise of 20 %",
+    "skin": "a worse sensor: blur of a cell, noise of 10 %, 5 % dead cells",
+    "random_weights": "random weights",
+    "rate_of_table_5_4": "the learning rate of T table 5.4 (0.0001)",
+    "rate_of_table_5_3": "the learning rate of T table 5.3 (0.00001)",
+    "fine_array_rate_of_table_5_4": "128 x 128 cells, the rate of table 5.4",
+    "fine_array_rate_of_table_5_3": "128 x 128 cells, the rate of table 5.3",
+    "skin_and_rate": "the worse sensor and the rate of table 5.3",
+}
+
+
+def build(results: Results) -> Table:
+    """Accuracy of each setting, and what it gains over the first on the same splits."""
+    rows = results.rows("coarse_imprints", metric="accuracy")
+    values = rows.pivot(index="repetition", columns="setting", values="value")
+    share, lines = shared_by("random"), []
+    for setting in [name for name in SETTINGS if name in values]:
+        own, gain = values[setting], values[setting] - values["plain"]
+        lines.append((setting, own.count(), *interval(own, share), *interval(gain, share), rows["chance"].iloc[0]))
+    gains = ["gain", "gain_low", "gain_high"]
+    frame = pd.DataFrame(lines, columns=["setting", "values", "accuracy", "low", "high", *gains, "chance"])
+    shown = {
+        "what differs": frame["setting"].map(SETTINGS),
+        "accuracy, %": cell_texts(frame, 1),
+        "minus the first row, points": [signed(*gain, places=1) for gain in 100 * frame[gains].to_numpy()],
+        "chance, %": [percent(guess, 1) for guess in frame["chance"]],
+    }
+    return Table(frame, pd.DataFrame(shown), best=Ranking("accuracy, %"))
