@@ -166,13 +166,13 @@ def sha256(path: str | Path) -> str:
 
 
 def write_mesh(path: str | Path, mesh: Mesh) -> None:
-    """Writes a kit Mesh to .npz."""
+    """Writes a Mesh to .npz."""
     colors = {} if mesh.colors is None else {"colors": mesh.colors}
     write_arrays(path, vertices=mesh.vertices, faces=mesh.faces, **colors)
 
 
 def read_mesh(path: str | Path) -> Mesh:
-    """Reads a kit Mesh from .npz; ValueError that names it when it holds none."""
+    """Reads a Mesh from .npz; ValueError that names it when it holds none."""
     arrays = read_arrays(path)
     try:
         return Mesh(arrays["vertices"], arrays["faces"], arrays.get("colors"))

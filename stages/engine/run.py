@@ -96,8 +96,9 @@ class StageRun:
 
         `process` is a function of a module, or a functools.partial of one. What it makes depends on nothing but the
         code of the stage, its other arguments and the files that it reads: what agrees in all of them is taken from the
-        cache. It writes its files below its `folder` through kit.files, and may leave there what a killed run goes on
-        from. It may run on another machine, so everything it works on is among its arguments or in these files.
+        cache. It writes its files below its `folder` through haptic_glance.base.files, and may leave there what a
+        killed run goes on from. It may run on another machine, so everything it works on is among its arguments or in
+        these files.
 
         reads: files or folders relative to data/SET, `{}` stands for the name. Below the stage's own name lies what
         earlier calls of this run have made. Opening another file of either is an error. made_of: for each name what

@@ -79,10 +79,10 @@ class Claim:
     matched too, before the differences of a pair are averaged. relative: differences as shares of the mean of both
     sides. mean_of: the side ("first" or "second") that counts by the mean of all its rows. contrast: two selections;
     the difference under the first of them minus that under the second. scale, then margin: from differences to `unit`.
-    statistic: a name of stages.report.effects.STATISTICS. shared: test over training share (kit.split), or a
-    function of the set; None: that of the split where the pairs are repetitions, else 0. phrases: {(column, value):
-    words} of the topic. note: words behind all others. printed: how many of the sets, from the first on, follow the
-    printed protocol: their rows alone give the verdict, and the other sets show whether it carries over; 0 for all.
+    statistic: a name of stages.report.effects.STATISTICS. shared: test over training share (haptic_glance.know.split),
+    or a function of the set; None: that of the split where the pairs are repetitions, else 0. phrases: {(column,
+    value): words} of the topic. note: words behind all others. printed: how many of the sets, from the first on, follow
+    the printed protocol: their rows alone give the verdict, and the other sets show whether it carries over; 0 for all.
     None: 1 for the thesis's claims, 0 for ours. of: key of the primary claim whose sentence this claim tests elsewhere;
     a later claim in the same words and chapter is secondary without being told. readings: other readings of the
     protocol, in which the verdict must hold too. checked: whether rows that stages.report.effects refuses are out.

@@ -213,9 +213,9 @@ def visible_points(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The vertices (k,) that a viewpoint sees: (rows (j,), columns (j,), indices (j,) i8 into `vertices`).
 
-    rows and columns are fractional pixels of an image of `size` (h, w) by the thesis's camera (kit.camera). Visibility
-    is exact: the ray through the vertex meets nothing in front of it. A vertex in no face is treated as a point. Raises
-    ValueError for vertices that the mesh does not have.
+    rows and columns are fractional pixels of an image of `size` (h, w) by the thesis's camera
+    (haptic_glance.look.camera). Visibility is exact: the ray through the vertex meets nothing in front of it. A vertex
+    in no face is treated as a point. Raises ValueError for vertices that the mesh does not have.
     """
     vertices = np.asarray(vertices, dtype=np.int64)
     if vertices.ndim != 1 or ((vertices < 0) | (vertices >= len(mesh.vertices))).any():

@@ -1,6 +1,6 @@
 """Places of objects, and the path of the camera.
 
-A perspective camera on a path, as for a screen (the kit's camera is the thesis's orthographic one).
+A perspective camera on a path, as for a screen (haptic_glance.look.camera is the thesis's orthographic one).
 
 Meshes placed in the world, and the scene of all of them along a camera path.
 """
