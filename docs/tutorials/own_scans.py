@@ -90,7 +90,7 @@ plt.show()
 # ----------------
 #
 # Forces need real lengths. Say this animal is a toy of 20 cm: one unit is 0.2 m. A layer of foam lies over the array,
-# and the array is pressed until it bears 2 N.
+# and the array is pressed 1 mm deep.
 
 METRES = 0.2
 places = found.points[:8]

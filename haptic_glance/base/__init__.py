@@ -1,1 +1,1 @@
-"""What the whole library shares: optional packages, downloads, files, compiled kernels, random numbers, errors."""
+"""Shared parts of the library: optional packages, downloads, files, compiled kernels, random numbers, errors."""

@@ -1,4 +1,4 @@
-"""What all commands share: whether a command line names a mesh, and errors in one line."""
+"""Shared parts of the commands: whether a command line names a mesh, and errors in one line."""
 
 import errno
 import os

@@ -1,4 +1,4 @@
-"""What a core install leaves out, and the extra of this package that brings it."""
+"""Packages that a core install leaves out, and the extra that brings each."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager

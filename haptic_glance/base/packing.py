@@ -1,6 +1,6 @@
 """Turnable meshes small enough for a page: neighbours stored one after the other, differences for values, deflate.
 
-What report/page/viewer.js shows of an object is the dict of `pack`, of all of them that of `viewer_data`.
+gallery/viewer/viewer.js shows the dict of `pack` for one object, and that of `viewer_data` for all objects.
 """
 
 import base64

@@ -1,8 +1,7 @@
 """Prints what a shell needs to complete commands and options: `haptic-glance completion bash`
 
 Add it once: `haptic-glance completion bash >> ~/.bashrc`, or `zsh` and `~/.zshrc`, or
-`haptic-glance completion fish > ~/.config/fish/completions/haptic-glance.fish`. What is neither a command nor an option
-is completed as a file.
+`haptic-glance completion fish > ~/.config/fish/completions/haptic-glance.fish`. Any other word is completed as a file.
 """
 
 import argparse

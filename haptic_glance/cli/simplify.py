@@ -5,7 +5,7 @@ weighted by saliency, so that faces go where people look; nothing is frozen but 
 borders of materials.
 With --neighbourhood the faces around the salient points stay unchanged: on 50 household objects that raises the error
 over the whole mesh by half. Prints the errors, beside those of plain quadric edge collapse (QEM) with as many faces.
-Of a folder every mesh is simplified; the nodes of a GLB keep their names. A GLB is written y up, as the format has it.
+Every mesh of a folder is simplified; the nodes of a GLB keep their names. A GLB is written y up, as the format has it.
 
 examples:
   haptic-glance simplify bunny.stl --faces 1500 --out small.glb

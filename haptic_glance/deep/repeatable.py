@@ -1,4 +1,4 @@
-"""What makes a training in torch repeatable."""
+"""Makes a training in torch repeatable."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager

@@ -4,7 +4,7 @@ Colours, which the thesis's grey objects do not have: one for the whole object, 
 
 The same surface with other triangles, all of about the same size.
 
-What a few depth cameras see of an object, made a surface again.
+A surface reconstructed from the readings of a few depth cameras.
 
 The same object in another orientation: turned about the vertical axis, or tilted.
 

@@ -4,7 +4,7 @@ Calibrated belief over the objects after some touches: of beliefs of 95 %, 95 in
 
 The likelihood of an imprint under each object: a kernel density over the training touches.
 
-What a touch at a place may be like: the known touches near the place, of each object.
+Predicts a touch at a place: the known touches near the place, for each object.
 """
 
 from dataclasses import dataclass

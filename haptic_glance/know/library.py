@@ -1,6 +1,6 @@
 """A library of known objects, their places, and the belief over them.
 
-What is believed of an object after some touches.
+The belief over objects after some touches.
 
 Places of the array on a mesh: a vertex where one is near, else the point itself with the normal of its face.
 

@@ -2,7 +2,7 @@
 
 The attributes of a mesh as the error of its simplification counts them: colours, texture coordinates, normals.
 
-What the merged vertices show after the collapses, and which of them lie where an attribute jumps.
+Attributes of the merged vertices after the collapses, and the vertices where an attribute jumps.
 """
 
 from collections.abc import Mapping

@@ -4,7 +4,7 @@ Borders that may be simplified: each loop of the boundary is closed by hidden fa
 
 The hidden faces of a loop meet in one corner that lies nowhere (NaN): all comparisons with it fail, so that no check of
 shape refuses a collapse on its account, and no edge to it is ever offered. The link condition then is that of a closed
-surface, and preserves the loops. What holds a border in place is the error: the squared distances to planes through its
+surface, and preserves the loops. The error holds a border in place: the squared distances to planes through its
 edges, upright on the faces there (Garland and Heckbert 1997, section 6).
 
 Borders between materials, preserved while a mesh is simplified: cut open before, closed again after.

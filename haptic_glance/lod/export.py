@@ -6,7 +6,7 @@ Face counts as people write them: absolute or as a share of the object's own.
 
 Several levels of detail of one mesh: how they are written on a command line, and the names of their files.
 
-What of a mesh a page shows that is to stay small.
+A smaller copy of a mesh for a page.
 """
 
 import argparse

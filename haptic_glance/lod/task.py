@@ -4,7 +4,7 @@ A mesh from a file prepared for simplification, and the result brought back to i
 
 The meaning of a name in lod.methods: which method's points, and how they are preserved.
 
-What to say, and what would help, where a face count is too low for what must survive.
+The message and the remedies where a face count is too low for the kept vertices.
 """
 
 from collections.abc import Mapping

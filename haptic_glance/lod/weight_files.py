@@ -88,6 +88,7 @@ def _usda(mesh: Mesh, weights: np.ndarray) -> bytes:
     return f"""#usda 1.0
 (
     defaultPrim = "mesh"
+    metersPerUnit = 1
     upAxis = "{up}"
 )
 

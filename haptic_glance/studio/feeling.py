@@ -1,4 +1,4 @@
-"""What a sensor feels at one place, and where each of its cells met the object: the touch panels, free of viser."""
+"""The imprint of a sensor at one place, and where each of its cells met the object: the touch panels, free of viser."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""What is felt and what is believed, as HTML: cells without smoothing, bars with numbers beside them."""
+"""Imprints and beliefs as HTML: cells without smoothing, bars with numbers beside them."""
 
 import base64
 from collections.abc import Mapping

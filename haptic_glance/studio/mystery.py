@@ -1,4 +1,4 @@
-"""What is known of the mesh on the table, or of a hidden one, by its touches: the panel Know, free of viser."""
+"""Recognises the mesh on the table, or a hidden one, by its touches: the panel Know, free of viser."""
 
 import time
 from collections.abc import Callable, Mapping, Sequence

@@ -1,4 +1,4 @@
-"""What is drawn in one window: coloured meshes, numbered markers."""
+"""The scene of one window: coloured meshes, numbered markers."""
 
 import re
 from collections.abc import Callable, Sequence

@@ -1,4 +1,4 @@
-"""What one browser window holds. It is free of viser, so that it can be tested and outlives a lost connection."""
+"""The state of one browser window. It is free of viser, so that it can be tested and outlives a lost connection."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field

@@ -1,6 +1,6 @@
 """One trial with imprints that a coarse network sees.
 
-What the frozen network is given: variants that differ from the plain one in one thing.
+Variants of the input of the frozen network: each differs from the plain one in one thing.
 
 Trains the head of a frozen MobileNetV2 on one variant of the imprints.
 
@@ -35,7 +35,7 @@ RATES = (1e-4, 3e-4, 1e-3, 3e-3, 1e-2)
 
 @dataclass(frozen=True)
 class Variant:
-    """What the frozen network is given. share: of the touches of each object that are trained on."""
+    """A variant of the input of the frozen network. share: of the touches of each object that are trained on."""
 
     cells: int = 16
     weights: str = "imagenet"

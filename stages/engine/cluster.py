@@ -1,7 +1,7 @@
 """Items on a cluster of machines that share no folder: their inputs and results travel, by dask.
 
-What one item reads goes along with it. What several items read goes to the cluster once, by its content, and from
-worker to worker from there. The scheduler holds both until they are no longer needed, so that it can give them to
+The files that one item reads travel with it. Files that several items read go to the cluster once, by its content, and
+from worker to worker from there. The scheduler holds both until they are no longer needed, so that it can give them to
 another worker when one is lost: data that is scattered on workers would be lost with them.
 """
 

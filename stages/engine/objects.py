@@ -1,6 +1,6 @@
 """Archives of items in the cache, and rows that a run keeps.
 
-What a stage made of one object, kept under a hash of everything that it came from, and found again by that hash.
+Caches the result of a stage for one object under a hash of all its inputs.
 
 A killed run goes on where it stopped, and one object more costs one object. Kept by diskcache below build/objects; the
 oldest go first when it is full, and deleting the folder loses nothing but time.
@@ -154,7 +154,7 @@ Row = dict[str, Any]
 
 
 class KeptRows(Sequence[Row]):
-    """Rows in parts, one after the other; `+=` and `append` add to them. What a reader changes in a row is not kept."""
+    """Rows in parts, one after the other; `+=` and `append` add to them. A row that is read is a copy."""
 
     def __init__(self, *parts: Sequence[Row]) -> None:
         self.parts = list(parts)

@@ -4,7 +4,7 @@ The one schema of all measurements: a table of rows per stage and data set, chec
 
 Every row has the columns of COMMON; a stage declares the others, with a word on each, as COLUMNS in its __init__.py.
 
-What counts once in an interval: an object with its copies, a class with its objects, an object with its draws.
+The unit that counts once in an interval: an object with its copies, a class with its objects, an object with its draws.
 """
 
 import contextlib
@@ -113,7 +113,7 @@ BENCHMARK = re.compile(r"([A-Z][A-Za-z]+)_\d+")  # CLASS_ID: a mesh of the Princ
 
 
 def unit(item: str) -> str:
-    """What an object is one of: its shape where others are copies of it, its class where its name tells it."""
+    """The unit of an object: its shape if other objects are copies of it, its class if its name says it."""
     found = COPIES.fullmatch(item) or BENCHMARK.fullmatch(item)
     return found[1] if found else item
 

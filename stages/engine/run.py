@@ -2,7 +2,8 @@
 
 The run of one stage on one data set: its inputs, its rows, its objects, and the move into place at the end.
 
-What a stage makes of one item, wherever that runs: in this process, in one beside it, or on another machine.
+Computes the result of a stage for one item, wherever that runs: in this process, in one beside it, or on another
+machine.
 
 Holds a function to the data files that it declares, so that nothing it depends on is missing from its hash.
 

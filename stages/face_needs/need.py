@@ -1,6 +1,6 @@
 """The fewest faces that an object needs to be recognised.
 
-What one object's levels look like from all round, and what a touch reads on them.
+Pictures of one object's levels from all round, and touches on them.
 
 How coarse the models may be from which touches are learned, so that those of real objects are still recognised.
 

@@ -1,11 +1,11 @@
-"""What the front measures: looking and touching.
+"""Measurements of the front: looking and touching.
 
 Looks at an object and presses the array on it, with the seconds of each part; what was felt once is kept.
 
 Where an object is looked at and how it feels is learned from a mesh of as many faces as were chosen. The touches that
 ask are pressed on the object itself, with all its faces: a coarse model must know the real thing.
 
-What all methods that need pictures find on a mesh, with the seconds that each would take by itself.
+The points of all methods that need pictures, with the seconds that each method would take by itself.
 
 The array pressed on a mesh, and at the same places of the whole object, with its seconds.
 """

@@ -1,4 +1,4 @@
-"""What is chosen at each stage from mesh to named object, and the settings that a choice composes to."""
+"""The options at each stage from mesh to named object, and the settings of a choice."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, fields, replace

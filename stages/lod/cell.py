@@ -1,6 +1,6 @@
 """One level of one object: its inputs, its mesh and its errors.
 
-What the comparison needs of one object.
+The inputs of the comparison for one object.
 
 One cell of the comparison: an object, a method and a target, simplified and measured.
 

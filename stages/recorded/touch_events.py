@@ -1,6 +1,6 @@
 """Recognition of events of a fingertip on the publisher's own test part; and, within training, what it takes.
 
-What is chosen (bins, parameter) and what is varied (time listened, taxels, disturbances) is decided within the training
+The choices (bins, parameter) and the variations (time listened, taxels, disturbances) are decided within the training
 part. The test part is asked one time by each method.
 """
 

@@ -2,7 +2,7 @@
 
 The recorded touches that networks are tested on, and how each is read.
 
-What a network trains on recorded touches: its head alone on cached features, or all its layers.
+The trained part of a network on recorded touches: its head alone on cached features, or all its layers.
 
 Which recorded touches train, which choose the learning rate, and which test.
 

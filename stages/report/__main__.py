@@ -2,8 +2,8 @@
 
 Reads reports/measurements/SET/STAGE.csv.gz, data/ and data/reference/thesis/*.csv. Writes reports/tables,
 reports/figures, reports/tradeoff, reports/claims.md and .csv with the differences behind them in
-reports/claims/differences.csv.gz, reports/index.html with reports/site, and reports/metrics/report.json. What lacks its
-measurement is listed as not run, with the stage to run.
+reports/claims/differences.csv.gz, reports/index.html with reports/site, and reports/metrics/report.json. A table
+without measurements is listed as not run, with the stage to run.
 """
 
 import shutil

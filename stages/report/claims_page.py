@@ -7,8 +7,8 @@ The words of the report: titles, notes and captions, kept as Markdown beside the
 TOPIC/prose.md has a section for each item, `# KIND/NAME: title`, where KIND is a folder of reports/. A table's section
 is its summary, one sentence whose figures come from the table (`{this row: column}`, see `cells`), then a list of
 notes; that of a figure or chart is `Alt: what a blind reader needs`, then the caption. `{word}` is filled in by the
-code. A note that comes out empty is left out, and one of several lines becomes as many notes. What a topic found stands
-in TOPIC/findings.md, with figures from any table or claim; a paragraph that lacks one is left out.
+code. A note that comes out empty is left out, and one of several lines becomes as many notes. The findings of a topic
+stand in TOPIC/findings.md, with figures from any table or claim; a paragraph that lacks one is left out.
 
 Figures of data sets that the default run leaves out: drawn where their data is, and kept in the repository.
 """

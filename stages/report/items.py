@@ -1,4 +1,4 @@
-"""What the report is made of: tables, and figures or charts. Their words stand in TOPIC/prose.md."""
+"""The items of the report: tables, and figures or charts. Their words stand in TOPIC/prose.md."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field

@@ -1,6 +1,6 @@
 """Tables of networks, and confusion matrices.
 
-What several topics read of trainings of networks on imprints (chapter 5).
+Trainings of networks on imprints, for several topics (chapter 5).
 
 Confusion matrices, in per cent of the true class.
 """

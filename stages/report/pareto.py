@@ -2,7 +2,7 @@
 
 Accuracy against cost: one chart for every stage, with the Pareto front drawn.
 
-What it costs to find an object's salient points, from the picture to the points.
+The cost of finding an object's salient points, from the picture to the points.
 
 Which simplified meshes say something about the points that they keep.
 """

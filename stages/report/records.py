@@ -6,7 +6,7 @@ An item's record has its data sets, the files of rows that it read, the methods,
 and how many rows it shows. `files` has of each file of rows its hash, its commit where git knows it unchanged, and the
 clock of its seconds.
 
-What to type to measure the rows of a claim anew.
+The command that measures the rows of a claim again.
 
 The front page of a run on a folder of one's own: the page of `haptic-glance gallery`, from the pipeline's data.
 """

@@ -1,4 +1,4 @@
-"""What was measured, set by set, beside what the thesis says; a missing measurement is NotRun, never a crash."""
+"""Measurements, set by set, beside the thesis's; a missing measurement is NotRun, never a crash."""
 
 from collections.abc import Callable, Hashable, Iterable, Sequence, Sized
 from functools import cached_property

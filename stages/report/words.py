@@ -1,4 +1,4 @@
-"""What a claim is tested on, written from its fields."""
+"""The words for the data of a claim, written from its fields."""
 
 from collections.abc import Sequence
 

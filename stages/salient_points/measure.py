@@ -1,6 +1,6 @@
 """The salient points of an object, their agreement and their files.
 
-What is measured of a set of points.
+Measures of a set of points.
 
 How well methods agree with people, on an object that has ground truth (T3.2.3; Dutagaci 2012; Bylinskii 2019).
 

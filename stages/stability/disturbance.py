@@ -1,4 +1,4 @@
-"""What is done to an object: a perturbation at one severity, or several one after the other, in one draw."""
+"""A disturbance of an object: a perturbation at one severity, or several one after the other, in one draw."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace

@@ -1,6 +1,6 @@
 """Uses under disturbances: recognition and others.
 
-What the points of a disturbed object are worth: the whole object is simplified around them, and touched there.
+The worth of the points of a disturbed object: the whole object is simplified around them, and touched there.
 
 Recognition by touch where a disturbed object says it should be touched, with what was learned on whole ones.
 """

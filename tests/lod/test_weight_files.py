@@ -60,6 +60,7 @@ def test_usda_has_a_primvar(ball, tmp_path):
     mesh, weights = ball
     write_weights(tmp_path / "w.usda", mesh, weights)
     text = (tmp_path / "w.usda").read_text()
+    assert "metersPerUnit = 1" in text  # OpenUSD's validator asks for it
     values = re.search(r"primvars:saliency = \[(.*?)\] \(\s+interpolation = \"vertex\"", text, re.DOTALL)
     np.testing.assert_array_equal(np.array(values[1].split(", "), dtype=np.float32), weights)
     assert len(re.search(r"points = \[(.*)\]", text)[1].split("), (")) == len(mesh.vertices)

@@ -1,6 +1,6 @@
 """The features of the glance.
 
-What of a point attracts gaze: its height, what sees it, its relief, and where it lies on the object.
+The properties of a point that attract gaze: its height, its visibility, its relief, and its place on the object.
 
 Bumps, dents and thickness of a surface at several scales, from a graph of neighbouring points.
 """

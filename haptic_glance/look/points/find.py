@@ -2,7 +2,7 @@
 
 From a mesh to its saliency and its salient points, in one call each.
 
-What people call methods on a command line, and the names that these have here.
+Names of methods on a command line, and the names here.
 """
 
 from collections.abc import Iterable, Mapping, Sequence

@@ -1,6 +1,6 @@
 """Options and results of every detector of salient points.
 
-What every method receives and returns.
+The argument and the result of every method.
 
 Points of a surface in the order in which attention visits them: the highest value, inhibited, then the next.
 """

@@ -1,4 +1,4 @@
-"""What can be done with the mesh on the table: a panel a file, in the order in which they are offered."""
+"""The panels of the studio, one a file, in the order in which they are offered."""
 
 from .know import KnowPanel
 from .levels import LevelsPanel

@@ -1,4 +1,4 @@
-"""What the object is, by touch: bars of belief that move with each touch, the next touch, and a mystery object."""
+"""Recognition by touch: bars of belief that move with each touch, the next touch, and a mystery object."""
 
 import numpy as np
 import viser

@@ -1,4 +1,4 @@
-"""What matters to a person: a click marks a vertex, and every change is saved at once."""
+"""Marks of a person: a click marks a vertex, and every change is saved at once."""
 
 import viser
 

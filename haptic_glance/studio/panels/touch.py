@@ -1,4 +1,4 @@
-"""What an array feels at a place: click the mesh, and turn the sensor's settings."""
+"""The imprint at a place: click the mesh, and turn the sensor's settings."""
 
 import numpy as np
 import viser

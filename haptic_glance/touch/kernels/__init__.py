@@ -1,1 +1,1 @@
-"""What the pressure array does a million times a second: compiled kernels on plain arrays."""
+"""The inner loops of the pressure array: compiled kernels on plain arrays."""

@@ -1,8 +1,8 @@
 """Learned weights, nested fits and annotations.
 
-What was learned from the ground truth, beside the thesis: weights of channels (T table 3.1) and SVMs (T3.2.3).
+Weights learned from the ground truth, beside the thesis's: weights of channels (T table 3.1) and SVMs (T3.2.3).
 
-What the glance owes to features and a ridge that were chosen on the objects that they are judged on.
+The share of the glance's lead that comes from features and a ridge chosen on the judged objects.
 
 How well the marks in data/annotations agree with each other, and with human gaze.
 """

@@ -2,7 +2,7 @@
 
 The front from mesh to named object: a table of the choices that were confirmed, and a chart of all aims but two.
 
-What the choice at each stage costs: from the smallest choice, each other option alone.
+The cost of the choice at each stage: from the smallest choice, each other option alone.
 
 Rows of the search for the front: of shapes by unseen regions, and of classes by unseen objects.
 """

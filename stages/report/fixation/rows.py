@@ -2,7 +2,7 @@
 
 The detectors of T3.3: fused maps of networks, rival models and controls, and how they are called.
 
-What the pieces on T3.3 read: where networks look, beside people, rival models and controls.
+Rows of the tables and charts on T3.3: where networks look, beside people, rival models and controls.
 """
 
 from collections.abc import Iterable, Sequence

@@ -1,4 +1,4 @@
-"""What makes pictures of one object differ: where a detector puts more points than the others, and faces lie dense."""
+"""Differences between pictures of one object: where a detector puts more points than others, and faces lie dense."""
 
 from collections.abc import Mapping
 

@@ -2,7 +2,7 @@
 
 T figures 3.4, 3.5 and 3.23: errors of channels, detectors and the methods of T3.2, as rows of dots and boxes.
 
-What the error measures need and cost: Metro's samples of the surface, and the pictures' viewpoints.
+Requirements and costs of the error measures: Metro's samples of the surface, and the pictures' viewpoints.
 """
 
 from itertools import product

@@ -4,7 +4,7 @@ How many points each detector found, and how much about them the simplified mesh
 
 The errors of simplified meshes, compared on the same objects and targets only.
 
-Whose points the simplified meshes keep: the methods' groups, short names and order.
+The methods whose points the simplified meshes keep: groups, short names and order.
 
 Tables of the objects and of the errors by method: T3.1.5's combinations, every detector, and T table 3.2.
 """

@@ -1,4 +1,4 @@
-"""What the table and the chart of networks on recorded touches read: rows of the stage recorded_networks."""
+"""Rows of the stage recorded_networks, for the table and the chart of networks on recorded touches."""
 
 from contextlib import suppress
 

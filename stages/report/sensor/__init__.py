@@ -1,4 +1,4 @@
-"""What the pressure array's size and the distance of its sensels do to recognition (T4.3.2)."""
+"""The effect of the pressure array's size and of the distance of its sensels on recognition (T4.3.2)."""
 
 from . import arrays
 

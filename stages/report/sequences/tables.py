@@ -2,7 +2,7 @@
 
 T tables 4.7 and 4.8: the layers of the two networks; T table 4.9: which class of objects is it, by contours.
 
-What table 4.9, figure 4.19, their chart and their claims read: accuracies of whole sequences.
+Accuracies of whole sequences, for table 4.9, figure 4.19, their chart and their claims.
 
 Claims of T4.4: what a whole contour tells, guided or blind, to networks and to conventional classifiers.
 """

@@ -1,8 +1,8 @@
 """Stability of the agreement with people, and of uses.
 
-What disturbances cost on the objects that people looked at: points found again, agreement with gaze.
+The cost of disturbances on the objects that people looked at: points found again, agreement with gaze.
 
-What a disturbance costs where the points are used: simplification around them, recognition by touch there.
+The cost of a disturbance where the points are used: simplification around them, recognition by touch there.
 """
 
 import numpy as np

@@ -1,4 +1,4 @@
-"""What becomes of broken meshes when they are simplified: valid, refused, ruined or crash, and how the error grows."""
+"""The outcome of simplifying broken meshes: valid, refused, ruined or crash, and how the error grows."""
 
 from collections.abc import Mapping
 from typing import Any

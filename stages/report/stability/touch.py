@@ -2,7 +2,7 @@
 
 Where recognition by touch breaks: the severity of each perturbation at which half of its lead is lost.
 
-What the array feels at one place under every perturbation, from mild to harsh.
+Imprints at one place under every perturbation, from mild to harsh.
 """
 
 from collections.abc import Iterable, Sequence

@@ -1,1 +1,0 @@
-"""What several stages share: settings, rows, cache, statistics, parallel map."""
