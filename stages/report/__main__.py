@@ -51,9 +51,10 @@ interval. The words:
 - *open*: the interval covers more, its ends are unknown (equal differences show no spread), or nothing was measured.
 
 The set that follows the printed protocol judges a sentence of the thesis. The column *carries over* has the word that
-all sets together come to. A later claim in the same words, or with another set, metric or model, is secondary: it asks
-whether the sentence carries over, and does not count as a sentence. Section *ours*: sentences of this project about its
-own model, judged by all their sets.
+all sets together come to. A later claim in the same words, or with another set, split, metric or model, is secondary:
+it asks whether the sentence carries over, and does not count as a sentence. So are objects that were never touched,
+where the thesis draws touches at random. Where the thesis names no set (T6.3), all sets judge. Section *ours*:
+sentences of this project about its own model, judged by all their sets.
 
 An interval is a bootstrap over the outermost units: classes with their objects, objects with their draws. Copies of a
 shape are one unit. An interval over objects carries to other objects of this kind. An interval over repetitions is a

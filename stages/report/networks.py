@@ -95,7 +95,8 @@ def origin(weights: str, pretrained: str | None) -> str:
 def both(*claims: Claim, items: str = "touches", done: str = "touched") -> list[Claim]:
     """Each claim with items drawn at random, as in the thesis, and on objects left out, whose folds are the pairs.
 
-    items, done: what was drawn, and what was never done to the objects.
+    Of a sentence of the thesis, the second is secondary: it asks whether the sentence carries over. items, done: what
+    was drawn, and what was never done to the objects.
     """
     found = []
     for claim, split in product(claims, SPLITS):
@@ -106,6 +107,7 @@ def both(*claims: Claim, items: str = "touches", done: str = "touched") -> list[
             claim, key=f"{claim.key}_{split}", where={**claim.where, "split": split},
             sentence=f"{claim.sentence[:-1]}, on objects never {done} too." if unseen else claim.sentence,
             shared=partial(shared, split), phrases={**claim.phrases, **words},
+            of=claim.of or (f"{claim.key}_random" if unseen and not claim.own else ""),
         ))  # fmt: skip
     return found
 

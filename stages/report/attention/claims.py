@@ -111,12 +111,12 @@ def closer_to_gaze(key: str, section: str, sentence: str, first: str, second: st
                    unit="NSS")  # fmt: skip
 
 
-def svm_per_object(key: str, sentence: str, area: str, own: str, others: str) -> Claim:
+def svm_per_object(key: str, sentence: str, area: str, own: str, others: str, of: str = "") -> Claim:
     """A claim that an object's own SVM is more accurate than the one for all; own, others: how each was validated."""
     return on_gaze(key=key, section="T3.2.3", sentence=sentence, stage="weights", unit=POINTS, mean_of="second",
                    where={"metric": "accuracy", "area": area}, dataset=GAZED,
                    first={"training": "one_per_object", "validation": own},
-                   second={"training": "one_for_all", "validation": others})  # fmt: skip
+                   second={"training": "one_for_all", "validation": others}, of=of)  # fmt: skip
 
 
 def in_colour(key: str, sentence: str, method: str) -> Claim:
@@ -154,13 +154,13 @@ CLAIMS = [
     svm_per_object("svm_per_object", "One SVM for each object is more accurate than one for all.",
                    "image", "pixels", "pixels"),
     svm_per_object("svm_per_object_unseen", "One SVM for each object is more accurate on what it has not seen, too.",
-                   "object", "views", "objects"),
+                   "object", "views", "objects", of="svm_per_object"),
     *(
         on_gaze(key=f"best_over_{fixed}", section="T3.2.4", stage="attention_checks", scale=1, unit="NSS",
                 dataset=GAZED,
                 sentence=f"The most salient of 62 viewpoints show where people look better than {said} do.",
                 where={"method": "equal", "metric": "nss"},
-                first={"views": "best"}, second={"views": fixed})
+                first={"views": "best"}, second={"views": fixed}, of="best_over_four" if fixed != "four" else "")
         for fixed, said in (("four", "four fixed ones"), ("twelve", "the twelve of T figure 3.2"))
     ),
     on_gaze(key="gaze_choices_flatter_glance", section="ours", stage="attention_checks", scale=1, unit="NSS",

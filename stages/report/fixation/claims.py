@@ -179,9 +179,9 @@ CLAIMS = [
     *nearer("fused_nearer_than_narrowed", "The whole map's centres lie nearer than those of its highest levels.",
             EWIGC, EWIGC_L4),
     *nearer("ewigc_nearer_than_middle", "Fused Grad-CAM tells the place of fixations, if not their extent: better than "
-            "the middle of the picture does.", NEAREST, PRIOR),
+            "the middle of the picture does.", NEAREST, PRIOR, "ewigc_nearer_than_literature_least"),
     *nearer("ewigc_nearer_than_noise", "Fused Grad-CAM finds centres nearer to fixations than noise does.",
-            NEAREST, NOISE, "ewigc_nearer_than_middle_least"),
+            NEAREST, NOISE, "ewigc_nearer_than_literature_least"),
     *[spreads(f"deep_concentrates{key}{suffix}", task, method, "deep_concentrates" if key or suffix else "")
       for key, task in {"": FUSED, "_narrowed": NARROWED}.items()
       for suffix, method in {"": TUNED, "_frozen": "*-frozen"}.items()],

@@ -55,6 +55,7 @@ CLAIMS = [
     ),
     on_set("six_alike", key="real_selection_training", first={"method": "selected_training"}, second={"method": "all"},
            sentence="The selection helps with the test touches left as they are.", note="mean of all classifiers",
+           of="real_selection_four_drawn",
            readings=(NO_SVM, *SCALED)),
     *(
         on_set(group, key=f"real_selection_control_{group}", first={"method": "selected"},

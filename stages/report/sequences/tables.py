@@ -135,11 +135,12 @@ def whole_sequences(results: Results, claim: Claim) -> pd.Series:
 
 
 def both(claims: Iterable[Claim]) -> Iterator[Claim]:
-    """Each claim with sequences drawn at random, as in the thesis, and with unseen objects."""
+    """Each claim with sequences drawn at random, as in the thesis, and with unseen objects: does it carry over?"""
     for one in claims:
         said = f"{one.sentence[:-1]}, on objects never touched too."
         yield replace(one, key=f"{one.key}_random", where={**one.where, **RANDOM}, shared=SHARED[Split.RANDOM])
-        yield replace(one, key=f"{one.key}_unseen", sentence=said, where={**one.where, **UNSEEN}, **OBJECTS)
+        of = "" if one.own else f"{one.key}_random"
+        yield replace(one, key=f"{one.key}_unseen", of=of, sentence=said, where={**one.where, **UNSEEN}, **OBJECTS)
 
 
 OWN = [
@@ -163,7 +164,7 @@ OWN = [
 PRIMARY = [one for one in both(OWN) if not one.own]
 CLAIMS = [
     *PRIMARY,
-    *(replace(one, key=f"{one.key}_more", of=one.key, dataset=MORE, printed=0) for one in PRIMARY),
+    *(replace(one, key=f"{one.key}_more", of=one.of or one.key, dataset=MORE, printed=0) for one in PRIMARY),
     *(replace(one, dataset=MORE) for one in both(OWN) if one.own),
     claim(key="contours_random_flatters", section="ours", dataset=MORE,
           sentence="Drawing test sequences at random flatters: the same objects are known.",
