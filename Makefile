@@ -36,9 +36,10 @@ smoke: $(VENV)/ready ## the whole pipeline on a dozen objects, in a scratch copy
 	  | tar --null -T - -cf - | tar -xf - -C $(SMOKE)
 	cd $(SMOKE) && git init -q && rm -f dvc.lock && python -m stages.compose profile=smoke && python -m stages.repro && python -m stages.gate
 
-lint: $(VENV)/ready ## ruff: rules and formatting; pyright: types
+lint: $(VENV)/ready ## ruff: rules and formatting; import-linter: imports run one way; pyright: types
 	ruff check .
 	ruff format --check .
+	lint-imports
 	pyright
 
 docs: $(VENV)/ready ## the documentation, to build/docs/index.html; a warning is an error (three minutes, then less)
