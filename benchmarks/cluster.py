@@ -1,4 +1,4 @@
-"""What a cluster costs an item, and where more workers no longer help: `python -m benchmarks.cluster`
+"""The cost of a cluster for an item, and the number of workers that no longer helps: `python -m benchmarks.cluster`
 
 Takes a few objects of the finished run of a data set, in data/, and makes them again stage by stage, one after the
 other: the bytes that an item alone reads and gives back, and its seconds of one core (the first item's include the
@@ -85,7 +85,7 @@ def seconds_a_task(root, size):
 
 
 def echo(task, root, size):
-    """As many bytes as the task has brought."""
+    """Returns the bytes that the task has brought."""
     return bytes(size)
 
 

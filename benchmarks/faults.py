@@ -25,7 +25,7 @@ OUT = Path("reports/bench/faults.csv").resolve()
 
 
 def said(process):
-    """What a process told, in one text: its status, how many lines, and the last of them."""
+    """The output of a process, in one text: its status, how many lines, and the last of them."""
     lines = [line for line in process.stderr.splitlines() if line.strip()]
     kind = "a traceback" if any(line.startswith("Traceback") for line in lines) else f"{len(lines)} line(s)"
     return f"status {process.returncode}, {kind}: {lines[-1]}" if lines else f"status {process.returncode}, no word"

@@ -73,7 +73,7 @@ class Camera:
                                         stderr=self.said, text=True)  # fmt: skip
 
     def touch(self, job):
-        """What the process answers to a job: seconds, points, gl, version."""
+        """The answer of the process to a job: seconds, points, gl, version."""
         try:
             self.process.stdin.write(f"{job}\n")
             self.process.stdin.flush()

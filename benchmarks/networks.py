@@ -1,4 +1,4 @@
-"""What an image costs each network: `python -m benchmarks.networks`
+"""The cost of an image for each network: `python -m benchmarks.networks`
 
 Untrained networks with ten classes, images of 96 and 224 pixels a side; weights change none of this. Writes
 reports/bench/networks.csv: a row a network and size, with parameters, multiply-adds and milliseconds of one image on

@@ -1,4 +1,4 @@
-"""Which axis points up: learns haptic_glance.mesh.upright.WEIGHTS and tests them: `python -m benchmarks.up_axis`, 4
+"""The axis that points up: learns haptic_glance.mesh.upright.WEIGHTS and tests them: `python -m benchmarks.up_axis`, 4
 minutes.
 
 Learns from the catalogue of furniture, the household and the objects of psb that stand upright (inspected one by one),

@@ -58,7 +58,7 @@ def measured(workspace: Workspace, folder: Path | None = None) -> dict[str, floa
 
 
 def hold(metrics: Mapping[str, float], path: Path, tolerances: Tolerances, others: Iterable[str] = ()) -> str:
-    """What to say of metrics that all hold. SystemExit where one left its bounds about the baseline.
+    """The message on metrics that all hold. SystemExit where one left its bounds about the baseline.
 
     others: metrics of other profiles, which the rules may be about.
     """
@@ -92,7 +92,7 @@ def allowed(rules: Path | None, baseline: Path) -> Tolerances:
 
 
 def spread_of(baseline: Path) -> Path:
-    """Where the widest moves of the metrics of a baseline lie."""
+    """The file with the widest moves of the metrics of a baseline."""
     return baseline.with_name(f"{baseline.stem}_spread.json")
 
 
@@ -157,7 +157,7 @@ def markdown(text: str) -> str:
 
 
 def baseline_of(workspace: Workspace) -> Path:
-    """Where the baseline of a run lies: with the published ones, or beside the results of a run of one's own."""
+    """The file of a run's baseline: with the published ones, or beside the results of a run of one's own."""
     name = (
         workspace.params.get("profile", "laptop")
         if workspace.reports == workspace.published

@@ -33,7 +33,7 @@ PLAIN = 60.0  # seconds between two lines of progress where stderr is no termina
 
 
 class Schedule:
-    """Which stages may start: needs, {stage: the stages whose outputs it reads}; changed, those that must run."""
+    """The stages that may start: needs, {stage: the stages whose outputs it reads}; changed, those that must run."""
 
     def __init__(self, needs: dict[str, set[str]], changed: set[str]) -> None:
         self.needs, self.changed = needs, set(changed)

@@ -22,7 +22,7 @@ class FetchError(RuntimeError):
 
 
 def cache_folder() -> Path:
-    """Where fetched files lie: HAPTIC_GLANCE_CACHE, or haptic-glance below the user's cache folder."""
+    """The folder of fetched files: HAPTIC_GLANCE_CACHE, or haptic-glance below the user's cache folder."""
     base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
     return Path(os.environ.get("HAPTIC_GLANCE_CACHE") or Path(base) / "haptic-glance")
 

@@ -1,4 +1,4 @@
-"""Where people look at one mesh, and the places to touch first.
+"""Prints where people look at one mesh, and the places to touch first.
 
 Reads STL, OBJ, PLY, OFF, GLB or a point cloud. Prints the salient points, most salient first: vertex, position in the
 file's coordinates, score from 0 to 1 (the saliency around the point, never more than that of the point before it). The
@@ -58,7 +58,7 @@ def parser() -> argparse.ArgumentParser:
 
 
 def shared_parser(name: str, about: str) -> argparse.ArgumentParser:
-    """What `saliency` and `points` share; about: the text of --help, whose first line comes first."""
+    """The options that `saliency` and `points` share; about: the text of --help, whose first line comes first."""
     first, _, rest = about.partition("\n")
     form = argparse.RawDescriptionHelpFormatter
     command = argparse.ArgumentParser(f"haptic-glance {name}", description=first, epilog=rest, formatter_class=form)

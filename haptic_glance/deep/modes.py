@@ -25,7 +25,7 @@ from .network import Network, ScaledHead, recalibrate
 
 @dataclass(frozen=True)
 class Task:
-    """What a mode trains: the model and its inputs.
+    """The model that a mode trains, and its inputs.
 
     training_inputs(ids) gives the augmented inputs of touches (b,) i8, by torch's random numbers; inputs(ids) the
     inputs without augmentation; encode(images) the inputs of other images (k, 3, size, size) in 0..1. begin(model, ids)

@@ -85,7 +85,7 @@ def resolve_source(network: str, source: str) -> str:
 
 
 def available_weights(network: str, source: str = "package") -> str:
-    """Which ImageNet weights of a network a source has: `complete`, `convolutions` or `converted`.
+    """The ImageNet weights that a source has of a network: `complete`, `convolutions` or `converted`.
 
     `convolutions`: all but the fully connected layers, which no package registry has and which the networks here leave
     out, whatever the source, unless build is asked for them. `converted`: complete, but trained by another library,

@@ -100,7 +100,7 @@ def commands(chosen: argparse.Namespace) -> list[str]:
 
 
 def figures(made: Sequence[Exhibit], failures: dict[str, str]) -> list[dict[str, object]]:
-    """What was made, a dict per mesh; of a failure its file and the reason."""
+    """The results, a dict per mesh; of a failure its file and the reason."""
     found: list[dict[str, object]] = [
         {
             "mesh": str(one.file), "folder": str(one.folder), "faces": len(one.touched.mesh.faces),
@@ -113,7 +113,7 @@ def figures(made: Sequence[Exhibit], failures: dict[str, str]) -> list[dict[str,
 
 
 def listing(made: Sequence[Exhibit], out: Path) -> str:
-    """What was made, for people."""
+    """The results, for people."""
     lines = [
         f"{one.folder}: {len(one.points)} places, {len(one.levels)} levels, {len(one.touches)} imprints" for one in made
     ]

@@ -47,7 +47,7 @@ class Level:
 
 @dataclass(frozen=True)
 class Exhibit:
-    """What was found on one mesh.
+    """The findings on one mesh.
 
     touched: the mesh, repaired; note: what is known of its up axis. saliency (n,). points: rows of
     haptic_glance.cli.saliency.COLUMNS, most salient first. levels: finest first; missing: {level: why there is none}.

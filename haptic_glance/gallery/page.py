@@ -62,7 +62,7 @@ def contents_html(exhibits: Sequence[Exhibit]) -> str:
 
 
 def turnable(one: Exhibit, faces: int) -> dict[str, Any]:
-    """What the script turns of a mesh: as it is or with so many faces, its saliency, points and levels."""
+    """The data that the script turns: a mesh as it is or with so many faces, its saliency, points and levels."""
     full, nearest = shown_mesh(one.touched.mesh, faces)
     positions = one.touched.from_file(np.array([row[2:5] for row in one.points]))
     points = np.asarray(KDTree(full.vertices).query(positions)[1])
@@ -144,7 +144,7 @@ def files_html(one: Exhibit, folder: str) -> str:
 
 
 def failures_html(failures: Mapping[str, str]) -> str:
-    """What was left out, and why; empty where nothing was."""
+    """The files that were left out, and why; empty where none was."""
     items = "".join(f"<li>{escape(f'{name}: {why}')}</li>" for name, why in failures.items())
     return f'<div class="failures" role="note">Left out:<ul>{items}</ul></div>' if items else ""
 

@@ -45,7 +45,7 @@ class Exploration:
 
     @cached_property
     def expected(self) -> Expected:
-        """What touches at the candidates may find."""
+        """The possible findings of touches at the candidates."""
         return self.library.expect(self.candidates)
 
     def gains(self) -> np.ndarray:

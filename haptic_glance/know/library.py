@@ -179,7 +179,7 @@ class Library:
         return self._log_likelihood(kernel, np.asarray(positions), np.arange(len(self._owners)))
 
     def expect(self, places: Places) -> Expected:
-        """What touches at places may find: if it were object c, one of the learned touches of c near the place.
+        """The possible findings of touches at places: on object c, one of the learned touches of c near the place.
 
         Near in the frame in which c was learned, even where the objects are not `placed`, as in the stage exploration.
         """

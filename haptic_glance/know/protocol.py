@@ -138,7 +138,7 @@ def prepare(
 def evaluate_prepared(
     prepared: list[dict[Split, list[Prepared]]], classes: int, name: str, seed: int
 ) -> tuple[list[dict], np.ndarray]:
-    """What `evaluate_features` returns, of the splits of that many classes that `prepare` made with the same seed."""
+    """The result of `evaluate_features` on the splits of that many classes that `prepare` made with this seed."""
     check_name(name)
     rows, confusion = [], np.zeros((classes, classes), dtype=np.int64)
     for repetition, splits in enumerate(prepared):

@@ -17,7 +17,7 @@ class Split(StrEnum):
 
     @property
     def words(self) -> str:
-        """What is tested on, in words."""
+        """The test part, in words."""
         return _WORDS[self]
 
 

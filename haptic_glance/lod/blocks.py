@@ -64,7 +64,7 @@ def split(mesh: Mesh) -> list[np.ndarray]:
 
 
 def _thin(mesh, own, share, frozen, weights) -> Part:
-    """Of one block: vertices, faces, the vertex of `mesh` merged into each, whether it stands there, frozen faces."""
+    """One block: vertices, faces, the vertex of `mesh` merged into each, whether it stands there, frozen faces."""
     ids, corners = _numbered(mesh.faces[own].ravel(), len(mesh.vertices))
     block = Mesh(mesh.vertices[ids], corners.reshape(-1, 3))
     surface, source, (middle, size) = half_edge_mesh(block, frozen, None if weights is None else weights[ids])

@@ -128,7 +128,7 @@ def half_edge_mesh(
 
 @lru_cache(maxsize=2)  # every attempt, target and kept set begins with it
 def _beginning(mesh):
-    """Of a mesh: opposite, corner, start, source, boundary, position, (middle, size) of its box, quadrics."""
+    """The start of a mesh: opposite, corner, start, source, boundary, position, (middle, size) of its box, quadrics."""
     ids = mesh.faces.ravel().astype(np.int32)
     opposite = opposites(ids, len(mesh.vertices), True)[0]
     corner, start, source, boundary = fans(ids, opposite)

@@ -43,7 +43,7 @@ LUMA = np.array([[0.299, 0.587, 0.114]])  # ITU-R BT.601
 
 
 class Analysis(NamedTuple):
-    """Of one picture: the bands of its pyramid before and after gain control, and its local moments."""
+    """One picture: the bands of its pyramid before and after gain control, and its local moments."""
 
     bands: list[np.ndarray]
     normalised: list[np.ndarray]
@@ -87,7 +87,7 @@ def take_pictures(
 
 
 def analyse(pictures: np.ndarray) -> list[Analysis]:
-    """What the errors need of each of pictures (views, rows, columns) beside itself."""
+    """Analyses pictures (views, rows, columns) for the errors."""
     return [Analysis(*_pyramids(picture), local_moments(picture)) for picture in pictures]
 
 

@@ -224,7 +224,7 @@ def infeasible(task: SimplificationTask, error: InfeasibleTarget, neighbourhood:
 
 
 def remedies(task: SimplificationTask, error: InfeasibleTarget, neighbourhood: str) -> list[str]:
-    """What would help; empty where nothing would."""
+    """The remedies; empty where there is none."""
     total = len(task.mesh.faces)
     possible = smallest_feasible(task.mesh, free_borders=task.free_borders) < total  # with nothing frozen
     may_free = len(task.boundary) and not task.free_borders and not task.attributes and task.backend != "pymeshlab"

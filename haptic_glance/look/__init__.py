@@ -1,1 +1,1 @@
-"""Where people look: views, conspicuity channels, the glance, the models of the thesis, rivals, agreement with gaze."""
+"""Looking: views, conspicuity channels, the glance, the models of the thesis, rivals, agreement with gaze."""

@@ -12,7 +12,7 @@ VIEW_ANGLE = 6.0  # degrees, over the rows of the image; T3.2.6
 
 @dataclass(frozen=True)
 class Viewpoint:
-    """Where the camera stands: azimuth, elevation and roll in degrees, +z up, looking at the origin.
+    """The place of the camera: azimuth, elevation and roll in degrees, +z up, looking at the origin.
 
     Azimuth 0 stands on +x and turns counter-clockwise seen from +z. At elevation +-90 the image's up is the limit of
     the elevations below, so that the poles have no jump. Roll turns the image counter-clockwise about the view axis.

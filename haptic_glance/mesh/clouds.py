@@ -333,7 +333,7 @@ def _units(vectors):
 
 
 def _sensor(points, viewpoint):
-    """Where the points were seen from: a PCD's viewpoint is zero where its writer knew none, and in a camera's frame.
+    """The sensor's place: a PCD's viewpoint is zero where its writer knew none, and in a camera's frame.
 
     It is a camera's where no point lies around it.
     """

@@ -17,7 +17,7 @@ from .axes import axis_named
 
 @dataclass(frozen=True, eq=False)
 class Texture:
-    """What a mesh of m faces is painted with; a material of one plain colour is an image of one pixel.
+    """The paint of a mesh of m faces; a material of one plain colour is an image of one pixel.
 
     uv (m, 3, 2) f8, a pair per face corner: u to the right, v up, (0, 0) the lower left corner of the image, which
     repeats outside 0..1. image (m,) i8: which of the images a face shows. images: arrays (h, w, 4) u1, RGBA.

@@ -1,4 +1,4 @@
-"""Which axis of a mesh file points up: what the file or a person says, or else what the shape suggests."""
+"""The axis of a mesh file that points up: by the file's or a person's word, or else by the shape."""
 
 import argparse
 import re

@@ -1,4 +1,4 @@
-"""Which axis of a surface points up, y or z, chosen by its shape, for files that do not say.
+"""Chooses the axis that points up, y or z, by the shape of a surface, for files that do not say.
 
 Objects stand on a flat or wide support with their middle above it, have legs and room below rather than above, and
 differ more between top and bottom than between their sides. A logistic regression on such features of both axes,

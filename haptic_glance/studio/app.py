@@ -28,7 +28,7 @@ class Studio:
 
     @property
     def address(self) -> str:
-        """Where the page is, with its token."""
+        """The address of the page, with its token."""
         return f"http://{HOST}:{self.server.get_port()}/?token={self.server.token}"
 
     def connected(self, client: viser.ClientHandle) -> None:

@@ -19,7 +19,7 @@ LIFT = 0.003  # units above the surface, so that it does not show through
 
 @dataclass(frozen=True)
 class Sensor:
-    """What the sliders say. kind: one of SENSORS; cells: of each side; pitch: units from cell to cell.
+    """The values of the sliders. kind: one of SENSORS; cells: of each side; pitch: units from cell to cell.
 
     blur: of the elastic skin, in cells; noise: of full scale; turn: degrees about the normal, counter-clockwise seen
     from outside; load: newtons on the whole array and size: of the object, in metres, for NEWTONS alone.
@@ -42,7 +42,7 @@ class Sensor:
 
 @dataclass(frozen=True)
 class Felt:
-    """What was felt at one place.
+    """The touch at one place.
 
     pressed (rows, cols) in 0..1, 1 where the array is pressed hardest. span: what 0 and 1 stand for, in `unit`.
     centre (3,), axes (3, 3) rows right, up, normal, pitch: the array's pose, in units of the mesh. depths (rows, cols):
@@ -79,7 +79,7 @@ class Felt:
 
 
 def feel(surface: Surface, place: Places, sensor: Sensor, unit: float = 1.0) -> Felt:
-    """What the sensor feels at the first of the places. unit: of the mesh, in those of its file.
+    """Presses the sensor at the first of the places. unit: of the mesh, in those of its file.
 
     CONTOURS is felt at vertices alone. Raises ValueError for it where the place is none, and as `press_forces` does.
     """
@@ -113,7 +113,7 @@ def _depths(surface, centre, axes, sensor):
 def feel_by_rays(
     surface: Surface, centre: np.ndarray, axes: np.ndarray, cells: tuple[int, int], pitch: float, unit: float = 1.0
 ) -> Felt:
-    """What an ideal array feels at a centre (3,) with axes (3, 3); unit: of the mesh, in those of its file."""
+    """Presses an ideal array at a centre (3,) with axes (3, 3); unit: of the mesh, in those of its file."""
     found = distances_at(surface, centre[None], axes[None], cells, pitch)
     span = unit * float(np.ptp(found)), 0.0
     depths = np.where(found[0] < max(cells) * pitch, found[0], np.inf)

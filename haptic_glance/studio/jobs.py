@@ -41,7 +41,7 @@ class Job:
         return self._stopped.is_set()
 
     def report(self, share: float, text: str = "") -> None:
-        """What the work calls: shows how far it is. Raises Stopped where the person has stopped it."""
+        """Shows the work's progress; the work calls it. Raises Stopped where the person has stopped it."""
         if self.stopped:
             raise Stopped
         self.share, self.text = share, text

@@ -59,7 +59,7 @@ class Marking:
         return met
 
     def _merge(self, stored):
-        """What was added here is added to what is stored, what was removed here is removed from it."""
+        """Merges the stored marks with those that this window added and removed."""
         gone = set(self.seen) - set(self.marks)
         new = [mark for mark in self.marks if mark not in self.seen]
         known = {vertex for _, vertex in stored}

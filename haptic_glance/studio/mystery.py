@@ -110,5 +110,5 @@ def verdict(one: Guess, planner: tuple[int, str], escaped: Callable[[str], str] 
 
 
 def count(touches: int) -> str:
-    """So many touches, in words."""
+    """A number of touches, in words."""
     return f"{touches} touch{'' if touches == 1 else 'es'}"

@@ -32,7 +32,7 @@ class Panel:
         """A click on the mesh while this panel is chosen."""
 
     def target(self) -> Specimen | None:
-        """What clicks are about: the mesh on the table."""
+        """The target of clicks: the mesh on the table."""
         return self.window.session.specimen
 
     def on_miss(self) -> None:

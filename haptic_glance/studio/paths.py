@@ -20,7 +20,7 @@ ABOVE = 0.1  # units above the straight line between two places from which the s
 
 @dataclass(frozen=True)
 class Path:
-    """Where the array stands, frame by frame: positions (k, 3), axes (k, 3, 3), pitches (k,) units.
+    """The poses of the array, frame by frame: positions (k, 3), axes (k, 3, 3), pitches (k,) units.
 
     line (m, 3): the way as it is drawn; note: how long it is, for the person.
     """

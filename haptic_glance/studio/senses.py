@@ -76,7 +76,7 @@ def sense(mesh: Mesh, surface: Surface, seen_from: Viewpoint, place: Places) -> 
 
 
 def ask(trained: Trained, picture: np.ndarray, imprint: np.ndarray, dark: float, dead: float) -> Answer:
-    """What the network takes a picture and an imprint for; dark, dead: shares of the light and of the cells taken."""
+    """The network's class of a picture and an imprint; dark, dead: shares of the light and of the cells taken."""
     with from_extra():
         from haptic_glance.deep.hybrid import SENSES, join_senses
         from haptic_glance.deep.pictures import as_images

@@ -10,7 +10,7 @@ from .specimen import Look, Specimen
 
 @dataclass(frozen=True)
 class Settings:
-    """What the person said when the studio was started, for all windows.
+    """The options that the studio was started with, for all windows.
 
     files: what can be opened besides uploads. up: their axis, None for the files' own, or their shapes'. marks: the
     folder of the marks. panel: the one that is shown first, by its title.

@@ -26,7 +26,7 @@ RENDERING = ThreadPoolExecutor(1)  # what renders views: an OpenGL context belon
 
 @dataclass(frozen=True)
 class Look:
-    """What a method found: saliency (n,) f8 in 0..1, and the points.
+    """The findings of a method: saliency (n,) f8 in 0..1, and the points.
 
     points: rows of haptic_glance.cli.saliency.COLUMNS, most salient first; positions in the file's coordinates. drawn:
     the mesh and saliency to be drawn, finer than Specimen.mesh where that has long edges.
@@ -45,7 +45,7 @@ class Look:
 
 @dataclass(frozen=True)
 class Hit:
-    """Where a click meets the mesh: a face, its corner that is nearest, the position (3,) and the outward normal (3,).
+    """A click on the mesh: a face, its corner that is nearest, the position (3,) and the outward normal (3,).
 
     Position and normal are in the frame of Specimen.mesh.
     """

@@ -108,7 +108,7 @@ SENSORS = (*CONTACTS, CONTOURS)
 
 @dataclass(frozen=True)
 class Touched:
-    """What a sensor feels at k vertices.
+    """The touches of a sensor at k vertices.
 
     can: (k,) boolean, where it can touch, t times. depths: (t, rows, cols) f4 in units. images: the same in 0..1, 0
     pressed first. reach: the depth of a cell with no surface in range.
@@ -121,14 +121,14 @@ class Touched:
 
 
 def misfit(cells: Sequence[int], pitch: float) -> str:
-    """What is wrong with an array that is longer than the object, of diameter 1; else ""."""
+    """The fault of an array that is longer than the object, of diameter 1; else ""."""
     length = max(cells) * pitch
     wrong = f"the array is {length:g} units long, the object 1: most cells will miss it; take fewer or a smaller pitch"
     return wrong if length > 1 else ""
 
 
 def touch(surface: Surface, vertices: ArrayLike, cells: tuple[int, int], pitch: float, sensor: str) -> Touched:
-    """What a sensor of SENSORS feels at vertices (k,): `press`, or `contour_imprints` of the sensor of T4.2.3.1."""
+    """Touches vertices (k,) with a sensor of SENSORS: `press`, or `contour_imprints` of the sensor of T4.2.3.1."""
     mesh, (_, _, reach) = surface.mesh, check_array(cells, pitch)
     vertices = np.asarray(vertices)
     if sensor == CONTOURS:

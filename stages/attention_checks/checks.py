@@ -38,7 +38,7 @@ FIXED = tuple(GLANCES[GLANCE])  # the features by the choice that was made once,
 
 
 class Seen(NamedTuple):
-    """What the glance is fitted to, of one object: features {name: (n,)} of samples, amounts of gaze and areas (n,)."""
+    """One object for the fit of the glance: features {name: (n,)} of samples, amounts of gaze and areas (n,)."""
 
     features: dict[str, np.ndarray]
     amounts: np.ndarray

@@ -107,7 +107,7 @@ class Trial:
     validity: tuple[str, ...] = ()
 
     def classifiers(self, names: Iterable[str], scaling: str) -> list[str]:
-        """Those of the names that are run by a scaling."""
+        """The names that are run by a scaling."""
         narrow = self.narrow and scaling != TRAINING
         return [name for name in names if name not in self.skipped and (not narrow or name in NARROW)]
 

@@ -36,7 +36,7 @@ Result = TypeVar("Result")
 
 
 class StageRun:
-    """Where one run of a stage works, so that `data/SET/STAGE` is whole or absent and a killed run goes on.
+    """The folder of one run of a stage, so that `data/SET/STAGE` is whole or absent and a killed run goes on.
 
     Everything is written to a scratch folder. `each` keeps what it makes of an object in a cache, and takes from there
     what an earlier or killed run has made of the same inputs. A second run of the same stage and set waits for the

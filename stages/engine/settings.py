@@ -179,7 +179,7 @@ class Workspace:
 
     @property
     def build(self) -> Path:
-        """What may be deleted at any time: digests of code, the cache of objects, unfinished runs."""
+        """The files that may be deleted at any time: digests of code, the cache of objects, unfinished runs."""
         return self.root / "build"
 
     @cached_property

@@ -1,4 +1,4 @@
-"""Where networks look on an object while they name its kind: Grad-CAM attention of six tasks, fused (T3.3).
+"""Finds where networks look on an object while they name its kind: Grad-CAM attention of six tasks, fused (T3.3).
 
 Reads data/SET/meshes, data/SET/weights (people's attention), data/SET/salient_points (the rivals) and
 data/reference/semantics.csv. Takes pictures of each object from all round, groups the objects by convexity, Gaussian
@@ -97,7 +97,7 @@ def train(
 
 
 def made_by(method: Method) -> list[str]:
-    """What the attention on an object is computed from, of what `train` has made."""
+    """The files of `train` that the attention on an object is computed from."""
     if method.mode in TRAINED:
         return [f"fixation/.cams/{method.name}"]
     return [f"fixation/.maps/{method.name}/{{}}.npz", f"fixation/heads/{method.name}"]

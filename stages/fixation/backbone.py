@@ -217,7 +217,7 @@ def read_pooled(folder: Path, method: str, name: str) -> np.ndarray:
 
 
 def state_path(folder: Path, name: str) -> Path:
-    """Where the weights of a network are stored for the workers."""
+    """The file of a network's weights, for the workers."""
     return folder / ".networks" / f"{name}.npz"
 
 

@@ -86,7 +86,7 @@ class Settings:
 
 @lru_cache(maxsize=64)
 def settings_of(choice: Choice) -> Settings:
-    """What Hydra composes of a choice; ParamsError for an option that the settings do not know."""
+    """The settings that Hydra composes of a choice; ParamsError for an option that the settings do not know."""
     overrides = [
         f"classifier={choice.classifier}",
         f"classification.touches=[{choice.touches}]",

@@ -36,7 +36,7 @@ from . import Params
 
 @dataclass(frozen=True)
 class ObjectInputs:
-    """What all cells of one object share.
+    """The inputs that all cells of one object share.
 
     Its mesh; the points and the saliency (n,) by method; its own pictures (views, rows, columns), or None where they
     are not compared; human gaze spread over the surface (n,), or None; and a cache of its simplified meshes and their
@@ -53,13 +53,13 @@ class ObjectInputs:
 
     @cached_property
     def analyses(self) -> list[Analysis] | None:
-        """What comparisons need of its own pictures."""
+        """The analyses of its own pictures, for comparisons."""
         return None if self.pictures is None else analyse(self.pictures)
 
 
 @dataclass(frozen=True)
 class KeepRule:
-    """What a method preserves: vertex ids, most salient first, and rings around each, or a weight (n,) per vertex."""
+    """The vertices that a method keeps: ids, most salient first, and rings around each, or a weight (n,) per vertex."""
 
     vertices: np.ndarray
     rings: np.ndarray
@@ -140,7 +140,7 @@ def _simplified(inputs, faces, keep, rings, settings, seed):
 
 
 def _errors(inputs, mesh, settings, seed):
-    """Of a mesh that two backends make alike, as where there is nothing to fit, measured once."""
+    """Computes the errors once when two backends return the same mesh."""
     key = sha256(mesh.vertices.tobytes() + mesh.faces.tobytes()).digest()
     if key not in inputs.cache:
         inputs.cache[key] = measure_errors(inputs, mesh, settings, seed)

@@ -35,5 +35,5 @@ class Params:
     repetitions: int
 
     def path(self, root: Path) -> Path:
-        """Where the recordings lie; a relative folder counts from the repository root."""
+        """The folder of the recordings; a relative folder counts from the repository root."""
         return root / Path(self.folder).expanduser()

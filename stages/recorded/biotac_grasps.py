@@ -100,7 +100,7 @@ def publisher_split_rows(model: Model, grasps: Grasps) -> Iterator[dict]:
 
 
 def recognition_rows(model: Model, grasps: Grasps, repetitions: int, seed: int) -> Iterator[dict]:
-    """Which of all the objects: a quarter held out, at random, or as a run of neighbours in the file."""
+    """Recognises all the objects: a quarter held out, at random, or as a run of neighbours in the file."""
     order = np.lexsort((np.arange(len(grasps.objects)), grasps.palms, grasps.objects))
     labels = grasps.objects[order]
     for split, draw in SPLITS.items():

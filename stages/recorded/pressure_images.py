@@ -32,7 +32,7 @@ class Touches:
     alike: np.ndarray
 
     def of(self, own: np.ndarray) -> "Touches":
-        """Those that the ids or the mask `own` names."""
+        """The part that the ids or the mask `own` names."""
         return Touches(self.samples[own], self.labels[own], self.alike[own][:, own])
 
 

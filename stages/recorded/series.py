@@ -56,7 +56,7 @@ class TouchSeries:
     test: np.ndarray
 
     def of(self, own: np.ndarray) -> "TouchSeries":
-        """Those that the ids or the mask `own` names."""
+        """The part that the ids or the mask `own` names."""
         return TouchSeries(self.values[own], self.labels[own], self.names[own], self.test[own])
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 @dataclass
 class Params:
-    """What the pictures and the page show; names that the data set lacks are passed over."""
+    """The objects that the pictures and the page show; names that the data set lacks are passed over."""
 
     hero_object: str
     figure_objects: list[str]

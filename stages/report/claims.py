@@ -157,12 +157,12 @@ class Claim:
 
     @property
     def pairs(self) -> str:
-        """What the pairs are, in words."""
+        """The pairs, in words."""
         return " and ".join(map(self._words_of, self.over))
 
     @property
     def units(self) -> str:
-        """What the outermost units are, in words."""
+        """The outermost units, in words."""
         return self._words_of(self.over[0])
 
     def _words_of(self, column: str) -> str:

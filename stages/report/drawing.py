@@ -129,7 +129,7 @@ def label(name: object) -> str:
 
 
 def start(weights: str) -> str:
-    """What a network starts from, in words."""
+    """The weights that a network starts from, in words."""
     own = {"imagenet": "ImageNet", "random_initial": "random weights, initial statistics"}
     return own.get(weights) or f"{weights} weights"
 
@@ -199,7 +199,7 @@ _scene = lru_cache(maxsize=2)(RayScene)  # a mesh is drawn many times in turn, w
 
 @lru_cache(maxsize=2)
 def _surface(mesh: Mesh, viewpoint: Viewpoint, side: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """What a square picture shows: (pixels (k,), their faces (k,), the places in these (k, 3), the light (k,))."""
+    """The content of a square picture: (pixels (k,), their faces (k,), the places in these (k, 3), the light (k,))."""
     size = (side, side)
     box = [slice(*np.clip((ends.min() - 1, ends.max() + 3), 0, side).astype(int))
            for ends in project(mesh.vertices, viewpoint, size)[:2]]  # fmt: skip

@@ -36,7 +36,7 @@ class Finding:
     places: int = 0
 
     def of(self, value: float) -> float:
-        """What is shown of a difference."""
+        """The text of a difference."""
         return PREFIXES[self.shown](value)
 
 

@@ -17,7 +17,7 @@ from .tables import Ranking, as_text, filled, markdown_table
 
 @dataclass(eq=False, kw_only=True)
 class Item:
-    """What tables and figures have in common.
+    """The fields that tables and figures share.
 
     sets: the data sets that it was read from; record: see `records`; paths: its files; html: its section of the page.
     """
@@ -49,7 +49,7 @@ class Table(Item):
 
     @property
     def text(self) -> pd.DataFrame:
-        """What a person reads, as strings."""
+        """The shown frame, as strings."""
         return as_text(self.frame if self.shown is None else self.shown)
 
     @property

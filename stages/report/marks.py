@@ -153,7 +153,7 @@ def _interval(spans: Sequence[tuple[int, float, float, float]], x: float, y: flo
 
 
 def _reader(axis: Axis) -> Callable[[float], str]:
-    """What tells a value as its axis names it: by the nearest label of categories, else as a number."""
+    """The function that names a value as its axis does: by the nearest label of categories, else as a number."""
     places, labels = np.array([]), []
     if isinstance(axis.get_major_locator(), FixedLocator):
         places = np.asarray(axis.get_majorticklocs(), dtype=float)

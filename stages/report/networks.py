@@ -81,13 +81,13 @@ def accuracy(rows: pd.DataFrame, split: str) -> dict[str, float]:
 
 
 def seen(rows: pd.DataFrame) -> str:
-    """What the networks of some rows saw, in words; empty for rows that do not say it."""
+    """The touches that the networks of some rows saw, in words; empty for rows that do not say it."""
     kinds = rows.reindex(columns=["touches", "size"]).drop_duplicates().dropna().astype(int)
     return " or ".join(f"{touches} touches an object at {size} px" for touches, size in kinds.itertuples(index=False))
 
 
 def origin(weights: str, pretrained: str | None) -> str:
-    """What a network starts from, and which of ImageNet's weights it has of these."""
+    """The weights that a network starts from, and the part of ImageNet's weights that they have."""
     said = PRETRAINED.get(pretrained or "", "") if weights == "imagenet" else ""
     return f"{start(weights)} ({said})" if said else start(weights)
 

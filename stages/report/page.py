@@ -103,12 +103,12 @@ def links(paths: list[Path]) -> str:
 
 
 def folded(summary: str, body: str) -> str:
-    """What can be unfolded."""
+    """A part that can be unfolded."""
     return f"<details><summary>{summary}</summary>{body}</details>"
 
 
 def box(classes: str, title: str, body: str) -> str:
-    """What scrolls sideways, reachable by the keyboard."""
+    """A part that scrolls sideways, reachable by the keyboard."""
     return f'<div class="{classes}" tabindex="0" role="region" aria-label="{escape(title)}">{body}</div>'
 
 
@@ -202,7 +202,7 @@ def pack_object(results: Results, name: str) -> dict[str, Any]:
 
 
 def apart(levels: list[Mesh]) -> list[Mesh]:
-    """Those of the meshes, most faces first, that have STEP of the faces of the one kept before, or fewer."""
+    """The meshes, most faces first, that have STEP of the faces of the one kept before, or fewer."""
     kept = []
     for mesh in levels:
         if not kept or len(mesh.faces) <= STEP * len(kept[-1].faces):

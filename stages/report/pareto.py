@@ -203,7 +203,7 @@ def _draw(
 
 
 def _legend(axes: Axes, titles: Sequence[str]) -> None:
-    """What colours and shapes mean, each kind under its title."""
+    """Explains colours and shapes, each kind under its title."""
     handles, names = axes.get_legend_handles_labels()
     kinds = [k for k, handle in enumerate(handles) if isinstance(handle, Line2D) and handle.get_marker() == " "]
     for k, title in zip(kinds, titles, strict=True):
@@ -214,7 +214,7 @@ def _legend(axes: Axes, titles: Sequence[str]) -> None:
 
 
 def _finding(front: pd.DataFrame, quality: str) -> str:
-    """What is best, and what costs least of all that its interval holds; front: from the cheapest to the best."""
+    """The best choice, and the cheapest within its interval; front: from the cheapest to the best."""
     best = front.iloc[-1]
     said = f"Best: {best['name']}" + (f" ({number(best[quality])})" if best[quality] else "")
     if "low" not in front or len(front) < 2:
@@ -227,7 +227,7 @@ def _finding(front: pd.DataFrame, quality: str) -> str:
 
 
 def ticks(span: float) -> Locator:
-    """What finds the numbers of a logarithmic axis whose dearest choice costs `span` times the cheapest.
+    """The locator of numbers on a logarithmic axis whose dearest choice costs `span` times the cheapest.
 
     The narrower it is, the closer they must be, or the axis would be almost without any.
     """

@@ -127,7 +127,7 @@ COMPOSE = "python -m stages.compose"
 
 @cache
 def switch(conf: Path, dataset: str, stage: str) -> str:
-    """What to compose so that a stage runs on a set: nothing for the default run, an experiment, or the set alone.
+    """Arguments of compose that run a stage on a set: nothing for the default run, an experiment, or the set alone.
 
     conf: the folder of the configuration; what it lacks is not known.
     """
@@ -142,7 +142,7 @@ def switch(conf: Path, dataset: str, stage: str) -> str:
 
 
 def command(conf: Path, stage: str, sets: Iterable[str]) -> str:
-    """What measures a stage on all of the sets, and judges again."""
+    """The command that measures a stage on all of the sets, and judges again."""
     conf = conf.resolve()  # `switch` remembers folders, and the same relative one may be another folder later
     together: dict[str, list[str]] = {}
     for name in sets:

@@ -44,7 +44,7 @@ class NotRun(Exception):
 
 
 def some(found: Found, what: str, stage: str, runnable: bool = True) -> Found:
-    """What was found; NotRun of `what` where that is nothing."""
+    """Returns the findings; raises NotRun of `what` where there are none."""
     if not len(found):
         raise NotRun(what, stage, runnable)
     return found
@@ -58,7 +58,7 @@ def there(path: Path, what: str, stage: str, runnable: bool = True) -> Path:
 
 
 class ByMethod(dict):
-    """What a stage found by each method; one that it did not run is NotRun."""
+    """The findings of a stage by method; a method that it did not run raises NotRun."""
 
     def __init__(self, stage: str, found: dict[str, np.ndarray]) -> None:
         super().__init__(found)
@@ -301,7 +301,7 @@ class Results:
         return read_arrays(there(path, what, "weights"))
 
     def learned(self, name: str, mesh: Mesh, dataset: str | None = None):
-        """What the weights stage learned, as it may be applied to this object: a
+        """The weights that may be applied to this object: a
         haptic_glance.look.weights.LearnedWeights.
         """
         path = self.folder("weights", dataset) / "weights.csv"

@@ -76,7 +76,7 @@ def topic_mains(modules: Sequence[ModuleType], parts: dict[str, Any], out: Path)
 
 
 def topic_main(module: ModuleType, parts: dict[str, Any], mine: Sequence[Table | Figure], out: Path) -> str:
-    """What the project found, how the claims stand, charts and tables; those of sets that are off can be unfolded.
+    """The findings of a topic, its claims, charts and tables; those of sets that are off can be unfolded.
 
     out: the folder whose tables, charts and claims are written already; the figures of what was found are theirs.
     """

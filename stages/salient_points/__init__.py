@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 @dataclass
 class Params:
-    """What finds the points, and how many."""
+    """The methods that find the points, and their number."""
 
     methods: list[str]  # names of METHODS in haptic_glance/look/points/methods.py
     count: int

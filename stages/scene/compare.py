@@ -233,5 +233,5 @@ def write_plans(folder: Path, name: str, levels: Mapping[str, np.ndarray]) -> No
 
 
 def read_plans(folder: Path, name: str) -> dict[str, np.ndarray]:
-    """What write_plans wrote."""
+    """Reads the plans that write_plans wrote."""
     return read_arrays(folder / f"plans/{name}.npz")

@@ -167,7 +167,7 @@ def check_glb(path: Path, meshes: Sequence[Mesh], names: Sequence[str]) -> None:
 
 
 def _fault(found, mesh):
-    """What of a loaded mesh differs from the Mesh: "faces", "positions" or "colours"; or ""."""
+    """The part of a loaded mesh that differs from the Mesh: "faces", "positions" or "colours"; or ""."""
     if not np.array_equal(found.faces, mesh.faces):
         return "faces"
     tolerance = SINGLE * np.abs(mesh.vertices).max(initial=0)

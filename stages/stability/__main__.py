@@ -96,7 +96,7 @@ def measured(subject: Subject, draws: Sequence[Disturbance]) -> tuple[Rows, Find
 
 
 def truth_of(data: Path, name: str) -> GroundTruth | None:
-    """What people looked at on an object, where the set knows it."""
+    """The gaze of people on an object, where the set knows it."""
     path = data / "weights" / "ground_truth" / f"{name}.npz"
     if not path.exists():
         return None

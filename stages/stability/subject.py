@@ -30,7 +30,7 @@ AGREEMENT = "nss", "auc"  # with people, of the saliency on the object that they
 
 @dataclass(frozen=True, eq=False)
 class Findings:
-    """What the methods found on one mesh, per method, with the seconds that each took."""
+    """The findings of the methods on one mesh, per method, with the seconds that each took."""
 
     perturbed: Perturbed
     found: dict[str, Detection]

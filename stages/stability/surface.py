@@ -271,7 +271,7 @@ WEIGHTS = {
 
 @dataclass(frozen=True)
 class Case:
-    """What is asked for: the face count, the kept vertices (a name of KEPT) and the weights (a name of WEIGHTS)."""
+    """The request: the face count, the kept vertices (a name of KEPT) and the weights (a name of WEIGHTS)."""
 
     budget: str
     kept: str = "none"

@@ -32,7 +32,7 @@ LEARNED = "learned"  # touches of the object as it is, with which those of a dis
 
 
 class Uses:
-    """What the points that methods find on one Subject are used for; `rows` and `touches` grow by each `add`."""
+    """The uses of the points that methods find on one Subject; `rows` and `touches` grow by each `add`."""
 
     def __init__(self, subject: Subject, methods: Sequence[str]) -> None:
         self.subject, self.methods, self.mesh = subject, methods, subject.mesh
@@ -46,7 +46,7 @@ class Uses:
         self.add(None, subject.unperturbed)
 
     def add(self, disturbance: Disturbance | None, case: Findings) -> None:
-        """What the points found under a disturbance are worth; None: on the object as it is."""
+        """Measures the points found under a disturbance; None: on the object as it is."""
         name, severity = (disturbance.name, disturbance.severity) if disturbance else (UNPERTURBED, None)
         for method in self.methods:
             points = self._at_original(case, method)

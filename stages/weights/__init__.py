@@ -14,7 +14,7 @@ COLUMNS = {
 
 @dataclass
 class Params:
-    """Which weights the methods `glance` and `glance_any_pose` take, and what the SVMs are trained on."""
+    """The weights that the methods `glance` and `glance_any_pose` take, and what the SVMs are trained on."""
 
     method: str
     svm: str

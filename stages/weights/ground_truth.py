@@ -141,7 +141,7 @@ def _gaze_clouds(files, _):
 
 
 def _named(path, read, content):
-    """What `read` makes of the bytes; its ValueError gets the name of the file."""
+    """Reads the bytes by `read`; its ValueError gets the name of the file."""
     try:
         return read(content)
     except ValueError as error:

@@ -111,7 +111,7 @@ LUMA = np.array([0.299, 0.587, 0.114])  # ITU-R BT.601
 
 @dataclass(frozen=True, eq=False)
 class Rendering:
-    """Where the rays hit the object: pixels (k,) i4 flat ids; depth (k,) f8, metres along the view axis; faces (k,) i4.
+    """Hits of rays on the object: pixels (k,) i4 flat ids; depth (k,) f8, metres along the view axis; faces (k,) i4.
 
     No more, since a path has thousands of renderings: `rays_of` gives the positions.
     """

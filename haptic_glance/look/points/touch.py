@@ -29,7 +29,7 @@ ROUNDING = 1e-6  # smaller differences of skewness, steps and shares are roundin
 
 
 class TouchDetector(SampledDetector):
-    """What it finds depends on the surface and the axis that points up, which an array is held by."""
+    """Finds places by the surface and the axis that points up, which an array is held by."""
 
     def _values(self, mesh: Mesh, options: Options) -> tuple[Samples, np.ndarray, np.ndarray]:
         samples = samples_of_mesh(mesh)

@@ -60,7 +60,7 @@ class KnowPanel(Panel):
             on(control.on_update, self.learn)
 
     def target(self) -> Specimen | None:
-        """What is touched: a hidden object, or the mesh on the table."""
+        """The object that is touched: a hidden one, or the mesh on the table."""
         return self.guess.specimen if self.guess is not None else super().target()
 
     def on_mesh(self) -> None:
@@ -253,7 +253,7 @@ class KnowPanel(Panel):
         self.grid.visible = True
 
     def felt(self, number: int) -> Felt:
-        """What was felt at a touch, in the object's own units."""
+        """The finding of a touch, in the object's own units."""
         assert self.guess is not None
         exploration, specimen = self.guess.exploration, self.guess.specimen
         axes = sensor_axes(exploration.normals[[number]])[0]

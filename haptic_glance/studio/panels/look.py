@@ -1,4 +1,4 @@
-"""Where people look: the mesh coloured by a method, its points with their reasons, another method beside it."""
+"""Shows where people look: the mesh coloured by a method, its points with their reasons, another method beside it."""
 
 from collections.abc import Sequence
 

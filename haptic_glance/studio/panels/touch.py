@@ -43,7 +43,7 @@ class TouchPanel(Panel):
 
     @property
     def sensor(self) -> Sensor:
-        """What the controls say."""
+        """The sensor that the controls describe."""
         array = self.kind.value, self.cells.value, self.pitch.value
         return Sensor(
             *array, self.blur.value, self.noise.value, self.turn.value, self.load.value, self.size.value / 1000
@@ -51,7 +51,7 @@ class TouchPanel(Panel):
 
     @property
     def place(self) -> Places | None:
-        """Where the array is pressed."""
+        """The place where the array is pressed."""
         return self.window.session.kept.get(self.title)
 
     def on_mesh(self) -> None:

@@ -241,7 +241,7 @@ def _table(
 
 
 def _ours_and_rivals(rows: pd.DataFrame) -> Iterator[str]:
-    """Where ours stands, and which rivals it does not beat beyond chance."""
+    """The place of ours, and the rivals that it does not beat beyond chance."""
     table = scores(rows, "nss")
     if OURS not in table:
         return
@@ -265,7 +265,7 @@ def _ours_and_rivals(rows: pd.DataFrame) -> Iterator[str]:
 
 
 def _learned(rows: pd.DataFrame) -> Iterator[str]:
-    """What more channels with equal weights are worth over the classical model, and learned weights over equal ones."""
+    """The gain of more channels with equal weights over the classical model, and of learned weights over equal ones."""
     base = "equal" if "equal" in scores(rows, "nss") else THESIS
     for pair in ((THESIS, CLASSICAL), ("equal", CLASSICAL), ("guided_ssim", base), ("guided_ed", base)):
         with suppress(NotRun):
@@ -278,7 +278,7 @@ def _learned(rows: pd.DataFrame) -> Iterator[str]:
 
 
 def _peeking(rows: pd.DataFrame) -> Iterator[str]:
-    """What the same method gains from having seen the object: the leak of the thesis's way of testing."""
+    """The gain of the same method from having seen the object: the leak of the thesis's way of testing."""
     found = []
     for clean, seen in PEEKED.items():
         with suppress(NotRun):

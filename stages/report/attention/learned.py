@@ -247,7 +247,7 @@ def _text(cell: dict[str, float], metric: str, names: Sequence[str] = MEAN) -> s
 
 
 def _extremes(rows: pd.DataFrame) -> str:
-    """Where the passes agree least, and most; nothing where they were not compared."""
+    """The objects on which the passes agree least, and most; nothing where they were not compared."""
     passes = rows[(rows["metric"] == "found") & (rows["method"] == "passes")].set_index("item")["value"]
     if passes.empty:
         return ""

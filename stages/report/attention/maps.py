@@ -174,7 +174,7 @@ def saliency(results: Results) -> Figure:
 
 
 def _nearest(viewpoints: Sequence[Viewpoint], among: Iterable[int]) -> int:
-    """Of the view numbers `among` the one nearest to the other figures' viewpoint."""
+    """The view number of `among` that is nearest to the other figures' viewpoint."""
     return max(among, key=lambda view: viewpoints[view].axes[2] @ VIEWPOINT.axes[2])
 
 

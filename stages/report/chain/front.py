@@ -78,7 +78,7 @@ def _searched(value):
 
 
 def _words(rows, frame):
-    """What the notes say: how many choices and objects, and the two choices that are named."""
+    """The words of the notes: how many choices and objects, and the two choices that are named."""
     counts = {rung: own["number"].nunique() for rung, own in rows.groupby("rung")}
     small, usual = (frame[frame["role"] == role].iloc[0] for role in (SMALLEST, DEFAULT))
     asked = rows[rows["rung"] == CONFIRMED].drop_duplicates(["split", "item"])

@@ -1,4 +1,4 @@
-"""Where networks look: Grad-CAM attention against human gaze (T3.3)."""
+"""Fixation: Grad-CAM attention against human gaze (T3.3)."""
 
 from functools import partial
 

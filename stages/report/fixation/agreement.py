@@ -144,7 +144,7 @@ def chart(results: Results) -> Figure:
 
 
 def _saved(maps: dict[str, pd.Series]) -> str:
-    """What training more than a head changes, paired over the objects; maps: {network: PCC of its fused maps}."""
+    """The change by training more than a head, paired over the objects; maps: {network: PCC of its fused maps}."""
     said = []
     for method, own in maps.items():
         frozen = f"{method.rpartition('-')[0]}-frozen"

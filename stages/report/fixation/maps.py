@@ -43,7 +43,7 @@ def on_gaze(build: Callable[..., Figure], results: Results) -> Kept:
 
 
 def figure_3_29(results: Results, dataset: str | None = None) -> Figure:
-    """Where a network looks for the object itself, from three sides."""
+    """Draws where a network looks for the object itself, from three sides."""
     mesh, _, maps, words = _look(results, dataset)
     named = {method: views for method, views in maps.items() if ITSELF in views[0]}
     some(named, f"no network named {words['name']} itself", "fixation", runnable=False)
@@ -57,7 +57,7 @@ def figure_3_29(results: Results, dataset: str | None = None) -> Figure:
 
 
 def figure_3_30(results: Results, dataset: str | None = None) -> Figure:
-    """Where a network looks on one object in each of its tasks."""
+    """Draws where a network looks on one object in each of its tasks."""
     mesh, visible, maps, words = _look(results, dataset)
     some(maps, f"no network looked at {words['name']}", "fixation", runnable=False)
     view = int((visible @ mesh.vertex_areas).argmax())  # what shows most of the object

@@ -182,11 +182,11 @@ def below(results: Results, claim: Claim, share: float) -> pd.Series:
 
 @statistic(MEDIAN)
 def median_below(results: Results, claim: Claim) -> pd.Series:
-    """Of the median."""
+    """The share of views below the median of both."""
     return below(results, claim, 0.5)
 
 
 @statistic(UPPER_QUARTILE)
 def upper_quartile_below(results: Results, claim: Claim) -> pd.Series:
-    """Of the 75th percentile."""
+    """The share of views below the 75th percentile of both."""
     return below(results, claim, 0.75)

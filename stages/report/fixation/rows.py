@@ -100,7 +100,7 @@ def scores(rows: pd.DataFrame, metric: str, by: Sequence[str] = ("item",)) -> pd
 
 
 def detectors(table: pd.DataFrame) -> list[Detector]:
-    """Those of a frame of scores that answer for a whole object: fused maps, rivals, controls; in this order."""
+    """The detectors, in a frame of scores, of a whole object: fused maps, rivals, controls; in this order."""
     found = (Detector(*name) for name in table.columns)
     whole = [name for name in found if name.task in (FUSED, NARROWED) or name.method in KINDS]
     return sorted(whole, key=lambda name: list(KINDS).index(name.kind))

@@ -100,7 +100,7 @@ def _objects(rows: pd.DataFrame) -> str:
 
 
 def _values(rows: pd.DataFrame, network: str, metric: str = "accuracy", **where: str) -> pd.Series:
-    """What was measured of a network, indexed by what tells its trainings and senses apart."""
+    """The values of a network, indexed by its training and senses."""
     wanted = pd.Series({"metric": metric, "network": network, **where})
     return rows[(rows[wanted.index] == wanted).all(axis=1)].set_index(["sense", "split", "repetition"])["value"]
 

@@ -229,7 +229,7 @@ KEEP_NOTHING = [label(PLAIN), label(QSLIM)]  # what the others are held against
 
 
 def dataset(results: Results) -> Table:
-    """What the run was made of: one row per object of the first data set, and what was refused."""
+    """The objects of the run: one row per object of the first data set, and what was refused."""
     manifest, refused = (results.table("meshes", f"{name}.csv") for name in ("manifest", "refused"))
     frame = manifest.filter(["object", "vertices", "faces", "parts", "watertight", "repairs", "licence"])
     named = "; ".join(f"{row.object} ({row.reason})" for row in refused.itertuples())

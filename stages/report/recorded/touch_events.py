@@ -112,7 +112,7 @@ def _line(own: pd.DataFrame) -> dict[str, str]:
 
 
 def _chosen(frame: pd.DataFrame) -> str:
-    """Of each group the method with the highest accuracy in training, and what it has on the test part."""
+    """The method of each group with the highest accuracy in training, and its accuracy on the test part."""
     best = frame.loc[frame.groupby("group", sort=False)["cross_validated"].idxmax()]
     said = [
         f"of the {GROUPS[row.group]} {label(row.method)}, {with_interval(row.accuracy, row.low, row.high, 100, 1)} %"

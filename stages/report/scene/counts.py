@@ -69,7 +69,7 @@ def counts_table(results: Results) -> Table:
 
 
 def figure(results: Results) -> Figure:
-    """What each model of the count wastes, where it fails, how it learns, and what it costs."""
+    """Draws the waste, the failures, the learning and the cost of each model of the count."""
     rows = _measured(results, [*PLACES, "equal_rate", "trained_on", "cost"])
     drawing, panels = plt.subplots(2, 2, figsize=(9.6, 7.2))
     for axes, draw in zip(panels.flat, (_waste, _failures, _training, _costs), strict=True):

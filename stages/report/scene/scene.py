@@ -140,7 +140,7 @@ def scenes(results: Results) -> Table:
 
 
 def _said(rows: pd.DataFrame) -> str:
-    """What there is in a scene, what ours saves there, and the notes but for those on limits."""
+    """The objects of a scene, the savings of ours there, and the notes but for those on limits."""
     there = next(iter(records(rows.dropna(subset=["value"]))))
     text = f"Scene {there.scene}, tolerance {amount(there.tolerance, UNITS[there.kind])}: "
     text += f"{there.objects:.0f} objects ({there.shapes:.0f} different), {there.frames:.0f} frames."

@@ -70,7 +70,7 @@ def _cells(rows: pd.DataFrame, by: list[str]) -> pd.DataFrame:
 
 
 def _classes(rows: pd.DataFrame) -> str:
-    """What each set holds, in words."""
+    """The content of each set, in words."""
     return "; ".join(
         f"{dataset_text(str(name))}: {', '.join(sorted(set(own['group'])))}, {own['item'].nunique()} objects, "
         f"{int(own['touches'].iloc[0])} touches each, guessing {100 / own['group'].nunique():.1f} %"
@@ -137,7 +137,7 @@ def chart(results: Results) -> Figure:
 
 
 def _best(found: pd.DataFrame) -> str:
-    """What the best array is, and what the one with the fewest and closest cells loses."""
+    """The best array, and the loss of the one with the fewest and closest cells."""
     best = found.sort_values("accuracy").iloc[-1]
     small = found[found["classifier"] == best["classifier"]].sort_values(["cells", "pitch"]).iloc[0]
     said = (

@@ -80,7 +80,7 @@ def figure_4_15(results: Results) -> Figure:
 
 
 def followed(mesh: Mesh, pair: np.ndarray) -> SectionCurve:
-    """What was followed on the plane through the object's centre and a pair (2,) of vertices."""
+    """The curve that was followed on the plane through the object's centre and a pair (2,) of vertices."""
     used = mesh.vertices[np.unique(mesh.faces)]
     return contour(mesh, [(used.min(axis=0) + used.max(axis=0)) / 2, *mesh.vertices[pair]])
 

@@ -1,4 +1,4 @@
-"""Where methods break: under which perturbation, and how much of it; and where the time went."""
+"""The stability of methods: the perturbation under which each breaks, and how much of it; and the use of time."""
 
 from . import claims, pairs, people, points, score, simplification, touch, transfer
 

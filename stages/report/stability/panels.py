@@ -1,4 +1,4 @@
-"""Where something breaks: charts against severity, a panel a perturbation and one for the legend, and tables."""
+"""Charts of breaking points: charts against severity, a panel a perturbation and one for the legend, and tables."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any

@@ -1,4 +1,4 @@
-"""Where each method of finding salient points breaks: table, chart and the worst cases."""
+"""The breaking point of each method that finds salient points: table, chart and the worst cases."""
 
 from typing import Any
 

@@ -250,7 +250,7 @@ def _scored(results: Results) -> tuple[pd.DataFrame, pd.DataFrame, Errors]:
 
 
 def _accuracy(results: Results) -> pd.DataFrame:
-    """Of each method the NSS on the meshes with gaze, with its interval, and the seconds of a look; empty without."""
+    """The NSS of each method on the meshes with gaze, with its interval, and the seconds of a look; empty without."""
     if not results.printed(GAZE, "salient_points"):
         return pd.DataFrame(columns=["method", "nss", "seconds"]).astype({"nss": float, "seconds": float})
     rows = results.measured("salient_points", GAZE, metric="nss")

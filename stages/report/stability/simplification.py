@@ -48,7 +48,7 @@ def table(results: Results) -> Table:
 
 
 def _outcomes(cases: pd.DataFrame) -> dict[str, Any]:
-    """Of one damage and backend: cases by outcome, fewest faces, median seconds, and why the worst case failed."""
+    """One damage and backend: cases by outcome, fewest faces, median seconds, and why the worst case failed."""
     had = cases.loc[cases["budget"] == SMALLEST, "outcome"] == "valid"
     bad = cases.loc[cases["outcome"].isin(OUTCOMES[1:])].sort_values("outcome", ascending=False)
     return {
@@ -67,7 +67,7 @@ def least_valid(cases: pd.DataFrame) -> float:
 
 
 def figure(results: Results) -> Figure:
-    """Which broken meshes can be simplified to how few faces, by which backend, and the error until it breaks."""
+    """Draws to how few faces each backend simplifies broken meshes, and the error until it breaks."""
     cases, errors = results.measured(STAGE, metric="faces"), results.rows(STAGE, metric="error")
     backends, damages = (list(dict.fromkeys(cases[column])) for column in ("method", "perturbation"))
     height = 0.235 * len(damages)

@@ -1,4 +1,4 @@
-"""Where recognition by a network breaks: the severity of each change of the imprints at which half its lead is lost."""
+"""The breaking point of a network: the severity of each change of the imprints at which half its lead is lost."""
 
 from itertools import product
 

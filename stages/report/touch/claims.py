@@ -235,7 +235,7 @@ def by_features(results: Results) -> Figure:
 
 
 def by_saliency(results: Results) -> Figure:
-    """What a second spent on saliency is worth to the touch that follows."""
+    """The worth of a second spent on saliency to the touch that follows."""
     frame = _timed(results, ["method"], classifier="knn", variant="plain")
     frame["seconds"] = frame["method"].map(attention_seconds(results))
     title = f"Looking before touching: {results.group_text('six')}, kNN"

@@ -64,7 +64,7 @@ def _accuracy(results: Results) -> tuple[pd.DataFrame, int]:
 
 
 def imprints(results: Results) -> Figure:
-    """What the sensor feels at the points of each method, an object a row."""
+    """Draws the imprints at the points of each method, an object a row."""
     names = results.choose(results.settings.figure_objects, COUNT, stage="imprints")
     methods = results.imprints(names[0]).those_of(METHODS)
     width = len(methods) * TOUCHES
@@ -92,7 +92,7 @@ def _draw_imprint(axes: Axes, image: np.ndarray | None) -> None:
 
 
 def touch_one_mesh(results: Results) -> Figure:
-    """What `haptic-glance touch MESH` shows: of one object, of a folder of one's own of each."""
+    """Draws the output of `haptic-glance touch MESH`: of one object, or of each object of a folder of one's own."""
     own, settings = results.own_meshes, results.settings
     names = results.choose(() if own else [settings.hero_object], settings.viewer_count if own else 1)
     figure = plt.figure(figsize=(12, 5.4 * len(names)))

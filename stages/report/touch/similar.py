@@ -29,7 +29,7 @@ BY_OBJECT = {
 
 
 def table_4_3(results: Results) -> Table:
-    """What it brings to leave out imprints that another object has too, by protocol."""
+    """The gain from leaving out imprints that another object has too, by protocol."""
     few = [fifteen(way) for way in WAYS]
     thesis = results.thesis("table_4_3_imprint_selection_virtual").set_index("classifier")
     selected = {one.dataset for one in protocols(results, variant="selected")}

@@ -136,14 +136,14 @@ def _both_passes(
 
 
 def _precisions(frame: pd.DataFrame) -> str:
-    """Which networks computed in other numbers than float32, in a sentence; empty for none."""
+    """The networks that computed in other numbers than float32, in a sentence; empty for none."""
     other = frame[frame["precision"].notna() & (frame["precision"] != "float32")]
     kinds = other[["network", "precision"]].drop_duplicates().itertuples(index=False)
     return " ".join(f"{label(name)} computed in {numbers}." for name, numbers in kinds)
 
 
 def _guesses(frame: pd.DataFrame) -> str:
-    """What guessing gives on each set."""
+    """The accuracy of guessing on each set."""
     shares = frame.groupby("objects", sort=False)["chance"].first().dropna()
     return ", ".join(f"{dataset_text(str(name))} {percent(share, 1)} %" for name, share in shares.items())
 
@@ -197,7 +197,7 @@ def _ranking(cells: pd.DataFrame, heads: dict[tuple, str]) -> Ranking:
 
 
 def _looked(cells: pd.DataFrame) -> str:
-    """What the networks of each column saw."""
+    """The touches that the networks of each column saw."""
     heads = (_head(cells) + ": " + cells["seen"])[cells["seen"] != ""]
     return "; ".join(heads.unique())
 

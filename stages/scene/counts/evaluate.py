@@ -216,7 +216,7 @@ def _costs(curves, frame, combinations, seed):
 
 
 def _seconds(ask):
-    """Of one prediction, the fastest of REPEATS: other load on the machine only adds."""
+    """The seconds of one prediction, the fastest of REPEATS: other load on the machine only adds."""
     taken = []
     for _ in range(REPEATS):
         with Stopwatch() as watch:
