@@ -2,9 +2,10 @@
 
 Reads data/household_scenes of a finished `experiment=scenes`. pyrender draws the frames of each scene through
 EGL, by whatever OpenGL there is: without a graphics card that is Mesa's software rasteriser, kept to one thread. Full
-meshes, uniform levels of our mean displacement, our levels and those of the online planner take turns in each frame,
-after one drawing that uploads them. Writes reports/bench/frame_times.csv: a row a scene and plan, with the mean over
-its frames of faces and of processor milliseconds (`ms`), and these over those of the full meshes (`ratio`).
+meshes, uniform levels of our mean displacement, our levels, those of the online planner and those by errors rendered
+beforehand take turns in each frame, after one drawing that uploads them. Writes reports/bench/frame_times.csv: a row a
+scene and plan, with the mean over its frames of faces and of processor milliseconds (`ms`), and these over those of the
+full meshes (`ratio`).
 """
 
 import os
@@ -30,7 +31,10 @@ from stages.scene.compare import OURS, read_chain, read_plans
 from stages.scene.measure import Case, scene_of, scenes_of
 
 OUT, SET = Path("reports/bench/frame_times.csv"), "household_scenes"
-PLANS = {"full": "full", "uniform": "uniform.displacement", "ours": OURS, "online": "online"}
+PLANS = {
+    "full": "full", "uniform": "uniform.displacement", "ours": OURS, "online": "online",
+    "beforehand": "beforehand.displacement",
+}  # fmt: skip
 EVERY = 5  # frames: one in so many is drawn
 REPEATS = 2  # drawings of a frame beside the one that uploads, of which the faster counts
 

@@ -11,7 +11,9 @@ rendered is not rendered again, but for the network, which starts anew. Settings
 import functools
 from pathlib import Path
 
+from haptic_glance.base.files import write_arrays
 from haptic_glance.base.timing import Stopwatch
+from haptic_glance.lod.scene.beforehand import profile
 from haptic_glance.lod.scene.chain import build_lod_chain
 from haptic_glance.lod.task import variant
 from stages.engine.objects import KeptRows
@@ -19,7 +21,7 @@ from stages.engine.run import Rows, StageRun
 from stages.engine.settings import Workspace, workspace_of_arguments
 
 from . import COLUMNS, Params
-from .compare import OURS, PLAIN, write_chain
+from .compare import OURS, PLAIN, PROFILE, write_chain
 from .export import export
 from .measure import (
     CURVE,
@@ -40,7 +42,7 @@ LEVELS, PLAN = "scene/levels", "scene/plans/{}.npz"  # what earlier items of the
 
 
 def levels_of(name: str, folder: Path, data: Path, method: str, seed: int) -> Rows:
-    """Builds the chains of one object; returns one row per chain, with the seconds."""
+    """Builds the chains of one object, and the profile of ours; returns one row for each, with the seconds."""
     mesh, options, _ = read_object(data, name, method)
     rows = []
     for kind, chosen in ((OURS, options), (PLAIN, {})):
@@ -49,6 +51,11 @@ def levels_of(name: str, folder: Path, data: Path, method: str, seed: int) -> Ro
         write_chain(folder / "levels" / name, kind, levels)
         row = {"item": name, "method": kind, "frame": "all", "metric": "levels", "value": len(levels)}
         rows.append(row | {"seconds": watch.seconds})
+        if kind == OURS:
+            with Stopwatch() as watch:
+                found = profile(levels)
+            write_arrays(folder / "levels" / name / PROFILE, directions=found.directions, sums=found.sums)
+            rows.append(row | {"metric": "profile", "value": len(found.directions), "seconds": watch.seconds})
     return rows
 
 

@@ -14,6 +14,7 @@ import pandas as pd
 
 from haptic_glance.base.files import read_arrays, read_mesh, read_table, write_arrays, write_mesh, write_table
 from haptic_glance.base.timing import Stopwatch
+from haptic_glance.lod.scene.beforehand import Profile, by_profiles, by_sums, rendered_sums
 from haptic_glance.lod.scene.budget import budget, cheapest
 from haptic_glance.lod.scene.camera import Scene
 from haptic_glance.lod.scene.chain import ERRORS, Level, finest
@@ -24,6 +25,7 @@ from . import online as rivals
 from .online import online
 
 OURS, PLAIN = "ours", "plain"  # kinds of LOD chain: with the salient regions spared, and without
+PROFILE = f"{OURS}_profile.npz"
 MATCHED, ASKED = ("error", "displacement", "held"), "asked"  # see MethodPlan
 
 
@@ -44,12 +46,13 @@ class MethodPlan:
 
 @dataclass(frozen=True, eq=False)
 class SceneSetup:
-    """A scene, its meshes and frames, and the LOD chains of each kind for its objects."""
+    """A scene, its meshes and frames, and for its objects the LOD chains of each kind and the profiles of ours."""
 
     scene: Scene
     meshes: dict[str, Mesh]
     frames: Frames
     chains: dict[str, dict[str, tuple[Level, ...]]] = field(repr=False)
+    profiles: dict[str, Profile] = field(repr=False, default_factory=dict)
 
     def of(self, kind: str) -> tuple[tuple[Level, ...], ...]:
         """The LOD chain of each object of the scene."""
@@ -61,7 +64,8 @@ def load_setup(scene: Scene, meshes: Mapping[str, Mesh], folder: Path) -> SceneS
     full = finest_levels({name: meshes[name] for name in sorted({placed.name for placed in scene.objects})})
     chains = {kind: read_chains(folder, kind, full) for kind in (OURS, PLAIN)}
     frames = Frames(scene, meshes, [full[placed.name] for placed in scene.objects])
-    return SceneSetup(scene, dict(meshes), frames, chains)
+    profiles = {name: Profile(**read_arrays(folder / name / PROFILE)) for name in full}
+    return SceneSetup(scene, dict(meshes), frames, chains, profiles)
 
 
 def mean_error(plan: Plan) -> float:
@@ -98,6 +102,28 @@ def _online(setup, ours):
         fresh = Frames(setup.scene, setup.meshes, setup.frames.full)
         own = _planned(method, lambda fresh=fresh, rendered=rendered: online(fresh, setup.of(OURS), rendered))
         found.append(replace(own, plan=Plan(own.plan.levels, own.plan.chains, setup.frames)))
+    return found
+
+
+def _beforehand(setup, ours):
+    """At our mean displacement: by errors rendered beforehand, and by those of every level in every frame.
+
+    The second renders on frames of its own, within its time.
+    """
+    chains = setup.of(OURS)
+    profiles = [setup.profiles[placed.name] for placed in setup.scene.objects]
+    fresh = Frames(setup.scene, setup.meshes, setup.frames.full)
+    with Stopwatch() as watch:
+        sums = rendered_sums(fresh, chains)
+    ways = {
+        "beforehand": (lambda coarseness: by_profiles(setup.frames, chains, profiles, 1 / coarseness), 0.0),
+        "every_level": (lambda coarseness: by_sums(setup.frames, chains, sums, 1 / coarseness), watch.seconds),
+    }
+    found = []
+    for method, (plan_of, before) in ways.items():
+        (own,) = _tuned(setup, method, plan_of, ours, ("displacement",))
+        once = _planned(method, lambda plan_of=plan_of: plan_of(1.0))  # the price changes nothing of the cost
+        found.append(replace(own, planning=before + once.seconds))
     return found
 
 
@@ -169,8 +195,11 @@ def _timed(method, matched, make: Callable[[], Plan]) -> MethodPlan:
 
 
 # Plans beside ours and uniform levels: without salience, all faces, by the levels' own errors without rendering, under
-# a face limit, and by planners that see no frame ahead.
-OTHERS = {"plain": _plain, "full": _full, "unrendered": _unrendered, "limited": _limited, "online": _online}
+# a face limit, by planners that see no frame ahead, and by the mean displacement, rendered beforehand or in each frame.
+OTHERS = {
+    "plain": _plain, "full": _full, "unrendered": _unrendered, "limited": _limited, "online": _online,
+    "beforehand": _beforehand,
+}  # fmt: skip
 
 
 def compare(

@@ -32,7 +32,6 @@ from . import Params
 from .compare import (
     ASKED,
     MATCHED,
-    OTHERS,
     OURS,
     MethodPlan,
     SceneSetup,
@@ -51,6 +50,7 @@ from .rows import frame_rows, object_rows, plan_rows, saved_rows
 SHOWN = ("full", "uniform", OURS)  # methods of the pictures for the report
 FRAMED = ("full", "uniform", "uniform_size", "network", OURS, "ours_plain")  # with rows of every frame
 MAIN = ("", "error")  # plans of their own, and those at the same mean error
+FIXED = ("plain", "full", "unrendered", "limited", "online")  # compared in a scene that is not drawn at random
 TABLE = "plan.csv"
 
 
@@ -74,7 +74,9 @@ class Case:
     @property
     def others(self) -> tuple[str, ...]:
         """Names of compare.OTHERS: what is compared besides."""
-        return ("full", "online") if self.settings.random else tuple(OTHERS) if self.factor == 1 else ("plain",)
+        if self.settings.random:
+            return "full", "online", "beforehand"
+        return FIXED if self.factor == 1 else ("plain",)
 
     @property
     def in_detail(self) -> bool:

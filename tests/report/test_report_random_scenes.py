@@ -73,6 +73,7 @@ def test_what_foresight_is_worth_is_judged_at_five_per_cent(measured, more, verd
 def test_the_time_of_drawing_stands_beside_the_faces(root, measured):
     rivals = [f"{name}__{matched}" for name in ("uniform", "uniform_size") for matched in ("displacement", "error")]
     ways = {"online": lambda k: 1000, "online_unrendered": lambda k: 1800 + k}
+    ways |= {"beforehand__displacement": lambda k: 1195 + k, "every_level__displacement": lambda k: 900 + 10 * k}
     results = measured(**ways, **dict.fromkeys(rivals, lambda k: 1500))
     ways = {"full": (50_000, 1.0), "ours": (1000, 0.25), "uniform": (1500, 0.3), "online": (1000, 0.25)}
     bench = [{"scene": f"random_{k:02d}", "method": name, "rows": 270, "faces": faces, "ms": 40 * ratio + 0.1 * k,
@@ -80,6 +81,10 @@ def test_the_time_of_drawing_stands_beside_the_faces(root, measured):
              for k in range(12) for name, (faces, ratio) in ways.items()]  # fmt: skip
     write_table(root / "reports/bench/frame_times.csv", pd.DataFrame(bench))
     table = build_one(topic, "tables", "random_scenes", results)
+    rows = table.frame.set_index("method")
+    assert rows.loc["beforehand", "less"] == pytest.approx(0.2, abs=0.001) and 0.3 < rows.loc["every_level", "less"] < 0.4
+    assert rows.loc["full", "less"] != rows.loc["full", "less"]  # not at an equal displacement
+    assert "take 20 [20, 20] % fewer faces than uniform levels, and planning takes 20.00 ms" in table.summary
     shown = table.shown.set_index("levels chosen by")["drawing time / full"]
     assert shown["ours"].startswith("0.26 [") and shown["full models"] == "–"
     assert any("llvmpipe, a software rasteriser" in note for note in table.notes)

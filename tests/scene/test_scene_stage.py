@@ -259,6 +259,13 @@ def test_random_scenes_are_measured_one_by_one(settings, workspace, make_workspa
         axis=None
     )
     assert (wide["ours"].squeeze() < wide["full"].squeeze()).all()
+    moved = rows[(rows["metric"] == "displacement_mean") & (rows["frame"] == "all")]
+    moved = moved.pivot(index="group", columns=["method", "matched"], values="value")
+    for method in ("beforehand", "every_level"):  # equal in displacement, or coarser: then no fewer faces at equality
+        assert (moved[method, "displacement"] >= moved["ours"].squeeze()).all()
+        assert (wide[method, "displacement"] <= wide["uniform", "displacement"]).all()
+    (cost,) = set(rows.loc[rows["metric"] == "profile", "value"])
+    assert cost == 32 and rows.loc[rows["metric"] == "profile", "item"].tolist() == ["one", "third", "two"]
     assert sorted(path.stem for path in (random.data / "scene/plans").iterdir()) == ["random_00_1", "random_01_1"]
     assert not (random.data / "scene/export").exists()
 

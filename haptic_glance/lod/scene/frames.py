@@ -153,11 +153,14 @@ class Frames:
         if self.scene.kind == "ssim":
             return structure_lost(self, frame, item, one, other)
         self.measure([(frame, item, one, other)])
-        sides = [
-            self._displacements[frame, item, a, b][self.visible(frame, item, a)]
-            for a, b in ((one, other), (other, one))
-        ]
-        return _quantile(np.concatenate(sides))
+        return _quantile(np.concatenate([self.moved(frame, item, *pair) for pair in ((one, other), (other, one))]))
+
+    def moved(self, frame: int, item: int, one: Level, other: Level) -> np.ndarray:
+        """(k,) f4: displacements from `other` of the pixels that show an object at level `one`; `measure` comes first.
+
+        The other objects, at full detail, hide some of the object's pixels.
+        """
+        return self._displacements[frame, item, one, other][self.visible(frame, item, one)]
 
     def check(self, frame: int, levels: Sequence[Level]) -> FrameError:
         """The FrameError of a rendered frame with one level per object, over the pixels in which each is visible.

@@ -43,6 +43,13 @@ CLAIMS = [
         for matched, words in EQUAL.items()
         for rival in ("uniform", "uniform_size")
     ),
+    *(
+        planned(key=f"{method}_saves", first={"method": method, "matched": "displacement"},
+                second={"method": "uniform", "matched": "displacement"},
+                sentence=f"{words} needs fewer faces than uniform levels by distance at an equal mean displacement.")
+        for method, words in (("beforehand", "A look-up of errors rendered beforehand"),
+                              ("every_level", "Knowing the error of every level in every frame"))
+    ),
     planned(key="online_faces", first={"method": "online"}, second={"method": OURS}, margin=ALLOWED,
             sentence=f"A planner that sees no frame ahead needs no more than {ALLOWED:g} % more faces."),
     needed(key="felt_over_seen", first=FELT, second=SEEN,

@@ -101,10 +101,12 @@ NAMES = {
     "equal": "ours, the limit shared equally",
     "online": "ours, no frame seen ahead",
     "online_unrendered": "the same, nothing rendered",
+    "beforehand": "errors rendered beforehand",
+    "every_level": "every level rendered in every frame",
 }
 COLOURS = {
     "full": "#222222", "uniform": "#E69F00", "uniform_size": "#D55E00", "network": "#CC79A7", "ours_plain": "#56B4E9",
-    "ours": "#0072B2", "online": "#009E73",
+    "ours": "#0072B2", "online": "#009E73", "beforehand": "#D55E00", "every_level": "#222222",
 }  # fmt: skip
 UNITS = {"pixels": "pixels", "ssim": "1 − SSIM"}
 OURS = "ours"
@@ -152,8 +154,11 @@ def _range(shares: list[float]) -> str:
 
 PLANS = [
     ("full", ""), ("uniform", "displacement"), ("uniform_size", "displacement"), ("network", "displacement"),
-    (OURS, ""), ("online", ""), ("online_unrendered", ""), ("uniform", "error"), ("uniform_size", "error"),
+    ("beforehand", "displacement"), ("every_level", "displacement"), (OURS, ""), ("online", ""),
+    ("online_unrendered", ""), ("uniform", "error"), ("uniform_size", "error"),
 ]  # fmt: skip
+BY_DISPLACEMENT = ("beforehand", "every_level")
+UNIFORM_LEVELS = "uniform", "displacement"
 EQUAL = {"": "", "displacement": "mean displacement", "error": "worst object's error"}
 SHOWN = {"displacement_mean": ("displacement, px", 1, 2), "error": ("frame error, mean", 1, 2),
          "held": ("frames within, %", 100, 0), "switches_per_object": ("switches an object", 1, 1)}  # fmt: skip
@@ -169,12 +174,17 @@ def random_table(results: Results) -> Table:
         saved = 100 * saving(wide, plan)
         found = {"method": plan[0], "matched": plan[1], "scenes": len(own), "faces": own["faces"].mean()}
         found |= dict(zip(("saved", "saved_low", "saved_high"), interval(saved / 100), strict=True))
+        less = 100 * fewer(wide, plan) if plan[1] == "displacement" or plan[0] == OURS else []
+        found |= dict(zip(("less", "less_low", "less_high"), 0.01 * np.array(interval(less)), strict=True))
         found |= {name: own[name].mean() for name in SHOWN} | {"step_worst": own["step_worst"].median()}
         found |= {"planning_ms": own["planning_ms"].median()}
         found |= dict(zip(("drawing", "drawing_low", "drawing_high"), times.get(plan, (None,) * 3), strict=True))
         frame.append(found)
         line = {"levels chosen by": NAMES[plan[0]], "equal to ours in": EQUAL[plan[1]], "faces a frame": found["faces"]}
         line["faces that ours saves, %"] = "–" if plan[0] == OURS else with_interval(*interval(saved), places=0)
+        line["fewer than uniform levels by distance, %"] = (
+            with_interval(*interval(less), places=0) if len(less) else "–"
+        )
         line |= {head: f"{scale * found[name]:.{places}f}" for name, (head, scale, places) in SHOWN.items()}
         line |= {"worst jump": found["step_worst"], "planning, ms a frame": found["planning_ms"]}
         line["drawing time / full"] = with_interval(*times[plan], places=2) if plan in times else "–"
@@ -193,10 +203,17 @@ def random_figure(results: Results) -> Figure:
     """The saving in each scene, sorted, at an equal displacement and at an equal error; and online beside offline."""
     wide, _ = plans(results)
     drawing, panels = plt.subplots(1, 3, figsize=(10.2, 4.0))
-    for axes, matched in zip(panels, ("displacement", "error"), strict=False):
-        for rival, marker in (("uniform", "o"), ("uniform_size", "s")):
-            _sorted(axes, 100 * saving(wide, (rival, matched)), COLOURS[rival], NAMES[rival], marker)
-        axes.set(ylabel="faces that ours saves, %", title=f"equal {EQUAL[matched]}")
+    for plan, marker in (
+        ((OURS, ""), "o"),
+        (("beforehand", "displacement"), "s"),
+        (("every_level", "displacement"), "^"),
+    ):
+        if plan in _keys(wide):
+            _sorted(panels[0], 100 * fewer(wide, plan), COLOURS[plan[0]], NAMES[plan[0]], marker)
+    panels[0].set(ylabel="fewer faces than uniform levels by distance, %", title=f"equal {EQUAL['displacement']}")
+    for rival, marker in (("uniform", "o"), ("uniform_size", "s")):
+        _sorted(panels[1], 100 * saving(wide, (rival, "error")), COLOURS[rival], NAMES[rival], marker)
+    panels[1].set(ylabel="faces that ours saves, %", title=f"equal {EQUAL['error']}")
     _sorted(panels[2], _extra(wide), COLOURS["online"], NAMES["online"])
     panels[2].axhline(ALLOWED, color=GREY, lw=1, ls=":")
     panels[2].set(ylabel="more faces than ours, %", title="what foresight is worth")
@@ -230,6 +247,14 @@ def saving(wide: pd.DataFrame, plan: tuple[str, str]) -> pd.Series:
     """The share of a plan's faces that ours saves, a value a scene: 0 where it has as many."""
     ours, rival = (wide.xs(key, level=["method", "matched"])["faces"] for key in ((OURS, ""), plan))
     return (1 - ours / rival).dropna()
+
+
+def fewer(wide: pd.DataFrame, plan: tuple[str, str]) -> pd.Series:
+    """The share of the faces of uniform levels by distance that a plan saves at our displacement, a value a scene."""
+    if not {plan, UNIFORM_LEVELS} <= _keys(wide):
+        return pd.Series(dtype=float)
+    own, rival = (wide.xs(key, level=["method", "matched"])["faces"] for key in (plan, UNIFORM_LEVELS))
+    return (1 - own / rival).dropna()
 
 
 def _extra(wide: pd.DataFrame) -> pd.Series:
@@ -268,7 +293,8 @@ def _times(results: Results) -> dict[tuple[str, str], tuple[float, float, float]
         return {}
     rows = rows[rows["method"] != "full"]
     found = {str(name): interval(own["ratio"]) for name, own in rows.groupby("method", sort=False)}
-    return {(name, "displacement" if name == "uniform" else ""): ratio for name, ratio in found.items()}
+    own = (OURS, "online", "full")
+    return {(name, "" if name in own else "displacement"): ratio for name, ratio in found.items()}
 
 
 def planning(results: Results) -> str:
