@@ -7,7 +7,8 @@ positions, given and written, are in the file's coordinates. Writes into the fol
   imprints.npz  images (k, rows, cols) in 0..1, 0 at first contact; distances (k, rows, cols) before the skin, in units;
                 vertices, positions, normals and axes (rows right, up, normal) in the file's coordinates; pitch; unit
   places.csv    index, vertex (empty if it is none), position, normal, relief in units and in the file's units
-imprints.png needs the extra `pictures`; the others are written without it. With --load a rigid array comes from above: imprints.npz also has forces (k, rows, cols) in newtons, and places.csv the
+imprints.png needs the extra `pictures`; the others are written without it.
+With --load a rigid array comes from above: imprints.npz also has forces (k, rows, cols) in newtons, and places.csv the
 highest of each place and how deep its layer is indented, in metres.
 
 examples:
