@@ -19,8 +19,10 @@ ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 COMMANDS = re.findall(r"^(python -m stages\.compose .*?)(?: &&|  |$)", README, re.M)
 COMPOSED = [shlex.split(command)[3:] for command in COMMANDS]
-OTHERS = sorted({one for extra, modules in MODULES.items() if extra != "pipeline" for one in modules} - {"cloudpickle"})
-# An interpreter without what other extras bring, but for what joblib has a copy of; its children inherit that.
+OTHERS = sorted(
+    {one for extra in MODULES.keys() - {"pipeline", "pictures"} for one in MODULES[extra]} - {"cloudpickle"}
+)
+# An interpreter without what [pipeline] does not bring, but for what joblib has a copy of; its children inherit that.
 BLOCKED = f"""
 import sys
 

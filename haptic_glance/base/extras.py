@@ -5,6 +5,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 MODULES = {
+    "pictures": ("cv2", "matplotlib"),
     "pipeline": (
         "diskcache", "dvc", "filelock", "hydra", "joblib", "laspy", "omegaconf", "pandas",
         "point_cloud_utils", "pymeshlab", "pypcd4", "pyrender", "pywt", "robust_laplacian", "rtree", "skimage",
@@ -32,7 +33,7 @@ def from_extra(need: str = "") -> Iterator[None]:
         yield
     except ModuleNotFoundError as error:
         module = (error.name or "").partition(".")[0]
-        if module not in EXTRAS:
+        if isinstance(error, MissingExtra) or module not in EXTRAS:  # the inner one says why it is needed
             raise
         here = Path(__file__).parents[2] / "pyproject.toml"  # beside the stages in a clone alone
         remedy = f"pip install '{'.' if here.is_file() else 'haptic-glance'}[{EXTRAS[module]}]'"

@@ -5,10 +5,10 @@ The structural similarity of two pictures, pixel by pixel (Wang, Bovik, Sheikh a
 Structural similarity from local moments (Wang et al. 2004, T [63], eq. 13), compiled by numba.
 """
 
-import cv2
 import numpy as np
 
 from .jit import kernel_of
+from .opencv import cv2
 
 WINDOW = 11  # pixels; Wang et al. 2004, with a Gaussian of sigma 1.5
 SIGMA = 1.5
@@ -33,10 +33,8 @@ def local_moments(picture: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _blurred(values):
-    return cv2.sepFilter2D(values, -1, WEIGHTS, WEIGHTS, borderType=cv2.BORDER_REFLECT)
-
-
-WEIGHTS = cv2.getGaussianKernel(WINDOW, SIGMA)
+    weights = cv2.getGaussianKernel(WINDOW, SIGMA)
+    return cv2.sepFilter2D(values, -1, weights, weights, borderType=cv2.BORDER_REFLECT)
 
 
 kernel = kernel_of(__file__)

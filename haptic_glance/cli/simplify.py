@@ -127,7 +127,7 @@ def check_paths(chosen: argparse.Namespace) -> None:
         raise ValueError("--format is for the files in a folder: --out says that of one file")
     check_outputs(chosen.mesh, chosen.out if one_file(chosen) else None, chosen.picture)
     if chosen.picture:
-        from haptic_glance.lod.pictures import check_picture  # brings matplotlib, which nothing else here needs
+        from haptic_glance.lod.pictures import check_picture
 
         check_picture(chosen.picture)
 
@@ -260,7 +260,7 @@ def write_level(out: Path, task: SimplificationTask, level: Mesh, given: Mesh, p
 
 def draw(task: SimplificationTask, found: Mesh, path: Path) -> None:
     """Writes the picture of the mesh before and after."""
-    from haptic_glance.lod.pictures import write_picture  # loads matplotlib, which nothing else here needs
+    from haptic_glance.lod.pictures import write_picture
 
     points = task.points[task.points_kept(found)]
     write_picture(path, task.upright(task.mesh), task.upright(found), task.saliency, points, task.given.up)

@@ -7,6 +7,7 @@ positions, given and written, are in the file's coordinates. Writes into the fol
   imprints.npz  images (k, rows, cols) in 0..1, 0 at first contact; distances (k, rows, cols) before the skin, in units;
                 vertices, positions, normals and axes (rows right, up, normal) in the file's coordinates; pitch; unit
   places.csv    index, vertex (empty if it is none), position, normal, relief in units and in the file's units
+imprints.png needs the extra `pictures`; the others are written without it.
 With --load a rigid array comes from above: imprints.npz also has forces (k, rows, cols) in newtons, and places.csv the
 highest of each place and how deep its layer is indented, in metres.
 
@@ -31,6 +32,7 @@ from typing import Any
 
 import numpy as np
 
+from haptic_glance.base.extras import MissingExtra, from_extra
 from haptic_glance.base.files import write_arrays, write_text
 from haptic_glance.look.points.find import HELP, check_name
 from haptic_glance.mesh.up import add_up
@@ -191,7 +193,8 @@ def run(argv: list[str]) -> None:
     """Runs the command line `argv`, which excludes the program's name."""
     options = parse_options(__doc__ or "", argv)
     if options.show:
-        from haptic_glance.touch.pictures import check_window
+        with from_extra("--show needs matplotlib, which "):
+            from haptic_glance.touch.pictures import check_window
 
         check_window()
     try:
@@ -217,9 +220,14 @@ def run(argv: list[str]) -> None:
     arrays = saved_arrays(user_mesh, places, axes, raw, images, options.pitch)
     write_arrays(options.out / ARRAYS, **arrays, **({"forces": pressed} if len(pressed) else {}))
     write_text(options.out / TABLE, as_csv(rows, user_mesh.digits))
-    draw_picture(options, user_mesh, places, axes, images, [row["relief"] for row in rows])
+    written = [ARRAYS, TABLE]
+    try:
+        draw_picture(options, user_mesh, places, axes, images, [row["relief"] for row in rows])
+        written = [PICTURE, *written]
+    except MissingExtra as error:
+        report_progress(f"no {PICTURE}: {error}")
     print(json.dumps(rows) if options.json else summary(user_mesh, rows, options))
-    report_progress("written: " + ", ".join(str(options.out / name) for name in (PICTURE, ARRAYS, TABLE)))
+    report_progress("written: " + ", ".join(str(options.out / name) for name in written))
     if options.show:
         from haptic_glance.touch.pictures import open_window
 
@@ -268,8 +276,9 @@ def draw_picture(
     options: argparse.Namespace, user_mesh: UserMesh, places: Places, axes: np.ndarray, images: np.ndarray,
     reliefs: Sequence[float],
 ) -> None:  # fmt: skip
-    """Writes imprints.png."""
-    from haptic_glance.touch.pictures import write_picture  # brings matplotlib, which nothing else here needs
+    """Writes imprints.png; MissingExtra without matplotlib."""
+    with from_extra("it is drawn by matplotlib, which "):
+        from haptic_glance.touch.pictures import write_picture
 
     scale = "the depth" if options.depth else "the imprint's relief"
     write_picture(options.out / PICTURE, user_mesh.mesh, places.positions, axes, images, np.asarray(reliefs),

@@ -3,9 +3,9 @@
 from collections.abc import Mapping, Sequence
 from functools import partial
 
-import cv2
 import numpy as np
 
+from haptic_glance.base.opencv import cv2
 from haptic_glance.touch import Skin
 
 FEW_TOUCHES = "few_touches"  # not a perturbation of the test touches: fewer touches are used for training

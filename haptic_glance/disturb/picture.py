@@ -2,8 +2,9 @@
 
 from collections.abc import Mapping, Sequence
 
-import cv2
 import numpy as np
+
+from haptic_glance.base.opencv import cv2
 
 from .imprint import PERTURBATIONS, disturb
 

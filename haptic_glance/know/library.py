@@ -9,23 +9,16 @@ A library of objects known by touch: imprints of each, and how likely a new impr
 Objects that can be known without a file of one's own, and those of a folder.
 """
 
-from dataclasses import dataclass
-from functools import cached_property
-from typing import TYPE_CHECKING
-
-import numpy as np
-
-if TYPE_CHECKING:
-    pass
 import hashlib
 from collections.abc import Callable, Mapping
-from functools import lru_cache
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
 from pathlib import Path
 
+import numpy as np
 import trimesh
 from trimesh import creation
 
-from haptic_glance.base.extras import from_extra
 from haptic_glance.base.files import read_mesh
 from haptic_glance.base.rng import rng
 from haptic_glance.mesh import MeshError, load, normalise, rotate_to_z_up
@@ -37,7 +30,9 @@ from haptic_glance.touch.places import Places
 from haptic_glance.touch.surface import CANCELLED, mean_vertex_normals
 
 from .belief import FLOOR, Calibration, calibrate, feature_kernel, log_likelihood, nearest_outcomes, place_kernel
+from .components import Components
 from .explore import State, by_gain
+from .features import features
 
 SURE = 0.95  # belief in one object at which it is known
 
@@ -107,9 +102,6 @@ def place_at(surface: Surface, points: np.ndarray, faces: np.ndarray) -> Places:
     )
 
 
-with from_extra():
-    from .features import features
-
 TOUCHES = 128  # a learned object; twice as many know no more of the household objects
 CELLS, PITCH = (16, 16), 0.01  # of the array, T4.3
 ORDERS, LONGEST = 5, 20  # random orders of each object's touches, and touches of each, for the calibration
@@ -156,13 +148,9 @@ class Library:
     def __init__(
         self, names: tuple[str, ...], samples: np.ndarray, positions: np.ndarray, placed: bool, seed: int = 0
     ) -> None:
-        with from_extra():
-            from sklearn.pipeline import make_pipeline
-
-            from .classifiers import reduction
         self.names, self.placed, (classes, self._each) = names, placed, samples.shape[:2]
         self._owners = np.repeat(np.arange(classes), self._each)
-        self._reduction = make_pipeline(*reduction()).fit(flat := samples.reshape(-1, samples.shape[2]))
+        self._reduction = Components(flat := samples.reshape(-1, samples.shape[2]))
         self._components, self._positions = self._reduction.transform(flat), positions.reshape(-1, 3)
         self._own = self._of_own_touches()
         self.calibration: Calibration = self._calibrate(rng(seed, "calibration"))

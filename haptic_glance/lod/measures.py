@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from haptic_glance.base.extras import MissingExtra
 from haptic_glance.look.views import TWELVE
 from haptic_glance.mesh.mesh import Mesh
 
@@ -37,23 +38,27 @@ def measure_meshes(
 
     Where a coarse mesh exceeds the picture, all are drawn smaller by one scale, so that the columns of a table compare;
     this is reported, since the errors are then smaller too. Errors of pictures that fail are None, with the reason
-    reported.
+    reported; they are all None without OpenCV.
     """
     (before, *shown), scale = within_frame([task.upright(mesh) for mesh in (task.mesh, *meshes)])
     if scale < 1:
         report(f"the pictures show all meshes at {100 * scale:.3g} % of their size, so that the coarsest fits in")
-    pictures = take_pictures(before, TWELVE, SIZE)
-    rows = []
+    pictures, rows = None, []
+    try:
+        pictures = take_pictures(before, TWELVE, SIZE)
+    except MissingExtra as error:
+        report(f"no errors of the pictures: {error}")
     for mesh, picture in zip(meshes, shown, strict=True):
         errors = surface_errors(task.mesh, mesh, {"salient": task.saliency}, seed=seed)
         row: dict[str, float | None] = {name: 100 * value for name, value in errors.items()}
         if "colors" in task.attributes or "uv" in task.attributes:
             row["colour"] = colour_error(task.mesh, mesh, seed=seed)
+        row |= dict.fromkeys(("ssim", "dlap", "dnor"))
         try:
-            row |= picture_errors(pictures, take_pictures(picture, TWELVE, SIZE))
+            if pictures is not None:
+                row |= picture_errors(pictures, take_pictures(picture, TWELVE, SIZE))
         except ValueError as error:
             report(f"no errors of the pictures with {len(mesh.faces):,} faces: {error}")
-            row |= dict.fromkeys(("ssim", "dlap", "dnor"))
         rows.append(row)
     return rows
 

@@ -31,9 +31,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
-import cv2
 import numpy as np
 
+from haptic_glance.base.opencv import cv2
 from haptic_glance.base.similarity import WINDOW, local_moments, ssim_map
 from haptic_glance.look.camera import DISTANCE, VIEW_ANGLE, Viewpoint
 from haptic_glance.look.views import TWELVE, render

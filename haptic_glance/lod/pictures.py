@@ -8,11 +8,11 @@ A picture of one simplification: the saliency, and the faces before and after.
 from dataclasses import replace
 from pathlib import Path
 
-import cv2
 import numpy as np
-from matplotlib.figure import Figure
-from PIL import Image
+from PIL import Image, ImageDraw, ImageFont
+from trimesh.visual.color import interpolate
 
+from haptic_glance.base.extras import from_extra
 from haptic_glance.base.files import whole_file
 from haptic_glance.look.camera import Viewpoint, project
 from haptic_glance.look.views import render
@@ -26,7 +26,9 @@ ROWS, FINER = 600, 2  # rows of a picture; drawn twice as fine and averaged
 TOP = 0.98  # quantile of the values at which the colours saturate
 WIRE = np.array([40, 56, 82])
 DOT, RIM, INK = (216, 27, 27), (255, 255, 255), (34, 34, 34)
-MARGIN, ARROW = 20, 45  # pixels: of the arrow that points up
+VIRIDIS = np.ascontiguousarray(interpolate(np.arange(256.0), "viridis")[:, :3])
+OUTER = 12  # pixels: radius of a dot with its rim, and one more
+MARGIN, ARROW, TIP = 20, 45, 8  # pixels: of the arrow that points up
 KINDS = (".jpg", ".png", ".webp")
 
 
@@ -55,11 +57,16 @@ def look(mesh: Mesh, saliency: np.ndarray, points: np.ndarray) -> np.ndarray:
 
 def mark(image: np.ndarray, column: int, row: int, text: str) -> None:
     """Draws a dot that bears a text of a digit or two."""
-    for radius, colour in ((11, RIM), (9, DOT)):
-        cv2.circle(image, (column, row), radius, colour, cv2.FILLED, cv2.LINE_AA)
-    (width, height), _ = cv2.getTextSize(text, cv2.FONT_HERSHEY_SIMPLEX, 0.42, 1)
-    corner = column - width // 2, row + height // 2
-    cv2.putText(image, text, corner, cv2.FONT_HERSHEY_SIMPLEX, 0.42, RIM, 1, cv2.LINE_AA)
+    top, left = max(row - OUTER, 0), max(column - OUTER, 0)
+    part = image[top : row + OUTER + 1, left : column + OUTER + 1]
+    rows, columns = np.ogrid[top : top + len(part), left : left + part.shape[1]]
+    away = np.hypot(rows - row, columns - column)[..., None]
+    for radius, colour in ((OUTER - 1, RIM), (OUTER - 3, DOT)):
+        cover = np.clip(radius + 0.5 - away, 0, 1)  # of each pixel by the disc: its rim is smooth
+        part[:] = np.rint(cover * colour + (1 - cover) * part)
+    canvas = Image.fromarray(image)
+    ImageDraw.Draw(canvas).text((column, row), text, RIM, ImageFont.load_default(12), anchor="mm")
+    image[:] = canvas
 
 
 def check_look(path: Path) -> None:
@@ -84,7 +91,7 @@ def vivid(values: np.ndarray) -> np.ndarray:
 def viridis(values: np.ndarray) -> np.ndarray:
     """(n, 3) u1 colours of values (n,) in 0..1, from violet to yellow."""
     levels = np.rint(255 * values).astype(np.uint8)
-    return np.ascontiguousarray(cv2.applyColorMap(levels[:, None], cv2.COLORMAP_VIRIDIS)[:, 0, ::-1])
+    return VIRIDIS[levels]
 
 
 def draw(mesh: Mesh, wires: bool = False) -> np.ndarray:
@@ -103,9 +110,12 @@ def draw(mesh: Mesh, wires: bool = False) -> np.ndarray:
 def with_axis(image: np.ndarray, up: str) -> np.ndarray:
     """The picture (h, w, 3) u1 with an arrow in its lower left corner that names the axis `up`."""
     foot = len(image) - MARGIN
-    cv2.arrowedLine(image, (MARGIN, foot), (MARGIN, foot - ARROW), INK, 1, cv2.LINE_AA, tipLength=0.25)
-    cv2.putText(image, up, (MARGIN + 8, foot - ARROW + 12), cv2.FONT_HERSHEY_SIMPLEX, 0.6, INK, 1, cv2.LINE_AA)
-    return image
+    canvas, head = Image.fromarray(image), foot - ARROW
+    pen = ImageDraw.Draw(canvas)
+    pen.line([(MARGIN, foot), (MARGIN, head)], INK)
+    pen.line([(MARGIN - TIP, head + TIP), (MARGIN, head), (MARGIN + TIP, head + TIP)], INK)
+    pen.text((MARGIN + TIP + 2, head), up, INK, ImageFont.load_default(18), anchor="lm")
+    return np.array(canvas)
 
 
 def visible_points(mesh: Mesh, vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -140,7 +150,7 @@ def write_picture(
     """
     check_picture(path)
     (before, after), _ = within_frame([before, after])
-    figure = Figure(figsize=(12, 4.4), layout="constrained")
+    figure = _figure(figsize=(12, 4.4), layout="constrained")
     axes = figure.subplots(1, 3)
     axes[0].imshow(with_axis(draw(coloured(before, saliency)), up))
     rows, columns = visible_points(before, points)
@@ -158,6 +168,12 @@ def write_picture(
 
 def check_picture(path: Path) -> None:
     """Raises ValueError where matplotlib cannot write the format of the path's suffix."""
-    kinds = Figure().canvas.get_supported_filetypes()
+    kinds = _figure().canvas.get_supported_filetypes()
     if path.suffix.lower()[1:] not in kinds:
         raise ValueError(f"{path.name}: pictures are written as {', '.join(sorted(kinds))}")
+
+
+def _figure(**options):
+    with from_extra("the picture of a simplification is drawn by matplotlib, which "):
+        from matplotlib.figure import Figure
+    return Figure(**options)

@@ -7,20 +7,36 @@ import tempfile
 from collections.abc import Iterable, Mapping, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-import pandas as pd
 from filelock import FileLock
+from numpy.typing import ArrayLike
 
+from haptic_glance.base.extras import from_extra
 from haptic_glance.base.files import write_text
 from haptic_glance.mesh.mesh import Mesh
 
-COLUMNS = ["annotator", "time", "vertex", "x", "y", "z"]
+if TYPE_CHECKING:
+    import pandas as pd
+
 TYPES = {"annotator": str, "time": str, "vertex": np.int64, "x": np.float64, "y": np.float64, "z": np.float64}
+COLUMNS = [*TYPES]
 MAX_NAME_LENGTH = 80  # characters of an annotator's name
 ON_VERTEX = 1e-4  # units; a hundred times the rounding of six decimals, a tenth of an edge at 40,000 faces
 # Outside the folder of marks, which holds only marks; one per user, since users cannot open each other's lock.
 LOCK = Path(tempfile.gettempdir()) / f"haptic-glance-marks-{getattr(os, 'getuid', int)()}.lock"
+
+
+class Mark(NamedTuple):
+    """A row of a file of marks, whose columns `read_marks` describes."""
+
+    annotator: str
+    time: str
+    vertex: int
+    x: float
+    y: float
+    z: float
 
 
 class MarksError(ValueError):
@@ -31,17 +47,25 @@ class MarksChanged(ValueError):
     """The rows of the annotator on disk have changed since the caller read them."""
 
 
-def read_marks(path: str | Path, content: bytes | None = None) -> pd.DataFrame:
+def read_rows(path: str | Path, content: bytes | None = None) -> list[Mark]:
+    """The marks of `read_marks` as a list, for which pandas need not be installed."""
+    return [row for _, _, row in _rows(Path(path), content)]
+
+
+def read_marks(path: str | Path, content: bytes | None = None) -> "pd.DataFrame":
     """The marks in a CSV, or in its content: frame with columns annotator, time, vertex (i8), x, y, z (f8), in order.
 
     time: ISO 8601 in UTC, when the point was marked; x, y, z: in units of the normalised mesh (bounding-box centre 0,
     bounding sphere of radius 0.5). Raises FileNotFoundError, or MarksError naming the first damaged line.
     """
-    return _frame([row for _, _, row in _rows(Path(path), content)])
+    with from_extra():
+        import pandas as pd
+
+    return pd.DataFrame(read_rows(path, content), columns=pd.Index(COLUMNS)).astype(TYPES)
 
 
 def write_marks(
-    path: str | Path, annotator: str, marks: pd.DataFrame | Sequence[Mapping], seen: Iterable[tuple] | None = None
+    path: str | Path, annotator: str, marks: "pd.DataFrame | Sequence[Mapping]", seen: Iterable[tuple] | None = None
 ) -> None:
     """Replaces the rows of an annotator in a CSV by `marks`; rows of others stay unchanged, byte for byte.
 
@@ -62,17 +86,20 @@ def write_marks(
         write_text(path, "\n".join([",".join(COLUMNS), *lines[:at], *new, *lines[at:]]))
 
 
-def check_on_mesh(marks: pd.DataFrame, mesh: Mesh, source: str | Path) -> None:
-    """ValueError, with the distances, unless every mark lies at the vertex of the mesh that it names."""
-    count = len(mesh.vertices)
-    outside = marks.vertex[(marks.vertex < 0) | (marks.vertex >= count)]
+def check_on_mesh(vertices: ArrayLike, positions: ArrayLike, mesh: Mesh, source: str | Path) -> None:
+    """ValueError, with the distances, unless every mark lies at the vertex of the mesh that it names.
+
+    vertices (k,) and positions (k, 3) of the marks in the file `source`.
+    """
+    vertices, count = np.asarray(vertices, dtype=np.int64), len(mesh.vertices)
+    outside = vertices[(vertices < 0) | (vertices >= count)]
     if len(outside):
-        raise ValueError(f"{source} is of another mesh: vertex {outside.iloc[0]} is not in 0..{count - 1}")
-    away = np.linalg.norm(mesh.vertices[marks.vertex] - marks[["x", "y", "z"]], axis=1)
+        raise ValueError(f"{source} is of another mesh: vertex {outside[0]} is not in 0..{count - 1}")
+    away = np.linalg.norm(mesh.vertices[vertices] - np.reshape(positions, (-1, 3)), axis=1)
     if (away > ON_VERTEX).any():
         off = away[away > ON_VERTEX]
         raise ValueError(
-            f"{source} is of another mesh: {len(off)} of {len(marks)} points lie {off.min():.4g} to {off.max():.4g}"
+            f"{source} is of another mesh: {len(off)} of {len(vertices)} points lie {off.min():.4g} to {off.max():.4g}"
             " units away from their vertices"
         )
 
@@ -126,20 +153,13 @@ def _row(line):
     vertex, place = int(cells[2]), [float(cell) for cell in cells[3:]]
     if not 0 <= vertex < 2**63 or not np.isfinite(place).all():
         raise ValueError(f"vertex {cells[2]} at {', '.join(cells[3:])} is not a point of a mesh")
-    return [check_annotator(cells[0]), utc(cells[1]), vertex, *place]
-
-
-def _frame(rows):
-    columns = list(zip(*rows, strict=True)) or [[]] * len(COLUMNS)
-    return pd.DataFrame(
-        {name: pd.Series(values, dtype=TYPES[name]) for name, values in zip(COLUMNS, columns, strict=True)}
-    )
+    return Mark(check_annotator(cells[0]), utc(cells[1]), vertex, *place)
 
 
 def _values(marks):
     """The cells of the columns after the annotator, checked by parsing them."""
-    frame = pd.DataFrame(marks, columns=COLUMNS[1:])
-    rows = [[utc(time), vertex, *map(_decimal, position)] for time, vertex, *position in frame.itertuples(index=False)]
+    listed = marks if isinstance(marks, Sequence) else marks.to_dict("records")
+    rows = [[utc(each["time"]), each["vertex"], *(_decimal(float(each[axis])) for axis in "xyz")] for each in listed]
     for row in rows:
         _row(_line(["checked", *row]))
     return rows

@@ -16,12 +16,12 @@ import json
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import cv2
 import numpy as np
 import trimesh
 from scipy.spatial import ConvexHull, KDTree
 
 from haptic_glance.base.extras import from_extra
+from haptic_glance.base.opencv import cv2
 
 from .axes import directions
 from .headers import MeshError

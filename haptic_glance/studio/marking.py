@@ -3,7 +3,7 @@
 from datetime import UTC, datetime
 from pathlib import Path
 
-from haptic_glance.look.marks import MarksChanged, check_annotator, check_on_mesh, read_marks, utc, write_marks
+from haptic_glance.look.marks import MarksChanged, check_annotator, check_on_mesh, read_rows, utc, write_marks
 from haptic_glance.mesh.mesh import Mesh
 
 Mark = tuple[str, int]  # time (UTC), vertex
@@ -77,7 +77,6 @@ class Marking:
     def _stored(self):
         if not self.path.exists():
             return []
-        stored = read_marks(self.path)
-        check_on_mesh(stored, self.mesh, self.path)
-        own = stored[stored.annotator == self.annotator]
-        return list(zip(own.time, map(int, own.vertex), strict=True))
+        stored = read_rows(self.path)
+        check_on_mesh([mark.vertex for mark in stored], [mark[3:] for mark in stored], self.mesh, self.path)
+        return [(mark.time, mark.vertex) for mark in stored if mark.annotator == self.annotator]

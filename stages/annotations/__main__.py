@@ -43,7 +43,7 @@ def process(name: str, folder: Path, data: Path, marks: Path, gaze: bool, settin
 def passes(path: Path, mesh: Mesh) -> list[np.ndarray]:
     """The marked vertices of each annotator, in the order of the file."""
     marks = read_marks(path)
-    check_on_mesh(marks, mesh, path)
+    check_on_mesh(marks.vertex, marks[["x", "y", "z"]], mesh, path)
     return [group.vertex.to_numpy() for _, group in marks.groupby("annotator", sort=False)]
 
 

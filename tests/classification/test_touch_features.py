@@ -4,8 +4,12 @@ import numpy as np
 import pytest
 import pywt
 from scipy.stats import entropy
+from sklearn.pipeline import make_pipeline
 
 from haptic_glance.know import FEATURES, features
+from haptic_glance.know.classifiers import reduction
+from haptic_glance.know.components import Components
+from haptic_glance.know.features import _halves
 
 IMAGES = np.random.default_rng(0).random((5, 16, 16))
 
@@ -30,6 +34,22 @@ def test_wavelet_features_agree_with_a_plain_three_level_decomposition(shape):
             expected = {"norm": np.sqrt((c**2).sum()), "mean": c.mean(), "std": c.std(), "entropy": entropy(c**2)}
             for name, value in expected.items():
                 assert column(found, f"{band}{level}_{name}")[0] == pytest.approx(value, abs=1e-12)
+
+
+@pytest.mark.parametrize("size", [4, 5, 8, 9, 16, 21])
+def test_halves_are_those_of_pywt_to_the_last_bit(size):
+    images = np.random.default_rng(2).random((5, size, 9))
+    for found, expected in zip(_halves(images), pywt.dwt(images, "db2", "symmetric", axis=1), strict=True):
+        assert np.array_equal(found, expected)
+
+
+def test_components_are_those_of_scikit_learn_to_the_last_bit():
+    random = np.random.default_rng(3)
+    known, new = random.random((300, 41)) * np.geomspace(1e-9, 9, 41), random.random((7, 41))
+    known[:, 5] = 0.1  # has no scale but rounding
+    expected, found = make_pipeline(*reduction()).fit(known), Components(known)
+    for samples in (known, new, new[:1]):
+        assert np.array_equal(found.transform(samples), expected.transform(samples))
 
 
 @pytest.mark.parametrize("value", [0.0, 1.0])

@@ -151,9 +151,9 @@ def test_unusable_marks_are_refused_before_anything_is_written(tmp_path, bad):
 
 def test_marks_off_the_mesh_are_named_with_their_distances():
     mesh = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
-    good = pd.DataFrame({"vertex": [1, 2], "x": [1.0, 0.0], "y": [0.0, 1.0], "z": [0.0, 0.0]})
-    check_on_mesh(good, mesh, "cup.csv")
+    places = np.array([[1.0, 0, 0], [0, 1, 0]])
+    check_on_mesh([1, 2], places, mesh, "cup.csv")
     with pytest.raises(ValueError, match=r"cup\.csv .*1 of 2 points lie 0\.25 to 0\.25 units"):
-        check_on_mesh(good.assign(z=[0, 0.25]), mesh, "cup.csv")
+        check_on_mesh([1, 2], places + [[0, 0, 0], [0, 0, 0.25]], mesh, "cup.csv")
     with pytest.raises(ValueError, match="vertex 3 is not in 0..2"):
-        check_on_mesh(good.assign(vertex=[1, 3]), mesh, "cup.csv")
+        check_on_mesh([1, 3], places, mesh, "cup.csv")

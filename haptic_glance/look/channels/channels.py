@@ -2,9 +2,9 @@
 
 from collections.abc import Iterable, Sequence
 
-import cv2
 import numpy as np
 
+from haptic_glance.base.opencv import cv2
 from haptic_glance.base.weak_cache import weak_cache
 from haptic_glance.mesh.mesh import Mesh
 

@@ -7,9 +7,9 @@ Color: red against green and blue against yellow.
 DKL: the three post-receptoral mechanisms, luminance, L - M and S - (L + M).
 """
 
-import cv2
 import numpy as np
 
+from haptic_glance.base.opencv import cv2
 from haptic_glance.mesh.mesh import Mesh
 
 from ..views import View

@@ -10,9 +10,9 @@ The vertices that a view sees, and the angle at which it sees them.
 from collections.abc import Sequence
 from functools import cached_property
 
-import cv2
 import numpy as np
 
+from haptic_glance.base.opencv import cv2
 from haptic_glance.base.weak_cache import weak_cache
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.rays import RayScene

@@ -5,8 +5,9 @@ Sources: T3.1.1; Itti, Koch and Niebur, A model of saliency-based visual attenti
 view, since pyrDown keeps the even pixels and pyrUp restores them, so maps do not shift between scales.
 """
 
-import cv2
 import numpy as np
+
+from haptic_glance.base.opencv import cv2
 
 from .kernels import mean_of_other_maxima
 

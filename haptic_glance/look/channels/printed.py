@@ -13,9 +13,9 @@ T prints no parameters of the Gabor filters, the Laplacian and the median filter
 
 from collections.abc import Callable, Mapping
 
-import cv2
 import numpy as np
 
+from haptic_glance.base.opencv import cv2
 from haptic_glance.mesh.mesh import Mesh
 
 from ..views import View

@@ -15,9 +15,9 @@ Fine-grained saliency: centre-surround at full resolution, from integral images;
 
 from functools import cache
 
-import cv2
 import numpy as np
 
+from haptic_glance.base.opencv import cv2
 from haptic_glance.mesh.mesh import Mesh
 
 from ..views import View

@@ -10,9 +10,9 @@ The points of all views as one list of vertices, most salient first.
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-import cv2
 import numpy as np
 
+from haptic_glance.base.opencv import cv2
 from haptic_glance.mesh.mesh import Mesh
 
 from ..kernels import spaced, suppress

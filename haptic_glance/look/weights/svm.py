@@ -14,10 +14,10 @@ Conspicuity maps as rows for the SVM, its predictions as a map, and the selectio
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 
-import cv2
 import numpy as np
 from scipy import special
 
+from haptic_glance.base.opencv import cv2
 from haptic_glance.base.rng import rng
 
 from .attention import checked_ground_truth, checked_maps
