@@ -21,7 +21,6 @@ LOCATORS = f"{__name__}.ByContent,InTreeCacheLocator,UserWideCacheLocator"
 # error_model: divides as numpy does, with no branch on zero. no_cfunc_wrapper: no entry for callers in C, which would
 # take a twentieth of the time to compile.
 OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
-inlined = numba.njit(inline="always", error_model="numpy")  # where a call costs as much as what it does
 # For what kernels alone call, and what makes no array: inlined as late as machine code, so that it is typed once for
 # all its callers, without an entry for callers in Python, and without counts of references (_nrt). It is not kept, as
 # the kernels that call it are.

@@ -50,6 +50,7 @@ def claim(path: Path, patience: float = PATIENCE) -> IO[bytes] | None:
         return None
     end = time.monotonic() + patience
     try:
+        path.parent.mkdir(parents=True, exist_ok=True)
         file = path.open("wb")
         while True:
             try:

@@ -10,7 +10,6 @@ from pathlib import Path
 
 import cv2
 import numpy as np
-from matplotlib.figure import Figure
 from PIL import Image
 
 from haptic_glance.base.files import whole_file
@@ -140,6 +139,8 @@ def write_picture(
     """
     check_picture(path)
     (before, after), _ = within_frame([before, after])
+    from matplotlib.figure import Figure  # half of what the commands would import
+
     figure = Figure(figsize=(12, 4.4), layout="constrained")
     axes = figure.subplots(1, 3)
     axes[0].imshow(with_axis(draw(coloured(before, saliency)), up))
@@ -158,6 +159,8 @@ def write_picture(
 
 def check_picture(path: Path) -> None:
     """Raises ValueError where matplotlib cannot write the format of the path's suffix."""
+    from matplotlib.figure import Figure
+
     kinds = Figure().canvas.get_supported_filetypes()
     if path.suffix.lower()[1:] not in kinds:
         raise ValueError(f"{path.name}: pictures are written as {', '.join(sorted(kinds))}")
