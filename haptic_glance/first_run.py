@@ -12,7 +12,7 @@ from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 
-from .base.kept import cache_folder, claim, is_kept, kept_in, marker
+from .base.kept import cache_folder, claim, fcntl, is_kept, kept_in, marker
 
 COMMANDS = ("demo", "gallery", "simplify")
 MOST = 3  # helpers: more of them would wait for the longest kernel
@@ -74,9 +74,10 @@ def start(command: str) -> None:
     environment = os.environ | {"PYTHONPATH": path, "NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING": "1"}
     quiet = subprocess.DEVNULL
     line = [sys.executable, "-P", "-c", f"from {__name__} import compile_all; compile_all()"]
-    for _ in range(min(_cores() - 1, MOST)):
+    for _ in range(min(_cores() - 1, MOST) if fcntl else 0):  # without locks they would compile everything twice
         helper = subprocess.Popen(line, stdin=quiet, stdout=quiet, stderr=quiet, env=environment)
-        atexit.register(helper.kill)
+        atexit.register(helper.wait)
+        atexit.register(helper.kill)  # before it is waited for
 
 
 def _cores() -> int:
@@ -85,7 +86,7 @@ def _cores() -> int:
 
 
 def compile_all() -> None:
-    """Compiles the kernels from the last one to the first, but those that another process has or compiles."""
+    """Compiles the kernels from the last one to the first, except those that another process compiles or has kept."""
     import numba
 
     for package in {str(Path(file).parent) for file, _, _ in KERNELS}:

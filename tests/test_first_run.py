@@ -1,7 +1,6 @@
 """The first run on a machine: what compiles beside it, and what may go wrong there."""
 
 import os
-import signal
 import subprocess
 import sys
 import time
@@ -59,13 +58,15 @@ def test_the_marker_of_a_process_that_was_killed_does_not_hold(kernels):
     line = [sys.executable, "-c", f"{code}; time.sleep(600)"]
     environment = os.environ | {"PYTHONPATH": str(first_run.PACKAGE.parent)}
     with subprocess.Popen(line, stdout=subprocess.PIPE, env=environment) as holder:
-        assert holder.stdout is not None and holder.stdout.readline() == b"1\n"
-        assert claim(path, patience=0) is None
-        holder.send_signal(signal.SIGKILL)
+        try:
+            assert holder.stdout is not None and holder.stdout.readline() == b"1\n"
+            assert claim(path, patience=0) is None
+        finally:
+            holder.kill()
     assert path.exists() and claim(path, patience=0) is not None
 
 
-def test_a_process_that_holds_a_marker_too_long_is_not_waited_for(kernels, monkeypatch):
+def test_a_process_that_holds_a_marker_too_long_is_not_waited_for(kernels):
     path = marker(kernels, "double", kept_in(kernels))
     held = claim(path)
     before = time.monotonic()
@@ -73,7 +74,7 @@ def test_a_process_that_holds_a_marker_too_long_is_not_waited_for(kernels, monke
     assert held is not None
 
 
-def test_a_kernel_that_does_not_compile_leaves_its_marker_to_the_next_call(kernels, monkeypatch):
+def test_a_kernel_that_does_not_compile_leaves_its_marker_to_the_next_call(kernels):
     import importlib.util
 
     kernels.write_text(KERNEL.replace("2 * x", "x.none"))
@@ -111,9 +112,7 @@ def test_helpers_are_started_only_where_kernels_are_missing(tmp_path, monkeypatc
 class Dead:
     """A process that has ended."""
 
-    @staticmethod
-    def kill():
-        """Nothing to end."""
+    kill = wait = staticmethod(lambda: None)
 
 
 def test_a_cache_that_cannot_be_written_to_is_named_with_the_remedy(kernels, monkeypatch, capsys):
