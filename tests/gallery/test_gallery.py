@@ -19,7 +19,7 @@ from haptic_glance.gallery import command, demo
 from haptic_glance.gallery.command import run
 from haptic_glance.gallery.exhibit import exhibit
 from haptic_glance.gallery.page import turnable
-from haptic_glance.lod import compiled, vertex_errors
+from haptic_glance.lod import vertex_errors
 from haptic_glance.mesh import load, rotate_to_z_up
 
 pytestmark = pytest.mark.slow
@@ -216,19 +216,6 @@ def test_default_folders_are_not_left_in_a_checkout():
         pytest.skip("no checkout")
     for page in ("haptic_glance_demo/index.html", "scans_gallery/index.html"):
         assert subprocess.run(["git", "-C", str(root), "check-ignore", "-q", "--no-index", page]).returncode == 0
-
-
-def test_kernels_are_compiled_beside_only_where_there_are_none(tmp_path, monkeypatch):
-    started, said = [], []
-    monkeypatch.setattr(compiled.subprocess, "Popen", lambda command, **_: started.append(command) or command)
-    monkeypatch.setattr(compiled, "FOLDER", tmp_path)
-    compiled.compile_beside(said.append)
-    assert len(started) == 2 and "about ten seconds" in said[0]
-    (tmp_path / "kernel.nbc").touch()
-    compiled.compile_beside(said.append)()
-    assert len(started) == 2 and len(said) == 1
-    compiled.compile_search()
-    compiled.compile_collapse()
 
 
 def test_what_cannot_be_is_named_before_anything_is_looked_at(scans, tmp_path):

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import trimesh
 
+from haptic_glance.base.jit import interpreted
 from haptic_glance.lod import InfeasibleTarget, SimplifyError, fast, frozen_faces, metro, simplify
 from haptic_glance.lod.fast import collapse
 from haptic_glance.lod.kernels.collapse import decimate
@@ -134,7 +135,7 @@ def test_a_vertex_never_goes_further_than_the_reach_of_its_edge(meet, taken):
     # The planes meet `meet` lengths from the middle of the edge; almost parallel ones do so anywhere.
     ends = np.array([[-0.5, 0, 0], [0.5, 0, 0]])
     quadrics = np.stack([plane(1, 0, 0, d=-meet) + plane(0, 1, 0, d=0), plane(0, 0, 1, d=0)])
-    place = best_place(quadrics, ends, 0, 1)[1:]
+    place = interpreted(best_place)(quadrics, ends, 0, 1)[1:]
     assert place == pytest.approx((meet if taken else 0, 0, 0), abs=1e-9)
 
 

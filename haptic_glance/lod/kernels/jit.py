@@ -11,7 +11,8 @@ from typing import TypeVar
 import numpy as np
 
 from haptic_glance.base import jit
-from haptic_glance.base.jit import kept_in, kernel_of
+from haptic_glance.base.jit import kernel_of
+from haptic_glance.base.kept import kept_in
 
 Id = int | np.integer  # of a vertex, half-edge, face or bucket
 Result = TypeVar("Result")

@@ -31,14 +31,15 @@ def _nearest_in_cell(x, y, z, first, last, low, vertices, faces, entries, planes
     longer than all arithmetic. A face whose squared distance is at most `enough` ends the search.
     """
     px, py, pz = x - low[0], y - low[1], z - low[2]
-    least, second, face = np.inf, np.inf, -1
+    least, second, face = np.inf, np.inf, np.int64(-1)
     for e in range(first, last):
-        bound = bound_to(planes, entries[e], px, py, pz)
+        one = np.int64(entries[e])  # as `face`: each further type compiles the callees once more
+        bound = bound_to(planes, one, px, py, pz)
         if bound <= enough:
-            square = square_to(vertices, faces, planes, entries[e], x, y, z)
+            square = square_to(vertices, faces, planes, one, x, y, z)
             if square <= enough:
-                return square, entries[e]
-        face = entries[e] if bound < least else face
+                return square, one
+        face = one if bound < least else face
         larger = bound if bound > least else least
         second = larger if larger < second else second
         least = bound if bound < least else least
@@ -47,10 +48,11 @@ def _nearest_in_cell(x, y, z, first, last, low, vertices, faces, entries, planes
         best = square_to(vertices, faces, planes, face, x, y, z)
         if best > second * EQUAL:  # the nearest point is a corner: another face may be nearer
             for e in range(first, last):
-                if bound_to(planes, entries[e], px, py, pz) < best:
-                    square = square_to(vertices, faces, planes, entries[e], x, y, z)
+                one = np.int64(entries[e])
+                if bound_to(planes, one, px, py, pz) < best:
+                    square = square_to(vertices, faces, planes, one, x, y, z)
                     if square < best:
-                        best, face = square, entries[e]
+                        best, face = square, one
     return best, face
 
 
@@ -83,10 +85,11 @@ def _search_one(points, i, vertices, faces, starts, entries, low, cell, shape, p
                     continue
                 row = layer * shape[1] + column
                 for e in range(starts[row * shape[0] + x0], starts[row * shape[0] + x1 + 1]):
-                    if bound_to(planes, entries[e], px, py, pz) < best:
-                        square = square_to(vertices, faces, planes, entries[e], x, y, z)
+                    one = np.int64(entries[e])
+                    if bound_to(planes, one, px, py, pz) < best:
+                        square = square_to(vertices, faces, planes, one, x, y, z)
                         if square < best:
-                            best, face = square, entries[e]
+                            best, face = square, one
                             if best <= enough:
                                 return best, face, True
         sure = needed <= limit or best * per_unit**2 <= radius**2
@@ -147,7 +150,9 @@ def farthest(
 @allocating_kernel
 def bounding_box(vertices: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Lower and upper corner of the box around all faces."""
-    low, high = np.full(3, np.inf), np.full(3, -np.inf)
+    low, high = np.empty(3), np.empty(3)
+    for axis in range(3):
+        low[axis], high[axis] = np.inf, -np.inf
     for f in range(len(faces)):
         for corner in range(3):
             for axis in range(3):

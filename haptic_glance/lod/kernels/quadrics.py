@@ -85,7 +85,7 @@ def error_at(q: np.ndarray, i: Id, j: Id, x: float, y: float, z: float) -> float
     return max(x * gx + y * gy + z * gz + q[i, 9] + q[j, 9], 0.0)
 
 
-@kernel
+@helper
 def best_place(q: np.ndarray, p: np.ndarray, i: Id, j: Id) -> tuple[float, float, float, float]:
     """(error, x, y, z): the minimum of the quadrics of two vertices at p (n, 3), near their midpoint."""
     sx, sy, sz = point(p, i)
@@ -224,15 +224,15 @@ def corner_weights(points: np.ndarray, owners: np.ndarray, vertices: np.ndarray,
             if second >= 0 and third >= 0 and second + third <= 1:
                 weights[i, 0], weights[i, 1], weights[i, 2] = 1 - second - third, second, third
                 continue
-        px, py = np.array([0.0, length, cx]), np.array([0.0, 0.0, cy])
         best = np.inf
         for k in range(3):
             after = (k + 1) % 3
-            dx, dy = px[after] - px[k], py[after] - py[k]
+            px, py = length if k == 1 else (cx if k == 2 else 0.0), cy if k == 2 else 0.0
+            dx, dy = (length if k == 0 else (cx if k == 1 else 0.0)) - px, (cy if k == 1 else 0.0) - py
             square = dx * dx + dy * dy
-            t = ((u - px[k]) * dx + (v - py[k]) * dy) / square if square > 0 else 0.0
+            t = ((u - px) * dx + (v - py) * dy) / square if square > 0 else 0.0
             t = min(max(t, 0.0), 1.0)
-            square_distance = (u - px[k] - t * dx) ** 2 + (v - py[k] - t * dy) ** 2
+            square_distance = (u - px - t * dx) ** 2 + (v - py - t * dy) ** 2
             if square_distance < best:
                 best = square_distance
                 weights[i, k], weights[i, after], weights[i, (k + 2) % 3] = 1 - t, t, 0.0

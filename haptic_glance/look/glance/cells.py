@@ -26,9 +26,9 @@ def cut(corners: np.ndarray) -> np.ndarray:
     """
     rows = np.empty((4 * len(corners) + 64, 8))
     stack, counts, cell = np.empty((DEPTH, CORNERS, 3)), np.empty(DEPTH, dtype=np.int64), np.empty(3, dtype=np.int64)
-    found = 0
+    found = np.int64(0)  # as `top`: numba compiles what they are passed to anew for a plain 0
     for f in range(len(corners)):
-        counts[0], top = 3, 0
+        counts[0], top = 3, np.int64(0)
         for i in range(3):
             for k in range(3):
                 stack[0, i, k] = corners[f, i, k]
@@ -149,17 +149,20 @@ def _seen(places, normals, pictures, group):
     depth = np.empty((2 * half + 1, 2 * half + 1))
     pixels, near, found = np.empty((count, 2), dtype=np.int64), np.empty(count), np.zeros((4, count))
     for d in range(len(pictures)):
-        p = pictures[d]
-        depth[:] = -np.inf
+        for row in range(len(depth)):
+            for column in range(len(depth)):
+                depth[row, column] = -np.inf
+        ex, ey, ez = pictures[d, 2, 0], pictures[d, 2, 1], pictures[d, 2, 2]
         for i in range(count):
             x, y, z = places[i, 0], places[i, 1], places[i, 2]
             for k in range(2):
-                pixels[i, k] = half + math.floor((p[k, 0] * x + p[k, 1] * y + p[k, 2] * z) / PIXEL + 0.5)
-            near[i] = p[2, 0] * x + p[2, 1] * y + p[2, 2] * z
+                at = pictures[d, k, 0] * x + pictures[d, k, 1] * y + pictures[d, k, 2] * z
+                pixels[i, k] = half + math.floor(at / PIXEL + 0.5)
+            near[i] = ex * x + ey * y + ez * z
             row, column = pixels[i, 0], pixels[i, 1]
             depth[row, column] = max(depth[row, column], near[i])
         for i in range(count):
-            cosine = p[2, 0] * normals[i, 0] + p[2, 1] * normals[i, 1] + p[2, 2] * normals[i, 2]
+            cosine = ex * normals[i, 0] + ey * normals[i, 1] + ez * normals[i, 2]
             if cosine > 0:
                 front = near[i]
                 for row in range(pixels[i, 0] - 1, pixels[i, 0] + 2):

@@ -9,7 +9,7 @@ Depths as bytes that compress well, and back.
 
 import numpy as np
 
-from haptic_glance.base.jit import inlined, kernel_of
+from haptic_glance.base.jit import helper, kernel_of
 
 kernel = kernel_of(__file__)
 
@@ -56,7 +56,7 @@ def rasterise(corners: np.ndarray, faces: np.ndarray, top: int, left: int, face:
                     depth[y, x], face[y, x] = here, f
 
 
-@inlined
+@helper
 def _columns(start, slope, over, low, high):
     """The columns, between low and high, at which a weight start + column * slope is not below 0; over is 1 / slope."""
     end = (-SLACK - start) * over

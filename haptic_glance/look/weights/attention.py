@@ -22,7 +22,6 @@ import functools
 from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
-from scipy.optimize import minimize
 
 from haptic_glance.base.similarity import WINDOW, local_moments, ssim_map
 
@@ -226,6 +225,8 @@ def fit_fixations(
             value -= (share * (likely - log_area)).sum() / len(objects)
             slope -= (share - np.exp(likely)) @ f / len(objects)
         return value, slope
+
+    from scipy.optimize import minimize  # takes a tenth of a second to import, and only a fit needs it
 
     found = minimize(loss, np.zeros(features[0].shape[1]), jac=True, method="L-BFGS-B", options={"maxiter": 500})
     return found.x

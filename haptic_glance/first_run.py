@@ -1,0 +1,120 @@
+"""The first run on a machine, which compiles kernels: in two processes at once, or more.
+
+The command compiles a kernel when it comes to it; other processes go through the same list from its end. A kernel that
+one of them compiles, the others leave alone or wait for: see `haptic_glance.base.jit`.
+"""
+
+import atexit
+import os
+import subprocess
+import sys
+from importlib import import_module
+from pathlib import Path
+from types import ModuleType
+
+from .base.kept import cache_folder, claim, fcntl, is_kept, kept_in, marker
+
+COMMANDS = ("demo", "gallery", "simplify")
+MOST = 3  # helpers: more of them would wait for the longest kernel
+PACKAGE = Path(__file__).parent
+SURFACE = "HalfEdgeMesh"
+# The kernels in the order in which the demo comes to them: file, name, types of the arguments as numba spells them.
+KERNELS = [
+    ("look/glance/cells", "cut", "f8[:,:,::1],"),
+    ("look/glance/cells", "_seen", "f8[:,::1], f8[:,::1], f8[:,:,::1], i8[::1]"),
+    ("look/views/kernels", "rasterise", "f8[::1,:], i8[:,::1], i8, i8, i4[:,:], f8[:,::1]"),
+    ("mesh/components", "graph_components", "i8[::1], i8[::1], i8"),
+    (
+        "look/views/kernels", "shade_pixels",
+        "f8[::1,:], i8[:,::1], f8[:,::1], i8[:,::1], f8[:,::1], u1[:,::1], f8, f8[::1], f8[::1], i8, i8, i4[:,:],"
+        "u1[:,:,:]",
+    ),
+    ("lod/kernels/mesh", "_closed", "i4[::1], i4[::1], i4[::1], i4[::1], i4[::1]"),
+    ("lod/kernels/mesh", "_fill_split_fans", "i4[::1], i4[::1], i4[::1]"),
+    ("lod/kernels/mesh", "_fill_components", "i4[::1], i4[::1], i4[::1]"),
+    ("lod/kernels/mesh", "_fill_fans", "i4[::1], i4[::1], i4[::1], i4[::1], i4[::1], b1[::1]"),
+    ("lod/kernels/quadrics", "_add_planes", "f8[:,::1], i4[::1], f8[::1], f8[:,::1]"),
+    (
+        "lod/kernels/collapse", "_decimate",
+        f"{SURFACE}, none, i4[::1], i4[::1], i8[::1], i4[::1], i8[::1], i8, f8, f8, f8",
+    ),
+    ("lod/kernels/mesh", "_name_corners", "i4[::1], b1[::1], i4[::1], i8, i8[::1], i8[::1], i8[::1]"),
+    ("lod/kernels/mesh", "_count", "f8[:,::1], i4[::1], i4[::1], f8, f8, f8[:,::1]"),
+    ("lod/kernels/mesh", "_add_volumes", "f8[:,::1], i4[::1], i4[::1], i4[::1], i4[::1], f8[::1], b1[::1]"),
+    ("lod/kernels/nearest", "bounding_box", "f8[:,::1], i8[:,::1]"),
+    ("lod/kernels/nearest", "planes_of", "f8[:,::1], i8[:,::1], f8[::1]"),
+    ("lod/kernels/nearest", "cell_boxes", "f8[:,::1], i8[:,::1], f8[::1], f8, i8[::1]"),
+    ("lod/kernels/nearest", "fill_cells", "i4[:,::1], i8, i8[::1]"),
+    (
+        "lod/kernels/nearest", "search",
+        "f8[:,::1], f8[:,::1], i8[:,::1], Tuple((i4[::1], i4[::1], f8[::1], f8, i8[::1])), f8[:,::1], f8",
+    ),
+    ("lod/kernels/quadrics", "corner_weights", "f8[:,::1], i8[::1], f8[:,::1], i8[:,::1]"),
+    ("lod/kernels/refit", "_refit", f"{SURFACE}, f8[:,::1], i4[::1], f8[::1], i8, f8, f8[:,::1], i4[::1]"),
+]  # fmt: skip
+
+
+def start(command: str) -> None:
+    """Starts what compiles the kernels of a command beside it, before it imports anything; says so on stderr."""
+    missing = sum(not is_kept(PACKAGE / f"{file}.py", name) for file, name, _ in KERNELS)
+    if not missing:
+        return
+    try:
+        (cache_folder() / "kernels").mkdir(parents=True, exist_ok=True)
+        writable = os.access(cache_folder() / "kernels", os.W_OK)
+    except OSError:
+        writable = False
+    if not writable:
+        remedy = "set HAPTIC_GLANCE_CACHE to a folder that can be written to, or the next run may compile them again"
+        print(f"{command}: compiled kernels cannot be kept in {cache_folder()}: {remedy}", file=sys.stderr, flush=True)
+        return
+    print(f"{command}: compiling {missing} of {len(KERNELS)} kernels, once", file=sys.stderr, flush=True)
+    path = os.pathsep.join(filter(None, [str(PACKAGE.parent), os.environ.get("PYTHONPATH")]))
+    # Without colours: numba words the errors of each overload that it tries, and colours them.
+    environment = os.environ | {"PYTHONPATH": path, "NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING": "1"}
+    quiet = subprocess.DEVNULL
+    line = [sys.executable, "-P", "-c", f"from {__name__} import compile_all; compile_all()"]
+    for _ in range(min(_cores() - 1, MOST) if fcntl else 0):  # without locks they would compile everything twice
+        helper = subprocess.Popen(line, stdin=quiet, stdout=quiet, stderr=quiet, env=environment)
+        atexit.register(helper.wait)
+        atexit.register(helper.kill)  # before it is waited for
+
+
+def _cores() -> int:
+    """How many cores this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def compile_all() -> None:
+    """Compiles the kernels from the last one to the first, except those that another process compiles or has kept."""
+    import numba
+
+    for package in {str(Path(file).parent) for file, _, _ in KERNELS}:
+        _without_imports(package)
+    for file, name, types in reversed(KERNELS):
+        path = PACKAGE / f"{file}.py"
+        free = None if is_kept(path, name) else claim(marker(path, name, kept_in(path)), patience=0)
+        if free is not None:
+            free.close()
+            kernel = getattr(import_module(f"{__package__}.{file.replace('/', '.')}"), name)
+            known = vars(numba.types) | ({SURFACE: _surface()} if SURFACE in types else {})
+            kernel.compile(eval(f"({types})", known))
+
+
+def _surface():
+    """numba's type of a HalfEdgeMesh."""
+    from numba import types as t
+
+    from .lod.kernels.mesh import HalfEdgeMesh
+
+    ints, bools, floats = t.int32[::1], t.boolean[::1], t.float64[:, ::1]
+    return t.NamedTuple((ints, ints, ints, bools, bools, floats, floats, ints), HalfEdgeMesh)
+
+
+def _without_imports(package: str) -> None:
+    """Puts an empty package in the place of each on a path: what they import takes as long as two kernels."""
+    names = package.split("/")
+    for k in range(1, len(names) + 1):
+        module = ModuleType(".".join([str(__package__), *names[:k]]))
+        module.__path__ = [str(PACKAGE.joinpath(*names[:k]))]
+        sys.modules.setdefault(module.__name__, module)

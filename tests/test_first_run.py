@@ -1,0 +1,173 @@
+"""The first run on a machine: what compiles beside it, and what may go wrong there."""
+
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from haptic_glance import first_run
+from haptic_glance.base import kept
+from haptic_glance.base.kept import claim, is_kept, kept_in, marker
+
+fcntl = pytest.importorskip("fcntl")
+
+KERNEL = """from haptic_glance.base.jit import kernel_of
+
+
+@kernel_of(__file__)
+def double(x):
+    return 2 * x
+"""
+USER = "import kernels; assert kernels.double({}) == {}; print(sum(kernels.double.stats.cache_misses.values()))"
+
+
+@pytest.fixture
+def kernels(tmp_path, monkeypatch):
+    """The file of one kernel, and an empty cache."""
+    monkeypatch.setenv("HAPTIC_GLANCE_CACHE", str(tmp_path / "cache"))
+    (tmp_path / "code").mkdir()
+    file = tmp_path / "code/kernels.py"
+    file.write_text(KERNEL)
+    return file
+
+
+def user(file, number=3):
+    """A process that calls the kernel and prints how often it compiled."""
+    path = os.pathsep.join([str(file.parent), str(first_run.PACKAGE.parent)])
+    line = [sys.executable, "-c", USER.format(number, 2 * number)]
+    return subprocess.Popen(line, stdout=subprocess.PIPE, text=True, env=os.environ | {"PYTHONPATH": path})
+
+
+def test_of_two_processes_that_need_a_kernel_at_once_one_compiles_it(kernels):
+    held = claim(marker(kernels, "double", kept_in(kernels)))
+    assert held is not None
+    both = [user(kernels), user(kernels)]
+    time.sleep(3)
+    assert all(each.poll() is None for each in both)  # they wait for the one that has the marker
+    held.close()
+    assert sorted(each.communicate(timeout=120)[0].strip() for each in both) == ["0", "1"]
+    assert is_kept(kernels, "double")
+
+
+def test_the_marker_of_a_process_that_was_killed_does_not_hold(kernels):
+    path = marker(kernels, "double", kept_in(kernels))
+    code = f"import time; from haptic_glance.base.kept import *; x = claim(Path({str(path)!r})); print(1, flush=True)"
+    line = [sys.executable, "-c", f"{code}; time.sleep(600)"]
+    environment = os.environ | {"PYTHONPATH": str(first_run.PACKAGE.parent)}
+    with subprocess.Popen(line, stdout=subprocess.PIPE, env=environment) as holder:
+        try:
+            assert holder.stdout is not None and holder.stdout.readline() == b"1\n"
+            assert claim(path, patience=0) is None
+        finally:
+            holder.kill()
+    assert path.exists() and claim(path, patience=0) is not None
+
+
+def test_a_process_that_holds_a_marker_too_long_is_not_waited_for(kernels):
+    path = marker(kernels, "double", kept_in(kernels))
+    held = claim(path)
+    before = time.monotonic()
+    assert claim(path, patience=0.1) is None and time.monotonic() - before < 2
+    assert held is not None
+
+
+def test_a_kernel_that_does_not_compile_leaves_its_marker_to_the_next_call(kernels):
+    import importlib.util
+
+    kernels.write_text(KERNEL.replace("2 * x", "x.none"))
+    spec = importlib.util.spec_from_file_location("kernels", kernels)
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    before = time.monotonic()
+    for number in (1, 1.5):
+        with pytest.raises(Exception, match="none"):
+            module.double(number)
+    assert time.monotonic() - before < kept.PATIENCE / 2
+
+
+def test_helpers_are_started_only_where_kernels_are_missing(tmp_path, monkeypatch, capsys):
+    started = []
+    monkeypatch.setenv("HAPTIC_GLANCE_CACHE", str(tmp_path))
+    monkeypatch.setattr(first_run, "_cores", lambda: 2)
+    monkeypatch.setattr(first_run.subprocess, "Popen", lambda *line, **_: started.append(line) or Dead)
+    first_run.start("demo")
+    every = len(first_run.KERNELS)
+    assert len(started) == 1 and capsys.readouterr().err == f"demo: compiling {every} of {every} kernels, once\n"
+    for file, name, _ in first_run.KERNELS:
+        folder = kept_in(first_run.PACKAGE / f"{file}.py")
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / f"{Path(file).name}.{name}-1.py311.1.nbc").touch()
+    first_run.start("demo")
+    assert len(started) == 1 and not capsys.readouterr().err
+    next(tmp_path.rglob("*.nbc")).unlink()
+    monkeypatch.setattr(first_run, "_cores", lambda: 1)
+    first_run.start("demo")
+    assert len(started) == 1 and f"compiling 1 of {every} kernels" in capsys.readouterr().err
+
+
+class Dead:
+    """A process that has ended."""
+
+    kill = wait = staticmethod(lambda: None)
+
+
+def test_a_cache_that_cannot_be_written_to_is_named_with_the_remedy(kernels, monkeypatch, capsys):
+    cache = kernels.parent / "cache"
+    cache.write_text("no folder")
+    monkeypatch.setenv("HAPTIC_GLANCE_CACHE", str(cache))
+    with monkeypatch.context() as patch:
+        patch.setattr(first_run.subprocess, "Popen", lambda *_, **__: pytest.fail("started"))
+        first_run.start("demo")
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1 and str(cache) in said and "set HAPTIC_GLANCE_CACHE" in said
+    assert user(kernels).communicate()[0] == "1\n"  # compiled all the same
+
+
+def test_help_and_other_commands_start_nothing(monkeypatch):
+    from haptic_glance.__main__ import run
+
+    monkeypatch.setattr(first_run, "start", lambda _: pytest.fail("started"))
+    with pytest.raises(SystemExit):
+        run("demo", ["--help"])
+    with pytest.raises(SystemExit):
+        run("touch", ["--help"])
+
+
+def demo(cache, *options, folder):
+    """The command in a process of its own."""
+    environment = os.environ | {"HAPTIC_GLANCE_CACHE": str(cache), "PYTHONPATH": str(first_run.PACKAGE.parent)}
+    line = [sys.executable, "-m", "haptic_glance", "demo", "--out", str(folder), *options]
+    return subprocess.Popen(line, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True, env=environment)
+
+
+@pytest.mark.slow
+def test_helpers_compile_just_the_kernels_of_the_demo(tmp_path):
+    environment = os.environ | {"HAPTIC_GLANCE_CACHE": str(tmp_path / "helper")}
+    environment["PYTHONPATH"] = str(first_run.PACKAGE.parent)
+    code = "from haptic_glance.first_run import compile_all; compile_all()"
+    subprocess.run([sys.executable, "-c", code], env=environment, check=True)
+    before = kept_files(tmp_path / "helper")
+    run = demo(tmp_path / "helper", folder=tmp_path / "out")
+    assert "kernels" not in run.communicate()[1] and run.returncode == 0
+    assert kept_files(tmp_path / "helper") == before  # nothing was left to compile
+    assert sum(name.endswith(".nbc") for name in before) == len(first_run.KERNELS)
+
+
+@pytest.mark.slow
+def test_two_first_runs_at_once_end_alike_and_compile_each_kernel_once(tmp_path):
+    both = [demo(tmp_path / "cache", folder=tmp_path / name) for name in ("one", "two")]
+    assert [run.wait() for run in both] == [0, 0]
+    assert sum(name.endswith(".nbc") for name in kept_files(tmp_path / "cache")) == len(first_run.KERNELS)
+    one, two = (
+        {file.name: file.read_bytes() for file in (tmp_path / name / "dromedary").iterdir()} for name in ("one", "two")
+    )
+    assert one == two and one
+
+
+def kept_files(cache):
+    """Names of the files of machine code below a cache."""
+    return sorted(file.name for file in cache.rglob("*.nb?"))
