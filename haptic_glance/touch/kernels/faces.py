@@ -225,6 +225,18 @@ def project_corner(block: np.ndarray, k: int, frame: Frame) -> tuple[float, floa
 
 
 @helper
+def faces_above(block: np.ndarray, frame: Frame, floor: float) -> int:
+    """How many faces of a block have a corner at the height `floor` or above it."""
+    found = 0
+    for f in range(LANES):
+        _, _, w = project_corner(block, f, frame)
+        _, _, w1 = project_corner(block, 3 * LANES + f, frame)
+        _, _, w2 = project_corner(block, 6 * LANES + f, frame)
+        found += 1 if max3(w, w1, w2) >= floor else 0
+    return found
+
+
+@helper
 def store_face(out: np.ndarray, f: int, face: tuple[float, ...]) -> None:
     """Writes the 14 numbers of a face; unrolled, since a loop over them would prevent vectorisation over the faces."""
     at = FACE + f
@@ -249,8 +261,11 @@ def load_face(projected: np.ndarray, f: int) -> tuple[float, ...]:
 
 
 @kernel
-def project(block: np.ndarray, frame: Frame, rows: int, columns: int, out: np.ndarray) -> None:
-    """Writes the projections of the 32 faces of a block for `raise_cells`; HITS is 0 for one that covers no cell."""
+def project(block: np.ndarray, frame: Frame, rows: int, columns: int, floor: float, out: np.ndarray) -> None:
+    """Writes the projections of the 32 faces of a block for `raise_cells`.
+
+    HITS is 0 for one that covers no cell, or is below the height `floor`.
+    """
     last_column, last_row = columns - 1.0, rows - 1.0
     for f in range(LANES):
         u, v, w = project_corner(block, f, frame)
@@ -281,7 +296,7 @@ def project(block: np.ndarray, frame: Frame, rows: int, columns: int, out: np.nd
         hits += 4.0 if min3(covered_3, tall - 1, tall - 1) >= 0 else 0.0
         hits += 8.0 if min3(covered_4, wide - 1, tall - 1) >= 0 else 0.0
         hits = hits if max3(wide, tall, 0.0) <= 1.0 else OVER_FOUR
-        hits = hits if min3(wide, tall, frame.lift - low) >= 0 else 0.0
+        hits = hits if min3(wide, tall, min3(frame.lift - low, high - floor, high - floor)) >= 0 else 0.0
         out[HITS + f] = hits if abs(twice) > frame.grazing * block[9 * LANES + f] else 0.0  # false for NaN
         out[TWICE + f] = twice
         out[FIRST + f], out[LAST + f], out[TOP + f], out[BOTTOM + f] = first, last, top, bottom
@@ -289,8 +304,10 @@ def project(block: np.ndarray, frame: Frame, rows: int, columns: int, out: np.nd
 
 
 @kernel
-def raise_cells(projected: np.ndarray, frame: Frame, best: np.ndarray, back: np.ndarray) -> None:
+def raise_cells(projected: np.ndarray, frame: Frame, best: np.ndarray, back: np.ndarray, highest: float) -> float:
     """Raises best (rows, cols) to the heights that `project` wrote; back: if the face is seen from its back.
+
+    Returns the highest of these and of `highest`.
 
     Of two faces at one height the one seen from its back counts, in any order: where one part stands on another, its
     inside is above both.
@@ -306,14 +323,18 @@ def raise_cells(projected: np.ndarray, frame: Frame, best: np.ndarray, back: np.
         if hits < OVER_FOUR:
             for k in range(4):
                 if hits >> k & 1:
-                    raise_cell(best, back, i + (k >> 1), j + (k & 1), projected[HEIGHT + k * LANES + f], from_back)
+                    height = projected[HEIGHT + k * LANES + f]
+                    highest = max(highest, height)
+                    raise_cell(best, back, i + (k >> 1), j + (k & 1), height, from_back)
             continue
         face = load_face(projected, f)
         for row in range(i, int(projected[BOTTOM + f]) + 1):
             for column in range(j, int(projected[LAST + f]) + 1):
                 covered, height = crossing(face, column, row, frame.lift)
                 if covered >= 0:
+                    highest = max(highest, height)
                     raise_cell(best, back, row, column, height, from_back)
+    return highest
 
 
 @helper

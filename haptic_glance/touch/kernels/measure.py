@@ -13,7 +13,7 @@ import numpy as np
 
 from haptic_glance.base.jit import UntilWorthCompiling, helper
 
-from .faces import LANES, ROWS, Frame, along, frame_of, half_width, kernel, project, raise_cells
+from .faces import LANES, ROWS, Frame, along, faces_above, frame_of, half_width, kernel, project, raise_cells
 
 MAX_CHECKED = 64  # cells under a box, up to which it pays to check if all of them hide it
 DEEP = 64  # levels of a tree: more than fit into any memory
@@ -125,7 +125,8 @@ def search(
         x, y, z = from_centre(boxes, node, frame)
         wx, wy, wz = boxes[node, 3], boxes[node, 4], boxes[node, 5]
         height, extent = along(frame.normal, x, y, z), half_width(frame.normal, wx, wy, wz) + frame.slack
-        if height - extent > frame.lift or height + extent < highest - window:
+        floor = highest - window
+        if height - extent > frame.lift or height + extent < floor:
             continue
         u, extent_u = along(frame.right, x, y, z) + frame.column, half_width(frame.right, wx, wy, wz) + frame.margin
         v, extent_v = along(frame.down, x, y, z) + frame.row, half_width(frame.down, wx, wy, wz) + frame.margin
@@ -137,17 +138,18 @@ def search(
             hidden = True
             for i in range(int(top), int(bottom) + 1):
                 for j in range(int(first), int(last) + 1):
-                    hidden = hidden and best[i, j] > height + extent
+                    if not best[i, j] > height + extent:
+                        hidden = False
+                        break
+                if not hidden:
+                    break
             if hidden:
                 continue
         child = children[node]
         if child < 0:
-            project(blocks[-1 - child], frame, rows, columns, projected)
-            raise_cells(projected, frame, best, back)
-            if window < np.inf:
-                for i in range(int(top), int(bottom) + 1):
-                    for j in range(int(first), int(last) + 1):
-                        highest = max(highest, best[i, j])
+            if faces_above(blocks[-1 - child], frame, floor):
+                project(blocks[-1 - child], frame, rows, columns, floor, projected)
+                highest = raise_cells(projected, frame, best, back, highest)
             continue
         x, y, z = from_centre(boxes, child, frame)
         one = abs(along(frame.normal, x, y, z))
