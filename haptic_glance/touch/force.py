@@ -5,7 +5,7 @@ from numpy.typing import ArrayLike
 
 from haptic_glance.mesh.mesh import Mesh
 
-from .distances import check_arrays, check_places
+from .distances import check_array, check_arrays, check_places
 from .kernels.measure import depths_of_loads
 from .skin import Layer
 from .surface import Surface, as_surface
@@ -27,11 +27,23 @@ def press_forces(
     axes (k, 3, 3) rows right, up, normal; pitch: units of the mesh; unit: metres a unit of the mesh is long; load,
     depth: as in `forces`. Raises ValueError as `distances_at` and `forces` do.
     """
-    centres, axes = check_places(centres, axes)
-    depths = layer.thickness if depth is None else _checked_depths(depth, len(centres))
-    within = min(np.max(depths, initial=0.0), layer.thickness)
-    gaps = gaps_at(surface, centres, axes, within, cells, pitch, unit)
-    return forces(gaps, layer, (pitch * unit) ** 2, load, depth)
+    if (load is None) == (depth is None):
+        raise ValueError("give either load, in newtons, or depth, in metres")
+    surface, (centres, axes) = as_surface(surface), check_places(centres, axes)
+    cells, pitch, _ = check_array(cells, pitch)
+    _check_unit(unit)
+    _check_areas(area := (pitch * unit) ** 2)
+    limit, loads = layer.thickness, np.empty(0)
+    if load is None:
+        _check_thickness(depths := _checked_depths(depth, len(centres)), layer)
+        within = depths.max(initial=0.0)
+    else:
+        loads, depths, within = _checked_loads(load, len(centres)), np.empty(len(centres)), limit
+    felt = surface.press(centres, axes, cells, pitch, unit, within / unit, layer.stiffness * area, limit, loads, depths)
+    if load is not None:
+        _check_contact(np.isfinite(depths))
+        _check_thickness(depths, layer)
+    return felt
 
 
 def gaps_at(
@@ -49,8 +61,7 @@ def gaps_at(
     its longer side, so that it meets what overhangs the place. inf where a cell meets nothing, or nothing `within` so
     many metres of the first contact: the fewer, the faster. Other arguments as of `press_forces`.
     """
-    if not (np.isfinite(unit) and unit > 0):
-        raise ValueError(f"unit must be a positive number of metres, got {unit}")
+    _check_unit(unit)
     if not within >= 0:  # NaN fails as well
         raise ValueError(f"within must be 0 m or more, got {within:g}")
     centres, axes = check_places(centres, axes)
@@ -103,10 +114,10 @@ def forces(
     else:
         rows = near.reshape(len(gaps), weights.size)
         facing = np.isfinite(rows[:, weights > 0]).any(axis=1)
-        depths = depths_of_loads(rows, weights, _checked_loads(load, facing), layer.thickness)
-    if len(deep := np.flatnonzero(depths > layer.thickness)):
-        remedy = "press less, or take a thicker or stiffer layer"
-        raise ValueError(f"touch {deep[0]} needs more than the layer's thickness of {layer.thickness:g} m: {remedy}")
+        loads = _checked_loads(load, len(gaps))
+        _check_contact(facing)
+        depths = depths_of_loads(rows, weights, loads, layer.thickness)
+    _check_thickness(depths, layer)
     pressed = np.subtract(depths.reshape(-1, *[1] * (gaps.ndim - 1)), near, out=near)
     np.maximum(pressed, 0.0, out=pressed)
     pressed *= layer.stiffness * areas * cosines
@@ -134,8 +145,8 @@ def shear(normal: np.ndarray, slips: ArrayLike, layer: Layer, areas: ArrayLike) 
 
 
 def _check_areas(areas):
-    if not ((areas > 0) & np.isfinite(areas)).all():
-        raise ValueError(f"areas must be above 0 m2, got {areas.min()}")
+    if not np.all((areas > 0) & np.isfinite(areas)):
+        raise ValueError(f"areas must be above 0 m2, got {np.min(areas)}")
 
 
 def _checked_depths(depth, count):
@@ -145,14 +156,28 @@ def _checked_depths(depth, count):
     return depths
 
 
-def _checked_loads(load, facing):
-    loads = _per_touch("load", load, len(facing))
+def _checked_loads(load, count):
+    loads = _per_touch("load", load, count)
     if len(wrong := np.flatnonzero(loads <= 0)):
         raise ValueError(f"load must be above 0 N, got {loads[wrong[0]]:g}: give newtons, or a depth in metres")
-    if len(lost := np.flatnonzero(~facing)):
-        remedy = "move the array over the object, or take more cells"
-        raise ValueError(f"touch {lost[0]} touches nothing, so no load can be reached: {remedy}")
     return loads
+
+
+def _check_contact(facing):
+    if not facing.all():
+        remedy = "move the array over the object, or take more cells"
+        raise ValueError(f"touch {np.argmin(facing)} touches nothing, so no load can be reached: {remedy}")
+
+
+def _check_thickness(depths, layer):
+    if (depths > layer.thickness).any():
+        deep, remedy = np.argmax(depths > layer.thickness), "press less, or take a thicker or stiffer layer"
+        raise ValueError(f"touch {deep} needs more than the layer's thickness of {layer.thickness:g} m: {remedy}")
+
+
+def _check_unit(unit):
+    if not (np.isfinite(unit) and unit > 0):
+        raise ValueError(f"unit must be a positive number of metres, got {unit}")
 
 
 def _per_touch(name, values, count):

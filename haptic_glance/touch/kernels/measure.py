@@ -84,8 +84,66 @@ def first_below(
     return found
 
 
+@kernel
+def press(
+    blocks: np.ndarray,
+    boxes: np.ndarray,
+    children: np.ndarray,
+    diagonal: float,
+    lift: float,
+    cells: tuple[int, int],
+    centres: np.ndarray,
+    axes: np.ndarray,
+    pitch: float,
+    unit: float,
+    window: float,
+    stiffness: float,
+    limit: float,
+    loads: np.ndarray,
+    depths: np.ndarray,
+) -> np.ndarray:
+    """(k, rows, cols) newtons on the cells of arrays pressed to depths (k,), or to loads (k,) if there are any.
+
+    `force.gaps_at` and `force.forces` in one pass, bit for bit. stiffness: of a cell, in newtons a metre; limit: as in
+    `depths_of_loads`; window: as in `first_below`. Writes the depths of loads to `depths`.
+    """
+    rows, columns = cells
+    found, back = np.empty((len(centres), rows, columns)), np.empty(cells, dtype=np.bool_)
+    stack, projected = np.empty(DEEP, dtype=np.int64), np.empty(ROWS * LANES)
+    start, near, weight = np.empty(3), np.empty(rows * columns), np.empty(rows * columns)
+    reach = max(rows, columns) * pitch
+    for k in range(len(centres)):
+        felt = found[k]
+        for i in range(rows):
+            for j in range(columns):
+                felt[i, j], back[i, j] = -np.inf, False
+        for axis in range(3):
+            start[axis] = centres[k, axis] + reach * axes[k, 2, axis]
+        frame = frame_of(start, axes[k], pitch, rows, columns, 1.0, lift, diagonal)
+        highest = search(blocks, boxes, children, frame, stack, projected, felt, back, window)
+        first = (-highest - reach) * unit if highest > -np.inf else 0.0
+        for i in range(rows):
+            for j in range(columns):
+                gap = (-felt[i, j] - reach) * unit - first
+                felt[i, j] = gap if felt[i, j] >= highest - window else np.inf
+        if len(loads):
+            size = 0
+            for i in range(rows):
+                for j in range(columns):
+                    if felt[i, j] <= limit:
+                        near[size], weight[size] = felt[i, j], stiffness
+                        size += 1
+            depths[k] = depth_of_load(near, weight, size, loads[k])
+        for i in range(rows):
+            for j in range(columns):
+                pressed = depths[k] - felt[i, j]
+                felt[i, j] = (pressed if pressed > 0 else 0.0) * stiffness
+    return found
+
+
 MEASURE = UntilWorthCompiling(measure, __file__, budget=12_800)  # cells: 50 arrays of 16 x 16
 FIRST_BELOW = UntilWorthCompiling(first_below, __file__, budget=12_800)
+PRESS = UntilWorthCompiling(press, __file__, budget=12_800)
 
 
 @helper
@@ -118,7 +176,7 @@ def search(
     would hardly save a box.
     """
     rows, columns = best.shape
-    size, stack[0], highest = 1, 0, -np.inf
+    size, stack[0], highest = min(1, len(children)), 0, -np.inf
     while size > 0:
         size -= 1
         node = stack[size]
@@ -179,22 +237,28 @@ def depths_of_loads(gaps: np.ndarray, weights: np.ndarray, loads: np.ndarray, li
         first = np.inf
         for gap in gaps[k]:
             first = min(first, gap)
-        size, depth = 0, limit
+        size = 0
         for j in range(gaps.shape[1]):
             if gaps[k, j] - first <= limit and weights[j] > 0:
                 near[size], weight[size] = gaps[k, j] - first, weights[j]
                 size += 1
-        kept = -1
-        while kept != size:
-            size = size if kept < 0 else kept
-            total, moment, kept = 0.0, 0.0, 0
-            for j in range(size):
-                total += weight[j]
-                moment += weight[j] * near[j]
-            depth = (loads[k] + moment) / total
-            for j in range(size):
-                if near[j] <= depth:
-                    near[kept], weight[kept] = near[j], weight[j]
-                    kept += 1
-        depths[k] = depth
+        depths[k] = depth_of_load(near, weight, size, loads[k])
     return depths
+
+
+@helper
+def depth_of_load(near: np.ndarray, weight: np.ndarray, size: int, load: float) -> float:
+    """The depth at which the first `size` springs bear the load, inf without any; overwrites `near` and `weight`."""
+    kept, depth = -1, np.inf
+    while kept != size:
+        size = size if kept < 0 else kept
+        total, moment, kept = 0.0, 0.0, 0
+        for j in range(size):
+            total += weight[j]
+            moment += weight[j] * near[j]
+        depth = (load + moment) / total
+        for j in range(size):
+            if near[j] <= depth:
+                near[kept], weight[kept] = near[j], weight[j]
+                kept += 1
+    return depth
