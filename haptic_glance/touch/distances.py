@@ -20,6 +20,9 @@ from haptic_glance.mesh.mesh import Mesh
 
 from .surface import Surface, as_surface, check_vertices, sensor_axes, sensor_normals
 
+EYE = np.eye(3)
+SKEW = 1e-6 + 1e-5 * EYE  # how far products of an array's axes may be from 0 and 1
+
 
 def distances(
     mesh: Mesh | Surface,
@@ -92,7 +95,8 @@ def check_places(centres: ArrayLike, axes: ArrayLike) -> tuple[np.ndarray, np.nd
     if axes.shape != (len(centres), 3, 3):
         raise ValueError(f"axes must have shape ({len(centres)}, 3, 3), one frame per array, got {axes.shape}")
     # Right-handed, or front and back of every face would be exchanged.
-    if not np.allclose(axes @ axes.transpose(0, 2, 1), np.eye(3), atol=1e-6) or (np.linalg.det(axes) < 0).any():
+    skew = np.abs(axes @ axes.transpose(0, 2, 1) - EYE)
+    if not (skew <= SKEW).all() or (np.linalg.det(axes) < 0).any():
         raise ValueError("axes must be three perpendicular unit vectors per array: right, up, normal = right x up")
     return centres, axes
 
@@ -123,10 +127,10 @@ def _lengths(name, values, count):
     values = np.asarray(values, dtype=np.float64)
     if values.shape not in ((), (count,)):
         raise ValueError(f"{name} must be a number or have shape ({count},), one per array, got {values.shape}")
-    invalid = values[~(np.isfinite(values) & (values > 0))]
-    if invalid.size:
-        raise ValueError(f"{name} must be a positive number of units, got {invalid.flat[0]}")
-    return np.broadcast_to(values, (count,))
+    valid = (values > 0) & (values < np.inf)
+    if not valid.all():
+        raise ValueError(f"{name} must be a positive number of units, got {values[~valid].flat[0]}")
+    return np.full(count, values)
 
 
 CONTACTS = ("tangent", "rigid")

@@ -35,7 +35,7 @@ def press_forces(
     _check_areas(area := (pitch * unit) ** 2)
     limit, loads = layer.thickness, np.empty(0)
     if load is None:
-        _check_thickness(depths := _checked_depths(depth, len(centres)), layer)
+        _check_thickness(depths := checked_depths(depth, len(centres)), layer)
         within = depths.max(initial=0.0)
     else:
         loads, depths, within = _checked_loads(load, len(centres)), np.empty(len(centres)), limit
@@ -110,7 +110,7 @@ def forces(
     # From the first contact on: sums with the distance of an array that starts far away would round the depth off.
     near = gaps - np.where(np.isfinite(least), least, 0.0).reshape(-1, *[1] * (gaps.ndim - 1))
     if load is None:
-        depths = _checked_depths(depth, len(gaps))
+        depths = checked_depths(depth, len(gaps))
     else:
         rows = near.reshape(len(gaps), weights.size)
         facing = np.isfinite(rows[:, weights > 0]).any(axis=1)
@@ -149,7 +149,8 @@ def _check_areas(areas):
         raise ValueError(f"areas must be above 0 m2, got {np.min(areas)}")
 
 
-def _checked_depths(depth, count):
+def checked_depths(depth: ArrayLike, count: int) -> np.ndarray:
+    """(count,) depths in metres; raises ValueError if one is invalid."""
     depths = _per_touch("depth", depth, count)
     if (depths < 0).any():
         raise ValueError(f"depth must be 0 m or more, got {depths.min():g}: it counts from the first contact")
@@ -186,4 +187,4 @@ def _per_touch(name, values, count):
         raise ValueError(f"{name} must be a number or have shape ({count},), one per touch, got {values.shape}")
     if not np.isfinite(values).all():
         raise ValueError(f"{name} must be finite, got {values[~np.isfinite(values)].flat[0]}")
-    return np.broadcast_to(values, (count,)).copy()
+    return np.full(count, values)

@@ -17,8 +17,8 @@ from haptic_glance.mesh.axes import Axis, axis_named, to_z_up
 from haptic_glance.mesh.files import MeshLike, as_mesh
 from haptic_glance.mesh.mesh import Mesh, corner_sum, unit
 
-from .kernels.faces import face_tree
-from .kernels.measure import FIRST_BELOW, MEASURE, PRESS
+from .kernels.faces import Taxels, face_tree
+from .kernels.measure import BELOW_TAXELS, FIRST_BELOW, MEASURE, PRESS
 
 LIFT = 1e-6  # of the mesh's diagonal: a face within this distance of the plane is at it; 16 steps in f4
 
@@ -67,6 +67,20 @@ class Surface:
     ) -> np.ndarray:
         """(k, rows, cols) newtons on the cells of arrays, see `kernels.measure.press`; `press_forces` checks."""
         return self._run(PRESS, centres, axes, cells, pitch, unit, window, stiffness, limit, loads, depths)
+
+    def below_taxels(
+        self,
+        centres: np.ndarray,
+        axes: np.ndarray,
+        cells: tuple[int, int],
+        pitch: float,
+        start: np.ndarray,
+        window: float,
+        taxels: Taxels,
+        count: int,
+    ) -> np.ndarray:
+        """(k, count) distances from the taxels of a layout, see `kernels.measure.below_taxels`."""
+        return self._run(BELOW_TAXELS, centres, axes, cells, pitch, start, window, taxels, count)
 
     def _run(self, kernel, centres, axes, cells, *more):
         # Copied, hence writeable: for a read-only array numba would compile everything again.
