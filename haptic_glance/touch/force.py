@@ -5,7 +5,7 @@ from numpy.typing import ArrayLike
 
 from haptic_glance.mesh.mesh import Mesh
 
-from .distances import check_array, check_arrays, check_places
+from .distances import as_places, check_array, check_arrays, check_places
 from .kernels.measure import depths_of_loads
 from .skin import Layer
 from .surface import Surface, as_surface
@@ -29,19 +29,22 @@ def press_forces(
     """
     if (load is None) == (depth is None):
         raise ValueError("give either load, in newtons, or depth, in metres")
-    surface, (centres, axes) = as_surface(surface), check_places(centres, axes)
+    surface, (centres, axes) = as_surface(surface), as_places(centres, axes)
     cells, pitch, _ = check_array(cells, pitch)
     _check_unit(unit)
-    _check_areas(area := (pitch * unit) ** 2)
-    limit, loads = layer.thickness, np.empty(0)
-    if load is None:
-        _check_thickness(depths := checked_depths(depth, len(centres)), layer)
-        within = depths.max(initial=0.0)
-    else:
-        loads, depths, within = _checked_loads(load, len(centres)), np.empty(len(centres)), limit
-    felt = surface.press(centres, axes, cells, pitch, unit, within / unit, layer.stiffness * area, limit, loads, depths)
-    if load is not None:
-        _check_contact(np.isfinite(depths))
+    area, count = (pitch * unit) ** 2, len(centres)
+    if not 0 < area < np.inf:
+        _check_areas(area)
+    depths = np.empty(count) if depth is None else _per_touch("depth", depth, count)
+    loads = np.empty(0) if load is None else _per_touch("load", load, count)
+    felt = surface.press(centres, axes, cells, pitch, unit, layer.stiffness * area, layer.thickness, loads, depths)
+    if not (depths <= layer.thickness).all():  # the kernel has refused a touch: say why
+        check_places(centres, axes)
+        if load is None:
+            checked_depths(depth, count)
+        else:
+            _checked_loads(load, count)
+            _check_contact(np.isfinite(depths))
         _check_thickness(depths, layer)
     return felt
 
@@ -151,14 +154,14 @@ def _check_areas(areas):
 
 def checked_depths(depth: ArrayLike, count: int) -> np.ndarray:
     """(count,) depths in metres; raises ValueError if one is invalid."""
-    depths = _per_touch("depth", depth, count)
+    depths = _check_finite("depth", _per_touch("depth", depth, count))
     if (depths < 0).any():
         raise ValueError(f"depth must be 0 m or more, got {depths.min():g}: it counts from the first contact")
     return depths
 
 
 def _checked_loads(load, count):
-    loads = _per_touch("load", load, count)
+    loads = _check_finite("load", _per_touch("load", load, count))
     if len(wrong := np.flatnonzero(loads <= 0)):
         raise ValueError(f"load must be above 0 N, got {loads[wrong[0]]:g}: give newtons, or a depth in metres")
     return loads
@@ -177,7 +180,7 @@ def _check_thickness(depths, layer):
 
 
 def _check_unit(unit):
-    if not (np.isfinite(unit) and unit > 0):
+    if not 0 < unit < np.inf:
         raise ValueError(f"unit must be a positive number of metres, got {unit}")
 
 
@@ -185,6 +188,10 @@ def _per_touch(name, values, count):
     values = np.asarray(values, dtype=np.float64)
     if values.shape not in ((), (count,)):
         raise ValueError(f"{name} must be a number or have shape ({count},), one per touch, got {values.shape}")
-    if not np.isfinite(values).all():
-        raise ValueError(f"{name} must be finite, got {values[~np.isfinite(values)].flat[0]}")
     return np.full(count, values)
+
+
+def _check_finite(name, values):
+    if not np.isfinite(values).all():
+        raise ValueError(f"{name} must be finite, got {values[~np.isfinite(values)][0]}")
+    return values

@@ -59,14 +59,13 @@ class Surface:
         cells: tuple[int, int],
         pitch: float,
         unit: float,
-        window: float,
         stiffness: float,
         limit: float,
         loads: np.ndarray,
         depths: np.ndarray,
     ) -> np.ndarray:
         """(k, rows, cols) newtons on the cells of arrays, see `kernels.measure.press`; `press_forces` checks."""
-        return self._run(PRESS, centres, axes, cells, pitch, unit, window, stiffness, limit, loads, depths)
+        return self._run(PRESS, centres, axes, cells, pitch, unit, stiffness, limit, loads, depths)
 
     def below_taxels(
         self,

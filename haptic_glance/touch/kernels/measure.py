@@ -22,6 +22,7 @@ from .faces import (
     faces_above,
     frame_of,
     half_width,
+    is_placed,
     kernel,
     project,
     raise_cells,
@@ -109,7 +110,6 @@ def press(
     axes: np.ndarray,
     pitch: float,
     unit: float,
-    window: float,
     stiffness: float,
     limit: float,
     loads: np.ndarray,
@@ -118,14 +118,24 @@ def press(
     """(k, rows, cols) newtons on the cells of arrays pressed to depths (k,), or to loads (k,) if there are any.
 
     `force.gaps_at` and `force.forces` in one pass, bit for bit. stiffness: of a cell, in newtons a metre; limit: as in
-    `depths_of_loads`; window: as in `first_below`. Writes the depths of loads to `depths`.
+    `depths_of_loads`. Writes the depths of loads to `depths`, and NaN for a touch that is invalid and left out.
     """
     rows, columns = cells
     found, back = np.empty((len(centres), rows, columns)), np.empty(cells, dtype=np.bool_)
     stack, projected = np.empty(DEEP, dtype=np.int64), np.empty(ROWS * LANES)
     start, near, weight = np.empty(3), np.empty(rows * columns), np.empty(rows * columns)
-    reach = max(rows, columns) * pitch
+    reach, within, loaded = max(rows, columns) * pitch, 0.0, len(loads) > 0
     for k in range(len(centres)):
+        known = loads[k] > 0 if loaded else depths[k] >= 0
+        depths[k] = limit if loaded else depths[k]
+        if not (known and is_placed(centres[k], axes[k])):
+            depths[k] = np.nan
+        elif depths[k] > within:
+            within = depths[k]
+    window = within / unit
+    for k in range(len(centres)):
+        if not depths[k] >= 0:
+            continue
         felt = found[k]
         for i in range(rows):
             for j in range(columns):
@@ -139,7 +149,7 @@ def press(
             for j in range(columns):
                 gap = (-felt[i, j] - reach) * unit - first
                 felt[i, j] = gap if felt[i, j] >= highest - window else np.inf
-        if len(loads):
+        if loaded:
             size = 0
             for i in range(rows):
                 for j in range(columns):
