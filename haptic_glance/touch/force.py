@@ -40,7 +40,7 @@ def press_forces(
     felt = surface.press(centres, axes, cells, pitch, unit, layer.stiffness * area, layer.thickness, loads, depths)
     if not (depths <= layer.thickness).all():  # the kernel has refused a touch: say why
         check_places(centres, axes)
-        if load is None:
+        if depth is not None:
             checked_depths(depth, count)
         else:
             _checked_loads(load, count)
@@ -112,7 +112,7 @@ def forces(
     weights = (layer.stiffness * areas * cosines**2).ravel()
     # From the first contact on: sums with the distance of an array that starts far away would round the depth off.
     near = gaps - np.where(np.isfinite(least), least, 0.0).reshape(-1, *[1] * (gaps.ndim - 1))
-    if load is None:
+    if depth is not None:
         depths = checked_depths(depth, len(gaps))
     else:
         rows = near.reshape(len(gaps), weights.size)
