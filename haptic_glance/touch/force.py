@@ -5,7 +5,7 @@ from numpy.typing import ArrayLike
 
 from haptic_glance.mesh.mesh import Mesh
 
-from .distances import check_arrays, check_places
+from .distances import as_places, check_array, check_arrays, check_places
 from .kernels.measure import depths_of_loads
 from .skin import Layer
 from .surface import Surface, as_surface
@@ -27,11 +27,26 @@ def press_forces(
     axes (k, 3, 3) rows right, up, normal; pitch: units of the mesh; unit: metres a unit of the mesh is long; load,
     depth: as in `forces`. Raises ValueError as `distances_at` and `forces` do.
     """
-    centres, axes = check_places(centres, axes)
-    depths = layer.thickness if depth is None else _checked_depths(depth, len(centres))
-    within = min(np.max(depths, initial=0.0), layer.thickness)
-    gaps = gaps_at(surface, centres, axes, within, cells, pitch, unit)
-    return forces(gaps, layer, (pitch * unit) ** 2, load, depth)
+    if (load is None) == (depth is None):
+        raise ValueError("give either load, in newtons, or depth, in metres")
+    surface, (centres, axes) = as_surface(surface), as_places(centres, axes)
+    cells, pitch, _ = check_array(cells, pitch)
+    _check_unit(unit)
+    area, count = (pitch * unit) ** 2, len(centres)
+    if not 0 < area < np.inf:
+        _check_areas(area)
+    depths = np.empty(count) if depth is None else _per_touch("depth", depth, count)
+    loads = np.empty(0) if load is None else _per_touch("load", load, count)
+    felt = surface.press(centres, axes, cells, pitch, unit, layer.stiffness * area, layer.thickness, loads, depths)
+    if not (depths <= layer.thickness).all():  # the kernel has refused a touch: say why
+        check_places(centres, axes)
+        if depth is not None:
+            checked_depths(depth, count)
+        else:
+            _checked_loads(load, count)
+            _check_contact(np.isfinite(depths))
+        _check_thickness(depths, layer)
+    return felt
 
 
 def gaps_at(
@@ -49,8 +64,7 @@ def gaps_at(
     its longer side, so that it meets what overhangs the place. inf where a cell meets nothing, or nothing `within` so
     many metres of the first contact: the fewer, the faster. Other arguments as of `press_forces`.
     """
-    if not (np.isfinite(unit) and unit > 0):
-        raise ValueError(f"unit must be a positive number of metres, got {unit}")
+    _check_unit(unit)
     if not within >= 0:  # NaN fails as well
         raise ValueError(f"within must be 0 m or more, got {within:g}")
     centres, axes = check_places(centres, axes)
@@ -98,15 +112,15 @@ def forces(
     weights = (layer.stiffness * areas * cosines**2).ravel()
     # From the first contact on: sums with the distance of an array that starts far away would round the depth off.
     near = gaps - np.where(np.isfinite(least), least, 0.0).reshape(-1, *[1] * (gaps.ndim - 1))
-    if load is None:
-        depths = _checked_depths(depth, len(gaps))
+    if depth is not None:
+        depths = checked_depths(depth, len(gaps))
     else:
         rows = near.reshape(len(gaps), weights.size)
         facing = np.isfinite(rows[:, weights > 0]).any(axis=1)
-        depths = depths_of_loads(rows, weights, _checked_loads(load, facing), layer.thickness)
-    if len(deep := np.flatnonzero(depths > layer.thickness)):
-        remedy = "press less, or take a thicker or stiffer layer"
-        raise ValueError(f"touch {deep[0]} needs more than the layer's thickness of {layer.thickness:g} m: {remedy}")
+        loads = _checked_loads(load, len(gaps))
+        _check_contact(facing)
+        depths = depths_of_loads(rows, weights, loads, layer.thickness)
+    _check_thickness(depths, layer)
     pressed = np.subtract(depths.reshape(-1, *[1] * (gaps.ndim - 1)), near, out=near)
     np.maximum(pressed, 0.0, out=pressed)
     pressed *= layer.stiffness * areas * cosines
@@ -134,31 +148,50 @@ def shear(normal: np.ndarray, slips: ArrayLike, layer: Layer, areas: ArrayLike) 
 
 
 def _check_areas(areas):
-    if not ((areas > 0) & np.isfinite(areas)).all():
-        raise ValueError(f"areas must be above 0 m2, got {areas.min()}")
+    if not np.all((areas > 0) & np.isfinite(areas)):
+        raise ValueError(f"areas must be above 0 m2, got {np.min(areas)}")
 
 
-def _checked_depths(depth, count):
-    depths = _per_touch("depth", depth, count)
+def checked_depths(depth: ArrayLike, count: int) -> np.ndarray:
+    """(count,) depths in metres; raises ValueError if one is invalid."""
+    depths = _check_finite("depth", _per_touch("depth", depth, count))
     if (depths < 0).any():
         raise ValueError(f"depth must be 0 m or more, got {depths.min():g}: it counts from the first contact")
     return depths
 
 
-def _checked_loads(load, facing):
-    loads = _per_touch("load", load, len(facing))
+def _checked_loads(load, count):
+    loads = _check_finite("load", _per_touch("load", load, count))
     if len(wrong := np.flatnonzero(loads <= 0)):
         raise ValueError(f"load must be above 0 N, got {loads[wrong[0]]:g}: give newtons, or a depth in metres")
-    if len(lost := np.flatnonzero(~facing)):
-        remedy = "move the array over the object, or take more cells"
-        raise ValueError(f"touch {lost[0]} touches nothing, so no load can be reached: {remedy}")
     return loads
+
+
+def _check_contact(facing):
+    if not facing.all():
+        remedy = "move the array over the object, or take more cells"
+        raise ValueError(f"touch {np.argmin(facing)} touches nothing, so no load can be reached: {remedy}")
+
+
+def _check_thickness(depths, layer):
+    if (depths > layer.thickness).any():
+        deep, remedy = np.argmax(depths > layer.thickness), "press less, or take a thicker or stiffer layer"
+        raise ValueError(f"touch {deep} needs more than the layer's thickness of {layer.thickness:g} m: {remedy}")
+
+
+def _check_unit(unit):
+    if not 0 < unit < np.inf:
+        raise ValueError(f"unit must be a positive number of metres, got {unit}")
 
 
 def _per_touch(name, values, count):
     values = np.asarray(values, dtype=np.float64)
     if values.shape not in ((), (count,)):
         raise ValueError(f"{name} must be a number or have shape ({count},), one per touch, got {values.shape}")
+    return np.full(count, values)
+
+
+def _check_finite(name, values):
     if not np.isfinite(values).all():
-        raise ValueError(f"{name} must be finite, got {values[~np.isfinite(values)].flat[0]}")
-    return np.broadcast_to(values, (count,)).copy()
+        raise ValueError(f"{name} must be finite, got {values[~np.isfinite(values)][0]}")
+    return values

@@ -2,18 +2,19 @@
 
 import csv
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from haptic_glance.mesh.mesh import Mesh, unit
-from haptic_glance.mesh.rays import RayScene
 
 from .distances import check_places
-from .force import forces
+from .force import checked_depths, forces
+from .kernels.faces import Taxels
 from .skin import Layer
+from .surface import Surface, as_surface
 
 COLUMNS = ("x", "y", "z", "nx", "ny", "nz", "area")
 
@@ -56,6 +57,26 @@ class Layout:
         """(n,) cosines of the normals to the array's approach; 0 where a taxel faces away."""
         return np.maximum(-self.normals[:, 2], 0.0)
 
+    @cached_property
+    def cells(self) -> tuple[tuple[int, int], float, tuple[float, float, float], Taxels]:
+        """((rows, columns), pitch, (x, y, least z), Taxels): a grid of about a taxel a cell, its middle at x, y.
+
+        It holds the taxels that face the object.
+        """
+        facing = np.flatnonzero(self.cosines > 0)
+        low, high = (least(self.positions[facing], axis=0) for least in (np.min, np.max))
+        (x, y, _), (width, height, _) = (low + high) / 2, high - low
+        pitch = max(np.sqrt(width * height / len(facing)), max(width, height) / len(facing)) or 1.0
+        rows, columns = round(height / pitch) + 1, round(width / pitch) + 1
+        right = (self.positions[facing, 0] - x) / pitch + (columns - 1) / 2
+        down = (y - self.positions[facing, 1]) / pitch + (rows - 1) / 2
+        cell = np.rint(down).astype(np.int64) * columns + np.rint(right).astype(np.int64)
+        order = np.argsort(cell, kind="stable")
+        first = np.searchsorted(cell[order], np.arange(rows * columns + 1))
+        rise = low[2] - self.positions[facing, 2]
+        grid = Taxels(right[order], down[order], rise[order], facing[order], first)
+        return (rows, columns), float(pitch), (x, y, low[2]), grid
+
 
 def read_layout(path: str | Path) -> Layout:
     """The Layout of a CSV file, a row a taxel: columns x, y, z, nx, ny, nz in metres and area in m2, in any order."""
@@ -73,7 +94,7 @@ def read_layout(path: str | Path) -> Layout:
 
 
 def layout_forces(
-    mesh: Mesh,
+    mesh: Mesh | Surface,
     centres: ArrayLike,
     axes: ArrayLike,
     layer: Layer,
@@ -87,22 +108,25 @@ def layout_forces(
     to the approach, so that the forces of a curved sensor are those of small indentations.
     """
     centres, axes = check_places(centres, axes)
-    return forces(layout_gaps(mesh, centres, axes, layout, layer), layer, layout.areas, load, depth, layout.cosines)
+    depths = layer.thickness if depth is None else checked_depths(depth, len(centres))
+    within = min(np.max(depths, initial=0.0), layer.thickness)
+    gaps = layout_gaps(mesh, centres, axes, layout, layer, within)
+    return forces(gaps, layer, layout.areas, load, depth, layout.cosines)
 
 
-def layout_gaps(mesh: Mesh, centres: np.ndarray, axes: np.ndarray, layout: Layout, layer: Layer) -> np.ndarray:
-    """(k, n) metres that each taxel can still approach, as `gaps_at` of a rectangular array; rays by embree.
+def layout_gaps(
+    mesh: Mesh | Surface, centres: np.ndarray, axes: np.ndarray, layout: Layout, layer: Layer, within: float
+) -> np.ndarray:
+    """(k, n) metres that each taxel can still approach, as `gaps_at` of a rectangular array.
 
-    inf where the mesh is not in its way, or it faces away. The approach begins as far off as the layout is wide.
+    inf where the mesh is not in its way, not `within` so many metres of the first contact, or it faces away. The
+    approach begins as far off as the layout is wide.
     """
-    reach = np.ptp(layout.positions, axis=0).max() + layer.thickness
-    start = layout.positions * [1, 1, 0] + [0, 0, layout.positions[:, 2].max() + reach]
-    facing = np.flatnonzero(layout.cosines > 0)
-    origins = centres[:, None] + start[facing] @ axes
-    ways = np.broadcast_to(-axes[:, None, 2], origins.shape)
-    gaps = np.full((len(centres), len(start)), np.inf)
-    cast = _scene(mesh).cast(origins.reshape(-1, 3), ways.reshape(-1, 3)).distance
-    gaps[:, facing] = cast.reshape(origins.shape[:2]) - (start[facing, 2] - layout.positions[facing, 2])
+    cells, pitch, (x, y, lowest), taxels = layout.cells
+    start = layout.positions[:, 2].max() + np.ptp(layout.positions, axis=0).max() + layer.thickness
+    places = centres, axes, cells, pitch, np.array([x, y, start])
+    gaps = as_surface(mesh).below_taxels(*places, within, taxels, len(layout.areas))
+    gaps -= start - lowest
     return gaps
 
 
@@ -111,8 +135,3 @@ def _numbers(path, line, row):
         return [float(row[name]) for name in COLUMNS]
     except (TypeError, ValueError):
         raise ValueError(f"{path}: line {line} has a taxel that is not seven numbers: {','.join(COLUMNS)}") from None
-
-
-@lru_cache(maxsize=2)
-def _scene(mesh):
-    return RayScene(mesh)

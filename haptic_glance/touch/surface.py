@@ -17,8 +17,8 @@ from haptic_glance.mesh.axes import Axis, axis_named, to_z_up
 from haptic_glance.mesh.files import MeshLike, as_mesh
 from haptic_glance.mesh.mesh import Mesh, corner_sum, unit
 
-from .kernels.faces import face_tree
-from .kernels.measure import FIRST_BELOW, MEASURE
+from .kernels.faces import Taxels, face_tree
+from .kernels.measure import BELOW_TAXELS, FIRST_BELOW, MEASURE, PRESS
 
 LIFT = 1e-6  # of the mesh's diagonal: a face within this distance of the plane is at it; 16 steps in f4
 
@@ -40,7 +40,7 @@ class Surface:
 
         centres (k, 3), axes (k, 3, 3), pitches (k,), all f8. The result for an array does not depend on the others.
         """
-        return self._run(MEASURE, centres, axes, cells, pitches)
+        return self._run(MEASURE, centres, axes, cells, np.array(pitches))
 
     def first_below(
         self, centres: np.ndarray, axes: np.ndarray, cells: tuple[int, int], pitches: np.ndarray, window: float
@@ -50,13 +50,40 @@ class Surface:
         inf where there is none, or where it is more than `window` units below the nearest of its array. Arguments as of
         `measure`, of which this takes a fraction of the time.
         """
-        return self._run(FIRST_BELOW, centres, axes, cells, pitches, window)
+        return self._run(FIRST_BELOW, centres, axes, cells, np.array(pitches), window)
 
-    def _run(self, kernel, centres, axes, cells, pitches, *more):
-        if not len(self._tree[0]):
-            return np.full((len(centres), *cells), np.inf)
-        # Writeable: for a read-only array numba would compile everything again.
-        places = [np.require(values, np.float64, ["C", "W"]) for values in (centres, axes, pitches)]
+    def press(
+        self,
+        centres: np.ndarray,
+        axes: np.ndarray,
+        cells: tuple[int, int],
+        pitch: float,
+        unit: float,
+        stiffness: float,
+        limit: float,
+        loads: np.ndarray,
+        depths: np.ndarray,
+    ) -> np.ndarray:
+        """(k, rows, cols) newtons on the cells of arrays, see `kernels.measure.press`; `press_forces` checks."""
+        return self._run(PRESS, centres, axes, cells, pitch, unit, stiffness, limit, loads, depths)
+
+    def below_taxels(
+        self,
+        centres: np.ndarray,
+        axes: np.ndarray,
+        cells: tuple[int, int],
+        pitch: float,
+        start: np.ndarray,
+        window: float,
+        taxels: Taxels,
+        count: int,
+    ) -> np.ndarray:
+        """(k, count) distances from the taxels of a layout, see `kernels.measure.below_taxels`."""
+        return self._run(BELOW_TAXELS, centres, axes, cells, pitch, start, window, taxels, count)
+
+    def _run(self, kernel, centres, axes, cells, *more):
+        # Copied, hence writeable: for a read-only array numba would compile everything again.
+        places = np.array(centres, np.float64, order="C"), np.array(axes, np.float64, order="C")
         run = kernel.for_work(len(centres) * math.prod(cells))
         return run(*self._tree, self.mesh.diagonal, LIFT * self.mesh.diagonal, cells, *places, *more)
 

@@ -41,6 +41,61 @@ def ball(shapes):
     return work
 
 
+STORED = [  # as felt by the first version, which made gaps, then forces: cells pressed, sum, largest, two cells
+    ("ball", {"depth": 0.003}, 38, [6.503327391476855, 0.324, 0.2971172268433029, 0.23966123454436902]),
+    ("ball", {"load": 2.0}, 24, [2.0, 0.17669420644530362, 0.14981143328860647, 0.09235544098967262]),
+    ("box", {"depth": 0.003}, 3, [0.6727500000000026, 0.324, 0.0, 0.0]),
+    ("box", {"load": 2.0}, 11, [1.9999999999999991, 0.5142045454545447, 0.0822045454545447, 0.0]),
+]
+
+
+@pytest.mark.parametrize("name, pressed, cells, known", STORED)
+def test_forces_are_those_of_the_first_version(name, pressed, cells, known):
+    solid = trimesh.creation.icosphere(3, 0.02) if name == "ball" else trimesh.creation.box((0.02, 0.02, 0.02))
+    axes = np.array([[[0.6, 0.8, 0], [-0.48, 0.36, 0.8], [0.64, -0.48, 0.6]]])
+    place = [[0.0123, -0.0096, 0.012]], axes
+    felt = press_forces(Mesh(solid.vertices, solid.faces), *place, LAYER, (7, 6), 0.003, **pressed)[0]
+    assert (felt > 0).sum() == cells
+    np.testing.assert_allclose([felt.sum(), felt.max(), felt[2, 3], felt[4, 1]], known, rtol=1e-14)
+
+
+@pytest.mark.parametrize("pressed", [{"depth": np.linspace(0, 0.01, 60)}, {"load": np.linspace(0.01, 3, 60)}])
+@pytest.mark.parametrize("cells, pitch", [((16, 16), 0.0006), ((7, 12), 0.001), ((1, 1), 0.002)])
+def test_a_press_is_its_gaps_made_forces_bit_for_bit(pressed, cells, pitch):
+    knot = trimesh.creation.torus(0.03, 0.012, major_sections=60, minor_sections=30)
+    surface = Surface(Mesh(1000 * knot.vertices, knot.faces))  # in millimetres
+    vertices = np.random.default_rng(0).choice(len(knot.vertices), 60)
+    pressed = {
+        name: values * cells[0] * cells[1] / 256 if name == "load" else values for name, values in pressed.items()
+    }
+    places = surface.mesh.vertices[vertices], sensor_axes(sensor_normals(surface.mesh, vertices))
+    gaps = gaps_at(surface, *places, LAYER.thickness, cells, 1000 * pitch, 0.001)
+    known = forces(gaps, LAYER, (1000 * pitch * 0.001) ** 2, **pressed)
+    felt = press_forces(surface, *places, LAYER, cells, 1000 * pitch, unit=0.001, **pressed)
+    assert known.any()
+    np.testing.assert_array_equal(felt, known)
+
+
+@pytest.mark.parametrize(
+    "place, axes, pressed, words",
+    [
+        ([0, 0, np.nan], np.eye(3), {"load": 1.0}, "centres must be finite"),
+        ([0, 0, 0], 1.00001 * np.eye(3), {"depth": 0.001}, "axes must be three perpendicular unit vectors"),
+        ([0, 0, 0], np.eye(3) + 1e-5, {"depth": 0.001}, "axes must be three perpendicular unit vectors"),
+        ([0, 0, 0], np.diag([1, 1, -1]), {"depth": 0.001}, "axes must be three perpendicular unit vectors"),
+        ([0, 0, 0], np.eye(3), {"depth": [0.001, 0.011]}, "touch 1 needs more than the layer's thickness"),
+        ([0, 0, 0], np.eye(3), {"load": [0.1, 1e6]}, "touch 1 needs more than the layer's thickness"),
+        ([0, 0, 0], np.eye(3), {"load": [0.1, 0.0]}, "load must be above 0 N, got 0"),
+        ([0, 0, 0], np.eye(3), {"load": [0.1, np.inf]}, "load must be finite, got inf"),
+        ([0, 0, 0], np.eye(3), {"depth": [0.1, 0.1, 0.1]}, r"depth must be a number or have shape \(2,\)"),
+        ([0, 0, 0], np.eye(3), {}, "give either load"),
+    ],
+)
+def test_presses_that_cannot_be_are_named(punch, place, axes, pressed, words):
+    with pytest.raises(ValueError, match=words):
+        press_forces(punch, [ABOVE[0][0], place], np.stack([np.eye(3), axes]), LAYER, **pressed)
+
+
 def test_stiffness_is_that_of_a_confined_layer():
     assert Layer(0.002, 3e5, 0.0).stiffness == pytest.approx(1.5e8) and LAYER.stiffness == pytest.approx(1.2e7)
     assert LAYER.shear_stiffness == pytest.approx(4e6)

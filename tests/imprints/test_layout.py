@@ -5,7 +5,8 @@ import pytest
 import trimesh
 
 from haptic_glance.mesh.mesh import Mesh
-from haptic_glance.touch import Layer, Layout, layout_forces, press_forces, read_layout
+from haptic_glance.mesh.rays import RayScene
+from haptic_glance.touch import Layer, Layout, forces, layout_forces, press_forces, read_layout, sensor_axes
 
 LAYER = Layer(thickness=0.002, modulus=2e5)
 TIP = 0.008  # radius of the fingertip, in metres
@@ -52,6 +53,28 @@ def test_a_rectangular_layout_is_the_rectangular_array(shapes):
     for pressed in ({"load": 3.0}, {"depth": 0.0005}):
         grid = press_forces(mesh, *place, LAYER, (9, 13), pitch, **pressed)
         assert np.allclose(layout_forces(mesh, *place, LAYER, layout, **pressed), grid.reshape(1, -1), rtol=1e-4)
+
+
+@pytest.mark.parametrize("pressed", [{"depth": 0.0015}, {"load": 0.4}])
+@pytest.mark.parametrize("flat", [True, False])
+def test_forces_are_those_of_a_ray_from_each_taxel(pressed, flat):
+    """The reference casts rays along the approach, from as far above the highest taxel as the layout is wide."""
+    knot, random = trimesh.creation.torus(0.03, 0.012, major_sections=60, minor_sections=30), np.random.default_rng(0)
+    mesh, (x, y) = Mesh(knot.vertices, knot.faces), random.uniform(-0.01, 0.01, (2, 200))
+    z = 0 * x if flat else 20 * (x**2 + y**2)
+    normals = np.c_[0 * x, 0 * y, 0 * x - 1] if flat else np.c_[40 * x, 40 * y, 0 * x - 1]
+    normals[:3, 2] = 1.0  # three face away
+    layout = Layout(np.c_[x, y, z], normals, random.uniform(1e-7, 1e-6, 200))
+    places = random.choice(len(knot.vertices), 20)
+    centres, axes = knot.vertices[places], sensor_axes(knot.vertex_normals[places])
+    start = z.max() + np.ptp(layout.positions, axis=0).max() + LAYER.thickness
+    origins = centres[:, None] + (layout.positions * [1, 1, 0] + [0, 0, start]) @ axes
+    rays = np.broadcast_to(-axes[:, None, 2], origins.shape).reshape(-1, 3)
+    gaps = RayScene(mesh).cast(origins.reshape(-1, 3), rays).distance.reshape(20, 200) - start + z
+    gaps[:, layout.cosines == 0] = np.inf
+    known = forces(gaps, LAYER, layout.areas, cosines=layout.cosines, **pressed)
+    felt = layout_forces(mesh, centres, axes, LAYER, layout, **pressed)
+    assert (felt > 0).any(axis=1).all() and np.abs(felt - known).max() < 1e-12
 
 
 def test_a_hexagonal_file_bears_a_flat_table_equally(tmp_path, table):

@@ -25,8 +25,13 @@ SLACK = 1e-12  # of the mesh's diagonal: how far a face extends beyond its edges
 GRAZING = 1e-12  # sine of a face's angle to the normal, below which a column has no single intersection with it
 
 # centre (3,); right, down (3,) in cells per unit, normal (3,) in units; column, row of the centre; side 1, or -1 for
-# upwards; lift, slack in units, margin the slack in cells; grazing the area in cells below which an area of 1 grazes.
-Frame = namedtuple("Frame", "centre right down normal column row side lift slack margin grazing")
+# upwards; lift, slack in units, margin the slack in cells; grazing the area in cells below which an area of 1 grazes;
+# around 0, or half a cell: a taxel of a layout lies anywhere in its cell, not in the middle.
+Frame = namedtuple("Frame", "centre right down normal column row side lift slack margin grazing around")
+
+# Of the n taxels of a layout, cell by cell: column, row (n,) where they are in the frame; rise (n,) how far below the
+# highest of them, 0 or less; number (n,) in the layout. first (cells + 1,) taxel of each cell.
+Taxels = namedtuple("Taxels", "column row rise number first")
 
 
 @helper
@@ -39,6 +44,7 @@ def frame_of(
     side: float,
     lift: float,
     diagonal: float,
+    around: float,
 ) -> Frame:
     """The Frame of an array; for side -1 heights count down, so that what is above comes first."""
     over, slack = 1 / pitch, SLACK * (diagonal + (rows + columns) * pitch)
@@ -54,7 +60,26 @@ def frame_of(
         slack,
         slack * over,
         GRAZING * over * over,
+        around,
     )
+
+
+@helper
+def is_placed(centre: np.ndarray, axes: np.ndarray) -> bool:
+    """True if the centre is finite and the axes are perpendicular unit vectors, the third the first x the second.
+
+    A tenth more tolerant than `check_places`, which says what is wrong.
+    """
+    good = True
+    for i in range(3):
+        good = good and abs(centre[i]) < np.inf
+        for j in range(3):
+            product = axes[i, 0] * axes[j, 0] + axes[i, 1] * axes[j, 1] + axes[i, 2] * axes[j, 2]
+            good = good and (abs(product - 1) <= 1.21e-5 if i == j else abs(product) <= 1.1e-6)
+    x = axes[0, 1] * axes[1, 2] - axes[0, 2] * axes[1, 1]
+    y = axes[0, 2] * axes[1, 0] - axes[0, 0] * axes[1, 2]
+    z = axes[0, 0] * axes[1, 1] - axes[0, 1] * axes[1, 0]
+    return good and x * axes[2, 0] + y * axes[2, 1] + z * axes[2, 2] >= 0
 
 
 @helper
@@ -177,7 +202,7 @@ ROWS = 24  # of 32 numbers, one per face
 HITS, TWICE, FIRST, LAST, TOP, BOTTOM = (LANES * k for k in range(6))  # twice the area; cells under its box
 HEIGHT = LANES * 6  # and the three rows after: its heights at its first four cells
 FACE = LANES * 10  # and the 13 rows after: see `crossing`
-OVER_FOUR = 16.0  # hits: the face has more than four cells under its box
+OVER_FOUR = 16.0  # hits: the face has more than four cells under its box, or taxels may be
 
 
 @helper
@@ -225,6 +250,18 @@ def project_corner(block: np.ndarray, k: int, frame: Frame) -> tuple[float, floa
 
 
 @helper
+def faces_above(block: np.ndarray, frame: Frame, floor: float) -> int:
+    """How many faces of a block have a corner at the height `floor` or above it."""
+    found = 0
+    for f in range(LANES):
+        _, _, w = project_corner(block, f, frame)
+        _, _, w1 = project_corner(block, 3 * LANES + f, frame)
+        _, _, w2 = project_corner(block, 6 * LANES + f, frame)
+        found += 1 if max3(w, w1, w2) >= floor else 0
+    return found
+
+
+@helper
 def store_face(out: np.ndarray, f: int, face: tuple[float, ...]) -> None:
     """Writes the 14 numbers of a face; unrolled, since a loop over them would prevent vectorisation over the faces."""
     at = FACE + f
@@ -249,15 +286,18 @@ def load_face(projected: np.ndarray, f: int) -> tuple[float, ...]:
 
 
 @kernel
-def project(block: np.ndarray, frame: Frame, rows: int, columns: int, out: np.ndarray) -> None:
-    """Writes the projections of the 32 faces of a block for `raise_cells`; HITS is 0 for one that covers no cell."""
-    last_column, last_row = columns - 1.0, rows - 1.0
+def project(block: np.ndarray, frame: Frame, rows: int, columns: int, floor: float, out: np.ndarray) -> None:
+    """Writes the projections of the 32 faces of a block for `raise_cells`.
+
+    HITS is 0 for one that covers no cell, or is below the height `floor`.
+    """
+    last_column, last_row, reach = columns - 1.0, rows - 1.0, frame.margin + frame.around
     for f in range(LANES):
         u, v, w = project_corner(block, f, frame)
         u1, v1, w1 = project_corner(block, 3 * LANES + f, frame)
         u2, v2, w2 = project_corner(block, 6 * LANES + f, frame)
-        first, last = np.ceil(min3(u, u1, u2) - frame.margin), np.floor(max3(u, u1, u2) + frame.margin)
-        top, bottom = np.ceil(min3(v, v1, v2) - frame.margin), np.floor(max3(v, v1, v2) + frame.margin)
+        first, last = np.ceil(min3(u, u1, u2) - reach), np.floor(max3(u, u1, u2) + reach)
+        top, bottom = np.ceil(min3(v, v1, v2) - reach), np.floor(max3(v, v1, v2) + reach)
         first, last = first if first > 0.0 else 0.0, last if last < last_column else last_column
         top, bottom = top if top > 0.0 else 0.0, bottom if bottom < last_row else last_row
         low, high = min3(w, w1, w2), max3(w, w1, w2)
@@ -280,8 +320,8 @@ def project(block: np.ndarray, frame: Frame, rows: int, columns: int, out: np.nd
         hits += 2.0 if min3(covered_2, wide - 1, wide - 1) >= 0 else 0.0
         hits += 4.0 if min3(covered_3, tall - 1, tall - 1) >= 0 else 0.0
         hits += 8.0 if min3(covered_4, wide - 1, tall - 1) >= 0 else 0.0
-        hits = hits if max3(wide, tall, 0.0) <= 1.0 else OVER_FOUR
-        hits = hits if min3(wide, tall, frame.lift - low) >= 0 else 0.0
+        hits = hits if max3(wide, tall, 0.0) + 4 * frame.around <= 1.0 else OVER_FOUR
+        hits = hits if min3(wide, tall, min3(frame.lift - low, high - floor, high - floor)) >= 0 else 0.0
         out[HITS + f] = hits if abs(twice) > frame.grazing * block[9 * LANES + f] else 0.0  # false for NaN
         out[TWICE + f] = twice
         out[FIRST + f], out[LAST + f], out[TOP + f], out[BOTTOM + f] = first, last, top, bottom
@@ -289,8 +329,10 @@ def project(block: np.ndarray, frame: Frame, rows: int, columns: int, out: np.nd
 
 
 @kernel
-def raise_cells(projected: np.ndarray, frame: Frame, best: np.ndarray, back: np.ndarray) -> None:
+def raise_cells(projected: np.ndarray, frame: Frame, best: np.ndarray, back: np.ndarray, highest: float) -> float:
     """Raises best (rows, cols) to the heights that `project` wrote; back: if the face is seen from its back.
+
+    Returns the highest of these and of `highest`.
 
     Of two faces at one height the one seen from its back counts, in any order: where one part stands on another, its
     inside is above both.
@@ -306,14 +348,37 @@ def raise_cells(projected: np.ndarray, frame: Frame, best: np.ndarray, back: np.
         if hits < OVER_FOUR:
             for k in range(4):
                 if hits >> k & 1:
-                    raise_cell(best, back, i + (k >> 1), j + (k & 1), projected[HEIGHT + k * LANES + f], from_back)
+                    height = projected[HEIGHT + k * LANES + f]
+                    highest = max(highest, height)
+                    raise_cell(best, back, i + (k >> 1), j + (k & 1), height, from_back)
             continue
         face = load_face(projected, f)
         for row in range(i, int(projected[BOTTOM + f]) + 1):
             for column in range(j, int(projected[LAST + f]) + 1):
                 covered, height = crossing(face, column, row, frame.lift)
                 if covered >= 0:
+                    highest = max(highest, height)
                     raise_cell(best, back, row, column, height, from_back)
+    return highest
+
+
+@kernel
+def raise_taxels(
+    projected: np.ndarray, frame: Frame, columns: int, heights: np.ndarray, taxels: Taxels, highest: float
+) -> float:
+    """Raises the heights (1, n) above taxels to those that `project` wrote; highest: with the rise of its taxel."""
+    for f in range(LANES):
+        if projected[HITS + f] == 0:
+            continue
+        face = load_face(projected, f)
+        left, right = int(projected[FIRST + f]), int(projected[LAST + f])
+        for row in range(int(projected[TOP + f]), int(projected[BOTTOM + f]) + 1):
+            for t in range(taxels.first[row * columns + left], taxels.first[row * columns + right + 1]):
+                covered, height = crossing(face, taxels.column[t], taxels.row[t], frame.lift)
+                if covered >= 0 and height > heights[0, t]:
+                    heights[0, t] = height
+                    highest = max(highest, height + taxels.rise[t])
+    return highest
 
 
 @helper

@@ -13,7 +13,21 @@ import numpy as np
 
 from haptic_glance.base.jit import UntilWorthCompiling, helper
 
-from .faces import LANES, ROWS, Frame, along, frame_of, half_width, kernel, project, raise_cells
+from .faces import (
+    LANES,
+    ROWS,
+    Frame,
+    Taxels,
+    along,
+    faces_above,
+    frame_of,
+    half_width,
+    is_placed,
+    kernel,
+    project,
+    raise_cells,
+    raise_taxels,
+)
 
 MAX_CHECKED = 64  # cells under a box, up to which it pays to check if all of them hide it
 DEEP = 64  # levels of a tree: more than fit into any memory
@@ -42,11 +56,11 @@ def measure(
     for k in range(len(centres)):
         below = found[k]
         below[:], back[:], out[:] = -np.inf, False, False
-        frame = frame_of(centres[k], axes[k], pitches[k], rows, columns, 1.0, lift, diagonal)
-        search(blocks, boxes, children, frame, stack, projected, below, back, np.inf)
+        frame = frame_of(centres[k], axes[k], pitches[k], rows, columns, 1.0, lift, diagonal, 0.0)
+        search(blocks, boxes, children, frame, cells, stack, projected, below, back, np.inf, None)
         if maybe_inside(back, above):
-            frame = frame_of(centres[k], axes[k], pitches[k], rows, columns, -1.0, lift, diagonal)
-            search(blocks, boxes, children, frame, stack, projected, above, out, np.inf)
+            frame = frame_of(centres[k], axes[k], pitches[k], rows, columns, -1.0, lift, diagonal, 0.0)
+            search(blocks, boxes, children, frame, cells, stack, projected, above, out, np.inf, None)
         for i in range(rows):
             for j in range(columns):
                 below[i, j] = above[i, j] if out[i, j] else -below[i, j]
@@ -76,16 +90,122 @@ def first_below(
     for k in range(len(centres)):
         below = found[k]
         below[:], back[:] = -np.inf, False
-        frame = frame_of(centres[k], axes[k], pitches[k], rows, columns, 1.0, lift, diagonal)
-        lowest = search(blocks, boxes, children, frame, stack, projected, below, back, window) - window
+        frame = frame_of(centres[k], axes[k], pitches[k], rows, columns, 1.0, lift, diagonal, 0.0)
+        lowest = search(blocks, boxes, children, frame, cells, stack, projected, below, back, window, None) - window
         for i in range(rows):
             for j in range(columns):
                 below[i, j] = -below[i, j] if below[i, j] >= lowest else np.inf
     return found
 
 
+@kernel
+def press(
+    blocks: np.ndarray,
+    boxes: np.ndarray,
+    children: np.ndarray,
+    diagonal: float,
+    lift: float,
+    cells: tuple[int, int],
+    centres: np.ndarray,
+    axes: np.ndarray,
+    pitch: float,
+    unit: float,
+    stiffness: float,
+    limit: float,
+    loads: np.ndarray,
+    depths: np.ndarray,
+) -> np.ndarray:
+    """(k, rows, cols) newtons on the cells of arrays pressed to depths (k,), or to loads (k,) if there are any.
+
+    `force.gaps_at` and `force.forces` in one pass, bit for bit. stiffness: of a cell, in newtons a metre; limit: as in
+    `depths_of_loads`. Writes the depths of loads to `depths`, and NaN for a touch that is invalid and left out.
+    """
+    rows, columns = cells
+    found, back = np.empty((len(centres), rows, columns)), np.empty(cells, dtype=np.bool_)
+    stack, projected = np.empty(DEEP, dtype=np.int64), np.empty(ROWS * LANES)
+    start, near, weight = np.empty(3), np.empty(rows * columns), np.empty(rows * columns)
+    reach, within, loaded = max(rows, columns) * pitch, 0.0, len(loads) > 0
+    for k in range(len(centres)):
+        known = loads[k] > 0 if loaded else depths[k] >= 0
+        depths[k] = limit if loaded else depths[k]
+        if not (known and is_placed(centres[k], axes[k])):
+            depths[k] = np.nan
+        elif depths[k] > within:
+            within = depths[k]
+    window = within / unit
+    for k in range(len(centres)):
+        if not depths[k] >= 0:
+            continue
+        felt = found[k]
+        for i in range(rows):
+            for j in range(columns):
+                felt[i, j], back[i, j] = -np.inf, False
+        for axis in range(3):
+            start[axis] = centres[k, axis] + reach * axes[k, 2, axis]
+        frame = frame_of(start, axes[k], pitch, rows, columns, 1.0, lift, diagonal, 0.0)
+        highest = search(blocks, boxes, children, frame, cells, stack, projected, felt, back, window, None)
+        first = (-highest - reach) * unit if highest > -np.inf else 0.0
+        for i in range(rows):
+            for j in range(columns):
+                gap = (-felt[i, j] - reach) * unit - first
+                felt[i, j] = gap if felt[i, j] >= highest - window else np.inf
+        if loaded:
+            size = 0
+            for i in range(rows):
+                for j in range(columns):
+                    if felt[i, j] <= limit:
+                        near[size], weight[size] = felt[i, j], stiffness
+                        size += 1
+            depths[k] = depth_of_load(near, weight, size, loads[k])
+        for i in range(rows):
+            for j in range(columns):
+                pressed = depths[k] - felt[i, j]
+                felt[i, j] = (pressed if pressed > 0 else 0.0) * stiffness
+    return found
+
+
+@kernel
+def below_taxels(
+    blocks: np.ndarray,
+    boxes: np.ndarray,
+    children: np.ndarray,
+    diagonal: float,
+    lift: float,
+    cells: tuple[int, int],
+    centres: np.ndarray,
+    axes: np.ndarray,
+    pitch: float,
+    start: np.ndarray,
+    window: float,
+    taxels: Taxels,
+    count: int,
+) -> np.ndarray:
+    """(k, count) distances from the plane at `start`, in the frame of a layout, to the first surface below its taxels.
+
+    Less the taxels' rise. inf where it is missed, or may be if it is more than `window` farther than the least.
+    """
+    found, heights = np.empty((len(centres), count)), np.empty((1, len(taxels.rise)))
+    back, stack, projected = np.empty((0, 0), dtype=np.bool_), np.empty(DEEP, dtype=np.int64), np.empty(ROWS * LANES)
+    middle = np.empty(3)
+    for k in range(len(centres)):
+        for t in range(count):
+            found[k, t] = np.inf
+        for t in range(heights.shape[1]):
+            heights[0, t] = -np.inf
+        for axis in range(3):
+            x, y, z = axes[k, 0, axis], axes[k, 1, axis], axes[k, 2, axis]
+            middle[axis] = centres[k, axis] + start[0] * x + start[1] * y + start[2] * z
+        frame = frame_of(middle, axes[k], pitch, *cells, 1.0, 0.0, diagonal, 0.5)
+        search(blocks, boxes, children, frame, cells, stack, projected, heights, back, window, taxels)
+        for t in range(heights.shape[1]):
+            found[k, taxels.number[t]] = -heights[0, t] - taxels.rise[t]
+    return found
+
+
 MEASURE = UntilWorthCompiling(measure, __file__, budget=12_800)  # cells: 50 arrays of 16 x 16
 FIRST_BELOW = UntilWorthCompiling(first_below, __file__, budget=12_800)
+PRESS = UntilWorthCompiling(press, __file__, budget=12_800)
+BELOW_TAXELS = UntilWorthCompiling(below_taxels, __file__, budget=12_800)  # cells, of about a taxel
 
 
 @helper
@@ -105,49 +225,57 @@ def search(
     boxes: np.ndarray,
     children: np.ndarray,
     frame: Frame,
+    cells: tuple[int, int],
     stack: np.ndarray,
     projected: np.ndarray,
     best: np.ndarray,
     back: np.ndarray,
     window: float,
+    taxels: Taxels | None,
 ) -> float:
-    """Raises best (rows, cols) to the height of the highest face not above `lift`; back: if it is seen from its back.
+    """Raises best to the height of the highest face not above `lift`; back: if it is seen from its back.
 
-    Returns the highest of all if there is a `window`: then what lies deeper below it is not searched. A cell that
-    begins at inf is not searched either. The nearer child, by the height of its centre, comes first. A perfect order
-    would hardly save a box.
+    best (rows, cols), or (1, n) of n `taxels`. Returns the highest of all, of taxels with their rise. What lies deeper
+    below it than `window` is not searched, nor, without a window, a cell that begins at inf. The nearer child, by the
+    height of its centre, comes first. A perfect order would hardly save a box.
     """
-    rows, columns = best.shape
-    size, stack[0], highest = 1, 0, -np.inf
+    rows, columns = cells
+    reach = frame.margin + frame.around
+    size, stack[0], highest = min(1, len(children)), 0, -np.inf
     while size > 0:
         size -= 1
         node = stack[size]
         x, y, z = from_centre(boxes, node, frame)
         wx, wy, wz = boxes[node, 3], boxes[node, 4], boxes[node, 5]
         height, extent = along(frame.normal, x, y, z), half_width(frame.normal, wx, wy, wz) + frame.slack
-        if height - extent > frame.lift or height + extent < highest - window:
+        floor = highest - window
+        if height - extent > frame.lift or height + extent < floor:
             continue
-        u, extent_u = along(frame.right, x, y, z) + frame.column, half_width(frame.right, wx, wy, wz) + frame.margin
-        v, extent_v = along(frame.down, x, y, z) + frame.row, half_width(frame.down, wx, wy, wz) + frame.margin
+        u, extent_u = along(frame.right, x, y, z) + frame.column, half_width(frame.right, wx, wy, wz) + reach
+        v, extent_v = along(frame.down, x, y, z) + frame.row, half_width(frame.down, wx, wy, wz) + reach
         first, last = max(np.ceil(u - extent_u), 0.0), min(np.floor(u + extent_u), columns - 1.0)
         top, bottom = max(np.ceil(v - extent_v), 0.0), min(np.floor(v + extent_v), rows - 1.0)
         if first > last or top > bottom:
             continue
-        if (last - first + 1) * (bottom - top + 1) <= MAX_CHECKED:
+        if window == np.inf and (last - first + 1) * (bottom - top + 1) <= MAX_CHECKED:
             hidden = True
             for i in range(int(top), int(bottom) + 1):
                 for j in range(int(first), int(last) + 1):
-                    hidden = hidden and best[i, j] > height + extent
+                    if not best[i, j] > height + extent:
+                        hidden = False
+                        break
+                if not hidden:
+                    break
             if hidden:
                 continue
         child = children[node]
         if child < 0:
-            project(blocks[-1 - child], frame, rows, columns, projected)
-            raise_cells(projected, frame, best, back)
-            if window < np.inf:
-                for i in range(int(top), int(bottom) + 1):
-                    for j in range(int(first), int(last) + 1):
-                        highest = max(highest, best[i, j])
+            if faces_above(blocks[-1 - child], frame, floor):
+                project(blocks[-1 - child], frame, rows, columns, floor, projected)
+                if taxels is None:
+                    highest = raise_cells(projected, frame, best, back, highest)
+                else:
+                    highest = raise_taxels(projected, frame, columns, best, taxels, highest)
             continue
         x, y, z = from_centre(boxes, child, frame)
         one = abs(along(frame.normal, x, y, z))
@@ -177,22 +305,28 @@ def depths_of_loads(gaps: np.ndarray, weights: np.ndarray, loads: np.ndarray, li
         first = np.inf
         for gap in gaps[k]:
             first = min(first, gap)
-        size, depth = 0, limit
+        size = 0
         for j in range(gaps.shape[1]):
             if gaps[k, j] - first <= limit and weights[j] > 0:
                 near[size], weight[size] = gaps[k, j] - first, weights[j]
                 size += 1
-        kept = -1
-        while kept != size:
-            size = size if kept < 0 else kept
-            total, moment, kept = 0.0, 0.0, 0
-            for j in range(size):
-                total += weight[j]
-                moment += weight[j] * near[j]
-            depth = (loads[k] + moment) / total
-            for j in range(size):
-                if near[j] <= depth:
-                    near[kept], weight[kept] = near[j], weight[j]
-                    kept += 1
-        depths[k] = depth
+        depths[k] = depth_of_load(near, weight, size, loads[k])
     return depths
+
+
+@helper
+def depth_of_load(near: np.ndarray, weight: np.ndarray, size: int, load: float) -> float:
+    """The depth at which the first `size` springs bear the load, inf without any; overwrites `near` and `weight`."""
+    kept, depth = -1, np.inf
+    while kept != size:
+        size = size if kept < 0 else kept
+        total, moment, kept = 0.0, 0.0, 0
+        for j in range(size):
+            total += weight[j]
+            moment += weight[j] * near[j]
+        depth = (load + moment) / total
+        for j in range(size):
+            if near[j] <= depth:
+                near[kept], weight[kept] = near[j], weight[j]
+                kept += 1
+    return depth
