@@ -1,4 +1,4 @@
-"""A ball with one bright spot, seen from the twelve viewpoints."""
+"""Meshes, views, imprints and runs that several folders test with."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ from haptic_glance.look import camera
 from haptic_glance.look.channels import ViewMaps
 from haptic_glance.look.channels.channels import CHANNELS as NINE
 from haptic_glance.look.channels.channels import OTHERS
-from haptic_glance.look.views import TWELVE
+from haptic_glance.look.views import TWELVE, gl
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.rays import RayScene
 from stages.engine.settings import Workspace
@@ -63,5 +63,46 @@ def make_workspace(tmp_path):
         values |= {"graph": {stage: [dataset] for stage in sections}, dataset: sections} | shared
         write_text(tmp_path / "params.yaml", OmegaConf.to_yaml(OmegaConf.create(values)))
         return Workspace(tmp_path, dataset)
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def shapes():
+    """Name -> Mesh: smooth, sharp, hollow, open and coloured."""
+    sphere = trimesh.creation.icosphere(subdivisions=4, radius=0.5)
+    torus = trimesh.creation.torus(0.3, 0.15, major_sections=64, minor_sections=32)
+    cube = trimesh.creation.box(extents=[0.5, 0.5, 0.5])
+    lower = sphere.faces[sphere.triangles_center[:, 2] < 0]
+    return {
+        "sphere": Mesh(sphere.vertices, sphere.faces),
+        "torus": Mesh(torus.vertices, torus.faces),
+        "cube": Mesh(cube.vertices, cube.faces),
+        "bowl": Mesh(sphere.vertices, lower),
+        "coloured": Mesh(torus.vertices, torus.faces, np.clip((torus.vertices + 0.5) * 255, 0, 255).astype(np.uint8)),
+    }
+
+
+@pytest.fixture(params=["raster", "pyrender"])
+def renderer(request):
+    """Each renderer that can run here."""
+    if request.param == "pyrender" and gl.egl_error():
+        pytest.skip(f"no EGL context on this machine: {gl.egl_error()}")
+    return request.param
+
+
+@pytest.fixture
+def bumps():
+    """A function: {object: (count, 16, 16)}, a bump at the place of each object, give or take `jitter` cells."""
+
+    def make(names=("cup", "duck", "hand"), count=16, jitter=0.3):
+        random = np.random.default_rng(0)
+        row, column = np.mgrid[:16, :16][..., None]
+        images = {}
+        for k, name in enumerate(names):
+            down, along = jitter * random.normal(size=(2, count))
+            bump = np.exp(-((row - 2 - 4 * k - down) ** 2 + (column - 12 + 3 * k - along) ** 2) / (6.0 + 6 * k))
+            images[name] = bump.transpose(2, 0, 1)
+        return images
 
     return make

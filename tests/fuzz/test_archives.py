@@ -136,7 +136,7 @@ def test_nothing_is_unpickled():
             names = list(unpickling(ast.parse(text)))
             found |= {path.name: names} if names else {}
     assert found == {
-        "converters.py": ["_Arrays"],  # it builds arrays alone: tests/networks/test_networks_weights.py
+        "converters.py": ["_Arrays"],  # it builds arrays alone: tests/deep/test_weights.py
         "cluster.py": ["pickle.loads", "pickle.loads"],  # a worker of dask runs what its client sends in any case
     }
 

@@ -1,4 +1,4 @@
-"""Shapes whose salient places are known, for the detectors that the method is measured against."""
+"""Shapes whose salient places are known, for the glance and the detectors that it is measured against."""
 
 import functools
 
@@ -7,6 +7,10 @@ import pytest
 import trimesh
 
 from haptic_glance.mesh.mesh import Mesh
+
+
+def as_mesh(shape: trimesh.Trimesh) -> Mesh:
+    return Mesh(shape.vertices, shape.faces)
 
 
 @functools.cache

@@ -1,0 +1,45 @@
+"""The files of imprints, and the stage on two small solids."""
+
+import numpy as np
+import pytest
+
+from haptic_glance.base.files import write_arrays, write_mesh
+from haptic_glance.mesh.mesh import Mesh
+from haptic_glance.touch import press, touchable
+from stages.engine.rows import read_rows
+from stages.imprints.__main__ import run
+from stages.imprints.imprints import Imprints, read_imprints, write_imprints
+from tests.touch.conftest import solid, sphere
+
+
+def test_files_keep_methods_images_and_places(tmp_path):
+    one = Imprints(np.ones((2, 4, 4), "f4"), np.array([3, 1]), np.zeros((2, 3), "f4"), 0.02)
+    write_imprints(tmp_path / "a.npz", {"random": one, "Vis.Att": one})
+    write_imprints(tmp_path / "b.npz", {"Vis.Att": one, "random": one})
+    back = read_imprints(tmp_path / "a.npz")
+    assert list(back) == ["Vis.Att", "random"] and back["random"].vertices.tolist() == [3, 1]
+    assert back["random"].width == 0.08
+    assert (tmp_path / "a.npz").read_bytes() == (tmp_path / "b.npz").read_bytes()
+
+
+@pytest.mark.slow
+def test_stage_presses_every_method_and_counts_what_it_refuses(make_workspace):
+    settings = {"methods": ["itti", "random", "glance"], "cells": [15, 15], "pitch": 0.01, "contact": "tangent"}
+    workspace = make_workspace({"imprints": settings})
+    mesh, vertex = solid(sphere)
+    mesh = Mesh(np.r_[mesh.vertices, [[1, 1, 1]]], mesh.faces)
+    lone = len(mesh.vertices) - 1
+    write_mesh(workspace.data / "meshes/ball.npz", mesh)
+    points = {"random": np.array([vertex, lone]), "itti": np.array([vertex]), "glance": np.zeros(0, "i8")}
+    arrays = {f"{method}.points": ids for method, ids in points.items()}
+    arrays |= {f"{method}.strong": np.int64(len(ids)) for method, ids in points.items()}
+    write_arrays(workspace.data / "salient_points/ball.npz", **arrays)
+    run(workspace)
+    rows = read_rows(workspace.measurements / "imprints.csv.gz")
+    value = rows.set_index(["method", "metric"])["value"]
+    assert value["random", "imprints"] == 1 and value["random", "refused"] == 1 and np.isnan(value["glance", "relief"])
+    assert value["itti", "relief"] == pytest.approx(0.3 - sphere(0.07, 0.07), rel=1e-5) and value["itti", "missed"] == 0
+    written = read_imprints(workspace.data / "imprints/ball.npz")
+    assert np.array_equal(written["itti"].images[0], press(mesh, vertex, (15, 15), 0.01))
+    assert np.allclose(written["itti"].positions, mesh.vertices[[vertex]])
+    assert not touchable(mesh, [lone])[0]
