@@ -3,11 +3,10 @@
 Objects 0.1 m across: spheres of three face counts, and the meshes of benchmarks.imprints (the least, the middle and the
 most faces of data/household/meshes and of psb.zip). An array of 32 x 32 taxels, 1 mm apart, under 2 mm of foam, pressed
 0.5 mm deep at 40 random vertices, the same for all. Methods: `ours`, press_forces to that depth, all touches in one
-call; `ours_load`, to the load of that depth; `ours_single`, a call a touch; `ours_layout`, the same taxels as a layout,
-which rays find; `mujoco`, the tactile sensor on a mesh of 32 x 32 vertices, below a box that collides: mj_fwdPosition,
-mj_fwdVelocity and mj_sensorVel after each move, which is what a reading needs of a step. It answers with a depth, by an
-octree of signed distances of default depth. The methods take turns, and `seconds` is the median of seven rounds on one
-core.
+call; `ours_load`, to the load of that depth; `ours_single`, a call a touch; `ours_layout`, the same taxels as a layout;
+`mujoco`, the tactile sensor on a mesh of 32 x 32 vertices, below a box that collides: mj_fwdPosition, mj_fwdVelocity
+and mj_sensorVel after each move, which is what a reading needs of a step. It answers with a depth, by an octree of
+signed distances of default depth. The methods take turns, and `seconds` is the median of seven rounds on one core.
 
 Writes reports/bench/tactile.csv. Rows `rate`: `value` frames a second, `seconds` one frame's, `ratio` the rate to
 mujoco's of the same object. Rows `build`: seconds to prepare the object, once. Rows `error`: `value` is the largest
