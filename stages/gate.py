@@ -8,16 +8,27 @@ project: each metric is called by its file and its keys, `train.accuracy` in tra
 with the seed, the threads or the machine is measured by --spread, which writes it beside the baseline: so far it may
 move, whatever its rule. Exits with 1 and names what moved, by how much.
 
+Tolerances let small errors pass. On one machine, two runs give equal rows: --rows compares each row of every
+measurement, of the sets that are off too, with those of a git revision. Times and notes are
+left out.
+
 examples:
   python -m stages.gate
   python -m stages.gate train.json eval.json --baseline baseline.json --tolerances tolerances.yaml
   python -m stages.gate train.json --baseline baseline.json --update
   python -m stages.gate --markdown >> "$GITHUB_STEP_SUMMARY"
+  python -m stages.gate --rows HEAD
   python -m stages.gate --spread runs/seed_1/reports/metrics runs/two_threads/reports/metrics
 """
 
 import argparse
+import csv
+import gzip
+import io
+import re
+import subprocess
 import sys
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -32,6 +43,10 @@ TOLERANCES = Path("reports/tolerances.yaml")
 REPORT = "report."  # metrics that count tables and verdicts: no measurements, whose luck is to be known
 BASELINE = "baseline.json"  # of a run of one's own, in the folder of its results
 LISTED = 8  # new metrics that are named
+ROWS = "reports/measurements"
+TIMES = re.compile(r"seconds|_ms$")  # in names of metrics whose values differ from run to run
+VOLATILE = ("seconds", "clock", "note")  # columns of a row that do, or whose words may be mended
+COST = "cost"  # the condition of rows that hold seconds
 
 
 def flatten(values: Mapping[str, Any], prefix: str = "") -> dict[str, float]:
@@ -107,6 +122,39 @@ def write_spread(runs: Sequence[Mapping[str, float]], baseline: Path) -> str:
     return f"gate: {spread_of(baseline)} written: {len(moves)} of {len(held)} metrics moved in {len(runs)} runs"
 
 
+def hold_rows(revision: str, root: Path = Path()) -> str:
+    """The message on rows that all equal those of a git revision. SystemExit names each file with other rows."""
+    listed = _git(root, "ls-tree", "-r", "--name-only", revision, "--", ROWS).decode().splitlines()
+    here = [path.relative_to(root).as_posix() for path in (root / ROWS).rglob("*.csv.gz")]
+    said = []
+    for name in sorted({*listed, *here}):
+        before = _rows_of(_git(root, "show", f"{revision}:{name}")) if name in listed else Counter()
+        after = _rows_of((root / name).read_bytes()) if name in here else Counter()
+        gone, new = (before - after).total(), (after - before).total()
+        if gone or new:
+            said.append(
+                f"  {name}: {min(gone, new)} rows changed, {max(new - gone, 0)} more, {max(gone - new, 0)} fewer"
+            )
+    if said:
+        remedy = f"commit the files if the change is meant, or run `git checkout {revision} -- FILE`"
+        raise SystemExit("\n".join([f"gate: {len(said)} files have other rows than {revision}: {remedy}", *said]))
+    return f"gate: the rows of {len(listed)} files equal those of {revision}"
+
+
+def _rows_of(content: bytes) -> Counter:
+    """How often each row occurs, without times, notes and empty cells."""
+    rows = csv.DictReader(io.StringIO(gzip.decompress(content).decode()))
+    kept = (row for row in rows if not TIMES.search(row.get("metric") or "") and row.get("condition") != COST)
+    return Counter(tuple((name, cell) for name, cell in row.items() if cell and name not in VOLATILE) for row in kept)
+
+
+def _git(root: Path, *arguments: str) -> bytes:
+    found = subprocess.run(["git", *arguments], cwd=root, capture_output=True)
+    if found.returncode:
+        raise SystemExit(f"gate: git {arguments[0]}: {found.stderr.decode().strip()}")
+    return found.stdout
+
+
 def run(argv: Sequence[str]) -> None:
     """Compares, updates the baseline, or measures how far runs differ."""
     parser = argparse.ArgumentParser(
@@ -119,7 +167,12 @@ def run(argv: Sequence[str]) -> None:
     about = "folders of metrics of runs with other seeds or threads: write how far each metric moves"
     parser.add_argument("--spread", nargs="+", type=Path, metavar="FOLDER", help=about)
     parser.add_argument("--markdown", action="store_true", help="print Markdown, for the summary of a run on GitHub")
+    about = "compare each row of every measurement with those of a git revision, times left out"
+    parser.add_argument("--rows", metavar="REVISION", help=about)
     given = parser.parse_args(argv)
+    if given.rows:
+        print(hold_rows(given.rows))
+        return
     if given.metrics and (given.spread or not given.baseline):
         parser.error("METRICS.json needs --baseline, and --spread is of runs of this project")
     if given.metrics:

@@ -1,7 +1,9 @@
 """The gate passes what holds, names what moved and by how much, and is not fooled by two methods that change places."""
 
+import gzip
 import json
 import re
+import subprocess
 from itertools import combinations
 from pathlib import Path
 
@@ -138,3 +140,65 @@ def test_markdown_lists_what_moved(tmp_path, capsys):
     metrics.write_text(json.dumps({"accuracy": 0.7}))
     with pytest.raises(SystemExit, match=r"(?s)1 of 1 metrics left.*\n- train.accuracy moved by -0.1"):
         gate.run([*given, "--markdown"])
+
+
+@pytest.fixture
+def repository(tmp_path):
+    """A git repository with the rows of two sets, of which params.yaml would switch on one."""
+    rows = [
+        "item,method,metric,value,seconds,note",
+        *(f"{k},{way},error,{k + len(way)},0.1,old" for k in (1, 2) for way in ("a", "bb")),
+    ]
+    for name in ("toys", "off"):
+        write(tmp_path, name, rows)
+    for arguments in (
+        ["init", "-q"],
+        ["add", "."],
+        ["-c", "user.name=A", "-c", "user.email=a@b.c", "commit", "-qm", "rows"],
+    ):
+        subprocess.run(["git", *arguments], cwd=tmp_path, check=True)
+    return tmp_path, rows
+
+
+def write(root, name, rows):
+    path = root / gate.ROWS / name / "lod.csv.gz"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(gzip.compress("\n".join(rows).encode()))
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda rows: [*rows[:2], rows[2].replace(",3,", ",3.15,"), *rows[3:]], "1 rows changed"),  # 5 %
+        (lambda rows: [*rows[:2], rows[2].replace(",3,", ",-3,"), *rows[3:]], "1 rows changed"),
+        (
+            lambda rows: [row.replace(",a,", ",x,").replace(",bb,", ",a,").replace(",x,", ",bb,") for row in rows],
+            "4 rows",
+        ),
+        (lambda rows: rows[:-1], "1 fewer"),
+        (lambda rows: [*rows, rows[-1]], "1 more"),
+    ],
+    ids=["five per cent", "sign", "two methods that change places", "dropped", "twice"],
+)
+@pytest.mark.parametrize("name", ["toys", "off"])
+def test_every_changed_row_of_every_set_is_found(repository, change, said, name):
+    root, rows = repository
+    assert "2 files equal those of HEAD" in gate.hold_rows("HEAD", root)
+    write(root, name, change(rows))
+    with pytest.raises(SystemExit, match=rf"{name}/lod.csv.gz: .*{said}"):
+        gate.hold_rows("HEAD", root)
+
+
+def test_times_and_the_order_of_rows_change_nothing(repository):
+    root, rows = repository
+    write(root, "toys", [rows[0], *(row.replace("0.1,old", "9,new") for row in rows[:0:-1])])
+    assert "equal" in gate.hold_rows("HEAD", root)
+
+
+def test_a_file_that_is_gone_and_a_revision_that_is_none_are_named(repository):
+    root, _ = repository
+    (root / gate.ROWS / "off/lod.csv.gz").unlink()
+    with pytest.raises(SystemExit, match="off/lod.csv.gz: 0 rows changed, 0 more, 4 fewer"):
+        gate.hold_rows("HEAD", root)
+    with pytest.raises(SystemExit, match="gate: git ls-tree: .*nowhere"):
+        gate.hold_rows("nowhere", root)

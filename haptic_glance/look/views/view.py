@@ -66,7 +66,7 @@ def pixel_box(places: np.ndarray, size: tuple[int, int]) -> tuple[int, int, int,
         needs = f"rows {top:.0f}..{bottom:.0f}, columns {left:.0f}..{right:.0f}"
         raise ValueError(
             f"the mesh leaves the frame of {rows} x {columns} pixels ({needs}): normalise it with "
-            "haptic_glance.mesh.repair (bounding sphere of radius 0.5 at the origin), or choose a wider image"
+            "haptic_glance.normalise (bounding sphere of radius 0.5 at the origin), or choose a wider image"
         )
     return max(ceil(top), 0), max(ceil(left), 0), min(floor(bottom) + 1, rows), min(floor(right) + 1, columns)
 
