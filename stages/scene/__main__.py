@@ -9,6 +9,7 @@ rendered is not rendered again, but for the network, which starts anew. Settings
 """
 
 import functools
+from dataclasses import asdict
 from pathlib import Path
 
 from haptic_glance.base.files import write_arrays
@@ -54,7 +55,7 @@ def levels_of(name: str, folder: Path, data: Path, method: str, seed: int) -> Ro
         if kind == OURS:
             with Stopwatch() as watch:
                 found = profile(levels)
-            write_arrays(folder / "levels" / name / PROFILE, directions=found.directions, sums=found.sums)
+            write_arrays(folder / "levels" / name / PROFILE, **asdict(found))
             rows.append(row | {"metric": "profile", "value": len(found.directions), "seconds": watch.seconds})
     return rows
 

@@ -7,7 +7,7 @@ import pytest
 import trimesh
 
 from haptic_glance.lod.scene import Frames, Level, Placed
-from haptic_glance.lod.scene.beforehand import by_profiles, by_sums, profile, rendered_sums
+from haptic_glance.lod.scene.beforehand import _cube, by_profiles, by_sums, profile, rendered_sums
 from haptic_glance.mesh.mesh import Mesh
 
 
@@ -87,3 +87,15 @@ def _moved(frames, own):
     pose, (camera,) = frames.poses[0], frames.scene.cameras
     depth = camera.axes[2] @ (pose.corners().mean(axis=0) - camera.eye)
     return own.sums[:, 1].max() * (pose.scale * camera.focal / depth) ** 3
+
+
+@pytest.mark.parametrize(
+    ("place", "share"), [((0, 0, 0), 1.0), ((1.475, 0, 0), 0.5), ((2, 0, 0), 0.0), ((0, -6, 0), 0.0), ((0, 0, 2), 0.0)]
+)
+def test_displacement_counts_where_it_is_in_the_frame(make_scene, place, share):
+    full = ball(0.5)
+    scene = make_scene([Placed("ball", place, 0.0, 0.25)], frames=1, size=(100, 100))  # seen from y = -4 m
+    pose, (camera,) = scene.poses({"ball": full.mesh})[0], scene.cameras
+    counted = _cube(camera, pose, profile((full, ball(0.45))).points)
+    whole = (pose.scale * camera.focal / (camera.axes[2] @ (pose.corners().mean(axis=0) - camera.eye))) ** 3
+    assert counted == pytest.approx(share * whole, rel=0.1, abs=1e-9)

@@ -210,7 +210,7 @@ def random_figure(results: Results) -> Figure:
     ):
         if plan in _keys(wide):
             _sorted(panels[0], 100 * fewer(wide, plan), COLOURS[plan[0]], NAMES[plan[0]], marker)
-    panels[0].set(ylabel="fewer faces than uniform levels by distance, %", title=f"equal {EQUAL['displacement']}")
+    panels[0].set(ylabel="faces saved over uniform levels, %", title=f"equal {EQUAL['displacement']}")
     for rival, marker in (("uniform", "o"), ("uniform_size", "s")):
         _sorted(panels[1], 100 * saving(wide, (rival, "error")), COLOURS[rival], NAMES[rival], marker)
     panels[1].set(ylabel="faces that ours saves, %", title=f"equal {EQUAL['error']}")
