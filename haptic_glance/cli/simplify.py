@@ -1,8 +1,8 @@
 """Simplifies one mesh and spares the places that people look at.
 
-Reads STL, OBJ, PLY, OFF or GLB and writes the mesh in its own coordinates, with its colours and textures. The error is
-weighted by saliency, so that faces go where people look; nothing is frozen but the boundary (unless --free-borders) and
-borders of materials.
+Reads STL, OBJ, PLY, OFF or GLB and writes the mesh in its own coordinates, with its colours and textures; from GLB to
+GLB with its materials, but for what is named as dropped. The error is weighted by saliency, so that faces go where
+people look; nothing is frozen but the boundary (unless --free-borders) and borders of materials.
 With --neighbourhood the faces around the salient points stay unchanged: on 50 household objects that raises the error
 over the whole mesh by half. Prints the errors, beside those of plain quadric edge collapse (QEM) with as many faces.
 Every mesh of a folder is simplified; the nodes of a GLB keep their names. A GLB is written y up, as the format has it.
@@ -42,7 +42,7 @@ from haptic_glance.lod.topology import Parts, moved_parts, parts_of
 from haptic_glance.look.points import find_points, saliency
 from haptic_glance.look.points.find import HELP, check_name
 from haptic_glance.mesh.files import load_unnamed, mesh_files, names_of
-from haptic_glance.mesh.materials import bake_texture
+from haptic_glance.mesh.materials import bake_texture, not_read
 from haptic_glance.mesh.mesh import Mesh
 from haptic_glance.mesh.up import add_up, upright_by, upright_for
 
@@ -254,8 +254,12 @@ def write_level(out: Path, task: SimplificationTask, level: Mesh, given: Mesh, p
     write_any(out, turned, moved_parts(parts, given, restored))
     if note:
         report(note)
-    if out.suffix.lower() in COLORLESS and (task.given.texture or task.given.colors is not None):
+    suffix, texture = out.suffix.lower(), task.given.texture
+    if suffix in COLORLESS and (texture or task.given.colors is not None):
         report(f"{out.suffix} files have no colours: write .glb, .obj or .ply to keep them")
+    elif suffix != ".glb" and texture and (said := {name for each in texture.materials for name in each or ()}):
+        kept = "colours of vertices" if suffix == ".ply" else "the colours of materials"
+        report(f"{out.suffix} files have {kept} alone, dropped: {', '.join(sorted(said - {'baseColorFactor'}))}")
 
 
 def draw(task: SimplificationTask, found: Mesh, path: Path) -> None:
@@ -273,6 +277,8 @@ def read(path: Path, up: str | None) -> tuple[Mesh, Mesh]:
     extent = np.ptp(given.vertices, axis=0).max()
     if extent < MIN_EXTENT:
         raise ValueError(f"its extent is {extent:g}: export it in smaller units, or with more digits")
+    if path.suffix.lower() == ".glb" and (lost := not_read(path.read_bytes())):
+        report(f"dropped from {path.name}, since they cannot be carried over: {', '.join(lost)}")
     mesh, notes = repaired(given)
     report(number(len(mesh.faces), "face") + "".join(f"; {note}" for note in [note, *notes]))
     return given, mesh

@@ -5,6 +5,8 @@ is a patch of faces whose coordinates are continuous across the edges between th
 of the coarse mesh takes the chart under its centre, so that no face shows the stretch of image between two charts.
 """
 
+from dataclasses import replace
+
 import numpy as np
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
@@ -85,7 +87,7 @@ def carry_texture(reference: Mesh, mesh: Mesh) -> Texture:
     ahead = _extrapolated(reference, *sides, FAR).reshape(uv.shape)
     astray = np.linalg.norm(uv - ahead, axis=2) > jump[chart[under]][:, None] / 2
     uv[astray] = ahead[astray]
-    return Texture(uv, reference.texture.image[under], reference.texture.images)
+    return replace(reference.texture, uv=uv, image=reference.texture.image[under])
 
 
 def charts(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:

@@ -19,7 +19,7 @@ from haptic_glance.base.extras import MissingExtra
 from . import clouds
 from .axes import AUTO
 from .headers import MeshError, check_header
-from .materials import join_parts, merge_equal_rows, obj_vertices, texture_of, vertex_colors
+from .materials import join_parts, merge_equal_rows, obj_vertices, set_apart, texture_of, vertex_colors
 from .mesh import Mesh
 from .off import read_off
 from .up import UP_OF_FORMAT, stated_up
@@ -131,7 +131,9 @@ def _parsed(content, suffix, resolver, every_colour):
         return clouds.surface_of(clouds.read_cloud(content, suffix))
     if suffix == ".glb" or (suffix == ".obj" and b"usemtl" in content):
         order = obj_vertices(content) if suffix == ".obj" else None
-        loaded = join_parts(_open(content, suffix, resolver), order, every_colour)
+        opened = _open(content, suffix, resolver)
+        set_apart(opened)
+        loaded = join_parts(opened, order, every_colour)
     else:
         skip = not (every_colour and suffix == ".ply")
         loaded = _open(content, suffix, resolver, maintain_order=True, skip_materials=skip)

@@ -2,11 +2,13 @@
 
 Joins meshes that a file splits by material and duplicates at texture seams: OBJ with materials, and GLB.
 
-A material counts by its colour or its picture of colour: Kd and map_Kd, baseColorFactor and baseColorTexture.
+A material is seen by its colour or its picture of colour: Kd and map_Kd, baseColorFactor and baseColorTexture. What
+else a glTF material says is carried along, its further pictures undecoded.
 
 The colours of an object: those of its file, or one of a palette by its name.
 """
 
+import json
 import zlib
 from dataclasses import replace
 from typing import Any
@@ -16,13 +18,72 @@ import trimesh
 from PIL import Image
 from trimesh.visual import ColorVisuals, TextureVisuals
 from trimesh.visual.color import to_rgba
-from trimesh.visual.material import color_image
+from trimesh.visual.material import PBRMaterial, color_image
 
 from .headers import MeshError
-from .mesh import Mesh, Texture
+from .mesh import Mesh, Texture, content_of
 
 MAX_TEXTURE = 8192  # pixels, of a square texture
 MADE_UP: Any = color_image()  # what trimesh paints a material with whose file is not there
+
+FACTORS = (
+    "name", "baseColorFactor", "metallicFactor", "roughnessFactor", "emissiveFactor", "alphaMode", "alphaCutoff",
+    "doubleSided",
+)  # fmt: skip
+MAPS = ("normalTexture", "metallicRoughnessTexture", "occlusionTexture", "emissiveTexture")
+BESIDE = "beside_colour"  # in the metadata of a part
+
+
+def beside_colour(material: Any) -> dict[str, Any] | None:
+    """What a glTF material says beside its picture of colour, as arguments of trimesh's PBRMaterial; None of others.
+
+    A picture is the bytes of its file where that is a PNG or JPEG that was not decoded, and else the PIL image.
+    """
+    if not isinstance(material, PBRMaterial):
+        return None
+    said = {name: getattr(material, name) for name in FACTORS} | {name: _file(getattr(material, name)) for name in MAPS}
+    return {name: value for name, value in said.items() if value is not None}
+
+
+def _file(image):
+    content = getattr(getattr(image, "fp", None), "getvalue", None)
+    return content() if content and image.format in ("PNG", "JPEG") else image
+
+
+def set_apart(loaded: trimesh.parent.Geometry) -> None:
+    """Moves all pictures but those of colour from the materials of a file's Scene to the metadata of its parts.
+
+    A copy of a part, as `join_parts` makes, would decode them.
+    """
+    parts = [part for part in getattr(loaded, "geometry", {}).values() if isinstance(part, trimesh.Trimesh)]
+    materials = {id(part): getattr(part.visual, "material", None) for part in parts}
+    for part in parts:
+        part.metadata[BESIDE] = beside_colour(materials[id(part)])
+    for material in materials.values():
+        if isinstance(material, PBRMaterial):
+            for name in MAPS:
+                setattr(material, name, None)
+
+
+USUAL = {"scale": 1, "strength": 1, "texCoord": 0}  # of a use of a picture
+REPEAT = 10497  # the usual wrapS and wrapT
+READ = ("KHR_materials_pbrSpecularGlossiness", "EXT_texture_webp")  # extensions that trimesh reads
+
+
+def not_read(content: bytes) -> list[str]:
+    """Names of what the materials of a GLB's bytes say and `beside_colour` has not; also of animations and the like."""
+    tree = json.loads(content[20 : 20 + int.from_bytes(content[12:16], "little")])
+    found = [name for name in ("animations", "skins", "cameras") if tree.get(name)]
+    for material in tree.get("materials", []):
+        found += material.get("extensions", {})
+        uses = material | material.get("pbrMetallicRoughness", {})
+        for name, use in ((name, use) for name, use in uses.items() if isinstance(use, dict) and "index" in use):
+            texture = tree["textures"][use["index"]]
+            sampler = tree["samplers"][texture["sampler"]] if "sampler" in texture else {}
+            found += [f"{name}.{key}" for key, usual in USUAL.items() if use.get(key, usual) != usual]
+            found += [f"{name}.{key}" for key in ("wrapS", "wrapT") if sampler.get(key, REPEAT) != REPEAT]
+            found += [f"{name}.{key}" for key in (use.get("extensions", {}) | texture.get("extensions", {}))]
+    return [name for name in dict.fromkeys(found) if not name.endswith(READ)]
 
 
 def join_parts(
@@ -89,16 +150,25 @@ def merge_equal_rows(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def texture_of(parts: list[trimesh.Trimesh]) -> Texture | None:
-    """The Texture of all parts, one behind the other, or None when no material states a colour or a picture."""
-    if not any(_stated(part) for part in parts):
+    """The Texture of all parts, one behind the other, or None when no material states more than its name and sides."""
+    said = [_beside(part) for part in parts]
+    if not any(
+        _stated(part) or set(own or ()) - {"name", "doubleSided"} for part, own in zip(parts, said, strict=True)
+    ):
         return None
     images = [_image(part) for part in parts]
     uv = [_corners(part) for part in parts]
     sizes = [len(part.faces) for part in parts]
     names = {}
-    numbers = [names.setdefault((one.shape, one.tobytes()), len(names)) for one in images]
-    distinct = [images[numbers.index(number)] for number in range(len(names))]
-    return Texture(np.concatenate(uv), np.repeat(numbers, sizes), tuple(distinct))
+    keys = [(one.shape, one.tobytes(), *content_of(own)) for one, own in zip(images, said, strict=True)]
+    numbers = [names.setdefault(key, len(names)) for key in keys]
+    first = [numbers.index(number) for number in range(len(names))]
+    distinct, materials = zip(*((images[place], said[place]) for place in first), strict=True)
+    return Texture(np.concatenate(uv), np.repeat(numbers, sizes), distinct, materials)
+
+
+def _beside(part):
+    return part.metadata.get(BESIDE) or beside_colour(getattr(part.visual, "material", None))
 
 
 def _stated(part):
