@@ -270,6 +270,28 @@ def test_one_mesh_is_touched_in_a_core_install(ball):
     assert line.endswith("by matplotlib, which is not installed: pip install '.[pictures]'")
 
 
+@pytest.mark.slow
+def test_a_place_beside_vertices_is_touched_in_a_core_install(ball):
+    for place, code, said in (("0,0,0.5", 0, "written: "), ("500,500,500", 1, "is off the mesh")):
+        done = run_command("touch", ball, "--at", place, "--up", "z", "--out", ball.parent / "out", before=CORE)
+        assert done.returncode == code and said in done.stderr, done.stderr
+
+
+def test_perturbations_are_there_in_a_core_install(ball):
+    code = """
+import numpy as np
+from haptic_glance import load
+from haptic_glance.disturb.objects import PERTURBATIONS
+from haptic_glance.disturb.touches import TOUCH_PERTURBATIONS
+
+mesh = load(sys.argv[1])
+PERTURBATIONS["noise"].apply(mesh, 0.001, np.random.default_rng(0))
+PERTURBATIONS["remeshing"].apply(mesh, 0.1, np.random.default_rng(0))
+"""
+    done = python(CORE + code, ball)
+    assert "a mesh is remeshed by pymeshlab, which is not installed: pip install '.[pipeline]'" in done.stderr
+
+
 def test_a_missing_module_of_nobodys_is_left_as_it_is():
     with pytest.raises(ModuleNotFoundError) as raised, from_extra():
         import no_such_module  # noqa: F401  # pyright: ignore[reportMissingImports]

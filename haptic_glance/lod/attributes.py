@@ -12,9 +12,8 @@ from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
 from haptic_glance.mesh.mesh import Mesh, Texture
+from haptic_glance.mesh.nearest import SurfaceIndex
 from haptic_glance.mesh.rays import barycentric
-
-from .errors import SurfaceIndex
 
 SAME = 1e-6  # texture coordinates this close are continuous across an edge; an image has some 1e3 pixels per side
 INWARDS = 1e-3  # of the way to the face's centre: a corner on a seam then lies on its own side of it
