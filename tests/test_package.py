@@ -3,6 +3,7 @@
 import ast
 import os
 import re
+import signal
 import subprocess
 import sys
 import tomllib
@@ -230,6 +231,13 @@ def test_the_list_of_commands_imports_no_stage():
     assert max(map(len, done.stdout.splitlines()[:-1])) <= 120
     loaded = ast.literal_eval(done.stdout.splitlines()[-1])
     assert not [name for name in loaded if name.startswith("stages.") or name in ("numpy", "torch", *EXTRAS)]
+
+
+@pytest.mark.parametrize("module", ["numpy", "scipy", "PIL", "numba"])
+def test_ctrl_c_during_imports_is_one_line(ball, module):
+    stop = without([module]).replace("raise ModuleNotFoundError", "raise KeyboardInterrupt  #")
+    done = run_command("saliency", ball, before=stop)
+    assert done.returncode == -signal.SIGINT and done.stderr == "saliency: stopped\n"
 
 
 def test_an_unknown_command_is_named_with_one_like_it():
