@@ -28,7 +28,8 @@ from typing import Any
 
 import numpy as np
 
-from haptic_glance.base.extras import MissingExtra
+from haptic_glance.base.extras import MissingExtra, about
+from haptic_glance.base.files import existing, said_of
 from haptic_glance.base.timing import WallClock
 from haptic_glance.lod.attribute_quadrics import check_attributes
 from haptic_glance.lod.compiled import compile_beside
@@ -204,12 +205,12 @@ def run(argv: Sequence[str]) -> int:
     files, figures = mesh_files(chosen.mesh), []
     for path, name in zip(files, names_of(files), strict=True):
         try:
-            figures.append(simplify_file(path, name, chosen, compiled))
+            with about(path):
+                figures.append(simplify_file(path, name, chosen, compiled))
         except (ValueError, MissingExtra) as error:
             if not chosen.mesh.is_dir():
-                kind = MissingExtra if isinstance(error, MissingExtra) else ValueError
-                raise kind(f"{path}: {error}").with_traceback(error.__traceback__) from None
-            report(f"{path}: {error}")
+                raise
+            report(str(error))
     if chosen.json:
         print(json.dumps(figures))
     whole = len(figures) == len(files) and all(len(each["levels"]) == len(targets(chosen)) for each in figures)
@@ -231,20 +232,30 @@ def simplify_file(path: Path, name: str, chosen: Namespace, compiled: Callable[[
     written = [level_path(chosen.out, name, path, target, chosen.format) for target in found]
     if one_file(chosen):
         written = [chosen.out]
+    before = existing(*written, chosen.picture)
     for out, level in zip(written, meshes, strict=True):
         write_level(out, task, level, given, parts)
     alone = not chosen.levels and chosen.method != PLAIN
     rival = plain(task, len(meshes[0].faces)) if alone else None
+    hint_at_pictures(chosen, mesh)
     report("measuring the errors")
     errors = measure_meshes(task, [*meshes, *([] if rival is None else [rival])], chosen.seed, report)
     if not chosen.json:
         print(summary(task, list(found) if chosen.levels else [method_label(chosen)], meshes, rival, errors))
     if chosen.picture:
         draw(task, meshes[0], chosen.picture)
-    report("written: " + ", ".join(map(str, filter(None, [*written, chosen.picture]))))
+    report(said_of([path for path in (*written, chosen.picture) if path], before))
     rows = zip(written, meshes, errors, strict=False)  # the rival's errors come last
     levels = [{"file": str(out), "faces": len(level.faces), **row} for out, level, row in rows]
     return {"mesh": str(path), "faces": len(task.mesh.faces), "levels": levels}
+
+
+def hint_at_pictures(chosen: Namespace, mesh: Mesh) -> None:
+    """Says once how the error can count a picture that it does not count."""
+    counted = chosen.attributes or chosen.free_borders or chosen.backend == "pymeshlab" or "hinted" in chosen
+    if not counted and mesh.texture and max(image.size for image in mesh.texture.images) > 4:
+        chosen.hinted = True
+        report("the error counts the shape alone; with --attributes uv=1 the picture on it moves less")
 
 
 def write_level(out: Path, task: SimplificationTask, level: Mesh, given: Mesh, parts: Parts) -> None:

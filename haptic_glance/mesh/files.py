@@ -14,7 +14,7 @@ import trimesh
 from numpy.typing import ArrayLike
 from trimesh.resolvers import FilePathResolver, Resolver
 
-from haptic_glance.base.extras import MissingExtra
+from haptic_glance.base.extras import MissingExtra, about
 
 from . import clouds
 from .axes import AUTO
@@ -55,10 +55,8 @@ def load(path: str | Path) -> Mesh:
 
 def load_as_stated(path: str | Path) -> Mesh:
     """As `load`; `up` is `auto` where the file does not say which axis points up."""
-    try:
+    with about(path, MeshError):
         return load_unnamed(Path(path))
-    except MeshError as error:
-        raise MeshError(f"{path}: {error}") from None
 
 
 def load_unnamed(path: Path) -> Mesh:
@@ -139,7 +137,12 @@ def _parsed(content, suffix, resolver, every_colour):
         loaded = _open(content, suffix, resolver, maintain_order=True, skip_materials=skip)
         if isinstance(loaded, trimesh.Scene):
             loaded = loaded.to_geometry() if loaded.geometry else None
-    return loaded if isinstance(loaded, Mesh) else _to_mesh(loaded, suffix == ".stl", every_colour)
+    if isinstance(loaded, Mesh):
+        return loaded
+    if isinstance(loaded, trimesh.PointCloud) and (suffix != ".ply" or "face" in loaded.metadata.get("_ply_raw", ())):
+        with about("has no faces, so it is read as a point cloud", MeshError):
+            return _to_mesh(loaded, False, every_colour)
+    return _to_mesh(loaded, suffix == ".stl", every_colour)
 
 
 def _open(content, suffix, resolver, **options):
