@@ -55,6 +55,7 @@ def toys(monkeypatch):
         mesh = Mesh(corners, np.array([[0, 1, 2], [1, 3, 2]]))
         found[name] = mesh, GroundTruth(np.array([0, 0, 0, 1.0]), np.array([0, 0, 0.1, 1.0]), mesh.vertex_areas)
     monkeypatch.setattr(bench, "gazed", lambda dataset, archive: found)
+    monkeypatch.setattr(bench, "GAZE", __file__)
 
 
 def listed(capsys, *options):
@@ -127,6 +128,7 @@ def test_values_of_each_object_are_listed_on_request(file, toys, capsys):
 def test_an_object_on_which_a_method_fails_is_named_and_the_others_are_judged(file, toys, capsys):
     bench.run([f"{file}:moody", "--objects"])
     out, err = capsys.readouterr()
+    assert "bench: 3 of 3: third" in err
     assert "bench: first is left out: KeyError: 'no such part'" in err and "bench: third is left out" in err
     assert re.search(r"^ +> yours +1 ", out, re.M) and re.search(r"^yours +third +ValueError: .*NaN", out, re.M)
     yours = listed(capsys, f"{file}:moody")["yours"]
@@ -161,9 +163,16 @@ def test_the_page_names_the_objects_of_each_split(dataset):
     assert names.split(", ") == sorted(read_rows(Path(bench.ROWS.format(dataset)))["item"].unique())
 
 
-def test_a_file_that_is_not_there_is_named():
-    with pytest.raises(ValueError, match="name a file and a function of it"):
-        bench.run(["nowhere.py:saliency"])
+def test_what_is_not_there_is_named_before_anything_is_read(file, monkeypatch):
+    monkeypatch.setattr("stages.engine.rows.read_rows", None)
+    for options, words in (
+        (["nowhere.py:saliency"], "^nowhere.py: no such file"),
+        (["nowhere.py"], "name a file and a function of it"),
+        ([f"{file}:width"], "mine.py has no function 'width'"),
+        ([f"{file}:height", "--gaze", "gone.zip"], "^--gaze gone.zip: no such file"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            bench.run(options)
 
 
 def test_rows_that_are_not_there_are_named_with_the_remedy(tmp_path):
