@@ -62,11 +62,10 @@ def run(argv: Sequence[str]) -> None:
     parser.add_argument("--objects", action="store_true", help="also list each object, of METHOD or of all methods")
     parser.add_argument("--json", action="store_true", help="print a JSON list of the methods, with each object")
     options = parser.parse_args(argv)
-    archive, method = options.gaze or Path(GAZE.format(options.set)), None
-    if options.method:  # checked before the imports below, which take seconds
-        method = function_of(options.method)
-        if not archive.exists():
-            raise ValueError(f"--gaze {archive}: no such file")
+    # Before the imports below, which take seconds.
+    method = function_of(options.method) if options.method else None
+    if options.gaze and not options.gaze.exists():
+        raise ValueError(f"--gaze {options.gaze}: no such file")
     with from_extra():
         import pandas as pd
 
@@ -76,6 +75,7 @@ def run(argv: Sequence[str]) -> None:
         raise ValueError(f"no {path}: run it in a clone of the project, or name the rows by --rows")
     scores = read_rows(path)[lambda frame: frame["metric"].isin(SCORES)]
     if method:
+        archive = options.gaze or Path(GAZE.format(options.set))
         report(f"reading {archive}")
         rows = judged(method, gazed(options.set, archive), options.train)
         scores = pd.concat([scores, pd.DataFrame(rows)])

@@ -8,13 +8,15 @@ import numpy as np
 import pandas as pd
 import pytest
 
+import haptic_glance
+from haptic_glance.lod import write_any
 from haptic_glance.look.agreement import METRICS, GroundTruth
 from haptic_glance.mesh.mesh import Mesh
 from stages import bench
 from stages.engine.rows import read_rows
 
 PAGE = (Path(__file__).parents[1] / "docs/judging.md").read_text(encoding="utf-8")
-EXAMPLES = re.findall(r"^```python\n(.*?)^```$", PAGE, re.M | re.S)
+*EXAMPLES, OWN_GAZE = re.findall(r"^```python\n(.*?)^```$", PAGE, re.M | re.S)
 SHORT = 20  # lines of a new method
 OBJECTS = ("first", "second", "third")
 METHODS = """
@@ -55,7 +57,6 @@ def toys(monkeypatch):
         mesh = Mesh(corners, np.array([[0, 1, 2], [1, 3, 2]]))
         found[name] = mesh, GroundTruth(np.array([0, 0, 0, 1.0]), np.array([0, 0, 0.1, 1.0]), mesh.vertex_areas)
     monkeypatch.setattr(bench, "gazed", lambda dataset, archive: found)
-    monkeypatch.setattr(bench, "GAZE", __file__)
 
 
 def listed(capsys, *options):
@@ -161,6 +162,16 @@ def test_a_new_method_takes_few_lines(code, options, tmp_path, toys, capsys):
 def test_the_page_names_the_objects_of_each_split(dataset):
     (names,) = re.findall(rf"^\| `{dataset}` \| (.+) \|$", PAGE, re.M)
     assert names.split(", ") == sorted(read_rows(Path(bench.ROWS.format(dataset)))["item"].unique())
+
+
+def test_gaze_of_ones_own_is_judged_in_few_lines(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    corners = np.array([[0, 0, 0], [1, 0, 0.2], [0, 1, 0.5], [1, 1, 1.0], [0.5, 0.5, -1]])
+    write_any("mine.obj", Mesh(corners, np.array([[0, 1, 2], [1, 3, 2], [0, 2, 4], [1, 0, 4]]), up="y"))
+    Path("gaze.csv").write_text("x,y,z,seconds\n1.01,1,1,3\n0,0.9,0.5,0.5\n")
+    monkeypatch.setattr(haptic_glance, "saliency", lambda mesh: mesh.vertices[:, 2] - mesh.vertices[:, 2].min())
+    exec(OWN_GAZE, {})
+    assert "'nss': " in capsys.readouterr().out and len(OWN_GAZE.splitlines()) <= SHORT
 
 
 def test_what_is_not_there_is_named_before_anything_is_read(file, monkeypatch):
